@@ -1,0 +1,19 @@
+# Every dependency is a Debian package; docs/dependencies.md gives the reason for each.
+find_package(OpenMP REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(tomlplusplus REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(HDF5 REQUIRED COMPONENTS C)
+
+# UDUNITS-2 and Voro++ ship no CMake package.
+function(pyroclast_find_library name header library)
+  find_path(${name}_INCLUDE_DIR ${header} PATH_SUFFIXES ${ARGN} REQUIRED)
+  find_library(${name}_LIBRARY ${library} REQUIRED)
+  add_library(${name}::${name} UNKNOWN IMPORTED)
+  set_target_properties(${name}::${name} PROPERTIES IMPORTED_LOCATION ${${name}_LIBRARY}
+                                                    INTERFACE_INCLUDE_DIRECTORIES ${${name}_INCLUDE_DIR})
+endfunction()
+pyroclast_find_library(udunits2 udunits2.h udunits2 udunits2)
+pyroclast_find_library(voropp voro++.hh voro++ voro++)

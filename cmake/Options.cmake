@@ -1,0 +1,15 @@
+# Flags that every target of this project shares, as one interface target.
+add_library(pyroclast_options INTERFACE)
+target_compile_options(pyroclast_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                                                   -Woverloaded-virtual -Wcast-align)
+# Contracting a*b+c into one instruction differently in two inlined copies of a loop would make the result
+# depend on the optimizer; results are promised bitwise, so it is off.
+target_compile_options(pyroclast_options INTERFACE -ffp-contract=off -fno-math-errno)
+if(PYROCLAST_WERROR)
+  target_compile_options(pyroclast_options INTERFACE -Werror)
+endif()
+if(PYROCLAST_SANITIZE)
+  target_compile_options(pyroclast_options INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer
+                                                     -fno-sanitize-recover=undefined)
+  target_link_options(pyroclast_options INTERFACE -fsanitize=address,undefined)
+endif()

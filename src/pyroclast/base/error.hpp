@@ -1,0 +1,14 @@
+#pragma once
+
+#include <stdexcept>
+
+namespace pyroclast {
+
+/// Anything that is wrong with the input or the environment, worded for the user: it names the thing,
+/// its value and what is allowed. The application prints it and exits with a non-zero status.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace pyroclast

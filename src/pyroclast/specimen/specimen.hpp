@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pyroclast/base/vec.hpp"
+
+namespace pyroclast::specimen {
+
+/// What a block is made of.
+enum class Constituent : std::uint8_t { aggregate, mortar };
+
+/// Circular aggregate as placed, before superposition on the blocks.
+struct Aggregate {
+  Vec<2> centre;    ///< m
+  double diameter;  ///< m
+};
+
+/// Coarse aggregate asked for: Fuller's curve P(d) = (d/d_max)^exponent between d_min and d_max (paper, Eq. 16).
+struct AggregateParameters {
+  double fraction = 0.0;         ///< area fraction of coarse aggregate asked for, in [0, 1)
+  double d_min = 0.0;            ///< smallest diameter, m
+  double d_max = 0.0;            ///< largest diameter, m
+  double fuller_exponent = 0.0;  ///< nf
+  std::vector<double> sieves;    ///< ascending bounds of the size intervals, m; first d_min, last d_max
+  double minimum_gap = 0.0;      ///< smallest distance between aggregates and to the outline, m
+  int attempts = 0;              ///< random centres tried for one aggregate before placing fails
+};
+
+enum class Superposition : std::uint8_t {
+  area,     ///< aggregate where circles cover more than a stated fraction of the block
+  centroid  ///< aggregate where the block's centroid lies in a circle
+};
+
+/// Tessellation asked for.
+struct BlockParameters {
+  int count = 0;                  ///< number of blocks
+  double radius_spread = 0.0;     ///< Laguerre radii: uniform in [1 - spread, 1 + spread] x mean spacing / 2
+  int relaxation = 0;             ///< Lloyd iterations; 0 leaves the seeds at random
+  double shortest_edge = 0.0;     ///< edges below this fraction of the mean edge are removed
+  std::filesystem::path file;     ///< Neper .tess file to read instead; empty: tessellate
+};
+
+struct SpecimenParameters {
+  double width = 0.0;   ///< m
+  double height = 0.0;  ///< m
+  std::uint64_t seed = 0;
+  AggregateParameters aggregates;
+  BlockParameters blocks;
+  Superposition superposition = Superposition::area;
+  double covered_fraction = 0.5;  ///< for Superposition::area
+};
+
+/// Convex cells that tile the rectangle [0, width] x [0, height] exactly; neighbours share vertices.
+struct Tessellation {
+  std::vector<Vec<2>> vertices;         ///< m
+  std::vector<std::vector<int>> cells;  ///< vertex indices of each cell, counter-clockwise
+};
+
+/// Edge of a tessellation. `left` is the cell that sees it counter-clockwise from `v0` to `v1`.
+struct Edge {
+  int v0, v1;
+  int left;
+  int right;  ///< the other cell, or -1 on the outline
+};
+
+/// The edges of a tessellation, each once, in the order in which the cells meet them.
+/// Throws Error when an edge belongs to more than two cells or two cells see it in the same sense.
+std::vector<Edge> edges(const Tessellation& tessellation);
+
+/// How good the blocks are; lengths in m.
+struct BlockMetrics {
+  double mean_edge, shortest_edge;
+  int shortest_edge_cell;
+  Vec<2> shortest_edge_at;
+  int edges_removed, edges_left_short;  ///< by regularisation; left: shorter than asked for
+  int seeds_redrawn;                    ///< seeds drawn anew because their cell could not be made valid
+  double smallest_angle;                ///< of any zone, degrees
+  int smallest_angle_cell;
+  double mean_size;  ///< sqrt(mean area), the block size
+};
+
+/// A meso-scale specimen: blocks, what each is made of, and what came of the request.
+struct Specimen {
+  double width, height;  ///< m
+  Tessellation tessellation;
+  std::vector<Constituent> constituent;  ///< per cell
+  std::vector<Aggregate> aggregates;     ///< circles as placed, largest first
+  double fraction_asked, fraction_placed, fraction_superposed;
+  BlockMetrics metrics;
+};
+
+/// Gradation, placement, tessellation, regularisation and superposition, in this order.
+/// Throws Error when the aggregates do not fit, the placed fraction is off by more than 0.01, or no valid
+/// tessellation comes about.
+Specimen make_specimen(const SpecimenParameters& parameters);
+
+/// A block cut into zones.
+struct ZonedBlock {
+  std::vector<Vec<2>> gridpoints;         ///< the cell's vertices in its order, then interior points; m
+  std::vector<std::array<int, 3>> zones;  ///< counter-clockwise gridpoint indices
+};
+
+/// Cuts convex cell into triangles around its centroid.
+ZonedBlock zone_block(const std::vector<Vec<2>>& corners);
+
+}  // namespace pyroclast::specimen
