@@ -6,6 +6,7 @@ find_package(CLI11 REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(HDF5 REQUIRED COMPONENTS C)
+find_package(muparser REQUIRED)
 
 # UDUNITS-2 and Voro++ ship no CMake package.
 function(pyroclast_find_library name header library)

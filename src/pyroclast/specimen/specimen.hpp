@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -18,7 +19,8 @@ struct Aggregate {
   double diameter;  ///< m
 };
 
-/// Coarse aggregate asked for: Fuller's curve P(d) = (d/d_max)^exponent between d_min and d_max (paper, Eq. 16).
+/// Coarse aggregate asked for: Fuller's curve P(d) = (d/d_max)^exponent between d_min and d_max (paper, Eq.
+/// 16).
 struct AggregateParameters {
   double fraction = 0.0;         ///< area fraction of coarse aggregate asked for, in [0, 1)
   double d_min = 0.0;            ///< smallest diameter, m
@@ -36,11 +38,11 @@ enum class Superposition : std::uint8_t {
 
 /// Tessellation asked for.
 struct BlockParameters {
-  int count = 0;                  ///< number of blocks
-  double radius_spread = 0.0;     ///< Laguerre radii: uniform in [1 - spread, 1 + spread] x mean spacing / 2
-  int relaxation = 0;             ///< Lloyd iterations; 0 leaves the seeds at random
-  double shortest_edge = 0.0;     ///< edges below this fraction of the mean edge are removed
-  std::filesystem::path file;     ///< Neper .tess file to read instead; empty: tessellate
+  int count = 0;               ///< number of blocks
+  double radius_spread = 0.0;  ///< Laguerre radii: uniform in [1 - spread, 1 + spread] x mean spacing / 2
+  int relaxation = 0;          ///< Lloyd iterations; 0 leaves the seeds at random
+  double shortest_edge = 0.0;  ///< edges below this fraction of the mean edge are removed
+  std::filesystem::path file;  ///< Neper .tess file to read instead; empty: tessellate
 };
 
 struct SpecimenParameters {

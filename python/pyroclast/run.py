@@ -1,0 +1,351 @@
+"""Reader of run and specimen folders.
+
+SI units inside, stress in MPa where a column's name says so; strain and stress of the test positive in compression.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+AGGREGATE, MORTAR, PLATEN = 0, 1, 2
+"""Values of `BlockMesh.material`."""
+
+AGGREGATE_AGGREGATE, AGGREGATE_MORTAR, MORTAR_MORTAR, PLATEN_CONTACT = 0, 1, 2, 3
+"""Values of `ContactMesh.interface`."""
+
+_VTK_LINE, _VTK_TRIANGLE = 3, 5
+
+
+class RunError(Exception):
+    """Something in a run or specimen folder is missing or malformed; the message says what and where, in one line."""
+
+
+class Table:
+    """Columns of numbers of a csv file, by name: `table["strain"]` is a (rows,) float64 array."""
+
+    def __init__(self, path: Path):
+        """Throws RunError when the file is missing, has no rows, or holds something that is not a number."""
+        self.path = path
+        try:
+            with open(path, newline="", encoding="utf-8") as file:
+                lines = list(csv.reader(file))
+        except (OSError, UnicodeDecodeError) as error:
+            raise RunError(f"{path}: cannot be read: {_reason(error)}") from error
+        if not lines:
+            raise RunError(f"{path}: is empty; a header line is expected")
+        self.names = [name.strip() for name in lines[0]]
+        rows = [self._numbers(number, cells) for number, cells in enumerate(lines[1:], start=2) if cells]
+        if not rows:
+            raise RunError(f"{path}: has a header but no rows")
+        self._columns = dict(zip(self.names, np.array(rows).T))
+
+    def _numbers(self, line: int, cells: list[str]) -> list[float]:
+        if len(cells) != len(self.names):
+            raise RunError(f"{self.path}, line {line}: {len(cells)} values, but the header names {len(self.names)} columns")
+        numbers = []
+        for name, cell in zip(self.names, cells):
+            try:
+                numbers.append(float(cell))
+            except ValueError:
+                raise RunError(f"{self.path}, line {line}: column '{name}' holds '{cell}', not a number") from None
+        return numbers
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Throws RunError naming file and column when there is no such column."""
+        if name not in self._columns:
+            raise RunError(f"{self.path}: has no column '{name}'")
+        return self._columns[name]
+
+    def __len__(self) -> int:
+        return len(self._columns[self.names[0]])
+
+
+@dataclass(frozen=True)
+class BlockMesh:
+    """Zones of all blocks, reference configuration."""
+
+    points: np.ndarray  #: (N, 2) gridpoints, m
+    triangles: np.ndarray  #: (Z, 3) gridpoints of each zone, counter-clockwise
+    block: np.ndarray  #: (Z,) block of each zone
+    material: np.ndarray  #: (Z,) AGGREGATE, MORTAR or PLATEN
+
+    @cached_property
+    def outlines(self) -> tuple[list[np.ndarray], np.ndarray]:
+        """Gridpoints around each block, counter-clockwise, and the blocks' materials.
+
+        Throws RunError when a block's zones do not make one simple polygon.
+        """
+        return _outlines(self)
+
+
+@dataclass(frozen=True)
+class ContactMesh:
+    """Each contact point as a line to the middle of its face."""
+
+    points: np.ndarray  #: (2C, 2), m
+    lines: np.ndarray  #: (C, 2) indices into points
+    interface: np.ndarray  #: (C,) AGGREGATE_AGGREGATE, AGGREGATE_MORTAR, MORTAR_MORTAR or PLATEN_CONTACT
+    length: np.ndarray  #: (C,) tributary length, m
+
+
+@dataclass(frozen=True)
+class Mesh:
+    blocks: BlockMesh
+    contacts: ContactMesh
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One saved state of the fields."""
+
+    number: int
+    stage: int
+    step: int
+    time: float  #: s
+    strain: float
+    stress: float  #: MPa
+
+
+class Run:
+    """One run folder. Files are read when first asked for; whatever is missing or malformed throws RunError."""
+
+    def __init__(self, folder: str | Path):
+        self.folder = Path(folder)
+        if not self.folder.is_dir():
+            raise RunError(f"{self.folder}: is not a folder")
+
+    @cached_property
+    def history(self) -> Table:
+        """history.csv, all stages."""
+        return Table(self.folder / "history.csv")
+
+    @cached_property
+    def summary(self) -> dict:
+        return _read_json(self.folder / "summary.json")
+
+    @property
+    def title(self) -> str:
+        """As the summary has it, else the folder's name."""
+        return str(self.summary.get("title") or self.folder.resolve().name)
+
+    @property
+    def compression(self) -> dict:
+        """E_GPa, f_c_MPa, strain_at_peak, strain_ic; empty when the run reached no peak."""
+        values = self.summary.get("compression") or {}
+        if not isinstance(values, dict):
+            raise RunError(f"{self.folder / 'summary.json'}: 'compression' is neither an object nor null")
+        return values
+
+    @property
+    def quasi_static(self) -> bool | None:
+        """The run's own verdict; None when it gave none."""
+        return self.summary.get("quasi_static")
+
+    @cached_property
+    def loaded(self) -> np.ndarray:
+        """(rows,) bool: rows of the history's last stage, the test itself, with finite stress."""
+        stage, stress = self.history["stage"], self.history["stress_MPa"]
+        rows = (stage == stage.max()) & np.isfinite(stress)
+        if not rows.any():
+            raise RunError(f"{self.history.path}: column 'stress_MPa' has no finite value in the last stage")
+        return rows
+
+    def loaded_history(self, name: str) -> np.ndarray:
+        """A column of the history, rows of `loaded` only."""
+        return self.history[name][self.loaded]
+
+    @property
+    def peak(self) -> tuple[float, float]:
+        """Strain and stress [MPa] where the history's stress is largest, whether or not the test went past it."""
+        stress = self.loaded_history("stress_MPa")
+        row = int(stress.argmax())
+        return float(self.loaded_history("strain")[row]), float(stress[row])
+
+    @property
+    def has_frames(self) -> bool:
+        """Whether the run saved fields at all."""
+        return (self.folder / "fields" / "frames.csv").exists()
+
+    @cached_property
+    def frames(self) -> list[Frame]:
+        """Saved states of all stages, in order."""
+        t = Table(self.folder / "fields" / "frames.csv")
+        return [
+            Frame(int(number), int(stage), int(step), time, strain, stress)
+            for number, stage, step, time, strain, stress in zip(
+                t["frame"], t["stage"], t["step"], t["time_s"], t["strain"], t["stress_MPa"]
+            )
+        ]
+
+    @property
+    def loaded_frames(self) -> list[Frame]:
+        """Frames of the history's last stage."""
+        last = self.history["stage"].max()
+        return [frame for frame in self.frames if frame.stage == last]
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        return read_mesh(self.folder / "fields" / "mesh.h5")
+
+    def gridpoint_displacement(self, frame: Frame) -> np.ndarray:
+        """(N, 2), m."""
+        return self._field("blocks", frame, "PointData/displacement", len(self.mesh.blocks.points))[:, :2]
+
+    def contact_displacement(self, frame: Frame) -> np.ndarray:
+        """(2C, 2), m, of the points of the contact mesh."""
+        return self._field("contacts", frame, "PointData/displacement", len(self.mesh.contacts.points))[:, :2]
+
+    def contact_field(self, frame: Frame, name: str) -> np.ndarray:
+        """(C,), for instance tension_damage, shear_damage, opening [m], slip [m]."""
+        return self._field("contacts", frame, f"CellData/{name}", len(self.mesh.contacts.lines))
+
+    def _field(self, kind: str, frame: Frame, name: str, rows: int) -> np.ndarray:
+        path = self.folder / "fields" / f"{kind}_{frame.number:04d}.hdf"
+        with _open_hdf(path) as file:
+            values = _dataset(file, f"VTKHDF/{name}")
+        if len(values) != rows:
+            raise RunError(f"{path}: VTKHDF/{name} has {len(values)} rows, but the mesh has {rows}")
+        return values
+
+
+class Specimen:
+    """One specimen folder, or a run folder, whose specimen/ subfolder is then read."""
+
+    def __init__(self, folder: str | Path):
+        self.folder = Path(folder)
+        if not self.folder.is_dir():
+            raise RunError(f"{self.folder}: is not a folder")
+        inner = self.folder / "specimen"
+        self._tables = inner if inner.is_dir() else self.folder
+
+    @cached_property
+    def facts(self) -> dict:
+        """specimen.json."""
+        return _read_json(self._tables / "specimen.json")
+
+    def fact(self, name: str) -> float:
+        value = self.facts.get(name)
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise RunError(f"{self._tables / 'specimen.json'}: '{name}' is missing or not a number")
+        return value
+
+    @cached_property
+    def aggregates(self) -> Table:
+        """Placed circles: x_m, y_m, diameter_m."""
+        return Table(self._tables / "aggregates.csv")
+
+    @cached_property
+    def gradation(self) -> Table:
+        """d_m, asked_percent, placed_percent, superposed_percent."""
+        return Table(self._tables / "gradation.csv")
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        return read_mesh(self.folder / "fields" / "mesh.h5")
+
+
+def read_mesh(path: Path) -> Mesh:
+    """Reads mesh.h5; throws RunError when it is missing or its groups are not triangles and lines."""
+    with _open_hdf(path) as file:
+        points, triangles = _cells(file, "blocks", _VTK_TRIANGLE, "triangles")
+        blocks = BlockMesh(
+            points,
+            _counter_clockwise(points, triangles),
+            _cell_values(file, "blocks/block", len(triangles)),
+            _cell_values(file, "blocks/material", len(triangles)),
+        )
+        points, lines = _cells(file, "contacts", _VTK_LINE, "lines of two points")
+        contacts = ContactMesh(
+            points,
+            lines,
+            _cell_values(file, "contacts/interface", len(lines)),
+            _cell_values(file, "contacts/length", len(lines)),
+        )
+    return Mesh(blocks, contacts)
+
+
+def _cells(file: h5py.File, group: str, cell_type: int, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Points (N, 2) and corners of each cell, all cells of one type."""
+    points = _dataset(file, f"{group}/Points")[:, :2]
+    types = _dataset(file, f"{group}/Types")
+    corners = _dataset(file, f"{group}/Connectivity")
+    sides = {_VTK_LINE: 2, _VTK_TRIANGLE: 3}[cell_type]
+    if (types != cell_type).any() or len(corners) != sides * len(types):
+        raise RunError(f"{file.filename}: /{group} has cells that are not {name}")
+    if len(corners) and not 0 <= corners.min() <= corners.max() < len(points):
+        raise RunError(f"{file.filename}: /{group}/Connectivity points outside the {len(points)} points")
+    return points, corners.reshape(-1, sides)
+
+
+def _cell_values(file: h5py.File, name: str, cells: int) -> np.ndarray:
+    values = _dataset(file, name)
+    if len(values) != cells:
+        raise RunError(f"{file.filename}: /{name} has {len(values)} values for {cells} cells")
+    return values
+
+
+def _counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    return np.where((area < 0.0)[:, None], triangles[:, ::-1], triangles)
+
+
+def _outlines(mesh: BlockMesh) -> tuple[list[np.ndarray], np.ndarray]:
+    # A directed zone edge is on the outline when no zone of the block walks it the other way.
+    size = len(mesh.points)
+    start = mesh.triangles.ravel()
+    end = np.roll(mesh.triangles, -1, axis=1).ravel()
+    outer = ~np.isin(start * size + end, end * size + start)
+    owner = np.repeat(mesh.block, 3)[outer]
+    start, end = start[outer], end[outer]
+    if len(np.unique(start)) != len(start):
+        raise RunError("mesh.h5: /blocks has a block whose zones do not make one simple polygon")
+    following = dict(zip(start.tolist(), end.tolist()))
+
+    _, first_edge = np.unique(owner, return_index=True)
+    outlines = []
+    for first in start[first_edge].tolist():
+        loop = [first]
+        while (gridpoint := following[loop[-1]]) != first:
+            loop.append(gridpoint)
+        outlines.append(np.array(loop))
+    if sum(map(len, outlines)) != len(start):
+        raise RunError("mesh.h5: /blocks has a block whose zones do not make one simple polygon")
+    _, first_zone = np.unique(mesh.block, return_index=True)
+    return outlines, mesh.material[first_zone]
+
+
+def _open_hdf(path: Path) -> h5py.File:
+    if not path.exists():
+        raise RunError(f"{path}: does not exist")
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        raise RunError(f"{path}: is not a readable HDF5 file") from error
+
+
+def _dataset(file: h5py.File, name: str) -> np.ndarray:
+    if not isinstance(file.get(name), h5py.Dataset):
+        raise RunError(f"{file.filename}: has no dataset /{name}")
+    return file[name][()]
+
+
+def _read_json(path: Path) -> dict:
+    try:
+        value = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+        raise RunError(f"{path}: cannot be read: {_reason(error)}") from error
+    if not isinstance(value, dict):
+        raise RunError(f"{path}: is not a JSON object")
+    return value
+
+
+def _reason(error: Exception) -> str:
+    return getattr(error, "strerror", None) or str(error)

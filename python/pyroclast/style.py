@@ -1,0 +1,63 @@
+"""One look for all figures: print sizes, colours that differ in grey and for colour-blind readers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib
+from matplotlib.figure import Figure
+
+WIDTH = 7.2
+"""Width of every figure, inches (a page of two columns)."""
+DPI = 300
+
+STYLE = {
+    "font.size": 8.0,
+    "axes.titlesize": 9.0,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "axes.grid": True,
+    "grid.color": "#e3e3e3",
+    "grid.linewidth": 0.5,
+    "lines.linewidth": 1.4,
+    "legend.frameon": False,
+    "legend.fontsize": 7.5,
+    "figure.constrained_layout.use": True,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "pyroclast",  # the same figure gives the same file
+}
+
+# Colours of Okabe and Ito, with greys for the materials.
+BLACK, ORANGE, SKY, GREEN = "#000000", "#e69f00", "#56b4e9", "#009e73"
+YELLOW, BLUE, VERMILLION, PURPLE = "#f0e442", "#0072b2", "#d55e00", "#cc79a7"
+AGGREGATE_COLOUR, MORTAR_COLOUR, PLATEN_COLOUR = "#b4b4b4", "#f4f0e6", "#5a5a5a"
+TENSION_COLOUR, SHEAR_COLOUR = VERMILLION, "#10245e"
+FAINT = "#9a9a9a"
+
+STRAIN_LABEL = "Axial strain, compression positive [$10^{-3}$]"
+STRESS_LABEL = "Axial stress, compression positive [MPa]"
+PER_MILLE = 1e3
+
+
+def new_figure(height: float) -> Figure:
+    """Empty figure of the common width; height in inches."""
+    return Figure(figsize=(WIDTH, height), dpi=DPI)
+
+
+def title_of(run) -> str:
+    """A run's title, with a warning when the run is not quasi-static or does not say."""
+    if run.quasi_static:
+        return run.title
+    warning = "not stated whether quasi-static" if run.quasi_static is None else "NOT QUASI-STATIC"
+    return f"{run.title} – {warning}"
+
+
+@matplotlib.rc_context(STYLE)
+def save(figure: Figure, path: Path) -> Path:
+    """Writes the figure, its format by the file's ending; makes the folder. Returns the path."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    figure.savefig(path, metadata=undated.get(path.suffix.lower()))
+    return path

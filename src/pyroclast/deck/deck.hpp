@@ -1,0 +1,141 @@
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "pyroclast/deck/diagnostic.hpp"
+#include "pyroclast/deck/range.hpp"
+#include "pyroclast/units/units.hpp"
+
+namespace pyroclast {
+
+class DeckRecord;
+struct TableRecord;
+
+/// One table of a deck: a cheap handle, valid as long as its Deck.
+///
+/// Reading never throws. What cannot be read is recorded, and a value that is allowed is returned in its
+/// place, so that the reader goes on and the user sees every error at once; `Deck::finish` throws them. A
+/// table that is missing is one error: what is read from it records no more.
+///
+/// Every key that is read, or asked for with `has`, is a known key of its table. The reading functions with a
+/// `fallback` return it if the key is absent.
+class Section {
+ public:
+  /// A table that must be there.
+  Section section(std::string_view key) const;
+  /// A table that may be there; empty also if the key is not a table, which is recorded.
+  std::optional<Section> optional_section(std::string_view key) const;
+  /// An array of tables ([[key]]) of at least one; empty also after an error.
+  std::vector<Section> sections(std::string_view key) const;
+  /// An array of tables that may be absent.
+  std::vector<Section> optional_sections(std::string_view key) const;
+
+  /// A quantity, written as a string with its unit, in `unit.si`; `range` is in that unit.
+  double quantity(std::string_view key, const Unit& unit, const Range& range) const;
+  double quantity(std::string_view key, const Unit& unit, const Range& range, double fallback) const;
+  /// A list of at least one quantity; empty after an error.
+  std::vector<double> quantities(std::string_view key, const Unit& unit, const Range& range) const;
+
+  /// A dimensionless number, written as a number or as a string such as "31 %".
+  double number(std::string_view key, const Range& range) const;
+  double number(std::string_view key, const Range& range, double fallback) const;
+  /// A list of at least one dimensionless number; empty after an error.
+  std::vector<double> numbers(std::string_view key, const Range& range) const;
+
+  long long integer(std::string_view key, const Range& range) const;
+  long long integer(std::string_view key, const Range& range, long long fallback) const;
+  bool flag(std::string_view key) const;
+  bool flag(std::string_view key, bool fallback) const;
+  /// A string that is not empty.
+  std::string text(std::string_view key) const;
+  std::string text(std::string_view key, std::string fallback) const;
+
+  /// One of several words: `choice<Mass>("mass", {{"scaled", Mass::scaled}, {"real", Mass::real}})`. A
+  /// misspelt word is read as the nearest one. If there is none, the first choice stands in, and keys of this
+  /// table that are missing or unknown are not reported from then on, since which ones are needed depends on
+  /// the choice.
+  template <class E>
+  E choice(std::string_view key, std::initializer_list<std::pair<std::string_view, E>> options) const {
+    return std::data(options)[choice_index(key, words(options), std::nullopt)].second;
+  }
+  template <class E>
+  E choice(std::string_view key, std::initializer_list<std::pair<std::string_view, E>> options,
+           std::type_identity_t<E> fallback) const {
+    const std::size_t index = choice_index(key, words(options), options.size());
+    return index < options.size() ? std::data(options)[index].second : fallback;
+  }
+
+  /// Whether the key is written. A key that is found here but never read, nor named in `error`, is reported
+  /// as one that has no effect.
+  bool has(std::string_view key) const;
+  /// Whether no error was recorded so far in this table and the tables below: guards a check between values
+  /// against reporting the stand-in of a value that could not be read.
+  bool ok() const;
+
+  /// Records a contradiction found by the caller, at the key (or at the table, if the key is absent).
+  void error(std::string_view key, std::string message) const;
+  /// Records a contradiction of the table as a whole.
+  void error(std::string message) const;
+
+  /// Where the key stands (or its table, if the key is absent), as "file:line".
+  std::string where(std::string_view key) const;
+  /// Full path of the table, such as "contacts.mortar_mortar"; empty for the root.
+  std::string path() const;
+
+ private:
+  friend class Deck;
+  Section(DeckRecord& deck, TableRecord* table) : deck_(&deck), table_(table) {}
+
+  template <class E>
+  static std::vector<std::string> words(std::initializer_list<std::pair<std::string_view, E>> options) {
+    std::vector<std::string> result;
+    for (const auto& option : options) result.emplace_back(option.first);
+    return result;
+  }
+  /// Index of the word chosen; `fallback` is returned if the key is absent, which is an error without one.
+  std::size_t choice_index(std::string_view key, const std::vector<std::string>& words,
+                           std::optional<std::size_t> fallback) const;
+
+  DeckRecord* deck_;
+  TableRecord* table_;  ///< null for a table that is missing
+};
+
+/// A TOML file in which every dimensional value is a string with its unit. Its reader asks for the keys it
+/// knows and calls `finish`, which reports every error at once, keys that nobody asked for among them.
+class Deck {
+ public:
+  /// @throws DeckError if the file cannot be read, is empty or is not TOML.
+  static Deck load(const std::filesystem::path& file);
+  /// The same for a text; `name` takes the file's place in messages.
+  static Deck parse(std::string text, std::string name);
+
+  Deck(Deck&&) noexcept;
+  Deck& operator=(Deck&&) noexcept;
+  ~Deck();
+
+  /// The file's name as given to `load`.
+  const std::string& name() const;
+  /// The deck as it was read, byte by byte.
+  const std::string& text() const;
+
+  Section root() const;
+
+  /// Call once everything is read.
+  /// @throws DeckError with every error recorded, and every key that was not read.
+  void finish() const;
+
+ private:
+  explicit Deck(std::unique_ptr<DeckRecord> record);
+
+  std::unique_ptr<DeckRecord> record_;
+};
+
+}  // namespace pyroclast

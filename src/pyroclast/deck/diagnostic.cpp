@@ -1,0 +1,47 @@
+#include "pyroclast/deck/diagnostic.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace pyroclast {
+namespace {
+
+std::vector<Diagnostic> in_file_order(std::vector<Diagnostic> diagnostics) {
+  std::stable_sort(diagnostics.begin(), diagnostics.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+  });
+  return diagnostics;
+}
+
+std::string listed(const std::vector<Diagnostic>& diagnostics) {
+  std::string lines;
+  for (const Diagnostic& diagnostic : diagnostics) {
+    if (!lines.empty()) lines += '\n';
+    lines += to_string(diagnostic);
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::string to_string(const Diagnostic& diagnostic) {
+  std::string line = diagnostic.file;
+  if (diagnostic.line > 0) line += fmt::format(":{}:{}", diagnostic.line, diagnostic.column);
+  line += ": ";
+  if (!diagnostic.key.empty()) {
+    line += diagnostic.key;
+    if (!diagnostic.value.empty()) line += " = " + diagnostic.value;
+    line += ": ";
+  }
+  line += diagnostic.message;
+  if (!diagnostic.hint.empty()) line += "; " + diagnostic.hint;
+  return line;
+}
+
+DeckError::DeckError(std::vector<Diagnostic> diagnostics)
+    : Error(listed(in_file_order(diagnostics))), diagnostics_(in_file_order(std::move(diagnostics))) {}
+
+}  // namespace pyroclast

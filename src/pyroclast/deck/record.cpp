@@ -1,0 +1,189 @@
+#include "pyroclast/deck/record.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/deck/nearest.hpp"
+
+namespace pyroclast {
+namespace {
+
+SourcePosition position(const toml::source_position& place) {
+  return {static_cast<int>(place.line), static_cast<int>(place.column)};
+}
+
+std::string_view without_leading_spaces(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+  return text;
+}
+
+/// Whether a line's value, or the first of a list, is a number and a unit that should stand in quotes.
+bool has_unquoted_quantity(std::string_view line) {
+  line.remove_prefix(std::min(line.find('=') + 1, line.size()));
+  line.remove_prefix(std::min(line.find_first_not_of(" \t["), line.size()));
+  double number = 0.0;
+  const auto [end, status] = std::from_chars(line.data(), line.data() + line.size(), number);
+  if (status != std::errc{}) return false;
+  line.remove_prefix(static_cast<std::size_t>(end - line.data()));
+  line = without_leading_spaces(line);
+  return !line.empty() && std::string_view("#,]\"'0123456789_=").find(line[0]) == std::string_view::npos;
+}
+
+toml::table parse_toml(const SourceText& source, const std::string& name) {
+  const auto fail = [&](SourcePosition at, std::string message, std::string hint) {
+    throw DeckError({Diagnostic{.file = name,
+                                .line = at.line,
+                                .column = at.column,
+                                .message = std::move(message),
+                                .hint = std::move(hint)}});
+  };
+  toml::table root;
+  try {
+    root = toml::parse(source.text());
+  } catch (const toml::parse_error& error) {
+    const SourcePosition at = position(error.source().begin);
+    const bool unquoted = has_unquoted_quantity(source.line(at.line));
+    fail(at, fmt::format("not valid TOML: {}", error.description()),
+         unquoted ? "a value with a unit stands in quotes, e.g. \"150 mm\"" : "");
+  }
+  if (root.empty()) fail({1, 1}, "the deck is empty", "");
+  return root;
+}
+
+bool is_table_like(const toml::node& node) {
+  return node.is_table() || node.is_array_of_tables();
+}
+
+bool is_at_or_below(std::string_view path, std::string_view parent) {
+  if (parent.empty() || path == parent) return true;
+  return path.starts_with(parent) && (path[parent.size()] == '.' || path[parent.size()] == '[');
+}
+
+std::string in_brackets(const std::string& path) {
+  return path.empty() ? "at the top of the deck" : fmt::format("in [{}]", path);
+}
+
+}  // namespace
+
+TableRecord::Asked& TableRecord::ask(std::string_view key) {
+  const auto found = std::find_if(asked.begin(), asked.end(), [&](const Asked& a) { return a.key == key; });
+  return found != asked.end() ? *found : asked.emplace_back(Asked{std::string(key)});
+}
+
+const toml::node* TableRecord::look(std::string_view key) {
+  ask(key);
+  return table.get(key);
+}
+
+const toml::node* TableRecord::read(std::string_view key) {
+  ask(key).read = true;
+  return table.get(key);
+}
+
+std::vector<std::string> TableRecord::known_keys() const {
+  std::vector<std::string> keys;
+  for (const Asked& a : asked) keys.push_back(a.key);
+  return keys;
+}
+
+std::string TableRecord::path_of(std::string_view key) const {
+  return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+}
+
+DeckRecord::DeckRecord(std::string text, std::string name)
+    : name_(std::move(name)), source_(std::move(text)), root_(parse_toml(source_, name_)) {}
+
+TableRecord& DeckRecord::table(const toml::table& table, const std::string& path) {
+  auto& record = tables_[&table];
+  if (!record) {
+    record.reset(new TableRecord{.table = table, .path = path, .asked = {}});
+    tables_as_read_.push_back(record.get());
+  }
+  return *record;
+}
+
+void DeckRecord::report(const std::string& path, const toml::node& node, std::string message,
+                        std::string hint) {
+  Diagnostic diagnostic = locate(path, node.source());
+  diagnostic.value = as_written(node);
+  diagnostic.message = std::move(message);
+  diagnostic.hint = std::move(hint);
+  diagnostics_.push_back(std::move(diagnostic));
+}
+
+void DeckRecord::report(const TableRecord& table, const std::string& path, std::string message) {
+  Diagnostic diagnostic = locate(path, table.table.source());
+  diagnostic.message = std::move(message);
+  diagnostics_.push_back(std::move(diagnostic));
+}
+
+bool DeckRecord::is_clean(std::string_view path) const {
+  return std::none_of(diagnostics_.begin(), diagnostics_.end(),
+                      [&](const Diagnostic& d) { return is_at_or_below(d.key, path); });
+}
+
+std::vector<Diagnostic> DeckRecord::diagnostics() const {
+  std::vector<Diagnostic> result = diagnostics_;
+  for (const TableRecord* table : tables_as_read_) append_unread(*table, result);
+  return result;
+}
+
+void DeckRecord::append_unread(const TableRecord& table, std::vector<Diagnostic>& result) const {
+  for (auto&& [key, node] : table.table) {
+    const std::string_view name = key.str();
+    const bool read = std::any_of(table.asked.begin(), table.asked.end(),
+                                  [&](const TableRecord::Asked& a) { return a.read && a.key == name; });
+    if (read) continue;
+    Diagnostic diagnostic = not_read(table, key, node);
+    if (table.undecided && diagnostic.hint.empty()) continue;
+    result.push_back(std::move(diagnostic));
+  }
+}
+
+Diagnostic DeckRecord::not_read(const TableRecord& table, const toml::key& key,
+                                const toml::node& node) const {
+  const std::string name(key.str());
+  Diagnostic diagnostic = locate(table.path_of(name), key.source());
+  diagnostic.value = as_written(node);
+  const std::vector<std::string> known = table.known_keys();
+  if (std::find(known.begin(), known.end(), name) != known.end()) {
+    diagnostic.message = "has no effect with the other settings of this deck";
+    return diagnostic;
+  }
+  diagnostic.message = is_table_like(node) ? "unknown table" : "unknown key";
+  if (const auto index = nearest(name, known)) {
+    diagnostic.hint = fmt::format("did you mean \"{}\"?", known[*index]);
+    return diagnostic;
+  }
+  diagnostic.message += known.empty()
+                            ? fmt::format("; no keys are allowed {}", in_brackets(table.path))
+                            : fmt::format("; allowed {}: {}", in_brackets(table.path), quoted_list(known));
+  diagnostic.hint = misplaced_hint(table, name);
+  return diagnostic;
+}
+
+std::string DeckRecord::misplaced_hint(const TableRecord& table, std::string_view key) const {
+  for (const TableRecord* other : tables_as_read_) {
+    if (other == &table) continue;
+    const std::vector<std::string> known = other->known_keys();
+    if (std::find(known.begin(), known.end(), key) == known.end()) continue;
+    return fmt::format("\"{}\" belongs {}", key, in_brackets(other->path));
+  }
+  return {};
+}
+
+Diagnostic DeckRecord::locate(const std::string& path, const toml::source_region& region) const {
+  const SourcePosition at = position(region.begin);
+  return {.file = name_, .line = at.line, .column = at.column, .key = path};
+}
+
+std::string DeckRecord::as_written(const toml::node& node) const {
+  if (is_table_like(node)) return {};
+  return source_.excerpt(position(node.source().begin), position(node.source().end));
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <toml++/toml.h>
+
+#include "pyroclast/deck/diagnostic.hpp"
+#include "pyroclast/deck/source_text.hpp"
+
+namespace pyroclast {
+
+/// What is known about one table: its place in the deck, and what its reader asked for.
+struct TableRecord {
+  struct Asked {
+    std::string key;
+    bool read = false;  ///< false while the reader has only looked whether it is there
+  };
+
+  const toml::table& table;
+  std::string path;
+  std::vector<Asked> asked;  ///< in the order of asking, each key once
+  bool undecided = false;    ///< a choice could not be read, so which keys belong here is not known
+
+  /// The node of a key that is now known, null if it is absent.
+  const toml::node* look(std::string_view key);
+  /// The same for a key whose value the reader takes.
+  const toml::node* read(std::string_view key);
+  std::vector<std::string> known_keys() const;
+  std::string path_of(std::string_view key) const;
+
+ private:
+  Asked& ask(std::string_view key);
+};
+
+/// A deck while it is read: the text, its tree, and the errors so far. Private to this room.
+class DeckRecord {
+ public:
+  /// @throws DeckError
+  DeckRecord(std::string text, std::string name);
+
+  const std::string& name() const { return name_; }
+  const std::string& text() const { return source_.text(); }
+
+  TableRecord& root() { return table(root_, ""); }
+  /// The record of a table, the same at each call.
+  TableRecord& table(const toml::table& table, const std::string& path);
+
+  /// An error at a value.
+  void report(const std::string& path, const toml::node& node, std::string message, std::string hint = {});
+  /// An error of a table, such as a missing key of the given path.
+  void report(const TableRecord& table, const std::string& path, std::string message);
+  /// Whether nothing was reported at or below a path.
+  bool is_clean(std::string_view path) const;
+
+  /// What was reported, and a report of each key that nobody read.
+  std::vector<Diagnostic> diagnostics() const;
+
+ private:
+  Diagnostic locate(const std::string& path, const toml::source_region& region) const;
+  std::string as_written(const toml::node& node) const;
+  Diagnostic not_read(const TableRecord& table, const toml::key& key, const toml::node& node) const;
+  void append_unread(const TableRecord& table, std::vector<Diagnostic>& result) const;
+  /// "Where else does this key belong": the hint for a key that another table knows; empty if none does.
+  std::string misplaced_hint(const TableRecord& table, std::string_view key) const;
+
+  std::string name_;
+  SourceText source_;
+  toml::table root_;
+  std::map<const toml::table*, std::unique_ptr<TableRecord>> tables_;
+  std::vector<const TableRecord*> tables_as_read_;
+  std::vector<Diagnostic> diagnostics_;
+};
+
+}  // namespace pyroclast

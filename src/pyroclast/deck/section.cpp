@@ -1,0 +1,333 @@
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/deck/deck.hpp"
+#include "pyroclast/deck/nearest.hpp"
+#include "pyroclast/deck/record.hpp"
+
+namespace pyroclast {
+namespace {
+
+/// A value of the deck, its full path and the record that takes its errors.
+struct Entry {
+  DeckRecord& deck;
+  std::string path;
+  const toml::node& node;
+
+  void error(std::string message, std::string hint = {}) const {
+    deck.report(path, node, std::move(message), std::move(hint));
+  }
+};
+
+std::string_view type_name(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return node.is_array_of_tables() ? "an array of tables" : "a list";
+    case toml::node_type::string:
+      return "a string";
+    case toml::node_type::integer:
+      return "an integer";
+    case toml::node_type::floating_point:
+      return "a decimal number";
+    case toml::node_type::boolean:
+      return "true or false";
+    default:
+      return "a date or time";
+  }
+}
+
+void wrong_type(const Entry& entry, std::string_view needed) {
+  entry.error(fmt::format("{} is needed, not {}", needed, type_name(entry.node)));
+}
+
+bool is_dimensionless(const Unit& unit) {
+  return std::string_view(unit.si) == unit::dimensionless.si;
+}
+
+std::string_view suffix(const Unit& unit) {
+  return is_dimensionless(unit) ? "" : unit.si;
+}
+
+/// What a quantity must look like, its range included.
+std::string requirement(const Unit& unit, const Range& range) {
+  const std::string words = range.describe(suffix(unit));
+  return words.empty() ? requirement(unit) : fmt::format("{}; it must be {}", requirement(unit), words);
+}
+
+bool check_range(const Entry& entry, double value, const Range& range, std::string_view unit) {
+  if (range.contains(value)) return true;
+  entry.error("must be " + range.describe(unit));
+  return false;
+}
+
+std::optional<double> read_written_quantity(const Entry& entry, const std::string& text, const Unit& unit) {
+  try {
+    return parse_quantity(text, unit);
+  } catch (const QuantityError& error) {
+    entry.error(error.reason());
+    return std::nullopt;
+  }
+}
+
+std::optional<double> read_plain_number(const Entry& entry, const Unit& unit) {
+  if (!is_dimensionless(unit)) {
+    entry.error(fmt::format("no unit; {}", requirement(unit)), "the quotes are needed");
+    return std::nullopt;
+  }
+  const double value = entry.node.value<double>().value_or(std::numeric_limits<double>::quiet_NaN());
+  if (std::isfinite(value)) return value;
+  entry.error("the number is not finite");
+  return std::nullopt;
+}
+
+std::optional<double> read_quantity(const Entry& entry, const Unit& unit, const Range& range) {
+  std::optional<double> value;
+  if (const auto* text = entry.node.as_string()) {
+    value = read_written_quantity(entry, text->get(), unit);
+  } else if (entry.node.is_number()) {
+    value = read_plain_number(entry, unit);
+  } else {
+    wrong_type(entry,
+               is_dimensionless(unit) ? "a number" : fmt::format("a string such as \"{}\"", unit.example));
+  }
+  if (value && !check_range(entry, *value, range, suffix(unit))) return std::nullopt;
+  return value;
+}
+
+std::vector<double> read_quantities(const Entry& entry, const Unit& unit, const Range& range) {
+  const toml::array* list = entry.node.as_array();
+  if (!list || list->empty()) {
+    const std::string needed =
+        fmt::format("a list of at least one {}, e.g. [\"{}\"],", unit.name, unit.example);
+    list ? entry.error(needed + " is needed") : wrong_type(entry, needed);
+    return {};
+  }
+  std::vector<double> values;
+  bool complete = true;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const Entry element{entry.deck, fmt::format("{}[{}]", entry.path, i), *list->get(i)};
+    const auto value = read_quantity(element, unit, range);
+    complete = complete && value;
+    values.push_back(value.value_or(0.0));
+  }
+  return complete ? values : std::vector<double>{};
+}
+
+std::optional<long long> read_integer(const Entry& entry, const Range& range) {
+  const auto* integer = entry.node.as_integer();
+  if (!integer) {
+    wrong_type(entry, "a whole number, without decimal point, exponent or quotes,");
+    return std::nullopt;
+  }
+  const long long value = integer->get();
+  if (!check_range(entry, static_cast<double>(value), range, "")) return std::nullopt;
+  return value;
+}
+
+std::optional<std::string> read_text(const Entry& entry) {
+  const auto* text = entry.node.as_string();
+  if (text && !text->get().empty()) return text->get();
+  text ? entry.error("must not be empty") : wrong_type(entry, "a string");
+  return std::nullopt;
+}
+
+std::optional<bool> read_flag(const Entry& entry) {
+  if (const auto* flag = entry.node.as_boolean()) return flag->get();
+  wrong_type(entry, "true or false, without quotes,");
+  return std::nullopt;
+}
+
+std::string one_of(const std::vector<std::string>& words) {
+  return "one of " + quoted_list(words);
+}
+
+/// The word's index, or that of the nearest after an error; none if no word is near.
+std::optional<std::size_t> read_choice(const Entry& entry, const std::vector<std::string>& words) {
+  const auto* text = entry.node.as_string();
+  if (!text) {
+    wrong_type(entry, one_of(words));
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (text->get() == words[i]) return i;
+  }
+  const auto near = nearest(text->get(), words);
+  entry.error("must be " + one_of(words), near ? fmt::format("did you mean \"{}\"?", words[*near]) : "");
+  return near;
+}
+
+/// A key of a table that its reader takes now; none if the key or the whole table is absent.
+std::optional<Entry> read(DeckRecord& deck, TableRecord* table, std::string_view key) {
+  const toml::node* node = table ? table->read(key) : nullptr;
+  if (!node) return std::nullopt;
+  return Entry{deck, table->path_of(key), *node};
+}
+
+/// The same for a key that must be there; `needed` says what is missing.
+std::optional<Entry> require(DeckRecord& deck, TableRecord* table, std::string_view key,
+                             const std::string& needed) {
+  auto entry = read(deck, table, key);
+  if (!entry && table && !table->undecided) deck.report(*table, table->path_of(key), "missing; " + needed);
+  return entry;
+}
+
+std::string header(const TableRecord* table, std::string_view key, std::string_view form) {
+  return table ? fmt::format(fmt::runtime(form), table->path_of(key)) : "";
+}
+
+TableRecord* read_table(const Entry& entry) {
+  if (const toml::table* table = entry.node.as_table()) return &entry.deck.table(*table, entry.path);
+  wrong_type(entry, fmt::format("a table, [{}],", entry.path));
+  return nullptr;
+}
+
+std::vector<TableRecord*> read_tables(const Entry& entry) {
+  if (!entry.node.is_array_of_tables()) {
+    wrong_type(entry, fmt::format("an array of tables, [[{}]],", entry.path));
+    return {};
+  }
+  std::vector<TableRecord*> tables;
+  const toml::array& list = *entry.node.as_array();
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    tables.push_back(&entry.deck.table(*list.get_as<toml::table>(i), fmt::format("{}[{}]", entry.path, i)));
+  }
+  return tables;
+}
+
+}  // namespace
+
+Section Section::section(std::string_view key) const {
+  const auto entry = require(*deck_, table_, key, header(table_, key, "the table [{}] is needed"));
+  return {*deck_, entry ? read_table(*entry) : nullptr};
+}
+
+std::optional<Section> Section::optional_section(std::string_view key) const {
+  const auto entry = read(*deck_, table_, key);
+  TableRecord* table = entry ? read_table(*entry) : nullptr;
+  if (!table) return std::nullopt;
+  return Section(*deck_, table);
+}
+
+std::vector<Section> Section::sections(std::string_view key) const {
+  const std::string needed = header(table_, key, "at least one table [[{}]] is needed");
+  if (!require(*deck_, table_, key, needed)) return {};
+  return optional_sections(key);
+}
+
+std::vector<Section> Section::optional_sections(std::string_view key) const {
+  const auto entry = read(*deck_, table_, key);
+  std::vector<Section> result;
+  if (!entry) return result;
+  for (TableRecord* table : read_tables(*entry)) result.push_back(Section(*deck_, table));
+  return result;
+}
+
+double Section::quantity(std::string_view key, const Unit& unit, const Range& range) const {
+  const auto entry = require(*deck_, table_, key, requirement(unit, range));
+  return (entry ? read_quantity(*entry, unit, range) : std::nullopt).value_or(range.any_value());
+}
+
+double Section::quantity(std::string_view key, const Unit& unit, const Range& range, double fallback) const {
+  const auto entry = read(*deck_, table_, key);
+  return (entry ? read_quantity(*entry, unit, range) : std::nullopt).value_or(fallback);
+}
+
+std::vector<double> Section::quantities(std::string_view key, const Unit& unit, const Range& range) const {
+  const auto entry = require(*deck_, table_, key, requirement(unit, range));
+  return entry ? read_quantities(*entry, unit, range) : std::vector<double>{};
+}
+
+double Section::number(std::string_view key, const Range& range) const {
+  return quantity(key, unit::dimensionless, range);
+}
+
+double Section::number(std::string_view key, const Range& range, double fallback) const {
+  return quantity(key, unit::dimensionless, range, fallback);
+}
+
+std::vector<double> Section::numbers(std::string_view key, const Range& range) const {
+  return quantities(key, unit::dimensionless, range);
+}
+
+long long Section::integer(std::string_view key, const Range& range) const {
+  const std::string words = range.describe();
+  const auto entry =
+      require(*deck_, table_, key,
+              words.empty() ? "a whole number is needed" : "a whole number is needed; it must be " + words);
+  const auto stand_in = static_cast<long long>(range.any_value());
+  return (entry ? read_integer(*entry, range) : std::nullopt).value_or(stand_in);
+}
+
+long long Section::integer(std::string_view key, const Range& range, long long fallback) const {
+  const auto entry = read(*deck_, table_, key);
+  return (entry ? read_integer(*entry, range) : std::nullopt).value_or(fallback);
+}
+
+bool Section::flag(std::string_view key) const {
+  const auto entry = require(*deck_, table_, key, "true or false is needed");
+  return (entry ? read_flag(*entry) : std::nullopt).value_or(false);
+}
+
+bool Section::flag(std::string_view key, bool fallback) const {
+  const auto entry = read(*deck_, table_, key);
+  return (entry ? read_flag(*entry) : std::nullopt).value_or(fallback);
+}
+
+std::string Section::text(std::string_view key) const {
+  const auto entry = require(*deck_, table_, key, "a string is needed");
+  return (entry ? read_text(*entry) : std::nullopt).value_or("");
+}
+
+std::string Section::text(std::string_view key, std::string fallback) const {
+  const auto entry = read(*deck_, table_, key);
+  return (entry ? read_text(*entry) : std::nullopt).value_or(std::move(fallback));
+}
+
+std::size_t Section::choice_index(std::string_view key, const std::vector<std::string>& words,
+                                  std::optional<std::size_t> fallback) const {
+  const auto entry =
+      fallback ? read(*deck_, table_, key) : require(*deck_, table_, key, one_of(words) + " is needed");
+  if (!entry && fallback) return *fallback;
+  const auto index = entry ? read_choice(*entry, words) : std::nullopt;
+  if (!index && table_) table_->undecided = true;
+  return index.value_or(0);
+}
+
+bool Section::has(std::string_view key) const {
+  return table_ && table_->look(key);
+}
+
+bool Section::ok() const {
+  return table_ && deck_->is_clean(table_->path);
+}
+
+void Section::error(std::string_view key, std::string message) const {
+  if (const auto entry = read(*deck_, table_, key)) {
+    entry->error(std::move(message));
+  } else if (table_) {
+    deck_->report(*table_, table_->path_of(key), std::move(message));
+  }
+}
+
+void Section::error(std::string message) const {
+  if (table_) deck_->report(*table_, table_->path, std::move(message));
+}
+
+std::string Section::where(std::string_view key) const {
+  if (!table_) return deck_->name();
+  const toml::node* node = table_->table.get(key);
+  const toml::node& place = node ? *node : table_->table;
+  return fmt::format("{}:{}", deck_->name(), place.source().begin.line);
+}
+
+std::string Section::path() const {
+  return table_ ? table_->path : "";
+}
+
+}  // namespace pyroclast

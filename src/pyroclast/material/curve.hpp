@@ -1,0 +1,110 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace pyroclast {
+
+/// Closed interval on which a curve is defined. The default is the whole real line.
+struct Range {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+
+  bool contains(double x) const { return lower <= x && x <= upper; }
+  bool operator==(const Range&) const = default;
+};
+
+/// What a curve is a function of: the symbol (also the variable of an expression) and the unit, for messages.
+struct CurveAxis {
+  std::string symbol;
+  std::string unit;
+
+  bool operator==(const CurveAxis&) const = default;
+};
+
+/// T in degC, the axis of property curves.
+inline CurveAxis temperature_axis() {
+  return {"T", "degC"};
+}
+/// t in s, the axis of curves of boundary conditions.
+inline CurveAxis time_axis() {
+  return {"t", "s"};
+}
+
+/// A quantity as a function of one number: a property of the temperature (degC), or a boundary value of the
+/// time (s). Values are in SI (temperatures in degC); a curve does not convert.
+///
+/// A curve is immutable and has value semantics; a copy shares its data. Any number of threads may read the
+/// same curve. It is never extrapolated: reading it outside its range throws. A reading that misses the range
+/// by no more than a billionth of its width is rounding (a field that should be at 20 degC) and gets the
+/// value at the end of the range.
+class Curve {
+ public:
+  class Function;
+
+  /// The same value everywhere.
+  static Curve constant(double value);
+
+  /// Linear between the points (abscissae[i], values[i]); defined from the first to the last abscissa.
+  /// Throws Error unless there are two points or more, all finite, with strictly ascending abscissae.
+  static Curve table(std::vector<double> abscissae, std::vector<double> values, CurveAxis axis);
+
+  /// A function written in code, called `name` in messages, on a finite range. It must be pure: threads call
+  /// it at the same time. `breaks` are the abscissae where it has a kink or a jump, for minimum and maximum.
+  static Curve function(std::string name, std::function<double(double)> function, Range range, CurveAxis axis,
+                        std::vector<double> breaks = {});
+
+  /// A formula in the axis symbol such as "1 - 0.1 * ((T - 20) / 100)^2", in the syntax of Expression
+  /// (pyroclast/material/expression.hpp), on a finite range that its author must state.
+  /// Throws Error with the position when the formula is wrong.
+  static Curve expression(const std::string& formula, Range range, CurveAxis axis);
+
+  /// Value at x. Throws Error naming the curve, x and the range when x lies outside the range, or when the
+  /// value is not finite.
+  double operator()(double x) const;
+
+  Range range() const { return range_; }
+
+  /// Greatest and least value on [a, b], which must lie within the range. Exact for constants, tables and
+  /// their multiples; otherwise the extreme of a thousand even steps and the breaks of the function.
+  double maximum(double a, double b) const;
+  double minimum(double a, double b) const;
+
+  /// What the curve is a function of; empty strings for a constant.
+  const CurveAxis& axis() const;
+  bool is_constant() const;
+
+  /// The same curve under a name that messages put before its description, e.g. "material mortar: modulus".
+  Curve named(std::string name) const;
+
+  /// The same curve with another text for describe(), e.g. where it comes from.
+  Curve described_as(std::string description) const;
+
+  /// One line for the manifest of a run: kind, origin and range.
+  std::string describe() const;
+
+  /// Product of two curves, e.g. a relative curve times a reference value; the range is the intersection.
+  /// Throws Error when the curves have different axes or no range in common.
+  friend Curve operator*(const Curve& a, const Curve& b);
+  friend Curve operator*(const Curve& curve, double factor) { return curve * constant(factor); }
+  friend Curve operator*(double factor, const Curve& curve) { return curve * constant(factor); }
+
+ private:
+  struct Label;
+
+  Curve(std::shared_ptr<const Function> function, Range range, std::shared_ptr<const Label> label);
+
+  double clamped(double x) const;
+  std::string title() const;
+  std::vector<double> candidates(double a, double b) const;
+  [[noreturn]] void refuse(double x) const;
+
+  std::shared_ptr<const Function> function_;
+  Range range_;
+  std::shared_ptr<const Label> label_;
+};
+
+}  // namespace pyroclast

@@ -1,0 +1,158 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pyroclast/material/contact_law.hpp"
+#include "pyroclast/material/zone_law.hpp"
+#include "pyroclast/model/model.hpp"
+
+namespace pyroclast {
+
+/// Which mass moves.
+enum class MassChoice : std::uint8_t {
+  real,   ///< density times volume; the stiffest and lightest gridpoint sets the time step
+  scaled  ///< density scaling: each gridpoint's mass makes its own limit the common step; quasi-static runs only
+};
+
+template <int Dim>
+struct MechanicsParameters {
+  Vec<Dim> gravity{};              ///< m/s²
+  double local_damping = 0.0;      ///< lambda of Eq. (8), in [0, 1)
+  double viscous_damping = 0.0;    ///< xi of Eq. (3), 1/s
+  MassChoice mass = MassChoice::real;
+  double time_step = 0.0;          ///< s; the common step of MassChoice::scaled, not used with real mass
+  double safety = 0.0;             ///< fraction of the stable step that is taken, in (0, 1]
+};
+
+/// Where the energy of a body went since the start, J. Work in = everything else; the rest is the ledger's error.
+struct EnergyLedger {
+  // put in
+  double loading = 0.0;       ///< work of prescribed motion and applied forces
+  double gravity = 0.0;
+  double heat = 0.0;          ///< change of stored energy when properties or thermal strain change at fixed jumps
+  // held
+  double zones = 0.0;         ///< elastic, in zones
+  double contacts = 0.0;      ///< elastic, in contacts
+  double kinetic = 0.0;
+  // lost
+  ContactDissipation dissipated;
+  double local_damping = 0.0;
+  double viscous_damping = 0.0;
+
+  double work_in() const { return loading + gravity + heat; }
+  double accounted() const {
+    return zones + contacts + kinetic + dissipated.total() + local_damping + viscous_damping;
+  }
+  double error() const { return work_in() - accounted(); }
+};
+
+/// State of one contact point.
+template <int Dim>
+struct ContactState {
+  ContactHistory<Dim> history;
+  double normal_traction = 0.0;      ///< Pa, tension positive
+  Tangential<Dim> shear_traction{};  ///< Pa
+  double stored = 0.0;               ///< J/m²
+  ContactDissipation dissipated;     ///< since the start, J/m²
+};
+
+/// The stable step and the gridpoint that sets it.
+struct TimeStepLimit {
+  double step = 0.0;  ///< s
+  int gridpoint = 0;
+};
+
+/// Explicit motion of a body of deformable blocks, paper Eqs. (3)-(15), small displacements.
+///
+/// Forces are gathered by the gridpoint that they act on and every sum has one order, so results are bitwise
+/// the same for any number of threads.
+template <int Dim>
+class Mechanics {
+ public:
+  /// \param model        kept by reference; must outlive this
+  /// \param densities    of each material, kg/m³
+  /// \param zones        properties of each zone
+  /// \param interfaces   contact properties of each interface, validated
+  Mechanics(const Model<Dim>& model, const std::vector<double>& densities, std::vector<ZoneProperties> zones,
+            std::vector<ContactProperties> interfaces, const MechanicsParameters<Dim>& parameters);
+
+  /// Prescribes one component of a gridpoint's velocity, m/s, from the next step on.
+  void prescribe_velocity(int gridpoint, int component, double velocity);
+  /// Lets it move freely again.
+  void release(int gridpoint, int component);
+  /// Force on a gridpoint, N, until set again; free components only.
+  void apply_force(int gridpoint, const Vec<Dim>& force);
+  /// Starts a contact as broken: neither tension nor cohesion ever held it.
+  void break_contact(int contact);
+
+  void set_gravity(const Vec<Dim>& gravity) { parameters_.gravity = gravity; }
+
+  /// Runs a number of steps.
+  void advance(int steps);
+
+  double time() const { return static_cast<double>(steps_) * time_step_ ; }
+  std::int64_t steps() const { return steps_; }
+  double time_step() const { return time_step_; }
+  /// Stable step with real mass, paper Eq. (9).
+  TimeStepLimit real_mass_limit() const;
+  double mass_ratio() const { return moving_mass_ / real_mass_; }  ///< total moving mass over real mass
+  double real_mass() const { return real_mass_; }                  ///< kg
+
+  const Model<Dim>& model() const { return model_; }
+  const std::vector<Vec<Dim>>& displacement() const { return displacement_; }
+  const std::vector<Vec<Dim>>& velocity() const { return velocity_; }
+  /// Sum of all forces on each gridpoint at the last step, N; on a prescribed component minus the reaction.
+  const std::vector<Vec<Dim>>& force() const { return force_; }
+  const std::vector<SymmetricTensor<Dim>>& stress() const { return stress_; }
+  const std::vector<ContactState<Dim>>& contacts() const { return contact_state_; }
+  const std::vector<ContactProperties>& interfaces() const { return interfaces_; }
+
+  /// Energies; stored ones belong to the displacements that the last step started from.
+  EnergyLedger energy() const;
+  /// Mean unbalanced force over mean force applied to the gridpoints by zones, contacts and gravity.
+  double unbalanced_ratio() const;
+  /// Largest jump over the length of the face it stands on. Small-displacement contacts are exact while it is small.
+  double largest_relative_jump() const;
+
+ private:
+  struct BlockWork {
+    double loading = 0.0, gravity = 0.0, local_damping = 0.0, viscous_damping = 0.0;
+  };
+
+  void compute_stiffness();
+  void set_masses(const std::vector<double>& densities);
+  void update_contact_point(int contact);
+  void add_zone_forces(int block);
+  void add_contact_forces(int gridpoint);
+  void move_gridpoints(int block);
+  Vec<Dim> jump(const Contact<Dim>& contact) const {
+    return displacement_[contact.b] - displacement_[contact.a];
+  }
+
+  const Model<Dim>& model_;
+  MechanicsParameters<Dim> parameters_;
+  ZoneGeometry<Dim> geometry_;
+  GridpointContacts gridpoint_contacts_;
+  std::vector<ZoneProperties> zone_properties_;
+  std::vector<ContactProperties> interfaces_;
+
+  std::vector<double> gravity_mass_;  ///< real mass, which gravity acts on, kg
+  std::vector<double> mass_;          ///< mass that moves, kg
+  std::vector<double> stiffness_;     ///< k_gp, N/m
+  double real_mass_ = 0.0, moving_mass_ = 0.0, time_step_ = 0.0;
+
+  std::int64_t steps_ = 0;
+  std::vector<Vec<Dim>> displacement_, velocity_, force_, applied_;
+  std::vector<Vec<Dim>> prescribed_velocity_;
+  std::vector<std::uint8_t> prescribed_;  ///< bit per component
+  std::vector<SymmetricTensor<Dim>> stress_;
+  std::vector<ContactState<Dim>> contact_state_;
+  std::vector<Vec<Dim>> contact_force_;  ///< on side a, N
+  std::vector<BlockWork> work_;          ///< per block, so that sums have one order
+};
+
+extern template class Mechanics<2>;
+extern template class Mechanics<3>;
+
+}  // namespace pyroclast

@@ -1,0 +1,138 @@
+#include "pyroclast/model/concrete_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pyroclast {
+
+namespace {
+
+using specimen::Constituent;
+using specimen::Specimen;
+
+/// Zones of a platen stand about this many times as high as they are wide: contact forces vary along the face
+/// much faster than into the depth.
+constexpr double kZoneHeightOverWidth = 2.0;
+
+struct Platen {
+  std::vector<int> inner, outer;  ///< gridpoints of its faces, left to right
+};
+
+/// A structured block over the columns `x` (ascending), from `inner_y` to `outer_y`.
+Platen add_platen(Model<2>& model, const std::vector<double>& x, double inner_y, double outer_y) {
+  const int columns = static_cast<int>(x.size());
+  const double width = (x.back() - x.front()) / (columns - 1);
+  const int rows = std::max(2, static_cast<int>(std::lround(std::abs(outer_y - inner_y) / (kZoneHeightOverWidth * width))));
+  std::vector<Vec<2>> gridpoints;
+  for (int r = 0; r <= rows; ++r)
+    for (double column : x) gridpoints.push_back({{column, inner_y + (outer_y - inner_y) * r / rows}});
+  std::vector<std::array<int, 3>> zones;
+  const bool upward = outer_y > inner_y;
+  for (int r = 0; r < rows; ++r)
+    for (int i = 0; i + 1 < columns; ++i) {
+      const int p = r * columns + i, q = p + 1, s = p + columns, t = s + 1;
+      // diagonals alternate, so that the platen has no preferred direction
+      std::array<std::array<int, 3>, 2> pair;
+      if ((r + i) % 2 == 0)
+        pair = {{{p, q, t}, {p, t, s}}};
+      else
+        pair = {{{p, q, s}, {q, t, s}}};
+      for (auto zone : pair) {
+        if (!upward) std::swap(zone[1], zone[2]);
+        zones.push_back(zone);
+      }
+    }
+  const int first = model.gridpoint_count();
+  model.add_block(gridpoints, zones, platen_material);
+  Platen platen;
+  for (int i = 0; i < columns; ++i) {
+    platen.inner.push_back(first + i);
+    platen.outer.push_back(first + rows * columns + i);
+  }
+  return platen;
+}
+
+InterfaceIndex interface_between(Constituent a, Constituent b) {
+  if (a != b) return aggregate_mortar;
+  return a == Constituent::aggregate ? aggregate_aggregate : mortar_mortar;
+}
+
+/// Vertices on a horizontal wall, left to right.
+std::vector<int> wall_vertices(const Specimen& specimen, double y) {
+  std::vector<int> wall;
+  const auto& vertices = specimen.tessellation.vertices;
+  for (int v = 0; v < static_cast<int>(vertices.size()); ++v)
+    if (vertices[v][1] == y) wall.push_back(v);
+  std::sort(wall.begin(), wall.end(), [&](int a, int b) { return vertices[a][0] < vertices[b][0]; });
+  return wall;
+}
+
+}  // namespace
+
+ConcreteModel make_concrete_model(const Specimen& specimen, double platen_thickness, double thickness) {
+  ConcreteModel result;
+  Model<2>& model = result.model;
+  model.thickness = thickness;
+  model.material_names = {"aggregate", "mortar", "platen"};
+  model.interface_names = {"aggregate-aggregate", "aggregate-mortar", "mortar-mortar", "platen"};
+  const auto& tessellation = specimen.tessellation;
+
+  const auto bottom_wall = wall_vertices(specimen, 0.0);
+  const auto top_wall = wall_vertices(specimen, specimen.height);
+  const auto columns = [&](const std::vector<int>& wall) {
+    std::vector<double> x;
+    for (int v : wall) x.push_back(tessellation.vertices[v][0]);
+    return x;
+  };
+
+  const Platen bottom = add_platen(model, columns(bottom_wall), 0.0, -platen_thickness);
+  const int first_cell = model.block_count();
+  for (std::size_t cell = 0; cell < tessellation.cells.size(); ++cell) {
+    std::vector<Vec<2>> corners;
+    for (int v : tessellation.cells[cell]) corners.push_back(tessellation.vertices[v]);
+    const auto zoned = specimen::zone_block(corners);
+    model.add_block(zoned.gridpoints, zoned.zones,
+                    specimen.constituent[cell] == Constituent::aggregate ? aggregate_material : mortar_material);
+  }
+  const Platen top = add_platen(model, columns(top_wall), specimen.height, specimen.height + platen_thickness);
+
+  const auto gridpoint = [&](int cell, int vertex) {
+    const auto& corners = tessellation.cells[cell];
+    const auto at = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
+    return model.block_gridpoints[first_cell + cell] + static_cast<int>(at);
+  };
+  const auto platen_gridpoint = [](const std::vector<int>& wall, const std::vector<int>& face, int vertex) {
+    return face[static_cast<std::size_t>(std::find(wall.begin(), wall.end(), vertex) - wall.begin())];
+  };
+
+  for (const auto& e : specimen::edges(tessellation)) {
+    const std::array<int, 2> a{gridpoint(e.left, e.v0), gridpoint(e.left, e.v1)};
+    if (e.right >= 0) {
+      model.join_faces(a, {gridpoint(e.right, e.v0), gridpoint(e.right, e.v1)},
+                       interface_between(specimen.constituent[e.left], specimen.constituent[e.right]));
+      continue;
+    }
+    const Vec<2>& x0 = tessellation.vertices[e.v0];
+    const Vec<2>& x1 = tessellation.vertices[e.v1];
+    if (x0[1] == 0.0 && x1[1] == 0.0) {
+      model.join_faces(a, {platen_gridpoint(bottom_wall, bottom.inner, e.v0), platen_gridpoint(bottom_wall, bottom.inner, e.v1)},
+                       platen_interface);
+    } else if (x0[1] == specimen.height && x1[1] == specimen.height) {
+      model.join_faces(a, {platen_gridpoint(top_wall, top.inner, e.v0), platen_gridpoint(top_wall, top.inner, e.v1)},
+                       platen_interface);
+    } else {
+      auto& side = x0[0] == 0.0 ? result.left_side : result.right_side;
+      side.insert(side.end(), a.begin(), a.end());
+    }
+  }
+  for (int c = 0; c < model.contact_count(); ++c)
+    if (model.contacts[c].interface == platen_interface) result.platen_contacts.push_back(c);
+
+  result.bottom_support = bottom.outer;
+  result.bottom_face = bottom.inner;
+  result.top_support = top.outer;
+  result.top_face = top.inner;
+  return result;
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pyroclast/base/vec.hpp"
+
+namespace pyroclast {
+
+/// Contact point: joins gridpoint `a` to gridpoint `b` of another block.
+template <int Dim>
+struct Contact {
+  int a, b;                                ///< gridpoints
+  int face;                                ///< shared face; its Dim contact points stand together
+  int interface;                           ///< index into Model::interface_names
+  double area;                             ///< tributary area, m² (2D: half the edge times the thickness)
+  Vec<Dim> normal;                         ///< unit, from a to b
+  std::array<Vec<Dim>, Dim - 1> tangents;  ///< unit, with `normal` right-handed and orthogonal
+};
+
+/// A body of deformable blocks, as flat arrays. Geometry only: no state, no material parameters.
+///
+/// Every block owns its gridpoints and zones, which stand together in the arrays. Blocks meet only through
+/// contacts. In 2D a zone is a triangle and a face an edge with two contact points; in 3D a tetrahedron and a
+/// triangle with three.
+template <int Dim>
+struct Model {
+  double thickness = 1.0;  ///< out of plane, m (2D only; 1 in 3D)
+
+  std::vector<Vec<Dim>> position;             ///< gridpoints, reference configuration, m
+  std::vector<int> block_gridpoints{0};       ///< gridpoints of block i: [i] to [i + 1]
+  std::vector<int> block_zones{0};            ///< zones of block i: [i] to [i + 1]
+  std::vector<int> block_material;            ///< index into material_names
+  std::vector<std::array<int, Dim + 1>> zones;  ///< gridpoints of each zone, positively oriented
+  std::vector<Contact<Dim>> contacts;
+
+  std::vector<std::string> material_names;
+  std::vector<std::string> interface_names;
+
+  int block_count() const { return static_cast<int>(block_material.size()); }
+  int gridpoint_count() const { return static_cast<int>(position.size()); }
+  int zone_count() const { return static_cast<int>(zones.size()); }
+  int contact_count() const { return static_cast<int>(contacts.size()); }
+
+  /// Appends a block; its zones index its own gridpoints from 0. Returns the block's index.
+  int add_block(const std::vector<Vec<Dim>>& gridpoints, const std::vector<std::array<int, Dim + 1>>& block_zones,
+                int material);
+
+  /// Joins a face of one block to the coinciding face of another: corner i of `a` to corner i of `b`, both
+  /// gridpoint indices of the model, ordered so that the normal (2D: the edge direction turned clockwise, for a
+  /// block walked counter-clockwise; 3D: right-handed) points out of a's block into b's.
+  /// Throws Error for a face without area.
+  void join_faces(const std::array<int, Dim>& a, const std::array<int, Dim>& b, int interface);
+};
+
+/// What follows from the geometry alone and the solvers read in every step.
+template <int Dim>
+struct ZoneGeometry {
+  std::vector<std::array<Vec<Dim>, Dim>> gradient;  ///< of the first Dim shape functions, 1/m; the last is minus their sum
+  std::vector<double> volume;                       ///< m³
+};
+
+/// Throws Error naming the zone when one has no positive volume.
+template <int Dim>
+ZoneGeometry<Dim> zone_geometry(const Model<Dim>& model);
+
+/// Block of each zone.
+template <int Dim>
+std::vector<int> zone_blocks(const Model<Dim>& model);
+
+/// Compressed lists of the contacts at each gridpoint, each tagged with the side on which it stands there.
+struct GridpointContacts {
+  std::vector<int> begin;    ///< contacts of gridpoint i: entries [i] to [i + 1]
+  std::vector<int> contact;  ///< index << 1, with the lowest bit set on side b
+};
+
+template <int Dim>
+GridpointContacts gridpoint_contacts(const Model<Dim>& model);
+
+extern template struct Model<2>;
+extern template struct Model<3>;
+
+}  // namespace pyroclast

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "pyroclast/base/random.hpp"
+#include "pyroclast/specimen/specimen.hpp"
+
+namespace pyroclast::specimen {
+
+/// The blocks of a specimen before superposition.
+struct Blocks {
+  Tessellation tessellation;
+  int edges_removed, edges_left_short;
+  int seeds_redrawn;
+  int rounds;  ///< tessellations made
+};
+
+/// Draws seeds and tessellates [0, width] x [0, height] (m), or reads `parameters.file`, and regularises.
+/// Seeds whose block cannot be made fit are drawn anew and the tessellation is made again, until all are.
+/// Throws Error when the blocks are not valid at the end.
+Blocks make_blocks(const BlockParameters& parameters, double width, double height, Random& random);
+
+}  // namespace pyroclast::specimen

@@ -1,0 +1,182 @@
+#include "pyroclast/specimen/laguerre.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <voro++/voro++.hh>
+
+#include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/topology.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+/// Lengths below are in mean spacings of the seeds, so that tolerances mean the same at any size.
+/// Voro++ is three-dimensional: seeds lie in the middle plane of a slab and cells are prisms. A slab thinner
+/// than the spacing keeps the prisms' vertices near their seed, and so the search for neighbours short.
+constexpr double slab_thickness = 0.5;
+/// Voro++ decides with a tolerance of 1e-11; nothing closer than this is resolved.
+constexpr double merge_distance = 1e-8;
+/// Voro++ is fastest with about five particles in a computational block.
+constexpr double seeds_per_block = 5.0;
+/// Number that Voro++ gives to the upper wall of the slab.
+constexpr int upper_wall = -6;
+
+class Slab {
+ public:
+  Slab(const Seeds& seeds, double width, double height)
+      : spacing_(std::sqrt(width * height / static_cast<double>(seeds.position.size()))),
+        width_(width / spacing_),
+        height_(height / spacing_),
+        container_(0.0, width_, 0.0, height_, -0.5 * slab_thickness, 0.5 * slab_thickness, blocks(width_),
+                   blocks(height_), 1, false, false, false, 8) {
+    for (std::size_t i = 0; i < seeds.position.size(); ++i) {
+      const Vec<2> p = seeds.position[i] * (1.0 / spacing_);
+      container_.put(static_cast<int>(i), p[0], p[1], 0.0, seeds.radius[i] / spacing_);
+    }
+  }
+
+  double spacing() const { return spacing_; }
+  double width() const { return width_; }
+  double height() const { return height_; }
+
+  /// Calls f(seed, prism, position) for every seed whose cell is not empty; lengths in spacings.
+  template <class Prism, class F>
+  void for_each_cell(F&& f) {
+    Prism prism;
+    voro::c_loop_all loop(container_);
+    if (!loop.start()) return;
+    do {
+      if (!container_.compute_cell(prism, loop)) continue;
+      double x, y, z;
+      loop.pos(x, y, z);
+      f(static_cast<std::size_t>(loop.pid()), prism, Vec<2>{{x, y}});
+    } while (loop.inc());
+  }
+
+ private:
+  static int blocks(double length) {
+    return std::max(1, static_cast<int>(std::lround(length / std::sqrt(seeds_per_block))));
+  }
+
+  double spacing_, width_, height_;
+  voro::container_poly container_;
+};
+
+/// The prism's upper face, counter-clockwise.
+std::vector<Vec<2>> upper_face(voro::voronoicell_neighbor& prism, const Vec<2>& position) {
+  std::vector<int> neighbours, faces;
+  std::vector<double> vertices;
+  prism.neighbors(neighbours);
+  prism.face_vertices(faces);
+  prism.vertices(position[0], position[1], 0.0, vertices);
+  std::vector<Vec<2>> polygon;
+  std::size_t at = 0;
+  for (const int neighbour : neighbours) {
+    const auto count = static_cast<std::size_t>(faces[at]);
+    if (neighbour == upper_wall) {
+      for (std::size_t i = at + 1; i <= at + count; ++i) {
+        const auto v = 3 * static_cast<std::size_t>(faces[i]);
+        polygon.push_back({{vertices[v], vertices[v + 1]}});
+      }
+      break;
+    }
+    at += count + 1;
+  }
+  if (polygon.size() >= 3 && area(polygon) < 0.0) std::reverse(polygon.begin(), polygon.end());
+  return polygon;
+}
+
+double snapped(double x, double wall) {
+  if (std::abs(x) < merge_distance) return 0.0;
+  return std::abs(x - wall) < merge_distance ? wall : x;
+}
+
+/// For every point the lowest index among the points that stand for the same vertex.
+std::vector<int> same_vertex(const std::vector<Vec<2>>& points) {
+  std::vector<int> parent(points.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int i) {
+    while (parent[static_cast<std::size_t>(i)] != i) {
+      parent[static_cast<std::size_t>(i)] =
+          parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(i)])];
+      i = parent[static_cast<std::size_t>(i)];
+    }
+    return i;
+  };
+  std::vector<int> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto at = [&](int i) -> const Vec<2>& { return points[static_cast<std::size_t>(i)]; };
+  std::sort(order.begin(), order.end(), [&](int i, int j) {
+    if (at(i)[0] != at(j)[0]) return at(i)[0] < at(j)[0];
+    return at(i)[1] != at(j)[1] ? at(i)[1] < at(j)[1] : i < j;
+  });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    for (std::size_t j = i + 1; j < order.size(); ++j) {
+      const Vec<2> between = at(order[j]) - at(order[i]);
+      if (between[0] > merge_distance) break;
+      if (std::abs(between[1]) > merge_distance) continue;
+      const int a = root(order[i]);
+      const int b = root(order[j]);
+      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+  }
+  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = root(static_cast<int>(i));
+  return parent;
+}
+
+/// Joins cells that each have their own corners into cells that share vertices.
+Tessellation join(const std::vector<std::vector<Vec<2>>>& polygons) {
+  std::vector<Vec<2>> points;
+  for (const auto& polygon : polygons) points.insert(points.end(), polygon.begin(), polygon.end());
+  const std::vector<int> same = same_vertex(points);
+
+  Tessellation result;
+  std::vector<int> number(points.size(), -1);
+  std::size_t point = 0;
+  for (const auto& polygon : polygons) {
+    std::vector<int> cell;
+    for (std::size_t i = 0; i < polygon.size(); ++i, ++point) {
+      const auto first = static_cast<std::size_t>(same[point]);
+      if (number[first] < 0) {
+        number[first] = static_cast<int>(result.vertices.size());
+        result.vertices.push_back(points[first]);
+      }
+      if (cell.empty() || cell.back() != number[first]) cell.push_back(number[first]);
+    }
+    while (cell.size() > 1 && cell.back() == cell.front()) cell.pop_back();
+    result.cells.push_back(std::move(cell));
+  }
+  return result;
+}
+
+}  // namespace
+
+LaguerreResult laguerre_tessellation(const Seeds& seeds, double width, double height) {
+  Slab slab(seeds, width, height);
+  std::vector<std::vector<Vec<2>>> polygons(seeds.position.size());
+  slab.for_each_cell<voro::voronoicell_neighbor>([&](std::size_t seed, auto& prism, const Vec<2>& position) {
+    polygons[seed] = upper_face(prism, position);
+    for (Vec<2>& p : polygons[seed]) p = {{snapped(p[0], slab.width()), snapped(p[1], slab.height())}};
+  });
+
+  LaguerreResult result{join(polygons), {}};
+  for (Vec<2>& p : result.tessellation.vertices) {
+    p = {{p[0] == slab.width() ? width : p[0] * slab.spacing(),
+          p[1] == slab.height() ? height : p[1] * slab.spacing()}};
+  }
+  result.broken = mismatched_cells(result.tessellation, width, height);
+  return result;
+}
+
+void relax(Seeds& seeds, double width, double height) {
+  Slab slab(seeds, width, height);
+  slab.for_each_cell<voro::voronoicell>([&](std::size_t seed, auto& prism, const Vec<2>& position) {
+    double x, y, z;
+    prism.centroid(x, y, z);
+    seeds.position[seed] = (position + Vec<2>{{x, y}}) * slab.spacing();
+  });
+}
+
+}  // namespace pyroclast::specimen

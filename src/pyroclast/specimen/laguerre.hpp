@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "pyroclast/specimen/specimen.hpp"
+
+namespace pyroclast::specimen {
+
+/// Seeds of a Laguerre (power) tessellation: a point belongs to the seed with the least |x - position|^2 -
+/// radius^2.
+struct Seeds {
+  std::vector<Vec<2>> position;  ///< m
+  std::vector<double> radius;    ///< m, per seed; all equal: a Voronoi tessellation
+};
+
+/// A tessellation, or the seeds that stand in its way.
+struct LaguerreResult {
+  Tessellation tessellation;  ///< cell i belongs to seed i; complete only when `broken` is empty
+  std::vector<int> broken;  ///< ascending: seeds with an empty cell or one that does not match its neighbours
+};
+
+/// The Laguerre tessellation of [0, width] x [0, height] (m), by Voro++ (Rycroft, Chaos 19, 041111, 2009).
+/// Vertices are shared: those closer than 1e-8 mean spacings are one. Outline vertices lie exactly on the
+/// outline.
+LaguerreResult laguerre_tessellation(const Seeds& seeds, double width, double height);
+
+/// Lloyd's step: every seed moves to the centroid of its cell; a seed with an empty cell stays.
+void relax(Seeds& seeds, double width, double height);
+
+}  // namespace pyroclast::specimen

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "pyroclast/specimen/specimen.hpp"
+
+namespace pyroclast::specimen {
+
+/// Measures edges, zones and sizes of the blocks; the counts of regularisation are left at zero.
+BlockMetrics measure(const Tessellation& tessellation);
+
+}  // namespace pyroclast::specimen

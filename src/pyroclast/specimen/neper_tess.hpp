@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+
+#include "pyroclast/specimen/specimen.hpp"
+
+namespace pyroclast::specimen {
+
+/// Reads a two-dimensional Neper tessellation (.tess, format 2.0 to 3.x; Quey et al., CMAME 200, 2011) and
+/// scales it to [0, width] x [0, height] (m). Its domain must be an upright rectangle of the same aspect
+/// ratio (to 1e-6). Cells come in the file's order, counter-clockwise; vertices that no cell uses are
+/// dropped. Throws Error, with file and line, when the file does not follow the format, and when the cells do
+/// not tile the domain.
+Tessellation read_neper_tess(const std::filesystem::path& file, double width, double height);
+
+}  // namespace pyroclast::specimen

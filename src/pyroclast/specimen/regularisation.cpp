@@ -1,0 +1,229 @@
+#include "pyroclast/specimen/regularisation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <numeric>
+#include <span>
+
+#include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/topology.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+constexpr double largest_angle_allowed = largest_block_angle * std::numbers::pi / 180.0;
+
+/// Where along an edge its two ends may merge, best first: near the middle disturbs the blocks least.
+constexpr std::array<double, 9> merge_positions{0.5, 0.35, 0.65, 0.2, 0.8, 0.1, 0.9, 0.0, 1.0};
+
+struct Shape {
+  double largest_angle;  ///< radians
+  double thinnest_zone;  ///< m
+};
+
+Shape shape_of(Corners polygon) {
+  if (area(polygon) <= 0.0) return {2.0 * std::numbers::pi, 0.0};
+  return {largest_angle(polygon), thinnest_zone(polygon)};
+}
+
+class Regulariser {
+ public:
+  Regulariser(Tessellation& tessellation, double width, double height, double shortest_edge)
+      : tessellation_(tessellation), share_(shortest_edge), around_(tessellation.vertices.size()) {
+    for (const Vec<2>& p : tessellation_.vertices) sides_.push_back(sides(p, width, height));
+    for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
+      for (const int v : tessellation_.cells[c]) cells_around(v).push_back(static_cast<int>(c));
+    }
+  }
+
+  Regularisation run() {
+    int removed = 0;
+    std::vector<Edge> left = short_edges();
+    // Each pass raises the mean edge a little and may shorten edges beside a merge, so passes go on until
+    // one finds nothing to do.
+    for (bool changed = !left.empty(); changed;) {
+      changed = false;
+      for (const Edge& edge : left) {
+        if (merge(edge.v0, edge.v1)) {
+          ++removed;
+          changed = true;
+        }
+      }
+      if (changed) left = short_edges();
+    }
+    std::vector<int> unfit = unfit_cells(left);
+    drop_unused_vertices();
+    return {removed, static_cast<int>(left.size()), std::move(unfit)};
+  }
+
+ private:
+  Vec<2>& at(int v) { return tessellation_.vertices[static_cast<std::size_t>(v)]; }
+  std::uint8_t sides_of(int v) const { return sides_[static_cast<std::size_t>(v)]; }
+  std::vector<int>& cells_around(int v) { return around_[static_cast<std::size_t>(v)]; }
+  std::vector<int>& cell(int c) { return tessellation_.cells[static_cast<std::size_t>(c)]; }
+  bool merged_away(int v) { return cells_around(v).empty(); }
+
+  /// Sets the limits from the mean of the edges as they are now; returns the edges below, shortest first.
+  std::vector<Edge> short_edges() {
+    std::vector<Edge> all = edges(tessellation_);
+    double sum = 0.0;
+    for (const Edge& e : all) sum += norm(at(e.v1) - at(e.v0));
+    shortest_ = share_ * sum / static_cast<double>(all.size());
+    thinnest_ = sliver_share * shortest_;
+    std::erase_if(all, [&](const Edge& e) { return norm(at(e.v1) - at(e.v0)) >= shortest_; });
+    std::stable_sort(all.begin(), all.end(), [&](const Edge& a, const Edge& b) {
+      return norm(at(a.v1) - at(a.v0)) < norm(at(b.v1) - at(b.v0));
+    });
+    return all;
+  }
+
+  /// Merges the two ends where every block around stays fit; false when there is no such place.
+  bool merge(int a, int b) {
+    if (merged_away(a) || merged_away(b) || norm(at(b) - at(a)) >= shortest_) return false;
+    std::span<const double> positions = merge_positions;
+    if (sides_of(a) != sides_of(b)) {
+      // The end on more sides stays in place; with sides of its own at each end there is no place for both.
+      const auto both = static_cast<std::uint8_t>(sides_of(a) | sides_of(b));
+      if (both == sides_of(a)) {
+        positions = positions.subspan(merge_positions.size() - 2, 1);
+      } else if (both == sides_of(b)) {
+        positions = positions.last(1);
+      } else {
+        return false;
+      }
+    }
+    gather_blocks(a, b);
+    const Vec<2> from = at(a);
+    const Vec<2> edge = at(b) - at(a);
+    for (const double t : positions) {
+      const Vec<2> place = t == 1.0 ? at(b) : from + t * edge;
+      if (all_fit(a, b, place)) {
+        carry_out(a, b, place);
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// The blocks that a merge of a and b touches, and their shapes before it.
+  void gather_blocks(int a, int b) {
+    touched_ = cells_around(a);
+    touched_.insert(touched_.end(), cells_around(b).begin(), cells_around(b).end());
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    before_.clear();
+    for (const int c : touched_) {
+      corners(tessellation_, static_cast<std::size_t>(c), polygon_);
+      before_.push_back(shape_of(polygon_));
+    }
+  }
+
+  bool all_fit(int a, int b, const Vec<2>& place) {
+    for (std::size_t i = 0; i < touched_.size(); ++i) {
+      polygon_.clear();
+      bool moved = false;
+      for (const int v : cell(touched_[i])) {
+        if (v != a && v != b) {
+          polygon_.push_back(at(v));
+        } else if (!moved) {
+          polygon_.push_back(place);
+          moved = true;
+        }
+      }
+      if (polygon_.size() < 3) return false;
+      const Shape after = shape_of(polygon_);
+      if (after.largest_angle > std::max(largest_angle_allowed, before_[i].largest_angle)) return false;
+      if (after.thinnest_zone < std::min(thinnest_, before_[i].thinnest_zone)) return false;
+    }
+    return true;
+  }
+
+  void carry_out(int a, int b, const Vec<2>& place) {
+    at(a) = place;
+    sides_[static_cast<std::size_t>(a)] = static_cast<std::uint8_t>(sides_of(a) | sides_of(b));
+    for (const int c : cells_around(b)) {
+      auto& vertices = cell(c);
+      if (std::find(vertices.begin(), vertices.end(), a) != vertices.end()) {
+        std::erase(vertices, b);
+      } else {
+        std::replace(vertices.begin(), vertices.end(), b, a);
+      }
+    }
+    cells_around(b).clear();
+    cells_around(a) = touched_;
+  }
+
+  void drop_unused_vertices() {
+    std::vector<int> number(tessellation_.vertices.size(), -1);
+    std::vector<Vec<2>> used;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      if (around_[v].empty()) continue;
+      number[v] = static_cast<int>(used.size());
+      used.push_back(tessellation_.vertices[v]);
+    }
+    for (auto& vertices : tessellation_.cells) {
+      for (int& v : vertices) v = number[static_cast<std::size_t>(v)];
+    }
+    tessellation_.vertices = std::move(used);
+  }
+
+  /// The cells whose seeds stand in the way of fit blocks.
+  std::vector<int> unfit_cells(const std::vector<Edge>& left_short) {
+    areas_.clear();
+    std::vector<int> unfit;
+    for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
+      corners(tessellation_, c, polygon_);
+      areas_.push_back(area(polygon_));
+      if (thinnest_zone(polygon_) < thinnest_) unfit.push_back(static_cast<int>(c));
+    }
+    for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
+      for (const int v : flat_corners(c)) unfit.push_back(smallest_neighbour(v, static_cast<int>(c)));
+    }
+    for (const Edge& e : left_short) {
+      unfit.push_back(e.right < 0 || area_of(e.left) < area_of(e.right) ? e.left : e.right);
+    }
+    std::sort(unfit.begin(), unfit.end());
+    unfit.erase(std::unique(unfit.begin(), unfit.end()), unfit.end());
+    return unfit;
+  }
+
+  std::vector<int> flat_corners(std::size_t c) {
+    std::vector<int> flat;
+    corners(tessellation_, c, polygon_);
+    for (std::size_t i = 0; i < polygon_.size(); ++i) {
+      if (interior_angle(polygon_, i) > largest_angle_allowed) flat.push_back(tessellation_.cells[c][i]);
+    }
+    return flat;
+  }
+
+  /// The smallest of the other cells at a corner where one is flat. Two of them have seeds close together,
+  /// which is what makes the corner flat: whatever cell lay there would be.
+  int smallest_neighbour(int v, int flat) {
+    int smallest = flat;
+    for (const int c : cells_around(v)) {
+      if (c != flat && (smallest == flat || area_of(c) < area_of(smallest))) smallest = c;
+    }
+    return smallest;
+  }
+
+  double area_of(int c) const { return areas_[static_cast<std::size_t>(c)]; }
+
+  Tessellation& tessellation_;
+  double share_;
+  double shortest_ = 0.0, thinnest_ = 0.0;  ///< m
+  std::vector<std::uint8_t> sides_;
+  std::vector<std::vector<int>> around_;  ///< cells around each vertex, ascending; empty: merged away
+  std::vector<int> touched_;
+  std::vector<Shape> before_;
+  std::vector<double> areas_;  ///< m^2, per cell
+  std::vector<Vec<2>> polygon_;
+};
+
+}  // namespace
+
+Regularisation regularise(Tessellation& tessellation, double width, double height, double shortest_edge) {
+  return Regulariser(tessellation, width, height, shortest_edge).run();
+}
+
+}  // namespace pyroclast::specimen

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "pyroclast/specimen/specimen.hpp"
+
+namespace pyroclast::specimen {
+
+/// Largest interior angle of a block that regularisation leaves alone, degrees. A flatter corner is hardly
+/// a corner, and half a degree is far above rounding.
+inline constexpr double largest_block_angle = 179.5;
+
+/// A zone is a sliver when its smallest altitude is below this share of the shortest edge allowed. The
+/// altitude sets the zone's stable time step as the edge does, so a bound on edges alone would not bound it.
+inline constexpr double sliver_share = 0.5;
+
+/// What regularisation did.
+struct Regularisation {
+  int edges_removed;
+  int edges_left_short;    ///< shorter than asked for, and no removal leaves the blocks around it fit
+  std::vector<int> unfit;  ///< ascending: cells that stand in the way: with a sliver, beside a flat corner,
+                           ///< at an edge left short
+};
+
+/// Removes edges shorter than `shortest_edge` times the mean edge (mean of what is left) by merging their
+/// two ends, shortest first. A merge is made only when every block that it touches keeps at least three
+/// corners and gets neither a corner above `largest_block_angle` nor a sliver zone that it had not before.
+/// Outline vertices stay on their side, corners of the rectangle stay. The tessellation must be valid and
+/// remains so.
+Regularisation regularise(Tessellation& tessellation, double width, double height, double shortest_edge);
+
+}  // namespace pyroclast::specimen

@@ -1,0 +1,122 @@
+#include "pyroclast/specimen/specimen.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/random.hpp"
+#include "pyroclast/specimen/blocks.hpp"
+#include "pyroclast/specimen/gradation.hpp"
+#include "pyroclast/specimen/metrics.hpp"
+#include "pyroclast/specimen/placement.hpp"
+#include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/superposition.hpp"
+#include "pyroclast/specimen/topology.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+void require(bool condition, std::string_view what, double value, std::string_view allowed) {
+  if (!condition) throw Error(fmt::format("{} is {:.6g}; allowed is {}.", what, value, allowed));
+}
+
+void require_valid(const AggregateParameters& p) {
+  require(p.fraction >= 0.0 && p.fraction < 1.0, "The aggregate fraction", p.fraction, "0 to below 1");
+  if (p.fraction == 0.0) return;
+  require(p.d_min > 0.0, "The smallest aggregate diameter", p.d_min, "a positive length");
+  require(p.d_max > p.d_min, "The largest aggregate diameter", p.d_max, "more than the smallest");
+  require(p.fuller_exponent > 0.0 && p.fuller_exponent <= 1.0, "The Fuller exponent", p.fuller_exponent,
+          "above 0, up to 1");
+  require(p.minimum_gap >= 0.0, "The minimum gap between aggregates", p.minimum_gap, "0 or more");
+  require(p.attempts > 0, "The number of attempts to place an aggregate", p.attempts, "1 or more");
+  const bool ascending =
+      std::adjacent_find(p.sieves.begin(), p.sieves.end(), std::greater_equal<>()) == p.sieves.end();
+  if (p.sieves.size() < 2 || !ascending || p.sieves.front() != p.d_min || p.sieves.back() != p.d_max) {
+    throw Error(
+        fmt::format("The sieves are [{}] m; allowed are ascending sizes from d_min = {} m to d_max = {} m.",
+                    fmt::join(p.sieves, ", "), p.d_min, p.d_max));
+  }
+}
+
+void require_valid(const BlockParameters& p) {
+  require(p.shortest_edge >= 0.0 && p.shortest_edge <= 0.5, "The shortest edge", p.shortest_edge,
+          "0 to 0.5 of the mean edge");
+  if (!p.file.empty()) return;
+  require(p.count >= 1, "The number of blocks", p.count, "1 or more");
+  require(p.radius_spread >= 0.0 && p.radius_spread < 1.0, "The radius spread", p.radius_spread,
+          "0 to below 1");
+  require(p.relaxation >= 0, "The number of relaxation steps", p.relaxation, "0 or more");
+}
+
+void require_valid(const SpecimenParameters& p) {
+  require(p.width > 0.0, "The specimen width", p.width, "a positive length");
+  require(p.height > 0.0, "The specimen height", p.height, "a positive length");
+  require(p.covered_fraction >= 0.0 && p.covered_fraction < 1.0, "The covered fraction", p.covered_fraction,
+          "0 to below 1");
+  require_valid(p.aggregates);
+  require_valid(p.blocks);
+}
+
+std::vector<Aggregate> make_aggregates(const SpecimenParameters& p, Random& random) {
+  if (p.aggregates.fraction == 0.0) return {};
+  return place(draw_diameters(p.aggregates, p.width * p.height, random), p.width, p.height, p.aggregates,
+               random);
+}
+
+double fraction_of(const std::vector<Aggregate>& aggregates, double specimen_area) {
+  double sum = 0.0;
+  for (const Aggregate& a : aggregates) sum += 0.25 * std::numbers::pi * a.diameter * a.diameter;
+  return sum / specimen_area;
+}
+
+double fraction_of(const Tessellation& tessellation, const std::vector<Constituent>& constituent,
+                   double specimen_area) {
+  double sum = 0.0;
+  std::vector<Vec<2>> polygon;
+  for (std::size_t c = 0; c < constituent.size(); ++c) {
+    if (constituent[c] != Constituent::aggregate) continue;
+    corners(tessellation, c, polygon);
+    sum += area(polygon);
+  }
+  return sum / specimen_area;
+}
+
+}  // namespace
+
+Specimen make_specimen(const SpecimenParameters& parameters) {
+  require_valid(parameters);
+  // Streams of their own: another number of blocks leaves the aggregates where they are.
+  Random aggregate_random(2 * parameters.seed);
+  Random block_random(2 * parameters.seed + 1);
+  const double specimen_area = parameters.width * parameters.height;
+
+  Specimen specimen{};
+  specimen.width = parameters.width;
+  specimen.height = parameters.height;
+  specimen.aggregates = make_aggregates(parameters, aggregate_random);
+  specimen.fraction_asked = parameters.aggregates.fraction;
+  specimen.fraction_placed = fraction_of(specimen.aggregates, specimen_area);
+  if (std::abs(specimen.fraction_placed - specimen.fraction_asked) > 0.01) {
+    throw Error(fmt::format(
+        "The aggregates take up a fraction of {:.4f}, {:.4f} was asked for and 0.01 is allowed between "
+        "them: the smallest aggregate, {:.4g} m, is too large for the specimen.",
+        specimen.fraction_placed, specimen.fraction_asked, parameters.aggregates.d_min));
+  }
+
+  Blocks blocks = make_blocks(parameters.blocks, parameters.width, parameters.height, block_random);
+  specimen.tessellation = std::move(blocks.tessellation);
+  specimen.constituent = superpose(specimen.tessellation, specimen.aggregates, parameters);
+  specimen.fraction_superposed = fraction_of(specimen.tessellation, specimen.constituent, specimen_area);
+
+  specimen.metrics = measure(specimen.tessellation);
+  specimen.metrics.edges_removed = blocks.edges_removed;
+  specimen.metrics.edges_left_short = blocks.edges_left_short;
+  specimen.metrics.seeds_redrawn = blocks.seeds_redrawn;
+  return specimen;
+}
+
+}  // namespace pyroclast::specimen

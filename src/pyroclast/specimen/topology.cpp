@@ -1,0 +1,140 @@
+#include "pyroclast/specimen/topology.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/specimen/polygon.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+/// The edges of all cells as the cells run along them, listed by the vertex they start from.
+class DirectedEdges {
+ public:
+  struct Entry {
+    int to;
+    int cell;
+  };
+
+  explicit DirectedEdges(const Tessellation& tessellation) : first_(tessellation.vertices.size() + 1, 0) {
+    std::size_t total = 0;
+    for (const auto& cell : tessellation.cells) {
+      total += cell.size();
+      for (const int v : cell) ++first_[static_cast<std::size_t>(v) + 1];
+    }
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    entries_.resize(total);
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
+      const auto& cell = tessellation.cells[c];
+      for (std::size_t i = 0; i < cell.size(); ++i) {
+        const int to = cell[i + 1 < cell.size() ? i + 1 : 0];
+        entries_[next[static_cast<std::size_t>(cell[i])]++] = {to, static_cast<int>(c)};
+      }
+    }
+  }
+
+  /// How many cells run from one vertex to the other, and the last of them (-1: none).
+  std::pair<int, int> find(int from, int to) const {
+    std::pair<int, int> found{0, -1};
+    for (std::size_t i = first_[static_cast<std::size_t>(from)];
+         i < first_[static_cast<std::size_t>(from) + 1]; ++i) {
+      if (entries_[i].to == to) found = {found.first + 1, entries_[i].cell};
+    }
+    return found;
+  }
+
+ private:
+  std::vector<std::size_t> first_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace
+
+std::uint8_t sides(const Vec<2>& point, double width, double height) {
+  return static_cast<std::uint8_t>((point[0] == 0.0 ? 1 : 0) | (point[0] == width ? 2 : 0) |
+                                   (point[1] == 0.0 ? 4 : 0) | (point[1] == height ? 8 : 0));
+}
+
+void corners(const Tessellation& tessellation, std::size_t cell, std::vector<Vec<2>>& result) {
+  result.clear();
+  for (const int v : tessellation.cells[cell])
+    result.push_back(tessellation.vertices[static_cast<std::size_t>(v)]);
+}
+
+std::vector<Edge> edges(const Tessellation& tessellation) {
+  const DirectedEdges directed(tessellation);
+  std::vector<Edge> result;
+  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
+    const auto& cell = tessellation.cells[c];
+    for (std::size_t i = 0; i < cell.size(); ++i) {
+      const int v0 = cell[i];
+      const int v1 = cell[i + 1 < cell.size() ? i + 1 : 0];
+      const auto [partners, other] = directed.find(v1, v0);
+      if (partners > 1 || directed.find(v0, v1).first > 1) {
+        throw Error(fmt::format(
+            "The edge between vertices {} and {} of the tessellation is seen twice in the same sense; "
+            "cell {} overlaps another.",
+            v0, v1, c));
+      }
+      const int left = static_cast<int>(c);
+      if (other < 0 || other > left) result.push_back({v0, v1, left, other});
+    }
+  }
+  return result;
+}
+
+std::vector<int> mismatched_cells(const Tessellation& tessellation, double width, double height) {
+  const DirectedEdges directed(tessellation);
+  std::vector<std::uint8_t> on;
+  for (const Vec<2>& p : tessellation.vertices) on.push_back(sides(p, width, height));
+  std::vector<int> result;
+  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
+    const auto& cell = tessellation.cells[c];
+    bool matched = cell.size() >= 3;
+    for (std::size_t i = 0; matched && i < cell.size(); ++i) {
+      const int v0 = cell[i];
+      const int v1 = cell[i + 1 < cell.size() ? i + 1 : 0];
+      const bool on_outline = (on[static_cast<std::size_t>(v0)] & on[static_cast<std::size_t>(v1)]) != 0;
+      matched = directed.find(v0, v1).first == 1 && directed.find(v1, v0).first == (on_outline ? 0 : 1);
+    }
+    if (!matched) result.push_back(static_cast<int>(c));
+  }
+  return result;
+}
+
+void require_valid(const Tessellation& tessellation, double width, double height, const std::string& origin) {
+  const std::vector<int> mismatched = mismatched_cells(tessellation, width, height);
+  if (!mismatched.empty()) {
+    throw Error(
+        fmt::format("{}: {} of {} cells do not fit together with their neighbours, the first is cell {}.",
+                    origin, mismatched.size(), tessellation.cells.size(), mismatched.front() + 1));
+  }
+  // Coordinates of a file carry twelve decimals, so a corner on a straight line may bend inwards by this
+  // much.
+  constexpr double slack = 1e-6;
+  double total = 0.0;
+  std::vector<Vec<2>> polygon;
+  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
+    corners(tessellation, c, polygon);
+    const double cell_area = area(polygon);
+    total += cell_area;
+    if (!(cell_area > 0.0) || largest_angle(polygon) > std::numbers::pi + slack ||
+        !(thinnest_zone(polygon) > 0.0)) {
+      throw Error(fmt::format("{}: cell {} near ({:.6g}, {:.6g}) m is not convex or has no area.", origin,
+                              c + 1, polygon.front()[0], polygon.front()[1]));
+    }
+  }
+  if (std::abs(total - width * height) > 1e-10 * width * height) {
+    throw Error(
+        fmt::format("{}: the cells cover {:.12g} m^2, the rectangle {:.6g} m x {:.6g} m has {:.12g} m^2.",
+                    origin, total, width, height, width * height));
+  }
+}
+
+}  // namespace pyroclast::specimen

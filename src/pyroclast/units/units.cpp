@@ -1,0 +1,286 @@
+#include "pyroclast/units/units.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include <fmt/format.h>
+#include <locale.h>
+#include <udunits2.h>
+
+namespace pyroclast {
+namespace {
+
+struct UnitFree {
+  void operator()(ut_unit* unit) const { ut_free(unit); }
+};
+using UnitHandle = std::unique_ptr<ut_unit, UnitFree>;
+
+struct SystemFree {
+  void operator()(ut_system* system) const { ut_free_system(system); }
+};
+using SystemHandle = std::unique_ptr<ut_system, SystemFree>;
+
+struct ConverterFree {
+  void operator()(cv_converter* converter) const { cv_free(converter); }
+};
+using ConverterHandle = std::unique_ptr<cv_converter, ConverterFree>;
+
+/// The "C" locale for this thread while it lives: UDUNITS-2 reads its numbers with `strtod`.
+class ClassicLocale {
+ public:
+  ClassicLocale() : classic_(newlocale(LC_ALL_MASK, "C", nullptr)), previous_(uselocale(classic_)) {}
+  ~ClassicLocale() {
+    uselocale(previous_);
+    freelocale(classic_);
+  }
+  ClassicLocale(const ClassicLocale&) = delete;
+  ClassicLocale& operator=(const ClassicLocale&) = delete;
+
+ private:
+  locale_t classic_;
+  locale_t previous_;
+};
+
+/// The unit database. UDUNITS-2 keeps its parser and its status in globals, so one lock guards every call.
+class UnitSystem {
+ public:
+  static UnitSystem& instance() {
+    static UnitSystem system;
+    return system;
+  }
+
+  std::mutex& mutex() { return mutex_; }
+
+  /// Null if the text is not a unit.
+  UnitHandle parse(const std::string& text) const {
+    const ClassicLocale locale;
+    return UnitHandle(ut_parse(system_.get(), text.c_str(), UT_UTF8));
+  }
+
+ private:
+  UnitSystem() {
+    const ClassicLocale locale;
+    ut_set_error_message_handler(ut_ignore);
+    system_.reset(ut_read_xml(nullptr));
+    if (!system_) {
+      ut_status status = UT_SUCCESS;
+      throw Error(
+          fmt::format("the unit database {} of UDUNITS-2 cannot be read; install it (Debian package "
+                      "libudunits2-data) or set UDUNITS2_XML_PATH",
+                      ut_get_path_xml(nullptr, &status)));
+    }
+    const UnitHandle degree(ut_get_unit_by_name(system_.get(), "degree"));
+    ut_map_symbol_to_unit("deg", UT_ASCII, degree.get());
+  }
+
+  std::mutex mutex_;
+  SystemHandle system_;
+};
+
+/// What UDUNITS-2 has inside a unit: a product of base units, perhaps scaled and shifted.
+struct Structure {
+  bool linear = true;       ///< neither a date nor a logarithm
+  bool has_offset = false;  ///< a temperature scale
+  int base_units = 0;       ///< number of base units with a non-zero power; the radian counts as one
+};
+
+Structure structure_of(const ut_unit* unit) {
+  ut_visitor visitor{};
+  visitor.visit_basic = [](const ut_unit*, void* result) {
+    static_cast<Structure*>(result)->base_units = 1;
+    return UT_SUCCESS;
+  };
+  visitor.visit_product = [](const ut_unit*, int count, const ut_unit* const*, const int*, void* result) {
+    static_cast<Structure*>(result)->base_units = count;
+    return UT_SUCCESS;
+  };
+  visitor.visit_galilean = [](const ut_unit*, double, const ut_unit* underlying, double offset,
+                              void* result) {
+    auto& structure = *static_cast<Structure*>(result);
+    structure = structure_of(underlying);
+    structure.has_offset = structure.has_offset || offset != 0.0;
+    return UT_SUCCESS;
+  };
+  visitor.visit_timestamp = [](const ut_unit*, const ut_unit*, double, void* result) {
+    static_cast<Structure*>(result)->linear = false;
+    return UT_SUCCESS;
+  };
+  visitor.visit_logarithmic = [](const ut_unit*, double, const ut_unit*, void* result) {
+    static_cast<Structure*>(result)->linear = false;
+    return UT_SUCCESS;
+  };
+  Structure structure;
+  ut_accept_visitor(unit, &visitor, &structure);
+  return structure;
+}
+
+/// UDUNITS-2 also converts between reciprocals (s and Hz) and between rad and 1; neither is meant in a deck.
+bool same_dimension(const ut_unit* a, const ut_unit* b) {
+  if (!structure_of(a).linear || !structure_of(b).linear) return false;
+  const UnitHandle quotient(ut_divide(a, b));
+  return quotient && structure_of(quotient.get()).base_units == 0;
+}
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool is_space(char c) {
+  return c == ' ' || c == '\t';
+}
+/// A letter, or a byte of a character outside ASCII, such as "µ" or "°".
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (static_cast<unsigned char>(c) & 0x80U) != 0;
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+/// Superscripts and products in ASCII. UDUNITS-2 takes some of them itself, but not "⁻".
+std::string in_ascii(std::string_view unit) {
+  using Replacement = std::pair<std::string_view, char>;
+  // clang-format off
+  static constexpr std::array<Replacement, 14> replacements{{
+      {"⁰", '0'}, {"¹", '1'}, {"²", '2'}, {"³", '3'}, {"⁴", '4'}, {"⁵", '5'}, {"⁶", '6'},
+      {"⁷", '7'}, {"⁸", '8'}, {"⁹", '9'}, {"⁻", '-'}, {"−", '-'}, {"·", '.'}, {"⋅", '.'}}};
+  // clang-format on
+  std::string result;
+  while (!unit.empty()) {
+    const auto found = std::find_if(replacements.begin(), replacements.end(),
+                                    [&](const Replacement& r) { return unit.starts_with(r.first); });
+    const bool replace = found != replacements.end();
+    result += replace ? found->second : unit.front();
+    unit.remove_prefix(replace ? found->first.size() : 1);
+  }
+  return result;
+}
+
+/// The unit as UDUNITS-2 takes it: "/K" becomes "1/K", and a unit right behind an exponent gets the operator
+/// that is meant: "W/m²K" becomes "W/m2/K" and "m2K/W" becomes "m2.K/W".
+std::string normalized(std::string_view unit) {
+  std::string result(unit.starts_with('/') ? "1" : "");
+  bool dividing = false;
+  for (const char c : in_ascii(unit)) {
+    if (!result.empty() && is_digit(result.back()) && is_letter(c)) result += dividing ? '/' : '.';
+    if (c == '/') dividing = true;
+    if (is_space(c) || c == '.' || c == '*' || c == '(' || c == ')') dividing = false;
+    result += c;
+  }
+  return result;
+}
+
+/// Whether every number in the unit is an exponent; only a leading "1/" may stand apart. UDUNITS-2 would take
+/// "400 GPa/m" (from "18 400 GPa/m") or "kg m -3" as a unit with a factor.
+bool numbers_are_exponents(std::string_view unit) {
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    if (unit[i] == '\0' || unit[i] == '@') return false;
+    if (!is_digit(unit[i]) || (i > 0 && is_digit(unit[i - 1]))) continue;
+    if (i == 0 && unit.starts_with("1/")) continue;
+    std::string_view before = unit.substr(0, i);
+    if (before.ends_with('-') || before.ends_with('+')) before.remove_suffix(1);
+    if (before.ends_with("**")) {
+      before.remove_suffix(2);
+    } else if (before.ends_with('^')) {
+      before.remove_suffix(1);
+    }
+    if (before.empty() || (!is_letter(before.back()) && before.back() != ')')) return false;
+  }
+  return true;
+}
+
+struct NumberAndUnit {
+  double number;
+  std::string_view unit;
+};
+
+/// Whether what follows a number goes on with it, as in "18,400", "1_000" or "18 400".
+bool continues_number(std::string_view rest) {
+  if (rest.empty()) return false;
+  const bool separator = rest[0] == ',' || rest[0] == '_' || rest[0] == '\'';
+  rest = separator ? rest.substr(1) : trimmed(rest);
+  return !rest.empty() && is_digit(rest[0]) && !rest.starts_with("1/");
+}
+
+NumberAndUnit split(std::string_view text, const Unit& unit) {
+  using Kind = QuantityError::Kind;
+  std::string_view rest = trimmed(text);
+  if (rest.starts_with('+') && !rest.starts_with("+-")) rest.remove_prefix(1);
+  double number = 0.0;
+  const auto [end, status] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+  if (status == std::errc::invalid_argument) {
+    throw QuantityError(Kind::no_number, text, "no number; " + requirement(unit));
+  }
+  if (status == std::errc::result_out_of_range || !std::isfinite(number)) {
+    throw QuantityError(Kind::not_finite, text, "the number is not finite or out of the range of doubles");
+  }
+  rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+  if (continues_number(rest)) {
+    throw QuantityError(
+        Kind::no_number, text,
+        "not one number; write numbers with a decimal point and without separators; " + requirement(unit));
+  }
+  return {number, trimmed(rest)};
+}
+
+[[noreturn]] void throw_wrong_dimension(std::string_view text, std::string_view given, const Unit& unit) {
+  throw QuantityError(QuantityError::Kind::wrong_dimension, text,
+                      fmt::format("unit \"{}\" has the wrong dimension; {}", given, requirement(unit)));
+}
+
+double convert(double number, std::string_view text, std::string_view given, const Unit& unit) {
+  UnitSystem& system = UnitSystem::instance();
+  const std::scoped_lock lock(system.mutex());
+  const std::string plain = normalized(given);
+  const UnitHandle from = numbers_are_exponents(plain) ? system.parse(plain) : nullptr;
+  if (!from) {
+    throw QuantityError(QuantityError::Kind::unknown_unit, text,
+                        fmt::format("unknown unit \"{}\"; {}", given, requirement(unit)));
+  }
+  const UnitHandle to = system.parse(unit.si);
+  if (!to) throw Error(fmt::format("\"{}\", the unit of {}, is not known to UDUNITS-2", unit.si, unit.name));
+  if (!same_dimension(from.get(), to.get())) throw_wrong_dimension(text, given, unit);
+  if (structure_of(from.get()).has_offset && !structure_of(to.get()).has_offset) {
+    throw QuantityError(
+        QuantityError::Kind::wrong_dimension, text,
+        fmt::format("\"{}\" is a temperature, not a difference; {}", given, requirement(unit)));
+  }
+  const ConverterHandle converter(ut_get_converter(from.get(), to.get()));
+  if (!converter) throw_wrong_dimension(text, given, unit);
+  const double value = cv_convert_double(converter.get(), number);
+  if (!std::isfinite(value)) {
+    throw QuantityError(QuantityError::Kind::not_finite, text, fmt::format("too large in {}", unit.si));
+  }
+  return value;
+}
+
+bool is_dimensionless(const Unit& unit) {
+  return std::strcmp(unit.si, unit::dimensionless.si) == 0;
+}
+
+}  // namespace
+
+QuantityError::QuantityError(Kind kind, std::string_view text, const std::string& reason)
+    : Error(fmt::format("\"{}\": {}", text, reason)), kind_(kind), reason_(reason) {}
+
+double parse_quantity(std::string_view text, const Unit& unit) {
+  const auto [number, given] = split(text, unit);
+  if (!given.empty()) return convert(number, text, given, unit);
+  if (is_dimensionless(unit)) return number;
+  throw QuantityError(QuantityError::Kind::no_unit, text, "no unit; " + requirement(unit));
+}
+
+std::string requirement(const Unit& unit) {
+  if (is_dimensionless(unit))
+    return fmt::format("a number without unit is needed, or e.g. \"{}\"", unit.example);
+  return fmt::format("a unit of {} ({}) is needed, e.g. \"{}\"", unit.name, unit.si, unit.example);
+}
+
+}  // namespace pyroclast

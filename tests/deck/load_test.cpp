@@ -1,0 +1,119 @@
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "diagnostics_of.hpp"
+
+namespace pyroclast {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A directory of this test that goes with it.
+class DeckFile : public testing::Test {
+ protected:
+  DeckFile() {
+    std::string name = (fs::temp_directory_path() / "pyroclast_deck_XXXXXX").string();
+    directory_ = mkdtemp(name.data());
+  }
+  ~DeckFile() override { fs::remove_all(directory_); }
+
+  fs::path write(const std::string& text) const {
+    const fs::path file = directory_ / "case.toml";
+    std::ofstream(file, std::ios::binary) << text;
+    return file;
+  }
+
+  fs::path directory_;
+};
+
+/// The one error with which loading or parsing fails.
+template <class Read>
+Diagnostic failure_of(Read read) {
+  try {
+    read();
+  } catch (const DeckError& error) {
+    EXPECT_EQ(error.diagnostics().size(), 1U);
+    return error.diagnostics().front();
+  }
+  ADD_FAILURE() << "no DeckError";
+  return {};
+}
+
+Diagnostic syntax_error_of(const std::string& text) {
+  return failure_of([&] { Deck::parse(text, "case.toml"); });
+}
+
+TEST_F(DeckFile, IsKeptAsReadForTheManifest) {
+  const std::string text = "# a comment\r\ntitle = \"x\"  \n";
+  const fs::path file = write(text);
+  const Deck deck = Deck::load(file);
+  EXPECT_EQ(deck.text(), text);
+  EXPECT_EQ(deck.name(), file.string());
+  EXPECT_EQ(deck.root().text("title"), "x");
+  EXPECT_NO_THROW(deck.finish());
+}
+
+TEST_F(DeckFile, ThatDoesNotExistIsNamed) {
+  const fs::path file = directory_ / "absent.toml";
+  const Diagnostic diagnostic = failure_of([&] { Deck::load(file); });
+  EXPECT_EQ(diagnostic.file, file.string());
+  EXPECT_TRUE(mentions(diagnostic.message, "no such file"));
+  EXPECT_EQ(to_string(diagnostic), file.string() + ": no such file");
+}
+
+TEST_F(DeckFile, ThatIsADirectoryIsRefused) {
+  const Diagnostic diagnostic = failure_of([&] { Deck::load(directory_); });
+  EXPECT_EQ(diagnostic.file, directory_.string());
+  EXPECT_TRUE(mentions(diagnostic.message, "directory"));
+}
+
+TEST_F(DeckFile, ThatIsEmptyIsRefused) {
+  const Diagnostic diagnostic = failure_of([&] { Deck::load(write("")); });
+  EXPECT_TRUE(mentions(diagnostic.message, "empty"));
+}
+
+TEST(DeckText, OfCommentsOnlyIsEmpty) {
+  EXPECT_TRUE(mentions(syntax_error_of("# nothing\n\n").message, "empty"));
+}
+
+TEST(DeckText, WithASyntaxErrorIsLocated) {
+  const Diagnostic diagnostic = syntax_error_of("a = 1\nb = [1, 2\n");
+  EXPECT_EQ(diagnostic.file, "case.toml");
+  EXPECT_GE(diagnostic.line, 2);
+  EXPECT_TRUE(mentions(diagnostic.message, "not valid TOML"));
+  EXPECT_EQ(diagnostic.hint, "");
+}
+
+TEST(DeckText, WithAKeyTwiceIsASyntaxErrorAtTheSecond) {
+  const Diagnostic diagnostic = syntax_error_of("width = \"1 m\"\n\nwidth = \"2 m\"\n");
+  EXPECT_EQ(diagnostic.line, 3);
+  EXPECT_TRUE(mentions(diagnostic.message, "width"));
+}
+
+TEST(DeckText, WithAQuantityOutsideQuotesIsExplained) {
+  for (const std::string line : {"width = 150 mm", "angle = 34deg", "rate = -5 K/min # ramp", "part = 31 %",
+                                 "temperature = 20°C", "sieves = [4.75 mm, 8 mm]"}) {
+    const Diagnostic diagnostic = syntax_error_of("first = 1\n" + line + "\n");
+    EXPECT_EQ(diagnostic.line, 2) << line;
+    EXPECT_TRUE(mentions(diagnostic.hint, "quotes")) << line << ": " << diagnostic.message;
+  }
+}
+
+TEST(DeckText, ThatIsNotUtf8IsLocated) {
+  const Diagnostic diagnostic = syntax_error_of("a = 1\nb = \"\xff\"\n");
+  EXPECT_EQ(diagnostic.line, 2);
+  EXPECT_TRUE(mentions(diagnostic.message, "utf-8"));
+}
+
+TEST(DeckText, MayBeginWithAByteOrderMark) {
+  const Deck deck = Deck::parse("\xef\xbb\xbfseed = 1\n", "case.toml");
+  EXPECT_EQ(deck.root().integer("seed", Range::any()), 1);
+  EXPECT_NO_THROW(deck.finish());
+}
+
+}  // namespace
+}  // namespace pyroclast

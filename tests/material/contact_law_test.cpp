@@ -1,0 +1,278 @@
+#include "pyroclast/material/contact_law.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+namespace pyroclast {
+namespace {
+
+/// Mortar-mortar contact of the paper's Table 2.
+ContactProperties mortar() {
+  ContactProperties p;
+  p.normal_stiffness = 18400e9;
+  p.shear_stiffness = 7660e9;
+  p.tensile_strength = 2.5e6;
+  p.mode_1_energy = 60.0;
+  p.compressive_limit = 31e6;
+  p.hardening = 0.05;
+  p.cohesion = 3.8e6;
+  p.residual_cohesion = 0.038e6;
+  p.friction = p.residual_friction = std::tan(34.0 * std::numbers::pi / 180.0);
+  p.mode_2_energy = 240.0;
+  return p;
+}
+
+template <int Dim>
+struct Path {
+  ContactProperties properties = mortar();
+  ContactHistory<Dim> history;
+  ContactResponse<Dim> response;
+  ContactDissipation dissipated;
+  double work = 0.0;
+
+  /// Goes straight to a jump in a number of equal steps, adding up energies and the trapezoidal work.
+  void go(double opening, Tangential<Dim> tangential, int steps) {
+    const double from_opening = at_opening;
+    const Tangential<Dim> from = at_tangential;
+    for (int i = 1; i <= steps; ++i) {
+      const double share = static_cast<double>(i) / steps;
+      const double next_opening = from_opening + share * (opening - from_opening);
+      const Tangential<Dim> next = from + share * (tangential - from);
+      const auto before = response;
+      response = update_contact<Dim>(properties, next_opening, next, history);
+      work += 0.5 * (before.normal_traction + response.normal_traction) * (next_opening - at_opening) +
+              0.5 * dot(before.shear_traction + response.shear_traction, next - at_tangential);
+      dissipated.tension += response.dissipated.tension;
+      dissipated.shear += response.dissipated.shear;
+      dissipated.friction += response.dissipated.friction;
+      dissipated.compression += response.dissipated.compression;
+      at_opening = next_opening;
+      at_tangential = next;
+    }
+  }
+
+  double at_opening = 0.0;
+  Tangential<Dim> at_tangential{};
+};
+
+class ContactLawSteps : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Steps, ContactLawSteps, testing::Values(1, 7, 1000));
+
+// The promise: fracture energies are exact in any number of steps. 1e-12: closed forms, only round-off is left.
+TEST_P(ContactLawSteps, TearingApartDissipatesTheModeOneEnergy) {
+  Path<2> path;
+  path.go(100e-6, {}, GetParam());
+  EXPECT_NEAR(path.dissipated.tension, 60.0, 60.0 * 1e-12);
+  EXPECT_EQ(path.dissipated.total(), path.dissipated.tension);
+  EXPECT_EQ(path.response.stored, 0.0);
+  EXPECT_EQ(path.response.normal_traction, 0.0);
+}
+
+TEST_P(ContactLawSteps, TearingApartAcrossUnloadingAndClosureDissipatesTheSame) {
+  Path<2> path;
+  for (double opening : {1e-6, -0.5e-6, 10e-6, 0.0, 5e-6, 20e-6, -1e-6, 100e-6, -1e-6, 60e-6})
+    path.go(opening, {}, GetParam());
+  EXPECT_NEAR(path.dissipated.tension, 60.0, 60.0 * 1e-12);
+  EXPECT_EQ(path.dissipated.total(), path.dissipated.tension);
+}
+
+TEST_P(ContactLawSteps, ShearingUnderPressureDissipatesTheModeTwoEnergyAboveTheResidualLine) {
+  for (double pressure : {0.0, 1e6, 20e6}) {
+    Path<2> path;
+    const double opening = -pressure / path.properties.normal_stiffness;
+    path.go(opening, {}, 1);
+    path.go(opening, {{200e-6}}, GetParam());
+    const double residual = path.properties.residual_cohesion + pressure * path.properties.friction;
+    EXPECT_NEAR(path.dissipated.shear, 240.0, 240.0 * 1e-12);
+    EXPECT_NEAR(path.response.shear_traction[0], residual, residual * 1e-9);
+    EXPECT_NEAR(path.dissipated.friction, residual * path.history.accumulated_slip, 1e-9 * residual);
+  }
+}
+
+TEST_P(ContactLawSteps, ReversedShearDissipatesTheModeTwoEnergyOnce) {
+  Path<2> path;
+  path.go(-1e-6, {}, 1);
+  for (double slip : {30e-6, -20e-6, 40e-6, -200e-6, 200e-6}) path.go(-1e-6, {{slip}}, GetParam());
+  EXPECT_NEAR(path.dissipated.shear, 240.0, 240.0 * 1e-12);
+}
+
+TEST_P(ContactLawSteps, CompressionIsBilinearAndIrreversible) {
+  const double u_limit = 31e6 / 18400e9;
+  Path<2> path;
+  path.go(-5.0 * u_limit, {}, GetParam());
+  const double expected = -(31e6 + 0.05 * 18400e9 * 4.0 * u_limit);  // Eq. (15)
+  EXPECT_NEAR(path.response.normal_traction, expected, 1e-12 * std::abs(expected));
+  const double closure = path.history.closure;
+  const double spent = path.dissipated.compression;
+  EXPECT_NEAR(spent + path.response.stored, 0.5 * 31e6 * u_limit + 0.5 * (31e6 - expected) * 4.0 * u_limit,
+              1e-12 * spent);
+  path.go(-closure, {}, GetParam());
+  EXPECT_NEAR(path.response.normal_traction, 0.0, 1e-6);  // Pa, round-off of 18400 GPa/m times 1e-21 m
+  EXPECT_EQ(path.history.closure, closure);
+  path.go(-5.0 * u_limit, {}, GetParam());
+  EXPECT_NEAR(path.dissipated.compression, spent, 1e-12 * spent);
+}
+
+// Monotone shear at constant normal traction follows Eqs. (13) and (14), with the slip that softens taken as
+// u_s - tau/K_s (physics reading): at u_s^l all cohesion above the residual is gone.
+TEST(ContactLaw, MonotoneShearFollowsThePapersSofteningLine) {
+  const ContactProperties p = mortar();
+  const double pressure = 5e6;
+  const double peak = p.cohesion + pressure * p.friction;
+  const double residual = p.residual_cohesion + pressure * p.friction;
+  const double u_peak = peak / p.shear_stiffness;
+  const double u_last = 2.0 * p.mode_2_energy / (peak - residual) + residual / p.shear_stiffness;
+  for (double share : {0.1, 0.5, 0.9}) {
+    Path<2> path;
+    path.go(-pressure / p.normal_stiffness, {}, 1);
+    const double u = u_peak + share * (u_last - u_peak);
+    path.go(-pressure / p.normal_stiffness, {{u}}, 50);
+    const double line = peak + (residual - peak) * share;
+    EXPECT_NEAR(path.response.shear_traction[0], line, 1e-9 * line);
+  }
+}
+
+TEST(ContactLaw, WorkGoesIntoStoredAndDissipatedEnergy) {
+  Path<2> path;
+  // A fixed wild path through every branch; the trapezoidal work converges to the closed forms with the step.
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int leg = 0; leg < 12; ++leg) path.go(6e-6 * uniform(random), {{40e-6 * uniform(random)}}, 200000);
+  const double accounted = path.response.stored + path.dissipated.total();
+  EXPECT_GT(path.dissipated.tension, 0.0);
+  EXPECT_GT(path.dissipated.shear, 0.0);
+  EXPECT_GT(path.dissipated.friction, 0.0);
+  EXPECT_GT(path.dissipated.compression, 0.0);
+  // 1e-4: the quadrature's own error at this step, second order except at the corners of the law
+  EXPECT_NEAR(path.work, accounted, 1e-4 * accounted);
+}
+
+TEST(ContactLaw, TensionLowersTheShearStrengthAndNeverBelowZero) {
+  ContactProperties p = mortar();
+  ContactHistory<2> history;
+  const double opening = 0.5 * p.elastic_opening();
+  auto r = update_contact<2>(p, opening, {{1e-6}}, history);
+  EXPECT_NEAR(r.shear_traction[0], p.cohesion - 0.5 * p.tensile_strength * p.friction,
+              0.02 * p.cohesion);  // softened by less than 2 % over 1 um of slip
+  p.cohesion = 0.1e6;
+  history = {};
+  r = update_contact<2>(p, opening, {{1e-6}}, history);
+  EXPECT_EQ(r.shear_traction[0], 0.0);
+}
+
+TEST(ContactLaw, BrokenAndOpenCarriesNothingAndClosedCarriesFriction) {
+  const ContactProperties p = mortar();
+  ContactHistory<2> history;
+  update_contact<2>(p, 0.0, {{0.3e-6}}, history);
+  auto r = update_contact<2>(p, 60e-6, {{0.3e-6}}, history);
+  EXPECT_EQ(r.normal_traction, 0.0);
+  EXPECT_EQ(r.shear_traction[0], 0.0);
+  EXPECT_EQ(r.stored, 0.0);
+  r = update_contact<2>(p, -1e-6, {{0.3e-6}}, history);
+  EXPECT_NEAR(r.normal_traction, -1e-6 * p.normal_stiffness, 1.0);
+  EXPECT_EQ(history.tension_damage, 1.0);
+}
+
+TEST(ContactLaw, DamageNeverHealsAlongARandomPath) {
+  const ContactProperties p = mortar();
+  ContactHistory<2> history;
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  double opening = 0.0, slip = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    const auto before = history;
+    opening += 0.3e-6 * normal(random) - 0.02 * opening;
+    slip += 1e-6 * normal(random);
+    const auto r = update_contact<2>(p, opening, {{slip}}, history);
+    ASSERT_GE(history.tension_damage, before.tension_damage);
+    ASSERT_GE(history.shear_damage, before.shear_damage);
+    ASSERT_GE(history.closure, before.closure);
+    ASSERT_GE(r.dissipated.tension, 0.0);
+    ASSERT_GE(r.dissipated.shear, 0.0);
+    ASSERT_GE(r.dissipated.friction, 0.0);
+    ASSERT_GE(r.dissipated.compression, 0.0);
+    ASSERT_GE(r.stored, 0.0);
+    ASSERT_LE(r.normal_traction, p.tensile_strength * (1.0 + 1e-12));
+  }
+}
+
+TEST(ContactLaw, IsIsotropicInTheContactPlane) {
+  const ContactProperties p = mortar();
+  ContactHistory<2> flat;
+  ContactHistory<3> solid;
+  const double angle = 0.7;
+  for (double slip : {0.3e-6, 5e-6, 30e-6, 20e-6, -4e-6, 150e-6}) {
+    const auto a = update_contact<2>(p, -0.4e-6, {{slip}}, flat);
+    const auto b =
+        update_contact<3>(p, -0.4e-6, {{slip * std::cos(angle), slip * std::sin(angle)}}, solid);
+    const double along = b.shear_traction[0] * std::cos(angle) + b.shear_traction[1] * std::sin(angle);
+    const double across = b.shear_traction[1] * std::cos(angle) - b.shear_traction[0] * std::sin(angle);
+    // round-off relative to the tractions in play, of some MPa
+    EXPECT_NEAR(a.shear_traction[0], along, 1e-6);
+    EXPECT_NEAR(across, 0.0, 1e-6);
+    EXPECT_NEAR(flat.shear_damage, solid.shear_damage, 1e-14);
+  }
+}
+
+TEST(ContactLaw, ElasticContactNeverFails) {
+  ContactProperties p = mortar();
+  p.behaviour = ContactBehaviour::elastic;
+  ContactHistory<2> history;
+  const auto r = update_contact<2>(p, 1e-3, {{-2e-3}}, history);
+  EXPECT_DOUBLE_EQ(r.normal_traction, p.normal_stiffness * 1e-3);
+  EXPECT_DOUBLE_EQ(r.shear_traction[0], p.shear_stiffness * -2e-3);
+  EXPECT_EQ(r.dissipated.total(), 0.0);
+}
+
+TEST(ContactLaw, ReversibleCompressionRetracesTheBilinearCurve) {
+  Path<2> path;
+  path.properties.compression = CompressionReading::reversible;
+  path.go(-8e-6, {}, 10);
+  const double down = path.response.normal_traction;
+  EXPECT_NEAR(path.response.stored, path.work, 0.05 * path.work);
+  path.go(-4e-6, {}, 10);
+  path.go(-8e-6, {}, 10);
+  EXPECT_EQ(path.response.normal_traction, down);
+  EXPECT_EQ(path.dissipated.total(), 0.0);
+  path.go(0.0, {}, 10);
+  EXPECT_EQ(path.response.normal_traction, 0.0);
+}
+
+TEST(ContactLaw, CoupledCohesionFallsWithTensionDamage) {
+  ContactProperties p = mortar();
+  const auto sheared_after_opening = [&](bool coupled) {
+    p.coupled = coupled;
+    ContactHistory<2> history;
+    update_contact<2>(p, 24e-6, {}, history);  // D_t about one half
+    return update_contact<2>(p, 0.0, {{0.45e-6}}, history).shear_traction[0];
+  };
+  EXPECT_LT(sheared_after_opening(true), 0.7 * sheared_after_opening(false));
+}
+
+TEST(ContactLaw, RefusesParametersThatCannotMakeALaw) {
+  const auto refused = [](auto change, const std::string& named) {
+    ContactProperties p = mortar();
+    change(p);
+    try {
+      validate(p, "mortar-mortar");
+    } catch (const Error& e) {
+      return std::string(e.what()).find(named) != std::string::npos;
+    }
+    return false;
+  };
+  EXPECT_NO_THROW(validate(mortar(), "mortar-mortar"));
+  EXPECT_TRUE(refused([](auto& p) { p.normal_stiffness = 0.0; }, "K_n"));
+  EXPECT_TRUE(refused([](auto& p) { p.shear_stiffness = std::numeric_limits<double>::quiet_NaN(); }, "K_s"));
+  EXPECT_TRUE(refused([](auto& p) { p.tensile_strength = -1.0; }, "f_t"));
+  EXPECT_TRUE(refused([](auto& p) { p.hardening = 1.0; }, "beta"));
+  EXPECT_TRUE(refused([](auto& p) { p.residual_cohesion = 2.0 * p.cohesion; }, "c_res"));
+  EXPECT_TRUE(refused([](auto& p) { p.mode_1_energy = 0.1; }, "snaps back"));
+  EXPECT_TRUE(refused([](auto& p) { p.mode_2_energy = 0.1; }, "snaps back"));
+}
+
+}  // namespace
+}  // namespace pyroclast
