@@ -29,7 +29,7 @@ AT_MODULUS = 21.5e3
 AT_STRENGTH = 35.0
 """f_c, MPa (paper, section 3.2)."""
 AT_DESCENT = -880.0
-"""Slope of the descending line, MPa. As commonly quoted for this law; not checked against the original report."""
+"""Slope of the descending line, MPa. As commonly quoted; not checked against the original report."""
 
 _AT_STRAIN_AT_PEAK = 2.0 * AT_STRENGTH / AT_MODULUS
 _AT_STRAIN_AT_TANGENT = _AT_STRAIN_AT_PEAK * (1.0 - AT_DESCENT / AT_MODULUS)
@@ -47,9 +47,10 @@ AT_LAST_STRAIN = _AT_STRAIN_AT_TANGENT - _parabola(_AT_STRAIN_AT_TANGENT) / AT_D
 def at_stress(strain):
     """Stress [MPa] of the Anderberg and Thelandersson law at room temperature, generated, not measured.
 
-    A parabola with initial slope E and apex f_c at 2 f_c / E, continued by the line of slope AT_DESCENT that is
-    tangent to it. Takes a number or an array within [0, AT_LAST_STRAIN]; throws ValueError outside.
-    The law's own inelastic strain at the peak is f_c / E = 0.00163; the paper quotes 0.0015 for the experiment.
+    A parabola with initial slope E and apex f_c at 2 f_c / E, continued by the line of slope AT_DESCENT that
+    is tangent to it. Takes a number or an array within [0, AT_LAST_STRAIN]; throws ValueError outside.
+    The law's own inelastic strain at the peak is f_c / E = 0.00163; the paper quotes 0.0015 for the
+    experiment.
     """
     strain = np.asarray(strain, dtype=float)
     if (strain < 0.0).any() or (strain > AT_LAST_STRAIN).any():

@@ -1,6 +1,6 @@
 """Reader of run and specimen folders.
 
-SI units inside, stress in MPa where a column's name says so; strain and stress of the test positive in compression.
+SI units, stress in MPa where a name says so; strain and stress of the test positive in compression.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ _VTK_LINE, _VTK_TRIANGLE = 3, 5
 
 
 class RunError(Exception):
-    """Something in a run or specimen folder is missing or malformed; the message says what and where, in one line."""
+    """Something in a run or specimen folder is missing or malformed; one line says what and where."""
 
 
 class Table:
     """Columns of numbers of a csv file, by name: `table["strain"]` is a (rows,) float64 array."""
 
-    def __init__(self, path: Path):
-        """Throws RunError when the file is missing, has no rows, or holds something that is not a number."""
+    def __init__(self, path: Path, may_be_empty: bool = False):
+        """Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
         self.path = path
         try:
             with open(path, newline="", encoding="utf-8") as file:
@@ -42,19 +42,21 @@ class Table:
             raise RunError(f"{path}: is empty; a header line is expected")
         self.names = [name.strip() for name in lines[0]]
         rows = [self._numbers(number, cells) for number, cells in enumerate(lines[1:], start=2) if cells]
-        if not rows:
+        if not rows and not may_be_empty:
             raise RunError(f"{path}: has a header but no rows")
-        self._columns = dict(zip(self.names, np.array(rows).T))
+        self._columns = dict(zip(self.names, np.array(rows).reshape(-1, len(self.names)).T))
 
     def _numbers(self, line: int, cells: list[str]) -> list[float]:
         if len(cells) != len(self.names):
-            raise RunError(f"{self.path}, line {line}: {len(cells)} values, but the header names {len(self.names)} columns")
+            counts = f"{len(cells)} values for the header's {len(self.names)} columns"
+            raise RunError(f"{self.path}, line {line}: {counts}")
         numbers = []
         for name, cell in zip(self.names, cells):
             try:
                 numbers.append(float(cell))
             except ValueError:
-                raise RunError(f"{self.path}, line {line}: column '{name}' holds '{cell}', not a number") from None
+                where = f"{self.path}, line {line}"
+                raise RunError(f"{where}: column '{name}' holds '{cell}', not a number") from None
         return numbers
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -71,6 +73,7 @@ class Table:
 class BlockMesh:
     """Zones of all blocks, reference configuration."""
 
+    path: Path  #: file it was read from
     points: np.ndarray  #: (N, 2) gridpoints, m
     triangles: np.ndarray  #: (Z, 3) gridpoints of each zone, counter-clockwise
     block: np.ndarray  #: (Z,) block of each zone
@@ -114,7 +117,7 @@ class Frame:
 
 
 class Run:
-    """One run folder. Files are read when first asked for; whatever is missing or malformed throws RunError."""
+    """One run folder. Files are read when first asked for; what is missing or malformed throws RunError."""
 
     def __init__(self, folder: str | Path):
         self.folder = Path(folder)
@@ -163,20 +166,24 @@ class Run:
 
     @property
     def peak(self) -> tuple[float, float]:
-        """Strain and stress [MPa] where the history's stress is largest, whether or not the test went past it."""
+        """Strain and stress [MPa] where the history's stress is largest, whether or not the test went on.
+
+        Throws RunError when the specimen was never compressed.
+        """
         stress = self.loaded_history("stress_MPa")
         row = int(stress.argmax())
+        if stress[row] <= 0.0:
+            path = self.history.path
+            raise RunError(f"{path}: column 'stress_MPa' is never positive; the specimen was not compressed")
         return float(self.loaded_history("strain")[row]), float(stress[row])
-
-    @property
-    def has_frames(self) -> bool:
-        """Whether the run saved fields at all."""
-        return (self.folder / "fields" / "frames.csv").exists()
 
     @cached_property
     def frames(self) -> list[Frame]:
-        """Saved states of all stages, in order."""
-        t = Table(self.folder / "fields" / "frames.csv")
+        """Saved states of all stages, in order; none when the run saved no fields."""
+        path = self.folder / "fields" / "frames.csv"
+        if not path.exists():
+            return []
+        t = Table(path, may_be_empty=True)
         return [
             Frame(int(number), int(stage), int(step), time, strain, stress)
             for number, stage, step, time, strain, stress in zip(
@@ -196,22 +203,24 @@ class Run:
 
     def gridpoint_displacement(self, frame: Frame) -> np.ndarray:
         """(N, 2), m."""
-        return self._field("blocks", frame, "PointData/displacement", len(self.mesh.blocks.points))[:, :2]
+        shape = (len(self.mesh.blocks.points), 3)
+        return self._field("blocks", frame, "PointData/displacement", shape)[:, :2]
 
     def contact_displacement(self, frame: Frame) -> np.ndarray:
         """(2C, 2), m, of the points of the contact mesh."""
-        return self._field("contacts", frame, "PointData/displacement", len(self.mesh.contacts.points))[:, :2]
+        shape = (len(self.mesh.contacts.points), 3)
+        return self._field("contacts", frame, "PointData/displacement", shape)[:, :2]
 
     def contact_field(self, frame: Frame, name: str) -> np.ndarray:
         """(C,), for instance tension_damage, shear_damage, opening [m], slip [m]."""
-        return self._field("contacts", frame, f"CellData/{name}", len(self.mesh.contacts.lines))
+        return self._field("contacts", frame, f"CellData/{name}", (len(self.mesh.contacts.lines),))
 
-    def _field(self, kind: str, frame: Frame, name: str, rows: int) -> np.ndarray:
+    def _field(self, kind: str, frame: Frame, name: str, shape: tuple[int, ...]) -> np.ndarray:
         path = self.folder / "fields" / f"{kind}_{frame.number:04d}.hdf"
         with _open_hdf(path) as file:
             values = _dataset(file, f"VTKHDF/{name}")
-        if len(values) != rows:
-            raise RunError(f"{path}: VTKHDF/{name} has {len(values)} rows, but the mesh has {rows}")
+        if values.shape != shape:
+            raise RunError(f"{path}: /VTKHDF/{name} has shape {values.shape}, but the mesh asks for {shape}")
         return values
 
 
@@ -239,7 +248,7 @@ class Specimen:
     @cached_property
     def aggregates(self) -> Table:
         """Placed circles: x_m, y_m, diameter_m."""
-        return Table(self._tables / "aggregates.csv")
+        return Table(self._tables / "aggregates.csv", may_be_empty=True)
 
     @cached_property
     def gradation(self) -> Table:
@@ -256,6 +265,7 @@ def read_mesh(path: Path) -> Mesh:
     with _open_hdf(path) as file:
         points, triangles = _cells(file, "blocks", _VTK_TRIANGLE, "triangles")
         blocks = BlockMesh(
+            path,
             points,
             _counter_clockwise(points, triangles),
             _cell_values(file, "blocks/block", len(triangles)),
@@ -273,7 +283,9 @@ def read_mesh(path: Path) -> Mesh:
 
 def _cells(file: h5py.File, group: str, cell_type: int, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Points (N, 2) and corners of each cell, all cells of one type."""
-    points = _dataset(file, f"{group}/Points")[:, :2]
+    points = _dataset(file, f"{group}/Points")
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise RunError(f"{file.filename}: /{group}/Points has shape {points.shape}; (N, 3) is expected")
     types = _dataset(file, f"{group}/Types")
     corners = _dataset(file, f"{group}/Connectivity")
     sides = {_VTK_LINE: 2, _VTK_TRIANGLE: 3}[cell_type]
@@ -281,7 +293,7 @@ def _cells(file: h5py.File, group: str, cell_type: int, name: str) -> tuple[np.n
         raise RunError(f"{file.filename}: /{group} has cells that are not {name}")
     if len(corners) and not 0 <= corners.min() <= corners.max() < len(points):
         raise RunError(f"{file.filename}: /{group}/Connectivity points outside the {len(points)} points")
-    return points, corners.reshape(-1, sides)
+    return points[:, :2], corners.astype(np.int64).reshape(-1, sides)
 
 
 def _cell_values(file: h5py.File, name: str, cells: int) -> np.ndarray:
@@ -306,7 +318,7 @@ def _outlines(mesh: BlockMesh) -> tuple[list[np.ndarray], np.ndarray]:
     owner = np.repeat(mesh.block, 3)[outer]
     start, end = start[outer], end[outer]
     if len(np.unique(start)) != len(start):
-        raise RunError("mesh.h5: /blocks has a block whose zones do not make one simple polygon")
+        raise RunError(f"{mesh.path}: /blocks has a block whose zones do not make one simple polygon")
     following = dict(zip(start.tolist(), end.tolist()))
 
     _, first_edge = np.unique(owner, return_index=True)
@@ -317,7 +329,7 @@ def _outlines(mesh: BlockMesh) -> tuple[list[np.ndarray], np.ndarray]:
             loop.append(gridpoint)
         outlines.append(np.array(loop))
     if sum(map(len, outlines)) != len(start):
-        raise RunError("mesh.h5: /blocks has a block whose zones do not make one simple polygon")
+        raise RunError(f"{mesh.path}: /blocks has a block whose zones do not make one simple polygon")
     _, first_zone = np.unique(mesh.block, return_index=True)
     return outlines, mesh.material[first_zone]
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import matplotlib
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 WIDTH = 7.2
-"""Width of every figure, inches (a page of two columns)."""
+"""Width of a page of two columns, inches."""
 DPI = 300
 
 STYLE = {
@@ -34,6 +35,7 @@ BLACK, ORANGE, SKY, GREEN = "#000000", "#e69f00", "#56b4e9", "#009e73"
 YELLOW, BLUE, VERMILLION, PURPLE = "#f0e442", "#0072b2", "#d55e00", "#cc79a7"
 AGGREGATE_COLOUR, MORTAR_COLOUR, PLATEN_COLOUR = "#b4b4b4", "#f4f0e6", "#5a5a5a"
 TENSION_COLOUR, SHEAR_COLOUR = VERMILLION, "#10245e"
+TENSION_TINT, SHEAR_TINT = "#f2a566", "#7787bd"
 FAINT = "#9a9a9a"
 
 STRAIN_LABEL = "Axial strain, compression positive [$10^{-3}$]"
@@ -41,9 +43,15 @@ STRESS_LABEL = "Axial stress, compression positive [MPa]"
 PER_MILLE = 1e3
 
 
-def new_figure(height: float) -> Figure:
-    """Empty figure of the common width; height in inches."""
-    return Figure(figsize=(WIDTH, height), dpi=DPI)
+def new_figure(height: float, width: float = WIDTH, dpi: int = DPI) -> Figure:
+    """Empty figure; inches."""
+    return Figure(figsize=(width, height), dpi=dpi)
+
+
+def legend_alone(axes: Axes, handles: list, labels: list[str], **options) -> None:
+    """Makes the axes hold nothing but a legend, so that it covers no curve."""
+    axes.axis("off")
+    axes.legend(handles, labels, borderaxespad=0.0, **options)
 
 
 def title_of(run) -> str:

@@ -140,7 +140,7 @@ TEST(BuiltinCurves, DensityFollowsItsFourBranches) {
 TEST(BuiltinCurves, ModulusRatiosStartAtOneFallAndStayPositiveOverTheirRange) {
   for (const std::string name : {"glasgow_modulus", "li_purkiss_modulus", "en1992_apparent_modulus"}) {
     const Curve& curve = builtin(name);
-    const Range range = curve.range();
+    const Interval range = curve.range();
     EXPECT_EQ(curve(20.0), 1.0) << name;
     EXPECT_GT(curve.minimum(range.lower, range.upper), 0.0) << name;
     for (double T = range.lower; T + 1.0 <= range.upper; T += 1.0)
@@ -181,7 +181,7 @@ TEST(BuiltinCurves, TheExpansionOfThePaperIsAsPrinted) {
 TEST(BuiltinCurves, OnlyTheMoisturePeakJumps) {
   const std::set<std::string> jumping = {"en1992_specific_heat_u1_5", "en1992_specific_heat_u3"};
   for (const NamedCurve& entry : builtin_curves().entries()) {
-    const Range range = entry.curve.range();
+    const Interval range = entry.curve.range();
     const double scale =
         entry.curve.maximum(range.lower, range.upper) - entry.curve.minimum(range.lower, range.upper);
     // No slope is steeper than the whole height over 5 K, so a millikelvin moves less than 1e-3 of the
@@ -196,7 +196,7 @@ TEST(BuiltinCurves, OnlyTheMoisturePeakJumps) {
 
 TEST(BuiltinCurves, NoneIsReadOutsideItsRange) {
   for (const NamedCurve& entry : builtin_curves().entries()) {
-    const Range range = entry.curve.range();
+    const Interval range = entry.curve.range();
     EXPECT_EQ(range.lower, 20.0) << entry.name;
     EXPECT_NO_THROW(entry.curve(range.lower)) << entry.name;
     EXPECT_NO_THROW(entry.curve(range.upper)) << entry.name;

@@ -50,7 +50,7 @@ TEST(Curve, AConstantHasTheSameValueEverywhere) {
   const Curve curve = Curve::constant(2.5);
   EXPECT_EQ(curve(-1e30), 2.5);
   EXPECT_EQ(curve(1e30), 2.5);
-  EXPECT_EQ(curve.range(), Range{});
+  EXPECT_EQ(curve.range(), Interval{});
   EXPECT_TRUE(curve.is_constant());
   EXPECT_EQ(curve.describe(), "2.5");
 }
@@ -62,7 +62,7 @@ TEST(Curve, ATableHitsItsPointsExactlyAndIsLinearBetween) {
   EXPECT_EQ(curve(500), 0.5);
   EXPECT_DOUBLE_EQ(curve(60), 2.0);
   EXPECT_DOUBLE_EQ(curve(300), 1.75);
-  EXPECT_EQ(curve.range(), (Range{20, 500}));
+  EXPECT_EQ(curve.range(), (Interval{20, 500}));
 }
 
 TEST(Curve, ACopyReadsTheSameValues) {
@@ -128,7 +128,7 @@ TEST(Curve, ExtremesOfFunctionsAreFoundAtBreaksAndBetween) {
 TEST(Curve, AMultipleScalesTheValuesAndKeepsRangeAndName) {
   const Curve curve = 30e9 * triangle().named("mortar modulus");
   EXPECT_DOUBLE_EQ(curve(60), 60e9);
-  EXPECT_EQ(curve.range(), (Range{20, 500}));
+  EXPECT_EQ(curve.range(), (Interval{20, 500}));
   EXPECT_EQ(curve.axis(), temperature_axis());
   expect_contains(error_of([&] { curve(600); }), {"mortar modulus", "20 to 500 degC"});
   EXPECT_TRUE((2.0 * Curve::constant(3.0)).is_constant());
@@ -137,7 +137,7 @@ TEST(Curve, AMultipleScalesTheValuesAndKeepsRangeAndName) {
 TEST(Curve, AProductIsDefinedWhereBothFactorsAre) {
   const Curve other = Curve::table({50, 800}, {2.0, 2.0}, temperature_axis());
   const Curve product = triangle() * other;
-  EXPECT_EQ(product.range(), (Range{50, 500}));
+  EXPECT_EQ(product.range(), (Interval{50, 500}));
   EXPECT_DOUBLE_EQ(product(60), 4.0);
   EXPECT_THROW(product(40), Error);
   EXPECT_THROW(product(600), Error);
@@ -160,7 +160,7 @@ TEST(Curve, AnExpressionEqualsItsDirectEvaluation) {
     // A handful of roundings of 1e-16 each, in an order that the parser may choose.
     EXPECT_NEAR(curve(T), direct, 1e-13 * std::abs(direct)) << T;
   }
-  EXPECT_EQ(curve.range(), (Range{20, 800}));
+  EXPECT_EQ(curve.range(), (Interval{20, 800}));
   EXPECT_THROW(curve(801), Error);
 }
 
@@ -194,7 +194,7 @@ TEST(Curve, WrongExpressionsAreRefusedWithPositionAndReason) {
 }
 
 TEST(Curve, AnExpressionNeedsAFiniteRange) {
-  for (const Range range : {Range{}, Range{20, 20}, Range{800, 20}, Range{20, INFINITY}}) {
+  for (const Interval range : {Interval{}, Interval{20, 20}, Interval{800, 20}, Interval{20, INFINITY}}) {
     expect_contains(error_of([&] { Curve::expression("T", range, temperature_axis()); }),
                     {"formula \"T\"", "finite interval"});
   }

@@ -95,7 +95,7 @@ TEST(FireCurves, TunnelFiresPassThroughTheirTables) {
 
 TEST(FireCurves, NoneHasAJump) {
   for (const NamedCurve& entry : fire_curves().entries()) {
-    const Range range = entry.curve.range();
+    const Interval range = entry.curve.range();
     for (double t = range.lower; t + 1.0 <= range.upper; t += 1.0) {
       // The hydrocarbon fire rises fastest, by 1280 K * (0.675 * 2.5 + 0.325 * 0.167) per minute: 37 K/s; the
       // square root of the E119 formula by 750 K * 3.8/60 + 170 K/60 in its first second: 51 K.

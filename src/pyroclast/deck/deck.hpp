@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <initializer_list>
 #include <memory>
@@ -21,9 +22,9 @@ struct TableRecord;
 
 /// One table of a deck: a cheap handle, valid as long as its Deck.
 ///
-/// Reading never throws. What cannot be read is recorded, and a value that is allowed is returned in its
-/// place, so that the reader goes on and the user sees every error at once; `Deck::finish` throws them. A
-/// table that is missing is one error: what is read from it records no more.
+/// Nothing in the deck makes reading throw. What cannot be read is recorded, and a value that is allowed is
+/// returned in its place, so that the reader goes on and the user sees every error at once; `Deck::finish`
+/// throws them. A table that is missing is one error: what is read from it records no more.
 ///
 /// Every key that is read, or asked for with `has`, is a known key of its table. The reading functions with a
 /// `fallback` return it if the key is absent.

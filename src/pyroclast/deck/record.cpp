@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "pyroclast/deck/nearest.hpp"
+#include "pyroclast/base/nearest.hpp"
 
 namespace pyroclast {
 namespace {

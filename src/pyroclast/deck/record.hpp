@@ -64,7 +64,7 @@ class DeckRecord {
   std::string as_written(const toml::node& node) const;
   Diagnostic not_read(const TableRecord& table, const toml::key& key, const toml::node& node) const;
   void append_unread(const TableRecord& table, std::vector<Diagnostic>& result) const;
-  /// "Where else does this key belong": the hint for a key that another table knows; empty if none does.
+  /// The table that knows the key, as a hint; empty if none does.
   std::string misplaced_hint(const TableRecord& table, std::string_view key) const;
 
   std::string name_;

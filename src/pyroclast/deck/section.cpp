@@ -1,12 +1,15 @@
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "pyroclast/deck/deck.hpp"
-#include "pyroclast/deck/nearest.hpp"
+#include "pyroclast/base/nearest.hpp"
 #include "pyroclast/deck/record.hpp"
 
 namespace pyroclast {

@@ -14,7 +14,7 @@ namespace pyroclast {
 namespace {
 
 constexpr double reference_temperature = 20.0;  // degC
-constexpr Range eurocode_range{20.0, 1200.0};   // degC
+constexpr Interval eurocode_range{20.0, 1200.0};   // degC
 
 using Points = std::vector<std::pair<double, double>>;
 
@@ -28,7 +28,7 @@ Curve table(const Points& points) {
   return Curve::table(std::move(temperatures), std::move(values), temperature_axis());
 }
 
-Curve function(std::function<double(double)> f, Range range, std::vector<double> breaks = {}) {
+Curve function(std::function<double(double)> f, Interval range, std::vector<double> breaks = {}) {
   return Curve::function("built-in curve", std::move(f), range, temperature_axis(), std::move(breaks));
 }
 

@@ -1,8 +1,32 @@
 #include "pyroclast/material/concrete.hpp"
 
-#include <limits>
-
 namespace pyroclast {
+
+namespace {
+
+/// A compressive limit that no contact reaches: platen contacts stay linear in compression.
+constexpr double kNeverReached = 1e300;
+
+/// E(T) / t_b and G(T) / t_b of Eq. (17).
+void set_stiffness(ContactMaterial& contact, const SolidMaterial& solid, double fracture_zone) {
+  contact.normal_stiffness = solid.young * (1.0 / fracture_zone);
+  contact.shear_stiffness = solid.young * (0.5 / (1.0 + solid.poisson) / fracture_zone);
+}
+
+ContactMaterial scaled(const ContactMaterial& m, double stiffness, double strength, double fracture_energy) {
+  ContactMaterial s = m;
+  s.normal_stiffness = m.normal_stiffness * stiffness;
+  s.shear_stiffness = m.shear_stiffness * stiffness;
+  s.tensile_strength = m.tensile_strength * strength;
+  s.compressive_limit = m.compressive_limit * strength;
+  s.cohesion = m.cohesion * strength;
+  s.residual_cohesion = m.residual_cohesion * strength;
+  s.mode_1_energy = m.mode_1_energy * fracture_energy;
+  s.mode_2_energy = m.mode_2_energy * fracture_energy;
+  return s;
+}
+
+}  // namespace
 
 ContactProperties ContactMaterial::at(double temperature) const {
   ContactProperties p;
@@ -23,37 +47,34 @@ ContactProperties ContactMaterial::at(double temperature) const {
   return p;
 }
 
-ContactMaterial ContactMaterial::elastic(const Curve& normal_stiffness, const Curve& shear_stiffness) {
-  ContactMaterial m;
-  m.normal_stiffness = normal_stiffness;
-  m.shear_stiffness = shear_stiffness;
-  m.behaviour = ContactBehaviour::elastic;
-  return m;
-}
+ConcreteMaterials make_concrete(const std::array<SolidMaterial, 3>& solids, const ContactParameters& p,
+                                double block_size) {
+  const auto& [aggregate, mortar, platen] = solids;
+  ConcreteMaterials concrete;
+  concrete.solids = solids;
+  concrete.fracture_zone =
+      p.fracture_zone_size ? p.fracture_zone * block_size / *p.fracture_zone_size : p.fracture_zone;
+  auto& [aa, am, mm, pc] = concrete.contacts;
 
-ContactMaterial ContactMaterial::unbonded(const Curve& normal_stiffness, const Curve& shear_stiffness,
-                                          double friction) {
-  ContactMaterial m;
-  m.normal_stiffness = normal_stiffness;
-  m.shear_stiffness = shear_stiffness;
-  m.friction = m.residual_friction = friction;
-  // Never reached: a platen contact stays linear in compression.
-  m.compressive_limit = Curve::constant(1e300);
-  m.hardening = 0.5;
-  return m;
-}
+  set_stiffness(aa, aggregate, concrete.fracture_zone);
+  aa.behaviour = ContactBehaviour::elastic;
 
-ContactMaterial ContactMaterial::scaled(double stiffness, double strength, double fracture_energy) const {
-  ContactMaterial m = *this;
-  m.normal_stiffness = normal_stiffness * stiffness;
-  m.shear_stiffness = shear_stiffness * stiffness;
-  m.tensile_strength = tensile_strength * strength;
-  m.compressive_limit = compressive_limit * strength;
-  m.cohesion = cohesion * strength;
-  m.residual_cohesion = residual_cohesion * strength;
-  m.mode_1_energy = mode_1_energy * fracture_energy;
-  m.mode_2_energy = mode_2_energy * fracture_energy;
-  return m;
+  mm = p.mortar;
+  set_stiffness(mm, mortar, concrete.fracture_zone);
+  // A stated stiffness follows E(T) like a computed one.
+  const double young = mortar.young(kReferenceTemperature);
+  if (p.normal_stiffness) mm.normal_stiffness = mortar.young * (*p.normal_stiffness / young);
+  if (p.shear_stiffness) mm.shear_stiffness = mortar.young * (*p.shear_stiffness / young);
+
+  am = scaled(mm, p.interface_stiffness, p.interface_strength,
+              p.scale_interface_energy ? p.interface_strength : 1.0);
+
+  pc.normal_stiffness = mm.normal_stiffness;
+  pc.shear_stiffness = mm.shear_stiffness;
+  pc.friction = pc.residual_friction = p.platen_friction;
+  pc.compressive_limit = Curve::constant(kNeverReached);
+  pc.hardening = 0.5;
+  return concrete;
 }
 
 }  // namespace pyroclast

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <array>
-#include <string>
+#include <optional>
 
 #include "pyroclast/material/contact_law.hpp"
 #include "pyroclast/material/curve.hpp"
 #include "pyroclast/material/zone_law.hpp"
 
 namespace pyroclast {
+
+/// Temperature at which properties without a curve hold, T0, °C.
+inline constexpr double kReferenceTemperature = 20.0;
 
 /// What a block is made of: the zones' parameters as functions of temperature.
 struct SolidMaterial {
@@ -34,19 +37,30 @@ struct ContactMaterial {
 
   /// Parameters at a temperature, °C. Throws Error when a curve is not defined there.
   ContactProperties at(double temperature) const;
+};
 
-  /// An elastic contact (aggregate-aggregate).
-  static ContactMaterial elastic(const Curve& normal_stiffness, const Curve& shear_stiffness);
-  /// A contact that was never bonded (platen): start it broken, see Mechanics::break_contact.
-  static ContactMaterial unbonded(const Curve& normal_stiffness, const Curve& shear_stiffness, double friction);
-  /// This one with stiffness, strengths (f_t, c_o, c_res, f_cm) and fracture energies multiplied (ITZ).
-  ContactMaterial scaled(double stiffness, double strength, double fracture_energy) const;
+/// How the contacts of a concrete follow from its mortar (paper §3.1, physics of contacts A-A, A-M, platen).
+struct ContactParameters {
+  ContactMaterial mortar;                    ///< M-M; its stiffnesses are filled in by make_contacts
+  std::optional<double> normal_stiffness;    ///< K_n of M-M at the reference temperature, Pa/m; else E / t_b
+  std::optional<double> shear_stiffness;     ///< K_s, likewise; else G / t_b
+  double fracture_zone = 0.0;                ///< t_b, m, Eq. (17)
+  std::optional<double> fracture_zone_size;  ///< block size at which t_b holds, m; it scales with the size; else fixed
+  double interface_stiffness = 0.0;          ///< A-M over M-M: K_n, K_s
+  double interface_strength = 0.0;           ///< A-M over M-M: f_t, c, f_cm
+  bool scale_interface_energy = false;       ///< G_f of A-M scaled like its strengths
+  double platen_friction = 0.0;              ///< tan(phi) between platen and concrete
 };
 
 /// Everything a concrete specimen is made of; arrays by MaterialIndex and InterfaceIndex of the model.
 struct ConcreteMaterials {
-  std::array<SolidMaterial, 3> solids;
-  std::array<ContactMaterial, 4> contacts;
+  std::array<SolidMaterial, 3> solids;     ///< aggregate, mortar, platen
+  std::array<ContactMaterial, 4> contacts; ///< A-A, A-M, M-M, platen
+  double fracture_zone = 0.0;              ///< t_b as it came out, m
 };
+
+/// \param block_size  square root of the mean block area, m
+ConcreteMaterials make_concrete(const std::array<SolidMaterial, 3>& solids, const ContactParameters& parameters,
+                                double block_size);
 
 }  // namespace pyroclast

@@ -19,11 +19,11 @@ constexpr double rounding = 1e-9;
 /// Even steps in which the extremes of a curve that is not piecewise linear are looked for.
 constexpr int extreme_steps = 1000;
 
-std::string to_text(const Range& range, const CurveAxis& axis) {
+std::string to_text(const Interval& range, const CurveAxis& axis) {
   return fmt::format("{} to {} {}", range.lower, range.upper, axis.unit);
 }
 
-void require_finite_interval(const std::string& name, const Range& range, const CurveAxis& axis) {
+void require_finite_interval(const std::string& name, const Interval& range, const CurveAxis& axis) {
   if (std::isfinite(range.lower) && std::isfinite(range.upper) && range.lower < range.upper) return;
   throw Error(fmt::format("{}: the range {} is not a finite interval with lower < upper", name,
                           to_text(range, axis)));
@@ -145,18 +145,18 @@ void require_table(const std::vector<double>& abscissae, const std::vector<doubl
 
 }  // namespace
 
-Curve::Curve(std::shared_ptr<const Function> function, Range range, std::shared_ptr<const Label> label)
+Curve::Curve(std::shared_ptr<const Function> function, Interval range, std::shared_ptr<const Label> label)
     : function_(std::move(function)), range_(range), label_(std::move(label)) {}
 
 Curve Curve::constant(double value) {
   if (!std::isfinite(value)) throw Error(fmt::format("the constant {} is not a finite number", value));
-  return {std::make_shared<Constant>(value), Range{},
+  return {std::make_shared<Constant>(value), Interval{},
           std::make_shared<Label>(Label{"", fmt::format("{}", value), {}})};
 }
 
 Curve Curve::table(std::vector<double> abscissae, std::vector<double> values, CurveAxis axis) {
   require_table(abscissae, values, axis);
-  const Range range{abscissae.front(), abscissae.back()};
+  const Interval range{abscissae.front(), abscissae.back()};
   const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
   std::string description =
       fmt::format("table of {} points, values {} to {}", values.size(), *least, *greatest);
@@ -164,7 +164,7 @@ Curve Curve::table(std::vector<double> abscissae, std::vector<double> values, Cu
           std::make_shared<Label>(Label{"", std::move(description), std::move(axis)})};
 }
 
-Curve Curve::function(std::string name, std::function<double(double)> function, Range range, CurveAxis axis,
+Curve Curve::function(std::string name, std::function<double(double)> function, Interval range, CurveAxis axis,
                       std::vector<double> breaks) {
   require_finite_interval(name, range, axis);
   std::sort(breaks.begin(), breaks.end());
@@ -172,7 +172,7 @@ Curve Curve::function(std::string name, std::function<double(double)> function, 
           range, std::make_shared<Label>(Label{"", std::move(name), std::move(axis)})};
 }
 
-Curve Curve::expression(const std::string& formula, Range range, CurveAxis axis) {
+Curve Curve::expression(const std::string& formula, Interval range, CurveAxis axis) {
   std::string description = fmt::format("formula \"{}\"", formula);
   require_finite_interval(description, range, axis);
   return {std::make_shared<Formula<Expression>>(Expression(formula, axis.symbol), std::vector<double>{}),
@@ -230,7 +230,7 @@ Curve operator*(const Curve& a, const Curve& b) {
     throw Error(fmt::format("{}: cannot multiply a curve of {} [{}] by one of {} [{}]", description,
                             la.axis.symbol, la.axis.unit, lb.axis.symbol, lb.axis.unit));
   }
-  const Range common{std::max(a.range_.lower, b.range_.lower), std::min(a.range_.upper, b.range_.upper)};
+  const Interval common{std::max(a.range_.lower, b.range_.lower), std::min(a.range_.upper, b.range_.upper)};
   if (common.lower > common.upper) {
     throw Error(fmt::format("{}: the ranges {} and {} have nothing in common", description,
                             to_text(a.range_, la.axis), to_text(b.range_, lb.axis)));

@@ -9,12 +9,12 @@
 namespace pyroclast {
 
 /// Closed interval on which a curve is defined. The default is the whole real line.
-struct Range {
+struct Interval {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
 
   bool contains(double x) const { return lower <= x && x <= upper; }
-  bool operator==(const Range&) const = default;
+  bool operator==(const Interval&) const = default;
 };
 
 /// What a curve is a function of: the symbol (also the variable of an expression) and the unit, for messages.
@@ -54,19 +54,19 @@ class Curve {
 
   /// A function written in code, called `name` in messages, on a finite range. It must be pure: threads call
   /// it at the same time. `breaks` are the abscissae where it has a kink or a jump, for minimum and maximum.
-  static Curve function(std::string name, std::function<double(double)> function, Range range, CurveAxis axis,
+  static Curve function(std::string name, std::function<double(double)> function, Interval range, CurveAxis axis,
                         std::vector<double> breaks = {});
 
   /// A formula in the axis symbol such as "1 - 0.1 * ((T - 20) / 100)^2", in the syntax of Expression
   /// (pyroclast/material/expression.hpp), on a finite range that its author must state.
   /// Throws Error with the position when the formula is wrong.
-  static Curve expression(const std::string& formula, Range range, CurveAxis axis);
+  static Curve expression(const std::string& formula, Interval range, CurveAxis axis);
 
   /// Value at x. Throws Error naming the curve, x and the range when x lies outside the range, or when the
   /// value is not finite.
   double operator()(double x) const;
 
-  Range range() const { return range_; }
+  Interval range() const { return range_; }
 
   /// Greatest and least value on [a, b], which must lie within the range. Exact for constants, tables and
   /// their multiples; otherwise the extreme of a thousand even steps and the breaks of the function.
@@ -95,7 +95,7 @@ class Curve {
  private:
   struct Label;
 
-  Curve(std::shared_ptr<const Function> function, Range range, std::shared_ptr<const Label> label);
+  Curve(std::shared_ptr<const Function> function, Interval range, std::shared_ptr<const Label> label);
 
   double clamped(double x) const;
   std::string title() const;
@@ -103,7 +103,7 @@ class Curve {
   [[noreturn]] void refuse(double x) const;
 
   std::shared_ptr<const Function> function_;
-  Range range_;
+  Interval range_;
   std::shared_ptr<const Label> label_;
 };
 

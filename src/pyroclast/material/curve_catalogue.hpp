@@ -27,7 +27,8 @@ class CurveCatalogue {
   /// In the order given.
   std::span<const NamedCurve> entries() const { return entries_; }
 
-  /// Throws Error with the nearest name and all allowed names when there is none of this name.
+  /// Throws Error with the nearest name, if one is near, and all allowed names when there is none of this
+  /// name.
   const NamedCurve& at(std::string_view name) const;
 
  private:

@@ -8,6 +8,12 @@
 
 namespace pyroclast {
 
+namespace {
+
+double sign(double x) { return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : 0.0); }
+
+}  // namespace
+
 template <int Dim>
 Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& densities,
                           std::vector<ZoneProperties> zones, std::vector<ContactProperties> interfaces,
@@ -23,6 +29,7 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
   velocity_.resize(gridpoints);
   force_.resize(gridpoints);
   applied_.resize(gridpoints);
+  if (parameters.damping_form == DampingForm::combined) previous_force_.resize(gridpoints);
   prescribed_velocity_.resize(gridpoints);
   prescribed_.resize(gridpoints);
   stress_.resize(model.zones.size());
@@ -204,6 +211,7 @@ template <int Dim>
 void Mechanics<Dim>::move_gridpoints(int block) {
   const double dt = time_step_;
   const double lambda = parameters_.local_damping;
+  const bool combined = parameters_.damping_form == DampingForm::combined;
   const double half_xi = 0.5 * parameters_.viscous_damping * dt;
   BlockWork& work = work_[block];
   for (int g = model_.block_gridpoints[block]; g < model_.block_gridpoints[block + 1]; ++g) {
@@ -219,7 +227,7 @@ void Mechanics<Dim>::move_gridpoints(int block) {
         const double reaction = mass_[g] * (after - before) / dt - sum;
         work.loading += (reaction + applied_[g][i]) * 0.5 * (before + after) * dt;
       } else {
-        const double damping = before == 0.0 ? 0.0 : std::copysign(lambda * std::abs(sum), before);
+        const double damping = lambda * std::abs(sum) * (combined ? 0.5 * (sign(before) - sign(sum - previous_force_[g][i])) : sign(before));
         after = ((1.0 - half_xi) * before + (sum - damping) * dt / mass_[g]) / (1.0 + half_xi);
         const double mean = 0.5 * (before + after);
         work.local_damping += damping * mean * dt;
@@ -230,6 +238,7 @@ void Mechanics<Dim>::move_gridpoints(int block) {
       velocity_[g][i] = after;
       displacement_[g][i] += after * dt;
     }
+    if (combined) previous_force_[g] = force_[g];
   }
 }
 

@@ -15,10 +15,17 @@ enum class MassChoice : std::uint8_t {
   scaled  ///< density scaling: each gridpoint's mass makes its own limit the common step; quasi-static runs only
 };
 
+/// Form of the local damping. The force opposing motion is lambda |F| times a sign.
+enum class DampingForm : std::uint8_t {
+  local,    ///< sgn(v), Eq. (8). A body in steady motion keeps vibrating, since v does not change sign, and is dragged.
+  combined  ///< (sgn(v) - sgn(dF/dt)) / 2: damps vibration about a steady motion too (Itasca's combined damping)
+};
+
 template <int Dim>
 struct MechanicsParameters {
   Vec<Dim> gravity{};              ///< m/s²
   double local_damping = 0.0;      ///< lambda of Eq. (8), in [0, 1)
+  DampingForm damping_form = DampingForm::local;
   double viscous_damping = 0.0;    ///< xi of Eq. (3), 1/s
   MassChoice mass = MassChoice::real;
   double time_step = 0.0;          ///< s; the common step of MassChoice::scaled, not used with real mass
@@ -144,6 +151,7 @@ class Mechanics {
 
   std::int64_t steps_ = 0;
   std::vector<Vec<Dim>> displacement_, velocity_, force_, applied_;
+  std::vector<Vec<Dim>> previous_force_;  ///< DampingForm::combined only
   std::vector<Vec<Dim>> prescribed_velocity_;
   std::vector<std::uint8_t> prescribed_;  ///< bit per component
   std::vector<SymmetricTensor<Dim>> stress_;

@@ -1,9 +1,11 @@
 #include "pyroclast/specimen/blocks.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
 #include "pyroclast/specimen/neper_tess.hpp"
 #include "pyroclast/specimen/regularisation.hpp"
@@ -12,8 +14,8 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Every round leaves a small share of what the one before left (see the tests), so a hundred thousand blocks
-/// need about ten; this many means that the parameters allow no fit tessellation.
+/// Two to five rounds do for plain Voronoi seeds and edges up to 0.3 of the mean, a few dozen for widely
+/// spread radii; this many mean that the parameters allow no tessellation without a short edge.
 constexpr int most_rounds = 60;
 
 Vec<2> draw_position(double width, double height, Random& random) {
@@ -51,7 +53,14 @@ Blocks tessellate_until_fit(const BlockParameters& parameters, double width, dou
       blocks.edges_left_short = done.edges_left_short;
       unfit = std::move(done.unfit);
     }
-    if (unfit.empty() || blocks.rounds == most_rounds) return blocks;
+    if (unfit.empty()) return blocks;
+    if (blocks.rounds == most_rounds) {
+      if (!blocks.tessellation.cells.empty()) return blocks;
+      throw Error(fmt::format(
+          "No tessellation of {} blocks came about in {} rounds, {} cells stay empty; allowed is a "
+          "radius spread below {:.4g}.",
+          parameters.count, most_rounds, unfit.size(), parameters.radius_spread));
+    }
     // A radius stays with its seed, or the cells of small radii would die out.
     for (const int i : unfit)
       seeds.position[static_cast<std::size_t>(i)] = draw_position(width, height, random);

@@ -35,11 +35,13 @@ BlockMetrics measure(const Tessellation& tessellation) {
   measure_edges(tessellation, metrics);
   metrics.smallest_angle = 180.0;
   double total_area = 0.0;
+  std::size_t zones = 0;
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
     corners(tessellation, c, polygon);
     total_area += area(polygon);
     const ZonedBlock block = zone_block(polygon);
+    zones += block.zones.size();
     for (const auto& zone : block.zones) {
       const auto at = [&](int i) { return block.gridpoints[static_cast<std::size_t>(i)]; };
       const double angle = smallest_angle({at(zone[0]), at(zone[1]), at(zone[2])}) * 180.0 / std::numbers::pi;
@@ -49,6 +51,7 @@ BlockMetrics measure(const Tessellation& tessellation) {
       }
     }
   }
+  metrics.zones_per_block = static_cast<double>(zones) / static_cast<double>(tessellation.cells.size());
   metrics.mean_size = std::sqrt(total_area / static_cast<double>(tessellation.cells.size()));
   return metrics;
 }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <numbers>
-#include <numeric>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/topology.hpp"
@@ -175,7 +177,7 @@ class Regulariser {
     for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
       corners(tessellation_, c, polygon_);
       areas_.push_back(area(polygon_));
-      if (thinnest_zone(polygon_) < thinnest_) unfit.push_back(static_cast<int>(c));
+      if (shape_of(polygon_).thinnest_zone <= thinnest_) unfit.push_back(static_cast<int>(c));
     }
     for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
       for (const int v : flat_corners(c)) unfit.push_back(smallest_neighbour(v, static_cast<int>(c)));

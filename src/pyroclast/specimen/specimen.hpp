@@ -38,9 +38,10 @@ enum class Superposition : std::uint8_t {
 
 /// Tessellation asked for.
 struct BlockParameters {
-  int count = 0;               ///< number of blocks
-  double radius_spread = 0.0;  ///< Laguerre radii: uniform in [1 - spread, 1 + spread] x mean spacing / 2
-  int relaxation = 0;          ///< Lloyd iterations; 0 leaves the seeds at random
+  int count = 0;  ///< number of blocks
+  double radius_spread =
+      0.0;             ///< Laguerre radii: uniform in [1 - spread, 1 + spread] x mean spacing / 2; in [0, 1)
+  int relaxation = 0;  ///< Lloyd iterations; 0 leaves the seeds at random
   double shortest_edge = 0.0;  ///< edges below this fraction of the mean edge are removed
   std::filesystem::path file;  ///< Neper .tess file to read instead; empty: tessellate
 };
@@ -81,7 +82,8 @@ struct BlockMetrics {
   int seeds_redrawn;                    ///< seeds drawn anew because their cell could not be made valid
   double smallest_angle;                ///< of any zone, degrees
   int smallest_angle_cell;
-  double mean_size;  ///< sqrt(mean area), the block size
+  double mean_size;        ///< sqrt(mean area), the block size
+  double zones_per_block;  ///< mean
 };
 
 /// A meso-scale specimen: blocks, what each is made of, and what came of the request.
@@ -94,9 +96,10 @@ struct Specimen {
   BlockMetrics metrics;
 };
 
-/// Gradation, placement, tessellation, regularisation and superposition, in this order.
-/// Throws Error when the aggregates do not fit, the placed fraction is off by more than 0.01, or no valid
-/// tessellation comes about.
+/// Gradation, placement, tessellation, regularisation and superposition, in this order. The same parameters
+/// give the same specimen; aggregates and blocks draw from streams of their own, so neither depends on the
+/// other's parameters. Throws Error when a parameter is out of range, the aggregates do not fit, the placed
+/// fraction is off by more than 0.01, or no valid tessellation comes about.
 Specimen make_specimen(const SpecimenParameters& parameters);
 
 /// A block cut into zones.
@@ -105,7 +108,7 @@ struct ZonedBlock {
   std::vector<std::array<int, 3>> zones;  ///< counter-clockwise gridpoint indices
 };
 
-/// Cuts convex cell into triangles around its centroid.
+/// Cuts a convex cell (corners counter-clockwise, m) into triangles around its centroid, one per edge.
 ZonedBlock zone_block(const std::vector<Vec<2>>& corners);
 
 }  // namespace pyroclast::specimen

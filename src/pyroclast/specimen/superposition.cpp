@@ -1,7 +1,6 @@
 #include "pyroclast/specimen/superposition.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "pyroclast/specimen/circle_grid.hpp"
 #include "pyroclast/specimen/polygon.hpp"
@@ -47,7 +46,11 @@ std::vector<double> covered_fractions(const Tessellation& tessellation, double w
                          double covered = 0.0;
                          for (const Aggregate& a : nearby)
                            covered += common_area(polygon, a.centre, 0.5 * a.diameter);
-                         return std::clamp(covered / area(polygon), 0.0, 1.0);
+                         // A circle that does not touch the cell leaves rounding, which must not count as
+                         // covered.
+                         constexpr double rounding = 1e-12;
+                         const double share = covered / area(polygon);
+                         return share < rounding ? 0.0 : std::min(share, 1.0);
                        });
 }
 

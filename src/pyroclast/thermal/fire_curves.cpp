@@ -12,7 +12,7 @@ namespace {
 constexpr double minute = 60.0;  // s
 constexpr double hour = 3600.0;  // s
 // Formulas have no end of their own; fire resistance is not classified beyond six hours.
-constexpr Range six_hours{0.0, 6.0 * hour};
+constexpr Interval six_hours{0.0, 6.0 * hour};
 
 /// `gas_temperature` takes minutes.
 Curve formula(std::function<double(double)> gas_temperature) {

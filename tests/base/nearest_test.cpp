@@ -1,4 +1,4 @@
-#include "pyroclast/deck/nearest.hpp"
+#include "pyroclast/base/nearest.hpp"
 
 #include <string>
 #include <vector>

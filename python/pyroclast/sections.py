@@ -1,0 +1,275 @@
+"""Pictures of the section: fracture of a run, morphology of a specimen, and its gradation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from . import style
+from .run import (
+    AGGREGATE,
+    AGGREGATE_MORTAR,
+    MORTAR,
+    MORTAR_MORTAR,
+    PLATEN,
+    BlockMesh,
+    ContactMesh,
+    Frame,
+    Run,
+    RunError,
+    Specimen,
+)
+
+_MILLI = 1e3  # metres to millimetres
+_COLOURS = {AGGREGATE: style.AGGREGATE_COLOUR, MORTAR: style.MORTAR_COLOUR, PLATEN: style.PLATEN_COLOUR}
+_BEFORE_PEAK = 0.85  # strain of frame A over that of the peak: the first cracks have opened
+_AFTER_PEAK = 0.8  # stress of frame C over that of the peak
+_SOFTENED = 0.5  # damage from which a crack is drawn
+_MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+_LARGEST_MOVE_DRAWN = 0.06  # of the specimen's height
+_MARGIN = 0.08  # of the drawn width, room for blocks that have moved out
+_PANELS = 4
+_EDGE_OF_FULL_WIDTH, _LEAST_THINNING = 5.0, 0.45  # edge in print, points; factor on line widths
+
+
+def select_frames(frames: Sequence[Frame], peak_strain: float, peak_stress: float) -> dict[str, Frame]:
+    """Frames A to D, by letter: before the peak, at it, softening, and the end.
+
+    B is the frame nearest to the peak strain; A, among those before, the one nearest to 85 % of it; D the
+    last; C, between B and D, the one whose stress is nearest to 80 % of the peak, or halfway down to D when D
+    is above 60 %. A letter is left out when no frame is there for it.
+    frames: those of the loading stage, in order, at least one. peak_stress: MPa.
+    """
+    peak = min(range(len(frames)), key=lambda i: abs(frames[i].strain - peak_strain))
+    selected = {}
+    if before := frames[:peak]:
+        selected["A"] = min(before, key=lambda frame: abs(frame.strain - _BEFORE_PEAK * peak_strain))
+    selected["B"] = frames[peak]
+    after = [frame for frame in frames[peak + 1:] if frame.step > frames[peak].step]
+    if after:
+        end = after[-1]
+        wanted = max(_AFTER_PEAK * peak_stress, 0.5 * (peak_stress + end.stress))
+        if softening := [frame for frame in after if frame.step < end.step]:
+            selected["C"] = min(softening, key=lambda frame: abs(frame.stress - wanted))
+        selected["D"] = end
+    return selected
+
+
+@dataclass(frozen=True)
+class _CrackStyle:
+    mode: str
+    broken: bool
+    colour: str
+    width: float  # points, at most
+
+    @property
+    def label(self) -> str:
+        state = "broken ($D=1$)" if self.broken else f"softening (${_SOFTENED}<D<1$)"
+        return f"{self.mode} crack, {state}"
+
+    def holds(self, damage: np.ndarray) -> np.ndarray:
+        return damage >= 1.0 if self.broken else (damage > _SOFTENED) & (damage < 1.0)
+
+
+# Drawn in this order: the thin dark shear lines stay visible on the wide tension lines.
+_CRACKS = (
+    _CrackStyle("tension", False, style.TENSION_TINT, 0.7),
+    _CrackStyle("shear", False, style.SHEAR_TINT, 0.4),
+    _CrackStyle("tension", True, style.TENSION_COLOUR, 1.8),
+    _CrackStyle("shear", True, style.SHEAR_COLOUR, 0.8),
+)
+
+
+@matplotlib.rc_context(style.STYLE)
+def fracture(run: Run, marks: Mapping[str, Frame], magnification: float | None = None) -> Figure:
+    """The deformed specimen with its cracks at the marked frames (paper, Figure 9).
+
+    marks: as `select_frames` gives them. magnification of displacements: the same in all panels; when None,
+    the largest round one at which 95 % of the last panel's gridpoints move by less than 6 % of the height.
+    """
+    if magnification is None:
+        magnification = _visible_magnification(run, list(marks.values())[-1])
+    low, high = _panel_box(run.mesh.blocks)
+    panel_height = (style.WIDTH / _PANELS - 0.12) * (high - low)[1] / (high - low)[0]
+    figure = style.new_figure(panel_height + 1.95, dpi=2 * style.DPI)
+    grid = figure.add_gridspec(2, len(marks), height_ratios=[panel_height, 0.55])
+    panels = [figure.add_subplot(grid[0, i]) for i in range(len(marks))]
+    for axes, (letter, frame) in zip(panels, marks.items()):
+        _draw_fractured(axes, run, frame, magnification)
+        axes.set_title(letter, fontweight="bold")
+        axes.set_xlabel(_caption(run, frame), fontsize=6.5, linespacing=1.4)
+    _draw_scale_bar(panels[0], run.mesh.blocks)
+    figure.suptitle(f"{style.title_of(run)}\ndisplacements ×{magnification:g}", fontsize=9.0)
+    handles = _fracture_legend(run.mesh.blocks)
+    style.legend_alone(figure.add_subplot(grid[1, :]), handles, [handle.get_label() for handle in handles],
+                       loc="center", ncols=4, title_fontsize=7.0,
+                       title="Counts are contact points (two an edge) of A–M and M–M contacts.")
+    return figure
+
+
+def _specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Lower left and upper right corner of the specimen without platens, m."""
+    points = blocks.points[blocks.triangles[blocks.material != PLATEN].ravel()]
+    if not len(points):
+        raise RunError(f"{blocks.path}: /blocks/material has platens only")
+    return points.min(axis=0), points.max(axis=0)
+
+
+def _panel_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of what a panel shows: all blocks, and a margin, m."""
+    low, high = blocks.points.min(axis=0), blocks.points.max(axis=0)
+    margin = _MARGIN * (high - low)[0]
+    return low - margin, high + margin
+
+
+def _visible_magnification(run: Run, frame: Frame) -> float:
+    low, high = _specimen_box(run.mesh.blocks)
+    moved = np.percentile(np.linalg.norm(run.gridpoint_displacement(frame), axis=1), 95)
+    fitting = [m for m in _MAGNIFICATIONS if m * moved <= _LARGEST_MOVE_DRAWN * (high - low)[1]]
+    return fitting[-1] if fitting and moved > 0.0 else 1
+
+
+def _cracked(run: Run, frame: Frame, crack: _CrackStyle) -> np.ndarray:
+    """(C,) bool: contact points that are drawn so."""
+    # Platen contacts start as broken and A-A contacts never fail: neither is a crack.
+    interface = run.mesh.contacts.interface
+    can_crack = (interface == AGGREGATE_MORTAR) | (interface == MORTAR_MORTAR)
+    return can_crack & crack.holds(run.contact_field(frame, f"{crack.mode}_damage"))
+
+
+def count_cracks(run: Run, frame: Frame) -> dict[tuple[str, bool], int]:
+    """Cracked contact points that `fracture` draws, by mode ("tension", "shear") and whether broken."""
+    return {(crack.mode, crack.broken): int(_cracked(run, frame, crack).sum()) for crack in _CRACKS}
+
+
+def _draw_fractured(axes: Axes, run: Run, frame: Frame, magnification: float) -> None:
+    blocks, contacts = run.mesh.blocks, run.mesh.contacts
+    _draw_blocks(axes, blocks, blocks.points + magnification * run.gridpoint_displacement(frame))
+    lines = (contacts.points + magnification * run.contact_displacement(frame))[contacts.lines]
+    thinning = _thinning(blocks, contacts)
+    for crack in _CRACKS:
+        drawn = _MILLI * lines[_cracked(run, frame, crack)]
+        axes.add_collection(LineCollection(drawn, colors=crack.colour, linewidths=thinning * crack.width,
+                                           capstyle="round", rasterized=True))
+    low, high = _panel_box(blocks)
+    axes.set_xlim(_MILLI * low[0], _MILLI * high[0])
+    axes.set_ylim(_MILLI * low[1], _MILLI * high[1])
+    _hide_axes(axes)
+
+
+def _thinning(blocks: BlockMesh, contacts: ContactMesh) -> float:
+    """Factor on line widths that keeps cracks apart where blocks are small in print."""
+    low, high = _panel_box(blocks)
+    points_per_metre = 72.0 * style.WIDTH / _PANELS / (high - low)[0]
+    edge = 2.0 * points_per_metre * np.median(contacts.length) if len(contacts.length) else np.inf
+    return float(np.clip(edge / _EDGE_OF_FULL_WIDTH, _LEAST_THINNING, 1.0))
+
+
+def _draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None) -> None:
+    """Fills the blocks, one collection a material; without an edge colour their seams are closed."""
+    outlines, material = blocks.outlines
+    for kind, colour in _COLOURS.items():
+        polygons = [_MILLI * points[outlines[i]] for i in np.flatnonzero(material == kind)]
+        axes.add_collection(PolyCollection(polygons, facecolors=colour, edgecolors=edge or colour,
+                                           linewidths=0.15, rasterized=True))
+
+
+def _hide_axes(axes: Axes) -> None:
+    axes.set_aspect("equal")
+    axes.set_xticks([])
+    axes.set_yticks([])
+    axes.grid(False)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+
+
+def _caption(run: Run, frame: Frame) -> str:
+    counts = count_cracks(run, frame)
+    return (
+        f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$\n"
+        f"$\\sigma$ = {frame.stress:.1f} MPa ({100.0 * frame.stress / run.peak[1]:.0f} % of peak)\n"
+        f"broken: {counts['tension', True]} tension, {counts['shear', True]} shear\n"
+        f"softening: {counts['tension', False]} tension, {counts['shear', False]} shear"
+    )
+
+
+def _draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
+    low, high = _specimen_box(blocks)
+    width = _MILLI * (high - low)[0]
+    length = max(step for step in (1, 2, 5, 10, 20, 50, 100, 200, 500) if step <= max(0.4 * width, 1))
+    x, y = _MILLI * low[0], np.mean([axes.get_ylim()[0], _MILLI * blocks.points[:, 1].min()])
+    axes.plot([x, x + length], [y, y], color=style.BLACK, linewidth=2.0, solid_capstyle="butt", clip_on=False)
+    axes.text(x + length + 0.03 * width, y, f"{length} mm", va="center", fontsize=7.0)
+
+
+def _fracture_legend(blocks: BlockMesh) -> list:
+    lines = [Line2D([], [], color=crack.colour, linewidth=crack.width, label=crack.label)
+             for crack in _CRACKS]
+    return lines + _material_legend(blocks)
+
+
+def _material_legend(blocks: BlockMesh) -> list[Patch]:
+    names = {AGGREGATE: "aggregate", MORTAR: "mortar", PLATEN: "platen"}
+    return [Patch(facecolor=_COLOURS[kind], edgecolor=style.FAINT, linewidth=0.4, label=name)
+            for kind, name in names.items() if (blocks.material == kind).any()]
+
+
+@matplotlib.rc_context(style.STYLE)
+def morphology(specimen: Specimen) -> Figure:
+    """Blocks by material and the circles that were placed (paper, Figure 7)."""
+    blocks, circles = specimen.mesh.blocks, specimen.aggregates
+    low, high = _panel_box(blocks)
+    figure = style.new_figure(height=1.0 + 4.0 * (high - low)[1] / (high - low)[0], width=6.0)
+    axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.32])
+    _draw_blocks(axes, blocks, blocks.points, edge="#7d7d7d")
+    diameters = _MILLI * circles["diameter_m"]
+    axes.add_collection(EllipseCollection(
+        diameters, diameters, np.zeros(len(circles)), units="xy", facecolors="none", edgecolors=style.BLUE,
+        linewidths=0.9, offsets=_MILLI * np.column_stack([circles["x_m"], circles["y_m"]]),
+        offset_transform=axes.transData))
+    axes.set_xlim(_MILLI * low[0], _MILLI * high[0])
+    axes.set_ylim(_MILLI * low[1], _MILLI * high[1])
+    axes.set_aspect("equal")
+    axes.grid(False)
+    axes.set_xlabel("x [mm]")
+    axes.set_ylabel("y [mm]")
+    axes.set_title(
+        f"{len(blocks.outlines[0])} blocks, {len(circles)} aggregates; aggregate fraction\n"
+        f"asked {specimen.fact('fraction_asked'):.3f}, placed {specimen.fact('fraction_placed'):.3f}, "
+        f"after superposition {specimen.fact('fraction_superposed'):.3f}")
+    circle = Line2D([], [], color=style.BLUE, marker="o", markerfacecolor="none", linestyle="none",
+                    label="placed circle")
+    handles = [*_material_legend(blocks), circle]
+    style.legend_alone(beside, handles, [handle.get_label() for handle in handles], loc="upper left")
+    return figure
+
+
+@matplotlib.rc_context(style.STYLE)
+def gradation(specimen: Specimen) -> Figure:
+    """Cumulative passing in the coarse range: asked, placed, and after superposition (paper, Figure 5)."""
+    table = specimen.gradation
+    figure = style.new_figure(3.8)
+    axes = figure.add_subplot()
+    diameter = _MILLI * table["d_m"]
+    axes.plot(diameter, table["asked_percent"], color=style.BLACK, label="asked, Fuller")
+    axes.plot(diameter, table["placed_percent"], color=style.BLUE, linestyle=(0, (5, 1.5)),
+              marker="o", markersize=3.5, label="placed")
+    axes.plot(diameter, table["superposed_percent"], color=style.VERMILLION, linestyle=(0, (1.5, 1)),
+              marker="s", markersize=3.5, markerfacecolor="white", label="after superposition on the blocks")
+    axes.set_xscale("log")
+    ticks = [d for d in (1, 2, 4, 4.75, 8, 12.5, 16, 20, 25, 32, 63) if diameter.min() <= d <= diameter.max()]
+    axes.set_xticks(ticks, [f"{d:g}" for d in ticks])
+    axes.set_xticks([], minor=True)
+    axes.set_ylim(0.0, 102.0)
+    axes.set_xlabel("Aggregate diameter [mm]")
+    axes.set_ylabel("Passing, by area, within the coarse range [%]")
+    axes.legend(loc="upper left")
+    return figure

@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "pyroclast/app/load.hpp"
+#include "pyroclast/experiment/simulation.hpp"
+
+namespace pyroclast::app {
+
+namespace {
+
+/// Enough steps to time one, few enough not to be waited for.
+constexpr int kWarmUpSteps = 20, kTimedSteps = 200;
+
+double seconds_per_step(Mechanics<2>& mechanics) {
+  mechanics.advance(kWarmUpSteps);
+  const auto start = std::chrono::steady_clock::now();
+  mechanics.advance(kTimedSteps);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / kTimedSteps;
+}
+
+double peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+/// Steps that the stages take at most; settling is not known beforehand and left out.
+double most_steps(const Case& c, double time_step) {
+  double steps = 0.0;
+  for (const auto& stage : c.stages)
+    if (const auto* compress = std::get_if<CompressStage>(&stage))
+      steps += (compress->stop_strain * c.specimen.height / compress->velocity + 0.5 * compress->ramp_time) / time_step;
+  return steps;
+}
+
+}  // namespace
+
+int check(const RunOptions& options) {
+  const Loaded loaded(options);
+  const Case& c = loaded.c;
+  Simulation simulation(c);
+  auto& mechanics = *simulation.mechanics;
+  const auto& model = simulation.body.model;
+  const double modulus = estimate_modulus(simulation.body, simulation.materials);
+
+  fmt::print("deck            {} is valid: {}\n", loaded.deck.name(), c.title);
+  fmt::print("{}", describe(simulation.specimen));
+  fmt::print("model           {} blocks with the platens, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
+             model.zone_count(), model.gridpoint_count(), model.contact_count());
+
+  const TimeStepLimit limit = mechanics.real_mass_limit();
+  const int g = limit.gridpoint;
+  int block = 0;
+  while (model.block_gridpoints[block + 1] <= g) ++block;
+  fmt::print("time step       {:.3g} s, {}\n", mechanics.time_step(),
+             c.mechanics.mass == MassChoice::scaled
+                 ? fmt::format("by density scaling of all {} gridpoints: moving mass {:.3g} x the real one",
+                               model.gridpoint_count(), mechanics.mass_ratio())
+                 : "with real mass");
+  fmt::print("                with real mass {:.3g} s, set by gridpoint {} of block {} ({}) at ({:.2f}, {:.2f}) mm\n",
+             limit.step, g, block, model.material_names[model.block_material[block]], 1e3 * model.position[g][0],
+             1e3 * model.position[g][1]);
+  fmt::print("materials       E about {:.2f} GPa (uniform stress estimate, a lower bound), t_b {:.3f} mm\n", modulus * 1e-9,
+             1e3 * simulation.materials.fracture_zone);
+
+  const double steps = most_steps(c, mechanics.time_step());
+  const double step_time = seconds_per_step(mechanics);
+  fmt::print("run             {} stages, at most {:.3g} steps after settling, about {} on {} threads, {:.0f} MB of memory\n",
+             c.stages.size(), steps, duration(steps * step_time), loaded.threads, peak_memory() * 1e-6);
+  return 0;
+}
+
+}  // namespace pyroclast::app

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace pyroclast::app {
+
+struct RunOptions {
+  std::filesystem::path deck;
+  std::filesystem::path out;          ///< empty: runs/<name of the deck>
+  bool overwrite = false;
+  bool figures = true;
+  int threads = 0;                    ///< 0: as many as the machine has
+  std::optional<std::uint64_t> seed;  ///< instead of the deck's
+  std::string command;                ///< as typed, for the manifest
+};
+
+struct LawOptions {
+  std::filesystem::path deck, path, out;
+  std::string interface;
+  int steps = 1;  ///< each leg of the path is cut into as many
+};
+
+// Each returns the exit code and throws Error for the user.
+int check(const RunOptions& options);
+int make_specimen(const RunOptions& options);
+int run(const RunOptions& options);
+int law(const LawOptions& options);
+int make_deck(const std::string& name);
+
+/// Draws the figures of a folder with the Python package; warns when that is not possible. `what` is its command.
+void draw_figures(const std::string& what, const std::filesystem::path& folder);
+
+}  // namespace pyroclast::app

@@ -1,0 +1,50 @@
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "pyroclast/app/commands.hpp"
+
+extern char** environ;
+
+namespace pyroclast::app {
+
+namespace {
+
+/// The Python package: beside an installed program, or in the source tree of a built one.
+std::filesystem::path package_folder() {
+  std::error_code ignored;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  const auto installed = program.parent_path().parent_path() / PYROCLAST_INSTALLED_PYTHON;
+  return std::filesystem::exists(installed) ? installed : std::filesystem::path(PYROCLAST_SOURCE_PYTHON);
+}
+
+}  // namespace
+
+void draw_figures(const std::string& what, const std::filesystem::path& folder) {
+  std::vector<std::string> arguments{PYROCLAST_PYTHON, "-m", "pyroclast.figures", what, folder.string()};
+  std::vector<std::string> environment;
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    if (!std::string(*variable).starts_with("PYTHONPATH=")) environment.emplace_back(*variable);
+  environment.push_back("PYTHONPATH=" + package_folder().string());
+  const auto pointers = [](std::vector<std::string>& strings) {
+    std::vector<char*> list;
+    for (auto& s : strings) list.push_back(s.data());
+    list.push_back(nullptr);
+    return list;
+  };
+  pid_t child = 0;
+  int status = -1;
+  std::fflush(stdout);
+  if (posix_spawn(&child, PYROCLAST_PYTHON, nullptr, nullptr, pointers(arguments).data(), pointers(environment).data()) == 0)
+    waitpid(child, &status, 0);
+  if (status != 0)
+    fmt::print(stderr, "warning: no figures were drawn; the results are complete without them. To draw them later: "
+                       "PYTHONPATH={} {} -m pyroclast.figures {} {}\n",
+               package_folder().string(), PYROCLAST_PYTHON, what, folder.string());
+}
+
+}  // namespace pyroclast::app

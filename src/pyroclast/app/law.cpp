@@ -1,0 +1,176 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "pyroclast/app/load.hpp"
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/results/text_file.hpp"
+
+namespace pyroclast::app {
+
+namespace {
+
+struct PathPoint {
+  double opening = 0.0, slip = 0.0;  ///< m
+  double temperature = kReferenceTemperature;
+};
+
+[[noreturn]] void fail(const std::filesystem::path& file, int line, const std::string& what) {
+  throw Error(fmt::format("{}:{}: {}", file.string(), line, what));
+}
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string> cells(const std::string& line) {
+  std::vector<std::string> list;
+  std::stringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) list.push_back(trimmed(cell));
+  return list;
+}
+
+/// A column of the path file: which quantity, and the unit its numbers are in.
+struct PathColumn {
+  double PathPoint::*quantity;
+  const Unit* dimension;
+  std::string unit;
+};
+
+PathColumn parse_column(const std::filesystem::path& file, int line, const std::string& header) {
+  const auto open = header.find('[');
+  const auto close = header.find(']');
+  if (open == std::string::npos || close == std::string::npos || close < open)
+    fail(file, line, fmt::format("column \"{}\" has no unit; write for example \"u_n [um]\"", header));
+  PathColumn column;
+  const std::string name = trimmed(header.substr(0, open));
+  column.unit = trimmed(header.substr(open + 1, close - open - 1));
+  column.dimension = &unit::length;
+  if (name == "u_n") {
+    column.quantity = &PathPoint::opening;
+  } else if (name == "u_s") {
+    column.quantity = &PathPoint::slip;
+  } else if (name == "T") {
+    column.quantity = &PathPoint::temperature;
+    column.dimension = &unit::temperature;
+  } else {
+    fail(file, line, fmt::format("column \"{}\" is unknown; allowed are u_n, u_s and T", name));
+  }
+  return column;
+}
+
+std::vector<PathPoint> read_path(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw Error(fmt::format("{}: cannot be read", file.string()));
+  std::vector<PathColumn> columns;
+  std::vector<PathPoint> path;
+  int number = 0;
+  for (std::string text; std::getline(stream, text);) {
+    ++number;
+    if (trimmed(text).empty() || trimmed(text).front() == '#') continue;
+    const auto row = cells(text);
+    if (columns.empty()) {
+      for (const auto& header : row) columns.push_back(parse_column(file, number, header));
+      continue;
+    }
+    if (row.size() != columns.size())
+      fail(file, number, fmt::format("{} values, but the header has {} columns", row.size(), columns.size()));
+    PathPoint point;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      try {
+        point.*columns[i].quantity = parse_quantity(row[i] + " " + columns[i].unit, *columns[i].dimension);
+      } catch (const Error& e) {
+        fail(file, number, e.what());
+      }
+    }
+    path.push_back(point);
+  }
+  if (path.empty()) throw Error(fmt::format("{}: holds no path; a header and at least one row are needed", file.string()));
+  return path;
+}
+
+InterfaceIndex interface_index(const std::string& name) {
+  if (name == "aggregate-aggregate") return aggregate_aggregate;
+  return name == "aggregate-mortar" ? aggregate_mortar : mortar_mortar;
+}
+
+/// One contact point on its way along a path, with its energies added up.
+class Drive {
+ public:
+  Drive(const ContactMaterial& material) : material_(material), properties_(material.at(kReferenceTemperature)) {}
+
+  void go(const PathPoint& to) {
+    if (to.temperature != at_.temperature) {
+      properties_ = material_.at(to.temperature);
+      const double before = response_.stored;
+      update(at_);
+      heat_ += response_.stored + response_.dissipated.total() - before;
+    }
+    update(to);
+    at_ = to;
+  }
+
+  std::string row() const {
+    return fmt::format("{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},"
+                       "{:.12g},{:.12g},{:.12g}\n",
+                       at_.opening, at_.slip, at_.temperature, response_.normal_traction, response_.shear_traction[0],
+                       history_.tension_damage, history_.shear_damage, history_.closure, history_.accumulated_slip,
+                       response_.stored, total_.tension, total_.shear, total_.friction, total_.compression, heat_);
+  }
+
+  static constexpr const char* kHeader =
+      "u_n_m,u_s_m,T_degC,sigma_Pa,tau_Pa,D_t,D_s,u_p_m,s_m,stored_J_m2,dissipated_tension_J_m2,dissipated_shear_J_m2,"
+      "dissipated_friction_J_m2,dissipated_compression_J_m2,heat_induced_J_m2\n";
+
+ private:
+  void update(const PathPoint& point) {
+    response_ = update_contact<2>(properties_, point.opening, {{point.slip}}, history_);
+    total_.tension += response_.dissipated.tension;
+    total_.shear += response_.dissipated.shear;
+    total_.friction += response_.dissipated.friction;
+    total_.compression += response_.dissipated.compression;
+  }
+
+  const ContactMaterial& material_;
+  ContactProperties properties_;
+  ContactHistory<2> history_;
+  ContactResponse<2> response_;
+  ContactDissipation total_;
+  PathPoint at_;
+  double heat_ = 0.0;
+};
+
+}  // namespace
+
+int law(const LawOptions& options) {
+  const Deck deck = Deck::load(options.deck);
+  const Case c = read_case(deck, options.deck.parent_path());
+  const double size = c.specimen.blocks.count > 0
+                          ? std::sqrt(c.specimen.width * c.specimen.height / c.specimen.blocks.count)
+                          : c.contacts.fracture_zone_size.value_or(1.0);
+  const auto concrete = make_concrete(c.solids, c.contacts, size);
+  Drive drive(concrete.contacts[interface_index(options.interface)]);
+
+  std::string csv = Drive::kHeader;
+  PathPoint from;
+  for (const PathPoint& to : read_path(options.path)) {
+    for (int i = 1; i <= options.steps; ++i) {
+      const double share = static_cast<double>(i) / options.steps;
+      const auto between = [&](double a, double b) { return i == options.steps ? b : a + share * (b - a); };
+      drive.go({between(from.opening, to.opening), between(from.slip, to.slip), between(from.temperature, to.temperature)});
+      csv += drive.row();
+    }
+    from = to;
+  }
+  if (options.out.empty())
+    fmt::print("{}", csv);
+  else
+    write_text_file(options.out, csv);
+  return 0;
+}
+
+}  // namespace pyroclast::app

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pyroclast/deck/deck.hpp"
+#include "pyroclast/experiment/experiment.hpp"
+#include "pyroclast/material/concrete.hpp"
+#include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/specimen/specimen.hpp"
+
+namespace pyroclast {
+
+/// All that a deck says, in SI.
+struct Case {
+  std::string title;
+  specimen::SpecimenParameters specimen;
+  double thickness = 0.0;         ///< out of plane, m
+  double platen_thickness = 0.0;  ///< m
+  std::array<SolidMaterial, 3> solids;
+  ContactParameters contacts;
+  MechanicsParameters<2> mechanics;
+  std::vector<Stage> stages;
+  SamplingParameters sampling;
+};
+
+/// Reads a deck. A relative file name in it is taken from `folder`.
+/// Throws DeckError with every error of the deck.
+Case read_case(const Deck& deck, const std::filesystem::path& folder);
+
+/// Lower estimate of Young's modulus of the model in the vertical direction, Pa: the same vertical stress
+/// everywhere, compliances of zones and contacts added up (Reuss). Platens left out.
+double estimate_modulus(const ConcreteModel& body, const ConcreteMaterials& materials);
+
+}  // namespace pyroclast

@@ -1,0 +1,75 @@
+#include "pyroclast/experiment/simulation.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Measured peak over the number of blocks, from 5,000 to 100,000 blocks (docs/performance.md), rounded up.
+constexpr double kBytesPerBlock = 9000.0;
+constexpr double kBytesFixed = 60e6;
+
+/// Memory that this process may still take, bytes: what the machine has free, or the process limit if smaller.
+double available_memory() {
+  double available = std::numeric_limits<double>::infinity();
+  std::ifstream file("/proc/meminfo");
+  for (std::string name; file >> name;) {
+    double kilobytes = 0.0;
+    if (name == "MemAvailable:" && file >> kilobytes) {
+      available = 1024.0 * kilobytes;
+      break;
+    }
+    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+    available = std::min(available, static_cast<double>(limit.rlim_cur));
+  return available;
+}
+
+specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& parameters) {
+  const double needed = estimate_memory(parameters.blocks.count);
+  const double available = available_memory();
+  if (needed > available)
+    throw Error(fmt::format("blocks.count = {}: needs about {:.1f} GB of memory, but only {:.1f} GB is free",
+                            parameters.blocks.count, needed * 1e-9, available * 1e-9));
+  return specimen::make_specimen(parameters);
+}
+
+std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const ConcreteMaterials& materials,
+                                             const MechanicsParameters<2>& parameters) {
+  std::vector<double> densities;
+  for (const auto& solid : materials.solids) densities.push_back(solid.density);
+  std::vector<ZoneProperties> zones;
+  zones.reserve(model.zones.size());
+  for (int block : zone_blocks(model)) {
+    const auto& solid = materials.solids[model.block_material[block]];
+    zones.push_back(zone_properties<2>(solid.young(kReferenceTemperature), solid.poisson));
+  }
+  std::vector<ContactProperties> interfaces;
+  for (std::size_t i = 0; i < materials.contacts.size(); ++i) {
+    interfaces.push_back(materials.contacts[i].at(kReferenceTemperature));
+    validate(interfaces.back(), model.interface_names[i]);
+  }
+  return std::make_unique<Mechanics<2>>(model, densities, std::move(zones), std::move(interfaces), parameters);
+}
+
+}  // namespace
+
+double estimate_memory(std::int64_t blocks) { return kBytesFixed + kBytesPerBlock * static_cast<double>(blocks); }
+
+Simulation::Simulation(const Case& c)
+    : specimen(make_checked_specimen(c.specimen)),
+      body(make_concrete_model(specimen, c.platen_thickness, c.thickness)),
+      materials(make_concrete(c.solids, c.contacts, specimen.metrics.mean_size)),
+      mechanics(make_mechanics(body.model, materials, c.mechanics)) {}
+
+}  // namespace pyroclast

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace pyroclast {
+
+/// What a run was made from.
+struct Manifest {
+  std::string deck_name;
+  std::string deck_text;  ///< as read, byte by byte
+  std::uint64_t seed = 0;
+  int threads = 1;
+  std::string command;
+};
+
+/// One folder holding everything of one run. Refused when it exists, unless overwriting was asked for; even then only
+/// a folder that holds a manifest is emptied, so that nothing else is ever lost.
+class RunFolder {
+ public:
+  /// Checks that the folder can be made; makes nothing yet. Throws Error otherwise.
+  static void check(const std::filesystem::path& path, bool overwrite);
+
+  /// Makes the folder, with `deck.toml` and `manifest.json` in it.
+  RunFolder(std::filesystem::path path, bool overwrite, const Manifest& manifest);
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// SHA-256 of a text, in hexadecimal, as `sha256sum` prints it.
+std::string sha256(const std::string& text);
+
+}  // namespace pyroclast

@@ -1,0 +1,57 @@
+#include "pyroclast/results/specimen_files.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "pyroclast/results/text_file.hpp"
+#include "pyroclast/specimen/gradation.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+constexpr int kGradationPoints = 60;
+
+std::string gradation_csv(const specimen::Specimen& specimen, const specimen::AggregateParameters& asked) {
+  std::vector<double> sizes;
+  for (int i = 0; i <= kGradationPoints; ++i)
+    sizes.push_back(i == kGradationPoints
+                        ? asked.d_max
+                        : asked.d_min * std::pow(asked.d_max / asked.d_min, static_cast<double>(i) / kGradationPoints));
+  std::string csv = "d_m,asked_percent,placed_percent\n";
+  for (const auto& p : specimen::gradation(asked, specimen.aggregates, sizes))
+    csv += fmt::format("{:.9g},{:.9g},{:.9g}\n", p.size, p.passing_asked, p.passing_realised);
+  return csv;
+}
+
+}  // namespace
+
+void write_specimen_files(const std::filesystem::path& folder, const specimen::Specimen& s,
+                          const specimen::AggregateParameters& asked) {
+  std::filesystem::create_directories(folder);
+  nlohmann::ordered_json json;
+  json["width_m"] = s.width;
+  json["height_m"] = s.height;
+  json["blocks"] = s.tessellation.cells.size();
+  json["aggregates"] = s.aggregates.size();
+  json["fraction_asked"] = s.fraction_asked;
+  json["fraction_placed"] = s.fraction_placed;
+  json["fraction_superposed"] = s.fraction_superposed;
+  json["mean_block_size_m"] = s.metrics.mean_size;
+  json["mean_edge_m"] = s.metrics.mean_edge;
+  json["shortest_edge_m"] = s.metrics.shortest_edge;
+  json["edges_removed"] = s.metrics.edges_removed;
+  json["edges_left_short"] = s.metrics.edges_left_short;
+  json["seeds_redrawn"] = s.metrics.seeds_redrawn;
+  json["smallest_zone_angle_deg"] = s.metrics.smallest_angle;
+  write_text_file(folder / "specimen.json", json.dump(2) + "\n");
+
+  std::string csv = "x_m,y_m,diameter_m\n";
+  for (const auto& a : s.aggregates) csv += fmt::format("{:.9g},{:.9g},{:.9g}\n", a.centre[0], a.centre[1], a.diameter);
+  write_text_file(folder / "aggregates.csv", csv);
+  if (!s.aggregates.empty()) write_text_file(folder / "gradation.csv", gradation_csv(s, asked));
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+
+#include "pyroclast/specimen/specimen.hpp"
+
+namespace pyroclast {
+
+/// Writes `specimen.json`, `aggregates.csv` and `gradation.csv` of a specimen into a folder.
+void write_specimen_files(const std::filesystem::path& folder, const specimen::Specimen& specimen,
+                          const specimen::AggregateParameters& asked);
+
+}  // namespace pyroclast

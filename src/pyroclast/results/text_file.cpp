@@ -1,0 +1,48 @@
+#include "pyroclast/results/text_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& path) {
+  throw Error(fmt::format("{}: cannot be written ({})", path.string(), std::strerror(errno)));
+}
+
+}  // namespace
+
+void write_text_file(const std::filesystem::path& path, const std::string& text) {
+  std::filesystem::path partial = path;
+  partial += ".partial";
+  {
+    std::ofstream stream(partial, std::ios::binary);
+    stream << text << std::flush;
+    if (!stream) {
+      const int cause = errno;
+      std::error_code ignored;
+      std::filesystem::remove(partial, ignored);
+      errno = cause;
+      fail(path);
+    }
+  }
+  std::error_code error;
+  std::filesystem::rename(partial, path, error);
+  if (error) throw Error(fmt::format("{}: cannot be written ({})", path.string(), error.message()));
+}
+
+LineFile::LineFile(std::filesystem::path path) : path_(std::move(path)), stream_(path_, std::ios::binary) {
+  if (!stream_) fail(path_);
+}
+
+void LineFile::line(const std::string& text) {
+  stream_ << text << '\n' << std::flush;
+  if (!stream_) fail(path_);
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace pyroclast {
+
+/// Writes a whole text file: all of it appears under its name, or none. Throws Error naming the file.
+void write_text_file(const std::filesystem::path& path, const std::string& text);
+
+/// A text file that grows line by line, each line on disk before the next. Throws Error naming the file when a
+/// line cannot be written.
+class LineFile {
+ public:
+  explicit LineFile(std::filesystem::path path);
+  void line(const std::string& text);
+
+ private:
+  std::filesystem::path path_;
+  std::ofstream stream_;
+};
+
+}  // namespace pyroclast

@@ -1,0 +1,352 @@
+"""What the figures promise, on small runs of invented numbers in the layout of the program.
+
+    python3 -m unittest discover -s tests/python
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import struct
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[1] / "python")]
+
+import synthetic_run  # noqa: E402
+from pyroclast import figures, reference, style  # noqa: E402
+from pyroclast.curves import mean_curve, names_apart  # noqa: E402
+from pyroclast.run import Frame, Run, RunError, Specimen, Table  # noqa: E402
+from pyroclast.sections import count_cracks, select_frames  # noqa: E402
+
+
+def png_size(path: Path) -> tuple[int, int]:
+    """Width and height in pixels, from the header."""
+    head = path.read_bytes()[:24]
+    assert head[:8] == b"\x89PNG\r\n\x1a\n", f"{path} is not a png"
+    return struct.unpack(">II", head[16:24])
+
+
+def replace_in(path: Path, old: str, new: str) -> None:
+    text = path.read_text()
+    assert old in text, f"{old!r} is not in {path}"
+    path.write_text(text.replace(old, new, 1))
+
+
+class FolderTest(unittest.TestCase):
+    """Has a run folder of its own."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.root = Path(temporary.name)
+        self.run_folder = self.root / "run"
+        self.section = synthetic_run.write_run(self.run_folder)
+
+    def command(self, *arguments) -> tuple[int, list[str], str]:
+        """Exit code, lines printed, and what stands on stderr."""
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            code = figures.main([str(argument) for argument in arguments])
+        return code, out.getvalue().splitlines(), err.getvalue()
+
+    def assert_fails(self, arguments, *parts: str) -> None:
+        """The command ends with 1 and one line that holds all parts."""
+        code, _, err = self.command(*arguments)
+        self.assertEqual(code, 1)
+        self.assertEqual(len(err.splitlines()), 1, err)
+        for part in parts:
+            self.assertIn(part, err)
+
+
+class CommandsMakePictures(FolderTest):
+    def test_run_prints_and_writes_every_figure(self):
+        code, printed, err = self.command("run", self.run_folder)
+        self.assertEqual((code, err), (0, ""))
+        names = ["stress_strain.png", "cracks.png", "energy.png", "fracture.png"]
+        self.assertEqual(printed, [str(self.run_folder / "figures" / name) for name in names])
+        page = round(style.WIDTH * style.DPI)
+        for name in names[:3]:
+            self.assertEqual(png_size(self.run_folder / "figures" / name), (page, round(4.8 * style.DPI)))
+        # Fine cracks need twice the resolution; the height follows the specimen.
+        self.assertEqual(png_size(self.run_folder / "figures" / "fracture.png")[0], 2 * page)
+
+    def test_specimen_writes_both_figures(self):
+        folder = self.root / "specimen"
+        synthetic_run.write_specimen(folder, self.section)
+        code, printed, err = self.command("specimen", folder)
+        self.assertEqual((code, err), (0, ""))
+        names = ["gradation.png", "morphology.png"]
+        self.assertEqual(printed, [str(folder / "figures" / name) for name in names])
+        self.assertEqual(png_size(Path(printed[0])), (round(style.WIDTH * style.DPI), round(3.8 * style.DPI)))
+        self.assertEqual(png_size(Path(printed[1]))[0], 6 * style.DPI)
+
+    def test_specimen_of_a_run_is_read_from_its_subfolder(self):
+        synthetic_run.write_specimen(self.run_folder / "specimen", self.section)
+        (self.run_folder / "specimen" / "fields" / "mesh.h5").unlink()
+        code, printed, _ = self.command("specimen", self.run_folder)
+        self.assertEqual(code, 0)
+        self.assertEqual(Path(printed[1]).parent, self.run_folder / "figures")
+
+    def test_specimen_without_aggregates_is_drawn(self):
+        folder = self.root / "specimen"
+        synthetic_run.write_specimen(folder, self.section)
+        (folder / "aggregates.csv").write_text("x_m,y_m,diameter_m\n")
+        self.assertEqual(self.command("specimen", folder)[0], 0)
+
+    def test_compare_writes_the_file_asked_for(self):
+        other, out = self.root / "other", self.root / "new" / "both.png"
+        synthetic_run.write_run(other, strength_factor=0.9, compression=None, quasi_static=False)
+        code, printed, err = self.command("compare", self.run_folder, other, "--out", out)
+        self.assertEqual((code, printed, err), (0, [str(out)], ""))
+        self.assertEqual(png_size(out), (round(style.WIDTH * style.DPI), round(4.2 * style.DPI)))
+
+    def test_format_chooses_the_file_and_the_same_run_gives_the_same_file(self):
+        contents = []
+        for _ in range(2):
+            self.assertEqual(self.command("run", self.run_folder, "--format", "svg")[0], 0)
+            written = sorted((self.run_folder / "figures").glob("*.svg"))
+            contents.append([path.read_bytes() for path in written])
+        self.assertEqual(len(contents[0]), 4)
+        self.assertEqual(contents[0], contents[1])
+
+    def test_run_without_a_peak_is_drawn(self):
+        summary = {"title": "no peak", "quasi_static": False, "compression": None}
+        (self.run_folder / "summary.json").write_text(json.dumps(summary))
+        self.assertEqual(self.command("run", self.run_folder)[0], 0)
+
+    def test_later_columns_do_not_disturb(self):
+        lines = (self.run_folder / "history.csv").read_text().splitlines()
+        lines = [lines[0] + ",temperature_C", *(line + ",20" for line in lines[1:])]
+        (self.run_folder / "history.csv").write_text("\n".join(lines))
+        self.assertEqual(self.command("run", self.run_folder)[0], 0)
+
+
+class ErrorsNameTheThing(FolderTest):
+    def test_folder(self):
+        self.assert_fails(["run", self.root / "nowhere"], "nowhere", "not a folder")
+
+    def test_missing_files(self):
+        for name in ("history.csv", "summary.json", "fields/mesh.h5", "fields/contacts_0007.hdf"):
+            with self.subTest(name):
+                path = self.run_folder / name
+                aside = path.rename(self.root / "aside")
+                self.assert_fails(["run", self.run_folder], str(path))
+                aside.rename(path)
+
+    def test_missing_column(self):
+        for name in ("stress_MPa", "shear_mm_broken", "energy_error_J"):
+            with self.subTest(name):
+                path = self.run_folder / "history.csv"
+                before = path.read_text()
+                replace_in(path, f",{name}", ",renamed")
+                self.assert_fails(["run", self.run_folder], "history.csv", f"'{name}'")
+                path.write_text(before)
+
+    def test_word_for_a_number(self):
+        replace_in(self.run_folder / "history.csv", "1,1000,", "1,often,")
+        self.assert_fails(["run", self.run_folder], "history.csv, line 3", "'step'", "'often'")
+
+    def test_line_cut_short(self):
+        with open(self.run_folder / "history.csv", "a") as file:
+            file.write("1,2000,0.5\n")
+        self.assert_fails(["run", self.run_folder], "history.csv, line 243", "3 values")
+
+    def test_no_frames_still_draws_the_curves(self):
+        frames = self.run_folder / "fields" / "frames.csv"
+        header = frames.read_text().splitlines()[0] + "\n"
+        for content in (header, None):
+            if content is None:
+                frames.unlink()
+            else:
+                frames.write_text(content)
+            code, printed, err = self.command("run", self.run_folder)
+            self.assertEqual((code, len(printed)), (1, 3))
+            self.assertIn("frames.csv", err)
+
+    def test_missing_dataset(self):
+        with h5py.File(self.run_folder / "fields" / "contacts_0007.hdf", "a") as file:
+            del file["VTKHDF/CellData/shear_damage"]
+        self.assert_fails(["run", self.run_folder], "contacts_0007.hdf", "shear_damage")
+
+    def test_field_of_another_mesh(self):
+        with h5py.File(self.run_folder / "fields" / "contacts_0007.hdf", "a") as file:
+            del file["VTKHDF/CellData/shear_damage"]
+            file["VTKHDF/CellData/shear_damage"] = np.zeros(3)
+        self.assert_fails(["run", self.run_folder], "contacts_0007.hdf", "(3,)")
+
+    def test_file_that_is_not_hdf(self):
+        (self.run_folder / "fields" / "mesh.h5").write_text("no")
+        self.assert_fails(["run", self.run_folder], "mesh.h5", "HDF5")
+
+    def test_specimen_fact(self):
+        folder = self.root / "specimen"
+        synthetic_run.write_specimen(folder, self.section)
+        replace_in(folder / "specimen.json", '"fraction_placed"', '"other"')
+        self.assert_fails(["specimen", folder], "specimen.json", "'fraction_placed'")
+
+    def test_unknown_ending(self):
+        self.assert_fails(["compare", self.run_folder, "--out", self.root / "a.bmp"], "a.bmp", ".png")
+
+    def test_never_compressed(self):
+        table = Table(self.run_folder / "history.csv")
+        columns = {name: np.zeros(2) for name in table.names}
+        rows = np.column_stack(list(columns.values()))
+        lines = [",".join(table.names), *(",".join(map(str, row)) for row in rows)]
+        (self.run_folder / "history.csv").write_text("\n".join(lines))
+        self.assert_fails(["run", self.run_folder], "history.csv", "not compressed")
+
+
+class FramesOfTheFractureFigure(unittest.TestCase):
+    """On the synthetic curve: peak 34 MPa at strain 0.003, straight down to 17 MPa at 0.006."""
+
+    def frames(self, strains):
+        return [Frame(k, 1, 100 * k, 0.0, strain, synthetic_run.stress(strain))
+                for k, strain in enumerate(strains)]
+
+    def strains(self, strains):
+        selected = select_frames(self.frames(strains), synthetic_run.PEAK_STRAIN, synthetic_run.PEAK_STRESS)
+        return {letter: frame.strain for letter, frame in selected.items()}
+
+    def test_four_points_of_the_curve(self):
+        # A at 85 % of the peak strain; C where the stress is 80 % of the peak, strain 0.0042.
+        fine = [round(1e-5 * i, 5) for i in range(1, 601)]
+        self.assertEqual(self.strains(fine), {"A": 0.00255, "B": 0.003, "C": 0.0042, "D": 0.006})
+
+    def test_short_descent_puts_c_halfway_down(self):
+        fine = [round(1e-5 * i, 5) for i in range(1, 361)]  # ends at 90 % of the peak
+        self.assertEqual(self.strains(fine)["C"], 0.0033)
+
+    def test_letters_without_a_frame_are_left_out(self):
+        self.assertEqual(self.strains([0.001, 0.002, 0.003]), {"A": 0.002, "B": 0.003})
+        self.assertEqual(self.strains([0.003, 0.005]), {"B": 0.003, "D": 0.005})
+        self.assertEqual(self.strains([0.001]), {"B": 0.001})
+
+    def test_peak_frame_saved_twice_at_the_end_is_not_taken_for_d(self):
+        frames = self.frames([0.0025, 0.003])
+        frames.append(Frame(2, 1, frames[-1].step, 0.0, 0.003, synthetic_run.PEAK_STRESS))
+        selected = select_frames(frames, synthetic_run.PEAK_STRAIN, synthetic_run.PEAK_STRESS)
+        self.assertEqual([*selected], ["A", "B"])
+
+    def test_last_frame_saved_twice_is_not_taken_for_c(self):
+        frames = self.frames([0.0025, 0.003, 0.004])
+        frames.append(Frame(3, 1, frames[-1].step, 0.0, 0.004, synthetic_run.stress(0.004)))
+        selected = select_frames(frames, synthetic_run.PEAK_STRAIN, synthetic_run.PEAK_STRESS)
+        self.assertEqual([*selected], ["A", "B", "D"])
+
+
+class Reference(unittest.TestCase):
+    def test_numbers_of_the_generated_law(self):
+        # strain, MPa: published by the project's reference data with six digits, hence the tolerance.
+        for strain, stress in ((0.0, 0.0), (7.5e-05, 1.59393), (0.00105, 18.9348), (0.003, 34.7839),
+                               (0.0033, 34.9936), (0.00345, 34.8878), (0.0051, 33.4358), (0.009, 30.0038)):
+            self.assertAlmostEqual(float(reference.at_stress(strain)), stress, delta=5.1e-5)
+
+    def test_slopes(self):
+        step = 1e-7
+        slope = (reference.at_stress(step) - reference.at_stress(0.0)) / step
+        # A chord over 3e-5 of the peak strain.
+        self.assertAlmostEqual(slope / reference.AT_MODULUS, 1.0, delta=1e-4)
+        # Straight: a difference of values near 30 over 1e-3 keeps eleven digits.
+        slope = (reference.at_stress(0.009) - reference.at_stress(0.008)) / 1e-3
+        self.assertAlmostEqual(slope, reference.AT_DESCENT, delta=1e-6)
+
+    def test_descent_leaves_the_parabola_without_a_kink(self):
+        strain = np.linspace(0.0033, 0.0035, 2001)
+        slopes = np.diff(reference.at_stress(strain)) / np.diff(strain)
+        # The parabola's slope changes by 2 f_c / eps_peak^2 = 6.6e6 MPa, times the spacing of 1e-7.
+        self.assertLess(np.abs(np.diff(slopes)).max(), 0.67)
+
+    def test_refuses_to_extrapolate(self):
+        for strain in (-1e-6, 1.001 * reference.AT_LAST_STRAIN):
+            with self.assertRaises(ValueError):
+                reference.at_stress(strain)
+        self.assertAlmostEqual(float(reference.at_stress(reference.AT_LAST_STRAIN)), 0.0, delta=1e-9)
+
+    def test_peak_strains_of_table_3(self):
+        self.assertAlmostEqual(reference.EXPERIMENT.strain_at_peak, 0.003128, delta=5e-7)
+        self.assertAlmostEqual(reference.PAPER_DEM.strain_at_peak, 0.002979, delta=5e-7)
+
+
+class Reader(FolderTest):
+    def test_settling_is_not_part_of_the_test(self):
+        run = Run(self.run_folder)
+        self.assertEqual(len(run.history), 241)
+        self.assertEqual(run.loaded.sum(), 240)
+        self.assertEqual([frame.stage for frame in run.frames[:2]], [0, 1])
+        self.assertEqual(len(run.loaded_frames), len(run.frames) - 1)
+
+    def test_peak(self):
+        strain, stress = Run(self.run_folder).peak
+        self.assertAlmostEqual(strain, synthetic_run.PEAK_STRAIN, delta=1e-12)
+        self.assertAlmostEqual(stress, synthetic_run.PEAK_STRESS, delta=1e-9)
+
+    def test_outlines_walk_around_each_block(self):
+        blocks = Run(self.run_folder).mesh.blocks
+        outlines, material = blocks.outlines
+        self.assertEqual([len(outline) for outline in outlines], [6] * 20 + [4] * 2)
+        np.testing.assert_array_equal(material, self.section.block_material)
+        for outline, block in zip(outlines, range(22)):
+            x, y = blocks.points[outline].T
+            area = 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))
+            a, b, c = (blocks.points[blocks.triangles[blocks.block == block, i]] for i in range(3))
+            zones = 0.5 * np.sum((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+            self.assertAlmostEqual(area / zones, 1.0, delta=1e-12)  # and positive: counter-clockwise
+
+    def test_block_in_two_pieces_is_refused(self):
+        with h5py.File(self.run_folder / "fields" / "mesh.h5", "a") as file:
+            file["blocks/block"][6:12] = 0
+        with self.assertRaisesRegex(RunError, "mesh.h5.*simple polygon"):
+            _ = Run(self.run_folder).mesh.blocks.outlines
+
+    def test_platen_contacts_are_not_counted_as_cracks(self):
+        run = Run(self.run_folder)
+        broken_at_start = run.contact_field(run.frames[0], "tension_damage") >= 1.0
+        self.assertTrue(broken_at_start.any())
+        counts = count_cracks(run, run.frames[0])
+        self.assertEqual(set(counts.values()), {0})
+
+    def test_counts_are_those_of_the_field(self):
+        run = Run(self.run_folder)
+        last = run.frames[-1]
+        counts = count_cracks(run, last)
+        inner = np.isin(run.mesh.contacts.interface, (1, 2))
+        damage = run.contact_field(last, "tension_damage")[inner]
+        self.assertGreater(counts["tension", True], 0)
+        self.assertEqual(counts["tension", True], np.sum(damage == 1.0))
+        self.assertEqual(counts["tension", False], np.sum((damage > 0.5) & (damage < 1.0)))
+
+    def test_mean_curve_lies_between(self):
+        weaker = self.root / "weaker"
+        synthetic_run.write_run(weaker, strength_factor=0.8)
+        strain, stress = mean_curve([Run(self.run_folder), Run(weaker)])
+        # Between history rows, 2.5e-5 apart, the straight pieces lie under the parabola by at most
+        # f_c / eps_peak^2 (2.5e-5)^2 / 4 = 6e-4 MPa.
+        expected = [0.9 * synthetic_run.stress(e) for e in strain]
+        np.testing.assert_allclose(stress, expected, rtol=0.0, atol=7e-4)
+
+    def test_runs_of_one_title_are_told_apart_by_their_folder(self):
+        other = self.root / "other"
+        synthetic_run.write_run(other, quasi_static=False)
+        same_title = self.root / "same"
+        synthetic_run.write_run(same_title)
+        self.assertEqual(names_apart([Run(self.run_folder), Run(other), Run(same_title)]),
+                         ["run", "other – NOT QUASI-STATIC", "same"])
+
+    def test_specimen_table(self):
+        folder = self.root / "specimen"
+        synthetic_run.write_specimen(folder, self.section)
+        specimen = Specimen(folder)
+        self.assertEqual(len(specimen.aggregates), len(self.section.circles))
+        self.assertEqual(specimen.fact("fraction_placed"), 0.338)
+
+
+if __name__ == "__main__":
+    unittest.main()

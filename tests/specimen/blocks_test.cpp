@@ -1,0 +1,170 @@
+#include "pyroclast/specimen/blocks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "examples.hpp"
+#include "pyroclast/specimen/laguerre.hpp"
+#include "pyroclast/specimen/metrics.hpp"
+#include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/regularisation.hpp"
+#include "pyroclast/specimen/topology.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+constexpr double width = 0.15;
+constexpr double height = 0.3;
+
+BlockParameters block_parameters(int count, double shortest_edge, double radius_spread) {
+  BlockParameters p;
+  p.count = count;
+  p.shortest_edge = shortest_edge;
+  p.radius_spread = radius_spread;
+  return p;
+}
+
+std::vector<Vec<2>> polygon_of(const Tessellation& t, std::size_t cell) {
+  std::vector<Vec<2>> polygon;
+  corners(t, cell, polygon);
+  return polygon;
+}
+
+void expect_exact_tiling(const Tessellation& t) {
+  double total = 0;
+  for (std::size_t c = 0; c < t.cells.size(); ++c) total += area(polygon_of(t, c));
+  EXPECT_NEAR(total / (width * height), 1, 1e-12);  // rounding of up to a hundred thousand terms
+
+  double outline = 0;
+  for (const Edge& e : edges(t)) {
+    const Vec<2>& a = t.vertices[static_cast<std::size_t>(e.v0)];
+    const Vec<2>& b = t.vertices[static_cast<std::size_t>(e.v1)];
+    const bool on_outline = (sides(a, width, height) & sides(b, width, height)) != 0;
+    EXPECT_EQ(e.right < 0, on_outline);
+    if (e.right < 0) outline += norm(b - a);
+  }
+  EXPECT_NEAR(outline, 2 * (width + height), 1e-12);
+  for (const double x : {0.0, width}) {
+    for (const double y : {0.0, height}) {
+      EXPECT_EQ(std::count(t.vertices.begin(), t.vertices.end(), Vec<2>{{x, y}}), 1);
+    }
+  }
+}
+
+void expect_fit_blocks(const Tessellation& t, double shortest_edge) {
+  const double limit = shortest_edge * measure(t).mean_edge;
+  for (const Edge& e : edges(t)) {
+    EXPECT_GE(norm(t.vertices[static_cast<std::size_t>(e.v1)] - t.vertices[static_cast<std::size_t>(e.v0)]),
+              limit * (1 - 1e-12));  // the mean is summed in another order
+  }
+  for (std::size_t c = 0; c < t.cells.size(); ++c) {
+    const std::vector<Vec<2>> polygon = polygon_of(t, c);
+    EXPECT_GE(polygon.size(), 3U);
+    EXPECT_LE(largest_angle(polygon), largest_block_angle * std::numbers::pi / 180);
+    EXPECT_GT(thinnest_zone(polygon), sliver_share * limit * (1 - 1e-12));
+  }
+}
+
+class AnyBlocks : public testing::TestWithParam<std::tuple<int, double, double>> {};
+
+TEST_P(AnyBlocks, TileExactlyAndAreFit) {
+  const auto [count, shortest_edge, radius_spread] = GetParam();
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    const Blocks blocks =
+        make_blocks(block_parameters(count, shortest_edge, radius_spread), width, height, random);
+    EXPECT_EQ(blocks.tessellation.cells.size(), static_cast<std::size_t>(count));
+    EXPECT_EQ(blocks.edges_left_short, 0);
+    expect_exact_tiling(blocks.tessellation);
+    expect_fit_blocks(blocks.tessellation, shortest_edge);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Specimen, AnyBlocks,
+                         testing::Combine(testing::Values(100, 700, 5000),
+                                          testing::Values(0.0, 0.1, 0.2, 0.3), testing::Values(0.0, 0.3)));
+
+TEST(Blocks, AHundredThousandTileExactlyAndAreFit) {
+  Random random(1);
+  const Blocks blocks = make_blocks(block_parameters(100000, 0.2, 0.0), width, height, random);
+  EXPECT_EQ(blocks.edges_left_short, 0);
+  expect_exact_tiling(blocks.tessellation);
+  expect_fit_blocks(blocks.tessellation, 0.2);
+}
+
+TEST(Blocks, VeryFewBlocksWork) {
+  for (int count = 1; count <= 12; ++count) {
+    Random random(static_cast<std::uint64_t>(count));
+    expect_exact_tiling(make_blocks(block_parameters(count, 0.2, 0.0), width, height, random).tessellation);
+  }
+}
+
+TEST(Blocks, RedrawingTouchesFewSeeds) {
+  Random random(1);
+  // Redrawn seeds make the tessellation less random than asked for; the promise is that they stay few.
+  EXPECT_LT(make_blocks(block_parameters(5000, 0.2, 0.0), width, height, random).seeds_redrawn, 50);
+}
+
+TEST(Blocks, RelaxationEvensOutTheAreas) {
+  const auto scatter = [](int relaxation) {
+    BlockParameters p = block_parameters(1000, 0.1, 0.0);
+    p.relaxation = relaxation;
+    Random random(1);
+    const Tessellation t = make_blocks(p, width, height, random).tessellation;
+    double sum = 0;
+    const double mean = width * height / 1000;
+    for (std::size_t c = 0; c < t.cells.size(); ++c) sum += std::pow(area(polygon_of(t, c)) / mean - 1, 2);
+    return std::sqrt(sum / 1000);
+  };
+  // Areas of Poisson-Voronoi cells scatter by 0.53 of their mean (Okabe et al., Spatial Tessellations, 2000).
+  EXPECT_NEAR(scatter(0), 0.53, 0.06);
+  EXPECT_LT(scatter(5), 0.3);
+}
+
+TEST(Laguerre, EveryPointOfACellBelongsToItsSeed) {
+  Random random(5);
+  Seeds seeds;
+  for (int i = 0; i < 300; ++i) {
+    const double x = random.uniform(0, width);
+    seeds.position.push_back({{x, random.uniform(0, height)}});
+    seeds.radius.push_back(random.uniform(0.5, 1.5) * 0.5 * std::sqrt(width * height / 300));
+  }
+  const LaguerreResult result = laguerre_tessellation(seeds, width, height);
+  const auto power = [&](const Vec<2>& p, std::size_t i) {
+    const Vec<2> d = p - seeds.position[i];
+    return dot(d, d) - seeds.radius[i] * seeds.radius[i];
+  };
+  for (std::size_t c = 0; c < 300; ++c) {
+    if (result.tessellation.cells[c].empty()) {
+      EXPECT_TRUE(std::binary_search(result.broken.begin(), result.broken.end(), static_cast<int>(c)));
+      continue;
+    }
+    for (const Vec<2>& p : polygon_of(result.tessellation, c)) {
+      for (std::size_t other = 0; other < 300; ++other) {
+        // A vertex is as near, in the power sense, to the seeds around it: equal up to the merging of
+        // vertices.
+        EXPECT_LE(power(p, c), power(p, other) + 1e-9 * width * height);
+      }
+    }
+  }
+}
+
+TEST(Laguerre, LargerRadiiGiveLargerCells) {
+  Seeds seeds{{{{0.05, 0.15}}, {{0.1, 0.15}}}, {0.04, 0.02}};
+  const LaguerreResult result = laguerre_tessellation(seeds, width, height);
+  ASSERT_TRUE(result.broken.empty());
+  // Power line: (x - 0.05)^2 - 0.04^2 = (x - 0.1)^2 - 0.02^2.
+  const double line = 0.075 + (0.04 * 0.04 - 0.02 * 0.02) / (2 * 0.05);
+  EXPECT_NEAR(area(polygon_of(result.tessellation, 0)), line * height, 1e-12);
+}
+
+TEST(Laguerre, NamesTheSeedsOfEmptyCells) {
+  Seeds seeds{{{{0.05, 0.15}}, {{0.051, 0.15}}, {{0.1, 0.1}}}, {0.03, 0.001, 0.03}};
+  EXPECT_EQ(laguerre_tessellation(seeds, width, height).broken, std::vector<int>{1});
+}
+
+}  // namespace
+}  // namespace pyroclast::specimen

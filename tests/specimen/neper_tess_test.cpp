@@ -1,0 +1,249 @@
+#include "pyroclast/specimen/neper_tess.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <regex>
+
+#include <fmt/format.h>
+
+#include "examples.hpp"
+#include "pyroclast/specimen/blocks.hpp"
+#include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/topology.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+/// A .tess file of the test's own, gone at the end.
+class TessFile {
+ public:
+  explicit TessFile(const std::string& text) {
+    // Named after the test, which may run beside others.
+    std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::replace(name.begin(), name.end(), '/', '_');
+    path_ = std::filesystem::path(testing::TempDir()) / ("pyroclast_" + name + ".tess");
+    std::ofstream(path_) << text;
+  }
+  ~TessFile() { std::filesystem::remove(path_); }
+  TessFile(const TessFile&) = delete;
+  TessFile& operator=(const TessFile&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Two cells in a rectangle of 2 x 1, the second clockwise; sections that the reader skips are there too.
+const std::string two_cells = R"(***tess
+ **format
+   3.5
+ **general
+   2 standard
+ **cell
+  2
+  *id
+   1 2
+  *crysym
+   cubic
+  *seed
+   1 0.5 0.5 0 0
+   2 1.5 0.5 0 0
+ **vertex
+ 6
+   1  0 0 0     0
+   2  0.8 0 0     0
+   3  2.000000000000 -0.000000000000 0     0
+   4  2 1 0     0
+   5  1.2 1 0     1
+   6  0.000000000000 1 0     0
+ **edge
+ 7
+   1  1 2 0
+   2  2 3 0
+   3  3 4 0
+   4  4 5 0
+   5  5 6 0
+   6  6 1 0
+   7  2 5 0
+ **face
+ 2
+   1 4 1 2 5 6
+     4 1 7 5 6
+    0 0 0 1
+     0 -1 0 0 0
+   2 4 2 5 4 3
+     4 7 -4 -3 -2
+    0 0 0 -1
+     0 -1 0 0 0
+ **domain
+  *general
+   cube
+  *vertex
+   4
+   1  0 0 0 x0y0
+      1 1
+   2  2 0 0 x1y0
+      1 3
+   3  2 1 0 x1y1
+      1 4
+   4  0 1 0 x0y1
+      1 6
+  *edge
+   4
+   1 2 2 1
+     line
+     0
+     y0
+     2 1 2
+***end
+)";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(NeperTess, ReadsAndScalesToTheSpecimen) {
+  const TessFile file(two_cells);
+  const Tessellation t = read_neper_tess(file.path(), 0.2, 0.1);
+  ASSERT_EQ(t.cells.size(), 2U);
+  EXPECT_EQ(t.vertices.size(), 6U);
+  EXPECT_TRUE(mismatched_cells(t, 0.2, 0.1).empty());
+  std::vector<Vec<2>> polygon;
+  for (std::size_t c = 0; c < 2; ++c) {
+    corners(t, c, polygon);
+    EXPECT_NEAR(area(polygon), 0.01, 1e-15) << "cells are turned counter-clockwise";
+  }
+}
+
+TEST(NeperTess, AVertexThatRegularisationRepeatsOrDropsIsNoTrouble) {
+  // Neper's regularisation may leave a deleted edge as a repeated vertex of a face, and vertices that no face
+  // uses.
+  std::string text = replaced(two_cells, "1 4 1 2 5 6\n     4 1 7 5 6", "1 5 1 2 5 5 6\n     5 1 7 8 5 6");
+  text = replaced(text, "**vertex\n 6", "**vertex\n 7");
+  text = replaced(text, " **edge\n 7", "   7  1.1 0.9 0    -1\n **edge\n 8");
+  text = replaced(text, "   7  2 5 0\n", "   7  2 5 0\n   8  5 7 -1\n");
+  const TessFile file(text);
+  const Tessellation t = read_neper_tess(file.path(), 0.2, 0.1);
+  EXPECT_EQ(t.cells[0].size(), 4U);
+  EXPECT_EQ(t.vertices.size(), 6U);
+}
+
+/// Writes a tessellation the way Neper does: twelve decimals, here in millimetres and off the origin.
+std::string as_tess(const Tessellation& t, double width, double height) {
+  const auto point = [](double x, double y) {
+    return fmt::format("{:.12f} {:.12f} 0.000000000000", 1e3 * x - 20, 1e3 * y + 7);
+  };
+  std::string text =
+      fmt::format("***tess\n **format\n   2.0\n **general\n   2 standard\n **cell\n {}\n **vertex\n {}\n",
+                  t.cells.size(), t.vertices.size());
+  for (std::size_t v = 0; v < t.vertices.size(); ++v) {
+    text += fmt::format(" {} {} 0\n", v + 1, point(t.vertices[v][0], t.vertices[v][1]));
+  }
+  text += fmt::format(" **face\n {}\n", t.cells.size());
+  for (std::size_t c = 0; c < t.cells.size(); ++c) {
+    text += fmt::format(" {} {}", c + 1, t.cells[c].size());
+    for (const int v : t.cells[c]) text += fmt::format(" {}", v + 1);
+    text += fmt::format("\n {}", t.cells[c].size());
+    for (std::size_t i = 0; i < t.cells[c].size(); ++i) text += " 1";  // edges are not read
+    text += "\n 0 0 0 1\n 0 -1 0 0 0\n";
+  }
+  text += fmt::format(" **domain\n *general\n square\n *vertex\n 4\n 1 {} x0y0\n 1 1\n 2 {} x1y0\n 1 1\n",
+                      point(0, 0), point(width, 0));
+  return text +
+         fmt::format(" 3 {} x1y1\n 1 1\n 4 {} x0y1\n 1 1\n***end\n", point(width, height), point(0, height));
+}
+
+TEST(NeperTess, ReadsBackWhatWeWrite) {
+  BlockParameters p;
+  p.count = 500;
+  p.shortest_edge = 0.1;
+  Random random(1);
+  const Tessellation ours = make_blocks(p, 0.15, 0.3, random).tessellation;
+  const TessFile file(as_tess(ours, 0.15, 0.3));
+  const Tessellation read = read_neper_tess(file.path(), 0.15, 0.3);
+  ASSERT_EQ(read.cells.size(), ours.cells.size());
+  std::vector<Vec<2>> a;
+  std::vector<Vec<2>> b;
+  for (std::size_t c = 0; c < ours.cells.size(); ++c) {
+    corners(ours, c, a);
+    corners(read, c, b);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i)
+      EXPECT_LT(norm(a[i] - b[i]), 2e-15);  // 12 decimals of a millimetre
+  }
+}
+
+TEST(NeperTess, IsRegularisedLikeOurOwn) {
+  BlockParameters p;
+  p.count = 500;
+  Random random(1);
+  const TessFile file(as_tess(make_blocks(p, 0.15, 0.3, random).tessellation, 0.15, 0.3));
+  SpecimenParameters parameters = paper_specimen(1);
+  parameters.blocks.file = file.path();
+  parameters.blocks.shortest_edge = 0.1;
+  const Specimen s = make_specimen(parameters);
+  EXPECT_EQ(s.tessellation.cells.size(), 500U);
+  EXPECT_GT(s.metrics.edges_removed, 0);
+  EXPECT_EQ(s.metrics.seeds_redrawn, 0);
+  if (s.metrics.edges_left_short == 0) {
+    EXPECT_GE(s.metrics.shortest_edge, 0.1 * s.metrics.mean_edge * (1 - 1e-12));
+  }
+}
+
+struct Fault {
+  const char* name;
+  std::string from, to;
+  const char* message;  ///< regular expression
+};
+
+class Malformed : public testing::TestWithParam<Fault> {};
+
+TEST_P(Malformed, IsNamedWithFileAndLine) {
+  const Fault& fault = GetParam();
+  const TessFile file(replaced(two_cells, fault.from, fault.to));
+  const std::string message = error_of([&] { read_neper_tess(file.path(), 0.2, 0.1); });
+  EXPECT_EQ(message.find(file.path().string()), 0U) << message;
+  EXPECT_TRUE(says(message, fault.message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    NeperTess, Malformed,
+    testing::Values(
+        Fault{"start", "***tess\n", "***tesr\n", "line 1: expected '\\*\\*\\*tess', found '\\*\\*\\*tesr'"},
+        Fault{"version", "3.5", "1.9", "line 3: expected a format version 2.x or 3.x, found '1.9'"},
+        Fault{"dimension", "2 standard", "3 standard", "line 5: expected the dimension 2"},
+        Fault{"type", "2 standard", "2 periodic", "line 5: expected the type 'standard'"},
+        Fault{"number", "0.8 0 0     0", "0.8 O 0     0",
+              "line 18: expected a coordinate of a vertex, found 'O'"},
+        Fault{"infinite", "0.8 0 0     0", "inf 0 0     0", "line 18: .*finite"},
+        Fault{"order", "   2  0.8", "   3  0.8", "line 18: expected the identifier 2 of a vertex, found '3'"},
+        Fault{"count", "**vertex\n 6", "**vertex\n 7",
+              "line 23: expected the identifier of vertex 7, found '\\*\\*edge'"},
+        Fault{"huge", "**vertex\n 6", "**vertex\n 2000000000", "line 16: expected the number of vertices"},
+        Fault{"reference", "1 4 1 2 5 6", "1 4 1 2 5 9",
+              "line 34: expected a vertex of a face, 1 to 6, found '9'"},
+        Fault{"degenerate", "1 4 1 2 5 6", "1 4 1 2 2 1", "at least three vertices"},
+        Fault{"truncated", "     0 -1 0 0 0\n **domain", "     0 -1", "found '\\*general'"},
+        Fault{"cells", "**cell\n  2", "**cell\n  3",
+              "expected as many faces as cells, found '3 cells and 2 faces'"},
+        Fault{"overlap", "2 4 2 5 4 3", "2 3 2 5 4", "cells do not fit together"},
+        Fault{"stray", " **edge\n", " **vertex 6 edge\n", "line 23"},
+        Fault{"domain", "2  2 0 0 x1y0", "2  2.1 0.2 0 x1y0",
+              "expected a domain that is an upright rectangle"},
+        Fault{"no domain", " **domain", " **dominion", "a section '\\*\\*domain'"},
+        Fault{"no end", "***end\n", "", "found the end of the file"}),
+    [](const auto& instance) { return std::regex_replace(instance.param.name, std::regex(" "), "_"); });
+
+TEST(NeperTess, AnotherAspectRatioIsAnError) {
+  const TessFile file(two_cells);
+  EXPECT_TRUE(says(error_of([&] { read_neper_tess(file.path(), 0.2, 0.11); }), "aspect ratio"));
+}
+
+TEST(NeperTess, AMissingFileIsAnError) {
+  EXPECT_TRUE(says(error_of([] { read_neper_tess("no/such.tess", 1, 1); }), "Cannot open"));
+}
+
+}  // namespace
+}  // namespace pyroclast::specimen

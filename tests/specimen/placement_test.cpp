@@ -1,0 +1,65 @@
+#include "pyroclast/specimen/placement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "examples.hpp"
+#include "pyroclast/specimen/gradation.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+std::vector<Aggregate> place_paper_aggregates(const AggregateParameters& p, std::uint64_t seed) {
+  Random random(seed);
+  return place(draw_diameters(p, 0.15 * 0.3, random), 0.15, 0.3, p, random);
+}
+
+TEST(Placement, KeepsTheGapBetweenAggregatesAndToTheOutline) {
+  const AggregateParameters p = paper_aggregates();
+  const double gap = p.minimum_gap * (1 - 1e-9);  // the comparison is one of squares
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const std::vector<Aggregate> circles = place_paper_aggregates(p, seed);
+    for (std::size_t i = 0; i < circles.size(); ++i) {
+      const double radius = circles[i].diameter / 2;
+      for (int axis = 0; axis < 2; ++axis) {
+        EXPECT_GE(circles[i].centre[axis] - radius, gap);
+        EXPECT_LE(circles[i].centre[axis] + radius, (axis == 0 ? 0.15 : 0.3) - gap);
+      }
+      for (std::size_t j = 0; j < i; ++j) {
+        EXPECT_GE(norm(circles[i].centre - circles[j].centre) - radius - circles[j].diameter / 2, gap);
+      }
+    }
+  }
+}
+
+TEST(Placement, PlacesThousandsOfSmallAggregatesBetweenLargeOnes) {
+  AggregateParameters p = paper_aggregates();
+  p.fraction = 0.5;
+  p.d_min = 1e-3;
+  p.sieves.front() = 1e-3;
+  p.minimum_gap = 0;
+  Random random(1);
+  const std::vector<double> diameters = draw_diameters(p, 0.15 * 0.3, random);
+  ASSERT_GT(diameters.size(), 1000U);
+  EXPECT_EQ(place(diameters, 0.15, 0.3, p, random).size(), diameters.size());
+}
+
+TEST(Placement, SaysHowMuchIsMissing) {
+  AggregateParameters p = paper_aggregates();
+  p.fraction = 0.9;
+  p.attempts = 100;
+  const std::string message = error_of([&] { place_paper_aggregates(p, 1); });
+  EXPECT_TRUE(says(message, "[0-9]+ of [0-9]+ found no place in 100 attempts"));
+  EXPECT_TRUE(says(message, "diameters 0\\.[0-9]+ to 0\\.[0-9]+ m"));
+  EXPECT_TRUE(says(message, "area fraction of 0\\.[0-9]+ of the 0\\.9000 asked for"));
+}
+
+TEST(Placement, AnAggregateWiderThanTheSpecimenIsMissing) {
+  AggregateParameters p = paper_aggregates();
+  Random random(1);
+  const std::vector<double> diameters{30e-3};
+  EXPECT_TRUE(says(error_of([&] { place(diameters, 0.02, 0.3, p, random); }), "1 of 1"));
+}
+
+}  // namespace
+}  // namespace pyroclast::specimen

@@ -1,0 +1,77 @@
+#include "pyroclast/specimen/superposition.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "examples.hpp"
+#include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/topology.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+/// The unit square in four quarters, lower row first.
+const Tessellation quarters{
+    {{{0, 0}}, {{0.5, 0}}, {{1, 0}}, {{0, 0.5}}, {{0.5, 0.5}}, {{1, 0.5}}, {{0, 1}}, {{0.5, 1}}, {{1, 1}}},
+    {{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 7, 6}, {4, 5, 8, 7}}};
+
+SpecimenParameters unit_square(Superposition rule, double covered_fraction = 0.5) {
+  SpecimenParameters p;
+  p.width = p.height = 1;
+  p.superposition = rule;
+  p.covered_fraction = covered_fraction;
+  return p;
+}
+
+TEST(Superposition, CoveredFractionIsTheShareOfACircleInEachCell) {
+  const std::vector<Aggregate> circle{{{{0.5, 0.5}}, 0.5}};
+  for (const double covered : covered_fractions(quarters, 1, 1, circle)) {
+    EXPECT_NEAR(covered, std::numbers::pi / 16, 1e-14);
+  }
+}
+
+TEST(Superposition, SeveralCirclesAddUpInACell) {
+  const std::vector<Aggregate> circles{{{{0.1, 0.1}}, 0.1}, {{{0.3, 0.3}}, 0.2}};
+  const std::vector<double> covered = covered_fractions(quarters, 1, 1, circles);
+  EXPECT_NEAR(covered[0], std::numbers::pi * (0.05 * 0.05 + 0.1 * 0.1) / 0.25, 1e-14);
+  EXPECT_EQ(covered[3], 0);
+}
+
+TEST(Superposition, AreaRuleTurnsACellAtTheStatedFraction) {
+  const std::vector<Aggregate> circle{{{{0.25, 0.25}}, 0.4}};  // covers 0.50 of cell 0
+  const double covered = covered_fractions(quarters, 1, 1, circle)[0];
+  EXPECT_EQ(superpose(quarters, circle, unit_square(Superposition::area, covered - 1e-9))[0],
+            Constituent::aggregate);
+  EXPECT_EQ(superpose(quarters, circle, unit_square(Superposition::area, covered + 1e-9))[0],
+            Constituent::mortar);
+}
+
+TEST(Superposition, CentroidRuleLooksAtTheCentroidOnly) {
+  const std::vector<Aggregate> small{{{{0.25, 0.25}}, 0.02}};
+  const std::vector<Aggregate> beside{{{{0.6, 0.6}}, 0.2}};
+  EXPECT_EQ(superpose(quarters, small, unit_square(Superposition::centroid))[0], Constituent::aggregate);
+  EXPECT_EQ(superpose(quarters, beside, unit_square(Superposition::centroid))[3], Constituent::mortar);
+}
+
+TEST(Superposition, WithoutAggregatesAllIsMortar) {
+  for (const Constituent c : superpose(quarters, {}, unit_square(Superposition::area, 0.0))) {
+    EXPECT_EQ(c, Constituent::mortar);
+  }
+}
+
+TEST(Superposition, CellsShareOutTheCirclesExactly) {
+  const Specimen s = make_specimen(paper_specimen(2));
+  const std::vector<double> covered = covered_fractions(s.tessellation, s.width, s.height, s.aggregates);
+  double sum = 0;
+  std::vector<Vec<2>> polygon;
+  for (std::size_t c = 0; c < covered.size(); ++c) {
+    corners(s.tessellation, c, polygon);
+    sum += covered[c] * area(polygon);
+  }
+  double circles = 0;
+  for (const Aggregate& a : s.aggregates) circles += 0.25 * std::numbers::pi * a.diameter * a.diameter;
+  EXPECT_NEAR(sum / circles, 1, 1e-11);  // rounding of 5000 cells, each relative to its own small area
+}
+
+}  // namespace
+}  // namespace pyroclast::specimen
