@@ -1,8 +1,13 @@
 #include "pyroclast/specimen/regularisation.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include "examples.hpp"
+#include "pyroclast/base/random.hpp"
+#include "pyroclast/specimen/laguerre.hpp"
+#include "pyroclast/specimen/metrics.hpp"
+#include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
@@ -70,8 +75,7 @@ TEST(Regularisation, KeepsOutlineVerticesOnTheirSide) {
   Tessellation t = four_cells(0.6);
   t.vertices[1] = {{0.05, 0}};  // a short edge from the corner along the bottom
   const Regularisation done = regularise(t, 2, 2, 0.2);
-  // The corner stays; merging the other end into it would leave a cell whose first corner is gone from the
-  // bottom.
+  // The corner stays in place, the other end moves into it.
   EXPECT_TRUE(mismatched_cells(t, 2, 2).empty());
   EXPECT_EQ(done.edges_removed, 1);
   EXPECT_EQ(std::count(t.vertices.begin(), t.vertices.end(), Vec<2>{{0, 0}}), 1);
@@ -93,6 +97,30 @@ TEST(Regularisation, NamesTheSmallerNeighbourOfAFlatCorner) {
   Tessellation t{{{{0, 0}}, {{2, 0}}, {{2, 1}}, {{0, 1}}, {{2, 2}}, {{0.8, 2}}, {{0, 2}}, {{0.8, 1.001}}},
                  {{0, 1, 2, 7, 3}, {2, 4, 5, 7}, {3, 7, 5, 6}}};
   EXPECT_EQ(regularise(t, 2, 2, 0.1).unfit, std::vector<int>{2});
+}
+
+TEST(Regularisation, NeverMakesAFlatCornerOrASliverThatWasNotThere) {
+  Random random(3);
+  Seeds seeds;
+  for (int i = 0; i < 2000; ++i) {
+    const double x = random.uniform();
+    seeds.position.push_back({{x, random.uniform()}});
+    seeds.radius.push_back(0.01);
+  }
+  const Tessellation before = laguerre_tessellation(seeds, 1, 1).tessellation;
+  Tessellation after = before;
+  EXPECT_GT(regularise(after, 1, 1, 0.3).edges_removed, 0);
+  // The bound on slivers grows with the mean edge, so the one at the start holds throughout.
+  const double thinnest = sliver_share * 0.3 * measure(before).mean_edge;
+  const double flattest = largest_block_angle * std::numbers::pi / 180;
+  std::vector<Vec<2>> a;
+  std::vector<Vec<2>> b;
+  for (std::size_t c = 0; c < before.cells.size(); ++c) {
+    corners(before, c, a);
+    corners(after, c, b);
+    EXPECT_GE(thinnest_zone(b), std::min(thinnest, thinnest_zone(a)) * (1 - 1e-9)) << "cell " << c;
+    EXPECT_LE(largest_angle(b), std::max(flattest, largest_angle(a)) * (1 + 1e-9)) << "cell " << c;
+  }
 }
 
 }  // namespace

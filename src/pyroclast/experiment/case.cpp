@@ -131,6 +131,8 @@ MechanicsParameters<2> read_mechanics(const Section& s) {
   m.viscous_damping = s.quantity("viscous_damping", unit::frequency, Range::non_negative(), 0.0);
   m.mass = s.choice<MassChoice>("mass", {{"scaled", MassChoice::scaled}, {"real", MassChoice::real}});
   if (m.mass == MassChoice::scaled) m.time_step = s.quantity("time_step", unit::time, Range::positive());
+  m.kinematics = s.choice<Kinematics>("kinematics", {{"small", Kinematics::small}, {"finite", Kinematics::finite}},
+                                      Kinematics::small);
   m.safety = s.number("safety", {.lower = 0.0, .upper = 1.0, .lower_inclusive = false});
   return m;
 }

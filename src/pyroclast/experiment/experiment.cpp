@@ -49,13 +49,13 @@ Cracks count_cracks(const Mechanics<2>& mechanics) {
     const auto& contact = model.contacts[i];
     if (contact.interface != aggregate_mortar && contact.interface != mortar_mortar) continue;
     const bool itz = contact.interface == aggregate_mortar;
-    const auto& h = mechanics.contacts()[i].history;
+    const auto& state = mechanics.contacts()[i];
+    const auto& h = state.history;
     const double length = contact.area / model.thickness;
     add(itz ? cracks.tension_am : cracks.tension_mm, h.tension_damage, length);
     add(itz ? cracks.shear_am : cracks.shear_mm, h.shear_damage, length);
     if (h.tension_damage > 0.0) {
-      const Vec<2> jump = mechanics.displacement()[contact.b] - mechanics.displacement()[contact.a];
-      cracks.mean_opening += std::max(0.0, dot(jump, contact.normal) + h.closure) * length;
+      cracks.mean_opening += std::max(0.0, state.opening + h.closure) * length;
       cracked_length += length;
     }
   }
@@ -126,7 +126,7 @@ Sample Experiment::measure() const {
   s.unbalanced_ratio = mechanics_.unbalanced_ratio();
   s.energy = mechanics_.energy();
   const double elastic = s.energy.zones + s.energy.contacts;
-  s.kinetic_over_strain = elastic > 0.0 ? s.energy.kinetic / elastic : 0.0;
+  s.kinetic_over_strain = elastic > 0.0 ? std::abs(s.energy.kinetic) / elastic : 0.0;
   s.largest_jump = mechanics_.largest_relative_jump();
   s.cracks = count_cracks(mechanics_);
   return s;

@@ -1,11 +1,19 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 
 #include "pyroclast/base/vec.hpp"
 
 /// The zone law, paper Eq. (5): sigma = D_T (eps - eps_th), isotropic, small strain, total form.
 namespace pyroclast {
+
+/// What displacements do to the geometry.
+enum class Kinematics : std::uint8_t {
+  small,  ///< zones and contact frames keep their first orientation; exact while rotations and jumps are small
+  finite  ///< zones strain in a frame that turns with them and contact frames turn with their faces (2D only)
+};
 
 /// Symmetric tensor: 2D (xx, yy, xy), 3D (xx, yy, zz, xy, yz, zx); shear components are tensor, not engineering.
 template <int Dim>
@@ -25,19 +33,59 @@ constexpr ZoneProperties zone_properties(double young, double poisson, double th
   return {young * poisson / denominator, 0.5 * young / (1.0 + poisson), thermal_strain};
 }
 
-/// Mechanical strain (total minus thermal) of a zone.
+/// Turn of a zone in its plane; the identity with small kinematics.
+struct Rotation {
+  double cosine = 1.0, sine = 0.0;
+};
+
+/// A vector of the zone's own frame in the frame of the model.
+template <int Dim>
+inline Vec<Dim> rotated(const Rotation& r, const Vec<Dim>& v) {
+  if constexpr (Dim == 2)
+    return {{r.cosine * v[0] - r.sine * v[1], r.sine * v[0] + r.cosine * v[1]}};
+  else
+    return v;
+}
+
+/// A stress of the zone's own frame in the frame of the model.
+template <int Dim>
+inline SymmetricTensor<Dim> rotated(const Rotation& r, const SymmetricTensor<Dim>& s) {
+  if constexpr (Dim == 2) {
+    const double cc = r.cosine * r.cosine, ss = r.sine * r.sine, cs = r.cosine * r.sine;
+    return {cc * s[0] + ss * s[1] - 2.0 * cs * s[2], ss * s[0] + cc * s[1] + 2.0 * cs * s[2],
+            cs * (s[0] - s[1]) + (cc - ss) * s[2]};
+  } else {
+    return s;
+  }
+}
+
+/// Mechanical strain (total minus thermal) of a zone, in the zone's own frame.
+///
+/// Finite kinematics take the rotation R out of the deformation gradient F = R U (polar decomposition) and
+/// return U - I, so that a zone may turn freely; small kinematics take the symmetric part of F - I.
 ///
 /// \param gradient  of the first Dim shape functions, 1/m
 /// \param u         displacements of the zone's Dim + 1 gridpoints, m
+/// \param rotation  out
 template <int Dim>
 inline SymmetricTensor<Dim> mechanical_strain(const std::array<Vec<Dim>, Dim>& gradient,
-                                              const std::array<Vec<Dim>, Dim + 1>& u, double thermal_strain) {
+                                              const std::array<Vec<Dim>, Dim + 1>& u, double thermal_strain,
+                                              Kinematics kinematics, Rotation& rotation) {
   std::array<Vec<Dim>, Dim> h{};  // displacement gradient, h[j][i] = du_i/dx_j
   for (int n = 0; n < Dim; ++n) {
     const Vec<Dim> d = u[n] - u[Dim];
     for (int j = 0; j < Dim; ++j) h[j] += d * gradient[n][j];
   }
   if constexpr (Dim == 2) {
+    if (kinematics == Kinematics::finite) {
+      const double along = 2.0 + h[0][0] + h[1][1];
+      const double across = h[0][1] - h[1][0];
+      const double scale = 1.0 / std::sqrt(along * along + across * across);
+      const double c = along * scale, s = across * scale;
+      rotation = {c, s};
+      return {c * (1.0 + h[0][0]) + s * h[0][1] - 1.0 - thermal_strain,
+              c * (1.0 + h[1][1]) - s * h[1][0] - 1.0 - thermal_strain, c * h[1][0] + s * (1.0 + h[1][1])};
+    }
     return {h[0][0] - thermal_strain, h[1][1] - thermal_strain, 0.5 * (h[0][1] + h[1][0])};
   } else {
     return {h[0][0] - thermal_strain,    h[1][1] - thermal_strain,    h[2][2] - thermal_strain,

@@ -10,7 +10,8 @@ namespace pyroclast {
 
 namespace {
 
-double sign(double x) { return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : 0.0); }
+/// Without a branch: signs of vibrating motion cannot be predicted.
+double sign(double x) { return static_cast<double>((x > 0.0) - (x < 0.0)); }
 
 }  // namespace
 
@@ -34,8 +35,13 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
   prescribed_.resize(gridpoints);
   stress_.resize(model.zones.size());
   contact_state_.resize(model.contacts.size());
-  contact_force_.resize(model.contacts.size());
-  work_.resize(static_cast<std::size_t>(model.block_count()));
+  contact_force_a_.resize(model.contacts.size());
+  contact_force_b_.resize(model.contacts.size());
+  if (Dim != 2 && parameters.kinematics == Kinematics::finite)
+    throw Error("kinematics = finite: contact frames that turn are made for 2D only; use small");
+  work_.resize(model.block_material.size());
+  begun_.resize(model.block_material.size());
+  kinetic_.resize(model.block_material.size());
   compute_stiffness();
   set_masses(densities);
 }
@@ -91,8 +97,15 @@ void Mechanics<Dim>::set_masses(const std::vector<double>& densities) {
     mass_ = gravity_mass_;
     moving_mass_ = real_mass_;
     time_step_ = real_mass_limit().step;
-    return;
+  } else {
+    scale_masses();
   }
+  for (double m : mass_) step_over_mass_.push_back(time_step_ / m);
+}
+
+/// Density scaling: the mass with which each gridpoint's own limit is the common step.
+template <int Dim>
+void Mechanics<Dim>::scale_masses() {
   time_step_ = parameters_.time_step;
   const double half = 0.5 * time_step_ / parameters_.safety;
   mass_.resize(stiffness_.size());
@@ -138,12 +151,12 @@ void Mechanics<Dim>::break_contact(int contact) {
 
 template <int Dim>
 void Mechanics<Dim>::advance(int steps) {
-  const int contacts = model_.contact_count();
+  const int faces = model_.contact_count() / Dim;
   const int blocks = model_.block_count();
 #pragma omp parallel
   for (int i = 0; i < steps; ++i) {
 #pragma omp for schedule(static)
-    for (int c = 0; c < contacts; ++c) update_contact_point(c);
+    for (int f = 0; f < faces; ++f) update_face(f);
 #pragma omp for schedule(static)
     for (int b = 0; b < blocks; ++b) {
       add_zone_forces(b);
@@ -153,16 +166,47 @@ void Mechanics<Dim>::advance(int steps) {
   steps_ += steps;
 }
 
-/// Jump to traction and force, Eqs. (10)-(15).
+/// Contact points of one shared face: jumps to tractions to forces, Eqs. (10)-(15).
 template <int Dim>
-void Mechanics<Dim>::update_contact_point(int index) {
+void Mechanics<Dim>::update_face(int face) {
+  const int first = face * Dim;
+  const ContactFrame<Dim> frame = current_frame(first);
+  for (int c = first; c < first + Dim; ++c) {
+    contact_force_a_[c] = update_contact_point(c, frame);
+    contact_force_b_[c] = -contact_force_a_[c];
+  }
+  if constexpr (Dim == 2)
+    if (parameters_.kinematics == Kinematics::finite) add_turning_force(first, frame);
+}
+
+template <int Dim>
+ContactFrame<Dim> Mechanics<Dim>::current_frame(int first) const {
+  const auto& c = model_.contacts[first];
+  if constexpr (Dim == 2) {
+    if (parameters_.kinematics == Kinematics::finite) {
+      // mean edge of the two sides
+      const auto& d = model_.contacts[first + 1];
+      const auto& x = model_.position;
+      const auto& u = displacement_;
+      const Vec<2> edge = 0.5 * ((x[d.a] - x[c.a]) + (x[d.b] - x[c.b]) + (u[d.a] - u[c.a]) + (u[d.b] - u[c.b]));
+      const double length = norm(edge);
+      const Vec<2> t = edge * (1.0 / length);
+      return {{{t[1], -t[0]}}, {t}, length};
+    }
+  }
+  return {c.normal, c.tangents, 0.0};
+}
+
+/// Takes one contact point through the law; returns the force on its side a.
+template <int Dim>
+Vec<Dim> Mechanics<Dim>::update_contact_point(int index, const ContactFrame<Dim>& frame) {
   const auto& c = model_.contacts[index];
   auto& state = contact_state_[index];
-  const Vec<Dim> u = jump(c);
-  Tangential<Dim> tangential;
-  for (int i = 0; i + 1 < Dim; ++i) tangential[i] = dot(u, c.tangents[i]);
+  const Vec<Dim> u = displacement_[c.b] - displacement_[c.a];
+  state.opening = dot(u, frame.normal);
+  for (int i = 0; i + 1 < Dim; ++i) state.tangential_jump[i] = dot(u, frame.tangents[i]);
   const auto response =
-      update_contact<Dim>(interfaces_[c.interface], dot(u, c.normal), tangential, state.history);
+      update_contact<Dim>(interfaces_[c.interface], state.opening, state.tangential_jump, state.history);
   state.normal_traction = response.normal_traction;
   state.shear_traction = response.shear_traction;
   state.stored = response.stored;
@@ -170,9 +214,26 @@ void Mechanics<Dim>::update_contact_point(int index) {
   state.dissipated.shear += response.dissipated.shear;
   state.dissipated.friction += response.dissipated.friction;
   state.dissipated.compression += response.dissipated.compression;
-  Vec<Dim> traction = c.normal * response.normal_traction;
-  for (int i = 0; i + 1 < Dim; ++i) traction += c.tangents[i] * response.shear_traction[i];
-  contact_force_[index] = traction * c.area;
+  Vec<Dim> traction = frame.normal * response.normal_traction;
+  for (int i = 0; i + 1 < Dim; ++i) traction += frame.tangents[i] * response.shear_traction[i];
+  return traction * c.area;
+}
+
+/// Where the frame turns with the edge, so do the components of a jump. The forces that do the work of the tractions
+/// on that part keep moments in balance: minus the derivative of the jump's components by the edge's gridpoints.
+template <int Dim>
+void Mechanics<Dim>::add_turning_force(int first, const ContactFrame<Dim>& frame) {
+  double q = 0.0;
+  for (int c = first; c < first + Dim; ++c) {
+    const auto& s = contact_state_[c];
+    q += model_.contacts[c].area / frame.length *
+         (s.shear_traction[0] * s.opening - s.normal_traction * s.tangential_jump[0]);
+  }
+  const Vec<Dim> force = frame.normal * (0.5 * q);
+  contact_force_a_[first] += force;
+  contact_force_b_[first] += force;
+  contact_force_a_[first + 1] -= force;
+  contact_force_b_[first + 1] -= force;
 }
 
 /// Internal forces F_z of a block's gridpoints, Eqs. (4) and (5). Starts the sum of forces.
@@ -184,10 +245,14 @@ void Mechanics<Dim>::add_zone_forces(int block) {
     const auto& p = zone_properties_[z];
     std::array<Vec<Dim>, Dim + 1> u;
     for (int n = 0; n <= Dim; ++n) u[n] = displacement_[corner[n]];
-    stress_[z] = zone_stress<Dim>(p, mechanical_strain<Dim>(geometry_.gradient[z], u, p.thermal_strain));
+    Rotation rotation;
+    const auto strain = mechanical_strain<Dim>(geometry_.gradient[z], u, p.thermal_strain,
+                                               parameters_.kinematics, rotation);
+    const auto stress = zone_stress<Dim>(p, strain);
+    stress_[z] = rotated<Dim>(rotation, stress);
     Vec<Dim> last{};
     for (int n = 0; n < Dim; ++n) {
-      const Vec<Dim> f = apply<Dim>(stress_[z], geometry_.gradient[z][n]) * geometry_.volume[z];
+      const Vec<Dim> f = rotated<Dim>(rotation, apply<Dim>(stress, geometry_.gradient[z][n])) * geometry_.volume[z];
       force_[corner[n]] -= f;
       last += f;
     }
@@ -196,14 +261,16 @@ void Mechanics<Dim>::add_zone_forces(int block) {
 }
 
 template <int Dim>
-void Mechanics<Dim>::add_contact_forces(int g) {
+Vec<Dim> Mechanics<Dim>::contact_forces(int g) const {
+  Vec<Dim> sum{};
   for (int k = gridpoint_contacts_.begin[g]; k < gridpoint_contacts_.begin[g + 1]; ++k) {
     const int tagged = gridpoint_contacts_.contact[k];
     if (tagged & 1)
-      force_[g] -= contact_force_[tagged >> 1];
+      sum += contact_force_b_[tagged >> 1];
     else
-      force_[g] += contact_force_[tagged >> 1];
+      sum += contact_force_a_[tagged >> 1];
   }
+  return sum;
 }
 
 /// Completes the sum of forces, damps it (8) and integrates velocity and displacement (6), (7).
@@ -211,35 +278,48 @@ template <int Dim>
 void Mechanics<Dim>::move_gridpoints(int block) {
   const double dt = time_step_;
   const double lambda = parameters_.local_damping;
+  const double xi = parameters_.viscous_damping;
   const bool combined = parameters_.damping_form == DampingForm::combined;
-  const double half_xi = 0.5 * parameters_.viscous_damping * dt;
-  BlockWork& work = work_[block];
+  const double kept = 1.0 - 0.5 * xi * dt;
+  const double over = 1.0 / (1.0 + 0.5 * xi * dt);
+  BlockWork done, begun;
+  double kinetic = 0.0;
   for (int g = model_.block_gridpoints[block]; g < model_.block_gridpoints[block + 1]; ++g) {
-    add_contact_forces(g);
+    const double mass = mass_[g];
     const Vec<Dim> weight = parameters_.gravity * gravity_mass_[g];
-    force_[g] += weight + applied_[g];
-    for (int i = 0; i < Dim; ++i) {
-      const double before = velocity_[g][i];
-      const double sum = force_[g][i];
-      double after;
-      if (prescribed_[g] >> i & 1) {
-        after = prescribed_velocity_[g][i];
-        const double reaction = mass_[g] * (after - before) / dt - sum;
-        work.loading += (reaction + applied_[g][i]) * 0.5 * (before + after) * dt;
-      } else {
-        const double damping = lambda * std::abs(sum) * (combined ? 0.5 * (sign(before) - sign(sum - previous_force_[g][i])) : sign(before));
-        after = ((1.0 - half_xi) * before + (sum - damping) * dt / mass_[g]) / (1.0 + half_xi);
-        const double mean = 0.5 * (before + after);
-        work.local_damping += damping * mean * dt;
-        work.viscous_damping += parameters_.viscous_damping * mass_[g] * mean * mean * dt;
-        work.loading += applied_[g][i] * mean * dt;
-      }
-      work.gravity += weight[i] * 0.5 * (before + after) * dt;
-      velocity_[g][i] = after;
-      displacement_[g][i] += after * dt;
+    const Vec<Dim> applied = applied_[g];
+    const Vec<Dim> sum = force_[g] + contact_forces(g) + weight + applied;
+    const Vec<Dim> before = velocity_[g];
+    Vec<Dim> change{};
+    if (combined) {
+      change = sum - previous_force_[g];
+      previous_force_[g] = sum;
     }
-    if (combined) previous_force_[g] = force_[g];
+    Vec<Dim> after;
+    for (int i = 0; i < Dim; ++i) {
+      double loading = applied[i], damping = 0.0, drag = 0.0;
+      if (prescribed_[g] >> i & 1) {
+        after[i] = prescribed_velocity_[g][i];
+        loading += mass * (after[i] - before[i]) / dt - sum[i];  // the reaction
+      } else {
+        const double opposing = combined ? 0.5 * (sign(before[i]) - sign(change[i])) : sign(before[i]);
+        damping = lambda * std::abs(sum[i]) * opposing;
+        after[i] = (kept * before[i] + (sum[i] - damping) * step_over_mass_[g]) * over;
+        drag = xi * mass * 0.5 * (before[i] + after[i]);
+      }
+      const double to = 0.5 * before[i] * dt, from = 0.5 * after[i] * dt;
+      done.add({loading * to, weight[i] * to, damping * to, drag * to});
+      begun.add({loading * from, weight[i] * from, damping * from, drag * from});
+    }
+    kinetic += 0.5 * mass * dot(before, after);
+    force_[g] = sum;
+    velocity_[g] = after;
+    displacement_[g] += after * dt;
   }
+  work_[block].add(begun_[block]);
+  work_[block].add(done);
+  begun_[block] = begun;
+  kinetic_[block] = kinetic;
 }
 
 template <int Dim>
@@ -259,7 +339,9 @@ EnergyLedger Mechanics<Dim>::energy() const {
       // of the configuration that the last forces and contact states belong to
       u[n] = displacement_[g] - velocity_[g] * (steps_ > 0 ? time_step_ : 0.0);
     }
-    const auto strain = mechanical_strain<Dim>(geometry_.gradient[z], u, p.thermal_strain);
+    Rotation ignored;
+    const auto strain = mechanical_strain<Dim>(geometry_.gradient[z], u, p.thermal_strain,
+                                               parameters_.kinematics, ignored);
     e.zones += energy_density<Dim>(zone_stress<Dim>(p, strain), strain) * geometry_.volume[z];
   }
   for (std::size_t c = 0; c < contact_state_.size(); ++c) {
@@ -271,7 +353,7 @@ EnergyLedger Mechanics<Dim>::energy() const {
     e.dissipated.friction += s.dissipated.friction * area;
     e.dissipated.compression += s.dissipated.compression * area;
   }
-  for (std::size_t g = 0; g < mass_.size(); ++g) e.kinetic += 0.5 * mass_[g] * dot(velocity_[g], velocity_[g]);
+  for (double kinetic : kinetic_) e.kinetic += kinetic;
   return e;
 }
 
@@ -287,7 +369,7 @@ double Mechanics<Dim>::unbalanced_ratio() const {
     }
     applied += norm(last);
   }
-  for (const auto& f : contact_force_) applied += 2.0 * norm(f);
+  for (const auto& f : contact_force_a_) applied += 2.0 * norm(f);
   double unbalanced = 0.0;
   for (std::size_t g = 0; g < mass_.size(); ++g) {
     applied += norm(parameters_.gravity) * gravity_mass_[g] + norm(applied_[g]);
@@ -304,7 +386,7 @@ double Mechanics<Dim>::largest_relative_jump() const {
   double largest = 0.0;
   for (const auto& c : model_.contacts) {
     const double length = Dim == 2 ? Dim * c.area / model_.thickness : std::sqrt(2.0 * Dim * c.area);
-    largest = std::max(largest, norm(jump(c)) / length);
+    largest = std::max(largest, norm(displacement_[c.b] - displacement_[c.a]) / length);
   }
   return largest;
 }

@@ -27,6 +27,7 @@ struct MechanicsParameters {
   double local_damping = 0.0;      ///< lambda of Eq. (8), in [0, 1)
   DampingForm damping_form = DampingForm::local;
   double viscous_damping = 0.0;    ///< xi of Eq. (3), 1/s
+  Kinematics kinematics = Kinematics::small;
   MassChoice mass = MassChoice::real;
   double time_step = 0.0;          ///< s; the common step of MassChoice::scaled, not used with real mass
   double safety = 0.0;             ///< fraction of the stable step that is taken, in (0, 1]
@@ -58,10 +59,20 @@ struct EnergyLedger {
 template <int Dim>
 struct ContactState {
   ContactHistory<Dim> history;
+  double opening = 0.0;              ///< u_n, m
+  Tangential<Dim> tangential_jump{}; ///< u_s, m
   double normal_traction = 0.0;      ///< Pa, tension positive
   Tangential<Dim> shear_traction{};  ///< Pa
   double stored = 0.0;               ///< J/m²
   ContactDissipation dissipated;     ///< since the start, J/m²
+};
+
+/// Directions of a contact.
+template <int Dim>
+struct ContactFrame {
+  Vec<Dim> normal;                         ///< unit, from a to b
+  std::array<Vec<Dim>, Dim - 1> tangents;  ///< unit
+  double length = 0.0;                     ///< of the edge that turns the frame, m; finite kinematics only
 };
 
 /// The stable step and the gridpoint that sets it.
@@ -115,7 +126,8 @@ class Mechanics {
   const std::vector<ContactState<Dim>>& contacts() const { return contact_state_; }
   const std::vector<ContactProperties>& interfaces() const { return interfaces_; }
 
-  /// Energies; stored ones belong to the displacements that the last step started from.
+  /// Energies at the displacements that the last step started from. With kinetic energy as half m v(t - dt/2) v(t + dt/2),
+  /// central differences conserve their sum exactly in a linear body, so the ledger's error is that of the contacts.
   EnergyLedger energy() const;
   /// Mean unbalanced force over mean force applied to the gridpoints by zones, contacts and gravity.
   double unbalanced_ratio() const;
@@ -123,19 +135,29 @@ class Mechanics {
   double largest_relative_jump() const;
 
  private:
+  /// Work done on a block, J. The force of a step does half its work on the way to the step's displacement and half
+  /// on the way from it; `begun` is the second half of the last step, which belongs to the next.
   struct BlockWork {
     double loading = 0.0, gravity = 0.0, local_damping = 0.0, viscous_damping = 0.0;
+
+    void add(const BlockWork& o) {
+      loading += o.loading;
+      gravity += o.gravity;
+      local_damping += o.local_damping;
+      viscous_damping += o.viscous_damping;
+    }
   };
 
   void compute_stiffness();
   void set_masses(const std::vector<double>& densities);
-  void update_contact_point(int contact);
+  void scale_masses();
+  void update_face(int face);
+  Vec<Dim> update_contact_point(int contact, const ContactFrame<Dim>& frame);
+  ContactFrame<Dim> current_frame(int first_contact) const;
+  void add_turning_force(int first_contact, const ContactFrame<Dim>& frame);
   void add_zone_forces(int block);
-  void add_contact_forces(int gridpoint);
+  Vec<Dim> contact_forces(int gridpoint) const;
   void move_gridpoints(int block);
-  Vec<Dim> jump(const Contact<Dim>& contact) const {
-    return displacement_[contact.b] - displacement_[contact.a];
-  }
 
   const Model<Dim>& model_;
   MechanicsParameters<Dim> parameters_;
@@ -146,6 +168,7 @@ class Mechanics {
 
   std::vector<double> gravity_mass_;  ///< real mass, which gravity acts on, kg
   std::vector<double> mass_;          ///< mass that moves, kg
+  std::vector<double> step_over_mass_;  ///< s/kg
   std::vector<double> stiffness_;     ///< k_gp, N/m
   double real_mass_ = 0.0, moving_mass_ = 0.0, time_step_ = 0.0;
 
@@ -156,8 +179,10 @@ class Mechanics {
   std::vector<std::uint8_t> prescribed_;  ///< bit per component
   std::vector<SymmetricTensor<Dim>> stress_;
   std::vector<ContactState<Dim>> contact_state_;
-  std::vector<Vec<Dim>> contact_force_;  ///< on side a, N
-  std::vector<BlockWork> work_;          ///< per block, so that sums have one order
+  std::vector<Vec<Dim>> contact_force_a_, contact_force_b_;  ///< on the gridpoint of each side, N
+  // per block, so that sums have one order
+  std::vector<BlockWork> work_, begun_;
+  std::vector<double> kinetic_;
 };
 
 extern template class Mechanics<2>;

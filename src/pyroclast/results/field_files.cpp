@@ -121,13 +121,12 @@ void FieldFiles::write(const Mechanics<2>& mechanics, const Sample& sample) {
     const Vec<2> here = 0.5 * (u[c.a] + u[c.b]);
     append(displacement, here);
     append(displacement, 0.5 * (here + 0.5 * (u[partner.a] + u[partner.b])));
-    const Vec<2> jump = u[c.b] - u[c.a];
     const auto& state = mechanics.contacts()[i];
     tension.push_back(static_cast<float>(state.history.tension_damage));
     shear.push_back(static_cast<float>(state.history.shear_damage));
     closure.push_back(static_cast<float>(state.history.closure));
-    opening.push_back(static_cast<float>(dot(jump, c.normal)));
-    slip.push_back(static_cast<float>(dot(jump, c.tangents[0])));
+    opening.push_back(static_cast<float>(state.opening));
+    slip.push_back(static_cast<float>(state.tangential_jump[0]));
     normal_traction.push_back(static_cast<float>(state.normal_traction));
     shear_traction.push_back(static_cast<float>(state.shear_traction[0]));
   }

@@ -19,8 +19,8 @@ struct Aggregate {
   double diameter;  ///< m
 };
 
-/// Coarse aggregate asked for: Fuller's curve P(d) = (d/d_max)^exponent between d_min and d_max (paper, Eq.
-/// 16).
+/// Coarse aggregate asked for: Fuller's curve P(d) = (d/d_max)^nf between d_min and d_max (paper, Eq. 16).
+/// With a fraction of 0 the other members are not looked at.
 struct AggregateParameters {
   double fraction = 0.0;         ///< area fraction of coarse aggregate asked for, in [0, 1)
   double d_min = 0.0;            ///< smallest diameter, m
@@ -39,11 +39,11 @@ enum class Superposition : std::uint8_t {
 /// Tessellation asked for.
 struct BlockParameters {
   int count = 0;  ///< number of blocks
-  double radius_spread =
-      0.0;             ///< Laguerre radii: uniform in [1 - spread, 1 + spread] x mean spacing / 2; in [0, 1)
-  int relaxation = 0;  ///< Lloyd iterations; 0 leaves the seeds at random
-  double shortest_edge = 0.0;  ///< edges below this fraction of the mean edge are removed
-  std::filesystem::path file;  ///< Neper .tess file to read instead; empty: tessellate
+  /// Laguerre radii are uniform in [1 - spread, 1 + spread] x mean spacing / 2; in [0, 1), 0: plain Voronoi.
+  double radius_spread = 0.0;
+  int relaxation = 0;          ///< Lloyd iterations; 0 leaves the seeds at random
+  double shortest_edge = 0.0;  ///< edges below this fraction of the mean edge are removed, in [0, 0.5]
+  std::filesystem::path file;  ///< Neper .tess file to read instead of tessellating; empty: tessellate
 };
 
 struct SpecimenParameters {

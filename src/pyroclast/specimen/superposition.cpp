@@ -44,11 +44,10 @@ std::vector<double> covered_fractions(const Tessellation& tessellation, double w
   return for_each_cell(tessellation, width, height, aggregates,
                        [](Corners polygon, const std::vector<Aggregate>& nearby) {
                          double covered = 0.0;
-                         for (const Aggregate& a : nearby)
+                         for (const Aggregate& a : nearby) {
                            covered += common_area(polygon, a.centre, 0.5 * a.diameter);
-                         // A circle that does not touch the cell leaves rounding, which must not count as
-                         // covered.
-                         constexpr double rounding = 1e-12;
+                         }
+                         constexpr double rounding = 1e-12;  // left by circles that do not touch the cell
                          const double share = covered / area(polygon);
                          return share < rounding ? 0.0 : std::min(share, 1.0);
                        });

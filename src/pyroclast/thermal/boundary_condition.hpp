@@ -1,0 +1,34 @@
+#pragma once
+
+#include <variant>
+
+#include "pyroclast/material/curve.hpp"
+
+namespace pyroclast {
+
+/// Heat that flows into the body through a face, as functions of the time in s. A face with none of these is
+/// adiabatic; several on one face act together, as convection and radiation do in a fire.
+
+/// Given flux.
+struct HeatFlux {
+  Curve flux;  ///< W/m², into the body
+};
+
+/// h_c (T_f - T), paper Eq. (2).
+struct Convection {
+  Curve coefficient;      ///< h_c, W/(m² K), not negative
+  Curve gas_temperature;  ///< T_f, °C
+};
+
+/// epsilon sigma (T_f^4 - T^4) with absolute temperatures.
+struct Radiation {
+  Curve emissivity;       ///< resultant emissivity of face and surroundings, 0 to 1
+  Curve gas_temperature;  ///< of the surroundings, °C
+};
+
+using BoundaryCondition = std::variant<HeatFlux, Convection, Radiation>;
+
+inline constexpr double stefan_boltzmann = 5.670374419e-8;  ///< W/(m² K⁴), CODATA 2018
+inline constexpr double absolute_zero = -273.15;            ///< °C
+
+}  // namespace pyroclast

@@ -1,0 +1,387 @@
+#include "pyroclast/thermal/conduction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Overshoot next to sharp fronts stays far below this fraction of the range's width; more means that the body
+/// truly leaves the range.
+constexpr double kAllowedOvershoot = 0.05;
+
+void require(bool allowed, const char* parameter, double value, const char* what) {
+  if (!allowed) throw Error(fmt::format("heat conduction: {} is {}, but it must be {}", parameter, value, what));
+}
+
+const HeatParameters& checked(const HeatParameters& p) {
+  const auto [lower, upper] = p.temperature_range;
+  if (!(absolute_zero <= lower && lower < upper && std::isfinite(upper)))
+    throw Error(fmt::format("heat conduction: the temperature range is {} to {} degC, but it must ascend and begin "
+                            "no lower than {} degC",
+                            lower, upper, absolute_zero));
+  require(p.temperature_range.contains(p.initial_temperature), "the initial temperature", p.initial_temperature,
+          "within the temperature range");
+  require(p.safety > 0.0 && p.safety <= 1.0, "the safety factor", p.safety, "greater than 0 and at most 1");
+  require(p.largest_change > 0.0, "the largest change per step [K]", p.largest_change, "greater than 0");
+  require(p.largest_step > 0.0, "the largest step [s]", p.largest_step, "greater than 0");
+  return p;
+}
+
+std::vector<bool> conducting(const std::vector<std::string>& names,
+                             const std::vector<std::optional<HeatMaterial>>& materials) {
+  if (materials.size() != names.size())
+    throw Error(fmt::format("heat conduction: {} materials are given, but the model has {}", materials.size(),
+                            names.size()));
+  std::vector<bool> conducts;
+  for (const auto& material : materials) conducts.push_back(material.has_value());
+  return conducts;
+}
+
+/// Numbers those that conduct.
+std::vector<int> table_indices(const std::vector<bool>& conducts) {
+  std::vector<int> index;
+  int next = 0;
+  for (const bool conducting_material : conducts) index.push_back(conducting_material ? next++ : -1);
+  return index;
+}
+
+std::vector<HeatTable> make_tables(const std::vector<std::string>& names,
+                                   const std::vector<std::optional<HeatMaterial>>& materials,
+                                   const TemperatureGrid& grid, double window) {
+  std::vector<HeatTable> tables;
+  for (std::size_t m = 0; m < materials.size(); ++m)
+    if (materials[m]) tables.emplace_back(*materials[m], names[m], grid, window);
+  return tables;
+}
+
+std::vector<double> total_volumes(const std::vector<std::vector<NodeShare>>& shares) {
+  std::vector<double> volume;
+  for (const auto& of_node : shares)
+    volume.push_back(std::accumulate(of_node.begin(), of_node.end(), 0.0,
+                                     [](double sum, const NodeShare& share) { return sum + share.volume; }));
+  return volume;
+}
+
+/// By Gershgorin's theorem no rate of decay exceeds the largest row sum over capacity.
+template <class Capacity>
+HeatStepLimit strictest(const std::vector<double>& rows, double safety, Capacity capacity) {
+  HeatStepLimit limit{std::numeric_limits<double>::infinity(), 0};
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    const int node = static_cast<int>(n);
+    const double step = safety * 2.0 * capacity(node) / rows[n];
+    if (step < limit.step) limit = {step, node};
+  }
+  return limit;
+}
+
+}  // namespace
+
+template <int Dim>
+Conduction<Dim>::Conduction(const Model<Dim>& model, const std::vector<std::optional<HeatMaterial>>& materials,
+                            const HeatParameters& parameters)
+    : model_(model),
+      parameters_(checked(parameters)),
+      grid_(parameters.temperature_range),
+      conducts_(conducting(model.material_names, materials)),
+      table_of_material_(table_indices(conducts_)),
+      tables_(make_tables(model.material_names, materials, grid_, parameters.largest_change)),
+      nodes_(join_through_contacts(model, conducts_)),
+      geometry_(zone_geometry(model)),
+      outline_(pyroclast::outline(model, geometry_, conducts_)),
+      zones_(model, geometry_, nodes_, table_of_material_, tables_),
+      shares_(zones_.shares()),
+      store_(grid_, tables_, shares_),
+      volume_(total_volumes(shares_)) {
+  const auto count = static_cast<std::size_t>(nodes_.count());
+  if (count == 0) throw Error("heat conduction: no block is of a material that conducts heat");
+  prescription_.assign(count, -1);
+  for (auto* field : {&enthalpy_, &increment_, &before_, &first_rate_, &boundary_heat_, &source_heat_})
+    field->assign(count, 0.0);
+  set_temperature(std::vector<double>(count, parameters.initial_temperature));
+}
+
+// ---- What acts on the body -------------------------------------------------------------------------------
+
+template <int Dim>
+void Conduction<Dim>::apply(const std::vector<int>& faces, const BoundaryCondition& condition) {
+  std::vector<double> area(volume_.size());
+  for (int face : faces)
+    for (int g : outline_.at(face).gridpoints) area[nodes_.of_gridpoint[g]] += outline_[face].area / Dim;
+  std::vector<BoundaryPatch> patches;
+  for (int node = 0; node < nodes_.count(); ++node)
+    if (area[node] > 0.0) patches.push_back({node, area[node]});
+  boundary_.add(condition, std::move(patches));
+}
+
+template <int Dim>
+void Conduction<Dim>::prescribe_temperature(const std::vector<int>& faces, const Curve& temperature) {
+  require_curve_of_time(temperature, "prescribed temperature");
+  const int prescription = static_cast<int>(prescriptions_.size());
+  for (int face : faces)
+    for (int g : outline_.at(face).gridpoints) prescription_[nodes_.of_gridpoint[g]] = prescription;
+  prescriptions_.push_back(temperature);
+}
+
+template <int Dim>
+void Conduction<Dim>::prescribe_node(int node, const Curve& temperature) {
+  require_curve_of_time(temperature, "prescribed temperature");
+  prescription_.at(node) = static_cast<int>(prescriptions_.size());
+  prescriptions_.push_back(temperature);
+}
+
+template <int Dim>
+void Conduction<Dim>::set_temperature(const std::vector<double>& temperature) {
+  if (temperature.size() != volume_.size())
+    throw Error(fmt::format("heat conduction: {} temperatures are given for {} nodes", temperature.size(),
+                            volume_.size()));
+  for (double t : temperature)
+    require(grid_.range.contains(t), "a node's temperature", t, "within the temperature range");
+  temperature_ = temperature;
+  for (int node = 0; node < nodes_.count(); ++node) enthalpy_[node] = store_.enthalpy(node, temperature[node]);
+  stored_at_start_ = std::accumulate(enthalpy_.begin(), enthalpy_.end(), 0.0);
+  ledger_ = {};
+}
+
+// ---- Running ---------------------------------------------------------------------------------------------
+
+template <int Dim>
+void Conduction<Dim>::advance_to(double end) {
+  begin_run(end);
+  while (time_ < end) run_step(end);
+}
+
+template <int Dim>
+SteadyState Conduction<Dim>::advance_to_steady(double tolerance, double latest) {
+  require(tolerance > 0.0, "the tolerance of the steady state [K/s]", tolerance, "greater than 0");
+  begin_run(latest);
+  while (time_ < latest) {
+    run_step(latest);
+    if (rate_ < tolerance) return {true, rate_};
+  }
+  return {false, rate_};
+}
+
+template <int Dim>
+void Conduction<Dim>::begin_run(double end) {
+  require(end >= time_, "the time to run to [s]", end, "no earlier than the present");
+  boundary_.require_defined(time_, end);
+  require_prescriptions(end);
+  prescribed_.clear();
+  for (int node = 0; node < nodes_.count(); ++node)
+    if (prescription_[node] >= 0) prescribed_.push_back(node);
+  held_at_.resize(prescriptions_.size());
+  read_prescriptions(time_);
+  hold_prescribed();
+  safe_step_ = range_limit(end).step;
+  if (step_ == 0.0) step_ = std::min(safe_step_, parameters_.largest_step);
+}
+
+template <int Dim>
+void Conduction<Dim>::run_step(double end) {
+  const double remaining = end - time_;
+  // Two equal steps to the end rather than a last one that is tiny.
+  double step = step_ >= remaining ? remaining : std::min(step_, std::max(0.5 * remaining, safe_step_));
+  const double limit = present_limit(step).step;
+  for (;;) {
+    const Trial trial = try_step(step, fewest_stages(parameters_.scheme, step / limit));
+    const double allowed_excess = kAllowedOvershoot * (grid_.range.upper - grid_.range.lower);
+    const bool smallest = step <= safe_step_;
+    if (trial.excess <= allowed_excess && (smallest || trial.change <= parameters_.largest_change)) {
+      accept_step(step, trial);
+      if (step == remaining) time_ = end;
+      return;
+    }
+    if (smallest) refuse_excess();
+    temperature_ = start_temperature_;
+    step = std::max(0.5 * step, safe_step_);
+    ++retries_;
+  }
+}
+
+template <int Dim>
+typename Conduction<Dim>::Trial Conduction<Dim>::try_step(double step, int stages) {
+  start_temperature_ = temperature_;
+  std::fill(increment_.begin(), increment_.end(), 0.0);
+  std::fill(before_.begin(), before_.end(), 0.0);
+  Trial trial;
+  for (const TimeStage& stage : time_stages(parameters_.scheme, stages)) {
+    const Inflow inflow = compute_inflow(time_ + stage.begin * step);
+    trial.heat.boundary.add(stage.weight * step, inflow.boundary);
+    trial.heat.source += stage.weight * step * inflow.source;
+    trial.heat.prescribed -= stage.weight * step * inflow.held;
+    read_prescriptions(time_ + stage.end * step);
+    update_nodes(stage, step, trial);
+    ++stages_;
+  }
+  for (int node : prescribed_) trial.heat.prescribed += increment_[node];
+  return trial;
+}
+
+/// Right side of Eq. (1), integrated over each node's part of the body.
+template <int Dim>
+typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
+  Inflow sum;
+  zones_.update(temperature_);
+  sum.boundary = boundary_.inflow(time, temperature_, boundary_heat_);
+  if (source_) {
+#pragma omp parallel for schedule(static) if (nodes_.count() >= fewest_for_threads)
+    for (int node = 0; node < nodes_.count(); ++node)
+      source_heat_[node] = volume_[node] * source_(model_.position[nodes_.gridpoint[node]], time);
+    sum.source = std::accumulate(source_heat_.begin(), source_heat_.end(), 0.0);
+  }
+  for (int node : prescribed_) sum.held += inflow(node);
+  return sum;
+}
+
+template <int Dim>
+void Conduction<Dim>::update_nodes(const TimeStage& stage, double step, Trial& trial) {
+  const bool first = stage.begin == 0.0;
+  double change = trial.change, excess = 0.0;
+#pragma omp parallel for schedule(static) reduction(max : change, excess) \
+    if (nodes_.count() >= fewest_for_threads)
+  for (int node = 0; node < nodes_.count(); ++node) {
+    double increment;
+    if (const int prescription = prescription_[node]; prescription >= 0) {
+      temperature_[node] = held_at_[prescription];
+      increment = store_.enthalpy(node, temperature_[node]) - enthalpy_[node];
+    } else {
+      const double rate = inflow(node);
+      if (first) first_rate_[node] = rate;
+      increment = stage.previous * increment_[node] + stage.before * before_[node] +
+                  step * (stage.rate * rate + stage.first_rate * first_rate_[node]);
+      temperature_[node] = store_.temperature(node, enthalpy_[node] + increment, temperature_[node]);
+    }
+    before_[node] = increment_[node];
+    increment_[node] = increment;
+    change = std::max(change, std::abs(temperature_[node] - start_temperature_[node]));
+    if (temperature_[node] == grid_.range.lower || temperature_[node] == grid_.range.upper)
+      excess = std::max(excess, store_.excess(node, enthalpy_[node] + increment));
+  }
+  trial.change = change;
+  trial.excess = excess;
+}
+
+template <int Dim>
+void Conduction<Dim>::accept_step(double step, const Trial& trial) {
+  double squares = 0.0, volume = 0.0;
+  for (int node = 0; node < nodes_.count(); ++node) {
+    enthalpy_[node] += increment_[node];
+    const double speed = (temperature_[node] - start_temperature_[node]) / step;
+    squares += volume_[node] * speed * speed;
+    volume += volume_[node];
+  }
+  rate_ = std::sqrt(squares / volume);
+  ledger_.boundary.add(1.0, trial.heat.boundary);
+  ledger_.source += trial.heat.source;
+  ledger_.prescribed += trial.heat.prescribed;
+  largest_overshoot_ = std::max(largest_overshoot_, trial.excess);
+  time_ += step;
+  ++steps_;
+  adapt_step(step, trial.change);
+}
+
+/// Chooses the next step so that the largest change stays a little below what is allowed.
+template <int Dim>
+void Conduction<Dim>::adapt_step(double step, double change) {
+  constexpr double aim = 0.8, fastest_growth = 2.0;
+  const double growth = aim * parameters_.largest_change / change;  // infinite when nothing changes
+  const double wanted = std::clamp(step * std::min(growth, fastest_growth), safe_step_,
+                                   std::max(safe_step_, parameters_.largest_step));
+  // A step cut short by the end of a run says nothing against the longer one that was meant.
+  const bool cut_short = step < step_ && growth > 1.0;
+  step_ = std::min(cut_short ? std::max(step_, wanted) : wanted, parameters_.largest_step);
+}
+
+template <int Dim>
+void Conduction<Dim>::read_prescriptions(double time) {
+  for (std::size_t i = 0; i < prescriptions_.size(); ++i) held_at_[i] = prescriptions_[i](time);
+}
+
+/// A temperature that is prescribed from now on comes with the heat that the jump to it needs.
+template <int Dim>
+void Conduction<Dim>::hold_prescribed() {
+  for (int node : prescribed_) {
+    temperature_[node] = held_at_[prescription_[node]];
+    const double enthalpy = store_.enthalpy(node, temperature_[node]);
+    ledger_.prescribed += enthalpy - enthalpy_[node];
+    enthalpy_[node] = enthalpy;
+  }
+}
+
+// ---- Limits ----------------------------------------------------------------------------------------------
+
+/// Valid while no temperature changes by more than the largest change.
+template <int Dim>
+HeatStepLimit Conduction<Dim>::present_limit(double step) const {
+  auto rows = zones_.row_bound(temperature_);
+  auto hottest = temperature_;
+  for (double& t : hottest) t = std::min(t + parameters_.largest_change, grid_.range.upper);
+  boundary_.add_slope(time_, time_ + step, hottest, rows);
+  return strictest(rows, parameters_.safety,
+                   [&](int node) { return store_.least_capacity(node, temperature_[node]); });
+}
+
+/// Valid whatever the temperatures.
+template <int Dim>
+HeatStepLimit Conduction<Dim>::range_limit(double end) const {
+  auto rows = zones_.row_bound();
+  boundary_.add_slope(time_, end, std::vector<double>(rows.size(), grid_.range.upper), rows);
+  return strictest(rows, parameters_.safety, [&](int node) { return store_.least_capacity(node); });
+}
+
+template <int Dim>
+HeatStepLimit Conduction<Dim>::step_limit() const {
+  return present_limit(0.0);
+}
+
+template <int Dim>
+void Conduction<Dim>::require_prescriptions(double end) const {
+  for (const Curve& curve : prescriptions_) {
+    require_defined(curve, "prescribed temperature", time_, end);
+    const double least = curve.minimum(time_, end);
+    const double greatest = curve.maximum(time_, end);
+    if (!grid_.range.contains(least) || !grid_.range.contains(greatest))
+      throw Error(fmt::format("prescribed temperature ({}) goes from {} to {} degC, but the run's temperature range "
+                              "is {} to {} degC",
+                              curve.describe(), least, greatest, grid_.range.lower, grid_.range.upper));
+  }
+}
+
+template <int Dim>
+void Conduction<Dim>::refuse_excess() const {
+  const auto excess = [&](int node) { return store_.excess(node, enthalpy_[node] + increment_[node]); };
+  int node = 0;
+  for (int other = 1; other < nodes_.count(); ++other)
+    if (excess(other) > excess(node)) node = other;
+  const Vec<Dim>& x = model_.position[nodes_.gridpoint[node]];
+  throw Error(fmt::format("the temperature at ({}) m leaves the run's range of {} to {} degC at {:g} s",
+                          fmt::join(x.c, ", "), grid_.range.lower, grid_.range.upper, time_));
+}
+
+// ---- Looking ---------------------------------------------------------------------------------------------
+
+template <int Dim>
+std::vector<double> Conduction<Dim>::gridpoint_temperatures(double elsewhere) const {
+  std::vector<double> result;
+  for (int node : nodes_.of_gridpoint) result.push_back(node < 0 ? elsewhere : temperature_[node]);
+  return result;
+}
+
+template <int Dim>
+HeatLedger Conduction<Dim>::ledger() const {
+  HeatLedger ledger = ledger_;
+  ledger.stored = std::accumulate(enthalpy_.begin(), enthalpy_.end(), 0.0) - stored_at_start_;
+  return ledger;
+}
+
+template class Conduction<2>;
+template class Conduction<3>;
+
+}  // namespace pyroclast

@@ -1,0 +1,190 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "pyroclast/thermal/heat_boundary.hpp"
+#include "pyroclast/thermal/heat_material.hpp"
+#include "pyroclast/thermal/thermal_mesh.hpp"
+#include "pyroclast/thermal/time_stages.hpp"
+#include "pyroclast/thermal/zone_conduction.hpp"
+
+namespace pyroclast {
+
+struct HeatParameters {
+  Interval temperature_range;    ///< that the run stays within, °C
+  double initial_temperature;    ///< °C
+  HeatScheme scheme;
+  double safety;          ///< fraction of the stable step that is taken, in (0, 1]
+  double largest_change;  ///< of any temperature in one step, K
+  double largest_step;    ///< s
+};
+
+/// Where the heat of a body came from since the start, J. What came in is what is stored; the rest is the
+/// ledger's error.
+struct HeatLedger {
+  HeatByKind boundary;
+  double prescribed = 0.0;  ///< needed to hold the prescribed temperatures
+  double source = 0.0;
+  double stored = 0.0;
+
+  double heat_in() const { return boundary.total() + prescribed + source; }
+  double error() const { return heat_in() - stored; }
+};
+
+/// The stable step of forward Euler and the node that sets it.
+struct HeatStepLimit {
+  double step = 0.0;  ///< s
+  int node = 0;
+};
+
+/// How a run towards a steady state ended.
+struct SteadyState {
+  bool reached = false;
+  double rate = 0.0;  ///< L2 norm of the temperature's change, K/s, see Conduction::rate
+};
+
+/// Transient conduction of heat in a body of blocks, paper Eqs. (1) and (2).
+///
+/// Linear zones with lumped capacity; gridpoints that contacts join are one node. The enthalpy of the nodes is
+/// what is advanced, and temperatures follow from it, so heat is conserved to rounding whatever the curves.
+/// A step is explicit: as many stages as the step needs to be stable, with bounds of the properties that hold
+/// while no temperature changes by more than `largest_change`; a step in which one does is taken back and
+/// halved, down to the step that is stable whatever the temperatures.
+///
+/// Zones with obtuse angles let a temperature overshoot its neighbours next to a sharp front. At an end of the
+/// temperature range the temperature then stays there while the node's heat waits, see `largest_overshoot`.
+///
+/// Heat is gathered by the node that it flows to and every sum has one order, so results are bitwise the same
+/// for any number of threads.
+template <int Dim>
+class Conduction {
+ public:
+  /// Heat generated at a point and time (s), W/m³. Called by several threads at once; must not throw.
+  using Source = std::function<double(const Vec<Dim>& position, double time)>;
+
+  /// \param model      kept by reference; must outlive this
+  /// \param materials  by material of the model; one without conducts no heat, and its blocks are left out
+  ///
+  /// Throws Error naming the parameter, material or curve that is out of range.
+  Conduction(const Model<Dim>& model, const std::vector<std::optional<HeatMaterial>>& materials,
+             const HeatParameters& parameters);
+
+  Conduction(const Conduction&) = delete;
+  Conduction& operator=(const Conduction&) = delete;
+
+  /// Outline of the conducting body, adiabatic unless something else is applied.
+  const std::vector<OutlineFace<Dim>>& outline() const { return outline_; }
+  /// Indices of the outline's faces that a predicate chooses, such as on_plane or in_box.
+  template <class Predicate>
+  std::vector<int> faces(Predicate predicate) const {
+    std::vector<int> chosen;
+    for (std::size_t i = 0; i < outline_.size(); ++i)
+      if (predicate(outline_[i])) chosen.push_back(static_cast<int>(i));
+    return chosen;
+  }
+
+  /// Lets heat in through faces of the outline, in addition to what acts there already.
+  void apply(const std::vector<int>& faces, const BoundaryCondition& condition);
+  /// Prescribes the temperature (°C, of the time in s) of the nodes of faces; where two meet, the later holds.
+  void prescribe_temperature(const std::vector<int>& faces, const Curve& temperature);
+  /// Prescribes the temperature of a node.
+  void prescribe_node(int node, const Curve& temperature);
+  void set_source(Source source) { source_ = std::move(source); }
+
+  /// Sets the temperature of every node, °C, and starts the ledger anew.
+  void set_temperature(const std::vector<double>& temperature);
+
+  /// Runs to a time, s. Throws Error when a temperature leaves the range, naming the place.
+  void advance_to(double time);
+  /// Runs until the rate falls below a tolerance, K/s, or to the latest time, s.
+  SteadyState advance_to_steady(double tolerance, double latest);
+
+  double time() const { return time_; }
+  const ThermalNodes& nodes() const { return nodes_; }
+  /// Of each node, °C.
+  const std::vector<double>& temperature() const { return temperature_; }
+  /// Of each gridpoint, °C; `elsewhere` for those of blocks that are left out.
+  std::vector<double> gridpoint_temperatures(double elsewhere) const;
+
+  HeatLedger ledger() const;
+  /// L2 norm of the temperature's change per time in the last step, sqrt(mean over the volume of (dT/dt)²), K/s.
+  double rate() const { return rate_; }
+  /// Stable step of forward Euler at the present temperatures, safety included.
+  HeatStepLimit step_limit() const;
+  /// Farthest that heat would have taken a node beyond the temperature range had it not been held there, K.
+  double largest_overshoot() const { return largest_overshoot_; }
+
+  std::int64_t steps() const { return steps_; }      ///< completed
+  std::int64_t retries() const { return retries_; }  ///< taken back because a temperature changed too much
+  std::int64_t stages() const { return stages_; }    ///< evaluations of Eq. (1), what a run costs
+
+ private:
+  /// What flows in, W; `held` flows into nodes whose temperature is prescribed.
+  struct Inflow {
+    HeatByKind boundary;
+    double source = 0.0, held = 0.0;
+  };
+  /// What a step did, before it is accepted.
+  struct Trial {
+    double change = 0.0;  ///< largest of any temperature at any stage, K
+    double excess = 0.0;  ///< largest beyond the temperature range at the end, K
+    HeatLedger heat;      ///< without what is stored
+  };
+
+  void begin_run(double end);
+  void run_step(double end);
+  Trial try_step(double step, int stages);
+  void accept_step(double step, const Trial& trial);
+  void adapt_step(double step, double change);
+  Inflow compute_inflow(double time);
+  void update_nodes(const TimeStage& stage, double step, Trial& trial);
+  double inflow(int node) const { return zones_.inflow(node) + boundary_heat_[node] + source_heat_[node]; }
+  void read_prescriptions(double time);
+  void hold_prescribed();
+  HeatStepLimit present_limit(double step) const;
+  HeatStepLimit range_limit(double end) const;
+  void require_prescriptions(double end) const;
+  [[noreturn]] void refuse_excess() const;
+
+  const Model<Dim>& model_;
+  HeatParameters parameters_;
+  TemperatureGrid grid_;
+  std::vector<bool> conducts_;          ///< by material
+  std::vector<int> table_of_material_;  ///< -1: does not conduct
+  std::vector<HeatTable> tables_;
+  ThermalNodes nodes_;
+  ZoneGeometry<Dim> geometry_;
+  std::vector<OutlineFace<Dim>> outline_;
+  ZoneConduction<Dim> zones_;
+  std::vector<std::vector<NodeShare>> shares_;
+  NodeEnthalpy store_;
+  std::vector<double> volume_;  ///< of each node, m³
+
+  HeatBoundary boundary_;
+  Source source_;
+  std::vector<Curve> prescriptions_;
+  std::vector<int> prescription_;    ///< of each node, -1: free
+  std::vector<int> prescribed_;      ///< nodes, ascending
+  std::vector<double> held_at_;      ///< by prescription, °C
+
+  double time_ = 0.0;
+  double step_ = 0.0;       ///< to try next, s
+  double safe_step_ = 0.0;  ///< stable whatever the temperatures, s
+  double rate_ = 0.0, largest_overshoot_ = 0.0;
+  std::int64_t steps_ = 0, retries_ = 0, stages_ = 0;
+  HeatLedger ledger_;
+  double stored_at_start_ = 0.0;  ///< J
+
+  std::vector<double> temperature_, enthalpy_;               ///< °C, J
+  std::vector<double> start_temperature_;                    ///< of the step
+  std::vector<double> increment_, before_, first_rate_;      ///< see TimeStage
+  std::vector<double> boundary_heat_, source_heat_;          ///< into each node, W
+};
+
+extern template class Conduction<2>;
+extern template class Conduction<3>;
+
+}  // namespace pyroclast

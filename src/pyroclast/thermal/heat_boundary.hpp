@@ -1,0 +1,61 @@
+#pragma once
+
+#include <vector>
+
+#include "pyroclast/thermal/boundary_condition.hpp"
+
+namespace pyroclast {
+
+/// Heat by the way in which it comes in, W or J.
+struct HeatByKind {
+  double flux = 0.0;
+  double convection = 0.0;
+  double radiation = 0.0;
+
+  double total() const { return flux + convection + radiation; }
+  void add(double weight, const HeatByKind& other) {
+    flux += weight * other.flux;
+    convection += weight * other.convection;
+    radiation += weight * other.radiation;
+  }
+};
+
+/// Part of the outline that belongs to a node.
+struct BoundaryPatch {
+  int node;
+  double area;  ///< m²
+};
+
+/// The boundary conditions of a body. Their integrals over the faces are taken by the values at the nodes
+/// (trapezoidal rule: second order, and exact for a given flux).
+class HeatBoundary {
+ public:
+  /// Throws Error naming the quantity when its curve is not one of time, a coefficient is negative, or an
+  /// emissivity not between 0 and 1.
+  void add(const BoundaryCondition& condition, std::vector<BoundaryPatch> patches);
+
+  /// Throws Error naming the curve that is not defined from `begin` to `end`, s.
+  void require_defined(double begin, double end) const;
+
+  /// Writes the heat that flows into each boundary node, W; leaves the other entries as they are.
+  HeatByKind inflow(double time, const std::vector<double>& temperature, std::vector<double>& heat) const;
+
+  /// Adds to each boundary node a bound of how fast its outflow grows with its temperature, W/K, between two
+  /// times, s.
+  /// \param hottest  bound of each node's temperature, °C
+  void add_slope(double begin, double end, const std::vector<double>& hottest, std::vector<double>& slope) const;
+
+ private:
+  struct Entry {
+    BoundaryCondition condition;
+    std::vector<BoundaryPatch> patches;
+  };
+  std::vector<Entry> entries_;
+};
+
+/// Throws Error naming the quantity when a curve is not one of time.
+void require_curve_of_time(const Curve& curve, const char* quantity);
+/// Throws Error naming the quantity when a curve is not defined from `begin` to `end`, s.
+void require_defined(const Curve& curve, const char* quantity, double begin, double end);
+
+}  // namespace pyroclast

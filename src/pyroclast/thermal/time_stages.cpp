@@ -1,0 +1,66 @@
+#include "pyroclast/thermal/time_stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pyroclast {
+
+namespace {
+
+std::vector<TimeStage> euler_stages(int count) {
+  std::vector<TimeStage> stages;
+  const double part = 1.0 / count;
+  for (int j = 0; j < count; ++j) stages.push_back({1.0, 0.0, part, 0.0, j * part, (j + 1) * part, part});
+  return stages;
+}
+
+/// b_j of Meyer et al., Eq. (15).
+double legendre_weight(int j) {
+  return j < 2 ? 1.0 / 3.0 : (j * j + j - 2.0) / (2.0 * j * (j + 1.0));
+}
+
+/// Follows the increment of the whole step back to the rates that it is made of.
+void set_weights(std::vector<TimeStage>& stages) {
+  double share = 1.0, next = 0.0;  // of D_j and D_(j+1) in the last increment
+  for (std::size_t j = stages.size(); j-- > 0;) {
+    stages[j].weight += share * stages[j].rate;
+    stages.front().weight += share * stages[j].first_rate;
+    const double before = share * stages[j].previous + (j + 1 < stages.size() ? next * stages[j + 1].before : 0.0);
+    next = share;
+    share = before;
+  }
+}
+
+/// Meyer et al., Eqs. (16) and (17), written for increments.
+std::vector<TimeStage> legendre_stages(int count) {
+  const double w = 4.0 / (count * (count + 1.0) - 2.0);
+  std::vector<TimeStage> stages{{0.0, 0.0, w / 3.0, 0.0, 0.0, w / 3.0, 0.0}};
+  for (int j = 2; j <= count; ++j) {
+    TimeStage stage{};
+    stage.previous = (2.0 * j - 1.0) / j * legendre_weight(j) / legendre_weight(j - 1);
+    stage.before = -(j - 1.0) / j * legendre_weight(j) / legendre_weight(j - 2);
+    stage.rate = w * stage.previous;
+    stage.first_rate = -(1.0 - legendre_weight(j - 1)) * stage.rate;
+    stage.begin = stages.back().end;
+    const double before = stages.back().begin;
+    stage.end = stage.previous * stage.begin + stage.before * before + stage.rate + stage.first_rate;
+    stages.push_back(stage);
+  }
+  set_weights(stages);
+  return stages;
+}
+
+}  // namespace
+
+int fewest_stages(HeatScheme scheme, double ratio) {
+  if (scheme == HeatScheme::euler) return std::max(1, static_cast<int>(std::ceil(ratio)));
+  // n stages are stable for (n² + n - 2)/4 steps. Odd numbers damp the shortest waves, even ones do not.
+  const int count = static_cast<int>(std::ceil(0.5 * (std::sqrt(9.0 + 16.0 * ratio) - 1.0)));
+  return std::max(3, count + 1 - count % 2);
+}
+
+std::vector<TimeStage> time_stages(HeatScheme scheme, int count) {
+  return scheme == HeatScheme::euler ? euler_stages(count) : legendre_stages(count);
+}
+
+}  // namespace pyroclast

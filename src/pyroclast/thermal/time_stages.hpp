@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace pyroclast {
+
+/// How heat conduction is advanced in time. Both are explicit and safe up to the stable step of the mesh times
+/// a factor that grows with the number of stages.
+enum class HeatScheme : std::uint8_t {
+  euler,  ///< forward Euler, first order: n stages for n stable steps
+  /// Runge-Kutta-Legendre super-time-stepping, second order: about 2 sqrt(n) stages for n stable steps.
+  /// Meyer, Balsara and Aslam, J. Comput. Phys. 257 (2014) 594-626.
+  super_time_stepping
+};
+
+/// One stage of a step from y_0 at time t. With D the increment of y since t and M the rate dy/dt,
+/// D_j = previous D_(j-1) + before D_(j-2) + step (rate M(y_(j-1)) + first_rate M(y_0)).
+struct TimeStage {
+  double previous, before, rate, first_rate;
+  double begin, end;  ///< times of y_(j-1) and y_j since t, over the step
+  double weight;      ///< of M(y_(j-1)) in the increment of the whole step, over the step
+};
+
+/// Fewest stages that are stable for a step of `ratio` stable steps of forward Euler.
+int fewest_stages(HeatScheme scheme, double ratio);
+
+/// The stages of one step; `count` as from `fewest_stages`.
+std::vector<TimeStage> time_stages(HeatScheme scheme, int count);
+
+}  // namespace pyroclast

@@ -1,0 +1,119 @@
+#include "pyroclast/thermal/zone_conduction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pyroclast {
+
+template <int Dim>
+ZoneConduction<Dim>::ZoneConduction(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry,
+                                    const ThermalNodes& nodes, const std::vector<int>& table_of_material,
+                                    const std::vector<HeatTable>& tables)
+    : tables_(tables), node_count_(nodes.count()), begin_(static_cast<std::size_t>(nodes.count()) + 1) {
+  for (int b = 0; b < model.block_count(); ++b) {
+    const int table = table_of_material[model.block_material[b]];
+    if (table < 0) continue;
+    for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
+      Zone zone{{}, table, geometry.volume[z], geometry.gradient[z]};
+      std::array<Vec<Dim>, Dim + 1> gradient{};
+      for (int i = 0; i <= Dim; ++i) zone.node[i] = nodes.of_gridpoint[model.zones[z][i]];
+      for (int i = 0; i < Dim; ++i) {
+        gradient[i] = zone.gradient[i];
+        gradient[Dim] -= zone.gradient[i];
+      }
+      std::array<double, Dim + 1> row{};
+      for (int i = 0; i <= Dim; ++i)
+        for (int j = 0; j <= Dim; ++j) row[i] += std::abs(dot(gradient[i], gradient[j])) * zone.volume;
+      zones_.push_back(zone);
+      row_.push_back(row);
+    }
+  }
+  heat_.resize(zones_.size());
+
+  for (const auto& zone : zones_)
+    for (int node : zone.node) ++begin_[node + 1];
+  for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  corners_.resize(static_cast<std::size_t>(begin_.back()));
+  auto next = begin_;
+  for (std::size_t z = 0; z < zones_.size(); ++z)
+    for (int i = 0; i <= Dim; ++i) corners_[next[zones_[z].node[i]]++] = {static_cast<int>(z), i};
+}
+
+template <int Dim>
+double ZoneConduction<Dim>::mean_temperature(const Zone& zone, const std::vector<double>& temperature) const {
+  double sum = 0.0;
+  for (int node : zone.node) sum += temperature[node];
+  return sum / (Dim + 1);
+}
+
+/// Flux gamma grad T of Eq. (1), weighted by the gradients of the shape functions.
+template <int Dim>
+void ZoneConduction<Dim>::update(const std::vector<double>& temperature) {
+  const int count = static_cast<int>(zones_.size());
+#pragma omp parallel for schedule(static) if (count >= fewest_for_threads)
+  for (int z = 0; z < count; ++z) {
+    const Zone& zone = zones_[z];
+    const double last = temperature[zone.node[Dim]];
+    Vec<Dim> gradient{};
+    for (int i = 0; i < Dim; ++i) gradient += zone.gradient[i] * (temperature[zone.node[i]] - last);
+    const double conductivity = tables_[zone.table].conductivity(mean_temperature(zone, temperature));
+    const Vec<Dim> flow = gradient * (conductivity * zone.volume);
+    double others = 0.0;
+    for (int i = 0; i < Dim; ++i) {
+      heat_[z][i] = -dot(zone.gradient[i], flow);
+      others += heat_[z][i];
+    }
+    heat_[z][Dim] = -others;
+  }
+}
+
+template <int Dim>
+double ZoneConduction<Dim>::inflow(int node) const {
+  double sum = 0.0;
+  for (int i = begin_[node]; i < begin_[node + 1]; ++i) sum += heat_[corners_[i][0]][corners_[i][1]];
+  return sum;
+}
+
+template <int Dim>
+template <class Conductivity>
+std::vector<double> ZoneConduction<Dim>::gather_rows(Conductivity conductivity) const {
+  std::vector<double> rows(static_cast<std::size_t>(node_count_));
+#pragma omp parallel for schedule(static) if (node_count_ >= fewest_for_threads)
+  for (int node = 0; node < node_count_; ++node)
+    for (int i = begin_[node]; i < begin_[node + 1]; ++i) {
+      const auto [zone, corner] = corners_[i];
+      rows[node] += row_[zone][corner] * conductivity(zones_[zone]);
+    }
+  return rows;
+}
+
+template <int Dim>
+std::vector<double> ZoneConduction<Dim>::row_bound(const std::vector<double>& temperature) const {
+  return gather_rows([&](const Zone& zone) {
+    return tables_[zone.table].greatest_conductivity(mean_temperature(zone, temperature));
+  });
+}
+
+template <int Dim>
+std::vector<double> ZoneConduction<Dim>::row_bound() const {
+  return gather_rows([&](const Zone& zone) { return tables_[zone.table].greatest_conductivity(); });
+}
+
+template <int Dim>
+std::vector<std::vector<NodeShare>> ZoneConduction<Dim>::shares() const {
+  std::vector<std::vector<NodeShare>> shares(static_cast<std::size_t>(node_count_));
+  for (const auto& zone : zones_)
+    for (int node : zone.node) {
+      auto& of_node = shares[node];
+      auto share = std::find_if(of_node.begin(), of_node.end(),
+                                [&](const NodeShare& s) { return s.material == zone.table; });
+      if (share == of_node.end()) share = of_node.insert(share, {zone.table, 0.0});
+      share->volume += zone.volume / (Dim + 1);
+    }
+  return shares;
+}
+
+template class ZoneConduction<2>;
+template class ZoneConduction<3>;
+
+}  // namespace pyroclast

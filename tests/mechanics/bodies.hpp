@@ -1,0 +1,159 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "pyroclast/material/contact_law.hpp"
+#include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/specimen/specimen.hpp"
+
+/// Small bodies that the mechanics tests share.
+namespace pyroclast::bodies {
+
+/// Mortar-mortar contact of the paper's Table 2.
+inline ContactProperties mortar_contact() {
+  ContactProperties p;
+  p.normal_stiffness = 18400e9;
+  p.shear_stiffness = 7660e9;
+  p.tensile_strength = 2.5e6;
+  p.mode_1_energy = 60.0;
+  p.compressive_limit = 31e6;
+  p.hardening = 0.05;
+  p.cohesion = 3.8e6;
+  p.residual_cohesion = 0.038e6;
+  p.friction = p.residual_friction = std::tan(34.0 * std::numbers::pi / 180.0);
+  p.mode_2_energy = 240.0;
+  return p;
+}
+
+inline ContactProperties elastic_contact() {
+  ContactProperties p = mortar_contact();
+  p.behaviour = ContactBehaviour::elastic;
+  return p;
+}
+
+inline Vec<2> turned(const Vec<2>& x, double angle) {
+  return {{std::cos(angle) * x[0] - std::sin(angle) * x[1], std::sin(angle) * x[0] + std::cos(angle) * x[1]}};
+}
+
+/// The blocks of a random tessellation without platens, one material, one interface, turned by `angle`.
+inline Model<2> tessellated(int blocks, double width, double height, std::uint64_t seed, double angle = 0.0) {
+  specimen::SpecimenParameters p;
+  p.width = width;
+  p.height = height;
+  p.seed = seed;
+  p.aggregates = {.fraction = 0.0,
+                  .d_min = 0.1 * width,
+                  .d_max = 0.2 * width,
+                  .fuller_exponent = 0.45,
+                  .sieves = {0.1 * width, 0.2 * width},
+                  .minimum_gap = 0.0,
+                  .attempts = 1};
+  p.blocks.count = blocks;
+  p.blocks.shortest_edge = 0.2;
+  const auto specimen = specimen::make_specimen(p);
+  const auto& cells = specimen.tessellation.cells;
+  Model<2> model;
+  model.material_names = {"mortar"};
+  model.interface_names = {"mortar-mortar"};
+  for (const auto& cell : cells) {
+    std::vector<Vec<2>> corners;
+    for (int v : cell) corners.push_back(turned(specimen.tessellation.vertices[v], angle));
+    const auto zoned = specimen::zone_block(corners);
+    model.add_block(zoned.gridpoints, zoned.zones, 0);
+  }
+  const auto gridpoint = [&](int cell, int vertex) {
+    for (std::size_t i = 0; i < cells[cell].size(); ++i)
+      if (cells[cell][i] == vertex) return model.block_gridpoints[cell] + static_cast<int>(i);
+    return -1;
+  };
+  for (const auto& e : specimen::edges(specimen.tessellation))
+    if (e.right >= 0)
+      model.join_faces({gridpoint(e.left, e.v0), gridpoint(e.left, e.v1)},
+                       {gridpoint(e.right, e.v0), gridpoint(e.right, e.v1)}, 0);
+  return model;
+}
+
+/// A column of `count` square blocks of size d, joined face to face, its axis turned by `angle` from the y axis.
+/// Block i holds gridpoints 4 i (lower left) to 4 i + 3, counter-clockwise.
+inline Model<2> column(int count, double d, double angle = 0.0) {
+  Model<2> model;
+  model.material_names = {"mortar"};
+  model.interface_names = {"mortar-mortar"};
+  for (int i = 0; i < count; ++i) {
+    std::vector<Vec<2>> corners{{{0.0, i * d}}, {{d, i * d}}, {{d, (i + 1) * d}}, {{0.0, (i + 1) * d}}};
+    for (auto& x : corners) x = turned(x, angle);
+    model.add_block(corners, {{0, 1, 2}, {0, 2, 3}}, 0);
+  }
+  for (int i = 0; i + 1 < count; ++i)
+    model.join_faces({4 * i + 2, 4 * i + 3}, {4 * (i + 1) + 1, 4 * (i + 1)}, 0);
+  return model;
+}
+
+/// The unit cube cut into five tetrahedra, each a block of its own, joined through their inner faces.
+inline Model<3> five_tetrahedra() {
+  const std::vector<Vec<3>> x{{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}},
+                              {{0, 0, 1}}, {{1, 0, 1}}, {{1, 1, 1}}, {{0, 1, 1}}};
+  const std::vector<std::array<int, 4>> cut{{0, 1, 2, 5}, {0, 2, 3, 7}, {0, 5, 7, 4}, {2, 7, 5, 6}, {0, 2, 7, 5}};
+  Model<3> model;
+  model.material_names = {"mortar"};
+  model.interface_names = {"mortar-mortar"};
+  for (const auto& t : cut) model.add_block({x[t[0]], x[t[1]], x[t[2]], x[t[3]]}, {{0, 1, 2, 3}}, 0);
+  const auto corner = [&](int block, int vertex) {
+    for (int i = 0; i < 4; ++i)
+      if (cut[block][i] == vertex) return 4 * block + i;
+    return -1;
+  };
+  for (int outer = 0; outer < 4; ++outer) {
+    // the three vertices shared with the tetrahedron in the middle, and the one that is not
+    std::vector<int> shared;
+    Vec<3> apex{};
+    for (int v : cut[outer]) {
+      if (corner(4, v) >= 0)
+        shared.push_back(v);
+      else
+        apex = x[v];
+    }
+    const Vec<3> normal = cross(x[shared[1]] - x[shared[0]], x[shared[2]] - x[shared[0]]);
+    if (dot(normal, apex - x[shared[0]]) > 0.0) std::swap(shared[1], shared[2]);  // out of the outer block
+    model.join_faces({corner(outer, shared[0]), corner(outer, shared[1]), corner(outer, shared[2])},
+                     {corner(4, shared[0]), corner(4, shared[1]), corner(4, shared[2])}, 0);
+  }
+  return model;
+}
+
+template <int Dim>
+MechanicsParameters<Dim> quasi_static(double damping = 0.8) {
+  MechanicsParameters<Dim> p;
+  p.local_damping = damping;
+  p.mass = MassChoice::scaled;
+  p.time_step = 1e-5;
+  p.safety = 0.9;
+  return p;
+}
+
+template <int Dim>
+Mechanics<Dim> mechanics(const Model<Dim>& model, const ContactProperties& contact,
+                         const MechanicsParameters<Dim>& parameters, double young = 29.4e9, double poisson = 0.2) {
+  return Mechanics<Dim>(model, {2400.0},
+                        std::vector<ZoneProperties>(model.zones.size(), zone_properties<Dim>(young, poisson)), {contact},
+                        parameters);
+}
+
+/// Moves every gridpoint at a steady velocity to a displacement given by its position, in a number of steps, and
+/// takes one more step so that forces belong to it.
+template <int Dim, class Field>
+void impose(Mechanics<Dim>& m, Field displacement, int steps) {
+  const auto& x = m.model().position;
+  const double duration = steps * m.time_step();
+  for (int g = 0; g < m.model().gridpoint_count(); ++g)
+    for (int i = 0; i < Dim; ++i) m.prescribe_velocity(g, i, displacement(x[g])[i] / duration);
+  m.advance(steps);
+  for (int g = 0; g < m.model().gridpoint_count(); ++g)
+    for (int i = 0; i < Dim; ++i) m.prescribe_velocity(g, i, 0.0);
+  m.advance(1);
+}
+
+}  // namespace pyroclast::bodies

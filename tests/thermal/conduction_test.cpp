@@ -1,0 +1,470 @@
+#include "pyroclast/thermal/conduction.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "bodies.hpp"
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/material/builtin_curves.hpp"
+#include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/thermal/fire_curves.hpp"
+
+namespace pyroclast {
+namespace {
+
+using std::numbers::pi;
+
+HeatParameters parameters(Interval range, double initial) {
+  return {.temperature_range = range,
+          .initial_temperature = initial,
+          .scheme = HeatScheme::super_time_stepping,
+          .safety = 0.9,
+          .largest_change = 10.0,
+          .largest_step = 1e3};
+}
+
+/// Concrete of EN 1992-1-2 with a high moisture peak.
+HeatMaterial moist_concrete() {
+  return {builtin_curves().at("en1992_conductivity_upper").curve,
+          en1992_specific_heat(3.0) * builtin_curves().at("en1992_density").curve * 2300.0};
+}
+
+constexpr Interval eurocode_range{20.0, 1200.0};
+
+void expose_to_fire(Conduction<2>& heat, const std::vector<int>& faces) {
+  const Curve fire = fire_curves().at("iso834").curve;
+  heat.apply(faces, Convection{Curve::constant(25.0), fire});
+  heat.apply(faces, Radiation{Curve::constant(0.7), fire});
+}
+
+std::string message(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no Error was thrown";
+}
+
+void expect_in(const std::string& part, const std::string& text) {
+  EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+// ---- Accuracy --------------------------------------------------------------------------------------------
+
+/// Largest error of the steady field between outline temperatures that are linear in space.
+template <int Dim>
+double linear_field_error(const Model<Dim>& model, const std::vector<std::optional<HeatMaterial>>& materials,
+                          double size) {
+  Vec<Dim> gradient{{100.0 / size, -70.0 / size}};
+  if constexpr (Dim == 3) gradient[2] = 40.0 / size;
+  const auto exact = [&](int node, const Conduction<Dim>& heat) {
+    return 200.0 + dot(gradient, model.position[heat.nodes().gridpoint[node]]);
+  };
+  auto p = parameters({-100.0, 500.0}, 200.0);
+  p.largest_change = 200.0;
+  p.largest_step = 1e4;  // some times what the slowest wave needs to decay
+  Conduction<Dim> heat(model, materials, p);
+  for (int node : outline_nodes(heat)) heat.prescribe_node(node, Curve::constant(exact(node, heat)));
+  EXPECT_TRUE(heat.advance_to_steady(1e-15, 1e9).reached);
+  double worst = 0.0;
+  for (int node = 0; node < heat.nodes().count(); ++node)
+    worst = std::max(worst, std::abs(heat.temperature()[node] - exact(node, heat)));
+  return worst;
+}
+
+// Temperatures of some hundred degrees round at 1e-13 K; what is left of the transient is of that size too.
+constexpr double round_off = 1e-10;  // K
+
+TEST(Conduction, CarriesALinearFieldExactlyThroughIrregularBlocks) {
+  const auto model = plane_body({.blocks = {9, 7}, .size = {0.15, 0.12}, .jitter = 0.3});
+  EXPECT_LT(linear_field_error<2>(model, {constant_material(1.6, 2e6)}, 0.15), round_off);
+}
+
+TEST(Conduction, CarriesALinearFieldExactlyThroughTetrahedra) {
+  const auto model = solid_body({.blocks = {4, 4, 4}, .size = {0.1, 0.1, 0.1}, .jitter = 0.2});
+  EXPECT_LT(linear_field_error<3>(model, {constant_material(1.6, 2e6)}, 0.1), round_off);
+}
+
+ConcreteModel concrete_model() {
+  specimen::SpecimenParameters p;
+  p.width = 0.15;
+  p.height = 0.3;
+  p.seed = 3;
+  p.aggregates = {.fraction = 0.2,
+                  .d_min = 0.016,
+                  .d_max = 0.032,
+                  .fuller_exponent = 0.45,
+                  .sieves = {0.016, 0.032},
+                  .minimum_gap = 0.001,
+                  .attempts = 100000};
+  p.blocks.count = 300;
+  p.blocks.radius_spread = 0.2;
+  p.blocks.shortest_edge = 0.2;
+  return make_concrete_model(specimen::make_specimen(p), 0.03, 0.15);
+}
+
+TEST(Conduction, CarriesALinearFieldExactlyThroughASpecimenWithoutItsPlatens) {
+  const auto body = concrete_model();
+  const auto material = constant_material(1.6, 2e6);
+  EXPECT_LT(linear_field_error<2>(body.model, {material, material, std::nullopt}, 0.3), round_off);
+}
+
+/// L2 error of T = 3 + exp(-t) cos(pi x) cos(pi y / 2), conductivity 1 + T/10, heat capacity 2 - T/10, driven by
+/// the source that makes it a solution. It is 3 on y = 1 and symmetric about the other sides.
+double manufactured_error(int blocks) {
+  const auto model = plane_body({.blocks = {blocks, blocks}, .size = {1.0, 1.0}, .jitter = 0.2});
+  const HeatMaterial material{Curve::expression("1 + T / 10", {0.0, 10.0}, temperature_axis()),
+                              Curve::expression("2 - T / 10", {0.0, 10.0}, temperature_axis())};
+  auto p = parameters({0.0, 10.0}, 3.0);
+  p.largest_change = 0.02;  // an error in time far below that in space
+  Conduction<2> heat(model, {material}, p);
+  const auto exact = [](const Vec<2>& x, double t) {
+    return 3.0 + std::exp(-t) * std::cos(pi * x[0]) * std::cos(0.5 * pi * x[1]);
+  };
+  heat.set_source([](const Vec<2>& x, double t) {
+    const double decay = std::exp(-t), cx = std::cos(pi * x[0]), cy = std::cos(0.5 * pi * x[1]);
+    const double u = decay * cx * cy;
+    const double dx = -decay * pi * std::sin(pi * x[0]) * cy;
+    const double dy = -decay * 0.5 * pi * cx * std::sin(0.5 * pi * x[1]);
+    const double laplacian = -1.25 * pi * pi * u;
+    return -(2.0 - (3.0 + u) / 10.0) * u - (1.0 + (3.0 + u) / 10.0) * laplacian - (dx * dx + dy * dy) / 10.0;
+  });
+  std::vector<double> start;
+  for (int g : heat.nodes().gridpoint) start.push_back(exact(model.position[g], 0.0));
+  heat.set_temperature(start);
+  heat.prescribe_temperature(heat.faces(on_plane<2>(1, 1.0, 1e-9)), Curve::constant(3.0));
+  heat.advance_to(0.3);
+  double sum = 0.0;
+  for (int node = 0; node < heat.nodes().count(); ++node)
+    sum += std::pow(heat.temperature()[node] - exact(model.position[heat.nodes().gridpoint[node]], 0.3), 2);
+  return std::sqrt(sum / heat.nodes().count());
+}
+
+TEST(Conduction, IsOfSecondOrderInSpaceWithCurvesAndASource) {
+  const double coarse = manufactured_error(6), medium = manufactured_error(12), fine = manufactured_error(24);
+  RecordProperty("errors", fmt::format("{:.3e} {:.3e} {:.3e}", coarse, medium, fine));
+  RecordProperty("orders", fmt::format("{:.3f} {:.3f}", std::log2(coarse / medium), std::log2(medium / fine)));
+  EXPECT_GT(std::log2(coarse / medium), 1.9);
+  EXPECT_GT(std::log2(medium / fine), 1.9);
+}
+
+/// Concrete strip with one side in the standard fire for ten minutes.
+struct Strip {
+  Model<2> model = plane_body({.blocks = {30, 4}, .size = {0.06, 0.008}, .jitter = 0.3});
+  Conduction<2> heat;
+
+  explicit Strip(const HeatParameters& p) : heat(model, {moist_concrete()}, p) {
+    expose_to_fire(heat, heat.faces(on_plane<2>(0, 0.0, 1e-9)));
+  }
+};
+
+TEST(Conduction, SuperTimeSteppingAgreesWithEulerAtAFractionOfTheCost) {
+  auto p = parameters(eurocode_range, 20.0);
+  p.largest_change = 5.0;
+  Strip fast(p);
+  p.scheme = HeatScheme::euler;
+  Strip plain(p);
+  fast.heat.advance_to(600.0);
+  plain.heat.advance_to(600.0);
+  double worst = 0.0;
+  for (std::size_t node = 0; node < plain.heat.temperature().size(); ++node)
+    worst = std::max(worst, std::abs(plain.heat.temperature()[node] - fast.heat.temperature()[node]));
+  RecordProperty("worst", std::to_string(worst));
+  RecordProperty("euler_stages", std::to_string(plain.heat.stages()));
+  RecordProperty("super_stages", std::to_string(fast.heat.stages()));
+  RecordProperty("super_steps", std::to_string(fast.heat.steps()));
+  // Each has its own error in time; a tenth of a kelvin is 1e-4 of the fire.
+  EXPECT_LT(worst, 0.1);
+  EXPECT_LT(2 * fast.heat.stages(), plain.heat.stages());
+}
+
+// ---- Conservation ----------------------------------------------------------------------------------------
+
+TEST(Conduction, StoresAllTheHeatThatComesInByEveryWay) {
+  for (const auto scheme : {HeatScheme::euler, HeatScheme::super_time_stepping}) {
+    auto p = parameters(eurocode_range, 20.0);
+    p.scheme = scheme;
+    const auto two = [](const Vec<2>& x) { return x[0] + x[1] < 0.1 ? 0 : 1; };
+    const auto model =
+        plane_body({.blocks = {10, 10}, .size = {0.1, 0.1}, .jitter = 0.3, .material = two}, 2);
+    Conduction<2> heat(model, {moist_concrete(), HeatMaterial{moist_concrete().conductivity * 1.5,
+                                                              en1992_specific_heat(0.0) * 2600.0}},
+                       p);
+    expose_to_fire(heat, heat.faces(on_plane<2>(0, 0.0, 1e-9)));
+    heat.apply(heat.faces(on_plane<2>(1, 0.0, 1e-9)), HeatFlux{Curve::constant(2000.0)});
+    heat.prescribe_temperature(heat.faces(on_plane<2>(1, 0.1, 1e-9)),
+                               Curve::table({0.0, 3600.0}, {20.0, 320.0}, time_axis()));
+    heat.set_source([](const Vec<2>& x, double t) { return 1e5 * x[0] * std::exp(-t / 1000.0); });
+    heat.advance_to(1800.0);
+    const HeatLedger ledger = heat.ledger();
+    EXPECT_LT(std::abs(ledger.error()), 1e-10 * ledger.stored);
+    RecordProperty(scheme == HeatScheme::euler ? "euler" : "super",
+                   fmt::format("{:.2e} stored {:.17e} conv {:.3e} rad {:.3e} flux {:.3e} presc {:.3e} src {:.3e}", ledger.error() / ledger.stored, ledger.stored, ledger.boundary.convection, ledger.boundary.radiation, ledger.boundary.flux, ledger.prescribed, ledger.source));
+    // Every way took part, and the given flux is known: 2 kW/m² through 0.1 m² for half an hour.
+    for (double part : {ledger.boundary.convection, ledger.boundary.radiation, ledger.source, ledger.prescribed})
+      EXPECT_GT(std::abs(part), 0.001 * ledger.stored);
+    EXPECT_NEAR(ledger.boundary.flux, 2000.0 * 0.1 * 1800.0, 1e-6);
+  }
+}
+
+TEST(Conduction, DoesNotSkipTheMoisturePeakHoweverLargeTheStep) {
+  // An insulated body that is heated throughout: after t seconds the integral of rho c is power times t.
+  const auto model = plane_body({.blocks = {2, 2}, .size = {0.1, 0.1}});
+  const HeatMaterial material{Curve::constant(1.0), en1992_specific_heat(3.0) * 2300.0};
+  auto p = parameters(eurocode_range, 20.0);
+  p.largest_change = 1000.0;
+  p.largest_step = 1e6;
+  Conduction<2> heat(model, {material}, p);
+  // From 20 to 300 degC at 3 % moisture, EN 1992-1-2 3.3.2.
+  const double enthalpy = 2300.0 * (80.0 * 900.0 + 15.0 * 2020.0 + 85.0 * 1510.0 + 100.0 * 1025.0);
+  heat.set_source([&](const Vec<2>&, double) { return enthalpy / 1000.0; });
+  heat.advance_to(1000.0);
+  EXPECT_LT(heat.steps(), 30);
+  for (double t : heat.temperature()) EXPECT_NEAR(t, 300.0, 1e-4);  // rho c is linearised over 0.1 K
+}
+
+TEST(Conduction, KeepsTheHeatOfAnInsulatedBodyAndEvensItOut) {
+  const auto model = solid_body({.blocks = {3, 3, 3}, .size = {0.1, 0.1, 0.1}, .jitter = 0.2});
+  Conduction<3> heat(model, {constant_material(2.0, 2e6)}, parameters({0.0, 100.0}, 50.0));
+  std::vector<double> start;
+  for (int g : heat.nodes().gridpoint) start.push_back(900.0 * model.position[g][0]);
+  heat.set_temperature(start);
+  ASSERT_TRUE(heat.advance_to_steady(1e-9, 1e6).reached);
+  EXPECT_LT(std::abs(heat.ledger().stored), 1e-10 * 2e6 * 1e-3 * 50.0);
+  for (double t : heat.temperature()) EXPECT_NEAR(t, heat.temperature().front(), 1e-4);  // 1e-9 K/s for hours
+}
+
+// ---- Reliability -----------------------------------------------------------------------------------------
+
+TEST(Conduction, IsBitwiseTheSameOnAnyNumberOfThreads) {
+  const auto run = [](int threads) {
+    omp_set_num_threads(threads);
+    const auto model = plane_body({.blocks = {75, 75}, .size = {0.15, 0.15}, .jitter = 0.3});
+    Conduction<2> heat(model, {moist_concrete()}, parameters(eurocode_range, 20.0));
+    EXPECT_GT(heat.nodes().count(), fewest_for_threads);
+    expose_to_fire(heat, heat.faces([](const auto&) { return true; }));
+    heat.set_source([](const Vec<2>& x, double) { return 1e6 * x[0]; });
+    heat.advance_to(10.0);
+    return heat.temperature();
+  };
+  const int threads = omp_get_max_threads();
+  const auto one = run(1), two = run(2), three = run(3);
+  omp_set_num_threads(threads);
+  EXPECT_EQ(one, two);
+  EXPECT_EQ(one, three);
+}
+
+TEST(Conduction, StaysStableWhenPropertiesChangeManifoldWithinAStep) {
+  // Capacity falls and conductivity rises twentyfold within 50 K; the gas jumps. With a step that is too long,
+  // neighbours would swing past each other and past the gas.
+  const HeatMaterial wild{Curve::table({0.0, 200.0, 250.0, 1000.0}, {1.0, 1.0, 20.0, 20.0}, temperature_axis()),
+                          Curve::table({0.0, 300.0, 350.0, 1000.0}, {4e6, 4e6, 2e5, 2e5}, temperature_axis())};
+  for (const auto scheme : {HeatScheme::euler, HeatScheme::super_time_stepping})
+    for (double change : {5.0, 50.0, 1000.0}) {
+      auto p = parameters({0.0, 1000.0}, 20.0);
+      p.scheme = scheme;
+      p.safety = 1.0;
+      p.largest_change = change;
+      p.largest_step = 1e6;
+      const auto model = plane_body({.blocks = {20, 2}, .size = {0.1, 0.01}});
+      Conduction<2> heat(model, {wild}, p);
+      heat.apply(heat.faces(on_plane<2>(0, 0.0, 1e-9)),
+                 Convection{Curve::constant(500.0),
+                            Curve::table({0.0, 500.0, 501.0, 4000.0}, {20.0, 20.0, 900.0, 900.0}, time_axis())});
+      double hottest = 0.0, coldest = 1000.0;
+      for (int i = 1; i <= 40; ++i) {
+        heat.advance_to(100.0 * i);
+        for (double t : heat.temperature()) {
+          hottest = std::max(hottest, t);
+          coldest = std::min(coldest, t);
+        }
+      }
+      // A step of 1000 K may be inaccurate by some kelvin; an unstable one would leave the range at once.
+      EXPECT_LE(hottest, 900.0 + 5.0) << change;
+      EXPECT_GE(coldest, 20.0 - 5.0) << change;
+      EXPECT_EQ(heat.largest_overshoot(), 0.0);
+    }
+}
+
+TEST(Conduction, TheStableStepIsTheOneOfTheSmallestBlockAndNotFarFromTheTrueOne) {
+  // Squares of side a with a centre: the shortest wave has rate k/(rho c) (16/a²) (corners against centres).
+  constexpr double side = 0.01, conductivity = 2.0, capacity = 2e6;
+  auto p = parameters({0.0, 100.0}, 0.0);
+  p.safety = 1.0;
+  const auto model = plane_body({.blocks = {6, 6}, .size = {6 * side, 6 * side}});
+  const Conduction<2> heat(model, {constant_material(conductivity, capacity)}, p);
+  const double exact = 2.0 * capacity * side * side / (conductivity * 16.0);
+  EXPECT_LE(heat.step_limit().step, exact * (1.0 + 1e-12));
+  EXPECT_GE(heat.step_limit().step, 0.5 * exact);
+
+  const auto graded = [&](double jitter) {
+    const auto irregular = plane_body({.blocks = {6, 6}, .size = {6 * side, 6 * side}, .jitter = jitter});
+    return Conduction<2>(irregular, {constant_material(conductivity, capacity)}, p).step_limit().step;
+  };
+  EXPECT_LT(graded(0.3), graded(0.0));
+}
+
+TEST(Conduction, ConvectionAndRadiationShortenTheStableStep) {
+  const auto model = plane_body({.blocks = {4, 4}, .size = {0.01, 0.01}});
+  const auto limit = [&](double coefficient, double emissivity) {
+    Conduction<2> heat(model, {constant_material(0.1, 2e6)}, parameters({0.0, 1200.0}, 1100.0));
+    const auto faces = heat.faces([](const auto&) { return true; });
+    heat.apply(faces, Convection{Curve::constant(coefficient), Curve::constant(20.0)});
+    heat.apply(faces, Radiation{Curve::constant(emissivity), Curve::constant(20.0)});
+    return heat.step_limit();
+  };
+  EXPECT_LT(limit(1000.0, 0.0).step, limit(0.0, 0.0).step);
+  EXPECT_LT(limit(1000.0, 1.0).step, limit(1000.0, 0.0).step);
+}
+
+TEST(Conduction, RunsWithTheSameExchangeTimesHoweverTheyAreAskedFor) {
+  // The mechanics asks for heat at its own times; that must not spoil the result.
+  auto p = parameters(eurocode_range, 20.0);
+  p.largest_change = 5.0;
+  Strip often(p), once(p);
+  for (int i = 1; i <= 60; ++i) often.heat.advance_to(10.0 * i);
+  once.heat.advance_to(600.0);
+  EXPECT_EQ(often.heat.time(), 600.0);
+  for (std::size_t node = 0; node < once.heat.temperature().size(); ++node)
+    EXPECT_NEAR(often.heat.temperature()[node], once.heat.temperature()[node], 0.1);  // error in time
+}
+
+// ---- Outline and materials -------------------------------------------------------------------------------
+
+TEST(Conduction, FindsTheOutlineAndItsSides) {
+  auto model = plane_body({.blocks = {5, 4}, .size = {0.5, 0.8}, .jitter = 0.3});
+  model.thickness = 0.2;
+  const Conduction<2> heat(model, {constant_material(1.0, 1.0)}, parameters({0.0, 1.0}, 0.0));
+  const auto area = [&](const std::vector<int>& faces) {
+    double sum = 0.0;
+    for (int face : faces) sum += heat.outline()[face].area;
+    return sum;
+  };
+  const auto left = heat.faces(on_plane<2>(0, 0.0, 1e-9));
+  EXPECT_EQ(left.size(), 4u);
+  EXPECT_NEAR(area(left), 0.8 * 0.2, 1e-12);
+  for (int face : left) EXPECT_NEAR(heat.outline()[face].normal[0], -1.0, 1e-12);
+  EXPECT_NEAR(area(heat.faces([](const auto&) { return true; })), 2.6 * 0.2, 1e-12);
+  EXPECT_NEAR(area(heat.faces(in_box<2>({{0.4, -0.1}}, {{0.6, 0.9}}))),
+              area(heat.faces(on_plane<2>(0, 0.5, 1e-9))) + area(heat.faces(in_box<2>({{0.4, -0.1}}, {{0.49, 0.9}}))),
+              1e-12);
+}
+
+TEST(Conduction, FindsTheOutlineInThreeDimensions) {
+  const auto model = solid_body({.blocks = {3, 2, 2}, .size = {0.3, 0.2, 0.4}, .jitter = 0.2});
+  const Conduction<3> heat(model, {constant_material(1.0, 1.0)}, parameters({0.0, 1.0}, 0.0));
+  double area = 0.0;
+  Vec<3> closed{};
+  for (const auto& face : heat.outline()) {
+    area += face.area;
+    closed += face.normal * face.area;
+    const Vec<3>&a = model.position[face.gridpoints[0]], &b = model.position[face.gridpoints[1]],
+                &c = model.position[face.gridpoints[2]];
+    EXPECT_NEAR(0.5 * dot(cross(b - a, c - a), face.normal), face.area, 1e-15);  // right-handed
+  }
+  EXPECT_NEAR(area, 2.0 * (0.3 * 0.2 + 0.3 * 0.4 + 0.2 * 0.4), 1e-12);
+  EXPECT_LT(norm(closed), 1e-15);
+}
+
+TEST(Conduction, LeavesOutBlocksOfMaterialsThatDoNotConduct) {
+  const auto body = concrete_model();
+  const auto material = constant_material(1.6, 2e6);
+  const Conduction<2> heat(body.model, {material, material, std::nullopt}, parameters(eurocode_range, 50.0));
+  double area = 0.0;
+  for (const auto& face : heat.outline()) area += face.area;
+  EXPECT_NEAR(area, 2.0 * (0.15 + 0.3) * 0.15, 1e-12);  // the specimen's own outline
+  const auto temperature = heat.gridpoint_temperatures(20.0);
+  for (int b = 0; b < body.model.block_count(); ++b)
+    for (int g = body.model.block_gridpoints[b]; g < body.model.block_gridpoints[b + 1]; ++g)
+      ASSERT_EQ(temperature[g], body.model.block_material[b] == platen_material ? 20.0 : 50.0);
+
+  const Conduction<2> all(body.model, {material, material, material}, parameters(eurocode_range, 50.0));
+  area = 0.0;
+  for (const auto& face : all.outline()) area += face.area;
+  EXPECT_NEAR(area, 2.0 * (0.15 + 0.3 + 2 * 0.03) * 0.15, 1e-12);  // with platens of 0.03 m
+}
+
+TEST(Conduction, GivesJoinedGridpointsOneTemperature) {
+  Strip strip(parameters(eurocode_range, 20.0));
+  strip.heat.advance_to(300.0);
+  const auto temperature = strip.heat.gridpoint_temperatures(0.0);
+  for (const auto& contact : strip.model.contacts) EXPECT_EQ(temperature[contact.a], temperature[contact.b]);
+  EXPECT_EQ(strip.heat.nodes().count(), 31 * 5 + 30 * 4);  // corners and centres of the blocks
+}
+
+// ---- Refusals --------------------------------------------------------------------------------------------
+
+TEST(Conduction, RefusesARangeThatTheCurvesDoNotCover) {
+  const auto model = plane_body({.blocks = {2, 2}, .size = {0.1, 0.1}});
+  expect_in("material 0: the conductivity", message([&] {
+              Conduction<2>(model, {moist_concrete()}, parameters({0.0, 800.0}, 20.0));
+            }));
+}
+
+TEST(Conduction, RefusesParametersOutOfRange) {
+  const auto model = plane_body({.blocks = {2, 2}, .size = {0.1, 0.1}});
+  const auto refusal = [&](auto change) {
+    auto p = parameters({0.0, 100.0}, 20.0);
+    change(p);
+    return message([&] { Conduction<2>(model, {constant_material(1.0, 1.0)}, p); });
+  };
+  expect_in("initial temperature is 120", refusal([](auto& p) { p.initial_temperature = 120.0; }));
+  expect_in("safety factor is 1.5", refusal([](auto& p) { p.safety = 1.5; }));
+  expect_in("largest change per step [K] is 0", refusal([](auto& p) { p.largest_change = 0.0; }));
+  expect_in("largest step [s] is -1", refusal([](auto& p) { p.largest_step = -1.0; }));
+  expect_in("temperature range is 100 to 0", refusal([](auto& p) { p.temperature_range = {100.0, 0.0}; }));
+}
+
+TEST(Conduction, RefusesBoundaryValuesThatMakeNoSense) {
+  const auto model = plane_body({.blocks = {2, 2}, .size = {0.1, 0.1}});
+  Conduction<2> heat(model, {constant_material(1.0, 1e6)}, parameters({0.0, 100.0}, 20.0));
+  const auto faces = heat.faces(on_plane<2>(0, 0.0, 1e-9));
+  const Curve air = Curve::constant(20.0);
+  expect_in("coefficient", message([&] { heat.apply(faces, Convection{Curve::constant(-1.0), air}); }));
+  expect_in("emissivity", message([&] { heat.apply(faces, Radiation{Curve::constant(1.1), air}); }));
+  expect_in("function of T", message([&] {
+              heat.apply(faces, HeatFlux{Curve::table({0.0, 1.0}, {0.0, 1.0}, temperature_axis())});
+            }));
+  heat.prescribe_temperature(faces, Curve::constant(200.0));
+  expect_in("prescribed temperature", message([&] { heat.advance_to(1.0); }));
+}
+
+TEST(Conduction, RefusesToRunBeyondTheEndOfABoundaryCurve) {
+  const auto model = plane_body({.blocks = {2, 2}, .size = {0.1, 0.1}});
+  Conduction<2> heat(model, {constant_material(1.0, 1e6)}, parameters({0.0, 100.0}, 20.0));
+  heat.apply(heat.faces(on_plane<2>(0, 0.0, 1e-9)),
+             Convection{Curve::constant(25.0), Curve::table({0.0, 60.0}, {20.0, 80.0}, time_axis())});
+  heat.advance_to(60.0);
+  expect_in("gas temperature", message([&] { heat.advance_to(61.0); }));
+}
+
+TEST(Conduction, StopsWhenTheBodyLeavesTheTemperatureRangeAndSaysWhere) {
+  const auto model = plane_body({.blocks = {10, 2}, .size = {0.1, 0.02}});
+  Conduction<2> heat(model, {constant_material(1.0, 1e6)}, parameters({0.0, 100.0}, 20.0));
+  heat.apply(heat.faces(on_plane<2>(0, 0.1, 1e-9)), HeatFlux{Curve::constant(10000.0)});
+  const std::string text = message([&] { heat.advance_to(1e4); });
+  expect_in("leaves the run's range of 0 to 100 degC", text);
+  expect_in("(0.1, ", text);
+  for (double t : heat.temperature()) EXPECT_LE(t, 100.0);
+}
+
+TEST(Conduction, RefusesContactsBetweenGridpointsThatDoNotCoincide) {
+  auto model = plane_body({.blocks = {2, 1}, .size = {0.2, 0.1}});
+  model.position[model.contacts[0].b][0] += 0.001;
+  expect_in("apart", message([&] {
+              Conduction<2>(model, {constant_material(1.0, 1.0)}, parameters({0.0, 1.0}, 0.0));
+            }));
+}
+
+}  // namespace
+}  // namespace pyroclast

@@ -1,0 +1,99 @@
+#include "pyroclast/thermal/heat_material.hpp"
+
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/material/builtin_curves.hpp"
+
+namespace pyroclast {
+namespace {
+
+constexpr Interval range{20.0, 1200.0};
+constexpr double window = 5.0;
+
+std::string message(const HeatMaterial& material) {
+  try {
+    HeatTable(material, "mortar", TemperatureGrid(range), window);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+HeatMaterial concrete() {
+  return {builtin_curves().at("en1992_conductivity_upper").curve, en1992_specific_heat(3.0) * 2300.0};
+}
+
+TEST(HeatTable, EnthalpyIsTheIntegralOfTheMoisturePeak) {
+  const TemperatureGrid grid(range);
+  const HeatTable table(concrete(), "mortar", grid, window);
+  // EN 1992-1-2 3.3.2 at 3 %: 900 to 100 degC, 2020 to 115, falling to 1000 at 200, rising to 1100 at 400.
+  const double exact = 2300.0 * (80.0 * 900.0 + 15.0 * 2020.0 + 85.0 * 1510.0 + 200.0 * 1050.0 + 800.0 * 1100.0);
+  // The jump at 100 degC is cornered to 0.1 K / 2^40.
+  EXPECT_NEAR(table.enthalpy(grid.cells) / exact, 1.0, 1e-12);
+}
+
+TEST(HeatTable, BoundsHoldWithinTheWindow) {
+  const HeatMaterial material = concrete();
+  const HeatTable table(material, "mortar", TemperatureGrid(range), window);
+  for (double t = 20.0; t <= 1200.0; t += 0.7) {
+    const double low = std::max(t - window, 20.0), high = std::min(t + window, 1200.0);
+    // The table's capacity is the mean over 0.1 K, in which the peak falls by up to 0.12 %.
+    EXPECT_LE(table.least_capacity(t), material.heat_capacity(low) * 1.0012);
+    EXPECT_LE(table.least_capacity(t), material.heat_capacity(high) * 1.0012);
+    EXPECT_GE(table.greatest_conductivity(t), material.conductivity(low) * (1.0 - 1e-9));
+    EXPECT_NEAR(table.conductivity(t), material.conductivity(t), 1e-6);  // (0.1 K)² / 8 times the curvature
+  }
+}
+
+TEST(HeatTable, RefusesCurvesThatDoNotCoverTheRange) {
+  auto material = concrete();
+  material.conductivity = Curve::table({20.0, 800.0}, {2.0, 1.0}, temperature_axis());
+  const std::string text = message(material);
+  EXPECT_NE(text.find("mortar"), std::string::npos) << text;
+  EXPECT_NE(text.find("conductivity"), std::string::npos) << text;
+  EXPECT_NE(text.find("20 to 1200"), std::string::npos) << text;
+}
+
+TEST(HeatTable, RefusesValuesThatAreNotPositive) {
+  auto material = concrete();
+  material.heat_capacity = Curve::table({20.0, 1200.0}, {2e6, 0.0}, temperature_axis());
+  EXPECT_NE(message(material).find("heat capacity"), std::string::npos);
+}
+
+TEST(HeatTable, RefusesCurvesOfTime) {
+  auto material = concrete();
+  material.heat_capacity = Curve::table({0.0, 5000.0}, {2e6, 1e6}, time_axis());
+  EXPECT_NE(message(material).find("function of t"), std::string::npos);
+}
+
+TEST(NodeEnthalpy, IsInvertedForNodesOfTwoMaterials) {
+  const TemperatureGrid grid(range);
+  std::vector<HeatTable> tables;
+  tables.emplace_back(concrete(), "mortar", grid, window);
+  tables.emplace_back(HeatMaterial{Curve::constant(2.0), Curve::constant(2e6)}, "aggregate", grid, window);
+  const NodeEnthalpy store(grid, tables, {{{0, 1e-6}, {1, 3e-6}}, {{0, 2e-6}}});
+  for (int node : {0, 1})
+    for (double t = 20.0; t <= 1200.0; t += 0.37)
+      for (double near : {20.0, 100.0, 1200.0})
+        EXPECT_NEAR(store.temperature(node, store.enthalpy(node, t), near), t, 1e-9);  // rounding of 1e3 K
+}
+
+TEST(NodeEnthalpy, HoldsTheEndsOfTheRangeAndSaysByHowMuch) {
+  const TemperatureGrid grid(range);
+  std::vector<HeatTable> tables;
+  tables.emplace_back(HeatMaterial{Curve::constant(2.0), Curve::constant(2e6)}, "aggregate", grid, window);
+  const NodeEnthalpy store(grid, tables, {{{0, 1e-6}}});
+  const double full = store.enthalpy(0, 1200.0);
+  EXPECT_EQ(store.temperature(0, -3.0 * 2.0, 20.0), 20.0);
+  EXPECT_NEAR(store.excess(0, -3.0 * 2.0), 3.0, 1e-9);
+  EXPECT_EQ(store.temperature(0, full + 2.0, 20.0), 1200.0);
+  EXPECT_NEAR(store.excess(0, full + 2.0), 1.0, 1e-6);
+  EXPECT_EQ(store.excess(0, 0.5 * full), 0.0);
+}
+
+}  // namespace
+}  // namespace pyroclast
