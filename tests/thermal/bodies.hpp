@@ -15,9 +15,9 @@ namespace pyroclast {
 
 template <int Dim>
 struct BodyShape {
-  std::array<int, Dim> blocks;                  ///< along each axis
-  std::array<double, Dim> size;                 ///< m
-  double jitter = 0.0;                          ///< random shift of inner vertices, as a fraction of the block
+  std::array<int, Dim> blocks;   ///< along each axis
+  std::array<double, Dim> size;  ///< m
+  double jitter = 0.0;           ///< random shift of inner vertices, as a fraction of the block
   std::function<int(const Vec<Dim>&)> material{};  ///< of the block at a centre; none: all 0
 };
 

@@ -1,7 +1,5 @@
 #include "pyroclast/thermal/conduction.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -11,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include "bodies.hpp"
 #include "pyroclast/base/error.hpp"
@@ -119,8 +118,8 @@ TEST(Conduction, CarriesALinearFieldExactlyThroughASpecimenWithoutItsPlatens) {
   EXPECT_LT(linear_field_error<2>(body.model, {material, material, std::nullopt}, 0.3), round_off);
 }
 
-/// L2 error of T = 3 + exp(-t) cos(pi x) cos(pi y / 2), conductivity 1 + T/10, heat capacity 2 - T/10, driven by
-/// the source that makes it a solution. It is 3 on y = 1 and symmetric about the other sides.
+/// L2 error of T = 3 + exp(-t) cos(pi x) cos(pi y / 2), conductivity 1 + T/10, heat capacity 2 - T/10, driven
+/// by the source that makes it a solution. It is 3 on y = 1 and symmetric about the other sides.
 double manufactured_error(int blocks) {
   const auto model = plane_body({.blocks = {blocks, blocks}, .size = {1.0, 1.0}, .jitter = 0.2});
   const HeatMaterial material{Curve::expression("1 + T / 10", {0.0, 10.0}, temperature_axis()),
@@ -153,7 +152,8 @@ double manufactured_error(int blocks) {
 TEST(Conduction, IsOfSecondOrderInSpaceWithCurvesAndASource) {
   const double coarse = manufactured_error(6), medium = manufactured_error(12), fine = manufactured_error(24);
   RecordProperty("errors", fmt::format("{:.3e} {:.3e} {:.3e}", coarse, medium, fine));
-  RecordProperty("orders", fmt::format("{:.3f} {:.3f}", std::log2(coarse / medium), std::log2(medium / fine)));
+  RecordProperty("orders",
+                 fmt::format("{:.3f} {:.3f}", std::log2(coarse / medium), std::log2(medium / fine)));
   EXPECT_GT(std::log2(coarse / medium), 1.9);
   EXPECT_GT(std::log2(medium / fine), 1.9);
 }
@@ -197,8 +197,9 @@ TEST(Conduction, StoresAllTheHeatThatComesInByEveryWay) {
     const auto two = [](const Vec<2>& x) { return x[0] + x[1] < 0.1 ? 0 : 1; };
     const auto model =
         plane_body({.blocks = {10, 10}, .size = {0.1, 0.1}, .jitter = 0.3, .material = two}, 2);
-    Conduction<2> heat(model, {moist_concrete(), HeatMaterial{moist_concrete().conductivity * 1.5,
-                                                              en1992_specific_heat(0.0) * 2600.0}},
+    Conduction<2> heat(model,
+                       {moist_concrete(), HeatMaterial{moist_concrete().conductivity * 1.5,
+                                                       en1992_specific_heat(0.0) * 2600.0}},
                        p);
     expose_to_fire(heat, heat.faces(on_plane<2>(0, 0.0, 1e-9)));
     heat.apply(heat.faces(on_plane<2>(1, 0.0, 1e-9)), HeatFlux{Curve::constant(2000.0)});
@@ -209,9 +210,10 @@ TEST(Conduction, StoresAllTheHeatThatComesInByEveryWay) {
     const HeatLedger ledger = heat.ledger();
     EXPECT_LT(std::abs(ledger.error()), 1e-10 * ledger.stored);
     RecordProperty(scheme == HeatScheme::euler ? "euler" : "super",
-                   fmt::format("{:.2e} stored {:.17e} conv {:.3e} rad {:.3e} flux {:.3e} presc {:.3e} src {:.3e}", ledger.error() / ledger.stored, ledger.stored, ledger.boundary.convection, ledger.boundary.radiation, ledger.boundary.flux, ledger.prescribed, ledger.source));
+                   fmt::format("{:.1e}", ledger.error() / ledger.stored));
     // Every way took part, and the given flux is known: 2 kW/m² through 0.1 m² for half an hour.
-    for (double part : {ledger.boundary.convection, ledger.boundary.radiation, ledger.source, ledger.prescribed})
+    for (double part :
+         {ledger.boundary.convection, ledger.boundary.radiation, ledger.source, ledger.prescribed})
       EXPECT_GT(std::abs(part), 0.001 * ledger.stored);
     EXPECT_NEAR(ledger.boundary.flux, 2000.0 * 0.1 * 1800.0, 1e-6);
   }
@@ -265,10 +267,11 @@ TEST(Conduction, IsBitwiseTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(Conduction, StaysStableWhenPropertiesChangeManifoldWithinAStep) {
-  // Capacity falls and conductivity rises twentyfold within 50 K; the gas jumps. With a step that is too long,
-  // neighbours would swing past each other and past the gas.
-  const HeatMaterial wild{Curve::table({0.0, 200.0, 250.0, 1000.0}, {1.0, 1.0, 20.0, 20.0}, temperature_axis()),
-                          Curve::table({0.0, 300.0, 350.0, 1000.0}, {4e6, 4e6, 2e5, 2e5}, temperature_axis())};
+  // Capacity falls and conductivity rises twentyfold within 50 K; the gas jumps. With a step that is too
+  // long, neighbours would swing past each other and past the gas.
+  const HeatMaterial wild{
+      Curve::table({0.0, 200.0, 250.0, 1000.0}, {1.0, 1.0, 20.0, 20.0}, temperature_axis()),
+      Curve::table({0.0, 300.0, 350.0, 1000.0}, {4e6, 4e6, 2e5, 2e5}, temperature_axis())};
   for (const auto scheme : {HeatScheme::euler, HeatScheme::super_time_stepping})
     for (double change : {5.0, 50.0, 1000.0}) {
       auto p = parameters({0.0, 1000.0}, 20.0);
@@ -279,8 +282,8 @@ TEST(Conduction, StaysStableWhenPropertiesChangeManifoldWithinAStep) {
       const auto model = plane_body({.blocks = {20, 2}, .size = {0.1, 0.01}});
       Conduction<2> heat(model, {wild}, p);
       heat.apply(heat.faces(on_plane<2>(0, 0.0, 1e-9)),
-                 Convection{Curve::constant(500.0),
-                            Curve::table({0.0, 500.0, 501.0, 4000.0}, {20.0, 20.0, 900.0, 900.0}, time_axis())});
+                 Convection{Curve::constant(500.0), Curve::table({0.0, 500.0, 501.0, 4000.0},
+                                                                 {20.0, 20.0, 900.0, 900.0}, time_axis())});
       double hottest = 0.0, coldest = 1000.0;
       for (int i = 1; i <= 40; ++i) {
         heat.advance_to(100.0 * i);
@@ -355,9 +358,10 @@ TEST(Conduction, FindsTheOutlineAndItsSides) {
   EXPECT_NEAR(area(left), 0.8 * 0.2, 1e-12);
   for (int face : left) EXPECT_NEAR(heat.outline()[face].normal[0], -1.0, 1e-12);
   EXPECT_NEAR(area(heat.faces([](const auto&) { return true; })), 2.6 * 0.2, 1e-12);
-  EXPECT_NEAR(area(heat.faces(in_box<2>({{0.4, -0.1}}, {{0.6, 0.9}}))),
-              area(heat.faces(on_plane<2>(0, 0.5, 1e-9))) + area(heat.faces(in_box<2>({{0.4, -0.1}}, {{0.49, 0.9}}))),
-              1e-12);
+  EXPECT_NEAR(
+      area(heat.faces(in_box<2>({{0.4, -0.1}}, {{0.6, 0.9}}))),
+      area(heat.faces(on_plane<2>(0, 0.5, 1e-9))) + area(heat.faces(in_box<2>({{0.4, -0.1}}, {{0.49, 0.9}}))),
+      1e-12);
 }
 
 TEST(Conduction, FindsTheOutlineInThreeDimensions) {
@@ -369,7 +373,7 @@ TEST(Conduction, FindsTheOutlineInThreeDimensions) {
     area += face.area;
     closed += face.normal * face.area;
     const Vec<3>&a = model.position[face.gridpoints[0]], &b = model.position[face.gridpoints[1]],
-                &c = model.position[face.gridpoints[2]];
+          &c = model.position[face.gridpoints[2]];
     EXPECT_NEAR(0.5 * dot(cross(b - a, c - a), face.normal), face.area, 1e-15);  // right-handed
   }
   EXPECT_NEAR(area, 2.0 * (0.3 * 0.2 + 0.3 * 0.4 + 0.2 * 0.4), 1e-12);
@@ -456,6 +460,18 @@ TEST(Conduction, StopsWhenTheBodyLeavesTheTemperatureRangeAndSaysWhere) {
   expect_in("leaves the run's range of 0 to 100 degC", text);
   expect_in("(0.1, ", text);
   for (double t : heat.temperature()) EXPECT_LE(t, 100.0);
+}
+
+TEST(Conduction, HoldsOvershootsOfASharpFrontAtTheEndOfTheRange) {
+  // A shock of 980 K over one zone makes obtuse zones undershoot; the solution itself cannot.
+  const auto model = plane_body({.blocks = {20, 20}, .size = {0.1, 0.1}, .jitter = 0.35});
+  auto p = parameters(eurocode_range, 20.0);
+  Conduction<2> heat(model, {moist_concrete()}, p);
+  heat.prescribe_temperature(heat.faces([](const auto&) { return true; }), Curve::constant(1000.0));
+  heat.advance_to(100.0);
+  EXPECT_GT(heat.largest_overshoot(), 0.0);
+  for (double t : heat.temperature()) EXPECT_TRUE(20.0 <= t && t <= 1000.0 + heat.largest_overshoot()) << t;
+  EXPECT_LT(std::abs(heat.ledger().error()), 1e-10 * heat.ledger().stored);
 }
 
 TEST(Conduction, RefusesContactsBetweenGridpointsThatDoNotCoincide) {

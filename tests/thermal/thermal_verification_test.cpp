@@ -79,7 +79,8 @@ TEST(ThermalVerification, NafemsT3FollowsASineAtTheEndOfABar) {
   heat.prescribe_temperature(heat.faces(on_plane<2>(0, 0.0, 1e-9)), Curve::constant(0.0));
   heat.prescribe_temperature(
       heat.faces(on_plane<2>(0, 0.1, 1e-9)),
-      Curve::function("sine", [](double t) { return 100.0 * std::sin(pi * t / 40.0); }, {0.0, 40.0}, time_axis()));
+      Curve::function(
+          "sine", [](double t) { return 100.0 * std::sin(pi * t / 40.0); }, {0.0, 40.0}, time_axis()));
   heat.advance_to(32.0);
   // The benchmark gives 36.60 degC; blocks of 5 mm leave less than half a percent.
   EXPECT_NEAR(heat.temperature()[node_at(model, heat, {{0.08, 0.0}})], 36.60, 0.005 * 36.60);
@@ -109,8 +110,7 @@ TEST(ThermalVerification, ARectangleThatConvectsFollowsTheProductOfTwoWalls) {
   constexpr double h = 25.0, conductivity = 1.6, capacity = 2400.0 * 900.0, gas = 500.0, initial = 20.0;
   constexpr double half_width = 0.075, half_height = 0.15;
   // A quarter, with its planes of symmetry at x = 0 and y = 0.
-  const Model<2> model =
-      plane_body({  .blocks = {30, 60}, .size = {half_width, half_height}, .jitter = 0.2});
+  const Model<2> model = plane_body({.blocks = {30, 60}, .size = {half_width, half_height}, .jitter = 0.2});
   Conduction<2> heat(model, {constant_material(conductivity, capacity)},
                      {.temperature_range = {initial, gas},
                       .initial_temperature = initial,
@@ -226,7 +226,8 @@ TEST(ThermalVerification, AWallInAFireFollowsFiniteVolumes) {
     }
     worst = std::max(worst, std::abs(heat.temperature()[node_at(model, heat, {})] - reference.surface()));
   }
-  // Both are second order; blocks of 1.5 mm meet gradients of up to 30 K/mm that change over some millimetres.
+  // Both are second order; blocks of 1.5 mm meet gradients of up to 30 K/mm that change over some
+  // millimetres.
   EXPECT_LT(worst, 0.5);
 }
 

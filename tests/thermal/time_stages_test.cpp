@@ -14,9 +14,9 @@ double advance(const std::vector<TimeStage>& stages, double step, Rate rate) {
   double increment = 0.0, before = 0.0;
   const double first = rate(0.0);
   for (const auto& stage : stages) {
-    const double next = stage.previous * increment + stage.before * before +
-                        step * (stage.rate * rate(stage.begin * step) * (1.0 + increment) +
-                                stage.first_rate * first);
+    const double next =
+        stage.previous * increment + stage.before * before +
+        step * (stage.rate * rate(stage.begin * step) * (1.0 + increment) + stage.first_rate * first);
     before = increment;
     increment = next;
   }
@@ -35,8 +35,8 @@ TEST(TimeStages, WeightsMakeUpTheIncrementOfTheStep) {
     const auto rate = [](double t) { return 1.0 + t + t * t; };
     double increment = 0.0, before = 0.0, weighted = 0.0;
     for (const auto& stage : stages) {
-      const double next = stage.previous * increment + stage.before * before + stage.rate * rate(stage.begin) +
-                          stage.first_rate * rate(0.0);
+      const double next = stage.previous * increment + stage.before * before +
+                          stage.rate * rate(stage.begin) + stage.first_rate * rate(0.0);
       before = increment;
       increment = next;
       weighted += stage.weight * rate(stage.begin);
@@ -49,9 +49,9 @@ TEST(TimeStages, SuperTimeSteppingIsOfSecondOrder) {
   // dy/dt = -(1 + t) y
   const auto error = [](double step) {
     const double exact = std::exp(-step - 0.5 * step * step);
-    return std::abs(advance(time_stages(HeatScheme::super_time_stepping, 5), step,
-                            [](double t) { return -(1.0 + t); }) -
-                    exact);
+    return std::abs(
+        advance(time_stages(HeatScheme::super_time_stepping, 5), step, [](double t) { return -(1.0 + t); }) -
+        exact);
   };
   // The error of one step goes with its cube.
   EXPECT_GT(std::log2(error(0.02) / error(0.01)), 2.9);

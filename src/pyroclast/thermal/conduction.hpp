@@ -14,8 +14,8 @@
 namespace pyroclast {
 
 struct HeatParameters {
-  Interval temperature_range;    ///< that the run stays within, °C
-  double initial_temperature;    ///< °C
+  Interval temperature_range;  ///< that the run stays within, °C
+  double initial_temperature;  ///< °C
   HeatScheme scheme;
   double safety;          ///< fraction of the stable step that is taken, in (0, 1]
   double largest_change;  ///< of any temperature in one step, K
@@ -48,14 +48,16 @@ struct SteadyState {
 
 /// Transient conduction of heat in a body of blocks, paper Eqs. (1) and (2).
 ///
-/// Linear zones with lumped capacity; gridpoints that contacts join are one node. The enthalpy of the nodes is
-/// what is advanced, and temperatures follow from it, so heat is conserved to rounding whatever the curves.
-/// A step is explicit: as many stages as the step needs to be stable, with bounds of the properties that hold
-/// while no temperature changes by more than `largest_change`; a step in which one does is taken back and
-/// halved, down to the step that is stable whatever the temperatures.
+/// Linear zones with lumped capacity; gridpoints that contacts join are one node. The enthalpy of the nodes
+/// is what is advanced, and temperatures follow from it, so heat is conserved to rounding whatever the
+/// curves. A step is explicit: as many stages as the step needs to be stable, with bounds of the properties
+/// that hold while no temperature changes by more than `largest_change`; a step in which one does is taken
+/// back and halved, down to the step that is stable whatever the temperatures.
 ///
-/// Zones with obtuse angles let a temperature overshoot its neighbours next to a sharp front. At an end of the
-/// temperature range the temperature then stays there while the node's heat waits, see `largest_overshoot`.
+/// Zones with obtuse angles let a temperature overshoot its neighbours next to a sharp front. At an end of
+/// the temperature range the temperature stays there while the node's heat waits, see `largest_overshoot`; so
+/// no curve is ever read outside the range. Where a given flux, a source or a gas beyond the range could
+/// truly take the body out of it, an excess of more than 1 % of the range is an Error.
 ///
 /// Heat is gathered by the node that it flows to and every sum has one order, so results are bitwise the same
 /// for any number of threads.
@@ -88,7 +90,8 @@ class Conduction {
 
   /// Lets heat in through faces of the outline, in addition to what acts there already.
   void apply(const std::vector<int>& faces, const BoundaryCondition& condition);
-  /// Prescribes the temperature (°C, of the time in s) of the nodes of faces; where two meet, the later holds.
+  /// Prescribes the temperature (°C, of the time in s) of the nodes of faces; where two meet, the later
+  /// holds.
   void prescribe_temperature(const std::vector<int>& faces, const Curve& temperature);
   /// Prescribes the temperature of a node.
   void prescribe_node(int node, const Curve& temperature);
@@ -110,7 +113,8 @@ class Conduction {
   std::vector<double> gridpoint_temperatures(double elsewhere) const;
 
   HeatLedger ledger() const;
-  /// L2 norm of the temperature's change per time in the last step, sqrt(mean over the volume of (dT/dt)²), K/s.
+  /// L2 norm of the temperature's change per time in the last step, sqrt(mean over the volume of (dT/dt)²),
+  /// K/s.
   double rate() const { return rate_; }
   /// Stable step of forward Euler at the present temperatures, safety included.
   HeatStepLimit step_limit() const;
@@ -129,7 +133,7 @@ class Conduction {
   };
   /// What a step did, before it is accepted.
   struct Trial {
-    double change = 0.0;  ///< largest of any temperature at any stage, K
+    double change = 0.0;  ///< largest of any temperature at any stage, held or not, K
     double excess = 0.0;  ///< largest beyond the temperature range at the end, K
     HeatLedger heat;      ///< without what is stored
   };
@@ -141,6 +145,7 @@ class Conduction {
   void adapt_step(double step, double change);
   Inflow compute_inflow(double time);
   void update_nodes(const TimeStage& stage, double step, Trial& trial);
+  double excess(int node, double temperature, double enthalpy) const;
   double inflow(int node) const { return zones_.inflow(node) + boundary_heat_[node] + source_heat_[node]; }
   void read_prescriptions(double time);
   void hold_prescribed();
@@ -166,22 +171,23 @@ class Conduction {
   HeatBoundary boundary_;
   Source source_;
   std::vector<Curve> prescriptions_;
-  std::vector<int> prescription_;    ///< of each node, -1: free
-  std::vector<int> prescribed_;      ///< nodes, ascending
-  std::vector<double> held_at_;      ///< by prescription, °C
+  std::vector<int> prescription_;  ///< of each node, -1: free
+  std::vector<int> prescribed_;    ///< nodes, ascending
+  std::vector<double> held_at_;    ///< by prescription, °C
 
   double time_ = 0.0;
-  double step_ = 0.0;       ///< to try next, s
-  double safe_step_ = 0.0;  ///< stable whatever the temperatures, s
+  double step_ = 0.0;            ///< to try next, s
+  double safe_step_ = 0.0;       ///< stable whatever the temperatures, s
+  double allowed_excess_ = 0.0;  ///< over the temperature range, K
   double rate_ = 0.0, largest_overshoot_ = 0.0;
   std::int64_t steps_ = 0, retries_ = 0, stages_ = 0;
   HeatLedger ledger_;
   double stored_at_start_ = 0.0;  ///< J
 
-  std::vector<double> temperature_, enthalpy_;               ///< °C, J
-  std::vector<double> start_temperature_;                    ///< of the step
-  std::vector<double> increment_, before_, first_rate_;      ///< see TimeStage
-  std::vector<double> boundary_heat_, source_heat_;          ///< into each node, W
+  std::vector<double> temperature_, enthalpy_;           ///< °C, J
+  std::vector<double> start_temperature_;                ///< of the step
+  std::vector<double> increment_, before_, first_rate_;  ///< see TimeStage
+  std::vector<double> boundary_heat_, source_heat_;      ///< into each node, W
 };
 
 extern template class Conduction<2>;

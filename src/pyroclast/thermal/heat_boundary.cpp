@@ -39,8 +39,8 @@ void require_values(const Curve& curve, const char* quantity, double least, doub
   const double low = curve.minimum(a, b);
   const double high = curve.maximum(a, b);
   if (low < least || high > greatest)
-    throw Error(fmt::format("{} ({}) has values from {} to {}, but {} to {} is allowed", quantity, curve.describe(),
-                            low, high, least, greatest));
+    throw Error(fmt::format("{} ({}) has values from {} to {}, but {} to {} is allowed", quantity,
+                            curve.describe(), low, high, least, greatest));
 }
 
 void require_physical(const HeatFlux&) {}
@@ -49,6 +49,19 @@ void require_physical(const Convection& c) {
 }
 void require_physical(const Radiation& c) {
   require_values(c.emissivity, kEmissivity, 0.0, 1.0);
+}
+
+bool gas_within(const Curve& gas, const Interval& range, double begin, double end) {
+  return range.contains(gas.minimum(begin, end)) && range.contains(gas.maximum(begin, end));
+}
+bool draws_into(const HeatFlux&, const Interval&, double, double) {
+  return false;
+}
+bool draws_into(const Convection& c, const Interval& range, double begin, double end) {
+  return gas_within(c.gas_temperature, range, begin, end);
+}
+bool draws_into(const Radiation& c, const Interval& range, double begin, double end) {
+  return gas_within(c.gas_temperature, range, begin, end);
 }
 
 /// Heat flux into a face at temperature T, at one time: constant - coefficient T - emissive (absolute T)^4.
@@ -123,8 +136,16 @@ void HeatBoundary::add(const BoundaryCondition& condition, std::vector<BoundaryP
 
 void HeatBoundary::require_defined(double begin, double end) const {
   for (const auto& entry : entries_)
-    for (const auto& [quantity, curve] : std::visit([](const auto& c) { return curves_of(c); }, entry.condition))
+    for (const auto& [quantity, curve] :
+         std::visit([](const auto& c) { return curves_of(c); }, entry.condition))
       pyroclast::require_defined(*curve, quantity, begin, end);
+}
+
+bool HeatBoundary::draws_into(const Interval& range, double begin, double end) const {
+  return std::all_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+    return std::visit([&](const auto& c) { return pyroclast::draws_into(c, range, begin, end); },
+                      entry.condition);
+  });
 }
 
 HeatByKind HeatBoundary::inflow(double time, const std::vector<double>& temperature,
@@ -148,7 +169,8 @@ HeatByKind HeatBoundary::inflow(double time, const std::vector<double>& temperat
 void HeatBoundary::add_slope(double begin, double end, const std::vector<double>& hottest,
                              std::vector<double>& slope) const {
   for (const auto& entry : entries_) {
-    const FaceLaw law = std::visit([&](const auto& c) { return steepest_law(c, begin, end); }, entry.condition);
+    const FaceLaw law =
+        std::visit([&](const auto& c) { return steepest_law(c, begin, end); }, entry.condition);
     for (const auto& patch : entry.patches) slope[patch.node] += patch.area * law.slope(hottest[patch.node]);
   }
 }

@@ -37,13 +37,18 @@ class HeatBoundary {
   /// Throws Error naming the curve that is not defined from `begin` to `end`, s.
   void require_defined(double begin, double end) const;
 
+  /// Whether the conditions can only draw temperatures towards the range between two times, s: there is no
+  /// given flux, and no gas temperature outside.
+  bool draws_into(const Interval& range, double begin, double end) const;
+
   /// Writes the heat that flows into each boundary node, W; leaves the other entries as they are.
   HeatByKind inflow(double time, const std::vector<double>& temperature, std::vector<double>& heat) const;
 
   /// Adds to each boundary node a bound of how fast its outflow grows with its temperature, W/K, between two
   /// times, s.
   /// \param hottest  bound of each node's temperature, °C
-  void add_slope(double begin, double end, const std::vector<double>& hottest, std::vector<double>& slope) const;
+  void add_slope(double begin, double end, const std::vector<double>& hottest,
+                 std::vector<double>& slope) const;
 
  private:
   struct Entry {

@@ -21,7 +21,8 @@ double gauss(const Curve& curve, double a, double b) {
   return (b - a) * (5.0 * curve(middle - offset) + 8.0 * curve(middle) + 5.0 * curve(middle + offset)) / 18.0;
 }
 
-/// Integral of a positive curve, by halving until the halves agree with the whole: kinks and jumps are cornered.
+/// Integral of a positive curve, by halving until the halves agree with the whole: kinks and jumps are
+/// cornered.
 double integral(const Curve& curve, double a, double b, double whole, double tolerance, int halvings) {
   const double middle = 0.5 * (a + b);
   const double left = gauss(curve, a, middle);
@@ -152,7 +153,7 @@ double NodeEnthalpy::temperature(int node, double enthalpy, double near) const {
 }
 
 double NodeEnthalpy::excess(int node, double enthalpy) const {
-  if (enthalpy < 0.0) return -enthalpy * grid_.width / at(node, 1);
+  if (enthalpy < 0.0) return enthalpy * grid_.width / at(node, 1);
   const double most = at(node, grid_.cells);
   if (enthalpy > most) return (enthalpy - most) * grid_.width / (most - at(node, grid_.cells - 1));
   return enthalpy >= 0.0 ? 0.0 : std::numeric_limits<double>::infinity();  // not a number

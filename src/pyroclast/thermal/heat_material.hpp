@@ -29,9 +29,9 @@ struct TemperatureGrid {
 
 /// Conductivity and enthalpy of one material, tabulated so that each step reads them at a fixed small cost.
 ///
-/// The enthalpy h(T), the integral of rho c from the lower end of the range, is exact at every knot and linear
-/// between them. So h has an exact inverse, and no change of temperature, however large, can step over a peak
-/// of rho c. The conductivity is linear between its values at the knots.
+/// The enthalpy h(T), the integral of rho c from the lower end of the range, is exact at every knot and
+/// linear between them. So h has an exact inverse, and no change of temperature, however large, can step over
+/// a peak of rho c. The conductivity is linear between its values at the knots.
 class HeatTable {
  public:
   /// \param name     of the material, for messages
@@ -39,13 +39,16 @@ class HeatTable {
   ///
   /// Throws Error naming the material and curve when a curve is not one of temperature, does not cover the
   /// range, or is not positive throughout.
-  HeatTable(const HeatMaterial& material, const std::string& name, const TemperatureGrid& grid, double window);
+  HeatTable(const HeatMaterial& material, const std::string& name, const TemperatureGrid& grid,
+            double window);
 
   double conductivity(double temperature) const;
   double enthalpy(int knot) const { return enthalpy_[static_cast<std::size_t>(knot)]; }  ///< J/m³
 
   /// Bounds wherever the temperature may be after changing by up to the window.
-  double greatest_conductivity(double temperature) const { return greatest_conductivity_[bucket(temperature)]; }
+  double greatest_conductivity(double temperature) const {
+    return greatest_conductivity_[bucket(temperature)];
+  }
   double least_capacity(double temperature) const { return least_capacity_[bucket(temperature)]; }
   /// Bounds over the whole range.
   double greatest_conductivity() const { return greatest_; }
@@ -82,7 +85,7 @@ class NodeEnthalpy {
   /// Inverse of `enthalpy`. An enthalpy beyond the range's ends gives the temperature of the end.
   /// \param near  where to look first, °C
   double temperature(int node, double enthalpy, double near) const;
-  /// How far an enthalpy lies beyond the range's ends, at the capacity there, K; 0 within.
+  /// How far an enthalpy lies beyond the range's ends, at the capacity there, K: negative below, 0 within.
   double excess(int node, double enthalpy) const;
 
   double least_capacity(int node, double temperature) const;  ///< J/K, see HeatTable

@@ -105,9 +105,10 @@ ThermalNodes join_through_contacts(const Model<Dim>& model, const std::vector<bo
   for (const auto& c : model.contacts) {
     if (!conducting[c.a] || !conducting[c.b]) continue;
     if (const double gap = norm(model.position[c.a] - model.position[c.b]); !(gap <= tolerance))
-      throw Error(fmt::format("a contact joins gridpoints {} and {}, which lie {:g} m apart; heat crosses only "
-                              "contacts whose gridpoints coincide",
-                              c.a, c.b, gap));
+      throw Error(
+          fmt::format("a contact joins gridpoints {} and {}, which lie {:g} m apart; heat crosses only "
+                      "contacts whose gridpoints coincide",
+                      c.a, c.b, gap));
     sets.join(c.a, c.b);
   }
 
@@ -160,18 +161,24 @@ std::vector<OutlineFace<Dim>> outline(const Model<Dim>& model, const ZoneGeometr
     if (!alone || std::binary_search(joined.begin(), joined.end(), corners)) continue;
     const Vec<Dim> gradient = opposite_gradient(geometry, zone, opposite);
     const double steepness = norm(gradient);
-    OutlineFace<Dim> face{faces_of(model.zones[zone])[opposite], zone, {}, gradient * (-1.0 / steepness),
+    OutlineFace<Dim> face{faces_of(model.zones[zone])[opposite],
+                          zone,
+                          {},
+                          gradient * (-1.0 / steepness),
                           Dim * geometry.volume[zone] * steepness};
     for (int g : face.gridpoints) face.centre += model.position[g] * (1.0 / Dim);
     result.push_back(face);
   }
-  std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.zone < b.zone; });
+  std::stable_sort(result.begin(), result.end(),
+                   [](const auto& a, const auto& b) { return a.zone < b.zone; });
   return result;
 }
 
 template ThermalNodes join_through_contacts(const Model<2>&, const std::vector<bool>&);
 template ThermalNodes join_through_contacts(const Model<3>&, const std::vector<bool>&);
-template std::vector<OutlineFace<2>> outline(const Model<2>&, const ZoneGeometry<2>&, const std::vector<bool>&);
-template std::vector<OutlineFace<3>> outline(const Model<3>&, const ZoneGeometry<3>&, const std::vector<bool>&);
+template std::vector<OutlineFace<2>> outline(const Model<2>&, const ZoneGeometry<2>&,
+                                             const std::vector<bool>&);
+template std::vector<OutlineFace<3>> outline(const Model<3>&, const ZoneGeometry<3>&,
+                                             const std::vector<bool>&);
 
 }  // namespace pyroclast

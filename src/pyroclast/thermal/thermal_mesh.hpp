@@ -16,8 +16,9 @@ struct ThermalNodes {
   int count() const { return static_cast<int>(gridpoint.size()); }
 };
 
-/// Nodes for heat that crosses contacts without resistance (paper, 2.1): gridpoints that contacts join are one.
-/// A contact with a resistance would leave its gridpoints apart and pass heat between their nodes instead.
+/// Nodes for heat that crosses contacts without resistance (paper, 2.1): gridpoints that contacts join are
+/// one. A contact with a resistance would leave its gridpoints apart and pass heat between their nodes
+/// instead.
 ///
 /// \param conducts  whether a material takes part, by material of the model
 ///

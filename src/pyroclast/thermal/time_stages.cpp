@@ -25,7 +25,8 @@ void set_weights(std::vector<TimeStage>& stages) {
   for (std::size_t j = stages.size(); j-- > 0;) {
     stages[j].weight += share * stages[j].rate;
     stages.front().weight += share * stages[j].first_rate;
-    const double before = share * stages[j].previous + (j + 1 < stages.size() ? next * stages[j + 1].before : 0.0);
+    const double before =
+        share * stages[j].previous + (j + 1 < stages.size() ? next * stages[j + 1].before : 0.0);
     next = share;
     share = before;
   }

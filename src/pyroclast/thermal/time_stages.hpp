@@ -5,8 +5,8 @@
 
 namespace pyroclast {
 
-/// How heat conduction is advanced in time. Both are explicit and safe up to the stable step of the mesh times
-/// a factor that grows with the number of stages.
+/// How heat conduction is advanced in time. Both are explicit and safe up to the stable step of the mesh
+/// times a factor that grows with the number of stages.
 enum class HeatScheme : std::uint8_t {
   euler,  ///< forward Euler, first order: n stages for n stable steps
   /// Runge-Kutta-Legendre super-time-stepping, second order: about 2 sqrt(n) stages for n stable steps.

@@ -39,7 +39,7 @@ class ZoneConduction {
   struct Zone {
     std::array<int, Dim + 1> node;
     int table;
-    double volume;                      ///< m³
+    double volume;                       ///< m³
     std::array<Vec<Dim>, Dim> gradient;  ///< of the first Dim shape functions, 1/m
   };
 
