@@ -35,8 +35,7 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
   prescribed_.resize(gridpoints);
   stress_.resize(model.zones.size());
   contact_state_.resize(model.contacts.size());
-  contact_force_a_.resize(model.contacts.size());
-  contact_force_b_.resize(model.contacts.size());
+  contact_force_.resize(2 * model.contacts.size());
   if (Dim != 2 && parameters.kinematics == Kinematics::finite)
     throw Error("kinematics = finite: contact frames that turn are made for 2D only; use small");
   work_.resize(model.block_material.size());
@@ -172,8 +171,9 @@ void Mechanics<Dim>::update_face(int face) {
   const int first = face * Dim;
   const ContactFrame<Dim> frame = current_frame(first);
   for (int c = first; c < first + Dim; ++c) {
-    contact_force_a_[c] = update_contact_point(c, frame);
-    contact_force_b_[c] = -contact_force_a_[c];
+    const Vec<Dim> force = update_contact_point(c, frame);
+    contact_force_[2 * c] = force;
+    contact_force_[2 * c + 1] = -force;
   }
   if constexpr (Dim == 2)
     if (parameters_.kinematics == Kinematics::finite) add_turning_force(first, frame);
@@ -230,10 +230,10 @@ void Mechanics<Dim>::add_turning_force(int first, const ContactFrame<Dim>& frame
          (s.shear_traction[0] * s.opening - s.normal_traction * s.tangential_jump[0]);
   }
   const Vec<Dim> force = frame.normal * (0.5 * q);
-  contact_force_a_[first] += force;
-  contact_force_b_[first] += force;
-  contact_force_a_[first + 1] -= force;
-  contact_force_b_[first + 1] -= force;
+  for (int side : {0, 1}) {
+    contact_force_[2 * first + side] += force;
+    contact_force_[2 * (first + 1) + side] -= force;
+  }
 }
 
 /// Internal forces F_z of a block's gridpoints, Eqs. (4) and (5). Starts the sum of forces.
@@ -263,13 +263,8 @@ void Mechanics<Dim>::add_zone_forces(int block) {
 template <int Dim>
 Vec<Dim> Mechanics<Dim>::contact_forces(int g) const {
   Vec<Dim> sum{};
-  for (int k = gridpoint_contacts_.begin[g]; k < gridpoint_contacts_.begin[g + 1]; ++k) {
-    const int tagged = gridpoint_contacts_.contact[k];
-    if (tagged & 1)
-      sum += contact_force_b_[tagged >> 1];
-    else
-      sum += contact_force_a_[tagged >> 1];
-  }
+  for (int k = gridpoint_contacts_.begin[g]; k < gridpoint_contacts_.begin[g + 1]; ++k)
+    sum += contact_force_[gridpoint_contacts_.contact_side[k]];
   return sum;
 }
 
@@ -369,7 +364,7 @@ double Mechanics<Dim>::unbalanced_ratio() const {
     }
     applied += norm(last);
   }
-  for (const auto& f : contact_force_a_) applied += 2.0 * norm(f);
+  for (const auto& f : contact_force_) applied += norm(f);
   double unbalanced = 0.0;
   for (std::size_t g = 0; g < mass_.size(); ++g) {
     applied += norm(parameters_.gravity) * gravity_mass_[g] + norm(applied_[g]);

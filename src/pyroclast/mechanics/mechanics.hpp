@@ -179,7 +179,8 @@ class Mechanics {
   std::vector<std::uint8_t> prescribed_;  ///< bit per component
   std::vector<SymmetricTensor<Dim>> stress_;
   std::vector<ContactState<Dim>> contact_state_;
-  std::vector<Vec<Dim>> contact_force_a_, contact_force_b_;  ///< on the gridpoint of each side, N
+  /// On the gridpoint of each side, N; numbered like GridpointContacts::contact_side.
+  std::vector<Vec<Dim>> contact_force_;
   // per block, so that sums have one order
   std::vector<BlockWork> work_, begun_;
   std::vector<double> kinetic_;

@@ -119,11 +119,11 @@ GridpointContacts gridpoint_contacts(const Model<Dim>& model) {
     ++list.begin[c.b + 1];
   }
   for (std::size_t i = 1; i < list.begin.size(); ++i) list.begin[i] += list.begin[i - 1];
-  list.contact.resize(list.begin.back());
+  list.contact_side.resize(list.begin.back());
   auto next = list.begin;
   for (int c = 0; c < model.contact_count(); ++c) {
-    list.contact[next[model.contacts[c].a]++] = c << 1;
-    list.contact[next[model.contacts[c].b]++] = (c << 1) | 1;
+    list.contact_side[next[model.contacts[c].a]++] = 2 * c;
+    list.contact_side[next[model.contacts[c].b]++] = 2 * c + 1;
   }
   return list;
 }

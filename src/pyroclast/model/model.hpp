@@ -70,10 +70,10 @@ ZoneGeometry<Dim> zone_geometry(const Model<Dim>& model);
 template <int Dim>
 std::vector<int> zone_blocks(const Model<Dim>& model);
 
-/// Compressed lists of the contacts at each gridpoint, each tagged with the side on which it stands there.
+/// Compressed lists of the contact sides at each gridpoint.
 struct GridpointContacts {
-  std::vector<int> begin;    ///< contacts of gridpoint i: entries [i] to [i + 1]
-  std::vector<int> contact;  ///< index << 1, with the lowest bit set on side b
+  std::vector<int> begin;         ///< contacts of gridpoint i: entries [i] to [i + 1]
+  std::vector<int> contact_side;  ///< twice the contact's index, plus one on side b
 };
 
 template <int Dim>

@@ -259,10 +259,9 @@ double Conduction<Dim>::excess(int node, double temperature, double enthalpy) co
 template <int Dim>
 void Conduction<Dim>::update_nodes(const TimeStage& stage, double step, Trial& trial) {
   const bool first = stage.begin == 0.0;
-  double change = trial.change, largest_excess = 0.0;
-#pragma omp parallel for schedule(static) \
-    reduction(max                         \
-              : change, excess) if (nodes_.count() >= fewest_for_threads)
+  const bool threads = nodes_.count() >= fewest_for_threads;
+  double change = trial.change, most_beyond = 0.0;
+#pragma omp parallel for schedule(static) if (threads) reduction(max : change, most_beyond)
   for (int node = 0; node < nodes_.count(); ++node) {
     double increment;
     if (const int prescription = prescription_[node]; prescription >= 0) {
@@ -281,10 +280,10 @@ void Conduction<Dim>::update_nodes(const TimeStage& stage, double step, Trial& t
     const double start_beyond = excess(node, start_temperature_[node], enthalpy_[node]);
     change =
         std::max(change, std::abs(temperature_[node] + beyond - start_temperature_[node] - start_beyond));
-    largest_excess = std::max(largest_excess, std::abs(beyond));
+    most_beyond = std::max(most_beyond, std::abs(beyond));
   }
   trial.change = change;
-  trial.excess = largest_excess;
+  trial.excess = most_beyond;
 }
 
 template <int Dim>
