@@ -252,7 +252,7 @@ class Specimen:
 
     @cached_property
     def gradation(self) -> Table:
-        """d_m, asked_percent, placed_percent, superposed_percent."""
+        """d_m, asked_percent, placed_percent."""
         return Table(self._tables / "gradation.csv")
 
     @cached_property

@@ -254,7 +254,7 @@ def morphology(specimen: Specimen) -> Figure:
 
 @matplotlib.rc_context(style.STYLE)
 def gradation(specimen: Specimen) -> Figure:
-    """Cumulative passing in the coarse range: asked, placed, and after superposition (paper, Figure 5)."""
+    """Cumulative passing in the coarse range: asked and placed (paper, Figure 5)."""
     table = specimen.gradation
     figure = style.new_figure(3.8)
     axes = figure.add_subplot()
@@ -262,8 +262,6 @@ def gradation(specimen: Specimen) -> Figure:
     axes.plot(diameter, table["asked_percent"], color=style.BLACK, label="asked, Fuller")
     axes.plot(diameter, table["placed_percent"], color=style.BLUE, linestyle=(0, (5, 1.5)),
               marker="o", markersize=3.5, label="placed")
-    axes.plot(diameter, table["superposed_percent"], color=style.VERMILLION, linestyle=(0, (1.5, 1)),
-              marker="s", markersize=3.5, markerfacecolor="white", label="after superposition on the blocks")
     axes.set_xscale("log")
     ticks = [d for d in (1, 2, 4, 4.75, 8, 12.5, 16, 20, 25, 32, 63) if diameter.min() <= d <= diameter.max()]
     axes.set_xticks(ticks, [f"{d:g}" for d in ticks])

@@ -202,8 +202,8 @@ def write_specimen(folder: Path, section: Section) -> None:
     _write_csv(folder / "aggregates.csv", ["x_m", "y_m", "diameter_m"], section.circles)
     sizes = np.array([0.00475, 0.008, 0.0125, 0.016, 0.02, 0.025, 0.032])
     asked = 100.0 * ((sizes / 0.032) ** 0.45 - (0.00475 / 0.032) ** 0.45) / (1.0 - (0.00475 / 0.032) ** 0.45)
-    _write_csv(folder / "gradation.csv", ["d_m", "asked_percent", "placed_percent", "superposed_percent"],
-               np.column_stack([sizes, asked, np.maximum(asked - 1.0, 0.0), np.maximum(asked - 6.0, 0.0)]))
+    _write_csv(folder / "gradation.csv", ["d_m", "asked_percent", "placed_percent"],
+               np.column_stack([sizes, asked, np.maximum(asked - 1.0, 0.0)]))
     (folder / "specimen.json").write_text(json.dumps({
         "width_m": section.width, "height_m": section.height, "fraction_asked": 0.34,
         "fraction_placed": 0.338, "fraction_superposed": 0.312, "blocks": len(section.block_material)}))

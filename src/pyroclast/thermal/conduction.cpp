@@ -109,7 +109,7 @@ Conduction<Dim>::Conduction(const Model<Dim>& model,
   prescription_.assign(count, -1);
   for (auto* field : {&enthalpy_, &increment_, &before_, &first_rate_, &boundary_heat_, &source_heat_})
     field->assign(count, 0.0);
-  set_temperature(std::vector<double>(count, parameters.initial_temperature));
+  set_uniform_temperature(parameters.initial_temperature);
 }
 
 // ---- What acts on the body -------------------------------------------------------------------------------
@@ -153,6 +153,11 @@ void Conduction<Dim>::set_temperature(const std::vector<double>& temperature) {
     enthalpy_[node] = store_.enthalpy(node, temperature[node]);
   stored_at_start_ = std::accumulate(enthalpy_.begin(), enthalpy_.end(), 0.0);
   ledger_ = {};
+}
+
+template <int Dim>
+void Conduction<Dim>::set_uniform_temperature(double temperature) {
+  set_temperature(std::vector<double>(volume_.size(), temperature));
 }
 
 // ---- Running ---------------------------------------------------------------------------------------------
@@ -207,8 +212,8 @@ void Conduction<Dim>::run_step(double end) {
       if (step == remaining) time_ = end;
       return;
     }
-    if (smallest) refuse_excess();
     temperature_ = start_temperature_;
+    if (smallest) refuse_excess();
     step = std::max(0.5 * step, safe_step_);
     ++retries_;
   }
@@ -382,7 +387,7 @@ void Conduction<Dim>::refuse_excess() const {
   for (int other = 1; other < nodes_.count(); ++other)
     if (beyond(other) > beyond(node)) node = other;
   const Vec<Dim>& x = model_.position[nodes_.gridpoint[node]];
-  throw Error(fmt::format("the temperature at ({}) m leaves the run's range of {} to {} degC at {:g} s",
+  throw Error(fmt::format("the temperature at ({:g}) m leaves the run's range of {} to {} degC at {:g} s",
                           fmt::join(x.c, ", "), grid_.range.lower, grid_.range.upper, time_));
 }
 

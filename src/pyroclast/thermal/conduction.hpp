@@ -14,12 +14,12 @@
 namespace pyroclast {
 
 struct HeatParameters {
-  Interval temperature_range;  ///< that the run stays within, °C
-  double initial_temperature;  ///< °C
-  HeatScheme scheme;
-  double safety;          ///< fraction of the stable step that is taken, in (0, 1]
-  double largest_change;  ///< of any temperature in one step, K
-  double largest_step;    ///< s
+  Interval temperature_range;        ///< that the run stays within, °C
+  double initial_temperature = 0.0;  ///< °C
+  HeatScheme scheme = HeatScheme::super_time_stepping;
+  double safety = 0.0;          ///< fraction of the stable step that is taken, in (0, 1]
+  double largest_change = 0.0;  ///< of any temperature in one step, K
+  double largest_step = 0.0;    ///< s
 };
 
 /// Where the heat of a body came from since the start, J. What came in is what is stored; the rest is the
@@ -99,6 +99,9 @@ class Conduction {
 
   /// Sets the temperature of every node, °C, and starts the ledger anew.
   void set_temperature(const std::vector<double>& temperature);
+
+  /// The same temperature everywhere, °C.
+  void set_uniform_temperature(double temperature);
 
   /// Runs to a time, s. Throws Error when a temperature leaves the range, naming the place.
   void advance_to(double time);

@@ -1,0 +1,295 @@
+"""The program as a user meets it: commands, results, and decks gone wrong. PYROCLAST names the program."""
+
+import csv
+import hashlib
+import json
+import os
+import pathlib
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+PROGRAM = os.environ["PYROCLAST"]
+CASES = pathlib.Path(__file__).parents[2] / "cases"
+STARTER = (CASES / "starter.toml").read_text()
+
+
+def small_deck(**changes: str) -> str:
+    """The starter deck for a specimen that runs in seconds; `changes` maps a line's key to the new line."""
+    lines = {
+        "width": 'width = "50 mm"',
+        "height": 'height = "100 mm"',
+        "d_max": 'd_max = "12 mm"',
+        "sieves": 'sieves = ["8 mm"]',
+        "count": "count = 100",
+        "most_steps": "most_steps = 20000",
+        "velocity": 'velocity = "4 mm/s"',
+        "ramp_time": 'ramp_time = "2 ms"',
+        "stop_strain": "stop_strain = 4e-4",
+        "history_strain": "history_strain = 4e-6",
+    } | changes
+    deck = STARTER
+    for key, line in lines.items():
+        deck, count = re.subn(rf"^{key} = .*$", line.replace("\\", "\\\\"), deck, flags=re.MULTILINE)
+        assert count >= 1, key
+    return deck
+
+
+class UserTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def write(self, text: str, name: str = "deck.toml") -> pathlib.Path:
+        file = self.folder / name
+        file.write_text(text)
+        return file
+
+    def pyroclast(self, *arguments, **options) -> subprocess.CompletedProcess:
+        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
+                              timeout=300, check=False, **options)
+
+
+class Running(UserTest):
+    def test_a_run_writes_everything_it_promises(self):
+        deck = self.write(small_deck())
+        done = self.pyroclast("run", deck, "--out", "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        out = self.folder / "out"
+        manifest = json.loads((out / "manifest.json").read_text())
+        self.assertEqual((out / "deck.toml").read_text(), deck.read_text())
+        self.assertEqual(manifest["deck_sha256"], hashlib.sha256(deck.read_bytes()).hexdigest())
+        self.assertEqual(manifest["seed"], 1)
+        summary = json.loads((out / "summary.json").read_text())
+        self.assertGreater(summary["compression"]["E_GPa"], 10.0)
+        # the ledger's promise
+        self.assertLess(abs(summary["energy_J"]["error_over_work"]), 0.005)
+        with open(out / "history.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertGreater(len(rows), 50)
+        self.assertAlmostEqual(float(rows[-1]["strain"]), 4e-4, delta=4e-5)
+        for figure in ("stress_strain.png", "fracture.png", "cracks.png", "energy.png"):
+            self.assertGreater((out / "figures" / figure).stat().st_size, 10_000)
+        self.assertIn("E ", done.stdout)
+        self.assertIn("figures/fracture.png", done.stdout)
+
+    def test_fields_open_in_vtk_with_blocks_materials_stresses_and_contacts(self):
+        from vtkmodules.vtkIOHDF import vtkHDFReader  # pylint: disable=import-outside-toplevel
+
+        deck = self.write(small_deck())
+        self.assertEqual(self.pyroclast("run", deck, "--out", "out", "--no-figures").returncode, 0)
+        fields = self.folder / "out" / "fields"
+        series = json.loads((fields / "blocks.hdf.series").read_text())["files"]
+        self.assertGreater(len(series), 3)
+        self.assertEqual(sorted(f["time"] for f in series), [f["time"] for f in series])
+
+        def read(name):
+            reader = vtkHDFReader()
+            reader.SetFileName(str(fields / name))
+            reader.Update()
+            return reader.GetOutput()
+
+        blocks = read(series[-1]["name"])
+        cells, points = blocks.GetCellData(), blocks.GetPointData()
+        stress, material = cells.GetArray("stress"), cells.GetArray("material")
+        self.assertGreater(blocks.GetNumberOfCells(), 400)
+        self.assertEqual({int(material.GetTuple1(i)) for i in range(blocks.GetNumberOfCells())}, {0, 1, 2})
+        self.assertEqual(cells.GetArray("block").GetNumberOfTuples(), blocks.GetNumberOfCells())
+        mean = sum(stress.GetTuple(i)[1] for i in range(blocks.GetNumberOfCells())) / blocks.GetNumberOfCells()
+        self.assertLess(mean, -1e6)  # compression is negative in fields
+        top = max(range(blocks.GetNumberOfPoints()), key=lambda i: blocks.GetPoint(i)[1])
+        # 4e-4 of 100 mm, and a little more through the platens
+        self.assertAlmostEqual(points.GetArray("displacement").GetTuple(top)[1], -4e-5, delta=1e-5)
+        contacts = read(series[-1]["name"].replace("blocks", "contacts"))
+        for name in ("interface", "length", "tension_damage", "shear_damage", "opening", "slip", "normal_traction",
+                     "shear_traction", "closure"):
+            self.assertEqual(contacts.GetCellData().GetArray(name).GetNumberOfTuples(), contacts.GetNumberOfCells())
+
+    def test_the_same_deck_gives_the_same_history_on_any_number_of_threads(self):
+        deck = self.write(small_deck())
+        for threads in (1, 2):
+            self.assertEqual(self.pyroclast("run", deck, "--out", f"out{threads}", "--threads", threads,
+                                            "--no-figures").returncode, 0)
+        self.assertEqual((self.folder / "out1/history.csv").read_bytes(),
+                         (self.folder / "out2/history.csv").read_bytes())
+
+    def test_an_existing_folder_is_refused_and_replaced_only_when_told_so(self):
+        deck = self.write(small_deck(stop_strain="stop_strain = 2e-5"))
+        self.assertEqual(self.pyroclast("run", deck, "--out", "out", "--no-figures").returncode, 0)
+        before = (self.folder / "out/manifest.json").read_bytes()
+        again = self.pyroclast("run", deck, "--out", "out", "--no-figures")
+        self.assertEqual(again.returncode, 1)
+        self.assertIn("exists already", again.stderr)
+        self.assertEqual((self.folder / "out/manifest.json").read_bytes(), before)
+        self.assertEqual(self.pyroclast("run", deck, "--out", "out", "--overwrite", "--no-figures").returncode, 0)
+
+    def test_a_folder_that_holds_no_run_is_never_emptied(self):
+        deck = self.write(small_deck())
+        precious = self.folder / "mine"
+        precious.mkdir()
+        (precious / "thesis.txt").write_text("years of work")
+        done = self.pyroclast("run", deck, "--out", "mine", "--overwrite")
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual([f.name for f in precious.iterdir()], ["thesis.txt"])
+
+    def test_interrupting_keeps_the_results_so_far_and_says_so(self):
+        deck = self.write(small_deck(stop_strain="stop_strain = 0.5"))
+        with subprocess.Popen([PROGRAM, "run", deck, "--out", "out", "--no-figures"], cwd=self.folder,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            history = self.folder / "out" / "history.csv"
+            for _ in range(600):
+                if history.exists() and len(history.read_text().splitlines()) > 50:
+                    break
+                time.sleep(0.1)
+            process.send_signal(signal.SIGINT)
+            output, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertIn("interrupted", output)
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertEqual(summary["outcome"], "interrupted")
+        last = history.read_text().splitlines()[-1]
+        self.assertEqual(last.count(","), history.read_text().splitlines()[0].count(","))
+
+    def test_specimen_makes_the_specimen_and_its_pictures(self):
+        done = self.pyroclast("specimen", self.write(small_deck()), "--out", "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        facts = json.loads((self.folder / "out/specimen/specimen.json").read_text())
+        self.assertEqual(facts["blocks"], 100)
+        self.assertLess(abs(facts["fraction_placed"] - 0.34), 0.01)
+        for figure in ("morphology.png", "gradation.png"):
+            self.assertGreater((self.folder / "out/figures" / figure).stat().st_size, 10_000)
+
+    def test_new_writes_a_deck_that_is_valid_and_never_overwrites_one(self):
+        self.assertEqual(self.pyroclast("new", "mine").returncode, 0)
+        self.assertEqual((self.folder / "mine.toml").read_text(), STARTER)
+        check = self.pyroclast("check", "mine.toml")
+        self.assertEqual(check.returncode, 0, check.stderr)
+        for word in ("zones", "contacts", "shortest edge", "time step", "set by gridpoint", "E about", "memory"):
+            self.assertIn(word, check.stdout)
+        self.assertEqual(self.pyroclast("new", "mine").returncode, 1)
+
+    def test_every_shipped_case_is_valid(self):
+        for deck in sorted(CASES.glob("*.toml")):
+            self.assertEqual(self.pyroclast("check", deck).returncode, 0, deck)
+
+
+class Law(UserTest):
+    def drive(self, path: str, *options) -> list[dict]:
+        deck = self.write(small_deck())
+        self.write(path, "path.csv")
+        done = self.pyroclast("law", deck, "--path", "path.csv", "--out", "law.csv", *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.folder / "law.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_tearing_dissipates_the_mode_1_energy_in_one_step_or_a_thousand(self):
+        for steps in (1, 1000):
+            last = self.drive("u_n [um], u_s [um]\n20, 0\n-1, 0\n100, 0\n", "--steps", steps)[-1]
+            self.assertAlmostEqual(float(last["dissipated_tension_J_m2"]), 60.0, delta=60e-6)
+
+    def test_shearing_dissipates_the_mode_2_energy_above_the_residual_line(self):
+        for steps in (1, 1000):
+            last = self.drive("u_n [um], u_s [um]\n-1, 0\n-1, 200\n", "--steps", steps)[-1]
+            self.assertAlmostEqual(float(last["dissipated_shear_J_m2"]), 240.0, delta=240e-6)
+
+    def test_a_path_gone_wrong_is_refused_by_file_and_line(self):
+        deck = self.write(small_deck())
+        for text, words in (("u_n, u_s [um]\n1,2\n", ("path.csv:1", "no unit")),
+                            ("u_n [um], v [um]\n1,2\n", ("path.csv:1", '"v"', "u_s")),
+                            ("u_n [kg]\n1\n", ("path.csv:2", "kg")),
+                            ("u_n [um], u_s [um]\n1,2\n3\n", ("path.csv:3", "2 columns")),
+                            ("u_n [um]\n", ("path.csv", "no path"))):
+            self.write(text, "path.csv")
+            done = self.pyroclast("law", deck, "--path", "path.csv", "--out", "law.csv")
+            self.assertEqual(done.returncode, 1, text)
+            for word in words:
+                self.assertIn(word, done.stderr)
+            self.assertFalse((self.folder / "law.csv").exists())
+
+
+class DecksGoneWrong(UserTest):
+    def refuse(self, deck: str, *words: str, **options) -> str:
+        """The run is refused with these words, and nothing is left behind."""
+        self.write(deck)
+        done = self.pyroclast("run", "deck.toml", "--out", "out", **options)
+        self.assertNotEqual(done.returncode, 0)
+        for word in words:
+            self.assertIn(word, done.stderr)
+        self.assertFalse((self.folder / "out").exists())
+        return done.stderr
+
+    def line(self, deck: str, key: str) -> int:
+        return next(i for i, text in enumerate(deck.splitlines(), 1) if text.startswith(key))
+
+    def test_wrong_unit(self):
+        deck = small_deck(velocity='velocity = "4 mm"')
+        self.refuse(deck, f"deck.toml:{self.line(deck, 'velocity')}", "velocity", '"4 mm"', "mm/s")
+
+    def test_typo(self):
+        deck = small_deck(fuller_exponent="fuler_exponent = 0.45")
+        self.refuse(deck, f"deck.toml:{self.line(deck, 'fuler')}", "fuler_exponent", 'did you mean "fuller_exponent"')
+
+    def test_negative_modulus(self):
+        deck = small_deck().replace('E = "29.4 GPa"', 'E = "-29.4 GPa"')
+        self.refuse(deck, "materials.mortar.E", "-29.4 GPa", "greater than 0")
+
+    def test_all_errors_at_once(self):
+        deck = small_deck(velocity='velocity = "4 mm"', count="count = 2", safety='safety = 2')
+        text = self.refuse(deck, "velocity", "count", "safety")
+        self.assertEqual(len([t for t in text.splitlines() if "deck.toml:" in t]), 3)
+
+    def test_aggregates_that_do_not_fit(self):
+        self.refuse(small_deck(fraction="fraction = 0.95"), "aggregate", "0.95")
+
+    def test_contradicting_sieves(self):
+        self.refuse(small_deck(sieves='sieves = ["8 mm", "6 mm"]'), "sieves", "ascend")
+
+    def test_a_law_that_snaps_back(self):
+        self.refuse(small_deck(G_f1='G_f1 = "0.1 N/m"'), "mortar_mortar", "G_f1", "snaps back")
+
+    def test_empty_file(self):
+        self.refuse("", "deck.toml", "empty")
+
+    def test_missing_file(self):
+        done = self.pyroclast("run", "nowhere.toml")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("nowhere.toml", done.stderr)
+
+    def test_a_million_blocks_without_memory(self):
+        limit = 2_000_000_000
+        self.refuse(small_deck(count="count = 1000000"), "1000000", "memory", "GB",
+                    preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write anywhere")
+    def test_a_folder_that_may_not_be_written(self):
+        locked = self.folder / "locked"
+        locked.mkdir(mode=0o500)
+        self.write(small_deck())
+        done = self.pyroclast("run", "deck.toml", "--out", "locked/out")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("locked", done.stderr)
+
+    def test_a_folder_below_a_file(self):
+        self.write(small_deck())
+        done = self.pyroclast("run", "deck.toml", "--out", "deck.toml/out")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("deck.toml", done.stderr)
+
+    def test_a_full_disk_is_an_error_that_names_the_file(self):
+        # the largest file that may be written: the mesh does not fit
+        self.write(small_deck())
+        done = self.pyroclast("run", "deck.toml", "--out", "out",
+                              preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
+                                                  resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))))
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("out/", done.stderr)
+        self.assertEqual([f.name for f in (self.folder / "out").rglob("*.partial")], [])
+
+
+if __name__ == "__main__":
+    unittest.main()
