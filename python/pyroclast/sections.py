@@ -242,7 +242,7 @@ def morphology(specimen: Specimen) -> Figure:
     axes.set_xlabel("x [mm]")
     axes.set_ylabel("y [mm]")
     axes.set_title(
-        f"{len(blocks.outlines[0])} blocks, {len(circles)} aggregates; aggregate fraction\n"
+        f"{specimen.fact('blocks'):.0f} blocks, {len(circles)} aggregates; aggregate fraction\n"
         f"asked {specimen.fact('fraction_asked'):.3f}, placed {specimen.fact('fraction_placed'):.3f}, "
         f"after superposition {specimen.fact('fraction_superposed'):.3f}")
     circle = Line2D([], [], color=style.BLUE, marker="o", markerfacecolor="none", linestyle="none",

@@ -1,9 +1,9 @@
 #include "pyroclast/experiment/case.hpp"
 
-#include <gtest/gtest.h>
-
 #include <fstream>
 #include <sstream>
+
+#include <gtest/gtest.h>
 
 #include "pyroclast/experiment/simulation.hpp"
 
@@ -23,9 +23,12 @@ std::string with(std::string deck, const std::string& from, const std::string& t
   return deck.replace(at, from.size(), to);
 }
 
-Case read(const std::string& deck) { return read_case(Deck::parse(deck, "deck.toml"), "."); }
+Case read(const std::string& deck) {
+  return read_case(Deck::parse(deck, "deck.toml"), ".");
+}
 
-// Promise: the shipped case holds the paper's Tables 1 and 2 as printed, with the readings of the open points.
+// Promise: the shipped case holds the paper's Tables 1 and 2 as printed, with the readings of the open
+// points.
 TEST(PaperCase, HoldsTablesOneAndTwoAsPrinted) {
   const Case c = read(paper_deck());
   EXPECT_EQ(c.solids[aggregate_material].young(20.0), 70e9);
@@ -69,7 +72,7 @@ TEST(PaperCase, FractureZoneScalesWithTheBlockSizeUnlessFixed) {
   EXPECT_DOUBLE_EQ(make_concrete(fixed.solids, fixed.contacts, 6e-3).fracture_zone, 1.6e-3);
   const auto aa = make_concrete(fixed.solids, fixed.contacts, 6e-3).contacts[aggregate_aggregate].at(20.0);
   EXPECT_EQ(aa.behaviour, ContactBehaviour::elastic);
-  EXPECT_DOUBLE_EQ(aa.normal_stiffness, 70e9 / 1.6e-3);                // Eq. (17)
+  EXPECT_DOUBLE_EQ(aa.normal_stiffness, 70e9 / 1.6e-3);  // Eq. (17)
   EXPECT_DOUBLE_EQ(aa.shear_stiffness, 70e9 / (2.0 * 1.2) / 1.6e-3);
 }
 
@@ -87,18 +90,20 @@ TEST(Case, TellsOfKeysThatContradictEachOther) {
             std::string::npos);
   EXPECT_NE(message(with(deck, "mass = \"scaled\"", "mass = \"real\"")).find("time_step"), std::string::npos);
   EXPECT_NE(message(with(deck, "d_max = \"32 mm\"", "d_max = \"3 mm\"")).find("d_max"), std::string::npos);
-  EXPECT_NE(message(with(deck, "kind = \"compress\"", "kind = \"compres\"")).find("compress"), std::string::npos);
+  EXPECT_NE(message(with(deck, "kind = \"compress\"", "kind = \"compres\"")).find("compress"),
+            std::string::npos);
 }
 
 // Promise: the estimate printed before a run is a lower bound near what the run gives.
 TEST(Simulation, EstimatedModulusIsALowerBoundNearTheMeasuredOne) {
   Case c = read(with(paper_deck(), "count = 5000", "count = 300"));
   c.sampling.history_strain = 5e-6;
-  c.stages = {CompressStage{.velocity = 2e-3, .ramp_time = 5e-3, .stop_strain = 1.5e-4, .stop_fraction = 0.0}};
+  c.stages = {
+      CompressStage{.velocity = 2e-3, .ramp_time = 5e-3, .stop_strain = 1.5e-4, .stop_fraction = 0.0}};
   Simulation simulation(c);
   Observer nobody;
-  Experiment experiment(simulation.body, simulation.specimen.width, simulation.specimen.height, *simulation.mechanics,
-                        c.stages, c.sampling, nobody);
+  Experiment experiment(simulation.body, simulation.specimen.width, simulation.specimen.height,
+                        *simulation.mechanics, c.stages, c.sampling, nobody);
   EXPECT_EQ(experiment.run(), Outcome::strain_reached);
   const auto& rows = experiment.history();
   const auto& a = rows[rows.size() / 2];
@@ -106,7 +111,8 @@ TEST(Simulation, EstimatedModulusIsALowerBoundNearTheMeasuredOne) {
   const double measured = (b.stress() - a.stress()) / (b.strain - a.strain);
   const double estimate = estimate_modulus(simulation.body, simulation.materials);
   EXPECT_LT(estimate, measured);
-  EXPECT_GT(estimate, 0.85 * measured);  // uniform stress underestimates a composite of 70 and 29 GPa by some per cent
+  EXPECT_GT(estimate,
+            0.85 * measured);  // uniform stress underestimates a composite of 70 and 29 GPa by some per cent
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // A project that knows only the installed package: tears one contact apart and asks what that took.
+#include <cmath>
+
 #include <pyroclast/material/contact_law.hpp>
 #include <pyroclast/units/units.hpp>
-
-#include <cmath>
 
 int main() {
   pyroclast::ContactProperties p;

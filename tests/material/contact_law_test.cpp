@@ -1,11 +1,11 @@
 #include "pyroclast/material/contact_law.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>
+
+#include <gtest/gtest.h>
 
 namespace pyroclast {
 namespace {
@@ -62,7 +62,8 @@ struct Path {
 class ContactLawSteps : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Steps, ContactLawSteps, testing::Values(1, 7, 1000));
 
-// The promise: fracture energies are exact in any number of steps. 1e-12: closed forms, only round-off is left.
+// The promise: fracture energies are exact in any number of steps. 1e-12: closed forms, only round-off is
+// left.
 TEST_P(ContactLawSteps, TearingApartDissipatesTheModeOneEnergy) {
   Path<2> path;
   path.go(100e-6, {}, GetParam());
@@ -142,6 +143,8 @@ TEST(ContactLaw, WorkGoesIntoStoredAndDissipatedEnergy) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (int leg = 0; leg < 12; ++leg) path.go(6e-6 * uniform(random), {{40e-6 * uniform(random)}}, 200000);
+  path.go(70e-6, {{10e-6}}, 200000);   // torn and open ...
+  path.go(-2e-6, {{-30e-6}}, 200000);  // ... and closed again
   const double accounted = path.response.stored + path.dissipated.total();
   EXPECT_GT(path.dissipated.tension, 0.0);
   EXPECT_GT(path.dissipated.shear, 0.0);
@@ -177,6 +180,17 @@ TEST(ContactLaw, BrokenAndOpenCarriesNothingAndClosedCarriesFriction) {
   EXPECT_EQ(history.tension_damage, 1.0);
 }
 
+// The bond that tears releases the shear it held, once; an open crack that goes on moving costs nothing.
+TEST(ContactLaw, TearingUnderShearReleasesTheShearHeldAndNothingMore) {
+  const ContactProperties p = mortar();
+  ContactHistory<2> history;
+  const double before = update_contact<2>(p, 0.0, {{0.3e-6}}, history).stored;
+  const auto torn = update_contact<2>(p, 60e-6, {{0.3e-6}}, history);
+  EXPECT_NEAR(torn.dissipated.shear, before, 1e-12 * before);
+  for (double slip : {1e-6, 50e-6, -80e-6})
+    EXPECT_EQ(update_contact<2>(p, 60e-6, {{slip}}, history).dissipated.total(), 0.0);
+}
+
 TEST(ContactLaw, DamageNeverHealsAlongARandomPath) {
   const ContactProperties p = mortar();
   ContactHistory<2> history;
@@ -207,8 +221,7 @@ TEST(ContactLaw, IsIsotropicInTheContactPlane) {
   const double angle = 0.7;
   for (double slip : {0.3e-6, 5e-6, 30e-6, 20e-6, -4e-6, 150e-6}) {
     const auto a = update_contact<2>(p, -0.4e-6, {{slip}}, flat);
-    const auto b =
-        update_contact<3>(p, -0.4e-6, {{slip * std::cos(angle), slip * std::sin(angle)}}, solid);
+    const auto b = update_contact<3>(p, -0.4e-6, {{slip * std::cos(angle), slip * std::sin(angle)}}, solid);
     const double along = b.shear_traction[0] * std::cos(angle) + b.shear_traction[1] * std::sin(angle);
     const double across = b.shear_traction[1] * std::cos(angle) - b.shear_traction[0] * std::sin(angle);
     // round-off relative to the tractions in play, of some MPa

@@ -76,8 +76,8 @@ inline Model<2> tessellated(int blocks, double width, double height, std::uint64
   return model;
 }
 
-/// A column of `count` square blocks of size d, joined face to face, its axis turned by `angle` from the y axis.
-/// Block i holds gridpoints 4 i (lower left) to 4 i + 3, counter-clockwise.
+/// A column of `count` square blocks of size d, joined face to face, its axis turned by `angle` from the y
+/// axis. Block i holds gridpoints 4 i (lower left) to 4 i + 3, counter-clockwise.
 inline Model<2> column(int count, double d, double angle = 0.0) {
   Model<2> model;
   model.material_names = {"mortar"};
@@ -96,7 +96,8 @@ inline Model<2> column(int count, double d, double angle = 0.0) {
 inline Model<3> five_tetrahedra() {
   const std::vector<Vec<3>> x{{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}},
                               {{0, 0, 1}}, {{1, 0, 1}}, {{1, 1, 1}}, {{0, 1, 1}}};
-  const std::vector<std::array<int, 4>> cut{{0, 1, 2, 5}, {0, 2, 3, 7}, {0, 5, 7, 4}, {2, 7, 5, 6}, {0, 2, 7, 5}};
+  const std::vector<std::array<int, 4>> cut{
+      {0, 1, 2, 5}, {0, 2, 3, 7}, {0, 5, 7, 4}, {2, 7, 5, 6}, {0, 2, 7, 5}};
   Model<3> model;
   model.material_names = {"mortar"};
   model.interface_names = {"mortar-mortar"};
@@ -136,14 +137,15 @@ MechanicsParameters<Dim> quasi_static(double damping = 0.8) {
 
 template <int Dim>
 Mechanics<Dim> mechanics(const Model<Dim>& model, const ContactProperties& contact,
-                         const MechanicsParameters<Dim>& parameters, double young = 29.4e9, double poisson = 0.2) {
+                         const MechanicsParameters<Dim>& parameters, double young = 29.4e9,
+                         double poisson = 0.2) {
   return Mechanics<Dim>(model, {2400.0},
-                        std::vector<ZoneProperties>(model.zones.size(), zone_properties<Dim>(young, poisson)), {contact},
-                        parameters);
+                        std::vector<ZoneProperties>(model.zones.size(), zone_properties<Dim>(young, poisson)),
+                        {contact}, parameters);
 }
 
-/// Moves every gridpoint at a steady velocity to a displacement given by its position, in a number of steps, and
-/// takes one more step so that forces belong to it.
+/// Moves every gridpoint at a steady velocity to a displacement given by its position, in a number of steps,
+/// and takes one more step so that forces belong to it.
 template <int Dim, class Field>
 void impose(Mechanics<Dim>& m, Field displacement, int steps) {
   const auto& x = m.model().position;

@@ -17,22 +17,28 @@ double stress_error(const Mechanics<Dim>& m, const SymmetricTensor<Dim>& expecte
   double scale = 0.0, error = 0.0;
   for (double s : expected) scale = std::max(scale, std::abs(s));
   for (const auto& stress : m.stress())
-    for (std::size_t i = 0; i < expected.size(); ++i) error = std::max(error, std::abs(stress[i] - expected[i]));
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      error = std::max(error, std::abs(stress[i] - expected[i]));
   return error / scale;
 }
 
 class PatchTest : public testing::TestWithParam<Kinematics> {};
 INSTANTIATE_TEST_SUITE_P(Kinematics, PatchTest, testing::Values(Kinematics::small, Kinematics::finite));
 
-// Promise: a linear displacement field gives the same stress in every zone of a random tessellation, to round-off;
-// where it is uniform, forces inside are balanced.
+// Promise: a linear displacement field gives the same stress in every zone of a random tessellation, to
+// round-off; where it is uniform, forces inside are balanced.
 TEST_P(PatchTest, LinearFieldOnARandomTessellationGivesUniformStress) {
   const Model<2> model = tessellated(150, 0.1, 0.1, 4);
   auto parameters = quasi_static<2>();
   parameters.kinematics = GetParam();
   auto m = mechanics(model, mortar_contact(), parameters);
   // A symmetric gradient, so that nothing turns and both kinematics expect the same.
-  impose(m, [](const Vec<2>& x) { return Vec<2>{{1e-5 * x[0] + 2e-5 * x[1], 2e-5 * x[0] - 3e-5 * x[1]}}; }, 10);
+  impose(
+      m,
+      [](const Vec<2>& x) {
+        return Vec<2>{{1e-5 * x[0] + 2e-5 * x[1], 2e-5 * x[0] - 3e-5 * x[1]}};
+      },
+      10);
   const auto p = zone_properties<2>(29.4e9, 0.2);
   const auto expected = zone_stress<2>(p, {1e-5, -3e-5, 2e-5});
   // 1e-10: displacements of 1e-6 m over zones of 1e-3 m, with round-off 1e-16 of positions of 0.1 m
@@ -50,10 +56,14 @@ TEST(PatchTest3, LinearFieldOnTetrahedraGivesUniformStress) {
   const Model<3> model = five_tetrahedra();
   EXPECT_EQ(model.contact_count(), 12);
   auto m = mechanics(model, mortar_contact(), quasi_static<3>());
-  impose(m, [](const Vec<3>& x) {
-    return Vec<3>{{1e-5 * x[0] + 2e-5 * x[1], 3e-5 * x[2] - 1e-5 * x[1], 4e-5 * x[0] - 2e-5 * x[2]}};
-  }, 10);
-  const auto expected = zone_stress<3>(zone_properties<3>(29.4e9, 0.2), {1e-5, -1e-5, -2e-5, 1e-5, 1.5e-5, 2e-5});
+  impose(
+      m,
+      [](const Vec<3>& x) {
+        return Vec<3>{{1e-5 * x[0] + 2e-5 * x[1], 3e-5 * x[2] - 1e-5 * x[1], 4e-5 * x[0] - 2e-5 * x[2]}};
+      },
+      10);
+  const auto expected =
+      zone_stress<3>(zone_properties<3>(29.4e9, 0.2), {1e-5, -1e-5, -2e-5, 1e-5, 1.5e-5, 2e-5});
   EXPECT_LT(stress_error(m, expected), 1e-10);  // as in 2D
 }
 
@@ -71,14 +81,16 @@ TEST(PatchTest3, TetrahedraInSeriesWithContactsComeToEquilibrium) {
   m.advance(8000);
   double pulled = 0.0, held = 0.0;
   for (int g = 0; g < model.gridpoint_count(); ++g)
-    (model.position[g][2] == 1.0 ? pulled : held) += model.position[g][2] == 1.0 || model.position[g][2] == 0.0 ? m.force()[g][2] : 0.0;
+    (model.position[g][2] == 1.0 ? pulled : held) +=
+        model.position[g][2] == 1.0 || model.position[g][2] == 0.0 ? m.force()[g][2] : 0.0;
   EXPECT_LT(m.unbalanced_ratio(), 1e-10);
   EXPECT_GT(std::abs(pulled), 29.4e9 * 1e-6 * 0.5);
   EXPECT_NEAR(pulled, -held, 1e-6 * std::abs(pulled));
 }
 
 // Promise: a chain of n blocks and contacts has exactly 1/E_eff = 1/E + 1/(K_n d).
-// The chain has n blocks of length d and n - 1 contacts; per length n d the compliance is exact with (n - 1)/n contacts.
+// The chain has n blocks of length d and n - 1 contacts; per length n d the compliance is exact with (n -
+// 1)/n contacts.
 double chain_modulus(int n, double angle, Kinematics kinematics) {
   const double d = 0.01;
   const Model<2> model = column(n, d, angle);
@@ -94,7 +106,8 @@ double chain_modulus(int n, double angle, Kinematics kinematics) {
   const int top = 4 * (n - 1);
   for (int g : {top + 2, top + 3}) m.apply_force(g, pull);
   m.advance(60000);
-  // at rest to round-off: displacements of 1e-6 m carry 1e-22 m, times a stiffness of 1e11 N/m, over forces of 1e4 N
+  // at rest to round-off: displacements of 1e-6 m carry 1e-22 m, times a stiffness of 1e11 N/m, over forces
+  // of 1e4 N
   EXPECT_LT(m.unbalanced_ratio(), 1e-11);
   const Vec<2> axis = turned({{0.0, 1.0}}, angle);
   const double stretch = 0.5 * (dot(m.displacement()[top + 2], axis) + dot(m.displacement()[top + 3], axis));
@@ -125,7 +138,8 @@ TEST(PatchTest, GivesTheSameStressAfterTurningTheModelByThirtyDegrees) {
   auto b = mechanics(turned_model, mortar_contact(), quasi_static<2>());
   const auto field = [](const Vec<2>& x) { return Vec<2>{{1e-4 * x[0] * x[1], -2e-4 * x[1] * x[1]}}; };
   impose(a, field, 10);
-  impose(b, [&](const Vec<2>& x) { return turned(field(turned(x, -angle)), angle); }, 10);
+  impose(
+      b, [&](const Vec<2>& x) { return turned(field(turned(x, -angle)), angle); }, 10);
   double scale = 0.0, worst = 0.0;
   for (std::size_t z = 0; z < a.stress().size(); ++z) {
     const auto s = rotated<2>({std::cos(angle), std::sin(angle)}, a.stress()[z]);
@@ -144,10 +158,12 @@ TEST(FiniteKinematics, ARigidTurnLeavesNoStressAndNoTraction) {
   parameters.kinematics = Kinematics::finite;
   auto m = mechanics(model, mortar_contact(), parameters);
   const double angle = 0.5;
-  impose(m, [&](const Vec<2>& x) { return turned(x, angle) - x; }, 1);
+  impose(
+      m, [&](const Vec<2>& x) { return turned(x, angle) - x; }, 1);
   for (const auto& s : m.stress())
     for (double component : s) EXPECT_LT(std::abs(component), 29.4e9 * 1e-12);  // strain to round-off
-  for (const auto& c : m.contacts()) EXPECT_LT(std::abs(c.normal_traction), 18400e9 * 1e-16);  // jump to round-off
+  for (const auto& c : m.contacts())
+    EXPECT_LT(std::abs(c.normal_traction), 18400e9 * 1e-16);  // jump to round-off
 }
 
 // Promise: contact forces of turning frames do the work of the tractions and keep moments in balance.
@@ -155,9 +171,15 @@ TEST(FiniteKinematics, ContactForcesOfAShearedOpenedPairBalanceInForceAndMoment)
   const Model<2> model = column(2, 0.01);
   auto parameters = quasi_static<2>();
   parameters.kinematics = Kinematics::finite;
-  auto m = mechanics(model, elastic_contact(), parameters, 29.4e12);  // stiff zones: forces come from contacts
+  auto m =
+      mechanics(model, elastic_contact(), parameters, 29.4e12);  // stiff zones: forces come from contacts
   const auto block_b = [](const Vec<2>& x) { return x[1] > 0.015; };
-  impose(m, [&](const Vec<2>& x) { return block_b(x) ? Vec<2>{{3e-4, 2e-4}} : Vec<2>{}; }, 1);
+  impose(
+      m,
+      [&](const Vec<2>& x) {
+        return block_b(x) ? Vec<2>{{3e-4, 2e-4}} : Vec<2>{};
+      },
+      1);
   Vec<2> sum{};
   double moment = 0.0, scale = 0.0;
   for (int g = 0; g < model.gridpoint_count(); ++g) {
@@ -238,9 +260,11 @@ TEST_P(TornPrism, DissipatesTheModeOneEnergyOfOneSection) {
   const Model<2> model = column(4, d);
   auto parameters = quasi_static<2>(std::get<0>(GetParam()));
   parameters.damping_form = std::get<1>(GetParam());
-  // Where nothing damps, the halves ring at the highest frequency; a step far below its limit follows the law's corners.
+  // Where nothing damps, the halves ring at the highest frequency; a step far below its limit follows the
+  // law's corners.
   parameters.safety = 0.3;
-  auto m = Mechanics<2>(model, {2400.0}, std::vector<ZoneProperties>(model.zones.size(), zone_properties<2>(29.4e9, 0.2)),
+  auto m = Mechanics<2>(model, {2400.0},
+                        std::vector<ZoneProperties>(model.zones.size(), zone_properties<2>(29.4e9, 0.2)),
                         {mortar_contact()}, parameters);
   for (int g : {0, 1, 14, 15})
     for (int i : {0, 1}) m.prescribe_velocity(g, i, 0.0);
@@ -254,7 +278,8 @@ TEST_P(TornPrism, DissipatesTheModeOneEnergyOfOneSection) {
     if (damage == 1.0)
       ++torn;
     else
-      partly += damage * 60.0 * model.contacts[c].area;  // sections that softened a little before one of them broke
+      partly +=
+          damage * 60.0 * model.contacts[c].area;  // sections that softened a little before one of them broke
   }
   EXPECT_EQ(torn, 2);
   EXPECT_NEAR(e.dissipated.tension - partly, 60.0 * d, 1e-3 * 60.0 * d);

@@ -1,8 +1,8 @@
 #include "pyroclast/model/concrete_model.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "pyroclast/base/error.hpp"
 

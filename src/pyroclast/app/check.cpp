@@ -1,8 +1,8 @@
-#include <fmt/format.h>
-#include <sys/resource.h>
-
 #include <chrono>
 #include <cmath>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
 
 #include "pyroclast/app/load.hpp"
 #include "pyroclast/experiment/simulation.hpp"
@@ -32,7 +32,8 @@ double most_steps(const Case& c, double time_step) {
   double steps = 0.0;
   for (const auto& stage : c.stages)
     if (const auto* compress = std::get_if<CompressStage>(&stage))
-      steps += (compress->stop_strain * c.specimen.height / compress->velocity + 0.5 * compress->ramp_time) / time_step;
+      steps += (compress->stop_strain * c.specimen.height / compress->velocity + 0.5 * compress->ramp_time) /
+               time_step;
   return steps;
 }
 
@@ -48,8 +49,8 @@ int check(const RunOptions& options) {
 
   fmt::print("deck            {} is valid: {}\n", loaded.deck.name(), c.title);
   fmt::print("{}", describe(simulation.specimen));
-  fmt::print("model           {} blocks with the platens, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
-             model.zone_count(), model.gridpoint_count(), model.contact_count());
+  fmt::print("model           {} blocks with the platens, {} zones, {} gridpoints, {} contacts\n",
+             model.block_count(), model.zone_count(), model.gridpoint_count(), model.contact_count());
 
   const TimeStepLimit limit = mechanics.real_mass_limit();
   const int g = limit.gridpoint;
@@ -60,16 +61,20 @@ int check(const RunOptions& options) {
                  ? fmt::format("by density scaling of all {} gridpoints: moving mass {:.3g} x the real one",
                                model.gridpoint_count(), mechanics.mass_ratio())
                  : "with real mass");
-  fmt::print("                with real mass {:.3g} s, set by gridpoint {} of block {} ({}) at ({:.2f}, {:.2f}) mm\n",
-             limit.step, g, block, model.material_names[model.block_material[block]], 1e3 * model.position[g][0],
-             1e3 * model.position[g][1]);
-  fmt::print("materials       E about {:.2f} GPa (uniform stress estimate, a lower bound), t_b {:.3f} mm\n", modulus * 1e-9,
-             1e3 * simulation.materials.fracture_zone);
+  fmt::print(
+      "                with real mass {:.3g} s, set by gridpoint {} of block {} ({}) at ({:.2f}, {:.2f}) "
+      "mm\n",
+      limit.step, g, block, model.material_names[model.block_material[block]], 1e3 * model.position[g][0],
+      1e3 * model.position[g][1]);
+  fmt::print("materials       E about {:.2f} GPa (uniform stress estimate, a lower bound), t_b {:.3f} mm\n",
+             modulus * 1e-9, 1e3 * simulation.materials.fracture_zone);
 
   const double steps = most_steps(c, mechanics.time_step());
   const double step_time = seconds_per_step(mechanics);
-  fmt::print("run             {} stages, at most {:.3g} steps after settling, about {} on {} threads, {:.0f} MB of memory\n",
-             c.stages.size(), steps, duration(steps * step_time), loaded.threads, peak_memory() * 1e-6);
+  fmt::print(
+      "run             {} stages, at most {:.3g} steps after settling, about {} on {} threads, {:.0f} MB of "
+      "memory\n",
+      c.stages.size(), steps, duration(steps * step_time), loaded.threads, peak_memory() * 1e-6);
   return 0;
 }
 

@@ -9,7 +9,7 @@ namespace pyroclast::app {
 
 struct RunOptions {
   std::filesystem::path deck;
-  std::filesystem::path out;          ///< empty: runs/<name of the deck>
+  std::filesystem::path out;  ///< empty: runs/<name of the deck>
   bool overwrite = false;
   bool figures = true;
   int threads = 0;                    ///< 0: as many as the machine has
@@ -30,7 +30,8 @@ int run(const RunOptions& options);
 int law(const LawOptions& options);
 int make_deck(const std::string& name);
 
-/// Draws the figures of a folder with the Python package; warns when that is not possible. `what` is its command.
+/// Draws the figures of a folder with the Python package; warns when that is not possible. `what` is its
+/// command.
 void draw_figures(const std::string& what, const std::filesystem::path& folder);
 
 }  // namespace pyroclast::app

@@ -1,10 +1,10 @@
-#include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-
 #include <cstdlib>
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
 
 #include "pyroclast/app/commands.hpp"
 
@@ -39,11 +39,13 @@ void draw_figures(const std::string& what, const std::filesystem::path& folder) 
   pid_t child = 0;
   int status = -1;
   std::fflush(stdout);
-  if (posix_spawn(&child, PYROCLAST_PYTHON, nullptr, nullptr, pointers(arguments).data(), pointers(environment).data()) == 0)
+  if (posix_spawn(&child, PYROCLAST_PYTHON, nullptr, nullptr, pointers(arguments).data(),
+                  pointers(environment).data()) == 0)
     waitpid(child, &status, 0);
   if (status != 0)
-    fmt::print(stderr, "warning: no figures were drawn; the results are complete without them. To draw them later: "
-                       "PYTHONPATH={} {} -m pyroclast.figures {} {}\n",
+    fmt::print(stderr,
+               "warning: no figures were drawn; the results are complete without them. To draw them later: "
+               "PYTHONPATH={} {} -m pyroclast.figures {} {}\n",
                package_folder().string(), PYROCLAST_PYTHON, what, folder.string());
 }
 

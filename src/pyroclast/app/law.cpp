@@ -1,8 +1,8 @@
-#include <fmt/format.h>
-
 #include <cmath>
 #include <fstream>
 #include <sstream>
+
+#include <fmt/format.h>
 
 #include "pyroclast/app/load.hpp"
 #include "pyroclast/base/error.hpp"
@@ -89,7 +89,8 @@ std::vector<PathPoint> read_path(const std::filesystem::path& file) {
     }
     path.push_back(point);
   }
-  if (path.empty()) throw Error(fmt::format("{}: holds no path; a header and at least one row are needed", file.string()));
+  if (path.empty())
+    throw Error(fmt::format("{}: holds no path; a header and at least one row are needed", file.string()));
   return path;
 }
 
@@ -101,7 +102,8 @@ InterfaceIndex interface_index(const std::string& name) {
 /// One contact point on its way along a path, with its energies added up.
 class Drive {
  public:
-  Drive(const ContactMaterial& material) : material_(material), properties_(material.at(kReferenceTemperature)) {}
+  Drive(const ContactMaterial& material)
+      : material_(material), properties_(material.at(kReferenceTemperature)) {}
 
   void go(const PathPoint& to) {
     if (to.temperature != at_.temperature) {
@@ -115,15 +117,17 @@ class Drive {
   }
 
   std::string row() const {
-    return fmt::format("{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},"
-                       "{:.12g},{:.12g},{:.12g}\n",
-                       at_.opening, at_.slip, at_.temperature, response_.normal_traction, response_.shear_traction[0],
-                       history_.tension_damage, history_.shear_damage, history_.closure, history_.accumulated_slip,
-                       response_.stored, total_.tension, total_.shear, total_.friction, total_.compression, heat_);
+    return fmt::format(
+        "{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},"
+        "{:.12g},{:.12g},{:.12g}\n",
+        at_.opening, at_.slip, at_.temperature, response_.normal_traction, response_.shear_traction[0],
+        history_.tension_damage, history_.shear_damage, history_.closure, history_.accumulated_slip,
+        response_.stored, total_.tension, total_.shear, total_.friction, total_.compression, heat_);
   }
 
   static constexpr const char* kHeader =
-      "u_n_m,u_s_m,T_degC,sigma_Pa,tau_Pa,D_t,D_s,u_p_m,s_m,stored_J_m2,dissipated_tension_J_m2,dissipated_shear_J_m2,"
+      "u_n_m,u_s_m,T_degC,sigma_Pa,tau_Pa,D_t,D_s,u_p_m,s_m,stored_J_m2,dissipated_tension_J_m2,dissipated_"
+      "shear_J_m2,"
       "dissipated_friction_J_m2,dissipated_compression_J_m2,heat_induced_J_m2\n";
 
  private:
@@ -161,7 +165,8 @@ int law(const LawOptions& options) {
     for (int i = 1; i <= options.steps; ++i) {
       const double share = static_cast<double>(i) / options.steps;
       const auto between = [&](double a, double b) { return i == options.steps ? b : a + share * (b - a); };
-      drive.go({between(from.opening, to.opening), between(from.slip, to.slip), between(from.temperature, to.temperature)});
+      drive.go({between(from.opening, to.opening), between(from.slip, to.slip),
+                between(from.temperature, to.temperature)});
       csv += drive.row();
     }
     from = to;

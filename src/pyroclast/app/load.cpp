@@ -1,9 +1,9 @@
 #include "pyroclast/app/load.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <omp.h>
-
-#include <cmath>
 
 namespace pyroclast::app {
 
@@ -20,14 +20,17 @@ std::filesystem::path output_folder(const RunOptions& options) {
 
 std::string describe(const specimen::Specimen& s) {
   return fmt::format(
-      "specimen        {} blocks, {} aggregates; aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} after "
+      "specimen        {} blocks, {} aggregates; aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} "
+      "after "
       "superposition\n"
-      "block metrics   mean size {:.3f} mm, mean edge {:.3f} mm; shortest edge {:.3f} mm, block {} at ({:.2f}, {:.2f}) mm; "
+      "block metrics   mean size {:.3f} mm, mean edge {:.3f} mm; shortest edge {:.3f} mm, block {} at "
+      "({:.2f}, {:.2f}) mm; "
       "smallest zone angle {:.1f} deg, block {}; {} edges removed, {} left short, {} seeds redrawn\n",
-      s.tessellation.cells.size(), s.aggregates.size(), s.fraction_asked, s.fraction_placed, s.fraction_superposed,
-      1e3 * s.metrics.mean_size, 1e3 * s.metrics.mean_edge, 1e3 * s.metrics.shortest_edge, s.metrics.shortest_edge_cell,
-      1e3 * s.metrics.shortest_edge_at[0], 1e3 * s.metrics.shortest_edge_at[1], s.metrics.smallest_angle,
-      s.metrics.smallest_angle_cell, s.metrics.edges_removed, s.metrics.edges_left_short, s.metrics.seeds_redrawn);
+      s.tessellation.cells.size(), s.aggregates.size(), s.fraction_asked, s.fraction_placed,
+      s.fraction_superposed, 1e3 * s.metrics.mean_size, 1e3 * s.metrics.mean_edge,
+      1e3 * s.metrics.shortest_edge, s.metrics.shortest_edge_cell, 1e3 * s.metrics.shortest_edge_at[0],
+      1e3 * s.metrics.shortest_edge_at[1], s.metrics.smallest_angle, s.metrics.smallest_angle_cell,
+      s.metrics.edges_removed, s.metrics.edges_left_short, s.metrics.seeds_redrawn);
 }
 
 std::string duration(double seconds) {

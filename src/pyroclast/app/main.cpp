@@ -1,8 +1,8 @@
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <new>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/base/error.hpp"
@@ -32,7 +32,8 @@ void add_threads(CLI::App* command, int& threads) {
 }
 
 int command_line(int argc, char** argv) {
-  CLI::App cli{"Pyroclast: how concrete breaks under load and fire, by the discrete element method", "pyroclast"};
+  CLI::App cli{"Pyroclast: how concrete breaks under load and fire, by the discrete element method",
+               "pyroclast"};
   cli.set_version_flag("--version", fmt::format("pyroclast {} ({})", kVersion, kCommit));
   cli.require_subcommand(1);
 
@@ -49,9 +50,11 @@ int command_line(int argc, char** argv) {
   for (auto* command : {run, check}) add_threads(command, options.threads);
 
   app::LawOptions law_options;
-  auto* law = cli.add_subcommand("law", "Drive the contact law of a deck along a path of jumps and temperatures");
+  auto* law =
+      cli.add_subcommand("law", "Drive the contact law of a deck along a path of jumps and temperatures");
   add_deck(law, law_options.deck);
-  law->add_option("--path", law_options.path, "CSV: columns u_n, u_s and optionally T, each with its unit: u_n [um]")
+  law->add_option("--path", law_options.path,
+                  "CSV: columns u_n, u_s and optionally T, each with its unit: u_n [um]")
       ->required();
   law->add_option("--interface", law_options.interface, "Which contact")
       ->check(CLI::IsMember({"mortar-mortar", "aggregate-mortar", "aggregate-aggregate"}))

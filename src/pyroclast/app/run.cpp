@@ -1,9 +1,9 @@
+#include <chrono>
+#include <csignal>
+
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
-
-#include <chrono>
-#include <csignal>
 
 #include "pyroclast/app/load.hpp"
 #include "pyroclast/experiment/simulation.hpp"
@@ -19,7 +19,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 volatile std::sig_atomic_t interrupted = 0;
 
@@ -42,14 +44,19 @@ class Recorder : public Observer {
     const double done = experiment.progress();
     if (done > 0.0 && first_progress_ == Clock::time_point{}) first_progress_ = Clock::now();
     const double spent = seconds_since(first_progress_);
-    const std::string left = done > kLeastProgressToForesee ? duration(spent / done * (1.0 - done)) + " left" : "settling";
-    spdlog::info("{:3.0f} %, {:>14}  strain {:.5f}  stress {:6.2f} MPa  broken: tension {}, shear {}  unbalanced {:.1e}  "
-                 "kinetic/strain {:.1e}",
-                 100.0 * done, left, s.strain, s.stress() * 1e-6, s.cracks.broken_tension(), s.cracks.broken_shear(),
-                 s.unbalanced_ratio, s.kinetic_over_strain);
+    const std::string left =
+        done > kLeastProgressToForesee ? duration(spent / done * (1.0 - done)) + " left" : "settling";
+    spdlog::info(
+        "{:3.0f} %, {:>14}  strain {:.5f}  stress {:6.2f} MPa  broken: tension {}, shear {}  unbalanced "
+        "{:.1e}  "
+        "kinetic/strain {:.1e}",
+        100.0 * done, left, s.strain, s.stress() * 1e-6, s.cracks.broken_tension(), s.cracks.broken_shear(),
+        s.unbalanced_ratio, s.kinetic_over_strain);
   }
 
-  void frame(const Experiment& experiment, const Sample& s) override { fields_.write(experiment.mechanics(), s); }
+  void frame(const Experiment& experiment, const Sample& s) override {
+    fields_.write(experiment.mechanics(), s);
+  }
 
   bool stop_requested() override { return interrupted != 0; }
 
@@ -65,8 +72,9 @@ class Recorder : public Observer {
 void print_result(const Summary& s, const std::filesystem::path& folder) {
   fmt::print("\nended           {}, after {}\n", describe(s.outcome), duration(s.wall_time));
   if (s.compression)
-    fmt::print("result          E {:.2f} GPa, f_c {:.2f} MPa at strain {:.5f}, eps_ic {:.5f}\n", s.compression->modulus * 1e-9,
-               s.compression->strength * 1e-6, s.compression->strain_at_peak, s.compression->inelastic_strain);
+    fmt::print("result          E {:.2f} GPa, f_c {:.2f} MPa at strain {:.5f}, eps_ic {:.5f}\n",
+               s.compression->modulus * 1e-9, s.compression->strength * 1e-6, s.compression->strain_at_peak,
+               s.compression->inelastic_strain);
   fmt::print("energy ledger   closes within {:.3f} % of the work done; {} up to the peak\n",
              100.0 * std::abs(s.last.energy.error() / s.last.energy.work_in()),
              s.quasi_static.to_peak ? "quasi-static" : "NOT quasi-static");
@@ -84,12 +92,15 @@ int run(const RunOptions& options) {
   Simulation simulation(loaded.c);
   auto& mechanics = *simulation.mechanics;
   fmt::print("{}", describe(simulation.specimen));
-  fmt::print("model           {} zones, {} contacts, time step {:.3g} s, moving mass {:.3g} x the real one, {} threads\n\n",
-             simulation.body.model.zone_count(), simulation.body.model.contact_count(), mechanics.time_step(),
-             mechanics.mass_ratio(), loaded.threads);
+  fmt::print(
+      "model           {} zones, {} contacts, time step {:.3g} s, moving mass {:.3g} x the real one, {} "
+      "threads\n\n",
+      simulation.body.model.zone_count(), simulation.body.model.contact_count(), mechanics.time_step(),
+      mechanics.mass_ratio(), loaded.threads);
 
-  const RunFolder folder(out, options.overwrite,
-                         {loaded.deck.name(), loaded.deck.text(), loaded.c.specimen.seed, loaded.threads, options.command});
+  const RunFolder folder(
+      out, options.overwrite,
+      {loaded.deck.name(), loaded.deck.text(), loaded.c.specimen.seed, loaded.threads, options.command});
   write_specimen_files(folder.path() / "specimen", simulation.specimen, loaded.c.specimen.aggregates);
   Recorder recorder(folder.path(), simulation.body.model);
 
@@ -97,8 +108,8 @@ int run(const RunOptions& options) {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   const auto start = Clock::now();
-  Experiment experiment(simulation.body, simulation.specimen.width, simulation.specimen.height, mechanics, loaded.c.stages,
-                        loaded.c.sampling, recorder);
+  Experiment experiment(simulation.body, simulation.specimen.width, simulation.specimen.height, mechanics,
+                        loaded.c.stages, loaded.c.sampling, recorder);
   const Outcome outcome = experiment.run();
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
@@ -111,10 +122,13 @@ int run(const RunOptions& options) {
   print_result(summary, folder.path());
   if (options.figures) draw_figures("run", folder.path());
   switch (outcome) {
-    case Outcome::interrupted: return 130;
+    case Outcome::interrupted:
+      return 130;
     case Outcome::not_settled:
-    case Outcome::unstable: return 2;
-    default: return 0;
+    case Outcome::unstable:
+      return 2;
+    default:
+      return 0;
   }
 }
 

@@ -13,8 +13,9 @@ int make_specimen(const RunOptions& options) {
   const auto out = output_folder(options);
   RunFolder::check(out, options.overwrite);
   const Simulation simulation(loaded.c);
-  const RunFolder folder(out, options.overwrite,
-                         {loaded.deck.name(), loaded.deck.text(), loaded.c.specimen.seed, loaded.threads, options.command});
+  const RunFolder folder(
+      out, options.overwrite,
+      {loaded.deck.name(), loaded.deck.text(), loaded.c.specimen.seed, loaded.threads, options.command});
   const FieldFiles mesh(folder.path() / "fields", simulation.body.model);
   write_specimen_files(folder.path() / "specimen", simulation.specimen, loaded.c.specimen.aggregates);
   fmt::print("{}results         {}\n", describe(simulation.specimen), folder.path().string());

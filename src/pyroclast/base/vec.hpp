@@ -47,7 +47,9 @@ double norm(const Vec<Dim>& a) {
 }
 
 /// z component of the cross product; twice the signed area of the triangle (0, a, b).
-constexpr double cross(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
+constexpr double cross(const Vec<2>& a, const Vec<2>& b) {
+  return a[0] * b[1] - a[1] * b[0];
+}
 
 constexpr Vec<3> cross(const Vec<3>& a, const Vec<3>& b) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "pyroclast/deck/deck.hpp"
 #include "pyroclast/base/nearest.hpp"
+#include "pyroclast/deck/deck.hpp"
 #include "pyroclast/deck/record.hpp"
 
 namespace pyroclast {

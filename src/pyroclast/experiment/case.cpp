@@ -1,8 +1,8 @@
 #include "pyroclast/experiment/case.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
+
+#include <fmt/format.h>
 
 namespace pyroclast {
 
@@ -62,7 +62,8 @@ void read_specimen_tables(const Section& root, const std::filesystem::path& fold
   p.superposition = superposition.choice<specimen::Superposition>(
       "rule", {{"area", specimen::Superposition::area}, {"centroid", specimen::Superposition::centroid}});
   if (p.superposition == specimen::Superposition::area)
-    p.covered_fraction = superposition.number("covered_fraction", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false});
+    p.covered_fraction =
+        superposition.number("covered_fraction", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false});
 }
 
 SolidMaterial read_solid(const Section& s) {
@@ -131,8 +132,8 @@ MechanicsParameters<2> read_mechanics(const Section& s) {
   m.viscous_damping = s.quantity("viscous_damping", unit::frequency, Range::non_negative(), 0.0);
   m.mass = s.choice<MassChoice>("mass", {{"scaled", MassChoice::scaled}, {"real", MassChoice::real}});
   if (m.mass == MassChoice::scaled) m.time_step = s.quantity("time_step", unit::time, Range::positive());
-  m.kinematics = s.choice<Kinematics>("kinematics", {{"small", Kinematics::small}, {"finite", Kinematics::finite}},
-                                      Kinematics::small);
+  m.kinematics = s.choice<Kinematics>(
+      "kinematics", {{"small", Kinematics::small}, {"finite", Kinematics::finite}}, Kinematics::small);
   m.safety = s.number("safety", {.lower = 0.0, .upper = 1.0, .lower_inclusive = false});
   return m;
 }
@@ -149,7 +150,8 @@ CompressStage read_compress(const Section& s) {
   stage.velocity = s.quantity("velocity", unit::velocity, Range::positive());
   stage.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative());
   stage.stop_strain = s.number("stop_strain", Range::inside(0.0, 1.0));
-  stage.stop_fraction = s.number("stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0);
+  stage.stop_fraction =
+      s.number("stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0);
   return stage;
 }
 
@@ -158,8 +160,12 @@ std::vector<Stage> read_stages(const Section& root) {
   std::vector<Stage> stages;
   for (const Section& s : root.sections("stages")) {
     switch (s.choice<Kind>("kind", {{"settle", Kind::settle}, {"compress", Kind::compress}})) {
-      case Kind::settle: stages.emplace_back(read_settle(s)); break;
-      case Kind::compress: stages.emplace_back(read_compress(s)); break;
+      case Kind::settle:
+        stages.emplace_back(read_settle(s));
+        break;
+      case Kind::compress:
+        stages.emplace_back(read_compress(s));
+        break;
     }
   }
   return stages;
@@ -221,9 +227,10 @@ double estimate_modulus(const ConcreteModel& body, const ConcreteMaterials& mate
   for (const auto& c : model.contacts) {
     if (c.interface == platen_interface) continue;
     const auto p = materials.contacts[c.interface].at(kReferenceTemperature);
-    const double normal = c.normal[1] * c.normal[1];          // traction over stress, along the normal
+    const double normal = c.normal[1] * c.normal[1];           // traction over stress, along the normal
     const double tangential = c.normal[1] * c.tangents[0][1];  // and along the face
-    compliance += c.area * (normal * normal / p.normal_stiffness + tangential * tangential / p.shear_stiffness);
+    compliance +=
+        c.area * (normal * normal / p.normal_stiffness + tangential * tangential / p.shear_stiffness);
   }
   return volume / compliance;
 }

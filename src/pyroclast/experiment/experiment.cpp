@@ -26,11 +26,16 @@ double total_force(const Mechanics<2>& mechanics, const std::vector<int>& gridpo
 
 const char* describe(Outcome outcome) {
   switch (outcome) {
-    case Outcome::strain_reached: return "the last stage's strain was reached";
-    case Outcome::stress_fallen: return "the stress fell below the stated fraction of the peak";
-    case Outcome::interrupted: return "interrupted";
-    case Outcome::not_settled: return "the body did not come to rest under its weight within the stated steps";
-    case Outcome::unstable: return "the motion became unstable (a result is not finite)";
+    case Outcome::strain_reached:
+      return "the last stage's strain was reached";
+    case Outcome::stress_fallen:
+      return "the stress fell below the stated fraction of the peak";
+    case Outcome::interrupted:
+      return "interrupted";
+    case Outcome::not_settled:
+      return "the body did not come to rest under its weight within the stated steps";
+    case Outcome::unstable:
+      return "the motion became unstable (a result is not finite)";
   }
   return "";
 }
@@ -152,13 +157,16 @@ Experiment::Verdict Experiment::judge(const SettleStage& stage, const Sample& no
   return {};
 }
 
-void Experiment::begin(const CompressStage&) { next_frame_ = sampling_.frame_strain; }
+void Experiment::begin(const CompressStage&) {
+  next_frame_ = sampling_.frame_strain;
+}
 
 void Experiment::load(const CompressStage& stage) {
   const double elapsed = static_cast<double>(mechanics_.steps() - stage_first_step_) * mechanics_.time_step();
   const double share = stage.ramp_time > 0.0 ? std::min(1.0, elapsed / stage.ramp_time) : 1.0;
   // half a step of ramp ahead, so that the ramp leaves zero
-  const double ahead = stage.ramp_time > 0.0 ? steps_to_next_look(stage) * mechanics_.time_step() / stage.ramp_time : 0.0;
+  const double ahead =
+      stage.ramp_time > 0.0 ? steps_to_next_look(stage) * mechanics_.time_step() / stage.ramp_time : 0.0;
   const double velocity = stage.velocity * std::min(1.0, share + ahead);
   for (int g : body_.top_support) mechanics_.prescribe_velocity(g, 1, -velocity);
 }

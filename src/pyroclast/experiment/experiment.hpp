@@ -18,10 +18,10 @@ struct SettleStage {
 
 /// Drives the upper platen down, the lower one fixed.
 struct CompressStage {
-  double velocity = 0.0;      ///< m/s
-  double ramp_time = 0.0;     ///< time over which the velocity is brought up, s
-  double stop_strain = 0.0;   ///< ends at this axial strain
-  double stop_fraction = 0.0; ///< ends when the stress has fallen below this fraction of the peak; 0: never
+  double velocity = 0.0;       ///< m/s
+  double ramp_time = 0.0;      ///< time over which the velocity is brought up, s
+  double stop_strain = 0.0;    ///< ends at this axial strain
+  double stop_fraction = 0.0;  ///< ends when the stress has fallen below this fraction of the peak; 0: never
 };
 
 using Stage = std::variant<SettleStage, CompressStage>;
@@ -48,8 +48,8 @@ struct Cracks {
   std::int64_t broken_shear() const { return shear_am.broken + shear_mm.broken; }
 };
 
-/// One row of the history. Stress and strain of the test are positive in compression; lateral strain is positive
-/// in expansion.
+/// One row of the history. Stress and strain of the test are positive in compression; lateral strain is
+/// positive in expansion.
 struct Sample {
   int stage = 0;
   std::int64_t step = 0;

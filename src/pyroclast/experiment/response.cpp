@@ -46,8 +46,9 @@ std::optional<CompressionResponse> compression_response(const std::vector<Sample
   if (n < 3.0) return std::nullopt;
   r.modulus = (n * sxy - sx * sy) / (n * sxx - sx * sx);
   r.inelastic_strain = r.strain_at_peak - r.strength / r.modulus;
-  r.peak_passed = std::any_of(
-      peak, rows.end(), [&](const Sample& s) { return s.stress() < (1.0 - kFallThatProvesAPeak) * r.strength; });
+  r.peak_passed = std::any_of(peak, rows.end(), [&](const Sample& s) {
+    return s.stress() < (1.0 - kFallThatProvesAPeak) * r.strength;
+  });
   return r;
 }
 

@@ -9,8 +9,8 @@ namespace pyroclast {
 
 /// What a compression test says of a concrete, positive in compression (paper, Table 3).
 struct CompressionResponse {
-  double modulus = 0.0;           ///< E: slope of the line fitted to the rows from 5 % to 1/3 of f_c, Pa
-  double strength = 0.0;          ///< f_c: largest stress, mean of both platens, Pa
+  double modulus = 0.0;   ///< E: slope of the line fitted to the rows from 5 % to 1/3 of f_c, Pa
+  double strength = 0.0;  ///< f_c: largest stress, mean of both platens, Pa
   double strain_at_peak = 0.0;
   double inelastic_strain = 0.0;  ///< eps_ic = strain at peak - f_c / E
   bool peak_passed = false;       ///< the stress fell by more than 1 % of f_c after it
@@ -20,8 +20,8 @@ struct CompressionResponse {
 std::optional<CompressionResponse> compression_response(const std::vector<Sample>& history,
                                                         const std::vector<Stage>& stages);
 
-/// Bounds within which a run counts as quasi-static. Both measure inertia: kinetic over elastic energy, and the
-/// difference between the platens' stresses over the largest stress.
+/// Bounds within which a run counts as quasi-static. Both measure inertia: kinetic over elastic energy, and
+/// the difference between the platens' stresses over the largest stress.
 struct QuasiStaticBounds {
   double kinetic_over_strain = 0.01;
   double platen_difference = 0.02;

@@ -1,11 +1,11 @@
 #include "pyroclast/experiment/simulation.hpp"
 
-#include <fmt/format.h>
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <fstream>
 #include <limits>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
 
 #include "pyroclast/base/error.hpp"
 
@@ -17,7 +17,8 @@ namespace {
 constexpr double kBytesPerBlock = 9000.0;
 constexpr double kBytesFixed = 60e6;
 
-/// Memory that this process may still take, bytes: what the machine has free, or the process limit if smaller.
+/// Memory that this process may still take, bytes: what the machine has free, or the process limit if
+/// smaller.
 double available_memory() {
   double available = std::numeric_limits<double>::infinity();
   std::ifstream file("/proc/meminfo");
@@ -59,12 +60,15 @@ std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const Concre
     interfaces.push_back(materials.contacts[i].at(kReferenceTemperature));
     validate(interfaces.back(), model.interface_names[i]);
   }
-  return std::make_unique<Mechanics<2>>(model, densities, std::move(zones), std::move(interfaces), parameters);
+  return std::make_unique<Mechanics<2>>(model, densities, std::move(zones), std::move(interfaces),
+                                        parameters);
 }
 
 }  // namespace
 
-double estimate_memory(std::int64_t blocks) { return kBytesFixed + kBytesPerBlock * static_cast<double>(blocks); }
+double estimate_memory(std::int64_t blocks) {
+  return kBytesFixed + kBytesPerBlock * static_cast<double>(blocks);
+}
 
 Simulation::Simulation(const Case& c)
     : specimen(make_checked_specimen(c.specimen)),

@@ -7,10 +7,11 @@
 
 namespace pyroclast {
 
-/// Everything that a case makes, ready to run: specimen, model, materials and solver. Not movable: the solver refers
-/// to the model beside it.
+/// Everything that a case makes, ready to run: specimen, model, materials and solver. Not movable: the solver
+/// refers to the model beside it.
 struct Simulation {
-  /// Throws Error when the specimen or the model cannot be made, or would not fit into the memory that is free.
+  /// Throws Error when the specimen or the model cannot be made, or would not fit into the memory that is
+  /// free.
   explicit Simulation(const Case& c);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;

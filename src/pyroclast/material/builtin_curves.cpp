@@ -13,8 +13,8 @@
 namespace pyroclast {
 namespace {
 
-constexpr double reference_temperature = 20.0;  // degC
-constexpr Interval eurocode_range{20.0, 1200.0};   // degC
+constexpr double reference_temperature = 20.0;    // degC
+constexpr Interval eurocode_range{20.0, 1200.0};  // degC
 
 using Points = std::vector<std::pair<double, double>>;
 

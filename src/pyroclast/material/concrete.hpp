@@ -41,26 +41,27 @@ struct ContactMaterial {
 
 /// How the contacts of a concrete follow from its mortar (paper §3.1, physics of contacts A-A, A-M, platen).
 struct ContactParameters {
-  ContactMaterial mortar;                    ///< M-M; its stiffnesses are filled in by make_contacts
-  std::optional<double> normal_stiffness;    ///< K_n of M-M at the reference temperature, Pa/m; else E / t_b
-  std::optional<double> shear_stiffness;     ///< K_s, likewise; else G / t_b
-  double fracture_zone = 0.0;                ///< t_b, m, Eq. (17)
-  std::optional<double> fracture_zone_size;  ///< block size at which t_b holds, m; it scales with the size; else fixed
-  double interface_stiffness = 0.0;          ///< A-M over M-M: K_n, K_s
-  double interface_strength = 0.0;           ///< A-M over M-M: f_t, c, f_cm
-  bool scale_interface_energy = false;       ///< G_f of A-M scaled like its strengths
-  double platen_friction = 0.0;              ///< tan(phi) between platen and concrete
+  ContactMaterial mortar;                  ///< M-M; its stiffnesses are filled in by make_contacts
+  std::optional<double> normal_stiffness;  ///< K_n of M-M at the reference temperature, Pa/m; else E / t_b
+  std::optional<double> shear_stiffness;   ///< K_s, likewise; else G / t_b
+  double fracture_zone = 0.0;              ///< t_b, m, Eq. (17)
+  std::optional<double>
+      fracture_zone_size;  ///< block size at which t_b holds, m; it scales with the size; else fixed
+  double interface_stiffness = 0.0;     ///< A-M over M-M: K_n, K_s
+  double interface_strength = 0.0;      ///< A-M over M-M: f_t, c, f_cm
+  bool scale_interface_energy = false;  ///< G_f of A-M scaled like its strengths
+  double platen_friction = 0.0;         ///< tan(phi) between platen and concrete
 };
 
 /// Everything a concrete specimen is made of; arrays by MaterialIndex and InterfaceIndex of the model.
 struct ConcreteMaterials {
-  std::array<SolidMaterial, 3> solids;     ///< aggregate, mortar, platen
-  std::array<ContactMaterial, 4> contacts; ///< A-A, A-M, M-M, platen
-  double fracture_zone = 0.0;              ///< t_b as it came out, m
+  std::array<SolidMaterial, 3> solids;      ///< aggregate, mortar, platen
+  std::array<ContactMaterial, 4> contacts;  ///< A-A, A-M, M-M, platen
+  double fracture_zone = 0.0;               ///< t_b as it came out, m
 };
 
 /// \param block_size  square root of the mean block area, m
-ConcreteMaterials make_concrete(const std::array<SolidMaterial, 3>& solids, const ContactParameters& parameters,
-                                double block_size);
+ConcreteMaterials make_concrete(const std::array<SolidMaterial, 3>& solids,
+                                const ContactParameters& parameters, double block_size);
 
 }  // namespace pyroclast

@@ -20,24 +20,27 @@ void validate(const ContactProperties& p, const std::string& name) {
   require(p.mode_1_energy >= 0.0, name, "G_f1 (J/m2)", p.mode_1_energy, "at least 0");
   require(p.mode_2_energy >= 0.0, name, "G_f2 (J/m2)", p.mode_2_energy, "at least 0");
   require(p.compressive_limit > 0.0, name, "f_cm (Pa)", p.compressive_limit, "greater than 0");
-  require(p.hardening > 0.0 && p.hardening < 1.0, name, "beta", p.hardening, "between 0 and 1, both exclusive");
+  require(p.hardening > 0.0 && p.hardening < 1.0, name, "beta", p.hardening,
+          "between 0 and 1, both exclusive");
   require(p.cohesion >= 0.0, name, "c_o (Pa)", p.cohesion, "at least 0");
-  require(p.residual_cohesion >= 0.0 && p.residual_cohesion <= p.cohesion, name, "c_res (Pa)", p.residual_cohesion,
-          "between 0 and c_o");
+  require(p.residual_cohesion >= 0.0 && p.residual_cohesion <= p.cohesion, name, "c_res (Pa)",
+          p.residual_cohesion, "between 0 and c_o");
   require(p.friction >= 0.0, name, "tan(phi)", p.friction, "at least 0");
-  require(p.residual_friction >= 0.0 && p.residual_friction <= p.friction, name, "tan(phi_res)", p.residual_friction,
-          "between 0 and tan(phi)");
+  require(p.residual_friction >= 0.0 && p.residual_friction <= p.friction, name, "tan(phi_res)",
+          p.residual_friction, "between 0 and tan(phi)");
   const double snap_1 = p.tensile_strength * p.tensile_strength / (2.0 * p.normal_stiffness);
   require(p.tensile_strength == 0.0 || p.mode_1_energy > snap_1, name, "G_f1 (J/m2)", p.mode_1_energy,
           fmt::format("greater than f_t^2 / (2 K_n) = {:g}, else softening snaps back", snap_1).c_str());
-  // Where friction does not drop, tau_max - tau_res is largest at c_o - c_res; a drop in friction adds p times
-  // it, which the limit f_cm bounds in the elastic range.
+  // Where friction does not drop, tau_max - tau_res is largest at c_o - c_res; a drop in friction adds p
+  // times it, which the limit f_cm bounds in the elastic range.
   double drop = p.cohesion - p.residual_cohesion;
   if (p.friction > p.residual_friction && std::isfinite(p.compressive_limit))
     drop += p.compressive_limit * (p.friction - p.residual_friction);
   const double snap_2 = drop * drop / (2.0 * p.shear_stiffness);
-  require(drop == 0.0 || p.mode_2_energy > snap_2, name, "G_f2 (J/m2)", p.mode_2_energy,
-          fmt::format("greater than (tau_max - tau_res)^2 / (2 K_s) = {:g}, else softening snaps back", snap_2).c_str());
+  require(
+      drop == 0.0 || p.mode_2_energy > snap_2, name, "G_f2 (J/m2)", p.mode_2_energy,
+      fmt::format("greater than (tau_max - tau_res)^2 / (2 K_s) = {:g}, else softening snaps back", snap_2)
+          .c_str());
 }
 
 }  // namespace pyroclast

@@ -35,17 +35,17 @@ enum class CompressionReading : std::uint8_t {
 
 /// Parameters of one contact at its current temperature (paper, Tables 1 and 2).
 struct ContactProperties {
-  double normal_stiffness = 0.0;         ///< K_n, Pa/m
-  double shear_stiffness = 0.0;          ///< K_s, Pa/m
-  double tensile_strength = 0.0;         ///< f_t, Pa
-  double mode_1_energy = 0.0;            ///< G_f1, J/m²
-  double compressive_limit = 0.0;        ///< f_cm, end of the first slope in compression, Pa; may be infinite
-  double hardening = 0.0;                ///< beta, second slope over first
-  double cohesion = 0.0;                 ///< c_o, Pa
-  double residual_cohesion = 0.0;        ///< c_res, Pa
-  double friction = 0.0;                 ///< tan(phi)
-  double residual_friction = 0.0;        ///< tan(phi_res)
-  double mode_2_energy = 0.0;            ///< G_f2, J/m²
+  double normal_stiffness = 0.0;   ///< K_n, Pa/m
+  double shear_stiffness = 0.0;    ///< K_s, Pa/m
+  double tensile_strength = 0.0;   ///< f_t, Pa
+  double mode_1_energy = 0.0;      ///< G_f1, J/m²
+  double compressive_limit = 0.0;  ///< f_cm, end of the first slope in compression, Pa; may be infinite
+  double hardening = 0.0;          ///< beta, second slope over first
+  double cohesion = 0.0;           ///< c_o, Pa
+  double residual_cohesion = 0.0;  ///< c_res, Pa
+  double friction = 0.0;           ///< tan(phi)
+  double residual_friction = 0.0;  ///< tan(phi_res)
+  double mode_2_energy = 0.0;      ///< G_f2, J/m²
   ContactBehaviour behaviour = ContactBehaviour::cohesive;
   CompressionReading compression = CompressionReading::irreversible;
   bool coupled = false;  ///< cohesion also scaled by 1 - D_t
@@ -60,11 +60,12 @@ struct ContactProperties {
 /// both damages at 1.
 template <int Dim>
 struct ContactHistory {
-  double tension_damage = 0.0;   ///< D_t = 1 - delta_t of the paper, 0 intact, 1 broken; never decreases
-  double shear_damage = 0.0;     ///< D_s = 1 - delta_s, likewise
-  double closure = 0.0;          ///< u_p, irreversible closure in compression, m; never decreases
-  double accumulated_slip = 0.0; ///< s, length of the slip path, m
-  Tangential<Dim> slip{};        ///< irreversible part of the tangential jump, m
+  double tension_damage = 0.0;    ///< D_t = 1 - delta_t of the paper, 0 intact, 1 broken; never decreases
+  double shear_damage = 0.0;      ///< D_s = 1 - delta_s, likewise
+  double closure = 0.0;           ///< u_p, irreversible closure in compression, m; never decreases
+  double accumulated_slip = 0.0;  ///< s, length of the slip path, m
+  Tangential<Dim> slip{};         ///< irreversible part of the tangential jump, m
+  double held_slip = 0.0;         ///< length of the elastic part of the tangential jump, m
 };
 
 /// Energy dissipated at a contact point, by mechanism, J/m².
@@ -79,10 +80,10 @@ struct ContactDissipation {
 
 template <int Dim>
 struct ContactResponse {
-  double normal_traction = 0.0;  ///< sigma, Pa, tension positive
+  double normal_traction = 0.0;      ///< sigma, Pa, tension positive
   Tangential<Dim> shear_traction{};  ///< tau, Pa
-  double stored = 0.0;           ///< elastic energy now held, J/m²
-  ContactDissipation dissipated; ///< in this update
+  double stored = 0.0;               ///< elastic energy now held, J/m²
+  ContactDissipation dissipated;     ///< in this update
 };
 
 /// Throws Error, naming the quantity, when the parameters cannot make a law: non-positive stiffness, negative
@@ -93,7 +94,8 @@ namespace contact_law {
 
 /// Normal part: bilinear compression and linear tension softening over the elastic opening u_n + u_p.
 template <int Dim>
-void update_normal(const ContactProperties& p, double opening, ContactHistory<Dim>& h, ContactResponse<Dim>& r) {
+void update_normal(const ContactProperties& p, double opening, ContactHistory<Dim>& h,
+                   ContactResponse<Dim>& r) {
   const double k = p.normal_stiffness;
   if (p.behaviour == ContactBehaviour::elastic) {
     r.normal_traction = k * opening;
@@ -141,8 +143,8 @@ void update_normal(const ContactProperties& p, double opening, ContactHistory<Di
 
 /// Shear part: elastic predictor and exact return to the softening Mohr-Coulomb envelope.
 template <int Dim>
-void update_shear(const ContactProperties& p, const Tangential<Dim>& jump, double opening, ContactHistory<Dim>& h,
-                  ContactResponse<Dim>& r) {
+void update_shear(const ContactProperties& p, const Tangential<Dim>& jump, double opening,
+                  ContactHistory<Dim>& h, ContactResponse<Dim>& r) {
   const double k = p.shear_stiffness;
   Tangential<Dim> elastic = jump - h.slip;
   if (p.behaviour == ContactBehaviour::elastic) {
@@ -153,15 +155,18 @@ void update_shear(const ContactProperties& p, const Tangential<Dim>& jump, doubl
   const bool open_and_broken = h.tension_damage >= 1.0 && opening + h.closure > 0.0;
   const double held = norm(elastic);
   if (open_and_broken) {
-    // The bond lets go of the shear it still carried. That energy was held by cohesion, so it is booked there.
-    r.dissipated.shear += 0.5 * k * held * held;
+    // The bond lets go of the shear it still carried. That energy was held by cohesion, so it is booked
+    // there.
+    r.dissipated.shear += 0.5 * k * h.held_slip * h.held_slip;
+    h.held_slip = 0.0;
     h.slip = jump;
     return;
   }
   const double cohesion = p.coupled ? p.cohesion * (1.0 - h.tension_damage) : p.cohesion;
   const double residual_cohesion = std::min(p.residual_cohesion, cohesion);
   const double peak = std::max(0.0, cohesion - r.normal_traction * p.friction);
-  const double residual = std::min(peak, std::max(0.0, residual_cohesion - r.normal_traction * p.residual_friction));
+  const double residual =
+      std::min(peak, std::max(0.0, residual_cohesion - r.normal_traction * p.residual_friction));
   const double drop = peak - residual;
   const double strength = peak - h.shear_damage * drop;
   const double excess = k * held - strength;
@@ -190,8 +195,9 @@ void update_shear(const ContactProperties& p, const Tangential<Dim>& jump, doubl
     h.slip += step;
     elastic -= step;
   }
+  h.held_slip = norm(elastic);
   r.shear_traction = k * elastic;
-  r.stored += 0.5 * k * dot(elastic, elastic);
+  r.stored += 0.5 * k * h.held_slip * h.held_slip;
 }
 
 }  // namespace contact_law
@@ -204,9 +210,9 @@ void update_shear(const ContactProperties& p, const Tangential<Dim>& jump, doubl
 /// \param history     in: of the last step; out: of this one
 /// \return traction, stored energy and the energy dissipated by this update
 ///
-/// The result does not depend on how the way to the jump is cut into steps as long as it is monotone. Energies
-/// are closed forms of the history, not quadratures: with the temperature fixed,
-/// stored(new) - stored(old) + dissipated is the work along that way.
+/// The result does not depend on how the way to the jump is cut into steps as long as it is monotone.
+/// Energies are closed forms of the history, not quadratures: with the temperature fixed, stored(new) -
+/// stored(old) + dissipated is the work along that way.
 template <int Dim>
 ContactResponse<Dim> update_contact(const ContactProperties& properties, double opening,
                                     const Tangential<Dim>& tangential, ContactHistory<Dim>& history) {

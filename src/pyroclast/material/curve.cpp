@@ -164,8 +164,8 @@ Curve Curve::table(std::vector<double> abscissae, std::vector<double> values, Cu
           std::make_shared<Label>(Label{"", std::move(description), std::move(axis)})};
 }
 
-Curve Curve::function(std::string name, std::function<double(double)> function, Interval range, CurveAxis axis,
-                      std::vector<double> breaks) {
+Curve Curve::function(std::string name, std::function<double(double)> function, Interval range,
+                      CurveAxis axis, std::vector<double> breaks) {
   require_finite_interval(name, range, axis);
   std::sort(breaks.begin(), breaks.end());
   return {std::make_shared<Formula<std::function<double(double)>>>(std::move(function), std::move(breaks)),

@@ -54,8 +54,8 @@ class Curve {
 
   /// A function written in code, called `name` in messages, on a finite range. It must be pure: threads call
   /// it at the same time. `breaks` are the abscissae where it has a kink or a jump, for minimum and maximum.
-  static Curve function(std::string name, std::function<double(double)> function, Interval range, CurveAxis axis,
-                        std::vector<double> breaks = {});
+  static Curve function(std::string name, std::function<double(double)> function, Interval range,
+                        CurveAxis axis, std::vector<double> breaks = {});
 
   /// A formula in the axis symbol such as "1 - 0.1 * ((T - 20) / 100)^2", in the syntax of Expression
   /// (pyroclast/material/expression.hpp), on a finite range that its author must state.

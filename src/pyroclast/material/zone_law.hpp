@@ -11,11 +11,13 @@ namespace pyroclast {
 
 /// What displacements do to the geometry.
 enum class Kinematics : std::uint8_t {
-  small,  ///< zones and contact frames keep their first orientation; exact while rotations and jumps are small
+  small,  ///< zones and contact frames keep their first orientation; exact while rotations and jumps are
+          ///< small
   finite  ///< zones strain in a frame that turns with them and contact frames turn with their faces (2D only)
 };
 
-/// Symmetric tensor: 2D (xx, yy, xy), 3D (xx, yy, zz, xy, yz, zx); shear components are tensor, not engineering.
+/// Symmetric tensor: 2D (xx, yy, xy), 3D (xx, yy, zz, xy, yz, zx); shear components are tensor, not
+/// engineering.
 template <int Dim>
 using SymmetricTensor = std::array<double, Dim*(Dim + 1) / 2>;
 
@@ -88,7 +90,7 @@ inline SymmetricTensor<Dim> mechanical_strain(const std::array<Vec<Dim>, Dim>& g
     }
     return {h[0][0] - thermal_strain, h[1][1] - thermal_strain, 0.5 * (h[0][1] + h[1][0])};
   } else {
-    return {h[0][0] - thermal_strain,    h[1][1] - thermal_strain,    h[2][2] - thermal_strain,
+    return {h[0][0] - thermal_strain,  h[1][1] - thermal_strain,  h[2][2] - thermal_strain,
             0.5 * (h[0][1] + h[1][0]), 0.5 * (h[1][2] + h[2][1]), 0.5 * (h[2][0] + h[0][2])};
   }
 }

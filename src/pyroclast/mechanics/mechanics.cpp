@@ -1,8 +1,8 @@
 #include "pyroclast/mechanics/mechanics.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
 
@@ -11,7 +11,9 @@ namespace pyroclast {
 namespace {
 
 /// Without a branch: signs of vibrating motion cannot be predicted.
-double sign(double x) { return static_cast<double>((x > 0.0) - (x < 0.0)); }
+double sign(double x) {
+  return static_cast<double>((x > 0.0) - (x < 0.0));
+}
 
 }  // namespace
 
@@ -45,8 +47,9 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
   set_masses(densities);
 }
 
-/// k_gp of Eq. (9): for every gridpoint the largest sum of |stiffness| over a row of the assembled matrix, zones and
-/// contacts. By Gershgorin's theorem no natural frequency exceeds sqrt(k_gp / m), so the step is safe for any shape.
+/// k_gp of Eq. (9): for every gridpoint the largest sum of |stiffness| over a row of the assembled matrix,
+/// zones and contacts. By Gershgorin's theorem no natural frequency exceeds sqrt(k_gp / m), so the step is
+/// safe for any shape.
 template <int Dim>
 void Mechanics<Dim>::compute_stiffness() {
   std::vector<Vec<Dim>> row(model_.position.size());
@@ -80,7 +83,8 @@ void Mechanics<Dim>::compute_stiffness() {
     }
   }
   stiffness_.resize(row.size());
-  for (std::size_t g = 0; g < row.size(); ++g) stiffness_[g] = *std::max_element(row[g].c.begin(), row[g].c.end());
+  for (std::size_t g = 0; g < row.size(); ++g)
+    stiffness_[g] = *std::max_element(row[g].c.begin(), row[g].c.end());
 }
 
 template <int Dim>
@@ -188,7 +192,8 @@ ContactFrame<Dim> Mechanics<Dim>::current_frame(int first) const {
       const auto& d = model_.contacts[first + 1];
       const auto& x = model_.position;
       const auto& u = displacement_;
-      const Vec<2> edge = 0.5 * ((x[d.a] - x[c.a]) + (x[d.b] - x[c.b]) + (u[d.a] - u[c.a]) + (u[d.b] - u[c.b]));
+      const Vec<2> edge =
+          0.5 * ((x[d.a] - x[c.a]) + (x[d.b] - x[c.b]) + (u[d.a] - u[c.a]) + (u[d.b] - u[c.b]));
       const double length = norm(edge);
       const Vec<2> t = edge * (1.0 / length);
       return {{{t[1], -t[0]}}, {t}, length};
@@ -219,8 +224,9 @@ Vec<Dim> Mechanics<Dim>::update_contact_point(int index, const ContactFrame<Dim>
   return traction * c.area;
 }
 
-/// Where the frame turns with the edge, so do the components of a jump. The forces that do the work of the tractions
-/// on that part keep moments in balance: minus the derivative of the jump's components by the edge's gridpoints.
+/// Where the frame turns with the edge, so do the components of a jump. The forces that do the work of the
+/// tractions on that part keep moments in balance: minus the derivative of the jump's components by the
+/// edge's gridpoints.
 template <int Dim>
 void Mechanics<Dim>::add_turning_force(int first, const ContactFrame<Dim>& frame) {
   double q = 0.0;
@@ -246,13 +252,14 @@ void Mechanics<Dim>::add_zone_forces(int block) {
     std::array<Vec<Dim>, Dim + 1> u;
     for (int n = 0; n <= Dim; ++n) u[n] = displacement_[corner[n]];
     Rotation rotation;
-    const auto strain = mechanical_strain<Dim>(geometry_.gradient[z], u, p.thermal_strain,
-                                               parameters_.kinematics, rotation);
+    const auto strain =
+        mechanical_strain<Dim>(geometry_.gradient[z], u, p.thermal_strain, parameters_.kinematics, rotation);
     const auto stress = zone_stress<Dim>(p, strain);
     stress_[z] = rotated<Dim>(rotation, stress);
     Vec<Dim> last{};
     for (int n = 0; n < Dim; ++n) {
-      const Vec<Dim> f = rotated<Dim>(rotation, apply<Dim>(stress, geometry_.gradient[z][n])) * geometry_.volume[z];
+      const Vec<Dim> f =
+          rotated<Dim>(rotation, apply<Dim>(stress, geometry_.gradient[z][n])) * geometry_.volume[z];
       force_[corner[n]] -= f;
       last += f;
     }
@@ -335,8 +342,8 @@ EnergyLedger Mechanics<Dim>::energy() const {
       u[n] = displacement_[g] - velocity_[g] * (steps_ > 0 ? time_step_ : 0.0);
     }
     Rotation ignored;
-    const auto strain = mechanical_strain<Dim>(geometry_.gradient[z], u, p.thermal_strain,
-                                               parameters_.kinematics, ignored);
+    const auto strain =
+        mechanical_strain<Dim>(geometry_.gradient[z], u, p.thermal_strain, parameters_.kinematics, ignored);
     e.zones += energy_density<Dim>(zone_stress<Dim>(p, strain), strain) * geometry_.volume[z];
   }
   for (std::size_t c = 0; c < contact_state_.size(); ++c) {

@@ -12,36 +12,40 @@ namespace pyroclast {
 /// Which mass moves.
 enum class MassChoice : std::uint8_t {
   real,   ///< density times volume; the stiffest and lightest gridpoint sets the time step
-  scaled  ///< density scaling: each gridpoint's mass makes its own limit the common step; quasi-static runs only
+  scaled  ///< density scaling: each gridpoint's mass makes its own limit the common step; quasi-static runs
+          ///< only
 };
 
 /// Form of the local damping. The force opposing motion is lambda |F| times a sign.
 enum class DampingForm : std::uint8_t {
-  local,    ///< sgn(v), Eq. (8). A body in steady motion keeps vibrating, since v does not change sign, and is dragged.
-  combined  ///< (sgn(v) - sgn(dF/dt)) / 2: damps vibration about a steady motion too (Itasca's combined damping)
+  local,  ///< sgn(v), Eq. (8). A body in steady motion keeps vibrating, since v does not change sign, and is
+          ///< dragged.
+  combined  ///< (sgn(v) - sgn(dF/dt)) / 2: damps vibration about a steady motion too (Itasca's combined
+            ///< damping)
 };
 
 template <int Dim>
 struct MechanicsParameters {
-  Vec<Dim> gravity{};              ///< m/s²
-  double local_damping = 0.0;      ///< lambda of Eq. (8), in [0, 1)
+  Vec<Dim> gravity{};          ///< m/s²
+  double local_damping = 0.0;  ///< lambda of Eq. (8), in [0, 1)
   DampingForm damping_form = DampingForm::local;
-  double viscous_damping = 0.0;    ///< xi of Eq. (3), 1/s
+  double viscous_damping = 0.0;  ///< xi of Eq. (3), 1/s
   Kinematics kinematics = Kinematics::small;
   MassChoice mass = MassChoice::real;
-  double time_step = 0.0;          ///< s; the common step of MassChoice::scaled, not used with real mass
-  double safety = 0.0;             ///< fraction of the stable step that is taken, in (0, 1]
+  double time_step = 0.0;  ///< s; the common step of MassChoice::scaled, not used with real mass
+  double safety = 0.0;     ///< fraction of the stable step that is taken, in (0, 1]
 };
 
-/// Where the energy of a body went since the start, J. Work in = everything else; the rest is the ledger's error.
+/// Where the energy of a body went since the start, J. Work in = everything else; the rest is the ledger's
+/// error.
 struct EnergyLedger {
   // put in
-  double loading = 0.0;       ///< work of prescribed motion and applied forces
+  double loading = 0.0;  ///< work of prescribed motion and applied forces
   double gravity = 0.0;
-  double heat = 0.0;          ///< change of stored energy when properties or thermal strain change at fixed jumps
+  double heat = 0.0;  ///< change of stored energy when properties or thermal strain change at fixed jumps
   // held
-  double zones = 0.0;         ///< elastic, in zones
-  double contacts = 0.0;      ///< elastic, in contacts
+  double zones = 0.0;     ///< elastic, in zones
+  double contacts = 0.0;  ///< elastic, in contacts
   double kinetic = 0.0;
   // lost
   ContactDissipation dissipated;
@@ -59,12 +63,12 @@ struct EnergyLedger {
 template <int Dim>
 struct ContactState {
   ContactHistory<Dim> history;
-  double opening = 0.0;              ///< u_n, m
-  Tangential<Dim> tangential_jump{}; ///< u_s, m
-  double normal_traction = 0.0;      ///< Pa, tension positive
-  Tangential<Dim> shear_traction{};  ///< Pa
-  double stored = 0.0;               ///< J/m²
-  ContactDissipation dissipated;     ///< since the start, J/m²
+  double opening = 0.0;               ///< u_n, m
+  Tangential<Dim> tangential_jump{};  ///< u_s, m
+  double normal_traction = 0.0;       ///< Pa, tension positive
+  Tangential<Dim> shear_traction{};   ///< Pa
+  double stored = 0.0;                ///< J/m²
+  ContactDissipation dissipated;      ///< since the start, J/m²
 };
 
 /// Directions of a contact.
@@ -109,7 +113,7 @@ class Mechanics {
   /// Runs a number of steps.
   void advance(int steps);
 
-  double time() const { return static_cast<double>(steps_) * time_step_ ; }
+  double time() const { return static_cast<double>(steps_) * time_step_; }
   std::int64_t steps() const { return steps_; }
   double time_step() const { return time_step_; }
   /// Stable step with real mass, paper Eq. (9).
@@ -126,17 +130,19 @@ class Mechanics {
   const std::vector<ContactState<Dim>>& contacts() const { return contact_state_; }
   const std::vector<ContactProperties>& interfaces() const { return interfaces_; }
 
-  /// Energies at the displacements that the last step started from. With kinetic energy as half m v(t - dt/2) v(t + dt/2),
-  /// central differences conserve their sum exactly in a linear body, so the ledger's error is that of the contacts.
+  /// Energies at the displacements that the last step started from. With kinetic energy as half m v(t - dt/2)
+  /// v(t + dt/2), central differences conserve their sum exactly in a linear body, so the ledger's error is
+  /// that of the contacts.
   EnergyLedger energy() const;
   /// Mean unbalanced force over mean force applied to the gridpoints by zones, contacts and gravity.
   double unbalanced_ratio() const;
-  /// Largest jump over the length of the face it stands on. Small-displacement contacts are exact while it is small.
+  /// Largest jump over the length of the face it stands on. Small-displacement contacts are exact while it is
+  /// small.
   double largest_relative_jump() const;
 
  private:
-  /// Work done on a block, J. The force of a step does half its work on the way to the step's displacement and half
-  /// on the way from it; `begun` is the second half of the last step, which belongs to the next.
+  /// Work done on a block, J. The force of a step does half its work on the way to the step's displacement
+  /// and half on the way from it; `begun` is the second half of the last step, which belongs to the next.
   struct BlockWork {
     double loading = 0.0, gravity = 0.0, local_damping = 0.0, viscous_damping = 0.0;
 
@@ -166,10 +172,10 @@ class Mechanics {
   std::vector<ZoneProperties> zone_properties_;
   std::vector<ContactProperties> interfaces_;
 
-  std::vector<double> gravity_mass_;  ///< real mass, which gravity acts on, kg
-  std::vector<double> mass_;          ///< mass that moves, kg
+  std::vector<double> gravity_mass_;    ///< real mass, which gravity acts on, kg
+  std::vector<double> mass_;            ///< mass that moves, kg
   std::vector<double> step_over_mass_;  ///< s/kg
-  std::vector<double> stiffness_;     ///< k_gp, N/m
+  std::vector<double> stiffness_;       ///< k_gp, N/m
   double real_mass_ = 0.0, moving_mass_ = 0.0, time_step_ = 0.0;
 
   std::int64_t steps_ = 0;

@@ -22,7 +22,8 @@ struct Platen {
 Platen add_platen(Model<2>& model, const std::vector<double>& x, double inner_y, double outer_y) {
   const int columns = static_cast<int>(x.size());
   const double width = (x.back() - x.front()) / (columns - 1);
-  const int rows = std::max(2, static_cast<int>(std::lround(std::abs(outer_y - inner_y) / (kZoneHeightOverWidth * width))));
+  const int rows = std::max(
+      2, static_cast<int>(std::lround(std::abs(outer_y - inner_y) / (kZoneHeightOverWidth * width))));
   std::vector<Vec<2>> gridpoints;
   for (int r = 0; r <= rows; ++r)
     for (double column : x) gridpoints.push_back({{column, inner_y + (outer_y - inner_y) * r / rows}});
@@ -91,10 +92,12 @@ ConcreteModel make_concrete_model(const Specimen& specimen, double platen_thickn
     std::vector<Vec<2>> corners;
     for (int v : tessellation.cells[cell]) corners.push_back(tessellation.vertices[v]);
     const auto zoned = specimen::zone_block(corners);
-    model.add_block(zoned.gridpoints, zoned.zones,
-                    specimen.constituent[cell] == Constituent::aggregate ? aggregate_material : mortar_material);
+    model.add_block(
+        zoned.gridpoints, zoned.zones,
+        specimen.constituent[cell] == Constituent::aggregate ? aggregate_material : mortar_material);
   }
-  const Platen top = add_platen(model, columns(top_wall), specimen.height, specimen.height + platen_thickness);
+  const Platen top =
+      add_platen(model, columns(top_wall), specimen.height, specimen.height + platen_thickness);
 
   const auto gridpoint = [&](int cell, int vertex) {
     const auto& corners = tessellation.cells[cell];
@@ -115,11 +118,14 @@ ConcreteModel make_concrete_model(const Specimen& specimen, double platen_thickn
     const Vec<2>& x0 = tessellation.vertices[e.v0];
     const Vec<2>& x1 = tessellation.vertices[e.v1];
     if (x0[1] == 0.0 && x1[1] == 0.0) {
-      model.join_faces(a, {platen_gridpoint(bottom_wall, bottom.inner, e.v0), platen_gridpoint(bottom_wall, bottom.inner, e.v1)},
+      model.join_faces(a,
+                       {platen_gridpoint(bottom_wall, bottom.inner, e.v0),
+                        platen_gridpoint(bottom_wall, bottom.inner, e.v1)},
                        platen_interface);
     } else if (x0[1] == specimen.height && x1[1] == specimen.height) {
-      model.join_faces(a, {platen_gridpoint(top_wall, top.inner, e.v0), platen_gridpoint(top_wall, top.inner, e.v1)},
-                       platen_interface);
+      model.join_faces(
+          a, {platen_gridpoint(top_wall, top.inner, e.v0), platen_gridpoint(top_wall, top.inner, e.v1)},
+          platen_interface);
     } else {
       auto& side = x0[0] == 0.0 ? result.left_side : result.right_side;
       side.insert(side.end(), a.begin(), a.end());

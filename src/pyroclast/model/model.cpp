@@ -97,7 +97,8 @@ ZoneGeometry<Dim> zone_geometry(const Model<Dim>& model) {
     for (int i = 0; i <= Dim; ++i) x[i] = model.position[model.zones[z][i]];
     geometry.volume[z] = zone_gradients(x, geometry.gradient[z]) * model.thickness;
     if (!(geometry.volume[z] > 0.0))
-      throw Error(fmt::format("zone {} has volume {:g} m3, but it must be greater than 0", z, geometry.volume[z]));
+      throw Error(
+          fmt::format("zone {} has volume {:g} m3, but it must be greater than 0", z, geometry.volume[z]));
   }
   return geometry;
 }

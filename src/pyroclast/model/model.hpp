@@ -29,10 +29,10 @@ template <int Dim>
 struct Model {
   double thickness = 1.0;  ///< out of plane, m (2D only; 1 in 3D)
 
-  std::vector<Vec<Dim>> position;             ///< gridpoints, reference configuration, m
-  std::vector<int> block_gridpoints{0};       ///< gridpoints of block i: [i] to [i + 1]
-  std::vector<int> block_zones{0};            ///< zones of block i: [i] to [i + 1]
-  std::vector<int> block_material;            ///< index into material_names
+  std::vector<Vec<Dim>> position;               ///< gridpoints, reference configuration, m
+  std::vector<int> block_gridpoints{0};         ///< gridpoints of block i: [i] to [i + 1]
+  std::vector<int> block_zones{0};              ///< zones of block i: [i] to [i + 1]
+  std::vector<int> block_material;              ///< index into material_names
   std::vector<std::array<int, Dim + 1>> zones;  ///< gridpoints of each zone, positively oriented
   std::vector<Contact<Dim>> contacts;
 
@@ -45,21 +45,22 @@ struct Model {
   int contact_count() const { return static_cast<int>(contacts.size()); }
 
   /// Appends a block; its zones index its own gridpoints from 0. Returns the block's index.
-  int add_block(const std::vector<Vec<Dim>>& gridpoints, const std::vector<std::array<int, Dim + 1>>& block_zones,
-                int material);
+  int add_block(const std::vector<Vec<Dim>>& gridpoints,
+                const std::vector<std::array<int, Dim + 1>>& block_zones, int material);
 
   /// Joins a face of one block to the coinciding face of another: corner i of `a` to corner i of `b`, both
-  /// gridpoint indices of the model, ordered so that the normal (2D: the edge direction turned clockwise, for a
-  /// block walked counter-clockwise; 3D: right-handed) points out of a's block into b's.
-  /// Throws Error for a face without area.
+  /// gridpoint indices of the model, ordered so that the normal (2D: the edge direction turned clockwise, for
+  /// a block walked counter-clockwise; 3D: right-handed) points out of a's block into b's. Throws Error for a
+  /// face without area.
   void join_faces(const std::array<int, Dim>& a, const std::array<int, Dim>& b, int interface);
 };
 
 /// What follows from the geometry alone and the solvers read in every step.
 template <int Dim>
 struct ZoneGeometry {
-  std::vector<std::array<Vec<Dim>, Dim>> gradient;  ///< of the first Dim shape functions, 1/m; the last is minus their sum
-  std::vector<double> volume;                       ///< m³
+  std::vector<std::array<Vec<Dim>, Dim>>
+      gradient;                ///< of the first Dim shape functions, 1/m; the last is minus their sum
+  std::vector<double> volume;  ///< m³
 };
 
 /// Throws Error naming the zone when one has no positive volume.

@@ -1,8 +1,8 @@
 #include "pyroclast/results/field_files.hpp"
 
-#include <fmt/format.h>
-
 #include <cstdint>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "pyroclast/results/hdf5_file.hpp"
@@ -29,7 +29,8 @@ void write_grid(Hdf5File& file, const std::string& group, const std::vector<doub
   file.dataset(group + "/Connectivity", connectivity);
   file.dataset(group + "/Offsets", offsets);
   file.dataset(group + "/Types", std::vector<std::uint8_t>(static_cast<std::size_t>(cells), type));
-  file.dataset(group + "/NumberOfPoints", std::vector<std::int64_t>{static_cast<std::int64_t>(points.size()) / 3});
+  file.dataset(group + "/NumberOfPoints",
+               std::vector<std::int64_t>{static_cast<std::int64_t>(points.size()) / 3});
   file.dataset(group + "/NumberOfCells", std::vector<std::int64_t>{cells});
   file.dataset(group + "/NumberOfConnectivityIds",
                std::vector<std::int64_t>{static_cast<std::int64_t>(connectivity.size())});
@@ -45,10 +46,13 @@ void link_grid(Hdf5File& file, const std::string& grid, std::initializer_list<co
   file.group("/VTKHDF/PointData");
   file.group("/VTKHDF/CellData");
   for (const char* field : cell_fields)
-    file.external_link(fmt::format("/VTKHDF/CellData/{}", field), "mesh.h5", fmt::format("/{}/{}", grid, field));
+    file.external_link(fmt::format("/VTKHDF/CellData/{}", field), "mesh.h5",
+                       fmt::format("/{}/{}", grid, field));
 }
 
-void append(std::vector<double>& values, const Vec<2>& v) { values.insert(values.end(), {v[0], v[1], 0.0}); }
+void append(std::vector<double>& values, const Vec<2>& v) {
+  values.insert(values.end(), {v[0], v[1], 0.0});
+}
 void append(std::vector<float>& values, const Vec<2>& v) {
   values.insert(values.end(), {static_cast<float>(v[0]), static_cast<float>(v[1]), 0.0F});
 }
@@ -86,7 +90,8 @@ void FieldFiles::write_mesh(const Model<2>& model) const {
     const auto& partner = model.contacts[i ^ 1];  // the two contacts of an edge stand together
     append(points, model.position[c.a]);
     append(points, 0.5 * (model.position[c.a] + model.position[partner.a]));
-    connectivity.insert(connectivity.end(), {static_cast<std::int64_t>(2 * i), static_cast<std::int64_t>(2 * i + 1)});
+    connectivity.insert(connectivity.end(),
+                        {static_cast<std::int64_t>(2 * i), static_cast<std::int64_t>(2 * i + 1)});
     interface.push_back(static_cast<std::uint8_t>(c.interface));
     length.push_back(c.area / model.thickness);
   }
@@ -141,8 +146,8 @@ void FieldFiles::write(const Mechanics<2>& mechanics, const Sample& sample) {
   contacts.close();
 
   times_.push_back(sample.time);
-  frames_.line(fmt::format("{},{},{},{:.9g},{:.9g},{:.9g}", frame, sample.stage, sample.step, sample.time, sample.strain,
-                           sample.stress() * 1e-6));
+  frames_.line(fmt::format("{},{},{},{:.9g},{:.9g},{:.9g}", frame, sample.stage, sample.step, sample.time,
+                           sample.strain, sample.stress() * 1e-6));
   write_series("blocks");
   write_series("contacts");
 }

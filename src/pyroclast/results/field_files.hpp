@@ -9,8 +9,8 @@
 
 namespace pyroclast {
 
-/// The fields of a run as VTKHDF files, which ParaView and VTK read: `mesh.h5` holds blocks and contacts once, each
-/// frame k adds `blocks_<k>.hdf` and `contacts_<k>.hdf`, which link to it. `blocks.hdf.series` and
+/// The fields of a run as VTKHDF files, which ParaView and VTK read: `mesh.h5` holds blocks and contacts
+/// once, each frame k adds `blocks_<k>.hdf` and `contacts_<k>.hdf`, which link to it. `blocks.hdf.series` and
 /// `contacts.hdf.series` open as time series; `frames.csv` lists the frames.
 class FieldFiles {
  public:

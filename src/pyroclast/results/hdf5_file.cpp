@@ -1,10 +1,10 @@
 #include "pyroclast/results/hdf5_file.hpp"
 
-#include <fmt/format.h>
-#include <hdf5.h>
-
 #include <cerrno>
 #include <cstring>
+
+#include <fmt/format.h>
+#include <hdf5.h>
 
 #include "pyroclast/base/error.hpp"
 
@@ -42,7 +42,8 @@ Hdf5File::~Hdf5File() {
 
 void Hdf5File::fail(const std::string& what) const {
   const int cause = errno;
-  throw Error(fmt::format("{}: {}{}", path_.string(), what, cause != 0 ? fmt::format(" ({})", std::strerror(cause)) : ""));
+  throw Error(fmt::format("{}: {}{}", path_.string(), what,
+                          cause != 0 ? fmt::format(" ({})", std::strerror(cause)) : ""));
 }
 
 void Hdf5File::group(const std::string& name) {
@@ -50,7 +51,8 @@ void Hdf5File::group(const std::string& name) {
   if (group.id < 0) fail("group " + name + " cannot be written");
 }
 
-void Hdf5File::write(const std::string& name, std::int64_t type, const void* data, std::size_t count, int columns) {
+void Hdf5File::write(const std::string& name, std::int64_t type, const void* data, std::size_t count,
+                     int columns) {
   const hsize_t width = columns > 0 ? static_cast<hsize_t>(columns) : 1;
   const hsize_t dims[2] = {count / width, width};
   const int rank = columns > 0 ? 2 : 1;
@@ -85,9 +87,10 @@ void Hdf5File::dataset(const std::string& name, const std::vector<std::uint8_t>&
 
 void Hdf5File::write_attribute(const std::string& object, const std::string& name, std::int64_t type,
                                std::int64_t space, const void* data) {
-  const Handle<H5Aclose> attribute{H5Acreate_by_name(file_, object.c_str(), name.c_str(), type, space, H5P_DEFAULT,
-                                                     H5P_DEFAULT, H5P_DEFAULT)};
-  if (attribute.id < 0 || H5Awrite(attribute.id, type, data) < 0) fail("attribute " + name + " cannot be written");
+  const Handle<H5Aclose> attribute{H5Acreate_by_name(file_, object.c_str(), name.c_str(), type, space,
+                                                     H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)};
+  if (attribute.id < 0 || H5Awrite(attribute.id, type, data) < 0)
+    fail("attribute " + name + " cannot be written");
 }
 
 void Hdf5File::attribute(const std::string& object, const std::string& name, const std::string& text) {
@@ -103,7 +106,8 @@ void Hdf5File::attribute(const std::string& object, const std::string& name, dou
   write_attribute(object, name, H5T_NATIVE_DOUBLE, space.id, &value);
 }
 
-void Hdf5File::attribute(const std::string& object, const std::string& name, const std::vector<std::int64_t>& values) {
+void Hdf5File::attribute(const std::string& object, const std::string& name,
+                         const std::vector<std::int64_t>& values) {
   const hsize_t count = values.size();
   const Handle<H5Sclose> space{H5Screate_simple(1, &count, nullptr)};
   write_attribute(object, name, H5T_NATIVE_INT64, space.id, values.data());

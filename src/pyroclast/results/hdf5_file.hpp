@@ -7,8 +7,8 @@
 
 namespace pyroclast {
 
-/// An HDF5 file being written. It appears under its name only when `close` succeeded, so a reader never meets a
-/// half-written one. Every failure (a full disk, say) is an Error that names the file.
+/// An HDF5 file being written. It appears under its name only when `close` succeeded, so a reader never meets
+/// a half-written one. Every failure (a full disk, say) is an Error that names the file.
 class Hdf5File {
  public:
   explicit Hdf5File(std::filesystem::path path);
@@ -33,8 +33,8 @@ class Hdf5File {
 
  private:
   void write(const std::string& name, std::int64_t type, const void* data, std::size_t count, int columns);
-  void write_attribute(const std::string& object, const std::string& name, std::int64_t type, std::int64_t space,
-                       const void* data);
+  void write_attribute(const std::string& object, const std::string& name, std::int64_t type,
+                       std::int64_t space, const void* data);
   [[noreturn]] void fail(const std::string& what) const;
 
   std::filesystem::path path_, partial_;

@@ -1,8 +1,8 @@
 #include "pyroclast/results/history_file.hpp"
 
-#include <fmt/format.h>
-
 #include <array>
+
+#include <fmt/format.h>
 
 namespace pyroclast {
 
@@ -25,10 +25,12 @@ constexpr auto kColumns = std::to_array<Column>({
     {"unbalanced_ratio", [](const Sample& s) { return s.unbalanced_ratio; }},
     {"kinetic_over_strain", [](const Sample& s) { return s.kinetic_over_strain; }},
     {"largest_jump", [](const Sample& s) { return s.largest_jump; }},
-    {"tension_am_softening", [](const Sample& s) { return static_cast<double>(s.cracks.tension_am.softening); }},
+    {"tension_am_softening",
+     [](const Sample& s) { return static_cast<double>(s.cracks.tension_am.softening); }},
     {"tension_am_broken", [](const Sample& s) { return static_cast<double>(s.cracks.tension_am.broken); }},
     {"tension_am_length_m", [](const Sample& s) { return s.cracks.tension_am.length; }},
-    {"tension_mm_softening", [](const Sample& s) { return static_cast<double>(s.cracks.tension_mm.softening); }},
+    {"tension_mm_softening",
+     [](const Sample& s) { return static_cast<double>(s.cracks.tension_mm.softening); }},
     {"tension_mm_broken", [](const Sample& s) { return static_cast<double>(s.cracks.tension_mm.broken); }},
     {"tension_mm_length_m", [](const Sample& s) { return s.cracks.tension_mm.length; }},
     {"shear_am_softening", [](const Sample& s) { return static_cast<double>(s.cracks.shear_am.softening); }},
@@ -61,7 +63,9 @@ std::string HistoryFile::header() {
   return line;
 }
 
-HistoryFile::HistoryFile(const std::filesystem::path& path) : file_(path) { file_.line(header()); }
+HistoryFile::HistoryFile(const std::filesystem::path& path) : file_(path) {
+  file_.line(header());
+}
 
 void HistoryFile::write(const Sample& sample) {
   std::string line;

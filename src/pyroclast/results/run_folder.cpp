@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 #include <sys/types.h>
 // libmd's header needs sys/types.h before it
-#include <sha256.h>
-#include <unistd.h>
-
 #include <array>
 #include <chrono>
+
 #include <nlohmann/json.hpp>
+#include <sha256.h>
+#include <unistd.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/results/text_file.hpp"
@@ -45,15 +45,17 @@ void RunFolder::check(const fs::path& path, bool overwrite) {
     if (!fs::is_directory(path)) throw Error(fmt::format("{}: exists and is not a folder", path.string()));
     if (fs::is_empty(path)) return;
     if (!overwrite)
-      throw Error(fmt::format("{}: exists already; choose another folder with --out, or --overwrite it", path.string()));
+      throw Error(fmt::format("{}: exists already; choose another folder with --out, or --overwrite it",
+                              path.string()));
     if (!fs::exists(path / kManifest))
-      throw Error(fmt::format("{}: is not empty and holds no {} of a run, so it is not overwritten", path.string(), kManifest));
+      throw Error(fmt::format("{}: is not empty and holds no {} of a run, so it is not overwritten",
+                              path.string(), kManifest));
     return;
   }
   const fs::path parent = existing_parent(path);
   if (!fs::is_directory(parent) || access(parent.c_str(), W_OK | X_OK) != 0)
-    throw Error(fmt::format("{}: cannot be made, because {} is not a folder that you may write to", path.string(),
-                            parent.string()));
+    throw Error(fmt::format("{}: cannot be made, because {} is not a folder that you may write to",
+                            path.string(), parent.string()));
 }
 
 RunFolder::RunFolder(fs::path path, bool overwrite, const Manifest& manifest) : path_(std::move(path)) {

@@ -15,8 +15,8 @@ struct Manifest {
   std::string command;
 };
 
-/// One folder holding everything of one run. Refused when it exists, unless overwriting was asked for; even then only
-/// a folder that holds a manifest is emptied, so that nothing else is ever lost.
+/// One folder holding everything of one run. Refused when it exists, unless overwriting was asked for; even
+/// then only a folder that holds a manifest is emptied, so that nothing else is ever lost.
 class RunFolder {
  public:
   /// Checks that the folder can be made; makes nothing yet. Throws Error otherwise.

@@ -1,8 +1,8 @@
 #include "pyroclast/results/specimen_files.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "pyroclast/results/text_file.hpp"
@@ -19,7 +19,8 @@ std::string gradation_csv(const specimen::Specimen& specimen, const specimen::Ag
   for (int i = 0; i <= kGradationPoints; ++i)
     sizes.push_back(i == kGradationPoints
                         ? asked.d_max
-                        : asked.d_min * std::pow(asked.d_max / asked.d_min, static_cast<double>(i) / kGradationPoints));
+                        : asked.d_min *
+                              std::pow(asked.d_max / asked.d_min, static_cast<double>(i) / kGradationPoints));
   std::string csv = "d_m,asked_percent,placed_percent\n";
   for (const auto& p : specimen::gradation(asked, specimen.aggregates, sizes))
     csv += fmt::format("{:.9g},{:.9g},{:.9g}\n", p.size, p.passing_asked, p.passing_realised);
@@ -49,7 +50,8 @@ void write_specimen_files(const std::filesystem::path& folder, const specimen::S
   write_text_file(folder / "specimen.json", json.dump(2) + "\n");
 
   std::string csv = "x_m,y_m,diameter_m\n";
-  for (const auto& a : s.aggregates) csv += fmt::format("{:.9g},{:.9g},{:.9g}\n", a.centre[0], a.centre[1], a.diameter);
+  for (const auto& a : s.aggregates)
+    csv += fmt::format("{:.9g},{:.9g},{:.9g}\n", a.centre[0], a.centre[1], a.diameter);
   write_text_file(folder / "aggregates.csv", csv);
   if (!s.aggregates.empty()) write_text_file(folder / "gradation.csv", gradation_csv(s, asked));
 }

@@ -1,8 +1,8 @@
 #include "pyroclast/results/summary.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "pyroclast/results/text_file.hpp"
@@ -11,14 +11,16 @@ namespace pyroclast {
 
 namespace {
 
-/// Contacts are joined at the start and their normals stay; a jump of this share of the edge is no longer small.
+/// Contacts are joined at the start and their normals stay; a jump of this share of the edge is no longer
+/// small.
 constexpr double kSmallJump = 0.1;
 /// The ledger of a sound run closes within this share of the work done.
 constexpr double kLedgerTolerance = 0.005;
 
 /// Strain at which jumps stop being small, or a negative number.
 double strain_of_large_jumps(const std::vector<Sample>& history) {
-  const auto row = std::find_if(history.begin(), history.end(), [](const Sample& s) { return s.largest_jump > kSmallJump; });
+  const auto row = std::find_if(history.begin(), history.end(),
+                                [](const Sample& s) { return s.largest_jump > kSmallJump; });
   return row == history.end() ? -1.0 : row->strain;
 }
 
@@ -43,18 +45,20 @@ Summary summarize(const Case& c, const Experiment& experiment, Outcome outcome) 
   if (s.compression && !s.compression->peak_passed)
     s.warnings.push_back("the stress never fell after its largest value, so f_c is only what was reached");
   if (s.compression && !s.quasi_static.to_peak)
-    s.warnings.push_back(fmt::format(
-        "not quasi-static up to the peak: kinetic over elastic energy up to {:.1e}, platen stresses differ by up to "
-        "{:.1f} % of f_c; load more slowly or take a shorter time step",
-        s.quasi_static.kinetic_to_peak, 100.0 * s.quasi_static.difference_to_peak));
+    s.warnings.push_back(
+        fmt::format("not quasi-static up to the peak: kinetic over elastic energy up to {:.1e}, platen "
+                    "stresses differ by up to "
+                    "{:.1f} % of f_c; load more slowly or take a shorter time step",
+                    s.quasi_static.kinetic_to_peak, 100.0 * s.quasi_static.difference_to_peak));
   const double ledger = s.last.energy.error() / s.last.energy.work_in();
   if (std::abs(ledger) > kLedgerTolerance)
-    s.warnings.push_back(fmt::format("the energy ledger closes only within {:.2f} % of the work done", 100.0 * ledger));
-  if (const double strain = strain_of_large_jumps(history); strain >= 0.0)
     s.warnings.push_back(
-        fmt::format("jumps exceed {:.0f} % of an edge from strain {:.5f} on: contacts keep the partners and normals they "
-                    "started with, so what follows is approximate",
-                    100.0 * kSmallJump, strain));
+        fmt::format("the energy ledger closes only within {:.2f} % of the work done", 100.0 * ledger));
+  if (const double strain = strain_of_large_jumps(history); strain >= 0.0)
+    s.warnings.push_back(fmt::format(
+        "jumps exceed {:.0f} % of an edge from strain {:.5f} on: contacts keep the partners and normals they "
+        "started with, so what follows is approximate",
+        100.0 * kSmallJump, strain));
   return s;
 }
 
@@ -65,18 +69,17 @@ void write_summary(const std::filesystem::path& path, const Summary& s, const sp
   json["sign"] = "stress and strain of the test are positive in compression";
   json["compression"] = nullptr;
   if (s.compression)
-    json["compression"] = {{"E_GPa", s.compression->modulus * 1e-9},
-                           {"f_c_MPa", s.compression->strength * 1e-6},
-                           {"strain_at_peak", s.compression->strain_at_peak},
-                           {"strain_ic", s.compression->inelastic_strain},
-                           {"peak_passed", s.compression->peak_passed},
-                           {"estimated_E_GPa", s.estimated_modulus * 1e-9}};
+    json["compression"] = {
+        {"E_GPa", s.compression->modulus * 1e-9},          {"f_c_MPa", s.compression->strength * 1e-6},
+        {"strain_at_peak", s.compression->strain_at_peak}, {"strain_ic", s.compression->inelastic_strain},
+        {"peak_passed", s.compression->peak_passed},       {"estimated_E_GPa", s.estimated_modulus * 1e-9}};
   json["quasi_static"] = s.quasi_static.to_peak;
-  json["quasi_static_detail"] = {{"kinetic_over_elastic_to_peak", s.quasi_static.kinetic_to_peak},
-                                 {"kinetic_over_elastic_after_peak", s.quasi_static.kinetic_after_peak},
-                                 {"platen_difference_over_f_c_to_peak", s.quasi_static.difference_to_peak},
-                                 {"platen_difference_over_f_c_after_peak", s.quasi_static.difference_after_peak},
-                                 {"after_peak", s.quasi_static.after_peak}};
+  json["quasi_static_detail"] = {
+      {"kinetic_over_elastic_to_peak", s.quasi_static.kinetic_to_peak},
+      {"kinetic_over_elastic_after_peak", s.quasi_static.kinetic_after_peak},
+      {"platen_difference_over_f_c_to_peak", s.quasi_static.difference_to_peak},
+      {"platen_difference_over_f_c_after_peak", s.quasi_static.difference_after_peak},
+      {"after_peak", s.quasi_static.after_peak}};
   const EnergyLedger& e = s.last.energy;
   json["energy_J"] = {{"loading", e.loading},
                       {"gravity", e.gravity},

@@ -25,10 +25,12 @@ struct Summary {
   std::vector<std::string> warnings;
 };
 
-/// Gathers it after a run, with a warning for each thing that keeps the result from being taken at face value.
+/// Gathers it after a run, with a warning for each thing that keeps the result from being taken at face
+/// value.
 Summary summarize(const Case& c, const Experiment& experiment, Outcome outcome);
 
 /// `summary.json`.
-void write_summary(const std::filesystem::path& path, const Summary& summary, const specimen::Specimen& specimen);
+void write_summary(const std::filesystem::path& path, const Summary& summary,
+                   const specimen::Specimen& specimen);
 
 }  // namespace pyroclast

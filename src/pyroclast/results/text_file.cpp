@@ -1,9 +1,9 @@
 #include "pyroclast/results/text_file.hpp"
 
-#include <fmt/format.h>
-
 #include <cerrno>
 #include <cstring>
+
+#include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
 
