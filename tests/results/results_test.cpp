@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/results/hdf5_file.hpp"
+#include "pyroclast/results/history_file.hpp"
+#include "pyroclast/results/run_folder.hpp"
+#include "pyroclast/results/text_file.hpp"
+
+namespace pyroclast {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Results : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              (std::string("pyroclast_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static std::string content(const fs::path& file) {
+    std::ifstream stream(file);
+    std::stringstream text;
+    text << stream.rdbuf();
+    return text.str();
+  }
+
+  fs::path folder_;
+};
+
+// Two of the example values of the standard, FIPS 180.
+TEST_F(Results, Sha256IsTheStandardDigest) {
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+TEST_F(Results, ATextFileAppearsWholeOrNotAtAll) {
+  write_text_file(folder_ / "a.txt", "whole");
+  EXPECT_EQ(content(folder_ / "a.txt"), "whole");
+  EXPECT_THROW(write_text_file(folder_ / "missing" / "a.txt", "whole"), Error);
+  EXPECT_THROW(write_text_file("/dev/full/a.txt", "whole"), Error);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(Results, AFullDeviceIsAnErrorThatNamesTheFile) {
+  try {
+    LineFile file("/dev/full");
+    file.line("one line");
+    FAIL() << "a full device took a line";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("/dev/full"), std::string::npos);
+  }
+}
+
+TEST_F(Results, AnHdf5FileAppearsOnlyOnceItIsClosed) {
+  const fs::path path = folder_ / "a.h5";
+  {
+    Hdf5File file(path);
+    file.group("/g");
+    file.dataset("/g/x", std::vector<double>(3000, 1.5), 3);
+    EXPECT_FALSE(fs::exists(path));
+  }
+  EXPECT_TRUE(fs::is_empty(folder_));  // given up without closing: nothing is left
+  Hdf5File file(path);
+  file.group("/g");
+  file.close();
+  EXPECT_TRUE(fs::exists(path));
+}
+
+TEST_F(Results, HistoryHasAValueForEveryColumn) {
+  {
+    HistoryFile history(folder_ / "history.csv");
+    Sample sample;
+    sample.strain = 0.00125;
+    sample.stress_top = 30e6;
+    sample.stress_bottom = 28e6;
+    history.write(sample);
+  }
+  std::stringstream text(content(folder_ / "history.csv"));
+  std::string header, row;
+  std::getline(text, header);
+  std::getline(text, row);
+  EXPECT_EQ(header, HistoryFile::header());
+  EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(row.begin(), row.end(), ','));
+  EXPECT_NE(row.find("0.00125,29,30,28"), std::string::npos);  // strain, then mean, top and bottom stress in MPa
+}
+
+TEST_F(Results, ARunFolderIsRefusedWhenItExistsAndEmptiedOnlyIfItHoldsARun) {
+  const Manifest manifest{"deck.toml", "title = 1", 1, 1, "pyroclast"};
+  const RunFolder first(folder_ / "run", false, manifest);
+  EXPECT_EQ(content(folder_ / "run" / "deck.toml"), "title = 1");
+  EXPECT_THROW(RunFolder::check(folder_ / "run", false), Error);
+  EXPECT_NO_THROW(RunFolder::check(folder_ / "run", true));
+  write_text_file(folder_ / "precious.txt", "mine");
+  EXPECT_THROW(RunFolder::check(folder_, true), Error);
+  EXPECT_THROW(RunFolder::check(folder_ / "precious.txt", true), Error);
+  EXPECT_THROW(RunFolder::check(folder_ / "precious.txt" / "run", false), Error);
+}
+
+}  // namespace
+}  // namespace pyroclast
