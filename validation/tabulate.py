@@ -3,6 +3,7 @@
 Usage: python3 validation/tabulate.py RUNS
 """
 
+import csv
 import json
 import pathlib
 import statistics
@@ -11,22 +12,37 @@ import sys
 COLUMNS = ("E_GPa", "f_c_MPa", "strain_at_peak", "strain_ic")
 
 
+INERTIA_COUNTS_FROM = 0.1  # of f_c, as in the program's own verdict
+
+
+def inertia(history: pathlib.Path) -> tuple[float, float]:
+    """Worst kinetic over elastic energy, and worst difference of the platens' stresses over f_c, up to the peak."""
+    with open(history, newline="") as file:
+        rows = [{k: float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+    peak = max(range(len(rows)), key=lambda i: rows[i]["stress_MPa"])
+    strength = rows[peak]["stress_MPa"]
+    loaded = [r for r in rows[:peak + 1] if r["stage"] == 1 and r["stress_MPa"] > INERTIA_COUNTS_FROM * strength]
+    return (max(r["kinetic_over_strain"] for r in loaded),
+            max(abs(r["stress_top_MPa"] - r["stress_bottom_MPa"]) for r in loaded) / strength)
+
+
 def main() -> None:
     folder = pathlib.Path(sys.argv[1])
     runs: dict[str, list[dict]] = {}
-    print("variant,seed," + ",".join(COLUMNS) + ",quasi_static,ledger_error_percent,aggregate_fraction,steps,wall_time_s")
+    print("variant,seed," + ",".join(COLUMNS) + ",kinetic_over_elastic,platen_difference_percent,ledger_error_percent,aggregate_fraction,steps,wall_time_s")
     for file in sorted(folder.glob("*/summary.json")):
         summary = json.loads(file.read_text())
         manifest = json.loads((file.parent / "manifest.json").read_text())
         variant = file.parent.name.rpartition("-")[0]
         result = summary["compression"]
+        kinetic, difference = inertia(file.parent / "history.csv")
         runs.setdefault(variant, []).append(result)
         print(f"{variant},{manifest['seed']}," + ",".join(f"{result[c]:.5g}" for c in COLUMNS) +
-              f",{summary['quasi_static']},{100 * summary['energy_J']['error_over_work']:.3f}"
+              f",{kinetic:.1e},{100 * difference:.2f},{100 * summary['energy_J']['error_over_work']:.3f}"
               f",{summary['specimen']['aggregate_fraction_superposed']:.4f},{summary['steps']},{summary['wall_time_s']:.0f}")
     for variant, results in runs.items():
         for name, of in (("mean", statistics.mean), ("spread", lambda v: statistics.stdev(v) if len(v) > 1 else 0.0)):
-            print(f"{variant},{name}," + ",".join(f"{of([r[c] for r in results]):.5g}" for c in COLUMNS) + ",,,,,")
+            print(f"{variant},{name}," + ",".join(f"{of([r[c] for r in results]):.5g}" for c in COLUMNS) + ",,,,,,")
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kFitFrom = 0.05, kFitTo = 1.0 / 3.0;  // of f_c
 constexpr double kFallThatProvesAPeak = 0.01;          // of f_c
+constexpr double kInertiaCountsFrom = 0.1;             // of f_c
 
 std::vector<Sample> compression_rows(const std::vector<Sample>& history, const std::vector<Stage>& stages) {
   std::vector<Sample> rows;
@@ -59,7 +60,7 @@ QuasiStaticReport quasi_static_report(const std::vector<Sample>& history, const 
   if (rows.empty()) return report;
   const auto peak = peak_of(rows);
   for (auto row = rows.begin(); row != rows.end(); ++row) {
-    if (row->stress() < kFitFrom * peak->stress()) continue;
+    if (row->stress() < kInertiaCountsFrom * peak->stress()) continue;
     const bool after = row > peak;
     const double difference = std::abs(row->stress_top - row->stress_bottom) / peak->stress();
     double& kinetic = after ? report.kinetic_after_peak : report.kinetic_to_peak;

@@ -9,7 +9,6 @@
 
 #include <nlohmann/json.hpp>
 #include <sha256.h>
-#include <unistd.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/results/text_file.hpp"
@@ -23,12 +22,11 @@ namespace fs = std::filesystem;
 
 constexpr const char* kManifest = "manifest.json";
 
-/// The nearest folder above that exists; where the run folder would be made.
-fs::path existing_parent(fs::path path) {
+/// The first folder on the way to `path` that does not exist.
+fs::path first_missing(fs::path path) {
   path = fs::absolute(path).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();
-  do path = path.parent_path();
-  while (!fs::exists(path));
+  while (!fs::exists(path.parent_path())) path = path.parent_path();
   return path;
 }
 
@@ -52,10 +50,13 @@ void RunFolder::check(const fs::path& path, bool overwrite) {
                               path.string(), kManifest));
     return;
   }
-  const fs::path parent = existing_parent(path);
-  if (!fs::is_directory(parent) || access(parent.c_str(), W_OK | X_OK) != 0)
-    throw Error(fmt::format("{}: cannot be made, because {} is not a folder that you may write to",
-                            path.string(), parent.string()));
+  // Making it and taking it away again is the only test that knows every file system.
+  const fs::path first = first_missing(path);
+  std::error_code error;
+  fs::create_directories(path, error);
+  std::error_code ignored;
+  if (fs::exists(first, ignored)) fs::remove_all(first, ignored);
+  if (error) throw Error(fmt::format("{}: cannot be made ({})", path.string(), error.message()));
 }
 
 RunFolder::RunFolder(fs::path path, bool overwrite, const Manifest& manifest) : path_(std::move(path)) {
