@@ -7,28 +7,14 @@
 
 #include <gtest/gtest.h>
 
+#include "table_2.hpp"
+
 namespace pyroclast {
 namespace {
 
-/// Mortar-mortar contact of the paper's Table 2.
-ContactProperties mortar() {
-  ContactProperties p;
-  p.normal_stiffness = 18400e9;
-  p.shear_stiffness = 7660e9;
-  p.tensile_strength = 2.5e6;
-  p.mode_1_energy = 60.0;
-  p.compressive_limit = 31e6;
-  p.hardening = 0.05;
-  p.cohesion = 3.8e6;
-  p.residual_cohesion = 0.038e6;
-  p.friction = p.residual_friction = std::tan(34.0 * std::numbers::pi / 180.0);
-  p.mode_2_energy = 240.0;
-  return p;
-}
-
 template <int Dim>
 struct Path {
-  ContactProperties properties = mortar();
+  ContactProperties properties = mortar_contact();
   ContactHistory<Dim> history;
   ContactResponse<Dim> response;
   ContactDissipation dissipated;
@@ -121,7 +107,7 @@ TEST_P(ContactLawSteps, CompressionIsBilinearAndIrreversible) {
 // Monotone shear at constant normal traction follows Eqs. (13) and (14), with the slip that softens taken as
 // u_s - tau/K_s (physics reading): at u_s^l all cohesion above the residual is gone.
 TEST(ContactLaw, MonotoneShearFollowsThePapersSofteningLine) {
-  const ContactProperties p = mortar();
+  const ContactProperties p = mortar_contact();
   const double pressure = 5e6;
   const double peak = p.cohesion + pressure * p.friction;
   const double residual = p.residual_cohesion + pressure * p.friction;
@@ -155,7 +141,7 @@ TEST(ContactLaw, WorkGoesIntoStoredAndDissipatedEnergy) {
 }
 
 TEST(ContactLaw, TensionLowersTheShearStrengthAndNeverBelowZero) {
-  ContactProperties p = mortar();
+  ContactProperties p = mortar_contact();
   ContactHistory<2> history;
   const double opening = 0.5 * p.elastic_opening();
   auto r = update_contact<2>(p, opening, {{1e-6}}, history);
@@ -168,7 +154,7 @@ TEST(ContactLaw, TensionLowersTheShearStrengthAndNeverBelowZero) {
 }
 
 TEST(ContactLaw, BrokenAndOpenCarriesNothingAndClosedCarriesFriction) {
-  const ContactProperties p = mortar();
+  const ContactProperties p = mortar_contact();
   ContactHistory<2> history;
   update_contact<2>(p, 0.0, {{0.3e-6}}, history);
   auto r = update_contact<2>(p, 60e-6, {{0.3e-6}}, history);
@@ -182,7 +168,7 @@ TEST(ContactLaw, BrokenAndOpenCarriesNothingAndClosedCarriesFriction) {
 
 // The bond that tears releases the shear it held, once; an open crack that goes on moving costs nothing.
 TEST(ContactLaw, TearingUnderShearReleasesTheShearHeldAndNothingMore) {
-  const ContactProperties p = mortar();
+  const ContactProperties p = mortar_contact();
   ContactHistory<2> history;
   const double before = update_contact<2>(p, 0.0, {{0.3e-6}}, history).stored;
   const auto torn = update_contact<2>(p, 60e-6, {{0.3e-6}}, history);
@@ -192,7 +178,7 @@ TEST(ContactLaw, TearingUnderShearReleasesTheShearHeldAndNothingMore) {
 }
 
 TEST(ContactLaw, DamageNeverHealsAlongARandomPath) {
-  const ContactProperties p = mortar();
+  const ContactProperties p = mortar_contact();
   ContactHistory<2> history;
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
@@ -215,7 +201,7 @@ TEST(ContactLaw, DamageNeverHealsAlongARandomPath) {
 }
 
 TEST(ContactLaw, IsIsotropicInTheContactPlane) {
-  const ContactProperties p = mortar();
+  const ContactProperties p = mortar_contact();
   ContactHistory<2> flat;
   ContactHistory<3> solid;
   const double angle = 0.7;
@@ -232,7 +218,7 @@ TEST(ContactLaw, IsIsotropicInTheContactPlane) {
 }
 
 TEST(ContactLaw, ElasticContactNeverFails) {
-  ContactProperties p = mortar();
+  ContactProperties p = mortar_contact();
   p.behaviour = ContactBehaviour::elastic;
   ContactHistory<2> history;
   const auto r = update_contact<2>(p, 1e-3, {{-2e-3}}, history);
@@ -256,7 +242,7 @@ TEST(ContactLaw, ReversibleCompressionRetracesTheBilinearCurve) {
 }
 
 TEST(ContactLaw, CoupledCohesionFallsWithTensionDamage) {
-  ContactProperties p = mortar();
+  ContactProperties p = mortar_contact();
   const auto sheared_after_opening = [&](bool coupled) {
     p.coupled = coupled;
     ContactHistory<2> history;
@@ -268,7 +254,7 @@ TEST(ContactLaw, CoupledCohesionFallsWithTensionDamage) {
 
 TEST(ContactLaw, RefusesParametersThatCannotMakeALaw) {
   const auto refused = [](auto change, const std::string& named) {
-    ContactProperties p = mortar();
+    ContactProperties p = mortar_contact();
     change(p);
     try {
       validate(p, "mortar-mortar");
@@ -277,7 +263,7 @@ TEST(ContactLaw, RefusesParametersThatCannotMakeALaw) {
     }
     return false;
   };
-  EXPECT_NO_THROW(validate(mortar(), "mortar-mortar"));
+  EXPECT_NO_THROW(validate(mortar_contact(), "mortar-mortar"));
   EXPECT_TRUE(refused([](auto& p) { p.normal_stiffness = 0.0; }, "K_n"));
   EXPECT_TRUE(refused([](auto& p) { p.shear_stiffness = std::numeric_limits<double>::quiet_NaN(); }, "K_s"));
   EXPECT_TRUE(refused([](auto& p) { p.tensile_strength = -1.0; }, "f_t"));

@@ -1,9 +1,9 @@
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+
+#include <gtest/gtest.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/results/hdf5_file.hpp"
@@ -90,7 +90,8 @@ TEST_F(Results, HistoryHasAValueForEveryColumn) {
   std::getline(text, row);
   EXPECT_EQ(header, HistoryFile::header());
   EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(row.begin(), row.end(), ','));
-  EXPECT_NE(row.find("0.00125,29,30,28"), std::string::npos);  // strain, then mean, top and bottom stress in MPa
+  EXPECT_NE(row.find("0.00125,29,30,28"),
+            std::string::npos);  // strain, then mean, top and bottom stress in MPa
 }
 
 TEST_F(Results, ARunFolderIsRefusedWhenItExistsAndEmptiedOnlyIfItHoldsARun) {

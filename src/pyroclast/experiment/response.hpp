@@ -34,8 +34,9 @@ struct QuasiStaticReport {
   bool to_peak = false, after_peak = false;                      ///< within the bounds
 };
 
-/// Rows below 10 % of the peak stress are left out: the kinetic energy of the driven motion itself is there from the
-/// start, while elastic energy grows with the square of the stress, so their ratio says nothing before.
+/// Rows below 10 % of the peak stress are left out: the kinetic energy of the driven motion itself is there
+/// from the start, while elastic energy grows with the square of the stress, so their ratio says nothing
+/// before.
 QuasiStaticReport quasi_static_report(const std::vector<Sample>& history, const std::vector<Stage>& stages,
                                       const QuasiStaticBounds& bounds = {});
 
