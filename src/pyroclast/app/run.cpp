@@ -75,9 +75,11 @@ void print_result(const Summary& s, const std::filesystem::path& folder) {
     fmt::print("result          E {:.2f} GPa, f_c {:.2f} MPa at strain {:.5f}, eps_ic {:.5f}\n",
                s.compression->modulus * 1e-9, s.compression->strength * 1e-6, s.compression->strain_at_peak,
                s.compression->inelastic_strain);
-  fmt::print("energy ledger   closes within {:.3f} % of the work done; {} up to the peak\n",
-             100.0 * std::abs(s.last.energy.error() / s.last.energy.work_in()),
-             s.quasi_static.to_peak ? "quasi-static" : "NOT quasi-static");
+  fmt::print("energy ledger   closes within {:.3f} % of the work done\n",
+             100.0 * std::abs(s.last.energy.error() / s.last.energy.work_in()));
+  if (s.compression)
+    fmt::print("motion          {} up to the peak\n",
+               s.quasi_static.to_peak ? "quasi-static" : "NOT quasi-static");
   for (const auto& warning : s.warnings) fmt::print("warning         {}\n", warning);
   fmt::print("results         {}\n", folder.string());
 }

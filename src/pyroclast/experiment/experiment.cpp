@@ -26,8 +26,8 @@ double total_force(const Mechanics<2>& mechanics, const std::vector<int>& gridpo
 
 const char* describe(Outcome outcome) {
   switch (outcome) {
-    case Outcome::strain_reached:
-      return "the last stage's strain was reached";
+    case Outcome::completed:
+      return "every stage was completed";
     case Outcome::stress_fallen:
       return "the stress fell below the stated fraction of the peak";
     case Outcome::interrupted:
@@ -106,7 +106,7 @@ Outcome Experiment::run() {
     observer_.frame(*this, history_.back());
     if (end.last) return end.outcome;
   }
-  return Outcome::strain_reached;
+  return Outcome::completed;
 }
 
 void Experiment::look() {
@@ -180,7 +180,7 @@ int Experiment::steps_to_next_look(const CompressStage& stage) const {
 Experiment::Verdict Experiment::judge(const CompressStage& stage, const Sample& now) {
   peak_stress_ = std::max(peak_stress_, now.stress());
   progress_ = std::clamp(now.strain / stage.stop_strain, 0.0, 1.0);
-  if (now.strain >= stage.stop_strain) return {.over = true, .outcome = Outcome::strain_reached};
+  if (now.strain >= stage.stop_strain) return {.over = true, .outcome = Outcome::completed};
   if (now.stress() < stage.stop_fraction * peak_stress_)
     return {.over = true, .last = true, .outcome = Outcome::stress_fallen};
   if (now.strain >= next_frame_) {

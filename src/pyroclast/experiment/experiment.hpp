@@ -68,7 +68,7 @@ struct Sample {
 };
 
 /// Why an experiment ended.
-enum class Outcome : std::uint8_t { strain_reached, stress_fallen, interrupted, not_settled, unstable };
+enum class Outcome : std::uint8_t { completed, stress_fallen, interrupted, not_settled, unstable };
 
 const char* describe(Outcome outcome);
 
@@ -105,7 +105,7 @@ class Experiment {
   struct Verdict {
     bool over = false;
     bool last = false;  ///< the experiment ends with this stage
-    Outcome outcome = Outcome::strain_reached;
+    Outcome outcome = Outcome::completed;
   };
 
   void begin(const SettleStage&);

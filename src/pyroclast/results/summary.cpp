@@ -73,13 +73,16 @@ void write_summary(const std::filesystem::path& path, const Summary& s, const sp
         {"E_GPa", s.compression->modulus * 1e-9},          {"f_c_MPa", s.compression->strength * 1e-6},
         {"strain_at_peak", s.compression->strain_at_peak}, {"strain_ic", s.compression->inelastic_strain},
         {"peak_passed", s.compression->peak_passed},       {"estimated_E_GPa", s.estimated_modulus * 1e-9}};
-  json["quasi_static"] = s.quasi_static.to_peak;
-  json["quasi_static_detail"] = {
-      {"kinetic_over_elastic_to_peak", s.quasi_static.kinetic_to_peak},
-      {"kinetic_over_elastic_after_peak", s.quasi_static.kinetic_after_peak},
-      {"platen_difference_over_f_c_to_peak", s.quasi_static.difference_to_peak},
-      {"platen_difference_over_f_c_after_peak", s.quasi_static.difference_after_peak},
-      {"after_peak", s.quasi_static.after_peak}};
+  json["quasi_static"] = nullptr;
+  if (s.compression) {
+    json["quasi_static"] = s.quasi_static.to_peak;
+    json["quasi_static_detail"] = {
+        {"kinetic_over_elastic_to_peak", s.quasi_static.kinetic_to_peak},
+        {"kinetic_over_elastic_after_peak", s.quasi_static.kinetic_after_peak},
+        {"platen_difference_over_f_c_to_peak", s.quasi_static.difference_to_peak},
+        {"platen_difference_over_f_c_after_peak", s.quasi_static.difference_after_peak},
+        {"after_peak", s.quasi_static.after_peak}};
+  }
   const EnergyLedger& e = s.last.energy;
   json["energy_J"] = {{"loading", e.loading},
                       {"gravity", e.gravity},

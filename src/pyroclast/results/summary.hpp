@@ -13,7 +13,7 @@ namespace pyroclast {
 /// What a reader of a run wants to know first.
 struct Summary {
   std::string title;
-  Outcome outcome = Outcome::strain_reached;
+  Outcome outcome = Outcome::completed;
   std::optional<CompressionResponse> compression;
   QuasiStaticReport quasi_static;
   double estimated_modulus = 0.0;  ///< Pa
