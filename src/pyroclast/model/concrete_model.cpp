@@ -82,6 +82,7 @@ ConcreteModel make_concrete_model(const Specimen& specimen, double platen_thickn
   const auto top_wall = wall_vertices(specimen, specimen.height);
   const auto columns = [&](const std::vector<int>& wall) {
     std::vector<double> x;
+    x.reserve(wall.size());
     for (int v : wall) x.push_back(tessellation.vertices[v][0]);
     return x;
   };
