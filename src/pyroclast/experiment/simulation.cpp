@@ -14,8 +14,8 @@ namespace pyroclast {
 namespace {
 
 /// Measured peak over the number of blocks, from 5,000 to 100,000 blocks (docs/performance.md), rounded up.
-constexpr double kBytesPerBlock = 9000.0;
-constexpr double kBytesFixed = 60e6;
+constexpr double kBytesPerBlock = 6000.0;
+constexpr double kBytesFixed = 40e6;
 
 /// Memory that this process may still take, bytes: what the machine has free, or the process limit if
 /// smaller.
