@@ -32,10 +32,7 @@ struct Path {
       response = update_contact<Dim>(properties, next_opening, next, history);
       work += 0.5 * (before.normal_traction + response.normal_traction) * (next_opening - at_opening) +
               0.5 * dot(before.shear_traction + response.shear_traction, next - at_tangential);
-      dissipated.tension += response.dissipated.tension;
-      dissipated.shear += response.dissipated.shear;
-      dissipated.friction += response.dissipated.friction;
-      dissipated.compression += response.dissipated.compression;
+      dissipated += response.dissipated;
       at_opening = next_opening;
       at_tangential = next;
     }

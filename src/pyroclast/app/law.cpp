@@ -133,10 +133,7 @@ class Drive {
  private:
   void update(const PathPoint& point) {
     response_ = update_contact<2>(properties_, point.opening, {{point.slip}}, history_);
-    total_.tension += response_.dissipated.tension;
-    total_.shear += response_.dissipated.shear;
-    total_.friction += response_.dissipated.friction;
-    total_.compression += response_.dissipated.compression;
+    total_ += response_.dissipated;
   }
 
   const ContactMaterial& material_;
@@ -153,10 +150,7 @@ class Drive {
 int law(const LawOptions& options) {
   const Deck deck = Deck::load(options.deck);
   const Case c = read_case(deck, options.deck.parent_path());
-  const double size = c.specimen.blocks.count > 0
-                          ? std::sqrt(c.specimen.width * c.specimen.height / c.specimen.blocks.count)
-                          : c.contacts.fracture_zone_size.value_or(1.0);
-  const auto concrete = make_concrete(c.solids, c.contacts, size);
+  const auto concrete = make_concrete(c.solids, c.contacts, expected_block_size(c));
   Drive drive(concrete.contacts[interface_index(options.interface)]);
 
   std::string csv = Drive::kHeader;

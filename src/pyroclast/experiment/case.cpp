@@ -175,10 +175,7 @@ std::vector<Stage> read_stages(const Section& root) {
 void check_contacts(const Section& root, const Case& c) {
   const Section contacts = root.section("contacts");
   if (!root.ok()) return;
-  const double size = c.specimen.blocks.count > 0
-                          ? std::sqrt(c.specimen.width * c.specimen.height / c.specimen.blocks.count)
-                          : c.contacts.fracture_zone_size.value_or(1.0);
-  const auto concrete = make_concrete(c.solids, c.contacts, size);
+  const auto concrete = make_concrete(c.solids, c.contacts, expected_block_size(c));
   const auto check = [&](InterfaceIndex interface, const char* key) {
     try {
       validate(concrete.contacts[interface].at(kReferenceTemperature), key);
@@ -211,6 +208,11 @@ Case read_case(const Deck& deck, const std::filesystem::path& folder) {
   check_contacts(root, c);
   deck.finish();
   return c;
+}
+
+double expected_block_size(const Case& c) {
+  if (c.specimen.blocks.count == 0) return c.contacts.fracture_zone_size.value_or(1.0);
+  return std::sqrt(c.specimen.width * c.specimen.height / c.specimen.blocks.count);
 }
 
 double estimate_modulus(const ConcreteModel& body, const ConcreteMaterials& materials) {

@@ -30,6 +30,10 @@ struct Case {
 /// Throws DeckError with every error of the deck.
 Case read_case(const Deck& deck, const std::filesystem::path& folder);
 
+/// Block size that the deck foresees, m; where the tessellation is read from a file, the one at which t_b
+/// holds.
+double expected_block_size(const Case& c);
+
 /// Lower estimate of Young's modulus of the model in the vertical direction, Pa: the same vertical stress
 /// everywhere, compliances of zones and contacts added up (Reuss). Platens left out.
 double estimate_modulus(const ConcreteModel& body, const ConcreteMaterials& materials);

@@ -76,6 +76,14 @@ struct ContactDissipation {
   double compression = 0.0;  ///< irreversible closure
 
   double total() const { return tension + shear + friction + compression; }
+
+  ContactDissipation& operator+=(const ContactDissipation& o) {
+    tension += o.tension;
+    shear += o.shear;
+    friction += o.friction;
+    compression += o.compression;
+    return *this;
+  }
 };
 
 template <int Dim>

@@ -215,10 +215,7 @@ Vec<Dim> Mechanics<Dim>::update_contact_point(int index, const ContactFrame<Dim>
   state.normal_traction = response.normal_traction;
   state.shear_traction = response.shear_traction;
   state.stored = response.stored;
-  state.dissipated.tension += response.dissipated.tension;
-  state.dissipated.shear += response.dissipated.shear;
-  state.dissipated.friction += response.dissipated.friction;
-  state.dissipated.compression += response.dissipated.compression;
+  state.dissipated += response.dissipated;
   Vec<Dim> traction = frame.normal * response.normal_traction;
   for (int i = 0; i + 1 < Dim; ++i) traction += frame.tangents[i] * response.shear_traction[i];
   return traction * c.area;

@@ -108,8 +108,6 @@ class Mechanics {
   /// Starts a contact as broken: neither tension nor cohesion ever held it.
   void break_contact(int contact);
 
-  void set_gravity(const Vec<Dim>& gravity) { parameters_.gravity = gravity; }
-
   /// Runs a number of steps.
   void advance(int steps);
 
@@ -119,7 +117,6 @@ class Mechanics {
   /// Stable step with real mass, paper Eq. (9).
   TimeStepLimit real_mass_limit() const;
   double mass_ratio() const { return moving_mass_ / real_mass_; }  ///< total moving mass over real mass
-  double real_mass() const { return real_mass_; }                  ///< kg
 
   const Model<Dim>& model() const { return model_; }
   const std::vector<Vec<Dim>>& displacement() const { return displacement_; }
@@ -128,7 +125,6 @@ class Mechanics {
   const std::vector<Vec<Dim>>& force() const { return force_; }
   const std::vector<SymmetricTensor<Dim>>& stress() const { return stress_; }
   const std::vector<ContactState<Dim>>& contacts() const { return contact_state_; }
-  const std::vector<ContactProperties>& interfaces() const { return interfaces_; }
 
   /// Energies at the displacements that the last step started from. With kinetic energy as half m v(t - dt/2)
   /// v(t + dt/2), central differences conserve their sum exactly in a linear body, so the ledger's error is
