@@ -124,9 +124,12 @@ template <int Dim>
 Mechanics<Dim> mechanics(const Model<Dim>& model, const ContactProperties& contact,
                          const MechanicsParameters<Dim>& parameters, double young = 29.4e9,
                          double poisson = 0.2) {
-  return Mechanics<Dim>(model, {2400.0},
-                        std::vector<ZoneProperties>(model.zones.size(), zone_properties<Dim>(young, poisson)),
-                        {contact}, parameters);
+  return Mechanics<Dim>(
+      model, {2400.0},
+      by_interface(model,
+                   std::vector<ZoneProperties>(model.zones.size(), zone_properties<Dim>(young, poisson)),
+                   {contact}),
+      parameters);
 }
 
 /// Moves every gridpoint at a steady velocity to a displacement given by its position, in a number of steps,

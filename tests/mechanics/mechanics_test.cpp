@@ -263,9 +263,7 @@ TEST_P(TornPrism, DissipatesTheModeOneEnergyOfOneSection) {
   // Where nothing damps, the halves ring at the highest frequency; a step far below its limit follows the
   // law's corners.
   parameters.safety = 0.3;
-  auto m = Mechanics<2>(model, {2400.0},
-                        std::vector<ZoneProperties>(model.zones.size(), zone_properties<2>(29.4e9, 0.2)),
-                        {mortar_contact()}, parameters);
+  auto m = mechanics(model, mortar_contact(), parameters);
   for (int g : {0, 1, 14, 15})
     for (int i : {0, 1}) m.prescribe_velocity(g, i, 0.0);
   for (int g : {14, 15}) m.prescribe_velocity(g, 1, 1e-3);

@@ -60,8 +60,8 @@ std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const Concre
     interfaces.push_back(materials.contacts[i].at(kReferenceTemperature));
     validate(interfaces.back(), model.interface_names[i]);
   }
-  return std::make_unique<Mechanics<2>>(model, densities, std::move(zones), std::move(interfaces),
-                                        parameters);
+  return std::make_unique<Mechanics<2>>(
+      model, densities, by_interface(model, std::move(zones), std::move(interfaces)), parameters);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "pyroclast/mechanics/mechanics.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -18,15 +19,22 @@ double sign(double x) {
 }  // namespace
 
 template <int Dim>
+BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
+                            std::vector<ContactProperties> interfaces) {
+  BodyProperties p{std::move(zones), std::move(interfaces), {}};
+  p.of_contact.reserve(model.contacts.size());
+  for (const auto& c : model.contacts) p.of_contact.push_back(c.interface);
+  return p;
+}
+
+template <int Dim>
 Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& densities,
-                          std::vector<ZoneProperties> zones, std::vector<ContactProperties> interfaces,
-                          const MechanicsParameters<Dim>& parameters)
+                          BodyProperties properties, const MechanicsParameters<Dim>& parameters)
     : model_(model),
       parameters_(parameters),
       geometry_(zone_geometry(model)),
       gridpoint_contacts_(gridpoint_contacts(model)),
-      zone_properties_(std::move(zones)),
-      interfaces_(std::move(interfaces)) {
+      properties_(std::move(properties)) {
   const auto gridpoints = model.position.size();
   displacement_.resize(gridpoints);
   velocity_.resize(gridpoints);
@@ -59,7 +67,7 @@ void Mechanics<Dim>::compute_stiffness() {
       g[n] = geometry_.gradient[z][n];
       g[Dim] -= g[n];
     }
-    const auto& p = zone_properties_[z];
+    const auto& p = properties_.zones[z];
     for (int m = 0; m <= Dim; ++m)
       for (int n = 0; n <= Dim; ++n)
         for (int i = 0; i < Dim; ++i)
@@ -69,8 +77,9 @@ void Mechanics<Dim>::compute_stiffness() {
             row[model_.zones[z][m]][i] += std::abs(k) * geometry_.volume[z];
           }
   }
-  for (const auto& c : model_.contacts) {
-    const auto& p = interfaces_[c.interface];
+  for (std::size_t index = 0; index < model_.contacts.size(); ++index) {
+    const auto& c = model_.contacts[index];
+    const auto& p = properties_.contacts[properties_.of_contact[index]];
     for (int i = 0; i < Dim; ++i) {
       double sum = 0.0;
       for (int j = 0; j < Dim; ++j) {
@@ -110,11 +119,62 @@ void Mechanics<Dim>::set_masses(const std::vector<double>& densities) {
 template <int Dim>
 void Mechanics<Dim>::scale_masses() {
   time_step_ = parameters_.time_step;
+  start_stiffness_ = stiffness_;
   const double half = 0.5 * time_step_ / parameters_.safety;
   mass_.resize(stiffness_.size());
   for (std::size_t g = 0; g < mass_.size(); ++g) {
     mass_[g] = stiffness_[g] * (1.0 + parameters_.local_damping) * half * half;
     moving_mass_ += mass_[g];
+  }
+}
+
+/// One factor for all masses: the largest by which any gridpoint's stiffness has changed.
+template <int Dim>
+void Mechanics<Dim>::rescale_masses() {
+  double factor = 0.0;
+  for (std::size_t g = 0; g < stiffness_.size(); ++g)
+    factor = std::max(factor, stiffness_[g] / start_stiffness_[g]);
+  const double change = factor / mass_factor_;
+  mass_factor_ = factor;
+  moving_mass_ *= change;
+  for (std::size_t g = 0; g < mass_.size(); ++g) {
+    mass_[g] *= change;
+    step_over_mass_[g] = time_step_ / mass_[g];
+  }
+  for (auto& t : ties_) t.mass *= change;
+  for (double& k : kinetic_) {
+    mass_scaling_ += (change - 1.0) * k;
+    k *= change;
+  }
+}
+
+template <int Dim>
+void Mechanics<Dim>::set_properties(BodyProperties properties) {
+  // The ledger counts the work of forces by the trapezoidal rule. So the change is made at the displacements
+  // of the last step's forces, and the half step already begun with the old ones is made good.
+  const EnergyLedger before = energy();
+  const double held_before = before.zones + before.contacts + before.dissipated.total();
+  properties_ = std::move(properties);
+  const auto next = displacement_;
+  const auto old_force = force_;
+  const double begun = steps_ > 0 ? time_step_ : 0.0;
+  for (std::size_t g = 0; g < displacement_.size(); ++g) displacement_[g] -= velocity_[g] * begun;
+  evaluate_forces();
+  displacement_ = next;
+
+  const EnergyLedger after = energy();
+  heat_ += after.zones + after.contacts + after.dissipated.total() - held_before;
+  for (std::size_t g = 0; g < force_.size(); ++g)
+    heat_ -= 0.5 * begun * dot(force_[g] - old_force[g], velocity_[g]);
+
+  compute_stiffness();
+  if (parameters_.mass == MassChoice::scaled) {
+    rescale_masses();
+  } else if (const double limit = real_mass_limit().step; limit < time_step_ * (1.0 - 1e-9)) {
+    throw Error(fmt::format(
+        "the body got stiffer at its new temperature: the time step {:.3g} s of its real mass is not stable "
+        "any more (now {:.3g} s); start from a smaller safety, or scale the mass",
+        time_step_, limit));
   }
 }
 
@@ -142,6 +202,20 @@ void Mechanics<Dim>::release(int gridpoint, int component) {
 }
 
 template <int Dim>
+void Mechanics<Dim>::tie(std::vector<int> gridpoints, int component) {
+  const auto after =
+      std::upper_bound(model_.block_gridpoints.begin(), model_.block_gridpoints.end(), gridpoints.front());
+  const int block = static_cast<int>(after - model_.block_gridpoints.begin()) - 1;
+  double mass = 0.0, momentum = 0.0;
+  for (int g : gridpoints) {
+    mass += mass_[g];
+    momentum += mass_[g] * velocity_[g][component];
+  }
+  for (int g : gridpoints) velocity_[g][component] = momentum / mass;
+  ties_.push_back({block, component, std::move(gridpoints), mass});
+}
+
+template <int Dim>
 void Mechanics<Dim>::apply_force(int gridpoint, const Vec<Dim>& force) {
   applied_[gridpoint] = force;
 }
@@ -163,10 +237,28 @@ void Mechanics<Dim>::advance(int steps) {
 #pragma omp for schedule(static)
     for (int b = 0; b < blocks; ++b) {
       add_zone_forces(b);
+      complete_forces(b);
       move_gridpoints(b);
     }
   }
   steps_ += steps;
+}
+
+/// Forces at the present displacements, without moving.
+template <int Dim>
+void Mechanics<Dim>::evaluate_forces() {
+  const int faces = model_.contact_count() / Dim;
+  const int blocks = model_.block_count();
+#pragma omp parallel
+  {
+#pragma omp for schedule(static)
+    for (int f = 0; f < faces; ++f) update_face(f);
+#pragma omp for schedule(static)
+    for (int b = 0; b < blocks; ++b) {
+      add_zone_forces(b);
+      complete_forces(b);
+    }
+  }
 }
 
 /// Contact points of one shared face: jumps to tractions to forces, Eqs. (10)-(15).
@@ -210,8 +302,8 @@ Vec<Dim> Mechanics<Dim>::update_contact_point(int index, const ContactFrame<Dim>
   const Vec<Dim> u = displacement_[c.b] - displacement_[c.a];
   state.opening = dot(u, frame.normal);
   for (int i = 0; i + 1 < Dim; ++i) state.tangential_jump[i] = dot(u, frame.tangents[i]);
-  const auto response =
-      update_contact<Dim>(interfaces_[c.interface], state.opening, state.tangential_jump, state.history);
+  const auto response = update_contact<Dim>(properties_.contacts[properties_.of_contact[index]],
+                                            state.opening, state.tangential_jump, state.history);
   state.normal_traction = response.normal_traction;
   state.shear_traction = response.shear_traction;
   state.stored = response.stored;
@@ -245,7 +337,7 @@ void Mechanics<Dim>::add_zone_forces(int block) {
   for (int g = model_.block_gridpoints[block]; g < model_.block_gridpoints[block + 1]; ++g) force_[g] = {};
   for (int z = model_.block_zones[block]; z < model_.block_zones[block + 1]; ++z) {
     const auto& corner = model_.zones[z];
-    const auto& p = zone_properties_[z];
+    const auto& p = properties_.zones[z];
     std::array<Vec<Dim>, Dim + 1> u;
     for (int n = 0; n <= Dim; ++n) u[n] = displacement_[corner[n]];
     Rotation rotation;
@@ -272,7 +364,20 @@ Vec<Dim> Mechanics<Dim>::contact_forces(int g) const {
   return sum;
 }
 
-/// Completes the sum of forces, damps it (8) and integrates velocity and displacement (6), (7).
+/// Completes the sum of forces (4) and shares it out where gridpoints are tied.
+template <int Dim>
+void Mechanics<Dim>::complete_forces(int block) {
+  for (int g = model_.block_gridpoints[block]; g < model_.block_gridpoints[block + 1]; ++g)
+    force_[g] = force_[g] + contact_forces(g) + parameters_.gravity * gravity_mass_[g] + applied_[g];
+  for (const Tie& t : ties_) {
+    if (t.block != block) continue;
+    double sum = 0.0;
+    for (int g : t.gridpoints) sum += force_[g][t.component];
+    for (int g : t.gridpoints) force_[g][t.component] = sum * mass_[g] / t.mass;
+  }
+}
+
+/// Damps the sum of forces (8) and integrates velocity and displacement (6), (7).
 template <int Dim>
 void Mechanics<Dim>::move_gridpoints(int block) {
   const double dt = time_step_;
@@ -287,7 +392,7 @@ void Mechanics<Dim>::move_gridpoints(int block) {
     const double mass = mass_[g];
     const Vec<Dim> weight = parameters_.gravity * gravity_mass_[g];
     const Vec<Dim> applied = applied_[g];
-    const Vec<Dim> sum = force_[g] + contact_forces(g) + weight + applied;
+    const Vec<Dim> sum = force_[g];
     const Vec<Dim> before = velocity_[g];
     Vec<Dim> change{};
     if (combined) {
@@ -311,7 +416,6 @@ void Mechanics<Dim>::move_gridpoints(int block) {
       begun.add({loading * from, weight[i] * from, damping * from, drag * from});
     }
     kinetic += 0.5 * mass * dot(before, after);
-    force_[g] = sum;
     velocity_[g] = after;
     displacement_[g] += after * dt;
   }
@@ -324,6 +428,8 @@ void Mechanics<Dim>::move_gridpoints(int block) {
 template <int Dim>
 EnergyLedger Mechanics<Dim>::energy() const {
   EnergyLedger e;
+  e.heat = heat_;
+  e.mass_scaling = mass_scaling_;
   for (const auto& w : work_) {
     e.loading += w.loading;
     e.gravity += w.gravity;
@@ -331,7 +437,7 @@ EnergyLedger Mechanics<Dim>::energy() const {
     e.viscous_damping += w.viscous_damping;
   }
   for (std::size_t z = 0; z < model_.zones.size(); ++z) {
-    const auto& p = zone_properties_[z];
+    const auto& p = properties_.zones[z];
     std::array<Vec<Dim>, Dim + 1> u;
     for (int n = 0; n <= Dim; ++n) {
       const int g = model_.zones[z][n];
@@ -390,6 +496,10 @@ double Mechanics<Dim>::largest_relative_jump() const {
   return largest;
 }
 
+template BodyProperties by_interface<2>(const Model<2>&, std::vector<ZoneProperties>,
+                                        std::vector<ContactProperties>);
+template BodyProperties by_interface<3>(const Model<3>&, std::vector<ZoneProperties>,
+                                        std::vector<ContactProperties>);
 template class Mechanics<2>;
 template class Mechanics<3>;
 

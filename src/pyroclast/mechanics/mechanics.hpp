@@ -42,7 +42,8 @@ struct EnergyLedger {
   // put in
   double loading = 0.0;  ///< work of prescribed motion and applied forces
   double gravity = 0.0;
-  double heat = 0.0;  ///< change of stored energy when properties or thermal strain change at fixed jumps
+  double heat = 0.0;  ///< change of stored and dissipated energy when properties or thermal strains change
+  double mass_scaling = 0.0;  ///< change of kinetic energy when scaled masses follow the stiffness
   // held
   double zones = 0.0;     ///< elastic, in zones
   double contacts = 0.0;  ///< elastic, in contacts
@@ -52,7 +53,7 @@ struct EnergyLedger {
   double local_damping = 0.0;
   double viscous_damping = 0.0;
 
-  double work_in() const { return loading + gravity + heat; }
+  double work_in() const { return loading + gravity + heat + mass_scaling; }
   double accounted() const {
     return zones + contacts + kinetic + dissipated.total() + local_damping + viscous_damping;
   }
@@ -85,6 +86,19 @@ struct TimeStepLimit {
   int gridpoint = 0;
 };
 
+/// Parameters of a body at its present temperatures.
+struct BodyProperties {
+  std::vector<ZoneProperties> zones;        ///< of each zone
+  std::vector<ContactProperties> contacts;  ///< each set that occurs, validated
+  std::vector<int> of_contact;              ///< index into `contacts` of each contact
+};
+
+/// Contacts that differ by interface alone.
+/// \param interfaces  contact properties of each interface, validated
+template <int Dim>
+BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
+                            std::vector<ContactProperties> interfaces);
+
 /// Explicit motion of a body of deformable blocks, paper Eqs. (3)-(15), small displacements.
 ///
 /// Forces are gathered by the gridpoint that they act on and every sum has one order, so results are bitwise
@@ -94,15 +108,24 @@ class Mechanics {
  public:
   /// \param model        kept by reference; must outlive this
   /// \param densities    of each material, kg/m³
-  /// \param zones        properties of each zone
-  /// \param interfaces   contact properties of each interface, validated
-  Mechanics(const Model<Dim>& model, const std::vector<double>& densities, std::vector<ZoneProperties> zones,
-            std::vector<ContactProperties> interfaces, const MechanicsParameters<Dim>& parameters);
+  Mechanics(const Model<Dim>& model, const std::vector<double>& densities, BodyProperties properties,
+            const MechanicsParameters<Dim>& parameters);
+
+  /// Takes the body to other temperatures: displacements, jumps and damage stay, stresses follow the new
+  /// parameters and come back to the new envelopes (staggered coupling, paper Fig. 2). The energy that this
+  /// adds or takes is `EnergyLedger::heat`. Scaled masses follow the stiffness by one common factor.
+  /// Throws Error when the body would get too stiff for the time step of its real mass.
+  void set_properties(BodyProperties properties);
 
   /// Prescribes one component of a gridpoint's velocity, m/s, from the next step on.
   void prescribe_velocity(int gridpoint, int component, double velocity);
   /// Lets it move freely again.
   void release(int gridpoint, int component);
+  /// Makes free gridpoints of one block share one component of their motion, as under a rigid plate; the
+  /// velocity they start with is their mean, so tie them at rest.
+  void tie(std::vector<int> gridpoints, int component);
+  /// Ends all ties.
+  void untie() { ties_.clear(); }
   /// Force on a gridpoint, N, until set again; free components only.
   void apply_force(int gridpoint, const Vec<Dim>& force);
   /// Starts a contact as broken: neither tension nor cohesion ever held it.
@@ -123,6 +146,7 @@ class Mechanics {
   const std::vector<Vec<Dim>>& velocity() const { return velocity_; }
   /// Sum of all forces on each gridpoint at the last step, N; on a prescribed component minus the reaction.
   const std::vector<Vec<Dim>>& force() const { return force_; }
+  const std::vector<Vec<Dim>>& applied_force() const { return applied_; }  ///< N
   const std::vector<SymmetricTensor<Dim>>& stress() const { return stress_; }
   const std::vector<ContactState<Dim>>& contacts() const { return contact_state_; }
 
@@ -150,28 +174,40 @@ class Mechanics {
     }
   };
 
+  /// Gridpoints that share one component of their motion.
+  struct Tie {
+    int block;
+    int component;
+    std::vector<int> gridpoints;
+    double mass;
+  };
+
   void compute_stiffness();
   void set_masses(const std::vector<double>& densities);
   void scale_masses();
+  void rescale_masses();
+  void evaluate_forces();
   void update_face(int face);
   Vec<Dim> update_contact_point(int contact, const ContactFrame<Dim>& frame);
   ContactFrame<Dim> current_frame(int first_contact) const;
   void add_turning_force(int first_contact, const ContactFrame<Dim>& frame);
   void add_zone_forces(int block);
   Vec<Dim> contact_forces(int gridpoint) const;
+  void complete_forces(int block);
   void move_gridpoints(int block);
 
   const Model<Dim>& model_;
   MechanicsParameters<Dim> parameters_;
   ZoneGeometry<Dim> geometry_;
   GridpointContacts gridpoint_contacts_;
-  std::vector<ZoneProperties> zone_properties_;
-  std::vector<ContactProperties> interfaces_;
+  BodyProperties properties_;
 
-  std::vector<double> gravity_mass_;    ///< real mass, which gravity acts on, kg
-  std::vector<double> mass_;            ///< mass that moves, kg
-  std::vector<double> step_over_mass_;  ///< s/kg
-  std::vector<double> stiffness_;       ///< k_gp, N/m
+  std::vector<double> gravity_mass_;     ///< real mass, which gravity acts on, kg
+  std::vector<double> mass_;             ///< mass that moves, kg
+  std::vector<double> step_over_mass_;   ///< s/kg
+  std::vector<double> stiffness_;        ///< k_gp, N/m
+  std::vector<double> start_stiffness_;  ///< that scaled masses were made for, N/m
+  double mass_factor_ = 1.0;             ///< of scaled masses since the start
   double real_mass_ = 0.0, moving_mass_ = 0.0, time_step_ = 0.0;
 
   std::int64_t steps_ = 0;
@@ -186,8 +222,14 @@ class Mechanics {
   // per block, so that sums have one order
   std::vector<BlockWork> work_, begun_;
   std::vector<double> kinetic_;
+  std::vector<Tie> ties_;
+  double heat_ = 0.0, mass_scaling_ = 0.0;  ///< see EnergyLedger
 };
 
+extern template BodyProperties by_interface<2>(const Model<2>&, std::vector<ZoneProperties>,
+                                               std::vector<ContactProperties>);
+extern template BodyProperties by_interface<3>(const Model<3>&, std::vector<ZoneProperties>,
+                                               std::vector<ContactProperties>);
 extern template class Mechanics<2>;
 extern template class Mechanics<3>;
 
