@@ -27,13 +27,29 @@ double peak_memory() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-/// Steps that the stages take at most; settling is not known beforehand and left out.
+/// Steps that a stage takes at most; settling and the rest after a load are not known beforehand and left
+/// out. A computed temperature field is counted as if it reached its whole range.
+double most_steps(const Case& c, const Stage& stage, double from, double time_step) {
+  if (const auto* compress = std::get_if<CompressStage>(&stage))
+    return (compress->stop_strain * c.specimen.height / compress->velocity + 0.5 * compress->ramp_time) /
+           time_step;
+  if (const auto* load = std::get_if<LoadStage>(&stage)) return load->ramp_time / time_step;
+  const auto exchanges = [](const Coupling& coupling, double change) {
+    return static_cast<double>(coupling.most_cycles) * std::ceil(change / coupling.increment);
+  };
+  if (const auto* heat = std::get_if<HeatStage>(&stage))
+    return exchanges(heat->coupling, std::abs(heat->to - from));
+  if (const auto* expose = std::get_if<ExposeStage>(&stage); expose && expose->mechanics)
+    return exchanges(expose->coupling, c.temperatures.upper - c.temperatures.lower);
+  return 0.0;
+}
+
 double most_steps(const Case& c, double time_step) {
-  double steps = 0.0;
-  for (const auto& stage : c.stages)
-    if (const auto* compress = std::get_if<CompressStage>(&stage))
-      steps += (compress->stop_strain * c.specimen.height / compress->velocity + 0.5 * compress->ramp_time) /
-               time_step;
+  double steps = 0.0, temperature = c.heat.initial;
+  for (const auto& stage : c.stages) {
+    steps += most_steps(c, stage, temperature, time_step);
+    if (const auto* heat = std::get_if<HeatStage>(&stage)) temperature = heat->to;
+  }
   return steps;
 }
 

@@ -41,21 +41,27 @@ class Recorder : public Observer {
     history_.write(s);
     if (seconds_since(last_line_) < kSecondsBetweenLines) return;
     last_line_ = Clock::now();
+    if (s.stage != stage_) {
+      stage_ = s.stage;
+      stage_start_ = Clock::now();
+    }
     const double done = experiment.progress();
-    if (done > 0.0 && first_progress_ == Clock::time_point{}) first_progress_ = Clock::now();
-    const double spent = seconds_since(first_progress_);
-    const std::string left =
-        done > kLeastProgressToForesee ? duration(spent / done * (1.0 - done)) + " left" : "settling";
+    const std::string left = done > kLeastProgressToForesee
+                                 ? duration(seconds_since(stage_start_) / done * (1.0 - done)) + " left"
+                                 : "";
+    const std::string heat = s.heat.exchange > 0 ? fmt::format("  T {:.0f} degC, {} cycles{}", s.heat.mean,
+                                                               s.heat.cycles,
+                                                               s.heat.converged ? "" : " (not at rest)")
+                                                 : "";
     spdlog::info(
-        "{:3.0f} %, {:>14}  strain {:.5f}  stress {:6.2f} MPa  broken: tension {}, shear {}  unbalanced "
-        "{:.1e}  "
-        "kinetic/strain {:.1e}",
-        100.0 * done, left, s.strain, s.stress() * 1e-6, s.cracks.broken_tension(), s.cracks.broken_shear(),
-        s.unbalanced_ratio, s.kinetic_over_strain);
+        "stage {} of {} {:3.0f} %, {:>14}{}  strain {:.5f}  stress {:6.2f} MPa  broken: tension {}, shear {}  "
+        "unbalanced {:.1e}  kinetic/strain {:.1e}",
+        s.stage + 1, experiment.stages().size(), 100.0 * done, left, heat, s.strain, s.stress() * 1e-6,
+        s.cracks.broken_tension(), s.cracks.broken_shear(), s.unbalanced_ratio, s.kinetic_over_strain);
   }
 
   void frame(const Experiment& experiment, const Sample& s) override {
-    fields_.write(experiment.mechanics(), s);
+    fields_.write(experiment, s);
   }
 
   bool stop_requested() override { return interrupted != 0; }
@@ -66,8 +72,23 @@ class Recorder : public Observer {
 
   HistoryFile history_;
   FieldFiles fields_;
-  Clock::time_point last_line_{}, first_progress_{};
+  int stage_ = 0;
+  Clock::time_point last_line_{}, stage_start_ = Clock::now();
 };
+
+void print_heating(const HeatingResponse& h, const std::string& expansion) {
+  fmt::print("heating         to {:.0f} degC in {} exchanges of up to {:g} K, {} cycles; {} did not come to rest; "
+             "{} expansion\n",
+             h.highest, h.exchanges, h.increment, h.cycles, h.not_converged, expansion);
+  if (h.platen == PlatenControl::fixed)
+    fmt::print("thrust          up to {:.2f} MPa\n", h.largest_thrust * 1e-6);
+  else
+    fmt::print("load            {:.2f} MPa{}: {}\n", h.load_stress * 1e-6,
+               h.level ? fmt::format(", {:g} of f_c", *h.level) : "",
+               h.critical_temperature
+                   ? fmt::format("critical temperature {:.0f} degC", *h.critical_temperature)
+                   : "no failure");
+}
 
 void print_result(const Summary& s, const std::filesystem::path& folder) {
   fmt::print("\nended           {}, after {}\n", describe(s.outcome), duration(s.wall_time));
@@ -75,8 +96,9 @@ void print_result(const Summary& s, const std::filesystem::path& folder) {
     fmt::print("result          E {:.2f} GPa, f_c {:.2f} MPa at strain {:.5f}, eps_ic {:.5f}\n",
                s.compression->modulus * 1e-9, s.compression->strength * 1e-6, s.compression->strain_at_peak,
                s.compression->inelastic_strain);
-  fmt::print("energy ledger   closes within {:.3f} % of the work done\n",
-             100.0 * std::abs(s.last.energy.error() / s.last.energy.work_in()));
+  if (s.heating) print_heating(*s.heating, s.expansion_reading);
+  fmt::print("energy ledger   closes within {:.3f} % of the energy turned over\n",
+             100.0 * std::abs(s.last.energy.error() / s.last.energy.turnover()));
   if (s.compression)
     fmt::print("motion          {} up to the peak\n",
                s.quasi_static.to_peak ? "quasi-static" : "NOT quasi-static");
@@ -110,8 +132,9 @@ int run(const RunOptions& options) {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   const auto start = Clock::now();
-  Experiment experiment(simulation.body, simulation.specimen.width, simulation.specimen.height, mechanics,
-                        loaded.c.stages, loaded.c.sampling, recorder);
+  Experiment experiment(simulation.body, simulation.materials, simulation.specimen.width,
+                        simulation.specimen.height, mechanics, *simulation.field, loaded.c.stages,
+                        loaded.c.sampling, recorder);
   const Outcome outcome = experiment.run();
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);

@@ -1,8 +1,14 @@
 #include "pyroclast/experiment/case.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
+
+#include "pyroclast/experiment/read_heat.hpp"
+#include "pyroclast/experiment/read_stages.hpp"
+#include "pyroclast/material/builtin_curves.hpp"
+#include "pyroclast/thermal/fire_curves.hpp"
 
 namespace pyroclast {
 
@@ -12,6 +18,9 @@ constexpr double kGravity = 9.80665;  // m/s², standard
 
 /// Placing an aggregate is given up after this many random centres.
 constexpr int kPlacementAttempts = 100'000;
+
+/// Between two frames while the temperature changes, K, where the deck does not say.
+constexpr double kFrameTemperature = 50.0;
 
 specimen::AggregateParameters read_aggregates(const Section& s) {
   specimen::AggregateParameters a;
@@ -138,37 +147,44 @@ MechanicsParameters<2> read_mechanics(const Section& s) {
   return m;
 }
 
-SettleStage read_settle(const Section& s) {
-  SettleStage stage;
-  stage.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive());
-  stage.most_steps = s.integer("most_steps", Range::between(1, 1e12));
-  return stage;
+template <class S>
+bool any_stage(const std::vector<Stage>& stages) {
+  return std::any_of(stages.begin(), stages.end(),
+                     [](const Stage& s) { return std::holds_alternative<S>(s); });
 }
 
-CompressStage read_compress(const Section& s) {
-  CompressStage stage;
-  stage.velocity = s.quantity("velocity", unit::velocity, Range::positive());
-  stage.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative());
-  stage.stop_strain = s.number("stop_strain", Range::inside(0.0, 1.0));
-  stage.stop_fraction =
-      s.number("stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0);
-  return stage;
-}
-
-std::vector<Stage> read_stages(const Section& root) {
-  enum class Kind { settle, compress };
-  std::vector<Stage> stages;
-  for (const Section& s : root.sections("stages")) {
-    switch (s.choice<Kind>("kind", {{"settle", Kind::settle}, {"compress", Kind::compress}})) {
-      case Kind::settle:
-        stages.emplace_back(read_settle(s));
-        break;
-      case Kind::compress:
-        stages.emplace_back(read_compress(s));
-        break;
-    }
+/// A uniform field is changed by heat stages, a computed one by exposing the specimen.
+void check_heat(const Section& root, const Case& c) {
+  const auto heat = root.optional_section("heat");
+  if (any_stage<ExposeStage>(c.stages) && c.heat.uniform) {
+    const std::string message = "a stage of kind \"expose\" needs [heat] with field = \"conduction\"";
+    heat ? heat->error("field", message) : root.error("stages", message);
   }
-  return stages;
+  if (any_stage<HeatStage>(c.stages) && !c.heat.uniform)
+    heat->error("field", "a stage of kind \"heat\" needs field = \"uniform\"; use \"expose\" with conduction");
+}
+
+double exposure(const std::vector<Stage>& stages) {
+  double duration = 0.0;
+  for (const auto& stage : stages)
+    if (const auto* expose = std::get_if<ExposeStage>(&stage)) duration += expose->duration;
+  return duration;
+}
+
+/// All temperatures that a run may reach.
+Interval run_temperatures(const Section& root, const Case& c) {
+  Interval t{std::min(kReferenceTemperature, c.heat.initial), std::max(kReferenceTemperature, c.heat.initial)};
+  const auto include = [&](double low, double high) {
+    t = {std::min(t.lower, low), std::max(t.upper, high)};
+  };
+  for (const auto& stage : c.stages)
+    if (const auto* heat = std::get_if<HeatStage>(&stage)) include(heat->to, heat->to);
+  const auto heat_table = root.optional_section("heat");
+  if (!c.heat.uniform && heat_table && heat_table->ok()) {
+    const Interval computed = temperature_range(c.heat, exposure(c.stages));
+    include(computed.lower, computed.upper);
+  }
+  return t;
 }
 
 /// The contact law's own conditions, told where the user can act on them.
@@ -193,6 +209,11 @@ Case read_case(const Deck& deck, const std::filesystem::path& folder) {
   const Section root = deck.root();
   Case c;
   c.title = root.text("title");
+  c.stages = read_stages(root);
+  CurveReader time_curves(folder, time_axis(), {0.0, exposure(c.stages)}, fire_curves());
+  if (auto heat = read_heat(root, time_curves)) c.heat = std::move(*heat);
+  check_heat(root, c);
+  c.temperatures = run_temperatures(root, c);
   read_specimen_tables(root, folder, c.specimen);
   c.thickness = root.section("specimen").quantity("thickness", unit::length, Range::positive(), 1.0);
   const Section materials = root.section("materials");
@@ -201,10 +222,11 @@ Case read_case(const Deck& deck, const std::filesystem::path& folder) {
   c.platen_thickness = root.section("platens").quantity("thickness", unit::length, Range::positive());
   c.contacts = read_contacts(root.section("contacts"));
   c.mechanics = read_mechanics(root.section("mechanics"));
-  c.stages = read_stages(root);
   const Section output = root.section("output");
   c.sampling.history_strain = output.number("history_strain", Range::positive());
   c.sampling.frame_strain = output.number("frame_strain", Range::positive());
+  c.sampling.frame_temperature = output.quantity("frame_temperature", unit::temperature_difference,
+                                                 Range::positive(), kFrameTemperature);
   check_contacts(root, c);
   deck.finish();
   return c;

@@ -7,6 +7,7 @@
 
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/experiment/experiment.hpp"
+#include "pyroclast/experiment/heat_case.hpp"
 #include "pyroclast/material/concrete.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
 #include "pyroclast/specimen/specimen.hpp"
@@ -22,6 +23,8 @@ struct Case {
   std::array<SolidMaterial, 3> solids;
   ContactParameters contacts;
   MechanicsParameters<2> mechanics;
+  HeatCase heat;                  ///< uniform at the reference temperature where the deck has no [heat]
+  Interval temperatures;          ///< that the run may reach, the reference temperature included, °C
   std::vector<Stage> stages;
   SamplingParameters sampling;
 };

@@ -9,6 +9,15 @@ namespace {
 
 /// Settling is looked at this often; its end needs no finer grain.
 constexpr int kSettleSteps = 200;
+/// The force of a ramp is adjusted this often.
+constexpr int kRampSteps = 20;
+/// The unbalanced ratio is looked at this often after an exchange of temperatures.
+constexpr int kCyclesPerCheck = 50;
+/// A platen that sinks by less than this share of the failure strain within the stated cycles is not running
+/// away.
+constexpr double kSlowSinking = 0.1;
+/// Temperatures, K, and shares of a duration that differ by less are the same.
+constexpr double kSameTemperature = 1e-6, kSameTime = 1e-9;
 
 double mean_displacement(const Mechanics<2>& mechanics, const std::vector<int>& gridpoints, int component) {
   double sum = 0.0;
@@ -30,10 +39,12 @@ const char* describe(Outcome outcome) {
       return "every stage was completed";
     case Outcome::stress_fallen:
       return "the stress fell below the stated fraction of the peak";
+    case Outcome::ran_away:
+      return "the specimen failed: the upper platen ran away";
     case Outcome::interrupted:
       return "interrupted";
     case Outcome::not_settled:
-      return "the body did not come to rest under its weight within the stated steps";
+      return "the body did not come to rest within the stated steps";
     case Outcome::unstable:
       return "the motion became unstable (a result is not finite)";
   }
@@ -68,12 +79,15 @@ Cracks count_cracks(const Mechanics<2>& mechanics) {
   return cracks;
 }
 
-Experiment::Experiment(const ConcreteModel& body, double width, double height, Mechanics<2>& mechanics,
+Experiment::Experiment(const ConcreteModel& body, const ConcreteMaterials& materials, double width,
+                       double height, Mechanics<2>& mechanics, TemperatureField& field,
                        std::vector<Stage> stages, const SamplingParameters& sampling, Observer& observer)
     : body_(body),
+      materials_(materials),
       width_(width),
       height_(height),
       mechanics_(mechanics),
+      field_(field),
       stages_(std::move(stages)),
       sampling_(sampling),
       observer_(observer) {
@@ -88,18 +102,22 @@ Outcome Experiment::run() {
   observer_.frame(*this, history_.back());
   for (stage_ = 0; stage_ < static_cast<int>(stages_.size()); ++stage_) {
     stage_first_step_ = mechanics_.steps();
+    stage_first_strain_ = axial_strain();
+    stage_first_stress_ = stress_held_;
+    heat_ = {.time = heat_.time};
+    progress_ = 0.0;
     const Verdict end = std::visit(
         [&](const auto& stage) {
           begin(stage);
           while (true) {
             load(stage);
-            mechanics_.advance(steps_to_next_look(stage));
+            move(stage);
             look();
             const Sample& now = history_.back();
             if (!std::isfinite(now.stress()) || !std::isfinite(now.energy.kinetic))
               return Verdict{true, true, Outcome::unstable};
             if (const Verdict verdict = judge(stage, now); verdict.over) return verdict;
-            if (observer_.stop_requested()) return Verdict{true, true, Outcome::interrupted};
+            if (stop_asked()) return Verdict{true, true, Outcome::interrupted};
           }
         },
         stages_[stage_]);
@@ -109,9 +127,20 @@ Outcome Experiment::run() {
   return Outcome::completed;
 }
 
+bool Experiment::stop_asked() {
+  stop_asked_ = stop_asked_ || observer_.stop_requested();
+  return stop_asked_;
+}
+
 void Experiment::look() {
   history_.push_back(measure());
   observer_.sample(*this, history_.back());
+}
+
+double Experiment::axial_strain() const {
+  const double shortening =
+      mean_displacement(mechanics_, body_.bottom_face, 1) - mean_displacement(mechanics_, body_.top_face, 1);
+  return (shortening - shortening_at_rest_) / height_;
 }
 
 Sample Experiment::measure() const {
@@ -119,11 +148,16 @@ Sample Experiment::measure() const {
   s.stage = stage_;
   s.step = mechanics_.steps();
   s.time = mechanics_.time();
+  s.heat = heat_;
+  s.heat.mean = field_.mean();
+  s.heat.minimum = field_.minimum();
+  s.heat.maximum = field_.maximum();
+  s.strain = axial_strain();
+  s.stage_strain = s.strain - stage_first_strain_;
   const double area = width_ * body_.model.thickness;
-  const double shortening =
-      mean_displacement(mechanics_, body_.bottom_face, 1) - mean_displacement(mechanics_, body_.top_face, 1);
-  s.strain = (shortening - shortening_at_rest_) / height_;
-  s.stress_top = total_force(mechanics_, body_.top_support, 1) / area;
+  double applied = 0.0;
+  for (int g : body_.top_support) applied += mechanics_.applied_force()[g][1];
+  s.stress_top = (total_force(mechanics_, body_.top_support, 1) - applied) / area;
   s.stress_bottom = -total_force(mechanics_, body_.bottom_support, 1) / area;
   const double widening =
       mean_displacement(mechanics_, body_.right_side, 0) - mean_displacement(mechanics_, body_.left_side, 0);
@@ -137,6 +171,14 @@ Sample Experiment::measure() const {
   return s;
 }
 
+/// Share of a ramp that is over, 0 to 1.
+double Experiment::ramp_share(double ramp_time) const {
+  const double elapsed = static_cast<double>(mechanics_.steps() - stage_first_step_) * mechanics_.time_step();
+  return ramp_time > 0.0 ? std::min(1.0, elapsed / ramp_time) : 1.0;
+}
+
+// Settling
+
 void Experiment::begin(const SettleStage&) {
   for (int g : body_.top_support) mechanics_.release(g, 1);
 }
@@ -146,10 +188,14 @@ int Experiment::steps_to_next_look(const SettleStage& stage) const {
   return static_cast<int>(std::clamp<std::int64_t>(left, 1, kSettleSteps));
 }
 
+void Experiment::move(const SettleStage& stage) {
+  mechanics_.advance(steps_to_next_look(stage));
+}
+
 Experiment::Verdict Experiment::judge(const SettleStage& stage, const Sample& now) {
   if (now.unbalanced_ratio < stage.unbalanced_ratio) {
-    shortening_at_rest_ = now.strain * height_ + shortening_at_rest_;
-    widening_at_rest_ = now.lateral_strain * width_ + widening_at_rest_;
+    shortening_at_rest_ += now.strain * height_;
+    widening_at_rest_ += now.lateral_strain * width_;
     return {.over = true};
   }
   if (now.step - stage_first_step_ >= stage.most_steps)
@@ -157,17 +203,69 @@ Experiment::Verdict Experiment::judge(const SettleStage& stage, const Sample& no
   return {};
 }
 
+// A force on the platen
+
+void Experiment::hold_force(double stress) {
+  const double force = stress * width_ * body_.model.thickness;
+  const auto share = static_cast<double>(body_.top_support.size());
+  for (int g : body_.top_support) mechanics_.apply_force(g, {{0.0, -force / share}});
+  stress_held_ = stress;
+}
+
+void Experiment::control_by_force() {
+  mechanics_.untie();
+  for (int g : body_.top_support) mechanics_.release(g, 1);
+  mechanics_.tie(body_.top_support, 1);
+}
+
+void Experiment::control_by_motion(double velocity) {
+  mechanics_.untie();
+  hold_force(0.0);
+  for (int g : body_.top_support) mechanics_.prescribe_velocity(g, 1, -velocity);
+}
+
+void Experiment::begin(const LoadStage&) {
+  control_by_force();
+}
+
+void Experiment::load(const LoadStage& stage) {
+  const double ahead =
+      stage.ramp_time > 0.0 ? 0.5 * kRampSteps * mechanics_.time_step() / stage.ramp_time : 0.0;
+  const double share = std::min(1.0, ramp_share(stage.ramp_time) + ahead);
+  hold_force(stage_first_stress_ + share * (stage.stress - stage_first_stress_));
+}
+
+void Experiment::move(const LoadStage& stage) {
+  for (int i = 0; i < kSettleSteps; i += kRampSteps) {
+    load(stage);
+    mechanics_.advance(kRampSteps);
+  }
+}
+
+Experiment::Verdict Experiment::judge(const LoadStage& stage, const Sample& now) {
+  progress_ = ramp_share(stage.ramp_time);
+  if (progress_ < 1.0) return {};
+  if (now.unbalanced_ratio < stage.unbalanced_ratio) return {.over = true};
+  const double after_ramp = static_cast<double>(now.step - stage_first_step_) -
+                            stage.ramp_time / mechanics_.time_step();
+  if (after_ramp >= static_cast<double>(stage.most_steps))
+    return {.over = true, .last = true, .outcome = Outcome::not_settled};
+  return {};
+}
+
+// Compression
+
 void Experiment::begin(const CompressStage&) {
+  control_by_motion(0.0);
   next_frame_ = sampling_.frame_strain;
+  peak_stress_ = 0.0;
 }
 
 void Experiment::load(const CompressStage& stage) {
-  const double elapsed = static_cast<double>(mechanics_.steps() - stage_first_step_) * mechanics_.time_step();
-  const double share = stage.ramp_time > 0.0 ? std::min(1.0, elapsed / stage.ramp_time) : 1.0;
   // half a step of ramp ahead, so that the ramp leaves zero
   const double ahead =
       stage.ramp_time > 0.0 ? steps_to_next_look(stage) * mechanics_.time_step() / stage.ramp_time : 0.0;
-  const double velocity = stage.velocity * std::min(1.0, share + ahead);
+  const double velocity = stage.velocity * std::min(1.0, ramp_share(stage.ramp_time) + ahead);
   for (int g : body_.top_support) mechanics_.prescribe_velocity(g, 1, -velocity);
 }
 
@@ -177,17 +275,118 @@ int Experiment::steps_to_next_look(const CompressStage& stage) const {
   return static_cast<int>(std::clamp(steps, 1.0, 1e9));
 }
 
+void Experiment::move(const CompressStage& stage) {
+  mechanics_.advance(steps_to_next_look(stage));
+}
+
 Experiment::Verdict Experiment::judge(const CompressStage& stage, const Sample& now) {
   peak_stress_ = std::max(peak_stress_, now.stress());
-  progress_ = std::clamp(now.strain / stage.stop_strain, 0.0, 1.0);
-  if (now.strain >= stage.stop_strain) return {.over = true, .outcome = Outcome::completed};
+  progress_ = std::clamp(now.stage_strain / stage.stop_strain, 0.0, 1.0);
+  if (now.stage_strain >= stage.stop_strain) return {.over = true, .outcome = Outcome::completed};
   if (now.stress() < stage.stop_fraction * peak_stress_)
     return {.over = true, .last = true, .outcome = Outcome::stress_fallen};
-  if (now.strain >= next_frame_) {
+  if (now.stage_strain >= next_frame_) {
     observer_.frame(*this, now);
     next_frame_ += sampling_.frame_strain;
   }
   return {};
+}
+
+// Changing temperature
+
+void Experiment::begin_heating(const Coupling& coupling) {
+  if (coupling.platen == PlatenControl::fixed) {
+    control_by_motion(0.0);
+  } else {
+    control_by_force();
+    hold_force(stress_held_);
+  }
+  next_frame_ = sampling_.frame_temperature;
+}
+
+/// Hands the field's temperatures to the mechanics.
+void Experiment::exchange() {
+  heat_.exchange = ++exchanges_;
+  mechanics_.set_properties(properties_at(body_.model, materials_, field_));
+}
+
+/// Steps until the body rests at its temperatures, or the stated cycles are used up. A platen that is sinking
+/// then gets more of them, until it stops or has run away.
+void Experiment::cycle(const Coupling& coupling) {
+  const double before = axial_strain();
+  const bool may_fail = coupling.platen == PlatenControl::force;
+  double last = before;
+  heat_.cycles = 0;
+  heat_.converged = false;
+  while (!stop_asked()) {
+    const auto left = coupling.most_cycles - heat_.cycles % coupling.most_cycles;
+    const auto steps = static_cast<int>(std::min<std::int64_t>(left, kCyclesPerCheck));
+    mechanics_.advance(steps);
+    heat_.cycles += steps;
+    const double now = axial_strain();
+    ran_away_ = may_fail && now - before > coupling.failure_strain;
+    if (ran_away_) return;
+    heat_.converged = mechanics_.unbalanced_ratio() < coupling.unbalanced_ratio;
+    if (heat_.converged) return;
+    if (steps < left) continue;
+    if (!may_fail || !(now - last > kSlowSinking * coupling.failure_strain)) return;
+    last = now;
+  }
+}
+
+Experiment::Verdict Experiment::judge_coupling(const Sample& now) {
+  if (ran_away_) return {.over = true, .last = true, .outcome = Outcome::ran_away};
+  if (progress_ >= 1.0) return {.over = true};
+  if (std::abs(now.heat.mean - stage_first_temperature_) >= next_frame_ - kSameTemperature) {
+    observer_.frame(*this, now);
+    next_frame_ += sampling_.frame_temperature;
+  }
+  return {};
+}
+
+void Experiment::begin(const HeatStage& stage) {
+  stage_first_temperature_ = field_.mean();
+  begin_heating(stage.coupling);
+}
+
+void Experiment::load(const HeatStage& stage) {
+  const double now = field_.mean();
+  const double left = std::abs(stage.to - now);
+  const double change = std::min(stage.coupling.increment, left);
+  const bool last = left <= stage.coupling.increment + kSameTemperature;
+  field_.set_uniform(last ? stage.to : now + std::copysign(change, stage.to - now));
+  heat_.time += change / stage.rate;
+  exchange();
+}
+
+Experiment::Verdict Experiment::judge(const HeatStage& stage, const Sample& now) {
+  const double way = std::abs(stage.to - stage_first_temperature_);
+  progress_ = way > 0.0 ? std::abs(now.heat.mean - stage_first_temperature_) / way : 1.0;
+  if (now.heat.mean == stage.to) progress_ = 1.0;
+  return judge_coupling(now);
+}
+
+void Experiment::begin(const ExposeStage& stage) {
+  stage_first_temperature_ = field_.mean();
+  exposure_began_ = field_.time();
+  if (stage.mechanics) begin_heating(stage.coupling);
+  next_frame_ = sampling_.frame_temperature;
+}
+
+void Experiment::load(const ExposeStage& stage) {
+  field_.advance(stage.coupling.increment, exposure_began_ + stage.duration);
+  heat_.time = field_.time();
+  if (stage.mechanics) exchange();
+}
+
+void Experiment::move(const ExposeStage& stage) {
+  if (stage.mechanics) cycle(stage.coupling);
+}
+
+Experiment::Verdict Experiment::judge(const ExposeStage& stage, const Sample& now) {
+  progress_ = (now.heat.time - exposure_began_) / stage.duration;
+  if (progress_ > 1.0 - kSameTime) progress_ = 1.0;
+  return judge_coupling(now);
 }
 
 }  // namespace pyroclast

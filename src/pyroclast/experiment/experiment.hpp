@@ -1,36 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <variant>
 #include <vector>
 
+#include "pyroclast/experiment/coupling.hpp"
+#include "pyroclast/experiment/stage.hpp"
+#include "pyroclast/experiment/temperature_field.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 
 namespace pyroclast {
-
-/// Lets the body come to rest under its weight, the upper platen lying on it.
-struct SettleStage {
-  double unbalanced_ratio = 0.0;  ///< at rest when below
-  std::int64_t most_steps = 0;    ///< gives up, and says so, after as many
-};
-
-/// Drives the upper platen down, the lower one fixed.
-struct CompressStage {
-  double velocity = 0.0;       ///< m/s
-  double ramp_time = 0.0;      ///< time over which the velocity is brought up, s
-  double stop_strain = 0.0;    ///< ends at this axial strain
-  double stop_fraction = 0.0;  ///< ends when the stress has fallen below this fraction of the peak; 0: never
-};
-
-using Stage = std::variant<SettleStage, CompressStage>;
-
-/// How often things are looked at.
-struct SamplingParameters {
-  double history_strain = 0.0;  ///< axial strain between two rows of the history
-  double frame_strain = 0.0;    ///< axial strain between two frames of the fields
-};
 
 /// Cracks of one interface by one mode, counted at contact points.
 struct CrackCount {
@@ -48,13 +27,24 @@ struct Cracks {
   std::int64_t broken_shear() const { return shear_am.broken + shear_mm.broken; }
 };
 
+/// Temperatures at a look, and what the exchange before it took.
+struct HeatSample {
+  double time = 0.0;                                 ///< since heating began, s
+  double mean = 0.0, minimum = 0.0, maximum = 0.0;   ///< over the specimen, °C
+  int exchange = 0;                                  ///< counted from 1; 0 where no temperature was handed over
+  std::int64_t cycles = 0;                           ///< steps of the mechanics
+  bool converged = true;                             ///< came to rest within the stated cycles
+};
+
 /// One row of the history. Stress and strain of the test are positive in compression; lateral strain is
 /// positive in expansion.
 struct Sample {
   int stage = 0;
   std::int64_t step = 0;
-  double time = 0.0;            ///< s
+  double time = 0.0;  ///< of the mechanics, s
+  HeatSample heat;
   double strain = 0.0;          ///< approach of the platens' inner faces since settling, over the height
+  double stage_strain = 0.0;    ///< the same since the stage began
   double stress_top = 0.0;      ///< reaction of the upper platen over the specimen's area, Pa
   double stress_bottom = 0.0;   ///< of the lower one, Pa
   double lateral_strain = 0.0;  ///< mean widening over the width
@@ -68,7 +58,14 @@ struct Sample {
 };
 
 /// Why an experiment ended.
-enum class Outcome : std::uint8_t { completed, stress_fallen, interrupted, not_settled, unstable };
+enum class Outcome : std::uint8_t {
+  completed,
+  stress_fallen,
+  ran_away,
+  interrupted,
+  not_settled,
+  unstable
+};
 
 const char* describe(Outcome outcome);
 
@@ -88,17 +85,20 @@ class Observer {
 /// A specimen between platens, taken through a list of stages.
 class Experiment {
  public:
-  /// All by reference; they must outlive this.
-  Experiment(const ConcreteModel& body, double width, double height, Mechanics<2>& mechanics,
-             std::vector<Stage> stages, const SamplingParameters& sampling, Observer& observer);
+  /// All by reference; they must outlive this. `mechanics` has the properties of `field`'s temperatures.
+  Experiment(const ConcreteModel& body, const ConcreteMaterials& materials, double width, double height,
+             Mechanics<2>& mechanics, TemperatureField& field, std::vector<Stage> stages,
+             const SamplingParameters& sampling, Observer& observer);
 
   /// The main loop: for each stage, load, move, look, until the stage is over.
   Outcome run();
 
   const Mechanics<2>& mechanics() const { return mechanics_; }
   const ConcreteModel& body() const { return body_; }
+  const TemperatureField& field() const { return field_; }
+  const std::vector<Stage>& stages() const { return stages_; }
   const std::vector<Sample>& history() const { return history_; }
-  /// Share of the experiment that is done, 0 to 1, as far as it can be foreseen.
+  /// Share of the present stage that is done, 0 to 1, as far as it can be foreseen.
   double progress() const { return progress_; }
 
  private:
@@ -109,30 +109,67 @@ class Experiment {
   };
 
   void begin(const SettleStage&);
+  void begin(const LoadStage&);
   void begin(const CompressStage&);
+  void begin(const HeatStage&);
+  void begin(const ExposeStage&);
+  /// Changes what acts on the body.
   void load(const SettleStage&) {}
+  void load(const LoadStage&);
   void load(const CompressStage&);
+  void load(const HeatStage&);
+  void load(const ExposeStage&);
+  /// Lets it move until the next look.
+  void move(const SettleStage&);
+  void move(const LoadStage&);
+  void move(const CompressStage&);
+  void move(const HeatStage& stage) { cycle(stage.coupling); }
+  void move(const ExposeStage& stage);
+  Verdict judge(const SettleStage&, const Sample&);
+  Verdict judge(const LoadStage&, const Sample&);
+  Verdict judge(const CompressStage&, const Sample&);
+  Verdict judge(const HeatStage&, const Sample&);
+  Verdict judge(const ExposeStage&, const Sample&);
+
+  void begin_heating(const Coupling&);
+  void exchange();
+  void cycle(const Coupling&);
+  bool stop_asked();
+  void control_by_force();
+  void control_by_motion(double velocity);
+  void hold_force(double stress);
+  Verdict judge_coupling(const Sample&);
   int steps_to_next_look(const SettleStage&) const;
   int steps_to_next_look(const CompressStage&) const;
-  Verdict judge(const SettleStage&, const Sample&);
-  Verdict judge(const CompressStage&, const Sample&);
+  double ramp_share(double ramp_time) const;
+  double axial_strain() const;
 
   Sample measure() const;
   void look();
 
   const ConcreteModel& body_;
+  const ConcreteMaterials& materials_;
   double width_, height_;
   Mechanics<2>& mechanics_;
+  TemperatureField& field_;
   std::vector<Stage> stages_;
   SamplingParameters sampling_;
   Observer& observer_;
 
   int stage_ = 0;
   std::int64_t stage_first_step_ = 0;
+  double stage_first_strain_ = 0.0;
+  double stage_first_stress_ = 0.0;  ///< held by the force on the upper platen, Pa
   double shortening_at_rest_ = 0.0;  ///< m
   double widening_at_rest_ = 0.0;    ///< m
-  double peak_stress_ = 0.0;
-  double next_frame_ = 0.0;
+  double peak_stress_ = 0.0;         ///< of the stage, Pa
+  double next_frame_ = 0.0;          ///< strain or temperature
+  double stress_held_ = 0.0;         ///< by the force on the upper platen, Pa
+  double stage_first_temperature_ = 0.0;  ///< mean, °C
+  double exposure_began_ = 0.0;           ///< heating time, s
+  int exchanges_ = 0;
+  HeatSample heat_;
+  bool ran_away_ = false, stop_asked_ = false;
   double progress_ = 0.0;
   std::vector<Sample> history_;
 };

@@ -33,16 +33,16 @@ std::optional<CompressionResponse> compression_response(const std::vector<Sample
   const auto peak = peak_of(rows);
   CompressionResponse r;
   r.strength = peak->stress();
-  r.strain_at_peak = peak->strain;
+  r.strain_at_peak = peak->stage_strain;
 
   double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
   for (auto row = rows.begin(); row != peak; ++row) {
     if (row->stress() < kFitFrom * r.strength || row->stress() > kFitTo * r.strength) continue;
     n += 1.0;
-    sx += row->strain;
+    sx += row->stage_strain;
     sy += row->stress();
-    sxx += row->strain * row->strain;
-    sxy += row->strain * row->stress();
+    sxx += row->stage_strain * row->stage_strain;
+    sxy += row->stage_strain * row->stress();
   }
   if (n < 3.0) return std::nullopt;
   r.modulus = (n * sxy - sx * sy) / (n * sxx - sx * sx);

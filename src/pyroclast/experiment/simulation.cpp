@@ -45,23 +45,19 @@ specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& par
   return specimen::make_specimen(parameters);
 }
 
+std::unique_ptr<TemperatureField> make_field(const ConcreteModel& body, const ConcreteMaterials& materials,
+                                             const Case& c) {
+  if (c.heat.uniform) return std::make_unique<TemperatureField>(body, c.heat.initial);
+  return std::make_unique<TemperatureField>(
+      body, make_conduction(body, materials.solids, c.heat, c.temperatures));
+}
+
 std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const ConcreteMaterials& materials,
+                                             const TemperatureField& field,
                                              const MechanicsParameters<2>& parameters) {
   std::vector<double> densities;
-  for (const auto& solid : materials.solids) densities.push_back(solid.density);
-  std::vector<ZoneProperties> zones;
-  zones.reserve(model.zones.size());
-  for (int block : zone_blocks(model)) {
-    const auto& solid = materials.solids[model.block_material[block]];
-    zones.push_back(zone_properties<2>(solid.young(kReferenceTemperature), solid.poisson));
-  }
-  std::vector<ContactProperties> interfaces;
-  for (std::size_t i = 0; i < materials.contacts.size(); ++i) {
-    interfaces.push_back(materials.contacts[i].at(kReferenceTemperature));
-    validate(interfaces.back(), model.interface_names[i]);
-  }
-  return std::make_unique<Mechanics<2>>(
-      model, densities, by_interface(model, std::move(zones), std::move(interfaces)), parameters);
+  for (const auto& solid : materials.solids) densities.push_back(solid.density(kReferenceTemperature));
+  return std::make_unique<Mechanics<2>>(model, densities, properties_at(model, materials, field), parameters);
 }
 
 }  // namespace
@@ -74,6 +70,7 @@ Simulation::Simulation(const Case& c)
     : specimen(make_checked_specimen(c.specimen)),
       body(make_concrete_model(specimen, c.platen_thickness, c.thickness)),
       materials(make_concrete(c.solids, c.contacts, specimen.metrics.mean_size)),
-      mechanics(make_mechanics(body.model, materials, c.mechanics)) {}
+      field(make_field(body, materials, c)),
+      mechanics(make_mechanics(body.model, materials, *field, c.mechanics)) {}
 
 }  // namespace pyroclast

@@ -7,8 +7,8 @@
 
 namespace pyroclast {
 
-/// Everything that a case makes, ready to run: specimen, model, materials and solver. Not movable: the solver
-/// refers to the model beside it.
+/// Everything that a case makes, ready to run: specimen, model, materials and solvers. Not movable: the solvers
+/// refer to the model beside them.
 struct Simulation {
   /// Throws Error when the specimen or the model cannot be made, or would not fit into the memory that is
   /// free.
@@ -19,6 +19,7 @@ struct Simulation {
   specimen::Specimen specimen;
   ConcreteModel body;
   ConcreteMaterials materials;
+  std::unique_ptr<TemperatureField> field;
   std::unique_ptr<Mechanics<2>> mechanics;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -58,6 +59,11 @@ struct EnergyLedger {
     return zones + contacts + kinetic + dissipated.total() + local_damping + viscous_damping;
   }
   double error() const { return work_in() - accounted(); }
+  /// What the error is measured by: all that was put in or taken out, each by its size. Heat takes stored
+  /// energy out where a body softens, so that work_in alone may be near zero.
+  double turnover() const {
+    return std::abs(loading) + std::abs(gravity) + std::abs(heat) + std::abs(mass_scaling);
+  }
 };
 
 /// State of one contact point.

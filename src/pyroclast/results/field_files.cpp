@@ -61,7 +61,7 @@ void append(std::vector<float>& values, const Vec<2>& v) {
 
 FieldFiles::FieldFiles(std::filesystem::path folder, const Model<2>& model)
     : folder_(with_folder(std::move(folder))), frames_(folder_ / "frames.csv") {
-  frames_.line("frame,stage,step,time_s,strain,stress_MPa");
+  frames_.line("frame,stage,step,time_s,strain,stress_MPa,temperature_degC,heating_time_s");
   write_mesh(model);
 }
 
@@ -101,7 +101,8 @@ void FieldFiles::write_mesh(const Model<2>& model) const {
   file.close();
 }
 
-void FieldFiles::write(const Mechanics<2>& mechanics, const Sample& sample) {
+void FieldFiles::write(const Experiment& experiment, const Sample& sample) {
+  const auto& mechanics = experiment.mechanics();
   const auto& model = mechanics.model();
   const int frame = frame_count();
 
@@ -113,6 +114,9 @@ void FieldFiles::write(const Mechanics<2>& mechanics, const Sample& sample) {
     for (double component : s) stress.push_back(static_cast<float>(component));
   blocks.dataset("/VTKHDF/PointData/displacement", displacement, 3);
   blocks.dataset("/VTKHDF/CellData/stress", stress, 3);
+  const auto& temperature = experiment.field().gridpoints();
+  blocks.dataset("/VTKHDF/PointData/temperature",
+                 std::vector<float>(temperature.begin(), temperature.end()));
   blocks.close();
 
   Hdf5File contacts(folder_ / fmt::format("contacts_{:04}.hdf", frame));
@@ -146,8 +150,9 @@ void FieldFiles::write(const Mechanics<2>& mechanics, const Sample& sample) {
   contacts.close();
 
   times_.push_back(sample.time);
-  frames_.line(fmt::format("{},{},{},{:.9g},{:.9g},{:.9g}", frame, sample.stage, sample.step, sample.time,
-                           sample.strain, sample.stress() * 1e-6));
+  frames_.line(fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", frame, sample.stage, sample.step,
+                           sample.time, sample.strain, sample.stress() * 1e-6, sample.heat.mean,
+                           sample.heat.time));
   write_series("blocks");
   write_series("contacts");
 }

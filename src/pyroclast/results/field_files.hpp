@@ -17,7 +17,7 @@ class FieldFiles {
   /// Creates the folder and writes the mesh.
   FieldFiles(std::filesystem::path folder, const Model<2>& model);
 
-  void write(const Mechanics<2>& mechanics, const Sample& sample);
+  void write(const Experiment& experiment, const Sample& sample);
   int frame_count() const { return static_cast<int>(times_.size()); }
 
  private:

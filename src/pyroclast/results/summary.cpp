@@ -24,6 +24,42 @@ double strain_of_large_jumps(const std::vector<Sample>& history) {
   return row == history.end() ? -1.0 : row->strain;
 }
 
+const char* name(PlatenControl control) {
+  return control == PlatenControl::force ? "force" : "fixed";
+}
+
+struct StageName {
+  const char* operator()(const SettleStage&) const { return "settle"; }
+  const char* operator()(const LoadStage&) const { return "load"; }
+  const char* operator()(const CompressStage&) const { return "compress"; }
+  const char* operator()(const HeatStage&) const { return "heat"; }
+  const char* operator()(const ExposeStage&) const { return "expose"; }
+};
+
+template <class T>
+nlohmann::ordered_json or_null(const std::optional<T>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json heating_json(const Summary& s) {
+  if (!s.heating) return nullptr;
+  const HeatingResponse& h = *s.heating;
+  return {{"field", s.uniform_temperature ? "uniform" : "conduction"},
+          {"expansion_reading", s.expansion_reading},
+          {"platen", name(h.platen)},
+          {"load_stress_MPa", h.load_stress * 1e-6},
+          {"load_level", or_null(h.level)},
+          {"critical_temperature_degC", or_null(h.critical_temperature)},
+          {"critical_time_s", h.critical_temperature ? nlohmann::ordered_json(h.critical_time) : nullptr},
+          {"highest_temperature_degC", h.highest},
+          {"largest_exchange_increment_K", h.increment},
+          {"exchanges", h.exchanges},
+          {"exchanges_not_converged", h.not_converged},
+          {"worst_unbalanced_ratio", h.worst_ratio},
+          {"cycles", h.cycles},
+          {"largest_thrust_MPa", h.largest_thrust * 1e-6}};
+}
+
 nlohmann::ordered_json crack_json(const CrackCount& c) {
   return {{"softening", c.softening}, {"broken", c.broken}, {"length_m", c.length}};
 }
@@ -37,6 +73,10 @@ Summary summarize(const Case& c, const Experiment& experiment, Outcome outcome) 
   s.outcome = outcome;
   s.compression = compression_response(history, c.stages);
   s.quasi_static = quasi_static_report(history, c.stages);
+  s.heating = heating_response(history, c.stages, outcome);
+  s.uniform_temperature = c.heat.uniform;
+  s.expansion_reading = c.expansion_reading == ExpansionReading::secant ? "secant" : "tangent";
+  for (const Stage& stage : c.stages) s.stages.push_back(std::visit(StageName{}, stage));
   s.time_step = experiment.mechanics().time_step();
   s.mass_ratio = experiment.mechanics().mass_ratio();
   s.last = history.back();
@@ -50,10 +90,15 @@ Summary summarize(const Case& c, const Experiment& experiment, Outcome outcome) 
                     "stresses differ by up to "
                     "{:.1f} % of f_c; load more slowly or take a shorter time step",
                     s.quasi_static.kinetic_to_peak, 100.0 * s.quasi_static.difference_to_peak));
-  const double ledger = s.last.energy.error() / s.last.energy.work_in();
+  if (s.heating && s.heating->not_converged > 0)
+    s.warnings.push_back(fmt::format(
+        "{} of {} exchanges of temperature did not come to rest within the stated cycles (worst unbalanced "
+        "ratio {:.1e}); history.csv flags them",
+        s.heating->not_converged, s.heating->exchanges, s.heating->worst_ratio));
+  const double ledger = s.last.energy.error() / s.last.energy.turnover();
   if (std::abs(ledger) > kLedgerTolerance)
     s.warnings.push_back(
-        fmt::format("the energy ledger closes only within {:.2f} % of the work done", 100.0 * ledger));
+        fmt::format("the energy ledger closes only within {:.2f} % of the energy turned over", 100.0 * ledger));
   if (const double strain = strain_of_large_jumps(history); strain >= 0.0)
     s.warnings.push_back(fmt::format(
         "jumps exceed {:.0f} % of an edge from strain {:.5f} on: contacts keep the partners and normals they "
@@ -67,6 +112,8 @@ void write_summary(const std::filesystem::path& path, const Summary& s, const sp
   json["title"] = s.title;
   json["outcome"] = describe(s.outcome);
   json["sign"] = "stress and strain of the test are positive in compression";
+  json["stages"] = nlohmann::json::array();
+  for (const auto& stage : s.stages) json["stages"].push_back({{"kind", stage}});
   json["compression"] = nullptr;
   if (s.compression)
     json["compression"] = {
@@ -83,10 +130,12 @@ void write_summary(const std::filesystem::path& path, const Summary& s, const sp
         {"platen_difference_over_f_c_after_peak", s.quasi_static.difference_after_peak},
         {"after_peak", s.quasi_static.after_peak}};
   }
+  json["heating"] = heating_json(s);
   const EnergyLedger& e = s.last.energy;
   json["energy_J"] = {{"loading", e.loading},
                       {"gravity", e.gravity},
                       {"heat", e.heat},
+                      {"mass_scaling", e.mass_scaling},
                       {"elastic_zones", e.zones},
                       {"elastic_contacts", e.contacts},
                       {"kinetic", e.kinetic},
@@ -97,7 +146,7 @@ void write_summary(const std::filesystem::path& path, const Summary& s, const sp
                       {"local_damping", e.local_damping},
                       {"viscous_damping", e.viscous_damping},
                       {"error", e.error()},
-                      {"error_over_work", e.error() / e.work_in()}};
+                      {"error_over_turnover", e.error() / e.turnover()}};
   const Cracks& c = s.last.cracks;
   json["cracks"] = {{"tension_aggregate_mortar", crack_json(c.tension_am)},
                     {"tension_mortar_mortar", crack_json(c.tension_mm)},

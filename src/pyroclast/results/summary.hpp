@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pyroclast/experiment/case.hpp"
+#include "pyroclast/experiment/heating_response.hpp"
 #include "pyroclast/experiment/response.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 
@@ -16,6 +17,10 @@ struct Summary {
   Outcome outcome = Outcome::completed;
   std::optional<CompressionResponse> compression;
   QuasiStaticReport quasi_static;
+  std::optional<HeatingResponse> heating;
+  std::vector<std::string> stages;  ///< kinds, in order
+  bool uniform_temperature = true;
+  std::string expansion_reading;
   double estimated_modulus = 0.0;  ///< Pa
   double fracture_zone = 0.0;      ///< t_b, m
   double time_step = 0.0;          ///< s

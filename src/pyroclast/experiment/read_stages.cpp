@@ -1,0 +1,110 @@
+#include "pyroclast/experiment/read_stages.hpp"
+
+#include "pyroclast/thermal/boundary_condition.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+SettleStage read_settle(const Section& s) {
+  SettleStage stage;
+  stage.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive());
+  stage.most_steps = s.integer("most_steps", Range::between(1, 1e12));
+  return stage;
+}
+
+CompressStage read_compress(const Section& s) {
+  CompressStage stage;
+  stage.velocity = s.quantity("velocity", unit::velocity, Range::positive());
+  stage.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative());
+  stage.stop_strain = s.number("stop_strain", Range::inside(0.0, 1.0));
+  stage.stop_fraction =
+      s.number("stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0);
+  return stage;
+}
+
+/// The load is a stress, or a level: a fraction of a strength that is given with it.
+LoadStage read_load(const Section& s) {
+  LoadStage stage;
+  if (s.has("level")) {
+    stage.level = s.number("level", Range::non_negative());
+    stage.stress = *stage.level * s.quantity("f_c", unit::stress, Range::positive());
+    if (s.has("stress")) s.error("stress", "either stress, or level and f_c; not both");
+  } else {
+    stage.stress = s.quantity("stress", unit::stress, Range::non_negative());
+  }
+  stage.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative());
+  stage.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive());
+  stage.most_steps = s.integer("most_steps", Range::between(1, 1e12));
+  return stage;
+}
+
+/// How temperatures are handed to the mechanics: [coupling], the same for all stages.
+Coupling read_coupling(const Section& s) {
+  Coupling c;
+  c.increment = s.quantity("exchange_increment", unit::temperature_difference, Range::positive());
+  c.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive());
+  c.most_cycles = s.integer("most_cycles", Range::between(1, 1e12));
+  c.failure_strain = s.number("failure_strain", Range::inside(0.0, 1.0));
+  return c;
+}
+
+PlatenControl read_platen(const Section& s) {
+  return s.choice<PlatenControl>("platen", {{"force", PlatenControl::force}, {"fixed", PlatenControl::fixed}});
+}
+
+HeatStage read_heat_stage(const Section& s, const Coupling& coupling) {
+  HeatStage stage;
+  stage.to = s.quantity("to", unit::temperature, Range::at_least(absolute_zero));
+  stage.rate = s.quantity("rate", unit::heating_rate, Range::positive());
+  stage.coupling = coupling;
+  stage.coupling.platen = read_platen(s);
+  return stage;
+}
+
+ExposeStage read_expose(const Section& s, const Coupling& coupling) {
+  ExposeStage stage;
+  stage.duration = s.quantity("duration", unit::time, Range::positive());
+  stage.mechanics = s.flag("mechanics", true);
+  stage.coupling = coupling;
+  if (stage.mechanics) stage.coupling.platen = read_platen(s);
+  return stage;
+}
+
+}  // namespace
+
+std::vector<Stage> read_stages(const Section& root) {
+  enum class Kind { settle, load, compress, heat, expose };
+  const auto table = root.optional_section("coupling");
+  const Coupling coupling = table ? read_coupling(*table) : Coupling{};
+  std::vector<Stage> stages;
+  for (const Section& s : root.sections("stages")) {
+    const Kind kind = s.choice<Kind>("kind", {{"settle", Kind::settle},
+                                              {"load", Kind::load},
+                                              {"compress", Kind::compress},
+                                              {"heat", Kind::heat},
+                                              {"expose", Kind::expose}});
+    if ((kind == Kind::heat || kind == Kind::expose) && !table)
+      s.error("kind", "a stage that changes temperatures needs the table [coupling]");
+    switch (kind) {
+      case Kind::settle:
+        stages.emplace_back(read_settle(s));
+        break;
+      case Kind::load:
+        stages.emplace_back(read_load(s));
+        break;
+      case Kind::compress:
+        stages.emplace_back(read_compress(s));
+        break;
+      case Kind::heat:
+        stages.emplace_back(read_heat_stage(s, coupling));
+        break;
+      case Kind::expose:
+        stages.emplace_back(read_expose(s, coupling));
+        break;
+    }
+  }
+  return stages;
+}
+
+}  // namespace pyroclast
