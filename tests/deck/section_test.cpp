@@ -1,4 +1,6 @@
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -169,6 +171,39 @@ TEST(BadValue, OfAListThatIsEmptyOrNoneIsExplained) {
   }
 }
 
+TEST(Section, ReadsPointsInSiUnits) {
+  const Deck deck = parse("modulus = [[\"20 degC\", \"70 GPa\"], [\"800 degC\", \"4000 MPa\"]]\n");
+  const auto points = deck.root().points("modulus", unit::temperature, unit::stress);
+  EXPECT_EQ(points, (std::vector<std::pair<double, double>>{{20.0, 70e9}, {800.0, 4e9}}));
+  EXPECT_NO_THROW(deck.finish());
+}
+
+TEST(Section, TellsATableFromAValueWithoutReadingIt) {
+  const Deck deck = parse("E = \"70 GPa\"\nf = { value = 1 }\n");
+  EXPECT_FALSE(deck.root().is_table("E"));
+  EXPECT_TRUE(deck.root().is_table("f"));
+  EXPECT_FALSE(deck.root().is_table("absent"));
+  EXPECT_EQ(diagnostics_of(deck).size(), 2U);  // neither was read
+}
+
+TEST(BadValue, OfAPointIsLocatedAtItsElement) {
+  for (const auto& [list, path, message] :
+       {std::tuple{"[[\"20 degC\", \"4 m\"], [\"30 degC\", \"4 Pa\"]]", "key[0][1]", "wrong dimension"},
+        std::tuple{"[[\"20 degC\", \"4 Pa\"], [\"20 degC\", \"5 Pa\"]]", "key[1][0]",
+                   "must be above the temperature before, 20 degC"},
+        std::tuple{"[[\"20 degC\", \"4 Pa\"], [\"30 degC\"]]", "key[1]",
+                   "a point [\"20 degC\", \"30 MPa\"] is needed, not a list of 1"},
+        std::tuple{"[[\"20 degC\", \"4 Pa\"], 3]", "key[1]", "not an integer"},
+        std::tuple{"[[\"20 degC\", \"4 Pa\"]]", "key", "two or more points"},
+        std::tuple{"\"4 Pa\"", "key", "two or more points"}}) {
+    const Deck deck = with_value(list);
+    EXPECT_TRUE(deck.root().section("part").points("key", unit::temperature, unit::stress).empty());
+    const Diagnostic diagnostic = only_diagnostic_of(deck);
+    EXPECT_EQ(diagnostic.key, std::string("part.") + path);
+    EXPECT_TRUE(mentions(diagnostic.message, message)) << diagnostic.message;
+  }
+}
+
 TEST(Choice, ThatIsMisspeltIsReadAsTheNearest) {
   const Deck deck = with_value("\"scald\"");
   const Mass mass =
@@ -223,12 +258,13 @@ TEST(MissingKey, OfEveryKindIsReported) {
   part.numbers("e", Range::any());
   part.section("f");
   part.sections("g");
+  part.points("h", unit::temperature, unit::stress);
   std::string keys;
   for (const Diagnostic& diagnostic : diagnostics_of(deck)) {
     EXPECT_EQ(diagnostic.message.find("missing; "), 0U);
     keys += diagnostic.key + " ";
   }
-  EXPECT_EQ(keys, "part.a part.b part.c part.d part.e part.f part.g ");
+  EXPECT_EQ(keys, "part.a part.b part.c part.d part.e part.f part.g part.h ");
 }
 
 TEST(MissingTable, IsOneErrorWhateverIsReadFromIt) {

@@ -51,6 +51,11 @@ class Section {
   /// A list of at least one dimensionless number; empty after an error.
   std::vector<double> numbers(std::string_view key, const Range& range) const;
 
+  /// A list of two or more points, `[[x, y], ...]`, in `x_unit.si` and `y_unit.si`, x ascending strictly;
+  /// empty after an error, which names the element.
+  std::vector<std::pair<double, double>> points(std::string_view key, const Unit& x_unit,
+                                                const Unit& y_unit) const;
+
   long long integer(std::string_view key, const Range& range) const;
   long long integer(std::string_view key, const Range& range, long long fallback) const;
   bool flag(std::string_view key) const;
@@ -77,6 +82,8 @@ class Section {
   /// Whether the key is written. A key that is found here but never read, nor named in `error`, is reported
   /// as one that has no effect.
   bool has(std::string_view key) const;
+  /// Whether the key is written and holds a table; otherwise like `has`.
+  bool is_table(std::string_view key) const;
   /// Whether no error was recorded so far in this table and the tables below: guards a check between values
   /// against reporting the stand-in of a value that could not be read.
   bool ok() const;

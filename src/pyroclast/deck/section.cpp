@@ -103,6 +103,10 @@ std::optional<double> read_quantity(const Entry& entry, const Unit& unit, const 
   return value;
 }
 
+Entry element_of(const Entry& list, std::size_t index) {
+  return {list.deck, fmt::format("{}[{}]", list.path, index), *list.node.as_array()->get(index)};
+}
+
 std::vector<double> read_quantities(const Entry& entry, const Unit& unit, const Range& range) {
   const toml::array* list = entry.node.as_array();
   if (!list || list->empty()) {
@@ -114,12 +118,57 @@ std::vector<double> read_quantities(const Entry& entry, const Unit& unit, const 
   std::vector<double> values;
   bool complete = true;
   for (std::size_t i = 0; i < list->size(); ++i) {
-    const Entry element{entry.deck, fmt::format("{}[{}]", entry.path, i), *list->get(i)};
-    const auto value = read_quantity(element, unit, range);
+    const auto value = read_quantity(element_of(entry, i), unit, range);
     complete = complete && value;
     values.push_back(value.value_or(0.0));
   }
   return complete ? values : std::vector<double>{};
+}
+
+using Point = std::pair<double, double>;
+
+std::optional<Point> read_point(const Entry& entry, const Unit& x_unit, const Unit& y_unit) {
+  const std::string needed =
+      fmt::format("a point [\"{}\", \"{}\"] is needed", x_unit.example, y_unit.example);
+  const toml::array* pair = entry.node.as_array();
+  if (!pair) {
+    entry.error(fmt::format("{}, not {}", needed, type_name(entry.node)));
+    return std::nullopt;
+  }
+  if (pair->size() != 2) {
+    entry.error(fmt::format("{}, not a list of {}", needed, pair->size()));
+    return std::nullopt;
+  }
+  const auto x = read_quantity(element_of(entry, 0), x_unit, Range::any());
+  const auto y = read_quantity(element_of(entry, 1), y_unit, Range::any());
+  if (!x || !y) return std::nullopt;
+  return Point{*x, *y};
+}
+
+std::vector<Point> read_points(const Entry& entry, const Unit& x_unit, const Unit& y_unit) {
+  const toml::array* list = entry.node.as_array();
+  if (!list || list->size() < 2) {
+    const std::string needed =
+        fmt::format("a list of two or more points, [[\"{}\", \"{}\"], ...],", x_unit.example, y_unit.example);
+    list ? entry.error(needed + " is needed") : wrong_type(entry, needed);
+    return {};
+  }
+  std::vector<Point> points;
+  bool complete = true;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const Entry element = element_of(entry, i);
+    const auto point = read_point(element, x_unit, y_unit);
+    complete = complete && point;
+    if (!point) continue;
+    if (!points.empty() && !(points.back().first < point->first)) {
+      element_of(element, 0)
+          .error(
+              fmt::format("must be above the {} before, {} {}", x_unit.name, points.back().first, x_unit.si));
+      complete = false;
+    }
+    points.push_back(*point);
+  }
+  return complete ? points : std::vector<Point>{};
 }
 
 std::optional<long long> read_integer(const Entry& entry, const Range& range) {
@@ -258,6 +307,14 @@ std::vector<double> Section::numbers(std::string_view key, const Range& range) c
   return quantities(key, unit::dimensionless, range);
 }
 
+std::vector<std::pair<double, double>> Section::points(std::string_view key, const Unit& x_unit,
+                                                       const Unit& y_unit) const {
+  const auto entry = require(
+      *deck_, table_, key,
+      fmt::format("a list of points, [[\"{}\", \"{}\"], ...], is needed", x_unit.example, y_unit.example));
+  return entry ? read_points(*entry, x_unit, y_unit) : std::vector<Point>{};
+}
+
 long long Section::integer(std::string_view key, const Range& range) const {
   const std::string words = range.describe();
   const auto entry =
@@ -304,6 +361,11 @@ std::size_t Section::choice_index(std::string_view key, const std::vector<std::s
 
 bool Section::has(std::string_view key) const {
   return table_ && table_->look(key);
+}
+
+bool Section::is_table(std::string_view key) const {
+  const toml::node* node = table_ ? table_->look(key) : nullptr;
+  return node && node->is_table();
 }
 
 bool Section::ok() const {

@@ -13,7 +13,6 @@
 namespace pyroclast {
 namespace {
 
-constexpr double reference_temperature = 20.0;    // degC
 constexpr Interval eurocode_range{20.0, 1200.0};  // degC
 
 using Points = std::vector<std::pair<double, double>>;
@@ -75,7 +74,7 @@ struct Elongation {
   /// Strain since 20 degC over the temperature rise. The polynomial is divided in closed form, so that 20
   /// degC is no special case: the limit there is the slope b + 3 c T0^2.
   double secant(double T) const {
-    constexpr double T0 = reference_temperature;
+    constexpr double T0 = kReferenceTemperature;
     if (polynomial(T) < greatest) return b + c * (T * T + T * T0 + T0 * T0);
     return (greatest - polynomial(T0)) / (T - T0);
   }
@@ -119,7 +118,7 @@ double specific_heat_peak(double moisture_percent) {
 Curve apparent_modulus() {
   const Curve strength = table(siliceous_strength());
   const Curve strain = table(peak_strain());
-  const double reference = strength(reference_temperature) / strain(reference_temperature);
+  const double reference = strength(kReferenceTemperature) / strain(kReferenceTemperature);
   return function([=](double T) { return strength(T) / strain(T) / reference; }, strain.range(),
                   {100, 200, 300, 400, 500, 600, 700, 800, 900, 1000});
 }
@@ -175,7 +174,7 @@ std::vector<NamedCurve> eurocode_curves() {
 // ---- Publications -----------------------------------------------------------------------------------------
 
 double theta(double T) {
-  return (T - reference_temperature) / 100.0;
+  return (T - kReferenceTemperature) / 100.0;
 }
 
 double glasgow_free_thermal_strain(double T) {

@@ -9,9 +9,6 @@
 
 namespace pyroclast {
 
-/// Temperature at which properties without a curve hold, T0, °C.
-inline constexpr double kReferenceTemperature = 20.0;
-
 /// What a block is made of: the zones' parameters as functions of temperature.
 struct SolidMaterial {
   Curve young = Curve::constant(0.0);  ///< E, Pa

@@ -8,6 +8,9 @@
 
 namespace pyroclast {
 
+/// Temperature at which properties without a curve hold, and from which thermal strain counts: T0, °C.
+inline constexpr double kReferenceTemperature = 20.0;
+
 /// Closed interval on which a curve is defined. The default is the whole real line.
 struct Interval {
   double lower = -std::numeric_limits<double>::infinity();

@@ -1,0 +1,155 @@
+#include "pyroclast/experiment/read_heat.hpp"
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace pyroclast {
+
+namespace {
+
+// Numerical parameters that a deck may leave out. In a wall under the standard fire, changes of 2 K per step
+// leave temperatures within a fraction of that (tests/thermal).
+constexpr double kSafety = 0.9;
+constexpr double kLargestChange = 2.0;  // K
+constexpr double kLargestStep = 60.0;   // s
+
+constexpr Range kTemperature = Range::at_least(absolute_zero);
+
+/// Makes keys known that are read with other settings only, so that a deck that holds one is told that it has
+/// no effect instead of that there is no such key.
+void know(const Section& s, std::initializer_list<std::string_view> keys) {
+  for (const auto key : keys) s.has(key);
+}
+
+std::optional<Vec<2>> read_point(const Section& s, std::string_view key) {
+  const auto x = s.quantities(key, unit::length, Range::any());
+  if (x.size() == 2) return Vec<2>{{x[0], x[1]}};
+  if (!x.empty()) s.error(key, fmt::format("has {} coordinates; x and y are needed", x.size()));
+  return std::nullopt;
+}
+
+HeatedFaces read_faces(const Section& s) {
+  know(s, {"box_low", "box_high"});
+  HeatedFaces faces;
+  faces.part = s.choice<OutlinePart>("faces", {{"left", OutlinePart::left},
+                                               {"right", OutlinePart::right},
+                                               {"bottom", OutlinePart::bottom},
+                                               {"top", OutlinePart::top},
+                                               {"outline", OutlinePart::whole},
+                                               {"box", OutlinePart::box}});
+  if (faces.part != OutlinePart::box) return faces;
+  const auto low = read_point(s, "box_low"), high = read_point(s, "box_high");
+  if (!low || !high) return faces;
+  if ((*low)[0] > (*high)[0] || (*low)[1] > (*high)[1])
+    s.error("box_high", "the box is inside out: no coordinate may be less than that of box_low");
+  faces.box_low = *low;
+  faces.box_high = *high;
+  return faces;
+}
+
+HeatCondition read_condition(const Section& s, CurveReader& curves) {
+  enum class Kind { temperature, flux, convection, radiation, adiabatic };
+  know(s, {"temperature", "flux", "coefficient", "emissivity", "gas_temperature"});
+  const auto gas = [&] { return curves.read(s, "gas_temperature", unit::temperature, kTemperature); };
+  switch (s.choice<Kind>("kind", {{"temperature", Kind::temperature},
+                                  {"flux", Kind::flux},
+                                  {"convection", Kind::convection},
+                                  {"radiation", Kind::radiation},
+                                  {"adiabatic", Kind::adiabatic}})) {
+    case Kind::temperature:
+      return PrescribedTemperature{curves.read(s, "temperature", unit::temperature, kTemperature)};
+    case Kind::flux:
+      return HeatFlux{curves.read(s, "flux", unit::heat_flux, Range::any())};
+    case Kind::convection:
+      return Convection{curves.read(s, "coefficient", unit::heat_transfer, Range::non_negative()), gas()};
+    case Kind::radiation:
+      return Radiation{curves.read(s, "emissivity", unit::dimensionless, Range::fraction()), gas()};
+    case Kind::adiabatic:
+      break;
+  }
+  return Adiabatic{};
+}
+
+/// Whether two choices of faces meet whatever the specimen. Boxes are looked at when there is one.
+bool overlap(const HeatedFaces& a, const HeatedFaces& b) {
+  if (a.part == OutlinePart::box || b.part == OutlinePart::box)
+    return a.part == OutlinePart::whole || b.part == OutlinePart::whole;
+  return a.part == b.part || a.part == OutlinePart::whole || b.part == OutlinePart::whole;
+}
+
+std::vector<HeatBoundaryCase> read_boundaries(const Section& heat, CurveReader& curves) {
+  std::vector<HeatBoundaryCase> boundaries;
+  for (const Section& s : heat.sections("boundaries")) {
+    HeatBoundaryCase boundary{read_faces(s), read_condition(s, curves),
+                              fmt::format("{}: {}", s.where("faces"), s.path())};
+    if (!s.ok()) continue;  // what stands in for an error contradicts nothing
+    for (const auto& other : boundaries)
+      if (overlap(other.faces, boundary.faces) && contradict(other.condition, boundary.condition))
+        s.error("faces", fmt::format("\"{}\" acts on faces that have \"{}\" already ({})",
+                                     kind_name(boundary.condition), kind_name(other.condition), other.place));
+    boundaries.push_back(std::move(boundary));
+  }
+  return boundaries;
+}
+
+void read_range(const Section& s, HeatCase& heat) {
+  if (!s.has("temperature_range")) {
+    for (const auto& boundary : heat.boundaries)
+      if (std::holds_alternative<HeatFlux>(boundary.condition))
+        return s.error("temperature_range",
+                       "missing; a given flux does not say how hot the specimen gets, so the temperatures "
+                       "that the run stays within are needed, e.g. [\"20 degC\", \"900 degC\"]");
+    return;
+  }
+  const auto ends = s.quantities("temperature_range", unit::temperature, kTemperature);
+  if (ends.empty()) return;
+  if (ends.size() != 2 || !(ends[0] < ends[1]))
+    return s.error("temperature_range", "two temperatures are needed, the lower one first");
+  const Interval range{ends[0], ends[1]};
+  if (!range.contains(heat.initial))
+    return s.error("temperature_range",
+                   fmt::format("the initial temperature of {} degC is not in it", heat.initial));
+  heat.temperature_range = range;
+}
+
+void require_heat_properties(const Section& root) {
+  const auto materials = root.optional_section("materials");
+  for (const auto name : {"aggregate", "mortar"}) {
+    const auto material = materials ? materials->optional_section(name) : std::nullopt;
+    if (!material) continue;  // told by the reader of the materials
+    for (const auto key : {"conductivity", "specific_heat"})
+      if (!material->has(key)) material->error(key, "missing; [heat] with field = \"conduction\" needs it");
+  }
+}
+
+void read_conduction(const Section& s, CurveReader& time_curves, HeatCase& heat) {
+  heat.scheme = s.choice<HeatScheme>(
+      "scheme", {{"rkl2", HeatScheme::super_time_stepping}, {"euler", HeatScheme::euler}},
+      HeatScheme::super_time_stepping);
+  heat.safety = s.number("safety", {.lower = 0.0, .upper = 1.0, .lower_inclusive = false}, kSafety);
+  heat.largest_change =
+      s.quantity("largest_change", unit::temperature_difference, Range::positive(), kLargestChange);
+  heat.largest_step = s.quantity("largest_step", unit::time, Range::positive(), kLargestStep);
+  heat.boundaries = read_boundaries(s, time_curves);
+  read_range(s, heat);
+}
+
+}  // namespace
+
+std::optional<HeatCase> read_heat(const Section& root, CurveReader& time_curves) {
+  const auto s = root.optional_section("heat");
+  if (!s) return std::nullopt;
+  know(*s, {"scheme", "safety", "largest_change", "largest_step", "temperature_range", "boundaries"});
+  HeatCase heat;
+  heat.uniform = s->choice<bool>("field", {{"conduction", false}, {"uniform", true}});
+  heat.initial = s->quantity("initial", unit::temperature, kTemperature, kReferenceTemperature);
+  if (heat.uniform) return heat;
+  read_conduction(*s, time_curves, heat);
+  require_heat_properties(root);
+  return heat;
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,258 @@
+#include "pyroclast/material/curve_reader.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/material/curve_file.hpp"
+
+namespace pyroclast {
+namespace {
+
+/// End of a ramp's range, s: 30 years, later than any run.
+constexpr double kRampEnd = 1e9;
+
+/// How far `times` may be off 1 at the reference temperature: published fits are a little.
+constexpr double kRatioTolerance = 0.01;
+
+/// Part of the needed interval's width by which a curve may fall short of it: rounding, as in Curve.
+constexpr double kRounding = 1e-9;
+
+bool is_same(const Unit& a, const Unit& b) {
+  return std::string_view(a.si) == b.si;
+}
+
+std::string suffix(const Unit& unit) {
+  return is_same(unit, unit::dimensionless) ? "" : unit.si;
+}
+
+std::string with_unit(double value, const Unit& unit) {
+  return fmt::format("{:.6g}{}{}", value, suffix(unit).empty() ? "" : " ", suffix(unit));
+}
+
+double in_unit(double value, const std::string& given, const Unit& unit) {
+  return parse_quantity(fmt::format("{} {}", value, given == "1" ? "" : given), unit);
+}
+
+/// The value in `unit.si` is `factor` times the value in a given unit, plus `offset` (of temperatures).
+struct Conversion {
+  double factor;
+  double offset;
+
+  /// Throws QuantityError.
+  Conversion(const std::string& given, const Unit& unit) {
+    offset = in_unit(0.0, given, unit);
+    factor = in_unit(1.0, given, unit) - offset;
+  }
+};
+
+Curve converted(const Curve& curve, const Conversion& to, const std::string& description) {
+  if (to.factor == 1.0 && to.offset == 0.0) return curve;
+  if (to.offset == 0.0) return (curve * to.factor).described_as(description);
+  return Curve::function(
+      description, [curve, to](double x) { return curve(x) * to.factor + to.offset; }, curve.range(),
+      curve.axis());
+}
+
+/// What `make` returns; its error is recorded at the key.
+template <class Make>
+std::optional<Curve> try_at(const Section& section, std::string_view key, const Make& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    section.error(key, error.what());
+    return std::nullopt;
+  }
+}
+
+std::string path_of(const Section& section, std::string_view key) {
+  return section.path().empty() ? std::string(key) : fmt::format("{}.{}", section.path(), key);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+}  // namespace
+
+CurveReader::CurveReader(std::filesystem::path folder, CurveAxis axis, Interval needed,
+                         const CurveCatalogue& builtins)
+    : folder_(std::move(folder)), axis_(std::move(axis)), needed_(needed), builtins_(builtins) {}
+
+Curve CurveReader::read(const Section& section, std::string_view key, const Unit& unit, const Range& range) {
+  std::optional<Curve> curve;
+  if (!section.is_table(key)) {
+    curve = Curve::constant(section.quantity(key, unit, range));
+  } else {
+    const Section forms = *section.optional_section(key);
+    curve = read_forms(forms, unit, true);
+    if (!curve || !forms.ok() || !covers(section, key, *curve) || !within(section, key, *curve, unit, range))
+      curve = Curve::constant(range.any_value());
+  }
+  const std::string path = path_of(section, key);
+  curves_.push_back({path, unit.si, curve->named(path)});
+  return curves_.back().curve;
+}
+
+Curve CurveReader::read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
+                        double fallback) {
+  return section.has(key) ? read(section, key, unit, range) : Curve::constant(fallback);
+}
+
+/// \param has_value  whether "value times curve" is among the forms
+std::optional<Curve> CurveReader::read_forms(const Section& forms, const Unit& unit, bool has_value) const {
+  std::vector<std::string> allowed = {"table", "csv", "builtin", "expression"};
+  if (has_value) allowed.insert(allowed.begin(), "value");
+  if (axis_ == time_axis() && is_same(unit, unit::temperature)) allowed.emplace_back("from");
+  std::vector<std::string> given;
+  for (const std::string& form : allowed)
+    if (forms.has(form)) given.push_back(form);
+  if (given.empty()) {
+    forms.error(fmt::format("a curve needs one of the keys {}", joined(allowed)));
+    return std::nullopt;
+  }
+  for (std::size_t i = 1; i < given.size(); ++i)
+    forms.error(given[i], fmt::format("has no meaning beside \"{}\": a curve has one of {}", given[0],
+                                      joined(allowed)));
+  return read_form(forms, given[0], unit);
+}
+
+std::optional<Curve> CurveReader::read_form(const Section& forms, const std::string& form,
+                                            const Unit& unit) const {
+  if (form == "value") return read_product(forms, unit);
+  if (form == "table") return read_table(forms, unit);
+  if (form == "csv") return read_csv(forms, unit);
+  if (form == "builtin") return read_builtin(forms, "builtin", unit);
+  if (form == "expression") return read_expression(forms, unit);
+  return read_ramp(forms, unit);
+}
+
+std::optional<Curve> CurveReader::read_product(const Section& forms, const Unit& unit) const {
+  const double value = forms.quantity("value", unit, Range::any());
+  const std::optional<Curve> ratio =
+      forms.is_table("times") ? read_forms(*forms.optional_section("times"), unit::dimensionless, false)
+                              : read_builtin(forms, "times", unit::dimensionless);
+  if (!ratio || !forms.ok()) return std::nullopt;
+  return try_at(forms, "times", [&] {
+    if (axis_ == temperature_axis() && ratio->range().contains(kReferenceTemperature)) {
+      const double at_reference = (*ratio)(kReferenceTemperature);
+      if (!(std::abs(at_reference - 1.0) <= kRatioTolerance))
+        throw Error(fmt::format("must be 1 at {} degC, where the value holds, but is {:.6g} there",
+                                kReferenceTemperature, at_reference));
+    }
+    return value * *ratio;
+  });
+}
+
+std::optional<Curve> CurveReader::read_table(const Section& forms, const Unit& unit) const {
+  const auto points = forms.points("table", abscissa(), unit);
+  if (points.empty()) return std::nullopt;
+  std::vector<double> abscissae, values;
+  for (const auto& [x, y] : points) {
+    abscissae.push_back(x);
+    values.push_back(y);
+  }
+  return Curve::table(std::move(abscissae), std::move(values), axis_);
+}
+
+std::optional<Curve> CurveReader::read_csv(const Section& forms, const Unit& unit) const {
+  const std::string file = forms.text("csv");
+  if (file.empty()) return std::nullopt;
+  return try_at(forms, "csv", [&] {
+    return read_curve_csv(
+        folder_ / file, axis_,
+        [&](double x, const std::string& given) { return in_unit(x, given, abscissa()); },
+        [&](double y, const std::string& given) { return in_unit(y, given, unit); });
+  });
+}
+
+/// A curve of the catalogue by its name at the key.
+std::optional<Curve> CurveReader::read_builtin(const Section& section, std::string_view key,
+                                               const Unit& unit) const {
+  const std::string name = section.text(key);
+  if (name.empty()) return std::nullopt;
+  return try_at(section, key, [&] {
+    const NamedCurve& entry = builtins_.at(name);
+    try {
+      return converted(entry.curve, Conversion(entry.unit, unit),
+                       fmt::format("{} ({}) in {}", entry.name, entry.source, unit.si));
+    } catch (const QuantityError&) {
+      throw Error(entry.unit == "1"
+                      ? fmt::format("\"{0}\" is a ratio; write {{ value = \"{1}\", times = \"{0}\" }}", name,
+                                    unit.example)
+                      : fmt::format("\"{}\" is in {}; a curve in {} ({}) is needed", name, entry.unit,
+                                    unit.si, unit.name));
+    }
+  });
+}
+
+std::optional<Curve> CurveReader::read_expression(const Section& forms, const Unit& unit) const {
+  const std::string formula = forms.text("expression");
+  const std::string given =
+      is_same(unit, unit::dimensionless) ? forms.text("unit", unit.si) : forms.text("unit");
+  const auto range = forms.quantities("range", abscissa(), Range::any());
+  if (!range.empty() && (range.size() != 2 || !(range[0] < range[1])))
+    forms.error("range", "must be two values, the first below the second");
+  if (!forms.ok()) return std::nullopt;
+  return try_at(forms, "expression", [&]() -> std::optional<Curve> {
+    const Curve curve = Curve::expression(formula, {range[0], range[1]}, axis_);
+    return try_at(forms, "unit", [&] {
+      return converted(curve, Conversion(given, unit), fmt::format("formula \"{}\" in {}", formula, given));
+    });
+  });
+}
+
+std::optional<Curve> CurveReader::read_ramp(const Section& forms, const Unit& unit) const {
+  const double from = forms.quantity("from", unit, Range::any());
+  const double rate = forms.quantity("rate", unit::heating_rate, Range::positive());
+  const double to = forms.quantity("to", unit, Range::any());
+  if (!forms.ok()) return std::nullopt;
+  const double duration = std::abs(to - from) / rate;
+  if (!(0.0 < duration && duration < kRampEnd)) {
+    forms.error(
+        "to", fmt::format("must be another {} than \"from\", and reached within {} s", unit.name, kRampEnd));
+    return std::nullopt;
+  }
+  return Curve::table({0.0, duration, kRampEnd}, {from, to, to}, axis_)
+      .described_as(fmt::format("ramp from {} to {} at {:.6g} K/s, then constant", with_unit(from, unit),
+                                with_unit(to, unit), rate));
+}
+
+bool CurveReader::covers(const Section& section, std::string_view key, const Curve& curve) const {
+  const Interval given = curve.range();
+  const double slack = kRounding * (needed_.upper - needed_.lower);
+  if (given.lower <= needed_.lower + slack && needed_.upper <= given.upper + slack) return true;
+  section.error(
+      key, fmt::format("is given from {} to {} {}, but the run needs it from {} to {} {}; curves are not "
+                       "extrapolated",
+                       given.lower, given.upper, axis_.unit, needed_.lower, needed_.upper, axis_.unit));
+  return false;
+}
+
+/// Whether the values are allowed wherever the run needs them.
+bool CurveReader::within(const Section& section, std::string_view key, const Curve& curve, const Unit& unit,
+                         const Range& range) const {
+  try {
+    for (const double extreme :
+         {curve.minimum(needed_.lower, needed_.upper), curve.maximum(needed_.lower, needed_.upper)}) {
+      if (range.contains(extreme)) continue;
+      section.error(key, fmt::format("comes to {} between {} and {} {}; must be {}", with_unit(extreme, unit),
+                                     needed_.lower, needed_.upper, axis_.unit, range.describe(suffix(unit))));
+      return false;
+    }
+  } catch (const Error& error) {
+    section.error(key, error.what());
+    return false;
+  }
+  return true;
+}
+
+const Unit& CurveReader::abscissa() const {
+  return axis_ == time_axis() ? unit::time : unit::temperature;
+}
+
+}  // namespace pyroclast

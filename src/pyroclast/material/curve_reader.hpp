@@ -1,0 +1,77 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pyroclast/deck/deck.hpp"
+#include "pyroclast/material/curve.hpp"
+#include "pyroclast/material/curve_catalogue.hpp"
+
+namespace pyroclast {
+
+/// A curve as a deck gave it, for plots and the manifest.
+struct ReadCurve {
+  std::string path;  ///< such as "materials.mortar.E"
+  std::string unit;  ///< SI unit of the values
+  Curve curve;
+};
+
+/// Reads curves from a deck: properties over the temperature, or boundary values over the time. A key holds
+/// one of
+///
+///     E = "70 GPa"
+///     E = { value = "70 GPa", times = "glasgow_modulus" }
+///     E = { value = "70 GPa", times = { table = [["20 degC", 1], ["800 degC", 0.05]] } }
+///     E = { table = [["20 degC", "70 GPa"], ["800 degC", "4 GPa"]] }
+///     E = { csv = "modulus.csv" }
+///     k = { builtin = "en1992_conductivity_upper" }
+///     E = { expression = "70 * (1 - 0.001 * (T - 20))", unit = "GPa", range = ["20 degC", "800 degC"] }
+///
+/// and a temperature over the time also `{ from = "20 degC", rate = "5 K/min", to = "800 degC" }`, constant
+/// once `to` is reached. `times` is a name of the catalogue or any form that is a table, without dimension;
+/// over the temperature it must be 1 at 20 °C (to 1 %), where the value holds.
+///
+/// An error is recorded in the deck, never thrown, and a constant that is allowed stands in for the curve.
+class CurveReader {
+ public:
+  /// \param folder    of the deck, from which names of CSV files are taken
+  /// \param axis      temperature_axis() or time_axis()
+  /// \param needed    finite interval that the run will read; a curve that does not cover it is an error
+  /// \param builtins  for `builtin` and `times`; must outlive the reader
+  CurveReader(std::filesystem::path folder, CurveAxis axis, Interval needed, const CurveCatalogue& builtins);
+
+  /// The curve in `unit.si`, named by its path in the deck. `range` holds over the needed interval.
+  Curve read(const Section& section, std::string_view key, const Unit& unit, const Range& range);
+  /// The same for a key that may be absent; `fallback` is then the value.
+  Curve read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
+             double fallback);
+
+  Interval needed() const { return needed_; }
+  /// All that was read from keys that are there, in order of reading.
+  const std::vector<ReadCurve>& curves() const { return curves_; }
+
+ private:
+  std::optional<Curve> read_forms(const Section& forms, const Unit& unit, bool has_value) const;
+  std::optional<Curve> read_form(const Section& forms, const std::string& form, const Unit& unit) const;
+  std::optional<Curve> read_product(const Section& forms, const Unit& unit) const;
+  std::optional<Curve> read_table(const Section& forms, const Unit& unit) const;
+  std::optional<Curve> read_csv(const Section& forms, const Unit& unit) const;
+  std::optional<Curve> read_builtin(const Section& section, std::string_view key, const Unit& unit) const;
+  std::optional<Curve> read_expression(const Section& forms, const Unit& unit) const;
+  std::optional<Curve> read_ramp(const Section& forms, const Unit& unit) const;
+  bool covers(const Section& section, std::string_view key, const Curve& curve) const;
+  bool within(const Section& section, std::string_view key, const Curve& curve, const Unit& unit,
+              const Range& range) const;
+  const Unit& abscissa() const;
+
+  std::filesystem::path folder_;
+  CurveAxis axis_;
+  Interval needed_;
+  const CurveCatalogue& builtins_;
+  std::vector<ReadCurve> curves_;
+};
+
+}  // namespace pyroclast
