@@ -362,7 +362,7 @@ void Experiment::load(const HeatStage& stage) {
 Experiment::Verdict Experiment::judge(const HeatStage& stage, const Sample& now) {
   const double way = std::abs(stage.to - stage_first_temperature_);
   progress_ = way > 0.0 ? std::abs(now.heat.mean - stage_first_temperature_) / way : 1.0;
-  if (now.heat.mean == stage.to) progress_ = 1.0;
+  if (std::abs(now.heat.mean - stage.to) < kSameTemperature) progress_ = 1.0;
   return judge_coupling(now);
 }
 

@@ -110,6 +110,7 @@ void TemperatureField::update() {
     minimum_ = std::min(minimum_, gridpoints_[g]);
     maximum_ = std::max(maximum_, gridpoints_[g]);
   }
+  if (is_uniform()) mean_ = minimum_;  // without the rounding of a mean
 }
 
 }  // namespace pyroclast
