@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pyroclast/experiment/experiment.hpp"
 #include "pyroclast/experiment/simulation.hpp"
 
 namespace pyroclast {
@@ -92,6 +93,9 @@ TEST(Case, TellsOfKeysThatContradictEachOther) {
   EXPECT_NE(message(with(deck, "d_max = \"32 mm\"", "d_max = \"3 mm\"")).find("d_max"), std::string::npos);
   EXPECT_NE(message(with(deck, "kind = \"compress\"", "kind = \"compres\"")).find("compress"),
             std::string::npos);
+  EXPECT_NE(
+      message(with(deck, "G_f1 = \"60 N/m\"", "G_f1 = \"0.1 N/m\"")).find("at 20 degC: mortar_mortar: G_f1"),
+      std::string::npos);
 }
 
 // Promise: the estimate printed before a run is a lower bound near what the run gives.
@@ -102,8 +106,7 @@ TEST(Simulation, EstimatedModulusIsALowerBoundNearTheMeasuredOne) {
       CompressStage{.velocity = 2e-3, .ramp_time = 5e-3, .stop_strain = 1.5e-4, .stop_fraction = 0.0}};
   Simulation simulation(c);
   Observer nobody;
-  Experiment experiment(simulation.body, simulation.specimen.width, simulation.specimen.height,
-                        *simulation.mechanics, c.stages, c.sampling, nobody);
+  Experiment experiment(simulation, c.stages, c.sampling, nobody);
   EXPECT_EQ(experiment.run(), Outcome::completed);
   const auto& rows = experiment.history();
   const auto& a = rows[rows.size() / 2];

@@ -14,7 +14,7 @@ std::vector<Sample> parabola(double modulus, double strength, double last) {
   for (int i = 1; i <= 1000; ++i) {
     Sample s;
     s.stage = 1;
-    s.strain = last * peak * i / 1000.0;
+    s.strain = s.stage_strain = last * peak * i / 1000.0;
     s.stress_top = s.stress_bottom = modulus * s.strain * (1.0 - 0.5 * s.strain / peak);
     rows.push_back(s);
   }

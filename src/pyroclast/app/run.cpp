@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include "pyroclast/app/load.hpp"
+#include "pyroclast/experiment/experiment.hpp"
 #include "pyroclast/experiment/simulation.hpp"
 #include "pyroclast/results/field_files.hpp"
 #include "pyroclast/results/history_file.hpp"
@@ -49,20 +50,19 @@ class Recorder : public Observer {
     const std::string left = done > kLeastProgressToForesee
                                  ? duration(seconds_since(stage_start_) / done * (1.0 - done)) + " left"
                                  : "";
-    const std::string heat = s.heat.exchange > 0 ? fmt::format("  T {:.0f} degC, {} cycles{}", s.heat.mean,
-                                                               s.heat.cycles,
-                                                               s.heat.converged ? "" : " (not at rest)")
-                                                 : "";
+    const std::string heat = s.heat.exchange > 0
+                                 ? fmt::format("  T {:.0f} degC, {} cycles{}", s.heat.mean, s.heat.cycles,
+                                               s.heat.converged ? "" : " (not at rest)")
+                                 : "";
     spdlog::info(
-        "stage {} of {} {:3.0f} %, {:>14}{}  strain {:.5f}  stress {:6.2f} MPa  broken: tension {}, shear {}  "
+        "stage {} of {} {:3.0f} %, {:>14}{}  strain {:.5f}  stress {:6.2f} MPa  broken: tension {}, shear {} "
+        " "
         "unbalanced {:.1e}  kinetic/strain {:.1e}",
         s.stage + 1, experiment.stages().size(), 100.0 * done, left, heat, s.strain, s.stress() * 1e-6,
         s.cracks.broken_tension(), s.cracks.broken_shear(), s.unbalanced_ratio, s.kinetic_over_strain);
   }
 
-  void frame(const Experiment& experiment, const Sample& s) override {
-    fields_.write(experiment, s);
-  }
+  void frame(const Experiment& experiment, const Sample& s) override { fields_.write(experiment, s); }
 
   bool stop_requested() override { return interrupted != 0; }
 
@@ -77,9 +77,10 @@ class Recorder : public Observer {
 };
 
 void print_heating(const HeatingResponse& h, const std::string& expansion) {
-  fmt::print("heating         to {:.0f} degC in {} exchanges of up to {:g} K, {} cycles; {} did not come to rest; "
-             "{} expansion\n",
-             h.highest, h.exchanges, h.increment, h.cycles, h.not_converged, expansion);
+  fmt::print(
+      "heating         to {:.0f} degC in {} exchanges of up to {:g} K, {} cycles; {} did not come to rest; "
+      "{} expansion\n",
+      h.highest, h.exchanges, h.increment, h.cycles, h.not_converged, expansion);
   if (h.platen == PlatenControl::fixed)
     fmt::print("thrust          up to {:.2f} MPa\n", h.largest_thrust * 1e-6);
   else
@@ -132,9 +133,7 @@ int run(const RunOptions& options) {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   const auto start = Clock::now();
-  Experiment experiment(simulation.body, simulation.materials, simulation.specimen.width,
-                        simulation.specimen.height, mechanics, *simulation.field, loaded.c.stages,
-                        loaded.c.sampling, recorder);
+  Experiment experiment(simulation, loaded.c.stages, loaded.c.sampling, recorder);
   const Outcome outcome = experiment.run();
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "pyroclast/deck/deck.hpp"
-#include "pyroclast/experiment/experiment.hpp"
 #include "pyroclast/experiment/heat_case.hpp"
+#include "pyroclast/experiment/stage.hpp"
 #include "pyroclast/material/concrete.hpp"
+#include "pyroclast/material/curve_reader.hpp"
+#include "pyroclast/material/thermal_strain.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 
@@ -21,10 +23,12 @@ struct Case {
   double thickness = 0.0;         ///< out of plane, m
   double platen_thickness = 0.0;  ///< m
   std::array<SolidMaterial, 3> solids;
+  ExpansionReading expansion_reading = ExpansionReading::secant;
   ContactParameters contacts;
+  std::vector<ReadCurve> curves;  ///< properties over the temperature, as the deck gave them
+  Interval temperatures;          ///< that the run may come to, °C; its curves are checked for these
   MechanicsParameters<2> mechanics;
-  HeatCase heat;                  ///< uniform at the reference temperature where the deck has no [heat]
-  Interval temperatures;          ///< that the run may reach, the reference temperature included, °C
+  HeatCase heat;  ///< uniform at the reference temperature where the deck has no [heat]
   std::vector<Stage> stages;
   SamplingParameters sampling;
 };

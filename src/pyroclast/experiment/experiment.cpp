@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pyroclast/experiment/coupling.hpp"
+
 namespace pyroclast {
 
 namespace {
@@ -79,22 +81,21 @@ Cracks count_cracks(const Mechanics<2>& mechanics) {
   return cracks;
 }
 
-Experiment::Experiment(const ConcreteModel& body, const ConcreteMaterials& materials, double width,
-                       double height, Mechanics<2>& mechanics, TemperatureField& field,
-                       std::vector<Stage> stages, const SamplingParameters& sampling, Observer& observer)
-    : body_(body),
-      materials_(materials),
-      width_(width),
-      height_(height),
-      mechanics_(mechanics),
-      field_(field),
+Experiment::Experiment(Simulation& simulation, std::vector<Stage> stages, const SamplingParameters& sampling,
+                       Observer& observer)
+    : body_(simulation.body),
+      materials_(simulation.materials),
+      width_(simulation.specimen.width),
+      height_(simulation.specimen.height),
+      mechanics_(*simulation.mechanics),
+      field_(*simulation.field),
       stages_(std::move(stages)),
       sampling_(sampling),
       observer_(observer) {
-  for (int c : body.platen_contacts) mechanics_.break_contact(c);
-  for (int g : body.bottom_support)
+  for (int c : body_.platen_contacts) mechanics_.break_contact(c);
+  for (int g : body_.bottom_support)
     for (int i : {0, 1}) mechanics_.prescribe_velocity(g, i, 0.0);
-  for (int g : body.top_support) mechanics_.prescribe_velocity(g, 0, 0.0);
+  for (int g : body_.top_support) mechanics_.prescribe_velocity(g, 0, 0.0);
 }
 
 Outcome Experiment::run() {
@@ -246,8 +247,8 @@ Experiment::Verdict Experiment::judge(const LoadStage& stage, const Sample& now)
   progress_ = ramp_share(stage.ramp_time);
   if (progress_ < 1.0) return {};
   if (now.unbalanced_ratio < stage.unbalanced_ratio) return {.over = true};
-  const double after_ramp = static_cast<double>(now.step - stage_first_step_) -
-                            stage.ramp_time / mechanics_.time_step();
+  const double after_ramp =
+      static_cast<double>(now.step - stage_first_step_) - stage.ramp_time / mechanics_.time_step();
   if (after_ramp >= static_cast<double>(stage.most_steps))
     return {.over = true, .last = true, .outcome = Outcome::not_settled};
   return {};

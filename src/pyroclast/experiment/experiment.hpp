@@ -3,11 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "pyroclast/experiment/coupling.hpp"
+#include "pyroclast/experiment/simulation.hpp"
 #include "pyroclast/experiment/stage.hpp"
-#include "pyroclast/experiment/temperature_field.hpp"
-#include "pyroclast/mechanics/mechanics.hpp"
-#include "pyroclast/model/concrete_model.hpp"
 
 namespace pyroclast {
 
@@ -29,11 +26,11 @@ struct Cracks {
 
 /// Temperatures at a look, and what the exchange before it took.
 struct HeatSample {
-  double time = 0.0;                                 ///< since heating began, s
-  double mean = 0.0, minimum = 0.0, maximum = 0.0;   ///< over the specimen, °C
-  int exchange = 0;                                  ///< counted from 1; 0 where no temperature was handed over
-  std::int64_t cycles = 0;                           ///< steps of the mechanics
-  bool converged = true;                             ///< came to rest within the stated cycles
+  double time = 0.0;                                ///< since heating began, s
+  double mean = 0.0, minimum = 0.0, maximum = 0.0;  ///< over the specimen, °C
+  int exchange = 0;         ///< counted from 1; 0 where no temperature was handed over
+  std::int64_t cycles = 0;  ///< steps of the mechanics
+  bool converged = true;    ///< came to rest within the stated cycles
 };
 
 /// One row of the history. Stress and strain of the test are positive in compression; lateral strain is
@@ -58,14 +55,7 @@ struct Sample {
 };
 
 /// Why an experiment ended.
-enum class Outcome : std::uint8_t {
-  completed,
-  stress_fallen,
-  ran_away,
-  interrupted,
-  not_settled,
-  unstable
-};
+enum class Outcome : std::uint8_t { completed, stress_fallen, ran_away, interrupted, not_settled, unstable };
 
 const char* describe(Outcome outcome);
 
@@ -85,10 +75,9 @@ class Observer {
 /// A specimen between platens, taken through a list of stages.
 class Experiment {
  public:
-  /// All by reference; they must outlive this. `mechanics` has the properties of `field`'s temperatures.
-  Experiment(const ConcreteModel& body, const ConcreteMaterials& materials, double width, double height,
-             Mechanics<2>& mechanics, TemperatureField& field, std::vector<Stage> stages,
-             const SamplingParameters& sampling, Observer& observer);
+  /// \param simulation, observer  kept by reference; must outlive this
+  Experiment(Simulation& simulation, std::vector<Stage> stages, const SamplingParameters& sampling,
+             Observer& observer);
 
   /// The main loop: for each stage, load, move, look, until the stage is over.
   Outcome run();
@@ -159,12 +148,12 @@ class Experiment {
   int stage_ = 0;
   std::int64_t stage_first_step_ = 0;
   double stage_first_strain_ = 0.0;
-  double stage_first_stress_ = 0.0;  ///< held by the force on the upper platen, Pa
-  double shortening_at_rest_ = 0.0;  ///< m
-  double widening_at_rest_ = 0.0;    ///< m
-  double peak_stress_ = 0.0;         ///< of the stage, Pa
-  double next_frame_ = 0.0;          ///< strain or temperature
-  double stress_held_ = 0.0;         ///< by the force on the upper platen, Pa
+  double stage_first_stress_ = 0.0;       ///< held by the force on the upper platen, Pa
+  double shortening_at_rest_ = 0.0;       ///< m
+  double widening_at_rest_ = 0.0;         ///< m
+  double peak_stress_ = 0.0;              ///< of the stage, Pa
+  double next_frame_ = 0.0;               ///< strain or temperature
+  double stress_held_ = 0.0;              ///< by the force on the upper platen, Pa
   double stage_first_temperature_ = 0.0;  ///< mean, °C
   double exposure_began_ = 0.0;           ///< heating time, s
   int exchanges_ = 0;

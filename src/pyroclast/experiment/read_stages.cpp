@@ -50,7 +50,8 @@ Coupling read_coupling(const Section& s) {
 }
 
 PlatenControl read_platen(const Section& s) {
-  return s.choice<PlatenControl>("platen", {{"force", PlatenControl::force}, {"fixed", PlatenControl::fixed}});
+  return s.choice<PlatenControl>("platen",
+                                 {{"force", PlatenControl::force}, {"fixed", PlatenControl::fixed}});
 }
 
 HeatStage read_heat_stage(const Section& s, const Coupling& coupling) {

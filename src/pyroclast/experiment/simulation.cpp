@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/experiment/coupling.hpp"
 
 namespace pyroclast {
 
@@ -48,8 +49,8 @@ specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& par
 std::unique_ptr<TemperatureField> make_field(const ConcreteModel& body, const ConcreteMaterials& materials,
                                              const Case& c) {
   if (c.heat.uniform) return std::make_unique<TemperatureField>(body, c.heat.initial);
-  return std::make_unique<TemperatureField>(
-      body, make_conduction(body, materials.solids, c.heat, c.temperatures));
+  return std::make_unique<TemperatureField>(body,
+                                            make_conduction(body, materials.solids, c.heat, c.temperatures));
 }
 
 std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const ConcreteMaterials& materials,

@@ -3,12 +3,12 @@
 #include <memory>
 
 #include "pyroclast/experiment/case.hpp"
-#include "pyroclast/experiment/experiment.hpp"
+#include "pyroclast/experiment/temperature_field.hpp"
 
 namespace pyroclast {
 
-/// Everything that a case makes, ready to run: specimen, model, materials and solvers. Not movable: the solvers
-/// refer to the model beside them.
+/// Everything that a case makes, ready to run: specimen, model, materials and solvers. Not movable: the
+/// solvers refer to the model beside them.
 struct Simulation {
   /// Throws Error when the specimen or the model cannot be made, or would not fit into the memory that is
   /// free.

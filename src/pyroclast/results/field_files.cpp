@@ -115,8 +115,7 @@ void FieldFiles::write(const Experiment& experiment, const Sample& sample) {
   blocks.dataset("/VTKHDF/PointData/displacement", displacement, 3);
   blocks.dataset("/VTKHDF/CellData/stress", stress, 3);
   const auto& temperature = experiment.field().gridpoints();
-  blocks.dataset("/VTKHDF/PointData/temperature",
-                 std::vector<float>(temperature.begin(), temperature.end()));
+  blocks.dataset("/VTKHDF/PointData/temperature", std::vector<float>(temperature.begin(), temperature.end()));
   blocks.close();
 
   Hdf5File contacts(folder_ / fmt::format("contacts_{:04}.hdf", frame));

@@ -97,8 +97,8 @@ Summary summarize(const Case& c, const Experiment& experiment, Outcome outcome) 
         s.heating->not_converged, s.heating->exchanges, s.heating->worst_ratio));
   const double ledger = s.last.energy.error() / s.last.energy.turnover();
   if (std::abs(ledger) > kLedgerTolerance)
-    s.warnings.push_back(
-        fmt::format("the energy ledger closes only within {:.2f} % of the energy turned over", 100.0 * ledger));
+    s.warnings.push_back(fmt::format(
+        "the energy ledger closes only within {:.2f} % of the energy turned over", 100.0 * ledger));
   if (const double strain = strain_of_large_jumps(history); strain >= 0.0)
     s.warnings.push_back(fmt::format(
         "jumps exceed {:.0f} % of an edge from strain {:.5f} on: contacts keep the partners and normals they "
