@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace pyroclast::app {
 
@@ -14,6 +15,7 @@ struct RunOptions {
   bool figures = true;
   int threads = 0;                    ///< 0: as many as the machine has
   std::optional<std::uint64_t> seed;  ///< instead of the deck's
+  std::vector<std::string> changes;   ///< "key=value", see Deck::load
   std::string command;                ///< as typed, for the manifest
 };
 

@@ -8,7 +8,7 @@
 namespace pyroclast::app {
 
 Loaded::Loaded(const RunOptions& options)
-    : deck(Deck::load(options.deck)), c(read_case(deck, options.deck.parent_path())) {
+    : deck(Deck::load(options.deck, options.changes)), c(read_case(deck, options.deck.parent_path())) {
   if (options.seed) c.specimen.seed = *options.seed;
   if (options.threads > 0) omp_set_num_threads(options.threads);
   threads = omp_get_max_threads();

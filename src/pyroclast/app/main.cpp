@@ -45,6 +45,11 @@ int command_line(int argc, char** argv) {
   for (auto* command : {run, check, specimen}) {
     add_deck(command, options.deck);
     add_seed(command, options.seed);
+    command
+        ->add_option("--set", options.changes,
+                     "Another value for a key of the deck: --set stages[1].to='400 degC'")
+        ->take_all()
+        ->allow_extra_args(false);
   }
   for (auto* command : {run, specimen}) add_output(command, options);
   for (auto* command : {run, check}) add_threads(command, options.threads);

@@ -24,10 +24,23 @@ std::string read_file(const std::filesystem::path& file) {
   return text;
 }
 
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(' ');
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
 }  // namespace
 
-Deck Deck::load(const std::filesystem::path& file) {
-  return parse(read_file(file), file.string());
+Deck Deck::load(const std::filesystem::path& file, const std::vector<std::string>& changes) {
+  std::string text = read_file(file);
+  for (const std::string& change : changes) {
+    const auto equals = change.find('=');
+    if (equals == std::string::npos)
+      throw Error("--set " + change + ": write it as key=value, e.g. specimen.seed=2");
+    text = DeckRecord(std::move(text), file.string())
+               .with_value(trimmed(change.substr(0, equals)), trimmed(change.substr(equals + 1)));
+  }
+  return parse(std::move(text), file.string());
 }
 
 Deck Deck::parse(std::string text, std::string name) {

@@ -121,7 +121,11 @@ class Section {
 class Deck {
  public:
   /// @throws DeckError if the file cannot be read, is empty or is not TOML.
-  static Deck load(const std::filesystem::path& file);
+  /// @param changes  as "key=value" with the full path of a key that the deck has ("stages[1].rate=10
+  /// K/min");
+  ///                 `text` and places in messages are then those of the changed deck. Throws Error for one
+  ///                 that cannot be made.
+  static Deck load(const std::filesystem::path& file, const std::vector<std::string>& changes = {});
   /// The same for a text; `name` takes the file's place in messages.
   static Deck parse(std::string text, std::string name);
 

@@ -121,6 +121,23 @@ void DeckRecord::report(const TableRecord& table, const std::string& path, std::
   diagnostics_.push_back(std::move(diagnostic));
 }
 
+std::string DeckRecord::with_value(std::string_view path, const std::string& value) const {
+  const auto node = root_.at_path(path);
+  if (!node || is_table_like(*node.node()))
+    throw Error(fmt::format("--set {}={}: {} has no such key; what it does not have must be written in it",
+                            path, value, name_));
+  // A value that is not TOML as it stands, such as 5 us, is a string.
+  bool is_toml = true;
+  try {
+    is_toml = toml::parse("value = " + value).size() == 1;
+  } catch (const toml::parse_error&) {
+    is_toml = false;
+  }
+  const auto& region = node.node()->source();
+  return source_.replaced(position(region.begin), position(region.end),
+                          is_toml ? value : fmt::format("\"{}\"", value));
+}
+
 bool DeckRecord::is_clean(std::string_view path) const {
   return std::none_of(diagnostics_.begin(), diagnostics_.end(),
                       [&](const Diagnostic& d) { return is_at_or_below(d.key, path); });

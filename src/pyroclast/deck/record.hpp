@@ -49,6 +49,9 @@ class DeckRecord {
   /// The record of a table, the same at each call.
   TableRecord& table(const toml::table& table, const std::string& path);
 
+  /// The text with another value at a path such as "stages[1].rate". Throws Error if the deck has none there.
+  std::string with_value(std::string_view path, const std::string& value) const;
+
   /// An error at a value.
   void report(const std::string& path, const toml::node& node, std::string message, std::string hint = {});
   /// An error of a table, such as a missing key of the given path.

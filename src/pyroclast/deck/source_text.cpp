@@ -38,4 +38,14 @@ std::string SourceText::excerpt(SourcePosition begin, SourcePosition end) const 
   return std::string(first.substr(from, byte_of_column(first, end.column) - from));
 }
 
+std::size_t SourceText::offset(SourcePosition position) const {
+  const std::size_t start = line_starts_.at(static_cast<std::size_t>(position.line) - 1);
+  return start + byte_of_column(line(position.line), position.column);
+}
+
+std::string SourceText::replaced(SourcePosition begin, SourcePosition end,
+                                 std::string_view replacement) const {
+  return text_.substr(0, offset(begin)) + std::string(replacement) + text_.substr(offset(end));
+}
+
 }  // namespace pyroclast

@@ -23,8 +23,12 @@ class SourceText {
   std::string_view line(int number) const;
   /// The text from `begin` up to `end`; of several lines only the first, with "..." behind it.
   std::string excerpt(SourcePosition begin, SourcePosition end) const;
+  /// The whole text with another one from `begin` up to `end`.
+  std::string replaced(SourcePosition begin, SourcePosition end, std::string_view replacement) const;
 
  private:
+  std::size_t offset(SourcePosition position) const;
+
   std::string text_;
   std::vector<std::size_t> line_starts_;
 };
