@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/experiment/read_materials.hpp"
+#include "pyroclast/material/builtin_curves.hpp"
+
 namespace pyroclast {
 
 namespace {
@@ -12,6 +15,9 @@ constexpr double kGravity = 9.80665;  // m/s², standard
 
 /// Placing an aggregate is given up after this many random centres.
 constexpr int kPlacementAttempts = 100'000;
+
+/// Even temperatures of the run at which the contact law must be possible.
+constexpr int kCheckedTemperatures = 33;
 
 specimen::AggregateParameters read_aggregates(const Section& s) {
   specimen::AggregateParameters a;
@@ -66,63 +72,6 @@ void read_specimen_tables(const Section& root, const std::filesystem::path& fold
         superposition.number("covered_fraction", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false});
 }
 
-SolidMaterial read_solid(const Section& s) {
-  SolidMaterial m;
-  m.young = Curve::constant(s.quantity("E", unit::stress, Range::positive()));
-  m.poisson = s.number("nu", Range{-1.0, 0.5, false, false});
-  m.density = s.quantity("density", unit::density, Range::positive());
-  return m;
-}
-
-ContactMaterial read_mortar_contact(const Section& s) {
-  ContactMaterial m;
-  const auto strength = [&](const char* key) {
-    return Curve::constant(s.quantity(key, unit::stress, Range::positive()));
-  };
-  const auto energy = [&](const char* key) {
-    return Curve::constant(s.quantity(key, unit::fracture_energy, Range::positive()));
-  };
-  const auto angle = [&](const char* key) {
-    return std::tan(s.quantity(key, unit::angle, {.lower = 0.0, .upper = 1.57, .upper_inclusive = false}));
-  };
-  m.tensile_strength = strength("f_t");
-  m.mode_1_energy = energy("G_f1");
-  m.compressive_limit = strength("f_cm");
-  m.hardening = s.number("beta", Range::inside(0.0, 1.0));
-  m.cohesion = strength("c_o");
-  m.residual_cohesion = Curve::constant(s.quantity("c_res", unit::stress, Range::non_negative()));
-  m.friction = angle("phi");
-  m.residual_friction = angle("phi_res");
-  m.mode_2_energy = energy("G_f2");
-  return m;
-}
-
-ContactParameters read_contacts(const Section& s) {
-  ContactParameters c;
-  c.fracture_zone = s.quantity("t_b", unit::length, Range::positive());
-  const bool scales = s.choice<bool>("t_b_scaling", {{"block size", true}, {"fixed", false}});
-  if (scales) c.fracture_zone_size = s.quantity("t_b_block_size", unit::length, Range::positive());
-  c.platen_friction = s.number("platen_friction", Range::non_negative());
-
-  const Section mortar = s.section("mortar_mortar");
-  c.mortar = read_mortar_contact(mortar);
-  if (mortar.has("K_n"))
-    c.normal_stiffness = mortar.quantity("K_n", unit::stiffness_per_area, Range::positive());
-  if (mortar.has("K_s"))
-    c.shear_stiffness = mortar.quantity("K_s", unit::stiffness_per_area, Range::positive());
-  c.mortar.compression = s.choice<CompressionReading>(
-      "compression",
-      {{"irreversible", CompressionReading::irreversible}, {"reversible", CompressionReading::reversible}},
-      CompressionReading::irreversible);
-  c.mortar.coupled = s.flag("coupled", false);
-
-  const Section itz = s.section("aggregate_mortar");
-  c.interface_stiffness = itz.number("stiffness_factor", Range::positive());
-  c.interface_strength = itz.number("strength_factor", Range::positive());
-  c.scale_interface_energy = itz.flag("scale_fracture_energy", false);
-  return c;
-}
-
 MechanicsParameters<2> read_mechanics(const Section& s) {
   MechanicsParameters<2> m;
   m.gravity = {{0.0, -s.quantity("gravity", unit::acceleration, Range::non_negative(), kGravity)}};
@@ -171,16 +120,23 @@ std::vector<Stage> read_stages(const Section& root) {
   return stages;
 }
 
-/// The contact law's own conditions, told where the user can act on them.
+/// The contact law's own conditions, told where the user can act on them: at 20 °C and over what the run
+/// needs.
 void check_contacts(const Section& root, const Case& c) {
   const Section contacts = root.section("contacts");
   if (!root.ok()) return;
   const auto concrete = make_concrete(c.solids, c.contacts, expected_block_size(c));
   const auto check = [&](InterfaceIndex interface, const char* key) {
+    const auto [lower, upper] = c.temperatures;
+    double T = kReferenceTemperature;
     try {
-      validate(concrete.contacts[interface].at(kReferenceTemperature), key);
+      validate(concrete.contacts[interface].at(T), key);
+      for (int i = 0; i < kCheckedTemperatures; ++i) {
+        T = lower + i * (upper - lower) / (kCheckedTemperatures - 1);
+        validate(concrete.contacts[interface].at(T), key);
+      }
     } catch (const Error& e) {
-      contacts.error(key, e.what());
+      contacts.error(key, fmt::format("at {:.6g} degC: {}", T, e.what()));
     }
   };
   check(mortar_mortar, "mortar_mortar");
@@ -195,11 +151,13 @@ Case read_case(const Deck& deck, const std::filesystem::path& folder) {
   c.title = root.text("title");
   read_specimen_tables(root, folder, c.specimen);
   c.thickness = root.section("specimen").quantity("thickness", unit::length, Range::positive(), 1.0);
-  const Section materials = root.section("materials");
-  c.solids = {read_solid(materials.section("aggregate")), read_solid(materials.section("mortar")),
-              read_solid(materials.section("platen"))};
+  // Includes the reference temperature, at which masses and stated stiffnesses hold.
+  c.temperatures = {kReferenceTemperature, kReferenceTemperature};
+  CurveReader curves(folder, temperature_axis(), c.temperatures, builtin_curves());
+  c.solids = read_solids(root, curves);
   c.platen_thickness = root.section("platens").quantity("thickness", unit::length, Range::positive());
-  c.contacts = read_contacts(root.section("contacts"));
+  c.contacts = read_contacts(root, curves);
+  c.curves = curves.curves();
   c.mechanics = read_mechanics(root.section("mechanics"));
   c.stages = read_stages(root);
   const Section output = root.section("output");

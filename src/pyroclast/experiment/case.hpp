@@ -8,6 +8,7 @@
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/experiment/experiment.hpp"
 #include "pyroclast/material/concrete.hpp"
+#include "pyroclast/material/curve_reader.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 
@@ -21,6 +22,8 @@ struct Case {
   double platen_thickness = 0.0;  ///< m
   std::array<SolidMaterial, 3> solids;
   ContactParameters contacts;
+  std::vector<ReadCurve> curves;  ///< properties over the temperature, as the deck gave them
+  Interval temperatures;          ///< that the run may come to, °C; its curves are checked for these
   MechanicsParameters<2> mechanics;
   std::vector<Stage> stages;
   SamplingParameters sampling;

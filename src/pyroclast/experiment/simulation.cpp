@@ -48,7 +48,7 @@ specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& par
 std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const ConcreteMaterials& materials,
                                              const MechanicsParameters<2>& parameters) {
   std::vector<double> densities;
-  for (const auto& solid : materials.solids) densities.push_back(solid.density);
+  for (const auto& solid : materials.solids) densities.push_back(solid.density(kReferenceTemperature));
   std::vector<ZoneProperties> zones;
   zones.reserve(model.zones.size());
   for (int block : zone_blocks(model)) {

@@ -11,9 +11,12 @@ namespace pyroclast {
 
 /// What a block is made of: the zones' parameters as functions of temperature.
 struct SolidMaterial {
-  Curve young = Curve::constant(0.0);  ///< E, Pa
-  double poisson = 0.0;                ///< nu
-  double density = 0.0;                ///< kg/m³, at the reference temperature
+  Curve young = Curve::constant(0.0);           ///< E, Pa
+  double poisson = 0.0;                         ///< nu
+  Curve density = Curve::constant(0.0);         ///< kg/m³; mass is that at the reference temperature
+  Curve thermal_strain = Curve::constant(0.0);  ///< free strain since the reference temperature
+  std::optional<Curve> conductivity;            ///< gamma, W/(m K); only for heat conduction
+  std::optional<Curve> specific_heat;           ///< c, J/(kg K); likewise
 };
 
 /// A contact's parameters as functions of temperature (paper, Table 2 and §4.1).

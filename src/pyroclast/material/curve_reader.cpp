@@ -14,9 +14,6 @@ namespace {
 /// End of a ramp's range, s: 30 years, later than any run.
 constexpr double kRampEnd = 1e9;
 
-/// How far `times` may be off 1 at the reference temperature: published fits are a little.
-constexpr double kRatioTolerance = 0.01;
-
 /// Part of the needed interval's width by which a curve may fall short of it: rounding, as in Curve.
 constexpr double kRounding = 1e-9;
 

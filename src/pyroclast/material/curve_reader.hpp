@@ -12,6 +12,9 @@
 
 namespace pyroclast {
 
+/// How far a ratio to the value at the reference temperature may be off 1 there: published fits are a little.
+inline constexpr double kRatioTolerance = 0.01;
+
 /// A curve as a deck gave it, for plots and the manifest.
 struct ReadCurve {
   std::string path;  ///< such as "materials.mortar.E"

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/material/curve_integral.hpp"
 
 namespace pyroclast {
 
@@ -13,31 +14,6 @@ namespace {
 
 constexpr double kWidestCell = 0.1;  // K
 constexpr int kFewestCells = 1000;
-
-/// Gauss-Legendre quadrature with three points.
-double gauss(const Curve& curve, double a, double b) {
-  const double middle = 0.5 * (a + b);
-  const double offset = 0.5 * (b - a) * std::sqrt(0.6);
-  return (b - a) * (5.0 * curve(middle - offset) + 8.0 * curve(middle) + 5.0 * curve(middle + offset)) / 18.0;
-}
-
-/// Integral of a positive curve, by halving until the halves agree with the whole: kinks and jumps are
-/// cornered.
-double integral(const Curve& curve, double a, double b, double whole, double tolerance, int halvings) {
-  const double middle = 0.5 * (a + b);
-  const double left = gauss(curve, a, middle);
-  const double right = gauss(curve, middle, b);
-  if (halvings == 0 || std::abs(left + right - whole) <= tolerance) return left + right;
-  return integral(curve, a, middle, left, tolerance, halvings - 1) +
-         integral(curve, middle, b, right, tolerance, halvings - 1);
-}
-
-double integral(const Curve& curve, double a, double b) {
-  constexpr double relative_tolerance = 1e-13;
-  constexpr int most_halvings = 40;
-  const double whole = gauss(curve, a, b);
-  return integral(curve, a, b, whole, relative_tolerance * std::abs(whole), most_halvings);
-}
 
 void require_usable(const Curve& curve, const std::string& title, const Interval& range) {
   if (!curve.is_constant() && curve.axis() != temperature_axis())

@@ -1,0 +1,94 @@
+#include "pyroclast/material/thermal_strain.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/material/builtin_curves.hpp"
+
+namespace pyroclast {
+namespace {
+
+constexpr Interval kFire{20.0, 800.0};
+constexpr double T0 = 20.0;
+
+Curve strain(const char* builtin, ExpansionReading reading) {
+  return free_thermal_strain(builtin_curves().at(builtin).curve, reading, kFire);
+}
+
+// Relative 1e-12: rounding of a few operations.
+void expect_close(double value, double expected) {
+  EXPECT_NEAR(value, expected, 1e-12 * std::abs(expected) + 1e-18);
+}
+
+TEST(ThermalStrain, SecantIsEquation18TimesTheTemperatureRise) {
+  const Curve aggregate = strain("paper_aggregate_expansion", ExpansionReading::secant);
+  const Curve mortar = strain("paper_mortar_expansion", ExpansionReading::secant);
+  for (const double T : {20.0, 20.5, 122.5, 433.3, 800.0}) {
+    expect_close(aggregate(T), (9e-6 + 7e-8 * T) * (T - T0));
+    expect_close(mortar(T), (9e-7 - 6e-11 * T * T) * (T - T0));
+  }
+}
+
+TEST(ThermalStrain, TangentIsTheIntegralOfEquation18) {
+  const Curve aggregate = strain("paper_aggregate_expansion", ExpansionReading::tangent);
+  const Curve mortar = strain("paper_mortar_expansion", ExpansionReading::tangent);
+  for (const double T : {20.0, 20.5, 122.5, 433.3, 800.0}) {
+    expect_close(aggregate(T), 9e-6 * (T - T0) + 3.5e-8 * (T * T - T0 * T0));
+    expect_close(mortar(T), 9e-7 * (T - T0) - 2e-11 * (T * T * T - T0 * T0 * T0));
+  }
+}
+
+TEST(ThermalStrain, OfAConstantIsTheSameInBothReadings) {
+  const Curve expansion = Curve::constant(-1e-5);
+  for (const ExpansionReading reading : {ExpansionReading::secant, ExpansionReading::tangent}) {
+    const Curve contraction = free_thermal_strain(expansion, reading, {-50.0, 800.0});
+    expect_close(contraction(520.0), -5e-3);
+    expect_close(contraction(-30.0), 5e-4);
+    EXPECT_NEAR(contraction(20.0), 0.0, 1e-17);
+  }
+}
+
+// A kink of a table, a jump of an expression: neither lies at a knot.
+TEST(ThermalStrain, TangentSeesKinksAndJumps) {
+  const Curve kinked = Curve::table({20.0, 100.3, 800.0}, {1e-5, 3e-5, 0.0}, temperature_axis());
+  const Curve strain_of_kinked = free_thermal_strain(kinked, ExpansionReading::tangent, kFire);
+  const double first = 0.5 * 80.3 * 4e-5;
+  const double slope = 3e-5 / 699.7;
+  for (const double T : {100.3, 100.4, 500.0, 800.0}) {
+    const double since = T - 100.3;
+    // The promise of the header of Curve's integral, over 800 cells.
+    EXPECT_NEAR(strain_of_kinked(T), first + 3e-5 * since - 0.5 * slope * since * since, 1e-9 * first) << T;
+  }
+  const Curve jump = Curve::expression("T < 400.7 ? 1e-5 : -2e-5", kFire, temperature_axis());
+  const Curve strain_of_jump = free_thermal_strain(jump, ExpansionReading::tangent, kFire);
+  EXPECT_NEAR(strain_of_jump(800.0), 380.7e-5 - 2e-5 * 399.3, 1e-9 * 380.7e-5);
+  EXPECT_NEAR(strain_of_jump(400.9), 380.7e-5 - 2e-5 * 0.2, 1e-9 * 380.7e-5);
+}
+
+TEST(ThermalStrain, EndsWhereTheCoefficientEnds) {
+  const Curve short_one = Curve::table({0.0, 400.0}, {1e-5, 1e-5}, temperature_axis());
+  for (const ExpansionReading reading : {ExpansionReading::secant, ExpansionReading::tangent}) {
+    const Curve limited = free_thermal_strain(short_one, reading, kFire);
+    EXPECT_EQ(limited.range(), (Interval{20.0, 400.0}));
+    EXPECT_THROW(limited(401.0), Error);
+    EXPECT_THROW(free_thermal_strain(short_one, reading, {500.0, 800.0}), Error);
+  }
+}
+
+TEST(ThermalStrain, TangentNeedsTheReferenceTemperature) {
+  const Curve hot = Curve::table({100.0, 800.0}, {1e-5, 1e-5}, temperature_axis());
+  EXPECT_THROW(free_thermal_strain(hot, ExpansionReading::tangent, kFire), Error);
+  expect_close(free_thermal_strain(hot, ExpansionReading::secant, kFire)(120.0), 1e-3);
+}
+
+TEST(ThermalStrain, SaysWhereItComesFrom) {
+  const Curve aggregate = strain("paper_aggregate_expansion", ExpansionReading::tangent);
+  EXPECT_NE(aggregate.describe().find("integral from 20 degC of built-in curve paper_aggregate_expansion"),
+            std::string::npos)
+      << aggregate.describe();
+}
+
+}  // namespace
+}  // namespace pyroclast
