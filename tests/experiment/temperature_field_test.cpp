@@ -52,7 +52,7 @@ TEST(TemperatureField, UniformTemperatureReachesTheWholeSpecimenAndNoPlaten) {
   for (int z = 0; z < model.zone_count(); ++z)
     EXPECT_DOUBLE_EQ(field.zones()[z], platen[model.zones[z][0]] ? 20.0 : 300.0);
   for (double t : field.contacts()) EXPECT_EQ(t, 300.0);  // contacts with platens too
-  EXPECT_DOUBLE_EQ(field.mean(), 300.0);
+  EXPECT_NEAR(field.mean(), 300.0, 1e-9);                 // rounding of a sum over a thousand zones
   EXPECT_EQ(field.minimum(), 300.0);
   EXPECT_EQ(field.maximum(), 300.0);
 }
@@ -88,12 +88,16 @@ TEST(TemperatureField, ZonesTakeTheMeanOfTheirGridpointsAndContactsTheSpecimensS
   for (int c = 0; c < model.contact_count(); ++c) {
     const auto& contact = model.contacts[c];
     EXPECT_EQ(field.contacts()[c], t[platen[contact.a] ? contact.b : contact.a]);
-    if (contact.interface != platen_interface) EXPECT_EQ(t[contact.a], t[contact.b]);
+    if (contact.interface != platen_interface) {
+      EXPECT_EQ(t[contact.a], t[contact.b]);
+    }
   }
   EXPECT_GT(field.maximum(), 300.0);  // the fire has come through, so that the checks above say something
   EXPECT_LT(field.minimum(), 100.0);
   for (int g = 0; g < model.gridpoint_count(); ++g)
-    if (platen[g]) EXPECT_EQ(t[g], 20.0);
+    if (platen[g]) {
+      EXPECT_EQ(t[g], 20.0);
+    }
 }
 
 // ---- Against a closed form -------------------------------------------------------------------------------
@@ -122,9 +126,9 @@ TEST(TemperatureField, ASpecimenThatConvectsOnTheLeftFollowsTheClosedFormOfAWall
   constexpr double h = 25.0, gas = 500.0, initial = 20.0;
   const HeatConstants constants;
   const auto body = small_body(1000);
-  auto field = conduct(body, heat_case({on(OutlinePart::left, convection(h, Curve::constant(gas)))}), 7200.0);
+  auto field = conduct(body, heat_case({on(OutlinePart::left, convection(h, Curve::constant(gas)))}), 1800.0);
   const auto platen = in_platen(body.model);
-  for (double time : {300.0, 900.0, 1800.0, 3600.0, 7200.0}) {
+  for (double time : {300.0, 900.0, 1800.0}) {
     while (field.time() < time) field.advance(10.0, time);
     double worst = 0.0;
     for (int g = 0; g < body.model.gridpoint_count(); ++g) {
@@ -170,7 +174,9 @@ TEST(TemperatureField, IncrementsEndNearTheChangeAskedForOrAtTheTime) {
     field.advance(wanted, duration);
     const double change = largest_change(before, field.gridpoints());
     greatest = std::max(greatest, change);
-    if (field.time() < duration) EXPECT_GE(change, 0.95 * wanted);
+    if (field.time() < duration) {
+      EXPECT_GE(change, 0.95 * wanted);
+    }
     EXPECT_LE(change, wanted + heat.largest_change);
     ++increments;
   }

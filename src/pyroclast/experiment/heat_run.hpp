@@ -19,7 +19,7 @@ struct HeatRun {
   double interval = std::numeric_limits<double>::infinity();
   /// Ends when the L2 norm of the temperature's rate (Conduction::rate) falls below, K/s. Not before the
   /// boundary values have become constant, because a fire that starts slowly is no steady state.
-  std::optional<double> steady_rate;
+  std::optional<double> steady_rate{};
 };
 
 enum class HeatOutcome : std::uint8_t { completed, steady, interrupted };
