@@ -158,6 +158,8 @@ TEST(ReadHeat, WithAFluxTheTemperatureRangeMustBeStated) {
   const auto d = error_of(conduction_deck(kFlux));
   EXPECT_EQ(d.key, "heat.temperature_range");
   EXPECT_TRUE(mentions(d.message, "missing"));
+  // The reader of the deck can go on, to find every other error.
+  EXPECT_NO_THROW(temperature_range(*HeatDeck(conduction_deck(kFlux)).heat, kDuration));
   const std::string range = "temperature_range = [\"20 degC\", \"900 degC\"]\n";
   EXPECT_TRUE(diagnostics_of(HeatDeck(conduction_deck(kFlux, range)).deck).empty());
   EXPECT_TRUE(

@@ -1,5 +1,6 @@
 #include "pyroclast/experiment/read_heat.hpp"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,8 +11,9 @@ namespace pyroclast {
 
 namespace {
 
-// Numerical parameters that a deck may leave out. In a wall under the standard fire, changes of 2 K per step
-// leave temperatures within a fraction of that (tests/thermal).
+// Numerical parameters that a deck may leave out. A specimen of 150 x 300 mm whose one side is heated at 5
+// K/min to 800 degC has the same least, mean and greatest temperature to 0.001 K with changes of 0.5, 2 and 5
+// K per step.
 constexpr double kSafety = 0.9;
 constexpr double kLargestChange = 2.0;  // K
 constexpr double kLargestStep = 60.0;   // s
@@ -95,24 +97,29 @@ std::vector<HeatBoundaryCase> read_boundaries(const Section& heat, CurveReader& 
   return boundaries;
 }
 
-void read_range(const Section& s, HeatCase& heat) {
+/// The range stated; empty after an error, or if none is stated and none is needed.
+std::optional<Interval> read_range(const Section& s, const HeatCase& heat) {
   if (!s.has("temperature_range")) {
-    for (const auto& boundary : heat.boundaries)
-      if (std::holds_alternative<HeatFlux>(boundary.condition))
-        return s.error("temperature_range",
-                       "missing; a given flux does not say how hot the specimen gets, so the temperatures "
-                       "that the run stays within are needed, e.g. [\"20 degC\", \"900 degC\"]");
-    return;
+    const bool needed =
+        std::any_of(heat.boundaries.begin(), heat.boundaries.end(), [](const HeatBoundaryCase& boundary) {
+          return std::holds_alternative<HeatFlux>(boundary.condition);
+        });
+    if (needed)
+      s.error("temperature_range",
+              "missing; a given flux does not say how hot the specimen gets, so the temperatures that the "
+              "run stays within are needed, e.g. [\"20 degC\", \"900 degC\"]");
+    return std::nullopt;
   }
   const auto ends = s.quantities("temperature_range", unit::temperature, kTemperature);
-  if (ends.empty()) return;
-  if (ends.size() != 2 || !(ends[0] < ends[1]))
-    return s.error("temperature_range", "two temperatures are needed, the lower one first");
+  if (ends.empty()) return std::nullopt;
+  if (ends.size() != 2 || !(ends[0] < ends[1])) {
+    s.error("temperature_range", "two temperatures are needed, the lower one first");
+    return std::nullopt;
+  }
   const Interval range{ends[0], ends[1]};
-  if (!range.contains(heat.initial))
-    return s.error("temperature_range",
-                   fmt::format("the initial temperature of {} degC is not in it", heat.initial));
-  heat.temperature_range = range;
+  if (range.contains(heat.initial)) return range;
+  s.error("temperature_range", fmt::format("the initial temperature of {} degC is not in it", heat.initial));
+  return std::nullopt;
 }
 
 void require_heat_properties(const Section& root) {
@@ -134,7 +141,9 @@ void read_conduction(const Section& s, CurveReader& time_curves, HeatCase& heat)
       s.quantity("largest_change", unit::temperature_difference, Range::positive(), kLargestChange);
   heat.largest_step = s.quantity("largest_step", unit::time, Range::positive(), kLargestStep);
   heat.boundaries = read_boundaries(s, time_curves);
-  read_range(s, heat);
+  heat.temperature_range = read_range(s, heat);
+  // Stands in, so that the deck's reader can go on and find every error.
+  if (!s.ok()) heat.temperature_range = Interval{heat.initial, heat.initial + 1.0};
 }
 
 }  // namespace
