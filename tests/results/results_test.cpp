@@ -79,7 +79,7 @@ TEST_F(Results, HistoryHasAValueForEveryColumn) {
   {
     HistoryFile history(folder_ / "history.csv");
     Sample sample;
-    sample.strain = sample.stage_strain = 0.00125;
+    sample.strain = sample.stage_strain = sample.specimen_strain = 0.00125;
     sample.stress_top = 30e6;
     sample.stress_bottom = 28e6;
     history.write(sample);
@@ -90,8 +90,8 @@ TEST_F(Results, HistoryHasAValueForEveryColumn) {
   std::getline(text, row);
   EXPECT_EQ(header, HistoryFile::header());
   EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(row.begin(), row.end(), ','));
-  EXPECT_NE(row.find("0.00125,0.00125,29,30,28"),
-            std::string::npos);  // strain twice, then mean, top and bottom stress in MPa
+  EXPECT_NE(row.find("0.00125,0.00125,0.00125,29,30,28"),
+            std::string::npos);  // strain thrice, then mean, top and bottom stress in MPa
 }
 
 TEST_F(Results, ARunFolderIsRefusedWhenItExistsAndEmptiedOnlyIfItHoldsARun) {

@@ -144,6 +144,27 @@ double Experiment::axial_strain() const {
   return (shortening - shortening_at_rest_) / height_;
 }
 
+double Experiment::specimen_strain() const {
+  const double shortening =
+      mean_displacement(mechanics_, body_.bottom_side, 1) - mean_displacement(mechanics_, body_.top_side, 1);
+  return (shortening - specimen_shortening_at_rest_) / height_;
+}
+
+double Experiment::stress_top() const {
+  double applied = 0.0;
+  for (int g : body_.top_support) applied += mechanics_.applied_force()[g][1];
+  return (total_force(mechanics_, body_.top_support, 1) - applied) / (width_ * body_.model.thickness);
+}
+
+double Experiment::stress_bottom() const {
+  return -total_force(mechanics_, body_.bottom_support, 1) / (width_ * body_.model.thickness);
+}
+
+bool Experiment::at_rest(const Coupling& c) const {
+  return std::abs(stress_top() - stress_bottom()) < c.platen_difference &&
+         mechanics_.unbalanced_ratio() < c.unbalanced_ratio;
+}
+
 Sample Experiment::measure() const {
   Sample s;
   s.stage = stage_;
@@ -155,11 +176,9 @@ Sample Experiment::measure() const {
   s.heat.maximum = field_.maximum();
   s.strain = axial_strain();
   s.stage_strain = s.strain - stage_first_strain_;
-  const double area = width_ * body_.model.thickness;
-  double applied = 0.0;
-  for (int g : body_.top_support) applied += mechanics_.applied_force()[g][1];
-  s.stress_top = (total_force(mechanics_, body_.top_support, 1) - applied) / area;
-  s.stress_bottom = -total_force(mechanics_, body_.bottom_support, 1) / area;
+  s.specimen_strain = specimen_strain();
+  s.stress_top = stress_top();
+  s.stress_bottom = stress_bottom();
   const double widening =
       mean_displacement(mechanics_, body_.right_side, 0) - mean_displacement(mechanics_, body_.left_side, 0);
   s.lateral_strain = (widening - widening_at_rest_) / width_;
@@ -196,6 +215,7 @@ void Experiment::move(const SettleStage& stage) {
 Experiment::Verdict Experiment::judge(const SettleStage& stage, const Sample& now) {
   if (now.unbalanced_ratio < stage.unbalanced_ratio) {
     shortening_at_rest_ += now.strain * height_;
+    specimen_shortening_at_rest_ += now.specimen_strain * height_;
     widening_at_rest_ += now.lateral_strain * width_;
     return {.over = true};
   }
@@ -327,7 +347,7 @@ void Experiment::cycle(const Coupling& coupling) {
     const double now = axial_strain();
     ran_away_ = may_fail && now - before > coupling.failure_strain;
     if (ran_away_) return;
-    heat_.converged = mechanics_.unbalanced_ratio() < coupling.unbalanced_ratio;
+    heat_.converged = at_rest(coupling);
     if (heat_.converged) return;
     if (steps < left) continue;
     if (!may_fail || !(now - last > kSlowSinking * coupling.failure_strain)) return;

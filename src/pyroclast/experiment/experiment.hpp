@@ -40,11 +40,12 @@ struct Sample {
   std::int64_t step = 0;
   double time = 0.0;  ///< of the mechanics, s
   HeatSample heat;
-  double strain = 0.0;          ///< approach of the platens' inner faces since settling, over the height
-  double stage_strain = 0.0;    ///< the same since the stage began
-  double stress_top = 0.0;      ///< reaction of the upper platen over the specimen's area, Pa
-  double stress_bottom = 0.0;   ///< of the lower one, Pa
-  double lateral_strain = 0.0;  ///< mean widening over the width
+  double strain = 0.0;           ///< approach of the platens' inner faces since settling, over the height
+  double stage_strain = 0.0;     ///< the same since the stage began
+  double specimen_strain = 0.0;  ///< approach of the specimen's own ends since settling, over the height
+  double stress_top = 0.0;       ///< reaction of the upper platen over the specimen's area, Pa
+  double stress_bottom = 0.0;    ///< of the lower one, Pa
+  double lateral_strain = 0.0;   ///< mean widening over the width
   double unbalanced_ratio = 0.0;
   double kinetic_over_strain = 0.0;  ///< kinetic over elastic energy
   double largest_jump = 0.0;         ///< over the length of its face
@@ -132,6 +133,10 @@ class Experiment {
   int steps_to_next_look(const CompressStage&) const;
   double ramp_share(double ramp_time) const;
   double axial_strain() const;
+  double specimen_strain() const;
+  double stress_top() const;
+  double stress_bottom() const;
+  bool at_rest(const Coupling&) const;
 
   Sample measure() const;
   void look();
@@ -148,14 +153,15 @@ class Experiment {
   int stage_ = 0;
   std::int64_t stage_first_step_ = 0;
   double stage_first_strain_ = 0.0;
-  double stage_first_stress_ = 0.0;       ///< held by the force on the upper platen, Pa
-  double shortening_at_rest_ = 0.0;       ///< m
-  double widening_at_rest_ = 0.0;         ///< m
-  double peak_stress_ = 0.0;              ///< of the stage, Pa
-  double next_frame_ = 0.0;               ///< strain or temperature
-  double stress_held_ = 0.0;              ///< by the force on the upper platen, Pa
-  double stage_first_temperature_ = 0.0;  ///< mean, °C
-  double exposure_began_ = 0.0;           ///< heating time, s
+  double stage_first_stress_ = 0.0;           ///< held by the force on the upper platen, Pa
+  double shortening_at_rest_ = 0.0;           ///< of the gap between the platens, m
+  double specimen_shortening_at_rest_ = 0.0;  ///< m
+  double widening_at_rest_ = 0.0;             ///< m
+  double peak_stress_ = 0.0;                  ///< of the stage, Pa
+  double next_frame_ = 0.0;                   ///< strain or temperature
+  double stress_held_ = 0.0;                  ///< by the force on the upper platen, Pa
+  double stage_first_temperature_ = 0.0;      ///< mean, °C
+  double exposure_began_ = 0.0;               ///< heating time, s
   int exchanges_ = 0;
   HeatSample heat_;
   bool ran_away_ = false, stop_asked_ = false;

@@ -44,6 +44,7 @@ Coupling read_coupling(const Section& s) {
   Coupling c;
   c.increment = s.quantity("exchange_increment", unit::temperature_difference, Range::positive());
   c.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive());
+  c.platen_difference = s.quantity("platen_difference", unit::stress, Range::positive());
   c.most_cycles = s.integer("most_cycles", Range::between(1, 1e12));
   c.failure_strain = s.number("failure_strain", Range::inside(0.0, 1.0));
   return c;

@@ -39,9 +39,12 @@ enum class PlatenControl : std::uint8_t {
 /// Staggered one-way coupling (paper, Fig. 2): heat to the next exchange, then mechanics at that temperature
 /// field, stepped until it rests.
 struct Coupling {
-  double increment = 0.0;         ///< change of temperature between two exchanges, K
-  double unbalanced_ratio = 0.0;  ///< the mechanics is at rest when below
-  std::int64_t most_cycles = 0;   ///< steps for one exchange; one that did not come to rest is flagged
+  double increment = 0.0;  ///< change of temperature between two exchanges, K
+  // The mechanics is at rest when both are below these. The ratio does not see a small force that acts on all
+  // gridpoints alike, such as the inertia of a specimen that expands; the platens do.
+  double unbalanced_ratio = 0.0;
+  double platen_difference = 0.0;  ///< between the stresses on the platens, Pa
+  std::int64_t most_cycles = 0;    ///< steps for one exchange; one that did not come to rest is flagged
   PlatenControl platen = PlatenControl::force;
   /// The specimen has failed when the platen sinks by this share of the height at one temperature.
   double failure_strain = 0.0;

@@ -123,10 +123,12 @@ ConcreteModel make_concrete_model(const Specimen& specimen, double platen_thickn
                        {platen_gridpoint(bottom_wall, bottom.inner, e.v0),
                         platen_gridpoint(bottom_wall, bottom.inner, e.v1)},
                        platen_interface);
+      result.bottom_side.insert(result.bottom_side.end(), a.begin(), a.end());
     } else if (x0[1] == specimen.height && x1[1] == specimen.height) {
       model.join_faces(
           a, {platen_gridpoint(top_wall, top.inner, e.v0), platen_gridpoint(top_wall, top.inner, e.v1)},
           platen_interface);
+      result.top_side.insert(result.top_side.end(), a.begin(), a.end());
     } else {
       auto& side = x0[0] == 0.0 ? result.left_side : result.right_side;
       side.insert(side.end(), a.begin(), a.end());

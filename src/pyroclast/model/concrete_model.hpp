@@ -19,7 +19,7 @@ struct ConcreteModel {
   Model<2> model;
   std::vector<int> bottom_support, top_support;  ///< outer faces of the platens
   std::vector<int> bottom_face, top_face;        ///< inner faces of the platens, left to right
-  std::vector<int> left_side, right_side;        ///< outline of the specimen
+  std::vector<int> left_side, right_side, bottom_side, top_side;  ///< outline of the specimen
   std::vector<int> platen_contacts;
 };
 

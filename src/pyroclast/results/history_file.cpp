@@ -26,6 +26,7 @@ constexpr auto kColumns = std::to_array<Column>({
     {"converged", [](const Sample& s) { return s.heat.converged ? 1.0 : 0.0; }},
     {"strain", [](const Sample& s) { return s.strain; }},
     {"stage_strain", [](const Sample& s) { return s.stage_strain; }},
+    {"specimen_strain", [](const Sample& s) { return s.specimen_strain; }},
     {"stress_MPa", [](const Sample& s) { return s.stress() * 1e-6; }},
     {"stress_top_MPa", [](const Sample& s) { return s.stress_top * 1e-6; }},
     {"stress_bottom_MPa", [](const Sample& s) { return s.stress_bottom * 1e-6; }},
