@@ -77,6 +77,33 @@ inline Model<2> column(int count, double d, double angle = 0.0) {
   return model;
 }
 
+/// Quadrilateral blocks between the images of the points (i / nx, j / ny), each cut into four zones around
+/// its centroid, joined face to face. Block j nx + i holds gridpoints 5 (j nx + i) and up: its corners, from
+/// (i, j) counter-clockwise, and its centroid. \param position  maps the unit square to the body and keeps
+/// its orientation
+template <class Map>
+Model<2> lattice(int nx, int ny, Map position) {
+  Model<2> model;
+  model.material_names = {"mortar"};
+  model.interface_names = {"mortar-mortar"};
+  const auto point = [&](int i, int j) {
+    return position(static_cast<double>(i) / nx, static_cast<double>(j) / ny);
+  };
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      const auto zoned =
+          specimen::zone_block({point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)});
+      model.add_block(zoned.gridpoints, zoned.zones, 0);
+    }
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      const int here = 5 * (j * nx + i), right = here + 5, above = here + 5 * nx;
+      if (i + 1 < nx) model.join_faces({here + 1, here + 2}, {right, right + 3}, 0);
+      if (j + 1 < ny) model.join_faces({here + 2, here + 3}, {above + 1, above}, 0);
+    }
+  return model;
+}
+
 /// The unit cube cut into five tetrahedra, each a block of its own, joined through their inner faces.
 inline Model<3> five_tetrahedra() {
   const std::vector<Vec<3>> x{{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}},

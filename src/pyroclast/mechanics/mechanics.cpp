@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -138,14 +140,11 @@ void Mechanics<Dim>::rescale_masses() {
   mass_factor_ = factor;
   moving_mass_ *= change;
   for (std::size_t g = 0; g < mass_.size(); ++g) {
+    begun_mass_scaling_ += 0.5 * (change - 1.0) * mass_[g] * dot(velocity_[g], velocity_[g]);
     mass_[g] *= change;
     step_over_mass_[g] = time_step_ / mass_[g];
   }
   for (auto& t : ties_) t.mass *= change;
-  for (double& k : kinetic_) {
-    mass_scaling_ += (change - 1.0) * k;
-    k *= change;
-  }
 }
 
 template <int Dim>
@@ -165,12 +164,13 @@ void Mechanics<Dim>::set_properties(BodyProperties properties) {
   const EnergyLedger after = energy();
   heat_ += after.zones + after.contacts + after.dissipated.total() - held_before;
   for (std::size_t g = 0; g < force_.size(); ++g)
-    heat_ -= 0.5 * begun * dot(force_[g] - old_force[g], velocity_[g]);
+    begun_heat_ -= 0.5 * begun * dot(force_[g] - old_force[g], velocity_[g]);
 
   compute_stiffness();
   if (parameters_.mass == MassChoice::scaled) {
     rescale_masses();
-  } else if (const double limit = real_mass_limit().step; limit < time_step_ * (1.0 - 1e-9)) {
+  } else if (const double limit = real_mass_limit().step / parameters_.safety;
+             limit < time_step_ * (1.0 - 1e-9)) {
     throw Error(fmt::format(
         "the body got stiffer at its new temperature: the time step {:.3g} s of its real mass is not stable "
         "any more (now {:.3g} s); start from a smaller safety, or scale the mass",
@@ -228,6 +228,10 @@ void Mechanics<Dim>::break_contact(int contact) {
 
 template <int Dim>
 void Mechanics<Dim>::advance(int steps) {
+  if (steps > 0) {
+    heat_ += std::exchange(begun_heat_, 0.0);
+    mass_scaling_ += std::exchange(begun_mass_scaling_, 0.0);
+  }
   const int faces = model_.contact_count() / Dim;
   const int blocks = model_.block_count();
 #pragma omp parallel

@@ -230,6 +230,8 @@ class Mechanics {
   std::vector<double> kinetic_;
   std::vector<Tie> ties_;
   double heat_ = 0.0, mass_scaling_ = 0.0;  ///< see EnergyLedger
+  /// What a change of properties adds to them through the half step already begun; the next step books it.
+  double begun_heat_ = 0.0, begun_mass_scaling_ = 0.0;
 };
 
 extern template BodyProperties by_interface<2>(const Model<2>&, std::vector<ZoneProperties>,
