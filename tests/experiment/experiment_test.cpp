@@ -81,6 +81,7 @@ strength_factor = 1.0
 mass = "scaled"
 time_step = "10 us"
 safety = 0.9
+viscous_damping = "500 1/s"
 local_damping = 0.8
 damping_form = "combined"
 [output]
@@ -88,8 +89,8 @@ history_strain = 1e-5
 frame_strain = 1e-3
 [coupling]
 exchange_increment = "10 K"
-unbalanced_ratio = 1e-5
-platen_difference = "1 kPa"
+unbalanced_ratio = 1e-4
+platen_difference = "2 kPa"
 most_cycles = 20000
 failure_strain = 0.005
 )DECK" + stages;
@@ -158,7 +159,7 @@ TEST(HeatStage, AnEvenBodyExpandsFreely) {
   EXPECT_DOUBLE_EQ(r.last().heat.mean, 220.0);
   EXPECT_DOUBLE_EQ(r.last().heat.time, 200.0 / (5.0 / 60.0));
   // 1 %: contacts of the platens and the weight
-  EXPECT_NEAR(r.last().strain, -2e-3, 2e-5);
+  EXPECT_NEAR(r.last().specimen_strain, -2e-3, 2e-5);
   EXPECT_NEAR(r.last().lateral_strain, 2e-3, 2e-5);
   EXPECT_EQ(r.last().cracks.tension_mm.softening, 0);
   const auto response = heating_response(r.history(), r.c.stages, r.outcome);
@@ -192,7 +193,7 @@ TEST(HeatStage, FixedPlatensTakeTheThrust) {
   EXPECT_EQ(r.outcome, Outcome::completed);
   const double expected = young * (1.0 - 0.8 * 50.0 / 800.0) * 5e-4;
   EXPECT_NEAR(r.last().stress_top, expected, 0.02 * expected);
-  EXPECT_NEAR(r.last().strain, 0.0, 1e-12);
+  EXPECT_NEAR(r.last().strain, 0.0, 0.02 * 5e-4);  // but for the platens' own give
 }
 
 // Promise: a load above the strength that is left is found: the platen runs away, and where is told.

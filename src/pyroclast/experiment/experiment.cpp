@@ -331,10 +331,11 @@ void Experiment::exchange() {
   mechanics_.set_properties(properties_at(body_.model, materials_, field_));
 }
 
-/// Steps until the body rests at its temperatures, or the stated cycles are used up. A platen that is sinking
-/// then gets more of them, until it stops or has run away.
+/// Steps until the body rests at its temperatures, or the stated cycles are used up. A specimen that is being
+/// crushed then gets more of them, until it stops or the platen has run away. The specimen's own ends tell, for
+/// a platen without load may have left them.
 void Experiment::cycle(const Coupling& coupling) {
-  const double before = axial_strain();
+  const double before = specimen_strain();
   const bool may_fail = coupling.platen == PlatenControl::force;
   double last = before;
   heat_.cycles = 0;
@@ -344,7 +345,7 @@ void Experiment::cycle(const Coupling& coupling) {
     const auto steps = static_cast<int>(std::min<std::int64_t>(left, kCyclesPerCheck));
     mechanics_.advance(steps);
     heat_.cycles += steps;
-    const double now = axial_strain();
+    const double now = specimen_strain();
     ran_away_ = may_fail && now - before > coupling.failure_strain;
     if (ran_away_) return;
     heat_.converged = at_rest(coupling);
