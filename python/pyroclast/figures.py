@@ -39,18 +39,18 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
     yield save(fracture(run, marks, magnification), place / f"fracture.{file_format}")
 
 
+def draw_properties(folder: Path, file_format: str = "png") -> Iterator[Path]:
+    """Draws the properties over the temperature into the folder's figures/; yields the path once written."""
+    table = read_properties(folder / "properties.csv")
+    yield save(properties(table), folder / "figures" / f"properties.{file_format}")
+
+
 def draw_specimen(folder: Path, file_format: str = "png") -> Iterator[Path]:
     """Draws the figures of a specimen into its figures/ folder; yields each path once written."""
     specimen = Specimen(folder)
     place = specimen.folder / "figures"
     yield save(gradation(specimen), place / f"gradation.{file_format}")
     yield save(morphology(specimen), place / f"morphology.{file_format}")
-
-
-def draw_properties(folder: Path, file_format: str = "png") -> Iterator[Path]:
-    """Draws the properties over the temperature into the folder's figures/; yields the path once written."""
-    table = read_properties(folder / "properties.csv")
-    yield save(properties(table), folder / "figures" / f"properties.{file_format}")
 
 
 def draw_comparison(folders: Sequence[Path], out: Path) -> Iterator[Path]:
