@@ -3,6 +3,7 @@
     python3 -m pyroclast.figures run RUN_DIR        RUN_DIR/figures/{stress_strain,cracks,energy,fracture}.png
     python3 -m pyroclast.figures specimen DIR       DIR/figures/{gradation,morphology}.png
     python3 -m pyroclast.figures compare RUN_DIR... --out FILE
+    python3 -m pyroclast.figures properties DIR     DIR/figures/properties.png, from DIR/properties.csv
 
 Prints the path of each figure. Ends with 1 and one line on stderr when something is missing or malformed.
 """
@@ -16,6 +17,7 @@ from pathlib import Path
 
 from .curves import compare, stress_strain
 from .progress import cracks, energy
+from .properties import properties, read_properties
 from .run import Run, RunError, Specimen
 from .sections import fracture, gradation, morphology, select_frames
 from .style import save
@@ -35,6 +37,12 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
         path = run.folder / "fields" / "frames.csv"
         raise RunError(f"{path}: no frame of the loading stage; fracture cannot be drawn")
     yield save(fracture(run, marks, magnification), place / f"fracture.{file_format}")
+
+
+def draw_properties(folder: Path, file_format: str = "png") -> Iterator[Path]:
+    """Draws the properties over the temperature into the folder's figures/; yields the path once written."""
+    table = read_properties(folder / "properties.csv")
+    yield save(properties(table), folder / "figures" / f"properties.{file_format}")
 
 
 def draw_specimen(folder: Path, file_format: str = "png") -> Iterator[Path]:
@@ -80,6 +88,11 @@ def _parser() -> argparse.ArgumentParser:
     comparison.add_argument("folders", type=Path, nargs="+", metavar="RUN_DIR")
     comparison.add_argument("--out", type=Path, required=True, metavar="FILE")
     comparison.set_defaults(draw=lambda asked: draw_comparison(asked.folders, asked.out))
+
+    properties_command = commands.add_parser("properties", help="properties over the temperature")
+    properties_command.add_argument("folder", type=Path, metavar="DIR")
+    properties_command.add_argument("--format", choices=_FORMATS, default="png")
+    properties_command.set_defaults(draw=lambda asked: draw_properties(asked.folder, asked.format))
     return parser
 
 

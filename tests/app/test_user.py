@@ -55,6 +55,27 @@ class UserTest(unittest.TestCase):
                               timeout=300, check=False, **options)
 
 
+class Properties(UserTest):
+    def test_are_tabulated_as_the_run_has_them_and_drawn(self):
+        deck = STARTER.replace('E = "29.4 GPa"', 'E = { value = "29.4 GPa", times = "glasgow_modulus" }\n'
+                                                 'expansion = { builtin = "paper_mortar_expansion" }')
+        deck = deck.replace("[contacts.mortar_mortar]", "[contacts.mortar_mortar]\n"
+                            'temperature_ratio = { builtin = "en1992_siliceous_strength" }')
+        done = self.pyroclast("plot-properties", self.write(deck), "-o", "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.folder / "out" / "properties.csv", newline="") as file:
+            values = {(row["property"], row["temperature_degC"]): row for row in csv.DictReader(file)}
+        modulus = values["materials.mortar.E", "520"]
+        self.assertEqual((modulus["unit"], float(modulus["value"])), ("Pa", 0.25 * 29.4e9))
+        self.assertAlmostEqual(float(modulus["ratio_to_20_degC"]), 0.25, places=12)
+        self.assertAlmostEqual(float(values["contacts.mortar_mortar.f_t", "600"]["value"]), 0.45 * 2.5e6, places=3)
+        # Eq. (18), secant
+        self.assertAlmostEqual(float(values["materials.mortar.thermal_strain", "600"]["value"]),
+                               (9e-7 - 6e-11 * 600**2) * 580, places=12)
+        self.assertGreater((self.folder / "out" / "figures" / "properties.png").stat().st_size, 10_000)
+        self.assertIn("glasgow_modulus", done.stdout)
+
+
 class Running(UserTest):
     def test_a_run_writes_everything_it_promises(self):
         deck = self.write(small_deck())

@@ -85,7 +85,8 @@ TEST(ThermalStrain, TangentNeedsTheReferenceTemperature) {
 
 TEST(ThermalStrain, SaysWhereItComesFrom) {
   const Curve aggregate = strain("paper_aggregate_expansion", ExpansionReading::tangent);
-  EXPECT_NE(aggregate.describe().find("integral from 20 degC of built-in curve paper_aggregate_expansion"),
+  EXPECT_NE(aggregate.describe().find(
+                "integral of alpha from 20 degC, alpha built-in curve paper_aggregate_expansion"),
             std::string::npos)
       << aggregate.describe();
 }

@@ -25,11 +25,17 @@ struct LawOptions {
   int steps = 1;  ///< each leg of the path is cut into as many
 };
 
+struct PropertiesOptions {
+  std::filesystem::path deck;
+  std::filesystem::path out;  ///< empty: runs/<name of the deck>-properties
+};
+
 // Each returns the exit code and throws Error for the user.
 int check(const RunOptions& options);
 int make_specimen(const RunOptions& options);
 int run(const RunOptions& options);
 int law(const LawOptions& options);
+int plot_properties(const PropertiesOptions& options);
 int make_deck(const std::string& name);
 
 /// Draws the figures of a folder with the Python package; warns when that is not possible. `what` is its

@@ -69,6 +69,13 @@ int command_line(int argc, char** argv) {
       ->default_val(1);
   law->add_option("-o,--out", law_options.out, "CSV file to write (default: standard output)");
 
+  app::PropertiesOptions properties_options;
+  auto* properties = cli.add_subcommand("plot-properties",
+                                        "Draw and tabulate the properties of a deck over the temperature");
+  add_deck(properties, properties_options.deck);
+  properties->add_option("-o,--out", properties_options.out,
+                         "Folder for table and figure (default: runs/<name of the deck>-properties)");
+
   std::string name;
   auto* starter = cli.add_subcommand("new", "Write a commented starter deck");
   starter->add_option("NAME", name, "The deck will be NAME.toml")->required();
@@ -78,6 +85,7 @@ int command_line(int argc, char** argv) {
   if (*check) return app::check(options);
   if (*specimen) return app::make_specimen(options);
   if (*law) return app::law(law_options);
+  if (*properties) return app::plot_properties(properties_options);
   return app::make_deck(name);
 }
 

@@ -217,6 +217,10 @@ Curve Curve::described_as(std::string description) const {
           std::make_shared<Label>(Label{label_->name, std::move(description), label_->axis})};
 }
 
+const std::string& Curve::description() const {
+  return label_->description;
+}
+
 std::string Curve::describe() const {
   if (is_constant()) return label_->description;
   return fmt::format("{}, {} = {}", label_->description, label_->axis.symbol, to_text(range_, label_->axis));

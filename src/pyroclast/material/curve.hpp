@@ -86,6 +86,8 @@ class Curve {
   /// The same curve with another text for describe(), e.g. where it comes from.
   Curve described_as(std::string description) const;
 
+  /// Kind and origin.
+  const std::string& description() const;
   /// One line for the manifest of a run: kind, origin and range.
   std::string describe() const;
 

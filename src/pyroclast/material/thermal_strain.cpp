@@ -52,7 +52,8 @@ Curve secant_strain(const Curve& expansion, Interval range) {
                                   {range.lower - kReferenceTemperature, range.upper - kReferenceTemperature},
                                   temperature_axis());
   return (expansion * rise)
-      .described_as(fmt::format("alpha(T) (T - {}) of {}", kReferenceTemperature, expansion.describe()));
+      .described_as(
+          fmt::format("alpha(T) (T - {}), alpha {}", kReferenceTemperature, expansion.description()));
 }
 
 Curve tangent_strain(const Curve& expansion, Interval range) {
@@ -62,7 +63,7 @@ Curve tangent_strain(const Curve& expansion, Interval range) {
                     expansion.describe(), kReferenceTemperature, range.lower, range.upper));
   const auto strain = std::make_shared<const Integral>(expansion, range);
   return Curve::function(
-      fmt::format("integral from {} degC of {}", kReferenceTemperature, expansion.describe()),
+      fmt::format("integral of alpha from {} degC, alpha {}", kReferenceTemperature, expansion.description()),
       [strain](double T) { return (*strain)(T); }, range, temperature_axis());
 }
 

@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "pyroclast/app/load.hpp"
+#include "pyroclast/results/text_file.hpp"
+
+namespace pyroclast::app {
+
+namespace {
+
+/// Temperatures that are drawn at least, as far as a curve has them: those of the paper's Figs. 10 and 11,
+/// °C.
+constexpr Interval kDrawn{20.0, 800.0};
+
+/// Greatest distance of two rows, K: small enough to show the jump of the standards' specific heat at 100 °C.
+constexpr double kTemperatureStep = 1.0;
+
+void add_solid(const SolidMaterial& solid, const std::string& name, std::vector<ReadCurve>& list) {
+  const auto add = [&](const char* key, const Unit& unit, const Curve& curve) {
+    list.push_back({fmt::format("materials.{}.{}", name, key), unit.si, curve});
+  };
+  add("E", unit::stress, solid.young);
+  add("density", unit::density, solid.density);
+  add("thermal_strain", unit::dimensionless, solid.thermal_strain);
+  if (solid.conductivity) add("conductivity", unit::conductivity, *solid.conductivity);
+  if (!solid.specific_heat) return;
+  add("specific_heat", unit::specific_heat, *solid.specific_heat);
+  list.push_back(
+      {fmt::format("materials.{}.heat_capacity", name), "J/m3/K", solid.density * *solid.specific_heat});
+}
+
+void add_contact(const ContactMaterial& contact, const std::string& name, std::vector<ReadCurve>& list) {
+  const auto add = [&](const char* key, const Unit& unit, const Curve& curve) {
+    list.push_back({fmt::format("contacts.{}.{}", name, key), unit.si, curve});
+  };
+  add("K_n", unit::stiffness_per_area, contact.normal_stiffness);
+  add("K_s", unit::stiffness_per_area, contact.shear_stiffness);
+  add("f_t", unit::stress, contact.tensile_strength);
+  add("G_f1", unit::fracture_energy, contact.mode_1_energy);
+  add("f_cm", unit::stress, contact.compressive_limit);
+  add("c_o", unit::stress, contact.cohesion);
+  add("c_res", unit::stress, contact.residual_cohesion);
+  add("G_f2", unit::fracture_energy, contact.mode_2_energy);
+}
+
+/// Properties as a run has them, and whatever else the deck gives over the temperature, such as an expansion
+/// coefficient.
+std::vector<ReadCurve> properties_of(const Case& c) {
+  const ConcreteMaterials concrete = make_concrete(c.solids, c.contacts, expected_block_size(c));
+  std::vector<ReadCurve> list;
+  add_solid(concrete.solids[aggregate_material], "aggregate", list);
+  add_solid(concrete.solids[mortar_material], "mortar", list);
+  add_solid(concrete.solids[platen_material], "platen", list);
+  add_contact(concrete.contacts[mortar_mortar], "mortar_mortar", list);
+  add_contact(concrete.contacts[aggregate_mortar], "aggregate_mortar", list);
+  for (const ReadCurve& read : c.curves) {
+    const bool listed =
+        std::ranges::any_of(list, [&](const ReadCurve& other) { return other.path == read.path; });
+    if (!listed) list.push_back(read);
+  }
+  return list;
+}
+
+Interval drawn_range(const ReadCurve& property, const Interval& run) {
+  const Interval own = property.curve.range();
+  return {std::max(own.lower, std::min(run.lower, kDrawn.lower)),
+          std::min(own.upper, std::max(run.upper, kDrawn.upper))};
+}
+
+std::string rows(const ReadCurve& property, const Interval& range) {
+  const Curve& curve = property.curve;
+  const double reference = curve.range().contains(kReferenceTemperature) ? curve(kReferenceTemperature) : 0.0;
+  const int steps = std::max(1, static_cast<int>(std::ceil((range.upper - range.lower) / kTemperatureStep)));
+  std::string text;
+  for (int i = 0; i <= steps; ++i) {
+    const double T = i == steps ? range.upper : range.lower + i * (range.upper - range.lower) / steps;
+    const double value = curve(T);
+    const double ratio = reference != 0.0 ? value / reference : std::numeric_limits<double>::quiet_NaN();
+    text += fmt::format("{},{},{:.12g},{:.12g},{:.12g}\n", property.path, property.unit, T, value, ratio);
+  }
+  return text;
+}
+
+/// What the deck gives, one line for each curve.
+void print(const std::vector<ReadCurve>& curves) {
+  for (const auto& [path, unit, curve] : curves)
+    fmt::print("{:<42}{} {}\n", path, curve.describe(), unit == "1" ? "" : "[" + unit + "]");
+}
+
+}  // namespace
+
+int plot_properties(const PropertiesOptions& options) {
+  const Deck deck = Deck::load(options.deck);
+  const Case c = read_case(deck, options.deck.parent_path());
+  std::string csv = "property,unit,temperature_degC,value,ratio_to_20_degC\n";
+  for (const ReadCurve& property : properties_of(c))
+    csv += rows(property, drawn_range(property, c.temperatures));
+  const std::filesystem::path out =
+      options.out.empty() ? std::filesystem::path("runs") / (options.deck.stem().string() + "-properties")
+                          : options.out;
+  std::filesystem::create_directories(out);
+  write_text_file(out / "properties.csv", csv);
+  print(c.curves);
+  fmt::print("{}\n", (out / "properties.csv").string());
+  draw_figures("properties", out);
+  return 0;
+}
+
+}  // namespace pyroclast::app
