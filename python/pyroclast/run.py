@@ -1,13 +1,14 @@
 """Reader of run and specimen folders.
 
-SI units, stress in MPa where a name says so; strain and stress of the test positive in compression.
+SI units, temperature in °C, stress in MPa where a name says so. Strain and stress of the test are positive in
+compression; only `Run.total_strain` is positive in expansion.
 """
 
 from __future__ import annotations
 
 import csv
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -21,6 +22,7 @@ AGGREGATE_AGGREGATE, AGGREGATE_MORTAR, MORTAR_MORTAR, PLATEN_CONTACT = 0, 1, 2, 
 """Values of `ContactMesh.interface`."""
 
 _VTK_LINE, _VTK_TRIANGLE = 3, 5
+_UNIFORM = 1.0  # K
 
 
 class RunError(Exception):
@@ -64,6 +66,9 @@ class Table:
         if name not in self._columns:
             raise RunError(f"{self.path}: has no column '{name}'")
         return self._columns[name]
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._columns
 
     def __len__(self) -> int:
         return len(self._columns[self.names[0]])
@@ -114,6 +119,8 @@ class Frame:
     time: float  #: s
     strain: float
     stress: float  #: MPa
+    temperature: float | None = None  #: °C, mean of the specimen; None when the run did not write it
+    heating_time: float | None = None  #: s since heating began; None when the run did not write it
 
 
 class Run:
@@ -141,15 +148,96 @@ class Run:
     @property
     def compression(self) -> dict:
         """E_GPa, f_c_MPa, strain_at_peak, strain_ic; empty when the run reached no peak."""
-        values = self.summary.get("compression") or {}
+        return self._summary_object("compression")
+
+    @property
+    def heating(self) -> dict:
+        """load_level, load_stress_MPa, critical_temperature_degC, platen, ...; empty when it was not heated."""
+        return self._summary_object("heating")
+
+    def _summary_object(self, name: str) -> dict:
+        values = self.summary.get(name) or {}
         if not isinstance(values, dict):
-            raise RunError(f"{self.folder / 'summary.json'}: 'compression' is neither an object nor null")
+            raise RunError(f"{self.folder / 'summary.json'}: '{name}' is neither an object nor null")
         return values
+
+    def _heating_number(self, name: str) -> float | None:
+        value = self.heating.get(name)
+        if value is not None and (isinstance(value, bool) or not isinstance(value, (int, float))):
+            raise RunError(f"{self.folder / 'summary.json'}: 'heating': '{name}' is neither a number nor null")
+        return value
+
+    @property
+    def load_stress(self) -> float | None:
+        """Compressive stress [MPa] kept while heated."""
+        return self._heating_number("load_stress_MPa")
+
+    @property
+    def load_level(self) -> float | None:
+        """`load_stress` over the strength at 20 °C; None when that strength is not known."""
+        level = self._heating_number("load_level")
+        return 0.0 if level is None and self.load_stress == 0.0 else level
+
+    @property
+    def critical_temperature(self) -> float | None:
+        """Temperature [°C] at which the specimen failed under its load; None when it did not."""
+        return self._heating_number("critical_temperature_degC")
+
+    @property
+    def restrained(self) -> bool:
+        """Whether the platens were held in place while the specimen was heated."""
+        return self.heating.get("platen") == "fixed"
 
     @property
     def quasi_static(self) -> bool | None:
         """The run's own verdict; None when it gave none."""
         return self.summary.get("quasi_static")
+
+    @cached_property
+    def exchanged(self) -> np.ndarray:
+        """(rows,) bool: rows of the history written after an exchange of temperatures."""
+        if "exchange" not in self.history:
+            return np.zeros(len(self.history), dtype=bool)
+        return self.history["exchange"] > 0
+
+    @cached_property
+    def heated(self) -> np.ndarray:
+        """(rows,) bool: `exchanged` and the row before, from which heating started; none if never heated."""
+        rows = self.exchanged.copy()
+        if rows.any():
+            rows[max(int(rows.argmax()) - 1, 0)] = True
+        return rows
+
+    @property
+    def ends_heated(self) -> bool:
+        """Whether the last stage heats; the test is then the heating, else the loading that follows."""
+        stage = self.history["stage"]
+        return bool(self.exchanged[stage == stage.max()].any())
+
+    def heated_history(self, name: str) -> np.ndarray:
+        """A column of the history, rows of `heated` only."""
+        return self.history[name][self.heated]
+
+    @property
+    def total_strain(self) -> np.ndarray:
+        """Axial strain over the rows of `heated`, positive in expansion, that of the load included."""
+        return -self.heated_history("strain")
+
+    @property
+    def uniform(self) -> bool:
+        """Whether the specimen's temperatures never differed by more than 1 K."""
+        spread = self.heated_history("temperature_max_degC") - self.heated_history("temperature_min_degC")
+        return bool((spread <= _UNIFORM).all())
+
+    @property
+    def unconverged(self) -> np.ndarray:
+        """(rows,) bool: exchanges whose cycles did not reach equilibrium, but for the one of the failure."""
+        rows = self.exchanged.copy()
+        if rows.any():
+            rows &= self.history["converged"] == 0
+        if self.critical_temperature is not None:
+            rows[np.flatnonzero(self.exchanged)[-1:]] = False
+        return rows
 
     @cached_property
     def loaded(self) -> np.ndarray:
@@ -165,8 +253,19 @@ class Run:
         return self.history[name][self.loaded]
 
     @property
+    def strain_before(self) -> float:
+        """Strain from which the last stage's is counted: that before it, if heat left one, else zero."""
+        first = int(self.loaded.argmax())
+        return float(self.history["strain"][first - 1]) if self.exchanged[:first].any() else 0.0
+
+    @property
+    def loaded_strain(self) -> np.ndarray:
+        """Strain over the rows of `loaded`, less `strain_before`."""
+        return self.loaded_history("strain") - self.strain_before
+
+    @property
     def peak(self) -> tuple[float, float]:
-        """Strain and stress [MPa] where the history's stress is largest, whether or not the test went on.
+        """`loaded_strain` and stress [MPa] where the history's stress is largest, even if the test ended there.
 
         Throws RunError when the specimen was never compressed.
         """
@@ -175,7 +274,14 @@ class Run:
         if stress[row] <= 0.0:
             path = self.history.path
             raise RunError(f"{path}: column 'stress_MPa' is never positive; the specimen was not compressed")
-        return float(self.loaded_history("strain")[row]), float(stress[row])
+        return float(self.loaded_strain[row]), float(stress[row])
+
+    @property
+    def strength_retained(self) -> float | None:
+        """Largest stress after heating over the strength before; None when the summary does not tell that."""
+        if self.ends_heated or not self.load_level or not self.load_stress:
+            return None
+        return self.peak[1] * self.load_level / self.load_stress
 
     @cached_property
     def frames(self) -> list[Frame]:
@@ -184,18 +290,31 @@ class Run:
         if not path.exists():
             return []
         t = Table(path, may_be_empty=True)
+        heat = [t[name] if name in t else [None] * len(t) for name in ("temperature_degC", "heating_time_s")]
         return [
-            Frame(int(number), int(stage), int(step), time, strain, stress)
-            for number, stage, step, time, strain, stress in zip(
-                t["frame"], t["stage"], t["step"], t["time_s"], t["strain"], t["stress_MPa"]
+            Frame(int(number), int(stage), int(step), *values)
+            for number, stage, step, *values in zip(
+                t["frame"], t["stage"], t["step"], t["time_s"], t["strain"], t["stress_MPa"], *heat
             )
         ]
 
     @property
     def loaded_frames(self) -> list[Frame]:
-        """Frames of the history's last stage."""
-        last = self.history["stage"].max()
-        return [frame for frame in self.frames if frame.stage == last]
+        """Frames of the history's last stage, their strain less `strain_before`."""
+        last, before = self.history["stage"].max(), self.strain_before
+        return [replace(frame, strain=frame.strain - before) for frame in self.frames if frame.stage == last]
+
+    @property
+    def heated_frames(self) -> list[Frame]:
+        """Frames of all stages that heat; throws RunError when there is none or they have no temperature."""
+        path = self.folder / "fields" / "frames.csv"
+        stages = set(self.history["stage"][self.exchanged])
+        frames = [frame for frame in self.frames if frame.stage in stages]
+        if not frames:
+            raise RunError(f"{path}: no frame of a heating stage")
+        if frames[0].temperature is None:
+            raise RunError(f"{path}: has no column 'temperature_degC'")
+        return frames
 
     @cached_property
     def mesh(self) -> Mesh:
@@ -205,6 +324,10 @@ class Run:
         """(N, 2), m."""
         shape = (len(self.mesh.blocks.points), 3)
         return self._field("blocks", frame, "PointData/displacement", shape)[:, :2]
+
+    def gridpoint_temperature(self, frame: Frame) -> np.ndarray:
+        """(N,), °C."""
+        return self._field("blocks", frame, "PointData/temperature", (len(self.mesh.blocks.points),))
 
     def contact_displacement(self, frame: Frame) -> np.ndarray:
         """(2C, 2), m, of the points of the contact mesh."""
