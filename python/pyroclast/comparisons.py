@@ -56,13 +56,13 @@ def _by_load(runs: Sequence[Run]) -> list[_Group]:
     """Runs of one load level, or of one stress where the level is not known, lowest first; others alone."""
     together: dict[tuple, list[Run]] = {}
     for run, name in zip(runs, names_apart(runs)):
-        if run.load_level is not None:
+        if run.restrained or run.load_stress is None:
+            key = (2, 0.0, name)
+        elif run.load_level is not None:
             band = reference.strain_band(run.load_level)
             key = (0, band.level if band else round(run.load_level, 3), "")
-        elif run.load_stress is not None:
-            key = (1, round(run.load_stress, 3), "")
         else:
-            key = (2, 0.0, name)
+            key = (1, round(run.load_stress, 3), "")
         together.setdefault(key, []).append(run)
     others = cycle(_OTHER_COLOURS)
     return [_Group(style.load_label(together[key][0]) or key[2],
@@ -73,9 +73,9 @@ def _by_load(runs: Sequence[Run]) -> list[_Group]:
 def _label(group: _Group) -> str:
     lines = [group.label]
     if len(group.runs) > 1:
-        lines.append(f"mean of {len(group.runs)}, as far as all go; thin: each")
+        lines.append(f"mean of {len(group.runs)}; thin: each")
     if failed := [run.critical_temperature for run in group.runs if run.critical_temperature is not None]:
-        lines.append(f"failed at {', '.join(f'{t:.0f}' for t in sorted(failed))} °C")
+        lines.append(f"✖ before failure at {', '.join(f'{t:.0f}' for t in sorted(failed))} °C")
     if missed := sum(int(run.unconverged.sum()) for run in group.runs):
         lines.append(f"{missed} EXCHANGES NOT CONVERGED")
     return "\n".join(textwrap.fill(line, 34) for line in lines)
@@ -92,7 +92,7 @@ def compare_total_strain(runs: Sequence[Run]) -> Figure:
         if band := reference.strain_band(group.runs[0].load_level):
             bands.append(band)
             draw_band(axes, band, group.colour)
-        _draw_group(axes, group, lambda run: style.PER_MILLE * run.total_strain)
+        _draw_group(axes, group)
     axes.axhline(0.0, color=style.BLACK, linewidth=0.6)
     axes.set_ylim(*strain_limits(runs, bands))
     axes.set_xlabel(_temperature_label(runs))
@@ -151,18 +151,18 @@ def _broken(course, mode: str):
     return course[f"{mode}_am_broken"] + course[f"{mode}_mm_broken"]
 
 
-def _draw_group(axes: Axes, group: _Group, values_of: Callable) -> None:
-    curves = [(run.heated_history("temperature_degC"), values_of(run)) for run in group.runs]
+def _draw_group(axes: Axes, group: _Group) -> None:
+    curves = [(run.history["temperature_degC"][run.standing], style.PER_MILLE * -run.history["strain"][run.standing])
+              for run in group.runs]
     if len(curves) == 1:
         axes.plot(*curves[0], color=group.colour, linewidth=1.8, label=_label(group))
     else:
         for curve in curves:
             axes.plot(*curve, color=group.colour, linewidth=0.5)
         axes.plot(*mean_of(curves), color=group.colour, linewidth=2.0, label=_label(group))
-    for (temperature, values), run in zip(curves, group.runs):
+    for (temperature, strain), run in zip(curves, group.runs):
         if run.critical_temperature is not None:
-            row = max(len(values) - 2, 0)  # the last before the one that failed
-            axes.plot(temperature[row], values[row], "X", color=group.colour, markeredgecolor=style.BLACK,
+            axes.plot(temperature[-1], strain[-1], "X", color=group.colour, markeredgecolor=style.BLACK,
                       markeredgewidth=0.5, markersize=6.0, zorder=4)
 
 

@@ -85,26 +85,31 @@ def levels(runs: Sequence[Run], temperatures: Sequence[float] = LEVEL_TEMPERATUR
     if not runs:
         raise RunError("levels: no runs were given")
     ordered = sorted(runs, key=lambda run: (run.load_level is None, run.load_level or 0.0))
-    rows = [(_row_label(run), _row(run, temperatures)) for run in ordered]
-    warned = [title for run in ordered if (title := style.title_of(run)) != run.title]
-    return fracture_panels(rows, "\n".join(warned), magnification, _NOTE)
+    rows = [(label, _row(run, temperatures)) for run, label in zip(ordered, _row_labels(ordered))]
+    return fracture_panels(rows, "", magnification, _NOTE)
+
+
+def _row_labels(runs: Sequence[Run]) -> list[str]:
+    """Load, and where that does not tell the runs apart also the folder; then warnings."""
+    loads = [style.load_label(run) for run in runs]
+    names = [run.folder.resolve().name if not load or loads.count(load) > 1 else "" for run, load in zip(runs, loads)]
+    return ["\n".join([", ".join(filter(None, [load, name])), *style.warnings_of(run)])
+            for run, load, name in zip(runs, loads, names)]
 
 
 def _row(run: Run, temperatures: Sequence[float]) -> list[Panel]:
-    frames = run.heated_frames
-    panels = []
-    for temperature in temperatures:
-        if frame := frame_near(frames, temperature):
-            panels.append(_panel(run, frame))
-        else:
-            reached = max(frame.temperature for frame in frames) >= temperature
-            missing = f"no frame within\n{_NEAR:g} K of {temperature:g} °C" if reached else "not reached"
-            panels.append(Panel(run, None, f"{temperature:g} °C", missing))
-    return [*panels, _panel(run, frames[-1])]
+    frames, failed = run.heated_frames, run.critical_temperature is not None
+    return [*(_panel_near(run, frames[:-1] if failed else frames, temperature) for temperature in temperatures),
+            _panel(run, frames[-1])]
 
 
-def _row_label(run: Run) -> str:
-    return style.load_label(run) or run.title
+def _panel_near(run: Run, frames: Sequence[Frame], temperature: float) -> Panel:
+    if frames and (frame := frame_near(frames, temperature)):
+        return _panel(run, frame)
+    missing = f"no frame within\n{_NEAR:g} K"
+    if run.history["temperature_degC"][run.standing].max() < temperature - _NEAR:
+        missing = "not reached" if run.critical_temperature is None else "failed before"
+    return Panel(run, None, f"{temperature:g} °C", missing)
 
 
 def _panel(run: Run, frame: Frame) -> Panel:
@@ -117,7 +122,7 @@ def _panel(run: Run, frame: Frame) -> Panel:
     counts = count_cracks(run, frame)
     stress = f"$\\sigma$ = {frame.stress:.1f} MPa\n" if run.restrained else ""
     caption = (
-        f"$\\varepsilon_{{tot}}$ = {-style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$\n{stress}"
+        f"$\\varepsilon_{{\\mathrm{{tot}}}} = {-style.PER_MILLE * frame.strain:.2f}\\times 10^{{-3}}$\n{stress}"
         f"tension: {counts['tension', True]} | {counts['tension', False]}\n"
         f"shear: {counts['shear', True]} | {counts['shear', False]}"
     )

@@ -63,7 +63,7 @@ def _two_over_temperature(run: Run) -> tuple[Figure, Axes, Axes, Axes]:
     lateral = style.PER_MILLE * run.heated_history("lateral_strain")
     lower.plot(run.heated_history("temperature_degC"), lateral, color=style.BLUE)
     lower.axhline(0.0, color=style.BLACK, linewidth=0.6)
-    lower.set_ylim(*_padded(lateral[_in_balance(run)]))
+    lower.set_ylim(*_padded(lateral[run.standing[run.heated]]))
     lower.set_ylabel("Lateral strain, expansion\npositive [$10^{-3}$]")
     lower.set_xlabel(temperature_label(run))
     _mark_failure(lower, run)
@@ -81,16 +81,9 @@ def draw_band(axes: Axes, band: reference.StrainBand, colour: str, label: str | 
 
 
 def strain_limits(runs: Sequence[Run], bands: Sequence[reference.StrainBand]) -> tuple[float, float]:
-    """Limits [10^-3] that show bands and total strains as long as these are in balance, not a failure's run-off."""
-    strains = [run.total_strain[_in_balance(run)] for run in runs]
+    """Limits [10^-3] that show bands and total strains, but not how far a failing specimen went."""
+    strains = [run.total_strain[run.standing[run.heated]] for run in runs]
     return _padded(style.PER_MILLE * np.concatenate([*strains, *(x for b in bands for x in (b.low, b.high))]))
-
-
-def _in_balance(run: Run) -> np.ndarray:
-    """Of the rows of `heated`, those that reached equilibrium, and the first in any case."""
-    converged = run.heated_history("converged") > 0
-    converged[0] = True
-    return converged
 
 
 def _padded(values: np.ndarray) -> tuple[float, float]:

@@ -153,7 +153,7 @@ def energy(course: Course) -> Figure:
                label="work put in\n(loading, gravity, heat)")
     if course["energy_heat_J"].any():
         upper.plot(course.over, course["energy_heat_J"], color=style.PURPLE, linewidth=1.4,
-                   linestyle=(0, (1.5, 1)), label="of it by heat")
+                   linestyle=(0, (1.5, 1)), label="by heat alone")
     upper.set_xlim(course.start, course.over.max())
     upper.tick_params(labelbottom=False)
     if min(work_in.min(), course["energy_heat_J"].min()) >= 0.0:

@@ -219,6 +219,19 @@ class Run:
         return self.history[name][self.heated]
 
     @property
+    def standing(self) -> np.ndarray:
+        """(rows,) bool: rows of `heated`, without that of the exchange at which the specimen failed."""
+        return self.heated & ~self._failing
+
+    @property
+    def _failing(self) -> np.ndarray:
+        rows = np.zeros(len(self.history), dtype=bool)
+        if self.critical_temperature is not None:
+            rows[np.flatnonzero(self.exchanged)[-1:]] = True
+            rows &= self.history["converged"] == 0
+        return rows
+
+    @property
     def total_strain(self) -> np.ndarray:
         """Axial strain over the rows of `heated`, positive in expansion, that of the load included."""
         return -self.heated_history("strain")
@@ -231,13 +244,10 @@ class Run:
 
     @property
     def unconverged(self) -> np.ndarray:
-        """(rows,) bool: exchanges whose cycles did not reach equilibrium, but for the one of the failure."""
-        rows = self.exchanged.copy()
-        if rows.any():
-            rows &= self.history["converged"] == 0
-        if self.critical_temperature is not None:
-            rows[np.flatnonzero(self.exchanged)[-1:]] = False
-        return rows
+        """(rows,) bool: exchanges whose cycles did not reach equilibrium, without that of the failure."""
+        if not self.exchanged.any():
+            return self.exchanged
+        return self.exchanged & (self.history["converged"] == 0) & ~self._failing
 
     @cached_property
     def loaded(self) -> np.ndarray:

@@ -127,7 +127,7 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
         all_axes = [figure.add_subplot(grid[row, column]) for column in range(len(panels))]
         for axes, panel in zip(all_axes, panels):
             _draw_panel(axes, panel, magnification, columns)
-        all_axes[0].set_ylabel(label, fontsize=9.0)
+        all_axes[0].set_ylabel(label)
         if row == 0:
             draw_scale_bar(all_axes[0], panels[0].run.mesh.blocks)
     figure.suptitle(f"{heading}\ndisplacements ×{magnification:g}".lstrip(), fontsize=9.0)

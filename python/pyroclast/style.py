@@ -60,7 +60,12 @@ def legend_alone(axes: Axes, handles: list, labels: list[str], **options) -> Non
 
 
 def title_of(run) -> str:
-    """A run's title, with warnings: not quasi-static or not said to be, exchanges that did not converge."""
+    """A run's title, with its warnings."""
+    return " – ".join([run.title, *warnings_of(run)])
+
+
+def warnings_of(run) -> list[str]:
+    """That a run is not quasi-static or does not say, and how many exchanges did not converge."""
     warnings = []
     if run.quasi_static is None and not run.ends_heated:
         warnings.append("not stated whether quasi-static")
@@ -68,11 +73,13 @@ def title_of(run) -> str:
         warnings.append("NOT QUASI-STATIC")
     if missed := int(run.unconverged.sum()):
         warnings.append(f"{missed} OF {int(run.exchanged.sum())} EXCHANGES NOT CONVERGED")
-    return " – ".join([run.title, *warnings])
+    return warnings
 
 
 def load_label(run) -> str:
-    """Load kept while heated, as level where that is known, else as stress; empty when the run has neither."""
+    """Load kept while heated, as level where that is known, else as stress; empty when none was kept."""
+    if run.restrained:
+        return ""
     if run.load_level is not None:
         return f"$\\sigma/f_c$ = {run.load_level:g}"
     return "" if run.load_stress is None else f"$\\sigma$ = {run.load_stress:g} MPa"
