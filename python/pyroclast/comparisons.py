@@ -35,12 +35,18 @@ def compare_runs(runs: Sequence[Run], what: str | None = None) -> Figure:
 
 
 def _common_kind(runs: Sequence[Run]) -> str:
-    kinds = [("thrust" if run.restrained else "total-strain") if run.ends_heated else "stress-strain" for run in runs]
-    for run, kind in zip(runs, kinds):
-        if kind != kinds[0]:
-            raise RunError(f"compare: {run.folder} would be compared by {kind}, but {runs[0].folder} by {kinds[0]}; "
-                           "choose with --what")
-    return kinds[0]
+    first = _kind(runs[0])
+    for run in runs:
+        if _kind(run) != first:
+            raise RunError(f"compare: {run.folder} would be compared by {_kind(run)}, but {runs[0].folder} "
+                           f"by {first}; choose with --what")
+    return first
+
+
+def _kind(run: Run) -> str:
+    if not run.ends_heated:
+        return "stress-strain"
+    return "thrust" if run.restrained else "total-strain"
 
 
 @dataclass(frozen=True)
@@ -83,7 +89,7 @@ def _label(group: _Group) -> str:
 
 @matplotlib.rc_context(style.STYLE)
 def compare_total_strain(runs: Sequence[Run]) -> Figure:
-    """Total strain over temperature, one colour a load level, on the references' ranges (paper, Figure 12)."""
+    """Total strain over temperature, one colour a load level, on the reference bands (paper, Figure 12)."""
     _demand_heated(runs)
     figure = style.new_figure(4.2)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
@@ -122,9 +128,9 @@ def compare_thrust(runs: Sequence[Run]) -> Figure:
 
 @matplotlib.rc_context(style.STYLE)
 def compare_cracks(runs: Sequence[Run]) -> Figure:
-    """Broken contact points by mode, and the mean opening: while heated, or over strain when none ends heated."""
+    """Broken contact points by mode and the mean opening: while heated, or over strain if none ends heated."""
     if len({run.ends_heated for run in runs}) > 1:
-        raise RunError("compare: cracks of runs that end heated and of runs that end compressed have no common axis")
+        raise RunError("compare: cracks of runs that end heated and of others have no common axis")
     courses = [heating_course(run) if run.ends_heated else loading_course(run) for run in runs]
     if len({course.ordered for course in courses}) > 1:
         raise RunError("compare: cracks of runs that cool and of runs that do not have no common axis")
@@ -142,8 +148,9 @@ def compare_cracks(runs: Sequence[Run]) -> Figure:
         axes.set_ylim(bottom=0.0)
         axes.set_xlim(left=min(course.start for course in courses))
         axes.tick_params(labelbottom=axes is panels[-1])
-    panels[-1].set_xlabel(_temperature_label(runs) if runs[0].ends_heated and courses[0].ordered else courses[0].label)
-    style.legend_alone(figure.add_subplot(grid[:, 1]), *panels[0].get_legend_handles_labels(), loc="upper left")
+    panels[-1].set_xlabel(max((course.label for course in courses), key=len))  # "mean" if any has a mean
+    beside = figure.add_subplot(grid[:, 1])
+    style.legend_alone(beside, *panels[0].get_legend_handles_labels(), loc="upper left")
     return figure
 
 
@@ -152,8 +159,8 @@ def _broken(course, mode: str):
 
 
 def _draw_group(axes: Axes, group: _Group) -> None:
-    curves = [(run.history["temperature_degC"][run.standing], style.PER_MILLE * -run.history["strain"][run.standing])
-              for run in group.runs]
+    curves = [(run.heated_history("temperature_degC")[rows], style.PER_MILLE * run.total_strain[rows])
+              for run in group.runs for rows in [run.standing[run.heated]]]
     if len(curves) == 1:
         axes.plot(*curves[0], color=group.colour, linewidth=1.8, label=_label(group))
     else:

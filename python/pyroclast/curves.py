@@ -147,7 +147,8 @@ def compare(runs: Sequence[Run]) -> Figure:
 def mean_curve(runs: Sequence[Run]) -> tuple[np.ndarray, np.ndarray]:
     """Strain from zero to the largest that all runs reach, and the runs' mean stress [MPa] at it."""
     return mean_of([(np.concatenate([[0.0], run.loaded_strain]),
-                     np.concatenate([[0.0], run.loaded_history("stress_MPa")])) for run in runs])
+                     np.concatenate([[run.before_loading("stress_MPa")], run.loaded_history("stress_MPa")]))
+                    for run in runs])
 
 
 def mean_of(curves: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:

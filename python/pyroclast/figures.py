@@ -124,7 +124,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--magnification", type=_positive, metavar="FACTOR",
                      help="of displacements in fracture (default: chosen from the last frame, and stated)")
     run.add_argument("--temperatures", type=_temperatures, metavar="T,T,...",
-                     help="°C, at which the fracture of a heated run is drawn (default: chosen from its frames)")
+                     help="°C, of the fracture patterns of a heated run (default: chosen from its frames)")
     run.set_defaults(draw=lambda asked: draw_run(asked.folder, asked.format, asked.magnification,
                                                  asked.temperatures))
 

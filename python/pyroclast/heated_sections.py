@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
 from . import style
-from .run import PLATEN, Frame, Run, RunError
+from .mesh import PLATEN
+from .run import Frame, Run, RunError
 from .sections import Panel, count_cracks, draw_scale_bar, fracture_panels, frame_section, height_over_width
 
 TEMPERATURES = (300.0, 400.0, 500.0, 600.0, 800.0)
@@ -45,8 +46,9 @@ def select_heated_frames(frames: Sequence[Frame], failed: bool) -> list[Frame]:
     """
     last = frames[-1]
     before = [frame for frame in frames if frame.step < last.step]
-    ends = [*(before[-1:] if failed else []), last]
-    near = [frame_near(before, temperature) for temperature in TEMPERATURES] if before else []
+    ends = [*before[-1:], last] if failed else [last]
+    choice = before if failed and before else [*before, last]
+    near = [frame_near(choice, temperature) for temperature in TEMPERATURES]
     selected = {frame.step: frame for frame in [*near, *ends] if frame}
     return [selected[step] for step in sorted(selected)][-_MOST_PANELS:]
 
@@ -71,15 +73,17 @@ def _frame_asked_for(run: Run, frames: Sequence[Frame], temperature: float) -> F
     frame = frame_near(frames, temperature)
     if frame is None:
         reach = [frame.temperature for frame in frames]
-        raise RunError(f"{run.folder / 'fields' / 'frames.csv'}: no frame within {_NEAR:g} K of {temperature:g} °C; "
+        path = run.folder / "fields" / "frames.csv"
+        raise RunError(f"{path}: no frame within {_NEAR:g} K of {temperature:g} °C; "
                        f"frames of the heating are from {min(reach):.0f} to {max(reach):.0f} °C")
     return frame
 
 
 def levels(runs: Sequence[Run], temperatures: Sequence[float] = LEVEL_TEMPERATURES,
            magnification: float | None = None) -> Figure:
-    """Fracture patterns, a row for each run, lowest load first; columns are temperatures [°C] and the last frame.
+    """Fracture patterns, a row for each run, lowest load first; columns are temperatures and the last frame.
 
+    temperatures: °C; a panel stays empty where a run has no frame within 25 K.
     magnification: the same in all panels, as `fracture_panels` takes it.
     """
     if not runs:
@@ -92,15 +96,18 @@ def levels(runs: Sequence[Run], temperatures: Sequence[float] = LEVEL_TEMPERATUR
 def _row_labels(runs: Sequence[Run]) -> list[str]:
     """Load, and where that does not tell the runs apart also the folder; then warnings."""
     loads = [style.load_label(run) for run in runs]
-    names = [run.folder.resolve().name if not load or loads.count(load) > 1 else "" for run, load in zip(runs, loads)]
-    return ["\n".join([", ".join(filter(None, [load, name])), *style.warnings_of(run)])
-            for run, load, name in zip(runs, loads, names)]
+    labels = []
+    for run, load in zip(runs, loads):
+        told_apart = load and loads.count(load) == 1
+        name = load if told_apart else ", ".join(filter(None, [load, run.folder.resolve().name]))
+        labels.append("\n".join([name, *style.warnings_of(run)]))
+    return labels
 
 
 def _row(run: Run, temperatures: Sequence[float]) -> list[Panel]:
     frames, failed = run.heated_frames, run.critical_temperature is not None
-    return [*(_panel_near(run, frames[:-1] if failed else frames, temperature) for temperature in temperatures),
-            _panel(run, frames[-1])]
+    choice = frames[:-1] if failed else frames
+    return [*(_panel_near(run, choice, temperature) for temperature in temperatures), _panel(run, frames[-1])]
 
 
 def _panel_near(run: Run, frames: Sequence[Frame], temperature: float) -> Panel:
@@ -121,8 +128,9 @@ def _panel(run: Run, frame: Frame) -> Panel:
         title = f"end, {title}"
     counts = count_cracks(run, frame)
     stress = f"$\\sigma$ = {frame.stress:.1f} MPa\n" if run.restrained else ""
+    strain = f"{-style.PER_MILLE * frame.strain:.2f}\\times 10^{{-3}}"
     caption = (
-        f"$\\varepsilon_{{\\mathrm{{tot}}}} = {-style.PER_MILLE * frame.strain:.2f}\\times 10^{{-3}}$\n{stress}"
+        f"$\\varepsilon_{{\\mathrm{{tot}}}} = {strain}$\n{stress}"
         f"tension: {counts['tension', True]} | {counts['tension', False]}\n"
         f"shear: {counts['shear', True]} | {counts['shear', False]}"
     )
@@ -144,7 +152,8 @@ def temperature_field(run: Run) -> Figure:
     for axes, frame, field, values in zip(all_axes, frames, fields, within):
         colours = _draw_temperature(axes, run, field, scale)
         axes.set_title(f"mean {frame.temperature:.0f} °C", fontweight="bold")
-        axes.set_xlabel(f"{_after(frame)}{values.min():.0f} to {values.max():.0f} °C", fontsize=7.0, linespacing=1.4)
+        axes.set_xlabel(f"{_after(frame)}{values.min():.0f} to {values.max():.0f} °C", fontsize=7.0,
+                        linespacing=1.4)
     draw_scale_bar(all_axes[0], blocks)
     figure.colorbar(colours, ax=all_axes, label="Temperature [°C]", shrink=0.8, pad=0.02)
     figure.suptitle(style.title_of(run), fontsize=9.0)
@@ -157,7 +166,8 @@ def _after(frame: Frame) -> str:
 
 def _spread(frames: Sequence[Frame]) -> list[Frame]:
     """Up to four of the frames, evenly among those of different temperature, the last among them."""
-    different = [frame for i, frame in enumerate(frames) if i == 0 or frame.temperature != frames[i - 1].temperature]
+    different = [frame for before, frame in zip([None, *frames], frames)
+                 if before is None or frame.temperature != before.temperature]
     steps = np.linspace(0, len(different) - 1, min(_FIELDS + 1, len(different)))[-_FIELDS:]
     return [different[round(step)] for step in steps]
 
@@ -166,9 +176,8 @@ def _draw_temperature(axes: Axes, run: Run, field: np.ndarray, scale: Normalize)
     blocks = run.mesh.blocks
     x, y = style.MILLI * blocks.points.T
     platens = style.MILLI * blocks.points[blocks.triangles[blocks.material == PLATEN]]
-    axes.add_collection(PolyCollection(platens, facecolors=style.PLATEN_COLOUR, edgecolors=style.PLATEN_COLOUR,
-                                       linewidths=0.15, rasterized=True))
-    colours = axes.tripcolor(Triangulation(x, y, blocks.triangles[blocks.material != PLATEN]), field, norm=scale,
-                             cmap="inferno", shading="gouraud", rasterized=True)
+    axes.add_collection(PolyCollection(platens, color=style.PLATEN_COLOUR, linewidths=0.15, rasterized=True))
+    specimen = Triangulation(x, y, blocks.triangles[blocks.material != PLATEN])
+    colours = axes.tripcolor(specimen, field, norm=scale, cmap="inferno", shading="gouraud", rasterized=True)
     frame_section(axes, blocks)
     return colours

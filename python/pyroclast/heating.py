@@ -40,12 +40,15 @@ def total_strain(run: Run) -> Figure:
 
 @matplotlib.rc_context(style.STYLE)
 def thrust(run: Run) -> Figure:
-    """Stress that a restrained specimen builds up against its platens, and lateral strain, over temperature."""
+    """Stress that a restrained specimen builds up against its platens, and lateral strain."""
     figure, upper, lower, below = _two_over_temperature(run)
     temperature, stress = run.heated_history("temperature_degC"), run.heated_history("stress_MPa")
-    upper.fill_between(temperature, run.heated_history("stress_top_MPa"), run.heated_history("stress_bottom_MPa"),
-                       color=style.SKY, alpha=0.5, linewidth=0.0, label="between its upper and lower platen")
+    top, bottom = run.heated_history("stress_top_MPa"), run.heated_history("stress_bottom_MPa")
+    upper.fill_between(temperature, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
+                       label="between its upper and lower platen")
     upper.plot(temperature, stress, color=style.BLUE, linewidth=1.8, label="this run, mean of both platens")
+    if stress.min() >= 0.0:
+        upper.set_ylim(bottom=0.0)
     upper.set_ylabel(THRUST_LABEL)
     _mark_unconverged(upper, run, stress)
     _mark_failure(upper, run)
@@ -72,12 +75,13 @@ def _two_over_temperature(run: Run) -> tuple[Figure, Axes, Axes, Axes]:
 
 def draw_band(axes: Axes, band: reference.StrainBand, colour: str, label: str | None = None) -> None:
     """The band's range, paler where it is not to be trusted, and its centre."""
-    for trusted, alpha in ((True, 0.28), (False, 0.1)):
-        rows = band.temperature <= reference.TRUSTED_TO if trusted else band.temperature >= reference.TRUSTED_TO
-        axes.fill_between(band.temperature[rows], style.PER_MILLE * band.low[rows], style.PER_MILLE * band.high[rows],
-                          color=colour, alpha=alpha, linewidth=0.0, label=label if trusted else None)
-    axes.plot(band.temperature, style.PER_MILLE * band.central, color=colour, linewidth=0.8,
-              linestyle=(0, (4, 2)))
+    trusted = band.temperature <= reference.TRUSTED_TO
+    beyond = band.temperature >= reference.TRUSTED_TO
+    low, central, high = (style.PER_MILLE * values for values in (band.low, band.central, band.high))
+    axes.fill_between(band.temperature, low, high, where=trusted, color=colour, alpha=0.28, linewidth=0.0,
+                      label=label)
+    axes.fill_between(band.temperature, low, high, where=beyond, color=colour, alpha=0.1, linewidth=0.0)
+    axes.plot(band.temperature, central, color=colour, linewidth=0.8, linestyle=(0, (4, 2)))
 
 
 def strain_limits(runs: Sequence[Run], bands: Sequence[reference.StrainBand]) -> tuple[float, float]:
@@ -106,7 +110,7 @@ def _mark_failure(axes: Axes, run: Run) -> None:
 
 @matplotlib.rc_context(style.STYLE)
 def convergence(run: Run) -> Figure:
-    """Cycles that the mechanics took after each exchange of temperatures, and the unbalanced ratio reached."""
+    """Cycles that the mechanics took after each exchange of temperatures, and the unbalanced ratio then."""
     course = heating_course(run)
     exchanged = course["exchange"] > 0
     over, converged = course.over[exchanged], course["converged"][exchanged] > 0

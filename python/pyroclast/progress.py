@@ -174,6 +174,7 @@ def _draw_stack(axes: Axes, course: Course, largest: float) -> None:
     below = np.zeros_like(course.over)
     for column, name, colour, hatch in _ENERGY_OUT:
         values = course[column]
-        axes.fill_between(course.over, below, below + values, facecolor=colour, hatch=hatch, edgecolor="white",
-                          linewidth=0.3, label=f"{name}: {100.0 * values[-1] / largest:.1f} %")
+        axes.fill_between(course.over, below, below + values, facecolor=colour, hatch=hatch,
+                          edgecolor="white", linewidth=0.3,
+                          label=f"{name}: {100.0 * values[-1] / largest:.1f} %")
         below = below + values

@@ -84,7 +84,7 @@ class StrainBand:
     high: np.ndarray  #: (n,)
 
     def at(self, temperature):
-        """Low, central and high strain at a temperature [°C] or an array; ValueError outside the band's own."""
+        """Low, central and high strain at a temperature [°C] or an array of them; ValueError outside."""
         temperature = np.asarray(temperature, dtype=float)
         first, last = self.temperature[[0, -1]]
         if (temperature < first).any() or (temperature > last).any():

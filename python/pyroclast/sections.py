@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from . import style
-from .run import (
+from .mesh import (
     AGGREGATE,
     AGGREGATE_MORTAR,
     MORTAR,
@@ -22,11 +22,8 @@ from .run import (
     PLATEN,
     BlockMesh,
     ContactMesh,
-    Frame,
-    Run,
-    RunError,
-    Specimen,
 )
+from .run import Frame, Run, RunError, Specimen
 
 _COLOURS = {AGGREGATE: style.AGGREGATE_COLOUR, MORTAR: style.MORTAR_COLOUR, PLATEN: style.PLATEN_COLOUR}
 _BEFORE_PEAK = 0.85  # strain of frame A over that of the peak: the first cracks have opened
@@ -110,7 +107,7 @@ def fracture(run: Run, marks: Mapping[str, Frame], magnification: float | None =
 @matplotlib.rc_context(style.STYLE)
 def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, magnification: float | None,
                     note: str) -> Figure:
-    """Deformed specimens with their cracks in labelled rows of equally many panels, one at least with a frame.
+    """Deformed specimens with their cracks, in labelled rows of equally many panels; some have a frame.
 
     magnification of displacements: the same in all panels; when None, the largest round one at which, in the
     last panel of each row, 95 % of the gridpoints move by less than 6 % of the height. note: on the counts.
@@ -121,7 +118,7 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
     columns = max(len(panels) for _, panels in rows)
     panel_width = style.WIDTH / max(columns, _PANELS) - 0.12
     panel_heights = [panel_width * height_over_width(panels[0].run.mesh.blocks) for _, panels in rows]
-    figure = style.new_figure(sum(panel_heights) + 0.8 * len(rows) + 1.15, dpi=2 * style.DPI)
+    figure = style.new_figure(sum(panel_heights) + 0.75 * len(rows) + 1.2, dpi=2 * style.DPI)
     grid = figure.add_gridspec(len(rows) + 1, columns, height_ratios=[*panel_heights, 0.55])
     for row, (label, panels) in enumerate(rows):
         all_axes = [figure.add_subplot(grid[row, column]) for column in range(len(panels))]

@@ -24,7 +24,8 @@ HISTORY_COLUMNS = (
 ).split(",")
 HEATED_COLUMNS = (
     HISTORY_COLUMNS[:3]
-    + "heating_time_s,temperature_degC,temperature_min_degC,temperature_max_degC,exchange,cycles,converged".split(",")
+    + ["heating_time_s", "temperature_degC", "temperature_min_degC", "temperature_max_degC"]
+    + ["exchange", "cycles", "converged"]
     + HISTORY_COLUMNS[3:]
 )
 STRENGTH, MODULUS = 35.0, 21.5e3  # MPa
@@ -152,11 +153,14 @@ class Heating:
     def total_strain(self, temperature: float) -> float:
         """Expansion positive; that of the load at 20 degC."""
         theta = (temperature - 20.0) / 680.0
-        return self.expansion * (0.012 * theta**1.5 - 0.03 * self.level * theta**2) - self.level * STRENGTH / MODULUS
+        thermal = self.expansion * (0.012 * theta**1.5 - 0.03 * self.level * theta**2)
+        return thermal - self.level * STRENGTH / MODULUS
 
 
-def write_heated_run(folder: Path, heating: Heating, columns: int = 4, rows: int = 5, **summary) -> Section:
-    """A run that is settled, loaded, heated and what `heating` says; `summary` replaces entries of summary.json."""
+def write_heated_run(
+    folder: Path, heating: Heating, /, columns: int = 4, rows: int = 5, **summary
+) -> Section:
+    """A run: settled, loaded, heated and what `heating` says; `summary` replaces entries of summary.json."""
     (folder / "fields").mkdir(parents=True)
     section = hexagonal_section(columns, rows)
     history, stages = _heated_history(heating)
@@ -166,8 +170,8 @@ def write_heated_run(folder: Path, heating: Heating, columns: int = 4, rows: int
     facts = {
         "title": "Synthetic heating",
         "quasi_static": True if heating.compressed else None,
-        "compression": {"E_GPa": 10.0, "f_c_MPa": 0.5 * STRENGTH, "strain_at_peak": PEAK_STRAIN, "strain_ic": 0.001}
-        if heating.compressed else None,
+        "compression": None if not heating.compressed else {
+            "E_GPa": 10.0, "f_c_MPa": 0.5 * STRENGTH, "strain_at_peak": PEAK_STRAIN, "strain_ic": 0.001},
         "stages": [{"kind": kind} for kind in stages],
         "heating": {
             "field": "conduction" if heating.spread else "uniform", "expansion_reading": "secant",
@@ -209,7 +213,8 @@ def _heated_history(heating: Heating) -> tuple[list[dict], list[str]]:
         strain = -(0.7 * heating.total_strain(temperature) + 0.3 * heating.total_strain(hottest))
         axial = load
         if heating.restrained:
-            strain, axial = rows[1]["strain"], load + 60.0 * (temperature - 20.0) / 680.0 * (1.2 - temperature / 800.0)
+            strain = rows[1]["strain"]
+            axial += 60.0 * (temperature - 20.0) / 680.0 * (1.2 - temperature / 800.0)
         if number == len(temperatures) and heating.critical:
             strain += 0.05
         rows.append(_heated_row(heating, stage, temperature, number, strain, axial, hottest))
@@ -236,14 +241,15 @@ def _heated_row(heating: Heating, stage: int, temperature: float, exchange: int,
         "temperature_degC": temperature, "temperature_min_degC": temperature - 0.5 * heating.spread * share,
         "temperature_max_degC": temperature + 0.5 * heating.spread * share, "exchange": exchange,
         "converged": int(converged), "mean_opening_m": 4e-5 * damage,
-        "cycles": 0 if not exchange else 5000 if not converged else int(300 + 1500 * damage + 100 * (exchange % 7)),
+        "cycles": (300 + int(1500 * damage) + 100 * (exchange % 7) if converged else 5000) * (exchange > 0),
         "unbalanced_ratio": 4e-3 if not converged else 9e-4 - 1e-5 * (exchange % 9),
         "energy_loading_J": 20.0 - 30.0 * share, "energy_gravity_J": 2.0, "energy_heat_J": 120.0 * damage,
         "damaging_strain": 0.8 * LAST_STRAIN * damage**0.5 + (0.2 * LAST_STRAIN if failing else 0.0),
     }
     work = row["energy_loading_J"] + 2.0 + row["energy_heat_J"]
     for column, part in (("energy_zones_J", 0.3), ("energy_contacts_J", 0.2), ("dissipated_tension_J", 0.25),
-                         ("dissipated_shear_J", 0.1), ("dissipated_friction_J", 0.1), ("energy_local_damping_J", 0.04)):
+                         ("dissipated_shear_J", 0.1), ("dissipated_friction_J", 0.1),
+                         ("energy_local_damping_J", 0.04)):
         row[column] = part * work
     row["energy_error_J"] = 0.01 * work
     for column, most in (("tension_am", 400), ("tension_mm", 700), ("shear_am", 300), ("shear_mm", 500)):
