@@ -148,7 +148,7 @@ def energy(course: Course) -> Figure:
     grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 0.3], width_ratios=[1.0, 0.4])
     upper, beside, lower = (figure.add_subplot(grid[place]) for place in ((0, 0), (0, 1), (1, 0)))
     lower.sharex(upper)
-    upper.set_title(style.title_of(course.run))
+    figure.suptitle(style.title_of(course.run), fontsize=9.0)
     parts = [course[name] for name in _ENERGY_IN if name in course.run.history]
     work_in = sum(parts)
     turnover = sum(map(np.abs, parts)).max() or 1.0  # heat takes out what a softening body stores
@@ -157,7 +157,7 @@ def energy(course: Course) -> Figure:
                label="work put in (loading,\ngravity, heat, mass scaling)")
     if course["energy_heat_J"].any():
         upper.plot(course.over, course["energy_heat_J"], color=style.PURPLE, linewidth=1.4,
-                   linestyle=(0, (1.5, 1)), label="by heat alone")
+                   linestyle=(0, (1.5, 1)), label="put in by heat alone")
     upper.set_xlim(course.start, course.over.max())
     upper.tick_params(labelbottom=False)
     if min(work_in.min(), course["energy_heat_J"].min()) >= 0.0:
