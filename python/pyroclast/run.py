@@ -156,8 +156,10 @@ class Run:
 
     @property
     def total_strain(self) -> np.ndarray:
-        """Axial strain over the rows of `heated`, positive in expansion, that of the load included."""
-        return -self.heated_history("strain")
+        """Axial strain of the specimen's own ends over the rows of `heated`, positive in expansion, that of the
+        load included. Platens without load may have left the ends.
+        """
+        return -self.heated_history("specimen_strain")
 
     @property
     def uniform(self) -> bool:

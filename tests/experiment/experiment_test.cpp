@@ -19,7 +19,7 @@ std::string with(std::string text, const std::string& from, const std::string& t
   return text.replace(at, from.size(), to);
 }
 
-/// Two hundred blocks of a mortar prism without aggregates, 60 mm x 120 mm. Strengths follow no curve.
+/// Sixty blocks of a prism, 60 mm x 120 mm, whose parts differ in their expansion at most.
 std::string deck(const std::string& stages, const std::string& expansion = "\"1e-5 1/K\"") {
   return R"DECK(title = "small"
 [specimen]
@@ -34,7 +34,7 @@ fuller_exponent = 0.45
 sieves = ["12 mm"]
 minimum_gap = "0.5 mm"
 [blocks]
-count = 150
+count = 60
 shortest_edge = 0.2
 [superposition]
 rule = "centroid"
@@ -44,14 +44,14 @@ nu = 0.2
 density = "2200 kg/m3"
 expansion = )DECK" +
          expansion + R"DECK(
-conductivity = "2 W/(m K)"
+conductivity = "40 W/(m K)"
 specific_heat = "1000 J/(kg K)"
 [materials.mortar]
 E = { value = "29.4 GPa", times = { table = [["20 degC", 1], ["820 degC", 0.2]] } }
 nu = 0.2
 density = "2200 kg/m3"
 expansion = "1e-5 1/K"
-conductivity = "2 W/(m K)"
+conductivity = "40 W/(m K)"
 specific_heat = "1000 J/(kg K)"
 [materials.platen]
 E = "200 GPa"
@@ -88,10 +88,10 @@ damping_form = "combined"
 history_strain = 1e-5
 frame_strain = 1e-3
 [coupling]
-exchange_increment = "10 K"
-unbalanced_ratio = 1e-4
-platen_difference = "2 kPa"
-most_cycles = 20000
+exchange_increment = "5 K"
+unbalanced_ratio = 1e-3
+platen_difference = "20 kPa"
+most_cycles = 5000
 failure_strain = 0.005
 )DECK" + stages;
 }
@@ -152,19 +152,21 @@ TEST(LoadStage, BothPlatensCarryTheStressAskedFor) {
   EXPECT_DOUBLE_EQ(a.last().strain, b.last().strain);
 }
 
-// Promise: an even body of one expansion expands freely by alpha dT in both directions and stays sound.
+// Promise: an even body of one expansion expands by alpha dT in both directions and stays sound; the energy
+// ledger closes.
 TEST(HeatStage, AnEvenBodyExpandsFreely) {
-  const Trial r(deck(kUniform + kSettle + heat("220 degC")));
+  const Trial r(deck(kUniform + kSettle + load("stress = \"0.5 MPa\"") + heat("220 degC")));
   EXPECT_EQ(r.outcome, Outcome::completed);
   EXPECT_DOUBLE_EQ(r.last().heat.mean, 220.0);
-  EXPECT_DOUBLE_EQ(r.last().heat.time, 200.0 / (5.0 / 60.0));
-  // 1 %: contacts of the platens and the weight
-  EXPECT_NEAR(r.last().specimen_strain, -2e-3, 2e-5);
-  EXPECT_NEAR(r.last().lateral_strain, 2e-3, 2e-5);
+  EXPECT_NEAR(r.last().heat.time, 200.0 / (5.0 / 60.0), 1e-9);
+  const double softening = 1.0 - 0.8 * 200.0 / 800.0;
+  const double loaded = r.end_of(1).specimen_strain / softening;
+  EXPECT_NEAR(r.last().specimen_strain, loaded - 2e-3, 1e-5);  // 0.5 % of the expansion: what motion is left
+  EXPECT_NEAR(r.last().lateral_strain, 2e-3, 1e-5);            // and Poisson's part of the load
   EXPECT_EQ(r.last().cracks.tension_mm.softening, 0);
   const auto response = heating_response(r.history(), r.c.stages, r.outcome);
   ASSERT_TRUE(response);
-  EXPECT_EQ(response->exchanges, 20);
+  EXPECT_EQ(response->exchanges, 40);
   EXPECT_EQ(response->not_converged, 0);
   EXPECT_FALSE(response->critical_temperature);
   EXPECT_LT(std::abs(r.last().energy.error()), 1e-6 * r.last().energy.turnover());
@@ -175,7 +177,7 @@ TEST(HeatStage, CoolingBringsAnElasticBodyBack) {
   const Trial r(deck(kUniform + kSettle + load("stress = \"3 MPa\"") + heat("320 degC") + heat("20 degC")));
   EXPECT_EQ(r.outcome, Outcome::completed);
   EXPECT_NEAR(r.last().strain, r.end_of(1).strain, 1e-6);
-  EXPECT_NEAR(r.last().stress_top, 3e6, 3e3);
+  EXPECT_NEAR(r.last().stress_top, 3e6, 2e4);  // the difference between platens that counts as rest
 }
 
 // Promise: a modulus that falls adds strain under a constant load (total form, physics of the zones).
@@ -210,12 +212,12 @@ TEST(HeatStage, ASpecimenThatIsTooWeakRunsAway) {
 
 // Promise: an exchange that does not come to rest within its cycles is flagged.
 TEST(HeatStage, AnExchangeThatIsCutShortIsFlagged) {
-  const Trial r(with(deck(kUniform + kSettle + heat("120 degC"), "\"3e-5 1/K\""), "most_cycles = 20000",
+  const Trial r(with(deck(kUniform + kSettle + heat("120 degC"), "\"3e-5 1/K\""), "most_cycles = 5000",
                      "most_cycles = 60"));
   const auto response = heating_response(r.history(), r.c.stages, r.outcome);
   ASSERT_TRUE(response);
-  EXPECT_EQ(response->not_converged, 10);
-  EXPECT_EQ(response->cycles, 600);
+  EXPECT_EQ(response->not_converged, 20);
+  EXPECT_EQ(response->cycles, 1200);
   EXPECT_GT(response->worst_ratio, 1e-5);
 }
 
@@ -223,7 +225,7 @@ TEST(HeatStage, AnExchangeThatIsCutShortIsFlagged) {
 // of the hot body.
 TEST(CompressStage, AfterHeatingMeasuresTheHotModulus) {
   const Trial cold(deck(kUniform + kSettle + kCompress));
-  const Trial hot(deck(kUniform + kSettle + heat("420 degC") + kCompress));
+  const Trial hot(deck(kUniform + kSettle + load("stress = \"0.2 MPa\"") + heat("420 degC") + kCompress));
   const auto a = compression_response(cold.history(), cold.c.stages);
   const auto b = compression_response(hot.history(), hot.c.stages);
   ASSERT_TRUE(a && b);
@@ -233,9 +235,9 @@ TEST(CompressStage, AfterHeatingMeasuresTheHotModulus) {
 
 // Promise: frames come at the stated steps of temperature, and at the end.
 TEST(Frames, ComeAtStepsOfTemperature) {
-  const Trial r(with(deck(kUniform + kSettle + heat("220 degC")), "frame_strain = 1e-3",
-                     "frame_strain = 1e-3\nframe_temperature = \"50 K\""));
-  const std::vector<double> expected{20, 20, 70, 120, 170, 220};
+  const Trial r(with(deck(kUniform + kSettle + load("stress = \"0.5 MPa\"") + heat("220 degC")),
+                     "frame_strain = 1e-3", "frame_strain = 1e-3\nframe_temperature = \"50 K\""));
+  const std::vector<double> expected{20, 20, 20, 70, 120, 170, 220};
   ASSERT_EQ(r.frames.temperatures.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_DOUBLE_EQ(r.frames.temperatures[i], expected[i]);
 }
@@ -244,18 +246,18 @@ TEST(Frames, ComeAtStepsOfTemperature) {
 // and temperatures differ over it.
 TEST(ExposeStage, HeatsOneSideMoreThanTheOther) {
   const Trial r(
-      with(deck(kSettle + "[[stages]]\nkind = \"expose\"\nduration = \"10 min\"\nplaten = \"force\"\n" +
+      with(deck(kSettle + "[[stages]]\nkind = \"expose\"\nduration = \"6 min\"\nplaten = \"force\"\n" +
                 "[heat]\nfield = \"conduction\"\n[[heat.boundaries]]\nfaces = \"left\"\n"
                 "kind = \"temperature\"\ntemperature = { from = \"20 degC\", rate = \"10 K/min\", to = "
-                "\"120 degC\" }\n"),
-           "unbalanced_ratio = 1e-5", "unbalanced_ratio = 1e-4"));
+                "\"70 degC\" }\n"),
+           "most_cycles = 5000", "most_cycles = 2000"));
   EXPECT_EQ(r.outcome, Outcome::completed);
-  EXPECT_NEAR(r.last().heat.time, 600.0, 1e-6);
-  EXPECT_NEAR(r.last().heat.maximum, 120.0, 0.1);
-  EXPECT_LT(r.last().heat.minimum, 110.0);
+  EXPECT_NEAR(r.last().heat.time, 360.0, 1e-6);
+  EXPECT_NEAR(r.last().heat.maximum, 70.0, 0.1);
+  EXPECT_LT(r.last().heat.minimum, 69.9);
   EXPECT_GT(r.last().heat.mean, r.last().heat.minimum);
-  // the middle of the field's mean expansion; 5 %: a bent prism touches its platens unevenly
-  EXPECT_NEAR(r.last().lateral_strain, 1e-5 * (r.last().heat.mean - 20.0), 5e-5);
+  // 5 %: what motion is left, and the weight
+  EXPECT_NEAR(r.last().lateral_strain, 1e-5 * (r.last().heat.mean - 20.0), 2.5e-5);
 }
 
 // Promise: what contradicts itself is refused at its line.

@@ -25,8 +25,8 @@ HISTORY_COLUMNS = (
 HEATED_COLUMNS = (
     HISTORY_COLUMNS[:3]
     + ["heating_time_s", "temperature_degC", "temperature_min_degC", "temperature_max_degC"]
-    + ["exchange", "cycles", "converged"]
-    + HISTORY_COLUMNS[3:]
+    + ["exchange", "cycles", "converged", "strain", "specimen_strain"]
+    + HISTORY_COLUMNS[4:]
 )
 STRENGTH, MODULUS = 35.0, 21.5e3  # MPa
 EXCHANGE, FRAME_EVERY = 5.0, 5  # K from exchange to exchange; exchanges from frame to frame
@@ -236,7 +236,7 @@ def _heated_row(heating: Heating, stage: int, temperature: float, exchange: int,
     failing = exchange > 0 and temperature == heating.critical
     converged = not failing and exchange not in heating.unconverged
     row = {
-        "stage": stage, "strain": strain, "stress_MPa": stress, "stress_top_MPa": 1.01 * stress,
+        "stage": stage, "strain": strain, "specimen_strain": strain, "stress_MPa": stress, "stress_top_MPa": 1.01 * stress,
         "stress_bottom_MPa": 0.99 * stress, "lateral_strain": 0.3 * abs(strain) + 0.012 * share,
         "temperature_degC": temperature, "temperature_min_degC": temperature - 0.5 * heating.spread * share,
         "temperature_max_degC": temperature + 0.5 * heating.spread * share, "exchange": exchange,
