@@ -91,6 +91,7 @@ frame_strain = 1e-3
 exchange_increment = "5 K"
 unbalanced_ratio = 1e-3
 platen_difference = "20 kPa"
+least_cycles = 50
 most_cycles = 5000
 failure_strain = 0.005
 )DECK" + stages;

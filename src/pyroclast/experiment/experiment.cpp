@@ -332,8 +332,8 @@ void Experiment::exchange() {
 }
 
 /// Steps until the body rests at its temperatures, or the stated cycles are used up. A specimen that is being
-/// crushed then gets more of them, until it stops or the platen has run away. The specimen's own ends tell, for
-/// a platen without load may have left them.
+/// crushed then gets more of them, until it stops or the platen has run away. The specimen's own ends tell,
+/// for a platen without load may have left them.
 void Experiment::cycle(const Coupling& coupling) {
   const double before = specimen_strain();
   const bool may_fail = coupling.platen == PlatenControl::force;
@@ -348,7 +348,7 @@ void Experiment::cycle(const Coupling& coupling) {
     const double now = specimen_strain();
     ran_away_ = may_fail && now - before > coupling.failure_strain;
     if (ran_away_) return;
-    heat_.converged = at_rest(coupling);
+    heat_.converged = heat_.cycles >= coupling.least_cycles && at_rest(coupling);
     if (heat_.converged) return;
     if (steps < left) continue;
     if (!may_fail || !(now - last > kSlowSinking * coupling.failure_strain)) return;
