@@ -38,7 +38,7 @@ def main() -> None:
         kinetic, difference = inertia(file.parent / "history.csv")
         runs.setdefault(variant, []).append(result)
         print(f"{variant},{manifest['seed']}," + ",".join(f"{result[c]:.5g}" for c in COLUMNS) +
-              f",{kinetic:.1e},{100 * difference:.2f},{100 * summary['energy_J']['error_over_work']:.3f}"
+              f",{kinetic:.1e},{100 * difference:.2f},{100 * summary['energy_J']['error_over_turnover']:.3f}"
               f",{summary['specimen']['aggregate_fraction_superposed']:.4f},{summary['steps']},{summary['wall_time_s']:.0f}")
     for variant, results in runs.items():
         for name, of in (("mean", statistics.mean), ("spread", lambda v: statistics.stdev(v) if len(v) > 1 else 0.0)):

@@ -89,7 +89,7 @@ class Running(UserTest):
         summary = json.loads((out / "summary.json").read_text())
         self.assertGreater(summary["compression"]["E_GPa"], 10.0)
         # the ledger's promise
-        self.assertLess(abs(summary["energy_J"]["error_over_work"]), 0.005)
+        self.assertLess(abs(summary["energy_J"]["error_over_turnover"]), 0.005)
         with open(out / "history.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         self.assertGreater(len(rows), 50)

@@ -115,5 +115,29 @@ TEST(DeckText, MayBeginWithAByteOrderMark) {
   EXPECT_NO_THROW(deck.finish());
 }
 
+// Promise: a change on the command line is the deck's own text from then on: values, strings without quotes,
+// inline tables and entries of arrays of tables.
+TEST_F(DeckFile, ChangesReplaceValuesInTheText) {
+  const auto file = write(
+      "[a]\nlength = \"3 mm\"  # note\nE = { value = \"1 GPa\" }\n[[stages]]\nto = 1\n[[stages]]\nto = 2\n");
+  const Deck deck = Deck::load(file, {"a.length=5 mm", "stages[1].to = 7", "a.E=\"2 GPa\""});
+  EXPECT_EQ(deck.text(),
+            "[a]\nlength = \"5 mm\"  # note\nE = \"2 GPa\"\n[[stages]]\nto = 1\n[[stages]]\nto = 7\n");
+  EXPECT_DOUBLE_EQ(deck.root().section("a").quantity("length", unit::length, Range::positive()), 5e-3);
+}
+
+// Promise: a change that cannot be made says why.
+TEST_F(DeckFile, ChangesOfWhatTheDeckDoesNotHaveAreRefused) {
+  const auto file = write("[a]\nlength = \"3 mm\"\n");
+  for (const char* change : {"a.lenght=5 mm", "a=1", "b.c=1", "stages[0].to=1", "length"}) {
+    try {
+      Deck::load(file, {change});
+      ADD_FAILURE() << change;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(change), std::string::npos) << e.what();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pyroclast

@@ -123,7 +123,8 @@ void DeckRecord::report(const TableRecord& table, const std::string& path, std::
 
 std::string DeckRecord::with_value(std::string_view path, const std::string& value) const {
   const auto node = root_.at_path(path);
-  if (!node || is_table_like(*node.node()))
+  const auto* table = node.as_table();
+  if (!node || node.is_array_of_tables() || (table && !table->is_inline()))
     throw Error(fmt::format("--set {}={}: {} has no such key; what it does not have must be written in it",
                             path, value, name_));
   // A value that is not TOML as it stands, such as 5 us, is a string.

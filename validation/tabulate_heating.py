@@ -1,0 +1,57 @@
+"""Tabulates heated runs: total strain at every 100 degC against the band of its load level, and the critical temperature.
+
+Usage: python3 validation/tabulate_heating.py RUNS
+"""
+
+import pathlib
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+
+from pyroclast.reference import strain_band  # noqa: E402
+from pyroclast.run import Run  # noqa: E402
+
+TEMPERATURES = (100, 200, 300, 400, 500, 600, 700, 800)
+
+
+def strain_at(run: Run, temperature: float) -> float:
+    """Total strain in 1e-3 at a temperature; not a number where the run did not stand there."""
+    reached = run.history["temperature_degC"][run.standing]
+    if not len(reached) or temperature > reached.max() + 1e-6:
+        return float("nan")
+    return -1e3 * float(np.interp(temperature, reached, run.history["specimen_strain"][run.standing]))
+
+
+def band(level: float) -> list[str]:
+    """The level's band at each temperature, "low..high" in 1e-3; empty where it has none."""
+    limits = strain_band(level)
+    cells = []
+    for temperature in TEMPERATURES:
+        inside = limits is not None and limits.temperature[0] <= temperature <= limits.temperature[-1]
+        low, _, high = limits.at(temperature) if inside else (0.0, 0.0, 0.0)
+        cells.append(f"{1e3 * low:.2f}..{1e3 * high:.2f}" if inside else "")
+    return cells
+
+
+def main() -> None:
+    runs = [Run(file.parent) for file in sorted(pathlib.Path(sys.argv[1]).glob("*/summary.json"))]
+    names = [f"strain_{t}" for t in TEMPERATURES]
+    print("variant,level,seed," + ",".join(names) + ",critical_degC,exchanges,not_converged,worst_ratio,cycles,"
+          "ledger_error_percent,wall_time_s")
+    for level in sorted({run.load_level for run in runs}):
+        print(f"band,{level:g},," + ",".join(band(level)) + ",,,,,,,")
+    for run in runs:
+        variant, level, seed = run.folder.name.rsplit("-", 2)
+        strains = [strain_at(run, t) for t in TEMPERATURES]
+        heating = run.heating
+        critical = heating["critical_temperature_degC"]
+        print(f"{variant},{level},{seed}," + ",".join("" if np.isnan(s) else f"{s:.2f}" for s in strains)
+              + f",{'' if critical is None else f'{critical:.0f}'},{heating['exchanges']},"
+              f"{heating['exchanges_not_converged']},{heating['worst_unbalanced_ratio']:.1e},{heating['cycles']},"
+              f"{100.0 * run.summary['energy_J']['error_over_turnover']:.3f},{run.summary['wall_time_s']:.0f}")
+
+
+if __name__ == "__main__":
+    main()
