@@ -76,6 +76,88 @@ class Properties(UserTest):
         self.assertIn("glasgow_modulus", done.stdout)
 
 
+SMALL = ("specimen.width=50 mm", "specimen.height=100 mm", "aggregates.d_max=12 mm", 'aggregates.sieves=["8 mm"]',
+         "blocks.count=100", "coupling.exchange_increment=5 K", "coupling.least_cycles=100", "coupling.most_cycles=500")
+
+
+def changes(*more: str) -> list[str]:
+    """Command-line changes with which a case runs in seconds, and more of them."""
+    return [word for change in (*SMALL, *more) for word in ("--set", change)]
+
+
+class Heating(UserTest):
+    def run_case(self, name: str, *arguments: str) -> dict:
+        done = self.pyroclast("run", CASES / f"{name}.toml", *arguments, "--out", name)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertLess(abs(json.loads((self.folder / name / "summary.json").read_text())
+                            ["energy_J"]["error_over_turnover"]), 0.005)
+        return json.loads((self.folder / name / "summary.json").read_text())
+
+    def rows(self, name: str) -> list[dict]:
+        with open(self.folder / name / "history.csv", newline="") as file:
+            return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+    def figures(self, name: str) -> set[str]:
+        return {file.name for file in (self.folder / name / "figures").iterdir()}
+
+    def test_a_loaded_specimen_is_heated_and_its_exchanges_are_recorded(self):
+        summary = self.run_case("transient_heating", *changes("stages[1].level=0.2", "stages[2].to=320 degC"))
+        heating = summary["heating"]
+        exchanges = [row for row in self.rows("transient_heating") if row["exchange"] > 0]
+        self.assertEqual([row["temperature_degC"] for row in exchanges], list(range(25, 321, 5)))
+        self.assertEqual(heating["exchanges"], 60)
+        self.assertEqual(heating["exchanges_not_converged"], sum(row["converged"] == 0 for row in exchanges))
+        self.assertEqual((heating["field"], heating["expansion_reading"]), ("uniform", "tangent"))
+        self.assertAlmostEqual(heating["load_stress_MPa"], 0.2 * 33.9)
+        for row in exchanges:
+            self.assertAlmostEqual(row["heating_time_s"], (row["temperature_degC"] - 20.0) * 12.0, places=5)
+        self.assertLessEqual({"total_strain.png", "heating_cracks.png", "heating_fracture.png", "convergence.png"},
+                             self.figures("transient_heating"))
+
+    def test_a_specimen_that_is_too_weak_fails_at_a_temperature(self):
+        summary = self.run_case("transient_heating", *changes("stages[1].level=0.8"), "--no-figures")
+        self.assertGreater(summary["heating"]["critical_temperature_degC"], 20.0)
+        self.assertIn("ran away", summary["outcome"])
+
+    def test_fixed_platens_take_a_thrust(self):
+        summary = self.run_case("restrained_heating", *changes("stages[2].to=120 degC"))
+        self.assertGreater(summary["heating"]["largest_thrust_MPa"], 3.39)
+        self.assertIn("thrust.png", self.figures("restrained_heating"))
+
+    def test_a_hot_specimen_is_compressed(self):
+        summary = self.run_case("hot_compression", *changes("stages[1].to=420 degC", "stages[2].velocity=4 mm/s",
+                                                            "stages[2].stop_strain=2e-3"))
+        self.assertLess(summary["compression"]["E_GPa"], 15.0)
+        self.assertIn("stress_strain.png", self.figures("hot_compression"))
+
+    def test_a_heated_and_cooled_specimen_is_compressed(self):
+        self.run_case("residual_capacity", *changes("stages[1].to=220 degC", "stages[3].velocity=2 mm/s",
+                                                    "stages[3].stop_strain=3e-3"), "--no-figures")
+        last = self.rows("residual_capacity")[-1]
+        self.assertEqual(last["temperature_degC"], 20.0)
+        self.assertGreater(last["stress_MPa"], 1.0)
+
+    def test_a_fire_on_one_face_heats_that_side(self):
+        summary = self.run_case("fire_one_side", *changes("stages[2].duration=3 min"))
+        last = self.rows("fire_one_side")[-1]
+        self.assertAlmostEqual(last["heating_time_s"], 180.0)
+        self.assertGreater(last["temperature_max_degC"], last["temperature_min_degC"] + 50.0)
+        self.assertEqual(summary["heating"]["field"], "conduction")
+        self.assertIn("temperature.png", self.figures("fire_one_side"))
+
+    def test_a_curve_that_ends_below_the_run_is_refused_before_it(self):
+        for command in ("run", "check"):
+            done = self.pyroclast(command, CASES / "transient_heating.toml", *changes("stages[2].to=900 degC"))
+            self.assertEqual(done.returncode, 1)
+            self.assertRegex(done.stderr, r"materials\.mortar\.E.*900")
+        self.assertFalse((self.folder / "runs").exists())
+
+    def test_a_change_of_a_key_that_is_not_there_is_refused(self):
+        done = self.pyroclast("check", CASES / "transient_heating.toml", "--set", "stages[1].levle=0.2")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("stages[1].levle", done.stderr)
+
+
 class Running(UserTest):
     def test_a_run_writes_everything_it_promises(self):
         deck = self.write(small_deck())

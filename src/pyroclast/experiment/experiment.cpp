@@ -18,6 +18,8 @@ constexpr int kCyclesPerCheck = 50;
 /// A platen that sinks by less than this share of the failure strain within the stated cycles is not running
 /// away.
 constexpr double kSlowSinking = 0.1;
+/// A gap between platen and specimen below this share of the height is none.
+constexpr double kNoGap = 1e-6;
 /// Temperatures, K, and shares of a duration that differ by less are the same.
 constexpr double kSameTemperature = 1e-6, kSameTime = 1e-9;
 
@@ -276,7 +278,20 @@ Experiment::Verdict Experiment::judge(const LoadStage& stage, const Sample& now)
 
 // Compression
 
-void Experiment::begin(const CompressStage&) {
+/// Brings the upper platen back to ends that it left, or that left it, while the temperature changed.
+void Experiment::close_gap(double velocity) {
+  const double gap = (specimen_strain() - axial_strain()) * height_;
+  if (gap < kNoGap * height_) return;
+  control_by_motion(velocity);
+  const auto steps = static_cast<std::int64_t>(gap / (velocity * mechanics_.time_step()));
+  for (std::int64_t done = 0; done < steps && !stop_asked(); done += kSettleSteps)
+    mechanics_.advance(static_cast<int>(std::min<std::int64_t>(kSettleSteps, steps - done)));
+  stage_first_strain_ = axial_strain();
+  stage_first_step_ = mechanics_.steps();
+}
+
+void Experiment::begin(const CompressStage& stage) {
+  close_gap(stage.velocity);
   control_by_motion(0.0);
   next_frame_ = sampling_.frame_strain;
   peak_stress_ = 0.0;

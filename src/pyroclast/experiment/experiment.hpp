@@ -128,6 +128,7 @@ class Experiment {
   void control_by_force();
   void control_by_motion(double velocity);
   void hold_force(double stress);
+  void close_gap(double velocity);
   Verdict judge_coupling(const Sample&);
   int steps_to_next_look(const SettleStage&) const;
   int steps_to_next_look(const CompressStage&) const;
