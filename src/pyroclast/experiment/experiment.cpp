@@ -18,6 +18,8 @@ constexpr int kCyclesPerCheck = 50;
 /// A platen that sinks by less than this share of the failure strain within the stated cycles is not running
 /// away.
 constexpr double kSlowSinking = 0.1;
+/// Up to this share of the stop strain a stress that falls is no failure.
+constexpr double kFirstTouch = 0.1;
 /// A gap between platen and specimen below this share of the height is none.
 constexpr double kNoGap = 1e-6;
 /// Temperatures, K, and shares of a duration that differ by less are the same.
@@ -319,7 +321,8 @@ Experiment::Verdict Experiment::judge(const CompressStage& stage, const Sample& 
   peak_stress_ = std::max(peak_stress_, now.stress());
   progress_ = std::clamp(now.stage_strain / stage.stop_strain, 0.0, 1.0);
   if (now.stage_strain >= stage.stop_strain) return {.over = true, .outcome = Outcome::completed};
-  if (now.stress() < stage.stop_fraction * peak_stress_)
+  // not while the platen is only meeting the specimen
+  if (now.stage_strain > kFirstTouch * stage.stop_strain && now.stress() < stage.stop_fraction * peak_stress_)
     return {.over = true, .last = true, .outcome = Outcome::stress_fallen};
   if (now.stage_strain >= next_frame_) {
     observer_.frame(*this, now);

@@ -111,40 +111,37 @@ void Mechanics<Dim>::set_masses(const std::vector<double>& densities) {
     mass_ = gravity_mass_;
     moving_mass_ = real_mass_;
     time_step_ = real_mass_limit().step;
+    set_step_over_mass();
   } else {
     scale_masses();
   }
-  for (double m : mass_) step_over_mass_.push_back(time_step_ / m);
 }
 
 /// Density scaling: the mass with which each gridpoint's own limit is the common step.
 template <int Dim>
 void Mechanics<Dim>::scale_masses() {
   time_step_ = parameters_.time_step;
-  start_stiffness_ = stiffness_;
   const double half = 0.5 * time_step_ / parameters_.safety;
   mass_.resize(stiffness_.size());
+  moving_mass_ = 0.0;
   for (std::size_t g = 0; g < mass_.size(); ++g) {
-    mass_[g] = stiffness_[g] * (1.0 + parameters_.local_damping) * half * half;
-    moving_mass_ += mass_[g];
+    const double mass = stiffness_[g] * (1.0 + parameters_.local_damping) * half * half;
+    // of the half step begun with the old mass; nothing moves yet when the first masses are made
+    begun_mass_scaling_ += 0.5 * (mass - mass_[g]) * dot(velocity_[g], velocity_[g]);
+    mass_[g] = mass;
+    moving_mass_ += mass;
   }
+  for (Tie& t : ties_) {
+    t.mass = 0.0;
+    for (int g : t.gridpoints) t.mass += mass_[g];
+  }
+  set_step_over_mass();
 }
 
-/// One factor for all masses: the largest by which any gridpoint's stiffness has changed.
 template <int Dim>
-void Mechanics<Dim>::rescale_masses() {
-  double factor = 0.0;
-  for (std::size_t g = 0; g < stiffness_.size(); ++g)
-    factor = std::max(factor, stiffness_[g] / start_stiffness_[g]);
-  const double change = factor / mass_factor_;
-  mass_factor_ = factor;
-  moving_mass_ *= change;
-  for (std::size_t g = 0; g < mass_.size(); ++g) {
-    begun_mass_scaling_ += 0.5 * (change - 1.0) * mass_[g] * dot(velocity_[g], velocity_[g]);
-    mass_[g] *= change;
-    step_over_mass_[g] = time_step_ / mass_[g];
-  }
-  for (auto& t : ties_) t.mass *= change;
+void Mechanics<Dim>::set_step_over_mass() {
+  step_over_mass_.resize(mass_.size());
+  for (std::size_t g = 0; g < mass_.size(); ++g) step_over_mass_[g] = time_step_ / mass_[g];
 }
 
 template <int Dim>
@@ -168,7 +165,7 @@ void Mechanics<Dim>::set_properties(BodyProperties properties) {
 
   compute_stiffness();
   if (parameters_.mass == MassChoice::scaled) {
-    rescale_masses();
+    scale_masses();
   } else if (const double limit = real_mass_limit().step / parameters_.safety;
              limit < time_step_ * (1.0 - 1e-9)) {
     throw Error(fmt::format(

@@ -119,7 +119,7 @@ class Mechanics {
 
   /// Takes the body to other temperatures: displacements, jumps and damage stay, stresses follow the new
   /// parameters and come back to the new envelopes (staggered coupling, paper Fig. 2). The energy that this
-  /// adds or takes is `EnergyLedger::heat`. Scaled masses follow the stiffness by one common factor.
+  /// adds or takes is `EnergyLedger::heat`. Scaled masses follow the stiffness.
   /// Throws Error when the body would get too stiff for the time step of its real mass.
   void set_properties(BodyProperties properties);
 
@@ -191,7 +191,7 @@ class Mechanics {
   void compute_stiffness();
   void set_masses(const std::vector<double>& densities);
   void scale_masses();
-  void rescale_masses();
+  void set_step_over_mass();
   void evaluate_forces();
   void update_face(int face);
   Vec<Dim> update_contact_point(int contact, const ContactFrame<Dim>& frame);
@@ -208,12 +208,10 @@ class Mechanics {
   GridpointContacts gridpoint_contacts_;
   BodyProperties properties_;
 
-  std::vector<double> gravity_mass_;     ///< real mass, which gravity acts on, kg
-  std::vector<double> mass_;             ///< mass that moves, kg
-  std::vector<double> step_over_mass_;   ///< s/kg
-  std::vector<double> stiffness_;        ///< k_gp, N/m
-  std::vector<double> start_stiffness_;  ///< that scaled masses were made for, N/m
-  double mass_factor_ = 1.0;             ///< of scaled masses since the start
+  std::vector<double> gravity_mass_;    ///< real mass, which gravity acts on, kg
+  std::vector<double> mass_;            ///< mass that moves, kg
+  std::vector<double> step_over_mass_;  ///< s/kg
+  std::vector<double> stiffness_;       ///< k_gp, N/m
   double real_mass_ = 0.0, moving_mass_ = 0.0, time_step_ = 0.0;
 
   std::int64_t steps_ = 0;
