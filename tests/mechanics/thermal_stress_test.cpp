@@ -539,7 +539,7 @@ TEST(TimeStepAtTemperature, ScaledMassesStayStableInAStiffenedBody) {
   auto m = mechanics(model, elastic_contact(), quasi_static<2>(0.0), 0.01 * young);
   const double ratio = m.mass_ratio();
   m.set_properties(uniform(model, elastic_contact(), 1e-3));
-  EXPECT_GT(m.mass_ratio(), 2.0 * ratio);
+  EXPECT_GT(m.mass_ratio(), 1.5 * ratio);  // zones are a hundred times stiffer, contacts as they were
   m.advance(5000);
   const auto e = m.energy();
   EXPECT_LT(e.kinetic, e.heat);  // nothing damps it, and no energy comes from nowhere
