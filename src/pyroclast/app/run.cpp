@@ -40,12 +40,12 @@ class Recorder : public Observer {
 
   void sample(const Experiment& experiment, const Sample& s) override {
     history_.write(s);
-    if (seconds_since(last_line_) < kSecondsBetweenLines) return;
-    last_line_ = Clock::now();
     if (s.stage != stage_) {
       stage_ = s.stage;
       stage_start_ = Clock::now();
     }
+    if (seconds_since(last_line_) < kSecondsBetweenLines) return;
+    last_line_ = Clock::now();
     const double done = experiment.progress();
     const std::string left = done > kLeastProgressToForesee
                                  ? duration(seconds_since(stage_start_) / done * (1.0 - done)) + " left"
