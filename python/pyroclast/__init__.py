@@ -3,6 +3,7 @@
     python3 -m pyroclast.figures run RUN_DIR
     python3 -m pyroclast.figures specimen DIR
     python3 -m pyroclast.figures compare RUN_DIR... --out FILE
+    python3 -m pyroclast.figures levels RUN_DIR... --out FILE
 
 In a script:
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
+from itertools import cycle
 
 import matplotlib
 import numpy as np
@@ -26,9 +27,9 @@ def stress_strain(run: Run, marks: Mapping[str, Frame]) -> Figure:
     figure = style.new_figure(4.8)
     grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 0.3], width_ratios=[1.25, 1.0])
     axes = figure.add_subplot(grid[0, :])
-    axes.set_title(style.title_of(run))
+    axes.set_title("\n".join([style.title_of(run), *_heated_before(run)]))
     _draw_run(axes, run)
-    _draw_references(axes, max(run.loaded_history("strain").max(), _LEAST_STRAIN_SHOWN))
+    _draw_references(axes, max(run.loaded_strain.max(), _LEAST_STRAIN_SHOWN))
     _draw_marks(axes, marks)
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
@@ -40,8 +41,19 @@ def stress_strain(run: Run, marks: Mapping[str, Frame]) -> Figure:
     return figure
 
 
+def _heated_before(run: Run) -> list[str]:
+    """What heat did before the compression, for the title; empty when there was none."""
+    if not run.exchanged.any():
+        return []
+    hottest = run.heated_history("temperature_degC").max()
+    now = run.loaded_history("temperature_degC")[0]
+    retained = run.strength_retained
+    told = "" if retained is None else f"; largest stress {retained:.2f} of the strength before heating"
+    return [f"heated to {hottest:.0f} °C, compressed at {now:.0f} °C{told}"]
+
+
 def _draw_run(axes: Axes, run: Run) -> None:
-    strain = style.PER_MILLE * run.loaded_history("strain")
+    strain = style.PER_MILLE * run.loaded_strain
     top, bottom = run.loaded_history("stress_top_MPa"), run.loaded_history("stress_bottom_MPa")
     axes.plot(strain, run.loaded_history("stress_MPa"), color=style.BLUE, linewidth=1.8, zorder=3,
               label="this run, mean of both platens")
@@ -53,7 +65,7 @@ def _draw_references(axes: Axes, last_strain: float) -> None:
     strain = np.linspace(0.0, min(last_strain, reference.AT_LAST_STRAIN), 300)
     axes.plot(style.PER_MILLE * strain, reference.at_stress(strain), color=style.VERMILLION,
               linestyle=(0, (5, 2)), linewidth=1.2,
-              label="Anderberg & Thelandersson law, generated,\nnot measured points")
+              label="Anderberg & Thelandersson law at 20 °C,\ngenerated, not measured points")
     for values, marker, name in (
         (reference.EXPERIMENT, "D", "experiment"),
         (reference.PAPER_DEM, "s", "paper's DEM"),
@@ -112,16 +124,14 @@ def compare(runs: Sequence[Run]) -> Figure:
     """
     if not runs:
         raise RunError("compare: no runs were given")
+    if heated := [run for run in runs if run.ends_heated]:
+        raise RunError(f"{heated[0].folder}: ends with heating, so it has no stress-strain curve")
     figure = style.new_figure(4.2)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
-    colours = (style.BLUE, style.VERMILLION, style.GREEN, style.PURPLE, style.ORANGE, style.SKY)
-    dashes = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (5, 1.5, 1, 1.5)))
-    for number, (run, name) in enumerate(zip(runs, names_apart(runs))):
+    for run, name, (colour, dashes) in zip(runs, names_apart(runs), cycle(style.LOOKS)):
         strength = f"{run.peak[1]:.2f} MPa" + ("" if run.compression else ", no peak reached")
-        axes.plot(style.PER_MILLE * run.loaded_history("strain"), run.loaded_history("stress_MPa"),
-                  color=colours[number % len(colours)],
-                  linestyle=dashes[number // len(colours) % len(dashes)], linewidth=1.0,
-                  label=f"{textwrap.fill(name, 34)}\n{strength}")
+        axes.plot(style.PER_MILLE * run.loaded_strain, run.loaded_history("stress_MPa"), color=colour,
+                  linestyle=dashes, linewidth=1.0, label=f"{textwrap.fill(name, 34)}\n{strength}")
     strain, stress = mean_curve(runs)
     axes.plot(style.PER_MILLE * strain, stress, color=style.BLACK, linewidth=2.0,
               label=f"mean of {len(runs)}, as far as all go")
@@ -136,17 +146,17 @@ def compare(runs: Sequence[Run]) -> Figure:
 
 def mean_curve(runs: Sequence[Run]) -> tuple[np.ndarray, np.ndarray]:
     """Strain from zero to the largest that all runs reach, and the runs' mean stress [MPa] at it."""
-    curves = [_advancing(run) for run in runs]
-    strain = np.linspace(0.0, min(x[-1] for x, _ in curves), _MEAN_POINTS)
-    return strain, np.mean([np.interp(strain, x, y) for x, y in curves], axis=0)
+    return mean_of([(np.concatenate([[0.0], run.loaded_strain]),
+                     np.concatenate([[run.before_loading("stress_MPa")], run.loaded_history("stress_MPa")]))
+                    for run in runs])
 
 
-def _advancing(run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """The curve from the origin, without the rows at which the strain did not exceed all strains before."""
-    strain = np.concatenate([[0.0], run.loaded_history("strain")])
-    stress = np.concatenate([[0.0], run.loaded_history("stress_MPa")])
-    rows = np.concatenate([[True], strain[1:] > np.maximum.accumulate(strain)[:-1]])
-    return strain[rows], stress[rows]
+def mean_of(curves: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+    """Mean of curves (x, y) where all have values; points whose x does not exceed all before are left out."""
+    advancing = [(x[rows], y[rows]) for x, y in curves
+                 for rows in [np.concatenate([[True], x[1:] > np.maximum.accumulate(x)[:-1]])]]
+    common = np.linspace(max(x[0] for x, _ in advancing), min(x[-1] for x, _ in advancing), _MEAN_POINTS)
+    return common, np.mean([np.interp(common, x, y) for x, y in advancing], axis=0)
 
 
 def _draw_mean_peak(axes: Axes, runs: Sequence[Run]) -> None:

@@ -1,8 +1,13 @@
 """Draws the figures of runs and specimens.
 
-    python3 -m pyroclast.figures run RUN_DIR        RUN_DIR/figures/{stress_strain,cracks,energy,fracture}.png
+    python3 -m pyroclast.figures run RUN_DIR        RUN_DIR/figures/...
     python3 -m pyroclast.figures specimen DIR       DIR/figures/{gradation,morphology}.png
     python3 -m pyroclast.figures compare RUN_DIR... --out FILE
+    python3 -m pyroclast.figures levels RUN_DIR... --out FILE
+
+A run that was heated gets total_strain.png (thrust.png when its platens were fixed), heating_cracks.png,
+heating_energy.png, convergence.png, temperature.png (when the field is not uniform) and heating_fracture.png;
+a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png and fracture.png.
 
 Prints the path of each figure. Ends with 1 and one line on stderr when something is missing or malformed.
 """
@@ -14,8 +19,11 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from .curves import compare, stress_strain
-from .progress import cracks, energy
+from .comparisons import KINDS, compare_runs
+from .curves import stress_strain
+from .heated_sections import LEVEL_TEMPERATURES, heating_fracture, levels, temperature_field
+from .heating import convergence, thrust, total_strain
+from .progress import cracks, energy, heating_course, heating_cracks, loading_course
 from .run import Run, RunError, Specimen
 from .sections import fracture, gradation, morphology, select_frames
 from .style import save
@@ -23,14 +31,42 @@ from .style import save
 _FORMATS = ("png", "svg", "pdf")
 
 
-def draw_run(folder: Path, file_format: str = "png", magnification: float | None = None) -> Iterator[Path]:
-    """Draws all figures of a compression run into its figures/ folder; yields each path once written."""
+def draw_run(folder: Path, file_format: str = "png", magnification: float | None = None,
+             temperatures: Sequence[float] | None = None) -> Iterator[Path]:
+    """Draws all figures of a run into its figures/ folder; yields each path once written.
+
+    temperatures [°C]: of the fracture patterns of a heated run, see `heating_fracture`.
+    """
     run = Run(folder)
+    if run.exchanged.any():
+        yield from _draw_heating(run, file_format, magnification, temperatures)
+    elif temperatures is not None:
+        raise RunError(f"{run.folder}: was never heated, so --temperatures asks for nothing")
+    if not run.ends_heated:
+        yield from _draw_compression(run, file_format, magnification)
+
+
+def _draw_heating(run: Run, file_format: str, magnification: float | None,
+                  temperatures: Sequence[float] | None) -> Iterator[Path]:
+    place = run.folder / "figures"
+    if run.restrained:
+        yield save(thrust(run), place / f"thrust.{file_format}")
+    else:
+        yield save(total_strain(run), place / f"total_strain.{file_format}")
+    yield save(heating_cracks(run), place / f"heating_cracks.{file_format}")
+    yield save(energy(heating_course(run)), place / f"heating_energy.{file_format}")
+    yield save(convergence(run), place / f"convergence.{file_format}")
+    if not run.uniform:
+        yield save(temperature_field(run), place / f"temperature.{file_format}")
+    yield save(heating_fracture(run, temperatures, magnification), place / f"heating_fracture.{file_format}")
+
+
+def _draw_compression(run: Run, file_format: str, magnification: float | None) -> Iterator[Path]:
     marks = select_frames(run.loaded_frames, *run.peak) if run.loaded_frames else {}
     place = run.folder / "figures"
     yield save(stress_strain(run, marks), place / f"stress_strain.{file_format}")
     yield save(cracks(run), place / f"cracks.{file_format}")
-    yield save(energy(run), place / f"energy.{file_format}")
+    yield save(energy(loading_course(run)), place / f"energy.{file_format}")
     if not marks:
         path = run.folder / "fields" / "frames.csv"
         raise RunError(f"{path}: no frame of the loading stage; fracture cannot be drawn")
@@ -45,11 +81,22 @@ def draw_specimen(folder: Path, file_format: str = "png") -> Iterator[Path]:
     yield save(morphology(specimen), place / f"morphology.{file_format}")
 
 
-def draw_comparison(folders: Sequence[Path], out: Path) -> Iterator[Path]:
-    """Draws the curves of several runs into one file, its format by its ending."""
+def draw_comparison(folders: Sequence[Path], out: Path, what: str | None = None) -> Iterator[Path]:
+    """Draws the curves of several runs into one file, its format by its ending; what: see `compare_runs`."""
+    _check_ending(out)
+    yield save(compare_runs([Run(folder) for folder in folders], what), out)
+
+
+def draw_levels(folders: Sequence[Path], out: Path, temperatures: Sequence[float] = LEVEL_TEMPERATURES,
+                magnification: float | None = None) -> Iterator[Path]:
+    """Draws the fracture patterns of several heated runs into one file, its format by its ending."""
+    _check_ending(out)
+    yield save(levels([Run(folder) for folder in folders], temperatures, magnification), out)
+
+
+def _check_ending(out: Path) -> None:
     if out.suffix.lower().lstrip(".") not in _FORMATS:
         raise RunError(f"{out}: the file's ending must be one of {', '.join('.' + f for f in _FORMATS)}")
-    yield save(compare([Run(folder) for folder in folders]), out)
 
 
 def _positive(text: str) -> float:
@@ -59,27 +106,48 @@ def _positive(text: str) -> float:
     return value
 
 
+def _temperatures(text: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text} is not a list like 300,400,500") from None
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python3 -m pyroclast.figures",
                                      description="Draws the figures of runs and specimens.")
     commands = parser.add_subparsers(dest="command", required=True)
 
-    run = commands.add_parser("run", help="all figures of a compression run")
+    run = commands.add_parser("run", help="all figures of a run")
     run.add_argument("folder", type=Path, metavar="RUN_DIR")
     run.add_argument("--format", choices=_FORMATS, default="png")
     run.add_argument("--magnification", type=_positive, metavar="FACTOR",
                      help="of displacements in fracture (default: chosen from the last frame, and stated)")
-    run.set_defaults(draw=lambda asked: draw_run(asked.folder, asked.format, asked.magnification))
+    run.add_argument("--temperatures", type=_temperatures, metavar="T,T,...",
+                     help="°C, of the fracture patterns of a heated run (default: chosen from its frames)")
+    run.set_defaults(draw=lambda asked: draw_run(asked.folder, asked.format, asked.magnification,
+                                                 asked.temperatures))
 
     specimen = commands.add_parser("specimen", help="morphology and gradation of a specimen")
     specimen.add_argument("folder", type=Path, metavar="DIR")
     specimen.add_argument("--format", choices=_FORMATS, default="png")
     specimen.set_defaults(draw=lambda asked: draw_specimen(asked.folder, asked.format))
 
-    comparison = commands.add_parser("compare", help="stress-strain curves of several runs in one figure")
+    comparison = commands.add_parser("compare", help="curves of several runs in one figure")
     comparison.add_argument("folders", type=Path, nargs="+", metavar="RUN_DIR")
     comparison.add_argument("--out", type=Path, required=True, metavar="FILE")
-    comparison.set_defaults(draw=lambda asked: draw_comparison(asked.folders, asked.out))
+    comparison.add_argument("--what", choices=KINDS, help="default: what the runs have in common")
+    comparison.set_defaults(draw=lambda asked: draw_comparison(asked.folders, asked.out, asked.what))
+
+    patterns = commands.add_parser("levels", help="fracture patterns of several heated runs, a row for each")
+    patterns.add_argument("folders", type=Path, nargs="+", metavar="RUN_DIR")
+    patterns.add_argument("--out", type=Path, required=True, metavar="FILE")
+    patterns.add_argument("--temperatures", type=_temperatures, default=LEVEL_TEMPERATURES, metavar="T,T,...",
+                          help="°C, of the columns before the last frame (default: 300,400,500,600)")
+    patterns.add_argument("--magnification", type=_positive, metavar="FACTOR",
+                          help="of displacements (default: chosen from the last frames, and stated)")
+    patterns.set_defaults(draw=lambda asked: draw_levels(asked.folders, asked.out, asked.temperatures,
+                                                         asked.magnification))
     return parser
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,6 +24,42 @@ _ENERGY_OUT = (
     ("energy_local_damping_J", "local damping", "#d9d9d9", "...."),
     ("energy_viscous_damping_J", "viscous damping", style.FAINT, "xxxx"),
 )
+_INTERFACES = (("am", "A–M", "-"), ("mm", "M–M", (0, (5, 1.5))))
+_COOLED = 1.0  # K below the hottest before, from which temperature no longer orders the rows
+
+
+@dataclass(frozen=True)
+class Course:
+    """Rows of a run's history, and what they are drawn over."""
+
+    run: Run
+    rows: np.ndarray  #: (rows of the history,) bool
+    over: np.ndarray  #: (n,) in the unit of the label
+    label: str
+    start: float  #: left end of the axis
+    ordered: bool = True  #: False when time stands in for a temperature that also falls
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """(n,) a column of the history."""
+        return self.run.history[name][self.rows]
+
+
+def loading_course(run: Run) -> Course:
+    """The last stage, over strain."""
+    return Course(run, run.loaded, style.PER_MILLE * run.loaded_strain, style.STRAIN_LABEL, start=0.0)
+
+
+def heating_course(run: Run) -> Course:
+    """The heating, over temperature, or over time when the specimen also cools."""
+    temperature = run.heated_history("temperature_degC")
+    if (temperature < np.maximum.accumulate(temperature) - _COOLED).any():
+        time = run.heated_history("heating_time_s") / 60.0
+        return Course(run, run.heated, time, "Time of heating [min]", start=time[0], ordered=False)
+    return Course(run, run.heated, temperature, temperature_label(run), start=temperature.min())
+
+
+def temperature_label(run: Run) -> str:
+    return "Temperature [°C]" if run.uniform else "Mean temperature of the specimen [°C]"
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -31,23 +69,47 @@ def cracks(run: Run) -> Figure:
     upper, lower, below = figure.subplots(3, 1, height_ratios=[1.0, 1.0, 0.3])
     lower.sharex(upper)
     upper.set_title(style.title_of(run))
+    course = loading_course(run)
     for axes in (upper, lower):
-        _draw_stress_behind(axes, run)
-    _draw_counts(upper, run, "tension", style.TENSION_COLOUR)
-    _draw_counts(lower, run, "shear", style.SHEAR_COLOUR)
+        _draw_stress_behind(axes, course)
+    _draw_counts(upper, course, "tension", style.TENSION_COLOUR)
+    _draw_counts(lower, course, "shear", style.SHEAR_COLOUR)
     upper.set_xlim(left=0.0)
     upper.tick_params(labelbottom=False)
-    lower.set_xlabel(style.STRAIN_LABEL)
-    style.legend_alone(below, *_both_legends(upper, lower), loc="center", ncols=2)
+    lower.set_xlabel(course.label)
+    style.legend_alone(below, *_legends(upper, lower), loc="center", ncols=2)
     return figure
 
 
-def _draw_stress_behind(axes: Axes, run: Run) -> None:
+@matplotlib.rc_context(style.STYLE)
+def heating_cracks(run: Run) -> Figure:
+    """Cracked contact points and crack length by mode and interface, and the mean opening, while heated."""
+    figure = style.new_figure(5.4)
+    figure.suptitle(style.title_of(run), fontsize=9.0)
+    grid = figure.add_gridspec(3, 2, height_ratios=[1.0, 1.0, 0.32])
+    tension, shear, length, opening = panels = [figure.add_subplot(grid[i // 2, i % 2]) for i in range(4)]
+    course = heating_course(run)
+    _draw_counts(tension, course, "tension", style.TENSION_COLOUR)
+    _draw_counts(shear, course, "shear", style.SHEAR_COLOUR)
+    for mode, colour in (("tension", style.TENSION_COLOUR), ("shear", style.SHEAR_COLOUR)):
+        for interface, _, dashes in _INTERFACES:
+            length.plot(course.over, course[f"{mode}_{interface}_length_m"], color=colour, linestyle=dashes,
+                        linewidth=0.7)
+    length.set_ylabel("Length of all cracks, $D>0$ [m]")
+    opening.plot(course.over, 1e6 * course["mean_opening_m"], color=style.BLACK)
+    opening.set_ylabel("Mean opening of contacts\ndamaged in tension [µm]")
+    for axes in panels:
+        axes.set_xlim(course.start, course.over.max())
+        axes.set_ylim(bottom=0.0)
+        axes.set_xlabel(course.label)
+    style.legend_alone(figure.add_subplot(grid[2, :]), *_legends(tension, shear), loc="center", ncols=2)
+    return figure
+
+
+def _draw_stress_behind(axes: Axes, course: Course) -> None:
     behind = axes.twinx()
-    behind.fill_between(style.PER_MILLE * run.loaded_history("strain"), run.loaded_history("stress_MPa"),
-                        color="#ededed", linewidth=0.0)
-    behind.plot(style.PER_MILLE * run.loaded_history("strain"), run.loaded_history("stress_MPa"),
-                color=style.FAINT, linewidth=0.8)
+    behind.fill_between(course.over, course["stress_MPa"], color="#ededed", linewidth=0.0)
+    behind.plot(course.over, course["stress_MPa"], color=style.FAINT, linewidth=0.8)
     behind.set_ylim(bottom=0.0)
     behind.set_ylabel("Axial stress [MPa]", color="#6a6a6a")
     behind.tick_params(axis="y", colors="#6a6a6a")
@@ -57,18 +119,17 @@ def _draw_stress_behind(axes: Axes, run: Run) -> None:
     axes.patch.set_visible(False)
 
 
-def _draw_counts(axes: Axes, run: Run, mode: str, colour: str) -> None:
-    strain = style.PER_MILLE * run.loaded_history("strain")
-    for interface, name, dashes in (("am", "A–M", "-"), ("mm", "M–M", (0, (5, 1.5)))):
-        axes.plot(strain, run.loaded_history(f"{mode}_{interface}_broken"), color=colour, linestyle=dashes,
+def _draw_counts(axes: Axes, course: Course, mode: str, colour: str) -> None:
+    for interface, name, dashes in _INTERFACES:
+        axes.plot(course.over, course[f"{mode}_{interface}_broken"], color=colour, linestyle=dashes,
                   linewidth=1.8, label=f"{mode}, {name}: broken ($D=1$)")
-        axes.plot(strain, run.loaded_history(f"{mode}_{interface}_softening"), color=colour, linestyle=dashes,
+        axes.plot(course.over, course[f"{mode}_{interface}_softening"], color=colour, linestyle=dashes,
                   linewidth=0.7, label=f"{mode}, {name}: damaged ($D>0$), broken among them")
     axes.set_ylim(bottom=0.0)
     axes.set_ylabel(f"Cracked contact points,\n{mode}")
 
 
-def _both_legends(*all_axes: Axes) -> tuple[list, list[str]]:
+def _legends(*all_axes: Axes) -> tuple[list, list[str]]:
     handles, labels = [], []
     for axes in all_axes:
         more_handles, more_labels = axes.get_legend_handles_labels()
@@ -78,39 +139,42 @@ def _both_legends(*all_axes: Axes) -> tuple[list, list[str]]:
 
 
 @matplotlib.rc_context(style.STYLE)
-def energy(run: Run) -> Figure:
-    """Where the work went, stacked over strain, against the work put in; below, the ledger's error."""
+def energy(course: Course) -> Figure:
+    """Where the work went, stacked, against the work put in; below, the ledger's error."""
     figure = style.new_figure(4.8)
     grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 0.3], width_ratios=[1.0, 0.4])
     upper, beside, lower = (figure.add_subplot(grid[place]) for place in ((0, 0), (0, 1), (1, 0)))
     lower.sharex(upper)
-    upper.set_title(style.title_of(run))
-    strain = style.PER_MILLE * run.loaded_history("strain")
-    work_in = sum(run.loaded_history(name) for name in _ENERGY_IN)
+    upper.set_title(style.title_of(course.run))
+    work_in = sum(course[name] for name in _ENERGY_IN)
     largest = np.abs(work_in).max() or 1.0
-    _draw_stack(upper, run, strain, largest)
-    upper.plot(strain, work_in, color=style.BLACK, linewidth=1.4, linestyle=(0, (4, 2)),
+    _draw_stack(upper, course, largest)
+    upper.plot(course.over, work_in, color=style.BLACK, linewidth=1.4, linestyle=(0, (4, 2)),
                label="work put in\n(loading, gravity, heat)")
-    upper.set_xlim(0.0, strain.max())
+    if course["energy_heat_J"].any():
+        upper.plot(course.over, course["energy_heat_J"], color=style.PURPLE, linewidth=1.4,
+                   linestyle=(0, (1.5, 1)), label="by heat alone")
+    upper.set_xlim(course.start, course.over.max())
     upper.tick_params(labelbottom=False)
-    if work_in.min() >= 0.0:
+    if min(work_in.min(), course["energy_heat_J"].min()) >= 0.0:
         upper.set_ylim(bottom=0.0)
     upper.set_ylabel("Energy since the start [J]")
     handles, labels = upper.get_legend_handles_labels()
     style.legend_alone(beside, handles[::-1], labels[::-1], loc="upper left", alignment="left",
                        title="at the end, share of\nthe largest work in")
 
-    lower.plot(strain, 100.0 * run.loaded_history("energy_error_J") / largest, color=style.VERMILLION)
+    lower.plot(course.over, 100.0 * course["energy_error_J"] / largest, color=style.VERMILLION)
     lower.axhline(0.0, color=style.BLACK, linewidth=0.6)
     lower.set_ylabel("Ledger error\n[% of largest\nwork in]")
-    lower.set_xlabel(style.STRAIN_LABEL)
+    lower.set_xlabel(course.label)
     return figure
 
 
-def _draw_stack(axes: Axes, run: Run, strain: np.ndarray, largest: float) -> None:
-    below = np.zeros_like(strain)
+def _draw_stack(axes: Axes, course: Course, largest: float) -> None:
+    below = np.zeros_like(course.over)
     for column, name, colour, hatch in _ENERGY_OUT:
-        values = run.loaded_history(column)
-        axes.fill_between(strain, below, below + values, facecolor=colour, hatch=hatch, edgecolor="white",
-                          linewidth=0.3, label=f"{name}: {100.0 * values[-1] / largest:.1f} %")
+        values = course[column]
+        axes.fill_between(course.over, below, below + values, facecolor=colour, hatch=hatch,
+                          edgecolor="white", linewidth=0.3,
+                          label=f"{name}: {100.0 * values[-1] / largest:.1f} %")
         below = below + values

@@ -1,10 +1,15 @@
-"""What compression runs at room temperature are held against. Compression positive."""
+"""What runs are held against: compression at room temperature, and total strain while heated under load."""
 
 from __future__ import annotations
 
+import csv
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 
 import numpy as np
+
+# Compression at room temperature; stress and strain positive in compression.
 
 
 @dataclass(frozen=True)
@@ -57,3 +62,52 @@ def at_stress(strain):
         raise ValueError(f"strain outside [0, {AT_LAST_STRAIN:.4g}], where the law is defined")
     line = _parabola(_AT_STRAIN_AT_TANGENT) + AT_DESCENT * (strain - _AT_STRAIN_AT_TANGENT)
     return np.where(strain <= _AT_STRAIN_AT_TANGENT, _parabola(strain), line)
+
+
+# Heating under load; strain positive in expansion.
+
+TRUSTED_TO = 500.0
+"""Temperature [°C] up to which the bands of total strain are good; above, they only tell the order."""
+
+_SAME_LEVEL = 0.005
+_BANDS_FILE = Path(__file__).parent / "reference_data" / "transient_total_strain.csv"
+
+
+@dataclass(frozen=True)
+class StrainBand:
+    """Range of total strain over temperature at one load level; what spans it stands in the data's header."""
+
+    level: float  #: stress over the strength at 20 °C
+    temperature: np.ndarray  #: (n,) °C, rising
+    low: np.ndarray  #: (n,)
+    central: np.ndarray  #: (n,)
+    high: np.ndarray  #: (n,)
+
+    def at(self, temperature):
+        """Low, central and high strain at a temperature [°C] or an array of them; ValueError outside."""
+        temperature = np.asarray(temperature, dtype=float)
+        first, last = self.temperature[[0, -1]]
+        if (temperature < first).any() or (temperature > last).any():
+            raise ValueError(f"temperature outside {first:g} to {last:g} °C, where the band is given")
+        return tuple(np.interp(temperature, self.temperature, y) for y in (self.low, self.central, self.high))
+
+
+@cache
+def strain_bands() -> tuple[StrainBand, ...]:
+    """The four load levels of Anderberg and Thelandersson's transient tests, lowest first."""
+    with open(_BANDS_FILE, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    names = ("temperature_degC", "strain_low", "strain_central", "strain_high")
+    levels = sorted({float(row["level"]) for row in rows})
+    return tuple(
+        StrainBand(level, *np.array([[float(row[name]) for name in names]
+                                     for row in rows if float(row["level"]) == level]).T)
+        for level in levels
+    )
+
+
+def strain_band(level: float | None) -> StrainBand | None:
+    """The band of a load level, given to three digits; None when there is none for it."""
+    if level is None:
+        return None
+    return next((band for band in strain_bands() if abs(band.level - level) < _SAME_LEVEL), None)

@@ -1,107 +1,21 @@
 """Reader of run and specimen folders.
 
-SI units, stress in MPa where a name says so; strain and stress of the test positive in compression.
+SI units, temperature in °C, stress in MPa where a name says so. Strain and stress of the test are positive in
+compression; only `Run.total_strain` is positive in expansion.
 """
 
 from __future__ import annotations
 
-import csv
-import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-import h5py
 import numpy as np
 
-AGGREGATE, MORTAR, PLATEN = 0, 1, 2
-"""Values of `BlockMesh.material`."""
+from .files import RunError, Table, dataset, open_hdf, read_json
+from .mesh import Mesh, read_mesh
 
-AGGREGATE_AGGREGATE, AGGREGATE_MORTAR, MORTAR_MORTAR, PLATEN_CONTACT = 0, 1, 2, 3
-"""Values of `ContactMesh.interface`."""
-
-_VTK_LINE, _VTK_TRIANGLE = 3, 5
-
-
-class RunError(Exception):
-    """Something in a run or specimen folder is missing or malformed; one line says what and where."""
-
-
-class Table:
-    """Columns of numbers of a csv file, by name: `table["strain"]` is a (rows,) float64 array."""
-
-    def __init__(self, path: Path, may_be_empty: bool = False):
-        """Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
-        self.path = path
-        try:
-            with open(path, newline="", encoding="utf-8") as file:
-                lines = list(csv.reader(file))
-        except (OSError, UnicodeDecodeError) as error:
-            raise RunError(f"{path}: cannot be read: {_reason(error)}") from error
-        if not lines:
-            raise RunError(f"{path}: is empty; a header line is expected")
-        self.names = [name.strip() for name in lines[0]]
-        rows = [self._numbers(number, cells) for number, cells in enumerate(lines[1:], start=2) if cells]
-        if not rows and not may_be_empty:
-            raise RunError(f"{path}: has a header but no rows")
-        self._columns = dict(zip(self.names, np.array(rows).reshape(-1, len(self.names)).T))
-
-    def _numbers(self, line: int, cells: list[str]) -> list[float]:
-        if len(cells) != len(self.names):
-            counts = f"{len(cells)} values for the header's {len(self.names)} columns"
-            raise RunError(f"{self.path}, line {line}: {counts}")
-        numbers = []
-        for name, cell in zip(self.names, cells):
-            try:
-                numbers.append(float(cell))
-            except ValueError:
-                where = f"{self.path}, line {line}"
-                raise RunError(f"{where}: column '{name}' holds '{cell}', not a number") from None
-        return numbers
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        """Throws RunError naming file and column when there is no such column."""
-        if name not in self._columns:
-            raise RunError(f"{self.path}: has no column '{name}'")
-        return self._columns[name]
-
-    def __len__(self) -> int:
-        return len(self._columns[self.names[0]])
-
-
-@dataclass(frozen=True)
-class BlockMesh:
-    """Zones of all blocks, reference configuration."""
-
-    path: Path  #: file it was read from
-    points: np.ndarray  #: (N, 2) gridpoints, m
-    triangles: np.ndarray  #: (Z, 3) gridpoints of each zone, counter-clockwise
-    block: np.ndarray  #: (Z,) block of each zone
-    material: np.ndarray  #: (Z,) AGGREGATE, MORTAR or PLATEN
-
-    @cached_property
-    def outlines(self) -> tuple[list[np.ndarray], np.ndarray]:
-        """Gridpoints around each block, counter-clockwise, and the blocks' materials.
-
-        Throws RunError when a block's zones do not make one simple polygon.
-        """
-        return _outlines(self)
-
-
-@dataclass(frozen=True)
-class ContactMesh:
-    """Each contact point as a line to the middle of its face."""
-
-    points: np.ndarray  #: (2C, 2), m
-    lines: np.ndarray  #: (C, 2) indices into points
-    interface: np.ndarray  #: (C,) AGGREGATE_AGGREGATE, AGGREGATE_MORTAR, MORTAR_MORTAR or PLATEN_CONTACT
-    length: np.ndarray  #: (C,) tributary length, m
-
-
-@dataclass(frozen=True)
-class Mesh:
-    blocks: BlockMesh
-    contacts: ContactMesh
+_UNIFORM = 1.0  # K
 
 
 @dataclass(frozen=True)
@@ -114,6 +28,8 @@ class Frame:
     time: float  #: s
     strain: float
     stress: float  #: MPa
+    temperature: float | None = None  #: °C, mean of the specimen; None when the run did not write it
+    heating_time: float | None = None  #: s since heating began; None when the run did not write it
 
 
 class Run:
@@ -131,7 +47,7 @@ class Run:
 
     @cached_property
     def summary(self) -> dict:
-        return _read_json(self.folder / "summary.json")
+        return read_json(self.folder / "summary.json")
 
     @property
     def title(self) -> str:
@@ -141,15 +57,107 @@ class Run:
     @property
     def compression(self) -> dict:
         """E_GPa, f_c_MPa, strain_at_peak, strain_ic; empty when the run reached no peak."""
-        values = self.summary.get("compression") or {}
+        return self._summary_object("compression")
+
+    @property
+    def heating(self) -> dict:
+        """load_level, load_stress_MPa, critical_temperature_degC, platen, ...; empty when never heated."""
+        return self._summary_object("heating")
+
+    def _summary_object(self, name: str) -> dict:
+        values = self.summary.get(name) or {}
         if not isinstance(values, dict):
-            raise RunError(f"{self.folder / 'summary.json'}: 'compression' is neither an object nor null")
+            raise RunError(f"{self.folder / 'summary.json'}: '{name}' is neither an object nor null")
         return values
+
+    def _heating_number(self, name: str) -> float | None:
+        value = self.heating.get(name)
+        if value is not None and (isinstance(value, bool) or not isinstance(value, (int, float))):
+            path = self.folder / "summary.json"
+            raise RunError(f"{path}: 'heating': '{name}' is neither a number nor null")
+        return value
+
+    @property
+    def load_stress(self) -> float | None:
+        """Compressive stress [MPa] kept while heated."""
+        return self._heating_number("load_stress_MPa")
+
+    @property
+    def load_level(self) -> float | None:
+        """`load_stress` over the strength at 20 °C; None when that strength is not known."""
+        level = self._heating_number("load_level")
+        return 0.0 if level is None and self.load_stress == 0.0 else level
+
+    @property
+    def critical_temperature(self) -> float | None:
+        """Temperature [°C] at which the specimen failed under its load; None when it did not."""
+        return self._heating_number("critical_temperature_degC")
+
+    @property
+    def restrained(self) -> bool:
+        """Whether the platens were held in place while the specimen was heated."""
+        return self.heating.get("platen") == "fixed"
 
     @property
     def quasi_static(self) -> bool | None:
         """The run's own verdict; None when it gave none."""
         return self.summary.get("quasi_static")
+
+    @cached_property
+    def exchanged(self) -> np.ndarray:
+        """(rows,) bool: rows of the history written after an exchange of temperatures."""
+        if "exchange" not in self.history:
+            return np.zeros(len(self.history), dtype=bool)
+        return self.history["exchange"] > 0
+
+    @cached_property
+    def heated(self) -> np.ndarray:
+        """(rows,) bool: `exchanged` and the row before, from which heating started; none if never heated."""
+        rows = self.exchanged.copy()
+        if rows.any():
+            rows[max(int(rows.argmax()) - 1, 0)] = True
+        return rows
+
+    @property
+    def ends_heated(self) -> bool:
+        """Whether the last stage heats; the test is then the heating, else the loading that follows."""
+        stage = self.history["stage"]
+        return bool(self.exchanged[stage == stage.max()].any())
+
+    def heated_history(self, name: str) -> np.ndarray:
+        """A column of the history, rows of `heated` only."""
+        return self.history[name][self.heated]
+
+    @property
+    def standing(self) -> np.ndarray:
+        """(rows,) bool: rows of `heated`, without that of the exchange at which the specimen failed."""
+        return self.heated & ~self._failing
+
+    @property
+    def _failing(self) -> np.ndarray:
+        rows = np.zeros(len(self.history), dtype=bool)
+        if self.critical_temperature is not None:
+            rows[np.flatnonzero(self.exchanged)[-1:]] = True
+            rows &= self.history["converged"] == 0
+        return rows
+
+    @property
+    def total_strain(self) -> np.ndarray:
+        """Axial strain over the rows of `heated`, positive in expansion, that of the load included."""
+        return -self.heated_history("strain")
+
+    @property
+    def uniform(self) -> bool:
+        """Whether the specimen's temperatures never differed by more than 1 K."""
+        spread = self.heated_history("temperature_max_degC") - self.heated_history("temperature_min_degC")
+        return bool((spread <= _UNIFORM).all())
+
+    @property
+    def unconverged(self) -> np.ndarray:
+        """(rows,) bool: exchanges whose cycles did not reach equilibrium, without that of the failure."""
+        if not self.exchanged.any():
+            return self.exchanged
+        return self.exchanged & (self.history["converged"] == 0) & ~self._failing
 
     @cached_property
     def loaded(self) -> np.ndarray:
@@ -164,9 +172,19 @@ class Run:
         """A column of the history, rows of `loaded` only."""
         return self.history[name][self.loaded]
 
+    def before_loading(self, name: str) -> float:
+        """A column's value before the last stage if the run was heated by then, else zero, as at rest."""
+        first = int(self.loaded.argmax())
+        return float(self.history[name][first - 1]) if self.exchanged[:first].any() else 0.0
+
+    @property
+    def loaded_strain(self) -> np.ndarray:
+        """Strain over the rows of `loaded`, counted from that before loading."""
+        return self.loaded_history("strain") - self.before_loading("strain")
+
     @property
     def peak(self) -> tuple[float, float]:
-        """Strain and stress [MPa] where the history's stress is largest, whether or not the test went on.
+        """`loaded_strain` and stress [MPa] where the history's stress is largest, even if it ended there.
 
         Throws RunError when the specimen was never compressed.
         """
@@ -175,7 +193,14 @@ class Run:
         if stress[row] <= 0.0:
             path = self.history.path
             raise RunError(f"{path}: column 'stress_MPa' is never positive; the specimen was not compressed")
-        return float(self.loaded_history("strain")[row]), float(stress[row])
+        return float(self.loaded_strain[row]), float(stress[row])
+
+    @property
+    def strength_retained(self) -> float | None:
+        """Largest stress after heating over the strength before; None when the summary does not tell that."""
+        if self.ends_heated or not self.load_level or not self.load_stress:
+            return None
+        return self.peak[1] * self.load_level / self.load_stress
 
     @cached_property
     def frames(self) -> list[Frame]:
@@ -184,18 +209,31 @@ class Run:
         if not path.exists():
             return []
         t = Table(path, may_be_empty=True)
+        heat = [t[name] if name in t else [None] * len(t) for name in ("temperature_degC", "heating_time_s")]
         return [
-            Frame(int(number), int(stage), int(step), time, strain, stress)
-            for number, stage, step, time, strain, stress in zip(
-                t["frame"], t["stage"], t["step"], t["time_s"], t["strain"], t["stress_MPa"]
+            Frame(int(number), int(stage), int(step), *values)
+            for number, stage, step, *values in zip(
+                t["frame"], t["stage"], t["step"], t["time_s"], t["strain"], t["stress_MPa"], *heat
             )
         ]
 
     @property
     def loaded_frames(self) -> list[Frame]:
-        """Frames of the history's last stage."""
-        last = self.history["stage"].max()
-        return [frame for frame in self.frames if frame.stage == last]
+        """Frames of the history's last stage, their strain counted from that before loading."""
+        last, before = self.history["stage"].max(), self.before_loading("strain")
+        return [replace(frame, strain=frame.strain - before) for frame in self.frames if frame.stage == last]
+
+    @property
+    def heated_frames(self) -> list[Frame]:
+        """Frames of all stages that heat; throws RunError when there is none or they have no temperature."""
+        path = self.folder / "fields" / "frames.csv"
+        stages = set(self.history["stage"][self.exchanged])
+        frames = [frame for frame in self.frames if frame.stage in stages]
+        if not frames:
+            raise RunError(f"{path}: no frame of a heating stage")
+        if frames[0].temperature is None:
+            raise RunError(f"{path}: has no column 'temperature_degC'")
+        return frames
 
     @cached_property
     def mesh(self) -> Mesh:
@@ -205,6 +243,10 @@ class Run:
         """(N, 2), m."""
         shape = (len(self.mesh.blocks.points), 3)
         return self._field("blocks", frame, "PointData/displacement", shape)[:, :2]
+
+    def gridpoint_temperature(self, frame: Frame) -> np.ndarray:
+        """(N,), °C."""
+        return self._field("blocks", frame, "PointData/temperature", (len(self.mesh.blocks.points),))
 
     def contact_displacement(self, frame: Frame) -> np.ndarray:
         """(2C, 2), m, of the points of the contact mesh."""
@@ -217,8 +259,8 @@ class Run:
 
     def _field(self, kind: str, frame: Frame, name: str, shape: tuple[int, ...]) -> np.ndarray:
         path = self.folder / "fields" / f"{kind}_{frame.number:04d}.hdf"
-        with _open_hdf(path) as file:
-            values = _dataset(file, f"VTKHDF/{name}")
+        with open_hdf(path) as file:
+            values = dataset(file, f"VTKHDF/{name}")
         if values.shape != shape:
             raise RunError(f"{path}: /VTKHDF/{name} has shape {values.shape}, but the mesh asks for {shape}")
         return values
@@ -237,7 +279,7 @@ class Specimen:
     @cached_property
     def facts(self) -> dict:
         """specimen.json."""
-        return _read_json(self._tables / "specimen.json")
+        return read_json(self._tables / "specimen.json")
 
     def fact(self, name: str) -> float:
         value = self.facts.get(name)
@@ -258,106 +300,3 @@ class Specimen:
     @cached_property
     def mesh(self) -> Mesh:
         return read_mesh(self.folder / "fields" / "mesh.h5")
-
-
-def read_mesh(path: Path) -> Mesh:
-    """Reads mesh.h5; throws RunError when it is missing or its groups are not triangles and lines."""
-    with _open_hdf(path) as file:
-        points, triangles = _cells(file, "blocks", _VTK_TRIANGLE, "triangles")
-        blocks = BlockMesh(
-            path,
-            points,
-            _counter_clockwise(points, triangles),
-            _cell_values(file, "blocks/block", len(triangles)),
-            _cell_values(file, "blocks/material", len(triangles)),
-        )
-        points, lines = _cells(file, "contacts", _VTK_LINE, "lines of two points")
-        contacts = ContactMesh(
-            points,
-            lines,
-            _cell_values(file, "contacts/interface", len(lines)),
-            _cell_values(file, "contacts/length", len(lines)),
-        )
-    return Mesh(blocks, contacts)
-
-
-def _cells(file: h5py.File, group: str, cell_type: int, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Points (N, 2) and corners of each cell, all cells of one type."""
-    points = _dataset(file, f"{group}/Points")
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise RunError(f"{file.filename}: /{group}/Points has shape {points.shape}; (N, 3) is expected")
-    types = _dataset(file, f"{group}/Types")
-    corners = _dataset(file, f"{group}/Connectivity")
-    sides = {_VTK_LINE: 2, _VTK_TRIANGLE: 3}[cell_type]
-    if (types != cell_type).any() or len(corners) != sides * len(types):
-        raise RunError(f"{file.filename}: /{group} has cells that are not {name}")
-    if len(corners) and not 0 <= corners.min() <= corners.max() < len(points):
-        raise RunError(f"{file.filename}: /{group}/Connectivity points outside the {len(points)} points")
-    return points[:, :2], corners.astype(np.int64).reshape(-1, sides)
-
-
-def _cell_values(file: h5py.File, name: str, cells: int) -> np.ndarray:
-    values = _dataset(file, name)
-    if len(values) != cells:
-        raise RunError(f"{file.filename}: /{name} has {len(values)} values for {cells} cells")
-    return values
-
-
-def _counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    a, b, c = (points[triangles[:, i]] for i in range(3))
-    area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    return np.where((area < 0.0)[:, None], triangles[:, ::-1], triangles)
-
-
-def _outlines(mesh: BlockMesh) -> tuple[list[np.ndarray], np.ndarray]:
-    # A directed zone edge is on the outline when no zone of the block walks it the other way.
-    size = len(mesh.points)
-    start = mesh.triangles.ravel()
-    end = np.roll(mesh.triangles, -1, axis=1).ravel()
-    outer = ~np.isin(start * size + end, end * size + start)
-    owner = np.repeat(mesh.block, 3)[outer]
-    start, end = start[outer], end[outer]
-    if len(np.unique(start)) != len(start):
-        raise RunError(f"{mesh.path}: /blocks has a block whose zones do not make one simple polygon")
-    following = dict(zip(start.tolist(), end.tolist()))
-
-    _, first_edge = np.unique(owner, return_index=True)
-    outlines = []
-    for first in start[first_edge].tolist():
-        loop = [first]
-        while (gridpoint := following[loop[-1]]) != first:
-            loop.append(gridpoint)
-        outlines.append(np.array(loop))
-    if sum(map(len, outlines)) != len(start):
-        raise RunError(f"{mesh.path}: /blocks has a block whose zones do not make one simple polygon")
-    _, first_zone = np.unique(mesh.block, return_index=True)
-    return outlines, mesh.material[first_zone]
-
-
-def _open_hdf(path: Path) -> h5py.File:
-    if not path.exists():
-        raise RunError(f"{path}: does not exist")
-    try:
-        return h5py.File(path, "r")
-    except OSError as error:
-        raise RunError(f"{path}: is not a readable HDF5 file") from error
-
-
-def _dataset(file: h5py.File, name: str) -> np.ndarray:
-    if not isinstance(file.get(name), h5py.Dataset):
-        raise RunError(f"{file.filename}: has no dataset /{name}")
-    return file[name][()]
-
-
-def _read_json(path: Path) -> dict:
-    try:
-        value = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise RunError(f"{path}: cannot be read: {_reason(error)}") from error
-    if not isinstance(value, dict):
-        raise RunError(f"{path}: is not a JSON object")
-    return value
-
-
-def _reason(error: Exception) -> str:
-    return getattr(error, "strerror", None) or str(error)

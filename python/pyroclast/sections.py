@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from . import style
-from .run import (
+from .mesh import (
     AGGREGATE,
     AGGREGATE_MORTAR,
     MORTAR,
@@ -22,13 +22,9 @@ from .run import (
     PLATEN,
     BlockMesh,
     ContactMesh,
-    Frame,
-    Run,
-    RunError,
-    Specimen,
 )
+from .run import Frame, Run, RunError, Specimen
 
-_MILLI = 1e3  # metres to millimetres
 _COLOURS = {AGGREGATE: style.AGGREGATE_COLOUR, MORTAR: style.MORTAR_COLOUR, PLATEN: style.PLATEN_COLOUR}
 _BEFORE_PEAK = 0.85  # strain of frame A over that of the peak: the first cracks have opened
 _AFTER_PEAK = 0.8  # stress of frame C over that of the peak
@@ -88,31 +84,65 @@ _CRACKS = (
 )
 
 
-@matplotlib.rc_context(style.STYLE)
+@dataclass(frozen=True)
+class Panel:
+    """One fractured specimen in a figure; without a frame only the caption is drawn, in its place."""
+
+    run: Run
+    frame: Frame | None
+    title: str
+    caption: str
+
+
 def fracture(run: Run, marks: Mapping[str, Frame], magnification: float | None = None) -> Figure:
     """The deformed specimen with its cracks at the marked frames (paper, Figure 9).
 
-    marks: as `select_frames` gives them. magnification of displacements: the same in all panels; when None,
-    the largest round one at which 95 % of the last panel's gridpoints move by less than 6 % of the height.
+    marks: as `select_frames` gives them. magnification of displacements: as `fracture_panels` takes it.
+    """
+    panels = [Panel(run, frame, letter, _caption(run, frame)) for letter, frame in marks.items()]
+    return fracture_panels([("", panels)], style.title_of(run), magnification,
+                           "Counts are contact points (two an edge) of A–M and M–M contacts.")
+
+
+@matplotlib.rc_context(style.STYLE)
+def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, magnification: float | None,
+                    note: str) -> Figure:
+    """Deformed specimens with their cracks, in labelled rows of equally many panels; some have a frame.
+
+    magnification of displacements: the same in all panels; when None, the largest round one at which, in the
+    last panel of each row, 95 % of the gridpoints move by less than 6 % of the height. note: on the counts.
     """
     if magnification is None:
-        magnification = _visible_magnification(run, list(marks.values())[-1])
-    low, high = _panel_box(run.mesh.blocks)
-    panel_height = (style.WIDTH / _PANELS - 0.12) * (high - low)[1] / (high - low)[0]
-    figure = style.new_figure(panel_height + 1.95, dpi=2 * style.DPI)
-    grid = figure.add_gridspec(2, len(marks), height_ratios=[panel_height, 0.55])
-    panels = [figure.add_subplot(grid[0, i]) for i in range(len(marks))]
-    for axes, (letter, frame) in zip(panels, marks.items()):
-        _draw_fractured(axes, run, frame, magnification)
-        axes.set_title(letter, fontweight="bold")
-        axes.set_xlabel(_caption(run, frame), fontsize=6.5, linespacing=1.4)
-    _draw_scale_bar(panels[0], run.mesh.blocks)
-    figure.suptitle(f"{style.title_of(run)}\ndisplacements ×{magnification:g}", fontsize=9.0)
-    handles = _fracture_legend(run.mesh.blocks)
-    style.legend_alone(figure.add_subplot(grid[1, :]), handles, [handle.get_label() for handle in handles],
-                       loc="center", ncols=4, title_fontsize=7.0,
-                       title="Counts are contact points (two an edge) of A–M and M–M contacts.")
+        lasts = [[panel for panel in panels if panel.frame][-1] for _, panels in rows]
+        magnification = min(_visible_magnification(last.run, last.frame) for last in lasts)
+    columns = max(len(panels) for _, panels in rows)
+    panel_width = style.WIDTH / max(columns, _PANELS) - 0.12
+    panel_heights = [panel_width * height_over_width(panels[0].run.mesh.blocks) for _, panels in rows]
+    figure = style.new_figure(sum(panel_heights) + 0.75 * len(rows) + 1.2, dpi=2 * style.DPI)
+    grid = figure.add_gridspec(len(rows) + 1, columns, height_ratios=[*panel_heights, 0.55])
+    for row, (label, panels) in enumerate(rows):
+        all_axes = [figure.add_subplot(grid[row, column]) for column in range(len(panels))]
+        for axes, panel in zip(all_axes, panels):
+            _draw_panel(axes, panel, magnification, columns)
+        all_axes[0].set_ylabel(label)
+        if row == 0:
+            draw_scale_bar(all_axes[0], panels[0].run.mesh.blocks)
+    figure.suptitle(f"{heading}\ndisplacements ×{magnification:g}".lstrip(), fontsize=9.0)
+    handles = _fracture_legend(rows[0][1][0].run.mesh.blocks)
+    style.legend_alone(figure.add_subplot(grid[-1, :]), handles, [handle.get_label() for handle in handles],
+                       loc="center", ncols=4, title_fontsize=7.0, title=note)
     return figure
+
+
+def _draw_panel(axes: Axes, panel: Panel, magnification: float, columns: int) -> None:
+    if panel.frame:
+        _draw_fractured(axes, panel.run, panel.frame, magnification, columns)
+        axes.set_xlabel(panel.caption, fontsize=6.5, linespacing=1.4)
+    else:
+        frame_section(axes, panel.run.mesh.blocks)
+        axes.text(0.5, 0.5, panel.caption, transform=axes.transAxes, ha="center", va="center", fontsize=7.0,
+                  color="#6a6a6a")
+    axes.set_title(panel.title, fontweight="bold")
 
 
 def _specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
@@ -150,25 +180,28 @@ def count_cracks(run: Run, frame: Frame) -> dict[tuple[str, bool], int]:
     return {(crack.mode, crack.broken): int(_cracked(run, frame, crack).sum()) for crack in _CRACKS}
 
 
-def _draw_fractured(axes: Axes, run: Run, frame: Frame, magnification: float) -> None:
+def height_over_width(blocks: BlockMesh) -> float:
+    """Of what `frame_section` shows."""
+    low, high = _panel_box(blocks)
+    return (high - low)[1] / (high - low)[0]
+
+
+def _draw_fractured(axes: Axes, run: Run, frame: Frame, magnification: float, columns: int) -> None:
     blocks, contacts = run.mesh.blocks, run.mesh.contacts
     _draw_blocks(axes, blocks, blocks.points + magnification * run.gridpoint_displacement(frame))
     lines = (contacts.points + magnification * run.contact_displacement(frame))[contacts.lines]
-    thinning = _thinning(blocks, contacts)
+    thinning = _thinning(blocks, contacts, max(columns, _PANELS))
     for crack in _CRACKS:
-        drawn = _MILLI * lines[_cracked(run, frame, crack)]
+        drawn = style.MILLI * lines[_cracked(run, frame, crack)]
         axes.add_collection(LineCollection(drawn, colors=crack.colour, linewidths=thinning * crack.width,
                                            capstyle="round", rasterized=True))
-    low, high = _panel_box(blocks)
-    axes.set_xlim(_MILLI * low[0], _MILLI * high[0])
-    axes.set_ylim(_MILLI * low[1], _MILLI * high[1])
-    _hide_axes(axes)
+    frame_section(axes, blocks)
 
 
-def _thinning(blocks: BlockMesh, contacts: ContactMesh) -> float:
+def _thinning(blocks: BlockMesh, contacts: ContactMesh, columns: int) -> float:
     """Factor on line widths that keeps cracks apart where blocks are small in print."""
     low, high = _panel_box(blocks)
-    points_per_metre = 72.0 * style.WIDTH / _PANELS / (high - low)[0]
+    points_per_metre = 72.0 * style.WIDTH / columns / (high - low)[0]
     edge = 2.0 * points_per_metre * np.median(contacts.length) if len(contacts.length) else np.inf
     return float(np.clip(edge / _EDGE_OF_FULL_WIDTH, _LEAST_THINNING, 1.0))
 
@@ -177,12 +210,16 @@ def _draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | 
     """Fills the blocks, one collection a material; without an edge colour their seams are closed."""
     outlines, material = blocks.outlines
     for kind, colour in _COLOURS.items():
-        polygons = [_MILLI * points[outlines[i]] for i in np.flatnonzero(material == kind)]
+        polygons = [style.MILLI * points[outlines[i]] for i in np.flatnonzero(material == kind)]
         axes.add_collection(PolyCollection(polygons, facecolors=colour, edgecolors=edge or colour,
                                            linewidths=0.15, rasterized=True))
 
 
-def _hide_axes(axes: Axes) -> None:
+def frame_section(axes: Axes, blocks: BlockMesh) -> None:
+    """Limits that hold all blocks, millimetres of one size on both axes, and neither ticks nor frame."""
+    low, high = _panel_box(blocks)
+    axes.set_xlim(style.MILLI * low[0], style.MILLI * high[0])
+    axes.set_ylim(style.MILLI * low[1], style.MILLI * high[1])
     axes.set_aspect("equal")
     axes.set_xticks([])
     axes.set_yticks([])
@@ -201,11 +238,12 @@ def _caption(run: Run, frame: Frame) -> str:
     )
 
 
-def _draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
+def draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
+    """A round length below the specimen's left side."""
     low, high = _specimen_box(blocks)
-    width = _MILLI * (high - low)[0]
+    width = style.MILLI * (high - low)[0]
     length = max(step for step in (1, 2, 5, 10, 20, 50, 100, 200, 500) if step <= max(0.4 * width, 1))
-    x, y = _MILLI * low[0], np.mean([axes.get_ylim()[0], _MILLI * blocks.points[:, 1].min()])
+    x, y = style.MILLI * low[0], np.mean([axes.get_ylim()[0], style.MILLI * blocks.points[:, 1].min()])
     axes.plot([x, x + length], [y, y], color=style.BLACK, linewidth=2.0, solid_capstyle="butt", clip_on=False)
     axes.text(x + length + 0.03 * width, y, f"{length} mm", va="center", fontsize=7.0)
 
@@ -230,13 +268,13 @@ def morphology(specimen: Specimen) -> Figure:
     figure = style.new_figure(height=1.0 + 4.0 * (high - low)[1] / (high - low)[0], width=6.0)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.32])
     _draw_blocks(axes, blocks, blocks.points, edge="#7d7d7d")
-    diameters = _MILLI * circles["diameter_m"]
+    diameters = style.MILLI * circles["diameter_m"]
     axes.add_collection(EllipseCollection(
         diameters, diameters, np.zeros(len(circles)), units="xy", facecolors="none", edgecolors=style.BLUE,
-        linewidths=0.9, offsets=_MILLI * np.column_stack([circles["x_m"], circles["y_m"]]),
+        linewidths=0.9, offsets=style.MILLI * np.column_stack([circles["x_m"], circles["y_m"]]),
         offset_transform=axes.transData))
-    axes.set_xlim(_MILLI * low[0], _MILLI * high[0])
-    axes.set_ylim(_MILLI * low[1], _MILLI * high[1])
+    axes.set_xlim(style.MILLI * low[0], style.MILLI * high[0])
+    axes.set_ylim(style.MILLI * low[1], style.MILLI * high[1])
     axes.set_aspect("equal")
     axes.grid(False)
     axes.set_xlabel("x [mm]")
@@ -258,7 +296,7 @@ def gradation(specimen: Specimen) -> Figure:
     table = specimen.gradation
     figure = style.new_figure(3.8)
     axes = figure.add_subplot()
-    diameter = _MILLI * table["d_m"]
+    diameter = style.MILLI * table["d_m"]
     axes.plot(diameter, table["asked_percent"], color=style.BLACK, label="asked, Fuller")
     axes.plot(diameter, table["placed_percent"], color=style.BLUE, linestyle=(0, (5, 1.5)),
               marker="o", markersize=3.5, label="placed")

@@ -38,9 +38,14 @@ TENSION_COLOUR, SHEAR_COLOUR = VERMILLION, "#10245e"
 TENSION_TINT, SHEAR_TINT = "#f2a566", "#7787bd"
 FAINT = "#9a9a9a"
 
+# One colour and dash after the other, for curves that stand side by side.
+LOOKS = tuple((colour, dashes) for dashes in ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (5, 1.5, 1, 1.5)))
+              for colour in (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY))
+
 STRAIN_LABEL = "Axial strain, compression positive [$10^{-3}$]"
 STRESS_LABEL = "Axial stress, compression positive [MPa]"
 PER_MILLE = 1e3
+MILLI = 1e3  # metres to millimetres
 
 
 def new_figure(height: float, width: float = WIDTH, dpi: int = DPI) -> Figure:
@@ -55,11 +60,29 @@ def legend_alone(axes: Axes, handles: list, labels: list[str], **options) -> Non
 
 
 def title_of(run) -> str:
-    """A run's title, with a warning when the run is not quasi-static or does not say."""
-    if run.quasi_static:
-        return run.title
-    warning = "not stated whether quasi-static" if run.quasi_static is None else "NOT QUASI-STATIC"
-    return f"{run.title} – {warning}"
+    """A run's title, with its warnings."""
+    return " – ".join([run.title, *warnings_of(run)])
+
+
+def warnings_of(run) -> list[str]:
+    """That a run is not quasi-static or does not say, and how many exchanges did not converge."""
+    warnings = []
+    if run.quasi_static is None and not run.ends_heated:
+        warnings.append("not stated whether quasi-static")
+    elif run.quasi_static is False:
+        warnings.append("NOT QUASI-STATIC")
+    if missed := int(run.unconverged.sum()):
+        warnings.append(f"{missed} OF {int(run.exchanged.sum())} EXCHANGES NOT CONVERGED")
+    return warnings
+
+
+def load_label(run) -> str:
+    """Load kept while heated, as level where that is known, else as stress; empty when none was kept."""
+    if run.restrained:
+        return ""
+    if run.load_level is not None:
+        return f"$\\sigma/f_c$ = {run.load_level:g}"
+    return "" if run.load_stress is None else f"$\\sigma$ = {run.load_stress:g} MPa"
 
 
 @matplotlib.rc_context(STYLE)

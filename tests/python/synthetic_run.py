@@ -22,6 +22,14 @@ HISTORY_COLUMNS = (
     "dissipated_shear_J,dissipated_friction_J,dissipated_compression_J,energy_local_damping_J,"
     "energy_viscous_damping_J,energy_error_J"
 ).split(",")
+HEATED_COLUMNS = (
+    HISTORY_COLUMNS[:3]
+    + ["heating_time_s", "temperature_degC", "temperature_min_degC", "temperature_max_degC"]
+    + ["exchange", "cycles", "converged"]
+    + HISTORY_COLUMNS[3:]
+)
+STRENGTH, MODULUS = 35.0, 21.5e3  # MPa
+EXCHANGE, FRAME_EVERY = 5.0, 5  # K from exchange to exchange; exchanges from frame to frame
 
 
 def stress(strain: float) -> float:
@@ -126,6 +134,139 @@ def write_run(
     for frame in frames:
         write_fields(folder / "fields", frame[0], frame[4], section)
     return section
+
+
+@dataclass
+class Heating:
+    """What a heated run is like. Heating is at 5 K/min to `hottest`, or to the failure at `critical`."""
+
+    level: float = 0.225
+    hottest: float = 700.0
+    critical: float | None = None
+    restrained: bool = False
+    spread: float = 0.0  # K from the coolest to the hottest gridpoint at `hottest`
+    cooled: bool = False  # back to 20 degC, in a stage of its own
+    compressed: bool = False  # afterwards, the load having been taken off
+    unconverged: tuple[int, ...] = ()  # exchanges
+    expansion: float = 1.0  # factor, for runs that differ
+
+    def total_strain(self, temperature: float) -> float:
+        """Expansion positive; that of the load at 20 degC."""
+        theta = (temperature - 20.0) / 680.0
+        thermal = self.expansion * (0.012 * theta**1.5 - 0.03 * self.level * theta**2)
+        return thermal - self.level * STRENGTH / MODULUS
+
+
+def write_heated_run(
+    folder: Path, heating: Heating, /, columns: int = 4, rows: int = 5, **summary
+) -> Section:
+    """A run: settled, loaded, heated and what `heating` says; `summary` replaces entries of summary.json."""
+    (folder / "fields").mkdir(parents=True)
+    section = hexagonal_section(columns, rows)
+    history, stages = _heated_history(heating)
+    _write_csv(folder / "history.csv", HEATED_COLUMNS,
+               [[row.get(name, 0.0) for name in HEATED_COLUMNS] for row in history])
+    exchanges = [row for row in history if row["exchange"]]
+    facts = {
+        "title": "Synthetic heating",
+        "quasi_static": True if heating.compressed else None,
+        "compression": None if not heating.compressed else {
+            "E_GPa": 10.0, "f_c_MPa": 0.5 * STRENGTH, "strain_at_peak": PEAK_STRAIN, "strain_ic": 0.001},
+        "stages": [{"kind": kind} for kind in stages],
+        "heating": {
+            "field": "conduction" if heating.spread else "uniform", "expansion_reading": "secant",
+            "load_stress_MPa": heating.level * STRENGTH, "load_level": heating.level,
+            "critical_temperature_degC": heating.critical, "exchanges": len(exchanges),
+            "exchanges_not_converged": sum(not row["converged"] for row in exchanges),
+            "largest_exchange_increment_K": EXCHANGE, "cycles": sum(row["cycles"] for row in exchanges),
+            "platen": "fixed" if heating.restrained else "force",
+        },
+    }
+    (folder / "summary.json").write_text(json.dumps(facts | summary))
+    write_mesh(folder / "fields" / "mesh.h5", section)
+    saved = [row for i, row in enumerate(history)
+             if i == len(history) - 1 or not row["exchange"] or row["exchange"] % FRAME_EVERY == 0]
+    names = ["stage", "step", "time_s", "strain", "stress_MPa", "temperature_degC", "heating_time_s"]
+    _write_csv(folder / "fields" / "frames.csv", ["frame", *names],
+               [[number, *(row.get(name, 0.0) for name in names)] for number, row in enumerate(saved)])
+    for number, row in enumerate(saved):
+        write_fields(folder / "fields", number, row["damaging_strain"], section)
+        _write_temperature(folder / "fields", number, row, section)
+    return section
+
+
+def _heated_history(heating: Heating) -> tuple[list[dict], list[str]]:
+    """Rows of the history and the kinds of the stages."""
+    kinds = ["settle", "load", "heat"] + heating.cooled * ["heat"] + heating.compressed * ["compress"]
+    end = heating.critical or heating.hottest
+    warming = [20.0 + EXCHANGE * (i + 1) for i in range(round((end - 20.0) / EXCHANGE))]
+    temperatures = [(2, t) for t in warming]
+    if heating.cooled:
+        temperatures += [(3, t) for t in [*warming[-2::-1], 20.0]]
+    load = heating.level * STRENGTH
+    rows = [_heated_row(heating, 0, 20.0, 0, strain=0.0, stress=0.0),
+            _heated_row(heating, 1, 20.0, 0, strain=-heating.total_strain(20.0), stress=load)]
+    hottest = 20.0
+    for number, (stage, temperature) in enumerate(temperatures, start=1):
+        hottest = max(hottest, temperature)
+        # Of the strain of heating, 30 % stay when it is cooled.
+        strain = -(0.7 * heating.total_strain(temperature) + 0.3 * heating.total_strain(hottest))
+        axial = load
+        if heating.restrained:
+            strain = rows[1]["strain"]
+            axial += 60.0 * (temperature - 20.0) / 680.0 * (1.2 - temperature / 800.0)
+        if number == len(temperatures) and heating.critical:
+            strain += 0.05
+        rows.append(_heated_row(heating, stage, temperature, number, strain, axial, hottest))
+    if heating.compressed:
+        before = rows[-1]["strain"]
+        for strain in np.linspace(0.0, LAST_STRAIN, 61)[1:]:
+            rows.append(_heated_row(heating, len(kinds) - 1, rows[-1]["temperature_degC"], 0, before + strain,
+                                    0.5 * STRENGTH / PEAK_STRESS * stress(strain), hottest))
+    for i, row in enumerate(rows):
+        row |= {"step": 1000 * i, "time_s": 0.1 * i,
+                "heating_time_s": 60.0 / 5.0 * EXCHANGE * min(i - 1, len(temperatures)) if i else 0.0}
+    return rows, kinds
+
+
+def _heated_row(heating: Heating, stage: int, temperature: float, exchange: int, strain: float, stress: float,
+                hottest: float = 20.0) -> dict:
+    share = (temperature - 20.0) / (heating.hottest - 20.0)
+    damage = ((hottest - 20.0) / 680.0) ** 2
+    failing = exchange > 0 and temperature == heating.critical
+    converged = not failing and exchange not in heating.unconverged
+    row = {
+        "stage": stage, "strain": strain, "stress_MPa": stress, "stress_top_MPa": 1.01 * stress,
+        "stress_bottom_MPa": 0.99 * stress, "lateral_strain": 0.3 * abs(strain) + 0.012 * share,
+        "temperature_degC": temperature, "temperature_min_degC": temperature - 0.5 * heating.spread * share,
+        "temperature_max_degC": temperature + 0.5 * heating.spread * share, "exchange": exchange,
+        "converged": int(converged), "mean_opening_m": 4e-5 * damage,
+        "cycles": (300 + int(1500 * damage) + 100 * (exchange % 7) if converged else 5000) * (exchange > 0),
+        "unbalanced_ratio": 4e-3 if not converged else 9e-4 - 1e-5 * (exchange % 9),
+        "energy_loading_J": 20.0 - 30.0 * share, "energy_gravity_J": 2.0, "energy_heat_J": 120.0 * damage,
+        "damaging_strain": 0.8 * LAST_STRAIN * damage**0.5 + (0.2 * LAST_STRAIN if failing else 0.0),
+    }
+    work = row["energy_loading_J"] + 2.0 + row["energy_heat_J"]
+    for column, part in (("energy_zones_J", 0.3), ("energy_contacts_J", 0.2), ("dissipated_tension_J", 0.25),
+                         ("dissipated_shear_J", 0.1), ("dissipated_friction_J", 0.1),
+                         ("energy_local_damping_J", 0.04)):
+        row[column] = part * work
+    row["energy_error_J"] = 0.01 * work
+    for column, most in (("tension_am", 400), ("tension_mm", 700), ("shear_am", 300), ("shear_mm", 500)):
+        row[f"{column}_softening"] = int(most * damage)
+        row[f"{column}_broken"] = int(0.6 * most * damage**2)
+        row[f"{column}_length_m"] = 1e-3 * int(most * damage)
+    return row
+
+
+def _write_temperature(folder: Path, number: int, row: dict, section: Section) -> None:
+    """Hotter towards the sides; platens at 20 degC."""
+    off_middle = np.abs(section.points[:, 0] / section.width - 0.5) * 2.0
+    low, high = row["temperature_min_degC"], row["temperature_max_degC"]
+    temperature = low + (high - low) * off_middle**2
+    temperature[np.unique(section.triangles[section.material == 2])] = 20.0
+    with h5py.File(folder / f"blocks_{number:04d}.hdf", "a") as file:
+        file["VTKHDF/PointData/temperature"] = temperature.astype(np.float32)
 
 
 def write_history(path: Path, strength_factor: float = 1.0) -> None:

@@ -21,8 +21,12 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "python")]
 
 import synthetic_run  # noqa: E402
+from synthetic_run import Heating  # noqa: E402
 from pyroclast import figures, reference, style  # noqa: E402
-from pyroclast.curves import mean_curve, names_apart  # noqa: E402
+from pyroclast.curves import mean_curve, mean_of, names_apart  # noqa: E402
+from pyroclast.heated_sections import frame_near, select_heated_frames  # noqa: E402
+from pyroclast.heating import strain_limits  # noqa: E402
+from pyroclast.progress import heating_course  # noqa: E402
 from pyroclast.run import Frame, Run, RunError, Specimen, Table  # noqa: E402
 from pyroclast.sections import count_cracks, select_frames  # noqa: E402
 
@@ -40,15 +44,13 @@ def replace_in(path: Path, old: str, new: str) -> None:
     path.write_text(text.replace(old, new, 1))
 
 
-class FolderTest(unittest.TestCase):
-    """Has a run folder of its own."""
+class CommandTest(unittest.TestCase):
+    """Has a folder of its own, and the command at hand."""
 
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
         self.root = Path(temporary.name)
-        self.run_folder = self.root / "run"
-        self.section = synthetic_run.write_run(self.run_folder)
 
     def command(self, *arguments) -> tuple[int, list[str], str]:
         """Exit code, lines printed, and what stands on stderr."""
@@ -64,6 +66,32 @@ class FolderTest(unittest.TestCase):
         self.assertEqual(len(err.splitlines()), 1, err)
         for part in parts:
             self.assertIn(part, err)
+
+
+class FolderTest(CommandTest):
+    """Has a folder of a compression run."""
+
+    def setUp(self):
+        super().setUp()
+        self.run_folder = self.root / "run"
+        self.section = synthetic_run.write_run(self.run_folder)
+
+
+class HeatedTest(CommandTest):
+    """Makes heated runs."""
+
+    def heated(self, name: str, heating: Heating | None = None, /, **summary) -> Path:
+        folder = self.root / name
+        synthetic_run.write_heated_run(folder, heating or Heating(), **summary)
+        return folder
+
+    def summary_of(self, folder: Path, **heating) -> Run:
+        """The run, entries of its summary's heating replaced."""
+        path = folder / "summary.json"
+        facts = json.loads(path.read_text())
+        facts["heating"] |= heating
+        path.write_text(json.dumps(facts))
+        return Run(folder)
 
 
 class CommandsMakePictures(FolderTest):
@@ -204,6 +232,126 @@ class ErrorsNameTheThing(FolderTest):
         self.assert_fails(["run", self.run_folder], "history.csv", "not compressed")
 
 
+class HeatedRunsMakePictures(HeatedTest):
+    def names_drawn(self, folder: Path, *options: str) -> list[str]:
+        code, printed, err = self.command("run", folder, *options)
+        self.assertEqual((code, err), (0, ""))
+        for path in printed:
+            self.assertEqual(png_size(Path(path))[0] % round(style.WIDTH * style.DPI), 0)
+        self.assertEqual({Path(path).parent for path in printed}, {folder / "figures"})
+        return [Path(path).stem for path in printed]
+
+    def test_until_it_fails(self):
+        folder = self.heated("run", Heating(critical=505.0, unconverged=(40,)))
+        self.assertEqual(self.names_drawn(folder), ["total_strain", "heating_cracks", "heating_energy",
+                                                    "convergence", "heating_fracture"])
+
+    def test_restrained_and_not_uniform(self):
+        folder = self.heated("run", Heating(restrained=True, spread=100.0))
+        self.assertEqual(self.names_drawn(folder, "--temperatures", "250,650"),
+                         ["thrust", "heating_cracks", "heating_energy", "convergence", "temperature",
+                          "heating_fracture"])
+
+    def test_cooled_then_compressed(self):
+        folder = self.heated("run", Heating(level=0.3, hottest=300.0, cooled=True, compressed=True))
+        self.assertEqual(self.names_drawn(folder),
+                         ["total_strain", "heating_cracks", "heating_energy", "convergence",
+                          "heating_fracture", "stress_strain", "cracks", "energy", "fracture"])
+
+    def test_compare_picks_what_the_runs_have_in_common(self):
+        page = round(style.WIDTH * style.DPI), round(4.2 * style.DPI)
+        loaded = [self.heated("a"), self.heated("b", Heating(critical=505.0)),
+                  self.heated("c", Heating(level=0.1))]
+        restrained = [self.heated("d", Heating(restrained=True))]
+        compressed = [self.heated("e", Heating(hottest=200.0, compressed=True)), self.root / "f"]
+        synthetic_run.write_run(compressed[1])
+        for folders in (loaded, restrained, compressed):
+            out = self.root / f"{folders[0].name}.png"
+            self.assertEqual(self.command("compare", *folders, "--out", out), (0, [str(out)], ""))
+            self.assertEqual(png_size(out), page)
+        for folders in (loaded, compressed):
+            out = self.root / f"cracks_{folders[0].name}.png"
+            self.assertEqual(self.command("compare", *folders, "--what", "cracks", "--out", out)[0], 0)
+            self.assertEqual(png_size(out)[0], page[0])
+
+    def test_levels_draws_a_row_for_each_run(self):
+        one, two = self.heated("one"), self.heated("two", Heating(level=0.675, critical=505.0))
+        heights = []
+        for folders in ((one,), (one, two)):
+            out = self.root / "levels.png"
+            code, printed, err = self.command("levels", *folders, "--temperatures", "400,600", "--out", out)
+            self.assertEqual((code, printed, err), (0, [str(out)], ""))
+            heights.append(png_size(out)[1])
+        self.assertGreater(heights[1], 1.5 * heights[0])
+
+
+class ErrorsOfHeatedRuns(HeatedTest):
+    def test_temperature_without_a_frame(self):
+        folder = self.heated("run")
+        self.assert_fails(["run", folder, "--temperatures", "300,1000"], "frames.csv", "1000 °C", "700")
+
+    def test_temperatures_of_a_run_that_was_not_heated(self):
+        synthetic_run.write_run(self.root / "cold")
+        self.assert_fails(["run", self.root / "cold", "--temperatures", "300"], "cold", "never heated")
+
+    def test_runs_with_nothing_in_common(self):
+        synthetic_run.write_run(self.root / "cold")
+        cold, hot, out = self.root / "cold", self.heated("hot"), self.root / "out.png"
+        for what in ((), ("--what", "cracks")):
+            self.assert_fails(["compare", hot, cold, *what, "--out", out], "compare")
+        self.assert_fails(["compare", cold, "--what", "total-strain", "--out", out], "never heated")
+        self.assert_fails(["compare", hot, "--what", "stress-strain", "--out", out], "hot", "heating")
+        self.assert_fails(["levels", cold, "--out", out], "frames.csv", "heating stage")
+
+    def test_missing_field_and_column(self):
+        folder = self.heated("run", Heating(spread=100.0))
+        last = max((folder / "fields").glob("blocks_*.hdf"))
+        with h5py.File(last, "a") as file:
+            del file["VTKHDF/PointData/temperature"]
+        self.assert_fails(["run", folder], last.name, "/VTKHDF/PointData/temperature")
+        replace_in(folder / "fields" / "frames.csv", "temperature_degC", "renamed")
+        out = self.root / "out.png"
+        self.assert_fails(["levels", folder, "--out", out], "frames.csv", "'temperature_degC'")
+        replace_in(folder / "history.csv", "cycles", "renamed")
+        self.assert_fails(["run", folder], "history.csv", "'cycles'")
+
+    def test_summary(self):
+        folder = self.heated("run")
+        self.summary_of(folder, load_level="high")
+        self.assert_fails(["run", folder], "summary.json", "'load_level'")
+        self.assert_fails(["run", self.heated("other", heating=[1])], "summary.json", "'heating'")
+
+
+class FramesOfTheHeatedFractureFigure(unittest.TestCase):
+    def frames(self, temperatures):
+        return [Frame(k, 2, 100 * k, 0.0, 0.0, 0.0, float(t)) for k, t in enumerate(temperatures)]
+
+    def selected(self, temperatures, failed=False):
+        return [frame.temperature for frame in select_heated_frames(self.frames(temperatures), failed)]
+
+    def test_near_the_papers_temperatures(self):
+        self.assertEqual(self.selected(range(20, 801, 10)), [300, 400, 500, 600, 800])
+
+    def test_failure_and_the_frame_before_come_first(self):
+        self.assertEqual(self.selected(range(20, 691, 10), failed=True), [400, 500, 600, 680, 690])
+        self.assertEqual(self.selected(range(20, 511, 10), failed=True), [300, 400, 500, 510])
+
+    def test_last_frame_is_always_there(self):
+        self.assertEqual(self.selected([20]), [20])
+        self.assertEqual(self.selected([20, 120]), [120])
+        self.assertEqual(self.selected([20, 310, 350], failed=True), [310, 350])
+
+    def test_cooling_is_not_taken_for_heating(self):
+        frames = self.frames([20, 280, 480, 300, 20])
+        self.assertEqual(frame_near(frames, 300.0), frames[1])
+        self.assertEqual(self.selected([20, 280, 480, 300, 20]), [280, 480, 20])
+
+    def test_a_frame_25_k_away_is_the_last_to_stand_for_a_temperature(self):
+        frames = self.frames([20, 325, 400])
+        self.assertEqual(frame_near(frames, 300.0), frames[1])
+        self.assertIsNone(frame_near(frames, 299.9))
+
+
 class FramesOfTheFractureFigure(unittest.TestCase):
     """On the synthetic curve: peak 34 MPa at strain 0.003, straight down to 17 MPa at 0.006."""
 
@@ -273,6 +421,104 @@ class Reference(unittest.TestCase):
     def test_peak_strains_of_table_3(self):
         self.assertAlmostEqual(reference.EXPERIMENT.strain_at_peak, 0.003128, delta=5e-7)
         self.assertAlmostEqual(reference.PAPER_DEM.strain_at_peak, 0.002979, delta=5e-7)
+
+
+class ReferenceBands(unittest.TestCase):
+    def test_levels(self):
+        self.assertEqual([band.level for band in reference.strain_bands()], [0.0, 0.225, 0.445, 0.675])
+        self.assertEqual(reference.strain_band(0.2249).level, 0.225)
+        self.assertIsNone(reference.strain_band(0.3))
+        self.assertIsNone(reference.strain_band(None))
+
+    def test_centre_lies_in_the_range(self):
+        for band in reference.strain_bands():
+            self.assertTrue((np.diff(band.temperature) > 0.0).all())
+            self.assertTrue(((band.low <= band.central) & (band.central <= band.high)).all())
+
+    def test_starts_with_the_strain_of_the_load(self):
+        # The models take between the secant of the parabola and E; 1e-6 is the elongation at 20 degC itself.
+        for band in reference.strain_bands():
+            low, _, high = band.at(20.0)
+            strain = -band.level * reference.AT_STRENGTH / reference.AT_MODULUS
+            self.assertTrue(low - 1e-6 <= strain <= high + 1e-6, (band.level, low, high))
+
+    def test_straight_between_rows_and_refused_outside(self):
+        band = reference.strain_band(0.675)
+        for between, left, right in zip(band.at(455.0), band.at(450.0), band.at(460.0)):
+            self.assertAlmostEqual(between, 0.5 * (left + right), delta=1e-15)
+        for temperature in (19.0, 501.0):
+            with self.assertRaises(ValueError):
+                band.at(temperature)
+
+
+class HeatedReader(HeatedTest):
+    def test_total_strain_is_positive_in_expansion_and_holds_the_loads(self):
+        heating = Heating()
+        run = Run(self.heated("run", heating))
+        temperature = run.heated_history("temperature_degC")
+        expected = [heating.total_strain(t) for t in temperature]
+        np.testing.assert_allclose(run.total_strain, expected, rtol=0.0, atol=1e-15)
+        self.assertEqual(temperature[0], 20.0)
+        self.assertAlmostEqual(run.total_strain[0], -0.225 * 35.0 / 21.5e3, delta=1e-15)
+        self.assertGreater(run.total_strain[-1], 0.0)
+
+    def test_rows_of_the_heating(self):
+        run = Run(self.heated("run"))  # settled and loaded, one row each; 20 to 700 degC in steps of 5 K
+        self.assertEqual((len(run.history), run.exchanged.sum(), run.heated.sum()), (138, 136, 137))
+        self.assertTrue(run.ends_heated)
+        self.assertEqual({frame.stage for frame in run.heated_frames}, {2})
+
+    def test_load_level(self):
+        folder = self.heated("run")
+        self.assertEqual(Run(folder).load_level, 0.225)
+        self.assertIsNone(self.summary_of(folder, load_level=None).load_level)
+        self.assertEqual(self.summary_of(folder, load_level=None, load_stress_MPa=0.0).load_level, 0.0)
+
+    def test_row_of_the_failure_is_neither_drawn_nor_blamed(self):
+        run = Run(self.heated("run", Heating(critical=505.0, unconverged=(40,))))
+        self.assertEqual(run.heated.sum() - run.standing.sum(), 1)
+        self.assertEqual(run.history["temperature_degC"][run.standing][-1], 500.0)
+        self.assertEqual(run.unconverged.sum(), 1)
+        self.assertIn("1 OF 97 EXCHANGES NOT CONVERGED", style.title_of(run))
+        self.assertGreater(strain_limits([run], [])[0], -0.6)  # the failure itself goes to -50e-3
+
+    def test_run_that_converged_has_no_warning(self):
+        run = Run(self.heated("run"))
+        self.assertEqual(style.title_of(run), run.title)
+
+    def test_compression_after_heating_counts_from_its_start(self):
+        run = Run(self.heated("run", Heating(level=0.3, hottest=300.0, compressed=True)))
+        self.assertFalse(run.ends_heated)
+        self.assertAlmostEqual(run.peak[0], synthetic_run.PEAK_STRAIN, delta=1e-12)
+        self.assertAlmostEqual(run.loaded_frames[-1].strain, synthetic_run.LAST_STRAIN, delta=1e-12)
+        # Half of the strength at 20 degC, by the law that makes the run.
+        self.assertAlmostEqual(run.strength_retained, 0.5, delta=1e-12)
+        # The compression starts from the load of 0.3 of 35 MPa.
+        self.assertAlmostEqual(mean_curve([run])[1][0], 10.5, delta=1e-12)
+
+    def test_strength_retained_is_not_guessed(self):
+        run = Run(self.heated("run", Heating(level=0.0, hottest=300.0, compressed=True)))
+        self.assertIsNone(run.strength_retained)
+
+    def test_temperatures_of_the_field(self):
+        run = Run(self.heated("run", Heating(spread=100.0)))
+        self.assertFalse(run.uniform)
+        blocks, temperature = run.mesh.blocks, run.gridpoint_temperature(run.heated_frames[-1])
+        platens = np.unique(blocks.triangles[blocks.material == 2])
+        np.testing.assert_array_equal(temperature[platens], 20.0)
+        self.assertAlmostEqual(temperature.max(), 750.0, delta=1e-3)  # 700 in the mean; written as float32
+
+    def test_temperature_orders_the_rows_only_while_it_rises(self):
+        rising, cooled = Run(self.heated("a")), Run(self.heated("b", Heating(hottest=300.0, cooled=True)))
+        self.assertIn("°C", heating_course(rising).label)
+        self.assertIn("min", heating_course(cooled).label)
+        self.assertEqual(heating_course(cooled).over[-1], 2 * 280.0 / 5.0)  # up and down at 5 K/min
+
+    def test_mean_goes_as_far_as_all(self):
+        x, y = mean_of([(np.array([1.0, 2.0, 5.0]), np.array([1.0, 2.0, 5.0])),
+                        (np.array([0.0, 3.0, 2.0, 4.0]), np.array([2.0, 5.0, 9.0, 6.0]))])
+        self.assertEqual((x[0], x[-1]), (1.0, 4.0))
+        np.testing.assert_allclose(y, x + 1.0, rtol=1e-14)
 
 
 class Reader(FolderTest):

@@ -1,0 +1,192 @@
+"""Several runs in one figure: stress-strain, total strain, cracks or thrust."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import cycle
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from . import reference, style
+from .curves import compare, mean_of, names_apart
+from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL, draw_band, strain_limits
+from .progress import heating_course, loading_course, temperature_label
+from .run import Run, RunError
+
+_LEVEL_COLOURS = {0.0: style.BLUE, 0.225: style.GREEN, 0.445: style.ORANGE, 0.675: style.VERMILLION}
+_OTHER_COLOURS = (style.PURPLE, style.BLACK, style.SKY)
+_BAND_LABEL = (f"range of models calibrated\non Anderberg & Thelandersson's\ntests, not measured points;\n"
+               f"dashed: its centre; pale above\n{reference.TRUSTED_TO:g} °C: order only")
+
+
+def compare_runs(runs: Sequence[Run], what: str | None = None) -> Figure:
+    """What the runs have in common: total strain or thrust when all end heated, stress-strain when none does.
+
+    what: one of KINDS, to choose oneself. Throws RunError when a run does not have it.
+    """
+    if not runs:
+        raise RunError("compare: no runs were given")
+    return KINDS[what or _common_kind(runs)](runs)
+
+
+def _common_kind(runs: Sequence[Run]) -> str:
+    first = _kind(runs[0])
+    for run in runs:
+        if _kind(run) != first:
+            raise RunError(f"compare: {run.folder} would be compared by {_kind(run)}, but {runs[0].folder} "
+                           f"by {first}; choose with --what")
+    return first
+
+
+def _kind(run: Run) -> str:
+    if not run.ends_heated:
+        return "stress-strain"
+    return "thrust" if run.restrained else "total-strain"
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Runs that are seeds of one test."""
+
+    label: str
+    colour: str
+    runs: list[Run]
+
+
+def _by_load(runs: Sequence[Run]) -> list[_Group]:
+    """Runs of one load level, or of one stress where the level is not known, lowest first; others alone."""
+    together: dict[tuple, list[Run]] = {}
+    for run, name in zip(runs, names_apart(runs)):
+        if run.restrained or run.load_stress is None:
+            key = (2, 0.0, name)
+        elif run.load_level is not None:
+            band = reference.strain_band(run.load_level)
+            key = (0, band.level if band else round(run.load_level, 3), "")
+        else:
+            key = (1, round(run.load_stress, 3), "")
+        together.setdefault(key, []).append(run)
+    others = cycle(_OTHER_COLOURS)
+    return [_Group(style.load_label(together[key][0]) or key[2],
+                   _LEVEL_COLOURS[key[1]] if key[0] == 0 and key[1] in _LEVEL_COLOURS else next(others),
+                   together[key]) for key in sorted(together)]
+
+
+def _label(group: _Group) -> str:
+    lines = [group.label]
+    if len(group.runs) > 1:
+        lines.append(f"mean of {len(group.runs)}; thin: each")
+    if failed := [run.critical_temperature for run in group.runs if run.critical_temperature is not None]:
+        lines.append(f"✖ before failure at {', '.join(f'{t:.0f}' for t in sorted(failed))} °C")
+    if missed := sum(int(run.unconverged.sum()) for run in group.runs):
+        lines.append(f"{missed} EXCHANGES NOT CONVERGED")
+    return "\n".join(textwrap.fill(line, 34) for line in lines)
+
+
+@matplotlib.rc_context(style.STYLE)
+def compare_total_strain(runs: Sequence[Run]) -> Figure:
+    """Total strain over temperature, one colour a load level, on the reference bands (paper, Figure 12)."""
+    _demand_heated(runs)
+    figure = style.new_figure(4.2)
+    axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
+    bands = []
+    for group in _by_load(runs):
+        if band := reference.strain_band(group.runs[0].load_level):
+            bands.append(band)
+            draw_band(axes, band, group.colour)
+        _draw_group(axes, group)
+    axes.axhline(0.0, color=style.BLACK, linewidth=0.6)
+    axes.set_ylim(*strain_limits(runs, bands))
+    axes.set_xlabel(_temperature_label(runs))
+    axes.set_ylabel(TOTAL_STRAIN_LABEL.replace("\n", " "))
+    handles, labels = axes.get_legend_handles_labels()
+    if bands:
+        handles, labels = [*handles, Patch(color=style.FAINT, alpha=0.4)], [*labels, _BAND_LABEL]
+    style.legend_alone(beside, handles, labels, loc="upper left")
+    return figure
+
+
+@matplotlib.rc_context(style.STYLE)
+def compare_thrust(runs: Sequence[Run]) -> Figure:
+    """Axial stress over temperature of heated runs, each by itself."""
+    _demand_heated(runs)
+    figure = style.new_figure(4.2)
+    axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
+    for run, name, (colour, dashes) in zip(runs, names_apart(runs), cycle(style.LOOKS)):
+        stress = run.heated_history("stress_MPa")
+        axes.plot(run.heated_history("temperature_degC"), stress, color=colour, linestyle=dashes,
+                  label=f"{textwrap.fill(name, 34)}\nlargest {stress.max():.2f} MPa")
+    axes.set_xlabel(_temperature_label(runs))
+    axes.set_ylabel(THRUST_LABEL.replace("\n", " "))
+    style.legend_alone(beside, *axes.get_legend_handles_labels(), loc="upper left")
+    return figure
+
+
+@matplotlib.rc_context(style.STYLE)
+def compare_cracks(runs: Sequence[Run]) -> Figure:
+    """Broken contact points by mode and the mean opening: while heated, or over strain if none ends heated."""
+    if len({run.ends_heated for run in runs}) > 1:
+        raise RunError("compare: cracks of runs that end heated and of others have no common axis")
+    courses = [heating_course(run) if run.ends_heated else loading_course(run) for run in runs]
+    if len({course.ordered for course in courses}) > 1:
+        raise RunError("compare: cracks of runs that cool and of runs that do not have no common axis")
+    figure = style.new_figure(5.4)
+    grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 0.42])
+    panels = [figure.add_subplot(grid[row, 0]) for row in range(3)]
+    for run, course, name, (colour, dashes) in zip(runs, courses, names_apart(runs), cycle(style.LOOKS)):
+        for axes, values in zip(panels, (_broken(course, "tension"), _broken(course, "shear"),
+                                         1e6 * course["mean_opening_m"])):
+            axes.plot(course.over, values, color=colour, linestyle=dashes, linewidth=1.0,
+                      label=textwrap.fill(name, 34))
+    for axes, label in zip(panels, ("Broken contact\npoints, tension", "Broken contact\npoints, shear",
+                                    "Mean opening of\ncontacts damaged\nin tension [µm]")):
+        axes.set_ylabel(label)
+        axes.set_ylim(bottom=0.0)
+        axes.set_xlim(left=min(course.start for course in courses))
+        axes.tick_params(labelbottom=axes is panels[-1])
+    panels[-1].set_xlabel(max((course.label for course in courses), key=len))  # "mean" if any has a mean
+    beside = figure.add_subplot(grid[:, 1])
+    style.legend_alone(beside, *panels[0].get_legend_handles_labels(), loc="upper left")
+    return figure
+
+
+def _broken(course, mode: str):
+    return course[f"{mode}_am_broken"] + course[f"{mode}_mm_broken"]
+
+
+def _draw_group(axes: Axes, group: _Group) -> None:
+    curves = [(run.heated_history("temperature_degC")[rows], style.PER_MILLE * run.total_strain[rows])
+              for run in group.runs for rows in [run.standing[run.heated]]]
+    if len(curves) == 1:
+        axes.plot(*curves[0], color=group.colour, linewidth=1.8, label=_label(group))
+    else:
+        for curve in curves:
+            axes.plot(*curve, color=group.colour, linewidth=0.5)
+        axes.plot(*mean_of(curves), color=group.colour, linewidth=2.0, label=_label(group))
+    for (temperature, strain), run in zip(curves, group.runs):
+        if run.critical_temperature is not None:
+            axes.plot(temperature[-1], strain[-1], "X", color=group.colour, markeredgecolor=style.BLACK,
+                      markeredgewidth=0.5, markersize=6.0, zorder=4)
+
+
+def _demand_heated(runs: Sequence[Run]) -> None:
+    for run in runs:
+        if not run.exchanged.any():
+            raise RunError(f"{run.folder}: was never heated")
+
+
+def _temperature_label(runs: Sequence[Run]) -> str:
+    return temperature_label(next((run for run in runs if not run.uniform), runs[0]))
+
+
+KINDS: dict[str, Callable[[Sequence[Run]], Figure]] = {
+    "stress-strain": compare,
+    "total-strain": compare_total_strain,
+    "cracks": compare_cracks,
+    "thrust": compare_thrust,
+}
+"""What runs can be compared by."""

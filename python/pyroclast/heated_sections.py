@@ -1,0 +1,183 @@
+"""Pictures of the heated section: fracture at chosen temperatures, and the temperature field."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection, TriMesh
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.tri import Triangulation
+
+from . import style
+from .mesh import PLATEN
+from .run import Frame, Run, RunError
+from .sections import Panel, count_cracks, draw_scale_bar, fracture_panels, frame_section, height_over_width
+
+TEMPERATURES = (300.0, 400.0, 500.0, 600.0, 800.0)
+"""°C, near which fracture is drawn unless others are asked for."""
+LEVEL_TEMPERATURES = (300.0, 400.0, 500.0, 600.0)
+"""°C, the columns of `levels` unless others are asked for, before the last frame."""
+
+_NEAR = 25.0  # K: a frame stands for a temperature that is not farther from its own
+_MOST_PANELS = 5
+_FIELDS = 4
+_NOTE = "Counts are contact points (two an edge) of A–M and M–M contacts: broken | softening."
+
+
+def frame_near(frames: Sequence[Frame], temperature: float) -> Frame | None:
+    """The frame nearest to a temperature [°C] on the way up to the hottest; None when none is within 25 K.
+
+    frames: heated ones, in order, at least one.
+    """
+    hottest = max(range(len(frames)), key=lambda i: frames[i].temperature)
+    nearest = min(frames[:hottest + 1], key=lambda frame: abs(frame.temperature - temperature))
+    return nearest if abs(nearest.temperature - temperature) <= _NEAR else None
+
+
+def select_heated_frames(frames: Sequence[Frame], failed: bool) -> list[Frame]:
+    """At most five frames: those nearest to TEMPERATURES, the last, and, if the run failed, the one before.
+
+    When these are too many, the coolest go.
+    frames: heated ones, in order, at least one.
+    """
+    last = frames[-1]
+    before = [frame for frame in frames if frame.step < last.step]
+    ends = [*before[-1:], last] if failed else [last]
+    choice = before if failed and before else [*before, last]
+    near = [frame_near(choice, temperature) for temperature in TEMPERATURES]
+    selected = {frame.step: frame for frame in [*near, *ends] if frame}
+    return [selected[step] for step in sorted(selected)][-_MOST_PANELS:]
+
+
+def heating_fracture(run: Run, temperatures: Sequence[float] | None = None,
+                     magnification: float | None = None) -> Figure:
+    """The deformed specimen with its cracks while heated (paper, Figures 13 to 16).
+
+    temperatures [°C]: the frames nearest to them are drawn, and RunError is thrown when none is within 25 K;
+    when None, as `select_heated_frames` has it. magnification: as `fracture_panels` takes it.
+    """
+    frames = run.heated_frames
+    if temperatures is None:
+        selected = select_heated_frames(frames, run.critical_temperature is not None)
+    else:
+        selected = [_frame_asked_for(run, frames, temperature) for temperature in temperatures]
+    panels = [_panel(run, frame) for frame in selected]
+    return fracture_panels([("", panels)], style.title_of(run), magnification, _NOTE)
+
+
+def _frame_asked_for(run: Run, frames: Sequence[Frame], temperature: float) -> Frame:
+    frame = frame_near(frames, temperature)
+    if frame is None:
+        reach = [frame.temperature for frame in frames]
+        path = run.folder / "fields" / "frames.csv"
+        raise RunError(f"{path}: no frame within {_NEAR:g} K of {temperature:g} °C; "
+                       f"frames of the heating are from {min(reach):.0f} to {max(reach):.0f} °C")
+    return frame
+
+
+def levels(runs: Sequence[Run], temperatures: Sequence[float] = LEVEL_TEMPERATURES,
+           magnification: float | None = None) -> Figure:
+    """Fracture patterns, a row for each run, lowest load first; columns are temperatures and the last frame.
+
+    temperatures: °C; a panel stays empty where a run has no frame within 25 K.
+    magnification: the same in all panels, as `fracture_panels` takes it.
+    """
+    if not runs:
+        raise RunError("levels: no runs were given")
+    ordered = sorted(runs, key=lambda run: (run.load_level is None, run.load_level or 0.0))
+    rows = [(label, _row(run, temperatures)) for run, label in zip(ordered, _row_labels(ordered))]
+    return fracture_panels(rows, "", magnification, _NOTE)
+
+
+def _row_labels(runs: Sequence[Run]) -> list[str]:
+    """Load, and where that does not tell the runs apart also the folder; then warnings."""
+    loads = [style.load_label(run) for run in runs]
+    labels = []
+    for run, load in zip(runs, loads):
+        told_apart = load and loads.count(load) == 1
+        name = load if told_apart else ", ".join(filter(None, [load, run.folder.resolve().name]))
+        labels.append("\n".join([name, *style.warnings_of(run)]))
+    return labels
+
+
+def _row(run: Run, temperatures: Sequence[float]) -> list[Panel]:
+    frames, failed = run.heated_frames, run.critical_temperature is not None
+    choice = frames[:-1] if failed else frames
+    return [*(_panel_near(run, choice, temperature) for temperature in temperatures), _panel(run, frames[-1])]
+
+
+def _panel_near(run: Run, frames: Sequence[Frame], temperature: float) -> Panel:
+    if frames and (frame := frame_near(frames, temperature)):
+        return _panel(run, frame)
+    missing = f"no frame within\n{_NEAR:g} K"
+    if run.history["temperature_degC"][run.standing].max() < temperature - _NEAR:
+        missing = "not reached" if run.critical_temperature is None else "failed before"
+    return Panel(run, None, f"{temperature:g} °C", missing)
+
+
+def _panel(run: Run, frame: Frame) -> Panel:
+    last = frame.step == run.heated_frames[-1].step
+    title = f"{frame.temperature:.0f} °C"
+    if last and run.critical_temperature is not None:
+        title = f"failed, {title}"
+    elif last:
+        title = f"end, {title}"
+    counts = count_cracks(run, frame)
+    stress = f"$\\sigma$ = {frame.stress:.1f} MPa\n" if run.restrained else ""
+    strain = f"{-style.PER_MILLE * frame.strain:.2f}\\times 10^{{-3}}"
+    caption = (
+        f"$\\varepsilon_{{\\mathrm{{tot}}}} = {strain}$\n{stress}"
+        f"tension: {counts['tension', True]} | {counts['tension', False]}\n"
+        f"shear: {counts['shear', True]} | {counts['shear', False]}"
+    )
+    return Panel(run, frame, title, caption)
+
+
+@matplotlib.rc_context(style.STYLE)
+def temperature_field(run: Run) -> Figure:
+    """Temperature of the specimen at up to four times while heated, one colour scale for all."""
+    frames = _spread(run.heated_frames)
+    fields = [run.gridpoint_temperature(frame) for frame in frames]
+    blocks = run.mesh.blocks
+    specimen = blocks.triangles[blocks.material != PLATEN]
+    within = [field[np.unique(specimen)] for field in fields]
+    scale = Normalize(min(field.min() for field in within), max(field.max() for field in within))
+    panel_height = (style.WIDTH / (_FIELDS + 0.4) - 0.12) * height_over_width(blocks)
+    figure = style.new_figure(panel_height + 1.1)
+    all_axes = figure.subplots(1, len(frames), squeeze=False)[0]
+    for axes, frame, field, values in zip(all_axes, frames, fields, within):
+        colours = _draw_temperature(axes, run, field, scale)
+        axes.set_title(f"mean {frame.temperature:.0f} °C", fontweight="bold")
+        axes.set_xlabel(f"{_after(frame)}{values.min():.0f} to {values.max():.0f} °C", fontsize=7.0,
+                        linespacing=1.4)
+    draw_scale_bar(all_axes[0], blocks)
+    figure.colorbar(colours, ax=all_axes, label="Temperature [°C]", shrink=0.8, pad=0.02)
+    figure.suptitle(style.title_of(run), fontsize=9.0)
+    return figure
+
+
+def _after(frame: Frame) -> str:
+    return "" if frame.heating_time is None else f"after {frame.heating_time / 60.0:.0f} min\n"
+
+
+def _spread(frames: Sequence[Frame]) -> list[Frame]:
+    """Up to four of the frames, evenly among those of different temperature, the last among them."""
+    different = [frame for before, frame in zip([None, *frames], frames)
+                 if before is None or frame.temperature != before.temperature]
+    steps = np.linspace(0, len(different) - 1, min(_FIELDS + 1, len(different)))[-_FIELDS:]
+    return [different[round(step)] for step in steps]
+
+
+def _draw_temperature(axes: Axes, run: Run, field: np.ndarray, scale: Normalize) -> TriMesh:
+    blocks = run.mesh.blocks
+    x, y = style.MILLI * blocks.points.T
+    platens = style.MILLI * blocks.points[blocks.triangles[blocks.material == PLATEN]]
+    axes.add_collection(PolyCollection(platens, color=style.PLATEN_COLOUR, linewidths=0.15, rasterized=True))
+    specimen = Triangulation(x, y, blocks.triangles[blocks.material != PLATEN])
+    colours = axes.tripcolor(specimen, field, norm=scale, cmap="inferno", shading="gouraud", rasterized=True)
+    frame_section(axes, blocks)
+    return colours

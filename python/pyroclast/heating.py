@@ -1,0 +1,138 @@
+"""Curves of one heated run: total strain beside the references, thrust of a restrained one, convergence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from . import reference, style
+from .progress import heating_course, temperature_label
+from .run import Run
+
+TOTAL_STRAIN_LABEL = "Total axial strain, expansion\npositive, load included [$10^{-3}$]"
+THRUST_LABEL = "Axial stress, compression\npositive [MPa]"
+_BAND_LABEL = ("range of models calibrated on Anderberg &\nThelandersson's tests, not measured points;\n"
+               f"dashed: its centre; pale above {reference.TRUSTED_TO:g} °C: order only")
+
+
+@matplotlib.rc_context(style.STYLE)
+def total_strain(run: Run) -> Figure:
+    """Total and lateral strain over temperature; the reference's range where it has the run's load level."""
+    figure, upper, lower, below = _two_over_temperature(run)
+    strain = style.PER_MILLE * run.total_strain
+    band = reference.strain_band(run.load_level)
+    if band:
+        draw_band(upper, band, style.ORANGE, _BAND_LABEL)
+    label = f"this run, {style.load_label(run)}".rstrip(", ")
+    upper.plot(run.heated_history("temperature_degC"), strain, color=style.BLUE, linewidth=1.8, label=label)
+    upper.axhline(0.0, color=style.BLACK, linewidth=0.6)
+    upper.set_ylim(*strain_limits([run], [band] if band else []))
+    upper.set_ylabel(TOTAL_STRAIN_LABEL)
+    _mark_unconverged(upper, run, strain)
+    _mark_failure(upper, run)
+    style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncols=2)
+    return figure
+
+
+@matplotlib.rc_context(style.STYLE)
+def thrust(run: Run) -> Figure:
+    """Stress that a restrained specimen builds up against its platens, and lateral strain."""
+    figure, upper, lower, below = _two_over_temperature(run)
+    temperature, stress = run.heated_history("temperature_degC"), run.heated_history("stress_MPa")
+    top, bottom = run.heated_history("stress_top_MPa"), run.heated_history("stress_bottom_MPa")
+    upper.fill_between(temperature, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
+                       label="between its upper and lower platen")
+    upper.plot(temperature, stress, color=style.BLUE, linewidth=1.8, label="this run, mean of both platens")
+    if stress.min() >= 0.0:
+        upper.set_ylim(bottom=0.0)
+    upper.set_ylabel(THRUST_LABEL)
+    _mark_unconverged(upper, run, stress)
+    _mark_failure(upper, run)
+    style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncols=2)
+    return figure
+
+
+def _two_over_temperature(run: Run) -> tuple[Figure, Axes, Axes, Axes]:
+    """Figure with room for a curve, the lateral strain below it, and axes for a legend."""
+    figure = style.new_figure(5.2)
+    upper, lower, below = figure.subplots(3, 1, height_ratios=[1.0, 0.5, 0.26])
+    upper.set_title(style.title_of(run))
+    lower.sharex(upper)
+    upper.tick_params(labelbottom=False)
+    lateral = style.PER_MILLE * run.heated_history("lateral_strain")
+    lower.plot(run.heated_history("temperature_degC"), lateral, color=style.BLUE)
+    lower.axhline(0.0, color=style.BLACK, linewidth=0.6)
+    lower.set_ylim(*_padded(lateral[run.standing[run.heated]]))
+    lower.set_ylabel("Lateral strain, expansion\npositive [$10^{-3}$]")
+    lower.set_xlabel(temperature_label(run))
+    _mark_failure(lower, run)
+    return figure, upper, lower, below
+
+
+def draw_band(axes: Axes, band: reference.StrainBand, colour: str, label: str | None = None) -> None:
+    """The band's range, paler where it is not to be trusted, and its centre."""
+    trusted = band.temperature <= reference.TRUSTED_TO
+    beyond = band.temperature >= reference.TRUSTED_TO
+    low, central, high = (style.PER_MILLE * values for values in (band.low, band.central, band.high))
+    axes.fill_between(band.temperature, low, high, where=trusted, color=colour, alpha=0.28, linewidth=0.0,
+                      label=label)
+    axes.fill_between(band.temperature, low, high, where=beyond, color=colour, alpha=0.1, linewidth=0.0)
+    axes.plot(band.temperature, central, color=colour, linewidth=0.8, linestyle=(0, (4, 2)))
+
+
+def strain_limits(runs: Sequence[Run], bands: Sequence[reference.StrainBand]) -> tuple[float, float]:
+    """Limits [10^-3] that show bands and total strains, but not how far a failing specimen went."""
+    strains = [run.total_strain[run.standing[run.heated]] for run in runs]
+    return _padded(style.PER_MILLE * np.concatenate([*strains, *(x for b in bands for x in (b.low, b.high))]))
+
+
+def _padded(values: np.ndarray) -> tuple[float, float]:
+    margin = 0.06 * (np.ptp(values) or 1.0)
+    return float(values.min() - margin), float(values.max() + margin)
+
+
+def _mark_unconverged(axes: Axes, run: Run, values: np.ndarray) -> None:
+    rows = run.unconverged[run.heated]
+    if rows.any():
+        axes.plot(run.heated_history("temperature_degC")[rows], values[rows], "x", color=style.VERMILLION,
+                  markersize=4.0, linestyle="none", label=f"not converged ({rows.sum()} exchanges)")
+
+
+def _mark_failure(axes: Axes, run: Run) -> None:
+    if run.critical_temperature is not None:
+        axes.axvline(run.critical_temperature, color=style.VERMILLION, linewidth=1.0, linestyle=(0, (1, 1.5)),
+                     label=f"failed at {run.critical_temperature:.0f} °C")
+
+
+@matplotlib.rc_context(style.STYLE)
+def convergence(run: Run) -> Figure:
+    """Cycles that the mechanics took after each exchange of temperatures, and the unbalanced ratio then."""
+    course = heating_course(run)
+    exchanged = course["exchange"] > 0
+    over, converged = course.over[exchanged], course["converged"][exchanged] > 0
+    figure = style.new_figure(4.2)
+    upper, lower, below = figure.subplots(3, 1, height_ratios=[1.0, 1.0, 0.14])
+    lower.sharex(upper)
+    upper.set_title(style.title_of(run))
+    for axes, name, label in ((upper, "cycles", "Cycles after the exchange"),
+                              (lower, "unbalanced_ratio", "Unbalanced ratio reached [–]")):
+        values = course[name][exchanged]
+        axes.plot(over, values, color=style.FAINT, linewidth=0.5, zorder=1)
+        axes.plot(over[converged], values[converged], "o", color=style.BLUE, markersize=2.5, linestyle="none",
+                  label=f"converged ({converged.sum()} exchanges)")
+        axes.plot(over[~converged], values[~converged], "x", color=style.VERMILLION, markersize=5.0,
+                  linestyle="none", label=f"not converged ({(~converged).sum()} exchanges)")
+        axes.set_ylabel(label)
+        if course.ordered:
+            _mark_failure(axes, run)
+    upper.set_ylim(bottom=0.0)
+    lower.set_yscale("log")
+    lower.set_xlabel(course.label)
+    upper.tick_params(labelbottom=False)
+    style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncols=3,
+                       title=f"{course['cycles'][exchanged].sum():,.0f} cycles in all")
+    return figure

@@ -1,0 +1,129 @@
+"""Reader of mesh.h5: zones of all blocks and contact points, reference configuration, SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from .files import RunError, dataset, open_hdf
+
+AGGREGATE, MORTAR, PLATEN = 0, 1, 2
+"""Values of `BlockMesh.material`."""
+
+AGGREGATE_AGGREGATE, AGGREGATE_MORTAR, MORTAR_MORTAR, PLATEN_CONTACT = 0, 1, 2, 3
+"""Values of `ContactMesh.interface`."""
+
+_VTK_LINE, _VTK_TRIANGLE = 3, 5
+
+
+@dataclass(frozen=True)
+class BlockMesh:
+    """Zones of all blocks, reference configuration."""
+
+    path: Path  #: file it was read from
+    points: np.ndarray  #: (N, 2) gridpoints, m
+    triangles: np.ndarray  #: (Z, 3) gridpoints of each zone, counter-clockwise
+    block: np.ndarray  #: (Z,) block of each zone
+    material: np.ndarray  #: (Z,) AGGREGATE, MORTAR or PLATEN
+
+    @cached_property
+    def outlines(self) -> tuple[list[np.ndarray], np.ndarray]:
+        """Gridpoints around each block, counter-clockwise, and the blocks' materials.
+
+        Throws RunError when a block's zones do not make one simple polygon.
+        """
+        return _outlines(self)
+
+
+@dataclass(frozen=True)
+class ContactMesh:
+    """Each contact point as a line to the middle of its face."""
+
+    points: np.ndarray  #: (2C, 2), m
+    lines: np.ndarray  #: (C, 2) indices into points
+    interface: np.ndarray  #: (C,) AGGREGATE_AGGREGATE, AGGREGATE_MORTAR, MORTAR_MORTAR or PLATEN_CONTACT
+    length: np.ndarray  #: (C,) tributary length, m
+
+
+@dataclass(frozen=True)
+class Mesh:
+    blocks: BlockMesh
+    contacts: ContactMesh
+
+
+def read_mesh(path: Path) -> Mesh:
+    """Reads mesh.h5; throws RunError when it is missing or its groups are not triangles and lines."""
+    with open_hdf(path) as file:
+        points, triangles = _cells(file, "blocks", _VTK_TRIANGLE, "triangles")
+        blocks = BlockMesh(
+            path,
+            points,
+            _counter_clockwise(points, triangles),
+            _cell_values(file, "blocks/block", len(triangles)),
+            _cell_values(file, "blocks/material", len(triangles)),
+        )
+        points, lines = _cells(file, "contacts", _VTK_LINE, "lines of two points")
+        contacts = ContactMesh(
+            points,
+            lines,
+            _cell_values(file, "contacts/interface", len(lines)),
+            _cell_values(file, "contacts/length", len(lines)),
+        )
+    return Mesh(blocks, contacts)
+
+
+def _cells(file: h5py.File, group: str, cell_type: int, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Points (N, 2) and corners of each cell, all cells of one type."""
+    points = dataset(file, f"{group}/Points")
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise RunError(f"{file.filename}: /{group}/Points has shape {points.shape}; (N, 3) is expected")
+    types = dataset(file, f"{group}/Types")
+    corners = dataset(file, f"{group}/Connectivity")
+    sides = {_VTK_LINE: 2, _VTK_TRIANGLE: 3}[cell_type]
+    if (types != cell_type).any() or len(corners) != sides * len(types):
+        raise RunError(f"{file.filename}: /{group} has cells that are not {name}")
+    if len(corners) and not 0 <= corners.min() <= corners.max() < len(points):
+        raise RunError(f"{file.filename}: /{group}/Connectivity points outside the {len(points)} points")
+    return points[:, :2], corners.astype(np.int64).reshape(-1, sides)
+
+
+def _cell_values(file: h5py.File, name: str, cells: int) -> np.ndarray:
+    values = dataset(file, name)
+    if len(values) != cells:
+        raise RunError(f"{file.filename}: /{name} has {len(values)} values for {cells} cells")
+    return values
+
+
+def _counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    return np.where((area < 0.0)[:, None], triangles[:, ::-1], triangles)
+
+
+def _outlines(mesh: BlockMesh) -> tuple[list[np.ndarray], np.ndarray]:
+    # A directed zone edge is on the outline when no zone of the block walks it the other way.
+    size = len(mesh.points)
+    start = mesh.triangles.ravel()
+    end = np.roll(mesh.triangles, -1, axis=1).ravel()
+    outer = ~np.isin(start * size + end, end * size + start)
+    owner = np.repeat(mesh.block, 3)[outer]
+    start, end = start[outer], end[outer]
+    if len(np.unique(start)) != len(start):
+        raise RunError(f"{mesh.path}: /blocks has a block whose zones do not make one simple polygon")
+    following = dict(zip(start.tolist(), end.tolist()))
+
+    _, first_edge = np.unique(owner, return_index=True)
+    outlines = []
+    for first in start[first_edge].tolist():
+        loop = [first]
+        while (gridpoint := following[loop[-1]]) != first:
+            loop.append(gridpoint)
+        outlines.append(np.array(loop))
+    if sum(map(len, outlines)) != len(start):
+        raise RunError(f"{mesh.path}: /blocks has a block whose zones do not make one simple polygon")
+    _, first_zone = np.unique(mesh.block, return_index=True)
+    return outlines, mesh.material[first_zone]
