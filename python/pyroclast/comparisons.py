@@ -128,7 +128,7 @@ def compare_thrust(runs: Sequence[Run]) -> Figure:
 
 @matplotlib.rc_context(style.STYLE)
 def compare_cracks(runs: Sequence[Run]) -> Figure:
-    """Broken contact points by mode and the mean opening: while heated, or over strain if none ends heated."""
+    """Broken contact points by mode and the mean opening while heated, or over strain if none ends heated."""
     if len({run.ends_heated for run in runs}) > 1:
         raise RunError("compare: cracks of runs that end heated and of others have no common axis")
     courses = [heating_course(run) if run.ends_heated else loading_course(run) for run in runs]

@@ -145,10 +145,14 @@ def compare(runs: Sequence[Run]) -> Figure:
 
 
 def mean_curve(runs: Sequence[Run]) -> tuple[np.ndarray, np.ndarray]:
-    """Strain from zero to the largest that all runs reach, and the runs' mean stress [MPa] at it."""
-    return mean_of([(np.concatenate([[0.0], run.loaded_strain]),
-                     np.concatenate([[run.before_loading("stress_MPa")], run.loaded_history("stress_MPa")]))
-                    for run in runs])
+    """Strain from rest to the largest that all runs reach, and the runs' mean stress [MPa] at it."""
+    curves = []
+    for run in runs:
+        strain, stress = run.loaded_strain, run.loaded_history("stress_MPa")
+        if not run.exchanged.any():  # at rest before loading
+            strain, stress = np.concatenate([[0.0], strain]), np.concatenate([[0.0], stress])
+        curves.append((strain, stress))
+    return mean_of(curves)
 
 
 def mean_of(curves: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:

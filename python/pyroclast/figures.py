@@ -7,7 +7,8 @@
 
 A run that was heated gets total_strain.png (thrust.png when its platens were fixed), heating_cracks.png,
 heating_energy.png, convergence.png, temperature.png (when the field is not uniform) and heating_fracture.png;
-a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png and fracture.png.
+a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png and fracture.png; one whose
+last stage conducts heat without mechanics gets temperature.png.
 
 Prints the path of each figure. Ends with 1 and one line on stderr when something is missing or malformed.
 """
@@ -42,7 +43,9 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
         yield from _draw_heating(run, file_format, magnification, temperatures)
     elif temperatures is not None:
         raise RunError(f"{run.folder}: was never heated, so --temperatures asks for nothing")
-    if not run.ends_heated:
+    if run.only_conducts:
+        yield save(temperature_field(run), run.folder / "figures" / f"temperature.{file_format}")
+    elif not run.ends_heated:
         yield from _draw_compression(run, file_format, magnification)
 
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from . import style
 from .run import Run
 
-_ENERGY_IN = ("energy_loading_J", "energy_gravity_J", "energy_heat_J")
+_ENERGY_IN = ("energy_loading_J", "energy_gravity_J", "energy_heat_J", "energy_mass_scaling_J")
 _ENERGY_OUT = (
     ("energy_zones_J", "stored in zones", "#9ecae1", None),
     ("energy_contacts_J", "stored in contacts", style.BLUE, None),
@@ -140,17 +140,21 @@ def _legends(*all_axes: Axes) -> tuple[list, list[str]]:
 
 @matplotlib.rc_context(style.STYLE)
 def energy(course: Course) -> Figure:
-    """Where the work went, stacked, against the work put in; below, the ledger's error."""
+    """Where the work went, stacked, against the work put in; below, the ledger's error.
+
+    Shares are of the energy turned over: all that was put in or taken out, each by its size.
+    """
     figure = style.new_figure(4.8)
     grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 0.3], width_ratios=[1.0, 0.4])
     upper, beside, lower = (figure.add_subplot(grid[place]) for place in ((0, 0), (0, 1), (1, 0)))
     lower.sharex(upper)
     upper.set_title(style.title_of(course.run))
-    work_in = sum(course[name] for name in _ENERGY_IN)
-    largest = np.abs(work_in).max() or 1.0
-    _draw_stack(upper, course, largest)
+    parts = [course[name] for name in _ENERGY_IN if name in course.run.history]
+    work_in = sum(parts)
+    turnover = sum(map(np.abs, parts)).max() or 1.0  # heat takes out what a softening body stores
+    _draw_stack(upper, course, turnover)
     upper.plot(course.over, work_in, color=style.BLACK, linewidth=1.4, linestyle=(0, (4, 2)),
-               label="work put in\n(loading, gravity, heat)")
+               label="work put in (loading,\ngravity, heat, mass scaling)")
     if course["energy_heat_J"].any():
         upper.plot(course.over, course["energy_heat_J"], color=style.PURPLE, linewidth=1.4,
                    linestyle=(0, (1.5, 1)), label="by heat alone")
@@ -161,20 +165,20 @@ def energy(course: Course) -> Figure:
     upper.set_ylabel("Energy since the start [J]")
     handles, labels = upper.get_legend_handles_labels()
     style.legend_alone(beside, handles[::-1], labels[::-1], loc="upper left", alignment="left",
-                       title="at the end, share of\nthe largest work in")
+                       title="at the end, share of\nthe energy turned over")
 
-    lower.plot(course.over, 100.0 * course["energy_error_J"] / largest, color=style.VERMILLION)
+    lower.plot(course.over, 100.0 * course["energy_error_J"] / turnover, color=style.VERMILLION)
     lower.axhline(0.0, color=style.BLACK, linewidth=0.6)
-    lower.set_ylabel("Ledger error\n[% of largest\nwork in]")
+    lower.set_ylabel("Ledger error\n[% of energy\nturned over]")
     lower.set_xlabel(course.label)
     return figure
 
 
-def _draw_stack(axes: Axes, course: Course, largest: float) -> None:
+def _draw_stack(axes: Axes, course: Course, turnover: float) -> None:
     below = np.zeros_like(course.over)
     for column, name, colour, hatch in _ENERGY_OUT:
         values = course[column]
         axes.fill_between(course.over, below, below + values, facecolor=colour, hatch=hatch,
                           edgecolor="white", linewidth=0.3,
-                          label=f"{name}: {100.0 * values[-1] / largest:.1f} %")
+                          label=f"{name}: {100.0 * values[-1] / turnover:.1f} %")
         below = below + values

@@ -120,9 +120,22 @@ class Run:
 
     @property
     def ends_heated(self) -> bool:
-        """Whether the last stage heats; the test is then the heating, else the loading that follows."""
+        """Whether the last stage heats the body, so that the test is the heating and not what follows it."""
         stage = self.history["stage"]
         return bool(self.exchanged[stage == stage.max()].any())
+
+    @property
+    def only_conducts(self) -> bool:
+        """Whether the last stage changes temperatures without handing them to the mechanics."""
+        return self.history["stage"].max() in self._heated_stages and not self.ends_heated
+
+    @property
+    def _heated_stages(self) -> set[float]:
+        if "temperature_max_degC" not in self.history:
+            return set()
+        stage, hottest = self.history["stage"], self.history["temperature_max_degC"]
+        return {number for number in set(stage) for rows in [stage == number]
+                if self.exchanged[rows].any() or np.ptp(hottest[rows]) > 0.0}
 
     def heated_history(self, name: str) -> np.ndarray:
         """A column of the history, rows of `heated` only."""
@@ -149,7 +162,7 @@ class Run:
     @property
     def uniform(self) -> bool:
         """Whether the specimen's temperatures never differed by more than 1 K."""
-        spread = self.heated_history("temperature_max_degC") - self.heated_history("temperature_min_degC")
+        spread = self.history["temperature_max_degC"] - self.history["temperature_min_degC"]
         return bool((spread <= _UNIFORM).all())
 
     @property
@@ -172,15 +185,16 @@ class Run:
         """A column of the history, rows of `loaded` only."""
         return self.history[name][self.loaded]
 
-    def before_loading(self, name: str) -> float:
-        """A column's value before the last stage if the run was heated by then, else zero, as at rest."""
+    @property
+    def strain_before(self) -> float:
+        """Strain from which the last stage's is counted: that before it, if heat left one, else zero."""
         first = int(self.loaded.argmax())
-        return float(self.history[name][first - 1]) if self.exchanged[:first].any() else 0.0
+        return float(self.history["strain"][first - 1]) if self.exchanged[:first].any() else 0.0
 
     @property
     def loaded_strain(self) -> np.ndarray:
-        """Strain over the rows of `loaded`, counted from that before loading."""
-        return self.loaded_history("strain") - self.before_loading("strain")
+        """Strain over the rows of `loaded`, less `strain_before`."""
+        return self.loaded_history("strain") - self.strain_before
 
     @property
     def peak(self) -> tuple[float, float]:
@@ -219,15 +233,15 @@ class Run:
 
     @property
     def loaded_frames(self) -> list[Frame]:
-        """Frames of the history's last stage, their strain counted from that before loading."""
-        last, before = self.history["stage"].max(), self.before_loading("strain")
+        """Frames of the history's last stage, their strain less `strain_before`."""
+        last, before = self.history["stage"].max(), self.strain_before
         return [replace(frame, strain=frame.strain - before) for frame in self.frames if frame.stage == last]
 
     @property
     def heated_frames(self) -> list[Frame]:
         """Frames of all stages that heat; throws RunError when there is none or they have no temperature."""
         path = self.folder / "fields" / "frames.csv"
-        stages = set(self.history["stage"][self.exchanged])
+        stages = self._heated_stages
         frames = [frame for frame in self.frames if frame.stage in stages]
         if not frames:
             raise RunError(f"{path}: no frame of a heating stage")
