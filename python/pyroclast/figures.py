@@ -8,8 +8,8 @@
 
 A run that was heated gets total_strain.png (thrust.png when its platens were fixed), heating_cracks.png,
 heating_energy.png, convergence.png, temperature.png (when the field is not uniform) and heating_fracture.png;
-a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png and fracture.png; one whose
-last stage conducts heat without mechanics gets temperature.png.
+a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png and fracture.png; one of
+heat conduction alone gets temperature_history.png and temperature.png.
 
 Prints the path of each figure. Ends with 1 and one line on stderr when something is missing or malformed.
 """
@@ -24,7 +24,7 @@ from pathlib import Path
 from .comparisons import KINDS, compare_runs
 from .curves import stress_strain
 from .heated_sections import LEVEL_TEMPERATURES, heating_fracture, levels, temperature_field
-from .heating import convergence, thrust, total_strain
+from .heating import convergence, temperature_history, thrust, total_strain
 from .progress import cracks, energy, heating_course, heating_cracks, loading_course
 from .properties import properties, read_properties
 from .run import Run, RunError, Specimen
@@ -44,9 +44,9 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
     if run.exchanged.any():
         yield from _draw_heating(run, file_format, magnification, temperatures)
     elif temperatures is not None:
-        raise RunError(f"{run.folder}: was never heated, so --temperatures asks for nothing")
+        raise RunError(f"{run.folder}: has no fracture while heated, so --temperatures asks for nothing")
     if run.only_conducts:
-        yield save(temperature_field(run), run.folder / "figures" / f"temperature.{file_format}")
+        yield from _draw_conduction(run, file_format)
     elif not run.ends_heated:
         yield from _draw_compression(run, file_format, magnification)
 
@@ -64,6 +64,12 @@ def _draw_heating(run: Run, file_format: str, magnification: float | None,
     if not run.uniform:
         yield save(temperature_field(run), place / f"temperature.{file_format}")
     yield save(heating_fracture(run, temperatures, magnification), place / f"heating_fracture.{file_format}")
+
+
+def _draw_conduction(run: Run, file_format: str) -> Iterator[Path]:
+    place = run.folder / "figures"
+    yield save(temperature_history(run), place / f"temperature_history.{file_format}")
+    yield save(temperature_field(run), place / f"temperature.{file_format}")
 
 
 def _draw_compression(run: Run, file_format: str, magnification: float | None) -> Iterator[Path]:

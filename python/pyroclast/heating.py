@@ -1,8 +1,10 @@
-"""Curves of one heated run: total strain beside the references, thrust of a restrained one, convergence."""
+"""Curves of one heated run: total strain beside the references, thrust of a restrained one, convergence;
+temperatures over time where heat is conducted alone."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import cycle
 
 import matplotlib
 import numpy as np
@@ -135,4 +137,23 @@ def convergence(run: Run) -> Figure:
     upper.tick_params(labelbottom=False)
     style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncols=3,
                        title=f"{course['cycles'][exchanged].sum():,.0f} cycles in all")
+    return figure
+
+
+@matplotlib.rc_context(style.STYLE)
+def temperature_history(run: Run) -> Figure:
+    """Least, mean and greatest temperature of the specimen, and those at its probes, over the time."""
+    minutes = run.history["time_s"] / 60.0
+    figure = style.new_figure(3.8)
+    axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.3])
+    axes.set_title(style.title_of(run))
+    axes.fill_between(minutes, run.history["temperature_min_degC"], run.history["temperature_max_degC"],
+                      color=style.FAINT, alpha=0.25, linewidth=0.0, label="least to greatest")
+    axes.plot(minutes, run.history["temperature_degC"], color=style.BLACK, label="mean")
+    for (name, values), (colour, dashes) in zip(run.probes.items(), cycle(style.LOOKS)):
+        axes.plot(minutes, values, color=colour, linestyle=dashes, linewidth=1.0, label=f"probe {name}")
+    axes.set_xlim(left=0.0)
+    axes.set_xlabel("Time [min]")
+    axes.set_ylabel("Temperature [°C]")
+    style.legend_alone(beside, *axes.get_legend_handles_labels(), loc="upper left")
     return figure

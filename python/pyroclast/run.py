@@ -6,6 +6,7 @@ compression; only `Run.total_strain` is positive in expansion.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -26,8 +27,8 @@ class Frame:
     stage: int
     step: int
     time: float  #: s
-    strain: float
-    stress: float  #: MPa
+    strain: float  #: NaN where nothing moves
+    stress: float  #: MPa, likewise
     temperature: float | None = None  #: °C, mean of the specimen; None when the run did not write it
     heating_time: float | None = None  #: s since heating began; None when the run did not write it
 
@@ -126,16 +127,14 @@ class Run:
 
     @property
     def only_conducts(self) -> bool:
-        """Whether the last stage changes temperatures without handing them to the mechanics."""
-        return self.history["stage"].max() in self._heated_stages and not self.ends_heated
+        """Whether the run is of heat conduction alone: no stages, no motion."""
+        return "heat_stored_J" in self.history
 
     @property
-    def _heated_stages(self) -> set[float]:
-        if "temperature_max_degC" not in self.history:
-            return set()
-        stage, hottest = self.history["stage"], self.history["temperature_max_degC"]
-        return {number for number in set(stage) for rows in [stage == number]
-                if self.exchanged[rows].any() or np.ptp(hottest[rows]) > 0.0}
+    def probes(self) -> dict[str, np.ndarray]:
+        """Temperatures [°C] at the run's probes, (rows,) by name; only of heat conduction alone."""
+        return {match[1]: self.history[name] for name in self.history.names
+                if (match := re.fullmatch(r"probe_(\w+)_degC", name))}
 
     def heated_history(self, name: str) -> np.ndarray:
         """A column of the history, rows of `heated` only."""
@@ -225,6 +224,9 @@ class Run:
         if not path.exists():
             return []
         t = Table(path, may_be_empty=True)
+        if self.only_conducts:
+            return [Frame(int(number), 0, 0, time, np.nan, np.nan, temperature, time)
+                    for number, time, temperature in zip(t["frame"], t["time_s"], t["temperature_degC"])]
         heat = [t[name] if name in t else [None] * len(t) for name in ("temperature_degC", "heating_time_s")]
         return [
             Frame(int(number), int(stage), int(step), *values)
@@ -243,8 +245,10 @@ class Run:
     def heated_frames(self) -> list[Frame]:
         """Frames of all stages that heat; throws RunError when there is none or they have no temperature."""
         path = self.folder / "fields" / "frames.csv"
-        stages = self._heated_stages
-        frames = [frame for frame in self.frames if frame.stage in stages]
+        frames = self.frames
+        if not self.only_conducts:
+            stages = set(self.history["stage"][self.exchanged])
+            frames = [frame for frame in frames if frame.stage in stages]
         if not frames:
             raise RunError(f"{path}: no frame of a heating stage")
         if frames[0].temperature is None:

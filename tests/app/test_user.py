@@ -17,6 +17,7 @@ import unittest
 PROGRAM = os.environ["PYROCLAST"]
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 STARTER = (CASES / "starter.toml").read_text()
+WALL = (CASES / "thermal_wall.toml").read_text()
 
 
 def small_deck(**changes: str) -> str:
@@ -279,6 +280,101 @@ class Running(UserTest):
     def test_every_shipped_case_is_valid(self):
         for deck in sorted(CASES.glob("*.toml")):
             self.assertEqual(self.pyroclast("check", deck).returncode, 0, deck)
+
+
+class HeatAlone(UserTest):
+    def deck(self, **changes: str) -> pathlib.Path:
+        """The shipped wall, small and brief; `changes` maps a line's key to the new line."""
+        text = WALL
+        for key, line in ({"count": "count = 100", "duration": 'duration = "10 min"',
+                           "frame_interval": 'frame_interval = "4 min"'} | changes).items():
+            text, count = re.subn(rf"^{key} = .*$", line, text, flags=re.MULTILINE)
+            assert count >= 1, key
+        return self.write(text)
+
+    def rows(self) -> list[dict]:
+        with open(self.folder / "out/history.csv", newline="") as file:
+            return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+
+    def test_a_run_gives_temperatures_fields_a_ledger_and_figures(self):
+        deck = self.deck()
+        check = self.pyroclast("check", deck)
+        self.assertEqual(check.returncode, 0, check.stderr)
+        for word in ("stable step", "degC", "heat conduction alone for 10 min"):
+            self.assertIn(word, check.stdout)
+        done = self.pyroclast("run", deck, "--out", "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = self.rows()
+        self.assertEqual(rows[-1]["time_s"], 600.0)
+        self.assertTrue({60.0 * i for i in range(11)} <= {row["time_s"] for row in rows})
+        last = rows[-1]
+        self.assertGreater(last["temperature_max_degC"], 300.0)
+        # the nearer to the fire, the hotter, and none beyond the extremes
+        self.assertTrue(last["temperature_max_degC"] >= last["probe_x_5mm_degC"] > last["probe_x_25mm_degC"]
+                        > last["probe_x_75mm_degC"] >= last["temperature_min_degC"])
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertIn("completed", summary["outcome"])
+        self.assertLess(summary["heat_J"]["error_over_largest"], 1e-9)  # conserved to rounding
+        self.assertGreater(summary["heat_J"]["radiation"], summary["heat_J"]["convection"])  # as in any hot fire
+        series = json.loads((self.folder / "out/fields/blocks.hdf.series").read_text())["files"]
+        self.assertEqual([frame["time"] for frame in series], [0.0, 240.0, 480.0, 600.0])
+        self.assertFalse(list((self.folder / "out/fields").glob("contacts*")))
+        for figure in ("temperature_history.png", "temperature.png"):
+            self.assertGreater((self.folder / "out/figures" / figure).stat().st_size, 10_000)
+
+    def test_frames_open_in_vtk_with_the_temperature(self):
+        from vtkmodules.vtkIOHDF import vtkHDFReader  # pylint: disable=import-outside-toplevel
+
+        self.assertEqual(self.pyroclast("run", self.deck(), "--out", "out", "--no-figures").returncode, 0)
+        reader = vtkHDFReader()
+        reader.SetFileName(str(self.folder / "out/fields/blocks_0003.hdf"))
+        reader.Update()
+        temperature = reader.GetOutput().GetPointData().GetArray("temperature")
+        self.assertAlmostEqual(temperature.GetRange()[1], self.rows()[-1]["temperature_max_degC"], delta=0.01)
+
+    def test_a_steady_state_ends_the_run_earlier(self):
+        gas = {"gas_temperature": 'gas_temperature = "100 degC"', "duration": 'duration = "100 d"',
+               "interval": 'interval = "12 h"\nsteady_rate = "1e-4 K/s"', "frame_interval": 'frame_interval = "50 d"'}
+        self.assertEqual(self.pyroclast("run", self.deck(**gas), "--out", "out", "--no-figures").returncode, 0)
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertTrue(summary["steady"])
+        self.assertLess(summary["rate_K_s"], 1e-4)
+        self.assertLess(summary["time_s"], 100 * 86400)
+
+    def test_interrupting_keeps_the_results_so_far_and_says_so(self):
+        deck = self.deck(count="count = 2000", interval='interval = "1 s"', duration='duration = "6 h"')
+        with subprocess.Popen([PROGRAM, "run", deck, "--out", "out", "--no-figures"], cwd=self.folder,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            history = self.folder / "out" / "history.csv"
+            for _ in range(600):
+                if history.exists() and len(history.read_text().splitlines()) > 10:
+                    break
+                time.sleep(0.1)
+            process.send_signal(signal.SIGINT)
+            output, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertIn("interrupted", output)
+        self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["outcome"], "interrupted")
+
+    def test_what_does_not_belong_into_the_deck_is_refused_with_its_line(self):
+        for changes, words in (
+            ({"duration": 'duration = "10 mm"'}, ("stages[0].duration", "10 mm")),
+            ({"interval": 'interval = "60 s"\nplaten = "force"'}, ("stages[0].platen",)),
+            ({"x": 'x = "200 mm"'}, ("probes[0].x", "150")),
+            ({"density": 'density = "2200 kg/m3"\nE = "30 GPa"'}, ("materials.mortar.E", "no effect")),
+            ({"frame_interval": 'frame_strain = 1e-4'}, ("output.frame_interval", "no effect")),
+        ):
+            done = self.pyroclast("run", self.deck(**changes), "--out", "out")
+            self.assertEqual(done.returncode, 1, changes)
+            for word in words:
+                self.assertIn(word, done.stderr)
+            self.assertFalse((self.folder / "out").exists())
+
+    def test_it_has_no_contact_law(self):
+        self.write("u_n [um]\n1\n", "path.csv")
+        done = self.pyroclast("law", self.deck(), "--path", "path.csv")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("no contacts", done.stderr)
 
 
 class Law(UserTest):

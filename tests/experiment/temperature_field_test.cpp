@@ -198,25 +198,47 @@ TEST(TemperatureField, IncrementsDoNotChangeTheResultBeyondTheSolversError) {
 
 // ---- Heat alone ------------------------------------------------------------------------------------------
 
+/// Keeps the times, and ends the run once a temperature has come so far, °C.
+struct Watcher : HeatObserver {
+  explicit Watcher(double enough = kInfinity) : enough(enough) {}
+  void look(const TemperatureField& f) override {
+    looks.push_back(f.time());
+    hottest = f.maximum();
+  }
+  void frame(const TemperatureField& f) override { frames.push_back(f.time()); }
+  bool stop_requested() override { return hottest >= enough; }
+
+  double enough, hottest = 0.0;
+  std::vector<double> looks, frames;
+};
+
 TEST(RunHeat, LooksAtTheStartAtEvenTimesAndAtTheEnd) {
   const auto body = small_body(100);
   const HeatCase heat = fire_from_the_left();
   auto field = conduct(body, heat, 250.0);
-  std::vector<double> times;
-  const auto look = [&](const TemperatureField& f) {
-    times.push_back(f.time());
-    return true;
-  };
-  EXPECT_EQ(run_heat(field, heat, {.duration = 250.0, .interval = 100.0}, look), HeatOutcome::completed);
-  EXPECT_EQ(times, (std::vector<double>{0.0, 100.0, 200.0, 250.0}));
+  Watcher watcher;
+  EXPECT_EQ(run_heat(field, heat, {.duration = 250.0, .interval = 100.0}, watcher), HeatOutcome::completed);
+  EXPECT_EQ(watcher.looks, (std::vector<double>{0.0, 100.0, 200.0, 250.0}));
 }
 
-TEST(RunHeat, StopsWhenALookSaysSo) {
+TEST(RunHeat, KeepsFramesAtTheStartAtTheirOwnTimesAndAtTheEnd) {
   const auto body = small_body(100);
   const HeatCase heat = fire_from_the_left();
   auto field = conduct(body, heat, 250.0);
-  const auto look = [](const TemperatureField& f) { return f.maximum() < 100.0; };
-  EXPECT_EQ(run_heat(field, heat, {.duration = 250.0, .change = 10.0}, look), HeatOutcome::interrupted);
+  Watcher watcher;
+  run_heat(field, heat, {.duration = 250.0, .interval = 100.0, .frame_interval = 90.0}, watcher);
+  EXPECT_EQ(watcher.frames, (std::vector<double>{0.0, 90.0, 180.0, 250.0}));
+  EXPECT_EQ(watcher.looks,
+            (std::vector<double>{0.0, 90.0, 100.0, 180.0, 200.0, 250.0}));  // one at each frame
+}
+
+TEST(RunHeat, StopsAfterALookWhenAskedToAndKeepsTheLastState) {
+  const auto body = small_body(100);
+  const HeatCase heat = fire_from_the_left();
+  auto field = conduct(body, heat, 250.0);
+  Watcher watcher(100.0);
+  EXPECT_EQ(run_heat(field, heat, {.duration = 250.0, .change = 10.0}, watcher), HeatOutcome::interrupted);
+  EXPECT_EQ(watcher.frames, (std::vector<double>{0.0, field.time()}));
   EXPECT_GE(field.maximum(), 100.0);
   EXPECT_LT(field.maximum(), 100.0 + 10.0 + heat.largest_change);  // within one increment
 }
@@ -228,8 +250,8 @@ TEST(RunHeat, ReachesTheSteadyStateBetweenTwoFaces) {
                                    on(OutlinePart::right, PrescribedTemperature{Curve::constant(20.0)})});
   auto field = conduct(body, heat, 1e6);
   constexpr double tolerance = 1e-6;
-  const auto go_on = [](const TemperatureField&) { return true; };
-  EXPECT_EQ(run_heat(field, heat, {.duration = 1e6, .steady_rate = tolerance}, go_on), HeatOutcome::steady);
+  HeatObserver nobody;
+  EXPECT_EQ(run_heat(field, heat, {.duration = 1e6, .steady_rate = tolerance}, nobody), HeatOutcome::steady);
   EXPECT_GT(field.time(), 600.0);  // the first, slow steps of the ramp are no steady state
   EXPECT_LT(field.time(), 1e5);
   double worst = 0.0;
@@ -247,8 +269,8 @@ TEST(RunHeat, SaysWhenTheSteadyStateWasNotReached) {
   const auto body = small_body(100);
   const HeatCase heat = fire_from_the_left();
   auto field = conduct(body, heat, 60.0);
-  const auto go_on = [](const TemperatureField&) { return true; };
-  EXPECT_EQ(run_heat(field, heat, {.duration = 60.0, .steady_rate = 1.0}, go_on), HeatOutcome::completed);
+  HeatObserver nobody;
+  EXPECT_EQ(run_heat(field, heat, {.duration = 60.0, .steady_rate = 1.0}, nobody), HeatOutcome::completed);
   EXPECT_EQ(field.time(), 60.0);
 }
 

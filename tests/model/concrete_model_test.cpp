@@ -40,6 +40,20 @@ TEST(ConcreteModel, PlatensMeetTheSpecimenAlongItsWholeWidth) {
   EXPECT_NEAR(top, 0.05 * 0.5, 1e-12);
 }
 
+TEST(ConcreteModel, WithoutPlatensTheSpecimenIsTheSame) {
+  const auto specimen = small_specimen();
+  const auto with = make_concrete_model(specimen, 0.01, 1.0);
+  const auto without = make_concrete_model(specimen, std::nullopt, 1.0);
+  EXPECT_EQ(without.model.block_count(), with.model.block_count() - 2);
+  EXPECT_EQ(without.model.contacts.size(), with.model.contacts.size() - with.platen_contacts.size());
+  EXPECT_EQ(without.bottom_side.size(), with.bottom_side.size());
+  EXPECT_EQ(without.top_side.size(), with.top_side.size());
+  EXPECT_TRUE(without.top_support.empty() && without.bottom_face.empty() && without.platen_contacts.empty());
+  double area = 0.0;
+  for (double v : zone_geometry(without.model).volume) area += v;
+  EXPECT_NEAR(area, 0.05 * 0.1, 1e-12);  // rounding
+}
+
 TEST(ConcreteModel, ZonesFillSpecimenAndPlatensAndContactsJoinCoincidentGridpoints) {
   const auto specimen = small_specimen();
   const auto body = make_concrete_model(specimen, 0.01, 1.0);

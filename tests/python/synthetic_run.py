@@ -269,6 +269,24 @@ def _write_temperature(folder: Path, number: int, row: dict, section: Section) -
         file["VTKHDF/PointData/temperature"] = temperature.astype(np.float32)
 
 
+def write_conduction(folder: Path) -> Section:
+    """A run of heat conduction alone, its sides warming to 400 degC, with two probes."""
+    (folder / "fields").mkdir(parents=True)
+    section = hexagonal_section(4, 5)
+    rows = [{"time_s": 60.0 * i, "temperature_degC": 20.0 + 5.0 * i, "temperature_min_degC": 20.0 + 1.0 * i,
+             "temperature_max_degC": 20.0 + 19.0 * i, "heat_stored_J": 1e4 * i, "probe_a_degC": 20.0 + 2.0 * i,
+             "probe_b_degC": 20.0 + 9.0 * i} for i in range(21)]
+    _write_csv(folder / "history.csv", list(rows[0]), [list(row.values()) for row in rows])
+    (folder / "summary.json").write_text(json.dumps({"title": "Synthetic conduction", "warnings": []}))
+    write_mesh(folder / "fields" / "mesh.h5", section)
+    frames = rows[::4]
+    _write_csv(folder / "fields" / "frames.csv", ["frame", "time_s", "temperature_degC"],
+               [(number, row["time_s"], row["temperature_degC"]) for number, row in enumerate(frames)])
+    for number, row in enumerate(frames):
+        _write_temperature(folder / "fields", number, row, section)
+    return section
+
+
 def write_history(path: Path, strength_factor: float = 1.0) -> None:
     rows = [{"stage": 0, "step": 0}]
     work = 0.0

@@ -299,14 +299,12 @@ class HeatedRunsMakePictures(HeatedTest):
                           "heating_fracture", "stress_strain", "cracks", "energy", "fracture"])
 
     def test_conduction_without_mechanics(self):
-        folder = self.heated("run", Heating(spread=100.0), quasi_static=None)
-        lines = [line.split(",") for line in (folder / "history.csv").read_text().splitlines()]
-        column = lines[0].index("exchange")
-        for line in lines[1:]:
-            line[column] = "0"
-        (folder / "history.csv").write_text("\n".join(map(",".join, lines)))
-        self.assertEqual(self.names_drawn(folder), ["temperature"])
-        self.assertEqual(style.title_of(Run(folder)), Run(folder).title)
+        folder = self.root / "run"
+        synthetic_run.write_conduction(folder)
+        self.assertEqual(self.names_drawn(folder), ["temperature_history", "temperature"])
+        run = Run(folder)
+        self.assertEqual(style.title_of(run), run.title)
+        self.assertEqual(list(run.probes), ["a", "b"])
 
     def test_compare_picks_what_the_runs_have_in_common(self):
         page = round(style.WIDTH * style.DPI), round(4.2 * style.DPI)

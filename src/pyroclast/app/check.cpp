@@ -1,10 +1,11 @@
-#include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include "pyroclast/app/conduct.hpp"
 #include "pyroclast/app/load.hpp"
+#include "pyroclast/app/progress.hpp"
 #include "pyroclast/experiment/simulation.hpp"
 
 namespace pyroclast::app {
@@ -16,9 +17,9 @@ constexpr int kWarmUpSteps = 20, kTimedSteps = 200;
 
 double seconds_per_step(Mechanics<2>& mechanics) {
   mechanics.advance(kWarmUpSteps);
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   mechanics.advance(kTimedSteps);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / kTimedSteps;
+  return seconds_since(start) / kTimedSteps;
 }
 
 double peak_memory() {
@@ -39,7 +40,7 @@ double most_steps(const Case& c, const Stage& stage, double from, double time_st
   };
   if (const auto* heat = std::get_if<HeatStage>(&stage))
     return exchanges(heat->coupling, std::abs(heat->to - from));
-  if (const auto* expose = std::get_if<ExposeStage>(&stage); expose && expose->mechanics)
+  if (const auto* expose = std::get_if<ExposeStage>(&stage); expose)
     return exchanges(expose->coupling, c.temperatures.upper - c.temperatures.lower);
   return 0.0;
 }
@@ -58,6 +59,7 @@ double most_steps(const Case& c, double time_step) {
 int check(const RunOptions& options) {
   const Loaded loaded(options);
   const Case& c = loaded.c;
+  if (c.conduct) return check_conduction(loaded);
   Simulation simulation(c);
   auto& mechanics = *simulation.mechanics;
   const auto& model = simulation.body.model;
@@ -85,6 +87,8 @@ int check(const RunOptions& options) {
   fmt::print("materials       E about {:.2f} GPa (uniform stress estimate, a lower bound), t_b {:.3f} mm\n",
              modulus * 1e-9, 1e3 * simulation.materials.fracture_zone);
 
+  if (const auto* conduction = simulation.field->conduction())
+    fmt::print("{}", describe(*conduction, model, c.temperatures));
   const double steps = most_steps(c, mechanics.time_step());
   const double step_time = seconds_per_step(mechanics);
   fmt::print(

@@ -150,6 +150,9 @@ class Drive {
 int law(const LawOptions& options) {
   const Deck deck = Deck::load(options.deck);
   const Case c = read_case(deck, options.deck.parent_path());
+  if (c.conduct)
+    throw Error(fmt::format("{}: is of heat conduction alone and has no contacts, so no contact law",
+                            options.deck.string()));
   const auto concrete = make_concrete(c.solids, c.contacts, expected_block_size(c));
   Drive drive(concrete.contacts[interface_index(options.interface)]);
 

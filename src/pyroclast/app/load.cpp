@@ -18,6 +18,12 @@ std::filesystem::path output_folder(const RunOptions& options) {
   return options.out.empty() ? std::filesystem::path("runs") / options.deck.stem() : options.out;
 }
 
+RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options) {
+  return {output_folder(options),
+          options.overwrite,
+          {loaded.deck.name(), loaded.deck.text(), loaded.c.specimen.seed, loaded.threads, options.command}};
+}
+
 std::string describe(const specimen::Specimen& s) {
   return fmt::format(
       "specimen        {} blocks, {} aggregates; aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} "

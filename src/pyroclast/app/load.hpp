@@ -2,6 +2,7 @@
 
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/experiment/case.hpp"
+#include "pyroclast/results/run_folder.hpp"
 
 namespace pyroclast::app {
 
@@ -14,8 +15,11 @@ struct Loaded {
   int threads;
 };
 
-/// The folder for the results.
+/// Where the results shall be.
 std::filesystem::path output_folder(const RunOptions& options);
+
+/// The folder for the results, made, with deck and manifest in it.
+RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options);
 
 /// What came of the specimen, for the screen.
 std::string describe(const specimen::Specimen& specimen);

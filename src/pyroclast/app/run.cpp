@@ -1,11 +1,11 @@
-#include <chrono>
-#include <csignal>
-
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "pyroclast/app/conduct.hpp"
+#include "pyroclast/app/interrupt.hpp"
 #include "pyroclast/app/load.hpp"
+#include "pyroclast/app/progress.hpp"
 #include "pyroclast/experiment/experiment.hpp"
 #include "pyroclast/experiment/simulation.hpp"
 #include "pyroclast/results/field_files.hpp"
@@ -18,20 +18,6 @@ namespace pyroclast::app {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-volatile std::sig_atomic_t interrupted = 0;
-
-/// The first signal asks for a clean end; the next one has its usual effect.
-void on_signal(int signal) {
-  interrupted = 1;
-  std::signal(signal, SIG_DFL);
-}
-
 /// Writes results as they come and shows the progress.
 class Recorder : public Observer {
  public:
@@ -42,14 +28,10 @@ class Recorder : public Observer {
     history_.write(s);
     if (s.stage != stage_) {
       stage_ = s.stage;
-      stage_start_ = Clock::now();
+      progress_.begin_stage();
     }
-    if (seconds_since(last_line_) < kSecondsBetweenLines) return;
-    last_line_ = Clock::now();
+    if (!progress_.line_is_due()) return;
     const double done = experiment.progress();
-    const std::string left = done > kLeastProgressToForesee
-                                 ? duration(seconds_since(stage_start_) / done * (1.0 - done)) + " left"
-                                 : "";
     const std::string heat = s.heat.exchange > 0
                                  ? fmt::format("  T {:.0f} degC, {} cycles{}", s.heat.mean, s.heat.cycles,
                                                s.heat.converged ? "" : " (not at rest)")
@@ -58,22 +40,20 @@ class Recorder : public Observer {
         "stage {} of {} {:3.0f} %, {:>14}{}  strain {:.5f}  stress {:6.2f} MPa  broken: tension {}, shear {} "
         " "
         "unbalanced {:.1e}  kinetic/strain {:.1e}",
-        s.stage + 1, experiment.stages().size(), 100.0 * done, left, heat, s.strain, s.stress() * 1e-6,
-        s.cracks.broken_tension(), s.cracks.broken_shear(), s.unbalanced_ratio, s.kinetic_over_strain);
+        s.stage + 1, experiment.stages().size(), 100.0 * done, progress_.left(done), heat, s.strain,
+        s.stress() * 1e-6, s.cracks.broken_tension(), s.cracks.broken_shear(), s.unbalanced_ratio,
+        s.kinetic_over_strain);
   }
 
   void frame(const Experiment& experiment, const Sample& s) override { fields_.write(experiment, s); }
 
-  bool stop_requested() override { return interrupted != 0; }
+  bool stop_requested() override { return Interrupt::asked(); }
 
  private:
-  static constexpr double kSecondsBetweenLines = 5.0;
-  static constexpr double kLeastProgressToForesee = 1e-3;
-
   HistoryFile history_;
   FieldFiles fields_;
+  Progress progress_;
   int stage_ = 0;
-  Clock::time_point last_line_{}, stage_start_ = Clock::now();
 };
 
 void print_heating(const HeatingResponse& h, const std::string& expansion) {
@@ -111,8 +91,8 @@ void print_result(const Summary& s, const std::filesystem::path& folder) {
 
 int run(const RunOptions& options) {
   const Loaded loaded(options);
-  const auto out = output_folder(options);
-  RunFolder::check(out, options.overwrite);
+  RunFolder::check(output_folder(options), options.overwrite);
+  if (loaded.c.conduct) return run_conduction(loaded, options);
 
   Simulation simulation(loaded.c);
   auto& mechanics = *simulation.mechanics;
@@ -123,20 +103,17 @@ int run(const RunOptions& options) {
       simulation.body.model.zone_count(), simulation.body.model.contact_count(), mechanics.time_step(),
       mechanics.mass_ratio(), loaded.threads);
 
-  const RunFolder folder(
-      out, options.overwrite,
-      {loaded.deck.name(), loaded.deck.text(), loaded.c.specimen.seed, loaded.threads, options.command});
+  const RunFolder folder = make_run_folder(loaded, options);
   write_specimen_files(folder.path() / "specimen", simulation.specimen, loaded.c.specimen.aggregates);
   Recorder recorder(folder.path(), simulation.body.model);
 
   spdlog::set_pattern("%H:%M:%S %v");
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
   const auto start = Clock::now();
   Experiment experiment(simulation, loaded.c.stages, loaded.c.sampling, recorder);
-  const Outcome outcome = experiment.run();
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  const Outcome outcome = [&] {
+    const Interrupt interrupt;
+    return experiment.run();
+  }();
 
   Summary summary = summarize(loaded.c, experiment, outcome);
   summary.wall_time = seconds_since(start);

@@ -3,19 +3,15 @@
 #include "pyroclast/app/load.hpp"
 #include "pyroclast/experiment/simulation.hpp"
 #include "pyroclast/results/field_files.hpp"
-#include "pyroclast/results/run_folder.hpp"
 #include "pyroclast/results/specimen_files.hpp"
 
 namespace pyroclast::app {
 
 int make_specimen(const RunOptions& options) {
   const Loaded loaded(options);
-  const auto out = output_folder(options);
-  RunFolder::check(out, options.overwrite);
-  const Simulation simulation(loaded.c);
-  const RunFolder folder(
-      out, options.overwrite,
-      {loaded.deck.name(), loaded.deck.text(), loaded.c.specimen.seed, loaded.threads, options.command});
+  RunFolder::check(output_folder(options), options.overwrite);
+  const HeatSimulation simulation(loaded.c);
+  const RunFolder folder = make_run_folder(loaded, options);
   const FieldFiles mesh(folder.path() / "fields", simulation.body.model);
   write_specimen_files(folder.path() / "specimen", simulation.specimen, loaded.c.specimen.aggregates);
   fmt::print("{}results         {}\n", describe(simulation.specimen), folder.path().string());

@@ -82,6 +82,11 @@ class Section {
   /// Whether the key is written. A key that is found here but never read, nor named in `error`, is reported
   /// as one that has no effect.
   bool has(std::string_view key) const;
+  /// Makes keys known that are read with other settings only: a deck that holds one is told that it has no
+  /// effect, and not that there is no such key.
+  void know(std::initializer_list<std::string_view> keys) const {
+    for (const auto key : keys) has(key);
+  }
   /// Whether the key is written and holds a table; otherwise like `has`.
   bool is_table(std::string_view key) const;
   /// Whether no error was recorded so far in this table and the tables below: guards a check between values

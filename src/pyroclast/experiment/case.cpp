@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/experiment/read_heat.hpp"
 #include "pyroclast/experiment/read_materials.hpp"
+#include "pyroclast/experiment/read_probes.hpp"
 #include "pyroclast/experiment/read_stages.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
@@ -103,8 +105,9 @@ bool any_stage(const std::vector<Stage>& stages) {
 /// A uniform field is changed by heat stages, a computed one by exposing the specimen.
 void check_heat(const Section& root, const Case& c) {
   const auto heat = root.optional_section("heat");
-  if (any_stage<ExposeStage>(c.stages) && c.heat.uniform) {
-    const std::string message = "a stage of kind \"expose\" needs [heat] with field = \"conduction\"";
+  if ((c.conduct || any_stage<ExposeStage>(c.stages)) && c.heat.uniform) {
+    const auto message = fmt::format("a stage of kind \"{}\" needs [heat] with field = \"conduction\"",
+                                     c.conduct ? "conduct" : "expose");
     heat ? heat->error("field", message) : root.error("stages", message);
   }
   if (any_stage<HeatStage>(c.stages) && !c.heat.uniform)
@@ -112,9 +115,10 @@ void check_heat(const Section& root, const Case& c) {
                 "a stage of kind \"heat\" needs field = \"uniform\"; use \"expose\" with conduction");
 }
 
-double exposure(const std::vector<Stage>& stages) {
-  double duration = 0.0;
-  for (const auto& stage : stages)
+/// Time for which boundaries act, s.
+double exposure(const Case& c) {
+  double duration = c.conduct ? c.conduct->duration : 0.0;
+  for (const auto& stage : c.stages)
     if (const auto* expose = std::get_if<ExposeStage>(&stage)) duration += expose->duration;
   return duration;
 }
@@ -131,7 +135,7 @@ Interval run_temperatures(const Section& root, const Case& c) {
     if (const auto* heat = std::get_if<HeatStage>(&stage)) include(heat->to, heat->to);
   const auto heat_table = root.optional_section("heat");
   if (!c.heat.uniform && heat_table && heat_table->ok()) {
-    const Interval computed = temperature_range(c.heat, exposure(c.stages));
+    const Interval computed = temperature_range(c.heat, exposure(c));
     include(computed.lower, computed.upper);
   }
   return t;
@@ -160,32 +164,55 @@ void check_contacts(const Section& root, const Case& c) {
   check(aggregate_mortar, "aggregate_mortar");
 }
 
-}  // namespace
-
-Case read_case(const Deck& deck, const std::filesystem::path& folder) {
-  const Section root = deck.root();
-  Case c;
-  c.title = root.text("title");
-  c.stages = read_stages(root);
-  CurveReader time_curves(folder, time_axis(), {0.0, exposure(c.stages)}, fire_curves());
-  if (auto heat = read_heat(root, time_curves)) c.heat = std::move(*heat);
-  check_heat(root, c);
-  c.temperatures = run_temperatures(root, c);
-  read_specimen_tables(root, folder, c.specimen);
-  c.thickness = root.section("specimen").quantity("thickness", unit::length, Range::positive(), 1.0);
-  CurveReader curves(folder, temperature_axis(), c.temperatures, builtin_curves());
+/// Everything but the specimen, where there is mechanics.
+void read_mechanical(const Section& root, CurveReader& curves, Case& c) {
   c.expansion_reading = read_expansion_reading(root);
   c.solids = read_solids(root, c.expansion_reading, curves);
   c.platen_thickness = root.section("platens").quantity("thickness", unit::length, Range::positive());
   c.contacts = read_contacts(root, curves);
-  c.curves = curves.curves();
   c.mechanics = read_mechanics(root.section("mechanics"));
   const Section output = root.section("output");
   c.sampling.history_strain = output.number("history_strain", Range::positive());
   c.sampling.frame_strain = output.number("frame_strain", Range::positive());
   c.sampling.frame_temperature = output.quantity("frame_temperature", unit::temperature_difference,
                                                  Range::positive(), kFrameTemperature);
-  check_contacts(root, c);
+  output.know({"frame_interval"});
+  root.know({"probes"});
+}
+
+/// Everything but the specimen, for heat conduction alone.
+void read_conduction_alone(const Section& root, CurveReader& curves, Case& c) {
+  c.solids = read_conducting_solids(root, curves);
+  const Section output = root.section("output");
+  c.conduct->frame_interval = output.quantity("frame_interval", unit::time, Range::positive());
+  output.know({"history_strain", "frame_strain", "frame_temperature"});
+  root.know({"platens", "contacts", "mechanics"});
+  c.probes = read_probes(root, c.specimen.width, c.specimen.height);
+}
+
+}  // namespace
+
+Case read_case(const Deck& deck, const std::filesystem::path& folder) {
+  const Section root = deck.root();
+  Case c;
+  c.title = root.text("title");
+  auto [stages, conduct] = read_stages(root);
+  c.stages = std::move(stages);
+  c.conduct = conduct;
+  CurveReader time_curves(folder, time_axis(), {0.0, exposure(c)}, fire_curves());
+  if (auto heat = read_heat(root, time_curves)) c.heat = std::move(*heat);
+  check_heat(root, c);
+  c.temperatures = run_temperatures(root, c);
+  read_specimen_tables(root, folder, c.specimen);
+  c.thickness = root.section("specimen").quantity("thickness", unit::length, Range::positive(), 1.0);
+  CurveReader curves(folder, temperature_axis(), c.temperatures, builtin_curves());
+  if (c.conduct) {
+    read_conduction_alone(root, curves, c);
+  } else {
+    read_mechanical(root, curves, c);
+    check_contacts(root, c);
+  }
+  c.curves = curves.curves();
   deck.finish();
   return c;
 }

@@ -2,11 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/experiment/heat_case.hpp"
+#include "pyroclast/experiment/heat_run.hpp"
+#include "pyroclast/experiment/probe.hpp"
 #include "pyroclast/experiment/stage.hpp"
 #include "pyroclast/material/concrete.hpp"
 #include "pyroclast/material/curve_reader.hpp"
@@ -16,12 +19,12 @@
 
 namespace pyroclast {
 
-/// All that a deck says, in SI.
+/// All that a deck says, in SI. Heat conduction alone has no platens, contacts, mechanics and stages.
 struct Case {
   std::string title;
   specimen::SpecimenParameters specimen;
-  double thickness = 0.0;         ///< out of plane, m
-  double platen_thickness = 0.0;  ///< m
+  double thickness = 0.0;                  ///< out of plane, m
+  std::optional<double> platen_thickness;  ///< m
   std::array<SolidMaterial, 3> solids;
   ExpansionReading expansion_reading = ExpansionReading::secant;
   ContactParameters contacts;
@@ -31,6 +34,8 @@ struct Case {
   HeatCase heat;  ///< uniform at the reference temperature where the deck has no [heat]
   std::vector<Stage> stages;
   SamplingParameters sampling;
+  std::optional<HeatRun> conduct;  ///< heat conduction alone
+  std::vector<ProbeCase> probes;   ///< of heat conduction alone
 };
 
 /// Reads a deck. A relative file name in it is taken from `folder`.

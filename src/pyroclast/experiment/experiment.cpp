@@ -409,18 +409,13 @@ Experiment::Verdict Experiment::judge(const HeatStage& stage, const Sample& now)
 void Experiment::begin(const ExposeStage& stage) {
   stage_first_temperature_ = field_.mean();
   exposure_began_ = field_.time();
-  if (stage.mechanics) begin_heating(stage.coupling);
-  next_frame_ = sampling_.frame_temperature;
+  begin_heating(stage.coupling);
 }
 
 void Experiment::load(const ExposeStage& stage) {
   field_.advance(stage.coupling.increment, exposure_began_ + stage.duration);
   heat_.time = field_.time();
-  if (stage.mechanics) exchange();
-}
-
-void Experiment::move(const ExposeStage& stage) {
-  if (stage.mechanics) cycle(stage.coupling);
+  exchange();
 }
 
 Experiment::Verdict Experiment::judge(const ExposeStage& stage, const Sample& now) {

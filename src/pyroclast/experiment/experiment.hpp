@@ -114,7 +114,7 @@ class Experiment {
   void move(const LoadStage&);
   void move(const CompressStage&);
   void move(const HeatStage& stage) { cycle(stage.coupling); }
-  void move(const ExposeStage& stage);
+  void move(const ExposeStage& stage) { cycle(stage.coupling); }
   Verdict judge(const SettleStage&, const Sample&);
   Verdict judge(const LoadStage&, const Sample&);
   Verdict judge(const CompressStage&, const Sample&);

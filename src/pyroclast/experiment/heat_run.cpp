@@ -27,22 +27,47 @@ double next_multiple(double interval, double time) {
 
 }  // namespace
 
+const char* describe(HeatOutcome outcome) {
+  switch (outcome) {
+    case HeatOutcome::completed:
+      return "the stated duration was completed";
+    case HeatOutcome::steady:
+      return "the temperatures became steady";
+    case HeatOutcome::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
 HeatOutcome run_heat(TemperatureField& field, const HeatCase& heat, const HeatRun& run,
-                     const HeatLook& look) {
+                     HeatObserver& observer) {
   require_positive(run.interval, "the time between two looks at the temperatures", "s");
+  require_positive(run.frame_interval, "the time between two frames", "s");
   if (run.steady_rate) require_positive(*run.steady_rate, "the tolerance of the steady state", "K/s");
   const double steady_from = run.steady_rate ? constant_from(heat, run.duration) : kNever;
-  if (!look(field)) return HeatOutcome::interrupted;
-  while (field.time() < run.duration) {
+  observer.look(field);
+  observer.frame(field);
+  double next_frame = next_multiple(run.frame_interval, field.time());
+  std::optional<HeatOutcome> end;
+  while (!end) {
     const bool may_be_steady = field.time() >= steady_from;
     const double steady_rate = may_be_steady ? *run.steady_rate : 0.0;
-    double until = std::min(run.duration, next_multiple(run.interval, field.time()));
+    double until = std::min({run.duration, next_frame, next_multiple(run.interval, field.time())});
     if (!may_be_steady) until = std::min(until, steady_from);
     field.advance(run.change, until, steady_rate);
-    if (!look(field)) return HeatOutcome::interrupted;
-    if (field.conduction()->rate() < steady_rate) return HeatOutcome::steady;
+    observer.look(field);
+    if (field.conduction()->rate() < steady_rate)
+      end = HeatOutcome::steady;
+    else if (field.time() >= run.duration)
+      end = HeatOutcome::completed;
+    else if (observer.stop_requested())
+      end = HeatOutcome::interrupted;
+    if (end || field.time() >= next_frame) {
+      observer.frame(field);
+      next_frame = next_multiple(run.frame_interval, field.time());
+    }
   }
-  return HeatOutcome::completed;
+  return *end;
 }
 
 }  // namespace pyroclast

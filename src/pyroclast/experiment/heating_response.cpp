@@ -9,7 +9,7 @@ namespace {
 const Coupling* coupling_of(const Stage& stage) {
   if (const auto* heat = std::get_if<HeatStage>(&stage)) return &heat->coupling;
   const auto* expose = std::get_if<ExposeStage>(&stage);
-  return expose && expose->mechanics ? &expose->coupling : nullptr;
+  return expose ? &expose->coupling : nullptr;
 }
 
 }  // namespace

@@ -20,12 +20,6 @@ constexpr double kLargestStep = 60.0;   // s
 
 constexpr Range kTemperature = Range::at_least(absolute_zero);
 
-/// Makes keys known that are read with other settings only, so that a deck that holds one is told that it has
-/// no effect instead of that there is no such key.
-void know(const Section& s, std::initializer_list<std::string_view> keys) {
-  for (const auto key : keys) s.has(key);
-}
-
 std::optional<Vec<2>> read_point(const Section& s, std::string_view key) {
   const auto x = s.quantities(key, unit::length, Range::any());
   if (x.size() == 2) return Vec<2>{{x[0], x[1]}};
@@ -34,7 +28,7 @@ std::optional<Vec<2>> read_point(const Section& s, std::string_view key) {
 }
 
 HeatedFaces read_faces(const Section& s) {
-  know(s, {"box_low", "box_high"});
+  s.know({"box_low", "box_high"});
   HeatedFaces faces;
   faces.part = s.choice<OutlinePart>("faces", {{"left", OutlinePart::left},
                                                {"right", OutlinePart::right},
@@ -54,7 +48,7 @@ HeatedFaces read_faces(const Section& s) {
 
 HeatCondition read_condition(const Section& s, CurveReader& curves) {
   enum class Kind { temperature, flux, convection, radiation, adiabatic };
-  know(s, {"temperature", "flux", "coefficient", "emissivity", "gas_temperature"});
+  s.know({"temperature", "flux", "coefficient", "emissivity", "gas_temperature"});
   const auto gas = [&] { return curves.read(s, "gas_temperature", unit::temperature, kTemperature); };
   switch (s.choice<Kind>("kind", {{"temperature", Kind::temperature},
                                   {"flux", Kind::flux},
@@ -151,7 +145,7 @@ void read_conduction(const Section& s, CurveReader& time_curves, HeatCase& heat)
 std::optional<HeatCase> read_heat(const Section& root, CurveReader& time_curves) {
   const auto s = root.optional_section("heat");
   if (!s) return std::nullopt;
-  know(*s, {"scheme", "safety", "largest_change", "largest_step", "temperature_range", "boundaries"});
+  s->know({"scheme", "safety", "largest_change", "largest_step", "temperature_range", "boundaries"});
   HeatCase heat;
   heat.uniform = s->choice<bool>("field", {{"conduction", false}, {"uniform", true}});
   heat.initial = s->quantity("initial", unit::temperature, kTemperature, kReferenceTemperature);

@@ -54,19 +54,30 @@ Curve read_thermal_strain(const Section& s, ExpansionReading reading, CurveReade
   return strain;
 }
 
-SolidMaterial read_solid(const Section& s, ExpansionReading reading, CurveReader& curves) {
+/// Density, and what conduction needs where it is given.
+SolidMaterial read_heat_properties(const Section& s, CurveReader& curves) {
   const auto optional = [&](std::string_view key, const Unit& unit) -> std::optional<Curve> {
     if (!s.has(key)) return std::nullopt;
     return curves.read(s, key, unit, Range::positive());
   };
   SolidMaterial m;
-  m.young = curves.read(s, "E", unit::stress, Range::positive());
-  m.poisson = s.number("nu", Range{-1.0, 0.5, false, false});
   m.density = curves.read(s, "density", unit::density, Range::positive());
-  m.thermal_strain = read_thermal_strain(s, reading, curves);
   m.conductivity = optional("conductivity", unit::conductivity);
   m.specific_heat = optional("specific_heat", unit::specific_heat);
   return m;
+}
+
+SolidMaterial read_solid(const Section& s, ExpansionReading reading, CurveReader& curves) {
+  SolidMaterial m = read_heat_properties(s, curves);
+  m.young = curves.read(s, "E", unit::stress, Range::positive());
+  m.poisson = s.number("nu", Range{-1.0, 0.5, false, false});
+  m.thermal_strain = read_thermal_strain(s, reading, curves);
+  return m;
+}
+
+SolidMaterial read_conducting_solid(const Section& s, CurveReader& curves) {
+  s.know({"E", "nu", "expansion", "thermal_strain"});
+  return read_heat_properties(s, curves);
 }
 
 std::optional<Curve> read_temperature_ratio(const Section& s, CurveReader& curves) {
@@ -116,6 +127,13 @@ std::array<SolidMaterial, 3> read_solids(const Section& root, ExpansionReading r
   const Section s = root.section("materials");
   return {read_solid(s.section("aggregate"), reading, curves),
           read_solid(s.section("mortar"), reading, curves), read_solid(s.section("platen"), reading, curves)};
+}
+
+std::array<SolidMaterial, 3> read_conducting_solids(const Section& root, CurveReader& curves) {
+  const Section s = root.section("materials");
+  s.know({"expansion_reading", "platen"});
+  return {read_conducting_solid(s.section("aggregate"), curves),
+          read_conducting_solid(s.section("mortar"), curves), SolidMaterial{}};
 }
 
 ContactParameters read_contacts(const Section& root, CurveReader& curves) {

@@ -69,28 +69,43 @@ HeatStage read_heat_stage(const Section& s, const Coupling& coupling) {
 ExposeStage read_expose(const Section& s, const Coupling& coupling) {
   ExposeStage stage;
   stage.duration = s.quantity("duration", unit::time, Range::positive());
-  stage.mechanics = s.flag("mechanics", true);
   stage.coupling = coupling;
-  if (stage.mechanics) stage.coupling.platen = read_platen(s);
+  stage.coupling.platen = read_platen(s);
   return stage;
 }
 
-}  // namespace
+/// The frame interval stands in [output].
+HeatRun read_conduct(const Section& s) {
+  HeatRun run;
+  run.duration = s.quantity("duration", unit::time, Range::positive());
+  run.interval = s.quantity("interval", unit::time, Range::positive());
+  run.change = s.quantity("change", unit::temperature_difference, Range::positive(), run.change);
+  if (s.has("steady_rate"))
+    run.steady_rate = s.quantity("steady_rate", unit::heating_rate, Range::positive());
+  return run;
+}
 
-std::vector<Stage> read_stages(const Section& root) {
-  enum class Kind { settle, load, compress, heat, expose };
+enum class Kind { settle, load, compress, heat, expose, conduct };
+
+Kind read_kind(const Section& s) {
+  return s.choice<Kind>("kind", {{"settle", Kind::settle},
+                                 {"load", Kind::load},
+                                 {"compress", Kind::compress},
+                                 {"heat", Kind::heat},
+                                 {"expose", Kind::expose},
+                                 {"conduct", Kind::conduct}});
+}
+
+std::vector<Stage> read_mechanical_stages(const Section& root, const std::vector<Section>& sections,
+                                          const std::vector<Kind>& kinds) {
   const auto table = root.optional_section("coupling");
   const Coupling coupling = table ? read_coupling(*table) : Coupling{};
   std::vector<Stage> stages;
-  for (const Section& s : root.sections("stages")) {
-    const Kind kind = s.choice<Kind>("kind", {{"settle", Kind::settle},
-                                              {"load", Kind::load},
-                                              {"compress", Kind::compress},
-                                              {"heat", Kind::heat},
-                                              {"expose", Kind::expose}});
-    if ((kind == Kind::heat || kind == Kind::expose) && !table)
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Section& s = sections[i];
+    if ((kinds[i] == Kind::heat || kinds[i] == Kind::expose) && !table)
       s.error("kind", "a stage that changes temperatures needs the table [coupling]");
-    switch (kind) {
+    switch (kinds[i]) {
       case Kind::settle:
         stages.emplace_back(read_settle(s));
         break;
@@ -106,9 +121,27 @@ std::vector<Stage> read_stages(const Section& root) {
       case Kind::expose:
         stages.emplace_back(read_expose(s, coupling));
         break;
+      case Kind::conduct:
+        read_conduct(s);  // so that its keys are known
+        s.error("kind",
+                "a stage of kind \"conduct\" must be the only stage; beside mechanics use \"expose\"");
+        break;
     }
   }
   return stages;
+}
+
+}  // namespace
+
+ReadStages read_stages(const Section& root) {
+  const auto sections = root.sections("stages");
+  std::vector<Kind> kinds;
+  for (const Section& s : sections) kinds.push_back(read_kind(s));
+  if (kinds == std::vector{Kind::conduct}) {
+    root.know({"coupling"});
+    return {.stages = {}, .conduct = read_conduct(sections.front())};
+  }
+  return {.stages = read_mechanical_stages(root, sections, kinds), .conduct = {}};
 }
 
 }  // namespace pyroclast

@@ -46,11 +46,9 @@ specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& par
   return specimen::make_specimen(parameters);
 }
 
-std::unique_ptr<TemperatureField> make_field(const ConcreteModel& body, const ConcreteMaterials& materials,
-                                             const Case& c) {
+std::unique_ptr<TemperatureField> make_field(const ConcreteModel& body, const Case& c) {
   if (c.heat.uniform) return std::make_unique<TemperatureField>(body, c.heat.initial);
-  return std::make_unique<TemperatureField>(body,
-                                            make_conduction(body, materials.solids, c.heat, c.temperatures));
+  return std::make_unique<TemperatureField>(body, make_conduction(body, c.solids, c.heat, c.temperatures));
 }
 
 std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const ConcreteMaterials& materials,
@@ -67,11 +65,14 @@ double estimate_memory(std::int64_t blocks) {
   return kBytesFixed + kBytesPerBlock * static_cast<double>(blocks);
 }
 
-Simulation::Simulation(const Case& c)
+HeatSimulation::HeatSimulation(const Case& c)
     : specimen(make_checked_specimen(c.specimen)),
       body(make_concrete_model(specimen, c.platen_thickness, c.thickness)),
+      field(make_field(body, c)) {}
+
+Simulation::Simulation(const Case& c)
+    : HeatSimulation(c),
       materials(make_concrete(c.solids, c.contacts, specimen.metrics.mean_size)),
-      field(make_field(body, materials, c)),
       mechanics(make_mechanics(body.model, materials, *field, c.mechanics)) {}
 
 }  // namespace pyroclast

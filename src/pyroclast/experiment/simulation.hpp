@@ -7,19 +7,25 @@
 
 namespace pyroclast {
 
-/// Everything that a case makes, ready to run: specimen, model, materials and solvers. Not movable: the
-/// solvers refer to the model beside them.
-struct Simulation {
+/// The specimen of a case as a model, with its temperatures: all that conduction alone needs. Not movable:
+/// the solvers refer to the model beside them.
+struct HeatSimulation {
   /// Throws Error when the specimen or the model cannot be made, or would not fit into the memory that is
   /// free.
-  explicit Simulation(const Case& c);
-  Simulation(const Simulation&) = delete;
-  Simulation& operator=(const Simulation&) = delete;
+  explicit HeatSimulation(const Case& c);
+  HeatSimulation(const HeatSimulation&) = delete;
+  HeatSimulation& operator=(const HeatSimulation&) = delete;
 
   specimen::Specimen specimen;
   ConcreteModel body;
-  ConcreteMaterials materials;
   std::unique_ptr<TemperatureField> field;
+};
+
+/// Everything that a case with mechanics makes, ready to run.
+struct Simulation : HeatSimulation {
+  explicit Simulation(const Case& c);
+
+  ConcreteMaterials materials;
   std::unique_ptr<Mechanics<2>> mechanics;
 };
 

@@ -64,7 +64,6 @@ struct HeatStage {
 struct ExposeStage {
   double duration = 0.0;  ///< s
   Coupling coupling;
-  bool mechanics = true;  ///< false: heat only; nothing moves
 };
 
 using Stage = std::variant<SettleStage, LoadStage, CompressStage, HeatStage, ExposeStage>;

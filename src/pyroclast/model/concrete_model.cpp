@@ -70,7 +70,8 @@ std::vector<int> wall_vertices(const Specimen& specimen, double y) {
 
 }  // namespace
 
-ConcreteModel make_concrete_model(const Specimen& specimen, double platen_thickness, double thickness) {
+ConcreteModel make_concrete_model(const Specimen& specimen, std::optional<double> platen_thickness,
+                                  double thickness) {
   ConcreteModel result;
   Model<2>& model = result.model;
   model.thickness = thickness;
@@ -87,7 +88,8 @@ ConcreteModel make_concrete_model(const Specimen& specimen, double platen_thickn
     return x;
   };
 
-  const Platen bottom = add_platen(model, columns(bottom_wall), 0.0, -platen_thickness);
+  Platen bottom, top;
+  if (platen_thickness) bottom = add_platen(model, columns(bottom_wall), 0.0, -*platen_thickness);
   const int first_cell = model.block_count();
   for (std::size_t cell = 0; cell < tessellation.cells.size(); ++cell) {
     std::vector<Vec<2>> corners;
@@ -97,16 +99,22 @@ ConcreteModel make_concrete_model(const Specimen& specimen, double platen_thickn
         zoned.gridpoints, zoned.zones,
         specimen.constituent[cell] == Constituent::aggregate ? aggregate_material : mortar_material);
   }
-  const Platen top =
-      add_platen(model, columns(top_wall), specimen.height, specimen.height + platen_thickness);
+  if (platen_thickness)
+    top = add_platen(model, columns(top_wall), specimen.height, specimen.height + *platen_thickness);
 
   const auto gridpoint = [&](int cell, int vertex) {
     const auto& corners = tessellation.cells[cell];
     const auto at = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
     return model.block_gridpoints[first_cell + cell] + static_cast<int>(at);
   };
-  const auto platen_gridpoint = [](const std::vector<int>& wall, const std::vector<int>& face, int vertex) {
-    return face[static_cast<std::size_t>(std::find(wall.begin(), wall.end(), vertex) - wall.begin())];
+  const auto join_platen = [&](const std::array<int, 2>& face, const specimen::Edge& e,
+                               const std::vector<int>& wall, const Platen& platen) {
+    if (!platen_thickness) return;
+    const auto opposite = [&](int vertex) {
+      return platen
+          .inner[static_cast<std::size_t>(std::find(wall.begin(), wall.end(), vertex) - wall.begin())];
+    };
+    model.join_faces(face, {opposite(e.v0), opposite(e.v1)}, platen_interface);
   };
 
   for (const auto& e : specimen::edges(tessellation)) {
@@ -119,15 +127,10 @@ ConcreteModel make_concrete_model(const Specimen& specimen, double platen_thickn
     const Vec<2>& x0 = tessellation.vertices[e.v0];
     const Vec<2>& x1 = tessellation.vertices[e.v1];
     if (x0[1] == 0.0 && x1[1] == 0.0) {
-      model.join_faces(a,
-                       {platen_gridpoint(bottom_wall, bottom.inner, e.v0),
-                        platen_gridpoint(bottom_wall, bottom.inner, e.v1)},
-                       platen_interface);
+      join_platen(a, e, bottom_wall, bottom);
       result.bottom_side.insert(result.bottom_side.end(), a.begin(), a.end());
     } else if (x0[1] == specimen.height && x1[1] == specimen.height) {
-      model.join_faces(
-          a, {platen_gridpoint(top_wall, top.inner, e.v0), platen_gridpoint(top_wall, top.inner, e.v1)},
-          platen_interface);
+      join_platen(a, e, top_wall, top);
       result.top_side.insert(result.top_side.end(), a.begin(), a.end());
     } else {
       auto& side = x0[0] == 0.0 ? result.left_side : result.right_side;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "pyroclast/model/model.hpp"
@@ -13,8 +14,8 @@ enum MaterialIndex : int { aggregate_material, mortar_material, platen_material 
 /// Interfaces of a concrete model; indices into Model::interface_names.
 enum InterfaceIndex : int { aggregate_aggregate, aggregate_mortar, mortar_mortar, platen_interface };
 
-/// A specimen between two platens as a model, with the gridpoints that an experiment holds, drives or
-/// watches.
+/// A specimen as a model, between two platens or without, with the gridpoints that an experiment holds,
+/// drives or watches.
 struct ConcreteModel {
   Model<2> model;
   std::vector<int> bottom_support, top_support;  ///< outer faces of the platens
@@ -23,11 +24,11 @@ struct ConcreteModel {
   std::vector<int> platen_contacts;
 };
 
-/// \param platen_thickness  m
+/// \param platen_thickness  m; without one there are no platens, and what belongs to them is empty
 /// \param thickness         of the specimen, out of plane, m
 ///
 /// Each platen is one block as wide as the specimen, its inner face zoned to meet the specimen's gridpoints.
-ConcreteModel make_concrete_model(const specimen::Specimen& specimen, double platen_thickness,
+ConcreteModel make_concrete_model(const specimen::Specimen& specimen, std::optional<double> platen_thickness,
                                   double thickness);
 
 }  // namespace pyroclast

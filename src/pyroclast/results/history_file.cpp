@@ -65,6 +65,25 @@ constexpr auto kColumns = std::to_array<Column>({
     {"energy_error_J", [](const Sample& s) { return s.energy.error(); }},
 });
 
+struct HeatColumn {
+  const char* name;
+  double (*value)(const TemperatureField&, const HeatLedger&);
+};
+
+constexpr auto kHeatColumns = std::to_array<HeatColumn>({
+    {"time_s", [](const TemperatureField& f, const HeatLedger&) { return f.time(); }},
+    {"temperature_degC", [](const TemperatureField& f, const HeatLedger&) { return f.mean(); }},
+    {"temperature_min_degC", [](const TemperatureField& f, const HeatLedger&) { return f.minimum(); }},
+    {"temperature_max_degC", [](const TemperatureField& f, const HeatLedger&) { return f.maximum(); }},
+    {"rate_K_s", [](const TemperatureField& f, const HeatLedger&) { return f.conduction()->rate(); }},
+    {"heat_stored_J", [](const TemperatureField&, const HeatLedger& h) { return h.stored; }},
+    {"heat_prescribed_J", [](const TemperatureField&, const HeatLedger& h) { return h.prescribed; }},
+    {"heat_flux_J", [](const TemperatureField&, const HeatLedger& h) { return h.boundary.flux; }},
+    {"heat_convection_J", [](const TemperatureField&, const HeatLedger& h) { return h.boundary.convection; }},
+    {"heat_radiation_J", [](const TemperatureField&, const HeatLedger& h) { return h.boundary.radiation; }},
+    {"heat_error_J", [](const TemperatureField&, const HeatLedger& h) { return h.error(); }},
+});
+
 }  // namespace
 
 std::string HistoryFile::header() {
@@ -84,6 +103,26 @@ void HistoryFile::write(const Sample& sample) {
     line += fmt::format("{:.9g}", column.value(sample));
   }
   file_.line(line);
+}
+
+HeatHistoryFile::HeatHistoryFile(const std::filesystem::path& path, const Model<2>& model,
+                                 const std::vector<ProbeCase>& probes)
+    : file_(path) {
+  std::vector<std::string> names;
+  for (const auto& column : kHeatColumns) names.emplace_back(column.name);
+  for (const auto& probe : probes) {
+    names.push_back(fmt::format("probe_{}_degC", probe.name));
+    probes_.emplace_back(model, probe.position);
+  }
+  file_.line(fmt::format("{}", fmt::join(names, ",")));
+}
+
+void HeatHistoryFile::write(const TemperatureField& field) {
+  const HeatLedger ledger = field.conduction()->ledger();
+  std::vector<double> row;
+  for (const auto& column : kHeatColumns) row.push_back(column.value(field, ledger));
+  for (const auto& probe : probes_) row.push_back(probe.read(field.gridpoints()));
+  file_.line(fmt::format("{:.9g}", fmt::join(row, ",")));
 }
 
 }  // namespace pyroclast

@@ -1,0 +1,29 @@
+#include "pyroclast/app/progress.hpp"
+
+#include "pyroclast/app/load.hpp"
+
+namespace pyroclast::app {
+
+namespace {
+
+constexpr double kSecondsBetweenLines = 5.0;
+constexpr double kLeastProgressToForesee = 1e-3;
+
+}  // namespace
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+bool Progress::line_is_due() {
+  if (seconds_since(last_line_) < kSecondsBetweenLines) return false;
+  last_line_ = Clock::now();
+  return true;
+}
+
+std::string Progress::left(double done) const {
+  if (!(done > kLeastProgressToForesee)) return "";
+  return duration(seconds_since(stage_start_) / done * (1.0 - done)) + " left";
+}
+
+}  // namespace pyroclast::app

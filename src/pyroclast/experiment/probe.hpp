@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "pyroclast/model/model.hpp"
+
+namespace pyroclast {
+
+/// A point of the specimen at which a run watches the temperature.
+struct ProbeCase {
+  std::string name;
+  Vec<2> position{};  ///< from the specimen's lower left corner, m
+};
+
+/// Reads a field of the gridpoints at a point, linearly within the zone that holds it.
+class Probe {
+ public:
+  /// Throws Error when the point lies outside the body.
+  Probe(const Model<2>& model, const Vec<2>& position);
+
+  /// \param gridpoints  a value for each
+  double read(const std::vector<double>& gridpoints) const;
+
+ private:
+  std::array<int, 3> gridpoints_{};
+  std::array<double, 3> weights_{};
+};
+
+}  // namespace pyroclast

@@ -1,0 +1,130 @@
+#include "pyroclast/results/frame_series.hpp"
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "pyroclast/results/text_file.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+constexpr std::uint8_t kVtkLine = 3;
+constexpr std::uint8_t kVtkTriangle = 5;
+
+const char* name(MeshPart part) {
+  return part == MeshPart::blocks ? "blocks" : "contacts";
+}
+
+/// Cell fields that the mesh holds for all frames.
+std::array<const char*, 2> cell_fields(MeshPart part) {
+  if (part == MeshPart::blocks) return {"block", "material"};
+  return {"interface", "length"};
+}
+
+void write_grid(Hdf5File& file, const std::string& group, const std::vector<double>& points,
+                const std::vector<std::int64_t>& connectivity, int corners, std::uint8_t type) {
+  const auto cells = static_cast<std::int64_t>(connectivity.size()) / corners;
+  std::vector<std::int64_t> offsets;
+  for (std::int64_t i = 0; i <= cells; ++i) offsets.push_back(i * corners);
+  file.group(group);
+  file.dataset(group + "/Points", points, 3);
+  file.dataset(group + "/Connectivity", connectivity);
+  file.dataset(group + "/Offsets", offsets);
+  file.dataset(group + "/Types", std::vector<std::uint8_t>(static_cast<std::size_t>(cells), type));
+  file.dataset(group + "/NumberOfPoints",
+               std::vector<std::int64_t>{static_cast<std::int64_t>(points.size()) / 3});
+  file.dataset(group + "/NumberOfCells", std::vector<std::int64_t>{cells});
+  file.dataset(group + "/NumberOfConnectivityIds",
+               std::vector<std::int64_t>{static_cast<std::int64_t>(connectivity.size())});
+}
+
+void link_mesh(Hdf5File& file, MeshPart part) {
+  const std::string grid = name(part);
+  file.group("/VTKHDF");
+  file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
+  file.attribute("/VTKHDF", "Type", std::string("UnstructuredGrid"));
+  for (const char* array : {"Points", "Connectivity", "Offsets", "Types", "NumberOfPoints", "NumberOfCells",
+                           "NumberOfConnectivityIds"})
+    file.external_link(fmt::format("/VTKHDF/{}", array), "mesh.h5", fmt::format("/{}/{}", grid, array));
+  file.group("/VTKHDF/PointData");
+  file.group("/VTKHDF/CellData");
+  for (const char* field : cell_fields(part))
+    file.external_link(fmt::format("/VTKHDF/CellData/{}", field), "mesh.h5",
+                       fmt::format("/{}/{}", grid, field));
+}
+
+void append(std::vector<double>& values, const Vec<2>& v) {
+  values.insert(values.end(), {v[0], v[1], 0.0});
+}
+
+void write_blocks(Hdf5File& file, const Model<2>& model) {
+  std::vector<double> points;
+  for (const auto& x : model.position) append(points, x);
+  std::vector<std::int64_t> connectivity;
+  std::vector<std::int32_t> block;
+  std::vector<std::uint8_t> material;
+  for (const auto& zone : model.zones) connectivity.insert(connectivity.end(), zone.begin(), zone.end());
+  for (int b : zone_blocks(model)) {
+    block.push_back(b);
+    material.push_back(static_cast<std::uint8_t>(model.block_material[b]));
+  }
+  write_grid(file, "/blocks", points, connectivity, 3, kVtkTriangle);
+  file.dataset("/blocks/block", block);
+  file.dataset("/blocks/material", material);
+}
+
+void write_contacts(Hdf5File& file, const Model<2>& model) {
+  std::vector<double> points;
+  std::vector<std::int64_t> connectivity;
+  std::vector<std::uint8_t> interface;
+  std::vector<double> length;
+  for (std::size_t i = 0; i < model.contacts.size(); ++i) {
+    const auto& c = model.contacts[i];
+    const auto& partner = model.contacts[i ^ 1];  // the two contacts of an edge stand together
+    append(points, model.position[c.a]);
+    append(points, 0.5 * (model.position[c.a] + model.position[partner.a]));
+    connectivity.insert(connectivity.end(),
+                        {static_cast<std::int64_t>(2 * i), static_cast<std::int64_t>(2 * i + 1)});
+    interface.push_back(static_cast<std::uint8_t>(c.interface));
+    length.push_back(c.area / model.thickness);
+  }
+  write_grid(file, "/contacts", points, connectivity, 2, kVtkLine);
+  file.dataset("/contacts/interface", interface);
+  file.dataset("/contacts/length", length);
+}
+
+}  // namespace
+
+void write_mesh(const std::filesystem::path& folder, const Model<2>& model) {
+  Hdf5File file(folder / "mesh.h5");
+  write_blocks(file, model);
+  write_contacts(file, model);
+  file.close();
+}
+
+FrameSeries::FrameSeries(std::filesystem::path folder, MeshPart part)
+    : folder_(std::move(folder)), part_(part) {}
+
+void FrameSeries::write(double time, const std::function<void(Hdf5File&)>& fields) {
+  Hdf5File file(folder_ / fmt::format("{}_{:04}.hdf", name(part_), count()));
+  link_mesh(file, part_);
+  fields(file);
+  file.close();
+  times_.push_back(time);
+  write_series();
+}
+
+void FrameSeries::write_series() const {
+  nlohmann::ordered_json series;
+  series["file-series-version"] = "1.0";
+  for (int i = 0; i < count(); ++i)
+    series["files"].push_back({{"name", fmt::format("{}_{:04}.hdf", name(part_), i)}, {"time", times_[i]}});
+  write_text_file(folder_ / fmt::format("{}.hdf.series", name(part_)), series.dump(1) + "\n");
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+#include "pyroclast/model/model.hpp"
+#include "pyroclast/results/hdf5_file.hpp"
+
+namespace pyroclast {
+
+/// Part of a mesh that has fields of its own.
+enum class MeshPart : std::uint8_t { blocks, contacts };
+
+/// Writes `mesh.h5`, which holds blocks and contacts once for all frames: zones as triangles with block and
+/// material, contact points as lines to the middle of their face with interface and length.
+void write_mesh(const std::filesystem::path& folder, const Model<2>& model);
+
+/// Frames of a part of the mesh as VTKHDF files, which ParaView and VTK read: each frame k is a file
+/// `blocks_<k>.hdf` or `contacts_<k>.hdf` that links to `mesh.h5` beside it, and `blocks.hdf.series` or
+/// `contacts.hdf.series` opens all as a time series.
+class FrameSeries {
+ public:
+  FrameSeries(std::filesystem::path folder, MeshPart part);
+
+  /// \param time    s
+  /// \param fields  adds the frame's datasets below /VTKHDF/PointData and /VTKHDF/CellData
+  void write(double time, const std::function<void(Hdf5File&)>& fields);
+
+  int count() const { return static_cast<int>(times_.size()); }
+
+ private:
+  void write_series() const;
+
+  std::filesystem::path folder_;
+  MeshPart part_;
+  std::vector<double> times_;
+};
+
+}  // namespace pyroclast
