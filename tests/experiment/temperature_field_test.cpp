@@ -200,7 +200,7 @@ TEST(TemperatureField, IncrementsDoNotChangeTheResultBeyondTheSolversError) {
 
 /// Keeps the times, and ends the run once a temperature has come so far, °C.
 struct Watcher : HeatObserver {
-  explicit Watcher(double enough = kInfinity) : enough(enough) {}
+  explicit Watcher(double until = kInfinity) : enough(until) {}
   void look(const TemperatureField& f) override {
     looks.push_back(f.time());
     hottest = f.maximum();
