@@ -343,7 +343,7 @@ class HeatAlone(UserTest):
         self.assertLess(summary["time_s"], 100 * 86400)
 
     def test_interrupting_keeps_the_results_so_far_and_says_so(self):
-        deck = self.deck(count="count = 2000", interval='interval = "1 s"', duration='duration = "6 h"')
+        deck = self.deck(count="count = 2000", interval='interval = "1 s"', duration='duration = "4 h"')
         with subprocess.Popen([PROGRAM, "run", deck, "--out", "out", "--no-figures"], cwd=self.folder,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
             history = self.folder / "out" / "history.csv"
@@ -361,7 +361,7 @@ class HeatAlone(UserTest):
         for changes, words in (
             ({"duration": 'duration = "10 mm"'}, ("stages[0].duration", "10 mm")),
             ({"interval": 'interval = "60 s"\nplaten = "force"'}, ("stages[0].platen",)),
-            ({"x": 'x = "200 mm"'}, ("probes[0].x", "150")),
+            ({"x": 'x = "200 mm"'}, ("probes[0].x", "0.15 m")),
             ({"density": 'density = "2200 kg/m3"\nE = "30 GPa"'}, ("materials.mortar.E", "no effect")),
             ({"frame_interval": 'frame_strain = 1e-4'}, ("output.frame_interval", "no effect")),
         ):

@@ -1,5 +1,8 @@
 #include "pyroclast/experiment/probe.hpp"
 
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "heated_specimen.hpp"

@@ -200,7 +200,6 @@ TEST(TemperatureField, IncrementsDoNotChangeTheResultBeyondTheSolversError) {
 
 /// Keeps the times, and ends the run once a temperature has come so far, °C.
 struct Watcher : HeatObserver {
-  explicit Watcher(double until = kInfinity) : enough(until) {}
   void look(const TemperatureField& f) override {
     looks.push_back(f.time());
     hottest = f.maximum();
@@ -208,7 +207,7 @@ struct Watcher : HeatObserver {
   void frame(const TemperatureField& f) override { frames.push_back(f.time()); }
   bool stop_requested() override { return hottest >= enough; }
 
-  double enough, hottest = 0.0;
+  double enough = kInfinity, hottest = 0.0;
   std::vector<double> looks, frames;
 };
 
@@ -236,7 +235,8 @@ TEST(RunHeat, StopsAfterALookWhenAskedToAndKeepsTheLastState) {
   const auto body = small_body(100);
   const HeatCase heat = fire_from_the_left();
   auto field = conduct(body, heat, 250.0);
-  Watcher watcher(100.0);
+  Watcher watcher;
+  watcher.enough = 100.0;
   EXPECT_EQ(run_heat(field, heat, {.duration = 250.0, .change = 10.0}, watcher), HeatOutcome::interrupted);
   EXPECT_EQ(watcher.frames, (std::vector<double>{0.0, field.time()}));
   EXPECT_GE(field.maximum(), 100.0);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "pyroclast/app/load.hpp"
 
 namespace pyroclast::app {

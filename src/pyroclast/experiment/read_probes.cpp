@@ -1,6 +1,8 @@
 #include "pyroclast/experiment/read_probes.hpp"
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 namespace pyroclast {
 

@@ -1,5 +1,7 @@
 #include "pyroclast/results/field_files.hpp"
 
+#include <vector>
+
 #include <fmt/format.h>
 
 namespace pyroclast {

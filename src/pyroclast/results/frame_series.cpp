@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -49,7 +50,7 @@ void link_mesh(Hdf5File& file, MeshPart part) {
   file.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
   file.attribute("/VTKHDF", "Type", std::string("UnstructuredGrid"));
   for (const char* array : {"Points", "Connectivity", "Offsets", "Types", "NumberOfPoints", "NumberOfCells",
-                           "NumberOfConnectivityIds"})
+                            "NumberOfConnectivityIds"})
     file.external_link(fmt::format("/VTKHDF/{}", array), "mesh.h5", fmt::format("/{}/{}", grid, array));
   file.group("/VTKHDF/PointData");
   file.group("/VTKHDF/CellData");
