@@ -116,6 +116,19 @@ class Heating(UserTest):
         self.assertLessEqual({"total_strain.png", "heating_cracks.png", "heating_fracture.png", "convergence.png"},
                              self.figures("transient_heating"))
 
+    def test_several_runs_are_compared_in_one_figure(self):
+        for level in ("0", "0.3"):
+            done = self.pyroclast("run", CASES / "transient_heating.toml", "--no-figures", "--out", f"run-{level}",
+                                  *changes(f"stages[1].level={level}", "stages[2].to=120 degC"))
+            self.assertEqual(done.returncode, 0, done.stderr)
+        for command, figure in (("compare", "levels.png"), ("levels", "patterns.png")):
+            done = self.pyroclast("figures", command, "run-0", "run-0.3", "--out", figure)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertGreater((self.folder / figure).stat().st_size, 10_000)
+        done = self.pyroclast("figures", "compare", "run-0", "nothing-there", "--out", "x.png")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("nothing-there", done.stderr)
+
     def test_a_specimen_that_is_too_weak_fails_at_a_temperature(self):
         summary = self.run_case("transient_heating", *changes("stages[1].level=0.8"), "--no-figures")
         self.assertGreater(summary["heating"]["critical_temperature_degC"], 20.0)

@@ -38,6 +38,10 @@ int law(const LawOptions& options);
 int plot_properties(const PropertiesOptions& options);
 int make_deck(const std::string& name);
 
+/// Draws figures of results that are there, by the command of the Python package: `run`, `compare`, `levels`
+/// ...
+int figures(const std::vector<std::string>& words);
+
 /// Draws the figures of a folder with the Python package; warns when that is not possible. `what` is its
 /// command.
 void draw_figures(const std::string& what, const std::filesystem::path& folder);

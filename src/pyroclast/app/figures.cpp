@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 
 #include "pyroclast/app/commands.hpp"
+#include "pyroclast/base/error.hpp"
 
 extern char** environ;
 
@@ -22,10 +23,10 @@ std::filesystem::path package_folder() {
   return std::filesystem::exists(installed) ? installed : std::filesystem::path(PYROCLAST_SOURCE_PYTHON);
 }
 
-}  // namespace
-
-void draw_figures(const std::string& what, const std::filesystem::path& folder) {
-  std::vector<std::string> arguments{PYROCLAST_PYTHON, "-m", "pyroclast.figures", what, folder.string()};
+/// Runs the package's command; returns its exit code, or -1 if there is no such program.
+int run_package(std::vector<std::string> words) {
+  std::vector<std::string> arguments{PYROCLAST_PYTHON, "-m", "pyroclast.figures"};
+  arguments.insert(arguments.end(), words.begin(), words.end());
   std::vector<std::string> environment;
   for (char** variable = environ; *variable != nullptr; ++variable)
     if (!std::string(*variable).starts_with("PYTHONPATH=")) environment.emplace_back(*variable);
@@ -42,11 +43,23 @@ void draw_figures(const std::string& what, const std::filesystem::path& folder) 
   if (posix_spawn(&child, PYROCLAST_PYTHON, nullptr, nullptr, pointers(arguments).data(),
                   pointers(environment).data()) == 0)
     waitpid(child, &status, 0);
-  if (status != 0)
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace
+
+int figures(const std::vector<std::string>& words) {
+  const int code = run_package(words);
+  if (code < 0) throw Error(fmt::format("{} cannot be run, which draws the figures", PYROCLAST_PYTHON));
+  return code;
+}
+
+void draw_figures(const std::string& what, const std::filesystem::path& folder) {
+  if (run_package({what, folder.string()}) != 0)
     fmt::print(stderr,
                "warning: no figures were drawn; the results are complete without them. To draw them later: "
-               "PYTHONPATH={} {} -m pyroclast.figures {} {}\n",
-               package_folder().string(), PYROCLAST_PYTHON, what, folder.string());
+               "pyroclast figures {} {}\n",
+               what, folder.string());
 }
 
 }  // namespace pyroclast::app

@@ -76,6 +76,12 @@ int command_line(int argc, char** argv) {
   properties->add_option("-o,--out", properties_options.out,
                          "Folder for table and figure (default: runs/<name of the deck>-properties)");
 
+  auto* figures = cli.add_subcommand(
+      "figures",
+      "Draw figures of runs that are there, several in one too: figures compare RUN... --out FILE");
+  figures->prefix_command();
+  figures->set_help_flag();
+
   std::string name;
   auto* starter = cli.add_subcommand("new", "Write a commented starter deck");
   starter->add_option("NAME", name, "The deck will be NAME.toml")->required();
@@ -86,6 +92,7 @@ int command_line(int argc, char** argv) {
   if (*specimen) return app::make_specimen(options);
   if (*law) return app::law(law_options);
   if (*properties) return app::plot_properties(properties_options);
+  if (*figures) return app::figures(figures->remaining());
   return app::make_deck(name);
 }
 
