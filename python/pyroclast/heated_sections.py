@@ -128,7 +128,7 @@ def _panel(run: Run, frame: Frame) -> Panel:
         title = f"end, {title}"
     counts = count_cracks(run, frame)
     stress = f"$\\sigma$ = {frame.stress:.1f} MPa\n" if run.restrained else ""
-    strain = f"{-style.PER_MILLE * frame.strain:.2f}\\times 10^{{-3}}"
+    strain = f"{style.PER_MILLE * run.total_strain_at(frame):.2f}\\times 10^{{-3}}"
     caption = (
         f"$\\varepsilon_{{\\mathrm{{tot}}}} = {strain}$\n{stress}"
         f"tension: {counts['tension', True]} | {counts['tension', False]}\n"

@@ -160,6 +160,13 @@ class Run:
         """
         return -self.heated_history("specimen_strain")
 
+    def total_strain_at(self, frame: Frame) -> float:
+        """`total_strain` when the frame was saved."""
+        row = int(np.searchsorted(self.history["step"], frame.step))
+        if row == len(self.history) or self.history["step"][row] != frame.step:
+            raise RunError(f"{self.history.path}: has no row of step {frame.step}, at which a frame was saved")
+        return -float(self.history["specimen_strain"][row])
+
     @property
     def uniform(self) -> bool:
         """Whether the specimen's temperatures never differed by more than 1 K."""

@@ -340,7 +340,12 @@ void Experiment::begin_heating(const Coupling& coupling) {
     control_by_force();
     hold_force(stress_held_);
   }
-  next_frame_ = sampling_.frame_temperature;
+  last_interval_ = temperature_interval(field_.mean());
+}
+
+/// Which of the even intervals between frames a temperature lies in.
+double Experiment::temperature_interval(double temperature) const {
+  return std::floor((temperature + kSameTemperature) / sampling_.frame_temperature);
 }
 
 /// Hands the field's temperatures to the mechanics.
@@ -377,10 +382,9 @@ void Experiment::cycle(const Coupling& coupling) {
 Experiment::Verdict Experiment::judge_coupling(const Sample& now) {
   if (ran_away_) return {.over = true, .last = true, .outcome = Outcome::ran_away};
   if (progress_ >= 1.0) return {.over = true};
-  if (std::abs(now.heat.mean - stage_first_temperature_) >= next_frame_ - kSameTemperature) {
-    observer_.frame(*this, now);
-    next_frame_ += sampling_.frame_temperature;
-  }
+  const double interval = temperature_interval(now.heat.mean);
+  if (interval != last_interval_) observer_.frame(*this, now);
+  last_interval_ = interval;
   return {};
 }
 

@@ -122,6 +122,7 @@ class Experiment {
   Verdict judge(const ExposeStage&, const Sample&);
 
   void begin_heating(const Coupling&);
+  double temperature_interval(double temperature) const;
   void exchange();
   void cycle(const Coupling&);
   bool stop_asked();
@@ -159,7 +160,8 @@ class Experiment {
   double specimen_shortening_at_rest_ = 0.0;  ///< m
   double widening_at_rest_ = 0.0;             ///< m
   double peak_stress_ = 0.0;                  ///< of the stage, Pa
-  double next_frame_ = 0.0;                   ///< strain or temperature
+  double next_frame_ = 0.0;                   ///< strain
+  double last_interval_ = 0.0;                ///< of temperature, in which the last row lay
   double stress_held_ = 0.0;                  ///< by the force on the upper platen, Pa
   double stage_first_temperature_ = 0.0;      ///< mean, °C
   double exposure_began_ = 0.0;               ///< heating time, s

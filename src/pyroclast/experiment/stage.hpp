@@ -72,7 +72,7 @@ using Stage = std::variant<SettleStage, LoadStage, CompressStage, HeatStage, Exp
 struct SamplingParameters {
   double history_strain = 0.0;     ///< axial strain between two rows of the history, while compressing
   double frame_strain = 0.0;       ///< axial strain between two frames of the fields, while compressing
-  double frame_temperature = 0.0;  ///< mean temperature between two frames while it changes, K
+  double frame_temperature = 0.0;  ///< frames at its multiples, of the mean temperature, K
 };
 
 }  // namespace pyroclast
