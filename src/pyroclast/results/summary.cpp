@@ -17,11 +17,11 @@ constexpr double kSmallJump = 0.1;
 /// The ledger of a sound run closes within this share of the work done.
 constexpr double kLedgerTolerance = 0.005;
 
-/// Strain at which jumps stop being small, or a negative number.
-double strain_of_large_jumps(const std::vector<Sample>& history) {
+/// First row at which jumps are no longer small; null if they always are.
+const Sample* large_jumps(const std::vector<Sample>& history) {
   const auto row = std::find_if(history.begin(), history.end(),
                                 [](const Sample& s) { return s.largest_jump > kSmallJump; });
-  return row == history.end() ? -1.0 : row->strain;
+  return row == history.end() ? nullptr : &*row;
 }
 
 const char* name(PlatenControl control) {
@@ -99,11 +99,12 @@ Summary summarize(const Case& c, const Experiment& experiment, Outcome outcome) 
   if (std::abs(ledger) > kLedgerTolerance)
     s.warnings.push_back(fmt::format(
         "the energy ledger closes only within {:.2f} % of the energy turned over", 100.0 * ledger));
-  if (const double strain = strain_of_large_jumps(history); strain >= 0.0)
-    s.warnings.push_back(fmt::format(
-        "jumps exceed {:.0f} % of an edge from strain {:.5f} on: contacts keep the partners and normals they "
-        "started with, so what follows is approximate",
-        100.0 * kSmallJump, strain));
+  if (const Sample* row = large_jumps(history))
+    s.warnings.push_back(
+        fmt::format("jumps exceed {:.0f} % of an edge from {:.0f} degC and strain {:.5f} on: contacts keep "
+                    "the partners and "
+                    "normals they started with, so what follows is approximate",
+                    100.0 * kSmallJump, row->heat.mean, row->strain));
   return s;
 }
 
