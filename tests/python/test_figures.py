@@ -301,6 +301,8 @@ class ErrorsOfHeatedRuns(HeatedTest):
     def test_temperatures_of_a_run_that_was_not_heated(self):
         synthetic_run.write_run(self.root / "cold")
         self.assert_fails(["run", self.root / "cold", "--temperatures", "300"], "cold", "never heated")
+        synthetic_run.write_conduction(self.root / "wall")
+        self.assert_fails(["run", self.root / "wall", "--temperatures", "300"], "wall", "with mechanics")
 
     def test_runs_with_nothing_in_common(self):
         synthetic_run.write_run(self.root / "cold")
