@@ -44,7 +44,7 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
     if run.exchanged.any():
         yield from _draw_heating(run, file_format, magnification, temperatures)
     elif temperatures is not None:
-        raise RunError(f"{run.folder}: has no fracture while heated, so --temperatures asks for nothing")
+        raise RunError(f"{run.folder}: was never heated with mechanics, so --temperatures asks for nothing")
     if run.only_conducts:
         yield from _draw_conduction(run, file_format)
     elif not run.ends_heated:
