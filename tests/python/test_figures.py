@@ -27,6 +27,7 @@ from pyroclast.curves import mean_curve, mean_of, names_apart  # noqa: E402
 from pyroclast.heated_sections import frame_near, select_heated_frames  # noqa: E402
 from pyroclast.heating import strain_limits  # noqa: E402
 from pyroclast.progress import heating_course  # noqa: E402
+from pyroclast.properties import read_properties  # noqa: E402
 from pyroclast.run import Frame, Run, RunError, Specimen, Table  # noqa: E402
 from pyroclast.sections import count_cracks, select_frames  # noqa: E402
 
@@ -155,6 +156,45 @@ class CommandsMakePictures(FolderTest):
         lines = [lines[0] + ",temperature_C", *(line + ",20" for line in lines[1:])]
         (self.run_folder / "history.csv").write_text("\n".join(lines))
         self.assertEqual(self.command("run", self.run_folder)[0], 0)
+
+
+class PropertiesFigure(FolderTest):
+    HEADER = "property,unit,temperature_degC,value,ratio_to_20_degC\n"
+    ROWS = ("materials.mortar.E,Pa,20,3e10,1\nmaterials.mortar.E,Pa,800,3e9,0.1\n"
+            "materials.mortar.thermal_strain,1,20,0,nan\nmaterials.mortar.thermal_strain,1,800,-0.03,nan\n"
+            "contacts.mortar_mortar.f_t,Pa,20,2e6,1\ncontacts.mortar_mortar.f_t,Pa,800,1e6,0.5\n")
+
+    def write(self, text: str) -> None:
+        (self.root / "properties.csv").write_text(text)
+
+    def test_is_drawn_with_or_without_heat(self):
+        self.write(self.HEADER + self.ROWS)
+        self.assertEqual(self.command("properties", self.root)[0], 0)
+        without_heat = png_size(self.root / "figures" / "properties.png")
+        self.write(self.HEADER + self.ROWS + "materials.mortar.conductivity,W/m/K,20,2,1\n"
+                                             "materials.mortar.heat_capacity,J/m3/K,20,2e6,1\n")
+        self.assertEqual(self.command("properties", self.root)[0], 0)
+        self.assertGreater(png_size(self.root / "figures" / "properties.png")[1], without_heat[1])
+
+    def test_reads_each_property(self):
+        self.write(self.HEADER + self.ROWS)
+        table = read_properties(self.root / "properties.csv")
+        self.assertEqual(list(table), ["materials.mortar.E", "materials.mortar.thermal_strain",
+                                       "contacts.mortar_mortar.f_t"])
+        modulus = table["materials.mortar.E"]
+        self.assertEqual((modulus.unit, modulus.temperature.tolist(), modulus.value.tolist(),
+                          modulus.ratio.tolist()), ("Pa", [20.0, 800.0], [3e10, 3e9], [1.0, 0.1]))
+
+    def test_what_is_wrong_is_named(self):
+        self.assert_fails(["properties", self.root], "properties.csv", "cannot be read")
+        self.write(self.HEADER)
+        self.assert_fails(["properties", self.root], "properties.csv", "no rows")
+        self.write("property,unit,value\n")
+        self.assert_fails(["properties", self.root], "properties.csv", "temperature_degC")
+        self.write(self.HEADER + self.ROWS + "materials.mortar.E,Pa,hot,3e10,1\n")
+        self.assert_fails(["properties", self.root], "properties.csv", "line 8")
+        self.write(self.HEADER + "materials.mortar.E,Pa\n")
+        self.assert_fails(["properties", self.root], "properties.csv", "line 2")
 
 
 class ErrorsNameTheThing(FolderTest):
