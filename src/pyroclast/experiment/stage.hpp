@@ -44,10 +44,10 @@ struct Coupling {
   // gridpoints alike, such as the inertia of a specimen that expands; the platens do.
   double unbalanced_ratio = 0.0;
   double platen_difference = 0.0;  ///< between the stresses on the platens, Pa
-  /// Steps for one exchange. Before the least a force that is out of balance has not had the time to move a
-  /// body of that size; an exchange that did not come to rest within the most is flagged.
-  std::int64_t least_cycles = 0,
-               most_cycles = 0;  ///< steps for one exchange; one that did not come to rest is flagged
+  /// Steps for one exchange at least: a force out of balance needs time to move a body of that size.
+  std::int64_t least_cycles = 0;
+  /// And at most; an exchange that did not come to rest by then is flagged.
+  std::int64_t most_cycles = 0;
   PlatenControl platen = PlatenControl::force;
   /// The specimen has failed when the platen sinks by this share of the height at one temperature.
   double failure_strain = 0.0;
