@@ -145,10 +145,12 @@ def _parser() -> argparse.ArgumentParser:
     run.set_defaults(draw=lambda asked: draw_run(asked.folder, asked.format, asked.magnification,
                                                  asked.temperatures))
 
-    specimen = commands.add_parser("specimen", help="morphology and gradation of a specimen")
-    specimen.add_argument("folder", type=Path, metavar="DIR")
-    specimen.add_argument("--format", choices=_FORMATS, default="png")
-    specimen.set_defaults(draw=lambda asked: draw_specimen(asked.folder, asked.format))
+    for name, draw, help_text in (("specimen", draw_specimen, "morphology and gradation of a specimen"),
+                                  ("properties", draw_properties, "properties over the temperature")):
+        command = commands.add_parser(name, help=help_text)
+        command.add_argument("folder", type=Path, metavar="DIR")
+        command.add_argument("--format", choices=_FORMATS, default="png")
+        command.set_defaults(draw=lambda asked, draw=draw: draw(asked.folder, asked.format))
 
     comparison = commands.add_parser("compare", help="curves of several runs in one figure")
     comparison.add_argument("folders", type=Path, nargs="+", metavar="RUN_DIR")
@@ -165,11 +167,6 @@ def _parser() -> argparse.ArgumentParser:
                           help="of displacements (default: chosen from the last frames, and stated)")
     patterns.set_defaults(draw=lambda asked: draw_levels(asked.folders, asked.out, asked.temperatures,
                                                          asked.magnification))
-
-    properties_command = commands.add_parser("properties", help="properties over the temperature")
-    properties_command.add_argument("folder", type=Path, metavar="DIR")
-    properties_command.add_argument("--format", choices=_FORMATS, default="png")
-    properties_command.set_defaults(draw=lambda asked: draw_properties(asked.folder, asked.format))
     return parser
 
 

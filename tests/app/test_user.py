@@ -56,6 +56,21 @@ class UserTest(unittest.TestCase):
                               timeout=300, check=False, **options)
 
 
+    def interrupt(self, deck: pathlib.Path, rows: int) -> None:
+        """Runs a deck into out/, interrupts it once its history has so many rows, and sees it end cleanly."""
+        with subprocess.Popen([PROGRAM, "run", deck, "--out", "out", "--no-figures"], cwd=self.folder,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            history = self.folder / "out" / "history.csv"
+            for _ in range(600):
+                if history.exists() and len(history.read_text().splitlines()) > rows:
+                    break
+                time.sleep(0.1)
+            process.send_signal(signal.SIGINT)
+            output, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertIn("interrupted", output)
+
+
 class Properties(UserTest):
     def test_are_tabulated_as_the_run_has_them_and_drawn(self):
         deck = STARTER.replace('E = "29.4 GPa"', 'E = { value = "29.4 GPa", times = "glasgow_modulus" }\n'
@@ -257,21 +272,11 @@ class Running(UserTest):
 
     def test_interrupting_keeps_the_results_so_far_and_says_so(self):
         deck = self.write(small_deck(stop_strain="stop_strain = 0.5"))
-        with subprocess.Popen([PROGRAM, "run", deck, "--out", "out", "--no-figures"], cwd=self.folder,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-            history = self.folder / "out" / "history.csv"
-            for _ in range(600):
-                if history.exists() and len(history.read_text().splitlines()) > 50:
-                    break
-                time.sleep(0.1)
-            process.send_signal(signal.SIGINT)
-            output, _ = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 130)
-        self.assertIn("interrupted", output)
+        self.interrupt(deck, rows=50)
         summary = json.loads((self.folder / "out/summary.json").read_text())
         self.assertEqual(summary["outcome"], "interrupted")
-        last = history.read_text().splitlines()[-1]
-        self.assertEqual(last.count(","), history.read_text().splitlines()[0].count(","))
+        history = (self.folder / "out/history.csv").read_text().splitlines()
+        self.assertEqual(history[-1].count(","), history[0].count(","))
 
     def test_specimen_makes_the_specimen_and_its_pictures(self):
         done = self.pyroclast("specimen", self.write(small_deck()), "--out", "out")
@@ -357,17 +362,7 @@ class HeatAlone(UserTest):
 
     def test_interrupting_keeps_the_results_so_far_and_says_so(self):
         deck = self.deck(count="count = 2000", interval='interval = "1 s"', duration='duration = "4 h"')
-        with subprocess.Popen([PROGRAM, "run", deck, "--out", "out", "--no-figures"], cwd=self.folder,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-            history = self.folder / "out" / "history.csv"
-            for _ in range(600):
-                if history.exists() and len(history.read_text().splitlines()) > 10:
-                    break
-                time.sleep(0.1)
-            process.send_signal(signal.SIGINT)
-            output, _ = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 130)
-        self.assertIn("interrupted", output)
+        self.interrupt(deck, rows=10)
         self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["outcome"], "interrupted")
 
     def test_what_does_not_belong_into_the_deck_is_refused_with_its_line(self):

@@ -1,10 +1,8 @@
 #include "pyroclast/experiment/case.hpp"
 
-#include <fstream>
-#include <sstream>
-
 #include <gtest/gtest.h>
 
+#include "decks.hpp"
 #include "pyroclast/experiment/experiment.hpp"
 #include "pyroclast/experiment/simulation.hpp"
 
@@ -12,16 +10,7 @@ namespace pyroclast {
 namespace {
 
 std::string paper_deck() {
-  std::ifstream file(PYROCLAST_CASES "/compression.toml");
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-std::string with(std::string deck, const std::string& from, const std::string& to) {
-  const auto at = deck.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return deck.replace(at, from.size(), to);
+  return shipped_case("compression");
 }
 
 Case read(const std::string& deck) {

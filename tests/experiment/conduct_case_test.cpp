@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "deck/diagnostics_of.hpp"
+#include "decks.hpp"
 #include "pyroclast/experiment/case.hpp"
 #include "pyroclast/experiment/simulation.hpp"
 
@@ -16,16 +15,7 @@ namespace pyroclast {
 namespace {
 
 std::string wall_deck() {
-  std::ifstream file(PYROCLAST_CASES "/thermal_wall.toml");
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-std::string with(std::string deck, const std::string& from, const std::string& to) {
-  const auto at = deck.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return deck.replace(at, from.size(), to);
+  return shipped_case("thermal_wall");
 }
 
 std::vector<Diagnostic> errors_of(const std::string& text) {

@@ -1,10 +1,10 @@
 #include "pyroclast/experiment/experiment.hpp"
 
 #include <cmath>
-#include <sstream>
 
 #include <gtest/gtest.h>
 
+#include "decks.hpp"
 #include "pyroclast/experiment/case.hpp"
 #include "pyroclast/experiment/heating_response.hpp"
 #include "pyroclast/experiment/response.hpp"
@@ -12,12 +12,6 @@
 
 namespace pyroclast {
 namespace {
-
-std::string with(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
 
 /// Sixty blocks of a prism, 60 mm x 120 mm, whose parts differ in their expansion at most.
 std::string deck(const std::string& stages, const std::string& expansion = "\"1e-5 1/K\"") {

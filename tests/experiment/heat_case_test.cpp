@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "deck/diagnostics_of.hpp"
+#include "decks.hpp"
 #include "heated_specimen.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/experiment/read_heat.hpp"
@@ -35,12 +36,6 @@ const std::string kConvection =
 const std::string kHeld =
     "[[heat.boundaries]]\nfaces = \"right\"\nkind = \"temperature\"\ntemperature = \"20 degC\"\n";
 const std::string kFlux = "[[heat.boundaries]]\nfaces = \"top\"\nkind = \"flux\"\nflux = \"15 kW/m2\"\n";
-
-std::string with(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
 
 /// The one error that a deck gives.
 Diagnostic error_of(const std::string& text) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "model/small_specimen.hpp"
 #include "pyroclast/experiment/heat_case.hpp"
 #include "pyroclast/experiment/temperature_field.hpp"
 
@@ -13,20 +14,7 @@ namespace pyroclast {
 inline constexpr double kSpecimenWidth = 0.05, kSpecimenHeight = 0.1, kSpecimenThickness = 0.5;  // m
 
 inline ConcreteModel small_body(int blocks = 300) {
-  specimen::SpecimenParameters p;
-  p.width = kSpecimenWidth;
-  p.height = kSpecimenHeight;
-  p.seed = 2;
-  p.aggregates = {.fraction = 0.3,
-                  .d_min = 5e-3,
-                  .d_max = 15e-3,
-                  .fuller_exponent = 0.45,
-                  .sieves = {5e-3, 15e-3},
-                  .minimum_gap = 5e-4,
-                  .attempts = 10000};
-  p.blocks.count = blocks;
-  p.blocks.shortest_edge = 0.2;
-  return make_concrete_model(specimen::make_specimen(p), 0.01, kSpecimenThickness);
+  return make_concrete_model(small_specimen(blocks), 0.01, kSpecimenThickness);
 }
 
 struct HeatConstants {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -12,6 +11,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/experiment/heat_run.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
+#include "thermal/convective_wall.hpp"
 
 namespace pyroclast {
 namespace {
@@ -101,26 +101,6 @@ TEST(TemperatureField, ZonesTakeTheMeanOfTheirGridpointsAndContactsTheSpecimensS
 }
 
 // ---- Against a closed form -------------------------------------------------------------------------------
-
-/// Dimensionless temperature of a wall that convects on one side and is adiabatic on the other, Carslaw and
-/// Jaeger.
-/// \param place    distance from the adiabatic side over the thickness
-/// \param fourier  time times diffusivity over the thickness squared
-double convective_wall(double biot, double place, double fourier) {
-  using std::numbers::pi;
-  double sum = 0.0;
-  for (int n = 0; n < 60; ++n) {
-    double low = n * pi, high = n * pi + 0.5 * pi;  // root of zeta tan(zeta) = Bi
-    for (int i = 0; i < 100; ++i) {
-      const double middle = 0.5 * (low + high);
-      (middle * std::tan(middle) < biot ? low : high) = middle;
-    }
-    const double zeta = 0.5 * (low + high);
-    sum += 4.0 * std::sin(zeta) / (2.0 * zeta + std::sin(2.0 * zeta)) * std::exp(-zeta * zeta * fourier) *
-           std::cos(zeta * place);
-  }
-  return sum;
-}
 
 TEST(TemperatureField, ASpecimenThatConvectsOnTheLeftFollowsTheClosedFormOfAWall) {
   constexpr double h = 25.0, gas = 500.0, initial = 20.0;

@@ -5,26 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "pyroclast/base/error.hpp"
+#include "small_specimen.hpp"
 
 namespace pyroclast {
 namespace {
-
-specimen::Specimen small_specimen() {
-  specimen::SpecimenParameters p;
-  p.width = 0.05;
-  p.height = 0.1;
-  p.seed = 2;
-  p.aggregates = {.fraction = 0.3,
-                  .d_min = 5e-3,
-                  .d_max = 15e-3,
-                  .fuller_exponent = 0.45,
-                  .sieves = {5e-3, 15e-3},
-                  .minimum_gap = 5e-4,
-                  .attempts = 10000};
-  p.blocks.count = 300;
-  p.blocks.shortest_edge = 0.2;
-  return specimen::make_specimen(p);
-}
 
 TEST(ConcreteModel, PlatensMeetTheSpecimenAlongItsWholeWidth) {
   const auto specimen = small_specimen();

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "bodies.hpp"
+#include "convective_wall.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 
@@ -87,24 +88,6 @@ TEST(ThermalVerification, NafemsT3FollowsASineAtTheEndOfABar) {
 }
 
 // ---- Convective wall -------------------------------------------------------------------------------------
-
-/// Dimensionless temperature of a plane wall that convects on both sides, Carslaw and Jaeger.
-/// \param place    distance from the middle over the half thickness
-/// \param fourier  time times diffusivity over the half thickness squared
-double convective_wall(double biot, double place, double fourier) {
-  double sum = 0.0;
-  for (int n = 0; n < 60; ++n) {
-    double low = n * pi, high = n * pi + 0.5 * pi;  // root of zeta tan(zeta) = Bi
-    for (int i = 0; i < 100; ++i) {
-      const double middle = 0.5 * (low + high);
-      (middle * std::tan(middle) < biot ? low : high) = middle;
-    }
-    const double zeta = 0.5 * (low + high);
-    sum += 4.0 * std::sin(zeta) / (2.0 * zeta + std::sin(2.0 * zeta)) * std::exp(-zeta * zeta * fourier) *
-           std::cos(zeta * place);
-  }
-  return sum;
-}
 
 TEST(ThermalVerification, ARectangleThatConvectsFollowsTheProductOfTwoWalls) {
   constexpr double h = 25.0, conductivity = 1.6, capacity = 2400.0 * 900.0, gas = 500.0, initial = 20.0;

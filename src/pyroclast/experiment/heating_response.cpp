@@ -12,21 +12,26 @@ const Coupling* coupling_of(const Stage& stage) {
   return expose ? &expose->coupling : nullptr;
 }
 
+/// The last load before a stage; null if there is none.
+const LoadStage* load_before(const std::vector<Stage>& stages, int stage) {
+  const LoadStage* last = nullptr;
+  for (int i = 0; i < stage; ++i)
+    if (const auto* load = std::get_if<LoadStage>(&stages[i])) last = load;
+  return last;
+}
+
 }  // namespace
 
 std::optional<HeatingResponse> heating_response(const std::vector<Sample>& history,
                                                 const std::vector<Stage>& stages, Outcome outcome) {
   HeatingResponse r;
-  int last_load = -1;
   for (const Sample& s : history) {
     if (s.heat.exchange == 0) continue;
     const Coupling& coupling = *coupling_of(stages[s.stage]);
-    for (int i = last_load + 1; i < s.stage; ++i)
-      if (const auto* load = std::get_if<LoadStage>(&stages[i])) {
-        last_load = i;
-        r.load_stress = load->stress;
-        r.level = load->level;
-      }
+    if (const auto* load = load_before(stages, s.stage)) {
+      r.load_stress = load->stress;
+      r.level = load->level;
+    }
     r.platen = coupling.platen;
     r.increment = std::max(r.increment, coupling.increment);
     ++r.exchanges;

@@ -14,7 +14,7 @@ namespace {
 /// Contacts are joined at the start and their normals stay; a jump of this share of the edge is no longer
 /// small.
 constexpr double kSmallJump = 0.1;
-/// The ledger of a sound run closes within this share of the work done.
+/// The ledger of a sound run closes within this share of the energy turned over.
 constexpr double kLedgerTolerance = 0.005;
 
 /// First row at which jumps are no longer small; null if they always are.
