@@ -283,7 +283,7 @@ class ContactAtTemperature : public testing::Test {
     for (int g = 0; g < 8; ++g)
       for (int i : {0, 1})
         body_.prescribe_velocity(
-            g, i, g < 4 ? 0.0 : (jump[i] - body_.displacement()[g][i]) / (10 * body_.time_step()));
+            g, i, g < 4 ? 0.0 : (jump[i] - body_.displacement(g)[i]) / (10 * body_.time_step()));
     body_.advance(10);
     for (int g = 4; g < 8; ++g)
       for (int i : {0, 1}) body_.prescribe_velocity(g, i, 0.0);
@@ -293,7 +293,7 @@ class ContactAtTemperature : public testing::Test {
     validate(hot, "hot");
     body_.set_properties(uniform(model_, hot, 0.0));
   }
-  const ContactState<2>& state() const { return body_.contacts()[0]; }
+  ContactState<2> state() const { return body_.contact(0); }
 
   const Model<2> model_ = column(2, 0.01);
   const ContactProperties cold_ = mortar_contact();
@@ -347,13 +347,13 @@ TEST_F(ContactAtTemperature, ComesBackToTheShrunkenTensionEnvelope) {
 TEST_F(ContactAtTemperature, ComesBackToTheShrunkenShearEnvelopeWithFriction) {
   const double pressure = 10e6, jump = 8e6 / cold_.shear_stiffness;
   move({{jump, -pressure / cold_.normal_stiffness}});
-  EXPECT_EQ(state().history.accumulated_slip, 0.0);
+  EXPECT_EQ(state().accumulated_slip, 0.0);
   ContactProperties hot = cold_;
   hot.cohesion *= 0.2;
   hot.residual_cohesion *= 0.2;
   hot.mode_2_energy *= 0.2;
   heat(hot);
-  const double slip = state().history.accumulated_slip, damage = state().history.shear_damage;
+  const double slip = state().accumulated_slip, damage = state().history.shear_damage;
   const double cohesion = (1.0 - damage) * hot.cohesion + damage * hot.residual_cohesion;
   const double strength = cohesion + pressure * hot.friction;
   const double ultimate_slip = 2.0 * hot.mode_2_energy / (hot.cohesion - hot.residual_cohesion);
@@ -364,7 +364,7 @@ TEST_F(ContactAtTemperature, ComesBackToTheShrunkenShearEnvelopeWithFriction) {
   EXPECT_NEAR(state().normal_traction, -pressure, 1e-9 * pressure);
 
   heat(cold_);
-  EXPECT_EQ(state().history.accumulated_slip, slip);
+  EXPECT_EQ(state().accumulated_slip, slip);
   EXPECT_EQ(state().history.shear_damage, damage);
 }
 

@@ -121,7 +121,7 @@ class Drive {
         "{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},"
         "{:.12g},{:.12g},{:.12g}\n",
         at_.opening, at_.slip, at_.temperature, response_.normal_traction, response_.shear_traction[0],
-        history_.tension_damage, history_.shear_damage, history_.closure, history_.accumulated_slip,
+        history_.tension_damage, history_.shear_damage, history_.closure, accumulated_slip_,
         response_.stored, total_.tension, total_.shear, total_.friction, total_.compression, heat_);
   }
 
@@ -134,6 +134,7 @@ class Drive {
   void update(const PathPoint& point) {
     response_ = update_contact<2>(properties_, point.opening, {{point.slip}}, history_);
     total_ += response_.dissipated;
+    accumulated_slip_ += response_.slipped;
   }
 
   const ContactMaterial& material_;
@@ -143,6 +144,7 @@ class Drive {
   ContactDissipation total_;
   PathPoint at_;
   double heat_ = 0.0;
+  double accumulated_slip_ = 0.0;
 };
 
 }  // namespace

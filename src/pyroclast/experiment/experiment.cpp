@@ -27,13 +27,13 @@ constexpr double kSameTemperature = 1e-6, kSameTime = 1e-9;
 
 double mean_displacement(const Mechanics<2>& mechanics, const std::vector<int>& gridpoints, int component) {
   double sum = 0.0;
-  for (int g : gridpoints) sum += mechanics.displacement()[g][component];
+  for (int g : gridpoints) sum += mechanics.displacement(g)[component];
   return sum / static_cast<double>(gridpoints.size());
 }
 
 double total_force(const Mechanics<2>& mechanics, const std::vector<int>& gridpoints, int component) {
   double sum = 0.0;
-  for (int g : gridpoints) sum += mechanics.force()[g][component];
+  for (int g : gridpoints) sum += mechanics.force(g)[component];
   return sum;
 }
 
@@ -71,13 +71,12 @@ Cracks count_cracks(const Mechanics<2>& mechanics) {
     const auto& contact = model.contacts[i];
     if (contact.interface != aggregate_mortar && contact.interface != mortar_mortar) continue;
     const bool itz = contact.interface == aggregate_mortar;
-    const auto& state = mechanics.contacts()[i];
-    const auto& h = state.history;
+    const auto h = mechanics.contact_history(i);
     const double length = contact.area / model.thickness;
     add(itz ? cracks.tension_am : cracks.tension_mm, h.tension_damage, length);
     add(itz ? cracks.shear_am : cracks.shear_mm, h.shear_damage, length);
     if (h.tension_damage > 0.0) {
-      cracks.mean_opening += std::max(0.0, state.opening + h.closure) * length;
+      cracks.mean_opening += std::max(0.0, mechanics.opening(i) + h.closure) * length;
       cracked_length += length;
     }
   }
@@ -156,7 +155,7 @@ double Experiment::specimen_strain() const {
 
 double Experiment::stress_top() const {
   double applied = 0.0;
-  for (int g : body_.top_support) applied += mechanics_.applied_force()[g][1];
+  for (int g : body_.top_support) applied += mechanics_.applied_force(g)[1];
   return (total_force(mechanics_, body_.top_support, 1) - applied) / (width_ * body_.model.thickness);
 }
 

@@ -18,15 +18,17 @@ enum class Kinematics : std::uint8_t {
 
 /// Symmetric tensor: 2D (xx, yy, xy), 3D (xx, yy, zz, xy, yz, zx); shear components are tensor, not
 /// engineering.
-template <int Dim>
-using SymmetricTensor = std::array<double, Dim*(Dim + 1) / 2>;
+template <int Dim, class Real = double>
+using SymmetricTensor = std::array<Real, Dim*(Dim + 1) / 2>;
 
 /// Elastic constants of a zone at its temperature.
-struct ZoneProperties {
-  double lambda = 0.0;          ///< first Lamé constant; in 2D the plane stress one, E nu / (1 - nu²), Pa
-  double mu = 0.0;              ///< shear modulus G, Pa
-  double thermal_strain = 0.0;  ///< free thermal strain in every direction
+template <class Real>
+struct ZonePropertiesOf {
+  Real lambda{};          ///< first Lamé constant; in 2D the plane stress one, E nu / (1 - nu²), Pa
+  Real mu{};              ///< shear modulus G, Pa
+  Real thermal_strain{};  ///< free thermal strain in every direction
 };
+using ZoneProperties = ZonePropertiesOf<double>;
 
 /// 2D: true plane stress. `young` in Pa.
 template <int Dim>
@@ -36,13 +38,14 @@ constexpr ZoneProperties zone_properties(double young, double poisson, double th
 }
 
 /// Turn of a zone in its plane; the identity with small kinematics.
+template <class Real = double>
 struct Rotation {
-  double cosine = 1.0, sine = 0.0;
+  Real cosine{1.0}, sine{0.0};
 };
 
 /// A vector of the zone's own frame in the frame of the model.
-template <int Dim>
-inline Vec<Dim> rotated(const Rotation& r, const Vec<Dim>& v) {
+template <int Dim, class Real>
+inline Vec<Dim, Real> rotated(const Rotation<Real>& r, const Vec<Dim, Real>& v) {
   if constexpr (Dim == 2)
     return {{r.cosine * v[0] - r.sine * v[1], r.sine * v[0] + r.cosine * v[1]}};
   else
@@ -50,10 +53,10 @@ inline Vec<Dim> rotated(const Rotation& r, const Vec<Dim>& v) {
 }
 
 /// A stress of the zone's own frame in the frame of the model.
-template <int Dim>
-inline SymmetricTensor<Dim> rotated(const Rotation& r, const SymmetricTensor<Dim>& s) {
+template <int Dim, class Real>
+inline SymmetricTensor<Dim, Real> rotated(const Rotation<Real>& r, const SymmetricTensor<Dim, Real>& s) {
   if constexpr (Dim == 2) {
-    const double cc = r.cosine * r.cosine, ss = r.sine * r.sine, cs = r.cosine * r.sine;
+    const Real cc = r.cosine * r.cosine, ss = r.sine * r.sine, cs = r.cosine * r.sine;
     return {cc * s[0] + ss * s[1] - 2.0 * cs * s[2], ss * s[0] + cc * s[1] + 2.0 * cs * s[2],
             cs * (s[0] - s[1]) + (cc - ss) * s[2]};
   } else {
@@ -69,21 +72,23 @@ inline SymmetricTensor<Dim> rotated(const Rotation& r, const SymmetricTensor<Dim
 /// \param gradient  of the first Dim shape functions, 1/m
 /// \param u         displacements of the zone's Dim + 1 gridpoints, m
 /// \param rotation  out
-template <int Dim>
-inline SymmetricTensor<Dim> mechanical_strain(const std::array<Vec<Dim>, Dim>& gradient,
-                                              const std::array<Vec<Dim>, Dim + 1>& u, double thermal_strain,
-                                              Kinematics kinematics, Rotation& rotation) {
-  std::array<Vec<Dim>, Dim> h{};  // displacement gradient, h[j][i] = du_i/dx_j
+template <int Dim, class Real>
+inline SymmetricTensor<Dim, Real> mechanical_strain(const std::array<Vec<Dim, Real>, Dim>& gradient,
+                                                    const std::array<Vec<Dim, Real>, Dim + 1>& u,
+                                                    const Real& thermal_strain, Kinematics kinematics,
+                                                    Rotation<Real>& rotation) {
+  using std::sqrt;
+  std::array<Vec<Dim, Real>, Dim> h;  // displacement gradient, h[j][i] = du_i/dx_j
   for (int n = 0; n < Dim; ++n) {
-    const Vec<Dim> d = u[n] - u[Dim];
-    for (int j = 0; j < Dim; ++j) h[j] += d * gradient[n][j];
+    const Vec<Dim, Real> d = u[n] - u[Dim];
+    for (int j = 0; j < Dim; ++j) h[j] = n == 0 ? d * gradient[n][j] : h[j] + d * gradient[n][j];
   }
   if constexpr (Dim == 2) {
     if (kinematics == Kinematics::finite) {
-      const double along = 2.0 + h[0][0] + h[1][1];
-      const double across = h[0][1] - h[1][0];
-      const double scale = 1.0 / std::sqrt(along * along + across * across);
-      const double c = along * scale, s = across * scale;
+      const Real along = 2.0 + h[0][0] + h[1][1];
+      const Real across = h[0][1] - h[1][0];
+      const Real scale = 1.0 / sqrt(along * along + across * across);
+      const Real c = along * scale, s = across * scale;
       rotation = {c, s};
       return {c * (1.0 + h[0][0]) + s * h[0][1] - 1.0 - thermal_strain,
               c * (1.0 + h[1][1]) - s * h[1][0] - 1.0 - thermal_strain, c * h[1][0] + s * (1.0 + h[1][1])};
@@ -96,19 +101,22 @@ inline SymmetricTensor<Dim> mechanical_strain(const std::array<Vec<Dim>, Dim>& g
 }
 
 /// Stress, Pa, tension positive, from the mechanical strain.
-template <int Dim>
-inline SymmetricTensor<Dim> zone_stress(const ZoneProperties& p, const SymmetricTensor<Dim>& strain) {
-  double trace = 0.0;
-  for (int i = 0; i < Dim; ++i) trace += strain[i];
-  SymmetricTensor<Dim> stress;
-  for (std::size_t i = 0; i < stress.size(); ++i) stress[i] = 2.0 * p.mu * strain[i];
-  for (int i = 0; i < Dim; ++i) stress[i] += p.lambda * trace;
+template <int Dim, class Real>
+inline SymmetricTensor<Dim, Real> zone_stress(const ZonePropertiesOf<Real>& p,
+                                              const SymmetricTensor<Dim, Real>& strain) {
+  Real trace = strain[0];
+  for (int i = 1; i < Dim; ++i) trace += strain[i];
+  const Real of_trace = p.lambda * trace;
+  const Real of_strain = 2.0 * p.mu;
+  SymmetricTensor<Dim, Real> stress;
+  for (int i = 0; i < Dim; ++i) stress[i] = of_strain * strain[i] + of_trace;
+  for (std::size_t i = Dim; i < stress.size(); ++i) stress[i] = of_strain * strain[i];
   return stress;
 }
 
 /// Stress applied to a vector: the traction on a plane with that normal.
-template <int Dim>
-inline Vec<Dim> apply(const SymmetricTensor<Dim>& s, const Vec<Dim>& n) {
+template <int Dim, class Real>
+inline Vec<Dim, Real> apply(const SymmetricTensor<Dim, Real>& s, const Vec<Dim, Real>& n) {
   if constexpr (Dim == 2) {
     return {{s[0] * n[0] + s[2] * n[1], s[2] * n[0] + s[1] * n[1]}};
   } else {
@@ -118,10 +126,11 @@ inline Vec<Dim> apply(const SymmetricTensor<Dim>& s, const Vec<Dim>& n) {
 }
 
 /// Elastic energy density of a strain under its stress, J/m³.
-template <int Dim>
-inline double energy_density(const SymmetricTensor<Dim>& stress, const SymmetricTensor<Dim>& strain) {
-  double w = 0.0;
-  for (int i = 0; i < Dim; ++i) w += 0.5 * stress[i] * strain[i];
+template <int Dim, class Real>
+inline Real energy_density(const SymmetricTensor<Dim, Real>& stress,
+                           const SymmetricTensor<Dim, Real>& strain) {
+  Real w = 0.5 * stress[0] * strain[0];
+  for (int i = 1; i < Dim; ++i) w += 0.5 * stress[i] * strain[i];
   for (std::size_t i = Dim; i < stress.size(); ++i) w += stress[i] * strain[i];
   return w;
 }

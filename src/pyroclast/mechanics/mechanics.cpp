@@ -6,19 +6,11 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include "pyroclast/base/error.hpp"
 
 namespace pyroclast {
-
-namespace {
-
-/// Without a branch: signs of vibrating motion cannot be predicted.
-double sign(double x) {
-  return static_cast<double>((x > 0.0) - (x < 0.0));
-}
-
-}  // namespace
 
 template <int Dim>
 BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
@@ -34,27 +26,134 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
                           BodyProperties properties, const MechanicsParameters<Dim>& parameters)
     : model_(model),
       parameters_(parameters),
+      properties_(std::move(properties)),
       geometry_(zone_geometry(model)),
-      gridpoint_contacts_(gridpoint_contacts(model)),
-      properties_(std::move(properties)) {
-  const auto gridpoints = model.position.size();
-  displacement_.resize(gridpoints);
-  velocity_.resize(gridpoints);
-  force_.resize(gridpoints);
-  applied_.resize(gridpoints);
-  if (parameters.damping_form == DampingForm::combined) previous_force_.resize(gridpoints);
-  prescribed_velocity_.resize(gridpoints);
-  prescribed_.resize(gridpoints);
-  stress_.resize(model.zones.size());
-  contact_state_.resize(model.contacts.size());
-  contact_force_.resize(2 * model.contacts.size());
+      layout_(std::make_unique<const Layout<Dim>>(model)),
+      step_(step_functions<Dim>(parameters.instructions)) {
   if (Dim != 2 && parameters.kinematics == Kinematics::finite)
     throw Error("kinematics = finite: contact frames that turn are made for 2D only; use small");
-  work_.resize(model.block_material.size());
-  begun_.resize(model.block_material.size());
-  kinetic_.resize(model.block_material.size());
+  place_model(densities);
+  place_properties();
   compute_stiffness();
   set_masses(densities);
+  sweep(1, Pass::measure);
+  // nothing has acted yet
+  for (int row = 0; row < layout_->gridpoint_rows; ++row) state_.force.row(row) = {};
+}
+
+/// Puts what does not change in its places.
+template <int Dim>
+void Mechanics<Dim>::place_model(const std::vector<double>& densities) {
+  StepState<Dim>& s = state_;
+  s.layout = layout_.get();
+  s.gravity = parameters_.gravity;
+  s.local_damping = parameters_.local_damping;
+  s.viscous_damping = parameters_.viscous_damping;
+  s.damping_form = parameters_.damping_form;
+  s.kinematics = parameters_.kinematics;
+  s.thickness = model_.thickness;
+  const int rows = layout_->gridpoint_rows;
+  s.position = RowVectors<Dim>(rows);
+  s.velocity = RowVectors<Dim>(rows);
+  s.force = RowVectors<Dim>(rows);
+  s.displacement = FlatArray<Vec<Dim>>(static_cast<std::size_t>(rows) * kLanes);
+  s.step_over_mass = FlatArray<double>(static_cast<std::size_t>(rows) * kLanes);
+  const auto contact_slots = static_cast<std::size_t>(layout_->contact_rows()) * kLanes;
+  s.history = FlatArray<HistoryRow<Dim>>(contact_slots / kLanes);
+  s.loss = FlatArray<LossRow>(contact_slots / kLanes);
+  s.contact_force = FlatArray<Vec<Dim>>(contact_slots);
+  if (s.kinematics == Kinematics::finite) s.turning_force = FlatArray<Vec<Dim>>(contact_slots);
+  s.density = FlatArray<double>(layout_->bundles.size() * kLanes);
+  s.constraints_of_bundle.assign(layout_->bundles.size(), -1);
+  s.bundle_sums.resize(layout_->bundles.size());
+  s.face_sums.resize(layout_->faces.size());
+
+  for (int g = 0; g < model_.gridpoint_count(); ++g)
+    s.position.set(layout_->gridpoint_slot[g], model_.position[g]);
+  for (std::size_t b = 0; b < layout_->bundles.size(); ++b) {
+    const Bundle& bundle = layout_->bundles[b];
+    const bool alike = bundle.kind == BundleKind::alike;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const bool idle = lane >= static_cast<int>(bundle.blocks.size());
+      if (alike && idle)  // the shape of the first, without weight or stiffness
+        for (int i = 0; i < bundle.rows; ++i)
+          s.position.set(slot_of(bundle.first_row + i, lane), s.position[slot_of(bundle.first_row + i, 0)]);
+      if (!alike || !idle)
+        s.density[b * kLanes + lane] = densities[model_.block_material[bundle.blocks[alike ? lane : 0]]];
+    }
+  }
+}
+
+/// Puts zone and contact parameters in their places.
+template <int Dim>
+void Mechanics<Dim>::place_properties() {
+  StepState<Dim>& s = state_;
+  const auto same = [](const ZoneProperties& a, const ZoneProperties& b) {
+    return a.lambda == b.lambda && a.mu == b.mu && a.thermal_strain == b.thermal_strain;
+  };
+  s.by_bundle = true;
+  for (int b = 0; b < model_.block_count() && s.by_bundle; ++b)
+    for (int z = model_.block_zones[b]; z < model_.block_zones[b + 1]; ++z)
+      s.by_bundle = s.by_bundle && same(properties_.zones[z], properties_.zones[model_.block_zones[b]]);
+  const std::size_t rows = s.by_bundle ? layout_->bundles.size() : layout_->zone_rows;
+  if (s.zone_properties.size() != rows) s.zone_properties = FlatArray<ZonePropertyRow>(rows);
+  const auto place = [&](std::size_t row, int lane, const ZoneProperties& p) {
+    s.zone_properties[row].lambda[lane] = p.lambda;
+    s.zone_properties[row].mu[lane] = p.mu;
+    s.zone_properties[row].thermal_strain[lane] = p.thermal_strain;
+  };
+  if (s.by_bundle) {
+    for (std::size_t b = 0; b < rows; ++b) {
+      const Bundle& bundle = layout_->bundles[b];
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const bool alike = bundle.kind == BundleKind::alike;
+        if (alike && lane >= static_cast<int>(bundle.blocks.size())) continue;
+        place(b, lane, properties_.zones[model_.block_zones[bundle.blocks[alike ? lane : 0]]]);
+      }
+    }
+  } else {
+    for (int z = 0; z < model_.zone_count(); ++z)
+      place(layout_->zone_slot[z] / kLanes, layout_->zone_slot[z] % kLanes, properties_.zones[z]);
+  }
+  place_contact_properties();
+}
+
+template <int Dim>
+void Mechanics<Dim>::place_contact_properties() {
+  StepState<Dim>& s = state_;
+  s.contact_properties = properties_.contacts;
+  s.set_of_faces.assign(layout_->faces.size(), -1);
+  s.one_set.assign(layout_->faces.size(), 1);
+  bool one_set = true;
+  for (int c = 0; c < model_.contact_count(); ++c) {
+    const int row = layout_->contact_slot[c] / kLanes / Dim;
+    const int set = properties_.of_contact[c];
+    if (s.set_of_faces[row] < 0) s.set_of_faces[row] = set;
+    if (s.set_of_faces[row] != set) s.one_set[row] = 0;
+    one_set = one_set && s.one_set[row] != 0;
+  }
+  if (one_set) return;
+  if (s.contact_property_rows.empty())
+    s.contact_property_rows = FlatArray<ContactPropertyRow>(layout_->contact_rows());
+  const auto place = [&](ContactPropertyRow& row, int lane, const ContactProperties& p) {
+    row.normal_stiffness[lane] = p.normal_stiffness;
+    row.shear_stiffness[lane] = p.shear_stiffness;
+    row.tensile_strength[lane] = p.tensile_strength;
+    row.mode_1_energy[lane] = p.mode_1_energy;
+    row.compressive_limit[lane] = p.compressive_limit;
+    row.hardening[lane] = p.hardening;
+    row.cohesion[lane] = p.cohesion;
+    row.residual_cohesion[lane] = p.residual_cohesion;
+    row.friction[lane] = p.friction;
+    row.residual_friction[lane] = p.residual_friction;
+    row.mode_2_energy[lane] = p.mode_2_energy;
+  };
+  for (int row = 0; row < Dim * layout_->face_rows(); ++row)  // for idle lanes
+    for (int lane = 0; lane < kLanes; ++lane)
+      place(s.contact_property_rows[row], lane, properties_.contacts[s.set_of_faces[row / Dim]]);
+  for (int c = 0; c < model_.contact_count(); ++c)
+    place(s.contact_property_rows[layout_->contact_slot[c] / kLanes], layout_->contact_slot[c] % kLanes,
+          properties_.contacts[properties_.of_contact[c]]);
 }
 
 /// k_gp of Eq. (9): for every gridpoint the largest sum of |stiffness| over a row of the assembled matrix,
@@ -110,7 +209,7 @@ void Mechanics<Dim>::set_masses(const std::vector<double>& densities) {
   if (parameters_.mass == MassChoice::real) {
     mass_ = gravity_mass_;
     moving_mass_ = real_mass_;
-    time_step_ = real_mass_limit().step;
+    state_.time_step = real_mass_limit().step;
     set_step_over_mass();
   } else {
     scale_masses();
@@ -120,28 +219,26 @@ void Mechanics<Dim>::set_masses(const std::vector<double>& densities) {
 /// Density scaling: the mass with which each gridpoint's own limit is the common step.
 template <int Dim>
 void Mechanics<Dim>::scale_masses() {
-  time_step_ = parameters_.time_step;
-  const double half = 0.5 * time_step_ / parameters_.safety;
+  state_.time_step = parameters_.time_step;
+  const double half = 0.5 * time_step() / parameters_.safety;
   mass_.resize(stiffness_.size());
   moving_mass_ = 0.0;
   for (std::size_t g = 0; g < mass_.size(); ++g) {
     const double mass = stiffness_[g] * (1.0 + parameters_.local_damping) * half * half;
     // of the half step begun with the old mass; nothing moves yet when the first masses are made
-    begun_mass_scaling_ += 0.5 * (mass - mass_[g]) * dot(velocity_[g], velocity_[g]);
+    const Vec<Dim> v = velocity(static_cast<int>(g));
+    begun_mass_scaling_ += 0.5 * (mass - mass_[g]) * dot(v, v);
     mass_[g] = mass;
     moving_mass_ += mass;
-  }
-  for (Tie& t : ties_) {
-    t.mass = 0.0;
-    for (int g : t.gridpoints) t.mass += mass_[g];
   }
   set_step_over_mass();
 }
 
 template <int Dim>
 void Mechanics<Dim>::set_step_over_mass() {
-  step_over_mass_.resize(mass_.size());
-  for (std::size_t g = 0; g < mass_.size(); ++g) step_over_mass_[g] = time_step_ / mass_[g];
+  std::fill(state_.step_over_mass.begin(), state_.step_over_mass.end(), 1.0);  // idle ones never move
+  for (std::size_t g = 0; g < mass_.size(); ++g)
+    state_.step_over_mass[layout_->gridpoint_slot[g]] = time_step() / mass_[g];
 }
 
 template <int Dim>
@@ -151,27 +248,29 @@ void Mechanics<Dim>::set_properties(BodyProperties properties) {
   const EnergyLedger before = energy();
   const double held_before = before.zones + before.contacts + before.dissipated.total();
   properties_ = std::move(properties);
-  const auto next = displacement_;
-  const auto old_force = force_;
-  const double begun = steps_ > 0 ? time_step_ : 0.0;
-  for (std::size_t g = 0; g < displacement_.size(); ++g) displacement_[g] -= velocity_[g] * begun;
-  evaluate_forces();
-  displacement_ = next;
+  place_properties();
+  const std::vector<Vec<Dim>> next(state_.displacement.begin(), state_.displacement.end());
+  const auto old_force = force();
+  const double begun = steps_ > 0 ? time_step() : 0.0;
+  for (std::size_t slot = 0; slot < next.size(); ++slot)
+    state_.displacement[slot] -= state_.velocity[static_cast<int>(slot)] * begun;
+  sweep(1, Pass::measure);
+  std::copy(next.begin(), next.end(), state_.displacement.begin());
 
   const EnergyLedger after = energy();
   heat_ += after.zones + after.contacts + after.dissipated.total() - held_before;
-  for (std::size_t g = 0; g < force_.size(); ++g)
-    begun_heat_ -= 0.5 * begun * dot(force_[g] - old_force[g], velocity_[g]);
+  for (int g = 0; g < model_.gridpoint_count(); ++g)
+    begun_heat_ -= 0.5 * begun * dot(force(g) - old_force[g], velocity(g));
 
   compute_stiffness();
   if (parameters_.mass == MassChoice::scaled) {
     scale_masses();
   } else if (const double limit = real_mass_limit().step / parameters_.safety;
-             limit < time_step_ * (1.0 - 1e-9)) {
+             limit < time_step() * (1.0 - 1e-9)) {
     throw Error(fmt::format(
         "the body got stiffer at its new temperature: the time step {:.3g} s of its real mass is not stable "
         "any more (now {:.3g} s); start from a smaller safety, or scale the mass",
-        time_step_, limit));
+        time_step(), limit));
   }
 }
 
@@ -188,242 +287,252 @@ TimeStepLimit Mechanics<Dim>::real_mass_limit() const {
 }
 
 template <int Dim>
+int Mechanics<Dim>::block_of(int gridpoint) const {
+  const auto after =
+      std::upper_bound(model_.block_gridpoints.begin(), model_.block_gridpoints.end(), gridpoint);
+  return static_cast<int>(after - model_.block_gridpoints.begin()) - 1;
+}
+
+/// Those of the gridpoint's bundle, made when there are none yet.
+template <int Dim>
+Constraints<Dim>& Mechanics<Dim>::constraints_of(int gridpoint) {
+  const int b = layout_->bundle_of_block[block_of(gridpoint)];
+  int& index = state_.constraints_of_bundle[b];
+  if (index < 0) {
+    index = static_cast<int>(state_.constraints.size());
+    const int rows = layout_->bundles[b].rows;
+    Constraints<Dim> free;
+    free.prescribed_velocity = RowVectors<Dim>(rows);
+    free.applied = RowVectors<Dim>(rows);
+    free.prescribed.resize(rows);
+    state_.constraints.push_back(std::move(free));
+  }
+  return state_.constraints[index];
+}
+
+/// Slot counted from the first of its bundle.
+template <int Dim>
+int Mechanics<Dim>::slot_in_bundle(int gridpoint) const {
+  const Bundle& bundle = layout_->bundles[layout_->bundle_of_block[block_of(gridpoint)]];
+  return layout_->gridpoint_slot[gridpoint] - slot_of(bundle.first_row, 0);
+}
+
+template <int Dim>
 void Mechanics<Dim>::prescribe_velocity(int gridpoint, int component, double velocity) {
-  prescribed_[gridpoint] = static_cast<std::uint8_t>(prescribed_[gridpoint] | (1U << component));
-  prescribed_velocity_[gridpoint][component] = velocity;
+  auto& constraints = constraints_of(gridpoint);
+  const int slot = slot_in_bundle(gridpoint);
+  auto& bits = constraints.prescribed[slot / kLanes][component];
+  bits = static_cast<std::uint8_t>(bits | (1U << slot % kLanes));
+  constraints.prescribed_velocity.row(slot / kLanes).c[component][slot % kLanes] = velocity;
 }
 
 template <int Dim>
 void Mechanics<Dim>::release(int gridpoint, int component) {
-  prescribed_[gridpoint] = static_cast<std::uint8_t>(prescribed_[gridpoint] & ~(1U << component));
+  const int slot = slot_in_bundle(gridpoint);
+  auto& bits = constraints_of(gridpoint).prescribed[slot / kLanes][component];
+  bits = static_cast<std::uint8_t>(bits & ~(1U << slot % kLanes));
 }
 
 template <int Dim>
 void Mechanics<Dim>::tie(std::vector<int> gridpoints, int component) {
-  const auto after =
-      std::upper_bound(model_.block_gridpoints.begin(), model_.block_gridpoints.end(), gridpoints.front());
-  const int block = static_cast<int>(after - model_.block_gridpoints.begin()) - 1;
+  Tie tie{component, {}};
   double mass = 0.0, momentum = 0.0;
   for (int g : gridpoints) {
+    tie.slots.push_back(layout_->gridpoint_slot[g]);
     mass += mass_[g];
-    momentum += mass_[g] * velocity_[g][component];
+    momentum += mass_[g] * velocity(g)[component];
   }
-  for (int g : gridpoints) velocity_[g][component] = momentum / mass;
-  ties_.push_back({block, component, std::move(gridpoints), mass});
+  for (int slot : tie.slots) state_.velocity.row(slot / kLanes).c[component][slot % kLanes] = momentum / mass;
+  constraints_of(gridpoints.front()).ties.push_back(std::move(tie));
+}
+
+template <int Dim>
+void Mechanics<Dim>::untie() {
+  for (auto& constraints : state_.constraints) constraints.ties.clear();
 }
 
 template <int Dim>
 void Mechanics<Dim>::apply_force(int gridpoint, const Vec<Dim>& force) {
-  applied_[gridpoint] = force;
+  constraints_of(gridpoint).applied.set(slot_in_bundle(gridpoint), force);
 }
 
 template <int Dim>
 void Mechanics<Dim>::break_contact(int contact) {
-  contact_state_[contact].history.tension_damage = 1.0;
-  contact_state_[contact].history.shear_damage = 1.0;
+  const int slot = layout_->contact_slot[contact];
+  state_.history[slot / kLanes].tension_damage[slot % kLanes] = 1.0;
+  state_.history[slot / kLanes].shear_damage[slot % kLanes] = 1.0;
 }
 
 template <int Dim>
 void Mechanics<Dim>::advance(int steps) {
-  if (steps > 0) {
-    heat_ += std::exchange(begun_heat_, 0.0);
-    mass_scaling_ += std::exchange(begun_mass_scaling_, 0.0);
-  }
-  const int faces = model_.contact_count() / Dim;
-  const int blocks = model_.block_count();
-#pragma omp parallel
-  for (int i = 0; i < steps; ++i) {
-#pragma omp for schedule(static)
-    for (int f = 0; f < faces; ++f) update_face(f);
-#pragma omp for schedule(static)
-    for (int b = 0; b < blocks; ++b) {
-      add_zone_forces(b);
-      complete_forces(b);
-      move_gridpoints(b);
-    }
-  }
+  if (steps <= 0) return;
+  heat_ += std::exchange(begun_heat_, 0.0);
+  mass_scaling_ += std::exchange(begun_mass_scaling_, 0.0);
+  sweep(steps - 1, Pass::move);
+  sweep(1, Pass::move_and_measure);
   steps_ += steps;
 }
 
-/// Forces at the present displacements, without moving.
 template <int Dim>
-void Mechanics<Dim>::evaluate_forces() {
-  const int faces = model_.contact_count() / Dim;
-  const int blocks = model_.block_count();
-#pragma omp parallel
+void Mechanics<Dim>::sweep(int steps, Pass pass) {
+  const int threads = omp_get_max_threads();
+  if (static_cast<int>(shares_.size()) != threads) shares_ = share_out(*layout_, threads);
+  const bool measure = pass != Pass::move;
+#pragma omp parallel num_threads(threads)
   {
-#pragma omp for schedule(static)
-    for (int f = 0; f < faces; ++f) update_face(f);
-#pragma omp for schedule(static)
-    for (int b = 0; b < blocks; ++b) {
-      add_zone_forces(b);
-      complete_forces(b);
+    FlatArray<double> scratch(2 * Dim * kLanes * static_cast<std::size_t>(layout_->most_rows));
+    const Share& share = shares_[omp_get_thread_num()];
+    for (int i = 0; i < steps; ++i) {
+      for (const auto& faces : share.crossing) step_.update_faces(state_, faces.first, faces.last, measure);
+#pragma omp barrier
+      for (const auto& stride : share.strides) {
+        step_.update_faces(state_, stride.faces.first, stride.faces.last, measure);
+        step_.move_bundles(state_, stride.bundles.first, stride.bundles.last, pass, scratch.data());
+      }
+#pragma omp barrier
     }
   }
 }
 
-/// Contact points of one shared face: jumps to tractions to forces, Eqs. (10)-(15).
+// The state in the order of the model
+
 template <int Dim>
-void Mechanics<Dim>::update_face(int face) {
-  const int first = face * Dim;
-  const ContactFrame<Dim> frame = current_frame(first);
-  for (int c = first; c < first + Dim; ++c) {
-    const Vec<Dim> force = update_contact_point(c, frame);
-    contact_force_[2 * c] = force;
-    contact_force_[2 * c + 1] = -force;
-  }
-  if constexpr (Dim == 2)
-    if (parameters_.kinematics == Kinematics::finite) add_turning_force(first, frame);
+Vec<Dim> Mechanics<Dim>::displacement(int gridpoint) const {
+  return state_.displacement[layout_->gridpoint_slot[gridpoint]];
 }
 
 template <int Dim>
-ContactFrame<Dim> Mechanics<Dim>::current_frame(int first) const {
-  const auto& c = model_.contacts[first];
+Vec<Dim> Mechanics<Dim>::velocity(int gridpoint) const {
+  return state_.velocity[layout_->gridpoint_slot[gridpoint]];
+}
+
+template <int Dim>
+Vec<Dim> Mechanics<Dim>::force(int gridpoint) const {
+  return state_.force[layout_->gridpoint_slot[gridpoint]];
+}
+
+template <int Dim>
+Vec<Dim> Mechanics<Dim>::applied_force(int gridpoint) const {
+  const int index = state_.constraints_of_bundle[layout_->bundle_of_block[block_of(gridpoint)]];
+  return index < 0 ? Vec<Dim>{} : state_.constraints[index].applied[slot_in_bundle(gridpoint)];
+}
+
+/// That the last forces belong to.
+template <int Dim>
+Vec<Dim> Mechanics<Dim>::displacement_of_force(int gridpoint) const {
+  return displacement(gridpoint) - velocity(gridpoint) * (steps_ > 0 ? time_step() : 0.0);
+}
+
+template <int Dim>
+SymmetricTensor<Dim> Mechanics<Dim>::stress(int zone) const {
+  std::array<Vec<Dim>, Dim + 1> u;
+  for (int n = 0; n <= Dim; ++n) u[n] = displacement_of_force(model_.zones[zone][n]);
+  const auto& p = properties_.zones[zone];
+  Rotation<double> rotation;
+  const auto strain =
+      mechanical_strain<Dim>(geometry_.gradient[zone], u, p.thermal_strain, parameters_.kinematics, rotation);
+  return rotated<Dim>(rotation, zone_stress<Dim>(p, strain));
+}
+
+template <int Dim>
+ContactFrame<Dim> Mechanics<Dim>::frame_of_forces(int contact) const {
+  const auto& c = model_.contacts[contact / Dim * Dim];
   if constexpr (Dim == 2) {
     if (parameters_.kinematics == Kinematics::finite) {
       // mean edge of the two sides
-      const auto& d = model_.contacts[first + 1];
-      const auto& x = model_.position;
-      const auto& u = displacement_;
-      const Vec<2> edge =
-          0.5 * ((x[d.a] - x[c.a]) + (x[d.b] - x[c.b]) + (u[d.a] - u[c.a]) + (u[d.b] - u[c.b]));
-      const double length = norm(edge);
-      const Vec<2> t = edge * (1.0 / length);
-      return {{{t[1], -t[0]}}, {t}, length};
+      const auto& d = model_.contacts[contact / Dim * Dim + 1];
+      const auto at = [&](int g) { return model_.position[g] + displacement_of_force(g); };
+      const Vec<2> edge = ((at(d.a) - at(c.a)) + (at(d.b) - at(c.b))) * 0.5;
+      const Vec<2> t = edge * (1.0 / norm(edge));
+      return {{{t[1], -t[0]}}, {t}};
     }
   }
-  return {c.normal, c.tangents, 0.0};
+  return {c.normal, c.tangents};
 }
 
-/// Takes one contact point through the law; returns the force on its side a.
 template <int Dim>
-Vec<Dim> Mechanics<Dim>::update_contact_point(int index, const ContactFrame<Dim>& frame) {
-  const auto& c = model_.contacts[index];
-  auto& state = contact_state_[index];
-  const Vec<Dim> u = displacement_[c.b] - displacement_[c.a];
+Vec<Dim> Mechanics<Dim>::jump_of_forces(int contact) const {
+  const auto& c = model_.contacts[contact];
+  return displacement_of_force(c.b) - displacement_of_force(c.a);
+}
+
+template <int Dim>
+double Mechanics<Dim>::opening(int contact) const {
+  return dot(jump_of_forces(contact), frame_of_forces(contact).normal);
+}
+
+template <int Dim>
+ContactHistory<Dim> Mechanics<Dim>::contact_history(int contact) const {
+  const int slot = layout_->contact_slot[contact];
+  const auto& row = state_.history[slot / kLanes];
+  const int lane = slot % kLanes;
+  ContactHistory<Dim> h;
+  h.tension_damage = row.tension_damage[lane];
+  h.shear_damage = row.shear_damage[lane];
+  h.closure = row.closure[lane];
+  for (int i = 0; i + 1 < Dim; ++i) h.slip[i] = row.slip[i][lane];
+  h.held_slip = row.held_slip[lane];
+  return h;
+}
+
+template <int Dim>
+ContactState<Dim> Mechanics<Dim>::contact(int contact) const {
+  const auto frame = frame_of_forces(contact);
+  const Vec<Dim> u = jump_of_forces(contact);
+  ContactState<Dim> state;
+  state.history = contact_history(contact);
   state.opening = dot(u, frame.normal);
   for (int i = 0; i + 1 < Dim; ++i) state.tangential_jump[i] = dot(u, frame.tangents[i]);
-  const auto response = update_contact<Dim>(properties_.contacts[properties_.of_contact[index]],
-                                            state.opening, state.tangential_jump, state.history);
+  // the law at the jump that it was last taken to gives the tractions again
+  auto history = state.history;
+  const auto response = update_contact<Dim>(properties_.contacts[properties_.of_contact[contact]],
+                                            state.opening, state.tangential_jump, history);
   state.normal_traction = response.normal_traction;
   state.shear_traction = response.shear_traction;
   state.stored = response.stored;
-  state.dissipated += response.dissipated;
-  Vec<Dim> traction = frame.normal * response.normal_traction;
-  for (int i = 0; i + 1 < Dim; ++i) traction += frame.tangents[i] * response.shear_traction[i];
-  return traction * c.area;
+  const int slot = layout_->contact_slot[contact];
+  const auto& loss = state_.loss[slot / kLanes];
+  const int lane = slot % kLanes;
+  state.accumulated_slip = loss.slipped[lane];
+  state.dissipated = {loss.tension[lane], loss.shear[lane], loss.friction[lane], loss.compression[lane]};
+  return state;
 }
 
-/// Where the frame turns with the edge, so do the components of a jump. The forces that do the work of the
-/// tractions on that part keep moments in balance: minus the derivative of the jump's components by the
-/// edge's gridpoints.
-template <int Dim>
-void Mechanics<Dim>::add_turning_force(int first, const ContactFrame<Dim>& frame) {
-  double q = 0.0;
-  for (int c = first; c < first + Dim; ++c) {
-    const auto& s = contact_state_[c];
-    q += model_.contacts[c].area / frame.length *
-         (s.shear_traction[0] * s.opening - s.normal_traction * s.tangential_jump[0]);
-  }
-  const Vec<Dim> force = frame.normal * (0.5 * q);
-  for (int side : {0, 1}) {
-    contact_force_[2 * first + side] += force;
-    contact_force_[2 * (first + 1) + side] -= force;
-  }
+namespace {
+
+template <class At>
+auto all(int count, At at) {
+  std::vector<decltype(at(0))> values;
+  values.reserve(count);
+  for (int i = 0; i < count; ++i) values.push_back(at(i));
+  return values;
 }
 
-/// Internal forces F_z of a block's gridpoints, Eqs. (4) and (5). Starts the sum of forces.
+}  // namespace
+
 template <int Dim>
-void Mechanics<Dim>::add_zone_forces(int block) {
-  for (int g = model_.block_gridpoints[block]; g < model_.block_gridpoints[block + 1]; ++g) force_[g] = {};
-  for (int z = model_.block_zones[block]; z < model_.block_zones[block + 1]; ++z) {
-    const auto& corner = model_.zones[z];
-    const auto& p = properties_.zones[z];
-    std::array<Vec<Dim>, Dim + 1> u;
-    for (int n = 0; n <= Dim; ++n) u[n] = displacement_[corner[n]];
-    Rotation rotation;
-    const auto strain =
-        mechanical_strain<Dim>(geometry_.gradient[z], u, p.thermal_strain, parameters_.kinematics, rotation);
-    const auto stress = zone_stress<Dim>(p, strain);
-    stress_[z] = rotated<Dim>(rotation, stress);
-    Vec<Dim> last{};
-    for (int n = 0; n < Dim; ++n) {
-      const Vec<Dim> f =
-          rotated<Dim>(rotation, apply<Dim>(stress, geometry_.gradient[z][n])) * geometry_.volume[z];
-      force_[corner[n]] -= f;
-      last += f;
-    }
-    force_[corner[Dim]] += last;
-  }
+std::vector<Vec<Dim>> Mechanics<Dim>::displacement() const {
+  return all(model_.gridpoint_count(), [&](int g) { return displacement(g); });
 }
 
 template <int Dim>
-Vec<Dim> Mechanics<Dim>::contact_forces(int g) const {
-  Vec<Dim> sum{};
-  for (int k = gridpoint_contacts_.begin[g]; k < gridpoint_contacts_.begin[g + 1]; ++k)
-    sum += contact_force_[gridpoint_contacts_.contact_side[k]];
-  return sum;
+std::vector<Vec<Dim>> Mechanics<Dim>::velocity() const {
+  return all(model_.gridpoint_count(), [&](int g) { return velocity(g); });
 }
 
-/// Completes the sum of forces (4) and shares it out where gridpoints are tied.
 template <int Dim>
-void Mechanics<Dim>::complete_forces(int block) {
-  for (int g = model_.block_gridpoints[block]; g < model_.block_gridpoints[block + 1]; ++g)
-    force_[g] = force_[g] + contact_forces(g) + parameters_.gravity * gravity_mass_[g] + applied_[g];
-  for (const Tie& t : ties_) {
-    if (t.block != block) continue;
-    double sum = 0.0;
-    for (int g : t.gridpoints) sum += force_[g][t.component];
-    for (int g : t.gridpoints) force_[g][t.component] = sum * mass_[g] / t.mass;
-  }
+std::vector<Vec<Dim>> Mechanics<Dim>::force() const {
+  return all(model_.gridpoint_count(), [&](int g) { return force(g); });
 }
 
-/// Damps the sum of forces (8) and integrates velocity and displacement (6), (7).
 template <int Dim>
-void Mechanics<Dim>::move_gridpoints(int block) {
-  const double dt = time_step_;
-  const double lambda = parameters_.local_damping;
-  const double xi = parameters_.viscous_damping;
-  const bool combined = parameters_.damping_form == DampingForm::combined;
-  const double kept = 1.0 - 0.5 * xi * dt;
-  const double over = 1.0 / (1.0 + 0.5 * xi * dt);
-  BlockWork done, begun;
-  double kinetic = 0.0;
-  for (int g = model_.block_gridpoints[block]; g < model_.block_gridpoints[block + 1]; ++g) {
-    const double mass = mass_[g];
-    const Vec<Dim> weight = parameters_.gravity * gravity_mass_[g];
-    const Vec<Dim> applied = applied_[g];
-    const Vec<Dim> sum = force_[g];
-    const Vec<Dim> before = velocity_[g];
-    Vec<Dim> change{};
-    if (combined) {
-      change = sum - previous_force_[g];
-      previous_force_[g] = sum;
-    }
-    Vec<Dim> after;
-    for (int i = 0; i < Dim; ++i) {
-      double loading = applied[i], damping = 0.0, drag = 0.0;
-      if (prescribed_[g] >> i & 1) {
-        after[i] = prescribed_velocity_[g][i];
-        loading += mass * (after[i] - before[i]) / dt - sum[i];  // the reaction
-      } else {
-        const double opposing = combined ? 0.5 * (sign(before[i]) - sign(change[i])) : sign(before[i]);
-        damping = lambda * std::abs(sum[i]) * opposing;
-        after[i] = (kept * before[i] + (sum[i] - damping) * step_over_mass_[g]) * over;
-        drag = xi * mass * 0.5 * (before[i] + after[i]);
-      }
-      const double to = 0.5 * before[i] * dt, from = 0.5 * after[i] * dt;
-      done.add({loading * to, weight[i] * to, damping * to, drag * to});
-      begun.add({loading * from, weight[i] * from, damping * from, drag * from});
-    }
-    kinetic += 0.5 * mass * dot(before, after);
-    velocity_[g] = after;
-    displacement_[g] += after * dt;
-  }
-  work_[block].add(begun_[block]);
-  work_[block].add(done);
-  begun_[block] = begun;
-  kinetic_[block] = kinetic;
+std::vector<SymmetricTensor<Dim>> Mechanics<Dim>::stress() const {
+  return all(model_.zone_count(), [&](int z) { return stress(z); });
+}
+
+template <int Dim>
+std::vector<ContactState<Dim>> Mechanics<Dim>::contacts() const {
+  return all(model_.contact_count(), [&](int c) { return contact(c); });
 }
 
 template <int Dim>
@@ -431,69 +540,41 @@ EnergyLedger Mechanics<Dim>::energy() const {
   EnergyLedger e;
   e.heat = heat_;
   e.mass_scaling = mass_scaling_;
-  for (const auto& w : work_) {
-    e.loading += w.loading;
-    e.gravity += w.gravity;
-    e.local_damping += w.local_damping;
-    e.viscous_damping += w.viscous_damping;
+  for (std::size_t b = 0; b < state_.bundle_sums.size(); ++b) {
+    const BundleSums& sums = state_.bundle_sums[b];
+    e.zones += sums.stored;
+    e.kinetic += sums.kinetic;
+    e.local_damping += sums.damping_work - sums.begun_damping;
+    e.viscous_damping += sums.viscous_work - sums.begun_viscous;
+    if (const int c = state_.constraints_of_bundle[b]; c >= 0)
+      e.loading += state_.constraints[c].loading_work - sums.begun_loading;
   }
-  for (std::size_t z = 0; z < model_.zones.size(); ++z) {
-    const auto& p = properties_.zones[z];
-    std::array<Vec<Dim>, Dim + 1> u;
-    for (int n = 0; n <= Dim; ++n) {
-      const int g = model_.zones[z][n];
-      // of the configuration that the last forces and contact states belong to
-      u[n] = displacement_[g] - velocity_[g] * (steps_ > 0 ? time_step_ : 0.0);
-    }
-    Rotation ignored;
-    const auto strain =
-        mechanical_strain<Dim>(geometry_.gradient[z], u, p.thermal_strain, parameters_.kinematics, ignored);
-    e.zones += energy_density<Dim>(zone_stress<Dim>(p, strain), strain) * geometry_.volume[z];
+  for (const FaceSums& sums : state_.face_sums) {
+    e.contacts += sums.stored;
+    e.dissipated += sums.dissipated;
   }
-  for (std::size_t c = 0; c < contact_state_.size(); ++c) {
-    const double area = model_.contacts[c].area;
-    const auto& s = contact_state_[c];
-    e.contacts += s.stored * area;
-    e.dissipated.tension += s.dissipated.tension * area;
-    e.dissipated.shear += s.dissipated.shear * area;
-    e.dissipated.friction += s.dissipated.friction * area;
-    e.dissipated.compression += s.dissipated.compression * area;
-  }
-  for (double kinetic : kinetic_) e.kinetic += kinetic;
+  // weights are constant, so their work follows from the way made
+  if (norm(parameters_.gravity) > 0.0)
+    for (int g = 0; g < model_.gridpoint_count(); ++g)
+      e.gravity += gravity_mass_[g] * dot(parameters_.gravity, displacement_of_force(g));
   return e;
 }
 
 template <int Dim>
 double Mechanics<Dim>::unbalanced_ratio() const {
-  double applied = 0.0;
-  for (std::size_t z = 0; z < model_.zones.size(); ++z) {
-    Vec<Dim> last{};
-    for (int n = 0; n < Dim; ++n) {
-      const Vec<Dim> f = apply<Dim>(stress_[z], geometry_.gradient[z][n]) * geometry_.volume[z];
-      applied += norm(f);
-      last += f;
-    }
-    applied += norm(last);
+  double applied = 0.0, unbalanced = 0.0;
+  for (const BundleSums& sums : state_.bundle_sums) {
+    applied += sums.applied;
+    unbalanced += sums.unbalanced;
   }
-  for (const auto& f : contact_force_) applied += norm(f);
-  double unbalanced = 0.0;
-  for (std::size_t g = 0; g < mass_.size(); ++g) {
-    applied += norm(parameters_.gravity) * gravity_mass_[g] + norm(applied_[g]);
-    Vec<Dim> free = force_[g];
-    for (int i = 0; i < Dim; ++i)
-      if (prescribed_[g] >> i & 1) free[i] = 0.0;
-    unbalanced += norm(free);
-  }
+  for (const FaceSums& sums : state_.face_sums) applied += sums.applied;
   return applied > 0.0 ? unbalanced / applied : 0.0;
 }
 
 template <int Dim>
 double Mechanics<Dim>::largest_relative_jump() const {
   double largest = 0.0;
-  for (const auto& c : model_.contacts) {
-    const double length = Dim == 2 ? Dim * c.area / model_.thickness : std::sqrt(2.0 * Dim * c.area);
-    largest = std::max(largest, norm(displacement_[c.b] - displacement_[c.a]) / length);
-  }
+  for (const FaceSums& sums : state_.face_sums) largest = std::max(largest, sums.jump);
   return largest;
 }
 

@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
-#include "pyroclast/material/contact_law.hpp"
-#include "pyroclast/material/zone_law.hpp"
+#include "pyroclast/mechanics/instruction_set.hpp"
+#include "pyroclast/mechanics/step_state.hpp"
+#include "pyroclast/mechanics/sweep.hpp"
 #include "pyroclast/model/model.hpp"
 
 namespace pyroclast {
@@ -15,14 +17,6 @@ enum class MassChoice : std::uint8_t {
   real,   ///< density times volume; the stiffest and lightest gridpoint sets the time step
   scaled  ///< density scaling: each gridpoint's mass makes its own limit the common step; quasi-static runs
           ///< only
-};
-
-/// Form of the local damping. The force opposing motion is lambda |F| times a sign.
-enum class DampingForm : std::uint8_t {
-  local,  ///< sgn(v), Eq. (8). A body in steady motion keeps vibrating, since v does not change sign, and is
-          ///< dragged.
-  combined  ///< (sgn(v) - sgn(dF/dt)) / 2: damps vibration about a steady motion too (Itasca's combined
-            ///< damping)
 };
 
 template <int Dim>
@@ -35,6 +29,7 @@ struct MechanicsParameters {
   MassChoice mass = MassChoice::real;
   double time_step = 0.0;  ///< s; the common step of MassChoice::scaled, not used with real mass
   double safety = 0.0;     ///< fraction of the stable step that is taken, in (0, 1]
+  InstructionSet instructions = usable_instruction_sets().back();
 };
 
 /// Where the energy of a body went since the start, J. Work in = everything else; the rest is the ledger's
@@ -66,7 +61,7 @@ struct EnergyLedger {
   }
 };
 
-/// State of one contact point.
+/// State of one contact point at the displacements that the last forces belong to.
 template <int Dim>
 struct ContactState {
   ContactHistory<Dim> history;
@@ -75,6 +70,7 @@ struct ContactState {
   double normal_traction = 0.0;       ///< Pa, tension positive
   Tangential<Dim> shear_traction{};   ///< Pa
   double stored = 0.0;                ///< J/m²
+  double accumulated_slip = 0.0;      ///< s, length of the slip path, m
   ContactDissipation dissipated;      ///< since the start, J/m²
 };
 
@@ -83,7 +79,6 @@ template <int Dim>
 struct ContactFrame {
   Vec<Dim> normal;                         ///< unit, from a to b
   std::array<Vec<Dim>, Dim - 1> tangents;  ///< unit
-  double length = 0.0;                     ///< of the edge that turns the frame, m; finite kinematics only
 };
 
 /// The stable step and the gridpoint that sets it.
@@ -107,8 +102,9 @@ BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties>
 
 /// Explicit motion of a body of deformable blocks, paper Eqs. (3)-(15), small displacements.
 ///
-/// Forces are gathered by the gridpoint that they act on and every sum has one order, so results are bitwise
-/// the same for any number of threads.
+/// The state stands in lanes (see Layout); here is its view in the order of the model. Forces are gathered by
+/// the gridpoint that they act on and every sum has one order, so results are bitwise the same for any number
+/// of threads and any instruction set.
 template <int Dim>
 class Mechanics {
  public:
@@ -131,7 +127,7 @@ class Mechanics {
   /// velocity they start with is their mean, so tie them at rest.
   void tie(std::vector<int> gridpoints, int component);
   /// Ends all ties.
-  void untie() { ties_.clear(); }
+  void untie();
   /// Force on a gridpoint, N, until set again; free components only.
   void apply_force(int gridpoint, const Vec<Dim>& force);
   /// Starts a contact as broken: neither tension nor cohesion ever held it.
@@ -140,21 +136,31 @@ class Mechanics {
   /// Runs a number of steps.
   void advance(int steps);
 
-  double time() const { return static_cast<double>(steps_) * time_step_; }
+  double time() const { return static_cast<double>(steps_) * time_step(); }
   std::int64_t steps() const { return steps_; }
-  double time_step() const { return time_step_; }
+  double time_step() const { return state_.time_step; }
   /// Stable step with real mass, paper Eq. (9).
   TimeStepLimit real_mass_limit() const;
   double mass_ratio() const { return moving_mass_ / real_mass_; }  ///< total moving mass over real mass
+  InstructionSet instructions() const { return parameters_.instructions; }
 
   const Model<Dim>& model() const { return model_; }
-  const std::vector<Vec<Dim>>& displacement() const { return displacement_; }
-  const std::vector<Vec<Dim>>& velocity() const { return velocity_; }
-  /// Sum of all forces on each gridpoint at the last step, N; on a prescribed component minus the reaction.
-  const std::vector<Vec<Dim>>& force() const { return force_; }
-  const std::vector<Vec<Dim>>& applied_force() const { return applied_; }  ///< N
-  const std::vector<SymmetricTensor<Dim>>& stress() const { return stress_; }
-  const std::vector<ContactState<Dim>>& contacts() const { return contact_state_; }
+  const Layout<Dim>& layout() const { return *layout_; }
+  Vec<Dim> displacement(int gridpoint) const;  ///< m
+  Vec<Dim> velocity(int gridpoint) const;      ///< m/s
+  /// Sum of all forces at the last step, N; on a prescribed component minus the reaction.
+  Vec<Dim> force(int gridpoint) const;
+  Vec<Dim> applied_force(int gridpoint) const;  ///< N
+  SymmetricTensor<Dim> stress(int zone) const;  ///< Pa, at the displacements of the last forces
+  ContactState<Dim> contact(int contact) const;
+  ContactHistory<Dim> contact_history(int contact) const;
+  double opening(int contact) const;  ///< u_n at the displacements of the last forces, m
+  // of all, in the order of the model
+  std::vector<Vec<Dim>> displacement() const;
+  std::vector<Vec<Dim>> velocity() const;
+  std::vector<Vec<Dim>> force() const;
+  std::vector<SymmetricTensor<Dim>> stress() const;
+  std::vector<ContactState<Dim>> contacts() const;
 
   /// Energies at the displacements that the last step started from. With kinetic energy as half m v(t - dt/2)
   /// v(t + dt/2), central differences conserve their sum exactly in a linear body, so the ledger's error is
@@ -167,66 +173,36 @@ class Mechanics {
   double largest_relative_jump() const;
 
  private:
-  /// Work done on a block, J. The force of a step does half its work on the way to the step's displacement
-  /// and half on the way from it; `begun` is the second half of the last step, which belongs to the next.
-  struct BlockWork {
-    double loading = 0.0, gravity = 0.0, local_damping = 0.0, viscous_damping = 0.0;
-
-    void add(const BlockWork& o) {
-      loading += o.loading;
-      gravity += o.gravity;
-      local_damping += o.local_damping;
-      viscous_damping += o.viscous_damping;
-    }
-  };
-
-  /// Gridpoints that share one component of their motion.
-  struct Tie {
-    int block;
-    int component;
-    std::vector<int> gridpoints;
-    double mass;
-  };
-
+  void place_model(const std::vector<double>& densities);
+  void place_properties();
+  void place_contact_properties();
   void compute_stiffness();
   void set_masses(const std::vector<double>& densities);
   void scale_masses();
   void set_step_over_mass();
-  void evaluate_forces();
-  void update_face(int face);
-  Vec<Dim> update_contact_point(int contact, const ContactFrame<Dim>& frame);
-  ContactFrame<Dim> current_frame(int first_contact) const;
-  void add_turning_force(int first_contact, const ContactFrame<Dim>& frame);
-  void add_zone_forces(int block);
-  Vec<Dim> contact_forces(int gridpoint) const;
-  void complete_forces(int block);
-  void move_gridpoints(int block);
+  Constraints<Dim>& constraints_of(int gridpoint);
+  int slot_in_bundle(int gridpoint) const;
+  int block_of(int gridpoint) const;
+  void sweep(int steps, Pass pass);
+  Vec<Dim> jump_of_forces(int contact) const;
+  ContactFrame<Dim> frame_of_forces(int contact) const;
+  Vec<Dim> displacement_of_force(int gridpoint) const;
 
   const Model<Dim>& model_;
   MechanicsParameters<Dim> parameters_;
-  ZoneGeometry<Dim> geometry_;
-  GridpointContacts gridpoint_contacts_;
   BodyProperties properties_;
+  ZoneGeometry<Dim> geometry_;
+  std::unique_ptr<const Layout<Dim>> layout_;  ///< where the state points to
+  StepState<Dim> state_;
+  StepFunctions<Dim> step_;
+  std::vector<Share> shares_;  ///< by thread
 
-  std::vector<double> gravity_mass_;    ///< real mass, which gravity acts on, kg
-  std::vector<double> mass_;            ///< mass that moves, kg
-  std::vector<double> step_over_mass_;  ///< s/kg
-  std::vector<double> stiffness_;       ///< k_gp, N/m
-  double real_mass_ = 0.0, moving_mass_ = 0.0, time_step_ = 0.0;
+  std::vector<double> gravity_mass_;  ///< real mass, which gravity acts on, kg
+  std::vector<double> mass_;          ///< mass that moves, kg
+  std::vector<double> stiffness_;     ///< k_gp, N/m
+  double real_mass_ = 0.0, moving_mass_ = 0.0;
 
   std::int64_t steps_ = 0;
-  std::vector<Vec<Dim>> displacement_, velocity_, force_, applied_;
-  std::vector<Vec<Dim>> previous_force_;  ///< DampingForm::combined only
-  std::vector<Vec<Dim>> prescribed_velocity_;
-  std::vector<std::uint8_t> prescribed_;  ///< bit per component
-  std::vector<SymmetricTensor<Dim>> stress_;
-  std::vector<ContactState<Dim>> contact_state_;
-  /// On the gridpoint of each side, N; numbered like GridpointContacts::contact_side.
-  std::vector<Vec<Dim>> contact_force_;
-  // per block, so that sums have one order
-  std::vector<BlockWork> work_, begun_;
-  std::vector<double> kinetic_;
-  std::vector<Tie> ties_;
   double heat_ = 0.0, mass_scaling_ = 0.0;  ///< see EnergyLedger
   /// What a change of properties adds to them through the half step already begun; the next step books it.
   double begun_heat_ = 0.0, begun_mass_scaling_ = 0.0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/model/zone_shape.hpp"
 
 namespace pyroclast {
 
@@ -34,28 +35,6 @@ FaceFrame3 face_frame(const std::array<Vec<3>, 3>& corner, double) {
   const Vec<3> n = doubled * (1.0 / twice_area);
   const Vec<3> t = along * (1.0 / norm(along));
   return {0.5 * twice_area, n, {t, cross(n, t)}};
-}
-
-/// Rows of the inverse of the edge matrix are the shape function gradients.
-double zone_gradients(const std::array<Vec<2>, 3>& x, std::array<Vec<2>, 2>& gradient) {
-  const Vec<2> e0 = x[0] - x[2];
-  const Vec<2> e1 = x[1] - x[2];
-  const double determinant = cross(e0, e1);
-  gradient[0] = Vec<2>{{e1[1], -e1[0]}} * (1.0 / determinant);
-  gradient[1] = Vec<2>{{-e0[1], e0[0]}} * (1.0 / determinant);
-  return 0.5 * determinant;
-}
-
-double zone_gradients(const std::array<Vec<3>, 4>& x, std::array<Vec<3>, 3>& gradient) {
-  const Vec<3> e0 = x[0] - x[3];
-  const Vec<3> e1 = x[1] - x[3];
-  const Vec<3> e2 = x[2] - x[3];
-  const double determinant = dot(e0, cross(e1, e2));
-  gradient[0] = cross(e1, e2) * (1.0 / determinant);
-  gradient[1] = cross(e2, e0) * (1.0 / determinant);
-  gradient[2] = cross(e0, e1) * (1.0 / determinant);
-  // Edges are taken from the fourth gridpoint, so the usual orientation gives a negative determinant.
-  return -determinant / 6.0;
 }
 
 }  // namespace
@@ -95,7 +74,7 @@ ZoneGeometry<Dim> zone_geometry(const Model<Dim>& model) {
   for (std::size_t z = 0; z < model.zones.size(); ++z) {
     std::array<Vec<Dim>, Dim + 1> x;
     for (int i = 0; i <= Dim; ++i) x[i] = model.position[model.zones[z][i]];
-    geometry.volume[z] = zone_gradients(x, geometry.gradient[z]) * model.thickness;
+    geometry.volume[z] = shape_gradients(x, geometry.gradient[z]) * model.thickness;
     if (!(geometry.volume[z] > 0.0))
       throw Error(
           fmt::format("zone {} has volume {:g} m3, but it must be greater than 0", z, geometry.volume[z]));

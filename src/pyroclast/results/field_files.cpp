@@ -34,14 +34,14 @@ void write_motion(Hdf5File& file, const Mechanics<2>& mechanics) {
 void write_contacts(Hdf5File& file, const Mechanics<2>& mechanics) {
   const auto& model = mechanics.model();
   std::vector<float> displacement, tension, shear, opening, slip, normal_traction, shear_traction, closure;
-  for (std::size_t i = 0; i < model.contacts.size(); ++i) {
+  const auto u = mechanics.displacement();
+  for (int i = 0; i < model.contact_count(); ++i) {
     const auto& c = model.contacts[i];
     const auto& partner = model.contacts[i ^ 1];  // the two contacts of an edge stand together
-    const auto& u = mechanics.displacement();
     const Vec<2> here = 0.5 * (u[c.a] + u[c.b]);
     append(displacement, here);
     append(displacement, 0.5 * (here + 0.5 * (u[partner.a] + u[partner.b])));
-    const auto& state = mechanics.contacts()[i];
+    const auto state = mechanics.contact(i);
     tension.push_back(static_cast<float>(state.history.tension_damage));
     shear.push_back(static_cast<float>(state.history.shear_damage));
     closure.push_back(static_cast<float>(state.history.closure));

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <type_traits>
+
+namespace pyroclast {
+
+/// Array of plain data that starts on a cache line, filled with zero bytes.
+///
+/// Its pages are first touched by the threads of a static OpenMP loop, so that on a machine with several
+/// memories each thread's share stands near it.
+template <class T>
+class FlatArray {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  FlatArray() = default;
+  explicit FlatArray(std::size_t size) : size_(size) {
+    const std::size_t bytes = (size * sizeof(T) + kPage - 1) / kPage * kPage;
+    if (bytes == 0) return;
+    data_.reset(static_cast<T*>(std::aligned_alloc(kPage, bytes)));
+    if (!data_) throw std::bad_alloc();
+    char* const begin = reinterpret_cast<char*>(data_.get());
+    const auto pages = static_cast<std::ptrdiff_t>(bytes / kPage);
+#pragma omp parallel for schedule(static)
+    for (std::ptrdiff_t page = 0; page < pages; ++page)
+      for (std::size_t i = 0; i < kPage; ++i) begin[static_cast<std::size_t>(page) * kPage + i] = 0;
+  }
+
+  std::size_t size() const {
+    return size_;
+  }
+  bool empty() const {
+    return size_ == 0;
+  }
+  T* data() {
+    return data_.get();
+  }
+  const T* data() const {
+    return data_.get();
+  }
+  T& operator[](std::size_t i) {
+    return data_.get()[i];
+  }
+  const T& operator[](std::size_t i) const {
+    return data_.get()[i];
+  }
+  T* begin() {
+    return data();
+  }
+  T* end() {
+    return data() + size_;
+  }
+  const T* begin() const {
+    return data();
+  }
+  const T* end() const {
+    return data() + size_;
+  }
+
+ private:
+  static constexpr std::size_t kPage = 4096;
+  struct Free {
+    void operator()(T* p) const { std::free(p); }
+  };
+  std::unique_ptr<T, Free> data_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace pyroclast

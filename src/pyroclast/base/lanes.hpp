@@ -1,0 +1,287 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
+/// Lanes: eight numbers that go through the same arithmetic together, one cache line of doubles.
+///
+/// A law is written once as a template of its number type `Real`. With Real = double it is the law of one
+/// point; with Real = Lanes<...> of eight. What differs between them is only this: a condition is a mask, so
+/// that both ways are computed and `select` takes one of them lane by lane, and `any` tells whether a way is
+/// needed at all.
+///
+/// The arithmetic of a lane is that of a double, IEEE 754, operation by operation: every instruction set
+/// gives the same bits.
+namespace pyroclast {
+
+inline constexpr int kLanes = 8;
+
+// One number
+
+inline double select(bool condition, double yes, double no) {
+  return condition ? yes : no;
+}
+inline bool any(bool condition) {
+  return condition;
+}
+inline double smaller(double a, double b) {
+  return b < a ? b : a;
+}
+inline double larger(double a, double b) {
+  return a < b ? b : a;
+}
+
+// Instruction sets. A file that names one other than Portable is compiled with that set's options.
+
+/// No more than the language.
+struct Portable {
+  static constexpr int kWidth = 1;
+  using Value = double;
+  using Truth = bool;
+  static Value load(const double* p) { return *p; }
+  static void store(double* p, Value v) { *p = v; }
+  static Value all(double v) { return v; }
+  static Value sqrt(Value v) { return std::sqrt(v); }
+  static Value abs(Value v) { return std::abs(v); }
+  static Truth less(Value a, Value b) { return a < b; }
+  static Truth less_equal(Value a, Value b) { return a <= b; }
+  static Truth both(Truth a, Truth b) { return a && b; }
+  static Truth either(Truth a, Truth b) { return a || b; }
+  static Truth opposite(Truth a) { return !a; }
+  static bool any(Truth a) { return a; }
+  static Value select(Truth c, Value yes, Value no) { return c ? yes : no; }
+  /// Lanes whose bit is set, the lowest bit first.
+  static Truth from_bits(unsigned bits) { return (bits & 1U) != 0; }
+  /// Pairs that stand one after the other, apart.
+  static void load_pairs(const double* p, Value& x, Value& y) {
+    x = p[0];
+    y = p[1];
+  }
+  static void store_pairs(double* p, Value x, Value y) {
+    p[0] = x;
+    p[1] = y;
+  }
+  /// Pairs by their numbers, apart.
+  static void gather_pairs(const double* p, const int* index, Value& x, Value& y) {
+    load_pairs(p + 2 * static_cast<std::ptrdiff_t>(index[0]), x, y);
+  }
+};
+
+#ifdef __AVX2__
+struct Avx2 {
+  static constexpr int kWidth = 4;
+  using Value = __m256d;
+  using Truth = __m256d;
+  static Value load(const double* p) { return _mm256_load_pd(p); }
+  static void store(double* p, Value v) { _mm256_store_pd(p, v); }
+  static Value all(double v) { return _mm256_set1_pd(v); }
+  static Value sqrt(Value v) { return _mm256_sqrt_pd(v); }
+  static Value abs(Value v) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), v); }
+  static Truth less(Value a, Value b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
+  static Truth less_equal(Value a, Value b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
+  static Truth both(Truth a, Truth b) { return _mm256_and_pd(a, b); }
+  static Truth either(Truth a, Truth b) { return _mm256_or_pd(a, b); }
+  static Truth opposite(Truth a) { return _mm256_xor_pd(a, _mm256_castsi256_pd(_mm256_set1_epi64x(-1))); }
+  static bool any(Truth a) { return _mm256_movemask_pd(a) != 0; }
+  static Value select(Truth c, Value yes, Value no) { return _mm256_blendv_pd(no, yes, c); }
+  static Truth from_bits(unsigned bits) {
+    const __m256i lane = _mm256_setr_epi64x(1, 2, 4, 8);
+    const __m256i set = _mm256_and_si256(_mm256_set1_epi64x(bits), lane);
+    return _mm256_castsi256_pd(_mm256_cmpeq_epi64(set, lane));
+  }
+  static void load_pairs(const double* p, Value& x, Value& y) {
+    const Value v01 = _mm256_load_pd(p), v23 = _mm256_load_pd(p + 4);
+    const Value v02 = _mm256_permute2f128_pd(v01, v23, 0x20), v13 = _mm256_permute2f128_pd(v01, v23, 0x31);
+    x = _mm256_unpacklo_pd(v02, v13);
+    y = _mm256_unpackhi_pd(v02, v13);
+  }
+  static void store_pairs(double* p, Value x, Value y) {
+    const Value v02 = _mm256_unpacklo_pd(x, y), v13 = _mm256_unpackhi_pd(x, y);
+    _mm256_store_pd(p, _mm256_permute2f128_pd(v02, v13, 0x20));
+    _mm256_store_pd(p + 4, _mm256_permute2f128_pd(v02, v13, 0x31));
+  }
+  static void gather_pairs(const double* p, const int* index, Value& x, Value& y) {
+    // four pairs of loads cost less than the gather instruction
+    const auto two = [&](int i, int j) {
+      return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + 2 * std::ptrdiff_t{index[i]})),
+                                  _mm_load_pd(p + 2 * std::ptrdiff_t{index[j]}), 1);
+    };
+    const Value v02 = two(0, 2), v13 = two(1, 3);
+    x = _mm256_unpacklo_pd(v02, v13);
+    y = _mm256_unpackhi_pd(v02, v13);
+  }
+};
+#endif
+
+#ifdef __AVX512F__
+struct Avx512 {
+  static constexpr int kWidth = 8;
+  using Value = __m512d;
+  using Truth = __mmask8;
+  static Value load(const double* p) { return _mm512_load_pd(p); }
+  static void store(double* p, Value v) { _mm512_store_pd(p, v); }
+  static Value all(double v) { return _mm512_set1_pd(v); }
+  static Value sqrt(Value v) { return _mm512_sqrt_pd(v); }
+  static Value abs(Value v) { return _mm512_abs_pd(v); }
+  static Truth less(Value a, Value b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
+  static Truth less_equal(Value a, Value b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
+  static Truth both(Truth a, Truth b) { return _kand_mask8(a, b); }
+  static Truth either(Truth a, Truth b) { return _kor_mask8(a, b); }
+  static Truth opposite(Truth a) { return _knot_mask8(a); }
+  static bool any(Truth a) { return a != 0; }
+  static Value select(Truth c, Value yes, Value no) { return _mm512_mask_blend_pd(c, no, yes); }
+  static Truth from_bits(unsigned bits) { return static_cast<Truth>(bits); }
+  static void load_pairs(const double* p, Value& x, Value& y) {
+    const Value low = _mm512_load_pd(p), high = _mm512_load_pd(p + 8);
+    x = _mm512_permutex2var_pd(low, _mm512_setr_epi64(0, 2, 4, 6, 8, 10, 12, 14), high);
+    y = _mm512_permutex2var_pd(low, _mm512_setr_epi64(1, 3, 5, 7, 9, 11, 13, 15), high);
+  }
+  static void store_pairs(double* p, Value x, Value y) {
+    _mm512_store_pd(p, _mm512_permutex2var_pd(x, _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11), y));
+    _mm512_store_pd(p + 8, _mm512_permutex2var_pd(x, _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15), y));
+  }
+  static void gather_pairs(const double* p, const int* index, Value& x, Value& y) {
+    // eight loads and a few shuffles cost less than two gather instructions
+    const auto two = [&](int i, int j) {
+      return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + 2 * std::ptrdiff_t{index[i]})),
+                                  _mm_load_pd(p + 2 * std::ptrdiff_t{index[j]}), 1);
+    };
+    const Value even = _mm512_insertf64x4(_mm512_castpd256_pd512(two(0, 2)), two(4, 6), 1);
+    const Value odd = _mm512_insertf64x4(_mm512_castpd256_pd512(two(1, 3)), two(5, 7), 1);
+    x = _mm512_unpacklo_pd(even, odd);
+    y = _mm512_unpackhi_pd(even, odd);
+  }
+};
+#endif
+
+// Eight numbers
+
+/// A condition in each lane.
+template <class Set>
+struct Mask {
+  static constexpr int kParts = kLanes / Set::kWidth;
+  typename Set::Truth part[kParts];
+
+  /// Lanes whose bit is set, the lowest bit first.
+  static Mask from_bits(unsigned bits) {
+    Mask m;
+    for (int i = 0; i < kParts; ++i)
+      m.part[i] = Set::from_bits((bits >> (i * Set::kWidth)) & ((1U << Set::kWidth) - 1U));
+    return m;
+  }
+  friend Mask operator&(const Mask& a, const Mask& b) {
+    Mask m;
+    for (int i = 0; i < kParts; ++i) m.part[i] = Set::both(a.part[i], b.part[i]);
+    return m;
+  }
+  friend Mask operator|(const Mask& a, const Mask& b) {
+    Mask m;
+    for (int i = 0; i < kParts; ++i) m.part[i] = Set::either(a.part[i], b.part[i]);
+    return m;
+  }
+  friend Mask operator!(const Mask& a) {
+    Mask m;
+    for (int i = 0; i < kParts; ++i) m.part[i] = Set::opposite(a.part[i]);
+    return m;
+  }
+  friend bool any(const Mask& a) {
+    auto sum = a.part[0];
+    for (int i = 1; i < kParts; ++i) sum = Set::either(sum, a.part[i]);
+    return Set::any(sum);
+  }
+};
+
+template <class Set>
+struct Lanes {
+  static constexpr int kParts = kLanes / Set::kWidth;
+  using Truth = Mask<Set>;
+  typename Set::Value part[kParts];
+
+  Lanes() = default;
+  /// The same number in every lane.
+  Lanes(double v) {  // NOLINT(google-explicit-constructor): a number is a number
+    for (auto& p : part) p = Set::all(v);
+  }
+  /// \param p  eight numbers, aligned to 64 bytes
+  static Lanes load(const double* p) {
+    Lanes r;
+    for (int i = 0; i < kParts; ++i) r.part[i] = Set::load(p + i * Set::kWidth);
+    return r;
+  }
+  void store(double* p) const {
+    for (int i = 0; i < kParts; ++i) Set::store(p + i * Set::kWidth, part[i]);
+  }
+
+  Lanes& operator+=(const Lanes& o) {
+    for (int i = 0; i < kParts; ++i) part[i] = part[i] + o.part[i];
+    return *this;
+  }
+  Lanes& operator-=(const Lanes& o) {
+    for (int i = 0; i < kParts; ++i) part[i] = part[i] - o.part[i];
+    return *this;
+  }
+  Lanes& operator*=(const Lanes& o) {
+    for (int i = 0; i < kParts; ++i) part[i] = part[i] * o.part[i];
+    return *this;
+  }
+  Lanes& operator/=(const Lanes& o) {
+    for (int i = 0; i < kParts; ++i) part[i] = part[i] / o.part[i];
+    return *this;
+  }
+  friend Lanes operator+(Lanes a, const Lanes& b) { return a += b; }
+  friend Lanes operator-(Lanes a, const Lanes& b) { return a -= b; }
+  friend Lanes operator*(Lanes a, const Lanes& b) { return a *= b; }
+  friend Lanes operator/(Lanes a, const Lanes& b) { return a /= b; }
+  friend Lanes operator-(const Lanes& a) { return Lanes(0.0) - a; }
+
+  friend Truth operator<(const Lanes& a, const Lanes& b) {
+    Truth m;
+    for (int i = 0; i < kParts; ++i) m.part[i] = Set::less(a.part[i], b.part[i]);
+    return m;
+  }
+  friend Truth operator<=(const Lanes& a, const Lanes& b) {
+    Truth m;
+    for (int i = 0; i < kParts; ++i) m.part[i] = Set::less_equal(a.part[i], b.part[i]);
+    return m;
+  }
+  friend Truth operator>(const Lanes& a, const Lanes& b) { return b < a; }
+  friend Truth operator>=(const Lanes& a, const Lanes& b) { return b <= a; }
+
+  friend Lanes select(const Truth& c, const Lanes& yes, const Lanes& no) {
+    Lanes r;
+    for (int i = 0; i < kParts; ++i) r.part[i] = Set::select(c.part[i], yes.part[i], no.part[i]);
+    return r;
+  }
+  friend Lanes sqrt(const Lanes& a) {
+    Lanes r;
+    for (int i = 0; i < kParts; ++i) r.part[i] = Set::sqrt(a.part[i]);
+    return r;
+  }
+  friend Lanes abs(const Lanes& a) {
+    Lanes r;
+    for (int i = 0; i < kParts; ++i) r.part[i] = Set::abs(a.part[i]);
+    return r;
+  }
+  friend Lanes smaller(const Lanes& a, const Lanes& b) { return select(b < a, b, a); }
+  friend Lanes larger(const Lanes& a, const Lanes& b) { return select(a < b, b, a); }
+  /// Of all lanes, added in the order of a tree that does not depend on the instruction set.
+  friend double sum(const Lanes& a) {
+    alignas(64) double v[kLanes];
+    a.store(v);
+    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+  }
+  friend double largest(const Lanes& a) {
+    alignas(64) double v[kLanes];
+    a.store(v);
+    double m = v[0];
+    for (int i = 1; i < kLanes; ++i) m = larger(m, v[i]);
+    return m;
+  }
+};
+
+}  // namespace pyroclast

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pyroclast/base/lanes.hpp"
+#include "pyroclast/model/model.hpp"
+
+namespace pyroclast {
+
+/// Eight gridpoints, zones or contacts side by side are a row; a slot is a place in a row: slot = 8 row +
+/// lane. Places that nothing fills are idle: nothing acts on them.
+inline constexpr int slot_of(int row, int lane) {
+  return kLanes * row + lane;
+}
+
+/// How the blocks of a bundle share its lanes.
+enum class BundleKind : std::uint8_t {
+  alike,  ///< up to eight blocks with the same zones, one a lane: row i holds the i-th gridpoint of each
+  spread  ///< one block over all lanes: its gridpoints and zones follow one another through the rows
+};
+
+/// Blocks that go through a step together.
+struct Bundle {
+  BundleKind kind = BundleKind::alike;
+  int shape = -1;            ///< BundleKind::alike: index into Layout::shapes
+  int first_row = 0;         ///< of gridpoints
+  int rows = 0;              ///< of gridpoints
+  int first_zone_row = 0;    ///< of zones
+  int zones = 0;             ///< alike: of each block, a row each; spread: of the block, eight a row
+  int first_spread_row = 0;  ///< spread: entries of Layout::spread_zones
+  int last_face_row = -1;    ///< no row of faces above it touches the bundle; never falls along the bundles
+  std::vector<int> blocks;
+
+  int zone_rows() const { return kind == BundleKind::alike ? zones : (zones + kLanes - 1) / kLanes; }
+};
+
+/// Gridpoints of eight zones of a spread block, as slots.
+template <int Dim>
+struct ZoneCorners {
+  std::array<std::array<int, kLanes>, Dim + 1> slot;
+};
+
+/// Eight faces of one interface.
+template <int Dim>
+struct alignas(64) FaceRow {
+  double normal[Dim][kLanes];  ///< from a to b
+  double tangent[Dim - 1][Dim][kLanes];
+  double area[kLanes];                            ///< of one contact point, m²; 0 where idle
+  std::array<std::array<int, kLanes>, Dim> a, b;  ///< slots of the gridpoints at each point
+};
+
+/// Which contact points act on the gridpoints of a row. In 2D a corner of a block has two, one of each edge.
+struct ContactsOfRow {
+  int begin = 0, end = 0;  ///< entries of Layout::acting
+};
+
+struct ActingContacts {
+  std::array<int, kLanes> contact;  ///< slot; that of an idle contact where a lane has none
+  std::uint32_t side_b = 0;         ///< bit per lane: the gridpoint is on side b
+};
+
+/// Where everything of a model stands while it moves.
+///
+/// Blocks are ordered along the body in layers, so that what touches stands near in memory; among near ones
+/// those with the same zones share lanes. Faces are ordered by the later of their two bundles, so that one
+/// sweep can take a row of faces and, soon after, move the bundles whose faces are all done.
+template <int Dim>
+struct Layout {
+  explicit Layout(const Model<Dim>& model);
+
+  std::vector<Bundle> bundles;
+  std::vector<std::vector<std::array<int, Dim + 1>>> shapes;  ///< zones of a block, as its own gridpoints
+  std::vector<ZoneCorners<Dim>> spread_zones;                 ///< by row of zones of spread blocks
+  std::vector<FaceRow<Dim>> faces;
+  std::vector<ContactsOfRow> contacts_of_row;  ///< of each row of gridpoints
+  std::vector<ActingContacts> acting;
+
+  int gridpoint_rows = 0;
+  int zone_rows = 0;
+  int most_rows = 0;                ///< of gridpoints, in one bundle
+  std::vector<int> gridpoint_slot;  ///< of each gridpoint of the model
+  std::vector<int> zone_slot;       ///< of each zone
+  std::vector<int> contact_slot;    ///< of each contact
+  std::vector<int> bundle_of_block;
+
+  int face_rows() const { return static_cast<int>(faces.size()); }
+  /// Rows of contact points: Dim for every row of faces, and one that idles.
+  int contact_rows() const { return Dim * face_rows() + 1; }
+};
+
+extern template struct Layout<2>;
+extern template struct Layout<3>;
+
+}  // namespace pyroclast
