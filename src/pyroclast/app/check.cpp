@@ -92,9 +92,11 @@ int check(const RunOptions& options) {
   const double steps = most_steps(c, mechanics.time_step());
   const double step_time = seconds_per_step(mechanics);
   fmt::print(
-      "run             {} stages, at most {:.3g} steps after settling, about {} on {} threads, {:.0f} MB of "
-      "memory\n",
-      c.stages.size(), steps, duration(steps * step_time), loaded.threads, peak_memory() * 1e-6);
+      "run             {} stages, at most {:.3g} steps after settling, about {} on {} threads with {} "
+      "instructions, "
+      "{:.0f} MB of memory\n",
+      c.stages.size(), steps, duration(steps * step_time), loaded.threads, name(mechanics.instructions()),
+      peak_memory() * 1e-6);
   return 0;
 }
 

@@ -14,6 +14,7 @@ struct RunOptions {
   bool overwrite = false;
   bool figures = true;
   int threads = 0;                    ///< 0: as many as the machine has
+  std::string instructions;           ///< instruction set of the step; empty: the best that there is
   std::optional<std::uint64_t> seed;  ///< instead of the deck's
   std::vector<std::string> changes;   ///< "key=value", see Deck::load
   std::string command;                ///< as typed, for the manifest

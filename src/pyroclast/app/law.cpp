@@ -121,8 +121,8 @@ class Drive {
         "{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},"
         "{:.12g},{:.12g},{:.12g}\n",
         at_.opening, at_.slip, at_.temperature, response_.normal_traction, response_.shear_traction[0],
-        history_.tension_damage, history_.shear_damage, history_.closure, accumulated_slip_,
-        response_.stored, total_.tension, total_.shear, total_.friction, total_.compression, heat_);
+        history_.tension_damage, history_.shear_damage, history_.closure, accumulated_slip_, response_.stored,
+        total_.tension, total_.shear, total_.friction, total_.compression, heat_);
   }
 
   static constexpr const char* kHeader =

@@ -10,6 +10,7 @@ namespace pyroclast::app {
 Loaded::Loaded(const RunOptions& options)
     : deck(Deck::load(options.deck, options.changes)), c(read_case(deck, options.deck.parent_path())) {
   if (options.seed) c.specimen.seed = *options.seed;
+  if (!options.instructions.empty()) c.mechanics.instructions = instruction_set(options.instructions);
   if (options.threads > 0) omp_set_num_threads(options.threads);
   threads = omp_get_max_threads();
 }
@@ -21,7 +22,8 @@ std::filesystem::path output_folder(const RunOptions& options) {
 RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options) {
   return {output_folder(options),
           options.overwrite,
-          {loaded.deck.name(), loaded.deck.text(), loaded.c.specimen.seed, loaded.threads, options.command}};
+          {loaded.deck.name(), loaded.deck.text(), loaded.c.specimen.seed, loaded.threads,
+           name(loaded.c.mechanics.instructions), options.command}};
 }
 
 std::string describe(const specimen::Specimen& s) {

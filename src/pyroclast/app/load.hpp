@@ -6,7 +6,7 @@
 
 namespace pyroclast::app {
 
-/// Deck and case of the options, with the seed of the command line in place and the threads set.
+/// Deck and case of the options, with what the command line says in place and the threads set.
 struct Loaded {
   explicit Loaded(const RunOptions& options);
 

@@ -26,9 +26,12 @@ void add_output(CLI::App* command, app::RunOptions& options) {
   command->add_flag("!--no-figures", options.figures, "Draw no figures");
 }
 
-void add_threads(CLI::App* command, int& threads) {
-  command->add_option("-t,--threads", threads, "Threads; results are the same for any number")
+void add_processor(CLI::App* command, app::RunOptions& options) {
+  command->add_option("-t,--threads", options.threads, "Threads; results are the same for any number")
       ->check(CLI::PositiveNumber);
+  command->add_option("--instructions", options.instructions,
+                      "Instruction set: portable, avx2 or avx512 (default: the best that the processor has); "
+                      "results are the same for any");
 }
 
 int command_line(int argc, char** argv) {
@@ -52,7 +55,7 @@ int command_line(int argc, char** argv) {
         ->allow_extra_args(false);
   }
   for (auto* command : {run, specimen}) add_output(command, options);
-  for (auto* command : {run, check}) add_threads(command, options.threads);
+  for (auto* command : {run, check}) add_processor(command, options);
 
   app::LawOptions law_options;
   auto* law =

@@ -98,10 +98,10 @@ int run(const RunOptions& options) {
   auto& mechanics = *simulation.mechanics;
   fmt::print("{}", describe(simulation.specimen));
   fmt::print(
-      "model           {} zones, {} contacts, time step {:.3g} s, moving mass {:.3g} x the real one, {} "
-      "threads\n\n",
+      "model           {} zones, {} contacts, time step {:.3g} s, moving mass {:.3g} x the real one\n"
+      "processor       {} threads, {} instructions\n\n",
       simulation.body.model.zone_count(), simulation.body.model.contact_count(), mechanics.time_step(),
-      mechanics.mass_ratio(), loaded.threads);
+      mechanics.mass_ratio(), loaded.threads, name(mechanics.instructions()));
 
   const RunFolder folder = make_run_folder(loaded, options);
   write_specimen_files(folder.path() / "specimen", simulation.specimen, loaded.c.specimen.aggregates);

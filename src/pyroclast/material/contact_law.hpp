@@ -58,6 +58,74 @@ struct ContactPropertiesOf {
 };
 using ContactProperties = ContactPropertiesOf<double>;
 
+/// Parameters as the law needs them: worked out once for the many times that it is asked.
+template <class Real>
+struct ContactConstantsOf {
+  Real normal_stiffness, shear_stiffness;      ///< Pa/m
+  Real shear_compliance;                       ///< 1 / K_s, m/Pa
+  Real tensile_strength, mode_1_energy;        ///< Pa, J/m²
+  Real elastic_opening;                        ///< u_e, m
+  Real softening_range, over_softening_range;  ///< u_f - u_e, m; 1/m
+  Real compressive_limit;                      ///< Pa
+  Real closure_at_limit;                       ///< f_cm / K_n, m
+  Real share_left;                             ///< of a closure beyond the limit, as u_p: 1 - beta
+  Real hardening_slope;                        ///< of the yield stress over u_p, Pa/m
+  Real cohesion, residual_cohesion, friction, residual_friction;
+  Real mode_2_energy, over_twice_mode_2_energy;  ///< J/m², m²/J
+  ContactBehaviour behaviour = ContactBehaviour::cohesive;
+  CompressionReading compression = CompressionReading::irreversible;
+  bool coupled = false;
+
+  ContactConstantsOf() = default;
+  explicit ContactConstantsOf(const ContactPropertiesOf<Real>& p)
+      : normal_stiffness(p.normal_stiffness),
+        shear_stiffness(p.shear_stiffness),
+        shear_compliance(1.0 / p.shear_stiffness),
+        tensile_strength(p.tensile_strength),
+        mode_1_energy(p.mode_1_energy),
+        elastic_opening(p.elastic_opening()),
+        softening_range(p.ultimate_opening() - p.elastic_opening()),
+        over_softening_range(1.0 / softening_range),
+        compressive_limit(p.compressive_limit),
+        closure_at_limit(p.compressive_limit / p.normal_stiffness),
+        share_left(1.0 - p.hardening),
+        // on monotone loading exactly Eq. (15)
+        hardening_slope(p.hardening * p.normal_stiffness / (1.0 - p.hardening)),
+        cohesion(p.cohesion),
+        residual_cohesion(p.residual_cohesion),
+        friction(p.friction),
+        residual_friction(p.residual_friction),
+        mode_2_energy(p.mode_2_energy),
+        over_twice_mode_2_energy(0.5 / p.mode_2_energy),
+        behaviour(p.behaviour),
+        compression(p.compression),
+        coupled(p.coupled) {}
+};
+using ContactConstants = ContactConstantsOf<double>;
+
+/// Calls `f` with each number of the constants, in one order.
+template <class Constants, class F>
+void for_each_number(Constants& c, F f) {
+  f(c.normal_stiffness);
+  f(c.shear_stiffness);
+  f(c.shear_compliance);
+  f(c.tensile_strength);
+  f(c.mode_1_energy);
+  f(c.elastic_opening);
+  f(c.softening_range);
+  f(c.over_softening_range);
+  f(c.compressive_limit);
+  f(c.closure_at_limit);
+  f(c.share_left);
+  f(c.hardening_slope);
+  f(c.cohesion);
+  f(c.residual_cohesion);
+  f(c.friction);
+  f(c.residual_friction);
+  f(c.mode_2_energy);
+  f(c.over_twice_mode_2_energy);
+}
+
 /// What a contact point remembers. A contact that never held tension or cohesion (a platen's) starts with
 /// both damages at 1.
 template <int Dim, class Real = double>
@@ -72,10 +140,10 @@ struct ContactHistory {
 /// Energy dissipated at a contact point, by mechanism, J/m².
 template <class Real>
 struct ContactDissipationOf {
-  Real tension{};      ///< G_f1 when torn apart
-  Real shear{};        ///< above the residual line; G_f2 when fully softened
-  Real friction{};     ///< along the residual line
-  Real compression{};  ///< irreversible closure
+  Real tension = 0.0;      ///< G_f1 when torn apart
+  Real shear = 0.0;        ///< above the residual line; G_f2 when fully softened
+  Real friction = 0.0;     ///< along the residual line
+  Real compression = 0.0;  ///< irreversible closure
 
   Real total() const { return tension + shear + friction + compression; }
 
@@ -91,12 +159,13 @@ using ContactDissipation = ContactDissipationOf<double>;
 
 template <int Dim, class Real = double>
 struct ContactResponse {
-  Real normal_traction{};                  ///< sigma, Pa, tension positive
-  Tangential<Dim, Real> shear_traction{};  ///< tau, Pa
-  Real stored{};                           ///< elastic energy now held, J/m²
-  Real slipped{};                          ///< length of the slip in this update, m
-  ContactDissipationOf<Real> dissipated;   ///< in this update
-  bool irreversible = false;               ///< the history changed beyond `held_slip`, in any lane
+  Real normal_traction;                   ///< sigma, Pa, tension positive
+  Tangential<Dim, Real> shear_traction;   ///< tau, Pa
+  Real stored;                            ///< elastic energy now held, J/m²
+  Real slipped;                           ///< length of the slip in this update, m
+  ContactDissipationOf<Real> dissipated;  ///< in this update
+  bool damaged =
+      false;  ///< in any lane the history changed beyond `slip` and `held_slip`, or energy was lost
 };
 
 /// Throws Error, naming the quantity, when the parameters cannot make a law: non-positive stiffness, negative
@@ -107,129 +176,134 @@ namespace contact_law {
 
 /// Linear tension softening with unloading to the origin.
 /// \param elastic  opening beyond the closure left behind, m
-template <int Dim, class Real, class Properties>
-void update_tension(const Properties& p, const Real& elastic, ContactHistory<Dim, Real>& h,
+template <int Dim, class Real, class Constants>
+void update_tension(const Constants& c, const Real& elastic, ContactHistory<Dim, Real>& h,
                     ContactResponse<Dim, Real>& r) {
-  const auto u_e = p.elastic_opening();
-  const auto range = p.ultimate_opening() - u_e;
   const auto open = elastic > 0.0;
   // In this order a contact without any strength, 0 / 0, breaks.
-  const Real damage = smaller(Real(1.0), (elastic - u_e) / range);
+  const Real damage = smaller(Real(1.0), (elastic - c.elastic_opening) * c.over_softening_range);
   const auto grows = open & (damage > h.tension_damage);
   if (any(grows)) {
     // The area between the envelope and the secant grows by G_f1 dD, whatever the step.
-    r.dissipated.tension = select(grows, p.mode_1_energy * (damage - h.tension_damage), 0.0);
+    r.dissipated.tension = select(grows, c.mode_1_energy * (damage - h.tension_damage), Real(0.0));
     h.tension_damage = select(grows, damage, h.tension_damage);
-    r.irreversible = true;
+    r.damaged = true;
   }
   const auto holds = open & (h.tension_damage < 1.0);
-  const Real kappa = u_e + h.tension_damage * range;
-  const Real traction = select(holds, (1.0 - h.tension_damage) * p.tensile_strength * elastic / kappa, 0.0);
+  const Real kappa = c.elastic_opening + h.tension_damage * c.softening_range;
+  const Real traction =
+      select(holds, (1.0 - h.tension_damage) * c.tensile_strength * elastic / kappa, Real(0.0));
   r.normal_traction += traction;
   r.stored += 0.5 * traction * elastic;
 }
 
-/// Compression with unloading along K_n, which leaves a closure: yield stress f_cm + H u_p with
-/// H = beta K_n / (1 - beta), on monotone loading exactly Eq. (15).
+/// Compression with unloading along K_n, which leaves a closure: yield stress f_cm + H u_p.
 /// \param elastic  in and out: opening beyond the closure left behind, m
-template <int Dim, class Real, class Properties>
-void update_compression(const Properties& p, const Real& opening, Real& elastic, ContactHistory<Dim, Real>& h,
+template <int Dim, class Real, class Constants>
+void update_compression(const Constants& c, const Real& opening, Real& elastic, ContactHistory<Dim, Real>& h,
                         ContactResponse<Dim, Real>& r) {
-  const auto k = p.normal_stiffness;
-  const Real closure = (1.0 - p.hardening) * (-opening - p.compressive_limit / k);
-  const auto yields = closure > h.closure;  // far below elastic = 0
+  const Real closure = c.share_left * (-opening - c.closure_at_limit);
+  const auto yields = closure > h.closure;
   if (any(yields)) {
-    const auto slope = p.hardening * k / (1.0 - p.hardening);
     r.dissipated.compression = select(
-        yields, (closure - h.closure) * (p.compressive_limit + 0.5 * slope * (closure + h.closure)), 0.0);
+        yields,
+        (closure - h.closure) * (c.compressive_limit + 0.5 * c.hardening_slope * (closure + h.closure)),
+        Real(0.0));
     h.closure = select(yields, closure, h.closure);
     elastic = opening + h.closure;
-    r.irreversible = true;
+    r.damaged = true;
   }
-  const Real pressed = smaller(elastic, 0.0);
-  r.normal_traction = k * pressed;
-  r.stored = 0.5 * k * pressed * pressed;
+  const Real pressed = smaller(elastic, Real(0.0));
+  r.normal_traction = c.normal_stiffness * pressed;
+  r.stored = 0.5 * r.normal_traction * pressed;
 }
 
 /// Compression that retraces the bilinear curve (15).
-template <int Dim, class Real, class Properties>
-void follow_compression(const Properties& p, const Real& opening, ContactResponse<Dim, Real>& r) {
-  const auto k = p.normal_stiffness;
-  const Real pressed = smaller(opening, 0.0);
-  const Real beyond = larger(-pressed - p.compressive_limit / k, 0.0);
+template <int Dim, class Real, class Constants>
+void follow_compression(const Constants& c, const Real& opening, ContactResponse<Dim, Real>& r) {
+  const auto k = c.normal_stiffness;
+  const Real pressed = smaller(opening, Real(0.0));
+  const Real beyond = larger(-pressed - c.closure_at_limit, Real(0.0));
   const Real within = -pressed - beyond;
-  r.normal_traction = k * (pressed + (1.0 - p.hardening) * beyond);
-  const auto yields = beyond > 0.0;  // where the limit may be infinite
-  r.stored = 0.5 * k * within * within +
-             select(yields, beyond * (p.compressive_limit + 0.5 * p.hardening * k * beyond), 0.0);
+  r.normal_traction = k * (pressed + c.share_left * beyond);
+  const Real yielded = beyond * (c.compressive_limit + 0.5 * (1.0 - c.share_left) * k * beyond);
+  r.stored = 0.5 * k * within * within + select(beyond > 0.0, yielded, Real(0.0));  // f_cm may be infinite
 }
 
 /// Normal part: bilinear compression and linear tension softening over the elastic opening u_n + u_p.
-template <int Dim, class Real, class Properties>
-void update_normal(const Properties& p, const Real& opening, ContactHistory<Dim, Real>& h,
+template <int Dim, class Real, class Constants>
+void update_normal(const Constants& c, const Real& opening, ContactHistory<Dim, Real>& h,
                    ContactResponse<Dim, Real>& r) {
   Real elastic = opening + h.closure;  // zero traction at zero
-  if (p.compression == CompressionReading::irreversible)
-    update_compression<Dim>(p, opening, elastic, h, r);
+  if (c.compression == CompressionReading::irreversible)
+    update_compression<Dim>(c, opening, elastic, h, r);
   else
-    follow_compression<Dim>(p, opening, r);
-  if (any((elastic > 0.0) & (h.tension_damage < 1.0))) update_tension<Dim>(p, elastic, h, r);
+    follow_compression<Dim>(c, opening, r);
+  if (any((elastic > 0.0) & (h.tension_damage < 1.0))) update_tension<Dim>(c, elastic, h, r);
+}
+
+/// Exact return of the elastic predictor to the softening envelope.
+/// \param elastic  in and out: elastic part of the tangential jump, m
+/// \param held     in and out: its length
+template <int Dim, class Real, class Constants, class Truth>
+void slip(const Constants& c, const Truth& slips, const Real& excess, const Real& residual, const Real& drop,
+          Tangential<Dim, Real>& elastic, Real& held, ContactHistory<Dim, Real>& h,
+          ContactResponse<Dim, Real>& r) {
+  const auto softens = slips & (h.shear_damage < 1.0) & (drop > 0.0);
+  const Real remaining = 1.0 - h.shear_damage;
+  const Real per_slip = drop * c.over_twice_mode_2_energy;  // 1 / s_u
+  const Real softening_slip = excess / (c.shear_stiffness - drop * per_slip);
+  const Real damage = h.shear_damage + softening_slip * per_slip;
+  const auto partly = softens & (damage < 1.0);
+  // all the way down to the residual line where it softens to the end
+  Real length = select(softens, held - residual * c.shear_compliance, excess * c.shear_compliance);
+  length = select(partly, softening_slip, length);
+  length = select(slips, length, Real(0.0));
+  const Real new_damage = select(partly, damage, Real(1.0));
+  const Real left = 1.0 - new_damage;
+  r.dissipated.shear = select(softens, c.mode_2_energy * (remaining - left) * (remaining + left), Real(0.0));
+  r.dissipated.friction = residual * length;
+  r.slipped = length;
+  h.shear_damage = select(softens, new_damage, h.shear_damage);
+  const Tangential<Dim, Real> step = elastic * select(slips, length / held, Real(0.0));
+  h.slip += step;
+  elastic -= step;
+  held = norm(elastic);
+  r.damaged = true;
 }
 
 /// Shear part: elastic predictor and exact return to the softening Mohr-Coulomb envelope.
-template <int Dim, class Real, class Properties>
-void update_shear(const Properties& p, const Tangential<Dim, Real>& jump, const Real& opening,
+template <int Dim, class Real, class Constants>
+void update_shear(const Constants& c, const Tangential<Dim, Real>& jump, const Real& opening,
                   ContactHistory<Dim, Real>& h, ContactResponse<Dim, Real>& r) {
-  const auto k = p.shear_stiffness;
+  const auto k = c.shear_stiffness;
   Tangential<Dim, Real> elastic = jump - h.slip;
   Real held = norm(elastic);
   const auto open_and_broken = (h.tension_damage >= 1.0) & (opening + h.closure > 0.0);
-  Real cohesion = p.cohesion;
-  if (p.coupled) cohesion *= 1.0 - h.tension_damage;
-  const Real residual_cohesion = smaller(cohesion, p.residual_cohesion);
-  const Real peak = larger(cohesion - r.normal_traction * p.friction, 0.0);
+  Real cohesion = c.cohesion;
+  if (c.coupled) cohesion *= 1.0 - h.tension_damage;
+  const Real residual_cohesion = smaller(cohesion, Real(c.residual_cohesion));
+  const Real peak = larger(cohesion - r.normal_traction * c.friction, Real(0.0));
   const Real residual =
-      smaller(peak, larger(residual_cohesion - r.normal_traction * p.residual_friction, 0.0));
+      smaller(peak, larger(residual_cohesion - r.normal_traction * c.residual_friction, Real(0.0)));
   const Real drop = peak - residual;
-  const Real strength = peak - h.shear_damage * drop;
-  const Real excess = k * held - strength;
+  const Real excess = k * held - (peak - h.shear_damage * drop);
   const auto slips = (excess > 0.0) & !open_and_broken;
-  if (any(slips)) {
-    const auto softens = slips & (h.shear_damage < 1.0) & (drop > 0.0);
-    const Real remaining = 1.0 - h.shear_damage;
-    const Real per_slip = drop / (2.0 * p.mode_2_energy);  // 1 / s_u
-    const Real softening_slip = excess / (k - drop * per_slip);
-    const Real damage = h.shear_damage + softening_slip * per_slip;
-    const auto partly = softens & (damage < 1.0);
-    Real slip = select(softens, (k * held - residual) / k, excess / k);
-    slip = select(partly, softening_slip, slip);
-    slip = select(slips, slip, 0.0);
-    const Real new_damage = select(partly, damage, Real(1.0));
-    const Real left = 1.0 - new_damage;
-    r.dissipated.shear = select(softens, p.mode_2_energy * (remaining - left) * (remaining + left), 0.0);
-    h.shear_damage = select(softens, new_damage, h.shear_damage);
-    r.dissipated.friction = residual * slip;
-    r.slipped = slip;
-    const Real share = select(slips, slip / held, 0.0);
-    const Tangential<Dim, Real> step = elastic * share;
-    h.slip += step;
-    elastic -= step;
-    held = norm(elastic);
-    r.irreversible = true;
-  }
+  if (any(slips)) slip<Dim>(c, slips, excess, residual, drop, elastic, held, h, r);
   if (any(open_and_broken)) {
     // The bond lets go of the shear it still carried. That energy was held by cohesion, so it is booked
     // there.
-    r.dissipated.shear += select(open_and_broken, 0.5 * k * h.held_slip * h.held_slip, 0.0);
-    held = select(open_and_broken, 0.0, held);
+    const Real released = select(open_and_broken, 0.5 * k * h.held_slip * h.held_slip, Real(0.0));
+    r.dissipated.shear += released;
+    r.damaged = r.damaged || any(released > 0.0);
+    held = select(open_and_broken, Real(0.0), held);
     for (int i = 0; i + 1 < Dim; ++i) {
       h.slip[i] = select(open_and_broken, jump[i], h.slip[i]);
-      elastic[i] = select(open_and_broken, 0.0, elastic[i]);
+      elastic[i] = select(open_and_broken, Real(0.0), elastic[i]);
     }
-    r.irreversible = true;
   }
   h.held_slip = held;
-  r.shear_traction = elastic * k;
+  r.shear_traction = elastic * Real(k);
   r.stored += 0.5 * k * held * held;
 }
 
@@ -237,7 +311,7 @@ void update_shear(const Properties& p, const Tangential<Dim, Real>& jump, const 
 
 /// Takes one contact point to a new jump at fixed properties (one temperature), or eight of them.
 ///
-/// \param properties  parameters at the contact's temperature, validated
+/// \param constants   of the contact's properties at its temperature, which are valid
 /// \param opening     u_n, m, opening positive
 /// \param tangential  u_s, m
 /// \param history     in: of the last step; out: of this one
@@ -246,22 +320,30 @@ void update_shear(const Properties& p, const Tangential<Dim, Real>& jump, const 
 /// The result does not depend on how the way to the jump is cut into steps as long as it is monotone.
 /// Energies are closed forms of the history, not quadratures: with the temperature fixed, stored(new) -
 /// stored(old) + dissipated is the work along that way.
-template <int Dim, class Real, class Properties>
-ContactResponse<Dim, Real> update_contact(const Properties& properties, const Real& opening,
+template <int Dim, class Real, class Number>
+ContactResponse<Dim, Real> update_contact(const ContactConstantsOf<Number>& constants, const Real& opening,
                                           const Tangential<Dim, Real>& tangential,
                                           ContactHistory<Dim, Real>& history) {
   ContactResponse<Dim, Real> response;
-  if (properties.behaviour == ContactBehaviour::elastic) {
-    const auto k_n = properties.normal_stiffness;
-    const auto k_s = properties.shear_stiffness;
+  response.slipped = 0.0;
+  if (constants.behaviour == ContactBehaviour::elastic) {
+    const auto k_n = constants.normal_stiffness;
+    const auto k_s = constants.shear_stiffness;
     response.normal_traction = k_n * opening;
-    response.shear_traction = tangential * k_s;
+    response.shear_traction = tangential * Real(k_s);
     response.stored = 0.5 * k_n * opening * opening + 0.5 * k_s * dot(tangential, tangential);
     return response;
   }
-  contact_law::update_normal<Dim>(properties, opening, history, response);
-  contact_law::update_shear<Dim>(properties, tangential, opening, history, response);
+  contact_law::update_normal<Dim>(constants, opening, history, response);
+  contact_law::update_shear<Dim>(constants, tangential, opening, history, response);
   return response;
+}
+
+template <int Dim, class Real>
+ContactResponse<Dim, Real> update_contact(const ContactPropertiesOf<Real>& properties, const Real& opening,
+                                          const Tangential<Dim, Real>& tangential,
+                                          ContactHistory<Dim, Real>& history) {
+  return update_contact<Dim, Real>(ContactConstantsOf<Real>(properties), opening, tangential, history);
 }
 
 }  // namespace pyroclast

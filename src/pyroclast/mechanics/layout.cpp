@@ -264,10 +264,8 @@ class LayoutBuilder {
         // both sides of an idle one are the same gridpoint, so that it never opens
         row.b[point][lane] = layout_.gridpoint_slot[idle ? c.a : c.b];
         row.area[lane] = idle ? 0.0 : c.area;
-        for (int i = 0; i < Dim; ++i) {
-          row.normal[i][lane] = c.normal[i];
+        for (int i = 0; i < Dim; ++i)
           for (int t = 0; t + 1 < Dim; ++t) row.tangent[t][i][lane] = c.tangents[t][i];
-        }
         if (!idle) layout_.contact_slot[f * Dim + point] = slot_of(row_index * Dim + point, lane);
       }
     }

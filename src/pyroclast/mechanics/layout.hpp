@@ -45,8 +45,7 @@ struct ZoneCorners {
 /// Eight faces of one interface.
 template <int Dim>
 struct alignas(64) FaceRow {
-  double normal[Dim][kLanes];  ///< from a to b
-  double tangent[Dim - 1][Dim][kLanes];
+  double tangent[Dim - 1][Dim][kLanes];           ///< the normal follows from them
   double area[kLanes];                            ///< of one contact point, m²; 0 where idle
   std::array<std::array<int, kLanes>, Dim> a, b;  ///< slots of the gridpoints at each point
 };

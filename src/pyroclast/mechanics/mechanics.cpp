@@ -121,7 +121,8 @@ void Mechanics<Dim>::place_properties() {
 template <int Dim>
 void Mechanics<Dim>::place_contact_properties() {
   StepState<Dim>& s = state_;
-  s.contact_properties = properties_.contacts;
+  s.contact_constants.clear();
+  for (const auto& p : properties_.contacts) s.contact_constants.emplace_back(p);
   s.set_of_faces.assign(layout_->faces.size(), -1);
   s.one_set.assign(layout_->faces.size(), 1);
   bool one_set = true;
@@ -133,27 +134,19 @@ void Mechanics<Dim>::place_contact_properties() {
     one_set = one_set && s.one_set[row] != 0;
   }
   if (one_set) return;
-  if (s.contact_property_rows.empty())
-    s.contact_property_rows = FlatArray<ContactPropertyRow>(layout_->contact_rows());
-  const auto place = [&](ContactPropertyRow& row, int lane, const ContactProperties& p) {
-    row.normal_stiffness[lane] = p.normal_stiffness;
-    row.shear_stiffness[lane] = p.shear_stiffness;
-    row.tensile_strength[lane] = p.tensile_strength;
-    row.mode_1_energy[lane] = p.mode_1_energy;
-    row.compressive_limit[lane] = p.compressive_limit;
-    row.hardening[lane] = p.hardening;
-    row.cohesion[lane] = p.cohesion;
-    row.residual_cohesion[lane] = p.residual_cohesion;
-    row.friction[lane] = p.friction;
-    row.residual_friction[lane] = p.residual_friction;
-    row.mode_2_energy[lane] = p.mode_2_energy;
+  if (s.contact_constants_rows.empty())
+    s.contact_constants_rows = FlatArray<ContactConstantsRow>(layout_->contact_rows());
+  const auto place = [&](int row, int lane, const ContactConstants& constants) {
+    int i = 0;
+    for_each_number(constants,
+                    [&](double value) { s.contact_constants_rows[row].number[i++][lane] = value; });
   };
   for (int row = 0; row < Dim * layout_->face_rows(); ++row)  // for idle lanes
     for (int lane = 0; lane < kLanes; ++lane)
-      place(s.contact_property_rows[row], lane, properties_.contacts[s.set_of_faces[row / Dim]]);
+      place(row, lane, s.contact_constants[s.set_of_faces[row / Dim]]);
   for (int c = 0; c < model_.contact_count(); ++c)
-    place(s.contact_property_rows[layout_->contact_slot[c] / kLanes], layout_->contact_slot[c] % kLanes,
-          properties_.contacts[properties_.of_contact[c]]);
+    place(layout_->contact_slot[c] / kLanes, layout_->contact_slot[c] % kLanes,
+          s.contact_constants[properties_.of_contact[c]]);
 }
 
 /// k_gp of Eq. (9): for every gridpoint the largest sum of |stiffness| over a row of the assembled matrix,
@@ -549,9 +542,16 @@ EnergyLedger Mechanics<Dim>::energy() const {
     if (const int c = state_.constraints_of_bundle[b]; c >= 0)
       e.loading += state_.constraints[c].loading_work - sums.begun_loading;
   }
-  for (const FaceSums& sums : state_.face_sums) {
-    e.contacts += sums.stored;
-    e.dissipated += sums.dissipated;
+  for (const FaceSums& sums : state_.face_sums) e.contacts += sums.stored;
+  for (int row = 0; row < Dim * layout_->face_rows(); ++row) {
+    const LossRow& loss = state_.loss[row];
+    const auto& area = layout_->faces[row / Dim].area;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      e.dissipated.tension += loss.tension[lane] * area[lane];
+      e.dissipated.shear += loss.shear[lane] * area[lane];
+      e.dissipated.friction += loss.friction[lane] * area[lane];
+      e.dissipated.compression += loss.compression[lane] * area[lane];
+    }
   }
   // weights are constant, so their work follows from the way made
   if (norm(parameters_.gravity) > 0.0)

@@ -15,10 +15,10 @@ class Step {
   [[gnu::flatten]] static void update_faces(StepState<Dim>& s, int first, int last, bool measure) {
     for (int row = first; row < last; ++row)
       if (s.one_set[row]) {
-        const auto& properties = s.contact_properties[s.set_of_faces[row]];
-        update_faces_of_row(s, row, measure, [&](int) -> const ContactProperties& { return properties; });
+        const auto& constants = s.contact_constants[s.set_of_faces[row]];
+        update_faces_of_row(s, row, measure, [&](int) -> const ContactConstants& { return constants; });
       } else {
-        update_faces_of_row(s, row, measure, [&](int point) { return contact_properties(s, row, point); });
+        update_faces_of_row(s, row, measure, [&](int point) { return contact_constants(s, row, point); });
       }
   }
 
@@ -104,28 +104,20 @@ class Step {
     Real edge;  ///< length of the edge that turns the frame, m; finite kinematics only
   };
 
-  static ContactPropertiesOf<Real> contact_properties(const StepState<Dim>& s, int row, int point) {
-    const ContactPropertyRow& p = s.contact_property_rows[row * Dim + point];
-    const ContactProperties& choices = s.contact_properties[s.set_of_faces[row]];
-    return {Real::load(p.normal_stiffness),
-            Real::load(p.shear_stiffness),
-            Real::load(p.tensile_strength),
-            Real::load(p.mode_1_energy),
-            Real::load(p.compressive_limit),
-            Real::load(p.hardening),
-            Real::load(p.cohesion),
-            Real::load(p.residual_cohesion),
-            Real::load(p.friction),
-            Real::load(p.residual_friction),
-            Real::load(p.mode_2_energy),
-            choices.behaviour,
-            choices.compression,
-            choices.coupled};
+  static ContactConstantsOf<Real> contact_constants(const StepState<Dim>& s, int row, int point) {
+    ContactConstantsOf<Real> c;
+    const ContactConstants& choices = s.contact_constants[s.set_of_faces[row]];
+    c.behaviour = choices.behaviour;
+    c.compression = choices.compression;
+    c.coupled = choices.coupled;
+    const auto& number = s.contact_constants_rows[row * Dim + point].number;
+    int i = 0;
+    for_each_number(c, [&](Real& value) { value = Real::load(number[i++]); });
+    return c;
   }
 
   static Frame frame_of(const StepState<Dim>& s, const FaceRow<Dim>& face) {
     Frame frame;
-    frame.normal = load(face.normal);
     for (int t = 0; t + 1 < Dim; ++t) frame.tangents[t] = load(face.tangent[t]);
     if constexpr (Dim == 2)
       if (s.kinematics == Kinematics::finite) {
@@ -136,15 +128,18 @@ class Step {
         const Vector edge = ((at(face.a[1]) - at(face.a[0])) + (at(face.b[1]) - at(face.b[0]))) * Real(0.5);
         frame.edge = norm(edge);
         const Vector t = edge * (1.0 / frame.edge);
-        frame.normal = {{t[1], -t[0]}};
         frame.tangents[0] = t;
       }
+    if constexpr (Dim == 2)
+      frame.normal = {{frame.tangents[0][1], -frame.tangents[0][0]}};
+    else
+      frame.normal = cross(frame.tangents[0], frame.tangents[1]);
     return frame;
   }
 
   /// Contact points of eight shared faces: jumps to tractions to forces, Eqs. (10)-(15).
-  template <class PropertiesOf>
-  static void update_faces_of_row(StepState<Dim>& s, int row, bool measure, PropertiesOf properties) {
+  template <class ConstantsOf>
+  static void update_faces_of_row(StepState<Dim>& s, int row, bool measure, ConstantsOf constants) {
     const FaceRow<Dim>& face = s.layout->faces[row];
     const Frame frame = frame_of(s, face);
     const Real area = Real::load(face.area);
@@ -156,7 +151,7 @@ class Step {
       const Real opening = dot(jump, frame.normal);
       Tangential<Dim, Real> tangential;
       for (int t = 0; t + 1 < Dim; ++t) tangential[t] = dot(jump, frame.tangents[t]);
-      const auto response = update_history(s, row, at, properties(point), opening, tangential, area);
+      const auto response = update_history(s, at, constants(point), opening, tangential);
       Vector force = frame.normal * (response.normal_traction * area);
       for (int t = 0; t + 1 < Dim; ++t) force += frame.tangents[t] * (response.shear_traction[t] * area);
       store(force, &s.contact_force[slot_of(at, 0)]);
@@ -179,11 +174,10 @@ class Step {
     }
   }
 
-  template <class Properties>
-  static ContactResponse<Dim, Real> update_history(StepState<Dim>& s, int face_row, int at,
-                                                   const Properties& properties, const Real& opening,
-                                                   const Tangential<Dim, Real>& tangential,
-                                                   const Real& area) {
+  template <class Constants>
+  static ContactResponse<Dim, Real> update_history(StepState<Dim>& s, int at, const Constants& constants,
+                                                   const Real& opening,
+                                                   const Tangential<Dim, Real>& tangential) {
     HistoryRow<Dim>& row = s.history[at];
     ContactHistory<Dim, Real> h;
     h.tension_damage = Real::load(row.tension_damage);
@@ -191,34 +185,25 @@ class Step {
     h.closure = Real::load(row.closure);
     for (int t = 0; t + 1 < Dim; ++t) h.slip[t] = Real::load(row.slip[t]);
     h.held_slip = Real::load(row.held_slip);
-    const auto response = update_contact<Dim>(properties, opening, tangential, h);
+    const auto response = update_contact<Dim>(constants, opening, tangential, h);
+    for (int t = 0; t + 1 < Dim; ++t) h.slip[t].store(row.slip[t]);
     h.held_slip.store(row.held_slip);
-    if (response.irreversible) {
+    if (response.damaged) {
       h.tension_damage.store(row.tension_damage);
       h.shear_damage.store(row.shear_damage);
       h.closure.store(row.closure);
-      for (int t = 0; t + 1 < Dim; ++t) h.slip[t].store(row.slip[t]);
-      add_losses(s, face_row, at, response, area);
+      add_losses(s.loss[at], response);
     }
     return response;
   }
 
-  static void add_losses(StepState<Dim>& s, int face_row, int at, const ContactResponse<Dim, Real>& response,
-                         const Real& area) {
-    LossRow& loss = s.loss[at];
+  static void add_losses(LossRow& loss, const ContactResponse<Dim, Real>& response) {
     const auto add = [](double* row, const Real& more) { (Real::load(row) + more).store(row); };
-    const auto& d = response.dissipated;
-    if (!any(response.slipped + d.total() > 0.0)) return;
     add(loss.slipped, response.slipped);
-    add(loss.tension, d.tension);
-    add(loss.shear, d.shear);
-    add(loss.friction, d.friction);
-    add(loss.compression, d.compression);
-    auto& dissipated = s.face_sums[face_row].dissipated;
-    dissipated.tension += sum(d.tension * area);
-    dissipated.shear += sum(d.shear * area);
-    dissipated.friction += sum(d.friction * area);
-    dissipated.compression += sum(d.compression * area);
+    add(loss.tension, response.dissipated.tension);
+    add(loss.shear, response.dissipated.shear);
+    add(loss.friction, response.dissipated.friction);
+    add(loss.compression, response.dissipated.compression);
   }
 
   /// Where the frame turns with the edge, so do the components of a jump. The forces that do the work of the

@@ -64,11 +64,11 @@ struct alignas(64) LossRow {
   double tension[kLanes], shear[kLanes], friction[kLanes], compression[kLanes];  ///< J/m²
 };
 
-/// Parameters of contact points that have each their own temperature, in the order of ContactPropertiesOf.
-struct alignas(64) ContactPropertyRow {
-  double normal_stiffness[kLanes], shear_stiffness[kLanes], tensile_strength[kLanes], mode_1_energy[kLanes],
-      compressive_limit[kLanes], hardening[kLanes], cohesion[kLanes], residual_cohesion[kLanes],
-      friction[kLanes], residual_friction[kLanes], mode_2_energy[kLanes];
+/// Numbers of ContactConstantsOf for contact points that have each their own temperature, one after the
+/// other.
+struct alignas(64) ContactConstantsRow {
+  static constexpr int kNumbers = 18;
+  double number[kNumbers][kLanes];
 };
 
 /// Gridpoints of one block that share one component of their motion.
@@ -98,10 +98,9 @@ struct BundleSums {
 };
 
 struct FaceSums {
-  double stored = 0.0;            ///< J
-  double applied = 0.0;           ///< sum of the magnitudes of contact forces, N
-  double jump = 0.0;              ///< largest, over the length of its face
-  ContactDissipation dissipated;  ///< since the start, J
+  double stored = 0.0;   ///< J
+  double applied = 0.0;  ///< sum of the magnitudes of contact forces, N
+  double jump = 0.0;     ///< largest, over the length of its face
 };
 
 /// All that moves, in the order of a Layout, with what a step reads.
@@ -127,12 +126,12 @@ struct StepState {
   FlatArray<LossRow> loss;
   FlatArray<Vec<Dim>> contact_force;  ///< on side a, by slot: gridpoints gather from it, N
   FlatArray<Vec<Dim>> turning_force;  ///< on both sides, by slot; finite kinematics only, N
-  std::vector<ContactProperties> contact_properties;
+  std::vector<ContactConstants> contact_constants;
   std::vector<int>
-      set_of_faces;  ///< by row of faces: into contact_properties; where lanes differ its choices only
+      set_of_faces;  ///< by row of faces: into contact_constants; where lanes differ its choices only
   std::vector<std::uint8_t> one_set;  ///< by row of faces: all its points share one set
-  FlatArray<ContactPropertyRow>
-      contact_property_rows;  ///< by row of contact points, if any row has no one set
+  FlatArray<ContactConstantsRow>
+      contact_constants_rows;  ///< by row of contact points, if any row has no one set
 
   std::vector<int> constraints_of_bundle;  ///< -1 where free
   std::vector<Constraints<Dim>> constraints;

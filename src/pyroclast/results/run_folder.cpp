@@ -77,6 +77,7 @@ RunFolder::RunFolder(fs::path path, bool overwrite, const Manifest& manifest) : 
   json["deck_sha256"] = sha256(manifest.deck_text);
   json["seed"] = manifest.seed;
   json["threads"] = manifest.threads;
+  json["instructions"] = manifest.instructions;
   json["started"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
   write_text_file(path_ / kManifest, json.dump(2) + "\n");
   write_text_file(path_ / "deck.toml", manifest.deck_text);

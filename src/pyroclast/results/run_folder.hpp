@@ -12,6 +12,7 @@ struct Manifest {
   std::string deck_text;  ///< as read, byte by byte
   std::uint64_t seed = 0;
   int threads = 1;
+  std::string instructions;  ///< instruction set of the step
   std::string command;
 };
 

@@ -1,0 +1,140 @@
+#include "pyroclast/mechanics/instruction_set.hpp"
+
+#include <tuple>
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "bodies.hpp"
+#include "model/small_specimen.hpp"
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/model/concrete_model.hpp"
+
+namespace pyroclast {
+namespace {
+
+using namespace bodies;
+
+/// All that a run leaves behind.
+template <int Dim>
+auto outcome(const Mechanics<Dim>& m) {
+  std::vector<double> numbers;
+  for (int c = 0; c < m.model().contact_count(); ++c) {
+    const auto state = m.contact(c);
+    numbers.insert(numbers.end(), {state.history.tension_damage, state.history.shear_damage,
+                                   state.history.closure, state.accumulated_slip, state.dissipated.total()});
+    for (double s : state.history.slip.c) numbers.push_back(s);
+  }
+  const EnergyLedger e = m.energy();
+  for (double part :
+       {e.loading, e.gravity, e.heat, e.zones, e.contacts, e.kinetic, e.local_damping, e.viscous_damping,
+        e.dissipated.total(), m.unbalanced_ratio(), m.largest_relative_jump()})
+    numbers.push_back(part);
+  return std::tuple(m.displacement(), m.velocity(), m.force(), numbers);
+}
+
+double damaged_share(const Mechanics<2>& m) {
+  int damaged = 0;
+  for (int c = 0; c < m.model().contact_count(); ++c) {
+    const auto h = m.contact_history(c);
+    damaged += h.tension_damage > 0.0 || h.shear_damage > 0.0;
+  }
+  return static_cast<double>(damaged) / m.model().contact_count();
+}
+
+/// A specimen pulled, sheared and pressed until it is cracked all over.
+Mechanics<2> cracked(const Model<2>& model, MechanicsParameters<2> parameters, InstructionSet set,
+                     bool own_temperatures) {
+  parameters.instructions = set;
+  parameters.gravity = {{0.0, -9.81}};
+  auto m = mechanics(model, mortar_contact(), parameters);
+  if (own_temperatures) {  // every zone and contact has properties of its own
+    BodyProperties p;
+    for (int z = 0; z < model.zone_count(); ++z)
+      p.zones.push_back(zone_properties<2>((20.0 + 0.001 * z) * 1e9, 0.2, 1e-6 * z));
+    for (int c = 0; c < model.contact_count(); ++c) {
+      ContactProperties weaker = mortar_contact();
+      weaker.tensile_strength *= 1.0 - 1e-4 * c;
+      weaker.cohesion *= 1.0 - 1e-4 * c;
+      p.contacts.push_back(weaker);
+      p.of_contact.push_back(c);
+    }
+    m.set_properties(p);
+  }
+  const auto drive = [&](const Vec<2>& velocity) {
+    for (int g = 0; g < model.gridpoint_count(); ++g)
+      for (int i : {0, 1})
+        if (const double y = model.position[g][1]; y == 0.0 || y == 0.05)
+          m.prescribe_velocity(g, i, y == 0.0 ? 0.0 : velocity[i]);
+    m.advance(400);
+  };
+  drive({{0.0, 5e-3}});
+  drive({{8e-3, 0.0}});
+  drive({{-4e-3, -12e-3}});
+  return m;
+}
+
+struct Variant {
+  const char* name;
+  Kinematics kinematics;
+  double viscous;
+  bool own_temperatures;
+};
+
+class EveryInstructionSet : public testing::TestWithParam<Variant> {};
+INSTANTIATE_TEST_SUITE_P(Variants, EveryInstructionSet,
+                         testing::Values(Variant{"small", Kinematics::small, 0.0, false},
+                                         Variant{"finite", Kinematics::finite, 0.0, false},
+                                         Variant{"viscous", Kinematics::small, 50.0, false},
+                                         Variant{"own", Kinematics::small, 0.0, true}),
+                         [](const auto& variant) { return std::string(variant.param.name); });
+
+// Promise: bit by bit the same, on any number of threads, in a body that is cracked all over.
+TEST_P(EveryInstructionSet, GivesTheSameBits) {
+  const Model<2> model = tessellated(150, 0.05, 0.05, 3);
+  auto parameters = quasi_static<2>();
+  parameters.damping_form = DampingForm::combined;
+  parameters.kinematics = GetParam().kinematics;
+  parameters.viscous_damping = GetParam().viscous;
+  const auto run = [&](InstructionSet set, int threads) {
+    omp_set_num_threads(threads);
+    const auto m = cracked(model, parameters, set, GetParam().own_temperatures);
+    EXPECT_GT(damaged_share(m), 0.3);
+    omp_set_num_threads(1);
+    return outcome(m);
+  };
+  const auto expected = run(InstructionSet::portable, 1);
+  for (InstructionSet set : usable_instruction_sets())
+    for (int threads : {1, 2, 3}) EXPECT_TRUE(run(set, threads) == expected) << name(set) << ' ' << threads;
+}
+
+TEST(EveryInstructionSet, GivesTheSameBitsInThreeDimensions) {
+  const Model<3> model = five_tetrahedra();
+  const auto run = [&](InstructionSet set) {
+    auto parameters = quasi_static<3>();
+    parameters.instructions = set;
+    auto m = mechanics(model, mortar_contact(), parameters);
+    for (int g = 0; g < model.gridpoint_count(); ++g)
+      if (const double z = model.position[g][2]; z == 0.0 || z == 1.0)
+        for (int i : {0, 1, 2}) m.prescribe_velocity(g, i, z == 0.0 ? 0.0 : 2.0 * (i - 0.5));
+    m.advance(500);
+    EXPECT_GT(m.energy().dissipated.total(), 0.0);
+    return outcome(m);
+  };
+  const auto expected = run(InstructionSet::portable);
+  for (InstructionSet set : usable_instruction_sets()) EXPECT_TRUE(run(set) == expected) << name(set);
+}
+
+TEST(InstructionSets, OneThatIsNotThereIsRefusedWithThoseThatAre) {
+  try {
+    instruction_set("sse9");
+    FAIL() << "was taken";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("\"sse9\""), std::string::npos);
+    EXPECT_NE(std::string(e.what()).find("portable"), std::string::npos);
+  }
+  for (InstructionSet set : usable_instruction_sets()) EXPECT_EQ(instruction_set(name(set)), set);
+}
+
+}  // namespace
+}  // namespace pyroclast
