@@ -114,9 +114,10 @@ TEST(EveryInstructionSet, GivesTheSameBitsInThreeDimensions) {
     auto parameters = quasi_static<3>();
     parameters.instructions = set;
     auto m = mechanics(model, mortar_contact(), parameters);
+    // the inner one of the five, the last, is torn out of the others
+    const double speed = 1e-4 / (500 * m.time_step());
     for (int g = 0; g < model.gridpoint_count(); ++g)
-      if (const double z = model.position[g][2]; z == 0.0 || z == 1.0)
-        for (int i : {0, 1, 2}) m.prescribe_velocity(g, i, z == 0.0 ? 0.0 : 2.0 * (i - 0.5));
+      for (int i : {0, 1, 2}) m.prescribe_velocity(g, i, g / 4 == 4 ? speed * (i - 0.5) : 0.0);
     m.advance(500);
     EXPECT_GT(m.energy().dissipated.total(), 0.0);
     return outcome(m);
