@@ -1,10 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
 #include <new>
 #include <type_traits>
+#include <vector>
+
+#include <sys/mman.h>
 
 namespace pyroclast {
 
@@ -19,15 +23,25 @@ class FlatArray {
  public:
   FlatArray() = default;
   explicit FlatArray(std::size_t size) : size_(size) {
-    const std::size_t bytes = (size * sizeof(T) + kPage - 1) / kPage * kPage;
-    if (bytes == 0) return;
-    data_.reset(static_cast<T*>(std::aligned_alloc(kPage, bytes)));
+    const std::size_t needed = size * sizeof(T);
+    if (needed == 0) return;
+    const std::size_t alignment = needed < kHugePage ? kPage : kHugePage;
+    const std::size_t bytes = (needed + alignment - 1) / alignment * alignment;
+    data_.reset(static_cast<T*>(std::aligned_alloc(alignment, bytes)));
     if (!data_) throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+    // gathers all over a large array would miss most translations of small pages; a refusal costs only time
+    if (alignment == kHugePage) madvise(data_.get(), bytes, MADV_HUGEPAGE);
+#endif
     char* const begin = reinterpret_cast<char*>(data_.get());
     const auto pages = static_cast<std::ptrdiff_t>(bytes / kPage);
 #pragma omp parallel for schedule(static)
     for (std::ptrdiff_t page = 0; page < pages; ++page)
       for (std::size_t i = 0; i < kPage; ++i) begin[static_cast<std::size_t>(page) * kPage + i] = 0;
+  }
+
+  explicit FlatArray(const std::vector<T>& values) : FlatArray(values.size()) {
+    std::copy(values.begin(), values.end(), begin());
   }
 
   std::size_t size() const {
@@ -62,7 +76,7 @@ class FlatArray {
   }
 
  private:
-  static constexpr std::size_t kPage = 4096;
+  static constexpr std::size_t kPage = 4096, kHugePage = std::size_t{2} << 20;
   struct Free {
     void operator()(T* p) const { std::free(p); }
   };

@@ -55,7 +55,8 @@ StepFunctions<Dim> step_functions(InstructionSet set) {
   if (set == InstructionSet::avx2) return avx2_step<Dim>();
 #endif
   (void)set;
-  return {Step<Dim, Portable>::update_faces, Step<Dim, Portable>::move_bundles};
+  using S = Step<Dim, Portable>;
+  return {S::update_faces, S::move_bundles, S::sum_stiffness};
 }
 
 template StepFunctions<2> step_functions(InstructionSet);

@@ -136,6 +136,7 @@ class LayoutBuilder {
     }
     for (const auto& [interface, group] : waiting)
       if (!group.empty()) add_faces(group);
+    layout_.faces = FlatArray<FaceRow<Dim>>(faces_);
     for (int r = 0; r < layout_.face_rows(); ++r)
       for (int f : faces_of_row_[r])
         for (int g : {model_.contacts[f * Dim].a, model_.contacts[f * Dim].b}) {
@@ -155,7 +156,7 @@ class LayoutBuilder {
     for (int g = 0; g < model_.gridpoint_count(); ++g) gridpoint[layout_.gridpoint_slot[g]] = g;
     layout_.contacts_of_row.resize(layout_.gridpoint_rows);
     for (int row = 0; row < layout_.gridpoint_rows; ++row) {
-      const int begin = static_cast<int>(layout_.acting.size());
+      const int begin = static_cast<int>(acting_.size());
       int most = 0;
       for (int lane = 0; lane < kLanes; ++lane)
         if (const int g = gridpoint[slot_of(row, lane)]; g >= 0)
@@ -170,10 +171,11 @@ class LayoutBuilder {
           acting.contact[lane] = layout_.contact_slot[side / 2];
           if (side % 2 == 1) acting.side_b |= 1U << lane;
         }
-        layout_.acting.push_back(acting);
+        acting_.push_back(acting);
       }
-      layout_.contacts_of_row[row] = {begin, static_cast<int>(layout_.acting.size())};
+      layout_.contacts_of_row[row] = {begin, static_cast<int>(acting_.size())};
     }
+    layout_.acting = FlatArray<ActingContacts>(acting_);
   }
 
  private:
@@ -253,7 +255,7 @@ class LayoutBuilder {
   }
 
   void add_faces(const std::vector<int>& faces) {
-    const int row_index = layout_.face_rows();
+    const int row_index = static_cast<int>(faces_.size());
     FaceRow<Dim> row{};
     for (int lane = 0; lane < kLanes; ++lane) {
       const bool idle = lane >= static_cast<int>(faces.size());
@@ -269,14 +271,16 @@ class LayoutBuilder {
         if (!idle) layout_.contact_slot[f * Dim + point] = slot_of(row_index * Dim + point, lane);
       }
     }
-    layout_.faces.push_back(row);
+    faces_.push_back(row);
     faces_of_row_.push_back(faces);
   }
 
   const Model<Dim>& model_;
   Layout<Dim>& layout_;
   std::map<std::pair<int, std::vector<std::array<int, Dim + 1>>>, int> shape_;
+  std::vector<FaceRow<Dim>> faces_;
   std::vector<std::vector<int>> faces_of_row_;
+  std::vector<ActingContacts> acting_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "pyroclast/base/flat_array.hpp"
 #include "pyroclast/base/lanes.hpp"
 #include "pyroclast/model/model.hpp"
 
@@ -72,9 +73,9 @@ struct Layout {
   std::vector<Bundle> bundles;
   std::vector<std::vector<std::array<int, Dim + 1>>> shapes;  ///< zones of a block, as its own gridpoints
   std::vector<ZoneCorners<Dim>> spread_zones;                 ///< by row of zones of spread blocks
-  std::vector<FaceRow<Dim>> faces;
+  FlatArray<FaceRow<Dim>> faces;
   std::vector<ContactsOfRow> contacts_of_row;  ///< of each row of gridpoints
-  std::vector<ActingContacts> acting;
+  FlatArray<ActingContacts> acting;
 
   int gridpoint_rows = 0;
   int zone_rows = 0;

@@ -12,6 +12,16 @@
 
 namespace pyroclast {
 
+namespace {
+
+/// Working memory of one thread for a step.
+template <int Dim>
+FlatArray<double> scratch_for(const Layout<Dim>& layout) {
+  return FlatArray<double>(2 * Dim * kLanes * static_cast<std::size_t>(layout.most_rows));
+}
+
+}  // namespace
+
 template <int Dim>
 BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
                             std::vector<ContactProperties> interfaces) {
@@ -56,6 +66,7 @@ void Mechanics<Dim>::place_model(const std::vector<double>& densities) {
   s.position = RowVectors<Dim>(rows);
   s.velocity = RowVectors<Dim>(rows);
   s.force = RowVectors<Dim>(rows);
+  s.stiffness = RowVectors<Dim>(rows);
   s.displacement = FlatArray<Vec<Dim>>(static_cast<std::size_t>(rows) * kLanes);
   s.step_over_mass = FlatArray<double>(static_cast<std::size_t>(rows) * kLanes);
   const auto contact_slots = static_cast<std::size_t>(layout_->contact_rows()) * kLanes;
@@ -154,40 +165,13 @@ void Mechanics<Dim>::place_contact_properties() {
 /// safe for any shape.
 template <int Dim>
 void Mechanics<Dim>::compute_stiffness() {
-  std::vector<Vec<Dim>> row(model_.position.size());
-  for (std::size_t z = 0; z < model_.zones.size(); ++z) {
-    std::array<Vec<Dim>, Dim + 1> g{};
-    for (int n = 0; n < Dim; ++n) {
-      g[n] = geometry_.gradient[z][n];
-      g[Dim] -= g[n];
-    }
-    const auto& p = properties_.zones[z];
-    for (int m = 0; m <= Dim; ++m)
-      for (int n = 0; n <= Dim; ++n)
-        for (int i = 0; i < Dim; ++i)
-          for (int j = 0; j < Dim; ++j) {
-            double k = p.lambda * g[m][i] * g[n][j] + p.mu * g[m][j] * g[n][i];
-            if (i == j) k += p.mu * dot(g[m], g[n]);
-            row[model_.zones[z][m]][i] += std::abs(k) * geometry_.volume[z];
-          }
+  FlatArray<double> scratch = scratch_for(*layout_);
+  step_.sum_stiffness(state_, scratch.data());
+  stiffness_.resize(model_.position.size());
+  for (int g = 0; g < model_.gridpoint_count(); ++g) {
+    const Vec<Dim> row = state_.stiffness[layout_->gridpoint_slot[g]];
+    stiffness_[g] = *std::max_element(row.c.begin(), row.c.end());
   }
-  for (std::size_t index = 0; index < model_.contacts.size(); ++index) {
-    const auto& c = model_.contacts[index];
-    const auto& p = properties_.contacts[properties_.of_contact[index]];
-    for (int i = 0; i < Dim; ++i) {
-      double sum = 0.0;
-      for (int j = 0; j < Dim; ++j) {
-        const double nn = c.normal[i] * c.normal[j];
-        sum += std::abs(p.normal_stiffness * nn + p.shear_stiffness * ((i == j ? 1.0 : 0.0) - nn));
-      }
-      // once for the gridpoint itself, once for the one across
-      row[c.a][i] += 2.0 * sum * c.area;
-      row[c.b][i] += 2.0 * sum * c.area;
-    }
-  }
-  stiffness_.resize(row.size());
-  for (std::size_t g = 0; g < row.size(); ++g)
-    stiffness_[g] = *std::max_element(row[g].c.begin(), row[g].c.end());
 }
 
 template <int Dim>
@@ -373,7 +357,7 @@ void Mechanics<Dim>::sweep(int steps, Pass pass) {
   const bool measure = pass != Pass::move;
 #pragma omp parallel num_threads(threads)
   {
-    FlatArray<double> scratch(2 * Dim * kLanes * static_cast<std::size_t>(layout_->most_rows));
+    FlatArray<double> scratch = scratch_for(*layout_);
     const Share& share = shares_[omp_get_thread_num()];
     for (int i = 0; i < steps; ++i) {
       for (const auto& faces : share.crossing) step_.update_faces(state_, faces.first, faces.last, measure);

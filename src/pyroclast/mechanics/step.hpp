@@ -33,6 +33,30 @@ class Step {
     }
   }
 
+  /// Sums of |stiffness| over the rows of the assembled matrix, zones and contacts, N/m.
+  [[gnu::flatten]] static void sum_stiffness(StepState<Dim>& s, double* memory) {
+    for (int row = 0; row < s.layout->face_rows(); ++row) {
+      const auto& face = s.layout->faces[row];
+      const Real area = Real::load(face.area);
+      const Frame frame = frame_of(s, face);
+      for (int point = 0; point < Dim; ++point)
+        store(s.one_set[row] ? contact_stiffness(s.contact_constants[s.set_of_faces[row]], frame.normal, area)
+                             : contact_stiffness(contact_constants(s, row, point), frame.normal, area),
+              &s.contact_force[slot_of(row * Dim + point, 0)]);
+    }
+    for (int index = 0; index < static_cast<int>(s.layout->bundles.size()); ++index) {
+      const Bundle& bundle = s.layout->bundles[index];
+      const Scratch scratch = scratch_of(bundle, memory);
+      for (int i = 0; i < bundle.rows; ++i)
+        store(contact_sum<false>(s, bundle.first_row + i), scratch.sum[i].c);
+      add_over_zones(s, index, scratch, [&](const Corners& x, const Corners&, const auto& p, const auto&) {
+        return zone_stiffness(s, x, p);
+      });
+      for (int i = 0; i < bundle.rows; ++i)
+        store(load(scratch.sum[i].c), s.stiffness.row(bundle.first_row + i).c);
+    }
+  }
+
  private:
   using Real = Lanes<Set>;
   using Vector = Vec<Dim, Real>;
@@ -215,13 +239,32 @@ class Step {
     store(-force, &s.turning_force[slot_of(row * Dim + 1, 0)]);
   }
 
+  /// Once for the gridpoint itself, once for the one across.
+  template <class Constants>
+  static Vector contact_stiffness(const Constants& c, const Vector& normal, const Real& area) {
+    Vector row;
+    for (int i = 0; i < Dim; ++i) {
+      Real sum = 0.0;
+      for (int j = 0; j < Dim; ++j) {
+        const Real nn = normal[i] * normal[j];
+        sum += abs(c.normal_stiffness * nn + c.shear_stiffness * ((i == j ? 1.0 : 0.0) - nn));
+      }
+      row[i] = 2.0 * sum * area;
+    }
+    return row;
+  }
+
   // Bundles
 
-  /// Displacements and sums of forces of a bundle while it is in hand.
+  /// Displacements and sums over zones and contacts of a bundle while it is in hand.
   struct Scratch {
     VectorRow<Dim>* displacement;
-    VectorRow<Dim>* force;
+    VectorRow<Dim>* sum;
   };
+  static Scratch scratch_of(const Bundle& bundle, double* memory) {
+    auto* rows = reinterpret_cast<VectorRow<Dim>*>(memory);
+    return {rows, rows + bundle.rows};
+  }
 
   struct Sums {
     Real stored = 0.0, kinetic = 0.0, applied = 0.0, unbalanced = 0.0;
@@ -232,19 +275,19 @@ class Step {
   template <Pass kPass>
   [[gnu::flatten]] static void move_bundle(StepState<Dim>& s, int index, double* memory) {
     const Bundle& bundle = s.layout->bundles[index];
-    auto* rows = reinterpret_cast<VectorRow<Dim>*>(memory);
-    const Scratch scratch{rows, rows + bundle.rows};
+    const Scratch scratch = scratch_of(bundle, memory);
     constexpr bool kMeasure = kPass != Pass::move;
     Sums sums;
     for (int i = 0; i < bundle.rows; ++i) {
       const int row = bundle.first_row + i;
       store(load(&s.displacement[slot_of(row, 0)]), scratch.displacement[i].c);
-      store(contact_forces(s, row), scratch.force[i].c);
+      store(contact_sum<true>(s, row), scratch.sum[i].c);
     }
-    if (bundle.kind == BundleKind::alike)
-      add_forces_of_alike_zones<kMeasure>(s, index, bundle, scratch, sums);
-    else
-      add_forces_of_spread_zones<kMeasure>(s, index, bundle, scratch, sums);
+    const Real density = Real::load(&s.density[slot_of(index, 0)]);
+    add_over_zones(s, index, scratch,
+                   [&](const Corners& x, const Corners& u, const auto& p, const auto& used) {
+                     return zone_forces<kMeasure>(s, x, u, p, density, used, sums);
+                   });
     if (s.constraints_of_bundle[index] >= 0) {
       auto& constraints = s.constraints[s.constraints_of_bundle[index]];
       load_bundle<kMeasure>(s, bundle, constraints, scratch, sums);
@@ -253,6 +296,25 @@ class Step {
       for (int i = 0; i < bundle.rows; ++i) move_row<kPass, false>(s, bundle, i, nullptr, scratch, sums);
     }
     keep<kPass>(s, index, sums);
+  }
+
+  /// A sum over the contacts of a row, of what their two sides feel: with opposite signs, or alike.
+  template <bool kOpposite>
+  static Vector contact_sum(const StepState<Dim>& s, int row) {
+    const ContactsOfRow range = s.layout->contacts_of_row[row];
+    Vector total{};
+    for (int k = range.begin; k < range.end; ++k) {
+      const ActingContacts& acting = s.layout->acting[k];
+      const Vector force = gather(s.contact_force, acting.contact);
+      if constexpr (kOpposite) {
+        const auto side_b = Real::Truth::from_bits(acting.side_b);
+        for (int i = 0; i < Dim; ++i) total[i] += select(side_b, -force[i], force[i]);
+        if (s.kinematics == Kinematics::finite) total += gather(s.turning_force, acting.contact);
+      } else {
+        total += force;
+      }
+    }
+    return total;
   }
 
   template <Pass kPass>
@@ -277,38 +339,26 @@ class Step {
     }
   }
 
-  static Vector contact_forces(const StepState<Dim>& s, int row) {
-    const ContactsOfRow range = s.layout->contacts_of_row[row];
-    Vector total{};
-    for (int k = range.begin; k < range.end; ++k) {
-      const ActingContacts& acting = s.layout->acting[k];
-      const Vector force = gather(s.contact_force, acting.contact);
-      const auto side_b = Real::Truth::from_bits(acting.side_b);
-      for (int i = 0; i < Dim; ++i) total[i] += select(side_b, -force[i], force[i]);
-      if (s.kinematics == Kinematics::finite) total += gather(s.turning_force, acting.contact);
-    }
-    return total;
-  }
-
   static ZonePropertiesOf<Real> zone_properties(const StepState<Dim>& s, int index, int zone_row) {
     const ZonePropertyRow& row = s.zone_properties[s.by_bundle ? index : zone_row];
     return {Real::load(row.lambda), Real::load(row.mu), Real::load(row.thermal_strain)};
   }
 
   /// Forces of eight zones on their gridpoints: internal, Eqs. (4) and (5), and weight.
-  /// \return their volumes, m³
-  static Real zone_forces(const StepState<Dim>& s, const Corners& x, const Corners& u,
-                          const ZonePropertiesOf<Real>& properties, const Real& density, Corners& force,
-                          Real& stored) {
+  /// \param used  lanes that are not idle
+  template <bool kMeasure>
+  static Corners zone_forces(const StepState<Dim>& s, const Corners& x, const Corners& u,
+                             const ZonePropertiesOf<Real>& properties, const Real& density,
+                             const typename Real::Truth& used, Sums& sums) {
     std::array<Vector, Dim> gradient;
     const Real volume = shape_gradients(x, gradient) * s.thickness;
     Rotation<Real> rotation;
     const auto strain =
         mechanical_strain<Dim>(gradient, u, properties.thermal_strain, s.kinematics, rotation);
     const auto stress = zone_stress<Dim>(properties, strain);
-    stored = energy_density<Dim>(stress, strain) * volume;
     SymmetricTensor<Dim, Real> whole;  // stress times volume
     for (std::size_t i = 0; i < stress.size(); ++i) whole[i] = stress[i] * volume;
+    Corners force;
     for (int n = 0; n < Dim; ++n) {
       Vector f = apply<Dim>(whole, gradient[n]);
       if constexpr (Dim == 2)
@@ -316,79 +366,93 @@ class Step {
       force[n] = -f;
       force[Dim] = n == 0 ? f : force[Dim] + f;
     }
-    (void)density;
-    return volume;
-  }
-
-  template <bool kMeasure>
-  static void measure_zones(const StepState<Dim>& s, const Corners& force, const Real& stored,
-                            const Real& mass, Sums& sums, const typename Real::Truth& used) {
+    const Real mass = density * volume;
     if constexpr (kMeasure) {
       Real applied = mass * norm(s.gravity);
       for (const auto& f : force) applied += norm(f);
-      sums.stored += select(used, stored, 0.0);
-      sums.applied += select(used, applied, 0.0);
+      sums.stored += select(used, energy_density<Dim>(stress, strain) * volume, Real(0.0));
+      sums.applied += select(used, applied, Real(0.0));
     }
-  }
-
-  static void add_weight(const StepState<Dim>& s, const Real& mass, Corners& force) {
     const Real share = mass * (1.0 / (Dim + 1));
     for (int i = 0; i < Dim; ++i)
       if (s.gravity[i] != 0.0)
         for (auto& f : force) f[i] += share * s.gravity[i];
+    return force;
   }
 
-  template <bool kMeasure>
-  static void add_forces_of_alike_zones(StepState<Dim>& s, int index, const Bundle& bundle,
-                                        const Scratch& scratch, Sums& sums) {
+  /// Sums of |stiffness| over the rows of eight zones' matrices, N/m.
+  static Corners zone_stiffness(const StepState<Dim>& s, const Corners& x, const ZonePropertiesOf<Real>& p) {
+    std::array<Vector, Dim> gradient;
+    const Real volume = shape_gradients(x, gradient) * s.thickness;
+    Corners g, row;
+    for (int n = 0; n < Dim; ++n) {
+      g[n] = gradient[n];
+      g[Dim] = n == 0 ? -gradient[n] : g[Dim] - gradient[n];
+    }
+    for (int m = 0; m <= Dim; ++m)
+      for (int i = 0; i < Dim; ++i) {
+        Real sum = 0.0;
+        for (int n = 0; n <= Dim; ++n)
+          for (int j = 0; j < Dim; ++j) {
+            Real k = p.lambda * g[m][i] * g[n][j] + p.mu * g[m][j] * g[n][i];
+            if (i == j) k += p.mu * dot(g[m], g[n]);
+            sum += abs(k);
+          }
+        row[m][i] = sum * volume;
+      }
+    return row;
+  }
+
+  /// Adds what `zone(x, u, properties, used)` gives for the corners of zones, for all of a bundle.
+  template <class Zone>
+  static void add_over_zones(const StepState<Dim>& s, int index, const Scratch& scratch, Zone zone) {
+    const Bundle& bundle = s.layout->bundles[index];
+    if (bundle.kind == BundleKind::alike)
+      add_over_alike_zones(s, index, bundle, scratch, zone);
+    else
+      add_over_spread_zones(s, index, bundle, scratch, zone);
+  }
+
+  template <class Zone>
+  static void add_over_alike_zones(const StepState<Dim>& s, int index, const Bundle& bundle,
+                                   const Scratch& scratch, Zone zone) {
     const auto& zones = s.layout->shapes[bundle.shape];
-    const Real density = Real::load(&s.density[slot_of(index, 0)]);
-    const auto everyone = Real::Truth::from_bits(0xFF);
     for (int z = 0; z < bundle.zones; ++z) {
       const auto& corner = zones[z];
-      Corners x, u, force;
+      Corners x, u;
       for (int n = 0; n <= Dim; ++n) {
         x[n] = load(s.position.row(bundle.first_row + corner[n]).c);
         u[n] = load(scratch.displacement[corner[n]].c);
       }
-      Real stored;
-      const Real volume =
-          zone_forces(s, x, u, zone_properties(s, index, bundle.first_zone_row + z), density, force, stored);
-      const Real mass = density * volume;
-      measure_zones<kMeasure>(s, force, stored, mass, sums, everyone);
-      add_weight(s, mass, force);
+      const Corners more =
+          zone(x, u, zone_properties(s, index, bundle.first_zone_row + z), Real::Truth::from_bits(0xFF));
       for (int n = 0; n <= Dim; ++n) {
-        auto& sum_of_forces = scratch.force[corner[n]].c;
-        store(load(sum_of_forces) + force[n], sum_of_forces);
+        auto& total = scratch.sum[corner[n]].c;
+        store(load(total) + more[n], total);
       }
     }
   }
 
-  template <bool kMeasure>
-  static void add_forces_of_spread_zones(StepState<Dim>& s, int index, const Bundle& bundle,
-                                         const Scratch& scratch, Sums& sums) {
-    const Real density = Real::load(&s.density[slot_of(index, 0)]);
+  template <class Zone>
+  static void add_over_spread_zones(const StepState<Dim>& s, int index, const Bundle& bundle,
+                                    const Scratch& scratch, Zone zone) {
     for (int z = 0; z < bundle.zone_rows(); ++z) {
       const int used = bundle.zones - kLanes * z < kLanes ? bundle.zones - kLanes * z : kLanes;
       const auto& corner = s.layout->spread_zones[bundle.first_spread_row + z].slot;
-      Corners x, u, force;
+      Corners x, u;
       for (int n = 0; n <= Dim; ++n) {
         x[n] = gather(s.position, corner[n]);
         u[n] = gather(s.displacement, corner[n]);
       }
-      Real stored;
-      const Real volume =
-          zone_forces(s, x, u, zone_properties(s, index, bundle.first_zone_row + z), density, force, stored);
-      const Real mass = density * volume;
-      measure_zones<kMeasure>(s, force, stored, mass, sums, Real::Truth::from_bits((1U << used) - 1U));
-      add_weight(s, mass, force);
+      const Corners more = zone(x, u, zone_properties(s, index, bundle.first_zone_row + z),
+                                Real::Truth::from_bits((1U << used) - 1U));
       // one lane after the other: zones of a row may share gridpoints
       for (int n = 0; n <= Dim; ++n) {
-        alignas(64) double f[Dim][kLanes];
-        store(force[n], f);
+        alignas(64) double c[Dim][kLanes];
+        store(more[n], c);
         for (int lane = 0; lane < used; ++lane) {
           const int slot = corner[n][lane] - slot_of(bundle.first_row, 0);
-          for (int i = 0; i < Dim; ++i) scratch.force[slot / kLanes].c[i][slot % kLanes] += f[i][lane];
+          for (int i = 0; i < Dim; ++i) scratch.sum[slot / kLanes].c[i][slot % kLanes] += c[i][lane];
         }
       }
     }
@@ -400,13 +464,13 @@ class Step {
                           const Scratch& scratch, Sums& sums) {
     for (int i = 0; i < bundle.rows; ++i) {
       const Vector applied = load(constraints.applied.row(i).c);
-      store(load(scratch.force[i].c) + applied, scratch.force[i].c);
+      store(load(scratch.sum[i].c) + applied, scratch.sum[i].c);
       if constexpr (kMeasure) sums.applied += norm(applied);
     }
     for (const Tie& tie : constraints.ties) {
       const auto force = [&](int slot) -> double& {
         const int own = slot - slot_of(bundle.first_row, 0);
-        return scratch.force[own / kLanes].c[tie.component][own % kLanes];
+        return scratch.sum[own / kLanes].c[tie.component][own % kLanes];
       };
       double total = 0.0, mass = 0.0;
       for (int slot : tie.slots) {
@@ -428,7 +492,7 @@ class Step {
                        const Scratch& scratch, Sums& sums) {
     constexpr bool kMeasure = kPass != Pass::move;
     const int row = bundle.first_row + i;
-    const Vector force = load(scratch.force[i].c);
+    const Vector force = load(scratch.sum[i].c);
     if constexpr (kMeasure) {
       Vector free = force;
       if constexpr (kConstrained)

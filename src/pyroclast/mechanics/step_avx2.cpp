@@ -5,7 +5,8 @@ namespace pyroclast {
 
 template <int Dim>
 StepFunctions<Dim> avx2_step() {
-  return {Step<Dim, Avx2>::update_faces, Step<Dim, Avx2>::move_bundles};
+  using S = Step<Dim, Avx2>;
+  return {S::update_faces, S::move_bundles, S::sum_stiffness};
 }
 
 template StepFunctions<2> avx2_step<2>();

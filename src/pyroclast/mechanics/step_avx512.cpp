@@ -5,7 +5,8 @@ namespace pyroclast {
 
 template <int Dim>
 StepFunctions<Dim> avx512_step() {
-  return {Step<Dim, Avx512>::update_faces, Step<Dim, Avx512>::move_bundles};
+  using S = Step<Dim, Avx512>;
+  return {S::update_faces, S::move_bundles, S::sum_stiffness};
 }
 
 template StepFunctions<2> avx512_step<2>();

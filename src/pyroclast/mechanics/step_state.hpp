@@ -115,9 +115,10 @@ struct StepState {
   double thickness = 1.0;  ///< m
 
   RowVectors<Dim> position, velocity;
-  RowVectors<Dim> force;                       ///< sum at the last step, N
-  FlatArray<Vec<Dim>> displacement;            ///< by slot: faces gather from it
-  FlatArray<double> step_over_mass;            ///< by slot, s/kg; where idle any finite number
+  RowVectors<Dim> force;             ///< sum at the last step, N
+  RowVectors<Dim> stiffness;         ///< sum of |stiffness| over each row of the assembled matrix, N/m
+  FlatArray<Vec<Dim>> displacement;  ///< by slot: faces gather from it
+  FlatArray<double> step_over_mass;  ///< by slot, s/kg; where idle any finite number
   FlatArray<ZonePropertyRow> zone_properties;  ///< by row of zones, or by bundle
   bool by_bundle = false;                      ///< every zone of a block has the same properties
   FlatArray<double> density;                   ///< by bundle and lane, kg/m³
@@ -155,6 +156,8 @@ struct StepFunctions {
   /// Sums the forces of bundles and moves their gridpoints.
   /// \param scratch  2 Dim kLanes numbers for every row of the largest bundle, aligned to 64 bytes
   void (*move_bundles)(StepState<Dim>&, int first, int last, Pass, double* scratch);
+  /// Works out `StepState::stiffness`; leaves the contact forces unset until faces are updated.
+  void (*sum_stiffness)(StepState<Dim>&, double* scratch);
 };
 
 }  // namespace pyroclast
