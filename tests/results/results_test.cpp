@@ -145,7 +145,7 @@ TEST_F(Results, FieldOfHeatIsAFrameOfTheBlocksOnly) {
 }
 
 TEST_F(Results, ARunFolderIsRefusedWhenItExistsAndEmptiedOnlyIfItHoldsARun) {
-  const Manifest manifest{"deck.toml", "title = 1", 1, 1, "pyroclast"};
+  const Manifest manifest{"deck.toml", "title = 1", 1, 1, "portable", "pyroclast"};
   const RunFolder first(folder_ / "run", false, manifest);
   EXPECT_EQ(content(folder_ / "run" / "deck.toml"), "title = 1");
   EXPECT_THROW(RunFolder::check(folder_ / "run", false), Error);

@@ -159,11 +159,11 @@ using ContactDissipation = ContactDissipationOf<double>;
 
 template <int Dim, class Real = double>
 struct ContactResponse {
-  Real normal_traction;                   ///< sigma, Pa, tension positive
-  Tangential<Dim, Real> shear_traction;   ///< tau, Pa
-  Real stored;                            ///< elastic energy now held, J/m²
-  Real slipped;                           ///< length of the slip in this update, m
-  ContactDissipationOf<Real> dissipated;  ///< in this update
+  Real normal_traction = 0.0;              ///< sigma, Pa, tension positive
+  Tangential<Dim, Real> shear_traction{};  ///< tau, Pa
+  Real stored = 0.0;                       ///< elastic energy now held, J/m²
+  Real slipped = 0.0;                      ///< length of the slip in this update, m
+  ContactDissipationOf<Real> dissipated;   ///< in this update
   bool damaged =
       false;  ///< in any lane the history changed beyond `slip` and `held_slip`, or energy was lost
 };
@@ -325,7 +325,6 @@ ContactResponse<Dim, Real> update_contact(const ContactConstantsOf<Number>& cons
                                           const Tangential<Dim, Real>& tangential,
                                           ContactHistory<Dim, Real>& history) {
   ContactResponse<Dim, Real> response;
-  response.slipped = 0.0;
   if (constants.behaviour == ContactBehaviour::elastic) {
     const auto k_n = constants.normal_stiffness;
     const auto k_s = constants.shear_stiffness;
