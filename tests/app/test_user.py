@@ -251,6 +251,21 @@ class Running(UserTest):
         self.assertEqual((self.folder / "out1/history.csv").read_bytes(),
                          (self.folder / "out2/history.csv").read_bytes())
 
+    def test_the_same_deck_gives_the_same_history_with_any_instruction_set(self):
+        deck = self.write(small_deck())
+        for name, choice in (("best", []), ("plain", ["--instructions", "portable"])):
+            run = self.pyroclast("run", deck, "--out", name, "--no-figures", *choice)
+            self.assertEqual(run.returncode, 0)
+            chosen = json.loads((self.folder / name / "manifest.json").read_text())["instructions"]
+            self.assertIn(f"{chosen} instructions", run.stdout)
+        self.assertEqual(chosen, "portable")
+        self.assertEqual((self.folder / "best/history.csv").read_bytes(),
+                         (self.folder / "plain/history.csv").read_bytes())
+        wrong = self.pyroclast("run", deck, "--out", "wrong", "--instructions", "sse9")
+        self.assertEqual(wrong.returncode, 1)
+        self.assertIn('"sse9"', wrong.stderr)
+        self.assertFalse((self.folder / "wrong").exists())
+
     def test_an_existing_folder_is_refused_and_replaced_only_when_told_so(self):
         deck = self.write(small_deck(stop_strain="stop_strain = 2e-5"))
         self.assertEqual(self.pyroclast("run", deck, "--out", "out", "--no-figures").returncode, 0)
