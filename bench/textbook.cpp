@@ -194,8 +194,7 @@ void update_normal(const Law& law, double opening, ContactPoint& c) {
   const double stretch = opening + c.closure;
   if (c.tension_damage < 1.0) {
     const double softening = law.ultimate_opening - law.elastic_opening;
-    c.tension_damage =
-        std::min(1.0, std::max(c.tension_damage, (stretch - law.elastic_opening) / softening));
+    c.tension_damage = std::min(1.0, std::max(c.tension_damage, (stretch - law.elastic_opening) / softening));
     const double furthest = law.elastic_opening + c.tension_damage * softening;
     c.normal_traction = (1.0 - c.tension_damage) * p.tensile_strength / furthest * stretch;
   } else {
@@ -217,9 +216,8 @@ void update_shear(const Law& law, double opening, double tangential_jump, Contac
   }
   const double cohesion = p.coupled ? (1.0 - c.tension_damage) * p.cohesion : p.cohesion;
   const double peak = std::max(0.0, cohesion - c.normal_traction * p.friction);
-  const double residual =
-      std::min(peak, std::max(0.0, std::min(p.residual_cohesion, cohesion) -
-                                       c.normal_traction * p.residual_friction));
+  const double residual = std::min(
+      peak, std::max(0.0, std::min(p.residual_cohesion, cohesion) - c.normal_traction * p.residual_friction));
   const double drop = peak - residual;
   const double excess = std::abs(trial) - (peak - c.shear_damage * drop);
   if (excess <= 0.0) return;

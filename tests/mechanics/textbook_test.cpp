@@ -115,19 +115,27 @@ Pair tess_pair(const Model<2>& model, double damping, DampingForm form, double v
                    {mortar_contact()}), parameters);
 }
 
+
 TEST(Explore, Loads) {
   const Model<2> model = tessellated(120, 0.05, 0.05, 3);
-  for (int mode : {0,1,2}) for (double damping : {0.0, 0.8}) for (auto form : {DampingForm::local, DampingForm::combined}) {
-    auto p = tess_pair(model, damping, form);
+  for (int mode : {0,2}) for (auto form : {DampingForm::local, DampingForm::combined}) {
+    auto p = tess_pair(model, 0.8, form);
+    auto q = tess_pair(model, 0.8, form);
     for (int g = 0; g < model.gridpoint_count(); ++g) {
       const double y = model.position[g][1];
       if (y == 0.0 || y == 0.05) {
-        p.prescribe_velocity(g, 0, mode == 1 && y>0 ? 4e-3 : 0.0);
-        p.prescribe_velocity(g, 1, y == 0.0 ? 0.0 : mode==0? 2e-3: mode==1 ? 0.0: -8e-3);
+        double vx = mode == 1 && y>0 ? 4e-3 : 0.0, vy = y == 0.0 ? 0.0 : mode==0? 2e-3: mode==1 ? 0.0: -8e-3;
+        p.prescribe_velocity(g, 0, vx);
+        p.prescribe_velocity(g, 1, vy);
+        q.prescribe_velocity(g, 0, vx*(1+2.3e-16));
+        q.prescribe_velocity(g, 1, vy*(1+2.3e-16));
       }
     }
-    std::printf("mode %d damping %g form %d\n", mode, damping, (int)form);
-    for (int i = 0; i < 10; ++i) { p.advance(400); report("", 400*(i+1), p); }
+    std::printf("mode %d form %d\n", mode, (int)form);
+    for (int i = 0; i < 40; ++i) { p.advance(20); q.advance(20); report("", 20*(i+1), p); 
+    Difference d, e; for (int g = 0; g < model.gridpoint_count(); ++g) for (int k : {0,1}) { d.add(p.textbook().gridpoints()[g].displacement[k], q.textbook().gridpoints()[g].displacement[k]);
+     e.add(p.textbook().gridpoints()[g].velocity[k], q.textbook().gridpoints()[g].velocity[k]); }
+     std::printf("     self u %.2e v %.2e\n", d.relative(), e.relative()); }
   }
 }
 }  // namespace
