@@ -20,7 +20,7 @@ constexpr double kZonesPerBlock = 5.4;
 /// Axial strain that is imposed, and the steps in which.
 constexpr double kIntactStrain = 1e-4, kCrackedStrain = 5e-3;
 constexpr int kIntactSteps = 100, kCrackedSteps = 1000;
-/// Steps at the platen velocity of the case before anything is timed.
+/// Steps at the platen velocity of the deck before anything is timed.
 constexpr int kStepsAtRest = 100;
 
 Case read(const std::filesystem::path& deck) {
@@ -59,7 +59,7 @@ void start_compression(Body& body, const Specimen& specimen, double rate) {
   }
 }
 
-/// A fast compression to a strain, then on at the velocity of the case.
+/// A fast compression to a strain, then on at the velocity of the deck.
 template <class Body>
 std::unique_ptr<Body> loaded(const Specimen& specimen, Loading loading, double velocity) {
   auto body = std::make_unique<Body>(specimen.made.body.model, specimen.densities, specimen.properties,

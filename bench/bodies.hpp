@@ -33,6 +33,8 @@ class Bodies {
   /// \param deck  of a compression between platens; the number of its blocks is replaced
   explicit Bodies(const std::filesystem::path& deck);
 
+  /// Of the upper platen in the deck, m/s, downwards.
+  double velocity() const { return velocity_; }
   /// The specimen with about so many zones.
   const Specimen& specimen(int zones);
   pyroclast::Mechanics<2>& mechanics(int zones, Loading loading);
@@ -43,7 +45,7 @@ class Bodies {
   using Kept = std::map<std::tuple<int, Loading>, std::unique_ptr<Body>>;
 
   pyroclast::Case case_;
-  double velocity_;  ///< of the upper platen in the case, m/s
+  double velocity_;
   std::map<int, std::unique_ptr<Specimen>> specimens_;
   Kept<pyroclast::Mechanics<2>> mechanics_;
   Kept<textbook::Body> textbook_;
