@@ -20,6 +20,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
 import matplotlib  # noqa: E402
+import matplotlib.ticker  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
@@ -298,7 +299,7 @@ _DASHES = {"intact": (0, (5, 1.5)), "cracked": "-"}
 def figure(bench: Bench) -> Figure:
     """Zone-steps per second over the number of zones."""
     drawn = style.new_figure(3.4)
-    axes = drawn.subplots()
+    axes, beside = drawn.subplots(1, 2, width_ratios=(4, 1))
     for (code, threads), (_, colour, marker) in _CODES.items():
         for loading, dashes in _DASHES.items():
             _draw(axes, bench, (code, loading, threads), color=colour, linestyle=dashes, marker=marker)
@@ -313,7 +314,7 @@ def figure(bench: Bench) -> Figure:
     axes.yaxis.set_minor_formatter(matplotlib.ticker.LogFormatter(minor_thresholds=(2, 0.4)))
     axes.set_xlabel("Number of zones")
     axes.set_ylabel("Million zone-steps per second")
-    drawn.legend(handles=handles, loc="outside right upper")
+    style.legend_alone(beside, handles, [handle.get_label() for handle in handles], loc="upper left")
     return drawn
 
 
