@@ -19,7 +19,7 @@ namespace {
 constexpr double kZonesPerBlock = 5.4;
 /// Axial strain that is imposed, and the steps in which.
 constexpr double kIntactStrain = 1e-4, kCrackedStrain = 5e-3;
-constexpr int kIntactSteps = 100, kCrackedSteps = 1000;
+constexpr int kIntactSteps = 100, kCrackedSteps = 400;
 /// Steps at the platen velocity of the deck before anything is timed.
 constexpr int kStepsAtRest = 100;
 

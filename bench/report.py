@@ -4,7 +4,8 @@
     bench/report.py BENCH.json [YADE.json...] --out DIR     DIR/table.md, DIR/performance.png
 
 BENCH.json is Google Benchmark's output of pyroclast_bench, with repetitions; the others are what
-yade_concrete.py wrote. Values are medians over the repetitions; ± is half their range.
+yade_concrete.py wrote. Values are medians over the repetitions; ± is half their range. What runs on one thread is
+rated by the processor time it took, which other work on the machine changes little; on two threads, by the clock.
 """
 
 from __future__ import annotations
@@ -70,6 +71,7 @@ class Step:
     threads: int
     damaged: float  #: share of the contact points
     zone_steps: Rate
+    zone_steps_by_clock: Rate  #: whatever the number of threads
     contact_updates: Rate
     cost: Cost | None
 
@@ -83,6 +85,7 @@ class Machine:
     peak: dict[int, Rate]  #: flop/s
     bandwidth: dict[tuple[str, int], Rate]  #: B/s by level and threads
     capacity: dict[str, tuple[int, int]]  #: of each level of cache: bytes, threads that share one
+    load: float  #: mean number of other running programs in the minute before
 
     def level(self, working_set: float, threads: int) -> str:
         """The first level of memory that holds a working set shared out among threads."""
@@ -151,7 +154,8 @@ def _bench_of(content: dict) -> Bench:
     context = content["context"]
     capacity = {f"L{cache['level']}": (cache["size"], cache["num_sharing"])
                 for cache in context["caches"] if cache["type"] != "Instruction"}
-    machine = Machine(context.get("processor", "unknown"), context.get("compiler", "unknown"), {}, {}, capacity)
+    machine = Machine(context.get("processor", "unknown"), context.get("compiler", "unknown"), {}, {}, capacity,
+                      context["load_avg"][0])
     bench = Bench(machine)
     for name, repetitions in runs.items():
         kind, *parts = name.split("/")
@@ -173,11 +177,19 @@ def _step_of(repetitions: list[dict]) -> Step:
     if "flops_per_step" in last:
         cost = Cost(last["flops_per_step"], last["bytes_per_step"], last["working_set"])
     return Step(round(last["zones"]), round(last["contacts"]), round(last["threads"]), last["damaged"],
-                _rate(repetitions, "zone_steps"), _rate(repetitions, "contact_updates"), cost)
+                _rate(repetitions, "zone_steps"), _rate_by_clock(repetitions, "zone_steps"),
+                _rate(repetitions, "contact_updates"), cost)
+
+
+def _rate_by_clock(repetitions: list[dict], counter: str) -> Rate:
+    return Rate(tuple(run[counter] for run in repetitions))
 
 
 def _rate(repetitions: list[dict], counter: str) -> Rate:
-    return Rate(tuple(run[counter] for run in repetitions))
+    """By processor time on one thread: Google Benchmark's counters are by the clock."""
+    if repetitions[0]["threads"] != 1:
+        return _rate_by_clock(repetitions, counter)
+    return Rate(tuple(run[counter] * run["real_time"] / run["cpu_time"] for run in repetitions))
 
 
 def _number(text: str) -> int:
@@ -200,7 +212,8 @@ def _peers_of(contents: list[dict]) -> dict[str, Peer]:
 
 def table(bench: Bench) -> str:
     """All of it as Markdown."""
-    parts = ["\n".join(_machine_table(bench.machine)), "\n".join(_step_table(bench))]
+    parts = [f"Other work on the machine when it began: load {bench.machine.load:.1f}.",
+             "\n".join(_machine_table(bench.machine)), "\n".join(_step_table(bench))]
     if bench.kernels:
         parts.append("\n".join(_kernel_table(bench)))
     if bench.peers:
@@ -214,9 +227,10 @@ def _machine_table(machine: Machine) -> Iterator[str]:
     yield "|---|" + "---:|" * len(threads)
     yield "| peak, multiply-add, GFLOP/s | " + " | ".join(
         _number_and_spread(machine.peak[n], _GIGA) for n in threads) + " |"
-    for level in dict.fromkeys(level for level, _ in machine.bandwidth):
-        yield f"| triad, {level}, GB/s | " + " | ".join(
-            _number_and_spread(machine.bandwidth[level, n], _GIGA) for n in threads) + " |"
+    for level in (*machine.capacity, "memory"):
+        if (level, threads[0]) in machine.bandwidth:
+            yield f"| triad, {level}, GB/s | " + " | ".join(
+                _number_and_spread(machine.bandwidth[level, n], _GIGA) for n in threads) + " |"
 
 
 def _step_table(bench: Bench) -> Iterator[str]:
@@ -232,7 +246,7 @@ def _step_table(bench: Bench) -> Iterator[str]:
             textbook = bench.steps.get(("textbook", loading, zones, 1))
             yield (f"| {one.zones:,} | {one.contacts:,} | {loading} | {_percent(one.damaged)} "
                    f"| {_mega(one)} | {_mega(two)} | {_mega(textbook)} "
-                   f"| {_ratio(one, textbook)} | {_ratio(two, one)} | {_roofline_share(bench.machine, one)} |")
+                   f"| {_ratio(one, textbook)} | {_speedup(two, one)} | {_roofline_share(bench.machine, one)} |")
 
 
 def _kernel_table(bench: Bench) -> Iterator[str]:
@@ -275,10 +289,16 @@ def _mega(step: Step | None) -> str:
     return "–" if step is None else _number_and_spread(step.zone_steps, _MEGA)
 
 
-def _ratio(above: Step | None, below: Step | None) -> str:
-    if above is None or below is None:
+def _ratio(above: Step, below: Step | None) -> str:
+    if below is None:
         return "–"
     return f"{above.zone_steps.median / below.zone_steps.median:.2f}"
+
+
+def _speedup(two: Step | None, one: Step) -> str:
+    if two is None:
+        return "–"
+    return f"{two.zone_steps_by_clock.median / one.zone_steps_by_clock.median:.2f}"
 
 
 def _roofline_share(machine: Machine, step: Step) -> str:
