@@ -1,10 +1,12 @@
 #include "textbook.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <ostream>
 #include <random>
-#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -144,7 +146,7 @@ std::vector<NamedContact> contacts() {
 
 class LawBesideTextbook : public testing::TestWithParam<NamedContact> {};
 INSTANTIATE_TEST_SUITE_P(Contacts, LawBesideTextbook, testing::ValuesIn(contacts()),
-                         [](const auto& instance) { return std::string(instance.param.name); });
+                         testing::PrintToStringParamName());
 
 // Promise: on any way of the jump, through tearing, crushing and sliding both ways, the law of the library
 // and that of the textbook give the same tractions and damages.
@@ -186,6 +188,10 @@ TEST_P(LawBesideTextbook, SameTractionsAndDamagesOnARandomWay) {
 }
 
 enum class Drive { tension, shear, compression };
+
+void PrintTo(Drive drive, std::ostream* stream) {
+  *stream << std::array{"Tension", "Shear", "Compression"}[static_cast<std::size_t>(drive)];
+}
 
 /// A square of random blocks, its lower edge held, its upper edge driven.
 struct Square {
@@ -237,7 +243,8 @@ TEST(BesideTextbook, TheSameToRoundOffBeforeCracking) {
 
 class DriveBesideTextbook : public testing::TestWithParam<Drive> {};
 INSTANTIATE_TEST_SUITE_P(Drives, DriveBesideTextbook,
-                         testing::Values(Drive::tension, Drive::shear, Drive::compression));
+                         testing::Values(Drive::tension, Drive::shear, Drive::compression),
+                         testing::PrintToStringParamName());
 
 // Promise: with smooth damping the two stay together all through cracking.
 TEST_P(DriveBesideTextbook, TheSameThroughCrackingWithoutLocalDamping) {
@@ -262,30 +269,37 @@ TEST_P(DriveBesideTextbook, TheSameThroughCrackingWithoutLocalDamping) {
   }
 }
 
-/// How far the textbook's velocities come apart from each other when the drive is changed in its last digit.
-double sensitivity(const Pair& a, const Pair& b) {
-  Difference d;
-  for (std::size_t g = 0; g < a.textbook().gridpoints().size(); ++g)
-    for (int i : {0, 1})
-      d.add(a.textbook().gridpoints()[g].velocity[i], b.textbook().gridpoints()[g].velocity[i]);
-  return d.relative();
+/// How far the textbook's velocities of a body are from those of its twins, at most.
+double sensitivity(const Pair& pair, const std::vector<Pair>& twins) {
+  double largest = 0.0;
+  for (const Pair& twin : twins) {
+    Difference d;
+    for (std::size_t g = 0; g < pair.textbook().gridpoints().size(); ++g)
+      for (int i : {0, 1})
+        d.add(twin.textbook().gridpoints()[g].velocity[i], pair.textbook().gridpoints()[g].velocity[i]);
+    largest = std::max(largest, d.relative());
+  }
+  return largest;
 }
 
 // Promise: local damping takes the sign of a velocity, and where that is near zero round-off decides. So the
 // motion is chaotic; until it is, Mechanics is no further from the textbook than the textbook from itself
-// when its drive is changed in the last digit, and afterwards the course of damage is the same.
+// when its drive is changed in the last digits, and afterwards the course of damage is the same.
 TEST_P(DriveBesideTextbook, AsNearAsChaosAllowsWithLocalDamping) {
   const Square square;
-  for (auto [form, ordered_steps] : {std::pair{DampingForm::local, 200}, {DampingForm::combined, 500}}) {
+  for (auto [form, ordered_steps] : {std::pair{DampingForm::local, 150}, {DampingForm::combined, 400}}) {
     auto parameters = with_gravity(quasi_static<2>(0.8));
     parameters.damping_form = form;
     Pair pair = square.pair(parameters, GetParam());
-    Pair twin = square.pair(parameters, GetParam(), 1.0 + std::numeric_limits<double>::epsilon());
-    for (int step = 0; step < ordered_steps; step += 50) {
+    std::vector<Pair> twins;
+    for (int digits : {-2, -1, 1, 2})
+      twins.push_back(
+          square.pair(parameters, GetParam(), 1.0 + digits * std::numeric_limits<double>::epsilon()));
+    for (int step = 50; step <= ordered_steps; step += 50) {
       pair.advance(50);
-      twin.advance(50);
-      // 30: one digit changed at the drive, against round-off in every force of every step
-      EXPECT_LT(of_velocities(pair).relative(), 30.0 * sensitivity(pair, twin)) << "after " << step + 50;
+      for (Pair& twin : twins) twin.advance(50);
+      // 30: last digits changed at the drive alone, against round-off in every force of every step
+      EXPECT_LT(of_velocities(pair).relative(), 30.0 * sensitivity(pair, twins)) << "after " << step;
     }
     pair.advance(4000 - ordered_steps);
     const double expected = total_damage(pair.textbook());
