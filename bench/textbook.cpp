@@ -1,6 +1,7 @@
 #include "textbook.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -68,12 +69,13 @@ void Body::make_contacts(const pyroclast::Model<2>& model, const pyroclast::Body
 std::vector<double> Body::stiffness() const {
   std::vector<double> row(2 * gridpoints_.size());
   for (const Zone& z : zones_) {
-    double strain[3][6]{};  // strain-displacement matrix B, with engineering shear
+    std::array<std::array<double, 6>, 3> strain{};  // strain-displacement matrix B, with engineering shear
     for (int n = 0; n < 3; ++n) {
-      strain[0][2 * n] = z.dx[n];
-      strain[1][2 * n + 1] = z.dy[n];
-      strain[2][2 * n] = z.dy[n];
-      strain[2][2 * n + 1] = z.dx[n];
+      const int x = 2 * n, y = x + 1;
+      strain[0][x] = z.dx[n];
+      strain[1][y] = z.dy[n];
+      strain[2][x] = z.dy[n];
+      strain[2][y] = z.dx[n];
     }
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j) {
