@@ -75,8 +75,8 @@ void play(const Layout<2>& layout, int threads) {
   const auto touched = [&](int row) {
     std::set<int> bundles;
     for (int lane = 0; lane < kLanes; ++lane)
-      for (int slot : {layout.faces[row].a[0][lane], layout.faces[row].b[0][lane]})
-        bundles.insert(bundle_of_row[slot / kLanes]);
+      for (int offset : {layout.faces[row].a[0][lane], layout.faces[row].b[0][lane]})
+        bundles.insert(bundle_of_row[offset / offset_of<2>(kLanes)]);
     return bundles;
   };
   std::vector<int> taken(layout.faces.size()), moved(layout.bundles.size());

@@ -48,6 +48,10 @@ struct Portable {
   static Value all(double v) { return v; }
   static Value sqrt(Value v) { return std::sqrt(v); }
   static Value abs(Value v) { return std::abs(v); }
+  /// v, not negative, with the sign of s; zero where s is zero.
+  static Value signed_like(Value v, Value s) { return s > 0.0 ? v : s < 0.0 ? -v : 0.0; }
+  static Value smaller(Value a, Value b) { return b < a ? b : a; }
+  static Value larger(Value a, Value b) { return a < b ? b : a; }
   static Truth less(Value a, Value b) { return a < b; }
   static Truth less_equal(Value a, Value b) { return a <= b; }
   static Truth both(Truth a, Truth b) { return a && b; }
@@ -66,9 +70,9 @@ struct Portable {
     p[0] = x;
     p[1] = y;
   }
-  /// Pairs by their numbers, apart.
-  static void gather_pairs(const double* p, const int* index, Value& x, Value& y) {
-    load_pairs(p + 2 * static_cast<std::ptrdiff_t>(index[0]), x, y);
+  /// Pairs that stand at offsets, apart.
+  static void gather_pairs(const double* p, const int* offset, Value& x, Value& y) {
+    load_pairs(p + offset[0], x, y);
   }
 };
 
@@ -82,6 +86,13 @@ struct Avx2 {
   static Value all(double v) { return _mm256_set1_pd(v); }
   static Value sqrt(Value v) { return _mm256_sqrt_pd(v); }
   static Value abs(Value v) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), v); }
+  static Value signed_like(Value v, Value s) {
+    const Value sign = _mm256_and_pd(_mm256_set1_pd(-0.0), s);
+    const Value moves = _mm256_cmp_pd(s, _mm256_setzero_pd(), _CMP_NEQ_OQ);
+    return _mm256_and_pd(moves, _mm256_xor_pd(v, sign));
+  }
+  static Value smaller(Value a, Value b) { return _mm256_min_pd(b, a); }
+  static Value larger(Value a, Value b) { return _mm256_max_pd(b, a); }
   static Truth less(Value a, Value b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
   static Truth less_equal(Value a, Value b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
   static Truth both(Truth a, Truth b) { return _mm256_and_pd(a, b); }
@@ -105,11 +116,11 @@ struct Avx2 {
     _mm256_store_pd(p, _mm256_permute2f128_pd(v02, v13, 0x20));
     _mm256_store_pd(p + 4, _mm256_permute2f128_pd(v02, v13, 0x31));
   }
-  static void gather_pairs(const double* p, const int* index, Value& x, Value& y) {
+  static void gather_pairs(const double* p, const int* offset, Value& x, Value& y) {
     // four pairs of loads cost less than the gather instruction
     const auto two = [&](int i, int j) {
-      return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + 2 * std::ptrdiff_t{index[i]})),
-                                  _mm_load_pd(p + 2 * std::ptrdiff_t{index[j]}), 1);
+      return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + offset[i])),
+                                  _mm_load_pd(p + offset[j]), 1);
     };
     const Value v02 = two(0, 2), v13 = two(1, 3);
     x = _mm256_unpacklo_pd(v02, v13);
@@ -128,6 +139,12 @@ struct Avx512 {
   static Value all(double v) { return _mm512_set1_pd(v); }
   static Value sqrt(Value v) { return _mm512_sqrt_pd(v); }
   static Value abs(Value v) { return _mm512_abs_pd(v); }
+  static Value signed_like(Value v, Value s) {
+    const Value sign = _mm512_and_pd(_mm512_set1_pd(-0.0), s);
+    return _mm512_maskz_xor_pd(_mm512_cmp_pd_mask(s, _mm512_setzero_pd(), _CMP_NEQ_OQ), v, sign);
+  }
+  static Value smaller(Value a, Value b) { return _mm512_min_pd(b, a); }
+  static Value larger(Value a, Value b) { return _mm512_max_pd(b, a); }
   static Truth less(Value a, Value b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
   static Truth less_equal(Value a, Value b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
   static Truth both(Truth a, Truth b) { return _kand_mask8(a, b); }
@@ -145,11 +162,11 @@ struct Avx512 {
     _mm512_store_pd(p, _mm512_permutex2var_pd(x, _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11), y));
     _mm512_store_pd(p + 8, _mm512_permutex2var_pd(x, _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15), y));
   }
-  static void gather_pairs(const double* p, const int* index, Value& x, Value& y) {
+  static void gather_pairs(const double* p, const int* offset, Value& x, Value& y) {
     // eight loads and a few shuffles cost less than two gather instructions
     const auto two = [&](int i, int j) {
-      return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + 2 * std::ptrdiff_t{index[i]})),
-                                  _mm_load_pd(p + 2 * std::ptrdiff_t{index[j]}), 1);
+      return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + offset[i])),
+                                  _mm_load_pd(p + offset[j]), 1);
     };
     const Value even = _mm512_insertf64x4(_mm512_castpd256_pd512(two(0, 2)), two(4, 6), 1);
     const Value odd = _mm512_insertf64x4(_mm512_castpd256_pd512(two(1, 3)), two(5, 7), 1);
@@ -267,8 +284,23 @@ struct Lanes {
     for (int i = 0; i < kParts; ++i) r.part[i] = Set::abs(a.part[i]);
     return r;
   }
-  friend Lanes smaller(const Lanes& a, const Lanes& b) { return select(b < a, b, a); }
-  friend Lanes larger(const Lanes& a, const Lanes& b) { return select(a < b, b, a); }
+  /// v, not negative, with the sign of s; zero where s is zero.
+  friend Lanes signed_like(const Lanes& v, const Lanes& s) {
+    Lanes r;
+    for (int i = 0; i < kParts; ++i) r.part[i] = Set::signed_like(v.part[i], s.part[i]);
+    return r;
+  }
+  /// b where it is smaller, else a: also where they cannot be compared.
+  friend Lanes smaller(const Lanes& a, const Lanes& b) {
+    Lanes r;
+    for (int i = 0; i < kParts; ++i) r.part[i] = Set::smaller(a.part[i], b.part[i]);
+    return r;
+  }
+  friend Lanes larger(const Lanes& a, const Lanes& b) {
+    Lanes r;
+    for (int i = 0; i < kParts; ++i) r.part[i] = Set::larger(a.part[i], b.part[i]);
+    return r;
+  }
   /// Of all lanes, added in the order of a tree that does not depend on the instruction set.
   friend double sum(const Lanes& a) {
     alignas(64) double v[kLanes];

@@ -69,11 +69,12 @@ inline SymmetricTensor<Dim, Real> rotated(const Rotation<Real>& r, const Symmetr
 /// Finite kinematics take the rotation R out of the deformation gradient F = R U (polar decomposition) and
 /// return U - I, so that a zone may turn freely; small kinematics take the symmetric part of F - I.
 ///
-/// \param gradient  of the first Dim shape functions, 1/m
+/// \param vectors   times `scale`, the gradients of the first Dim shape functions, 1/m
 /// \param u         displacements of the zone's Dim + 1 gridpoints, m
 /// \param rotation  out
 template <int Dim, class Real>
-inline SymmetricTensor<Dim, Real> mechanical_strain(const std::array<Vec<Dim, Real>, Dim>& gradient,
+inline SymmetricTensor<Dim, Real> mechanical_strain(const std::array<Vec<Dim, Real>, Dim>& vectors,
+                                                    const Real& scale,
                                                     const std::array<Vec<Dim, Real>, Dim + 1>& u,
                                                     const Real& thermal_strain, Kinematics kinematics,
                                                     Rotation<Real>& rotation) {
@@ -81,14 +82,15 @@ inline SymmetricTensor<Dim, Real> mechanical_strain(const std::array<Vec<Dim, Re
   std::array<Vec<Dim, Real>, Dim> h;  // displacement gradient, h[j][i] = du_i/dx_j
   for (int n = 0; n < Dim; ++n) {
     const Vec<Dim, Real> d = u[n] - u[Dim];
-    for (int j = 0; j < Dim; ++j) h[j] = n == 0 ? d * gradient[n][j] : h[j] + d * gradient[n][j];
+    for (int j = 0; j < Dim; ++j) h[j] = n == 0 ? d * vectors[n][j] : h[j] + d * vectors[n][j];
   }
+  for (auto& column : h) column *= scale;
   if constexpr (Dim == 2) {
     if (kinematics == Kinematics::finite) {
       const Real along = 2.0 + h[0][0] + h[1][1];
       const Real across = h[0][1] - h[1][0];
-      const Real scale = 1.0 / sqrt(along * along + across * across);
-      const Real c = along * scale, s = across * scale;
+      const Real over = 1.0 / sqrt(along * along + across * across);
+      const Real c = along * over, s = across * over;
       rotation = {c, s};
       return {c * (1.0 + h[0][0]) + s * h[0][1] - 1.0 - thermal_strain,
               c * (1.0 + h[1][1]) - s * h[1][0] - 1.0 - thermal_strain, c * h[1][0] + s * (1.0 + h[1][1])};

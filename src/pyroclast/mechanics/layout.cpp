@@ -164,11 +164,11 @@ class LayoutBuilder {
       for (int k = 0; k < most; ++k) {
         ActingContacts acting;
         for (int lane = 0; lane < kLanes; ++lane) {
-          acting.contact[lane] = idle;
+          acting.contact[lane] = offset_of<Dim>(idle);
           const int g = gridpoint[slot_of(row, lane)];
           if (g < 0 || of_gridpoint.begin[g] + k >= of_gridpoint.begin[g + 1]) continue;
           const int side = of_gridpoint.contact_side[of_gridpoint.begin[g] + k];
-          acting.contact[lane] = layout_.contact_slot[side / 2];
+          acting.contact[lane] = offset_of<Dim>(layout_.contact_slot[side / 2]);
           if (side % 2 == 1) acting.side_b |= 1U << lane;
         }
         acting_.push_back(acting);
@@ -247,8 +247,8 @@ class LayoutBuilder {
         for (int lane = 0; lane < kLanes; ++lane) {
           const int zone = kLanes * row + lane < bundle.zones ? kLanes * row + lane : kLanes * row;
           for (int n = 0; n <= Dim; ++n)
-            layout_.spread_zones[bundle.first_spread_row + row].slot[n][lane] =
-                layout_.gridpoint_slot[model_.zones[first + zone][n]];
+            layout_.spread_zones[bundle.first_spread_row + row].offset[n][lane] =
+                offset_of<Dim>(layout_.gridpoint_slot[model_.zones[first + zone][n]]);
         }
     }
     layout_.bundles.push_back(std::move(bundle));
@@ -262,9 +262,9 @@ class LayoutBuilder {
       const int f = idle ? faces.front() : faces[lane];
       for (int point = 0; point < Dim; ++point) {
         const auto& c = model_.contacts[f * Dim + point];
-        row.a[point][lane] = layout_.gridpoint_slot[c.a];
+        row.a[point][lane] = offset_of<Dim>(layout_.gridpoint_slot[c.a]);
         // both sides of an idle one are the same gridpoint, so that it never opens
-        row.b[point][lane] = layout_.gridpoint_slot[idle ? c.a : c.b];
+        row.b[point][lane] = offset_of<Dim>(layout_.gridpoint_slot[idle ? c.a : c.b]);
         row.area[lane] = idle ? 0.0 : c.area;
         for (int i = 0; i < Dim; ++i)
           for (int t = 0; t + 1 < Dim; ++t) row.tangent[t][i][lane] = c.tangents[t][i];

@@ -16,6 +16,12 @@ inline constexpr int slot_of(int row, int lane) {
   return kLanes * row + lane;
 }
 
+/// Where the vector of a slot begins in an array of numbers.
+template <int Dim>
+inline constexpr int offset_of(int slot) {
+  return Dim * slot;
+}
+
 /// How the blocks of a bundle share its lanes.
 enum class BundleKind : std::uint8_t {
   alike,  ///< up to eight blocks with the same zones, one a lane: row i holds the i-th gridpoint of each
@@ -37,10 +43,10 @@ struct Bundle {
   int zone_rows() const { return kind == BundleKind::alike ? zones : (zones + kLanes - 1) / kLanes; }
 };
 
-/// Gridpoints of eight zones of a spread block, as slots.
+/// Gridpoints of eight zones of a spread block, as offsets.
 template <int Dim>
 struct ZoneCorners {
-  std::array<std::array<int, kLanes>, Dim + 1> slot;
+  std::array<std::array<int, kLanes>, Dim + 1> offset;
 };
 
 /// Eight faces of one interface.
@@ -48,7 +54,7 @@ template <int Dim>
 struct alignas(64) FaceRow {
   double tangent[Dim - 1][Dim][kLanes];           ///< the normal follows from them
   double area[kLanes];                            ///< of one contact point, m²; 0 where idle
-  std::array<std::array<int, kLanes>, Dim> a, b;  ///< slots of the gridpoints at each point
+  std::array<std::array<int, kLanes>, Dim> a, b;  ///< offsets of the gridpoints at each point
 };
 
 /// Which contact points act on the gridpoints of a row. In 2D a corner of a block has two, one of each edge.
@@ -57,7 +63,7 @@ struct ContactsOfRow {
 };
 
 struct ActingContacts {
-  std::array<int, kLanes> contact;  ///< slot; that of an idle contact where a lane has none
+  std::array<int, kLanes> contact;  ///< offset; that of an idle contact where a lane has none
   std::uint32_t side_b = 0;         ///< bit per lane: the gridpoint is on side b
 };
 

@@ -406,8 +406,8 @@ SymmetricTensor<Dim> Mechanics<Dim>::stress(int zone) const {
   for (int n = 0; n <= Dim; ++n) u[n] = displacement_of_force(model_.zones[zone][n]);
   const auto& p = properties_.zones[zone];
   Rotation<double> rotation;
-  const auto strain =
-      mechanical_strain<Dim>(geometry_.gradient[zone], u, p.thermal_strain, parameters_.kinematics, rotation);
+  const auto strain = mechanical_strain<Dim>(geometry_.gradient[zone], 1.0, u, p.thermal_strain,
+                                             parameters_.kinematics, rotation);
   return rotated<Dim>(rotation, zone_stress<Dim>(p, strain));
 }
 

@@ -24,12 +24,13 @@ class Step {
 
   static void move_bundles(StepState<Dim>& s, int first, int last, Pass pass, double* scratch) {
     for (int b = first; b < last; ++b) {
-      if (pass == Pass::move)
+      if (pass == Pass::move) {
         move_bundle<Pass::move>(s, b, scratch);
-      else if (pass == Pass::move_and_measure)
+      } else if (pass == Pass::move_and_measure) {
         move_bundle<Pass::move_and_measure>(s, b, scratch);
-      else
+      } else {
         move_bundle<Pass::measure>(s, b, scratch);
+      }
     }
   }
 
@@ -97,25 +98,25 @@ class Step {
         for (int i = 0; i < Dim; ++i) p[lane][i] = c[i][lane];
     }
   }
-  static Vector gather(const FlatArray<Vec<Dim>>& vectors, const std::array<int, kLanes>& slot) {
+  static Vector gather(const FlatArray<Vec<Dim>>& vectors, const std::array<int, kLanes>& offset) {
+    const double* const numbers = vectors.data()->c.data();
     Vector v;
     if constexpr (Dim == 2) {
       for (int i = 0; i < Real::kParts; ++i)
-        Set::gather_pairs(vectors.data()->c.data(), slot.data() + i * Set::kWidth, v[0].part[i],
-                          v[1].part[i]);
+        Set::gather_pairs(numbers, offset.data() + i * Set::kWidth, v[0].part[i], v[1].part[i]);
     } else {
       alignas(64) double c[Dim][kLanes];
       for (int lane = 0; lane < kLanes; ++lane)
-        for (int i = 0; i < Dim; ++i) c[i][lane] = vectors[slot[lane]][i];
+        for (int i = 0; i < Dim; ++i) c[i][lane] = numbers[offset[lane] + i];
       v = load(c);
     }
     return v;
   }
-  static Vector gather(const RowVectors<Dim>& vectors, const std::array<int, kLanes>& slot) {
+  static Vector gather(const RowVectors<Dim>& vectors, const std::array<int, kLanes>& offset) {
     alignas(64) double c[Dim][kLanes];
     for (int lane = 0; lane < kLanes; ++lane) {
-      const auto& row = vectors.row(slot[lane] / kLanes);
-      for (int i = 0; i < Dim; ++i) c[i][lane] = row.c[i][slot[lane] % kLanes];
+      const int slot = offset[lane] / offset_of<Dim>(1);
+      for (int i = 0; i < Dim; ++i) c[i][lane] = vectors.row(slot / kLanes).c[i][slot % kLanes];
     }
     return load(c);
   }
@@ -146,8 +147,8 @@ class Step {
     if constexpr (Dim == 2)
       if (s.kinematics == Kinematics::finite) {
         // mean edge of the two sides
-        const auto at = [&](const std::array<int, kLanes>& slot) {
-          return gather(s.position, slot) + gather(s.displacement, slot);
+        const auto at = [&](const std::array<int, kLanes>& offset) {
+          return gather(s.position, offset) + gather(s.displacement, offset);
         };
         const Vector edge = ((at(face.a[1]) - at(face.a[0])) + (at(face.b[1]) - at(face.b[0]))) * Real(0.5);
         frame.edge = norm(edge);
@@ -288,12 +289,14 @@ class Step {
                    [&](const Corners& x, const Corners& u, const auto& p, const auto& used) {
                      return zone_forces<kMeasure>(s, x, u, p, density, used, sums);
                    });
-    if (s.constraints_of_bundle[index] >= 0) {
-      auto& constraints = s.constraints[s.constraints_of_bundle[index]];
-      load_bundle<kMeasure>(s, bundle, constraints, scratch, sums);
-      for (int i = 0; i < bundle.rows; ++i) move_row<kPass, true>(s, bundle, i, &constraints, scratch, sums);
-    } else {
-      for (int i = 0; i < bundle.rows; ++i) move_row<kPass, false>(s, bundle, i, nullptr, scratch, sums);
+    const int c = s.constraints_of_bundle[index];
+    if (c >= 0) load_bundle<kMeasure>(s, bundle, s.constraints[c], scratch, sums);
+    for (int i = 0; i < bundle.rows; ++i) {
+      const Vector displacement = load(scratch.displacement[i].c), force = load(scratch.sum[i].c);
+      if (c >= 0)
+        move_row<kPass, true>(s, bundle, i, &s.constraints[c], displacement, force, sums);
+      else
+        move_row<kPass, false>(s, bundle, i, nullptr, displacement, force, sums);
     }
     keep<kPass>(s, index, sums);
   }
@@ -321,7 +324,7 @@ class Step {
   static void keep(StepState<Dim>& s, int index, const Sums& sums) {
     BundleSums& kept = s.bundle_sums[index];
     if constexpr (kPass != Pass::measure) {
-      kept.damping_work += sum(sums.damping);
+      kept.damping_work += sum(sums.damping) * (0.5 * s.time_step);
       if (s.viscous_damping != 0.0) kept.viscous_work += sum(sums.viscous);
       if (const int c = s.constraints_of_bundle[index]; c >= 0)
         s.constraints[c].loading_work += sum(sums.loading);
@@ -350,45 +353,50 @@ class Step {
   static Corners zone_forces(const StepState<Dim>& s, const Corners& x, const Corners& u,
                              const ZonePropertiesOf<Real>& properties, const Real& density,
                              const typename Real::Truth& used, Sums& sums) {
-    std::array<Vector, Dim> gradient;
-    const Real volume = shape_gradients(x, gradient) * s.thickness;
+    // Shape gradients times the determinant; the volume is a constant share of the determinant, which leaves
+    // the division by it out of the way of the forces.
+    std::array<Vector, Dim> vectors;
+    const Real determinant = shape_vectors(x, vectors);
+    const double share = volume_over_determinant<Dim> * s.thickness;
     Rotation<Real> rotation;
-    const auto strain =
-        mechanical_strain<Dim>(gradient, u, properties.thermal_strain, s.kinematics, rotation);
-    const auto stress = zone_stress<Dim>(properties, strain);
-    SymmetricTensor<Dim, Real> whole;  // stress times volume
-    for (std::size_t i = 0; i < stress.size(); ++i) whole[i] = stress[i] * volume;
+    const auto strain = mechanical_strain<Dim>(vectors, 1.0 / determinant, u, properties.thermal_strain,
+                                               s.kinematics, rotation);
+    const auto stress =  // times minus the share
+        zone_stress<Dim>({properties.lambda * -share, properties.mu * -share, properties.thermal_strain},
+                         strain);
     Corners force;
     for (int n = 0; n < Dim; ++n) {
-      Vector f = apply<Dim>(whole, gradient[n]);
+      force[n] = apply<Dim>(stress, vectors[n]);
       if constexpr (Dim == 2)
-        if (s.kinematics == Kinematics::finite) f = rotated<Dim>(rotation, f);
-      force[n] = -f;
-      force[Dim] = n == 0 ? f : force[Dim] + f;
+        if (s.kinematics == Kinematics::finite) force[n] = rotated<Dim>(rotation, force[n]);
     }
-    const Real mass = density * volume;
+    force[Dim] = -force[0];
+    for (int n = 1; n < Dim; ++n) force[Dim] -= force[n];
+    const Real mass = density * share * determinant;
     if constexpr (kMeasure) {
       Real applied = mass * norm(s.gravity);
       for (const auto& f : force) applied += norm(f);
-      sums.stored += select(used, energy_density<Dim>(stress, strain) * volume, Real(0.0));
+      sums.stored -= select(used, energy_density<Dim>(stress, strain) * determinant, Real(0.0));
       sums.applied += select(used, applied, Real(0.0));
     }
-    const Real share = mass * (1.0 / (Dim + 1));
     for (int i = 0; i < Dim; ++i)
-      if (s.gravity[i] != 0.0)
-        for (auto& f : force) f[i] += share * s.gravity[i];
+      if (s.gravity[i] != 0.0) {
+        const Real weight = mass * (s.gravity[i] / (Dim + 1));
+        for (auto& f : force) f[i] += weight;
+      }
     return force;
   }
 
   /// Sums of |stiffness| over the rows of eight zones' matrices, N/m.
   static Corners zone_stiffness(const StepState<Dim>& s, const Corners& x, const ZonePropertiesOf<Real>& p) {
-    std::array<Vector, Dim> gradient;
-    const Real volume = shape_gradients(x, gradient) * s.thickness;
+    std::array<Vector, Dim> vectors;
+    const Real determinant = shape_vectors(x, vectors);
     Corners g, row;
     for (int n = 0; n < Dim; ++n) {
-      g[n] = gradient[n];
-      g[Dim] = n == 0 ? -gradient[n] : g[Dim] - gradient[n];
+      g[n] = vectors[n];
+      g[Dim] = n == 0 ? -vectors[n] : g[Dim] - vectors[n];
     }
+    const Real over = volume_over_determinant<Dim> * s.thickness / determinant;
     for (int m = 0; m <= Dim; ++m)
       for (int i = 0; i < Dim; ++i) {
         Real sum = 0.0;
@@ -398,7 +406,7 @@ class Step {
             if (i == j) k += p.mu * dot(g[m], g[n]);
             sum += abs(k);
           }
-        row[m][i] = sum * volume;
+        row[m][i] = sum * over;
       }
     return row;
   }
@@ -438,7 +446,7 @@ class Step {
                                     const Scratch& scratch, Zone zone) {
     for (int z = 0; z < bundle.zone_rows(); ++z) {
       const int used = bundle.zones - kLanes * z < kLanes ? bundle.zones - kLanes * z : kLanes;
-      const auto& corner = s.layout->spread_zones[bundle.first_spread_row + z].slot;
+      const auto& corner = s.layout->spread_zones[bundle.first_spread_row + z].offset;
       Corners x, u;
       for (int n = 0; n <= Dim; ++n) {
         x[n] = gather(s.position, corner[n]);
@@ -451,7 +459,7 @@ class Step {
         alignas(64) double c[Dim][kLanes];
         store(more[n], c);
         for (int lane = 0; lane < used; ++lane) {
-          const int slot = corner[n][lane] - slot_of(bundle.first_row, 0);
+          const int slot = corner[n][lane] / offset_of<Dim>(1) - slot_of(bundle.first_row, 0);
           for (int i = 0; i < Dim; ++i) scratch.sum[slot / kLanes].c[i][slot % kLanes] += c[i][lane];
         }
       }
@@ -481,18 +489,12 @@ class Step {
     }
   }
 
-  /// -1, 0 or 1.
-  static Real sign(const Real& x) {
-    return select(x > 0.0, Real(1.0), select(x < 0.0, Real(-1.0), Real(0.0)));
-  }
-
   /// Damps the sum of forces (8) and integrates velocity and displacement (6), (7).
   template <Pass kPass, bool kConstrained>
   static void move_row(StepState<Dim>& s, const Bundle& bundle, int i, const Constraints<Dim>* constraints,
-                       const Scratch& scratch, Sums& sums) {
+                       const Vector& displacement, const Vector& force, Sums& sums) {
     constexpr bool kMeasure = kPass != Pass::move;
     const int row = bundle.first_row + i;
-    const Vector force = load(scratch.sum[i].c);
     if constexpr (kMeasure) {
       Vector free = force;
       if constexpr (kConstrained)
@@ -512,9 +514,9 @@ class Step {
     const Vector before = load(s.velocity.row(row).c);
     Vector after;
     for (int j = 0; j < Dim; ++j) {
-      Real opposing = sign(before[j]);
-      if (combined) opposing = 0.5 * (opposing - sign(force[j] - Real::load(s.force.row(row).c[j])));
-      Real damping = s.local_damping * abs(force[j]) * opposing;
+      const Real magnitude = abs(force[j]) * (combined ? 0.5 * s.local_damping : s.local_damping);
+      Real damping = signed_like(magnitude, before[j]);
+      if (combined) damping -= signed_like(magnitude, force[j] - Real::load(s.force.row(row).c[j]));
       after[j] = before[j] + (force[j] - damping) * step_over_mass;
       if (s.viscous_damping != 0.0)
         after[j] = (kept * before[j] + (force[j] - damping) * step_over_mass) * over;
@@ -528,7 +530,7 @@ class Step {
         sums.loading += loading * (before[j] + after[j]) * (0.5 * dt);
         if constexpr (kMeasure) sums.begun_loading += loading * after[j] * (0.5 * dt);
       }
-      sums.damping += damping * (before[j] + after[j]) * (0.5 * dt);
+      sums.damping += damping * (before[j] + after[j]);
       if constexpr (kMeasure) sums.begun_damping += damping * after[j] * (0.5 * dt);
       if (s.viscous_damping != 0.0) {
         Real drag = s.viscous_damping * dt * 0.5 * (before[j] + after[j]) / step_over_mass;
@@ -541,7 +543,7 @@ class Step {
     if constexpr (kMeasure) sums.kinetic += dot(before, after) * (0.5 * dt) / step_over_mass;
     store(force, s.force.row(row).c);
     store(after, s.velocity.row(row).c);
-    store(load(scratch.displacement[i].c) + after * dt, &s.displacement[slot_of(row, 0)]);
+    store(displacement + after * dt, &s.displacement[slot_of(row, 0)]);
   }
 };
 

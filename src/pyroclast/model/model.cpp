@@ -74,7 +74,7 @@ ZoneGeometry<Dim> zone_geometry(const Model<Dim>& model) {
   for (std::size_t z = 0; z < model.zones.size(); ++z) {
     std::array<Vec<Dim>, Dim + 1> x;
     for (int i = 0; i <= Dim; ++i) x[i] = model.position[model.zones[z][i]];
-    geometry.volume[z] = shape_gradients(x, geometry.gradient[z]) * model.thickness;
+    geometry.volume[z] = shape_gradients<Dim>(x, geometry.gradient[z]) * model.thickness;
     if (!(geometry.volume[z] > 0.0))
       throw Error(
           fmt::format("zone {} has volume {:g} m3, but it must be greater than 0", z, geometry.volume[z]));

@@ -1,0 +1,118 @@
+#include "bodies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/deck/deck.hpp"
+#include "pyroclast/experiment/coupling.hpp"
+
+namespace bench {
+
+using pyroclast::Case;
+using pyroclast::Error;
+
+namespace {
+
+/// Mean of specimens of 1,000 to 100,000 blocks (docs/performance.md).
+constexpr double kZonesPerBlock = 5.4;
+/// Axial strain that is imposed, and the steps in which.
+constexpr double kIntactStrain = 1e-4, kCrackedStrain = 5e-3;
+constexpr int kIntactSteps = 100, kCrackedSteps = 400;
+/// Steps at the platen velocity of the deck before anything is timed.
+constexpr int kStepsAtRest = 100;
+
+Case read(const std::filesystem::path& deck) {
+  return pyroclast::read_case(pyroclast::Deck::load(deck), deck.parent_path());
+}
+
+double platen_velocity(const Case& c) {
+  for (const auto& stage : c.stages)
+    if (const auto* compress = std::get_if<pyroclast::CompressStage>(&stage)) return compress->velocity;
+  throw Error("the bench needs the deck of a compression");
+}
+
+/// Gives every gridpoint the velocity of a uniform compression, so that no wave has to run through the
+/// specimen, and lets it go, but for the supports: rate in 1/s.
+template <class Body>
+void start_compression(Body& body, const Specimen& specimen, double rate) {
+  constexpr double kPoisson = 0.2;
+  const auto& made = specimen.made.body;
+  const auto& x = made.model.position;
+  const int gridpoints = made.model.gridpoint_count();
+  for (int g = 0; g < gridpoints; ++g) {
+    const bool platen = x[g][1] < 0.0 || x[g][1] > specimen.height;
+    body.prescribe_velocity(g, 0, platen ? 0.0 : kPoisson * rate * (x[g][0] - 0.5 * specimen.width));
+    body.prescribe_velocity(g, 1, -rate * std::clamp(x[g][1], 0.0, specimen.height));
+  }
+  for (int g : made.bottom_face) body.prescribe_velocity(g, 0, 0.0);
+  for (int g : made.top_face) body.prescribe_velocity(g, 0, 0.0);
+  body.advance(1);
+  for (int g = 0; g < gridpoints; ++g)
+    for (int i : {0, 1}) body.release(g, i);
+  for (int g : made.bottom_support)
+    for (int i : {0, 1}) body.prescribe_velocity(g, i, 0.0);
+  for (int g : made.top_support) {
+    body.prescribe_velocity(g, 0, 0.0);
+    body.prescribe_velocity(g, 1, -rate * specimen.height);
+  }
+}
+
+/// A fast compression to a strain, then on at the velocity of the deck.
+template <class Body>
+std::unique_ptr<Body> loaded(const Specimen& specimen, Loading loading, double velocity) {
+  auto body = std::make_unique<Body>(specimen.made.body.model, specimen.densities, specimen.properties,
+                                     specimen.parameters);
+  for (int c : specimen.made.body.platen_contacts) body->break_contact(c);
+  const bool cracked = loading == Loading::cracked;
+  const int steps = cracked ? kCrackedSteps : kIntactSteps;
+  const double strain = cracked ? kCrackedStrain : kIntactStrain;
+  start_compression(*body, specimen, strain / (steps * body->time_step()));
+  body->advance(steps - 1);
+  start_compression(*body, specimen, velocity / specimen.height);
+  body->advance(kStepsAtRest);
+  return body;
+}
+
+}  // namespace
+
+const char* name(Loading loading) {
+  return loading == Loading::intact ? "intact" : "cracked";
+}
+
+Specimen::Specimen(const Case& c)
+    : made(c), width(c.specimen.width), height(c.specimen.height), parameters(c.mechanics) {
+  const auto materials = pyroclast::make_concrete(c.solids, c.contacts, made.specimen.metrics.mean_size);
+  properties = pyroclast::properties_at(made.body.model, materials, *made.field);
+  for (const auto& solid : materials.solids)
+    densities.push_back(solid.density(pyroclast::kReferenceTemperature));
+}
+
+Bodies::Bodies(const std::filesystem::path& deck) : case_(read(deck)), velocity_(platen_velocity(case_)) {
+  if (!case_.platen_thickness) throw Error("the bench needs the deck of a specimen between platens");
+}
+
+const Specimen& Bodies::specimen(int zones) {
+  auto& kept = specimens_[zones];
+  if (!kept) {
+    Case c = case_;
+    c.specimen.blocks.count = static_cast<int>(std::lround(zones / kZonesPerBlock));
+    kept = std::make_unique<Specimen>(c);
+  }
+  return *kept;
+}
+
+pyroclast::Mechanics<2>& Bodies::mechanics(int zones, Loading loading) {
+  auto& kept = mechanics_[{zones, loading}];
+  if (!kept) kept = loaded<pyroclast::Mechanics<2>>(specimen(zones), loading, velocity_);
+  return *kept;
+}
+
+textbook::Body& Bodies::textbook(int zones, Loading loading) {
+  auto& kept = textbook_[{zones, loading}];
+  if (!kept) kept = loaded<textbook::Body>(specimen(zones), loading, velocity_);
+  return *kept;
+}
+
+}  // namespace bench

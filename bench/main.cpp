@@ -1,0 +1,42 @@
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <string>
+
+#include <benchmark/benchmark.h>
+
+#include "register.hpp"
+
+namespace {
+
+/// Name of the processor as Linux gives it.
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(": ") + 2);
+  return "unknown";
+}
+
+}  // namespace
+
+/// pyroclast_bench DECK [flags of Google Benchmark]; bench/run calls it.
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: pyroclast_bench DECK [--benchmark_...]\n");
+    return 2;
+  }
+  try {
+    bench::Bodies bodies(argv[1]);
+    bench::register_machine();
+    bench::register_steps(bodies);
+    bench::register_kernels(bodies);
+    benchmark::AddCustomContext("processor", processor());
+    benchmark::AddCustomContext("compiler", "g++ " __VERSION__);
+    benchmark::RunSpecifiedBenchmarks();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "pyroclast_bench: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

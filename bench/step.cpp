@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <string>
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <omp.h>
+
+#include "register.hpp"
+
+namespace bench {
+
+namespace {
+
+constexpr int kLeastSteps = 10;
+constexpr int kZoneSteps = 200'000;  ///< about so many in one call of advance
+
+/// Times whole steps of a body. The upper platen moves at the velocity of the case, down and up in turn, so
+/// that small bodies, which take many steps, stay as loaded as they are.
+template <class Body>
+void time_steps(benchmark::State& state, const Specimen& specimen, Body& body, double velocity, int threads) {
+  omp_set_num_threads(threads);
+  const auto& model = specimen.made.body.model;
+  const int steps = std::max(kLeastSteps, kZoneSteps / model.zone_count());
+  for (auto _ : state) {
+    for (int g : specimen.made.body.top_support) body.prescribe_velocity(g, 1, -velocity);
+    velocity = -velocity;
+    body.advance(steps);
+  }
+  const double done = static_cast<double>(steps) * static_cast<double>(state.iterations());
+  using benchmark::Counter;
+  state.counters["zones"] = model.zone_count();
+  state.counters["contacts"] = model.contact_count();
+  state.counters["threads"] = threads;
+  state.counters["damaged"] = damaged_share(body);
+  state.counters["zone_steps"] = Counter(done * model.zone_count(), Counter::kIsRate);
+  state.counters["contact_updates"] = Counter(done * model.contact_count(), Counter::kIsRate);
+}
+
+void add_cost(benchmark::State& state, const pyroclast::Mechanics<2>& body) {
+  if (const auto cost = step_cost(body)) {
+    state.counters["flops_per_step"] = cost->flops;
+    state.counters["bytes_per_step"] = cost->bytes;
+    state.counters["working_set"] = cost->working_set;
+  }
+}
+
+std::string name_of(const char* code, Loading loading, int zones, int threads) {
+  return fmt::format("step/{}/{}/zones:{}/threads:{}", code, name(loading), zones, threads);
+}
+
+void register_step(Bodies& bodies, Loading loading, int zones, int threads) {
+  const auto run = [&bodies, loading, zones, threads](benchmark::State& state) {
+    auto& body = bodies.mechanics(zones, loading);
+    time_steps(state, bodies.specimen(zones), body, bodies.velocity(), threads);
+    add_cost(state, body);
+  };
+  benchmark::RegisterBenchmark(name_of("pyroclast", loading, zones, threads).c_str(), run)->UseRealTime();
+}
+
+void register_textbook(Bodies& bodies, Loading loading, int zones) {
+  const auto run = [&bodies, loading, zones](benchmark::State& state) {
+    time_steps(state, bodies.specimen(zones), bodies.textbook(zones, loading), bodies.velocity(), 1);
+  };
+  benchmark::RegisterBenchmark(name_of("textbook", loading, zones, 1).c_str(), run)->UseRealTime();
+}
+
+}  // namespace
+
+void register_steps(Bodies& bodies) {
+  for (int zones : kZones)
+    for (Loading loading : {Loading::intact, Loading::cracked}) {
+      for (int threads : {1, 2}) register_step(bodies, loading, zones, threads);
+      register_textbook(bodies, loading, zones);
+    }
+}
+
+}  // namespace bench
