@@ -52,7 +52,7 @@ int command_line(int argc, char** argv) {
         ->allow_extra_args(false);
   }
   for (auto* command : {run, specimen}) add_output(command, options);
-  for (auto* command : {run, check}) add_threads(command, options.threads);
+  for (auto* command : {run, check, specimen}) add_threads(command, options.threads);
 
   app::LawOptions law_options;
   auto* law =
