@@ -205,12 +205,15 @@ class Regulariser {
   std::vector<int> unfit_cells(const std::vector<Edge>& left_short) {
     areas_.clear();
     std::vector<int> unfit;
+    std::vector<std::size_t> flat;
     for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
       corners(tessellation_, c, polygon_);
       areas_.push_back(area(polygon_));
-      if (shape_of(polygon_).thinnest_zone <= thinnest_) unfit.push_back(static_cast<int>(c));
+      const Shape shape = shape_of(polygon_);
+      if (shape.thinnest_zone <= thinnest_) unfit.push_back(static_cast<int>(c));
+      if (shape.largest_angle > largest_angle_allowed) flat.push_back(c);
     }
-    for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
+    for (const std::size_t c : flat) {
       for (const int v : flat_corners(c)) unfit.push_back(smallest_neighbour(v, static_cast<int>(c)));
     }
     for (const Edge& e : left_short) {
