@@ -65,29 +65,28 @@ Difference of_displacements(const Pair& pair) {
   Difference d;
   for (int g = 0; g < pair.mechanics().model().gridpoint_count(); ++g)
     for (int i : {0, 1})
-      d.add(pair.mechanics().displacement()[g][i], pair.textbook().gridpoints()[g].displacement[i]);
+      d.add(pair.mechanics().displacement(g)[i], pair.textbook().gridpoints()[g].displacement[i]);
   return d;
 }
 
 Difference of_velocities(const Pair& pair) {
   Difference d;
   for (int g = 0; g < pair.mechanics().model().gridpoint_count(); ++g)
-    for (int i : {0, 1})
-      d.add(pair.mechanics().velocity()[g][i], pair.textbook().gridpoints()[g].velocity[i]);
+    for (int i : {0, 1}) d.add(pair.mechanics().velocity(g)[i], pair.textbook().gridpoints()[g].velocity[i]);
   return d;
 }
 
 Difference of_stresses(const Pair& pair) {
   Difference d;
   for (int z = 0; z < pair.mechanics().model().zone_count(); ++z)
-    for (int i : {0, 1, 2}) d.add(pair.mechanics().stress()[z][i], pair.textbook().zones()[z].stress[i]);
+    for (int i : {0, 1, 2}) d.add(pair.mechanics().stress(z)[i], pair.textbook().zones()[z].stress[i]);
   return d;
 }
 
 Difference of_tractions(const Pair& pair) {
   Difference d;
   for (int c = 0; c < pair.mechanics().model().contact_count(); ++c) {
-    const auto& ours = pair.mechanics().contacts()[c];
+    const auto ours = pair.mechanics().contact(c);
     const auto& theirs = pair.textbook().contacts()[c];
     d.add(ours.normal_traction, theirs.normal_traction);
     d.add(ours.shear_traction[0], theirs.shear_traction);
@@ -99,7 +98,7 @@ Difference of_tractions(const Pair& pair) {
 double of_damages(const Pair& pair) {
   double largest = 0.0;
   for (int c = 0; c < pair.mechanics().model().contact_count(); ++c) {
-    const auto& ours = pair.mechanics().contacts()[c].history;
+    const auto ours = pair.mechanics().contact_history(c);
     const auto& theirs = pair.textbook().contacts()[c];
     largest = std::max({largest, std::abs(ours.tension_damage - theirs.tension_damage),
                         std::abs(ours.shear_damage - theirs.shear_damage)});
@@ -110,8 +109,10 @@ double of_damages(const Pair& pair) {
 /// Sum of all damages of a body, tension and shear.
 double total_damage(const Mechanics<2>& m) {
   double sum = 0.0;
-  for (int c = 0; c < m.model().contact_count(); ++c)
-    sum += m.contacts()[c].history.tension_damage + m.contacts()[c].history.shear_damage;
+  for (int c = 0; c < m.model().contact_count(); ++c) {
+    const auto history = m.contact_history(c);
+    sum += history.tension_damage + history.shear_damage;
+  }
   return sum;
 }
 
@@ -349,7 +350,7 @@ struct Compression {
 
   double held_by_mechanics(const Pair& p) const {
     double sum = 0.0;
-    for (int g : body.bottom_support) sum -= p.mechanics().force()[g][1];
+    for (int g : body.bottom_support) sum -= p.mechanics().force(g)[1];
     return sum;
   }
   double held_by_textbook(const Pair& p) const {

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 #include <tuple>
+#include <utility>
+
+#include <omp.h>
 
 #include "examples.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
@@ -149,6 +152,34 @@ TEST(Laguerre, EveryPointOfACellBelongsToItsSeed) {
         EXPECT_LE(power(p, c), power(p, other) + 1e-9 * width * height);
       }
     }
+  }
+}
+
+/// Relaxed seeds and their cells, made by a number of threads.
+std::pair<Seeds, Tessellation> relaxed_cells(int threads) {
+  Random random(7);
+  Seeds seeds;
+  for (int i = 0; i < 2000; ++i) {
+    const double x = random.uniform(0, width);
+    seeds.position.push_back({{x, random.uniform(0, height)}});
+    seeds.radius.push_back(random.uniform(0.7, 1.3) * 0.5 * std::sqrt(width * height / 2000));
+  }
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(threads);
+  for (int i = 0; i < 3; ++i) relax(seeds, width, height);
+  Tessellation cells = laguerre_tessellation(seeds, width, height).tessellation;
+  omp_set_num_threads(before);
+  return {seeds, cells};
+}
+
+TEST(Laguerre, IsBitwiseTheSameForAnyNumberOfThreads) {
+  const auto [seeds, cells] = relaxed_cells(1);
+  for (const int threads : {2, 5}) {
+    SCOPED_TRACE(testing::Message() << threads << " threads");
+    const auto [other_seeds, other_cells] = relaxed_cells(threads);
+    EXPECT_EQ(other_seeds.position, seeds.position);
+    EXPECT_EQ(other_cells.vertices, cells.vertices);
+    EXPECT_EQ(other_cells.cells, cells.cells);
   }
 }
 

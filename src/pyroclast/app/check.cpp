@@ -12,14 +12,19 @@ namespace pyroclast::app {
 
 namespace {
 
-/// Enough steps to time one, few enough not to be waited for.
-constexpr int kWarmUpSteps = 20, kTimedSteps = 200;
+/// Enough steps to time one, or as many as do not keep one waiting.
+constexpr int kWarmUpSteps = 2, kTimedBatch = 10, kMostTimedSteps = 200;
+constexpr double kSecondsOfTiming = 1.0;
 
 double seconds_per_step(Mechanics<2>& mechanics) {
   mechanics.advance(kWarmUpSteps);
   const auto start = Clock::now();
-  mechanics.advance(kTimedSteps);
-  return seconds_since(start) / kTimedSteps;
+  int steps = 0;
+  do {
+    mechanics.advance(kTimedBatch);
+    steps += kTimedBatch;
+  } while (steps < kMostTimedSteps && seconds_since(start) < kSecondsOfTiming);
+  return seconds_since(start) / steps;
 }
 
 double peak_memory() {

@@ -26,9 +26,13 @@ void add_output(CLI::App* command, app::RunOptions& options) {
   command->add_flag("!--no-figures", options.figures, "Draw no figures");
 }
 
-void add_processor(CLI::App* command, app::RunOptions& options) {
-  command->add_option("-t,--threads", options.threads, "Threads; results are the same for any number")
+void add_threads(CLI::App* command, int& threads) {
+  command->add_option("-t,--threads", threads, "Threads; results are the same for any number")
       ->check(CLI::PositiveNumber);
+}
+
+void add_processor(CLI::App* command, app::RunOptions& options) {
+  add_threads(command, options.threads);
   command->add_option("--instructions", options.instructions,
                       "Instruction set: portable, avx2 or avx512 (default: the best that the processor has); "
                       "results are the same for any");
@@ -56,6 +60,7 @@ int command_line(int argc, char** argv) {
   }
   for (auto* command : {run, specimen}) add_output(command, options);
   for (auto* command : {run, check}) add_processor(command, options);
+  add_threads(specimen, options.threads);
 
   app::LawOptions law_options;
   auto* law =

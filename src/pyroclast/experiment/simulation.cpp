@@ -14,7 +14,8 @@ namespace pyroclast {
 
 namespace {
 
-/// Measured peak over the number of blocks, from 5,000 to 100,000 blocks (docs/performance.md), rounded up.
+/// Measured peak over the number of blocks, from 5,000 to 1,000,000 blocks (docs/performance.md), rounded up:
+/// heat conduction takes half as much again.
 constexpr double kBytesPerBlock = 6000.0;
 constexpr double kBytesFixed = 40e6;
 

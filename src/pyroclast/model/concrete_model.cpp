@@ -68,6 +68,13 @@ std::vector<int> wall_vertices(const Specimen& specimen, double y) {
   return wall;
 }
 
+std::size_t place_on_wall(const Specimen& specimen, const std::vector<int>& wall, int vertex) {
+  const auto& vertices = specimen.tessellation.vertices;
+  const auto found = std::lower_bound(wall.begin(), wall.end(), vertex,
+                                      [&](int a, int b) { return vertices[a][0] < vertices[b][0]; });
+  return static_cast<std::size_t>(found - wall.begin());
+}
+
 }  // namespace
 
 ConcreteModel make_concrete_model(const Specimen& specimen, std::optional<double> platen_thickness,
@@ -110,10 +117,7 @@ ConcreteModel make_concrete_model(const Specimen& specimen, std::optional<double
   const auto join_platen = [&](const std::array<int, 2>& face, const specimen::Edge& e,
                                const std::vector<int>& wall, const Platen& platen) {
     if (!platen_thickness) return;
-    const auto opposite = [&](int vertex) {
-      return platen
-          .inner[static_cast<std::size_t>(std::find(wall.begin(), wall.end(), vertex) - wall.begin())];
-    };
+    const auto opposite = [&](int vertex) { return platen.inner[place_on_wall(specimen, wall, vertex)]; };
     model.join_faces(face, {opposite(e.v0), opposite(e.v1)}, platen_interface);
   };
 

@@ -24,6 +24,8 @@ void write_temperatures(Hdf5File& file, const TemperatureField& field) {
 
 void write_motion(Hdf5File& file, const Mechanics<2>& mechanics) {
   std::vector<float> displacement, stress;
+  displacement.reserve(3 * mechanics.displacement().size());
+  stress.reserve(3 * mechanics.stress().size());
   for (const auto& u : mechanics.displacement()) append(displacement, u);
   for (const auto& s : mechanics.stress())
     for (double component : s) stress.push_back(static_cast<float>(component));
@@ -34,6 +36,9 @@ void write_motion(Hdf5File& file, const Mechanics<2>& mechanics) {
 void write_contacts(Hdf5File& file, const Mechanics<2>& mechanics) {
   const auto& model = mechanics.model();
   std::vector<float> displacement, tension, shear, opening, slip, normal_traction, shear_traction, closure;
+  displacement.reserve(6 * model.contacts.size());
+  for (auto* values : {&tension, &shear, &opening, &slip, &normal_traction, &shear_traction, &closure})
+    values->reserve(model.contacts.size());
   const auto u = mechanics.displacement();
   for (int i = 0; i < model.contact_count(); ++i) {
     const auto& c = model.contacts[i];

@@ -12,9 +12,6 @@ namespace pyroclast {
 
 namespace {
 
-constexpr std::size_t kCompressFrom = 1024;  // values; below, a filter costs more than it saves
-constexpr unsigned kCompression = 4;
-
 /// Closes an HDF5 identifier at the end of its scope.
 template <herr_t (*Close)(hid_t)>
 struct Handle {
@@ -57,14 +54,9 @@ void Hdf5File::write(const std::string& name, std::int64_t type, const void* dat
   const hsize_t dims[2] = {count / width, width};
   const int rank = columns > 0 ? 2 : 1;
   const Handle<H5Sclose> space{H5Screate_simple(rank, dims, nullptr)};
-  const Handle<H5Pclose> plan{H5Pcreate(H5P_DATASET_CREATE)};
-  if (count >= kCompressFrom) {
-    H5Pset_chunk(plan.id, rank, dims);
-    H5Pset_shuffle(plan.id);
-    H5Pset_deflate(plan.id, kCompression);
-  }
+  // Not compressed: most bytes of a field are noise, and deflating a frame takes as long as 150 steps.
   const Handle<H5Dclose> set{
-      H5Dcreate2(file_, name.c_str(), type, space.id, H5P_DEFAULT, plan.id, H5P_DEFAULT)};
+      H5Dcreate2(file_, name.c_str(), type, space.id, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)};
   if (set.id < 0 || (count > 0 && H5Dwrite(set.id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0))
     fail("dataset " + name + " cannot be written");
 }

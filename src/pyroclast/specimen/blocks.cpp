@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/specimen/block_order.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
 #include "pyroclast/specimen/neper_tess.hpp"
 #include "pyroclast/specimen/regularisation.hpp"
@@ -71,17 +72,18 @@ Blocks tessellate_until_fit(const BlockParameters& parameters, double width, dou
 }  // namespace
 
 Blocks make_blocks(const BlockParameters& parameters, double width, double height, Random& random) {
+  Blocks blocks{};
   if (parameters.file.empty()) {
-    Blocks blocks = tessellate_until_fit(parameters, width, height, random);
+    blocks = tessellate_until_fit(parameters, width, height, random);
     require_valid(blocks.tessellation, width, height,
                   fmt::format("Tessellation of {} blocks", parameters.count));
-    return blocks;
+  } else {
+    blocks.tessellation = read_neper_tess(parameters.file, width, height);
+    const Regularisation done = regularise(blocks.tessellation, width, height, parameters.shortest_edge);
+    blocks.edges_removed = done.edges_removed;
+    blocks.edges_left_short = done.edges_left_short;
   }
-  Blocks blocks{};
-  blocks.tessellation = read_neper_tess(parameters.file, width, height);
-  const Regularisation done = regularise(blocks.tessellation, width, height, parameters.shortest_edge);
-  blocks.edges_removed = done.edges_removed;
-  blocks.edges_left_short = done.edges_left_short;
+  number_along_curve(blocks.tessellation, width, height);
   return blocks;
 }
 

@@ -24,36 +24,38 @@ constexpr double seeds_per_block = 5.0;
 /// Number that Voro++ gives to the upper wall of the slab.
 constexpr int upper_wall = -6;
 
+/// Mean spacing of the seeds, m, and the rectangle in spacings.
+struct SlabSize {
+  SlabSize(const Seeds& seeds, double width_m, double height_m)
+      : spacing(std::sqrt(width_m * height_m / static_cast<double>(seeds.position.size()))),
+        width(width_m / spacing),
+        height(height_m / spacing) {}
+
+  double spacing, width, height;
+};
+
 class Slab {
  public:
-  Slab(const Seeds& seeds, double width, double height)
-      : spacing_(std::sqrt(width * height / static_cast<double>(seeds.position.size()))),
-        width_(width / spacing_),
-        height_(height / spacing_),
-        container_(0.0, width_, 0.0, height_, -0.5 * slab_thickness, 0.5 * slab_thickness, blocks(width_),
-                   blocks(height_), 1, false, false, false, 8) {
+  Slab(const Seeds& seeds, const SlabSize& size)
+      : container_(0.0, size.width, 0.0, size.height, -0.5 * slab_thickness, 0.5 * slab_thickness,
+                   blocks(size.width), blocks(size.height), 1, false, false, false, 8) {
     for (std::size_t i = 0; i < seeds.position.size(); ++i) {
-      const Vec<2> p = seeds.position[i] * (1.0 / spacing_);
-      container_.put(static_cast<int>(i), p[0], p[1], 0.0, seeds.radius[i] / spacing_);
+      const Vec<2> p = seeds.position[i] * (1.0 / size.spacing);
+      container_.put(static_cast<int>(i), p[0], p[1], 0.0, seeds.radius[i] / size.spacing);
     }
   }
 
-  double spacing() const { return spacing_; }
-  double width() const { return width_; }
-  double height() const { return height_; }
+  /// Computational blocks of Voro++; each holds the seeds of its square.
+  int block_count() const { return container_.nxyz; }
 
-  /// Calls f(seed, prism, position) for every seed whose cell is not empty; lengths in spacings.
+  /// Calls f(seed, prism, position) for every seed of a block whose cell is not empty; lengths in spacings.
   template <class Prism, class F>
-  void for_each_cell(F&& f) {
-    Prism prism;
-    voro::c_loop_all loop(container_);
-    if (!loop.start()) return;
-    do {
-      if (!container_.compute_cell(prism, loop)) continue;
-      double x, y, z;
-      loop.pos(x, y, z);
-      f(static_cast<std::size_t>(loop.pid()), prism, Vec<2>{{x, y}});
-    } while (loop.inc());
+  void for_each_cell(int block, Prism& prism, F&& f) {
+    for (int i = 0; i < container_.co[block]; ++i) {
+      if (!container_.compute_cell(prism, block, i)) continue;
+      const double* position = container_.p[block] + static_cast<std::ptrdiff_t>(4 * i);  // x, y, z, radius
+      f(static_cast<std::size_t>(container_.id[block][i]), prism, Vec<2>{{position[0], position[1]}});
+    }
   }
 
  private:
@@ -61,9 +63,23 @@ class Slab {
     return std::max(1, static_cast<int>(std::lround(length / std::sqrt(seeds_per_block))));
   }
 
-  double spacing_, width_, height_;
   voro::container_poly container_;
 };
+
+/// Calls f(seed, prism, position), from several threads, for every seed whose cell is not empty. Voro++
+/// cuts in scratch memory of the container, so each thread has a container of its own; what a cell becomes
+/// does not depend on the cells cut before it.
+template <class Prism, class F>
+void for_each_cell(const Seeds& seeds, const SlabSize& size, F&& f) {
+#pragma omp parallel
+  {
+    Slab slab(seeds, size);
+    Prism prism;
+    const int blocks = slab.block_count();
+#pragma omp for schedule(static)
+    for (int block = 0; block < blocks; ++block) slab.for_each_cell(block, prism, f);
+  }
+}
 
 /// The prism's upper face, counter-clockwise.
 std::vector<Vec<2>> upper_face(voro::voronoicell_neighbor& prism, const Vec<2>& position) {
@@ -106,20 +122,23 @@ std::vector<int> same_vertex(const std::vector<Vec<2>>& points) {
     }
     return i;
   };
-  std::vector<int> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto at = [&](int i) -> const Vec<2>& { return points[static_cast<std::size_t>(i)]; };
-  std::sort(order.begin(), order.end(), [&](int i, int j) {
-    if (at(i)[0] != at(j)[0]) return at(i)[0] < at(j)[0];
-    return at(i)[1] != at(j)[1] ? at(i)[1] < at(j)[1] : i < j;
+  struct Point {
+    Vec<2> at;
+    int index;
+  };
+  std::vector<Point> sorted;
+  sorted.reserve(points.size());
+  for (const Vec<2>& p : points) sorted.push_back({p, static_cast<int>(sorted.size())});
+  std::sort(sorted.begin(), sorted.end(), [](const Point& a, const Point& b) {
+    return a.at.c != b.at.c ? a.at.c < b.at.c : a.index < b.index;
   });
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    for (std::size_t j = i + 1; j < order.size(); ++j) {
-      const Vec<2> between = at(order[j]) - at(order[i]);
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    for (std::size_t j = i + 1; j < sorted.size(); ++j) {
+      const Vec<2> between = sorted[j].at - sorted[i].at;
       if (between[0] > merge_distance) break;
       if (std::abs(between[1]) > merge_distance) continue;
-      const int a = root(order[i]);
-      const int b = root(order[j]);
+      const int a = root(sorted[i].index);
+      const int b = root(sorted[j].index);
       parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
     }
   }
@@ -155,29 +174,33 @@ Tessellation join(const std::vector<std::vector<Vec<2>>>& polygons) {
 }  // namespace
 
 LaguerreResult laguerre_tessellation(const Seeds& seeds, double width, double height) {
-  Slab slab(seeds, width, height);
+  const SlabSize size(seeds, width, height);
   std::vector<std::vector<Vec<2>>> polygons(seeds.position.size());
-  slab.for_each_cell<voro::voronoicell_neighbor>([&](std::size_t seed, auto& prism, const Vec<2>& position) {
-    polygons[seed] = upper_face(prism, position);
-    for (Vec<2>& p : polygons[seed]) p = {{snapped(p[0], slab.width()), snapped(p[1], slab.height())}};
-  });
+  for_each_cell<voro::voronoicell_neighbor>(seeds, size,
+                                            [&](std::size_t seed, auto& prism, const Vec<2>& position) {
+                                              polygons[seed] = upper_face(prism, position);
+                                              for (Vec<2>& p : polygons[seed])
+                                                p = {{snapped(p[0], size.width), snapped(p[1], size.height)}};
+                                            });
 
   LaguerreResult result{join(polygons), {}};
   for (Vec<2>& p : result.tessellation.vertices) {
-    p = {{p[0] == slab.width() ? width : p[0] * slab.spacing(),
-          p[1] == slab.height() ? height : p[1] * slab.spacing()}};
+    p = {{p[0] == size.width ? width : p[0] * size.spacing,
+          p[1] == size.height ? height : p[1] * size.spacing}};
   }
   result.broken = mismatched_cells(result.tessellation, width, height);
   return result;
 }
 
 void relax(Seeds& seeds, double width, double height) {
-  Slab slab(seeds, width, height);
-  slab.for_each_cell<voro::voronoicell>([&](std::size_t seed, auto& prism, const Vec<2>& position) {
+  const SlabSize size(seeds, width, height);
+  std::vector<Vec<2>> relaxed = seeds.position;
+  for_each_cell<voro::voronoicell>(seeds, size, [&](std::size_t seed, auto& prism, const Vec<2>& position) {
     double x, y, z;
     prism.centroid(x, y, z);
-    seeds.position[seed] = (position + Vec<2>{{x, y}}) * slab.spacing();
+    relaxed[seed] = (position + Vec<2>{{x, y}}) * size.spacing;
   });
+  seeds.position = std::move(relaxed);
 }
 
 }  // namespace pyroclast::specimen

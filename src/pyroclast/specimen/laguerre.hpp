@@ -21,10 +21,11 @@ struct LaguerreResult {
 
 /// The Laguerre tessellation of [0, width] x [0, height] (m), by Voro++ (Rycroft, Chaos 19, 041111, 2009).
 /// Vertices are shared: those closer than 1e-8 mean spacings are one. Outline vertices lie exactly on the
-/// outline.
+/// outline. OpenMP's threads share the cells out; the result is bitwise the same for any number of them.
 LaguerreResult laguerre_tessellation(const Seeds& seeds, double width, double height);
 
-/// Lloyd's step: every seed moves to the centroid of its cell; a seed with an empty cell stays.
+/// Lloyd's step: every seed moves to the centroid of its cell; a seed with an empty cell stays. Threads
+/// as above.
 void relax(Seeds& seeds, double width, double height);
 
 }  // namespace pyroclast::specimen

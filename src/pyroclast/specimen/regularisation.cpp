@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -32,7 +33,12 @@ Shape shape_of(Corners polygon) {
 class Regulariser {
  public:
   Regulariser(Tessellation& tessellation, double width, double height, double shortest_edge)
-      : tessellation_(tessellation), share_(shortest_edge), around_(tessellation.vertices.size()) {
+      : tessellation_(tessellation),
+        share_(shortest_edge),
+        edges_(edges(tessellation)),
+        kept_(tessellation.vertices.size()),
+        around_(tessellation.vertices.size()) {
+    std::iota(kept_.begin(), kept_.end(), 0);
     for (const Vec<2>& p : tessellation_.vertices) sides_.push_back(sides(p, width, height));
     for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
       for (const int v : tessellation_.cells[c]) cells_around(v).push_back(static_cast<int>(c));
@@ -68,16 +74,40 @@ class Regulariser {
 
   /// Sets the limits from the mean of the edges as they are now; returns the edges below, shortest first.
   std::vector<Edge> short_edges() {
-    std::vector<Edge> all = edges(tessellation_);
-    double sum = 0.0;
-    for (const Edge& e : all) sum += norm(at(e.v1) - at(e.v0));
-    shortest_ = share_ * sum / static_cast<double>(all.size());
+    follow_merges();
+    std::vector<double> length;
+    length.reserve(edges_.size());
+    for (const Edge& e : edges_) length.push_back(norm(at(e.v1) - at(e.v0)));
+    const double sum = std::accumulate(length.begin(), length.end(), 0.0);
+    shortest_ = share_ * sum / static_cast<double>(edges_.size());
     thinnest_ = sliver_share * shortest_;
-    std::erase_if(all, [&](const Edge& e) { return norm(at(e.v1) - at(e.v0)) >= shortest_; });
-    std::stable_sort(all.begin(), all.end(), [&](const Edge& a, const Edge& b) {
-      return norm(at(a.v1) - at(a.v0)) < norm(at(b.v1) - at(b.v0));
-    });
-    return all;
+
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < length.size(); ++i) {
+      if (length[i] < shortest_) order.push_back(i);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t i, std::size_t j) { return length[i] < length[j]; });
+    std::vector<Edge> found;
+    found.reserve(order.size());
+    for (const std::size_t i : order) found.push_back(edges_[i]);
+    return found;
+  }
+
+  /// Takes the edges to the vertices that merges have left.
+  void follow_merges() {
+    for (Edge& e : edges_) {
+      e.v0 = kept(e.v0);
+      e.v1 = kept(e.v1);
+    }
+    std::erase_if(edges_, [](const Edge& e) { return e.v0 == e.v1; });
+  }
+
+  /// The vertex that stands for `v` after all merges.
+  int kept(int v) {
+    int& next = kept_[static_cast<std::size_t>(v)];
+    if (next != v) next = kept(next);
+    return next;
   }
 
   /// Merges the two ends where every block around stays fit; false when there is no such place.
@@ -153,6 +183,7 @@ class Regulariser {
       }
     }
     cells_around(b).clear();
+    kept_[static_cast<std::size_t>(b)] = a;
     cells_around(a) = touched_;
   }
 
@@ -174,12 +205,15 @@ class Regulariser {
   std::vector<int> unfit_cells(const std::vector<Edge>& left_short) {
     areas_.clear();
     std::vector<int> unfit;
+    std::vector<std::size_t> flat;
     for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
       corners(tessellation_, c, polygon_);
       areas_.push_back(area(polygon_));
-      if (shape_of(polygon_).thinnest_zone <= thinnest_) unfit.push_back(static_cast<int>(c));
+      const Shape shape = shape_of(polygon_);
+      if (shape.thinnest_zone <= thinnest_) unfit.push_back(static_cast<int>(c));
+      if (shape.largest_angle > largest_angle_allowed) flat.push_back(c);
     }
-    for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
+    for (const std::size_t c : flat) {
       for (const int v : flat_corners(c)) unfit.push_back(smallest_neighbour(v, static_cast<int>(c)));
     }
     for (const Edge& e : left_short) {
@@ -214,6 +248,8 @@ class Regulariser {
   Tessellation& tessellation_;
   double share_;
   double shortest_ = 0.0, thinnest_ = 0.0;  ///< m
+  std::vector<Edge> edges_;
+  std::vector<int> kept_;  ///< of each vertex the one it was merged into, or itself
   std::vector<std::uint8_t> sides_;
   std::vector<std::vector<int>> around_;  ///< cells around each vertex, ascending; empty: merged away
   std::vector<int> touched_;

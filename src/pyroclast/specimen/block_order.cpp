@@ -1,0 +1,79 @@
+#include "pyroclast/specimen/block_order.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/topology.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+/// The curve passes through 2^16 x 2^16 squares, each once.
+constexpr std::uint32_t curve_side = 1U << 16;
+
+/// Place of a square along Hilbert's curve (D. Hilbert, Math. Ann. 38 (1891) 459): in which quarter it lies,
+/// then in which quarter of that one, each turned as the curve enters it.
+std::uint64_t place_on_curve(std::uint32_t x, std::uint32_t y) {
+  std::uint64_t place = 0;
+  for (std::uint32_t half = curve_side / 2; half > 0; half /= 2) {
+    const bool right = (x & half) != 0;
+    const bool upper = (y & half) != 0;
+    const std::uint64_t quarter = right ? (upper ? 2 : 3) : (upper ? 1 : 0);
+    place += quarter * half * half;
+    if (upper) continue;
+    if (right) {
+      x = curve_side - 1 - x;
+      y = curve_side - 1 - y;
+    }
+    std::swap(x, y);
+  }
+  return place;
+}
+
+std::uint32_t square(double x, double length) {
+  return static_cast<std::uint32_t>(std::clamp(x / length * curve_side, 0.0, curve_side - 1.0));
+}
+
+void number_cells(Tessellation& tessellation, double width, double height) {
+  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  std::vector<Vec<2>> polygon;
+  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
+    corners(tessellation, c, polygon);
+    const Vec<2> centre = centroid(polygon);
+    order.emplace_back(place_on_curve(square(centre[0], width), square(centre[1], height)), c);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<std::vector<int>> cells;
+  cells.reserve(order.size());
+  for (const auto& [place, c] : order) cells.push_back(std::move(tessellation.cells[c]));
+  tessellation.cells = std::move(cells);
+}
+
+void number_vertices(Tessellation& tessellation) {
+  std::vector<int> number(tessellation.vertices.size(), -1);
+  std::vector<Vec<2>> vertices;
+  vertices.reserve(number.size());
+  for (auto& cell : tessellation.cells) {
+    for (int& v : cell) {
+      int& n = number[static_cast<std::size_t>(v)];
+      if (n < 0) {
+        n = static_cast<int>(vertices.size());
+        vertices.push_back(tessellation.vertices[static_cast<std::size_t>(v)]);
+      }
+      v = n;
+    }
+  }
+  tessellation.vertices = std::move(vertices);
+}
+
+}  // namespace
+
+void number_along_curve(Tessellation& tessellation, double width, double height) {
+  number_cells(tessellation, width, height);
+  number_vertices(tessellation);
+}
+
+}  // namespace pyroclast::specimen
