@@ -13,8 +13,13 @@ namespace {
 constexpr int kSettleSteps = 200;
 /// The force of a ramp is adjusted this often.
 constexpr int kRampSteps = 20;
-/// The unbalanced ratio is looked at this often after an exchange of temperatures.
+/// The unbalanced ratio is looked at this often after an exchange of temperatures, and while the platen's
+/// velocity is controlled.
 constexpr int kCyclesPerCheck = 50;
+/// Change of the logarithm of a controlled velocity, from check to check, over that of its excess.
+constexpr double kGain = 0.1;
+/// A velocity may fall so much faster than rise.
+constexpr double kSlowDown = 4.0;
 /// A platen that sinks by less than this share of the failure strain within the stated cycles is not running
 /// away.
 constexpr double kSlowSinking = 0.1;
@@ -297,9 +302,11 @@ void Experiment::begin(const CompressStage& stage) {
   control_by_motion(0.0);
   next_frame_ = sampling_.frame_strain;
   peak_stress_ = 0.0;
+  velocity_ = 0.0;
 }
 
 void Experiment::load(const CompressStage& stage) {
+  if (stage.control) return;  // move_controlled
   // half a step of ramp ahead, so that the ramp leaves zero
   const double ahead =
       stage.ramp_time > 0.0 ? steps_to_next_look(stage) * mechanics_.time_step() / stage.ramp_time : 0.0;
@@ -314,7 +321,40 @@ int Experiment::steps_to_next_look(const CompressStage& stage) const {
 }
 
 void Experiment::move(const CompressStage& stage) {
-  mechanics_.advance(steps_to_next_look(stage));
+  if (stage.control)
+    move_controlled(stage);
+  else
+    mechanics_.advance(steps_to_next_look(stage));
+}
+
+/// How far the motion is from the tolerances: above 1, out of them. Forces out of balance go with the
+/// velocity, kinetic energy with its square.
+double Experiment::excess(const VelocityControl& control) const {
+  const EnergyLedger energy = mechanics_.energy();
+  const double top = stress_top(), bottom = stress_bottom();
+  const double largest = std::max(peak_stress_, 0.5 * (top + bottom));
+  const double kinetic = std::abs(energy.kinetic) / (energy.zones + energy.contacts);
+  return std::max({mechanics_.unbalanced_ratio() / control.unbalanced_ratio,
+                   std::sqrt(kinetic / control.kinetic_over_strain),
+                   std::abs(top - bottom) / largest / control.platen_difference});
+}
+
+/// Moves by the strain between two looks, as fast as the tolerances bear. A velocity that changes shakes the
+/// body, so it does that gently.
+void Experiment::move_controlled(const CompressStage& stage) {
+  const double time = kCyclesPerCheck * mechanics_.time_step();
+  const double most = time / stage.ramp_time;
+  for (double way = 0.0; way < sampling_.history_strain * height_ && !stop_asked(); way += velocity_ * time) {
+    const double share = ramp_share(stage.ramp_time);
+    if (share < 1.0) {
+      velocity_ = stage.velocity * std::min(1.0, share + 0.5 * most);
+    } else {
+      const double change = std::clamp(-kGain * std::log(excess(*stage.control)), -kSlowDown * most, most);
+      velocity_ = std::clamp(velocity_ * std::exp(change), stage.velocity, stage.control->fastest);
+    }
+    for (int g : body_.top_support) mechanics_.prescribe_velocity(g, 1, -velocity_);
+    mechanics_.advance(kCyclesPerCheck);
+  }
 }
 
 Experiment::Verdict Experiment::judge(const CompressStage& stage, const Sample& now) {

@@ -13,10 +13,27 @@ SettleStage read_settle(const Section& s) {
   return stage;
 }
 
+/// The velocity changes between `velocity` and `fastest_velocity`.
+VelocityControl read_velocity_control(const Section& s, const CompressStage& stage) {
+  VelocityControl c;
+  c.fastest = s.quantity("fastest_velocity", unit::velocity, Range::positive());
+  if (s.ok() && c.fastest < stage.velocity) s.error("fastest_velocity", "must not be less than velocity");
+  if (s.ok() && stage.ramp_time == 0.0)
+    s.error("ramp_time", "must be greater than 0 with fastest_velocity: it bounds the acceleration");
+  c.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive());
+  c.kinetic_over_strain = s.number("kinetic_over_strain", Range::positive());
+  c.platen_difference = s.number("platen_difference", Range::positive());
+  return c;
+}
+
 CompressStage read_compress(const Section& s) {
   CompressStage stage;
   stage.velocity = s.quantity("velocity", unit::velocity, Range::positive());
   stage.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative());
+  if (s.has("fastest_velocity"))
+    stage.control = read_velocity_control(s, stage);
+  else
+    s.know({"unbalanced_ratio", "kinetic_over_strain", "platen_difference"});
   stage.stop_strain = s.number("stop_strain", Range::inside(0.0, 1.0));
   stage.stop_fraction =
       s.number("stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0);

@@ -22,10 +22,21 @@ struct LoadStage {
   std::int64_t most_steps = 0;    ///< after the ramp; gives up, and says so, after as many
 };
 
+/// A velocity that follows how near the body is to equilibrium: it is set, from look to look, to what would
+/// bring the largest of three measures to its tolerance.
+struct VelocityControl {
+  double fastest = 0.0;  ///< m/s; the stage's velocity is the slowest
+  double unbalanced_ratio = 0.0;
+  double kinetic_over_strain = 0.0;  ///< kinetic over elastic energy
+  double platen_difference = 0.0;    ///< between the stresses on the platens, over the largest stress so far
+};
+
 /// Drives the upper platen down, the lower one fixed.
 struct CompressStage {
-  double velocity = 0.0;       ///< m/s
-  double ramp_time = 0.0;      ///< time over which the velocity is brought up, s
+  double velocity = 0.0;  ///< m/s
+  /// Time over which the velocity is brought up, s: to the fastest where it is controlled.
+  double ramp_time = 0.0;
+  std::optional<VelocityControl> control;
   double stop_strain = 0.0;    ///< ends at this axial strain, from the beginning of the stage
   double stop_fraction = 0.0;  ///< ends when the stress has fallen below this fraction of the peak; 0: never
 };
