@@ -36,6 +36,12 @@ double mean_displacement(const Mechanics<2>& mechanics, const std::vector<int>& 
   return sum / static_cast<double>(gridpoints.size());
 }
 
+double mean_position(const Model<2>& model, const std::vector<int>& gridpoints, int component) {
+  double sum = 0.0;
+  for (int g : gridpoints) sum += model.position[g][component];
+  return sum / static_cast<double>(gridpoints.size());
+}
+
 double total_force(const Mechanics<2>& mechanics, const std::vector<int>& gridpoints, int component) {
   double sum = 0.0;
   for (int g : gridpoints) sum += mechanics.force()[g][component];
@@ -159,6 +165,12 @@ double Experiment::specimen_strain() const {
   return (shortening - specimen_shortening_at_rest_) / height_;
 }
 
+double Experiment::lateral_strain() const {
+  const double widening =
+      mean_displacement(mechanics_, body_.right_side, 0) - mean_displacement(mechanics_, body_.left_side, 0);
+  return (widening - widening_at_rest_) / width_;
+}
+
 double Experiment::stress_top() const {
   double applied = 0.0;
   for (int g : body_.top_support) applied += mechanics_.applied_force()[g][1];
@@ -188,9 +200,7 @@ Sample Experiment::measure() const {
   s.specimen_strain = specimen_strain();
   s.stress_top = stress_top();
   s.stress_bottom = stress_bottom();
-  const double widening =
-      mean_displacement(mechanics_, body_.right_side, 0) - mean_displacement(mechanics_, body_.left_side, 0);
-  s.lateral_strain = (widening - widening_at_rest_) / width_;
+  s.lateral_strain = lateral_strain();
   s.unbalanced_ratio = mechanics_.unbalanced_ratio();
   s.energy = mechanics_.energy();
   const double elastic = s.energy.zones + s.energy.contacts;
@@ -381,6 +391,7 @@ void Experiment::begin_heating(const Coupling& coupling) {
     hold_force(stress_held_);
   }
   last_interval_ = temperature_interval(field_.mean());
+  last_change_ = 0.0;
 }
 
 /// Which of the even intervals between frames a temperature lies in.
@@ -433,6 +444,51 @@ void Experiment::begin(const HeatStage& stage) {
   begin_heating(stage.coupling);
 }
 
+/// Change of the specimen's free thermal strain between two temperatures: the least and the greatest of its
+/// solids, or none.
+Interval Experiment::free_strain_change(double from, double to) const {
+  Interval change{0.0, 0.0};
+  for (const auto m : {aggregate_material, mortar_material}) {
+    const Curve& strain = materials_.solids[m].thermal_strain;
+    const double solid = strain(to) - strain(from);
+    change = {std::min(change.lower, solid), std::max(change.upper, solid)};
+  }
+  return change;
+}
+
+/// Moves the body to where it will come to rest at its new temperature, as far as its last change foretells:
+/// evenly strained in both directions, with the platen that lies on it. Contacts keep their jumps. What is
+/// left to the motion is what differs from place to place; without this the body would have to push itself
+/// to its new size, and its inertia would press on the lower platen. Takes two steps, and leaves the body at
+/// rest.
+void Experiment::foresee(const PlateStrain& strain, bool platen_follows) {
+  const auto& model = body_.model;
+  const Vec<2> corner = model.position[body_.bottom_side.front()];
+  const double bottom = corner[1];
+  const double middle = 0.5 * (mean_position(model, body_.left_side, 0) + mean_position(model, body_.right_side, 0));
+  std::vector<int> specimen, platen;
+  for (int b = 0; b < model.block_count(); ++b) {
+    const bool is_platen = model.block_material[b] == platen_material;
+    for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g)
+      if (!is_platen)
+        specimen.push_back(g);
+      else if (platen_follows && model.position[g][1] > bottom + 0.5 * height_)
+        platen.push_back(g);
+  }
+  for (const double speed : {1.0 / mechanics_.time_step(), 0.0}) {
+    for (int g : specimen) {
+      const Vec<2>& x = model.position[g];
+      mechanics_.prescribe_velocity(g, 0, speed * strain.lateral * (x[0] - middle));
+      mechanics_.prescribe_velocity(g, 1, speed * strain.axial * (x[1] - bottom));
+    }
+    for (int g : platen) mechanics_.prescribe_velocity(g, 1, speed * strain.axial * height_);
+    mechanics_.advance(1);
+  }
+  for (int g : specimen)
+    for (int i : {0, 1}) mechanics_.release(g, i);
+  for (int g : platen) mechanics_.release(g, 1);
+}
+
 void Experiment::load(const HeatStage& stage) {
   const double now = field_.mean();
   const double left = std::abs(stage.to - now);
@@ -440,7 +496,19 @@ void Experiment::load(const HeatStage& stage) {
   const bool last = left <= stage.coupling.increment + kSameTemperature;
   field_.set_uniform(last ? stage.to : now + std::copysign(change, stage.to - now));
   heat_.time += change / stage.rate;
+  const PlateStrain strain{-specimen_strain(), lateral_strain()};
   exchange();
+  if (!stage.coupling.foresee) return;
+  if (last_change_ > 0.0) {
+    const auto [least, greatest] = free_strain_change(now, field_.mean());
+    const auto foreseen = [&](double after, double before) {
+      return std::clamp((after - before) * change / last_change_, least, greatest);
+    };
+    foresee({foreseen(strain.axial, last_strain_.axial), foreseen(strain.lateral, last_strain_.lateral)},
+            stage.coupling.platen == PlatenControl::force);
+  }
+  last_strain_ = strain;
+  last_change_ = change;
 }
 
 Experiment::Verdict Experiment::judge(const HeatStage& stage, const Sample& now) {

@@ -59,6 +59,7 @@ struct Coupling {
   std::int64_t least_cycles = 0;
   /// And at most; an exchange that did not come to rest by then is flagged.
   std::int64_t most_cycles = 0;
+  bool foresee = false;  ///< the body is moved to where its last change foretells it to rest
   PlatenControl platen = PlatenControl::force;
   /// The specimen has failed when the platen sinks by this share of the height at one temperature.
   double failure_strain = 0.0;
