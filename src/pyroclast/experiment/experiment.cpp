@@ -461,11 +461,12 @@ Interval Experiment::free_strain_change(double from, double to) const {
 /// left to the motion is what differs from place to place; without this the body would have to push itself
 /// to its new size, and its inertia would press on the lower platen. Takes two steps, and leaves the body at
 /// rest.
-void Experiment::foresee(const PlateStrain& strain, bool platen_follows) {
+void Experiment::strain_evenly(const MeanStrain& strain, bool platen_follows) {
   const auto& model = body_.model;
   const Vec<2> corner = model.position[body_.bottom_side.front()];
   const double bottom = corner[1];
-  const double middle = 0.5 * (mean_position(model, body_.left_side, 0) + mean_position(model, body_.right_side, 0));
+  const double middle =
+      0.5 * (mean_position(model, body_.left_side, 0) + mean_position(model, body_.right_side, 0));
   std::vector<int> specimen, platen;
   for (int b = 0; b < model.block_count(); ++b) {
     const bool is_platen = model.block_material[b] == platen_material;
@@ -496,16 +497,17 @@ void Experiment::load(const HeatStage& stage) {
   const bool last = left <= stage.coupling.increment + kSameTemperature;
   field_.set_uniform(last ? stage.to : now + std::copysign(change, stage.to - now));
   heat_.time += change / stage.rate;
-  const PlateStrain strain{-specimen_strain(), lateral_strain()};
+  const MeanStrain strain{-specimen_strain(), lateral_strain()};
   exchange();
-  if (!stage.coupling.foresee) return;
+  if (!stage.coupling.predictor) return;
   if (last_change_ > 0.0) {
     const auto [least, greatest] = free_strain_change(now, field_.mean());
     const auto foreseen = [&](double after, double before) {
       return std::clamp((after - before) * change / last_change_, least, greatest);
     };
-    foresee({foreseen(strain.axial, last_strain_.axial), foreseen(strain.lateral, last_strain_.lateral)},
-            stage.coupling.platen == PlatenControl::force);
+    strain_evenly(
+        {foreseen(strain.axial, last_strain_.axial), foreseen(strain.lateral, last_strain_.lateral)},
+        stage.coupling.platen == PlatenControl::force);
   }
   last_strain_ = strain;
   last_change_ = change;

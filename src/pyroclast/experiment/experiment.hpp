@@ -93,7 +93,7 @@ class Experiment {
 
  private:
   /// Of the whole specimen, expansion positive.
-  struct PlateStrain {
+  struct MeanStrain {
     double axial = 0.0, lateral = 0.0;
   };
 
@@ -130,7 +130,7 @@ class Experiment {
   double temperature_interval(double temperature) const;
   void exchange();
   Interval free_strain_change(double from, double to) const;
-  void foresee(const PlateStrain& strain, bool platen_follows);
+  void strain_evenly(const MeanStrain& strain, bool platen_follows);
   void cycle(const Coupling&);
   bool stop_asked();
   void control_by_force();
@@ -176,7 +176,7 @@ class Experiment {
   double stress_held_ = 0.0;                  ///< by the force on the upper platen, Pa
   double stage_first_temperature_ = 0.0;      ///< mean, °C
   double exposure_began_ = 0.0;               ///< heating time, s
-  PlateStrain last_strain_;                   ///< at the end of the last exchange but one
+  MeanStrain last_strain_;                    ///< at the end of the last exchange but one
   double last_change_ = 0.0;                  ///< of temperature at the last exchange, K; 0 at none yet
   int exchanges_ = 0;
   HeatSample heat_;

@@ -65,7 +65,7 @@ Coupling read_coupling(const Section& s) {
   c.least_cycles = s.integer("least_cycles", Range::between(0, 1e12));
   c.most_cycles = s.integer("most_cycles", Range::between(1, 1e12));
   if (s.ok() && c.most_cycles < c.least_cycles) s.error("most_cycles", "must not be less than least_cycles");
-  c.foresee = s.flag("foresee", false);
+  c.predictor = s.flag("predictor", false);
   c.failure_strain = s.number("failure_strain", Range::inside(0.0, 1.0));
   return c;
 }
