@@ -269,9 +269,8 @@ TEST(Predictor, FixedPlatensTakeTheThrust) {
 const std::string kFailure =
     "[[stages]]\nkind = \"compress\"\nvelocity = \"1 mm/s\"\nramp_time = \"10 ms\"\nstop_strain = 0.004\n";
 const std::string kControl =
-    "fastest_velocity = \"10 mm/s\"\nunbalanced_ratio = 2e-4\nkinetic_over_strain = 5e-3\nplaten_difference "
-    "= "
-    "0.01\n";
+    "fastest_velocity = \"10 mm/s\"\nunbalanced_ratio = 2e-4\nkinetic_over_strain = 5e-3\n"
+    "platen_difference = 0.01\ndissipation_rate = \"50 1/s\"\n";
 
 // Promise: a controlled velocity finds the modulus and the strength of the slow test in fewer steps, and is
 // quasi-static up to the peak.
@@ -361,6 +360,11 @@ TEST(Stages, ContradictionsAreRefused) {
                          "\"force\"\n"))
                 .find("conduction"),
             std::string::npos);
+  EXPECT_NE(
+      message(with(deck(kSettle + "[[stages]]\nkind = \"expose\"\nduration = \"1 h\"\nplaten = \"force\"\n"),
+                   "least_cycles = 50", kPredictor))
+          .find("uniform"),
+      std::string::npos);
 }
 
 }  // namespace

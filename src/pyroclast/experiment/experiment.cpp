@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "pyroclast/experiment/coupling.hpp"
 
@@ -313,6 +314,7 @@ void Experiment::begin(const CompressStage& stage) {
   next_frame_ = sampling_.frame_strain;
   peak_stress_ = 0.0;
   velocity_ = 0.0;
+  dissipated_ = mechanics_.energy().dissipated.total();
 }
 
 void Experiment::load(const CompressStage& stage) {
@@ -339,14 +341,18 @@ void Experiment::move(const CompressStage& stage) {
 
 /// How far the motion is from the tolerances: above 1, out of them. Forces out of balance go with the
 /// velocity, kinetic energy with its square.
-double Experiment::excess(const VelocityControl& control) const {
+/// \param time  since the last call, s
+double Experiment::excess(const VelocityControl& control, double time) {
   const EnergyLedger energy = mechanics_.energy();
+  const double elastic = energy.zones + energy.contacts;
+  const double power =
+      (energy.dissipated.total() - std::exchange(dissipated_, energy.dissipated.total())) / time;
   const double top = stress_top(), bottom = stress_bottom();
   const double largest = std::max(peak_stress_, 0.5 * (top + bottom));
-  const double kinetic = std::abs(energy.kinetic) / (energy.zones + energy.contacts);
   return std::max({mechanics_.unbalanced_ratio() / control.unbalanced_ratio,
-                   std::sqrt(kinetic / control.kinetic_over_strain),
-                   std::abs(top - bottom) / largest / control.platen_difference});
+                   std::sqrt(std::abs(energy.kinetic) / elastic / control.kinetic_over_strain),
+                   std::abs(top - bottom) / largest / control.platen_difference,
+                   power / elastic / control.dissipation_rate});
 }
 
 /// Moves by the strain between two looks, as fast as the tolerances bear. A velocity that changes shakes the
@@ -359,7 +365,8 @@ void Experiment::move_controlled(const CompressStage& stage) {
     if (share < 1.0) {
       velocity_ = stage.velocity * std::min(1.0, share + 0.5 * most);
     } else {
-      const double change = std::clamp(-kGain * std::log(excess(*stage.control)), -kSlowDown * most, most);
+      const double change =
+          std::clamp(-kGain * std::log(excess(*stage.control, time)), -kSlowDown * most, most);
       velocity_ = std::clamp(velocity_ * std::exp(change), stage.velocity, stage.control->fastest);
     }
     for (int g : body_.top_support) mechanics_.prescribe_velocity(g, 1, -velocity_);

@@ -141,7 +141,7 @@ class Experiment {
   int steps_to_next_look(const SettleStage&) const;
   int steps_to_next_look(const CompressStage&) const;
   void move_controlled(const CompressStage&);
-  double excess(const VelocityControl&) const;
+  double excess(const VelocityControl&, double time);
   double ramp_share(double ramp_time) const;
   double axial_strain() const;
   double specimen_strain() const;
@@ -170,6 +170,7 @@ class Experiment {
   double specimen_shortening_at_rest_ = 0.0;  ///< m
   double widening_at_rest_ = 0.0;             ///< m
   double peak_stress_ = 0.0;                  ///< of the stage, Pa
+  double dissipated_ = 0.0;                   ///< at the last change of the controlled velocity, J
   double velocity_ = 0.0;                     ///< of the upper platen, where it is controlled, m/s
   double next_frame_ = 0.0;                   ///< strain
   double last_interval_ = 0.0;                ///< of temperature, in which the last row lay

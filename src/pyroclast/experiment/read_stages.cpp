@@ -23,6 +23,7 @@ VelocityControl read_velocity_control(const Section& s, const CompressStage& sta
   c.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive());
   c.kinetic_over_strain = s.number("kinetic_over_strain", Range::positive());
   c.platen_difference = s.number("platen_difference", Range::positive());
+  c.dissipation_rate = s.quantity("dissipation_rate", unit::frequency, Range::positive());
   return c;
 }
 
@@ -33,7 +34,7 @@ CompressStage read_compress(const Section& s) {
   if (s.has("fastest_velocity"))
     stage.control = read_velocity_control(s, stage);
   else
-    s.know({"unbalanced_ratio", "kinetic_over_strain", "platen_difference"});
+    s.know({"unbalanced_ratio", "kinetic_over_strain", "platen_difference", "dissipation_rate"});
   stage.stop_strain = s.number("stop_strain", Range::inside(0.0, 1.0));
   stage.stop_fraction =
       s.number("stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0);
@@ -137,6 +138,8 @@ std::vector<Stage> read_mechanical_stages(const Section& root, const std::vector
         stages.emplace_back(read_heat_stage(s, coupling));
         break;
       case Kind::expose:
+        if (coupling.predictor)
+          table->error("predictor", "is for stages of kind \"heat\": it takes the temperature as uniform");
         stages.emplace_back(read_expose(s, coupling));
         break;
       case Kind::conduct:

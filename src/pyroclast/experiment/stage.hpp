@@ -22,13 +22,14 @@ struct LoadStage {
   std::int64_t most_steps = 0;    ///< after the ramp; gives up, and says so, after as many
 };
 
-/// A platen velocity as high as three measures of inertia allow.
+/// A platen velocity as high as three measures of inertia and one of cracking allow.
 struct VelocityControl {
   double fastest = 0.0;              ///< m/s; the stage's velocity is the lowest
   double unbalanced_ratio = 0.0;     ///< tolerance
   double kinetic_over_strain = 0.0;  ///< tolerance of kinetic over elastic energy
   /// Tolerance of the difference between the stresses on the platens, over the largest stress so far.
   double platen_difference = 0.0;
+  double dissipation_rate = 0.0;  ///< tolerance of the power that contacts dissipate over elastic energy, 1/s
 };
 
 /// Drives the upper platen down, the lower one fixed.
