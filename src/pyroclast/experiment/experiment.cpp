@@ -349,6 +349,7 @@ double Experiment::excess(const VelocityControl& control, double time) {
       (energy.dissipated.total() - std::exchange(dissipated_, energy.dissipated.total())) / time;
   const double top = stress_top(), bottom = stress_bottom();
   const double largest = std::max(peak_stress_, 0.5 * (top + bottom));
+  if (!(elastic > 0.0 && largest > 0.0)) return 1.0;  // the platen has not met the specimen yet
   return std::max({mechanics_.unbalanced_ratio() / control.unbalanced_ratio,
                    std::sqrt(std::abs(energy.kinetic) / elastic / control.kinetic_over_strain),
                    std::abs(top - bottom) / largest / control.platen_difference,
