@@ -228,6 +228,83 @@ TEST(CompressStage, AfterHeatingMeasuresTheHotModulus) {
   EXPECT_NEAR(hot.last().stage_strain, 0.0002, 2e-5);
 }
 
+const std::string kPredictor = "least_cycles = 50\npredictor = true";
+
+// Promise: the predictor changes how a body gets to its new size, not which size: an even body under load
+// expands by alpha dT and softens as without it, in fewer cycles, and the energy ledger closes.
+TEST(Predictor, BringsABodyToTheSameStateInFewerCycles) {
+  const std::string text = deck(kUniform + kSettle + load("stress = \"3 MPa\"") + heat("320 degC"));
+  const Trial plain(text);
+  const Trial predicted(with(text, "least_cycles = 50", kPredictor));
+  EXPECT_EQ(predicted.outcome, Outcome::completed);
+  EXPECT_NEAR(predicted.last().specimen_strain, plain.last().specimen_strain,
+              1e-5);  // motion left in `plain`
+  EXPECT_NEAR(predicted.last().lateral_strain, plain.last().lateral_strain, 1e-5);
+  const auto a = heating_response(plain.history(), plain.c.stages, plain.outcome);
+  const auto b = heating_response(predicted.history(), predicted.c.stages, predicted.outcome);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(b->not_converged, 0);
+  EXPECT_LT(b->cycles, a->cycles);
+  EXPECT_LT(std::abs(predicted.last().energy.error()), 1e-6 * predicted.last().energy.turnover());
+}
+
+// Promise: cooled down again with the predictor, an elastic body is where it was.
+TEST(Predictor, CoolingBringsAnElasticBodyBack) {
+  const Trial r(
+      with(deck(kUniform + kSettle + load("stress = \"3 MPa\"") + heat("320 degC") + heat("20 degC")),
+           "least_cycles = 50", kPredictor));
+  EXPECT_EQ(r.outcome, Outcome::completed);
+  EXPECT_NEAR(r.last().strain, r.end_of(1).strain, 1e-6);
+}
+
+// Promise: the predictor leaves fixed platens where they are.
+TEST(Predictor, FixedPlatensTakeTheThrust) {
+  const std::string text = deck(kUniform + kSettle + heat("70 degC", "fixed"));
+  const Trial plain(text);
+  const Trial predicted(with(text, "least_cycles = 50", kPredictor));
+  EXPECT_NEAR(predicted.last().stress_top, plain.last().stress_top, 0.01 * plain.last().stress_top);
+  EXPECT_NEAR(predicted.last().strain, 0.0, 0.02 * 5e-4);  // but for the platens' own give
+}
+
+const std::string kFailure =
+    "[[stages]]\nkind = \"compress\"\nvelocity = \"1 mm/s\"\nramp_time = \"10 ms\"\nstop_strain = 0.004\n";
+const std::string kControl =
+    "fastest_velocity = \"10 mm/s\"\nunbalanced_ratio = 2e-4\nkinetic_over_strain = 5e-3\n"
+    "platen_difference = 0.01\ndissipation_rate = \"50 1/s\"\n";
+
+// Promise: a controlled velocity finds the modulus and the strength of the slow test in fewer steps, and is
+// quasi-static up to the peak.
+TEST(CompressStage, AControlledVelocityFindsTheSlowStrengthInFewerSteps) {
+  const Trial slow(deck(kUniform + kSettle + kFailure));
+  const Trial fast(deck(kUniform + kSettle + kFailure + kControl));
+  const auto a = compression_response(slow.history(), slow.c.stages);
+  const auto b = compression_response(fast.history(), fast.c.stages);
+  ASSERT_TRUE(a && b);
+  EXPECT_NEAR(b->modulus, a->modulus, 0.005 * a->modulus);
+  EXPECT_NEAR(b->strength, a->strength,
+              0.02 * a->strength);  // a brittle body of 60 blocks: one crack more or less
+  EXPECT_LT(fast.last().step, slow.last().step / 2);
+  EXPECT_TRUE(quasi_static_report(fast.history(), fast.c.stages).to_peak);
+  EXPECT_LT(std::abs(fast.last().energy.error()), 5e-3 * fast.last().energy.turnover());
+}
+
+// Promise: the controlled velocity stays between its bounds, whatever the tolerances.
+TEST(CompressStage, AControlledVelocityStaysWithinItsBounds) {
+  for (const auto* tolerance : {"unbalanced_ratio = 1e-12", "unbalanced_ratio = 1"}) {
+    const Trial r(deck(kUniform + kSettle + with(kFailure, "0.004", "0.0005") +
+                       with(kControl, "unbalanced_ratio = 2e-4", tolerance)));
+    for (std::size_t i = 1; i < r.history().size(); ++i) {
+      const Sample& now = r.history()[i];
+      if (now.stage != 1 || now.stage_strain < 1e-4) continue;  // past the ramp
+      const Sample& before = r.history()[i - 1];
+      // the platens' faces give a little less than their outer sides are driven
+      const double velocity = (now.strain - before.strain) * 0.12 / (now.time - before.time);
+      EXPECT_GT(velocity, 0.9e-3);
+      EXPECT_LT(velocity, 10.5e-3);
+    }
+  }
+}
+
 // Promise: frames come at the stated steps of temperature, and at the end.
 TEST(Frames, ComeAtStepsOfTemperature) {
   const Trial r(with(deck(kUniform + kSettle + load("stress = \"0.5 MPa\"") + heat("220 degC")),
@@ -267,6 +344,14 @@ TEST(Stages, ContradictionsAreRefused) {
   };
   EXPECT_EQ(message(deck(kUniform + kSettle + heat("120 degC"))), "");
   EXPECT_NE(message(deck(kUniform + kSettle + heat("920 degC"))).find("820"), std::string::npos);
+  EXPECT_EQ(message(deck(kUniform + kSettle + kFailure + kControl)), "");
+  EXPECT_NE(message(deck(kUniform + kSettle + with(kFailure, "1 mm/s", "20 mm/s") + kControl))
+                .find("must not be less than velocity"),
+            std::string::npos);
+  EXPECT_NE(message(deck(kUniform + kSettle + with(kFailure, "10 ms", "0 s") + kControl)).find("ramp_time"),
+            std::string::npos);
+  EXPECT_NE(message(deck(kUniform + kSettle + kFailure + "unbalanced_ratio = 1e-4\n")).find("has no effect"),
+            std::string::npos);
   EXPECT_NE(message(deck(kUniform + kSettle + load("level = 0.2\nf_c = \"30 MPa\"\nstress = \"6 MPa\"")))
                 .find("either stress, or level"),
             std::string::npos);
@@ -275,6 +360,11 @@ TEST(Stages, ContradictionsAreRefused) {
                          "\"force\"\n"))
                 .find("conduction"),
             std::string::npos);
+  EXPECT_NE(
+      message(with(deck(kSettle + "[[stages]]\nkind = \"expose\"\nduration = \"1 h\"\nplaten = \"force\"\n"),
+                   "least_cycles = 50", kPredictor))
+          .find("uniform"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "pyroclast/experiment/coupling.hpp"
 
@@ -13,8 +14,13 @@ namespace {
 constexpr int kSettleSteps = 200;
 /// The force of a ramp is adjusted this often.
 constexpr int kRampSteps = 20;
-/// The unbalanced ratio is looked at this often after an exchange of temperatures.
+/// The unbalanced ratio is looked at this often after an exchange of temperatures, and while the platen's
+/// velocity is controlled.
 constexpr int kCyclesPerCheck = 50;
+/// Change of the logarithm of a controlled velocity, from check to check, over that of its excess.
+constexpr double kGain = 0.1;
+/// A velocity may fall so much faster than rise.
+constexpr double kSlowDown = 4.0;
 /// A platen that sinks by less than this share of the failure strain within the stated cycles is not running
 /// away.
 constexpr double kSlowSinking = 0.1;
@@ -28,6 +34,12 @@ constexpr double kSameTemperature = 1e-6, kSameTime = 1e-9;
 double mean_displacement(const Mechanics<2>& mechanics, const std::vector<int>& gridpoints, int component) {
   double sum = 0.0;
   for (int g : gridpoints) sum += mechanics.displacement(g)[component];
+  return sum / static_cast<double>(gridpoints.size());
+}
+
+double mean_position(const Model<2>& model, const std::vector<int>& gridpoints, int component) {
+  double sum = 0.0;
+  for (int g : gridpoints) sum += model.position[g][component];
   return sum / static_cast<double>(gridpoints.size());
 }
 
@@ -153,6 +165,12 @@ double Experiment::specimen_strain() const {
   return (shortening - specimen_shortening_at_rest_) / height_;
 }
 
+double Experiment::lateral_strain() const {
+  const double widening =
+      mean_displacement(mechanics_, body_.right_side, 0) - mean_displacement(mechanics_, body_.left_side, 0);
+  return (widening - widening_at_rest_) / width_;
+}
+
 double Experiment::stress_top() const {
   double applied = 0.0;
   for (int g : body_.top_support) applied += mechanics_.applied_force(g)[1];
@@ -182,9 +200,7 @@ Sample Experiment::measure() const {
   s.specimen_strain = specimen_strain();
   s.stress_top = stress_top();
   s.stress_bottom = stress_bottom();
-  const double widening =
-      mean_displacement(mechanics_, body_.right_side, 0) - mean_displacement(mechanics_, body_.left_side, 0);
-  s.lateral_strain = (widening - widening_at_rest_) / width_;
+  s.lateral_strain = lateral_strain();
   s.unbalanced_ratio = mechanics_.unbalanced_ratio();
   s.energy = mechanics_.energy();
   const double elastic = s.energy.zones + s.energy.contacts;
@@ -296,9 +312,12 @@ void Experiment::begin(const CompressStage& stage) {
   control_by_motion(0.0);
   next_frame_ = sampling_.frame_strain;
   peak_stress_ = 0.0;
+  velocity_ = 0.0;
+  dissipated_ = mechanics_.energy().dissipated.total();
 }
 
 void Experiment::load(const CompressStage& stage) {
+  if (stage.control) return;  // move_controlled
   // half a step of ramp ahead, so that the ramp leaves zero
   const double ahead =
       stage.ramp_time > 0.0 ? steps_to_next_look(stage) * mechanics_.time_step() / stage.ramp_time : 0.0;
@@ -313,7 +332,46 @@ int Experiment::steps_to_next_look(const CompressStage& stage) const {
 }
 
 void Experiment::move(const CompressStage& stage) {
-  mechanics_.advance(steps_to_next_look(stage));
+  if (stage.control)
+    move_controlled(stage);
+  else
+    mechanics_.advance(steps_to_next_look(stage));
+}
+
+/// How far the motion is from the tolerances: above 1, out of them. Forces out of balance go with the
+/// velocity, kinetic energy with its square.
+/// \param time  since the last call, s
+double Experiment::excess(const VelocityControl& control, double time) {
+  const EnergyLedger energy = mechanics_.energy();
+  const double elastic = energy.zones + energy.contacts;
+  const double power =
+      (energy.dissipated.total() - std::exchange(dissipated_, energy.dissipated.total())) / time;
+  const double top = stress_top(), bottom = stress_bottom();
+  const double largest = std::max(peak_stress_, 0.5 * (top + bottom));
+  if (!(elastic > 0.0 && largest > 0.0)) return 1.0;  // the platen has not met the specimen yet
+  return std::max({mechanics_.unbalanced_ratio() / control.unbalanced_ratio,
+                   std::sqrt(std::abs(energy.kinetic) / elastic / control.kinetic_over_strain),
+                   std::abs(top - bottom) / largest / control.platen_difference,
+                   power / elastic / control.dissipation_rate});
+}
+
+/// Moves by the strain between two looks, as fast as the tolerances bear. A velocity that changes shakes the
+/// body, so it does that gently.
+void Experiment::move_controlled(const CompressStage& stage) {
+  const double time = kCyclesPerCheck * mechanics_.time_step();
+  const double most = time / stage.ramp_time;
+  for (double way = 0.0; way < sampling_.history_strain * height_ && !stop_asked(); way += velocity_ * time) {
+    const double share = ramp_share(stage.ramp_time);
+    if (share < 1.0) {
+      velocity_ = stage.velocity * std::min(1.0, share + 0.5 * most);
+    } else {
+      const double change =
+          std::clamp(-kGain * std::log(excess(*stage.control, time)), -kSlowDown * most, most);
+      velocity_ = std::clamp(velocity_ * std::exp(change), stage.velocity, stage.control->fastest);
+    }
+    for (int g : body_.top_support) mechanics_.prescribe_velocity(g, 1, -velocity_);
+    mechanics_.advance(kCyclesPerCheck);
+  }
 }
 
 Experiment::Verdict Experiment::judge(const CompressStage& stage, const Sample& now) {
@@ -340,6 +398,7 @@ void Experiment::begin_heating(const Coupling& coupling) {
     hold_force(stress_held_);
   }
   last_interval_ = temperature_interval(field_.mean());
+  last_change_ = 0.0;
 }
 
 /// Which of the even intervals between frames a temperature lies in.
@@ -392,6 +451,52 @@ void Experiment::begin(const HeatStage& stage) {
   begin_heating(stage.coupling);
 }
 
+/// Change of the specimen's free thermal strain between two temperatures: the least and the greatest of its
+/// solids, or none.
+Interval Experiment::free_strain_change(double from, double to) const {
+  Interval change{0.0, 0.0};
+  for (const auto m : {aggregate_material, mortar_material}) {
+    const Curve& strain = materials_.solids[m].thermal_strain;
+    const double solid = strain(to) - strain(from);
+    change = {std::min(change.lower, solid), std::max(change.upper, solid)};
+  }
+  return change;
+}
+
+/// Moves the body to where it will come to rest at its new temperature, as far as its last change foretells:
+/// evenly strained in both directions, with the platen that lies on it. Contacts keep their jumps. What is
+/// left to the motion is what differs from place to place; without this the body would have to push itself
+/// to its new size, and its inertia would press on the lower platen. Takes two steps, and leaves the body at
+/// rest.
+void Experiment::strain_evenly(const MeanStrain& strain, bool platen_follows) {
+  const auto& model = body_.model;
+  const Vec<2> corner = model.position[body_.bottom_side.front()];
+  const double bottom = corner[1];
+  const double middle =
+      0.5 * (mean_position(model, body_.left_side, 0) + mean_position(model, body_.right_side, 0));
+  std::vector<int> specimen, platen;
+  for (int b = 0; b < model.block_count(); ++b) {
+    const bool is_platen = model.block_material[b] == platen_material;
+    for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g)
+      if (!is_platen)
+        specimen.push_back(g);
+      else if (platen_follows && model.position[g][1] > bottom + 0.5 * height_)
+        platen.push_back(g);
+  }
+  for (const double speed : {1.0 / mechanics_.time_step(), 0.0}) {
+    for (int g : specimen) {
+      const Vec<2>& x = model.position[g];
+      mechanics_.prescribe_velocity(g, 0, speed * strain.lateral * (x[0] - middle));
+      mechanics_.prescribe_velocity(g, 1, speed * strain.axial * (x[1] - bottom));
+    }
+    for (int g : platen) mechanics_.prescribe_velocity(g, 1, speed * strain.axial * height_);
+    mechanics_.advance(1);
+  }
+  for (int g : specimen)
+    for (int i : {0, 1}) mechanics_.release(g, i);
+  for (int g : platen) mechanics_.release(g, 1);
+}
+
 void Experiment::load(const HeatStage& stage) {
   const double now = field_.mean();
   const double left = std::abs(stage.to - now);
@@ -399,7 +504,20 @@ void Experiment::load(const HeatStage& stage) {
   const bool last = left <= stage.coupling.increment + kSameTemperature;
   field_.set_uniform(last ? stage.to : now + std::copysign(change, stage.to - now));
   heat_.time += change / stage.rate;
+  const MeanStrain strain{-specimen_strain(), lateral_strain()};
   exchange();
+  if (!stage.coupling.predictor) return;
+  if (last_change_ > 0.0) {
+    const auto [least, greatest] = free_strain_change(now, field_.mean());
+    const auto foreseen = [&](double after, double before) {
+      return std::clamp((after - before) * change / last_change_, least, greatest);
+    };
+    strain_evenly(
+        {foreseen(strain.axial, last_strain_.axial), foreseen(strain.lateral, last_strain_.lateral)},
+        stage.coupling.platen == PlatenControl::force);
+  }
+  last_strain_ = strain;
+  last_change_ = change;
 }
 
 Experiment::Verdict Experiment::judge(const HeatStage& stage, const Sample& now) {

@@ -92,6 +92,11 @@ class Experiment {
   double progress() const { return progress_; }
 
  private:
+  /// Of the whole specimen, expansion positive.
+  struct MeanStrain {
+    double axial = 0.0, lateral = 0.0;
+  };
+
   struct Verdict {
     bool over = false;
     bool last = false;  ///< the experiment ends with this stage
@@ -124,6 +129,8 @@ class Experiment {
   void begin_heating(const Coupling&);
   double temperature_interval(double temperature) const;
   void exchange();
+  Interval free_strain_change(double from, double to) const;
+  void strain_evenly(const MeanStrain& strain, bool platen_follows);
   void cycle(const Coupling&);
   bool stop_asked();
   void control_by_force();
@@ -133,9 +140,12 @@ class Experiment {
   Verdict judge_coupling(const Sample&);
   int steps_to_next_look(const SettleStage&) const;
   int steps_to_next_look(const CompressStage&) const;
+  void move_controlled(const CompressStage&);
+  double excess(const VelocityControl&, double time);
   double ramp_share(double ramp_time) const;
   double axial_strain() const;
   double specimen_strain() const;
+  double lateral_strain() const;
   double stress_top() const;
   double stress_bottom() const;
   bool at_rest(const Coupling&) const;
@@ -160,11 +170,15 @@ class Experiment {
   double specimen_shortening_at_rest_ = 0.0;  ///< m
   double widening_at_rest_ = 0.0;             ///< m
   double peak_stress_ = 0.0;                  ///< of the stage, Pa
+  double dissipated_ = 0.0;                   ///< at the last change of the controlled velocity, J
+  double velocity_ = 0.0;                     ///< of the upper platen, where it is controlled, m/s
   double next_frame_ = 0.0;                   ///< strain
   double last_interval_ = 0.0;                ///< of temperature, in which the last row lay
   double stress_held_ = 0.0;                  ///< by the force on the upper platen, Pa
   double stage_first_temperature_ = 0.0;      ///< mean, °C
   double exposure_began_ = 0.0;               ///< heating time, s
+  MeanStrain last_strain_;                    ///< at the end of the last exchange but one
+  double last_change_ = 0.0;                  ///< of temperature at the last exchange, K; 0 at none yet
   int exchanges_ = 0;
   HeatSample heat_;
   bool ran_away_ = false, stop_asked_ = false;

@@ -13,10 +13,28 @@ SettleStage read_settle(const Section& s) {
   return stage;
 }
 
+/// The velocity changes between `velocity` and `fastest_velocity`.
+VelocityControl read_velocity_control(const Section& s, const CompressStage& stage) {
+  VelocityControl c;
+  c.fastest = s.quantity("fastest_velocity", unit::velocity, Range::positive());
+  if (s.ok() && c.fastest < stage.velocity) s.error("fastest_velocity", "must not be less than velocity");
+  if (s.ok() && stage.ramp_time == 0.0)
+    s.error("ramp_time", "must be greater than 0 with fastest_velocity: it bounds the acceleration");
+  c.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive());
+  c.kinetic_over_strain = s.number("kinetic_over_strain", Range::positive());
+  c.platen_difference = s.number("platen_difference", Range::positive());
+  c.dissipation_rate = s.quantity("dissipation_rate", unit::frequency, Range::positive());
+  return c;
+}
+
 CompressStage read_compress(const Section& s) {
   CompressStage stage;
   stage.velocity = s.quantity("velocity", unit::velocity, Range::positive());
   stage.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative());
+  if (s.has("fastest_velocity"))
+    stage.control = read_velocity_control(s, stage);
+  else
+    s.know({"unbalanced_ratio", "kinetic_over_strain", "platen_difference", "dissipation_rate"});
   stage.stop_strain = s.number("stop_strain", Range::inside(0.0, 1.0));
   stage.stop_fraction =
       s.number("stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0);
@@ -48,6 +66,7 @@ Coupling read_coupling(const Section& s) {
   c.least_cycles = s.integer("least_cycles", Range::between(0, 1e12));
   c.most_cycles = s.integer("most_cycles", Range::between(1, 1e12));
   if (s.ok() && c.most_cycles < c.least_cycles) s.error("most_cycles", "must not be less than least_cycles");
+  c.predictor = s.flag("predictor", false);
   c.failure_strain = s.number("failure_strain", Range::inside(0.0, 1.0));
   return c;
 }
@@ -119,6 +138,8 @@ std::vector<Stage> read_mechanical_stages(const Section& root, const std::vector
         stages.emplace_back(read_heat_stage(s, coupling));
         break;
       case Kind::expose:
+        if (coupling.predictor)
+          table->error("predictor", "is for stages of kind \"heat\": it takes the temperature as uniform");
         stages.emplace_back(read_expose(s, coupling));
         break;
       case Kind::conduct:

@@ -22,10 +22,23 @@ struct LoadStage {
   std::int64_t most_steps = 0;    ///< after the ramp; gives up, and says so, after as many
 };
 
+/// A platen velocity as high as three measures of inertia and one of cracking allow.
+struct VelocityControl {
+  double fastest = 0.0;              ///< m/s; the stage's velocity is the lowest
+  double unbalanced_ratio = 0.0;     ///< tolerance
+  double kinetic_over_strain = 0.0;  ///< tolerance of kinetic over elastic energy
+  /// Tolerance of the difference between the stresses on the platens, over the largest stress so far.
+  double platen_difference = 0.0;
+  double dissipation_rate = 0.0;  ///< tolerance of the power that contacts dissipate over elastic energy, 1/s
+};
+
 /// Drives the upper platen down, the lower one fixed.
 struct CompressStage {
-  double velocity = 0.0;       ///< m/s
-  double ramp_time = 0.0;      ///< time over which the velocity is brought up, s
+  double velocity = 0.0;  ///< m/s
+  /// Time over which the velocity is brought up, s. A controlled velocity then rises by no more than a factor
+  /// e in as much time.
+  double ramp_time = 0.0;
+  std::optional<VelocityControl> control = {};
   double stop_strain = 0.0;    ///< ends at this axial strain, from the beginning of the stage
   double stop_fraction = 0.0;  ///< ends when the stress has fallen below this fraction of the peak; 0: never
 };
@@ -48,6 +61,7 @@ struct Coupling {
   std::int64_t least_cycles = 0;
   /// And at most; an exchange that did not come to rest by then is flagged.
   std::int64_t most_cycles = 0;
+  bool predictor = false;  ///< moves the body to where its last exchange foretells it to rest; uniform fields
   PlatenControl platen = PlatenControl::force;
   /// The specimen has failed when the platen sinks by this share of the height at one temperature.
   double failure_strain = 0.0;
