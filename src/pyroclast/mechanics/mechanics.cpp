@@ -79,8 +79,11 @@ void Mechanics<Dim>::place_model(const std::vector<double>& densities) {
   s.bundle_sums.resize(layout_->bundles.size());
   s.face_sums.resize(layout_->faces.size());
 
-  for (int g = 0; g < model_.gridpoint_count(); ++g)
+  s.gathered_position = FlatArray<Vec<Dim>>(s.displacement.size());
+  for (int g = 0; g < model_.gridpoint_count(); ++g) {
     s.position.set(layout_->gridpoint_slot[g], model_.position[g]);
+    s.gathered_position[layout_->gridpoint_slot[g]] = model_.position[g];
+  }
   for (std::size_t b = 0; b < layout_->bundles.size(); ++b) {
     const Bundle& bundle = layout_->bundles[b];
     const bool alike = bundle.kind == BundleKind::alike;

@@ -112,15 +112,6 @@ class Step {
     }
     return v;
   }
-  static Vector gather(const RowVectors<Dim>& vectors, const std::array<int, kLanes>& offset) {
-    alignas(64) double c[Dim][kLanes];
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const int slot = offset[lane] / offset_of<Dim>(1);
-      for (int i = 0; i < Dim; ++i) c[i][lane] = vectors.row(slot / kLanes).c[i][slot % kLanes];
-    }
-    return load(c);
-  }
-
   // Contact points
 
   struct Frame {
@@ -148,7 +139,7 @@ class Step {
       if (s.kinematics == Kinematics::finite) {
         // mean edge of the two sides
         const auto at = [&](const std::array<int, kLanes>& offset) {
-          return gather(s.position, offset) + gather(s.displacement, offset);
+          return gather(s.gathered_position, offset) + gather(s.displacement, offset);
         };
         const Vector edge = ((at(face.a[1]) - at(face.a[0])) + (at(face.b[1]) - at(face.b[0]))) * Real(0.5);
         frame.edge = norm(edge);
@@ -449,7 +440,7 @@ class Step {
       const auto& corner = s.layout->spread_zones[bundle.first_spread_row + z].offset;
       Corners x, u;
       for (int n = 0; n <= Dim; ++n) {
-        x[n] = gather(s.position, corner[n]);
+        x[n] = gather(s.gathered_position, corner[n]);
         u[n] = gather(s.displacement, corner[n]);
       }
       const Corners more = zone(x, u, zone_properties(s, index, bundle.first_zone_row + z),

@@ -115,10 +115,11 @@ struct StepState {
   double thickness = 1.0;  ///< m
 
   RowVectors<Dim> position, velocity;
-  RowVectors<Dim> force;             ///< sum at the last step, N
-  RowVectors<Dim> stiffness;         ///< sum of |stiffness| over each row of the assembled matrix, N/m
-  FlatArray<Vec<Dim>> displacement;  ///< by slot: faces gather from it
-  FlatArray<double> step_over_mass;  ///< by slot, s/kg; where idle any finite number
+  RowVectors<Dim> force;                  ///< sum at the last step, N
+  RowVectors<Dim> stiffness;              ///< sum of |stiffness| over each row of the assembled matrix, N/m
+  FlatArray<Vec<Dim>> gathered_position;  ///< by slot: zones of spread blocks gather from it, m
+  FlatArray<Vec<Dim>> displacement;       ///< by slot: faces gather from it
+  FlatArray<double> step_over_mass;       ///< by slot, s/kg; where idle any finite number
   FlatArray<ZonePropertyRow> zone_properties;  ///< by row of zones, or by bundle
   bool by_bundle = false;                      ///< every zone of a block has the same properties
   FlatArray<double> density;                   ///< by bundle and lane, kg/m³
