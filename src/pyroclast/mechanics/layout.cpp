@@ -13,9 +13,8 @@ namespace {
 constexpr double kLayerThickness = 2.0;
 /// Blocks that share lanes stand within as many layers of each other.
 constexpr double kLayersToShare = 2.0;
-/// A block with so many gridpoints fills the lanes by itself. A smaller one does so badly: it shares a bundle
-/// with others of its shape, be they few.
-constexpr int kSpreadFrom = 4 * kLanes;
+/// A bundle with fewer blocks would leave too many lanes idle; its blocks are spread.
+constexpr std::size_t kFewestBlocks = 4;
 
 /// Blocks in layers across the body's longest extent, along the others within a layer.
 template <int Dim>
@@ -83,16 +82,12 @@ class LayoutBuilder {
     std::map<int, Waiting> waiting;  // by shape
     for (int place = 0; place < static_cast<int>(order.blocks.size()); ++place) {
       const int block = order.blocks[place];
-      if (model_.block_gridpoints[block + 1] - model_.block_gridpoints[block] >= kSpreadFrom) {
-        add_spread(block);
-        continue;
-      }
       const int shape = shape_of(block);
       auto& group = waiting[shape];
       if (group.blocks.empty()) group.since = place;
       group.blocks.push_back(block);
       if (group.blocks.size() == kLanes) {
-        add_alike(shape, group.blocks);
+        add_bundle(shape, group.blocks);
         waiting.erase(shape);
       }
       for (auto it = waiting.begin(); it != waiting.end();) {
@@ -100,11 +95,11 @@ class LayoutBuilder {
           ++it;
           continue;
         }
-        add_alike(it->first, it->second.blocks);
+        add_bundle(it->first, it->second.blocks);
         it = waiting.erase(it);
       }
     }
-    for (const auto& [shape, group] : waiting) add_alike(shape, group.blocks);
+    for (const auto& [shape, group] : waiting) add_bundle(shape, group.blocks);
   }
 
   void place_faces() {
@@ -197,7 +192,11 @@ class LayoutBuilder {
     return it->second;
   }
 
-  void add_alike(int shape, const std::vector<int>& blocks) {
+  void add_bundle(int shape, const std::vector<int>& blocks) {
+    if (blocks.size() < kFewestBlocks) {
+      for (int block : blocks) add_spread(block);
+      return;
+    }
     Bundle bundle;
     bundle.shape = shape;
     const int block = blocks.front();
