@@ -146,6 +146,12 @@ class LayoutBuilder {
     for (int i = 1; i < bundles; ++i)
       layout_.bundles[i].last_face_row =
           std::max(layout_.bundles[i].last_face_row, layout_.bundles[i - 1].last_face_row);
+    int furthest = 0, row = 0;
+    for (const Bundle& b : layout_.bundles) {
+      for (; row <= b.last_face_row; ++row)
+        for (int f : faces_of_row_[row]) furthest = std::max(furthest, later(f));
+      layout_.lead_rows = std::max(layout_.lead_rows, layout_.bundles[furthest].first_row - b.first_row);
+    }
   }
 
   /// Contacts of a gridpoint in the order of their numbers, so that their sum has one order.

@@ -85,6 +85,7 @@ struct Layout {
 
   int gridpoint_rows = 0;
   int zone_rows = 0;
+  int lead_rows = 0;                ///< of gridpoints: as far faces reach ahead of the bundle that moves
   int most_rows = 0;                ///< of gridpoints, in one bundle
   std::vector<int> gridpoint_slot;  ///< of each gridpoint of the model
   std::vector<int> zone_slot;       ///< of each zone
