@@ -1,5 +1,9 @@
 #include "adapter.hpp"
 
+#include <omp.h>
+
+#include "counting.hpp"
+
 namespace bench {
 
 double damaged_share(const pyroclast::Mechanics<2>& body) {
@@ -18,9 +22,26 @@ double damaged_share(const textbook::Body& body) {
   return static_cast<double>(damaged) / static_cast<double>(body.contacts().size());
 }
 
-// The place for the library's own counts.
-std::optional<StepCost> step_cost(const pyroclast::Mechanics<2>&) {
-  return std::nullopt;
+StepCost step_cost(pyroclast::Mechanics<2>& body) {
+  omp_set_num_threads(1);
+  reset_operations();
+  body.use(counting_step());
+  body.advance(2);
+  body.use(pyroclast::step_functions<2>(body.instructions()));
+  const Operations done = operations();
+  const auto& model = body.model();
+  const auto& layout = body.layout();
+  const auto in_use = [](int items, int rows) {
+    return static_cast<double>(items) / (static_cast<double>(rows) * pyroclast::kLanes);
+  };
+  const Traffic arrays = traffic(body.state());
+  StepCost cost;
+  cost.flops = static_cast<double>(done.faces) * in_use(model.contact_count() / 2, layout.face_rows()) +
+               static_cast<double>(done.bundles) * in_use(model.zone_count(), layout.zone_rows);
+  cost.bytes = arrays.moved;
+  cost.working_set = arrays.working_set;
+  cost.memory = static_cast<double>(layout.memory() + body.state().memory());
+  return cost;
 }
 
 }  // namespace bench

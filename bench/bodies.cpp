@@ -115,4 +115,10 @@ textbook::Body& Bodies::textbook(int zones, Loading loading) {
   return *kept;
 }
 
+const StepCost& Bodies::step_cost(int zones, Loading loading) {
+  auto& kept = costs_[{zones, loading}];
+  if (!kept) kept = std::make_unique<StepCost>(bench::step_cost(mechanics(zones, loading)));
+  return *kept;
+}
+
 }  // namespace bench

@@ -39,6 +39,8 @@ class Bodies {
   const Specimen& specimen(int zones);
   pyroclast::Mechanics<2>& mechanics(int zones, Loading loading);
   textbook::Body& textbook(int zones, Loading loading);
+  /// Of a step of `mechanics(zones, loading)`, counted when first asked for.
+  const StepCost& step_cost(int zones, Loading loading);
 
  private:
   template <class Body>
@@ -47,6 +49,7 @@ class Bodies {
   pyroclast::Case case_;
   double velocity_;
   std::map<int, std::unique_ptr<Specimen>> specimens_;
+  Kept<StepCost> costs_;
   Kept<pyroclast::Mechanics<2>> mechanics_;
   Kept<textbook::Body> textbook_;
 };

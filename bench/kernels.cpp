@@ -1,9 +1,51 @@
+#include <algorithm>
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <omp.h>
+
+#include "native_step.hpp"
 #include "register.hpp"
 
 namespace bench {
 
-// The place for the parts of the step: zones, contacts, motion. Registered like the steps in step.cpp, named
-// kernel/<part>/<loading>/zones:<n>/threads:<n>, on `bodies.mechanics(zones, loading)`.
-void register_kernels(Bodies&) {}
+namespace {
+
+/// Times one part of the step of a body, over and over on a copy of its state. Contacts begin each time with
+/// the history of the copy, so that they break and slip as in the body's next step; where motion drifts to,
+/// no other part looks.
+void time_part(benchmark::State& state, const pyroclast::Mechanics<2>& body, const Part& part) {
+  omp_set_num_threads(1);
+  pyroclast::StepState<2> copy = body.state();
+  const auto history = copy.history;
+  pyroclast::FlatArray<double> scratch(static_cast<std::size_t>(4 * pyroclast::kLanes) *
+                                       body.layout().most_rows);
+  for (auto _ : state) {
+    state.PauseTiming();
+    std::copy(history.begin(), history.end(), copy.history.begin());
+    state.ResumeTiming();
+    part.run(copy, scratch.data());
+    benchmark::ClobberMemory();
+  }
+  const int zones = body.model().zone_count();
+  state.counters["zones"] = zones;
+  state.counters["threads"] = 1;
+  state.counters["zone_steps"] = benchmark::Counter(
+      static_cast<double>(zones) * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+
+}  // namespace
+
+void register_kernels(Bodies& bodies) {
+  for (Loading loading : {Loading::intact, Loading::cracked})
+    for (const Part& part : kParts) {
+      const auto run = [&bodies, &part, loading](benchmark::State& state) {
+        time_part(state, bodies.mechanics(kCaseZones, loading), part);
+      };
+      const auto name_of =
+          fmt::format("kernel/{}/{}/zones:{}/threads:1", part.name, name(loading), kCaseZones);
+      benchmark::RegisterBenchmark(name_of.c_str(), run)->UseRealTime();
+    }
+}
 
 }  // namespace bench

@@ -28,9 +28,10 @@ from matplotlib.lines import Line2D  # noqa: E402
 
 from pyroclast import style  # noqa: E402
 
-_MEGA, _GIGA = 1e6, 1e9
+_NANO, _MEGA, _GIGA = 1e-9, 1e6, 1e9
 _CASE_ZONES = 27_000  #: as pyroclast_bench names the specimen of cases/compression.toml
 _LOADINGS = ("intact", "cracked")
+_PARTS = ("contacts", "gather", "zones", "motion")  #: in the order of a step
 
 
 class BenchError(Exception):
@@ -55,11 +56,12 @@ class Rate:
 
 @dataclass(frozen=True)
 class Cost:
-    """What a step costs at least, as the library counts it."""
+    """What a step costs at least, as pyroclast_bench counts it."""
 
     flops: float
     bytes: float
     working_set: float  #: bytes
+    memory: float  #: all arrays of the body, bytes
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,24 @@ class Step:
     zone_steps_by_clock: Rate  #: whatever the number of threads
     contact_updates: Rate
     cost: Cost | None
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """A timed part of the step, on one thread."""
+
+    part: str
+    loading: str
+    size: int  #: number of zones in the name of the benchmark
+    zone_steps: Rate
+
+
+@dataclass(frozen=True)
+class Roof:
+    """What the machine allows a step."""
+
+    steps: float  #: 1/s
+    binds: str  #: what sets it: the peak, or the bandwidth of a level of memory
 
 
 @dataclass(frozen=True)
@@ -94,13 +114,15 @@ class Machine:
                 return level
         return "memory"
 
-    def roofline(self, cost: Cost, threads: int) -> float | None:
-        """Steps/s that the machine allows; None where that level or the peak was not measured."""
-        bandwidth = self.bandwidth.get((self.level(cost.working_set, threads), threads))
+    def roofline(self, cost: Cost, threads: int) -> Roof | None:
+        """The lower of the two roofs; None where the peak or that level was not measured."""
+        level = self.level(cost.working_set, threads)
+        bandwidth = self.bandwidth.get((level, threads))
         peak = self.peak.get(threads)
         if bandwidth is None or peak is None:
             return None
-        return min(peak.median / cost.flops, bandwidth.median / cost.bytes)
+        return min(Roof(peak.median / cost.flops, "peak"), Roof(bandwidth.median / cost.bytes, level),
+                   key=lambda roof: roof.steps)
 
 
 @dataclass(frozen=True)
@@ -121,7 +143,7 @@ class Bench:
 
     machine: Machine
     steps: dict[tuple[str, str, int, int], Step] = field(default_factory=dict)  #: by code, loading, zones, threads
-    kernels: dict[str, Rate] = field(default_factory=dict)  #: zone-steps/s by name
+    kernels: list[Kernel] = field(default_factory=list)
     peers: dict[str, Peer] = field(default_factory=dict)  #: by loading
 
     def sizes(self) -> list[int]:
@@ -167,7 +189,8 @@ def _bench_of(content: dict) -> Bench:
             code, loading, zones, threads = parts
             bench.steps[code, loading, _number(zones), _number(threads)] = _step_of(repetitions)
         elif kind == "kernel":
-            bench.kernels["/".join(parts)] = _rate(repetitions, "zone_steps")
+            part, loading, zones, _ = parts
+            bench.kernels.append(Kernel(part, loading, _number(zones), _rate(repetitions, "zone_steps")))
     return bench
 
 
@@ -175,7 +198,7 @@ def _step_of(repetitions: list[dict]) -> Step:
     last = repetitions[-1]
     cost = None
     if "flops_per_step" in last:
-        cost = Cost(last["flops_per_step"], last["bytes_per_step"], last["working_set"])
+        cost = Cost(last["flops_per_step"], last["bytes_per_step"], last["working_set"], last["memory"])
     return Step(round(last["zones"]), round(last["contacts"]), round(last["threads"]), last["damaged"],
                 _rate(repetitions, "zone_steps"), _rate_by_clock(repetitions, "zone_steps"),
                 _rate(repetitions, "contact_updates"), cost)
@@ -214,6 +237,8 @@ def table(bench: Bench) -> str:
     """All of it as Markdown."""
     parts = [f"Other work on the machine when it began: load {bench.machine.load:.1f}.",
              "\n".join(_machine_table(bench.machine)), "\n".join(_step_table(bench))]
+    if any(step.cost for step in bench.steps.values()):
+        parts.append("\n".join(_roofline_table(bench)))
     if bench.kernels:
         parts.append("\n".join(_kernel_table(bench)))
     if bench.peers:
@@ -222,21 +247,20 @@ def table(bench: Bench) -> str:
 
 
 def _machine_table(machine: Machine) -> Iterator[str]:
-    threads = sorted(machine.peak)
+    threads = sorted({*machine.peak, *(n for _, n in machine.bandwidth)})
     yield f"| {machine.processor}, {machine.compiler} | " + " | ".join(_threads(n) for n in threads) + " |"
     yield "|---|" + "---:|" * len(threads)
-    yield "| peak, multiply-add, GFLOP/s | " + " | ".join(
-        _number_and_spread(machine.peak[n], _GIGA) for n in threads) + " |"
+    yield "| peak, multiply-add, GFLOP/s | " + " | ".join(_giga(machine.peak.get(n)) for n in threads) + " |"
     for level in (*machine.capacity, "memory"):
-        if (level, threads[0]) in machine.bandwidth:
-            yield f"| triad, {level}, GB/s | " + " | ".join(
-                _number_and_spread(machine.bandwidth[level, n], _GIGA) for n in threads) + " |"
+        rates = [machine.bandwidth.get((level, n)) for n in threads]
+        if any(rates):
+            yield f"| triad, {level}, GB/s | " + " | ".join(map(_giga, rates)) + " |"
 
 
 def _step_table(bench: Bench) -> Iterator[str]:
     yield ("| zones | contact points | state | damaged | Pyroclast, 1 thread | 2 threads | textbook, 1 thread | "
-           "Pyroclast / textbook | 2 threads / 1 | of roofline, 1 thread |")
-    yield "|---:|---:|---|---:|---:|---:|---:|---:|---:|---:|"
+           "Pyroclast / textbook | 2 threads / 1 |")
+    yield "|---:|---:|---|---:|---:|---:|---:|---:|---:|"
     for zones in bench.sizes():
         for loading in _LOADINGS:
             one = bench.steps.get(("pyroclast", loading, zones, 1))
@@ -246,14 +270,33 @@ def _step_table(bench: Bench) -> Iterator[str]:
             textbook = bench.steps.get(("textbook", loading, zones, 1))
             yield (f"| {one.zones:,} | {one.contacts:,} | {loading} | {_percent(one.damaged)} "
                    f"| {_mega(one)} | {_mega(two)} | {_mega(textbook)} "
-                   f"| {_ratio(one, textbook)} | {_speedup(two, one)} | {_roofline_share(bench.machine, one)} |")
+                   f"| {_ratio(one, textbook)} | {_speedup(two, one)} |")
+
+
+def _roofline_table(bench: Bench) -> Iterator[str]:
+    yield ("| zones | state | flop / zone-step | bytes / zone-step | flop / byte | memory, bytes / zone "
+           "| working set, MB | of roofline, 1 thread | what binds | 2 threads | what binds |")
+    yield "|---:|---|---:|---:|---:|---:|---:|---:|---|---:|---|"
+    for zones in bench.sizes():
+        for loading in _LOADINGS:
+            one = bench.steps.get(("pyroclast", loading, zones, 1))
+            if one is None or one.cost is None:
+                continue
+            cost = one.cost
+            two = bench.steps.get(("pyroclast", loading, zones, 2))
+            yield (f"| {one.zones:,} | {loading} | {cost.flops / one.zones:.0f} | {cost.bytes / one.zones:.0f} "
+                   f"| {cost.flops / cost.bytes:.2f} | {cost.memory / one.zones:.0f} "
+                   f"| {cost.working_set / _MEGA:.1f} "
+                   f"| {_of_roofline(bench.machine, one)} | {_of_roofline(bench.machine, two)} |")
 
 
 def _kernel_table(bench: Bench) -> Iterator[str]:
-    yield "| part of the step | million zone-steps/s |"
-    yield "|---|---:|"
-    for name, rate in bench.kernels.items():
-        yield f"| {name} | {_number_and_spread(rate, _MEGA)} |"
+    yield "| part of the step, 1 thread | state | ns / zone-step | million zone-steps/s | of the step's time |"
+    yield "|---|---|---:|---:|---:|"
+    for kernel in sorted(bench.kernels, key=lambda k: (_LOADINGS.index(k.loading), _PARTS.index(k.part))):
+        yield (f"| {kernel.part} | {kernel.loading} | {1.0 / (kernel.zone_steps.median * _NANO):.2f} "
+               f"| {_number_and_spread(kernel.zone_steps, _MEGA)} "
+               f"| {_share_of_step(kernel, bench.steps.get(('pyroclast', kernel.loading, kernel.size, 1)))} |")
 
 
 def _peer_table(bench: Bench) -> Iterator[str]:
@@ -285,6 +328,10 @@ def _number_and_spread(rate: Rate, unit: float) -> str:
     return f"{rate.median / unit:.1f} ± {100.0 * rate.spread:.0f} %"
 
 
+def _giga(rate: Rate | None) -> str:
+    return "–" if rate is None else _number_and_spread(rate, _GIGA)
+
+
 def _mega(step: Step | None) -> str:
     return "–" if step is None else _number_and_spread(step.zone_steps, _MEGA)
 
@@ -301,12 +348,16 @@ def _speedup(two: Step | None, one: Step) -> str:
     return f"{two.zone_steps_by_clock.median / one.zone_steps_by_clock.median:.2f}"
 
 
-def _roofline_share(machine: Machine, step: Step) -> str:
-    allowed = machine.roofline(step.cost, step.threads) if step.cost else None
-    if allowed is None:
-        return "–"
-    share = step.zone_steps.median / (allowed * step.zones)
-    return f"{_percent(share)} ({machine.level(step.cost.working_set, step.threads)})"
+def _of_roofline(machine: Machine, step: Step | None) -> str:
+    """Two cells: the share, and which roof it is of."""
+    roof = machine.roofline(step.cost, step.threads) if step and step.cost else None
+    if roof is None:
+        return "– | –"
+    return f"{_percent(step.zone_steps.median / (roof.steps * step.zones))} | {roof.binds}"
+
+
+def _share_of_step(kernel: Kernel, step: Step | None) -> str:
+    return "–" if step is None else _percent(step.zone_steps.median / kernel.zone_steps.median)
 
 
 _CODES = {("pyroclast", 1): ("Pyroclast, 1 thread", style.BLUE, "o"),
@@ -351,9 +402,9 @@ def _draw_rooflines(axes: Axes, bench: Bench) -> Iterator[Line2D]:
         points = []
         for zones in bench.sizes():
             step = bench.steps.get(("pyroclast", "cracked", zones, threads))
-            allowed = bench.machine.roofline(step.cost, threads) if step and step.cost else None
-            if allowed is not None:
-                points.append((step.zones, allowed * step.zones / _MEGA))
+            roof = bench.machine.roofline(step.cost, threads) if step and step.cost else None
+            if roof is not None:
+                points.append((step.zones, roof.steps * step.zones / _MEGA))
         if points:
             yield axes.plot(*zip(*points), color=style.FAINT, linestyle=dashes,
                             label=f"roofline, {_threads(threads)}")[0]

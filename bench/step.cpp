@@ -36,12 +36,11 @@ void time_steps(benchmark::State& state, const Specimen& specimen, Body& body, d
   state.counters["contact_updates"] = Counter(done * model.contact_count(), Counter::kIsRate);
 }
 
-void add_cost(benchmark::State& state, const pyroclast::Mechanics<2>& body) {
-  if (const auto cost = step_cost(body)) {
-    state.counters["flops_per_step"] = cost->flops;
-    state.counters["bytes_per_step"] = cost->bytes;
-    state.counters["working_set"] = cost->working_set;
-  }
+void add_cost(benchmark::State& state, const StepCost& cost) {
+  state.counters["flops_per_step"] = cost.flops;
+  state.counters["bytes_per_step"] = cost.bytes;
+  state.counters["working_set"] = cost.working_set;
+  state.counters["memory"] = cost.memory;
 }
 
 std::string name_of(const char* code, Loading loading, int zones, int threads) {
@@ -50,9 +49,8 @@ std::string name_of(const char* code, Loading loading, int zones, int threads) {
 
 void register_step(Bodies& bodies, Loading loading, int zones, int threads) {
   const auto run = [&bodies, loading, zones, threads](benchmark::State& state) {
-    auto& body = bodies.mechanics(zones, loading);
-    time_steps(state, bodies.specimen(zones), body, bodies.velocity(), threads);
-    add_cost(state, body);
+    time_steps(state, bodies.specimen(zones), bodies.mechanics(zones, loading), bodies.velocity(), threads);
+    add_cost(state, bodies.step_cost(zones, loading));
   };
   benchmark::RegisterBenchmark(name_of("pyroclast", loading, zones, threads).c_str(), run)->UseRealTime();
 }

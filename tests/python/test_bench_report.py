@@ -43,12 +43,19 @@ def step(code: str, zones: int, threads: int, zone_steps: list[float], **cost: f
 
 
 def measured(**cost: float) -> dict:
+    if cost:
+        cost["memory"] = 21.6e6
     benchmarks = [
         *repetitions("peak/threads:1", "flops_per_s", [70e9]),
+        *repetitions("peak/threads:2", "flops_per_s", [140e9]),
         *repetitions("triad/L2/threads:1", "bytes_per_s", [200e9]),
         *repetitions("triad/L3/threads:1", "bytes_per_s", [100e9]),
         *step("pyroclast", 27_000, 1, [20e6, 22e6, 90e6], **cost),
-        *step("pyroclast", 27_000, 2, [33e6]),
+        *repetitions("triad/L3/threads:2", "bytes_per_s", [120e9]),
+        *repetitions("kernel/zones/cracked/zones:27000/threads:1", "zone_steps", [50e6]),
+        *repetitions("kernel/contacts/cracked/zones:27000/threads:1", "zone_steps", [40e6]),
+        *repetitions("kernel/motion/intact/zones:27000/threads:1", "zone_steps", [40e6]),
+        *step("pyroclast", 27_000, 2, [33e6], **cost),
         *step("textbook", 27_000, 1, [11e6]),
     ]
     return {"context": {"caches": CACHES, "load_avg": [0.5, 1.0, 1.0], "processor": "P", "compiler": "g++ 1"}, "benchmarks": benchmarks}
@@ -95,19 +102,48 @@ class Report(unittest.TestCase):
         self.assertEqual(cells[7:9], ["2.00", "1.50"])
 
     def test_without_counts_there_is_no_roofline(self) -> None:
-        text = report.table(self.read(measured()))
-        self.assertTrue(next(line for line in text.splitlines() if line.startswith("| 27,000")).endswith("| – |"))
+        self.assertNotIn("roofline", report.table(self.read(measured())))
+
+    def roofline(self, **cost: float) -> list[str]:
+        """The cells of the one row about the roofline."""
+        text = report.table(self.read(measured(**cost)))
+        _, _, rows = text.partition("of roofline")
+        row = next(line for line in rows.splitlines() if line.startswith("| 27,000"))
+        return [cell.strip() for cell in row.strip("|").split("|")]
 
     def test_roofline_takes_the_level_that_holds_the_working_set(self) -> None:
         # 27,000 zones and 22e6 zone-steps/s are 814.8 steps/s. L3 allows 100e9 / 100e6 = 1000 steps/s.
-        bench = self.read(measured(flops_per_step=1e6, bytes_per_step=100e6, working_set=20e6))
-        self.assertIn("| 81.5 % (L3) |", report.table(bench))
+        self.assertEqual(self.roofline(flops_per_step=1e6, bytes_per_step=100e6, working_set=20e6)[7:9],
+                         ["81.5 %", "L3"])
         # L2 allows 200e9 / 100e6 = 2000.
-        bench = self.read(measured(flops_per_step=1e6, bytes_per_step=100e6, working_set=0.9e6))
-        self.assertIn("| 40.7 % (L2) |", report.table(bench))
-        # Few bytes: the peak allows 70e9 / 70e6 = 1000.
-        bench = self.read(measured(flops_per_step=70e6, bytes_per_step=1e6, working_set=20e6))
-        self.assertIn("| 81.5 % (L3) |", report.table(bench))
+        self.assertEqual(self.roofline(flops_per_step=1e6, bytes_per_step=100e6, working_set=0.9e6)[7:9],
+                         ["40.7 %", "L2"])
+
+    def test_where_bytes_are_few_the_peak_binds(self) -> None:
+        # it allows 70e9 / 70e6 = 1000
+        self.assertEqual(self.roofline(flops_per_step=70e6, bytes_per_step=1e6, working_set=20e6)[7:9],
+                         ["81.5 %", "peak"])
+
+    def test_two_threads_are_held_against_the_roofs_of_two(self) -> None:
+        # 33e6 / 27,000 = 1222.2 steps/s; L3 gives two threads 120e9 / 80e6 = 1500
+        self.assertEqual(self.roofline(flops_per_step=1e6, bytes_per_step=80e6, working_set=20e6)[9:],
+                         ["81.5 %", "L3"])
+
+    def test_counts_are_given_by_zone(self) -> None:
+        self.assertEqual(self.roofline(flops_per_step=2.7e6, bytes_per_step=5.4e6, working_set=20e6)[2:7],
+                         ["100", "200", "0.50", "800", "20.0"])
+
+    def test_a_part_of_the_step_is_given_as_time_and_share(self) -> None:
+        # 50e6 zone-steps/s are 20 ns each; the whole step makes 22e6
+        text = report.table(self.read(measured()))
+        self.assertIn("| zones | cracked | 20.00 | 50.0 ± 0 % | 44.0 % |", text)
+        # no intact step was measured
+        self.assertIn("| motion | intact | 25.00 | 40.0 ± 0 % | – |", text)
+
+    def test_parts_stand_in_the_order_of_a_step(self) -> None:
+        text = report.table(self.read(measured()))
+        self.assertLess(text.index("| motion | intact |"), text.index("| contacts | cracked |"))
+        self.assertLess(text.index("| contacts | cracked |"), text.index("| zones | cracked |"))
 
     def test_two_threads_have_two_private_caches_but_one_shared_one(self) -> None:
         machine = self.read(measured()).machine

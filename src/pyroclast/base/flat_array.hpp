@@ -6,6 +6,7 @@
 #include <memory>
 #include <new>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <sys/mman.h>
@@ -43,6 +44,18 @@ class FlatArray {
   explicit FlatArray(const std::vector<T>& values) : FlatArray(values.size()) {
     std::copy(values.begin(), values.end(), begin());
   }
+
+  FlatArray(const FlatArray& other) : FlatArray(other.size()) {
+    std::copy(other.begin(), other.end(), begin());
+  }
+  FlatArray(FlatArray&& other) noexcept
+      : data_(std::move(other.data_)), size_(std::exchange(other.size_, 0)) {}
+  FlatArray& operator=(FlatArray other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    return *this;
+  }
+  ~FlatArray() = default;
 
   std::size_t size() const {
     return size_;
@@ -83,5 +96,11 @@ class FlatArray {
   std::unique_ptr<T, Free> data_;
   std::size_t size_ = 0;
 };
+
+/// Bytes that the elements of an array take.
+template <class Array>
+std::size_t bytes_of(const Array& array) {
+  return array.size() * sizeof(*array.begin());
+}
 
 }  // namespace pyroclast

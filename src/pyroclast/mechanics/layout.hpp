@@ -95,6 +95,8 @@ struct Layout {
   int face_rows() const { return static_cast<int>(faces.size()); }
   /// Rows of contact points: Dim for every row of faces, and one that idles.
   int contact_rows() const { return Dim * face_rows() + 1; }
+  /// Bytes of all arrays.
+  std::size_t memory() const;
 };
 
 extern template struct Layout<2>;

@@ -146,6 +146,10 @@ class Mechanics {
 
   const Model<Dim>& model() const { return model_; }
   const Layout<Dim>& layout() const { return *layout_; }
+  const StepState<Dim>& state() const { return state_; }
+  /// Takes another compilation of the step from the next one on; for benches. Results stay the same bits as
+  /// long as it is one of the templates of step.hpp.
+  void use(const StepFunctions<Dim>& step) { step_ = step; }
   Vec<Dim> displacement(int gridpoint) const;  ///< m
   Vec<Dim> velocity(int gridpoint) const;      ///< m/s
   /// Sum of all forces at the last step, N; on a prescribed component minus the reaction.

@@ -58,11 +58,89 @@ class Step {
     }
   }
 
- private:
+  // The parts of a step, open so that each can be timed alone.
+
   using Real = Lanes<Set>;
   using Vector = Vec<Dim, Real>;
   using Corners = std::array<Vector, Dim + 1>;
 
+  /// Displacements and sums of forces of a bundle while it is in hand, a row for each of its rows.
+  struct Scratch {
+    VectorRow<Dim>* displacement;
+    VectorRow<Dim>* sum;
+  };
+  /// \param memory  as of move_bundles
+  static Scratch scratch_of(const Bundle& bundle, double* memory) {
+    auto* rows = reinterpret_cast<VectorRow<Dim>*>(memory);
+    return {rows, rows + bundle.rows};
+  }
+
+  /// What a step books, still lane by lane.
+  struct Sums {
+    Real stored = 0.0, kinetic = 0.0, applied = 0.0, unbalanced = 0.0;
+    Real damping = 0.0, viscous = 0.0, begun_damping = 0.0, begun_viscous = 0.0;
+    Real loading = 0.0, begun_loading = 0.0;
+  };
+
+  /// Takes the displacements of a bundle in hand.
+  static void take_displacements(const StepState<Dim>& s, const Bundle& bundle, const Scratch& scratch) {
+    for (int i = 0; i < bundle.rows; ++i)
+      store(load(&s.displacement[slot_of(bundle.first_row + i, 0)]), scratch.displacement[i].c);
+  }
+
+  /// Begins the sums of forces of a bundle with those of its contacts.
+  static void sum_contact_forces(const StepState<Dim>& s, const Bundle& bundle, const Scratch& scratch) {
+    for (int i = 0; i < bundle.rows; ++i) store(contact_sum<true>(s, bundle.first_row + i), scratch.sum[i].c);
+  }
+
+  /// Adds the forces of a bundle's zones and their weights.
+  template <bool kMeasure>
+  static void add_zone_forces(const StepState<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
+    const Real density = Real::load(&s.density[slot_of(index, 0)]);
+    add_over_zones(s, index, scratch,
+                   [&](const Corners& x, const Corners& u, const auto& p, const auto& used) {
+                     return zone_forces<kMeasure>(s, x, u, p, density, used, sums);
+                   });
+  }
+
+  /// Moves the gridpoints of a bundle under the sums of forces.
+  template <Pass kPass>
+  static void move_rows(StepState<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
+    const Bundle& bundle = s.layout->bundles[index];
+    const int c = s.constraints_of_bundle[index];
+    for (int i = 0; i < bundle.rows; ++i) {
+      const Vector displacement = load(scratch.displacement[i].c), force = load(scratch.sum[i].c);
+      if (c >= 0)
+        move_row<kPass, true>(s, bundle, i, &s.constraints[c], displacement, force, sums);
+      else
+        move_row<kPass, false>(s, bundle, i, nullptr, displacement, force, sums);
+    }
+  }
+
+  /// Books the sums of a bundle.
+  template <Pass kPass>
+  static void keep(StepState<Dim>& s, int index, const Sums& sums) {
+    BundleSums& kept = s.bundle_sums[index];
+    if constexpr (kPass != Pass::measure) {
+      kept.damping_work += sum(sums.damping) * (0.5 * s.time_step);
+      if (s.viscous_damping != 0.0) kept.viscous_work += sum(sums.viscous);
+      if (const int c = s.constraints_of_bundle[index]; c >= 0)
+        s.constraints[c].loading_work += sum(sums.loading);
+    }
+    if constexpr (kPass == Pass::move_and_measure) {
+      kept.begun_damping = sum(sums.begun_damping);
+      kept.begun_viscous = sum(sums.begun_viscous);
+      kept.begun_loading = sum(sums.begun_loading);
+      kept.kinetic = sum(sums.kinetic);
+    }
+    if constexpr (kPass != Pass::move) {
+      kept.stored = sum(sums.stored);
+      kept.applied = sum(sums.applied);
+      kept.unbalanced = sum(sums.unbalanced);
+    }
+  }
+
+ private:
   // Rows of vectors
 
   static Vector load(const double (&c)[Dim][kLanes]) {
@@ -248,47 +326,18 @@ class Step {
 
   // Bundles
 
-  /// Displacements and sums over zones and contacts of a bundle while it is in hand.
-  struct Scratch {
-    VectorRow<Dim>* displacement;
-    VectorRow<Dim>* sum;
-  };
-  static Scratch scratch_of(const Bundle& bundle, double* memory) {
-    auto* rows = reinterpret_cast<VectorRow<Dim>*>(memory);
-    return {rows, rows + bundle.rows};
-  }
-
-  struct Sums {
-    Real stored = 0.0, kinetic = 0.0, applied = 0.0, unbalanced = 0.0;
-    Real damping = 0.0, viscous = 0.0, begun_damping = 0.0, begun_viscous = 0.0;
-    Real loading = 0.0, begun_loading = 0.0;
-  };
-
   template <Pass kPass>
   [[gnu::flatten]] static void move_bundle(StepState<Dim>& s, int index, double* memory) {
     const Bundle& bundle = s.layout->bundles[index];
     const Scratch scratch = scratch_of(bundle, memory);
     constexpr bool kMeasure = kPass != Pass::move;
     Sums sums;
-    for (int i = 0; i < bundle.rows; ++i) {
-      const int row = bundle.first_row + i;
-      store(load(&s.displacement[slot_of(row, 0)]), scratch.displacement[i].c);
-      store(contact_sum<true>(s, row), scratch.sum[i].c);
-    }
-    const Real density = Real::load(&s.density[slot_of(index, 0)]);
-    add_over_zones(s, index, scratch,
-                   [&](const Corners& x, const Corners& u, const auto& p, const auto& used) {
-                     return zone_forces<kMeasure>(s, x, u, p, density, used, sums);
-                   });
-    const int c = s.constraints_of_bundle[index];
-    if (c >= 0) load_bundle<kMeasure>(s, bundle, s.constraints[c], scratch, sums);
-    for (int i = 0; i < bundle.rows; ++i) {
-      const Vector displacement = load(scratch.displacement[i].c), force = load(scratch.sum[i].c);
-      if (c >= 0)
-        move_row<kPass, true>(s, bundle, i, &s.constraints[c], displacement, force, sums);
-      else
-        move_row<kPass, false>(s, bundle, i, nullptr, displacement, force, sums);
-    }
+    take_displacements(s, bundle, scratch);
+    sum_contact_forces(s, bundle, scratch);
+    add_zone_forces<kMeasure>(s, index, scratch, sums);
+    if (const int c = s.constraints_of_bundle[index]; c >= 0)
+      load_bundle<kMeasure>(s, bundle, s.constraints[c], scratch, sums);
+    move_rows<kPass>(s, index, scratch, sums);
     keep<kPass>(s, index, sums);
   }
 
@@ -309,28 +358,6 @@ class Step {
       }
     }
     return total;
-  }
-
-  template <Pass kPass>
-  static void keep(StepState<Dim>& s, int index, const Sums& sums) {
-    BundleSums& kept = s.bundle_sums[index];
-    if constexpr (kPass != Pass::measure) {
-      kept.damping_work += sum(sums.damping) * (0.5 * s.time_step);
-      if (s.viscous_damping != 0.0) kept.viscous_work += sum(sums.viscous);
-      if (const int c = s.constraints_of_bundle[index]; c >= 0)
-        s.constraints[c].loading_work += sum(sums.loading);
-    }
-    if constexpr (kPass == Pass::move_and_measure) {
-      kept.begun_damping = sum(sums.begun_damping);
-      kept.begun_viscous = sum(sums.begun_viscous);
-      kept.begun_loading = sum(sums.begun_loading);
-      kept.kinetic = sum(sums.kinetic);
-    }
-    if constexpr (kPass != Pass::move) {
-      kept.stored = sum(sums.stored);
-      kept.applied = sum(sums.applied);
-      kept.unbalanced = sum(sums.unbalanced);
-    }
   }
 
   static ZonePropertiesOf<Real> zone_properties(const StepState<Dim>& s, int index, int zone_row) {

@@ -85,6 +85,11 @@ struct Constraints {
   std::vector<std::array<std::uint8_t, Dim>> prescribed;  ///< by row and component, a bit a lane
   std::vector<Tie> ties;
   double loading_work = 0.0;  ///< of the reactions and applied forces, J
+
+  /// Bytes of all arrays.
+  std::size_t memory() const {
+    return prescribed_velocity.bytes() + applied.bytes() + bytes_of(prescribed) + bytes_of(ties);
+  }
 };
 
 /// Sums over a bundle, taken when a step is measured but for the work, which every step adds to.
@@ -140,6 +145,20 @@ struct StepState {
 
   std::vector<BundleSums> bundle_sums;
   std::vector<FaceSums> face_sums;
+
+  /// Bytes of all arrays, without those of the layout.
+  std::size_t memory() const {
+    std::size_t bytes = position.bytes() + velocity.bytes() + force.bytes() + stiffness.bytes();
+    for (std::size_t array :
+         {bytes_of(gathered_position), bytes_of(displacement), bytes_of(step_over_mass),
+          bytes_of(zone_properties), bytes_of(density), bytes_of(history), bytes_of(loss),
+          bytes_of(contact_force), bytes_of(turning_force), bytes_of(contact_constants),
+          bytes_of(set_of_faces), bytes_of(one_set), bytes_of(contact_constants_rows),
+          bytes_of(constraints_of_bundle), bytes_of(constraints), bytes_of(bundle_sums), bytes_of(face_sums)})
+      bytes += array;
+    for (const auto& c : constraints) bytes += c.memory();
+    return bytes;
+  }
 };
 
 /// What a pass over bundles does.

@@ -1,0 +1,64 @@
+// Parts of the step for this machine's processor. Compiled with its options, and so with an instruction set
+// of its own name: a function that the library shares would be linked twice, once with other options.
+#include "native_step.hpp"
+
+#include "pyroclast/mechanics/step.hpp"
+
+namespace bench {
+
+using pyroclast::Bundle;
+using pyroclast::Pass;
+using pyroclast::StepState;
+
+namespace {
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+struct Native : pyroclast::Avx512 {};
+#elif defined(__AVX2__)
+struct Native : pyroclast::Avx2 {};
+#else
+struct Native : pyroclast::Portable {};
+#endif
+
+using NativeStep = pyroclast::Step<2, Native>;
+
+int bundles(const StepState<2>& s) {
+  return static_cast<int>(s.layout->bundles.size());
+}
+
+void contacts(StepState<2>& s, double*) {
+  NativeStep::update_faces(s, 0, s.layout->face_rows(), false);
+}
+
+[[gnu::flatten]] void gather(StepState<2>& s, double* memory) {
+  for (const Bundle& bundle : s.layout->bundles)
+    NativeStep::sum_contact_forces(s, bundle, NativeStep::scratch_of(bundle, memory));
+}
+
+[[gnu::flatten]] void zones(StepState<2>& s, double* memory) {
+  NativeStep::Sums sums;
+  for (int b = 0; b < bundles(s); ++b) {
+    const Bundle& bundle = s.layout->bundles[b];
+    const auto scratch = NativeStep::scratch_of(bundle, memory);
+    NativeStep::take_displacements(s, bundle, scratch);
+    NativeStep::add_zone_forces<false>(s, b, scratch, sums);
+  }
+}
+
+[[gnu::flatten]] void motion(StepState<2>& s, double* memory) {
+  for (int b = 0; b < bundles(s); ++b) {
+    const Bundle& bundle = s.layout->bundles[b];
+    const auto scratch = NativeStep::scratch_of(bundle, memory);
+    NativeStep::take_displacements(s, bundle, scratch);
+    for (int i = 0; i < bundle.rows; ++i) scratch.sum[i] = s.force.row(bundle.first_row + i);
+    NativeStep::Sums sums;
+    NativeStep::move_rows<Pass::move>(s, b, scratch, sums);
+    NativeStep::keep<Pass::move>(s, b, sums);
+  }
+}
+
+}  // namespace
+
+const Part kParts[4] = {{"contacts", contacts}, {"gather", gather}, {"zones", zones}, {"motion", motion}};
+
+}  // namespace bench

@@ -1,0 +1,87 @@
+#include "counting.hpp"
+
+#include <gtest/gtest.h>
+
+#include "bodies.hpp"
+
+namespace pyroclast {
+namespace {
+
+using namespace bodies;
+
+/// A specimen torn until it cracks.
+Mechanics<2> torn(const Model<2>& model, bool counted) {
+  auto m = mechanics(model, mortar_contact(), quasi_static<2>());
+  if (counted) m.use(bench::counting_step());
+  for (int g = 0; g < model.gridpoint_count(); ++g)
+    if (const double y = model.position[g][1]; y == 0.0 || y == 0.05)
+      for (int i : {0, 1}) m.prescribe_velocity(g, i, y == 0.0 ? 0.0 : 5e-3);
+  m.advance(100);
+  return m;
+}
+
+TEST(Counting, LeavesTheBitsOfAnOrdinaryStep) {
+  const Model<2> model = tessellated(60, 0.05, 0.05, 3);
+  const auto counted = torn(model, true), ordinary = torn(model, false);
+  EXPECT_GT(ordinary.energy().dissipated.total(), 0.0);
+  EXPECT_TRUE(counted.displacement() == ordinary.displacement());
+  EXPECT_TRUE(counted.velocity() == ordinary.velocity());
+  EXPECT_EQ(counted.energy().dissipated.total(), ordinary.energy().dissipated.total());
+}
+
+TEST(Counting, ArithmeticAndRootsCountOnceALaneAndChoicesNothing) {
+  using Real = Lanes<bench::Counting>;
+  const Real a = 2.0, b = 3.0;
+  bench::Counted::operations = 0;
+  Real c = sqrt((a + b) * a - a / b);
+  EXPECT_EQ(bench::Counted::operations, 5 * kLanes);
+  c = select(a < b, larger(abs(c), b), smaller(signed_like(a, b), c));
+  EXPECT_EQ(bench::Counted::operations, 5 * kLanes);
+}
+
+TEST(Counting, StepsThatAreMeasuredAreLeftOut) {
+  const Model<2> model = tessellated(20, 0.05, 0.05, 3);
+  auto m = mechanics(model, elastic_contact(), quasi_static<2>());
+  m.use(bench::counting_step());
+  bench::reset_operations();
+  m.advance(1);  // its last step is measured
+  EXPECT_EQ(bench::operations().faces, 0);
+  EXPECT_EQ(bench::operations().bundles, 0);
+  m.advance(2);
+  const auto one = bench::operations();
+  EXPECT_GT(one.faces, 0);
+  EXPECT_GT(one.bundles, 0);
+  m.advance(3);  // an elastic body does the same in every step
+  EXPECT_EQ(bench::operations().faces, 3 * one.faces);
+  EXPECT_EQ(bench::operations().bundles, 3 * one.bundles);
+}
+
+/// Of one elastic contact point with small displacements: the jump, its two components, two tractions, the
+/// stored energy, and the force along two directions.
+TEST(Counting, AnElasticContactPointCostsWhatItsEquationsSay) {
+  const Model<2> model = tessellated(20, 0.05, 0.05, 3);
+  auto m = mechanics(model, elastic_contact(), quasi_static<2>());
+  m.use(bench::counting_step());
+  bench::reset_operations();
+  m.advance(2);
+  const int a_point = 2 + 2 * 3 + 2 + 5 + (2 * 3 + 2);
+  const int normal = 1;  // one component of a face's normal is minus one of its tangent
+  EXPECT_EQ(bench::operations().faces, kLanes * m.layout().face_rows() * (2 * a_point + normal));
+}
+
+TEST(Counting, CombinedDampingReadsTheForcesOfTheLastStep) {
+  const Model<2> model = tessellated(20, 0.05, 0.05, 3);
+  auto parameters = quasi_static<2>();
+  parameters.damping_form = DampingForm::local;
+  const auto local = mechanics(model, mortar_contact(), parameters);
+  parameters.damping_form = DampingForm::combined;
+  const auto combined = mechanics(model, mortar_contact(), parameters);
+  const auto one = bench::traffic(local.state()), other = bench::traffic(combined.state());
+  EXPECT_EQ(other.moved - one.moved, static_cast<double>(local.state().force.bytes()));
+  EXPECT_EQ(other.working_set, one.working_set);
+  EXPECT_GT(one.moved, one.working_set);
+  EXPECT_LT(one.working_set, static_cast<double>(local.layout().memory() + local.state().memory()));
+}
+
+}  // namespace
+}  // namespace pyroclast
