@@ -11,7 +11,7 @@ namespace bench {
 
 namespace {
 
-constexpr int kLeastSteps = 10;
+constexpr int kLeastSteps = 50;      ///< a run looks at its body as often or less often
 constexpr int kZoneSteps = 200'000;  ///< about so many in one call of advance
 
 /// Times whole steps of a body. The upper platen moves at the velocity of the case, down and up in turn, so

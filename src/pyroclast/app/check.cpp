@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -12,19 +13,18 @@ namespace pyroclast::app {
 
 namespace {
 
-/// Enough steps to time one, or as many as do not keep one waiting.
-constexpr int kWarmUpSteps = 2, kTimedBatch = 10, kMostTimedSteps = 200;
-constexpr double kSecondsOfTiming = 1.0;
+constexpr int kWarmUpSteps = 10, kMostTimedSteps = 2000;
+constexpr double kSecondsOfTiming = 0.5;
 
+/// Timed over many steps in one go, as a run takes them: the last of a batch costs more, for it is measured.
 double seconds_per_step(Mechanics<2>& mechanics) {
-  mechanics.advance(kWarmUpSteps);
-  const auto start = Clock::now();
-  int steps = 0;
-  do {
-    mechanics.advance(kTimedBatch);
-    steps += kTimedBatch;
-  } while (steps < kMostTimedSteps && seconds_since(start) < kSecondsOfTiming);
-  return seconds_since(start) / steps;
+  const auto time = [&](int steps) {
+    const auto start = Clock::now();
+    mechanics.advance(steps);
+    return seconds_since(start) / steps;
+  };
+  const double steps = kSecondsOfTiming / time(kWarmUpSteps);
+  return time(static_cast<int>(std::clamp<double>(steps, kWarmUpSteps, kMostTimedSteps)));
 }
 
 double peak_memory() {
