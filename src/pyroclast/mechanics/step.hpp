@@ -96,10 +96,12 @@ class Step {
   /// Adds the forces of a bundle's zones and their weights.
   template <bool kMeasure>
   static void add_zone_forces(const StepState<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
+    // a copy: for all that the compiler knows, what is stored in an array may change those of the state
+    const StepParameters<Dim> parameters = s;
     const Real density = Real::load(&s.density[slot_of(index, 0)]);
     add_over_zones(s, index, scratch,
-                   [&](const Corners& x, const Corners& u, const auto& p, const auto& used) {
-                     return zone_forces<kMeasure>(s, x, u, p, density, used, sums);
+                   [&](const Corners& x, const Corners& u, const auto& properties, const auto& used) {
+                     return zone_forces<kMeasure>(parameters, x, u, properties, density, used, sums);
                    });
   }
 
@@ -107,13 +109,14 @@ class Step {
   template <Pass kPass>
   static void move_rows(StepState<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
     const Bundle& bundle = s.layout->bundles[index];
+    const StepParameters<Dim> parameters = s;
     const int c = s.constraints_of_bundle[index];
     for (int i = 0; i < bundle.rows; ++i) {
       const Vector displacement = load(scratch.displacement[i].c), force = load(scratch.sum[i].c);
       if (c >= 0)
-        move_row<kPass, true>(s, bundle, i, &s.constraints[c], displacement, force, sums);
+        move_row<kPass, true>(s, parameters, bundle, i, &s.constraints[c], displacement, force, sums);
       else
-        move_row<kPass, false>(s, bundle, i, nullptr, displacement, force, sums);
+        move_row<kPass, false>(s, parameters, bundle, i, nullptr, displacement, force, sums);
     }
   }
 
@@ -368,17 +371,17 @@ class Step {
   /// Forces of eight zones on their gridpoints: internal, Eqs. (4) and (5), and weight.
   /// \param used  lanes that are not idle
   template <bool kMeasure>
-  static Corners zone_forces(const StepState<Dim>& s, const Corners& x, const Corners& u,
+  static Corners zone_forces(const StepParameters<Dim>& p, const Corners& x, const Corners& u,
                              const ZonePropertiesOf<Real>& properties, const Real& density,
                              const typename Real::Truth& used, Sums& sums) {
     // Shape gradients times the determinant; the volume is a constant share of the determinant, which leaves
     // the division by it out of the way of the forces.
     std::array<Vector, Dim> vectors;
     const Real determinant = shape_vectors(x, vectors);
-    const double share = volume_over_determinant<Dim> * s.thickness;
+    const double share = volume_over_determinant<Dim> * p.thickness;
     Rotation<Real> rotation;
     const auto strain = mechanical_strain<Dim>(vectors, 1.0 / determinant, u, properties.thermal_strain,
-                                               s.kinematics, rotation);
+                                               p.kinematics, rotation);
     const auto stress =  // times minus the share
         zone_stress<Dim>({properties.lambda * -share, properties.mu * -share, properties.thermal_strain},
                          strain);
@@ -386,20 +389,20 @@ class Step {
     for (int n = 0; n < Dim; ++n) {
       force[n] = apply<Dim>(stress, vectors[n]);
       if constexpr (Dim == 2)
-        if (s.kinematics == Kinematics::finite) force[n] = rotated<Dim>(rotation, force[n]);
+        if (p.kinematics == Kinematics::finite) force[n] = rotated<Dim>(rotation, force[n]);
     }
     force[Dim] = -force[0];
     for (int n = 1; n < Dim; ++n) force[Dim] -= force[n];
     const Real mass = density * share * determinant;
     if constexpr (kMeasure) {
-      Real applied = mass * norm(s.gravity);
+      Real applied = mass * norm(p.gravity);
       for (const auto& f : force) applied += norm(f);
       sums.stored -= select(used, energy_density<Dim>(stress, strain) * determinant, Real(0.0));
       sums.applied += select(used, applied, Real(0.0));
     }
     for (int i = 0; i < Dim; ++i)
-      if (s.gravity[i] != 0.0) {
-        const Real weight = mass * (s.gravity[i] / (Dim + 1));
+      if (p.gravity[i] != 0.0) {
+        const Real weight = mass * (p.gravity[i] / (Dim + 1));
         for (auto& f : force) f[i] += weight;
       }
     return force;
@@ -528,8 +531,9 @@ class Step {
 
   /// Damps the sum of forces (8) and integrates velocity and displacement (6), (7).
   template <Pass kPass, bool kConstrained>
-  static void move_row(StepState<Dim>& s, const Bundle& bundle, int i, const Constraints<Dim>* constraints,
-                       const Vector& displacement, const Vector& force, Sums& sums) {
+  static void move_row(StepState<Dim>& s, const StepParameters<Dim>& p, const Bundle& bundle, int i,
+                       const Constraints<Dim>* constraints, const Vector& displacement, const Vector& force,
+                       Sums& sums) {
     constexpr bool kMeasure = kPass != Pass::move;
     const int row = bundle.first_row + i;
     if constexpr (kMeasure) {
@@ -544,19 +548,19 @@ class Step {
       return;
     }
     fetch_ahead(s, row);
-    const double dt = s.time_step;
-    const double kept = 1.0 - 0.5 * s.viscous_damping * dt;
-    const double over = 1.0 / (1.0 + 0.5 * s.viscous_damping * dt);
-    const bool combined = s.damping_form == DampingForm::combined;
+    const double dt = p.time_step;
+    const double kept = 1.0 - 0.5 * p.viscous_damping * dt;
+    const double over = 1.0 / (1.0 + 0.5 * p.viscous_damping * dt);
+    const bool combined = p.damping_form == DampingForm::combined;
     const Real step_over_mass = Real::load(&s.step_over_mass[slot_of(row, 0)]);
     const Vector before = load(s.velocity.row(row).c);
     Vector after;
     for (int j = 0; j < Dim; ++j) {
-      const Real magnitude = abs(force[j]) * (combined ? 0.5 * s.local_damping : s.local_damping);
+      const Real magnitude = abs(force[j]) * (combined ? 0.5 * p.local_damping : p.local_damping);
       Real damping = signed_like(magnitude, before[j]);
       if (combined) damping -= signed_like(magnitude, force[j] - Real::load(s.force.row(row).c[j]));
       after[j] = before[j] + (force[j] - damping) * step_over_mass;
-      if (s.viscous_damping != 0.0)
+      if (p.viscous_damping != 0.0)
         after[j] = (kept * before[j] + (force[j] - damping) * step_over_mass) * over;
       if constexpr (kConstrained) {
         const auto prescribed = Real::Truth::from_bits(constraints->prescribed[i][j]);
@@ -570,8 +574,8 @@ class Step {
       }
       sums.damping += damping * (before[j] + after[j]);
       if constexpr (kMeasure) sums.begun_damping += damping * after[j] * (0.5 * dt);
-      if (s.viscous_damping != 0.0) {
-        Real drag = s.viscous_damping * dt * 0.5 * (before[j] + after[j]) / step_over_mass;
+      if (p.viscous_damping != 0.0) {
+        Real drag = p.viscous_damping * dt * 0.5 * (before[j] + after[j]) / step_over_mass;
         if constexpr (kConstrained)
           drag = select(Real::Truth::from_bits(constraints->prescribed[i][j]), Real(0.0), drag);
         sums.viscous += drag * (before[j] + after[j]) * (0.5 * dt);

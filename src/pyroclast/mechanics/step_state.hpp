@@ -108,16 +108,20 @@ struct FaceSums {
   double jump = 0.0;     ///< largest, over the length of its face
 };
 
-/// All that moves, in the order of a Layout, with what a step reads.
+/// What a step of the whole body has in common.
 template <int Dim>
-struct StepState {
-  const Layout<Dim>* layout = nullptr;
-
+struct StepParameters {
   Vec<Dim> gravity;  ///< m/s²
   double time_step = 0.0, local_damping = 0.0, viscous_damping = 0.0;
   DampingForm damping_form = DampingForm::local;
   Kinematics kinematics = Kinematics::small;
   double thickness = 1.0;  ///< m
+};
+
+/// All that moves, in the order of a Layout, with what a step reads.
+template <int Dim>
+struct StepState : StepParameters<Dim> {
+  const Layout<Dim>* layout = nullptr;
 
   RowVectors<Dim> position, velocity;
   RowVectors<Dim> force;                  ///< sum at the last step, N
