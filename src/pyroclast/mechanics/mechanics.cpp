@@ -76,6 +76,7 @@ void Mechanics<Dim>::place_model(const std::vector<double>& densities) {
   if (s.kinematics == Kinematics::finite) s.turning_force = FlatArray<Vec<Dim>>(contact_slots);
   s.density = FlatArray<double>(layout_->bundles.size() * kLanes);
   s.constraints_of_bundle.assign(layout_->bundles.size(), -1);
+  made_constraints_.assign(layout_->bundles.size(), -1);
   s.bundle_sums.resize(layout_->bundles.size());
   s.face_sums.resize(layout_->faces.size());
 
@@ -277,7 +278,7 @@ int Mechanics<Dim>::block_of(int gridpoint) const {
 template <int Dim>
 Constraints<Dim>& Mechanics<Dim>::constraints_of(int gridpoint) {
   const int b = layout_->bundle_of_block[block_of(gridpoint)];
-  int& index = state_.constraints_of_bundle[b];
+  int& index = made_constraints_[b];
   if (index < 0) {
     index = static_cast<int>(state_.constraints.size());
     const int rows = layout_->bundles[b].rows;
@@ -287,7 +288,25 @@ Constraints<Dim>& Mechanics<Dim>::constraints_of(int gridpoint) {
     free.prescribed.resize(rows);
     state_.constraints.push_back(std::move(free));
   }
+  state_.constraints_of_bundle[b] = index;
   return state_.constraints[index];
+}
+
+/// A bundle that nothing holds, drives or loads any more takes the shorter way through a step.
+template <int Dim>
+void Mechanics<Dim>::drop_if_free(int gridpoint) {
+  const int b = layout_->bundle_of_block[block_of(gridpoint)];
+  const int index = made_constraints_[b];
+  if (index < 0) return;
+  const auto& constraints = state_.constraints[index];
+  if (!constraints.ties.empty()) return;
+  for (int row = 0; row < layout_->bundles[b].rows; ++row)
+    for (int i = 0; i < Dim; ++i) {
+      if (constraints.prescribed[row][i] != 0) return;
+      for (double force : constraints.applied.row(row).c[i])
+        if (force != 0.0) return;
+    }
+  state_.constraints_of_bundle[b] = -1;
 }
 
 /// Slot counted from the first of its bundle.
@@ -311,6 +330,7 @@ void Mechanics<Dim>::release(int gridpoint, int component) {
   const int slot = slot_in_bundle(gridpoint);
   auto& bits = constraints_of(gridpoint).prescribed[slot / kLanes][component];
   bits = static_cast<std::uint8_t>(bits & ~(1U << slot % kLanes));
+  drop_if_free(gridpoint);
 }
 
 template <int Dim>
@@ -329,11 +349,14 @@ void Mechanics<Dim>::tie(std::vector<int> gridpoints, int component) {
 template <int Dim>
 void Mechanics<Dim>::untie() {
   for (auto& constraints : state_.constraints) constraints.ties.clear();
+  for (std::size_t b = 0; b < made_constraints_.size(); ++b)
+    if (made_constraints_[b] >= 0) drop_if_free(model_.block_gridpoints[layout_->bundles[b].blocks.front()]);
 }
 
 template <int Dim>
 void Mechanics<Dim>::apply_force(int gridpoint, const Vec<Dim>& force) {
   constraints_of(gridpoint).applied.set(slot_in_bundle(gridpoint), force);
+  drop_if_free(gridpoint);
 }
 
 template <int Dim>
@@ -393,7 +416,7 @@ Vec<Dim> Mechanics<Dim>::force(int gridpoint) const {
 
 template <int Dim>
 Vec<Dim> Mechanics<Dim>::applied_force(int gridpoint) const {
-  const int index = state_.constraints_of_bundle[layout_->bundle_of_block[block_of(gridpoint)]];
+  const int index = made_constraints_[layout_->bundle_of_block[block_of(gridpoint)]];
   return index < 0 ? Vec<Dim>{} : state_.constraints[index].applied[slot_in_bundle(gridpoint)];
 }
 
@@ -526,7 +549,7 @@ EnergyLedger Mechanics<Dim>::energy() const {
     e.kinetic += sums.kinetic;
     e.local_damping += sums.damping_work - sums.begun_damping;
     e.viscous_damping += sums.viscous_work - sums.begun_viscous;
-    if (const int c = state_.constraints_of_bundle[b]; c >= 0)
+    if (const int c = made_constraints_[b]; c >= 0)
       e.loading += state_.constraints[c].loading_work - sums.begun_loading;
   }
   for (const FaceSums& sums : state_.face_sums) e.contacts += sums.stored;

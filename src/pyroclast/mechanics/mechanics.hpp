@@ -185,6 +185,7 @@ class Mechanics {
   void scale_masses();
   void set_step_over_mass();
   Constraints<Dim>& constraints_of(int gridpoint);
+  void drop_if_free(int gridpoint);
   int slot_in_bundle(int gridpoint) const;
   int block_of(int gridpoint) const;
   void sweep(int steps, Pass pass);
@@ -200,6 +201,8 @@ class Mechanics {
   StepState<Dim> state_;
   StepFunctions<Dim> step_;
   std::vector<Share> shares_;  ///< by thread
+
+  std::vector<int> made_constraints_;  ///< of each bundle that was ever held, driven or loaded; else -1
 
   std::vector<double> gravity_mass_;  ///< real mass, which gravity acts on, kg
   std::vector<double> mass_;          ///< mass that moves, kg

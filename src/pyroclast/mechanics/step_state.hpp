@@ -144,7 +144,7 @@ struct StepState : StepParameters<Dim> {
   FlatArray<ContactConstantsRow>
       contact_constants_rows;  ///< by row of contact points, if any row has no one set
 
-  std::vector<int> constraints_of_bundle;  ///< -1 where free
+  std::vector<int> constraints_of_bundle;  ///< -1 where nothing holds, drives or loads it now
   std::vector<Constraints<Dim>> constraints;
 
   std::vector<BundleSums> bundle_sums;
