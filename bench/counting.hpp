@@ -19,47 +19,19 @@ struct Counted {
   friend Counted operator-(Counted a, Counted b) { return made(a.value - b.value); }
   friend Counted operator*(Counted a, Counted b) { return made(a.value * b.value); }
   friend Counted operator/(Counted a, Counted b) { return made(a.value / b.value); }
+  friend Counted sqrt(Counted a) { return made(std::sqrt(a.value)); }
+  friend Counted operator-(Counted a) { return {-a.value}; }
+  friend Counted abs(Counted a) { return {std::abs(a.value)}; }
+  friend bool operator<(Counted a, Counted b) { return a.value < b.value; }
+  friend bool operator<=(Counted a, Counted b) { return a.value <= b.value; }
+  explicit operator double() const { return value; }
   static Counted made(double value) {
     ++operations;
     return {value};
   }
 };
 
-/// An instruction set of base/lanes.hpp: Portable with numbers that count.
-struct Counting {
-  static constexpr int kWidth = 1;
-  using Value = Counted;
-  using Truth = bool;
-  static Value load(const double* p) { return {*p}; }
-  static void store(double* p, Value v) { *p = v.value; }
-  static Value all(double v) { return {v}; }
-  static Value sqrt(Value v) { return Counted::made(std::sqrt(v.value)); }
-  static Value abs(Value v) { return {std::abs(v.value)}; }
-  static Value signed_like(Value v, Value s) {
-    return {s.value > 0.0 ? v.value : s.value < 0.0 ? -v.value : 0.0};
-  }
-  static Value smaller(Value a, Value b) { return b.value < a.value ? b : a; }
-  static Value larger(Value a, Value b) { return a.value < b.value ? b : a; }
-  static Truth less(Value a, Value b) { return a.value < b.value; }
-  static Truth less_equal(Value a, Value b) { return a.value <= b.value; }
-  static Truth both(Truth a, Truth b) { return a && b; }
-  static Truth either(Truth a, Truth b) { return a || b; }
-  static Truth opposite(Truth a) { return !a; }
-  static bool any(Truth a) { return a; }
-  static Value select(Truth c, Value yes, Value no) { return c ? yes : no; }
-  static Truth from_bits(unsigned bits) { return (bits & 1U) != 0; }
-  static void load_pairs(const double* p, Value& x, Value& y) {
-    x = {p[0]};
-    y = {p[1]};
-  }
-  static void store_pairs(double* p, Value x, Value y) {
-    p[0] = x.value;
-    p[1] = y.value;
-  }
-  static void gather_pairs(const double* p, const int* offset, Value& x, Value& y) {
-    load_pairs(p + offset[0], x, y);
-  }
-};
+using Counting = pyroclast::OneByOne<Counted>;
 
 /// Operations in all lanes of the steps that were not measured, since the last reset.
 struct Operations {

@@ -257,33 +257,31 @@ def _machine_table(machine: Machine) -> Iterator[str]:
             yield f"| triad, {level}, GB/s | " + " | ".join(map(_giga, rates)) + " |"
 
 
+def _steps(bench: Bench):
+    """Of each body that was timed: its state, and the step on one thread, on two (or none) and of the textbook (or none)."""
+    for zones in bench.sizes():
+        for loading in _LOADINGS:
+            if one := bench.steps.get(("pyroclast", loading, zones, 1)):
+                yield (loading, one, bench.steps.get(("pyroclast", loading, zones, 2)),
+                       bench.steps.get(("textbook", loading, zones, 1)))
+
+
 def _step_table(bench: Bench) -> Iterator[str]:
     yield ("| zones | contact points | state | damaged | Pyroclast, 1 thread | 2 threads | textbook, 1 thread | "
            "Pyroclast / textbook | 2 threads / 1 |")
     yield "|---:|---:|---|---:|---:|---:|---:|---:|---:|"
-    for zones in bench.sizes():
-        for loading in _LOADINGS:
-            one = bench.steps.get(("pyroclast", loading, zones, 1))
-            if one is None:
-                continue
-            two = bench.steps.get(("pyroclast", loading, zones, 2))
-            textbook = bench.steps.get(("textbook", loading, zones, 1))
-            yield (f"| {one.zones:,} | {one.contacts:,} | {loading} | {_percent(one.damaged)} "
-                   f"| {_mega(one)} | {_mega(two)} | {_mega(textbook)} "
-                   f"| {_ratio(one, textbook)} | {_speedup(two, one)} |")
+    for loading, one, two, textbook in _steps(bench):
+        yield (f"| {one.zones:,} | {one.contacts:,} | {loading} | {_percent(one.damaged)} "
+               f"| {_mega(one)} | {_mega(two)} | {_mega(textbook)} "
+               f"| {_ratio(one, textbook)} | {_speedup(two, one)} |")
 
 
 def _roofline_table(bench: Bench) -> Iterator[str]:
     yield ("| zones | state | flop / zone-step | bytes / zone-step | flop / byte | memory, bytes / zone "
            "| working set, MB | of roofline, 1 thread | what binds | 2 threads | what binds |")
     yield "|---:|---|---:|---:|---:|---:|---:|---:|---|---:|---|"
-    for zones in bench.sizes():
-        for loading in _LOADINGS:
-            one = bench.steps.get(("pyroclast", loading, zones, 1))
-            if one is None or one.cost is None:
-                continue
-            cost = one.cost
-            two = bench.steps.get(("pyroclast", loading, zones, 2))
+    for loading, one, two, _ in _steps(bench):
+        if cost := one.cost:
             yield (f"| {one.zones:,} | {loading} | {cost.flops / one.zones:.0f} | {cost.bytes / one.zones:.0f} "
                    f"| {cost.flops / cost.bytes:.2f} | {cost.memory / one.zones:.0f} "
                    f"| {cost.working_set / _MEGA:.1f} "

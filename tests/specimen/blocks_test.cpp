@@ -127,14 +127,21 @@ TEST(Blocks, RelaxationEvensOutTheAreas) {
   EXPECT_LT(scatter(5), 0.3);
 }
 
-TEST(Laguerre, EveryPointOfACellBelongsToItsSeed) {
-  Random random(5);
+/// Seeds all over the rectangle, with radii of half the mean distance, more or less by a share of up to
+/// `spread`.
+Seeds random_seeds(std::uint64_t seed, int count, double spread) {
+  Random random(seed);
   Seeds seeds;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < count; ++i) {
     const double x = random.uniform(0, width);
     seeds.position.push_back({{x, random.uniform(0, height)}});
-    seeds.radius.push_back(random.uniform(0.5, 1.5) * 0.5 * std::sqrt(width * height / 300));
+    seeds.radius.push_back(random.uniform(1 - spread, 1 + spread) * 0.5 * std::sqrt(width * height / count));
   }
+  return seeds;
+}
+
+TEST(Laguerre, EveryPointOfACellBelongsToItsSeed) {
+  const Seeds seeds = random_seeds(5, 300, 0.5);
   const LaguerreResult result = laguerre_tessellation(seeds, width, height);
   const auto power = [&](const Vec<2>& p, std::size_t i) {
     const Vec<2> d = p - seeds.position[i];
@@ -157,13 +164,7 @@ TEST(Laguerre, EveryPointOfACellBelongsToItsSeed) {
 
 /// Relaxed seeds and their cells, made by a number of threads.
 std::pair<Seeds, Tessellation> relaxed_cells(int threads) {
-  Random random(7);
-  Seeds seeds;
-  for (int i = 0; i < 2000; ++i) {
-    const double x = random.uniform(0, width);
-    seeds.position.push_back({{x, random.uniform(0, height)}});
-    seeds.radius.push_back(random.uniform(0.7, 1.3) * 0.5 * std::sqrt(width * height / 2000));
-  }
+  Seeds seeds = random_seeds(7, 2000, 0.3);
   const int before = omp_get_max_threads();
   omp_set_num_threads(threads);
   for (int i = 0; i < 3; ++i) relax(seeds, width, height);

@@ -77,8 +77,7 @@ int check(const RunOptions& options) {
 
   const TimeStepLimit limit = mechanics.real_mass_limit();
   const int g = limit.gridpoint;
-  int block = 0;
-  while (model.block_gridpoints[block + 1] <= g) ++block;
+  const int block = model.block_of(g);
   fmt::print("time step       {:.3g} s, {}\n", mechanics.time_step(),
              c.mechanics.mass == MassChoice::scaled
                  ? fmt::format("by density scaling of all {} gridpoints: moving mass {:.3g} x the real one",

@@ -38,18 +38,26 @@ inline double larger(double a, double b) {
 
 // Instruction sets. A file that names one other than Portable is compiled with that set's options.
 
-/// No more than the language.
-struct Portable {
+/// One lane after the other, no more than the language.
+/// \tparam Number  a double, or what takes its place: arithmetic, <, <=, abs and sqrt, from and to double
+template <class Number>
+struct OneByOne {
   static constexpr int kWidth = 1;
-  using Value = double;
+  using Value = Number;
   using Truth = bool;
-  static Value load(const double* p) { return *p; }
-  static void store(double* p, Value v) { *p = v; }
-  static Value all(double v) { return v; }
-  static Value sqrt(Value v) { return std::sqrt(v); }
-  static Value abs(Value v) { return std::abs(v); }
+  static Value load(const double* p) { return Value{*p}; }
+  static void store(double* p, Value v) { *p = static_cast<double>(v); }
+  static Value all(double v) { return Value{v}; }
+  static Value sqrt(Value v) {
+    using std::sqrt;
+    return sqrt(v);
+  }
+  static Value abs(Value v) {
+    using std::abs;
+    return abs(v);
+  }
   /// v, not negative, with the sign of s; zero where s is zero.
-  static Value signed_like(Value v, Value s) { return s > 0.0 ? v : s < 0.0 ? -v : 0.0; }
+  static Value signed_like(Value v, Value s) { return Value{0.0} < s ? v : s < Value{0.0} ? -v : Value{0.0}; }
   static Value smaller(Value a, Value b) { return b < a ? b : a; }
   static Value larger(Value a, Value b) { return a < b ? b : a; }
   static Truth less(Value a, Value b) { return a < b; }
@@ -63,18 +71,19 @@ struct Portable {
   static Truth from_bits(unsigned bits) { return (bits & 1U) != 0; }
   /// Pairs that stand one after the other, apart.
   static void load_pairs(const double* p, Value& x, Value& y) {
-    x = p[0];
-    y = p[1];
+    x = load(p);
+    y = load(p + 1);
   }
   static void store_pairs(double* p, Value x, Value y) {
-    p[0] = x;
-    p[1] = y;
+    store(p, x);
+    store(p + 1, y);
   }
   /// Pairs that stand at offsets, apart.
   static void gather_pairs(const double* p, const int* offset, Value& x, Value& y) {
     load_pairs(p + offset[0], x, y);
   }
 };
+using Portable = OneByOne<double>;
 
 #ifdef __AVX2__
 struct Avx2 {

@@ -105,7 +105,7 @@ using ContactConstants = ContactConstantsOf<double>;
 
 /// Calls `f` with each number of the constants, in one order.
 template <class Constants, class F>
-void for_each_number(Constants& c, F f) {
+constexpr void for_each_number(Constants& c, F f) {
   f(c.normal_stiffness);
   f(c.shear_stiffness);
   f(c.shear_compliance);
@@ -125,6 +125,13 @@ void for_each_number(Constants& c, F f) {
   f(c.mode_2_energy);
   f(c.over_twice_mode_2_energy);
 }
+
+inline constexpr int kContactConstants = [] {
+  ContactConstants constants{};
+  int count = 0;
+  for_each_number(constants, [&](double&) { ++count; });
+  return count;
+}();
 
 /// What a contact point remembers. A contact that never held tension or cohesion (a platen's) starts with
 /// both damages at 1.

@@ -40,6 +40,11 @@ struct Bundle {
   int last_face_row = -1;    ///< no row of faces above it touches the bundle; never falls along the bundles
   std::vector<int> blocks;
 
+  /// Block in a lane, or -1 where the lane idles.
+  int block_in(int lane) const {
+    if (kind == BundleKind::spread) return blocks.front();
+    return lane < static_cast<int>(blocks.size()) ? blocks[lane] : -1;
+  }
   int zone_rows() const { return kind == BundleKind::alike ? zones : (zones + kLanes - 1) / kLanes; }
 };
 

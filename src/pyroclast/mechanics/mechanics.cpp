@@ -87,14 +87,12 @@ void Mechanics<Dim>::place_model(const std::vector<double>& densities) {
   }
   for (std::size_t b = 0; b < layout_->bundles.size(); ++b) {
     const Bundle& bundle = layout_->bundles[b];
-    const bool alike = bundle.kind == BundleKind::alike;
     for (int lane = 0; lane < kLanes; ++lane) {
-      const bool idle = lane >= static_cast<int>(bundle.blocks.size());
-      if (alike && idle)  // the shape of the first, without weight or stiffness
+      if (const int block = bundle.block_in(lane); block >= 0)
+        s.density[b * kLanes + lane] = densities[model_.block_material[block]];
+      else  // the shape of the first, without weight or stiffness
         for (int i = 0; i < bundle.rows; ++i)
           s.position.set(slot_of(bundle.first_row + i, lane), s.position[slot_of(bundle.first_row + i, 0)]);
-      if (!alike || !idle)
-        s.density[b * kLanes + lane] = densities[model_.block_material[bundle.blocks[alike ? lane : 0]]];
     }
   }
 }
@@ -118,14 +116,10 @@ void Mechanics<Dim>::place_properties() {
     s.zone_properties[row].thermal_strain[lane] = p.thermal_strain;
   };
   if (s.by_bundle) {
-    for (std::size_t b = 0; b < rows; ++b) {
-      const Bundle& bundle = layout_->bundles[b];
-      for (int lane = 0; lane < kLanes; ++lane) {
-        const bool alike = bundle.kind == BundleKind::alike;
-        if (alike && lane >= static_cast<int>(bundle.blocks.size())) continue;
-        place(b, lane, properties_.zones[model_.block_zones[bundle.blocks[alike ? lane : 0]]]);
-      }
-    }
+    for (std::size_t b = 0; b < rows; ++b)
+      for (int lane = 0; lane < kLanes; ++lane)
+        if (const int block = layout_->bundles[b].block_in(lane); block >= 0)
+          place(b, lane, properties_.zones[model_.block_zones[block]]);
   } else {
     for (int z = 0; z < model_.zone_count(); ++z)
       place(layout_->zone_slot[z] / kLanes, layout_->zone_slot[z] % kLanes, properties_.zones[z]);
@@ -268,16 +262,14 @@ TimeStepLimit Mechanics<Dim>::real_mass_limit() const {
 }
 
 template <int Dim>
-int Mechanics<Dim>::block_of(int gridpoint) const {
-  const auto after =
-      std::upper_bound(model_.block_gridpoints.begin(), model_.block_gridpoints.end(), gridpoint);
-  return static_cast<int>(after - model_.block_gridpoints.begin()) - 1;
+int Mechanics<Dim>::bundle_of(int gridpoint) const {
+  return layout_->bundle_of_block[model_.block_of(gridpoint)];
 }
 
 /// Those of the gridpoint's bundle, made when there are none yet.
 template <int Dim>
 Constraints<Dim>& Mechanics<Dim>::constraints_of(int gridpoint) {
-  const int b = layout_->bundle_of_block[block_of(gridpoint)];
+  const int b = bundle_of(gridpoint);
   int& index = made_constraints_[b];
   if (index < 0) {
     index = static_cast<int>(state_.constraints.size());
@@ -294,8 +286,7 @@ Constraints<Dim>& Mechanics<Dim>::constraints_of(int gridpoint) {
 
 /// A bundle that nothing holds, drives or loads any more takes the shorter way through a step.
 template <int Dim>
-void Mechanics<Dim>::drop_if_free(int gridpoint) {
-  const int b = layout_->bundle_of_block[block_of(gridpoint)];
+void Mechanics<Dim>::drop_if_free(int b) {
   const int index = made_constraints_[b];
   if (index < 0) return;
   const auto& constraints = state_.constraints[index];
@@ -312,7 +303,7 @@ void Mechanics<Dim>::drop_if_free(int gridpoint) {
 /// Slot counted from the first of its bundle.
 template <int Dim>
 int Mechanics<Dim>::slot_in_bundle(int gridpoint) const {
-  const Bundle& bundle = layout_->bundles[layout_->bundle_of_block[block_of(gridpoint)]];
+  const Bundle& bundle = layout_->bundles[bundle_of(gridpoint)];
   return layout_->gridpoint_slot[gridpoint] - slot_of(bundle.first_row, 0);
 }
 
@@ -327,10 +318,11 @@ void Mechanics<Dim>::prescribe_velocity(int gridpoint, int component, double vel
 
 template <int Dim>
 void Mechanics<Dim>::release(int gridpoint, int component) {
+  if (made_constraints_[bundle_of(gridpoint)] < 0) return;
   const int slot = slot_in_bundle(gridpoint);
   auto& bits = constraints_of(gridpoint).prescribed[slot / kLanes][component];
   bits = static_cast<std::uint8_t>(bits & ~(1U << slot % kLanes));
-  drop_if_free(gridpoint);
+  drop_if_free(bundle_of(gridpoint));
 }
 
 template <int Dim>
@@ -349,14 +341,13 @@ void Mechanics<Dim>::tie(std::vector<int> gridpoints, int component) {
 template <int Dim>
 void Mechanics<Dim>::untie() {
   for (auto& constraints : state_.constraints) constraints.ties.clear();
-  for (std::size_t b = 0; b < made_constraints_.size(); ++b)
-    if (made_constraints_[b] >= 0) drop_if_free(model_.block_gridpoints[layout_->bundles[b].blocks.front()]);
+  for (std::size_t b = 0; b < made_constraints_.size(); ++b) drop_if_free(static_cast<int>(b));
 }
 
 template <int Dim>
 void Mechanics<Dim>::apply_force(int gridpoint, const Vec<Dim>& force) {
   constraints_of(gridpoint).applied.set(slot_in_bundle(gridpoint), force);
-  drop_if_free(gridpoint);
+  drop_if_free(bundle_of(gridpoint));
 }
 
 template <int Dim>
@@ -371,7 +362,7 @@ void Mechanics<Dim>::advance(int steps) {
   if (steps <= 0) return;
   heat_ += std::exchange(begun_heat_, 0.0);
   mass_scaling_ += std::exchange(begun_mass_scaling_, 0.0);
-  sweep(steps - 1, Pass::move);
+  if (steps > 1) sweep(steps - 1, Pass::move);
   sweep(1, Pass::move_and_measure);
   steps_ += steps;
 }
@@ -416,7 +407,7 @@ Vec<Dim> Mechanics<Dim>::force(int gridpoint) const {
 
 template <int Dim>
 Vec<Dim> Mechanics<Dim>::applied_force(int gridpoint) const {
-  const int index = made_constraints_[layout_->bundle_of_block[block_of(gridpoint)]];
+  const int index = made_constraints_[bundle_of(gridpoint)];
   return index < 0 ? Vec<Dim>{} : state_.constraints[index].applied[slot_in_bundle(gridpoint)];
 }
 

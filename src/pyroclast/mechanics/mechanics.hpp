@@ -185,9 +185,9 @@ class Mechanics {
   void scale_masses();
   void set_step_over_mass();
   Constraints<Dim>& constraints_of(int gridpoint);
-  void drop_if_free(int gridpoint);
+  void drop_if_free(int bundle);
   int slot_in_bundle(int gridpoint) const;
-  int block_of(int gridpoint) const;
+  int bundle_of(int gridpoint) const;
   void sweep(int steps, Pass pass);
   Vec<Dim> jump_of_forces(int contact) const;
   ContactFrame<Dim> frame_of_forces(int contact) const;

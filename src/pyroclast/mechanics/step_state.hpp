@@ -67,8 +67,7 @@ struct alignas(64) LossRow {
 /// Numbers of ContactConstantsOf for contact points that have each their own temperature, one after the
 /// other.
 struct alignas(64) ContactConstantsRow {
-  static constexpr int kNumbers = 18;
-  double number[kNumbers][kLanes];
+  double number[kContactConstants][kLanes];
 };
 
 /// Gridpoints of one block that share one component of their motion.

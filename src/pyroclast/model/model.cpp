@@ -1,5 +1,7 @@
 #include "pyroclast/model/model.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
@@ -64,6 +66,12 @@ void Model<Dim>::join_faces(const std::array<int, Dim>& a, const std::array<int,
   const int face = contacts.empty() ? 0 : contacts.back().face + 1;
   for (int i = 0; i < Dim; ++i)
     contacts.push_back({a[i], b[i], face, interface, frame.area / Dim, frame.normal, frame.tangents});
+}
+
+template <int Dim>
+int Model<Dim>::block_of(int gridpoint) const {
+  const auto after = std::upper_bound(block_gridpoints.begin(), block_gridpoints.end(), gridpoint);
+  return static_cast<int>(after - block_gridpoints.begin()) - 1;
 }
 
 template <int Dim>

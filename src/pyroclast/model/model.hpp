@@ -40,6 +40,7 @@ struct Model {
   std::vector<std::string> interface_names;
 
   int block_count() const { return static_cast<int>(block_material.size()); }
+  int block_of(int gridpoint) const;
   int gridpoint_count() const { return static_cast<int>(position.size()); }
   int zone_count() const { return static_cast<int>(zones.size()); }
   int contact_count() const { return static_cast<int>(contacts.size()); }
