@@ -64,7 +64,7 @@ void add_bundles(const StepState<2>& s, Arrays& arrays) {
     if (bundle.kind == BundleKind::spread) spread_rows += bundle.rows;
   const auto share = [&](int rows, std::size_t bytes) { return bytes / layout.gridpoint_rows * rows; };
   const bool finite = s.kinematics == pyroclast::Kinematics::finite;
-  arrays.read(bytes_of(layout.bundles) + bytes_of(s.constraints_of_bundle) + bytes_of(s.density));
+  arrays.read(bytes_of(layout.bundles) + bytes_of(s.constraints_of_bundle) + bytes_of(s.real_mass));
   arrays.read(bytes_of(layout.contacts_of_row) + bytes_of(layout.acting));
   arrays.read(bytes_of(layout.spread_zones));
   arrays.read(bytes_of(s.zone_properties));

@@ -21,18 +21,19 @@ struct Native : pyroclast::Portable {};
 #endif
 
 using NativeStep = pyroclast::Step<2, Native>;
+constexpr auto kSmall = pyroclast::Kinematics::small;
 
 int bundles(const StepState<2>& s) {
   return static_cast<int>(s.layout->bundles.size());
 }
 
 void contacts(StepState<2>& s, double*) {
-  NativeStep::update_faces(s, 0, s.layout->face_rows(), false);
+  NativeStep::update_rows<kSmall, false>(s, 0, s.layout->face_rows());
 }
 
 [[gnu::flatten]] void gather(StepState<2>& s, double* memory) {
   for (const Bundle& bundle : s.layout->bundles)
-    NativeStep::sum_contact_forces(s, bundle, NativeStep::scratch_of(bundle, memory));
+    NativeStep::sum_contact_forces<kSmall>(s, bundle, NativeStep::scratch_of(bundle, memory));
 }
 
 [[gnu::flatten]] void zones(StepState<2>& s, double* memory) {
@@ -41,7 +42,7 @@ void contacts(StepState<2>& s, double*) {
     const Bundle& bundle = s.layout->bundles[b];
     const auto scratch = NativeStep::scratch_of(bundle, memory);
     NativeStep::take_displacements(s, bundle, scratch);
-    NativeStep::add_zone_forces<false>(s, b, scratch, sums);
+    NativeStep::add_zone_forces<kSmall, false>(s, b, scratch, sums);
   }
 }
 

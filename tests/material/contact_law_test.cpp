@@ -16,7 +16,7 @@ template <int Dim>
 struct Path {
   ContactProperties properties = mortar_contact();
   ContactHistory<Dim> history;
-  ContactResponse<Dim> response;
+  ContactResponseAndLosses<Dim> response;
   ContactDissipation dissipated;
   double work = 0.0;
 

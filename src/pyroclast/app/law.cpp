@@ -140,7 +140,7 @@ class Drive {
   const ContactMaterial& material_;
   ContactProperties properties_;
   ContactHistory<2> history_;
-  ContactResponse<2> response_;
+  ContactResponseAndLosses<2> response_;
   ContactDissipation total_;
   PathPoint at_;
   double heat_ = 0.0;

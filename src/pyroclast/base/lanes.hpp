@@ -36,6 +36,11 @@ inline double larger(double a, double b) {
   return a < b ? b : a;
 }
 
+/// v, not negative, with the sign of s; zero where s is zero.
+inline double signed_like(double v, double s) {
+  return s > 0.0 ? v : s < 0.0 ? -v : 0.0;
+}
+
 // Instruction sets. A file that names one other than Portable is compiled with that set's options.
 
 /// One lane after the other, no more than the language.
@@ -82,6 +87,11 @@ struct OneByOne {
   static void gather_pairs(const double* p, const int* offset, Value& x, Value& y) {
     load_pairs(p + offset[0], x, y);
   }
+  /// Pairs less those that stand at other offsets, apart.
+  static void gather_differences(const double* p, const int* offset, const int* less, Value& x, Value& y) {
+    x = load(p + offset[0]) - load(p + less[0]);
+    y = load(p + offset[0] + 1) - load(p + less[0] + 1);
+  }
 };
 using Portable = OneByOne<double>;
 
@@ -126,14 +136,19 @@ struct Avx2 {
     _mm256_store_pd(p + 4, _mm256_permute2f128_pd(v02, v13, 0x31));
   }
   static void gather_pairs(const double* p, const int* offset, Value& x, Value& y) {
-    // four pairs of loads cost less than the gather instruction
-    const auto two = [&](int i, int j) {
-      return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + offset[i])),
-                                  _mm_load_pd(p + offset[j]), 1);
-    };
-    const Value v02 = two(0, 2), v13 = two(1, 3);
-    x = _mm256_unpacklo_pd(v02, v13);
-    y = _mm256_unpackhi_pd(v02, v13);
+    const Value even = two_pairs(p, offset[0], offset[2]), odd = two_pairs(p, offset[1], offset[3]);
+    x = _mm256_unpacklo_pd(even, odd);
+    y = _mm256_unpackhi_pd(even, odd);
+  }
+  static void gather_differences(const double* p, const int* offset, const int* less, Value& x, Value& y) {
+    const Value even = two_pairs(p, offset[0], offset[2]) - two_pairs(p, less[0], less[2]);
+    const Value odd = two_pairs(p, offset[1], offset[3]) - two_pairs(p, less[1], less[3]);
+    x = _mm256_unpacklo_pd(even, odd);
+    y = _mm256_unpackhi_pd(even, odd);
+  }
+  /// Single loads cost less than the gather instruction.
+  static Value two_pairs(const double* p, int i, int j) {
+    return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + i)), _mm_load_pd(p + j), 1);
   }
 };
 #endif
@@ -172,15 +187,23 @@ struct Avx512 {
     _mm512_store_pd(p + 8, _mm512_permutex2var_pd(x, _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15), y));
   }
   static void gather_pairs(const double* p, const int* offset, Value& x, Value& y) {
-    // eight loads and a few shuffles cost less than two gather instructions
+    const Value even = every_other_pair(p, offset), odd = every_other_pair(p, offset + 1);
+    x = _mm512_unpacklo_pd(even, odd);
+    y = _mm512_unpackhi_pd(even, odd);
+  }
+  static void gather_differences(const double* p, const int* offset, const int* less, Value& x, Value& y) {
+    const Value even = every_other_pair(p, offset) - every_other_pair(p, less);
+    const Value odd = every_other_pair(p, offset + 1) - every_other_pair(p, less + 1);
+    x = _mm512_unpacklo_pd(even, odd);
+    y = _mm512_unpackhi_pd(even, odd);
+  }
+  /// Single loads and a few shuffles cost less than the gather instruction.
+  static Value every_other_pair(const double* p, const int* offset) {
     const auto two = [&](int i, int j) {
       return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + offset[i])),
                                   _mm_load_pd(p + offset[j]), 1);
     };
-    const Value even = _mm512_insertf64x4(_mm512_castpd256_pd512(two(0, 2)), two(4, 6), 1);
-    const Value odd = _mm512_insertf64x4(_mm512_castpd256_pd512(two(1, 3)), two(5, 7), 1);
-    x = _mm512_unpacklo_pd(even, odd);
-    y = _mm512_unpackhi_pd(even, odd);
+    return _mm512_insertf64x4(_mm512_castpd256_pd512(two(0, 2)), two(4, 6), 1);
   }
 };
 #endif

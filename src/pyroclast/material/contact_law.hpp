@@ -145,16 +145,15 @@ struct ContactHistory {
 };
 
 /// Energy dissipated at a contact point, by mechanism, J/m².
-template <class Real>
-struct ContactDissipationOf {
-  Real tension = 0.0;      ///< G_f1 when torn apart
-  Real shear = 0.0;        ///< above the residual line; G_f2 when fully softened
-  Real friction = 0.0;     ///< along the residual line
-  Real compression = 0.0;  ///< irreversible closure
+struct ContactDissipation {
+  double tension = 0.0;      ///< G_f1 when torn apart
+  double shear = 0.0;        ///< above the residual line; G_f2 when fully softened
+  double friction = 0.0;     ///< along the residual line
+  double compression = 0.0;  ///< irreversible closure
 
-  Real total() const { return tension + shear + friction + compression; }
+  double total() const { return tension + shear + friction + compression; }
 
-  ContactDissipationOf& operator+=(const ContactDissipationOf& o) {
+  ContactDissipation& operator+=(const ContactDissipation& o) {
     tension += o.tension;
     shear += o.shear;
     friction += o.friction;
@@ -162,17 +161,29 @@ struct ContactDissipationOf {
     return *this;
   }
 };
-using ContactDissipation = ContactDissipationOf<double>;
+
+/// What a contact point loses for good, where the law adds to it.
+/// \tparam Sum  takes `+=`: a number, or what adds to rows of an array. Nothing is added while nothing is lost.
+template <class Sum>
+struct ContactLossesOf {
+  Sum slipped;                                ///< length of the slip, m
+  Sum tension, shear, friction, compression;  ///< as of ContactDissipation, J/m²
+};
 
 template <int Dim, class Real = double>
 struct ContactResponse {
   Real normal_traction = 0.0;              ///< sigma, Pa, tension positive
   Tangential<Dim, Real> shear_traction{};  ///< tau, Pa
   Real stored = 0.0;                       ///< elastic energy now held, J/m²
-  Real slipped = 0.0;                      ///< length of the slip in this update, m
-  ContactDissipationOf<Real> dissipated;   ///< in this update
-  bool damaged =
-      false;  ///< in any lane the history changed beyond `slip` and `held_slip`, or energy was lost
+  bool slid = false;                       ///< in any lane `slip` changed
+  bool damaged = false;                    ///< in any lane a damage or the closure changed
+};
+
+/// With what was lost in the update.
+template <int Dim>
+struct ContactResponseAndLosses : ContactResponse<Dim> {
+  double slipped = 0.0;  ///< m
+  ContactDissipation dissipated;
 };
 
 /// Throws Error, naming the quantity, when the parameters cannot make a law: non-positive stiffness, negative
@@ -183,16 +194,16 @@ namespace contact_law {
 
 /// Linear tension softening with unloading to the origin.
 /// \param elastic  opening beyond the closure left behind, m
-template <int Dim, class Real, class Constants>
+template <int Dim, class Real, class Constants, class Losses>
 void update_tension(const Constants& c, const Real& elastic, ContactHistory<Dim, Real>& h,
-                    ContactResponse<Dim, Real>& r) {
+                    ContactResponse<Dim, Real>& r, Losses& losses) {
   const auto open = elastic > 0.0;
   // In this order a contact without any strength, 0 / 0, breaks.
   const Real damage = smaller(Real(1.0), (elastic - c.elastic_opening) * c.over_softening_range);
   const auto grows = open & (damage > h.tension_damage);
   if (any(grows)) {
     // The area between the envelope and the secant grows by G_f1 dD, whatever the step.
-    r.dissipated.tension = select(grows, c.mode_1_energy * (damage - h.tension_damage), Real(0.0));
+    losses.tension += select(grows, c.mode_1_energy * (damage - h.tension_damage), Real(0.0));
     h.tension_damage = select(grows, damage, h.tension_damage);
     r.damaged = true;
   }
@@ -206,13 +217,13 @@ void update_tension(const Constants& c, const Real& elastic, ContactHistory<Dim,
 
 /// Compression with unloading along K_n, which leaves a closure: yield stress f_cm + H u_p.
 /// \param elastic  in and out: opening beyond the closure left behind, m
-template <int Dim, class Real, class Constants>
+template <int Dim, class Real, class Constants, class Losses>
 void update_compression(const Constants& c, const Real& opening, Real& elastic, ContactHistory<Dim, Real>& h,
-                        ContactResponse<Dim, Real>& r) {
+                        ContactResponse<Dim, Real>& r, Losses& losses) {
   const Real closure = c.share_left * (-opening - c.closure_at_limit);
   const auto yields = closure > h.closure;
   if (any(yields)) {
-    r.dissipated.compression = select(
+    losses.compression += select(
         yields,
         (closure - h.closure) * (c.compressive_limit + 0.5 * c.hardening_slope * (closure + h.closure)),
         Real(0.0));
@@ -238,24 +249,24 @@ void follow_compression(const Constants& c, const Real& opening, ContactResponse
 }
 
 /// Normal part: bilinear compression and linear tension softening over the elastic opening u_n + u_p.
-template <int Dim, class Real, class Constants>
+template <int Dim, class Real, class Constants, class Losses>
 void update_normal(const Constants& c, const Real& opening, ContactHistory<Dim, Real>& h,
-                   ContactResponse<Dim, Real>& r) {
+                   ContactResponse<Dim, Real>& r, Losses& losses) {
   Real elastic = opening + h.closure;  // zero traction at zero
   if (c.compression == CompressionReading::irreversible)
-    update_compression<Dim>(c, opening, elastic, h, r);
+    update_compression<Dim>(c, opening, elastic, h, r, losses);
   else
     follow_compression<Dim>(c, opening, r);
-  if (any((elastic > 0.0) & (h.tension_damage < 1.0))) update_tension<Dim>(c, elastic, h, r);
+  if (any((elastic > 0.0) & (h.tension_damage < 1.0))) update_tension<Dim>(c, elastic, h, r, losses);
 }
 
 /// Exact return of the elastic predictor to the softening envelope.
 /// \param elastic  in and out: elastic part of the tangential jump, m
 /// \param held     in and out: its length
-template <int Dim, class Real, class Constants, class Truth>
+template <int Dim, class Real, class Constants, class Truth, class Losses>
 void slip(const Constants& c, const Truth& slips, const Real& excess, const Real& residual, const Real& drop,
           Tangential<Dim, Real>& elastic, Real& held, ContactHistory<Dim, Real>& h,
-          ContactResponse<Dim, Real>& r) {
+          ContactResponse<Dim, Real>& r, Losses& losses) {
   const auto softens = slips & (h.shear_damage < 1.0) & (drop > 0.0);
   const Real remaining = 1.0 - h.shear_damage;
   const Real per_slip = drop * c.over_twice_mode_2_energy;  // 1 / s_u
@@ -268,21 +279,26 @@ void slip(const Constants& c, const Truth& slips, const Real& excess, const Real
   length = select(slips, length, Real(0.0));
   const Real new_damage = select(partly, damage, Real(1.0));
   const Real left = 1.0 - new_damage;
-  r.dissipated.shear = select(softens, c.mode_2_energy * (remaining - left) * (remaining + left), Real(0.0));
-  r.dissipated.friction = residual * length;
-  r.slipped = length;
+  losses.shear += select(softens, c.mode_2_energy * (remaining - left) * (remaining + left), Real(0.0));
+  losses.friction += residual * length;
+  losses.slipped += length;
   h.shear_damage = select(softens, new_damage, h.shear_damage);
-  const Tangential<Dim, Real> step = elastic * select(slips, length / held, Real(0.0));
+  Tangential<Dim, Real> step;
+  if constexpr (Dim == 2)
+    step[0] = signed_like(length, elastic[0]);
+  else
+    step = elastic * select(slips, length / held, Real(0.0));
   h.slip += step;
   elastic -= step;
   held = norm(elastic);
-  r.damaged = true;
+  r.slid = true;
+  r.damaged = r.damaged || any(softens);
 }
 
 /// Shear part: elastic predictor and exact return to the softening Mohr-Coulomb envelope.
-template <int Dim, class Real, class Constants>
+template <int Dim, class Real, class Constants, class Losses>
 void update_shear(const Constants& c, const Tangential<Dim, Real>& jump, const Real& opening,
-                  ContactHistory<Dim, Real>& h, ContactResponse<Dim, Real>& r) {
+                  ContactHistory<Dim, Real>& h, ContactResponse<Dim, Real>& r, Losses& losses) {
   const auto k = c.shear_stiffness;
   Tangential<Dim, Real> elastic = jump - h.slip;
   Real held = norm(elastic);
@@ -296,18 +312,18 @@ void update_shear(const Constants& c, const Tangential<Dim, Real>& jump, const R
   const Real drop = peak - residual;
   const Real excess = k * held - (peak - h.shear_damage * drop);
   const auto slips = (excess > 0.0) & !open_and_broken;
-  if (any(slips)) slip<Dim>(c, slips, excess, residual, drop, elastic, held, h, r);
+  if (any(slips)) slip<Dim>(c, slips, excess, residual, drop, elastic, held, h, r, losses);
   if (any(open_and_broken)) {
     // The bond lets go of the shear it still carried. That energy was held by cohesion, so it is booked
     // there.
     const Real released = select(open_and_broken, 0.5 * k * h.held_slip * h.held_slip, Real(0.0));
-    r.dissipated.shear += released;
-    r.damaged = r.damaged || any(released > 0.0);
+    if (any(released > 0.0)) losses.shear += released;
     held = select(open_and_broken, Real(0.0), held);
     for (int i = 0; i + 1 < Dim; ++i) {
       h.slip[i] = select(open_and_broken, jump[i], h.slip[i]);
       elastic[i] = select(open_and_broken, Real(0.0), elastic[i]);
     }
+    r.slid = true;
   }
   h.held_slip = held;
   r.shear_traction = elastic * Real(k);
@@ -322,15 +338,16 @@ void update_shear(const Constants& c, const Tangential<Dim, Real>& jump, const R
 /// \param opening     u_n, m, opening positive
 /// \param tangential  u_s, m
 /// \param history     in: of the last step; out: of this one
-/// \return traction, stored energy and the energy dissipated by this update
+/// \param losses      the energy dissipated by this update is added to them
+/// \return traction and stored energy
 ///
 /// The result does not depend on how the way to the jump is cut into steps as long as it is monotone.
 /// Energies are closed forms of the history, not quadratures: with the temperature fixed, stored(new) -
 /// stored(old) + dissipated is the work along that way.
-template <int Dim, class Real, class Number>
+template <int Dim, class Real, class Number, class Sum>
 ContactResponse<Dim, Real> update_contact(const ContactConstantsOf<Number>& constants, const Real& opening,
                                           const Tangential<Dim, Real>& tangential,
-                                          ContactHistory<Dim, Real>& history) {
+                                          ContactHistory<Dim, Real>& history, ContactLossesOf<Sum>& losses) {
   ContactResponse<Dim, Real> response;
   if (constants.behaviour == ContactBehaviour::elastic) {
     const auto k_n = constants.normal_stiffness;
@@ -340,16 +357,20 @@ ContactResponse<Dim, Real> update_contact(const ContactConstantsOf<Number>& cons
     response.stored = 0.5 * k_n * opening * opening + 0.5 * k_s * dot(tangential, tangential);
     return response;
   }
-  contact_law::update_normal<Dim>(constants, opening, history, response);
-  contact_law::update_shear<Dim>(constants, tangential, opening, history, response);
+  contact_law::update_normal<Dim>(constants, opening, history, response, losses);
+  contact_law::update_shear<Dim>(constants, tangential, opening, history, response, losses);
   return response;
 }
 
-template <int Dim, class Real>
-ContactResponse<Dim, Real> update_contact(const ContactPropertiesOf<Real>& properties, const Real& opening,
-                                          const Tangential<Dim, Real>& tangential,
-                                          ContactHistory<Dim, Real>& history) {
-  return update_contact<Dim, Real>(ContactConstantsOf<Real>(properties), opening, tangential, history);
+/// One contact point, with its losses in this update.
+template <int Dim>
+ContactResponseAndLosses<Dim> update_contact(const ContactProperties& properties, double opening,
+                                             const Tangential<Dim>& tangential,
+                                             ContactHistory<Dim>& history) {
+  ContactLossesOf<double> lost{};
+  const auto response =
+      update_contact<Dim, double>(ContactConstants(properties), opening, tangential, history, lost);
+  return {response, lost.slipped, {lost.tension, lost.shear, lost.friction, lost.compression}};
 }
 
 }  // namespace pyroclast

@@ -64,6 +64,14 @@ BlockOrder<Dim> order_blocks(const Model<Dim>& model) {
   return order;
 }
 
+/// Zones go round the last gridpoint, in the order of the others.
+bool is_fan(const std::vector<std::array<int, 3>>& zones) {
+  const int count = static_cast<int>(zones.size());
+  for (int z = 0; z < count; ++z)
+    if (zones[z] != std::array{z, z + 1 < count ? z + 1 : 0, count}) return false;
+  return count > 2;
+}
+
 template <int Dim>
 class LayoutBuilder {
  public:
@@ -208,6 +216,7 @@ class LayoutBuilder {
     const int block = blocks.front();
     bundle.rows = model_.block_gridpoints[block + 1] - model_.block_gridpoints[block];
     bundle.zones = model_.block_zones[block + 1] - model_.block_zones[block];
+    if constexpr (Dim == 2) bundle.fan = is_fan(layout_.shapes[shape]);
     start(bundle);
     for (int lane = 0; lane < static_cast<int>(blocks.size()); ++lane) {
       const int b = blocks[lane];

@@ -32,6 +32,7 @@ enum class BundleKind : std::uint8_t {
 struct Bundle {
   BundleKind kind = BundleKind::alike;
   int shape = -1;            ///< BundleKind::alike: index into Layout::shapes
+  bool fan = false;          ///< BundleKind::alike: zones go round the last gridpoint, in the order of the others
   int first_row = 0;         ///< of gridpoints
   int rows = 0;              ///< of gridpoints
   int first_zone_row = 0;    ///< of zones

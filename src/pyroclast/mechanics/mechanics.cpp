@@ -42,7 +42,7 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
       step_(step_functions<Dim>(parameters.instructions)) {
   if (Dim != 2 && parameters.kinematics == Kinematics::finite)
     throw Error("kinematics = finite: contact frames that turn are made for 2D only; use small");
-  place_model(densities);
+  place_model();
   place_properties();
   compute_stiffness();
   set_masses(densities);
@@ -53,7 +53,7 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
 
 /// Puts what does not change in its places.
 template <int Dim>
-void Mechanics<Dim>::place_model(const std::vector<double>& densities) {
+void Mechanics<Dim>::place_model() {
   StepState<Dim>& s = state_;
   s.layout = layout_.get();
   s.gravity = parameters_.gravity;
@@ -74,7 +74,6 @@ void Mechanics<Dim>::place_model(const std::vector<double>& densities) {
   s.loss = FlatArray<LossRow>(contact_slots / kLanes);
   s.contact_force = FlatArray<Vec<Dim>>(contact_slots);
   if (s.kinematics == Kinematics::finite) s.turning_force = FlatArray<Vec<Dim>>(contact_slots);
-  s.density = FlatArray<double>(layout_->bundles.size() * kLanes);
   s.constraints_of_bundle.assign(layout_->bundles.size(), -1);
   made_constraints_.assign(layout_->bundles.size(), -1);
   s.bundle_sums.resize(layout_->bundles.size());
@@ -85,16 +84,13 @@ void Mechanics<Dim>::place_model(const std::vector<double>& densities) {
     s.position.set(layout_->gridpoint_slot[g], model_.position[g]);
     s.gathered_position[layout_->gridpoint_slot[g]] = model_.position[g];
   }
-  for (std::size_t b = 0; b < layout_->bundles.size(); ++b) {
-    const Bundle& bundle = layout_->bundles[b];
+  for (const Bundle& bundle : layout_->bundles)
     for (int lane = 0; lane < kLanes; ++lane) {
-      if (const int block = bundle.block_in(lane); block >= 0)
-        s.density[b * kLanes + lane] = densities[model_.block_material[block]];
-      else  // the shape of the first, without weight or stiffness
-        for (int i = 0; i < bundle.rows; ++i)
-          s.position.set(slot_of(bundle.first_row + i, lane), s.position[slot_of(bundle.first_row + i, 0)]);
+      if (bundle.block_in(lane) >= 0) continue;
+      // the shape of the first, without stiffness
+      for (int i = 0; i < bundle.rows; ++i)
+        s.position.set(slot_of(bundle.first_row + i, lane), s.position[slot_of(bundle.first_row + i, 0)]);
     }
-  }
 }
 
 /// Puts zone and contact parameters in their places.
@@ -180,6 +176,11 @@ void Mechanics<Dim>::set_masses(const std::vector<double>& densities) {
       for (int g : model_.zones[z])
         gravity_mass_[g] += densities[model_.block_material[b]] * geometry_.volume[z] / (Dim + 1);
   for (double m : gravity_mass_) real_mass_ += m;
+  if (norm(parameters_.gravity) > 0.0) {
+    state_.real_mass = FlatArray<double>(state_.displacement.size());
+    for (int g = 0; g < model_.gridpoint_count(); ++g)
+      state_.real_mass[layout_->gridpoint_slot[g]] = gravity_mass_[g];
+  }
 
   if (parameters_.mass == MassChoice::real) {
     mass_ = gravity_mass_;
@@ -555,7 +556,7 @@ EnergyLedger Mechanics<Dim>::energy() const {
     }
   }
   // weights are constant, so their work follows from the way made
-  if (norm(parameters_.gravity) > 0.0)
+  if (state_.weighs())
     for (int g = 0; g < model_.gridpoint_count(); ++g)
       e.gravity += gravity_mass_[g] * dot(parameters_.gravity, displacement_of_force(g));
   return e;

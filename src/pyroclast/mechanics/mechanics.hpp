@@ -177,7 +177,7 @@ class Mechanics {
   double largest_relative_jump() const;
 
  private:
-  void place_model(const std::vector<double>& densities);
+  void place_model();
   void place_properties();
   void place_contact_properties();
   void compute_stiffness();

@@ -11,51 +11,32 @@ namespace pyroclast {
 template <int Dim, class Set>
 class Step {
  public:
-  // flatten: lanes that cross a call go through memory
-  [[gnu::flatten]] static void update_faces(StepState<Dim>& s, int first, int last, bool measure) {
-    for (int row = first; row < last; ++row)
-      if (s.one_set[row]) {
-        const auto& constants = s.contact_constants[s.set_of_faces[row]];
-        update_faces_of_row(s, row, measure, [&](int) -> const ContactConstants& { return constants; });
-      } else {
-        update_faces_of_row(s, row, measure, [&](int point) { return contact_constants(s, row, point); });
-      }
+  static void update_faces(StepState<Dim>& s, int first, int last, bool measure) {
+    with_kinematics(s, [&](auto kinematics) {
+      if (measure)
+        update_rows<kinematics(), true>(s, first, last);
+      else
+        update_rows<kinematics(), false>(s, first, last);
+    });
   }
 
   static void move_bundles(StepState<Dim>& s, int first, int last, Pass pass, double* scratch) {
-    for (int b = first; b < last; ++b) {
-      if (pass == Pass::move) {
-        move_bundle<Pass::move>(s, b, scratch);
-      } else if (pass == Pass::move_and_measure) {
-        move_bundle<Pass::move_and_measure>(s, b, scratch);
-      } else {
-        move_bundle<Pass::measure>(s, b, scratch);
+    with_kinematics(s, [&](auto kinematics) {
+      for (int b = first; b < last; ++b) {
+        if (pass == Pass::move) {
+          move_bundle<kinematics(), Pass::move>(s, b, scratch);
+        } else if (pass == Pass::move_and_measure) {
+          move_bundle<kinematics(), Pass::move_and_measure>(s, b, scratch);
+        } else {
+          move_bundle<kinematics(), Pass::measure>(s, b, scratch);
+        }
       }
-    }
+    });
   }
 
   /// Sums of |stiffness| over the rows of the assembled matrix, zones and contacts, N/m.
-  [[gnu::flatten]] static void sum_stiffness(StepState<Dim>& s, double* memory) {
-    for (int row = 0; row < s.layout->face_rows(); ++row) {
-      const auto& face = s.layout->faces[row];
-      const Real area = Real::load(face.area);
-      const Frame frame = frame_of(s, face);
-      for (int point = 0; point < Dim; ++point)
-        store(s.one_set[row] ? contact_stiffness(s.contact_constants[s.set_of_faces[row]], frame.normal, area)
-                             : contact_stiffness(contact_constants(s, row, point), frame.normal, area),
-              &s.contact_force[slot_of(row * Dim + point, 0)]);
-    }
-    for (int index = 0; index < static_cast<int>(s.layout->bundles.size()); ++index) {
-      const Bundle& bundle = s.layout->bundles[index];
-      const Scratch scratch = scratch_of(bundle, memory);
-      for (int i = 0; i < bundle.rows; ++i)
-        store(contact_sum<false>(s, bundle.first_row + i), scratch.sum[i].c);
-      add_over_zones(s, index, scratch, [&](const Corners& x, const Corners&, const auto& p, const auto&) {
-        return zone_stiffness(s, x, p);
-      });
-      for (int i = 0; i < bundle.rows; ++i)
-        store(load(scratch.sum[i].c), s.stiffness.row(bundle.first_row + i).c);
-    }
+  static void sum_stiffness(StepState<Dim>& s, double* memory) {
+    with_kinematics(s, [&](auto kinematics) { sum_stiffness_of<kinematics()>(s, memory); });
   }
 
   // The parts of a step, open so that each can be timed alone.
@@ -64,6 +45,20 @@ class Step {
   using Vector = Vec<Dim, Real>;
   using Corners = std::array<Vector, Dim + 1>;
 
+  /// Takes rows of faces through a step.
+  // flatten: lanes that cross a call go through memory
+  template <Kinematics kKinematics, bool kMeasure>
+  [[gnu::flatten]] static void update_rows(StepState<Dim>& s, int first, int last) {
+    for (int row = first; row < last; ++row)
+      if (s.one_set[row]) {
+        const auto& constants = s.contact_constants[s.set_of_faces[row]];
+        update_faces_of_row<kKinematics, kMeasure>(s, row,
+                                                   [&](int) -> const ContactConstants& { return constants; });
+      } else {
+        update_faces_of_row<kKinematics, kMeasure>(
+            s, row, [&](int point) { return contact_constants(s, row, point); });
+      }
+  }
   /// Displacements and sums of forces of a bundle while it is in hand, a row for each of its rows.
   struct Scratch {
     VectorRow<Dim>* displacement;
@@ -89,19 +84,19 @@ class Step {
   }
 
   /// Begins the sums of forces of a bundle with those of its contacts.
+  template <Kinematics kKinematics>
   static void sum_contact_forces(const StepState<Dim>& s, const Bundle& bundle, const Scratch& scratch) {
-    for (int i = 0; i < bundle.rows; ++i) store(contact_sum<true>(s, bundle.first_row + i), scratch.sum[i].c);
+    for (int i = 0; i < bundle.rows; ++i)
+      store(contact_sum<kKinematics, true>(s, bundle.first_row + i), scratch.sum[i].c);
   }
 
-  /// Adds the forces of a bundle's zones and their weights.
-  template <bool kMeasure>
+  /// Adds the forces of a bundle's zones.
+  template <Kinematics kKinematics, bool kMeasure>
   static void add_zone_forces(const StepState<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
-    // a copy: for all that the compiler knows, what is stored in an array may change those of the state
-    const StepParameters<Dim> parameters = s;
-    const Real density = Real::load(&s.density[slot_of(index, 0)]);
+    const double thickness = s.thickness;
     add_over_zones(s, index, scratch,
                    [&](const Corners& x, const Corners& u, const auto& properties, const auto& used) {
-                     return zone_forces<kMeasure>(parameters, x, u, properties, density, used, sums);
+                     return zone_forces<kKinematics, kMeasure>(thickness, x, u, properties, used, sums);
                    });
   }
 
@@ -109,14 +104,13 @@ class Step {
   template <Pass kPass>
   static void move_rows(StepState<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
     const Bundle& bundle = s.layout->bundles[index];
-    const StepParameters<Dim> parameters = s;
-    const int c = s.constraints_of_bundle[index];
-    for (int i = 0; i < bundle.rows; ++i) {
-      const Vector displacement = load(scratch.displacement[i].c), force = load(scratch.sum[i].c);
-      if (c >= 0)
-        move_row<kPass, true>(s, parameters, bundle, i, &s.constraints[c], displacement, force, sums);
-      else
-        move_row<kPass, false>(s, parameters, bundle, i, nullptr, displacement, force, sums);
+    const Motion motion(s);
+    if (const int c = s.constraints_of_bundle[index]; c >= 0) {
+      for (int i = 0; i < bundle.rows; ++i)
+        move_row<kPass, true>(s, motion, bundle, i, &s.constraints[c], scratch, sums);
+    } else {
+      for (int i = 0; i < bundle.rows; ++i)
+        move_row<kPass, false>(s, motion, bundle, i, nullptr, scratch, sums);
     }
   }
 
@@ -144,6 +138,39 @@ class Step {
   }
 
  private:
+  /// Calls `f` with the body's kinematics as a constant.
+  template <class F>
+  static void with_kinematics(const StepState<Dim>& s, F f) {
+    if constexpr (Dim == 2)
+      if (s.kinematics == Kinematics::finite)
+        return f(std::integral_constant<Kinematics, Kinematics::finite>());
+    f(std::integral_constant<Kinematics, Kinematics::small>());
+  }
+
+  template <Kinematics kKinematics>
+  [[gnu::flatten]] static void sum_stiffness_of(StepState<Dim>& s, double* memory) {
+    for (int row = 0; row < s.layout->face_rows(); ++row) {
+      const auto& face = s.layout->faces[row];
+      const Real area = Real::load(face.area);
+      const Frame frame = frame_of<kKinematics>(s, face);
+      for (int point = 0; point < Dim; ++point)
+        store(s.one_set[row] ? contact_stiffness(s.contact_constants[s.set_of_faces[row]], frame.normal, area)
+                             : contact_stiffness(contact_constants(s, row, point), frame.normal, area),
+              &s.contact_force[slot_of(row * Dim + point, 0)]);
+    }
+    for (int index = 0; index < static_cast<int>(s.layout->bundles.size()); ++index) {
+      const Bundle& bundle = s.layout->bundles[index];
+      const Scratch scratch = scratch_of(bundle, memory);
+      for (int i = 0; i < bundle.rows; ++i)
+        store(contact_sum<kKinematics, false>(s, bundle.first_row + i), scratch.sum[i].c);
+      add_over_zones(s, index, scratch, [&](const Corners& x, const Corners&, const auto& p, const auto&) {
+        return zone_stiffness(s, x, p);
+      });
+      for (int i = 0; i < bundle.rows; ++i)
+        store(load(scratch.sum[i].c), s.stiffness.row(bundle.first_row + i).c);
+    }
+  }
+
   // Rows of vectors
 
   static Vector load(const double (&c)[Dim][kLanes]) {
@@ -193,6 +220,20 @@ class Step {
     }
     return v;
   }
+  static Vector gather_differences(const FlatArray<Vec<Dim>>& vectors, const std::array<int, kLanes>& offset,
+                                   const std::array<int, kLanes>& less) {
+    if constexpr (Dim == 2) {
+      const double* const numbers = vectors.data()->c.data();
+      Vector v;
+      for (int i = 0; i < Real::kParts; ++i)
+        Set::gather_differences(numbers, offset.data() + i * Set::kWidth, less.data() + i * Set::kWidth,
+                                v[0].part[i], v[1].part[i]);
+      return v;
+    } else {
+      return gather(vectors, offset) - gather(vectors, less);
+    }
+  }
+
   // Contact points
 
   struct Frame {
@@ -213,20 +254,20 @@ class Step {
     return c;
   }
 
+  template <Kinematics kKinematics>
   static Frame frame_of(const StepState<Dim>& s, const FaceRow<Dim>& face) {
     Frame frame;
     for (int t = 0; t + 1 < Dim; ++t) frame.tangents[t] = load(face.tangent[t]);
-    if constexpr (Dim == 2)
-      if (s.kinematics == Kinematics::finite) {
-        // mean edge of the two sides
-        const auto at = [&](const std::array<int, kLanes>& offset) {
-          return gather(s.gathered_position, offset) + gather(s.displacement, offset);
-        };
-        const Vector edge = ((at(face.a[1]) - at(face.a[0])) + (at(face.b[1]) - at(face.b[0]))) * Real(0.5);
-        frame.edge = norm(edge);
-        const Vector t = edge * (1.0 / frame.edge);
-        frame.tangents[0] = t;
-      }
+    if constexpr (kKinematics == Kinematics::finite) {
+      // mean edge of the two sides
+      const auto at = [&](const std::array<int, kLanes>& offset) {
+        return gather(s.gathered_position, offset) + gather(s.displacement, offset);
+      };
+      const Vector edge = ((at(face.a[1]) - at(face.a[0])) + (at(face.b[1]) - at(face.b[0]))) * Real(0.5);
+      frame.edge = norm(edge);
+      const Vector t = edge * (1.0 / frame.edge);
+      frame.tangents[0] = t;
+    }
     if constexpr (Dim == 2)
       frame.normal = {{frame.tangents[0][1], -frame.tangents[0][0]}};
     else
@@ -235,16 +276,16 @@ class Step {
   }
 
   /// Contact points of eight shared faces: jumps to tractions to forces, Eqs. (10)-(15).
-  template <class ConstantsOf>
-  static void update_faces_of_row(StepState<Dim>& s, int row, bool measure, ConstantsOf constants) {
+  template <Kinematics kKinematics, bool kMeasure, class ConstantsOf>
+  static void update_faces_of_row(StepState<Dim>& s, int row, ConstantsOf constants) {
     const FaceRow<Dim>& face = s.layout->faces[row];
-    const Frame frame = frame_of(s, face);
+    const Frame frame = frame_of<kKinematics>(s, face);
     const Real area = Real::load(face.area);
     Real turning = 0.0;
     Real stored = 0.0, applied = 0.0, widest = 0.0;
     for (int point = 0; point < Dim; ++point) {
       const int at = row * Dim + point;
-      const Vector jump = gather(s.displacement, face.b[point]) - gather(s.displacement, face.a[point]);
+      const Vector jump = gather_differences(s.displacement, face.b[point], face.a[point]);
       const Real opening = dot(jump, frame.normal);
       Tangential<Dim, Real> tangential;
       for (int t = 0; t + 1 < Dim; ++t) tangential[t] = dot(jump, frame.tangents[t]);
@@ -252,17 +293,16 @@ class Step {
       Vector force = frame.normal * (response.normal_traction * area);
       for (int t = 0; t + 1 < Dim; ++t) force += frame.tangents[t] * (response.shear_traction[t] * area);
       store(force, &s.contact_force[slot_of(at, 0)]);
-      if (s.kinematics == Kinematics::finite)
+      if constexpr (kKinematics == Kinematics::finite)
         turning += response.shear_traction[0] * opening - response.normal_traction * tangential[0];
-      if (measure) {
+      if constexpr (kMeasure) {
         stored += response.stored * area;
         applied += 2.0 * norm(force);  // on both sides
         widest = larger(widest, norm(jump));
       }
     }
-    if constexpr (Dim == 2)
-      if (s.kinematics == Kinematics::finite) add_turning_forces(s, row, frame, turning * area);
-    if (measure) {
+    if constexpr (kKinematics == Kinematics::finite) add_turning_forces(s, row, frame, turning * area);
+    if constexpr (kMeasure) {
       FaceSums& sums = s.face_sums[row];
       sums.stored = sum(stored);
       sums.applied = sum(applied);
@@ -282,26 +322,26 @@ class Step {
     h.closure = Real::load(row.closure);
     for (int t = 0; t + 1 < Dim; ++t) h.slip[t] = Real::load(row.slip[t]);
     h.held_slip = Real::load(row.held_slip);
-    const auto response = update_contact<Dim>(constants, opening, tangential, h);
-    for (int t = 0; t + 1 < Dim; ++t) h.slip[t].store(row.slip[t]);
+    LossRow& loss = s.loss[at];
+    ContactLossesOf<RowSum> losses{{loss.slipped}, {loss.tension}, {loss.shear}, {loss.friction},
+                                   {loss.compression}};
+    const auto response = update_contact<Dim>(constants, opening, tangential, h, losses);
     h.held_slip.store(row.held_slip);
+    if (response.slid)
+      for (int t = 0; t + 1 < Dim; ++t) h.slip[t].store(row.slip[t]);
     if (response.damaged) {
       h.tension_damage.store(row.tension_damage);
       h.shear_damage.store(row.shear_damage);
       h.closure.store(row.closure);
-      add_losses(s.loss[at], response);
     }
     return response;
   }
 
-  static void add_losses(LossRow& loss, const ContactResponse<Dim, Real>& response) {
-    const auto add = [](double* row, const Real& more) { (Real::load(row) + more).store(row); };
-    add(loss.slipped, response.slipped);
-    add(loss.tension, response.dissipated.tension);
-    add(loss.shear, response.dissipated.shear);
-    add(loss.friction, response.dissipated.friction);
-    add(loss.compression, response.dissipated.compression);
-  }
+  /// Adds to eight numbers in an array.
+  struct RowSum {
+    double* row;
+    void operator+=(const Real& more) const { (Real::load(row) + more).store(row); }
+  };
 
   /// Where the frame turns with the edge, so do the components of a jump. The forces that do the work of the
   /// tractions on that part keep moments in balance: minus the derivative of the jump's components by the
@@ -329,15 +369,16 @@ class Step {
 
   // Bundles
 
-  template <Pass kPass>
+  template <Kinematics kKinematics, Pass kPass>
   [[gnu::flatten]] static void move_bundle(StepState<Dim>& s, int index, double* memory) {
     const Bundle& bundle = s.layout->bundles[index];
     const Scratch scratch = scratch_of(bundle, memory);
     constexpr bool kMeasure = kPass != Pass::move;
     Sums sums;
     take_displacements(s, bundle, scratch);
-    sum_contact_forces(s, bundle, scratch);
-    add_zone_forces<kMeasure>(s, index, scratch, sums);
+    sum_contact_forces<kKinematics>(s, bundle, scratch);
+    add_zone_forces<kKinematics, kMeasure>(s, index, scratch, sums);
+    if (s.weighs()) add_weights<kMeasure>(s, bundle, scratch, sums);
     if (const int c = s.constraints_of_bundle[index]; c >= 0)
       load_bundle<kMeasure>(s, bundle, s.constraints[c], scratch, sums);
     move_rows<kPass>(s, index, scratch, sums);
@@ -345,7 +386,7 @@ class Step {
   }
 
   /// A sum over the contacts of a row, of what their two sides feel: with opposite signs, or alike.
-  template <bool kOpposite>
+  template <Kinematics kKinematics, bool kOpposite>
   static Vector contact_sum(const StepState<Dim>& s, int row) {
     const ContactsOfRow range = s.layout->contacts_of_row[row];
     Vector total{};
@@ -355,7 +396,7 @@ class Step {
       if constexpr (kOpposite) {
         const auto side_b = Real::Truth::from_bits(acting.side_b);
         for (int i = 0; i < Dim; ++i) total[i] += select(side_b, -force[i], force[i]);
-        if (s.kinematics == Kinematics::finite) total += gather(s.turning_force, acting.contact);
+        if constexpr (kKinematics == Kinematics::finite) total += gather(s.turning_force, acting.contact);
       } else {
         total += force;
       }
@@ -368,43 +409,36 @@ class Step {
     return {Real::load(row.lambda), Real::load(row.mu), Real::load(row.thermal_strain)};
   }
 
-  /// Forces of eight zones on their gridpoints: internal, Eqs. (4) and (5), and weight.
+  /// Forces of eight zones on their gridpoints, Eqs. (4) and (5).
   /// \param used  lanes that are not idle
-  template <bool kMeasure>
-  static Corners zone_forces(const StepParameters<Dim>& p, const Corners& x, const Corners& u,
-                             const ZonePropertiesOf<Real>& properties, const Real& density,
-                             const typename Real::Truth& used, Sums& sums) {
+  template <Kinematics kKinematics, bool kMeasure>
+  static Corners zone_forces(double thickness, const Corners& x, const Corners& u,
+                             const ZonePropertiesOf<Real>& properties, const typename Real::Truth& used,
+                             Sums& sums) {
     // Shape gradients times the determinant; the volume is a constant share of the determinant, which leaves
     // the division by it out of the way of the forces.
     std::array<Vector, Dim> vectors;
     const Real determinant = shape_vectors(x, vectors);
-    const double share = volume_over_determinant<Dim> * p.thickness;
+    const double share = volume_over_determinant<Dim> * thickness;
     Rotation<Real> rotation;
     const auto strain = mechanical_strain<Dim>(vectors, 1.0 / determinant, u, properties.thermal_strain,
-                                               p.kinematics, rotation);
+                                               kKinematics, rotation);
     const auto stress =  // times minus the share
         zone_stress<Dim>({properties.lambda * -share, properties.mu * -share, properties.thermal_strain},
                          strain);
     Corners force;
     for (int n = 0; n < Dim; ++n) {
       force[n] = apply<Dim>(stress, vectors[n]);
-      if constexpr (Dim == 2)
-        if (p.kinematics == Kinematics::finite) force[n] = rotated<Dim>(rotation, force[n]);
+      if constexpr (kKinematics == Kinematics::finite) force[n] = rotated<Dim>(rotation, force[n]);
     }
     force[Dim] = -force[0];
     for (int n = 1; n < Dim; ++n) force[Dim] -= force[n];
-    const Real mass = density * share * determinant;
     if constexpr (kMeasure) {
-      Real applied = mass * norm(p.gravity);
+      Real applied = 0.0;
       for (const auto& f : force) applied += norm(f);
       sums.stored -= select(used, energy_density<Dim>(stress, strain) * determinant, Real(0.0));
       sums.applied += select(used, applied, Real(0.0));
     }
-    for (int i = 0; i < Dim; ++i)
-      if (p.gravity[i] != 0.0) {
-        const Real weight = mass * (p.gravity[i] / (Dim + 1));
-        for (auto& f : force) f[i] += weight;
-      }
     return force;
   }
 
@@ -436,10 +470,39 @@ class Step {
   template <class Zone>
   static void add_over_zones(const StepState<Dim>& s, int index, const Scratch& scratch, Zone zone) {
     const Bundle& bundle = s.layout->bundles[index];
-    if (bundle.kind == BundleKind::alike)
-      add_over_alike_zones(s, index, bundle, scratch, zone);
-    else
-      add_over_spread_zones(s, index, bundle, scratch, zone);
+    if (bundle.kind == BundleKind::spread)
+      return add_over_spread_zones(s, index, bundle, scratch, zone);
+    if constexpr (Dim == 2)
+      if (bundle.fan) return add_over_fan(s, index, bundle, scratch, zone);
+    add_over_alike_zones(s, index, bundle, scratch, zone);
+  }
+
+  /// Each zone shares an edge with the one before, so that its corners and the sum at one are at hand.
+  template <class Zone>
+  static void add_over_fan(const StepState<Dim>& s, int index, const Bundle& bundle, const Scratch& scratch,
+                           Zone zone) {
+    Corners x, u;
+    const auto take = [&](int n, int gridpoint) {
+      x[n] = load(s.position.row(bundle.first_row + gridpoint).c);
+      u[n] = load(scratch.displacement[gridpoint].c);
+    };
+    const int zones = bundle.zones;
+    take(0, 0);
+    take(2, zones);
+    Vector total = load(scratch.sum[0].c), middle = load(scratch.sum[zones].c);
+    for (int z = 0; z < zones; ++z) {
+      const int next = z + 1 < zones ? z + 1 : 0;
+      take(1, next);
+      const Corners more =
+          zone(x, u, zone_properties(s, index, bundle.first_zone_row + z), Real::Truth::from_bits(0xFF));
+      store(total + more[0], scratch.sum[z].c);
+      total = load(scratch.sum[next].c) + more[1];
+      middle += more[2];
+      x[0] = x[1];
+      u[0] = u[1];
+    }
+    store(total, scratch.sum[0].c);
+    store(middle, scratch.sum[zones].c);
   }
 
   template <class Zone>
@@ -487,6 +550,17 @@ class Step {
     }
   }
 
+  template <bool kMeasure>
+  static void add_weights(const StepState<Dim>& s, const Bundle& bundle, const Scratch& scratch, Sums& sums) {
+    for (int i = 0; i < bundle.rows; ++i) {
+      const Real mass = Real::load(&s.real_mass[slot_of(bundle.first_row + i, 0)]);
+      Vector weight;
+      for (int j = 0; j < Dim; ++j) weight[j] = mass * s.gravity[j];
+      store(load(scratch.sum[i].c) + weight, scratch.sum[i].c);
+      if constexpr (kMeasure) sums.applied += norm(weight);
+    }
+  }
+
   /// Adds applied forces and shares out the sum (4) where gridpoints are tied.
   template <bool kMeasure>
   static void load_bundle(StepState<Dim>& s, const Bundle& bundle, const Constraints<Dim>& constraints,
@@ -529,13 +603,30 @@ class Step {
     for (int i = 0; i < Dim; ++i) __builtin_prefetch(row->c[i]);
   }
 
+  /// Parameters as the motion needs them. A copy: for all that the compiler knows, what is stored in an array
+  /// may change those of the state.
+  struct Motion {
+    explicit Motion(const StepParameters<Dim>& p)
+        : dt(p.time_step),
+          half_dt(0.5 * p.time_step),
+          combined(p.damping_form == DampingForm::combined),
+          viscous(p.viscous_damping != 0.0),
+          lambda(combined ? 0.5 * p.local_damping : p.local_damping),
+          drag(p.viscous_damping * half_dt),
+          kept(1.0 - drag),
+          over(1.0 / (1.0 + drag)) {}
+    double dt, half_dt;
+    bool combined, viscous;
+    double lambda, drag, kept, over;
+  };
+
   /// Damps the sum of forces (8) and integrates velocity and displacement (6), (7).
   template <Pass kPass, bool kConstrained>
-  static void move_row(StepState<Dim>& s, const StepParameters<Dim>& p, const Bundle& bundle, int i,
-                       const Constraints<Dim>* constraints, const Vector& displacement, const Vector& force,
-                       Sums& sums) {
+  static void move_row(StepState<Dim>& s, const Motion& m, const Bundle& bundle, int i,
+                       const Constraints<Dim>* constraints, const Scratch& scratch, Sums& sums) {
     constexpr bool kMeasure = kPass != Pass::move;
     const int row = bundle.first_row + i;
+    const Vector force = load(scratch.sum[i].c);
     if constexpr (kMeasure) {
       Vector free = force;
       if constexpr (kConstrained)
@@ -548,20 +639,15 @@ class Step {
       return;
     }
     fetch_ahead(s, row);
-    const double dt = p.time_step;
-    const double kept = 1.0 - 0.5 * p.viscous_damping * dt;
-    const double over = 1.0 / (1.0 + 0.5 * p.viscous_damping * dt);
-    const bool combined = p.damping_form == DampingForm::combined;
     const Real step_over_mass = Real::load(&s.step_over_mass[slot_of(row, 0)]);
     const Vector before = load(s.velocity.row(row).c);
     Vector after;
     for (int j = 0; j < Dim; ++j) {
-      const Real magnitude = abs(force[j]) * (combined ? 0.5 * p.local_damping : p.local_damping);
+      const Real magnitude = abs(force[j]) * m.lambda;
       Real damping = signed_like(magnitude, before[j]);
-      if (combined) damping -= signed_like(magnitude, force[j] - Real::load(s.force.row(row).c[j]));
+      if (m.combined) damping -= signed_like(magnitude, force[j] - Real::load(s.force.row(row).c[j]));
       after[j] = before[j] + (force[j] - damping) * step_over_mass;
-      if (p.viscous_damping != 0.0)
-        after[j] = (kept * before[j] + (force[j] - damping) * step_over_mass) * over;
+      if (m.viscous) after[j] = (m.kept * before[j] + (force[j] - damping) * step_over_mass) * m.over;
       if constexpr (kConstrained) {
         const auto prescribed = Real::Truth::from_bits(constraints->prescribed[i][j]);
         after[j] = select(prescribed, Real::load(constraints->prescribed_velocity.row(i).c[j]), after[j]);
@@ -569,23 +655,23 @@ class Step {
         const Real reaction = (after[j] - before[j]) / step_over_mass - force[j];
         const Real loading =
             Real::load(constraints->applied.row(i).c[j]) + select(prescribed, reaction, Real(0.0));
-        sums.loading += loading * (before[j] + after[j]) * (0.5 * dt);
-        if constexpr (kMeasure) sums.begun_loading += loading * after[j] * (0.5 * dt);
+        sums.loading += loading * (before[j] + after[j]) * m.half_dt;
+        if constexpr (kMeasure) sums.begun_loading += loading * after[j] * m.half_dt;
       }
       sums.damping += damping * (before[j] + after[j]);
-      if constexpr (kMeasure) sums.begun_damping += damping * after[j] * (0.5 * dt);
-      if (p.viscous_damping != 0.0) {
-        Real drag = p.viscous_damping * dt * 0.5 * (before[j] + after[j]) / step_over_mass;
+      if constexpr (kMeasure) sums.begun_damping += damping * after[j] * m.half_dt;
+      if (m.viscous) {
+        Real drag = m.drag * (before[j] + after[j]) / step_over_mass;
         if constexpr (kConstrained)
           drag = select(Real::Truth::from_bits(constraints->prescribed[i][j]), Real(0.0), drag);
-        sums.viscous += drag * (before[j] + after[j]) * (0.5 * dt);
-        if constexpr (kMeasure) sums.begun_viscous += drag * after[j] * (0.5 * dt);
+        sums.viscous += drag * (before[j] + after[j]) * m.half_dt;
+        if constexpr (kMeasure) sums.begun_viscous += drag * after[j] * m.half_dt;
       }
     }
-    if constexpr (kMeasure) sums.kinetic += dot(before, after) * (0.5 * dt) / step_over_mass;
+    if constexpr (kMeasure) sums.kinetic += dot(before, after) * m.half_dt / step_over_mass;
     store(force, s.force.row(row).c);
     store(after, s.velocity.row(row).c);
-    store(displacement + after * dt, &s.displacement[slot_of(row, 0)]);
+    store(load(scratch.displacement[i].c) + after * m.dt, &s.displacement[slot_of(row, 0)]);
   }
 };
 

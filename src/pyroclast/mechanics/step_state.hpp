@@ -130,7 +130,7 @@ struct StepState : StepParameters<Dim> {
   FlatArray<double> step_over_mass;       ///< by slot, s/kg; where idle any finite number
   FlatArray<ZonePropertyRow> zone_properties;  ///< by row of zones, or by bundle
   bool by_bundle = false;                      ///< every zone of a block has the same properties
-  FlatArray<double> density;                   ///< by bundle and lane, kg/m³
+  FlatArray<double> real_mass;  ///< by slot, which gravity acts on, kg; empty where there is none
 
   FlatArray<HistoryRow<Dim>> history;  ///< by row of contact points
   FlatArray<LossRow> loss;
@@ -149,12 +149,14 @@ struct StepState : StepParameters<Dim> {
   std::vector<BundleSums> bundle_sums;
   std::vector<FaceSums> face_sums;
 
+  bool weighs() const { return !real_mass.empty(); }
+
   /// Bytes of all arrays, without those of the layout.
   std::size_t memory() const {
     std::size_t bytes = position.bytes() + velocity.bytes() + force.bytes() + stiffness.bytes();
     for (std::size_t array :
          {bytes_of(gathered_position), bytes_of(displacement), bytes_of(step_over_mass),
-          bytes_of(zone_properties), bytes_of(density), bytes_of(history), bytes_of(loss),
+          bytes_of(zone_properties), bytes_of(real_mass), bytes_of(history), bytes_of(loss),
           bytes_of(contact_force), bytes_of(turning_force), bytes_of(contact_constants),
           bytes_of(set_of_faces), bytes_of(one_set), bytes_of(contact_constants_rows),
           bytes_of(constraints_of_bundle), bytes_of(constraints), bytes_of(bundle_sums), bytes_of(face_sums)})
