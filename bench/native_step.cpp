@@ -32,8 +32,9 @@ void contacts(StepState<2>& s, double*) {
 }
 
 [[gnu::flatten]] void gather(StepState<2>& s, double* memory) {
+  NativeStep::Sums sums;
   for (const Bundle& bundle : s.layout->bundles)
-    NativeStep::sum_contact_forces<kSmall>(s, bundle, NativeStep::scratch_of(bundle, memory));
+    NativeStep::sum_outer_forces<kSmall, false>(s, bundle, NativeStep::scratch_of(bundle, memory), sums);
 }
 
 [[gnu::flatten]] void zones(StepState<2>& s, double* memory) {

@@ -83,11 +83,22 @@ class Step {
       store(load(&s.displacement[slot_of(bundle.first_row + i, 0)]), scratch.displacement[i].c);
   }
 
-  /// Begins the sums of forces of a bundle with those of its contacts.
-  template <Kinematics kKinematics>
-  static void sum_contact_forces(const StepState<Dim>& s, const Bundle& bundle, const Scratch& scratch) {
-    for (int i = 0; i < bundle.rows; ++i)
-      store(contact_sum<kKinematics, true>(s, bundle.first_row + i), scratch.sum[i].c);
+  /// Begins the sums of forces of a bundle with weights and contact forces.
+  template <Kinematics kKinematics, bool kMeasure>
+  static void sum_outer_forces(const StepState<Dim>& s, const Bundle& bundle, const Scratch& scratch,
+                               Sums& sums) {
+    const bool weighs = s.weighs();
+    const Vec<Dim> gravity = s.gravity;
+    for (int i = 0; i < bundle.rows; ++i) {
+      const int row = bundle.first_row + i;
+      Vector total{};
+      if (weighs) {
+        const Real mass = Real::load(&s.real_mass[slot_of(row, 0)]);
+        for (int j = 0; j < Dim; ++j) total[j] = mass * gravity[j];
+        if constexpr (kMeasure) sums.applied += norm(total);
+      }
+      store(add_contacts<kKinematics, true>(s, row, total), scratch.sum[i].c);
+    }
   }
 
   /// Adds the forces of a bundle's zones.
@@ -162,7 +173,7 @@ class Step {
       const Bundle& bundle = s.layout->bundles[index];
       const Scratch scratch = scratch_of(bundle, memory);
       for (int i = 0; i < bundle.rows; ++i)
-        store(contact_sum<kKinematics, false>(s, bundle.first_row + i), scratch.sum[i].c);
+        store(add_contacts<kKinematics, false>(s, bundle.first_row + i, Vector{}), scratch.sum[i].c);
       add_over_zones(s, index, scratch, [&](const Corners& x, const Corners&, const auto& p, const auto&) {
         return zone_stiffness(s, x, p);
       });
@@ -376,20 +387,18 @@ class Step {
     constexpr bool kMeasure = kPass != Pass::move;
     Sums sums;
     take_displacements(s, bundle, scratch);
-    sum_contact_forces<kKinematics>(s, bundle, scratch);
+    sum_outer_forces<kKinematics, kMeasure>(s, bundle, scratch, sums);
     add_zone_forces<kKinematics, kMeasure>(s, index, scratch, sums);
-    if (s.weighs()) add_weights<kMeasure>(s, bundle, scratch, sums);
     if (const int c = s.constraints_of_bundle[index]; c >= 0)
       load_bundle<kMeasure>(s, bundle, s.constraints[c], scratch, sums);
     move_rows<kPass>(s, index, scratch, sums);
     keep<kPass>(s, index, sums);
   }
 
-  /// A sum over the contacts of a row, of what their two sides feel: with opposite signs, or alike.
+  /// Adds over the contacts of a row what their two sides feel: with opposite signs, or alike.
   template <Kinematics kKinematics, bool kOpposite>
-  static Vector contact_sum(const StepState<Dim>& s, int row) {
+  static Vector add_contacts(const StepState<Dim>& s, int row, Vector total) {
     const ContactsOfRow range = s.layout->contacts_of_row[row];
-    Vector total{};
     for (int k = range.begin; k < range.end; ++k) {
       const ActingContacts& acting = s.layout->acting[k];
       const Vector force = gather(s.contact_force, acting.contact);
@@ -547,17 +556,6 @@ class Step {
           for (int i = 0; i < Dim; ++i) scratch.sum[slot / kLanes].c[i][slot % kLanes] += c[i][lane];
         }
       }
-    }
-  }
-
-  template <bool kMeasure>
-  static void add_weights(const StepState<Dim>& s, const Bundle& bundle, const Scratch& scratch, Sums& sums) {
-    for (int i = 0; i < bundle.rows; ++i) {
-      const Real mass = Real::load(&s.real_mass[slot_of(bundle.first_row + i, 0)]);
-      Vector weight;
-      for (int j = 0; j < Dim; ++j) weight[j] = mass * s.gravity[j];
-      store(load(scratch.sum[i].c) + weight, scratch.sum[i].c);
-      if constexpr (kMeasure) sums.applied += norm(weight);
     }
   }
 
