@@ -13,6 +13,8 @@ namespace {
 constexpr double kLayerThickness = 2.0;
 /// Blocks that share lanes stand within as many layers of each other.
 constexpr double kLayersToShare = 2.0;
+/// Faces that share lanes have their later bundles within as many of each other.
+constexpr int kBundlesToShare = 64;
 /// A bundle with fewer blocks would leave too many lanes idle; its blocks are spread.
 constexpr std::size_t kFewestBlocks = 4;
 
@@ -126,7 +128,6 @@ class LayoutBuilder {
 
     layout_.contact_slot.resize(model_.contacts.size());
     const int bundles = static_cast<int>(layout_.bundles.size());
-    const int span = std::max(8, bundles / 16);
     std::map<int, std::vector<int>> waiting;  // by interface
     for (int f : order) {
       auto& group = waiting[model_.contacts[f * Dim].interface];
@@ -137,7 +138,7 @@ class LayoutBuilder {
         group.clear();
       }
       for (auto& [interface, others] : waiting)
-        if (!others.empty() && later(f) - later(others.front()) > span) {
+        if (!others.empty() && later(f) - later(others.front()) > kBundlesToShare) {
           add_faces(others);
           others.clear();
         }
@@ -154,11 +155,14 @@ class LayoutBuilder {
     for (int i = 1; i < bundles; ++i)
       layout_.bundles[i].last_face_row =
           std::max(layout_.bundles[i].last_face_row, layout_.bundles[i - 1].last_face_row);
-    int furthest = 0, row = 0;
-    for (const Bundle& b : layout_.bundles) {
-      for (; row <= b.last_face_row; ++row)
-        for (int f : faces_of_row_[row]) furthest = std::max(furthest, later(f));
-      layout_.lead_rows = std::max(layout_.lead_rows, layout_.bundles[furthest].first_row - b.first_row);
+    layout_.rows_reached.push_back(0);
+    for (const auto& row : faces_of_row_) {
+      int reached = layout_.rows_reached.back();
+      for (int f : row) {
+        const Bundle& b = layout_.bundles[later(f)];
+        reached = std::max(reached, b.first_row + b.rows);
+      }
+      layout_.rows_reached.push_back(reached);
     }
   }
 
@@ -311,7 +315,7 @@ Layout<Dim>::Layout(const Model<Dim>& model) {
 template <int Dim>
 std::size_t Layout<Dim>::memory() const {
   std::size_t bytes = bytes_of(bundles) + bytes_of(spread_zones) + bytes_of(faces) +
-                      bytes_of(contacts_of_row) + bytes_of(acting) + bytes_of(gridpoint_slot) +
+                      bytes_of(rows_reached) + bytes_of(contacts_of_row) + bytes_of(acting) + bytes_of(gridpoint_slot) +
                       bytes_of(zone_slot) + bytes_of(contact_slot) + bytes_of(bundle_of_block);
   for (const Bundle& bundle : bundles) bytes += bytes_of(bundle.blocks);
   for (const auto& zones : shapes) bytes += bytes_of(zones);

@@ -86,12 +86,13 @@ struct Layout {
   std::vector<std::vector<std::array<int, Dim + 1>>> shapes;  ///< zones of a block, as its own gridpoints
   std::vector<ZoneCorners<Dim>> spread_zones;                 ///< by row of zones of spread blocks
   FlatArray<FaceRow<Dim>> faces;
+  /// By row of faces, and one more: rows of gridpoints that rows of faces before it reach, those below in all.
+  std::vector<int> rows_reached;
   std::vector<ContactsOfRow> contacts_of_row;  ///< of each row of gridpoints
   FlatArray<ActingContacts> acting;
 
   int gridpoint_rows = 0;
   int zone_rows = 0;
-  int lead_rows = 0;                ///< of gridpoints: as far faces reach ahead of the bundle that moves
   int most_rows = 0;                ///< of gridpoints, in one bundle
   std::vector<int> gridpoint_slot;  ///< of each gridpoint of the model
   std::vector<int> zone_slot;       ///< of each zone

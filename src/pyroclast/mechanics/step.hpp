@@ -49,7 +49,8 @@ class Step {
   // flatten: lanes that cross a call go through memory
   template <Kinematics kKinematics, bool kMeasure>
   [[gnu::flatten]] static void update_rows(StepState<Dim>& s, int first, int last) {
-    for (int row = first; row < last; ++row)
+    for (int row = first; row < last; ++row) {
+      fetch_faces_ahead(s, row);
       if (s.one_set[row]) {
         const auto& constants = s.contact_constants[s.set_of_faces[row]];
         update_faces_of_row<kKinematics, kMeasure>(s, row,
@@ -58,6 +59,7 @@ class Step {
         update_faces_of_row<kKinematics, kMeasure>(
             s, row, [&](int point) { return contact_constants(s, row, point); });
       }
+    }
   }
   /// Displacements and sums of forces of a bundle while it is in hand, a row for each of its rows.
   struct Scratch {
@@ -91,6 +93,7 @@ class Step {
     const Vec<Dim> gravity = s.gravity;
     for (int i = 0; i < bundle.rows; ++i) {
       const int row = bundle.first_row + i;
+      fetch_ahead(s, s.force, row);
       Vector total{};
       if (weighs) {
         const Real mass = Real::load(&s.real_mass[slot_of(row, 0)]);
@@ -180,6 +183,35 @@ class Step {
       for (int i = 0; i < bundle.rows; ++i)
         store(load(scratch.sum[i].c), s.stiffness.row(bundle.first_row + i).c);
     }
+  }
+
+  // Asking the memory ahead. Processors foresee streams badly between so much arithmetic; lines come best a
+  // few at a time, all through the step.
+
+  static constexpr int kRowsAhead = 16;     ///< of gridpoints
+  static constexpr int kFaceRowsAhead = 8;  ///< about as far
+
+  template <std::size_t kBytes>
+  static void fetch(const void* begin) {
+    for (std::size_t i = 0; i < kBytes; i += 64) __builtin_prefetch(static_cast<const char*>(begin) + i);
+  }
+  static void fetch_ahead(const StepState<Dim>& s, const RowVectors<Dim>& vectors, int row) {
+    const int ahead = row + kRowsAhead;
+    if (ahead < s.layout->gridpoint_rows) fetch<sizeof(VectorRow<Dim>)>(&vectors.row(ahead));
+  }
+  static void fetch_ahead(const StepState<Dim>& s, const FlatArray<double>& numbers, int row) {
+    const int ahead = row + kRowsAhead;
+    if (ahead < s.layout->gridpoint_rows) fetch<kLanes * sizeof(double)>(&numbers[slot_of(ahead, 0)]);
+  }
+  /// What a row of faces needs, and the displacements that none before it reads.
+  static void fetch_faces_ahead(const StepState<Dim>& s, int row) {
+    const Layout<Dim>& layout = *s.layout;
+    const int ahead = row + kFaceRowsAhead;
+    if (ahead >= layout.face_rows()) return;
+    fetch<sizeof(FaceRow<Dim>)>(&layout.faces[ahead]);
+    fetch<Dim * sizeof(HistoryRow<Dim>)>(&s.history[ahead * Dim]);
+    for (int r = layout.rows_reached[ahead]; r < layout.rows_reached[ahead + 1]; ++r)
+      fetch<kLanes * sizeof(Vec<Dim>)>(&s.displacement[slot_of(r, 0)]);
   }
 
   // Rows of vectors
@@ -498,9 +530,11 @@ class Step {
     const int zones = bundle.zones;
     take(0, 0);
     take(2, zones);
+    fetch_ahead(s, s.position, bundle.first_row + zones);
     Vector total = load(scratch.sum[0].c), middle = load(scratch.sum[zones].c);
     for (int z = 0; z < zones; ++z) {
       const int next = z + 1 < zones ? z + 1 : 0;
+      fetch_ahead(s, s.position, bundle.first_row + z);
       take(1, next);
       const Corners more =
           zone(x, u, zone_properties(s, index, bundle.first_zone_row + z), Real::Truth::from_bits(0xFF));
@@ -519,6 +553,7 @@ class Step {
                                    const Scratch& scratch, Zone zone) {
     const auto& zones = s.layout->shapes[bundle.shape];
     for (int z = 0; z < bundle.zones; ++z) {
+      if (z < bundle.rows) fetch_ahead(s, s.position, bundle.first_row + z);
       const auto& corner = zones[z];
       Corners x, u;
       for (int n = 0; n <= Dim; ++n) {
@@ -582,25 +617,6 @@ class Step {
     }
   }
 
-  /// Asks the memory for what a later row will need. Processors do not foresee that many streams well, and a
-  /// few lines at a time come without holding up the arithmetic.
-  static void fetch_ahead(const StepState<Dim>& s, int row) {
-    constexpr int kRowsAhead = 16;
-    const int ahead = row + kRowsAhead;
-    if (ahead >= s.layout->gridpoint_rows) return;
-    fetch(&s.position.row(ahead));
-    fetch(&s.velocity.row(ahead));
-    fetch(&s.force.row(ahead));
-    __builtin_prefetch(&s.step_over_mass[slot_of(ahead, 0)]);
-    const int faces_at = ahead + s.layout->lead_rows;
-    if (faces_at >= s.layout->gridpoint_rows) return;
-    for (int lane = 0; lane < kLanes; lane += kLanes / Dim)
-      __builtin_prefetch(&s.displacement[slot_of(faces_at, lane)]);
-  }
-  static void fetch(const VectorRow<Dim>* row) {
-    for (int i = 0; i < Dim; ++i) __builtin_prefetch(row->c[i]);
-  }
-
   /// Parameters as the motion needs them. A copy: for all that the compiler knows, what is stored in an array
   /// may change those of the state.
   struct Motion {
@@ -636,7 +652,8 @@ class Step {
       store(force, s.force.row(row).c);
       return;
     }
-    fetch_ahead(s, row);
+    fetch_ahead(s, s.velocity, row);
+    fetch_ahead(s, s.step_over_mass, row);
     const Real step_over_mass = Real::load(&s.step_over_mass[slot_of(row, 0)]);
     const Vector before = load(s.velocity.row(row).c);
     Vector after;
