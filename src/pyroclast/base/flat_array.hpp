@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
@@ -27,18 +28,19 @@ class FlatArray {
     const std::size_t needed = size * sizeof(T);
     if (needed == 0) return;
     const std::size_t alignment = needed < kHugePage ? kPage : kHugePage;
-    const std::size_t bytes = (needed + alignment - 1) / alignment * alignment;
-    data_.reset(static_cast<T*>(std::aligned_alloc(alignment, bytes)));
-    if (!data_) throw std::bad_alloc();
+    const std::size_t shift = alignment == kHugePage ? next_shift() : 0;
+    const std::size_t bytes = (needed + shift + alignment - 1) / alignment * alignment;
+    char* const base = static_cast<char*>(std::aligned_alloc(alignment, bytes));
+    if (!base) throw std::bad_alloc();
+    data_ = {reinterpret_cast<T*>(base + shift), Free{base}};
 #ifdef MADV_HUGEPAGE
     // gathers all over a large array would miss most translations of small pages; a refusal costs only time
-    if (alignment == kHugePage) madvise(data_.get(), bytes, MADV_HUGEPAGE);
+    if (alignment == kHugePage) madvise(base, bytes, MADV_HUGEPAGE);
 #endif
-    char* const begin = reinterpret_cast<char*>(data_.get());
     const auto pages = static_cast<std::ptrdiff_t>(bytes / kPage);
 #pragma omp parallel for schedule(static)
     for (std::ptrdiff_t page = 0; page < pages; ++page)
-      for (std::size_t i = 0; i < kPage; ++i) begin[static_cast<std::size_t>(page) * kPage + i] = 0;
+      for (std::size_t i = 0; i < kPage; ++i) base[static_cast<std::size_t>(page) * kPage + i] = 0;
   }
 
   explicit FlatArray(const std::vector<T>& values) : FlatArray(values.size()) {
@@ -91,8 +93,15 @@ class FlatArray {
  private:
   static constexpr std::size_t kPage = 4096, kHugePage = std::size_t{2} << 20;
   struct Free {
-    void operator()(T* p) const { std::free(p); }
+    void* base = nullptr;
+    void operator()(T*) const { std::free(base); }
   };
+  /// Large arrays begin apart in the sets of a cache: those that are walked through side by side would
+  /// otherwise all want the same ones, and drive out the program that walks.
+  static std::size_t next_shift() {
+    static std::atomic<unsigned> made = 0;
+    return (made++ % 16) * (kPage + 5 * 64);
+  }
   std::unique_ptr<T, Free> data_;
   std::size_t size_ = 0;
 };
