@@ -47,12 +47,12 @@ class Arrays {
 
 void add_faces(const StepState<2>& s, Arrays& arrays) {
   const std::size_t point_rows = s.history.size();
-  constexpr std::size_t kSlips = 2 * kLanes * sizeof(double);  // slip and held slip of a row
-  arrays.read(bytes_of(s.layout->faces));
+  constexpr std::size_t kHeldSlip = kLanes * sizeof(double);  // of a row: what is always written
+  arrays.read(bytes_of(s.layout->faces) + bytes_of(s.layout->rows_reached));
   arrays.read(bytes_of(s.one_set) + bytes_of(s.set_of_faces));
   arrays.read(bytes_of(s.contact_constants_rows));
-  arrays.read(bytes_of(s.history) - point_rows * kSlips);
-  arrays.read_and_write(point_rows * kSlips);
+  arrays.read(bytes_of(s.history) - point_rows * kHeldSlip);
+  arrays.read_and_write(point_rows * kHeldSlip);
   arrays.read_and_write(bytes_of(s.contact_force));  // read where it is summed
   arrays.read_and_write(bytes_of(s.turning_force));  // empty where frames do not turn
 }
