@@ -61,6 +61,7 @@ class Step {
       }
     }
   }
+
   /// Displacements and sums of forces of a bundle while it is in hand, a row for each of its rows.
   struct Scratch {
     VectorRow<Dim>* displacement;
