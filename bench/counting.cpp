@@ -51,6 +51,7 @@ void add_faces(const StepState<2>& s, Arrays& arrays) {
   arrays.read(bytes_of(s.layout->faces) + bytes_of(s.layout->rows_reached));
   arrays.read(bytes_of(s.one_set) + bytes_of(s.set_of_faces));
   arrays.read(bytes_of(s.contact_constants_rows));
+  arrays.write(bytes_of(s.losing));
   arrays.read(bytes_of(s.history) - point_rows * kHeldSlip);
   arrays.read_and_write(point_rows * kHeldSlip);
   arrays.read_and_write(bytes_of(s.contact_force));  // read where it is summed

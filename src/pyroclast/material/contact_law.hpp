@@ -163,7 +163,8 @@ struct ContactDissipation {
 };
 
 /// What a contact point loses for good, where the law adds to it.
-/// \tparam Sum  takes `+=`: a number, or what adds to rows of an array. Nothing is added while nothing is lost.
+/// \tparam Sum  takes `+=`: a number, or what adds to rows of an array. Nothing is added while nothing is
+/// lost.
 template <class Sum>
 struct ContactLossesOf {
   Sum slipped;                                ///< length of the slip, m
@@ -277,12 +278,15 @@ void slip(const Constants& c, const Truth& slips, const Real& excess, const Real
   Real length = select(softens, held - residual * c.shear_compliance, excess * c.shear_compliance);
   length = select(partly, softening_slip, length);
   length = select(slips, length, Real(0.0));
-  const Real new_damage = select(partly, damage, Real(1.0));
-  const Real left = 1.0 - new_damage;
-  losses.shear += select(softens, c.mode_2_energy * (remaining - left) * (remaining + left), Real(0.0));
+  if (any(softens)) {
+    const Real new_damage = select(partly, damage, Real(1.0));
+    const Real left = 1.0 - new_damage;
+    losses.shear += select(softens, c.mode_2_energy * (remaining - left) * (remaining + left), Real(0.0));
+    h.shear_damage = select(softens, new_damage, h.shear_damage);
+    r.damaged = true;
+  }
   losses.friction += residual * length;
   losses.slipped += length;
-  h.shear_damage = select(softens, new_damage, h.shear_damage);
   Tangential<Dim, Real> step;
   if constexpr (Dim == 2)
     step[0] = signed_like(length, elastic[0]);
@@ -292,7 +296,6 @@ void slip(const Constants& c, const Truth& slips, const Real& excess, const Real
   elastic -= step;
   held = norm(elastic);
   r.slid = true;
-  r.damaged = r.damaged || any(softens);
 }
 
 /// Shear part: elastic predictor and exact return to the softening Mohr-Coulomb envelope.

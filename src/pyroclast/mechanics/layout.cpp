@@ -314,8 +314,8 @@ Layout<Dim>::Layout(const Model<Dim>& model) {
 
 template <int Dim>
 std::size_t Layout<Dim>::memory() const {
-  std::size_t bytes = bytes_of(bundles) + bytes_of(spread_zones) + bytes_of(faces) +
-                      bytes_of(rows_reached) + bytes_of(contacts_of_row) + bytes_of(acting) + bytes_of(gridpoint_slot) +
+  std::size_t bytes = bytes_of(bundles) + bytes_of(spread_zones) + bytes_of(faces) + bytes_of(rows_reached) +
+                      bytes_of(contacts_of_row) + bytes_of(acting) + bytes_of(gridpoint_slot) +
                       bytes_of(zone_slot) + bytes_of(contact_slot) + bytes_of(bundle_of_block);
   for (const Bundle& bundle : bundles) bytes += bytes_of(bundle.blocks);
   for (const auto& zones : shapes) bytes += bytes_of(zones);

@@ -31,10 +31,10 @@ enum class BundleKind : std::uint8_t {
 /// Blocks that go through a step together.
 struct Bundle {
   BundleKind kind = BundleKind::alike;
-  int shape = -1;            ///< BundleKind::alike: index into Layout::shapes
-  bool fan = false;          ///< BundleKind::alike: zones go round the last gridpoint, in the order of the others
-  int first_row = 0;         ///< of gridpoints
-  int rows = 0;              ///< of gridpoints
+  int shape = -1;     ///< BundleKind::alike: index into Layout::shapes
+  bool fan = false;   ///< BundleKind::alike: zones go round the last gridpoint, in the order of the others
+  int first_row = 0;  ///< of gridpoints
+  int rows = 0;       ///< of gridpoints
   int first_zone_row = 0;    ///< of zones
   int zones = 0;             ///< alike: of each block, a row each; spread: of the block, eight a row
   int first_spread_row = 0;  ///< spread: entries of Layout::spread_zones
@@ -86,7 +86,8 @@ struct Layout {
   std::vector<std::vector<std::array<int, Dim + 1>>> shapes;  ///< zones of a block, as its own gridpoints
   std::vector<ZoneCorners<Dim>> spread_zones;                 ///< by row of zones of spread blocks
   FlatArray<FaceRow<Dim>> faces;
-  /// By row of faces, and one more: rows of gridpoints that rows of faces before it reach, those below in all.
+  /// By row of faces, and one more: rows of gridpoints that rows of faces before it reach, those below in
+  /// all.
   std::vector<int> rows_reached;
   std::vector<ContactsOfRow> contacts_of_row;  ///< of each row of gridpoints
   FlatArray<ActingContacts> acting;

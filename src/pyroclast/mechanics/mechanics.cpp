@@ -72,6 +72,7 @@ void Mechanics<Dim>::place_model() {
   const auto contact_slots = static_cast<std::size_t>(layout_->contact_rows()) * kLanes;
   s.history = FlatArray<HistoryRow<Dim>>(contact_slots / kLanes);
   s.loss = FlatArray<LossRow>(contact_slots / kLanes);
+  s.losing = FlatArray<std::uint8_t>(contact_slots / kLanes);
   s.contact_force = FlatArray<Vec<Dim>>(contact_slots);
   if (s.kinematics == Kinematics::finite) s.turning_force = FlatArray<Vec<Dim>>(contact_slots);
   s.constraints_of_bundle.assign(layout_->bundles.size(), -1);

@@ -211,6 +211,8 @@ class Step {
     if (ahead >= layout.face_rows()) return;
     fetch<sizeof(FaceRow<Dim>)>(&layout.faces[ahead]);
     fetch<Dim * sizeof(HistoryRow<Dim>)>(&s.history[ahead * Dim]);
+    for (int point = ahead * Dim; point < (ahead + 1) * Dim; ++point)
+      if (s.losing[point]) fetch<sizeof(LossRow)>(&s.loss[point]);
     for (int r = layout.rows_reached[ahead]; r < layout.rows_reached[ahead + 1]; ++r)
       fetch<kLanes * sizeof(Vec<Dim>)>(&s.displacement[slot_of(r, 0)]);
   }
@@ -367,10 +369,11 @@ class Step {
     for (int t = 0; t + 1 < Dim; ++t) h.slip[t] = Real::load(row.slip[t]);
     h.held_slip = Real::load(row.held_slip);
     LossRow& loss = s.loss[at];
-    ContactLossesOf<RowSum> losses{{loss.slipped}, {loss.tension}, {loss.shear}, {loss.friction},
-                                   {loss.compression}};
+    ContactLossesOf<RowSum> losses{
+        {loss.slipped}, {loss.tension}, {loss.shear}, {loss.friction}, {loss.compression}};
     const auto response = update_contact<Dim>(constants, opening, tangential, h, losses);
     h.held_slip.store(row.held_slip);
+    s.losing[at] = response.slid || response.damaged;
     if (response.slid)
       for (int t = 0; t + 1 < Dim; ++t) h.slip[t].store(row.slip[t]);
     if (response.damaged) {
@@ -512,8 +515,7 @@ class Step {
   template <class Zone>
   static void add_over_zones(const StepState<Dim>& s, int index, const Scratch& scratch, Zone zone) {
     const Bundle& bundle = s.layout->bundles[index];
-    if (bundle.kind == BundleKind::spread)
-      return add_over_spread_zones(s, index, bundle, scratch, zone);
+    if (bundle.kind == BundleKind::spread) return add_over_spread_zones(s, index, bundle, scratch, zone);
     if constexpr (Dim == 2)
       if (bundle.fan) return add_over_fan(s, index, bundle, scratch, zone);
     add_over_alike_zones(s, index, bundle, scratch, zone);

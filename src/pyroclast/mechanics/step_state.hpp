@@ -134,6 +134,7 @@ struct StepState : StepParameters<Dim> {
 
   FlatArray<HistoryRow<Dim>> history;  ///< by row of contact points
   FlatArray<LossRow> loss;
+  FlatArray<std::uint8_t> losing;     ///< by row of contact points: something was lost in the last step
   FlatArray<Vec<Dim>> contact_force;  ///< on side a, by slot: gridpoints gather from it, N
   FlatArray<Vec<Dim>> turning_force;  ///< on both sides, by slot; finite kinematics only, N
   std::vector<ContactConstants> contact_constants;
@@ -156,7 +157,7 @@ struct StepState : StepParameters<Dim> {
     std::size_t bytes = position.bytes() + velocity.bytes() + force.bytes() + stiffness.bytes();
     for (std::size_t array :
          {bytes_of(gathered_position), bytes_of(displacement), bytes_of(step_over_mass),
-          bytes_of(zone_properties), bytes_of(real_mass), bytes_of(history), bytes_of(loss),
+          bytes_of(zone_properties), bytes_of(real_mass), bytes_of(history), bytes_of(loss), bytes_of(losing),
           bytes_of(contact_force), bytes_of(turning_force), bytes_of(contact_constants),
           bytes_of(set_of_faces), bytes_of(one_set), bytes_of(contact_constants_rows),
           bytes_of(constraints_of_bundle), bytes_of(constraints), bytes_of(bundle_sums), bytes_of(face_sums)})
