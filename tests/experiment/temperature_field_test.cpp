@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "decks.hpp"
 #include "heated_specimen.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/experiment/case.hpp"
 #include "pyroclast/experiment/heat_run.hpp"
+#include "pyroclast/experiment/simulation.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 #include "thermal/convective_wall.hpp"
 
@@ -138,6 +142,49 @@ TEST(TemperatureField, WhatComesInIsStored) {
   const double heated_mass = constants.density * kSpecimenWidth * kSpecimenHeight * kSpecimenThickness;
   EXPECT_NEAR(ledger.stored, heated_mass * constants.specific_heat * (field.mean() - 20.0),
               1e-9 * ledger.stored);
+}
+
+// ---- Later exposures -------------------------------------------------------------------------------------
+
+/// A shipped case on a few blocks: three minutes of fire on one face, and what comes after them.
+Case fire_and_then(const std::string& later) {
+  std::string deck = with(shipped_case("fire_one_side"), "count = 1000", "count = 200");
+  deck = with(deck, "temperature_range = [\"20 degC\", \"800 degC\"]", "");
+  deck = with(deck, "duration = \"30 min\"", "duration = \"3 min\"");
+  return read_case(Deck::parse(with(deck, "[coupling]", later + "[coupling]"), "deck.toml"), ".");
+}
+
+void expose(HeatSimulation& simulation, double duration) {
+  TemperatureField& field = *simulation.field;
+  const double end = field.time() + duration;
+  field.begin_exposure(temperature_range(simulation.heat, end));
+  while (field.time() < end) field.advance(5.0, end);
+}
+
+TEST(TemperatureField, WhatALaterAndHotterExposureBringsChangesNoBitBeforeIt) {
+  const Case alone = fire_and_then("");
+  const Case followed =
+      fire_and_then("[[stages]]\nkind = \"expose\"\nduration = \"10 min\"\nplaten = \"force\"\n");
+  ASSERT_GT(followed.temperatures.upper, alone.temperatures.upper + 100.0);
+  HeatSimulation a(alone), b(followed);
+  for (auto* simulation : {&a, &b}) expose(*simulation, 180.0);
+  EXPECT_GT(a.field->maximum(), 100.0);  // through the peak of the specific heat
+  EXPECT_EQ(a.field->gridpoints(), b.field->gridpoints());
+  EXPECT_EQ(a.field->mean(), b.field->mean());
+  const Conduction<2>&one = *a.field->conduction(), &other = *b.field->conduction();
+  EXPECT_EQ(one.temperature(), other.temperature());
+  EXPECT_EQ(one.rate(), other.rate());
+  EXPECT_EQ(one.stages(), other.stages());
+  const HeatLedger heat = one.ledger(), same = other.ledger();
+  EXPECT_EQ(heat.stored, same.stored);
+  EXPECT_EQ(heat.boundary.convection, same.boundary.convection);
+  EXPECT_EQ(heat.boundary.radiation, same.boundary.radiation);
+
+  expose(b, 600.0);
+  EXPECT_EQ(b.field->time(), 780.0);
+  EXPECT_GT(b.field->maximum(), a.field->maximum() + 100.0);
+  const HeatLedger later = other.ledger();
+  EXPECT_LT(std::abs(later.error()), 1e-10 * later.stored);
 }
 
 // ---- Increments ------------------------------------------------------------------------------------------

@@ -475,6 +475,27 @@ TEST(Conduction, HoldsOvershootsOfASharpFrontAtTheEndOfTheRange) {
   EXPECT_LT(std::abs(heat.ledger().error()), 1e-10 * heat.ledger().stored);
 }
 
+TEST(Conduction, HeatThatWaitsAtTheEndOfTheRangeComesToItsPlaceWhenTheRangeWidens) {
+  const auto model = plane_body({.blocks = {1, 1}, .size = {0.1, 0.1}});
+  Conduction<2> heat(model, {constant_material(1.0, 1e6)}, parameters({20.0, 100.0}, 20.0));
+  heat.set_source([](const Vec<2>&, double) { return 1e6; });  // 1 K/s
+  heat.advance_to(80.5);
+  for (double t : heat.temperature()) EXPECT_EQ(t, 100.0);
+  heat.widen_temperature_range({50.0, 500.0});
+  for (double t : heat.temperature()) EXPECT_NEAR(t, 100.5, 1e-9);  // rounding of 1e2 K
+  heat.advance_to(300.0);
+  for (double t : heat.temperature()) EXPECT_NEAR(t, 320.0, 1e-9);
+  EXPECT_LT(std::abs(heat.ledger().error()), 1e-10 * heat.ledger().stored);
+}
+
+TEST(Conduction, RefusesToWidenItsRangeBeyondAMaterialsCurves) {
+  const auto model = plane_body({.blocks = {2, 2}, .size = {0.1, 0.1}});
+  Conduction<2> heat(model, {moist_concrete()}, parameters({20.0, 100.0}, 20.0));
+  heat.widen_temperature_range({20.0, 1200.0});
+  expect_in("range of 20 to 1300 degC", message([&] { heat.widen_temperature_range({30.0, 1300.0}); }));
+  expect_in("temperature range is -300", message([&] { heat.widen_temperature_range({-300.0, 0.0}); }));
+}
+
 TEST(Conduction, RefusesContactsBetweenGridpointsThatDoNotCoincide) {
   auto model = plane_body({.blocks = {2, 1}, .size = {0.2, 0.1}});
   model.position[model.contacts[0].b][0] += 0.001;

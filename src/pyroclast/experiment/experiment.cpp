@@ -100,6 +100,7 @@ Experiment::Experiment(Simulation& simulation, std::vector<Stage> stages, const 
                        Observer& observer)
     : body_(simulation.body),
       materials_(simulation.materials),
+      heating_(simulation.heat),
       width_(simulation.specimen.width),
       height_(simulation.specimen.height),
       mechanics_(*simulation.mechanics),
@@ -530,6 +531,7 @@ Experiment::Verdict Experiment::judge(const HeatStage& stage, const Sample& now)
 void Experiment::begin(const ExposeStage& stage) {
   stage_first_temperature_ = field_.mean();
   exposure_began_ = field_.time();
+  field_.begin_exposure(temperature_range(heating_, exposure_began_ + stage.duration));
   begin_heating(stage.coupling);
 }
 

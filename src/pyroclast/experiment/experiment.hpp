@@ -155,6 +155,7 @@ class Experiment {
 
   const ConcreteModel& body_;
   const ConcreteMaterials& materials_;
+  const HeatCase& heating_;
   double width_, height_;
   Mechanics<2>& mechanics_;
   TemperatureField& field_;

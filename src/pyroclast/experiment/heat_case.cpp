@@ -11,9 +11,6 @@ namespace pyroclast {
 
 namespace {
 
-/// Narrowest temperature range that is worth a table of properties, K.
-constexpr double kNarrowestRange = 1.0;
-
 /// Accuracy to which the time of the last change is found, as a fraction of the duration.
 constexpr double kTimeAccuracy = 1e-6;
 
@@ -180,7 +177,6 @@ Interval temperature_range(const HeatCase& heat, double duration) {
       range.upper = std::max(range.upper, temperature->maximum(0.0, duration));
     }
   }
-  range.upper = std::max(range.upper, range.lower + kNarrowestRange);
   return range;
 }
 

@@ -60,15 +60,16 @@ bool contradict(const HeatCondition& a, const HeatCondition& b);
 const char* kind_name(const HeatCondition& condition);
 
 /// Bounds of the temperatures that conduction may reach within `duration` s from the start: those stated,
-/// else the extremes of the initial, the prescribed and the gas temperatures. At least 1 K wide. Throws Error
-/// when there is a given flux, which has no such bound, and no range is stated.
+/// else the extremes of the initial, the prescribed and the gas temperatures. Throws Error when there is a given
+/// flux, which has no such bound, and no range is stated.
 Interval temperature_range(const HeatCase& heat, double duration);
 
 /// Time from which no boundary value changes any more up to `duration`, s; `duration` when there is none.
 double constant_from(const HeatCase& heat, double duration);
 
 /// The heat solver of a specimen; the platens conduct no heat. `body` must outlive it.
-/// \param range  of temperatures, °C, see temperature_range; the materials' curves must cover it
+/// \param range  of temperatures that it stays within until it is widened, °C, see temperature_range; the
+///               materials' curves must cover it
 ///
 /// Throws Error when a material has no conductivity or specific heat, a boundary condition meets no face, or
 /// two contradict each other on one.

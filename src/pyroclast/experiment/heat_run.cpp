@@ -44,6 +44,7 @@ HeatOutcome run_heat(TemperatureField& field, const HeatCase& heat, const HeatRu
   require_positive(run.interval, "the time between two looks at the temperatures", "s");
   require_positive(run.frame_interval, "the time between two frames", "s");
   if (run.steady_rate) require_positive(*run.steady_rate, "the tolerance of the steady state", "K/s");
+  field.begin_exposure(temperature_range(heat, run.duration));
   const double steady_from = run.steady_rate ? constant_from(heat, run.duration) : kNever;
   observer.look(field);
   observer.frame(field);

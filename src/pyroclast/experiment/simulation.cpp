@@ -49,7 +49,8 @@ specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& par
 
 std::unique_ptr<TemperatureField> make_field(const ConcreteModel& body, const Case& c) {
   if (c.heat.uniform) return std::make_unique<TemperatureField>(body, c.heat.initial);
-  return std::make_unique<TemperatureField>(body, make_conduction(body, c.solids, c.heat, c.temperatures));
+  const Interval initial{c.heat.initial, c.heat.initial};  // each exposure widens it
+  return std::make_unique<TemperatureField>(body, make_conduction(body, c.solids, c.heat, initial));
 }
 
 std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const ConcreteMaterials& materials,
@@ -67,7 +68,8 @@ double estimate_memory(std::int64_t blocks) {
 }
 
 HeatSimulation::HeatSimulation(const Case& c)
-    : specimen(make_checked_specimen(c.specimen)),
+    : heat(c.heat),
+      specimen(make_checked_specimen(c.specimen)),
       body(make_concrete_model(specimen, c.platen_thickness, c.thickness)),
       field(make_field(body, c)) {}
 

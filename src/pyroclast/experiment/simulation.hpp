@@ -16,6 +16,7 @@ struct HeatSimulation {
   HeatSimulation(const HeatSimulation&) = delete;
   HeatSimulation& operator=(const HeatSimulation&) = delete;
 
+  HeatCase heat;
   specimen::Specimen specimen;
   ConcreteModel body;
   std::unique_ptr<TemperatureField> field;

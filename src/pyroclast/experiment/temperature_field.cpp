@@ -65,6 +65,11 @@ void TemperatureField::set_uniform(double temperature) {
   update();
 }
 
+void TemperatureField::begin_exposure(const Interval& temperatures) {
+  if (is_uniform()) throw Error("a uniform temperature does not conduct heat; it is set");
+  conduction_->widen_temperature_range(temperatures);
+}
+
 double TemperatureField::advance(double largest_change, double until, double steady_rate) {
   if (is_uniform()) throw Error("a uniform temperature does not conduct heat; it is set");
   if (!(largest_change > 0.0))

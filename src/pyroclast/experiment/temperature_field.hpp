@@ -22,6 +22,11 @@ class TemperatureField {
   /// Sets the specimen's temperature, °C. Throws Error for a computed field.
   void set_uniform(double temperature);
 
+  /// Says to which temperatures, °C, the specimen may come by the end of what it is exposed to next, beside
+  /// those of earlier exposures; before the first one it stays at its initial temperature. So no result
+  /// depends on a later, hotter exposure. Throws Error for a uniform field.
+  void begin_exposure(const Interval& temperatures);
+
   /// Conducts heat until some gridpoint of the specimen has changed by `largest_change`, K, since the call,
   /// or to the time `until`, s, or until the rate (Conduction::rate) is below `steady_rate`, K/s. Returns the
   /// time reached.

@@ -23,13 +23,17 @@ void require(bool allowed, const char* parameter, double value, const char* what
     throw Error(fmt::format("heat conduction: {} is {}, but it must be {}", parameter, value, what));
 }
 
+const Interval& checked(const Interval& range) {
+  if (!(absolute_zero <= range.lower && range.lower <= range.upper && std::isfinite(range.upper)))
+    throw Error(fmt::format(
+        "heat conduction: the temperature range is {} to {} degC, but it must not descend, and begin "
+        "no lower than {} degC",
+        range.lower, range.upper, absolute_zero));
+  return range;
+}
+
 const HeatParameters& checked(const HeatParameters& p) {
-  const auto [lower, upper] = p.temperature_range;
-  if (!(absolute_zero <= lower && lower < upper && std::isfinite(upper)))
-    throw Error(
-        fmt::format("heat conduction: the temperature range is {} to {} degC, but it must ascend and begin "
-                    "no lower than {} degC",
-                    lower, upper, absolute_zero));
+  checked(p.temperature_range);
   require(p.temperature_range.contains(p.initial_temperature), "the initial temperature",
           p.initial_temperature, "within the temperature range");
   require(p.safety > 0.0 && p.safety <= 1.0, "the safety factor", p.safety, "greater than 0 and at most 1");
@@ -142,12 +146,27 @@ void Conduction<Dim>::prescribe_node(int node, const Curve& temperature) {
 }
 
 template <int Dim>
+void Conduction<Dim>::widen_temperature_range(const Interval& range) {
+  checked(range);
+  const Interval present = grid_.range();
+  const Interval wider{std::min(present.lower, range.lower), std::max(present.upper, range.upper)};
+  if (wider == present) return;
+  std::vector<int> waiting;  // with heat beyond the present range, which comes to where it belongs now
+  for (int node = 0; node < nodes_.count(); ++node)
+    if (excess(node, temperature_[node], enthalpy_[node]) != 0.0) waiting.push_back(node);
+  grid_ = TemperatureGrid(wider);
+  for (auto& table : tables_) table.extend(grid_);
+  store_.set_grid(grid_);
+  for (int node : waiting) temperature_[node] = store_.temperature(node, enthalpy_[node], temperature_[node]);
+}
+
+template <int Dim>
 void Conduction<Dim>::set_temperature(const std::vector<double>& temperature) {
   if (temperature.size() != volume_.size())
     throw Error(fmt::format("heat conduction: {} temperatures are given for {} nodes", temperature.size(),
                             volume_.size()));
   for (double t : temperature)
-    require(grid_.range.contains(t), "a node's temperature", t, "within the temperature range");
+    require(grid_.range().contains(t), "a node's temperature", t, "within the temperature range");
   temperature_ = temperature;
   for (int node = 0; node < nodes_.count(); ++node)
     enthalpy_[node] = store_.enthalpy(node, temperature[node]);
@@ -191,8 +210,8 @@ void Conduction<Dim>::begin_run(double end) {
   read_prescriptions(time_);
   hold_prescribed();
   // Without these the exact solution stays within the range, so that all excess is numerical.
-  const bool may_leave = source_ || !boundary_.draws_into(grid_.range, time_, end);
-  allowed_excess_ = may_leave ? kDoubtfulExcess * (grid_.range.upper - grid_.range.lower)
+  const bool may_leave = source_ || !boundary_.draws_into(grid_.range(), time_, end);
+  allowed_excess_ = may_leave ? kDoubtfulExcess * (grid_.range().upper - grid_.range().lower)
                               : std::numeric_limits<double>::max();
   safe_step_ = range_limit(end).step;
   if (step_ == 0.0) step_ = std::min(safe_step_, parameters_.largest_step);
@@ -257,7 +276,7 @@ typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
 /// Temperature that a node at an end of the range would have beyond it, K, see NodeEnthalpy.
 template <int Dim>
 double Conduction<Dim>::excess(int node, double temperature, double enthalpy) const {
-  const bool held = temperature == grid_.range.lower || temperature == grid_.range.upper;
+  const bool held = temperature == grid_.range().lower || temperature == grid_.range().upper;
   return held ? store_.excess(node, enthalpy) : 0.0;
 }
 
@@ -345,7 +364,7 @@ template <int Dim>
 HeatStepLimit Conduction<Dim>::present_limit(double step) const {
   auto rows = zones_.row_bound(temperature_);
   auto hottest = temperature_;
-  for (double& t : hottest) t = std::min(t + parameters_.largest_change, grid_.range.upper);
+  for (double& t : hottest) t = std::min(t + parameters_.largest_change, grid_.range().upper);
   boundary_.add_slope(time_, time_ + step, hottest, rows);
   return strictest(rows, parameters_.safety,
                    [&](int node) { return store_.least_capacity(node, temperature_[node]); });
@@ -355,7 +374,7 @@ HeatStepLimit Conduction<Dim>::present_limit(double step) const {
 template <int Dim>
 HeatStepLimit Conduction<Dim>::range_limit(double end) const {
   auto rows = zones_.row_bound();
-  boundary_.add_slope(time_, end, std::vector<double>(rows.size(), grid_.range.upper), rows);
+  boundary_.add_slope(time_, end, std::vector<double>(rows.size(), grid_.range().upper), rows);
   return strictest(rows, parameters_.safety, [&](int node) { return store_.least_capacity(node); });
 }
 
@@ -370,11 +389,11 @@ void Conduction<Dim>::require_prescriptions(double end) const {
     require_defined(curve, "prescribed temperature", time_, end);
     const double least = curve.minimum(time_, end);
     const double greatest = curve.maximum(time_, end);
-    if (!grid_.range.contains(least) || !grid_.range.contains(greatest))
+    if (!grid_.range().contains(least) || !grid_.range().contains(greatest))
       throw Error(
           fmt::format("prescribed temperature ({}) goes from {} to {} degC, but the run's temperature range "
                       "is {} to {} degC",
-                      curve.describe(), least, greatest, grid_.range.lower, grid_.range.upper));
+                      curve.describe(), least, greatest, grid_.range().lower, grid_.range().upper));
   }
 }
 
@@ -388,7 +407,7 @@ void Conduction<Dim>::refuse_excess() const {
     if (beyond(other) > beyond(node)) node = other;
   const Vec<Dim>& x = model_.position[nodes_.gridpoint[node]];
   throw Error(fmt::format("the temperature at ({:g}) m leaves the run's range of {} to {} degC at {:g} s",
-                          fmt::join(x.c, ", "), grid_.range.lower, grid_.range.upper, time_));
+                          fmt::join(x.c, ", "), grid_.range().lower, grid_.range().upper, time_));
 }
 
 // ---- Looking ---------------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@
 namespace pyroclast {
 
 struct HeatParameters {
-  Interval temperature_range;        ///< that the run stays within, °C
+  Interval temperature_range;        ///< that the run stays within until it is widened, °C
   double initial_temperature = 0.0;  ///< °C
   HeatScheme scheme = HeatScheme::super_time_stepping;
   double safety = 0.0;          ///< fraction of the stable step that is taken, in (0, 1]
@@ -96,6 +96,10 @@ class Conduction {
   /// Prescribes the temperature of a node.
   void prescribe_node(int node, const Curve& temperature);
   void set_source(Source source) { source_ = std::move(source); }
+
+  /// Lets temperatures from now on come to the given range, °C, as well as to the present one. What was
+  /// computed before does not depend on it. Throws Error when a material's curve does not cover it.
+  void widen_temperature_range(const Interval& range);
 
   /// Sets the temperature of every node, °C, and starts the ledger anew.
   void set_temperature(const std::vector<double>& temperature);
