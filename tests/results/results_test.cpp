@@ -78,6 +78,16 @@ TEST_F(Results, HistoryHasAValueForEveryColumn) {
             std::string::npos);  // strain thrice, then mean, top and bottom stress in MPa
 }
 
+TEST_F(Results, HistoryGivesEveryNumberInFull) {
+  Sample sample;
+  sample.strain = 1.0 / 3.0;
+  {
+    HistoryFile history(folder_ / "history.csv");
+    history.write(sample);
+  }
+  EXPECT_NE(content(folder_ / "history.csv").find(",0.3333333333333333,"), std::string::npos);
+}
+
 TEST_F(Results, HistoryOfHeatHasAColumnForEachProbeAndALedgerThatCloses) {
   const auto body = small_body(100);
   const HeatCase heat = heat_case({on(OutlinePart::left, PrescribedTemperature{Curve::constant(100.0)}),

@@ -100,7 +100,7 @@ void HistoryFile::write(const Sample& sample) {
   std::string line;
   for (const auto& column : kColumns) {
     if (!line.empty()) line += ',';
-    line += fmt::format("{:.9g}", column.value(sample));
+    line += fmt::format("{}", column.value(sample));
   }
   file_.line(line);
 }
@@ -122,7 +122,7 @@ void HeatHistoryFile::write(const TemperatureField& field) {
   std::vector<double> row;
   for (const auto& column : kHeatColumns) row.push_back(column.value(field, ledger));
   for (const auto& probe : probes_) row.push_back(probe.read(field.gridpoints()));
-  file_.line(fmt::format("{:.9g}", fmt::join(row, ",")));
+  file_.line(fmt::format("{}", fmt::join(row, ",")));
 }
 
 }  // namespace pyroclast
