@@ -144,6 +144,48 @@ TEST(TemperatureField, WhatComesInIsStored) {
               1e-9 * ledger.stored);
 }
 
+TEST(TemperatureField, AnAdvanceInBatchesIsBitwiseTheSame) {
+  const auto body = small_body(100);
+  HeatCase heat =
+      heat_case({on(OutlinePart::left, convection(25.0, fire_curves().at("iso834").curve)),
+                 on(OutlinePart::right,  // jumps at the start
+                    PrescribedTemperature{Curve::table({0.0, 600.0}, {60.0, 80.0}, time_axis())})});
+  for (const auto scheme : {HeatScheme::euler, HeatScheme::super_time_stepping}) {
+    heat.scheme = scheme;
+    auto whole = conduct(body, heat, 600.0), in_batches = conduct(body, heat, 600.0);
+    int batches = 0;
+    while (whole.time() < 600.0) {
+      whole.advance(10.0, 600.0);
+      const auto before = in_batches.gridpoints();
+      const double start = in_batches.time();
+      in_batches.begin_advance(10.0, 600.0);
+      while (!in_batches.advance(2)) {
+        ++batches;
+        ASSERT_EQ(in_batches.gridpoints(), before);
+        ASSERT_EQ(in_batches.time(), start);
+      }
+      ASSERT_EQ(in_batches.gridpoints(), whole.gridpoints());
+      ASSERT_EQ(in_batches.conduction()->state(), whole.conduction()->state());
+    }
+    EXPECT_GT(batches, 100);
+  }
+}
+
+TEST(TemperatureField, AnAdvanceThatIsEndedEarlyStandsAtTheLastCompletedStep) {
+  const auto body = small_body(100);
+  auto field = conduct(body, fire_from_the_left(), 600.0);
+  field.begin_advance(kInfinity, 600.0);
+  while (field.conduction()->steps() < 5) ASSERT_FALSE(field.advance(1));
+  ASSERT_FALSE(field.advance(1));
+  field.end_advance();
+  EXPECT_EQ(field.conduction()->steps(), 5);
+  EXPECT_EQ(field.time(), field.conduction()->time());
+  EXPECT_EQ(field.gridpoints(), field.conduction()->gridpoint_temperatures(kReferenceTemperature));
+  EXPECT_THROW(field.advance(1), Error);
+  field.begin_advance(kInfinity, 600.0);
+  EXPECT_THROW(field.advance(0), Error);
+}
+
 // ---- Later exposures -------------------------------------------------------------------------------------
 
 /// A shipped case on a few blocks: three minutes of fire on one face, and what comes after them.
@@ -268,6 +310,25 @@ TEST(RunHeat, StopsAfterALookWhenAskedToAndKeepsTheLastState) {
   EXPECT_EQ(watcher.frames, (std::vector<double>{0.0, field.time()}));
   EXPECT_GE(field.maximum(), 100.0);
   EXPECT_LT(field.maximum(), 100.0 + 10.0 + heat.largest_change);  // within one increment
+}
+
+/// Asks for a stop at once.
+struct Hasty : Watcher {
+  bool stop_requested() override { return true; }
+};
+
+TEST(RunHeat, StopsWithinABatchAndKeepsNothingOfWhatItBrokeOff) {
+  const auto body = small_body(100);
+  HeatCase heat = heat_case({on(OutlinePart::left, convection(25.0, Curve::constant(500.0)))});
+  heat.scheme = HeatScheme::euler;
+  heat.largest_change = heat.largest_step = 1e6;
+  // so small a stable step that one step of the solver takes far more stages than a batch
+  auto field = conduct(body, heat, 1e5, {.conductivity = 1e6});
+  Hasty watcher;
+  EXPECT_EQ(run_heat(field, heat, {.duration = 1e5}, watcher), HeatOutcome::interrupted);
+  EXPECT_EQ(watcher.looks, std::vector<double>{0.0});
+  EXPECT_EQ(watcher.frames, std::vector<double>{0.0});
+  EXPECT_LT(field.time(), 1e5);
 }
 
 TEST(RunHeat, ReachesTheSteadyStateBetweenTwoFaces) {
