@@ -55,6 +55,18 @@ class UserTest(unittest.TestCase):
         return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
                               timeout=300, check=False, **options)
 
+    def assert_that_overwriting_clears(self, name: str) -> None:
+        """All files of a folder are ones that a run writes: of them, no other run's results are left."""
+        deck = self.write(small_deck(), "other.toml")
+        done = self.pyroclast("specimen", deck, "--out", name, "--overwrite", "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("kept", done.stdout)
+        self.assertEqual(self.pyroclast("specimen", deck, "--out", "fresh", "--no-figures").returncode, 0)
+        self.assertEqual(self.files(name), self.files("fresh"))
+
+    def files(self, name: str) -> set[str]:
+        folder = self.folder / name
+        return {str(path.relative_to(folder)) for path in folder.rglob("*")}
 
     def interrupt(self, deck: pathlib.Path, rows: int) -> None:
         """Runs a deck into out/, interrupts it once its history has so many rows, and sees it end cleanly."""
@@ -130,6 +142,7 @@ class Heating(UserTest):
             self.assertAlmostEqual(row["heating_time_s"], (row["temperature_degC"] - 20.0) * 12.0, places=5)
         self.assertLessEqual({"total_strain.png", "heating_cracks.png", "heating_fracture.png", "convergence.png"},
                              self.figures("transient_heating"))
+        self.assert_that_overwriting_clears("transient_heating")
 
     def test_several_runs_are_compared_in_one_figure(self):
         for level in ("0", "0.3"):
@@ -153,12 +166,14 @@ class Heating(UserTest):
         summary = self.run_case("restrained_heating", *changes("stages[2].to=120 degC"))
         self.assertGreater(summary["heating"]["largest_thrust_MPa"], 3.39)
         self.assertIn("thrust.png", self.figures("restrained_heating"))
+        self.assert_that_overwriting_clears("restrained_heating")
 
     def test_a_hot_specimen_is_compressed(self):
         summary = self.run_case("hot_compression", *changes("stages[1].to=420 degC", "stages[2].velocity=4 mm/s",
                                                             "stages[2].stop_strain=2e-3"))
         self.assertLess(summary["compression"]["E_GPa"], 15.0)
         self.assertIn("stress_strain.png", self.figures("hot_compression"))
+        self.assert_that_overwriting_clears("hot_compression")
 
     def test_a_heated_and_cooled_specimen_is_compressed(self):
         self.run_case("residual_capacity", *changes("stages[1].to=220 degC", "stages[3].velocity=2 mm/s",
@@ -174,6 +189,7 @@ class Heating(UserTest):
         self.assertGreater(last["temperature_max_degC"], last["temperature_min_degC"] + 50.0)
         self.assertEqual(summary["heating"]["field"], "conduction")
         self.assertIn("temperature.png", self.figures("fire_one_side"))
+        self.assert_that_overwriting_clears("fire_one_side")
 
     def test_a_curve_that_ends_below_the_run_is_refused_before_it(self):
         for command in ("run", "check"):
@@ -210,6 +226,7 @@ class Running(UserTest):
             self.assertGreater((out / "figures" / figure).stat().st_size, 10_000)
         self.assertIn("E ", done.stdout)
         self.assertIn("figures/fracture.png", done.stdout)
+        self.assert_that_overwriting_clears("out")
 
     def test_fields_open_in_vtk_with_blocks_materials_stresses_and_contacts(self):
         from vtkmodules.vtkIOHDF import vtkHDFReader  # pylint: disable=import-outside-toplevel
@@ -276,6 +293,27 @@ class Running(UserTest):
         self.assertEqual((self.folder / "out/manifest.json").read_bytes(), before)
         self.assertEqual(self.pyroclast("run", deck, "--out", "out", "--overwrite", "--no-figures").returncode, 0)
 
+    def test_overwriting_keeps_and_names_what_no_run_writes(self):
+        deck = self.write(small_deck())
+        self.assertEqual(self.pyroclast("specimen", deck, "--out", "out", "--no-figures").returncode, 0)
+        notes = self.folder / "out" / "notes.txt"
+        notes.write_text("years of work")
+        done = self.pyroclast("specimen", deck, "--out", "out", "--no-figures", "--overwrite")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("kept            out/notes.txt", done.stdout)
+        self.assertEqual(notes.read_text(), "years of work")
+
+    def test_another_programs_folder_is_never_emptied(self):
+        deck = self.write(small_deck())
+        page = self.folder / "page"
+        page.mkdir()
+        (page / "manifest.json").write_text('{"name": "My page"}')
+        (page / "index.html").write_text("<html>")
+        done = self.pyroclast("run", deck, "--out", "page", "--overwrite")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("manifest.json", done.stderr)
+        self.assertEqual(self.files("page"), {"manifest.json", "index.html"})
+
     def test_a_folder_that_holds_no_run_is_never_emptied(self):
         deck = self.write(small_deck())
         precious = self.folder / "mine"
@@ -301,6 +339,7 @@ class Running(UserTest):
         self.assertLess(abs(facts["fraction_placed"] - 0.34), 0.01)
         for figure in ("morphology.png", "gradation.png"):
             self.assertGreater((self.folder / "out/figures" / figure).stat().st_size, 10_000)
+        self.assert_that_overwriting_clears("out")
 
     def test_new_writes_a_deck_that_is_valid_and_never_overwrites_one(self):
         self.assertEqual(self.pyroclast("new", "mine").returncode, 0)
@@ -355,6 +394,7 @@ class HeatAlone(UserTest):
         self.assertFalse(list((self.folder / "out/fields").glob("contacts*")))
         for figure in ("temperature_history.png", "temperature.png"):
             self.assertGreater((self.folder / "out/figures" / figure).stat().st_size, 10_000)
+        self.assert_that_overwriting_clears("out")
 
     def test_frames_open_in_vtk_with_the_temperature(self):
         from vtkmodules.vtkIOHDF import vtkHDFReader  # pylint: disable=import-outside-toplevel

@@ -108,6 +108,36 @@ TEST_P(EveryInstructionSet, GivesTheSameBits) {
     for (int threads : {1, 2, 3}) EXPECT_TRUE(run(set, threads) == expected) << name(set) << ' ' << threads;
 }
 
+// Promise: how blocks are bundled changes no force, so no displacement, velocity, damage or slip either. Sums
+// over the body add up in another order: 1e-12 of the largest is round-off of some thousand terms.
+TEST(AnyLayout, GivesTheSameBits) {
+  const Model<2> model = tessellated(150, 0.05, 0.05, 3);
+  auto parameters = quasi_static<2>();
+  parameters.damping_form = DampingForm::combined;
+  const auto run = [&](int fewest_blocks) {
+    parameters.layout.fewest_blocks = fewest_blocks;
+    return cracked(model, parameters, usable_instruction_sets().back(), true);
+  };
+  const auto expected = run(4);
+  ASSERT_GT(damaged_share(expected), 0.3);
+  for (const int fewest_blocks : {1, 6, 9}) {  // 9: every block is spread
+    const auto m = run(fewest_blocks);
+    EXPECT_TRUE(m.displacement() == expected.displacement()) << fewest_blocks;
+    EXPECT_TRUE(m.velocity() == expected.velocity()) << fewest_blocks;
+    EXPECT_TRUE(m.force() == expected.force()) << fewest_blocks;
+    for (int c = 0; c < model.contact_count(); ++c) {
+      const auto a = m.contact_history(c), b = expected.contact_history(c);
+      ASSERT_TRUE(a.tension_damage == b.tension_damage && a.shear_damage == b.shear_damage &&
+                  a.closure == b.closure && a.slip == b.slip && a.held_slip == b.held_slip)
+          << fewest_blocks << ", contact " << c;
+    }
+    const EnergyLedger a = m.energy(), b = expected.energy();
+    EXPECT_NEAR(a.loading, b.loading, 1e-12 * b.turnover());
+    EXPECT_NEAR(a.zones, b.zones, 1e-12 * b.turnover());
+    EXPECT_NEAR(a.local_damping, b.local_damping, 1e-12 * b.turnover());
+  }
+}
+
 TEST(EveryInstructionSet, GivesTheSameBitsInThreeDimensions) {
   const Model<3> model = five_tetrahedra();
   const auto run = [&](InstructionSet set) {

@@ -15,31 +15,10 @@
 #include "pyroclast/results/history_file.hpp"
 #include "pyroclast/results/run_folder.hpp"
 #include "pyroclast/results/text_file.hpp"
+#include "results/folder.hpp"
 
 namespace pyroclast {
 namespace {
-
-namespace fs = std::filesystem;
-
-class Results : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              (std::string("pyroclast_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  static std::string content(const fs::path& file) {
-    std::ifstream stream(file);
-    std::stringstream text;
-    text << stream.rdbuf();
-    return text.str();
-  }
-
-  fs::path folder_;
-};
 
 // Two of the example values of the standard, FIPS 180.
 TEST_F(Results, Sha256IsTheStandardDigest) {
@@ -142,18 +121,6 @@ TEST_F(Results, FieldOfHeatIsAFrameOfTheBlocksOnly) {
   std::sort(names.begin(), names.end());
   EXPECT_EQ(names,
             (std::vector<std::string>{"blocks.hdf.series", "blocks_0000.hdf", "frames.csv", "mesh.h5"}));
-}
-
-TEST_F(Results, ARunFolderIsRefusedWhenItExistsAndEmptiedOnlyIfItHoldsARun) {
-  const Manifest manifest{"deck.toml", "title = 1", 1, 1, "portable", "pyroclast"};
-  const RunFolder first(folder_ / "run", false, manifest);
-  EXPECT_EQ(content(folder_ / "run" / "deck.toml"), "title = 1");
-  EXPECT_THROW(RunFolder::check(folder_ / "run", false), Error);
-  EXPECT_NO_THROW(RunFolder::check(folder_ / "run", true));
-  write_text_file(folder_ / "precious.txt", "mine");
-  EXPECT_THROW(RunFolder::check(folder_, true), Error);
-  EXPECT_THROW(RunFolder::check(folder_ / "precious.txt", true), Error);
-  EXPECT_THROW(RunFolder::check(folder_ / "precious.txt" / "run", false), Error);
 }
 
 }  // namespace

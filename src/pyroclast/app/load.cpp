@@ -20,10 +20,12 @@ std::filesystem::path output_folder(const RunOptions& options) {
 }
 
 RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options) {
-  return {output_folder(options),
-          options.overwrite,
-          {loaded.deck.name(), loaded.deck.text(), loaded.c.specimen.seed, loaded.threads,
-           name(loaded.c.mechanics.instructions), options.command}};
+  RunFolder folder(output_folder(options), options.overwrite,
+                   {loaded.deck.name(), loaded.deck.text(), loaded.c.specimen.seed, loaded.threads,
+                    name(loaded.c.mechanics.instructions), options.command});
+  for (const auto& file : folder.foreign())
+    fmt::print("kept            {}, which no run writes\n", (folder.path() / file).string());
+  return folder;
 }
 
 std::string describe(const specimen::Specimen& s) {

@@ -38,8 +38,10 @@ BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& mat
   p.contacts.reserve(model.contacts.size());
   p.of_contact.reserve(model.contacts.size());
   for (int c = 0; c < model.contact_count(); ++c) {
+    const int interface = model.contacts[c].interface;
     p.of_contact.push_back(c);
-    p.contacts.push_back(materials.contacts[model.contacts[c].interface].at(field.contacts()[c]));
+    p.contacts.push_back(materials.contacts[interface].at(field.contacts()[c]));
+    validate(p.contacts.back(), model.interface_names[interface]);
   }
   return p;
 }

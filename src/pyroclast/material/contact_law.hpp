@@ -262,6 +262,10 @@ void update_normal(const Constants& c, const Real& opening, ContactHistory<Dim, 
 }
 
 /// Exact return of the elastic predictor to the softening envelope.
+///
+/// Where the envelope falls more steeply than K_s, as under pressures beyond f_cm where friction drops, no
+/// softening branch can be followed: the point falls to the residual line at once, and what that releases
+/// beyond G_f2 is booked as shear loss too.
 /// \param elastic  in and out: elastic part of the tangential jump, m
 /// \param held     in and out: its length
 template <int Dim, class Real, class Constants, class Truth, class Losses>
@@ -271,9 +275,10 @@ void slip(const Constants& c, const Truth& slips, const Real& excess, const Real
   const auto softens = slips & (h.shear_damage < 1.0) & (drop > 0.0);
   const Real remaining = 1.0 - h.shear_damage;
   const Real per_slip = drop * c.over_twice_mode_2_energy;  // 1 / s_u
+  const auto follows = drop * per_slip < c.shear_stiffness;
   const Real softening_slip = excess / (c.shear_stiffness - drop * per_slip);
   const Real damage = h.shear_damage + softening_slip * per_slip;
-  const auto partly = softens & (damage < 1.0);
+  const auto partly = softens & follows & (damage < 1.0);
   // all the way down to the residual line where it softens to the end
   Real length = select(softens, held - residual * c.shear_compliance, excess * c.shear_compliance);
   length = select(partly, softening_slip, length);
@@ -281,7 +286,8 @@ void slip(const Constants& c, const Truth& slips, const Real& excess, const Real
   if (any(softens)) {
     const Real new_damage = select(partly, damage, Real(1.0));
     const Real left = 1.0 - new_damage;
-    losses.shear += select(softens, c.mode_2_energy * (remaining - left) * (remaining + left), Real(0.0));
+    const Real energy = select(follows, Real(c.mode_2_energy), 0.5 * drop * drop * c.shear_compliance);
+    losses.shear += select(softens, energy * (remaining - left) * (remaining + left), Real(0.0));
     h.shear_damage = select(softens, new_damage, h.shear_damage);
     r.damaged = true;
   }
@@ -344,9 +350,9 @@ void update_shear(const Constants& c, const Tangential<Dim, Real>& jump, const R
 /// \param losses      the energy dissipated by this update is added to them
 /// \return traction and stored energy
 ///
-/// The result does not depend on how the way to the jump is cut into steps as long as it is monotone.
-/// Energies are closed forms of the history, not quadratures: with the temperature fixed, stored(new) -
-/// stored(old) + dissipated is the work along that way.
+/// Along one axis (opening alone, or sliding at a steady opening) the result does not depend on how the way
+/// to the jump is cut into steps. On combined ways friction is that of the pressure at the end of each step,
+/// so it converges with the number of steps. Energies are closed forms of the history, not quadratures.
 template <int Dim, class Real, class Number, class Sum>
 ContactResponse<Dim, Real> update_contact(const ContactConstantsOf<Number>& constants, const Real& opening,
                                           const Tangential<Dim, Real>& tangential,

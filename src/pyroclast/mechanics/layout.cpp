@@ -15,8 +15,6 @@ constexpr double kLayerThickness = 2.0;
 constexpr double kLayersToShare = 2.0;
 /// Faces that share lanes have their later bundles within as many of each other.
 constexpr int kBundlesToShare = 64;
-/// A bundle with fewer blocks would leave too many lanes idle; its blocks are spread.
-constexpr std::size_t kFewestBlocks = 4;
 
 /// Blocks in layers across the body's longest extent, along the others within a layer.
 template <int Dim>
@@ -77,7 +75,8 @@ bool is_fan(const std::vector<std::array<int, 3>>& zones) {
 template <int Dim>
 class LayoutBuilder {
  public:
-  LayoutBuilder(const Model<Dim>& model, Layout<Dim>& layout) : model_(model), layout_(layout) {}
+  LayoutBuilder(const Model<Dim>& model, const LayoutParameters& parameters, Layout<Dim>& layout)
+      : model_(model), parameters_(parameters), layout_(layout) {}
 
   void place_blocks() {
     const auto order = order_blocks(model_);
@@ -211,7 +210,7 @@ class LayoutBuilder {
   }
 
   void add_bundle(int shape, const std::vector<int>& blocks) {
-    if (blocks.size() < kFewestBlocks) {
+    if (static_cast<int>(blocks.size()) < parameters_.fewest_blocks) {
       for (int block : blocks) add_spread(block);
       return;
     }
@@ -295,6 +294,7 @@ class LayoutBuilder {
   }
 
   const Model<Dim>& model_;
+  const LayoutParameters parameters_;
   Layout<Dim>& layout_;
   std::map<std::pair<int, std::vector<std::array<int, Dim + 1>>>, int> shape_;
   std::vector<FaceRow<Dim>> faces_;
@@ -305,8 +305,8 @@ class LayoutBuilder {
 }  // namespace
 
 template <int Dim>
-Layout<Dim>::Layout(const Model<Dim>& model) {
-  LayoutBuilder<Dim> builder(model, *this);
+Layout<Dim>::Layout(const Model<Dim>& model, const LayoutParameters& parameters) {
+  LayoutBuilder<Dim> builder(model, parameters, *this);
   builder.place_blocks();
   builder.place_faces();
   builder.gather_contacts();

@@ -73,6 +73,11 @@ struct ActingContacts {
   std::uint32_t side_b = 0;         ///< bit per lane: the gridpoint is on side b
 };
 
+/// How a body is laid out. Speed depends on it; no force does.
+struct LayoutParameters {
+  int fewest_blocks = 4;  ///< a bundle of fewer leaves too many lanes idle: its blocks are spread
+};
+
 /// Where everything of a model stands while it moves.
 ///
 /// Blocks are ordered along the body in layers, so that what touches stands near in memory; among near ones
@@ -80,7 +85,7 @@ struct ActingContacts {
 /// sweep can take a row of faces and, soon after, move the bundles whose faces are all done.
 template <int Dim>
 struct Layout {
-  explicit Layout(const Model<Dim>& model);
+  explicit Layout(const Model<Dim>& model, const LayoutParameters& parameters = {});
 
   std::vector<Bundle> bundles;
   std::vector<std::vector<std::array<int, Dim + 1>>> shapes;  ///< zones of a block, as its own gridpoints

@@ -38,7 +38,7 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
       parameters_(parameters),
       properties_(std::move(properties)),
       geometry_(zone_geometry(model)),
-      layout_(std::make_unique<const Layout<Dim>>(model)),
+      layout_(std::make_unique<const Layout<Dim>>(model, parameters.layout)),
       step_(step_functions<Dim>(parameters.instructions)) {
   if (Dim != 2 && parameters.kinematics == Kinematics::finite)
     throw Error("kinematics = finite: contact frames that turn are made for 2D only; use small");

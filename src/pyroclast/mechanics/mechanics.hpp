@@ -30,6 +30,7 @@ struct MechanicsParameters {
   double time_step = 0.0;  ///< s; the common step of MassChoice::scaled, not used with real mass
   double safety = 0.0;     ///< fraction of the stable step that is taken, in (0, 1]
   InstructionSet instructions = usable_instruction_sets().back();
+  LayoutParameters layout;  ///< changes speed, not results
 };
 
 /// Where the energy of a body went since the start, J. Work in = everything else; the rest is the ledger's

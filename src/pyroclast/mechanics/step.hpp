@@ -585,15 +585,14 @@ class Step {
       }
       const Corners more = zone(x, u, zone_properties(s, index, bundle.first_zone_row + z),
                                 Real::Truth::from_bits((1U << used) - 1U));
-      // one lane after the other: zones of a row may share gridpoints
-      for (int n = 0; n <= Dim; ++n) {
-        alignas(64) double c[Dim][kLanes];
-        store(more[n], c);
-        for (int lane = 0; lane < used; ++lane) {
+      // Zone by zone, as in every other bundle: so no force depends on how blocks are bundled.
+      alignas(64) double c[Dim + 1][Dim][kLanes];
+      for (int n = 0; n <= Dim; ++n) store(more[n], c[n]);
+      for (int lane = 0; lane < used; ++lane)
+        for (int n = 0; n <= Dim; ++n) {
           const int slot = corner[n][lane] / offset_of<Dim>(1) - slot_of(bundle.first_row, 0);
-          for (int i = 0; i < Dim; ++i) scratch.sum[slot / kLanes].c[i][slot % kLanes] += c[i][lane];
+          for (int i = 0; i < Dim; ++i) scratch.sum[slot / kLanes].c[i][slot % kLanes] += c[n][i][lane];
         }
-      }
     }
   }
 
