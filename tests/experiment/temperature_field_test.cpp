@@ -188,11 +188,16 @@ TEST(TemperatureField, AnAdvanceThatIsEndedEarlyStandsAtTheLastCompletedStep) {
 
 // ---- Later exposures -------------------------------------------------------------------------------------
 
-/// A shipped case on a few blocks: three minutes of fire on one face, and what comes after them.
+/// A shipped case on a few blocks: three minutes of fire on one face, and what comes after them. A
+/// conductivity that rises only beyond the first fire's 502 °C makes the stable step one of the range.
 Case fire_and_then(const std::string& later) {
   std::string deck = with(shipped_case("fire_one_side"), "count = 1000", "count = 200");
   deck = with(deck, "temperature_range = [\"20 degC\", \"800 degC\"]", "");
   deck = with(deck, "duration = \"30 min\"", "duration = \"3 min\"");
+  for (int material = 0; material < 2; ++material)
+    deck = with(deck, "{ builtin = \"en1992_conductivity_lower\" }",
+                "{ table = [[\"20 degC\", \"1.5 W/(m K)\"], [\"505 degC\", \"1.2 W/(m K)\"], "
+                "[\"1200 degC\", \"20 W/(m K)\"]] }");
   return read_case(Deck::parse(with(deck, "[coupling]", later + "[coupling]"), "deck.toml"), ".");
 }
 
