@@ -19,10 +19,10 @@ constexpr int kZoneSteps = 200'000;  ///< about so many in one call of advance
 template <class Body>
 void time_steps(benchmark::State& state, const Specimen& specimen, Body& body, double velocity, int threads) {
   omp_set_num_threads(threads);
-  const auto& model = specimen.made.body.model;
+  const auto& model = specimen.model;
   const int steps = std::max(kLeastSteps, kZoneSteps / model.zone_count());
   for (auto _ : state) {
-    for (int g : specimen.made.body.top_support) body.prescribe_velocity(g, 1, -velocity);
+    for (int g : model.set("top_support")) body.prescribe_velocity(g, 1, -velocity);
     velocity = -velocity;
     body.advance(steps);
   }
