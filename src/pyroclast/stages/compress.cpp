@@ -26,7 +26,7 @@ constexpr double kFirstTouch = 0.1;
 constexpr double kNoGap = 1e-6;
 constexpr double kMostStepsPerLook = 1e9;
 /// A controlled velocity takes about this share of the steps of the lowest one (validation/adaptive.md).
-constexpr double kControlledShare = 0.25;
+constexpr double kControlledShare = 0.2;
 
 /// The velocity changes between `velocity` and `fastest_velocity`.
 VelocityControl read_velocity_control(const Section& s, const Compress::Keys& keys) {

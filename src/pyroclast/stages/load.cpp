@@ -88,8 +88,8 @@ StageReport Load::report(const History& history, RowRange rows, Outcome) const {
 Forecast Load::forecast(const Simulation& simulation, Foreseen&) const {
   const double ramp = keys_.ramp_time / simulation.mechanics().time_step();
   // along a slow ramp the body is near its rest already
-  const double rest = std::clamp(steps_to_rest(keys_.unbalanced_ratio) - ramp,
-                                 static_cast<double>(kStepsPerLook), static_cast<double>(keys_.most_steps));
+  const double rest = std::min(std::max(steps_to_rest(keys_.unbalanced_ratio) - ramp, 1.0 * kStepsPerLook),
+                               static_cast<double>(keys_.most_steps));
   return {.steps = ramp + rest, .looks = (ramp + rest) / kStepsPerLook, .frames = 1.0};
 }
 
