@@ -19,10 +19,10 @@ template <class Body>
 void time_steps(benchmark::State& state, Bodies& bodies, const Specimen& specimen, Body& body, int threads) {
   double velocity = bodies.velocity();
   bodies.team().resize(threads);
-  const auto& model = specimen.made.body.model;
+  const auto& model = specimen.model;
   const int steps = std::max(kLeastSteps, kZoneSteps / model.zone_count());
   for (auto _ : state) {
-    for (int g : specimen.made.body.top_support) body.prescribe_velocity(g, 1, -velocity);
+    for (int g : model.set("top_support")) body.prescribe_velocity(g, 1, -velocity);
     velocity = -velocity;
     body.advance(steps);
   }

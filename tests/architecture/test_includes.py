@@ -20,7 +20,6 @@ MODULES = [
     "simulation",
     "stages",
     "setup",
-    "experiment",
     "results",
     "app",
 ]

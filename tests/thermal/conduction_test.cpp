@@ -96,7 +96,7 @@ TEST(Conduction, CarriesALinearFieldExactlyThroughTetrahedra) {
   EXPECT_LT(linear_field_error<3>(model, {constant_material(1.6, 2e6)}, 0.1), round_off);
 }
 
-ConcreteModel concrete_model() {
+Model<2> concrete_model() {
   specimen::SpecimenParameters p;
   p.width = 0.15;
   p.height = 0.3;
@@ -117,7 +117,7 @@ ConcreteModel concrete_model() {
 TEST(Conduction, CarriesALinearFieldExactlyThroughASpecimenWithoutItsPlatens) {
   const auto body = concrete_model();
   const auto material = constant_material(1.6, 2e6);
-  EXPECT_LT(linear_field_error<2>(body.model, {material, material, std::nullopt}, 0.3), round_off);
+  EXPECT_LT(linear_field_error<2>(body, {material, material, std::nullopt}, 0.3), round_off);
 }
 
 /// L2 error of T = 3 + exp(-t) cos(pi x) cos(pi y / 2), conductivity 1 + T/10, heat capacity 2 - T/10, driven
@@ -478,16 +478,16 @@ TEST(Conduction, FindsTheOutlineInThreeDimensions) {
 TEST(Conduction, LeavesOutBlocksOfMaterialsThatDoNotConduct) {
   const auto body = concrete_model();
   const auto material = constant_material(1.6, 2e6);
-  const Conduction<2> heat(body.model, {material, material, std::nullopt}, parameters(eurocode_range, 50.0));
+  const Conduction<2> heat(body, {material, material, std::nullopt}, parameters(eurocode_range, 50.0));
   double area = 0.0;
   for (const auto& face : heat.outline()) area += face.area;
   EXPECT_NEAR(area, 2.0 * (0.15 + 0.3) * 0.15, 1e-12);  // the specimen's own outline
   const auto temperature = heat.gridpoint_temperatures(20.0);
-  for (int b = 0; b < body.model.block_count(); ++b)
-    for (int g = body.model.block_gridpoints[b]; g < body.model.block_gridpoints[b + 1]; ++g)
-      ASSERT_EQ(temperature[g], body.model.block_material[b] == platen_material ? 20.0 : 50.0);
+  for (int b = 0; b < body.block_count(); ++b)
+    for (int g = body.block_gridpoints[b]; g < body.block_gridpoints[b + 1]; ++g)
+      ASSERT_EQ(temperature[g], body.block_material[b] == platen_material ? 20.0 : 50.0);
 
-  const Conduction<2> all(body.model, {material, material, material}, parameters(eurocode_range, 50.0));
+  const Conduction<2> all(body, {material, material, material}, parameters(eurocode_range, 50.0));
   area = 0.0;
   for (const auto& face : all.outline()) area += face.area;
   EXPECT_NEAR(area, 2.0 * (0.15 + 0.3 + 2 * 0.03) * 0.15, 1e-12);  // with platens of 0.03 m

@@ -23,19 +23,19 @@ class Layout(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def run_with(self, fewest_blocks: int) -> dict:
+    def run_with(self, fewest_blocks: int, chunk_blocks: int) -> dict:
         options = types.SimpleNamespace(cases="small", only=CASES, changes=[], jobs=2)
-        out = self.folder / f"{fewest_blocks}.json"
-        with mock.patch.dict(os.environ, {"FEWEST_BLOCKS": str(fewest_blocks)}):
+        out = self.folder / f"{fewest_blocks}-{chunk_blocks}.json"
+        with mock.patch.dict(os.environ, {"FEWEST_BLOCKS": str(fewest_blocks), "CHUNK_BLOCKS": str(chunk_blocks)}):
             reference.make(options, out, os.environ["LAYOUT_RUN"])
         return reference.read(out)
 
-    def test_the_fewest_blocks_of_a_bundle_change_sums_only(self):
-        usual = self.run_with(4)
-        for fewest in (1, 9):
-            other = self.run_with(fewest)
+    def test_bundles_and_chunks_change_sums_only(self):
+        usual = self.run_with(4, 1024)
+        for fewest, chunk in ((1, 1024), (9, 1024), (4, 128), (4, 30), (4, 100000)):
+            other = self.run_with(fewest, chunk)
             for case in CASES:
-                with self.subTest(fewest=fewest, case=case):
+                with self.subTest(fewest=fewest, chunk=chunk, case=case):
                     self.assertEqual(reference.compare_case(usual, other, case)[0], [])
 
 

@@ -80,6 +80,12 @@ void Model<Dim>::join_faces(const std::vector<int>& a, const std::vector<int>& b
 }
 
 template <int Dim>
+const std::vector<int>& Model<Dim>::set(std::string_view name) const {
+  if (const auto found = sets.find(name); found != sets.end()) return found->second;
+  throw Error(fmt::format("the model has no set of gridpoints \"{}\"", name));
+}
+
+template <int Dim>
 int Model<Dim>::block_of(int gridpoint) const {
   const auto after = std::upper_bound(block_gridpoints.begin(), block_gridpoints.end(), gridpoint);
   return static_cast<int>(after - block_gridpoints.begin()) - 1;

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pyroclast/base/vec.hpp"
@@ -39,6 +41,11 @@ struct Model {
 
   std::vector<std::string> material_names;
   std::vector<std::string> interface_names;
+
+  std::map<std::string, std::vector<int>, std::less<>> sets;  ///< of gridpoints, by name
+
+  /// A set by its name. Throws Error naming it when the model has none.
+  const std::vector<int>& set(std::string_view name) const;
 
   int block_count() const { return static_cast<int>(block_material.size()); }
   int block_of(int gridpoint) const;
