@@ -14,7 +14,7 @@ namespace pyroclast {
 namespace {
 
 Model<2> small_concrete() {
-  return make_concrete_model(small_specimen(800), 0.01, 0.5).model;
+  return make_concrete_model(small_specimen(800), 0.01, 0.5);
 }
 
 // Every gridpoint, zone and contact has one place, and no two share one.

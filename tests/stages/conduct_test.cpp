@@ -132,8 +132,8 @@ TEST(Conduct, AmongOtherStagesItLeavesTheBodyAtRest) {
   EXPECT_EQ(history.values("step", exposed).front() - steps, history.values("cycles", exposed).front());
   EXPECT_EQ(r.last("heating_time_s"), 360.0);
   EXPECT_NEAR(r.last("temperature_max_degC"), 30.0, 0.1);
-  // a body that stays sound comes to the same state when it is exposed all the time, but for what motion is
-  // left
+  // so little heat leaves the body sound, but for single points; then it comes to the same state as when it
+  // is exposed all the time, but for what motion is left
   const Finished exposed_only(patient(deck(kSettle + kExpose + face)));
   EXPECT_NEAR(r.last("lateral_strain"), exposed_only.last("lateral_strain"), 1e-6);
   EXPECT_GT(exposed_only.last("lateral_strain"), 5e-5);

@@ -9,6 +9,7 @@
 #include "pyroclast/app/progress.hpp"
 #include "pyroclast/simulation/coupling.hpp"
 #include "pyroclast/simulation/run.hpp"
+#include "pyroclast/thermal/time_stages.hpp"
 
 namespace pyroclast::app {
 
@@ -18,6 +19,8 @@ constexpr int kWarmUpSteps = 10, kMostTimedSteps = 2000;
 constexpr double kSecondsOfTiming = 0.5;
 /// A frame takes about as long as so many rows of the history: it computes and writes every contact.
 constexpr double kRowsPerFrame = 4.0;
+/// Part of the largest change of a temperature that the heat solver's steps aim at, see Conduction.
+constexpr double kAimedChange = 0.8;
 
 template <class Action>
 double seconds_of(Action action) {
@@ -40,18 +43,20 @@ double seconds_per_exchange(Simulation& simulation) {
   });
 }
 
-/// Wall time per heating time, from the second half of what the solver does in a moment: at first it takes
-/// small steps.
-double seconds_per_heating_second(TemperatureField& field, double duration, double largest_change) {
-  const auto advance = [&](double until_elapsed) {
-    const auto start = Clock::now();
-    while (field.time() < duration && seconds_since(start) < until_elapsed)
-      field.advance(largest_change, duration);
-    return seconds_since(start);
-  };
-  const double first = advance(0.5 * kSecondsOfTiming), reached = field.time();
-  if (reached >= duration) return first / duration;
-  return advance(0.5 * kSecondsOfTiming) / (field.time() - reached);
+/// Evaluations of the heat solver: while temperatures change fast they bound its steps, later the longest
+/// step does. \param rise  of temperature that boundaries may bring about, K
+double expected_evaluations(const HeatConditions& heat, double stable_step, double rise, double duration) {
+  const double steps = rise / (kAimedChange * heat.largest_change) + duration / heat.largest_step;
+  return steps * fewest_stages(heat.scheme, std::max(1.0, duration / steps / stable_step));
+}
+
+/// Timed over what the solver does in a moment. Heats the field.
+double seconds_per_evaluation(TemperatureField& field, double duration, double largest_change) {
+  const auto start = Clock::now();
+  const std::int64_t before = field.conduction()->stages();
+  while (field.time() < duration && seconds_since(start) < kSecondsOfTiming)
+    field.advance(largest_change, duration);
+  return seconds_since(start) / static_cast<double>(field.conduction()->stages() - before);
 }
 
 Forecast forecast(const std::vector<std::unique_ptr<Stage>>& stages, const Simulation& simulation,
@@ -63,16 +68,20 @@ Forecast forecast(const std::vector<std::unique_ptr<Stage>>& stages, const Simul
 }
 
 /// What the forecast takes, s. Moves and heats the simulation.
-double seconds_of_run(const Forecast& forecast, Simulation& simulation, Run& run) {
+/// \param hottest  temperature that the run may come to, °C
+double seconds_of_run(const Forecast& forecast, double hottest, Simulation& simulation, Run& run) {
   double seconds = 0.0;
   if (simulation.moves()) seconds += forecast.steps * seconds_per_step(simulation.mechanics());
   const double row = seconds_of([&] { run.next(); });
   seconds += (forecast.looks + kRowsPerFrame * forecast.frames) * row;
   if (forecast.exchanges > 0.0) seconds += forecast.exchanges * seconds_per_exchange(simulation);
-  if (forecast.heating_duration > 0.0)
-    seconds +=
-        forecast.heating_duration * seconds_per_heating_second(simulation.field(), forecast.heating_duration,
-                                                               simulation.heat().largest_change);
+  if (forecast.heating_duration > 0.0) {
+    TemperatureField& field = simulation.field();
+    const HeatConditions& heat = simulation.heat();
+    const double evaluations = expected_evaluations(heat, field.conduction()->step_limit().step,
+                                                    hottest - field.mean(), forecast.heating_duration);
+    seconds += evaluations * seconds_per_evaluation(field, forecast.heating_duration, heat.largest_change);
+  }
   return seconds;
 }
 
@@ -118,7 +127,7 @@ int check(const RunOptions& options) {
 
   const Forecast expected = forecast(setup.stages, *simulation, setup.temperatures);
   Run run(*simulation, std::move(setup.stages));
-  const double seconds = seconds_of_run(expected, *simulation, run);
+  const double seconds = seconds_of_run(expected, setup.temperatures.upper, *simulation, run);
   fmt::print("run             {} stages", run.stages().size());
   if (expected.steps > 0.0) fmt::print(", about {:.2g} steps", expected.steps);
   if (expected.heating_duration > 0.0) fmt::print(", heat flows for {}", duration(expected.heating_duration));
