@@ -61,9 +61,8 @@ void start_compression(Body& body, const Specimen& specimen, double rate) {
 
 /// A fast compression to a strain, then on at the velocity of the deck.
 template <class Body>
-std::unique_ptr<Body> loaded(const Specimen& specimen, Loading loading, double velocity) {
-  auto body = std::make_unique<Body>(specimen.made.body.model, specimen.densities, specimen.properties,
-                                     specimen.parameters);
+std::unique_ptr<Body> loaded(std::unique_ptr<Body> body, const Specimen& specimen, Loading loading,
+                             double velocity) {
   for (int c : specimen.made.body.platen_contacts) body->break_contact(c);
   const bool cracked = loading == Loading::cracked;
   const int steps = cracked ? kCrackedSteps : kIntactSteps;
@@ -105,13 +104,23 @@ const Specimen& Bodies::specimen(int zones) {
 
 pyroclast::Mechanics<2>& Bodies::mechanics(int zones, Loading loading) {
   auto& kept = mechanics_[{zones, loading}];
-  if (!kept) kept = loaded<pyroclast::Mechanics<2>>(specimen(zones), loading, velocity_);
+  if (!kept) {
+    const Specimen& s = specimen(zones);
+    kept = loaded(std::make_unique<pyroclast::Mechanics<2>>(s.made.body.model, s.densities, s.properties,
+                                                            s.parameters, team_),
+                  s, loading, velocity_);
+  }
   return *kept;
 }
 
 textbook::Body& Bodies::textbook(int zones, Loading loading) {
   auto& kept = textbook_[{zones, loading}];
-  if (!kept) kept = loaded<textbook::Body>(specimen(zones), loading, velocity_);
+  if (!kept) {
+    const Specimen& s = specimen(zones);
+    kept =
+        loaded(std::make_unique<textbook::Body>(s.made.body.model, s.densities, s.properties, s.parameters),
+               s, loading, velocity_);
+  }
   return *kept;
 }
 

@@ -33,6 +33,8 @@ class Bodies {
   /// \param deck  of a compression between platens; the number of its blocks is replaced
   explicit Bodies(const std::filesystem::path& deck);
 
+  /// The threads of all bodies of the library.
+  pyroclast::Team& team() { return *team_; }
   /// Of the upper platen in the deck, m/s, downwards.
   double velocity() const { return velocity_; }
   /// The specimen with about so many zones.
@@ -47,6 +49,7 @@ class Bodies {
   using Kept = std::map<std::tuple<int, Loading>, std::unique_ptr<Body>>;
 
   pyroclast::Case case_;
+  std::shared_ptr<pyroclast::Team> team_ = std::make_shared<pyroclast::Team>();
   double velocity_;
   std::map<int, std::unique_ptr<Specimen>> specimens_;
   Kept<StepCost> costs_;

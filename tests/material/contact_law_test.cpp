@@ -33,7 +33,7 @@ struct Path {
       work += 0.5 * (before.normal_traction + response.normal_traction) * (next_opening - at_opening) +
               0.5 * dot(before.shear_traction + response.shear_traction, next - at_tangential);
       dissipated += response.dissipated;
-      accumulated_slip += response.slipped;
+      accumulated_slip += response.slip_path;
       at_opening = next_opening;
       at_tangential = next;
     }

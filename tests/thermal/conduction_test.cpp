@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -341,6 +343,98 @@ TEST(Conduction, RunsWithTheSameExchangeTimesHoweverTheyAreAskedFor) {
   EXPECT_EQ(often.heat.time(), 600.0);
   for (std::size_t node = 0; node < once.heat.temperature().size(); ++node)
     EXPECT_NEAR(often.heat.temperature()[node], once.heat.temperature()[node], 0.1);  // error in time
+}
+
+// ---- Batches ---------------------------------------------------------------------------------------------
+
+/// Ten minutes of fire, with a source and a prescribed temperature that jumps when the run begins, in steps
+/// towards each minute. A batch takes at most so many stages; after every so many batches what was begun is
+/// dropped.
+HeatState heat_in_batches(HeatScheme scheme, std::int64_t stages, int batches_to_drop) {
+  auto p = parameters(eurocode_range, 20.0);
+  p.scheme = scheme;
+  p.largest_change = 4.0;
+  Strip strip(p);
+  Conduction<2>& heat = strip.heat;
+  heat.apply(heat.faces(on_plane<2>(1, 0.0, 1e-9)),  // a jump, so that a step is taken back
+             Convection{Curve::constant(500.0),
+                        Curve::table({0.0, 315.0, 316.0, 600.0}, {20.0, 20.0, 900.0, 900.0}, time_axis())});
+  heat.set_source([](const Vec<2>& x, double t) { return 1e5 * x[0] * t; });
+  heat.prescribe_temperature(heat.faces(on_plane<2>(0, 0.06, 1e-9)),
+                             Curve::table({0.0, 600.0}, {60.0, 90.0}, time_axis()));
+  int batches = 0;
+  std::int64_t dropped = -1;
+  for (double minute = 60.0; minute <= 600.0; minute += 60.0)
+    while (heat.time() < minute) {
+      const HeatState before = heat.state();
+      std::int64_t left = stages;
+      const bool completed = heat.advance_step(minute, left);
+      EXPECT_GE(left, 0);
+      if (!completed) {
+        EXPECT_EQ(left, 0);
+        EXPECT_EQ(heat.state(), before);
+        if (++batches % batches_to_drop == 0 && heat.steps() != dropped) {
+          heat.drop_trial();
+          dropped = heat.steps();  // each step once: one that is always dropped comes to no end
+        }
+      }
+    }
+  return heat.state();
+}
+
+TEST(Conduction, IsBitwiseTheSameInBatchesOfAnySizeAndWhenABatchIsDropped) {
+  constexpr int never = std::numeric_limits<int>::max();
+  constexpr auto all = std::numeric_limits<std::int64_t>::max();
+  for (const auto scheme : {HeatScheme::euler, HeatScheme::super_time_stepping}) {
+    const HeatState whole = heat_in_batches(scheme, all, never);
+    EXPECT_GT(whole.retries, 0);
+    EXPECT_EQ(heat_in_batches(scheme, 1, never), whole);
+    EXPECT_EQ(heat_in_batches(scheme, 7, never), whole);
+    EXPECT_EQ(heat_in_batches(scheme, 2, 2), whole);
+  }
+}
+
+TEST(Conduction, ABatchOfALargeBodyByEulerIsShort) {
+  // A step towards the end of the wall of 5 m takes some 1e4 stages; a batch must not.
+  auto p = parameters({0.0, 100.0}, 20.0);
+  p.scheme = HeatScheme::euler;
+  p.largest_change = 100.0;
+  p.largest_step = 1e9;
+  const auto model = plane_body({.blocks = {100, 2}, .size = {5.0, 0.1}, .jitter = 0.3});
+  Conduction<2> heat(model, {constant_material(40.0, 2e6)}, p);
+  std::vector<double> start;
+  for (int g : heat.nodes().gridpoint) start.push_back(20.0 + 0.001 * model.position[g][0]);
+  heat.set_temperature(start);
+  constexpr double end = 1e8;
+  std::int64_t left = std::numeric_limits<std::int64_t>::max();
+  while (heat.state().next_step < 1e4 * heat.step_limit().step) heat.advance_step(end, left);
+  const HeatState before = heat.state();
+  constexpr std::int64_t batch = 1000;
+  for (int i = 0; i < 5; ++i) {
+    left = batch;
+    EXPECT_FALSE(heat.advance_step(end, left));
+    EXPECT_EQ(left, 0);
+    EXPECT_EQ(heat.state(), before);
+  }
+}
+
+TEST(Conduction, ABatchHasFewerStagesTheMoreZonesThereAre) {
+  const auto stages = [](int blocks) {
+    const auto model = plane_body({.blocks = {blocks, blocks}, .size = {0.1, 0.1}});
+    return Conduction<2>(model, {constant_material(1.0, 1e6)}, parameters({0.0, 100.0}, 20.0))
+        .stages_per_batch();
+  };
+  EXPECT_NEAR(static_cast<double>(stages(5)) / static_cast<double>(stages(50)), 100.0, 0.2);  // whole stages
+}
+
+TEST(Conduction, RefusesToStepTowardsAnotherTimeBeforeAStepIsCompleted) {
+  Strip strip(parameters(eurocode_range, 20.0));
+  std::int64_t left = 1;
+  ASSERT_FALSE(strip.heat.advance_step(60.0, left));
+  left = 1;
+  expect_in("step under way", message([&] { strip.heat.advance_step(120.0, left); }));
+  strip.heat.drop_trial();
+  EXPECT_FALSE(strip.heat.advance_step(120.0, left));
 }
 
 // ---- Outline and materials -------------------------------------------------------------------------------

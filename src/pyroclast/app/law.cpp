@@ -134,7 +134,7 @@ class Drive {
   void update(const PathPoint& point) {
     response_ = update_contact<2>(properties_, point.opening, {{point.slip}}, history_);
     total_ += response_.dissipated;
-    accumulated_slip_ += response_.slipped;
+    accumulated_slip_ += response_.slip_path;
   }
 
   const ContactMaterial& material_;

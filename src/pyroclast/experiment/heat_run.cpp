@@ -55,7 +55,12 @@ HeatOutcome run_heat(TemperatureField& field, const HeatCase& heat, const HeatRu
     const double steady_rate = may_be_steady ? *run.steady_rate : 0.0;
     double until = std::min({run.duration, next_frame, next_multiple(run.interval, field.time())});
     if (!may_be_steady) until = std::min(until, steady_from);
-    field.advance(run.change, until, steady_rate);
+    field.begin_advance(run.change, until, steady_rate);
+    while (!field.advance(field.conduction()->stages_per_batch()))
+      if (observer.stop_requested()) {
+        field.end_advance();
+        return HeatOutcome::interrupted;
+      }
     observer.look(field);
     if (field.conduction()->rate() < steady_rate)
       end = HeatOutcome::steady;

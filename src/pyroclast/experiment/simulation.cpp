@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <omp.h>
 #include <sys/resource.h>
 
 #include "pyroclast/base/error.hpp"
@@ -58,7 +59,8 @@ std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const Concre
                                              const MechanicsParameters<2>& parameters) {
   std::vector<double> densities;
   for (const auto& solid : materials.solids) densities.push_back(solid.density(kReferenceTemperature));
-  return std::make_unique<Mechanics<2>>(model, densities, properties_at(model, materials, field), parameters);
+  return std::make_unique<Mechanics<2>>(model, densities, properties_at(model, materials, field), parameters,
+                                        std::make_shared<Team>(omp_get_max_threads()));
 }
 
 }  // namespace

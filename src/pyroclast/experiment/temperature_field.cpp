@@ -55,8 +55,7 @@ TemperatureField::TemperatureField(const ConcreteModel& body, double temperature
 TemperatureField::TemperatureField(const ConcreteModel& body, std::unique_ptr<Conduction<2>> conduction)
     : TemperatureField(body) {
   conduction_ = std::move(conduction);
-  gridpoints_ = conduction_->gridpoint_temperatures(kReferenceTemperature);
-  update();
+  read_conduction();
 }
 
 void TemperatureField::set_uniform(double temperature) {
@@ -71,31 +70,52 @@ void TemperatureField::begin_exposure(const Interval& temperatures) {
 }
 
 double TemperatureField::advance(double largest_change, double until, double steady_rate) {
+  begin_advance(largest_change, until, steady_rate);
+  while (!advance(std::numeric_limits<std::int64_t>::max())) {
+  }
+  return time();
+}
+
+void TemperatureField::begin_advance(double largest_change, double until, double steady_rate) {
   if (is_uniform()) throw Error("a uniform temperature does not conduct heat; it is set");
   if (!(largest_change > 0.0))
     throw Error(fmt::format("the change of temperature to advance by is {} K, but it must be greater than 0",
                             largest_change));
+  end_advance();
   if (!(until >= time()))
     throw Error(fmt::format("the time to advance to is {} s, but it is {} s already", until, time()));
-  const std::vector<double> begin = conduction_->temperature();
-  double change = 0.0;
-  while (time() < until && change < kReached * largest_change) {
-    const double foreseen = fastest_ > 0.0 ? time() + (largest_change - change) / fastest_ : until;
-    step_towards(std::min(foreseen, until));
-    change = largest_difference(begin, conduction_->temperature());
-    if (conduction_->rate() < steady_rate) break;
-  }
-  gridpoints_ = conduction_->gridpoint_temperatures(kReferenceTemperature);
-  update();
-  return time();
+  advance_ = {true, largest_change, until, steady_rate, 0.0, conduction_->temperature()};
 }
 
-/// One step of the solver.
-void TemperatureField::step_towards(double end) {
-  const std::vector<double> before = conduction_->temperature();
-  const double start = time();
-  conduction_->advance_to_steady(kInfinity, end);  // any rate is below infinity: over after one step
-  fastest_ = largest_difference(before, conduction_->temperature()) / (time() - start);
+bool TemperatureField::advance(std::int64_t stages) {
+  if (!advance_.under_way) throw Error("no advance of the temperatures was begun");
+  if (stages < 1)
+    throw Error(fmt::format("the solver may take {} stages, but it must be allowed 1 or more", stages));
+  const auto& [under_way, largest_change, until, steady_rate, change, begin] = advance_;
+  while (conduction_->time() < until && change < kReached * largest_change) {
+    const double now = conduction_->time();
+    const double foreseen = fastest_ > 0.0 ? now + (largest_change - change) / fastest_ : until;
+    if (!conduction_->advance_step(foreseen > now ? std::min(foreseen, until) : until, stages)) return false;
+    fastest_ = conduction_->largest_change() / (conduction_->time() - now);
+    advance_.change = largest_difference(begin, conduction_->temperature());
+    if (conduction_->rate() < steady_rate) break;
+    if (stages == 0) return false;
+  }
+  end_advance();
+  return true;
+}
+
+void TemperatureField::end_advance() {
+  if (!advance_.under_way) return;
+  advance_.under_way = false;
+  conduction_->drop_trial();
+  read_conduction();
+}
+
+void TemperatureField::read_conduction() {
+  gridpoints_ = conduction_->gridpoint_temperatures(kReferenceTemperature);
+  time_ = conduction_->time();
+  update();
 }
 
 /// What follows from the gridpoints.

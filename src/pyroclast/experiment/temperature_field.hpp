@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -37,6 +38,15 @@ class TemperatureField {
   /// one stable step brings more. Throws Error for a uniform field.
   double advance(double largest_change, double until, double steady_rate = 0.0);
 
+  /// The same in batches: begin, then call `advance` until it returns true. Until then all that can be read
+  /// here is as it was at the beginning; where batches end changes no bit.
+  void begin_advance(double largest_change, double until, double steady_rate = 0.0);
+  /// Goes on by at most `stages` stages of the solver (Conduction::stages_per_batch), 1 or more. Returns
+  /// whether the advance is over.
+  bool advance(std::int64_t stages);
+  /// Ends an advance that is under way after the last step that the solver completed.
+  void end_advance();
+
   /// Temperatures, °C: of each gridpoint; of each zone, the mean of its gridpoints; of each contact point
   /// that of its gridpoints, at a platen that of the specimen.
   const std::vector<double>& gridpoints() const { return gridpoints_; }
@@ -48,16 +58,24 @@ class TemperatureField {
   double minimum() const { return minimum_; }
   double maximum() const { return maximum_; }
 
-  /// From the start of heating, s; 0 for a uniform field, which knows no time.
-  double time() const { return conduction_ ? conduction_->time() : 0.0; }
+  /// Of these temperatures from the start of heating, s; 0 for a uniform field, which knows no time.
+  double time() const { return time_; }
 
   /// The solver, with its ledger and rates; null for a uniform field.
   const Conduction<2>* conduction() const { return conduction_.get(); }
 
  private:
+  /// How far an advance has come.
+  struct Advance {
+    bool under_way = false;
+    double largest_change = 0.0, until = 0.0, steady_rate = 0.0;  ///< as asked for, K, s, K/s
+    double change = 0.0;                                          ///< so far, K
+    std::vector<double> begin;                                    ///< temperatures of the nodes then, °C
+  };
+
   explicit TemperatureField(const ConcreteModel& body);
 
-  void step_towards(double end);
+  void read_conduction();
   void update();
 
   const Model<2>& model_;
@@ -65,8 +83,12 @@ class TemperatureField {
   std::vector<int> specimen_gridpoints_;
   std::vector<int> contact_gridpoint_;   ///< of each contact, on the specimen's side
   std::vector<double> specimen_volume_;  ///< of each zone, m³; 0 in the platens
-  double fastest_ = 0.0;                 ///< rate of any temperature in the last step, K/s
 
+  // what a checkpoint holds, beside the state of the conduction
+  Advance advance_;
+  double fastest_ = 0.0;  ///< rate of any temperature in the last step, K/s
+
+  double time_ = 0.0;
   std::vector<double> gridpoints_, zones_, contacts_;
   double mean_ = 0.0, minimum_ = 0.0, maximum_ = 0.0;
 };

@@ -114,7 +114,7 @@ ConcreteModel make_concrete_model(const Specimen& specimen, std::optional<double
     const auto at = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
     return model.block_gridpoints[first_cell + cell] + static_cast<int>(at);
   };
-  const auto join_platen = [&](const std::array<int, 2>& face, const specimen::Edge& e,
+  const auto join_platen = [&](const std::vector<int>& face, const specimen::Edge& e,
                                const std::vector<int>& wall, const Platen& platen) {
     if (!platen_thickness) return;
     const auto opposite = [&](int vertex) { return platen.inner[place_on_wall(specimen, wall, vertex)]; };
@@ -122,7 +122,7 @@ ConcreteModel make_concrete_model(const Specimen& specimen, std::optional<double
   };
 
   for (const auto& e : specimen::edges(tessellation)) {
-    const std::array<int, 2> a{gridpoint(e.left, e.v0), gridpoint(e.left, e.v1)};
+    const std::vector<int> a{gridpoint(e.left, e.v0), gridpoint(e.left, e.v1)};
     if (e.right >= 0) {
       model.join_faces(a, {gridpoint(e.right, e.v0), gridpoint(e.right, e.v1)},
                        interface_between(specimen.constituent[e.left], specimen.constituent[e.right]));

@@ -24,10 +24,10 @@ void write_temperatures(Hdf5File& file, const TemperatureField& field) {
 
 void write_motion(Hdf5File& file, const Mechanics<2>& mechanics) {
   std::vector<float> displacement, stress;
-  displacement.reserve(3 * mechanics.displacement().size());
-  stress.reserve(3 * mechanics.stress().size());
-  for (const auto& u : mechanics.displacement()) append(displacement, u);
-  for (const auto& s : mechanics.stress())
+  displacement.reserve(3 * mechanics.displacements().size());
+  stress.reserve(3 * mechanics.stresses().size());
+  for (const auto& u : mechanics.displacements()) append(displacement, u);
+  for (const auto& s : mechanics.stresses())
     for (double component : s) stress.push_back(static_cast<float>(component));
   file.dataset("/VTKHDF/PointData/displacement", displacement, 3);
   file.dataset("/VTKHDF/CellData/stress", stress, 3);
@@ -39,7 +39,7 @@ void write_contacts(Hdf5File& file, const Mechanics<2>& mechanics) {
   displacement.reserve(6 * model.contacts.size());
   for (auto* values : {&tension, &shear, &opening, &slip, &normal_traction, &shear_traction, &closure})
     values->reserve(model.contacts.size());
-  const auto u = mechanics.displacement();
+  const auto u = mechanics.displacements();
   for (int i = 0; i < model.contact_count(); ++i) {
     const auto& c = model.contacts[i];
     const auto& partner = model.contacts[i ^ 1];  // the two contacts of an edge stand together

@@ -51,7 +51,7 @@ constexpr auto kColumns = std::to_array<Column>({
     {"mean_opening_m", [](const Sample& s) { return s.cracks.mean_opening; }},
     {"energy_loading_J", [](const Sample& s) { return s.energy.loading; }},
     {"energy_gravity_J", [](const Sample& s) { return s.energy.gravity; }},
-    {"energy_heat_J", [](const Sample& s) { return s.energy.heat; }},
+    {"energy_heat_J", [](const Sample& s) { return s.energy.property_change; }},
     {"energy_mass_scaling_J", [](const Sample& s) { return s.energy.mass_scaling; }},
     {"energy_zones_J", [](const Sample& s) { return s.energy.zones; }},
     {"energy_contacts_J", [](const Sample& s) { return s.energy.contacts; }},

@@ -135,7 +135,7 @@ void write_summary(const std::filesystem::path& path, const Summary& s, const sp
   const EnergyLedger& e = s.last.energy;
   json["energy_J"] = {{"loading", e.loading},
                       {"gravity", e.gravity},
-                      {"heat", e.heat},
+                      {"heat", e.property_change},
                       {"mass_scaling", e.mass_scaling},
                       {"elastic_zones", e.zones},
                       {"elastic_contacts", e.contacts},
