@@ -21,14 +21,16 @@ def row_of(folder: pathlib.Path) -> dict:
     """What a run came to; what it has not is empty."""
     summary = json.loads((folder / "summary.json").read_text())
     kind, variant, *level, seed = folder.name.split("-")
-    row = dict.fromkeys(COLUMNS, "") | {"kind": kind, "variant": variant, "level": level[0] if level else "", "seed": seed,
+    row = dict.fromkeys(COLUMNS, "") | {"kind": kind, "variant": variant, "level": level[0] if level else "",
+                                        "seed": seed,
                                         "steps": summary["steps"], "wall_time_s": round(summary["wall_time_s"])}
     if kind == "compression":
         result = Run(folder).compression
         return row | {c: result[c] for c in ("E_GPa", "f_c_MPa", "strain_at_peak", "quasi_static")}
     heating = Run(folder).heating
     strain, critical = strain_at(Run(folder), 500), heating["critical_temperature_degC"]
-    return row | {"strain_500": "" if math.isnan(strain) else strain, "not_converged": heating["exchanges_not_converged"],
+    return row | {"strain_500": "" if math.isnan(strain) else strain,
+                  "not_converged": heating["exchanges_not_converged"],
                   "critical_degC": "" if critical is None else critical}
 
 

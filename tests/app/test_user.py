@@ -341,7 +341,8 @@ class Running(UserTest):
             self.assertEqual(history[-1].count(","), history[0].count(","))
 
     def test_a_run_whose_next_row_is_far_away_is_stopped_all_the_same(self):
-        deck = self.write(small_deck(stop_strain="stop_strain = 0.5", history_strain="history_strain = 0.4"), "far.toml")
+        far = small_deck(stop_strain="stop_strain = 0.5", history_strain="history_strain = 0.4")
+        deck = self.write(far, "far.toml")
         settled = self.interrupt(self.write(small_deck(stop_strain="stop_strain = 0.5")), rows=30)
         rows = settled["stages"][0]["results"]["steps"] // 200 + 1  # a row each 200 steps, and that at the start
         summary = self.interrupt(deck, rows=rows)

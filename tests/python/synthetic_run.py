@@ -247,7 +247,8 @@ def _heated_row(heating: Heating, stage: int, temperature: float, exchange: int,
     failing = exchange > 0 and temperature == heating.critical
     converged = not failing and exchange not in heating.unconverged
     row = {
-        "stage": stage, "strain": strain, "specimen_strain": strain, "stress_MPa": stress, "stress_top_MPa": 1.01 * stress,
+        "stage": stage, "strain": strain, "specimen_strain": strain, "stress_MPa": stress,
+        "stress_top_MPa": 1.01 * stress,
         "stress_bottom_MPa": 0.99 * stress, "lateral_strain": 0.3 * abs(strain) + 0.012 * share,
         "temperature_degC": temperature, "temperature_min_degC": temperature - 0.5 * heating.spread * share,
         "temperature_max_degC": temperature + 0.5 * heating.spread * share, "exchange": exchange,
@@ -284,7 +285,8 @@ def write_conduction(folder: Path) -> Section:
     """A run of heat conduction alone, its sides warming to 400 degC, with two probes."""
     (folder / "fields").mkdir(parents=True)
     section = hexagonal_section(4, 5)
-    rows = [{"stage": 0, "heating_time_s": 60.0 * i, "temperature_degC": 20.0 + 5.0 * i, "temperature_min_degC": 20.0 + 1.0 * i,
+    rows = [{"stage": 0, "heating_time_s": 60.0 * i, "temperature_degC": 20.0 + 5.0 * i,
+             "temperature_min_degC": 20.0 + 1.0 * i,
              "temperature_max_degC": 20.0 + 19.0 * i, "heat_stored_J": 1e4 * i, "probe_a_degC": 20.0 + 2.0 * i,
              "probe_b_degC": 20.0 + 9.0 * i} for i in range(21)]
     _write_csv(folder / "history.csv", list(rows[0]), [list(row.values()) for row in rows])

@@ -46,7 +46,7 @@ int command_line(int argc, char** argv) {
 
   app::RunOptions options;
   for (int i = 0; i < argc; ++i) options.command += fmt::format("{}{}", i == 0 ? "" : " ", argv[i]);
-  auto* run = cli.add_subcommand("run", "Run the experiment of a deck");
+  auto* run = cli.add_subcommand("run", "Run a deck");
   auto* check = cli.add_subcommand("check", "Check a deck and tell what its run will be, without running it");
   auto* specimen = cli.add_subcommand("specimen", "Make only the specimen of a deck, with its pictures");
   for (auto* command : {run, check, specimen}) {

@@ -87,7 +87,7 @@ Motion measure_motion(const Mechanics<2>& mechanics) {
   return {mechanics.unbalanced_ratio(), mechanics.largest_relative_jump(), mechanics.energy()};
 }
 
-constexpr auto kEquilibrium = std::to_array<ColumnOf<Motion>>({
+constexpr auto kMotion = std::to_array<ColumnOf<Motion>>({
     {"unbalanced_ratio", "1", [](const Motion& m) { return m.unbalanced_ratio; }},
     {"kinetic_over_strain", "1",
      [](const Motion& m) {
@@ -95,24 +95,20 @@ constexpr auto kEquilibrium = std::to_array<ColumnOf<Motion>>({
        return elastic > 0.0 ? std::abs(m.energy.kinetic) / elastic : 0.0;
      }},
     {"largest_jump", "1", [](const Motion& m) { return m.largest_jump; }},
-});
-
-using E = EnergyLedger;
-constexpr auto kEnergy = std::to_array<ColumnOf<E>>({
-    {"energy_loading_J", "J", [](const E& e) { return e.loading; }},
-    {"energy_gravity_J", "J", [](const E& e) { return e.gravity; }},
-    {"energy_property_change_J", "J", [](const E& e) { return e.property_change; }},
-    {"energy_mass_scaling_J", "J", [](const E& e) { return e.mass_scaling; }},
-    {"energy_zones_J", "J", [](const E& e) { return e.zones; }},
-    {"energy_contacts_J", "J", [](const E& e) { return e.contacts; }},
-    {"energy_kinetic_J", "J", [](const E& e) { return e.kinetic; }},
-    {"dissipated_tension_J", "J", [](const E& e) { return e.dissipated.tension; }},
-    {"dissipated_shear_J", "J", [](const E& e) { return e.dissipated.shear; }},
-    {"dissipated_friction_J", "J", [](const E& e) { return e.dissipated.friction; }},
-    {"dissipated_compression_J", "J", [](const E& e) { return e.dissipated.compression; }},
-    {"energy_local_damping_J", "J", [](const E& e) { return e.local_damping; }},
-    {"energy_viscous_damping_J", "J", [](const E& e) { return e.viscous_damping; }},
-    {"energy_error_J", "J", [](const E& e) { return e.error(); }},
+    {"energy_loading_J", "J", [](const Motion& m) { return m.energy.loading; }},
+    {"energy_gravity_J", "J", [](const Motion& m) { return m.energy.gravity; }},
+    {"energy_property_change_J", "J", [](const Motion& m) { return m.energy.property_change; }},
+    {"energy_mass_scaling_J", "J", [](const Motion& m) { return m.energy.mass_scaling; }},
+    {"energy_zones_J", "J", [](const Motion& m) { return m.energy.zones; }},
+    {"energy_contacts_J", "J", [](const Motion& m) { return m.energy.contacts; }},
+    {"energy_kinetic_J", "J", [](const Motion& m) { return m.energy.kinetic; }},
+    {"dissipated_tension_J", "J", [](const Motion& m) { return m.energy.dissipated.tension; }},
+    {"dissipated_shear_J", "J", [](const Motion& m) { return m.energy.dissipated.shear; }},
+    {"dissipated_friction_J", "J", [](const Motion& m) { return m.energy.dissipated.friction; }},
+    {"dissipated_compression_J", "J", [](const Motion& m) { return m.energy.dissipated.compression; }},
+    {"energy_local_damping_J", "J", [](const Motion& m) { return m.energy.local_damping; }},
+    {"energy_viscous_damping_J", "J", [](const Motion& m) { return m.energy.viscous_damping; }},
+    {"energy_error_J", "J", [](const Motion& m) { return m.energy.error(); }},
 });
 
 /// What is measured of a computed field.
@@ -158,11 +154,9 @@ std::vector<Gauge> motion_gauges(const Simulation& simulation) {
       make_gauge(
           kPress, [](const Simulation& s) -> const Press<2>& { return s.press(); }, true),
       make_gauge(
-          kEquilibrium, [](const Simulation& s) { return measure_motion(s.mechanics()); }, true),
+          kMotion, [](const Simulation& s) { return measure_motion(s.mechanics()); }, true),
       make_gauge(
           kCracks, [](const Simulation& s) { return count_cracks(s.mechanics()); }, true),
-      make_gauge(
-          kEnergy, [](const Simulation& s) { return s.mechanics().energy(); }, true),
   };
 }
 
