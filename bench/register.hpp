@@ -15,6 +15,6 @@ void register_kernels(Bodies& bodies);
 /// The specimen of cases/compression.toml, 5,000 blocks.
 inline constexpr int kCaseZones = 27'000;
 /// Numbers of zones whose steps are timed.
-inline constexpr int kZones[] = {1'000, 10'000, kCaseZones, 100'000, 1'000'000};
+inline constexpr int kZones[] = {1'000, 5'000, 10'000, kCaseZones, 100'000, 1'000'000};
 
 }  // namespace bench

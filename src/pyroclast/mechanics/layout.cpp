@@ -13,22 +13,14 @@ namespace {
 
 /// Layers are this many blocks thick.
 constexpr double kLayerThickness = 2.0;
-/// Blocks that share lanes stand within as many layers of each other.
-constexpr double kLayersToShare = 2.0;
 /// Faces of a chunk that share lanes have their later bundles within as many of each other.
 constexpr int kBundlesToShare = 64;
 /// A block with more zones, such as a platen, stands in a chunk of its own kind.
 constexpr int kZonesOfALargeBlock = 64;
 
-/// Blocks in layers across a chunk's longest extent, along the others within a layer.
+/// Blocks of a chunk in layers across its longest extent, along the others within a layer.
 template <int Dim>
-struct BlockOrder {
-  std::vector<int> blocks;
-  int per_layer = 1;
-};
-
-template <int Dim>
-BlockOrder<Dim> order_blocks(const Model<Dim>& model, int first_block, int last_block) {
+std::vector<int> order_blocks(const Model<Dim>& model, int first_block, int last_block) {
   const int count = last_block - first_block;
   std::vector<Vec<Dim>> centre(count);
   Vec<Dim> low, high;
@@ -56,17 +48,14 @@ BlockOrder<Dim> order_blocks(const Model<Dim>& model, int first_block, int last_
   const auto layer = [&](int i, int d) {
     return std::floor((centre[i][axis[d]] - low[axis[d]]) / (kLayerThickness * size));
   };
-  BlockOrder<Dim> order;
-  order.blocks.resize(count);
-  std::iota(order.blocks.begin(), order.blocks.end(), 0);
-  std::stable_sort(order.blocks.begin(), order.blocks.end(), [&](int a, int b) {
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     for (int d = 0; d + 1 < Dim; ++d)
       if (layer(a, d) != layer(b, d)) return layer(a, d) < layer(b, d);
     return centre[a][axis[Dim - 1]] < centre[b][axis[Dim - 1]];
   });
-  for (int& block : order.blocks) block += first_block;
-  const double layers = 1.0 + (high[axis[0]] - low[axis[0]]) / (kLayerThickness * size);
-  order.per_layer = std::max(1, static_cast<int>(count / layers));
+  for (int& block : order) block += first_block;
   return order;
 }
 
@@ -208,34 +197,19 @@ class LayoutBuilder {
 
   int bundle_count() const { return static_cast<int>(bundles_.size()); }
 
+  /// Blocks with the same zones share lanes, whatever their distance: a chunk fits into a cache.
   void place_chunk(int first_block, int last_block) {
-    const auto order = order_blocks(model_, first_block, last_block);
-    const int span = static_cast<int>(kLayersToShare * order.per_layer) + kLanes;
-    struct Waiting {
-      std::vector<int> blocks;
-      int since = 0;
-    };
-    std::map<int, Waiting> waiting;  // by shape
-    for (int place = 0; place < static_cast<int>(order.blocks.size()); ++place) {
-      const int block = order.blocks[place];
+    std::map<int, std::vector<int>> waiting;  // by shape
+    for (int block : order_blocks(model_, first_block, last_block)) {
       const int shape = shape_of(block);
       auto& group = waiting[shape];
-      if (group.blocks.empty()) group.since = place;
-      group.blocks.push_back(block);
-      if (group.blocks.size() == kLanes) {
-        add_bundle(shape, group.blocks);
-        waiting.erase(shape);
-      }
-      for (auto it = waiting.begin(); it != waiting.end();) {
-        if (place - it->second.since < span) {
-          ++it;
-          continue;
-        }
-        add_bundle(it->first, it->second.blocks);
-        it = waiting.erase(it);
-      }
+      group.push_back(block);
+      if (group.size() < kLanes) continue;
+      add_bundle(shape, group);
+      group.clear();
     }
-    for (const auto& [shape, group] : waiting) add_bundle(shape, group.blocks);
+    for (const auto& [shape, group] : waiting)
+      if (!group.empty()) add_bundle(shape, group);
   }
 
   int shape_of(int block) {

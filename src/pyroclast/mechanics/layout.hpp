@@ -191,7 +191,7 @@ struct LayoutParameters {
 };
 
 /// Blocks are taken in the order of the model, chunk by chunk. Within a chunk they are ordered in layers, so
-/// that what touches stands near in memory; among near ones those with the same zones share lanes. A face
+/// that what touches stands near in memory; those with the same zones share lanes. A face
 /// between two chunks belongs to the earlier one. In a chunk rows of such faces come first, then those of its
 /// own faces by the later of their two bundles, so that one sweep can take a row of faces and, soon after,
 /// move the bundles whose faces are all done.
