@@ -364,6 +364,7 @@ class LayoutBuilder {
       if (f.chunk == f.other)
         reached = std::max(reached, bundles_[f.later_bundle].first_row + bundles_[f.later_bundle].rows);
     reached_by_row_.push_back(reached);
+    between_chunks_.push_back(faces.front().chunk != faces.front().other);
     faces_of_row_.push_back(faces);
   }
 
@@ -388,6 +389,8 @@ class LayoutBuilder {
     layout_.first_point = FlatArray<int>(first_point_);
     layout_.points = FlatArray<PointRow>(points_);
     layout_.rows_reached = FlatArray<int>(rows_reached);
+    layout_.between_chunks = FlatArray<bool>(between_chunks_.size());
+    std::copy(between_chunks_.begin(), between_chunks_.end(), layout_.between_chunks.begin());
     layout_.face_row_of_point = FlatArray<int>(face_row_of_point_);
     layout_.contacts_by_chunk = FlatArray<int>(contacts_by_chunk_);
   }
@@ -406,6 +409,7 @@ class LayoutBuilder {
   std::vector<FaceRow<Dim>> faces_;
   std::vector<PointRow> points_;
   std::vector<int> first_point_, face_row_of_point_, reached_by_row_, contacts_by_chunk_;
+  std::vector<bool> between_chunks_;  // by row of faces
   std::vector<std::vector<FaceToPlace>> faces_of_row_;
 };
 

@@ -139,6 +139,7 @@ struct LayoutArrays {
   /// Of each row of faces, and one more: number of leading rows of gridpoints that the rows of faces before
   /// it read, as far as they are of its own chunk.
   Array<int> rows_reached;
+  Array<bool> between_chunks;            ///< of each row of faces: they join two chunks
   Array<ContactsOfRow> contacts_of_row;  ///< of each row of gridpoints
   Array<ActingContacts> acting;
 
@@ -157,6 +158,7 @@ struct LayoutArrays {
     f(ArrayInfo{"first_point", Dim == 2 ? Touched::none : Touched::all}, l.first_point...);
     f(ArrayInfo{"points", Touched::all}, l.points...);
     f(ArrayInfo{"rows_reached", Touched::all}, l.rows_reached...);
+    f(ArrayInfo{"between_chunks", Touched::all}, l.between_chunks...);
     f(ArrayInfo{"contacts_of_row", Touched::all}, l.contacts_of_row...);
     f(ArrayInfo{"acting", Touched::all}, l.acting...);
     f(ArrayInfo{"gridpoint_slot"}, l.gridpoint_slot...);

@@ -78,6 +78,9 @@ struct Rows {
 
   static constexpr int kRowsAhead = 16;     ///< of gridpoints
   static constexpr int kFaceRowsAhead = 8;  ///< about as far
+  /// Of faces between chunks, whose gridpoints stand anywhere: they are asked for one by one, once the row of
+  /// points itself has come.
+  static constexpr int kScatteredRowsAhead = 4;
 
   static void fetch(const void* begin, std::size_t bytes) {
     for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(begin) + i);
@@ -90,9 +93,20 @@ struct Rows {
     const auto ahead = static_cast<std::size_t>(slot_of(row + kRowsAhead, 0));
     if (ahead < numbers.size()) fetch(&numbers[ahead], kLanes * sizeof(double));
   }
+  static void fetch_scattered(const State<Dim>& s, int row) {
+    for (int point = s.layout.first_point_of(row); point < s.layout.first_point_of(row + 1); ++point)
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const PointRow& points = s.layout.points[point];
+        __builtin_prefetch(&s.displacement[points.a[lane] / offset_of<Dim>(1)]);
+        __builtin_prefetch(&s.displacement[points.b[lane] / offset_of<Dim>(1)]);
+      }
+  }
   /// What a row of faces needs, and the displacements that none before it reads.
   static void fetch_faces_ahead(const State<Dim>& s, int row) {
     const auto& layout = s.layout;
+    if (const int next = row + kScatteredRowsAhead;
+        next < static_cast<int>(layout.faces.size()) && layout.between_chunks[next])
+      fetch_scattered(s, next);
     const int ahead = row + kFaceRowsAhead;
     if (ahead >= static_cast<int>(layout.faces.size())) return;
     const int first = layout.first_point_of(ahead), last = layout.first_point_of(ahead + 1);
