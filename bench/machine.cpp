@@ -7,8 +7,8 @@
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <omp.h>
 
+#include "pyroclast/base/team.hpp"
 #include "register.hpp"
 
 namespace bench {
@@ -47,12 +47,13 @@ void triad(benchmark::State& state, std::size_t bytes, int threads) {
   const std::size_t n = bytes / (3 * sizeof(double));
   const auto passes = static_cast<int>(std::max<std::size_t>(1, kBytesPerPass / bytes));
   std::vector<std::unique_ptr<Arrays>> parts(static_cast<std::size_t>(threads));
-#pragma omp parallel num_threads(threads)
-  parts[static_cast<std::size_t>(omp_get_thread_num())] = std::make_unique<Arrays>(n);
+  pyroclast::Team team(threads);
+  // each thread touches its own first
+  team.run(threads,
+           [&](int thread) { parts[static_cast<std::size_t>(thread)] = std::make_unique<Arrays>(n); });
   for (auto _ : state) {
-#pragma omp parallel num_threads(threads)
-    {
-      const Arrays& part = *parts[static_cast<std::size_t>(omp_get_thread_num())];
+    team.run(threads, [&](int thread) {
+      const Arrays& part = *parts[static_cast<std::size_t>(thread)];
       double* __restrict a = part.a.get();
       const double* __restrict b = part.b.get();
       const double* __restrict c = part.c.get();
@@ -60,7 +61,7 @@ void triad(benchmark::State& state, std::size_t bytes, int threads) {
         for (std::size_t i = 0; i < n; ++i) a[i] = b[i] + 3.0 * c[i];
         keep(a);
       }
-    }
+    });
   }
   const double named = 3.0 * sizeof(double) * static_cast<double>(n) * passes * threads;
   state.counters["bytes_per_s"] =
@@ -94,15 +95,15 @@ Lanes multiply_add(int times, Lanes factor, Lanes summand) {
 void peak(benchmark::State& state, int threads) {
   constexpr int kTimes = 100'000;
   double factor = 0.999, summand = 1e-3;
+  pyroclast::Team team(threads);
   for (auto _ : state) {
-#pragma omp parallel num_threads(threads)
-    {
+    team.run(threads, [&](int) {
       benchmark::DoNotOptimize(factor);
       benchmark::DoNotOptimize(summand);
       const Lanes result = multiply_add(kTimes, Lanes{} + factor, Lanes{} + summand);
       double first = result[0];
       benchmark::DoNotOptimize(first);
-    }
+    });
   }
   const double flops = 2.0 * kLanes * kChains * kTimes * threads;
   state.counters["flops_per_s"] =

@@ -1,5 +1,5 @@
 # Every dependency is a Debian package; docs/dependencies.md gives the reason for each.
-find_package(OpenMP REQUIRED)
+find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(CLI11 REQUIRED)

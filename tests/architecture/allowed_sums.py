@@ -22,6 +22,7 @@ ALLOWED = [
     Allowed("stages/exchange_stage.cpp", "exchange_response()", "over the rows of a history"),
     Allowed("stages/expose.cpp", "Expose::foreseen_change()", "over the stages of a deck"),
     Allowed("thermal/time_stages.cpp", "set_weights()", "over the stages of one time step"),
+    Allowed("thermal/heat_boundary.cpp", "part(sum, c) += of_entry", "over the boundary conditions of a deck"),
     Allowed("thermal/heat_material.cpp", "HeatTable::extend()", "over the knots of a table"),
     # Before there is a body
     Allowed("specimen/*", "", _GEOMETRY),
@@ -72,17 +73,4 @@ ALLOWED = [
     Allowed("mechanics/step/*", "total += force(slot)", _TIE),
     Allowed("mechanics/step/*", "mass += s.time_step / s.step_over_mass[slot]", _TIE),
     Allowed("mechanics/mechanics.cpp", "Mechanics::tie()", _TIE),
-]
-
-# Sums over the body that must become a chunked_sum. No line may be added here.
-NOT_YET = [
-    Allowed("*temperature_field.cpp", "TemperatureField::update()", "the mean temperature"),
-    Allowed("thermal/conduction.cpp", "Conduction::set_temperature()", "the heat that is stored"),
-    Allowed("thermal/conduction.cpp", "Conduction::ledger()", "the heat that is stored"),
-    Allowed("thermal/conduction.cpp", "Conduction::compute_inflow()", "heat of the source and of prescribed nodes"),
-    Allowed("thermal/conduction.cpp", "heat.prescribed +=", "heat of prescribed nodes"),
-    Allowed("thermal/conduction.cpp", "Conduction::hold_prescribed()", "heat of prescribed nodes"),
-    Allowed("thermal/conduction.cpp", "squares += volume_[node]", "the mean rate of heating"),
-    Allowed("thermal/conduction.cpp", "volume += volume_[node]", "the mean rate of heating"),
-    Allowed("thermal/heat_boundary.cpp", "of_entry", "heat through the faces of one entry"),
 ]

@@ -3,7 +3,7 @@
 import unittest
 
 import sums
-from allowed_sums import ALLOWED, NOT_YET
+from allowed_sums import ALLOWED
 from sums import Allowed, Finding
 
 
@@ -19,12 +19,12 @@ class Library(unittest.TestCase):
         cls.found = sums.findings(sums.ROOT)
 
     def test_sums_over_a_body_are_taken_by_chunked_sum(self):
-        self.assertEqual(sums.faults(self.found, ALLOWED + NOT_YET), [])
+        self.assertEqual(sums.faults(self.found, ALLOWED), [])
 
     def test_each_entry_has_its_own_reason_to_be(self):
-        entries = [(a.file, a.at) for a in ALLOWED + NOT_YET]
+        entries = [(a.file, a.at) for a in ALLOWED]
         self.assertEqual(sorted(set(entries)), sorted(entries))
-        self.assertEqual([a for a in ALLOWED + NOT_YET if not a.reason], [])
+        self.assertEqual([a for a in ALLOWED if not a.reason], [])
 
 
 class Found(unittest.TestCase):
@@ -50,7 +50,6 @@ class Found(unittest.TestCase):
         self.found("const double s = std::accumulate(a.begin(), a.end(), 0.0);")
         self.found("const double s = std::transform_reduce(a.begin(), a.end(), b.begin(), 0.0);")
         self.found("std::atomic<double> s; s.fetch_add(x);")
-        self.assertEqual(lines_of("void f() {\n#pragma omp parallel for reduction(+ : s)\n}\n"), [2])
 
     def test_lambdas(self):
         self.found("double s = 0.0; for_each_zone([&](int z) { s += volume[z]; });")

@@ -40,5 +40,18 @@ TEST(ChunkedSum, OfNothingIsZero) {
   EXPECT_EQ(chunked_sum(std::vector<int>{0, 0}, one), 0.0);
 }
 
+TEST(ChunkBegins, CutAListEvenly) {
+  EXPECT_EQ(chunk_begins(0), std::vector<int>{0});
+  EXPECT_EQ(chunk_begins(kPlacesPerChunk), (std::vector<int>{0, kPlacesPerChunk}));
+  EXPECT_EQ(chunk_begins(2 * kPlacesPerChunk + 1),
+            (std::vector<int>{0, kPlacesPerChunk, 2 * kPlacesPerChunk, 2 * kPlacesPerChunk + 1}));
+}
+
+TEST(ChunkBegins, CutAListOfSomePlacesWhereThatOfAllIs) {
+  const std::vector<int> places{3, kPlacesPerChunk - 1, kPlacesPerChunk, 3 * kPlacesPerChunk};
+  const auto place = [&](int i) { return places[static_cast<std::size_t>(i)]; };
+  EXPECT_EQ(chunk_begins(4, place), (std::vector<int>{0, 2, 3, 4}));
+}
+
 }  // namespace
 }  // namespace pyroclast

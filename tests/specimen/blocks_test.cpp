@@ -6,8 +6,6 @@
 #include <tuple>
 #include <utility>
 
-#include <omp.h>
-
 #include "examples.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
 #include "pyroclast/specimen/metrics.hpp"
@@ -165,11 +163,9 @@ TEST(Laguerre, EveryPointOfACellBelongsToItsSeed) {
 /// Relaxed seeds and their cells, made by a number of threads.
 std::pair<Seeds, Tessellation> relaxed_cells(int threads) {
   Seeds seeds = random_seeds(7, 2000, 0.3);
-  const int before = omp_get_max_threads();
-  omp_set_num_threads(threads);
-  for (int i = 0; i < 3; ++i) relax(seeds, width, height);
-  Tessellation cells = laguerre_tessellation(seeds, width, height).tessellation;
-  omp_set_num_threads(before);
+  Team team(threads);
+  for (int i = 0; i < 3; ++i) relax(seeds, width, height, &team);
+  Tessellation cells = laguerre_tessellation(seeds, width, height, &team).tessellation;
   return {seeds, cells};
 }
 

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <omp.h>
 
 namespace pyroclast::app {
 
@@ -12,9 +11,7 @@ namespace {
 constexpr double kMilli = 1e3;
 
 std::shared_ptr<Team> make_team(int asked) {
-  const int threads = asked > 0 ? asked : available_threads();
-  omp_set_num_threads(threads);
-  return std::make_shared<Team>(threads);
+  return std::make_shared<Team>(asked > 0 ? asked : available_threads());
 }
 
 }  // namespace

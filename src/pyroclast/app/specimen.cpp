@@ -10,7 +10,7 @@ int make_specimen(const RunOptions& options) {
   const Loaded loaded(options);
   const Setup& setup = loaded.setup;
   RunFolder::check(output_folder(options), options.overwrite);
-  const specimen::Specimen specimen = make_checked_specimen(setup.specimen);
+  const specimen::Specimen specimen = make_checked_specimen(setup.specimen, loaded.team.get());
   const Model<2> model = make_concrete_model(
       specimen, setup.motion ? std::optional(setup.motion->platen_thickness) : std::nullopt, setup.thickness);
   const RunFolder folder = make_run_folder(loaded, options);

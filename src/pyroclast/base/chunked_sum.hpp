@@ -2,11 +2,32 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace pyroclast {
 
 /// Where the chunks of a list begin: chunk i holds items [i] to [i + 1].
 using ChunkBegins = std::span<const int>;
+
+/// Places in a chunk of a list that is cut evenly: about the nodes or zones of a thousand blocks. They are
+/// numbered in the order of the blocks, so those of a chunk lie together.
+inline constexpr int kPlacesPerChunk = 4096;
+
+/// Cuts a list into chunks of kPlacesPerChunk places.
+/// \param place  of an item, 0 or more, ascending; a list of some nodes is cut where that of all nodes is
+template <class Place>
+std::vector<int> chunk_begins(int count, Place place) {
+  std::vector<int> begins{0};
+  for (int item = 1; item < count; ++item)
+    if (place(item) / kPlacesPerChunk != place(item - 1) / kPlacesPerChunk) begins.push_back(item);
+  if (count > 0) begins.push_back(count);
+  return begins;
+}
+
+/// The same of a list whose items are places themselves.
+inline std::vector<int> chunk_begins(int count) {
+  return chunk_begins(count, [](int item) { return item; });
+}
 
 /// Every sum over a body is one of these. It is taken chunk by chunk, item by item within a chunk, and then
 /// over the chunks, in that one order; so it depends on how the body is cut into chunks, but neither on the

@@ -157,9 +157,10 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
 }
 
 std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team) {
-  return std::make_unique<Simulation>(make_checked_specimen(setup.specimen), setup.thickness, setup.solids,
-                                      setup.heat, setup.probes, setup.motion,
-                                      team ? std::move(team) : std::make_shared<Team>());
+  if (!team) team = std::make_shared<Team>();
+  specimen::Specimen specimen = make_checked_specimen(setup.specimen, team.get());
+  return std::make_unique<Simulation>(std::move(specimen), setup.thickness, setup.solids, setup.heat,
+                                      setup.probes, setup.motion, std::move(team));
 }
 
 double expected_block_size(const specimen::SpecimenParameters& specimen, const ContactParameters& contacts) {

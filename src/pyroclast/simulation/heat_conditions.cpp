@@ -192,14 +192,16 @@ double constant_from(const HeatConditions& heat, double duration) {
 
 std::unique_ptr<Conduction<2>> make_conduction(const Model<2>& model,
                                                const std::array<SolidMaterial, 3>& solids,
-                                               const HeatConditions& heat, const Interval& range) {
+                                               const HeatConditions& heat, const Interval& range,
+                                               std::shared_ptr<Team> team) {
   auto conduction = std::make_unique<Conduction<2>>(model, heat_materials(model, solids),
                                                     HeatParameters{.temperature_range = range,
                                                                    .initial_temperature = heat.initial,
                                                                    .scheme = heat.scheme,
                                                                    .safety = heat.safety,
                                                                    .largest_change = heat.largest_change,
-                                                                   .largest_step = heat.largest_step});
+                                                                   .largest_step = heat.largest_step},
+                                                    std::move(team));
   const Box specimen = bounding_box(conduction->outline(), model);
   FaceUse use(conduction->outline().size());
   for (const auto& boundary : heat.boundaries) {

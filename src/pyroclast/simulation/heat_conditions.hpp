@@ -70,11 +70,13 @@ double constant_from(const HeatConditions& heat, double duration);
 /// The heat solver of a specimen; the platens conduct no heat. `model` must outlive it.
 /// \param range  of temperatures that it stays within until it is widened, °C, see temperature_range; the
 ///               materials' curves must cover it
+/// \param team   the threads of the run; one alone where there is none
 ///
 /// Throws Error when a material has no conductivity or specific heat, a boundary condition meets no face, or
 /// two contradict each other on one.
 std::unique_ptr<Conduction<2>> make_conduction(const Model<2>& model,
                                                const std::array<SolidMaterial, 3>& solids,
-                                               const HeatConditions& heat, const Interval& range);
+                                               const HeatConditions& heat, const Interval& range,
+                                               std::shared_ptr<Team> team = nullptr);
 
 }  // namespace pyroclast

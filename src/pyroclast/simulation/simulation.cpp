@@ -40,10 +40,10 @@ double available_memory() {
 }
 
 TemperatureField make_field(const Model<2>& model, const std::array<SolidMaterial, 3>& solids,
-                            const HeatConditions& heat) {
+                            const HeatConditions& heat, const std::shared_ptr<Team>& team) {
   if (heat.uniform) return {model, heat.initial};
   const Interval initial{heat.initial, heat.initial};  // each exposure widens it
-  return {model, make_conduction(model, solids, heat, initial)};
+  return {model, make_conduction(model, solids, heat, initial, team)};
 }
 
 std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const ConcreteMaterials& materials,
@@ -73,7 +73,7 @@ Simulation::Simulation(specimen::Specimen specimen, double thickness,
       model_(make_concrete_model(specimen_, motion ? std::optional(motion->platen_thickness) : std::nullopt,
                                  thickness)),
       heat_(heat),
-      field_(make_field(model_, solids, heat)) {
+      field_(make_field(model_, solids, heat, team_)) {
   for (const auto& probe : probes) probes_.emplace_back(model_, probe);
   if (!motion) return;
   materials_ = make_concrete(solids, motion->contacts, specimen_.metrics.mean_size);
@@ -91,13 +91,13 @@ double estimate_memory(std::int64_t blocks) {
   return kBytesFixed + kBytesPerBlock * static_cast<double>(blocks);
 }
 
-specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& parameters) {
+specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& parameters, Team* team) {
   const double needed = estimate_memory(parameters.blocks.count);
   const double available = available_memory();
   if (needed > available)
     throw Error(fmt::format("blocks.count = {}: needs about {:.1f} GB of memory, but only {:.1f} GB is free",
                             parameters.blocks.count, needed * 1e-9, available * 1e-9));
-  return specimen::make_specimen(parameters);
+  return specimen::make_specimen(parameters, team);
 }
 
 double estimate_modulus(const Model<2>& model, const ConcreteMaterials& materials) {

@@ -88,7 +88,9 @@ double estimate_memory(std::int64_t blocks);
 
 /// Makes a specimen. Throws Error when it cannot be made, or a run of it would not fit into the memory that
 /// is free.
-specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& parameters);
+/// \param team  its threads; one alone where there is none
+specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& parameters,
+                                         Team* team = nullptr);
 
 /// Lower estimate of Young's modulus of the model in the vertical direction, Pa: the same vertical stress
 /// everywhere, compliances of zones and contacts added up (Reuss). Platens left out.

@@ -35,17 +35,19 @@ Seeds draw_seeds(const BlockParameters& parameters, double width, double height,
   return seeds;
 }
 
-LaguerreResult tessellate(Seeds seeds, const BlockParameters& parameters, double width, double height) {
-  for (int i = 0; i < parameters.relaxation; ++i) relax(seeds, width, height);
-  return laguerre_tessellation(seeds, width, height);
+LaguerreResult tessellate(Seeds seeds, const BlockParameters& parameters, double width, double height,
+                          Team* team) {
+  for (int i = 0; i < parameters.relaxation; ++i) relax(seeds, width, height, team);
+  return laguerre_tessellation(seeds, width, height, team);
 }
 
-Blocks tessellate_until_fit(const BlockParameters& parameters, double width, double height, Random& random) {
+Blocks tessellate_until_fit(const BlockParameters& parameters, double width, double height, Random& random,
+                            Team* team) {
   Seeds seeds = draw_seeds(parameters, width, height, random);
   Blocks blocks{};
   while (true) {
     ++blocks.rounds;
-    LaguerreResult result = tessellate(seeds, parameters, width, height);
+    LaguerreResult result = tessellate(seeds, parameters, width, height, team);
     std::vector<int> unfit = std::move(result.broken);
     if (unfit.empty()) {
       Regularisation done = regularise(result.tessellation, width, height, parameters.shortest_edge);
@@ -71,10 +73,11 @@ Blocks tessellate_until_fit(const BlockParameters& parameters, double width, dou
 
 }  // namespace
 
-Blocks make_blocks(const BlockParameters& parameters, double width, double height, Random& random) {
+Blocks make_blocks(const BlockParameters& parameters, double width, double height, Random& random,
+                   Team* team) {
   Blocks blocks{};
   if (parameters.file.empty()) {
-    blocks = tessellate_until_fit(parameters, width, height, random);
+    blocks = tessellate_until_fit(parameters, width, height, random, team);
     require_valid(blocks.tessellation, width, height,
                   fmt::format("Tessellation of {} blocks", parameters.count));
   } else {

@@ -18,7 +18,9 @@ struct Blocks {
 /// Draws seeds and tessellates [0, width] x [0, height] (m), or reads `parameters.file`, and regularises.
 /// Seeds whose block cannot be made fit are drawn anew and the tessellation is made again, until all are.
 /// The blocks are numbered by place (number_along_curve), not in the order of the seeds or the file.
+/// \param team  as for make_specimen
 /// Throws Error when the blocks are not valid at the end.
-Blocks make_blocks(const BlockParameters& parameters, double width, double height, Random& random);
+Blocks make_blocks(const BlockParameters& parameters, double width, double height, Random& random,
+                   Team* team = nullptr);
 
 }  // namespace pyroclast::specimen

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 
@@ -70,15 +71,18 @@ class Slab {
 /// cuts in scratch memory of the container, so each thread has a container of its own; what a cell becomes
 /// does not depend on the cells cut before it.
 template <class Prism, class F>
-void for_each_cell(const Seeds& seeds, const SlabSize& size, F&& f) {
-#pragma omp parallel
-  {
+void for_each_cell(const Seeds& seeds, const SlabSize& size, Team* team, F&& f) {
+  Team alone;
+  Team& threads = team ? *team : alone;
+  const int count = threads.size();
+  threads.run(count, [&](int thread) {
     Slab slab(seeds, size);
     Prism prism;
-    const int blocks = slab.block_count();
-#pragma omp for schedule(static)
-    for (int block = 0; block < blocks; ++block) slab.for_each_cell(block, prism, f);
-  }
+    const std::int64_t blocks = slab.block_count();
+    const auto end = static_cast<int>(blocks * (thread + 1) / count);
+    for (auto block = static_cast<int>(blocks * thread / count); block < end; ++block)
+      slab.for_each_cell(block, prism, f);
+  });
 }
 
 /// The prism's upper face, counter-clockwise.
@@ -173,10 +177,10 @@ Tessellation join(const std::vector<std::vector<Vec<2>>>& polygons) {
 
 }  // namespace
 
-LaguerreResult laguerre_tessellation(const Seeds& seeds, double width, double height) {
+LaguerreResult laguerre_tessellation(const Seeds& seeds, double width, double height, Team* team) {
   const SlabSize size(seeds, width, height);
   std::vector<std::vector<Vec<2>>> polygons(seeds.position.size());
-  for_each_cell<voro::voronoicell_neighbor>(seeds, size,
+  for_each_cell<voro::voronoicell_neighbor>(seeds, size, team,
                                             [&](std::size_t seed, auto& prism, const Vec<2>& position) {
                                               polygons[seed] = upper_face(prism, position);
                                               for (Vec<2>& p : polygons[seed])
@@ -192,14 +196,15 @@ LaguerreResult laguerre_tessellation(const Seeds& seeds, double width, double he
   return result;
 }
 
-void relax(Seeds& seeds, double width, double height) {
+void relax(Seeds& seeds, double width, double height, Team* team) {
   const SlabSize size(seeds, width, height);
   std::vector<Vec<2>> relaxed = seeds.position;
-  for_each_cell<voro::voronoicell>(seeds, size, [&](std::size_t seed, auto& prism, const Vec<2>& position) {
-    double x, y, z;
-    prism.centroid(x, y, z);
-    relaxed[seed] = (position + Vec<2>{{x, y}}) * size.spacing;
-  });
+  for_each_cell<voro::voronoicell>(seeds, size, team,
+                                   [&](std::size_t seed, auto& prism, const Vec<2>& position) {
+                                     double x, y, z;
+                                     prism.centroid(x, y, z);
+                                     relaxed[seed] = (position + Vec<2>{{x, y}}) * size.spacing;
+                                   });
   seeds.position = std::move(relaxed);
 }
 

@@ -21,11 +21,12 @@ struct LaguerreResult {
 
 /// The Laguerre tessellation of [0, width] x [0, height] (m), by Voro++ (Rycroft, Chaos 19, 041111, 2009).
 /// Vertices are shared: those closer than 1e-8 mean spacings are one. Outline vertices lie exactly on the
-/// outline. OpenMP's threads share the cells out; the result is bitwise the same for any number of them.
-LaguerreResult laguerre_tessellation(const Seeds& seeds, double width, double height);
+/// outline. The result is bitwise the same for any number of threads.
+/// \param team  shares the cells out; one thread alone where there is none
+LaguerreResult laguerre_tessellation(const Seeds& seeds, double width, double height, Team* team = nullptr);
 
 /// Lloyd's step: every seed moves to the centroid of its cell; a seed with an empty cell stays. Threads
 /// as above.
-void relax(Seeds& seeds, double width, double height);
+void relax(Seeds& seeds, double width, double height, Team* team = nullptr);
 
 }  // namespace pyroclast::specimen

@@ -90,7 +90,7 @@ double fraction_of(const Tessellation& tessellation, const std::vector<Constitue
 
 }  // namespace
 
-Specimen make_specimen(const SpecimenParameters& parameters) {
+Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
   require_valid(parameters);
   // Streams of their own: another number of blocks leaves the aggregates where they are.
   Random aggregate_random(2 * parameters.seed);
@@ -110,7 +110,7 @@ Specimen make_specimen(const SpecimenParameters& parameters) {
         specimen.fraction_placed, specimen.fraction_asked, parameters.aggregates.d_min));
   }
 
-  Blocks blocks = make_blocks(parameters.blocks, parameters.width, parameters.height, block_random);
+  Blocks blocks = make_blocks(parameters.blocks, parameters.width, parameters.height, block_random, team);
   specimen.tessellation = std::move(blocks.tessellation);
   specimen.constituent = superpose(specimen.tessellation, specimen.aggregates, parameters);
   specimen.fraction_superposed = fraction_of(specimen.tessellation, specimen.constituent, specimen_area);

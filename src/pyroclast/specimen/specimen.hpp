@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pyroclast/base/team.hpp"
 #include "pyroclast/base/vec.hpp"
 
 namespace pyroclast::specimen {
@@ -100,7 +101,8 @@ struct Specimen {
 /// give the same specimen; aggregates and blocks draw from streams of their own, so neither depends on the
 /// other's parameters. Throws Error when a parameter is out of range, the aggregates do not fit, the placed
 /// fraction is off by more than 0.01, or no valid tessellation comes about.
-Specimen make_specimen(const SpecimenParameters& parameters);
+/// \param team  shares the cells of the tessellation out; one thread alone where there is none
+Specimen make_specimen(const SpecimenParameters& parameters, Team* team = nullptr);
 
 /// A block cut into zones.
 struct ZonedBlock {

@@ -1,13 +1,16 @@
 #include "pyroclast/thermal/conduction.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
 
 namespace pyroclast {
@@ -81,6 +84,13 @@ std::vector<double> total_volumes(const std::vector<std::vector<NodeShare>>& sha
   return volume;
 }
 
+/// Makes a maximum that threads share at least as large as a value.
+void raise(std::atomic<double>& maximum, double value) {
+  double present = maximum;
+  while (present < value && !maximum.compare_exchange_weak(present, value)) {
+  }
+}
+
 /// By Gershgorin's theorem no rate of decay exceeds the largest row sum over capacity.
 template <class Capacity>
 HeatStepLimit strictest(const std::vector<double>& rows, double safety, Capacity capacity) {
@@ -98,9 +108,10 @@ HeatStepLimit strictest(const std::vector<double>& rows, double safety, Capacity
 template <int Dim>
 Conduction<Dim>::Conduction(const Model<Dim>& model,
                             const std::vector<std::optional<HeatMaterial>>& materials,
-                            const HeatParameters& parameters)
+                            const HeatParameters& parameters, std::shared_ptr<Team> team)
     : model_(model),
       parameters_(checked(parameters)),
+      team_(team ? std::move(team) : std::make_shared<Team>()),
       grid_(parameters.temperature_range),
       conducts_(conducting(model.material_names, materials)),
       table_of_material_(table_indices(conducts_)),
@@ -108,10 +119,12 @@ Conduction<Dim>::Conduction(const Model<Dim>& model,
       nodes_(join_through_contacts(model, conducts_)),
       geometry_(zone_geometry(model)),
       outline_(pyroclast::outline(model, geometry_, conducts_)),
-      zones_(model, geometry_, nodes_, table_of_material_, tables_),
+      zones_(model, geometry_, nodes_, table_of_material_, tables_, *team_),
       shares_(zones_.shares()),
       store_(grid_, tables_, shares_),
-      volume_(total_volumes(shares_)) {
+      volume_(total_volumes(shares_)),
+      node_chunks_(chunk_begins(nodes_.count())),
+      total_volume_(chunked_sum(node_chunks_, [&](int node) { return volume_[node]; })) {
   const auto count = static_cast<std::size_t>(nodes_.count());
   if (count == 0) throw Error("heat conduction: no block is of a material that conducts heat");
   prescription_.assign(count, -1);
@@ -183,7 +196,7 @@ void Conduction<Dim>::set_temperature(const std::vector<double>& temperature) {
   state_.temperature = temperature;
   for (int node = 0; node < nodes_.count(); ++node)
     state_.enthalpy[node] = store_.enthalpy(node, temperature[node]);
-  state_.stored_at_start = std::accumulate(state_.enthalpy.begin(), state_.enthalpy.end(), 0.0);
+  state_.stored_at_start = total_enthalpy();
   state_.ledger = {};
 }
 
@@ -242,6 +255,8 @@ void Conduction<Dim>::begin_run(double end) {
   prescribed_.clear();
   for (int node = 0; node < nodes_.count(); ++node)
     if (prescription_[node] >= 0) prescribed_.push_back(node);
+  prescribed_chunks_ =
+      chunk_begins(static_cast<int>(prescribed_.size()), [&](int i) { return prescribed_[i]; });
   held_at_.resize(prescriptions_.size());
   read_prescriptions(time());
   before_run_ = {true, state_.next_step, state_.ledger.prescribed, {}, {}};
@@ -326,12 +341,13 @@ typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
   zones_.update(trial_.temperature);
   sum.boundary = boundary_.inflow(time, trial_.temperature, boundary_heat_);
   if (source_) {
-#pragma omp parallel for schedule(static) if (nodes_.count() >= fewest_for_threads)
-    for (int node = 0; node < nodes_.count(); ++node)
-      source_heat_[node] = volume_[node] * source_(model_.position[nodes_.gridpoint[node]], time);
-    sum.source = std::accumulate(source_heat_.begin(), source_heat_.end(), 0.0);
+    team_->share(nodes_.count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      for (auto node = begin; node < end; ++node)
+        source_heat_[node] = volume_[node] * source_(model_.position[nodes_.gridpoint[node]], time);
+    });
+    sum.source = chunked_sum(node_chunks_, [&](int node) { return source_heat_[node]; });
   }
-  for (int node : prescribed_) sum.held += inflow(node);
+  sum.held = chunked_sum(prescribed_chunks_, [&](int i) { return inflow(prescribed_[i]); });
   return sum;
 }
 
@@ -345,47 +361,49 @@ double Conduction<Dim>::excess(int node, double temperature, double enthalpy) co
 template <int Dim>
 void Conduction<Dim>::update_nodes(const TimeStage& stage) {
   const bool first = stage.begin == 0.0;
-  const bool threads = nodes_.count() >= fewest_for_threads;
-  double change = trial_.change, most_beyond = 0.0;
-#pragma omp parallel for schedule(static) if (threads) reduction(max : change, most_beyond)
-  for (int node = 0; node < nodes_.count(); ++node) {
-    const double start = state_.temperature[node], enthalpy = state_.enthalpy[node];
-    double& temperature = trial_.temperature[node];
-    double increment;
-    if (const int prescription = prescription_[node]; prescription >= 0) {
-      temperature = held_at_[prescription];
-      increment = store_.enthalpy(node, temperature) - enthalpy;
-    } else {
-      const double rate = inflow(node);
-      if (first) trial_.first_rate[node] = rate;
-      increment = stage.previous * trial_.increment[node] + stage.before * trial_.before[node] +
-                  trial_.step * (stage.rate * rate + stage.first_rate * trial_.first_rate[node]);
-      temperature = store_.temperature(node, enthalpy + increment, temperature);
+  std::atomic<double> largest_change{trial_.change}, largest_excess{0.0};
+  team_->share(nodes_.count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    double change = 0.0, most_beyond = 0.0;
+    for (int node = static_cast<int>(begin); node < end; ++node) {
+      const double start = state_.temperature[node], enthalpy = state_.enthalpy[node];
+      double& temperature = trial_.temperature[node];
+      double increment;
+      if (const int prescription = prescription_[node]; prescription >= 0) {
+        temperature = held_at_[prescription];
+        increment = store_.enthalpy(node, temperature) - enthalpy;
+      } else {
+        const double rate = inflow(node);
+        if (first) trial_.first_rate[node] = rate;
+        increment = stage.previous * trial_.increment[node] + stage.before * trial_.before[node] +
+                    trial_.step * (stage.rate * rate + stage.first_rate * trial_.first_rate[node]);
+        temperature = store_.temperature(node, enthalpy + increment, temperature);
+      }
+      trial_.before[node] = trial_.increment[node];
+      trial_.increment[node] = increment;
+      const double beyond = excess(node, temperature, enthalpy + increment);
+      const double start_beyond = excess(node, start, enthalpy);
+      change = std::max(change, std::abs(temperature + beyond - start - start_beyond));
+      most_beyond = std::max(most_beyond, std::abs(beyond));
     }
-    trial_.before[node] = trial_.increment[node];
-    trial_.increment[node] = increment;
-    const double beyond = excess(node, temperature, enthalpy + increment);
-    const double start_beyond = excess(node, start, enthalpy);
-    change = std::max(change, std::abs(temperature + beyond - start - start_beyond));
-    most_beyond = std::max(most_beyond, std::abs(beyond));
-  }
-  trial_.change = change;
-  trial_.excess = most_beyond;
+    raise(largest_change, change);
+    raise(largest_excess, most_beyond);
+  });
+  trial_.change = largest_change;
+  trial_.excess = largest_excess;
 }
 
 template <int Dim>
 void Conduction<Dim>::accept_trial() {
-  for (int node : prescribed_) trial_.heat.prescribed += trial_.increment[node];
-  double squares = 0.0, volume = 0.0;
-  for (int node = 0; node < nodes_.count(); ++node) {
-    state_.enthalpy[node] += trial_.increment[node];
+  trial_.heat.prescribed +=
+      chunked_sum(prescribed_chunks_, [&](int i) { return trial_.increment[prescribed_[i]]; });
+  for (int node = 0; node < nodes_.count(); ++node) state_.enthalpy[node] += trial_.increment[node];
+  const double squares = chunked_sum(node_chunks_, [&](int node) {
     const double speed = (trial_.temperature[node] - state_.temperature[node]) / trial_.step;
-    squares += volume_[node] * speed * speed;
-    volume += volume_[node];
-  }
+    return volume_[node] * speed * speed;
+  });
   state_.largest_change = trial_change();
   std::swap(state_.temperature, trial_.temperature);
-  state_.rate = std::sqrt(squares / volume);
+  state_.rate = std::sqrt(squares / total_volume_);
   state_.largest_overshoot = std::max(state_.largest_overshoot, trial_.excess);
   state_.ledger.boundary.add(1.0, trial_.heat.boundary);
   state_.ledger.source += trial_.heat.source;
@@ -436,11 +454,12 @@ void Conduction<Dim>::read_prescriptions(double time) {
 /// A temperature that is prescribed from now on comes with the heat that the jump to it needs.
 template <int Dim>
 void Conduction<Dim>::hold_prescribed() {
+  const auto needed = [&](int node) { return store_.enthalpy(node, held_at_[prescription_[node]]); };
+  state_.ledger.prescribed += chunked_sum(
+      prescribed_chunks_, [&](int i) { return needed(prescribed_[i]) - state_.enthalpy[prescribed_[i]]; });
   for (int node : prescribed_) {
     state_.temperature[node] = held_at_[prescription_[node]];
-    const double enthalpy = store_.enthalpy(node, state_.temperature[node]);
-    state_.ledger.prescribed += enthalpy - state_.enthalpy[node];
-    state_.enthalpy[node] = enthalpy;
+    state_.enthalpy[node] = needed(node);
   }
 }
 
@@ -528,9 +547,13 @@ HeatState Conduction<Dim>::state() const {
 template <int Dim>
 HeatLedger Conduction<Dim>::ledger() const {
   HeatLedger ledger = state_.ledger;
-  ledger.stored =
-      std::accumulate(state_.enthalpy.begin(), state_.enthalpy.end(), 0.0) - state_.stored_at_start;
+  ledger.stored = total_enthalpy() - state_.stored_at_start;
   return ledger;
+}
+
+template <int Dim>
+double Conduction<Dim>::total_enthalpy() const {
+  return chunked_sum(node_chunks_, [&](int node) { return state_.enthalpy[node]; });
 }
 
 template class Conduction<2>;

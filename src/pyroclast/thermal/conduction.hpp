@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "pyroclast/base/team.hpp"
 #include "pyroclast/thermal/heat_boundary.hpp"
 #include "pyroclast/thermal/heat_material.hpp"
 #include "pyroclast/thermal/thermal_mesh.hpp"
@@ -87,10 +89,11 @@ class Conduction {
 
   /// \param model      kept by reference; must outlive this
   /// \param materials  by material of the model; one without conducts no heat, and its blocks are left out
+  /// \param team       the threads of the run; one alone where there is none
   ///
   /// Throws Error naming the parameter, material or curve that is out of range.
   Conduction(const Model<Dim>& model, const std::vector<std::optional<HeatMaterial>>& materials,
-             const HeatParameters& parameters);
+             const HeatParameters& parameters, std::shared_ptr<Team> team = nullptr);
 
   Conduction(const Conduction&) = delete;
   Conduction& operator=(const Conduction&) = delete;
@@ -206,6 +209,7 @@ class Conduction {
   void adapt_step();
   Inflow compute_inflow(double time);
   void update_nodes(const TimeStage& stage);
+  double total_enthalpy() const;
   double excess(int node, double temperature, double enthalpy) const;
   double inflow(int node) const { return zones_.inflow(node) + boundary_heat_[node] + source_heat_[node]; }
   void read_prescriptions(double time);
@@ -218,6 +222,7 @@ class Conduction {
 
   const Model<Dim>& model_;
   HeatParameters parameters_;
+  std::shared_ptr<Team> team_;
   TemperatureGrid grid_;
   std::vector<bool> conducts_;          ///< by material
   std::vector<int> table_of_material_;  ///< -1: does not conduct
@@ -229,13 +234,16 @@ class Conduction {
   std::vector<std::vector<NodeShare>> shares_;
   NodeEnthalpy store_;
   std::vector<double> volume_;  ///< of each node, m³
+  std::vector<int> node_chunks_;
+  double total_volume_ = 0.0;  ///< m³
 
   HeatBoundary boundary_;
   Source source_;
   std::vector<Curve> prescriptions_;
   std::vector<int> prescription_;  ///< of each node, -1: free
   std::vector<int> prescribed_;    ///< nodes, ascending
-  std::vector<double> held_at_;    ///< by prescription, °C
+  std::vector<int> prescribed_chunks_;
+  std::vector<double> held_at_;  ///< by prescription, °C
 
   HeatState state_;
   Trial trial_;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
 
 namespace pyroclast {
@@ -131,7 +132,9 @@ void HeatBoundary::add(const BoundaryCondition& condition, std::vector<BoundaryP
         require_physical(c);
       },
       condition);
-  entries_.push_back({condition, std::move(patches)});
+  std::vector<int> chunks =
+      chunk_begins(static_cast<int>(patches.size()), [&](int i) { return patches[i].node; });
+  entries_.push_back({condition, std::move(patches), std::move(chunks)});
 }
 
 void HeatBoundary::require_defined(double begin, double end) const {
@@ -155,12 +158,12 @@ HeatByKind HeatBoundary::inflow(double time, const std::vector<double>& temperat
   HeatByKind sum;
   for (const auto& entry : entries_) {
     const FaceLaw law = std::visit([&](const auto& c) { return law_at(c, time); }, entry.condition);
-    double of_entry = 0.0;
-    for (const auto& patch : entry.patches) {
+    const double of_entry = chunked_sum(entry.chunks, [&](int i) {
+      const auto& patch = entry.patches[i];
       const double inflow = patch.area * law.flux(temperature[patch.node]);
       heat[patch.node] += inflow;
-      of_entry += inflow;
-    }
+      return inflow;
+    });
     std::visit([&](const auto& c) { part(sum, c) += of_entry; }, entry.condition);
   }
   return sum;

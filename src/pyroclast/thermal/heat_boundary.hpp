@@ -31,6 +31,8 @@ struct BoundaryPatch {
 /// (trapezoidal rule: second order, and exact for a given flux).
 class HeatBoundary {
  public:
+  /// \param patches  ascending by node
+  ///
   /// Throws Error naming the quantity when its curve is not one of time, a coefficient is negative, or an
   /// emissivity not between 0 and 1.
   void add(const BoundaryCondition& condition, std::vector<BoundaryPatch> patches);
@@ -55,6 +57,7 @@ class HeatBoundary {
   struct Entry {
     BoundaryCondition condition;
     std::vector<BoundaryPatch> patches;
+    std::vector<int> chunks;  ///< of the patches
   };
   std::vector<Entry> entries_;
 };

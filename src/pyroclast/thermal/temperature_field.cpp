@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 
@@ -45,6 +46,8 @@ TemperatureField::TemperatureField(const Model<2>& model)
       specimen_gridpoints_.push_back(g);
     }
   }
+  zone_chunks_ = chunk_begins(model_.zone_count());
+  volume_ = chunked_sum(zone_chunks_, [&](int z) { return specimen_volume_[z]; });
   for (const auto& c : model_.contacts) contact_gridpoint_.push_back(in_specimen[c.a] ? c.a : c.b);
 }
 
@@ -120,14 +123,11 @@ void TemperatureField::read_conduction() {
 
 /// What follows from the gridpoints.
 void TemperatureField::update() {
-  double volume = 0.0, content = 0.0;
   for (std::size_t z = 0; z < zones_.size(); ++z) {
     const auto& [a, b, c] = model_.zones[z];
     zones_[z] = (gridpoints_[a] + gridpoints_[b] + gridpoints_[c]) / 3.0;
-    volume += specimen_volume_[z];
-    content += specimen_volume_[z] * zones_[z];
   }
-  mean_ = content / volume;
+  mean_ = chunked_sum(zone_chunks_, [&](int z) { return specimen_volume_[z] * zones_[z]; }) / volume_;
   for (std::size_t c = 0; c < contacts_.size(); ++c) contacts_[c] = gridpoints_[contact_gridpoint_[c]];
   minimum_ = kInfinity;
   maximum_ = -kInfinity;

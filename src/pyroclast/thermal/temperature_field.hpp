@@ -83,6 +83,8 @@ class TemperatureField {
   std::vector<int> specimen_gridpoints_;
   std::vector<int> contact_gridpoint_;   ///< of each contact, on the specimen's side
   std::vector<double> specimen_volume_;  ///< of each zone, m³; 0 in the platens
+  std::vector<int> zone_chunks_;
+  double volume_ = 0.0;  ///< of the specimen, m³
 
   // what a checkpoint holds, beside the state of the conduction
   Advance advance_;

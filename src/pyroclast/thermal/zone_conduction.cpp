@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace pyroclast {
 
 template <int Dim>
 ZoneConduction<Dim>::ZoneConduction(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry,
                                     const ThermalNodes& nodes, const std::vector<int>& table_of_material,
-                                    const std::vector<HeatTable>& tables)
-    : tables_(tables), node_count_(nodes.count()), begin_(static_cast<std::size_t>(nodes.count()) + 1) {
+                                    const std::vector<HeatTable>& tables, Team& team)
+    : tables_(tables),
+      team_(team),
+      node_count_(nodes.count()),
+      begin_(static_cast<std::size_t>(nodes.count()) + 1) {
   for (int b = 0; b < model.block_count(); ++b) {
     const int table = table_of_material[model.block_material[b]];
     if (table < 0) continue;
@@ -49,22 +53,22 @@ double ZoneConduction<Dim>::mean_temperature(const Zone& zone, const std::vector
 /// Flux gamma grad T of Eq. (1), weighted by the gradients of the shape functions.
 template <int Dim>
 void ZoneConduction<Dim>::update(const std::vector<double>& temperature) {
-  const int count = static_cast<int>(zones_.size());
-#pragma omp parallel for schedule(static) if (count >= fewest_for_threads)
-  for (int z = 0; z < count; ++z) {
-    const Zone& zone = zones_[z];
-    const double last = temperature[zone.node[Dim]];
-    Vec<Dim> gradient{};
-    for (int i = 0; i < Dim; ++i) gradient += zone.gradient[i] * (temperature[zone.node[i]] - last);
-    const double conductivity = tables_[zone.table].conductivity(mean_temperature(zone, temperature));
-    const Vec<Dim> flow = gradient * (conductivity * zone.volume);
-    double others = 0.0;
-    for (int i = 0; i < Dim; ++i) {
-      heat_[z][i] = -dot(zone.gradient[i], flow);
-      others += heat_[z][i];
+  team_.share(zone_count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (auto z = begin; z < end; ++z) {
+      const Zone& zone = zones_[z];
+      const double last = temperature[zone.node[Dim]];
+      Vec<Dim> gradient{};
+      for (int i = 0; i < Dim; ++i) gradient += zone.gradient[i] * (temperature[zone.node[i]] - last);
+      const double conductivity = tables_[zone.table].conductivity(mean_temperature(zone, temperature));
+      const Vec<Dim> flow = gradient * (conductivity * zone.volume);
+      double others = 0.0;
+      for (int i = 0; i < Dim; ++i) {
+        heat_[z][i] = -dot(zone.gradient[i], flow);
+        others += heat_[z][i];
+      }
+      heat_[z][Dim] = -others;
     }
-    heat_[z][Dim] = -others;
-  }
+  });
 }
 
 template <int Dim>
@@ -78,12 +82,13 @@ template <int Dim>
 template <class Conductivity>
 std::vector<double> ZoneConduction<Dim>::gather_rows(Conductivity conductivity) const {
   std::vector<double> rows(static_cast<std::size_t>(node_count_));
-#pragma omp parallel for schedule(static) if (node_count_ >= fewest_for_threads)
-  for (int node = 0; node < node_count_; ++node)
-    for (int i = begin_[node]; i < begin_[node + 1]; ++i) {
-      const auto [zone, corner] = corners_[i];
-      rows[node] += row_[zone][corner] * conductivity(zones_[zone]);
-    }
+  team_.share(node_count_, fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (auto node = begin; node < end; ++node)
+      for (int i = begin_[node]; i < begin_[node + 1]; ++i) {
+        const auto [zone, corner] = corners_[i];
+        rows[node] += row_[zone][corner] * conductivity(zones_[zone]);
+      }
+  });
   return rows;
 }
 

@@ -4,13 +4,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "pyroclast/base/team.hpp"
 #include "pyroclast/thermal/heat_material.hpp"
 #include "pyroclast/thermal/thermal_mesh.hpp"
 
 namespace pyroclast {
 
-/// Loops over fewer items than this run on one thread: the threads would take longer to meet.
-inline constexpr int fewest_for_threads = 10000;
+/// Nodes or zones that a thread gets at least: for fewer the threads would take longer to meet.
+inline constexpr int fewest_for_threads = 5000;
 
 /// Conduction within zones (linear triangles or tetrahedra) between thermal nodes. Each zone conducts by its
 /// conductivity at the mean temperature of its corners.
@@ -19,8 +20,9 @@ class ZoneConduction {
  public:
   /// \param table_of_material  index into the tables of each material of the model, -1 where none conducts
   /// \param tables             kept by reference
+  /// \param team               shares zones and nodes; kept by reference
   ZoneConduction(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry, const ThermalNodes& nodes,
-                 const std::vector<int>& table_of_material, const std::vector<HeatTable>& tables);
+                 const std::vector<int>& table_of_material, const std::vector<HeatTable>& tables, Team& team);
 
   std::int64_t zone_count() const { return static_cast<std::int64_t>(zones_.size()); }
 
@@ -51,6 +53,7 @@ class ZoneConduction {
   std::vector<double> gather_rows(Conductivity conductivity) const;
 
   const std::vector<HeatTable>& tables_;
+  Team& team_;
   int node_count_;
   std::vector<Zone> zones_;
   std::vector<std::array<double, Dim + 1>> row_;   ///< sums of |conductance| at unit conductivity, m
