@@ -53,7 +53,7 @@ TEST(Section, FallsBackOnlyIfTheKeyIsAbsent) {
   EXPECT_EQ(root.number("damping", Range::fraction(), 0.8), 0.8);
   EXPECT_EQ(root.integer("seed", Range::any(), 5), 5);
   EXPECT_TRUE(root.flag("report", true));
-  EXPECT_EQ(root.text("name", "unnamed"), "unnamed");
+  EXPECT_EQ(root.text("name", "unnamed", {}), "unnamed");
   EXPECT_EQ(root.choice<Mass>("mass", {{"real", Mass::real}, {"scaled", Mass::scaled}}, Mass::scaled),
             Mass::scaled);
   EXPECT_FALSE(root.optional_section("heating"));
