@@ -1,7 +1,5 @@
 #include "adapter.hpp"
 
-#include <omp.h>
-
 #include "counting.hpp"
 
 namespace bench {
@@ -23,7 +21,6 @@ double damaged_share(const textbook::Body& body) {
 }
 
 StepCost step_cost(pyroclast::Mechanics<2>& body) {
-  omp_set_num_threads(1);
   reset_operations();
   body.use(counting_step());
   body.advance(2);
@@ -40,7 +37,7 @@ StepCost step_cost(pyroclast::Mechanics<2>& body) {
                static_cast<double>(done.bundles) * in_use(model.zone_count(), layout.zone_rows);
   cost.bytes = arrays.moved;
   cost.working_set = arrays.working_set;
-  cost.memory = static_cast<double>(layout.memory() + body.state().memory());
+  cost.memory = static_cast<double>(body.memory());
   return cost;
 }
 

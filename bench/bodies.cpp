@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/deck/deck.hpp"
-#include "pyroclast/experiment/coupling.hpp"
+#include "pyroclast/simulation/coupling.hpp"
+#include "pyroclast/stages/compress.hpp"
 
 namespace bench {
 
-using pyroclast::Case;
 using pyroclast::Error;
+using pyroclast::Setup;
 
 namespace {
 
@@ -23,13 +23,19 @@ constexpr int kIntactSteps = 100, kCrackedSteps = 400;
 /// Steps at the platen velocity of the deck before anything is timed.
 constexpr int kStepsAtRest = 100;
 
-Case read(const std::filesystem::path& deck) {
-  return pyroclast::read_case(pyroclast::Deck::load(deck), deck.parent_path());
+Setup read(const std::filesystem::path& deck) {
+  return pyroclast::read_setup(pyroclast::Deck::load(deck), deck.parent_path());
 }
 
-double platen_velocity(const Case& c) {
-  for (const auto& stage : c.stages)
-    if (const auto* compress = std::get_if<pyroclast::CompressStage>(&stage)) return compress->velocity;
+pyroclast::specimen::Specimen make(pyroclast::specimen::SpecimenParameters parameters, int blocks) {
+  parameters.blocks.count = blocks;
+  return pyroclast::make_checked_specimen(parameters);
+}
+
+double platen_velocity(const Setup& setup) {
+  for (const auto& stage : setup.stages)
+    if (const auto* compress = dynamic_cast<const pyroclast::Compress*>(stage.get()))
+      return compress->velocity();
   throw Error("the bench needs the deck of a compression");
 }
 
@@ -38,22 +44,22 @@ double platen_velocity(const Case& c) {
 template <class Body>
 void start_compression(Body& body, const Specimen& specimen, double rate) {
   constexpr double kPoisson = 0.2;
-  const auto& made = specimen.made.body;
-  const auto& x = made.model.position;
-  const int gridpoints = made.model.gridpoint_count();
+  const auto& model = specimen.model;
+  const auto& x = model.position;
+  const int gridpoints = model.gridpoint_count();
   for (int g = 0; g < gridpoints; ++g) {
     const bool platen = x[g][1] < 0.0 || x[g][1] > specimen.height;
     body.prescribe_velocity(g, 0, platen ? 0.0 : kPoisson * rate * (x[g][0] - 0.5 * specimen.width));
     body.prescribe_velocity(g, 1, -rate * std::clamp(x[g][1], 0.0, specimen.height));
   }
-  for (int g : made.bottom_face) body.prescribe_velocity(g, 0, 0.0);
-  for (int g : made.top_face) body.prescribe_velocity(g, 0, 0.0);
+  for (int g : model.set("bottom_face")) body.prescribe_velocity(g, 0, 0.0);
+  for (int g : model.set("top_face")) body.prescribe_velocity(g, 0, 0.0);
   body.advance(1);
   for (int g = 0; g < gridpoints; ++g)
     for (int i : {0, 1}) body.release(g, i);
-  for (int g : made.bottom_support)
+  for (int g : model.set("bottom_support"))
     for (int i : {0, 1}) body.prescribe_velocity(g, i, 0.0);
-  for (int g : made.top_support) {
+  for (int g : model.set("top_support")) {
     body.prescribe_velocity(g, 0, 0.0);
     body.prescribe_velocity(g, 1, -rate * specimen.height);
   }
@@ -61,10 +67,10 @@ void start_compression(Body& body, const Specimen& specimen, double rate) {
 
 /// A fast compression to a strain, then on at the velocity of the deck.
 template <class Body>
-std::unique_ptr<Body> loaded(const Specimen& specimen, Loading loading, double velocity) {
-  auto body = std::make_unique<Body>(specimen.made.body.model, specimen.densities, specimen.properties,
-                                     specimen.parameters);
-  for (int c : specimen.made.body.platen_contacts) body->break_contact(c);
+std::unique_ptr<Body> loaded(std::unique_ptr<Body> body, const Specimen& specimen, Loading loading,
+                             double velocity) {
+  for (int c = 0; c < specimen.model.contact_count(); ++c)
+    if (specimen.model.contacts[c].interface == pyroclast::platen_interface) body->break_contact(c);
   const bool cracked = loading == Loading::cracked;
   const int steps = cracked ? kCrackedSteps : kIntactSteps;
   const double strain = cracked ? kCrackedStrain : kIntactStrain;
@@ -81,37 +87,48 @@ const char* name(Loading loading) {
   return loading == Loading::intact ? "intact" : "cracked";
 }
 
-Specimen::Specimen(const Case& c)
-    : made(c), width(c.specimen.width), height(c.specimen.height), parameters(c.mechanics) {
-  const auto materials = pyroclast::make_concrete(c.solids, c.contacts, made.specimen.metrics.mean_size);
-  properties = pyroclast::properties_at(made.body.model, materials, *made.field);
+Specimen::Specimen(const Setup& setup, int blocks)
+    : made(make(setup.specimen, blocks)),
+      model(pyroclast::make_concrete_model(made, setup.motion->platen_thickness, setup.thickness)),
+      width(made.width),
+      height(made.height),
+      parameters(setup.motion->mechanics) {
+  const auto materials =
+      pyroclast::make_concrete(setup.solids, setup.motion->contacts, made.metrics.mean_size);
+  properties = pyroclast::properties_at(model, materials,
+                                        pyroclast::TemperatureField(model, pyroclast::kReferenceTemperature));
   for (const auto& solid : materials.solids)
     densities.push_back(solid.density(pyroclast::kReferenceTemperature));
 }
 
-Bodies::Bodies(const std::filesystem::path& deck) : case_(read(deck)), velocity_(platen_velocity(case_)) {
-  if (!case_.platen_thickness) throw Error("the bench needs the deck of a specimen between platens");
+Bodies::Bodies(const std::filesystem::path& deck) : setup_(read(deck)), velocity_(platen_velocity(setup_)) {
+  if (!setup_.motion) throw Error("the bench needs the deck of a specimen between platens");
 }
 
 const Specimen& Bodies::specimen(int zones) {
   auto& kept = specimens_[zones];
-  if (!kept) {
-    Case c = case_;
-    c.specimen.blocks.count = static_cast<int>(std::lround(zones / kZonesPerBlock));
-    kept = std::make_unique<Specimen>(c);
-  }
+  if (!kept) kept = std::make_unique<Specimen>(setup_, static_cast<int>(std::lround(zones / kZonesPerBlock)));
   return *kept;
 }
 
 pyroclast::Mechanics<2>& Bodies::mechanics(int zones, Loading loading) {
   auto& kept = mechanics_[{zones, loading}];
-  if (!kept) kept = loaded<pyroclast::Mechanics<2>>(specimen(zones), loading, velocity_);
+  if (!kept) {
+    const Specimen& s = specimen(zones);
+    kept = loaded(
+        std::make_unique<pyroclast::Mechanics<2>>(s.model, s.densities, s.properties, s.parameters, team_), s,
+        loading, velocity_);
+  }
   return *kept;
 }
 
 textbook::Body& Bodies::textbook(int zones, Loading loading) {
   auto& kept = textbook_[{zones, loading}];
-  if (!kept) kept = loaded<textbook::Body>(specimen(zones), loading, velocity_);
+  if (!kept) {
+    const Specimen& s = specimen(zones);
+    kept = loaded(std::make_unique<textbook::Body>(s.model, s.densities, s.properties, s.parameters), s,
+                  loading, velocity_);
+  }
   return *kept;
 }
 

@@ -6,8 +6,7 @@
 #include <tuple>
 
 #include "adapter.hpp"
-#include "pyroclast/experiment/case.hpp"
-#include "pyroclast/experiment/simulation.hpp"
+#include "pyroclast/setup/setup.hpp"
 
 namespace bench {
 
@@ -18,9 +17,11 @@ const char* name(Loading loading);
 
 /// A specimen between platens, and all that a body is made from.
 struct Specimen {
-  explicit Specimen(const pyroclast::Case& c);
+  /// \param blocks  instead of the deck's
+  Specimen(const pyroclast::Setup& setup, int blocks);
 
-  pyroclast::HeatSimulation made;
+  pyroclast::specimen::Specimen made;
+  pyroclast::Model<2> model;
   double width, height;  ///< m
   pyroclast::BodyProperties properties;
   std::vector<double> densities;
@@ -33,6 +34,8 @@ class Bodies {
   /// \param deck  of a compression between platens; the number of its blocks is replaced
   explicit Bodies(const std::filesystem::path& deck);
 
+  /// The threads of all bodies of the library.
+  pyroclast::Team& team() { return *team_; }
   /// Of the upper platen in the deck, m/s, downwards.
   double velocity() const { return velocity_; }
   /// The specimen with about so many zones.
@@ -46,7 +49,8 @@ class Bodies {
   template <class Body>
   using Kept = std::map<std::tuple<int, Loading>, std::unique_ptr<Body>>;
 
-  pyroclast::Case case_;
+  pyroclast::Setup setup_;
+  std::shared_ptr<pyroclast::Team> team_ = std::make_shared<pyroclast::Team>();
   double velocity_;
   std::map<int, std::unique_ptr<Specimen>> specimens_;
   Kept<StepCost> costs_;

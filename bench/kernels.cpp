@@ -2,7 +2,6 @@
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <omp.h>
 
 #include "native_step.hpp"
 #include "register.hpp"
@@ -15,9 +14,10 @@ namespace {
 /// the history of the copy, so that they break and slip as in the body's next step; where motion drifts to,
 /// no other part looks.
 void time_part(benchmark::State& state, const pyroclast::Mechanics<2>& body, const Part& part) {
-  omp_set_num_threads(1);
-  pyroclast::StepState<2> copy = body.state();
-  const auto history = copy.history;
+  auto storage = body.storage();
+  pyroclast::State<2> copy = body.state();
+  pyroclast::see(copy, storage);
+  const auto& history = body.storage().history;
   pyroclast::FlatArray<double> scratch(static_cast<std::size_t>(4 * pyroclast::kLanes) *
                                        body.layout().most_rows);
   for (auto _ : state) {

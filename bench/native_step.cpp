@@ -2,13 +2,13 @@
 // of its own name: a function that the library shares would be linked twice, once with other options.
 #include "native_step.hpp"
 
-#include "pyroclast/mechanics/step.hpp"
+#include "pyroclast/mechanics/step/step.hpp"
 
 namespace bench {
 
 using pyroclast::Bundle;
 using pyroclast::Pass;
-using pyroclast::StepState;
+using pyroclast::State;
 
 namespace {
 
@@ -23,39 +23,40 @@ struct Native : pyroclast::Portable {};
 using NativeStep = pyroclast::Step<2, Native>;
 constexpr auto kSmall = pyroclast::Kinematics::small;
 
-int bundles(const StepState<2>& s) {
-  return static_cast<int>(s.layout->bundles.size());
+int bundles(const State<2>& s) {
+  return static_cast<int>(s.layout.bundles.size());
 }
 
-void contacts(StepState<2>& s, double*) {
-  NativeStep::update_rows<kSmall, false>(s, 0, s.layout->face_rows());
+void contacts(State<2>& s, double*) {
+  NativeStep::faces<kSmall, false>(s, 0, static_cast<int>(s.layout.faces.size()));
 }
 
-[[gnu::flatten]] void gather(StepState<2>& s, double* memory) {
+[[gnu::flatten]] void gather(State<2>& s, double* memory) {
   NativeStep::Sums sums;
-  for (const Bundle& bundle : s.layout->bundles)
-    NativeStep::sum_outer_forces<kSmall, false>(s, bundle, NativeStep::scratch_of(bundle, memory), sums);
+  for (const Bundle& bundle : s.layout.bundles)
+    NativeStep::sum_weights_and_contacts<kSmall, false>(s, bundle, NativeStep::R::scratch_of(bundle, memory),
+                                                        sums);
 }
 
-[[gnu::flatten]] void zones(StepState<2>& s, double* memory) {
+[[gnu::flatten]] void zones(State<2>& s, double* memory) {
   NativeStep::Sums sums;
   for (int b = 0; b < bundles(s); ++b) {
-    const Bundle& bundle = s.layout->bundles[b];
-    const auto scratch = NativeStep::scratch_of(bundle, memory);
+    const Bundle& bundle = s.layout.bundles[b];
+    const auto scratch = NativeStep::R::scratch_of(bundle, memory);
     NativeStep::take_displacements(s, bundle, scratch);
-    NativeStep::add_zone_forces<kSmall, false>(s, b, scratch, sums);
+    NativeStep::Z::add_forces<kSmall, false>(s, b, scratch, sums);
   }
 }
 
-[[gnu::flatten]] void motion(StepState<2>& s, double* memory) {
+[[gnu::flatten]] void motion(State<2>& s, double* memory) {
   for (int b = 0; b < bundles(s); ++b) {
-    const Bundle& bundle = s.layout->bundles[b];
-    const auto scratch = NativeStep::scratch_of(bundle, memory);
+    const Bundle& bundle = s.layout.bundles[b];
+    const auto scratch = NativeStep::R::scratch_of(bundle, memory);
     NativeStep::take_displacements(s, bundle, scratch);
-    for (int i = 0; i < bundle.rows; ++i) scratch.sum[i] = s.force.row(bundle.first_row + i);
+    for (int i = 0; i < bundle.rows; ++i) scratch.sum[i] = s.force[bundle.first_row + i];
     NativeStep::Sums sums;
-    NativeStep::move_rows<Pass::move>(s, b, scratch, sums);
-    NativeStep::keep<Pass::move>(s, b, sums);
+    NativeStep::M::move_rows<Pass::move>(s, b, scratch, sums);
+    NativeStep::M::keep<Pass::move>(s, b, sums);
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pyroclast/mechanics/step_state.hpp"
+#include "pyroclast/mechanics/state.hpp"
 
 namespace bench {
 
@@ -8,7 +8,7 @@ namespace bench {
 struct Part {
   const char* name;
   /// \param scratch  as of StepFunctions::move_bundles
-  void (*run)(pyroclast::StepState<2>& state, double* scratch);
+  void (*run)(pyroclast::State<2>& state, double* scratch);
 };
 
 /// Contacts, gather, zones, motion: together what StepFunctions do in one step that is not measured.

@@ -3,7 +3,6 @@
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <omp.h>
 
 #include "register.hpp"
 
@@ -17,12 +16,13 @@ constexpr int kZoneSteps = 200'000;  ///< about so many in one call of advance
 /// Times whole steps of a body. The upper platen moves at the velocity of the case, down and up in turn, so
 /// that small bodies, which take many steps, stay as loaded as they are.
 template <class Body>
-void time_steps(benchmark::State& state, const Specimen& specimen, Body& body, double velocity, int threads) {
-  omp_set_num_threads(threads);
-  const auto& model = specimen.made.body.model;
+void time_steps(benchmark::State& state, Bodies& bodies, const Specimen& specimen, Body& body, int threads) {
+  double velocity = bodies.velocity();
+  bodies.team().resize(threads);
+  const auto& model = specimen.model;
   const int steps = std::max(kLeastSteps, kZoneSteps / model.zone_count());
   for (auto _ : state) {
-    for (int g : specimen.made.body.top_support) body.prescribe_velocity(g, 1, -velocity);
+    for (int g : model.set("top_support")) body.prescribe_velocity(g, 1, -velocity);
     velocity = -velocity;
     body.advance(steps);
   }
@@ -49,7 +49,7 @@ std::string name_of(const char* code, Loading loading, int zones, int threads) {
 
 void register_step(Bodies& bodies, Loading loading, int zones, int threads) {
   const auto run = [&bodies, loading, zones, threads](benchmark::State& state) {
-    time_steps(state, bodies.specimen(zones), bodies.mechanics(zones, loading), bodies.velocity(), threads);
+    time_steps(state, bodies, bodies.specimen(zones), bodies.mechanics(zones, loading), threads);
     add_cost(state, bodies.step_cost(zones, loading));
   };
   benchmark::RegisterBenchmark(name_of("pyroclast", loading, zones, threads).c_str(), run)->UseRealTime();
@@ -57,7 +57,7 @@ void register_step(Bodies& bodies, Loading loading, int zones, int threads) {
 
 void register_textbook(Bodies& bodies, Loading loading, int zones) {
   const auto run = [&bodies, loading, zones](benchmark::State& state) {
-    time_steps(state, bodies.specimen(zones), bodies.textbook(zones, loading), bodies.velocity(), 1);
+    time_steps(state, bodies, bodies.specimen(zones), bodies.textbook(zones, loading), 1);
   };
   benchmark::RegisterBenchmark(name_of("textbook", loading, zones, 1).c_str(), run)->UseRealTime();
 }

@@ -5,6 +5,7 @@ Usage: python3 validation/tabulate.py RUNS
 
 import csv
 import json
+import math
 import pathlib
 import statistics
 import sys
@@ -18,7 +19,7 @@ INERTIA_COUNTS_FROM = 0.1  # of f_c, as in the program's own verdict
 def inertia(history: pathlib.Path) -> tuple[float, float]:
     """Worst kinetic over elastic energy, and worst difference of the platens' stresses over f_c, up to the peak."""
     with open(history, newline="") as file:
-        rows = [{k: float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+        rows = [{k: float(v) if v else math.nan for k, v in row.items()} for row in csv.DictReader(file)]
     peak = max(range(len(rows)), key=lambda i: rows[i]["stress_MPa"])
     strength = rows[peak]["stress_MPa"]
     loaded = [r for r in rows[:peak + 1] if r["stage"] == 1 and r["stress_MPa"] > INERTIA_COUNTS_FROM * strength]
@@ -29,17 +30,19 @@ def inertia(history: pathlib.Path) -> tuple[float, float]:
 def main() -> None:
     folder = pathlib.Path(sys.argv[1])
     runs: dict[str, list[dict]] = {}
-    print("variant,seed," + ",".join(COLUMNS) + ",kinetic_over_elastic,platen_difference_percent,ledger_error_percent,aggregate_fraction,steps,wall_time_s")
+    print("variant,seed," + ",".join(COLUMNS) + ",kinetic_over_elastic,platen_difference_percent,"
+          "ledger_error_percent,aggregate_fraction,steps,wall_time_s")
     for file in sorted(folder.glob("*/summary.json")):
         summary = json.loads(file.read_text())
         manifest = json.loads((file.parent / "manifest.json").read_text())
         variant = file.parent.name.rpartition("-")[0]
-        result = summary["compression"]
+        result = next(stage["results"] for stage in summary["stages"] if stage["kind"] == "compress")
         kinetic, difference = inertia(file.parent / "history.csv")
         runs.setdefault(variant, []).append(result)
         print(f"{variant},{manifest['seed']}," + ",".join(f"{result[c]:.5g}" for c in COLUMNS) +
               f",{kinetic:.1e},{100 * difference:.2f},{100 * summary['energy_J']['error_over_turnover']:.3f}"
-              f",{summary['specimen']['aggregate_fraction_superposed']:.4f},{summary['steps']},{summary['wall_time_s']:.0f}")
+              f",{summary['specimen']['aggregate_fraction_superposed']:.4f},{summary['steps']},"
+              f"{summary['wall_time_s']:.0f}")
     for variant, results in runs.items():
         for name, of in (("mean", statistics.mean), ("spread", lambda v: statistics.stdev(v) if len(v) > 1 else 0.0)):
             print(f"{variant},{name}," + ",".join(f"{of([r[c] for r in results]):.5g}" for c in COLUMNS) + ",,,,,,")

@@ -24,9 +24,9 @@ def row_of(folder: pathlib.Path) -> dict:
     row = dict.fromkeys(COLUMNS, "") | {"kind": kind, "variant": variant, "level": level[0] if level else "", "seed": seed,
                                         "steps": summary["steps"], "wall_time_s": round(summary["wall_time_s"])}
     if kind == "compression":
-        result = summary["compression"]
-        return row | {c: result[c] for c in ("E_GPa", "f_c_MPa", "strain_at_peak")} | {"quasi_static": summary["quasi_static"]}
-    heating = summary["heating"]
+        result = Run(folder).compression
+        return row | {c: result[c] for c in ("E_GPa", "f_c_MPa", "strain_at_peak", "quasi_static")}
+    heating = Run(folder).heating
     strain, critical = strain_at(Run(folder), 500), heating["critical_temperature_degC"]
     return row | {"strain_500": "" if math.isnan(strain) else strain, "not_converged": heating["exchanges_not_converged"],
                   "critical_degC": "" if critical is None else critical}

@@ -15,7 +15,10 @@ class RunError(Exception):
 
 
 class Table:
-    """Columns of numbers of a csv file, by name: `table["strain"]` is a (rows,) float64 array."""
+    """Columns of numbers of a csv file, by name: `table["strain"]` is a (rows,) float64 array.
+
+    An empty cell is NaN: the stage of its row does not have the quantity.
+    """
 
     def __init__(self, path: Path, may_be_empty: bool = False):
         """Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
@@ -40,7 +43,7 @@ class Table:
         numbers = []
         for name, cell in zip(self.names, cells):
             try:
-                numbers.append(float(cell))
+                numbers.append(float(cell) if cell else np.nan)
             except ValueError:
                 where = f"{self.path}, line {line}"
                 raise RunError(f"{where}: column '{name}' holds '{cell}', not a number") from None

@@ -25,7 +25,7 @@ LEVEL_TEMPERATURES = (300.0, 400.0, 500.0, 600.0)
 _NEAR = 25.0  # K: a frame stands for a temperature that is not farther from its own
 _MOST_PANELS = 5
 _FIELDS = 4
-_NOTE = "Counts are contact points (two an edge) of A–M and M–M contacts: broken | softening."
+_NOTE = "Counts are contact points (two an edge) of A–M and M–M contacts: broken | damaged by more than half."
 
 
 def frame_near(frames: Sequence[Frame], temperature: float) -> Frame | None:

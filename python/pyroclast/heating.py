@@ -143,7 +143,7 @@ def convergence(run: Run) -> Figure:
 @matplotlib.rc_context(style.STYLE)
 def temperature_history(run: Run) -> Figure:
     """Least, mean and greatest temperature of the specimen, and those at its probes, over the time."""
-    minutes = run.history["time_s"] / 60.0
+    minutes = run.history["heating_time_s"] / 60.0
     figure = style.new_figure(3.8)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.3])
     axes.set_title(style.title_of(run))

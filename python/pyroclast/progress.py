@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from . import style
 from .run import Run
 
-_ENERGY_IN = ("energy_loading_J", "energy_gravity_J", "energy_heat_J", "energy_mass_scaling_J")
+_ENERGY_IN = ("energy_loading_J", "energy_gravity_J", "energy_property_change_J",
+              "energy_mass_scaling_J")
 _ENERGY_OUT = (
     ("energy_zones_J", "stored in zones", "#9ecae1", None),
     ("energy_contacts_J", "stored in contacts", style.BLUE, None),
@@ -123,7 +124,7 @@ def _draw_counts(axes: Axes, course: Course, mode: str, colour: str) -> None:
     for interface, name, dashes in _INTERFACES:
         axes.plot(course.over, course[f"{mode}_{interface}_broken"], color=colour, linestyle=dashes,
                   linewidth=1.8, label=f"{mode}, {name}: broken ($D=1$)")
-        axes.plot(course.over, course[f"{mode}_{interface}_softening"], color=colour, linestyle=dashes,
+        axes.plot(course.over, course[f"{mode}_{interface}_damaged"], color=colour, linestyle=dashes,
                   linewidth=0.7, label=f"{mode}, {name}: damaged ($D>0$), broken among them")
     axes.set_ylim(bottom=0.0)
     axes.set_ylabel(f"Cracked contact points,\n{mode}")
@@ -154,13 +155,13 @@ def energy(course: Course) -> Figure:
     turnover = sum(map(np.abs, parts)).max() or 1.0  # heat takes out what a softening body stores
     _draw_stack(upper, course, turnover)
     upper.plot(course.over, work_in, color=style.BLACK, linewidth=1.4, linestyle=(0, (4, 2)),
-               label="work put in (loading,\ngravity, heat, mass scaling)")
-    if course["energy_heat_J"].any():
-        upper.plot(course.over, course["energy_heat_J"], color=style.PURPLE, linewidth=1.4,
-                   linestyle=(0, (1.5, 1)), label="put in by heat alone")
+               label="work put in (loading,\ngravity, change of\nproperties, mass scaling)")
+    if course["energy_property_change_J"].any():
+        upper.plot(course.over, course["energy_property_change_J"], color=style.PURPLE, linewidth=1.4,
+                   linestyle=(0, (1.5, 1)), label="put in by the change of\nproperties alone")
     upper.set_xlim(course.start, course.over.max())
     upper.tick_params(labelbottom=False)
-    if min(work_in.min(), course["energy_heat_J"].min()) >= 0.0:
+    if min(work_in.min(), course["energy_property_change_J"].min()) >= 0.0:
         upper.set_ylim(bottom=0.0)
     upper.set_ylabel("Energy since the start [J]")
     handles, labels = upper.get_legend_handles_labels()

@@ -55,27 +55,54 @@ class Run:
         """As the summary has it, else the folder's name."""
         return str(self.summary.get("title") or self.folder.resolve().name)
 
+    @cached_property
+    def stage_results(self) -> list[dict]:
+        """What the summary says of each stage, in order: numbers and words by name."""
+        path = self.folder / "summary.json"
+        stages = self.summary.get("stages")
+        if not isinstance(stages, list):
+            raise RunError(f"{path}: 'stages' is missing or not a list")
+        results = [stage.get("results", {}) if isinstance(stage, dict) else None for stage in stages]
+        if not all(isinstance(values, dict) for values in results):
+            raise RunError(f"{path}: 'stages' holds something without 'results'")
+        return results
+
+    def _results_with(self, name: str) -> list[dict]:
+        """Results of the stages that have one of this name."""
+        return [results for results in self.stage_results if results.get(name) is not None]
+
     @property
     def compression(self) -> dict:
-        """E_GPa, f_c_MPa, strain_at_peak, strain_ic; empty when the run reached no peak."""
-        return self._summary_object("compression")
+        """E_GPa, f_c_MPa, strain_at_peak, strain_ic, quasi_static of the last compression that has a modulus; empty
+        without one.
+        """
+        tests = self._results_with("E_GPa")
+        return tests[-1] if tests else {}
 
     @property
     def heating(self) -> dict:
-        """load_level, load_stress_MPa, critical_temperature_degC, platen, ...; empty when never heated."""
-        return self._summary_object("heating")
-
-    def _summary_object(self, name: str) -> dict:
-        values = self.summary.get(name) or {}
-        if not isinstance(values, dict):
-            raise RunError(f"{self.folder / 'summary.json'}: '{name}' is neither an object nor null")
-        return values
+        """load_stress_MPa, critical_temperature_degC, platen, exchanges, ... over all stages that exchange
+        temperatures; empty when never heated.
+        """
+        stages = self._results_with("exchanges")
+        if not stages:
+            return {}
+        merged = dict(stages[0])
+        for name in ("exchanges", "exchanges_not_converged", "cycles"):
+            merged[name] = sum(results[name] for results in stages if name in results)
+        for name in ("highest_temperature_degC", "largest_exchange_increment_K", "worst_unbalanced_ratio",
+                     "largest_thrust_MPa"):
+            merged[name] = max((results[name] for results in stages if name in results), default=None)
+        failures = self._results_with("critical_temperature_degC")
+        return merged | {"critical_temperature_degC": failures[0]["critical_temperature_degC"] if failures else None}
 
     def _heating_number(self, name: str) -> float | None:
-        value = self.heating.get(name)
+        return self._number(self.heating, name)
+
+    def _number(self, results: dict, name: str) -> float | None:
+        value = results.get(name)
         if value is not None and (isinstance(value, bool) or not isinstance(value, (int, float))):
-            path = self.folder / "summary.json"
-            raise RunError(f"{path}: 'heating': '{name}' is neither a number nor null")
+            raise RunError(f"{self.folder / 'summary.json'}: '{name}' is neither a number nor null")
         return value
 
     @property
@@ -86,7 +113,11 @@ class Run:
     @property
     def load_level(self) -> float | None:
         """`load_stress` over the strength at 20 °C; None when that strength is not known."""
-        level = self._heating_number("load_level")
+        if not self.heating:
+            return None
+        first = next(i for i, results in enumerate(self.stage_results) if results.get("exchanges") is not None)
+        loads = [results for results in self.stage_results[:first] if "load_level" in results]
+        level = self._number(loads[-1], "load_level") if loads else None
         return 0.0 if level is None and self.load_stress == 0.0 else level
 
     @property
@@ -101,8 +132,9 @@ class Run:
 
     @property
     def quasi_static(self) -> bool | None:
-        """The run's own verdict; None when it gave none."""
-        return self.summary.get("quasi_static")
+        """The verdict of the last compression; None when there is none."""
+        verdicts = self._results_with("quasi_static")
+        return verdicts[-1]["quasi_static"] if verdicts else None
 
     @cached_property
     def exchanged(self) -> np.ndarray:
@@ -127,12 +159,12 @@ class Run:
 
     @property
     def only_conducts(self) -> bool:
-        """Whether the run is of heat conduction alone: no stages, no motion."""
-        return "heat_stored_J" in self.history
+        """Whether the run is of heat conduction alone: nothing moves."""
+        return "strain" not in self.history
 
     @property
     def probes(self) -> dict[str, np.ndarray]:
-        """Temperatures [°C] at the run's probes, (rows,) by name; only of heat conduction alone."""
+        """Temperatures [°C] at the run's probes, (rows,) by name."""
         return {match[1]: self.history[name] for name in self.history.names
                 if (match := re.fullmatch(r"probe_(\w+)_degC", name))}
 
@@ -182,12 +214,11 @@ class Run:
 
     @cached_property
     def loaded(self) -> np.ndarray:
-        """(rows,) bool: rows of the history's last stage, the test itself, with finite stress."""
-        stage, stress = self.history["stage"], self.history["stress_MPa"]
-        rows = (stage == stage.max()) & np.isfinite(stress)
-        if not rows.any():
-            raise RunError(f"{self.history.path}: column 'stress_MPa' has no finite value in the last stage")
-        return rows
+        """(rows,) bool: rows of the last stage in which the body moves, the test itself."""
+        stage, is_there = self.history["stage"], np.isfinite(self.history["stress_MPa"])
+        if not is_there.any():
+            raise RunError(f"{self.history.path}: column 'stress_MPa' has no finite value")
+        return (stage == stage[is_there].max()) & is_there
 
     def loaded_history(self, name: str) -> np.ndarray:
         """A column of the history, rows of `loaded` only."""
@@ -232,11 +263,12 @@ class Run:
             return []
         t = Table(path, may_be_empty=True)
         if self.only_conducts:
-            return [Frame(int(number), 0, 0, time, np.nan, np.nan, temperature, time)
-                    for number, time, temperature in zip(t["frame"], t["time_s"], t["temperature_degC"])]
+            return [Frame(int(number), int(stage), 0, time, np.nan, np.nan, temperature, time)
+                    for number, stage, time, temperature in zip(t["frame"], t["stage"], t["heating_time_s"],
+                                                                t["temperature_degC"])]
         heat = [t[name] if name in t else [None] * len(t) for name in ("temperature_degC", "heating_time_s")]
         return [
-            Frame(int(number), int(stage), int(step), *values)
+            Frame(int(number), int(stage), int(np.nan_to_num(step)), *values)
             for number, stage, step, *values in zip(
                 t["frame"], t["stage"], t["step"], t["time_s"], t["strain"], t["stress_MPa"], *heat
             )
@@ -245,7 +277,7 @@ class Run:
     @property
     def loaded_frames(self) -> list[Frame]:
         """Frames of the history's last stage, their strain less `strain_before`."""
-        last, before = self.history["stage"].max(), self.strain_before
+        last, before = self.history["stage"][self.loaded].max(), self.strain_before
         return [replace(frame, strain=frame.strain - before) for frame in self.frames if frame.stage == last]
 
     @property
@@ -281,7 +313,7 @@ class Run:
         return self._field("contacts", frame, "PointData/displacement", shape)[:, :2]
 
     def contact_field(self, frame: Frame, name: str) -> np.ndarray:
-        """(C,), for instance tension_damage, shear_damage, opening [m], slip [m]."""
+        """(C,), for instance tension_damage, shear_damage, opening [m], tangential_jump [m]."""
         return self._field("contacts", frame, f"CellData/{name}", (len(self.mesh.contacts.lines),))
 
     def _field(self, kind: str, frame: Frame, name: str, shape: tuple[int, ...]) -> np.ndarray:

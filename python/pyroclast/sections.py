@@ -28,7 +28,7 @@ from .run import Frame, Run, RunError, Specimen
 _COLOURS = {AGGREGATE: style.AGGREGATE_COLOUR, MORTAR: style.MORTAR_COLOUR, PLATEN: style.PLATEN_COLOUR}
 _BEFORE_PEAK = 0.85  # strain of frame A over that of the peak: the first cracks have opened
 _AFTER_PEAK = 0.8  # stress of frame C over that of the peak
-_SOFTENED = 0.5  # damage from which a crack is drawn
+_HALF = 0.5  # damage from which a crack is drawn
 _MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _LARGEST_MOVE_DRAWN = 0.06  # of the specimen's height
 _MARGIN = 0.08  # of the drawn width, room for blocks that have moved out
@@ -37,7 +37,7 @@ _EDGE_OF_FULL_WIDTH, _LEAST_THINNING = 5.0, 0.45  # edge in print, points; facto
 
 
 def select_frames(frames: Sequence[Frame], peak_strain: float, peak_stress: float) -> dict[str, Frame]:
-    """Frames A to D, by letter: before the peak, at it, softening, and the end.
+    """Frames A to D, by letter: before the peak, at it, after it, and the end.
 
     B is the frame nearest to the peak strain; A, among those before, the one nearest to 85 % of it; D the
     last; C, between B and D, the one whose stress is nearest to 80 % of the peak, or halfway down to D when D
@@ -53,8 +53,8 @@ def select_frames(frames: Sequence[Frame], peak_strain: float, peak_stress: floa
     if after:
         end = after[-1]
         wanted = max(_AFTER_PEAK * peak_stress, 0.5 * (peak_stress + end.stress))
-        if softening := [frame for frame in after if frame.step < end.step]:
-            selected["C"] = min(softening, key=lambda frame: abs(frame.stress - wanted))
+        if falling := [frame for frame in after if frame.step < end.step]:
+            selected["C"] = min(falling, key=lambda frame: abs(frame.stress - wanted))
         selected["D"] = end
     return selected
 
@@ -68,11 +68,11 @@ class _CrackStyle:
 
     @property
     def label(self) -> str:
-        state = "broken ($D=1$)" if self.broken else f"softening (${_SOFTENED}<D<1$)"
+        state = "broken ($D=1$)" if self.broken else f"damaged by more than half (${_HALF}<D<1$)"
         return f"{self.mode} crack, {state}"
 
     def holds(self, damage: np.ndarray) -> np.ndarray:
-        return damage >= 1.0 if self.broken else (damage > _SOFTENED) & (damage < 1.0)
+        return damage >= 1.0 if self.broken else (damage > _HALF) & (damage < 1.0)
 
 
 # Drawn in this order: the thin dark shear lines stay visible on the wide tension lines.
@@ -234,7 +234,7 @@ def _caption(run: Run, frame: Frame) -> str:
         f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$\n"
         f"$\\sigma$ = {frame.stress:.1f} MPa ({100.0 * frame.stress / run.peak[1]:.0f} % of peak)\n"
         f"broken: {counts['tension', True]} tension, {counts['shear', True]} shear\n"
-        f"softening: {counts['tension', False]} tension, {counts['shear', False]} shear"
+        f"damaged by more than half: {counts['tension', False]} tension, {counts['shear', False]} shear"
     )
 
 

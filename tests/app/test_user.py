@@ -55,20 +55,37 @@ class UserTest(unittest.TestCase):
         return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
                               timeout=300, check=False, **options)
 
+    def assert_that_overwriting_clears(self, name: str) -> None:
+        """All files of a folder are ones that a run writes: of them, no other run's results are left."""
+        deck = self.write(small_deck(), "other.toml")
+        done = self.pyroclast("specimen", deck, "--out", name, "--overwrite", "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("kept", done.stdout)
+        self.assertEqual(self.pyroclast("specimen", deck, "--out", "fresh", "--no-figures").returncode, 0)
+        self.assertEqual(self.files(name), self.files("fresh"))
 
-    def interrupt(self, deck: pathlib.Path, rows: int) -> None:
-        """Runs a deck into out/, interrupts it once its history has so many rows, and sees it end cleanly."""
-        with subprocess.Popen([PROGRAM, "run", deck, "--out", "out", "--no-figures"], cwd=self.folder,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    def files(self, name: str) -> set[str]:
+        folder = self.folder / name
+        return {str(path.relative_to(folder)) for path in folder.rglob("*")}
+
+    def interrupt(self, deck: pathlib.Path, rows: int, by: signal.Signals = signal.SIGINT) -> dict:
+        """Runs a deck into out/, stops it once its history has so many rows, and sees it end cleanly and soon.
+
+        Returns the summary.
+        """
+        shutil.rmtree(self.folder / "out", ignore_errors=True)
+        with subprocess.Popen([PROGRAM, "run", deck, "--out", "out", "--no-figures"],
+                              cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
             history = self.folder / "out" / "history.csv"
             for _ in range(600):
                 if history.exists() and len(history.read_text().splitlines()) > rows:
                     break
                 time.sleep(0.1)
-            process.send_signal(signal.SIGINT)
-            output, _ = process.communicate(timeout=60)
+            process.send_signal(by)
+            output, _ = process.communicate(timeout=20)
         self.assertEqual(process.returncode, 130)
-        self.assertIn("interrupted", output)
+        self.assertIn("stopped", output)
+        return json.loads((self.folder / "out/summary.json").read_text())
 
 
 class Properties(UserTest):
@@ -112,24 +129,26 @@ class Heating(UserTest):
 
     def rows(self, name: str) -> list[dict]:
         with open(self.folder / name / "history.csv", newline="") as file:
-            return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+            return [{key: float(value or "nan") for key, value in row.items()} for row in csv.DictReader(file)]
 
     def figures(self, name: str) -> set[str]:
         return {file.name for file in (self.folder / name / "figures").iterdir()}
 
     def test_a_loaded_specimen_is_heated_and_its_exchanges_are_recorded(self):
         summary = self.run_case("transient_heating", *changes("stages[1].level=0.2", "stages[2].to=320 degC"))
-        heating = summary["heating"]
+        load, heating = (summary["stages"][i]["results"] for i in (1, 2))
         exchanges = [row for row in self.rows("transient_heating") if row["exchange"] > 0]
         self.assertEqual([row["temperature_degC"] for row in exchanges], list(range(25, 321, 5)))
         self.assertEqual(heating["exchanges"], 60)
         self.assertEqual(heating["exchanges_not_converged"], sum(row["converged"] == 0 for row in exchanges))
-        self.assertEqual((heating["field"], heating["expansion_reading"]), ("uniform", "tangent"))
+        self.assertEqual((heating["field"], summary["expansion_reading"]), ("uniform", "tangent"))
         self.assertAlmostEqual(heating["load_stress_MPa"], 0.2 * 33.9)
+        self.assertEqual(load["load_level"], 0.2)
         for row in exchanges:
             self.assertAlmostEqual(row["heating_time_s"], (row["temperature_degC"] - 20.0) * 12.0, places=5)
         self.assertLessEqual({"total_strain.png", "heating_cracks.png", "heating_fracture.png", "convergence.png"},
                              self.figures("transient_heating"))
+        self.assert_that_overwriting_clears("transient_heating")
 
     def test_several_runs_are_compared_in_one_figure(self):
         for level in ("0", "0.3"):
@@ -146,19 +165,21 @@ class Heating(UserTest):
 
     def test_a_specimen_that_is_too_weak_fails_at_a_temperature(self):
         summary = self.run_case("transient_heating", *changes("stages[1].level=0.8"), "--no-figures")
-        self.assertGreater(summary["heating"]["critical_temperature_degC"], 20.0)
+        self.assertGreater(summary["stages"][2]["results"]["critical_temperature_degC"], 20.0)
         self.assertIn("ran away", summary["outcome"])
 
     def test_fixed_platens_take_a_thrust(self):
         summary = self.run_case("restrained_heating", *changes("stages[2].to=120 degC"))
-        self.assertGreater(summary["heating"]["largest_thrust_MPa"], 3.39)
+        self.assertGreater(summary["stages"][2]["results"]["largest_thrust_MPa"], 3.39)
         self.assertIn("thrust.png", self.figures("restrained_heating"))
+        self.assert_that_overwriting_clears("restrained_heating")
 
     def test_a_hot_specimen_is_compressed(self):
         summary = self.run_case("hot_compression", *changes("stages[1].to=420 degC", "stages[2].velocity=4 mm/s",
                                                             "stages[2].stop_strain=2e-3"))
-        self.assertLess(summary["compression"]["E_GPa"], 15.0)
+        self.assertLess(summary["stages"][2]["results"]["E_GPa"], 15.0)
         self.assertIn("stress_strain.png", self.figures("hot_compression"))
+        self.assert_that_overwriting_clears("hot_compression")
 
     def test_a_heated_and_cooled_specimen_is_compressed(self):
         self.run_case("residual_capacity", *changes("stages[1].to=220 degC", "stages[3].velocity=2 mm/s",
@@ -172,8 +193,11 @@ class Heating(UserTest):
         last = self.rows("fire_one_side")[-1]
         self.assertAlmostEqual(last["heating_time_s"], 180.0)
         self.assertGreater(last["temperature_max_degC"], last["temperature_min_degC"] + 50.0)
-        self.assertEqual(summary["heating"]["field"], "conduction")
+        self.assertEqual(summary["stages"][2]["results"]["field"], "conduction")
+        self.assertGreater(last["heat_stored_J"], 0.0)
+        self.assertLess(summary["heat_J"]["error_over_largest"], 1e-9)  # conserved to rounding
         self.assertIn("temperature.png", self.figures("fire_one_side"))
+        self.assert_that_overwriting_clears("fire_one_side")
 
     def test_a_curve_that_ends_below_the_run_is_refused_before_it(self):
         for command in ("run", "check"):
@@ -199,7 +223,7 @@ class Running(UserTest):
         self.assertEqual(manifest["deck_sha256"], hashlib.sha256(deck.read_bytes()).hexdigest())
         self.assertEqual(manifest["seed"], 1)
         summary = json.loads((out / "summary.json").read_text())
-        self.assertGreater(summary["compression"]["E_GPa"], 10.0)
+        self.assertGreater(summary["stages"][1]["results"]["E_GPa"], 10.0)
         # the ledger's promise
         self.assertLess(abs(summary["energy_J"]["error_over_turnover"]), 0.005)
         with open(out / "history.csv", newline="") as file:
@@ -210,6 +234,7 @@ class Running(UserTest):
             self.assertGreater((out / "figures" / figure).stat().st_size, 10_000)
         self.assertIn("E ", done.stdout)
         self.assertIn("figures/fracture.png", done.stdout)
+        self.assert_that_overwriting_clears("out")
 
     def test_fields_open_in_vtk_with_blocks_materials_stresses_and_contacts(self):
         from vtkmodules.vtkIOHDF import vtkHDFReader  # pylint: disable=import-outside-toplevel
@@ -239,8 +264,8 @@ class Running(UserTest):
         # 4e-4 of 100 mm, and a little more through the platens
         self.assertAlmostEqual(points.GetArray("displacement").GetTuple(top)[1], -4e-5, delta=1e-5)
         contacts = read(series[-1]["name"].replace("blocks", "contacts"))
-        for name in ("interface", "length", "tension_damage", "shear_damage", "opening", "slip", "normal_traction",
-                     "shear_traction", "closure"):
+        for name in ("interface", "length", "tension_damage", "shear_damage", "opening", "tangential_jump",
+                     "normal_traction", "shear_traction", "closure"):
             self.assertEqual(contacts.GetCellData().GetArray(name).GetNumberOfTuples(), contacts.GetNumberOfCells())
 
     def test_the_same_deck_gives_the_same_history_on_any_number_of_threads(self):
@@ -276,6 +301,27 @@ class Running(UserTest):
         self.assertEqual((self.folder / "out/manifest.json").read_bytes(), before)
         self.assertEqual(self.pyroclast("run", deck, "--out", "out", "--overwrite", "--no-figures").returncode, 0)
 
+    def test_overwriting_keeps_and_names_what_no_run_writes(self):
+        deck = self.write(small_deck())
+        self.assertEqual(self.pyroclast("specimen", deck, "--out", "out", "--no-figures").returncode, 0)
+        notes = self.folder / "out" / "notes.txt"
+        notes.write_text("years of work")
+        done = self.pyroclast("specimen", deck, "--out", "out", "--no-figures", "--overwrite")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("kept            out/notes.txt", done.stdout)
+        self.assertEqual(notes.read_text(), "years of work")
+
+    def test_another_programs_folder_is_never_emptied(self):
+        deck = self.write(small_deck())
+        page = self.folder / "page"
+        page.mkdir()
+        (page / "manifest.json").write_text('{"name": "My page"}')
+        (page / "index.html").write_text("<html>")
+        done = self.pyroclast("run", deck, "--out", "page", "--overwrite")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("manifest.json", done.stderr)
+        self.assertEqual(self.files("page"), {"manifest.json", "index.html"})
+
     def test_a_folder_that_holds_no_run_is_never_emptied(self):
         deck = self.write(small_deck())
         precious = self.folder / "mine"
@@ -287,11 +333,36 @@ class Running(UserTest):
 
     def test_interrupting_keeps_the_results_so_far_and_says_so(self):
         deck = self.write(small_deck(stop_strain="stop_strain = 0.5"))
-        self.interrupt(deck, rows=50)
-        summary = json.loads((self.folder / "out/summary.json").read_text())
-        self.assertEqual(summary["outcome"], "interrupted")
-        history = (self.folder / "out/history.csv").read_text().splitlines()
-        self.assertEqual(history[-1].count(","), history[0].count(","))
+        for by in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            summary = self.interrupt(deck, rows=50, by=by)
+            self.assertEqual(summary["outcome"], "stopped")
+            self.assertEqual([stage["outcome"] for stage in summary["stages"]], ["completed", "stopped"])
+            history = (self.folder / "out/history.csv").read_text().splitlines()
+            self.assertEqual(history[-1].count(","), history[0].count(","))
+
+    def test_a_run_whose_next_row_is_far_away_is_stopped_all_the_same(self):
+        deck = self.write(small_deck(stop_strain="stop_strain = 0.5", history_strain="history_strain = 0.4"), "far.toml")
+        settled = self.interrupt(self.write(small_deck(stop_strain="stop_strain = 0.5")), rows=30)
+        rows = settled["stages"][0]["results"]["steps"] // 200 + 1  # a row each 200 steps, and that at the start
+        summary = self.interrupt(deck, rows=rows)
+        self.assertEqual(summary["outcome"], "stopped")
+        self.assertEqual(summary["steps"], settled["stages"][0]["results"]["steps"])  # no row of what was broken off
+
+    def test_a_second_signal_skips_the_figures(self):
+        deck = self.write(small_deck(stop_strain="stop_strain = 0.5"))
+        with subprocess.Popen([PROGRAM, "run", deck, "--out", "out"], cwd=self.folder, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True) as process:
+            history, summary = self.folder / "out/history.csv", self.folder / "out/summary.json"
+            for file, enough in ((history, 50), (summary, 1)):
+                for _ in range(600):
+                    if file.exists() and len(file.read_text().splitlines()) >= enough:
+                        break
+                    time.sleep(0.1)
+                process.send_signal(signal.SIGTERM)
+            _, errors = process.communicate(timeout=20)
+        self.assertEqual(process.returncode, 130)
+        self.assertIn("no figures were drawn", errors)
+        self.assertTrue((self.folder / "out/summary.json").exists())
 
     def test_specimen_makes_the_specimen_and_its_pictures(self):
         done = self.pyroclast("specimen", self.write(small_deck()), "--out", "out")
@@ -301,6 +372,7 @@ class Running(UserTest):
         self.assertLess(abs(facts["fraction_placed"] - 0.34), 0.01)
         for figure in ("morphology.png", "gradation.png"):
             self.assertGreater((self.folder / "out/figures" / figure).stat().st_size, 10_000)
+        self.assert_that_overwriting_clears("out")
 
     def test_new_writes_a_deck_that_is_valid_and_never_overwrites_one(self):
         self.assertEqual(self.pyroclast("new", "mine").returncode, 0)
@@ -334,13 +406,13 @@ class HeatAlone(UserTest):
         deck = self.deck()
         check = self.pyroclast("check", deck)
         self.assertEqual(check.returncode, 0, check.stderr)
-        for word in ("stable step", "degC", "heat conduction alone for 10 min"):
+        for word in ("stable step", "degC", "heat flows for 10 min"):
             self.assertIn(word, check.stdout)
         done = self.pyroclast("run", deck, "--out", "out")
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = self.rows()
-        self.assertEqual(rows[-1]["time_s"], 600.0)
-        self.assertTrue({60.0 * i for i in range(11)} <= {row["time_s"] for row in rows})
+        self.assertEqual(rows[-1]["heating_time_s"], 600.0)
+        self.assertTrue({60.0 * i for i in range(11)} <= {row["heating_time_s"] for row in rows})
         last = rows[-1]
         self.assertGreater(last["temperature_max_degC"], 300.0)
         # the nearer to the fire, the hotter, and none beyond the extremes
@@ -355,6 +427,7 @@ class HeatAlone(UserTest):
         self.assertFalse(list((self.folder / "out/fields").glob("contacts*")))
         for figure in ("temperature_history.png", "temperature.png"):
             self.assertGreater((self.folder / "out/figures" / figure).stat().st_size, 10_000)
+        self.assert_that_overwriting_clears("out")
 
     def test_frames_open_in_vtk_with_the_temperature(self):
         from vtkmodules.vtkIOHDF import vtkHDFReader  # pylint: disable=import-outside-toplevel
@@ -371,14 +444,14 @@ class HeatAlone(UserTest):
                "interval": 'interval = "12 h"\nsteady_rate = "1e-4 K/s"', "frame_interval": 'frame_interval = "50 d"'}
         self.assertEqual(self.pyroclast("run", self.deck(**gas), "--out", "out", "--no-figures").returncode, 0)
         summary = json.loads((self.folder / "out/summary.json").read_text())
-        self.assertTrue(summary["steady"])
-        self.assertLess(summary["rate_K_s"], 1e-4)
-        self.assertLess(summary["time_s"], 100 * 86400)
+        results = summary["stages"][0]["results"]
+        self.assertTrue(results["steady"])
+        self.assertLess(results["rate_K_s"], 1e-4)
+        self.assertLess(results["heating_time_s"], 100 * 86400)
 
     def test_interrupting_keeps_the_results_so_far_and_says_so(self):
         deck = self.deck(count="count = 2000", interval='interval = "1 s"', duration='duration = "4 h"')
-        self.interrupt(deck, rows=10)
-        self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["outcome"], "interrupted")
+        self.assertEqual(self.interrupt(deck, rows=10)["outcome"], "stopped")
 
     def test_what_does_not_belong_into_the_deck_is_refused_with_its_line(self):
         for changes, words in (

@@ -33,7 +33,7 @@ struct Path {
       work += 0.5 * (before.normal_traction + response.normal_traction) * (next_opening - at_opening) +
               0.5 * dot(before.shear_traction + response.shear_traction, next - at_tangential);
       dissipated += response.dissipated;
-      accumulated_slip += response.slipped;
+      accumulated_slip += response.slip_path;
       at_opening = next_opening;
       at_tangential = next;
     }
@@ -196,6 +196,67 @@ TEST(ContactLaw, DamageNeverHealsAlongARandomPath) {
     ASSERT_GE(r.dissipated.compression, 0.0);
     ASSERT_GE(r.stored, 0.0);
     ASSERT_LE(r.normal_traction, p.tensile_strength * (1.0 + 1e-12));
+  }
+}
+
+// A drop in friction under a pressure beyond f_cm makes the envelope fall more steeply than K_s. Nothing can
+// follow it: the point falls to the residual line at once, damage ends at 1, and stored energy plus losses
+// stay the work that was done. 1e-9: the fall itself is a jump, the rest closed forms and a quadrature of
+// lines.
+TEST(ContactLaw, ADropTooSteepToFollowFallsToTheResidualLineAtOnce) {
+  for (const double residual_angle : {0.0, 5.0}) {
+    ContactProperties p = mortar_contact();
+    p.residual_friction = std::tan(residual_angle * std::numbers::pi / 180.0);
+    ASSERT_NO_THROW(validate(p, "mortar"));
+    ContactHistory<2> history;
+    const double opening = -100e-6;
+    const auto pressed = update_contact<2>(p, opening, {}, history);
+    const double pressure = -pressed.normal_traction;
+    const double residual = p.residual_cohesion + pressure * p.residual_friction;
+    const double peak = p.cohesion + pressure * p.friction;
+    const double k = p.shear_stiffness;
+    ASSERT_GT((peak - residual) * (peak - residual) / (2.0 * k), p.mode_2_energy);
+    const double end = 1.2 * peak / k;
+    double shear = 0.0, friction = 0.0, stored = 0.0;
+    for (int i = 1; i <= 100; ++i) {
+      const auto r = update_contact<2>(p, opening, {{end * i / 100}}, history);
+      ASSERT_GE(history.shear_damage, 0.0);
+      ASSERT_LE(history.shear_damage, 1.0);
+      ASSERT_LE(std::abs(r.shear_traction[0]), peak * (1.0 + 1e-12));
+      ASSERT_GE(r.dissipated.shear, 0.0);
+      ASSERT_GE(r.dissipated.friction, 0.0);
+      shear += r.dissipated.shear;
+      friction += r.dissipated.friction;
+      stored = r.stored;
+    }
+    EXPECT_EQ(history.shear_damage, 1.0);
+    EXPECT_NEAR(shear, (peak - residual) * (peak - residual) / (2.0 * k), 1e-9 * shear);
+    const double work = 0.5 * peak * peak / k + residual * (end - peak / k);
+    EXPECT_NEAR(stored - pressed.stored + shear + friction, work, 1e-9 * work);
+  }
+}
+
+// Whatever the friction that is left and the pressure: damage stays in [0, 1] and never falls, nothing is
+// won back.
+TEST(ContactLaw, DamageStaysInBoundsUnderAnyPressure) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform;
+  for (int path = 0; path < 200; ++path) {
+    ContactProperties p = mortar_contact();
+    p.friction = uniform(random);
+    p.residual_friction = p.friction * uniform(random);
+    ContactHistory<2> history;
+    double opening = 0.0, slip = 0.0;
+    for (int i = 0; i < 200; ++i) {
+      const auto before = history;
+      opening = 2e-6 - 200e-6 * uniform(random);
+      slip += 100e-6 * (uniform(random) - 0.5);
+      const auto r = update_contact<2>(p, opening, {{slip}}, history);
+      ASSERT_GE(history.shear_damage, before.shear_damage);
+      ASSERT_LE(history.shear_damage, 1.0);
+      ASSERT_GE(r.dissipated.shear, 0.0);
+      ASSERT_GE(r.dissipated.friction, 0.0);
+    }
   }
 }
 

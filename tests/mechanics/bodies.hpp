@@ -137,6 +137,36 @@ inline Model<3> five_tetrahedra() {
   return model;
 }
 
+/// A column of `count` cubes of size d along z, joined through their square faces, each cut into tetrahedra
+/// around its middle. Block i holds gridpoints 9 i to 9 i + 7, the lower four first, counter-clockwise seen
+/// from above, and 9 i + 8, its middle.
+inline Model<3> cubes(int count, double d) {
+  // faces outwards, each cut by the diagonal from its first corner
+  constexpr int faces[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                               {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+  std::vector<std::array<int, 4>> zones;
+  for (const auto& f : faces) {
+    zones.push_back({f[0], f[2], f[1], 8});
+    zones.push_back({f[0], f[3], f[2], 8});
+  }
+  Model<3> model;
+  model.material_names = {"mortar"};
+  model.interface_names = {"mortar-mortar"};
+  for (int i = 0; i < count; ++i) {
+    std::vector<Vec<3>> x;
+    for (int level : {0, 1})
+      for (const auto& [a, b] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
+        x.push_back({{a * d, b * d, (i + level) * d}});
+    x.push_back({{0.5 * d, 0.5 * d, (i + 0.5) * d}});
+    model.add_block(x, zones, 0);
+  }
+  for (int i = 0; i + 1 < count; ++i) {
+    const int low = 9 * i, high = 9 * (i + 1);
+    model.join_faces({low + 4, low + 5, low + 6, low + 7}, {high, high + 1, high + 2, high + 3}, 0);
+  }
+  return model;
+}
+
 template <int Dim>
 MechanicsParameters<Dim> quasi_static(double damping = 0.8) {
   MechanicsParameters<Dim> p;
@@ -150,13 +180,13 @@ MechanicsParameters<Dim> quasi_static(double damping = 0.8) {
 template <int Dim>
 Mechanics<Dim> mechanics(const Model<Dim>& model, const ContactProperties& contact,
                          const MechanicsParameters<Dim>& parameters, double young = 29.4e9,
-                         double poisson = 0.2) {
+                         double poisson = 0.2, std::shared_ptr<Team> team = nullptr) {
   return Mechanics<Dim>(
       model, {2400.0},
       by_interface(model,
                    std::vector<ZoneProperties>(model.zones.size(), zone_properties<Dim>(young, poisson)),
                    {contact}),
-      parameters);
+      parameters, std::move(team));
 }
 
 /// Moves every gridpoint at a steady velocity to a displacement given by its position, in a number of steps,

@@ -14,14 +14,14 @@ namespace pyroclast {
 namespace {
 
 Model<2> small_concrete() {
-  return make_concrete_model(small_specimen(800), 0.01, 0.5).model;
+  return make_concrete_model(small_specimen(800), 0.01, 0.5);
 }
 
 // Every gridpoint, zone and contact has one place, and no two share one.
 TEST(Layout, GivesEverythingAPlaceOfItsOwn) {
   const Model<2> model = small_concrete();
   const Layout<2> layout(model);
-  const auto distinct = [](const std::vector<int>& slots, int rows) {
+  const auto distinct = [](const FlatArray<int>& slots, int rows) {
     const std::set<int> set(slots.begin(), slots.end());
     EXPECT_EQ(set.size(), slots.size());
     EXPECT_GE(*set.begin(), 0);
@@ -32,7 +32,7 @@ TEST(Layout, GivesEverythingAPlaceOfItsOwn) {
   ASSERT_EQ(layout.contact_slot.size(), model.contacts.size());
   distinct(layout.gridpoint_slot, layout.gridpoint_rows);
   distinct(layout.zone_slot, layout.zone_rows);
-  distinct(layout.contact_slot, layout.contact_rows() - 1);
+  distinct(layout.contact_slot, layout.point_rows - 1);
 }
 
 // The promise of lanes: few of them idle. A 5 % loss is what blocks of rare shapes may cost.
@@ -48,15 +48,18 @@ TEST(Layout, BlocksThatShareLanesHaveTheSameZones) {
   const Model<2> model = small_concrete();
   const Layout<2> layout(model);
   int alike = 0;
-  for (const Bundle& bundle : layout.bundles) {
+  for (int i = 0; i < static_cast<int>(layout.bundles.size()); ++i) {
+    const Bundle& bundle = layout.bundles[i];
     if (bundle.kind != BundleKind::alike) continue;
-    for (std::size_t lane = 0; lane < bundle.blocks.size(); ++lane) {
-      const int b = bundle.blocks[lane], first = model.block_zones[b];
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const int b = layout.block_in(i, lane);
+      if (b < 0) continue;
+      const int first = model.block_zones[b];
       ASSERT_EQ(model.block_zones[b + 1] - first, bundle.zones);
       for (int z = 0; z < bundle.zones; ++z)
         for (int n = 0; n < 3; ++n) {
-          const int row = bundle.first_row + layout.shapes[bundle.shape][z][n];
-          EXPECT_EQ(layout.gridpoint_slot[model.zones[first + z][n]], slot_of(row, static_cast<int>(lane)));
+          const int row = bundle.first_row + layout.shape_zones[bundle.first_corners + z][n];
+          EXPECT_EQ(layout.gridpoint_slot[model.zones[first + z][n]], slot_of(row, lane));
         }
       ++alike;
     }
@@ -75,7 +78,7 @@ void play(const Layout<2>& layout, int threads) {
   const auto touched = [&](int row) {
     std::set<int> bundles;
     for (int lane = 0; lane < kLanes; ++lane)
-      for (int offset : {layout.faces[row].a[0][lane], layout.faces[row].b[0][lane]})
+      for (int offset : {layout.points[2 * row].a[lane], layout.points[2 * row].b[lane]})
         bundles.insert(bundle_of_row[offset / offset_of<2>(kLanes)]);
     return bundles;
   };

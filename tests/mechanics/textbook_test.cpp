@@ -312,10 +312,9 @@ TEST_P(DriveBesideTextbook, AsNearAsChaosAllowsWithLocalDamping) {
 
 /// Concrete between platens, of Tables 1 and 2, and the forces that hold its lower platen.
 struct Compression {
-  ConcreteModel body = make_concrete_model(small_specimen(), 0.01, 1.0);
+  Model<2> model = make_concrete_model(small_specimen(), 0.01, 1.0);
 
   Pair pair() const {
-    const auto& model = body.model;
     const std::array<ZoneProperties, 3> solids{zone_properties<2>(70e9, 0.2), zone_properties<2>(29.4e9, 0.2),
                                                zone_properties<2>(200e9, 0.3)};
     std::vector<ZoneProperties> zones;
@@ -338,10 +337,11 @@ struct Compression {
     parameters.gravity = {{0.0, -9.81}};
     Pair p(model, {2650.0, 2200.0, 7850.0},
            by_interface(model, zones, {elastic_contact(), weaker, mortar_contact(), platen}), parameters);
-    for (int c : body.platen_contacts) p.break_contact(c);
-    for (int g : body.bottom_support)
+    for (int c = 0; c < model.contact_count(); ++c)
+      if (model.contacts[c].interface == platen_interface) p.break_contact(c);
+    for (int g : model.set("bottom_support"))
       for (int i : {0, 1}) p.prescribe_velocity(g, i, 0.0);
-    for (int g : body.top_support) {
+    for (int g : model.set("top_support")) {
       p.prescribe_velocity(g, 0, 0.0);
       p.prescribe_velocity(g, 1, -2e-3);
     }
@@ -350,12 +350,12 @@ struct Compression {
 
   double held_by_mechanics(const Pair& p) const {
     double sum = 0.0;
-    for (int g : body.bottom_support) sum -= p.mechanics().force(g)[1];
+    for (int g : model.set("bottom_support")) sum -= p.mechanics().force(g)[1];
     return sum;
   }
   double held_by_textbook(const Pair& p) const {
     double sum = 0.0;
-    for (int g : body.bottom_support) sum -= p.textbook().gridpoints()[g].force[1];
+    for (int g : model.set("bottom_support")) sum -= p.textbook().gridpoints()[g].force[1];
     return sum;
   }
 };

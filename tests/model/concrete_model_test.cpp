@@ -1,5 +1,6 @@
 #include "pyroclast/model/concrete_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -14,9 +15,9 @@ TEST(ConcreteModel, PlatensMeetTheSpecimenAlongItsWholeWidth) {
   const auto specimen = small_specimen();
   const auto body = make_concrete_model(specimen, 0.01, 0.5);
   double bottom = 0.0, top = 0.0;
-  for (int c : body.platen_contacts) {
-    const auto& contact = body.model.contacts[c];
-    EXPECT_EQ(body.model.position[contact.a], body.model.position[contact.b]);
+  for (const auto& contact : body.contacts) {
+    if (contact.interface != platen_interface) continue;
+    EXPECT_EQ(body.position[contact.a], body.position[contact.b]);
     EXPECT_NEAR(std::abs(contact.normal[1]), 1.0, 1e-12);
     (contact.normal[1] < 0.0 ? bottom : top) += contact.area;
   }
@@ -28,25 +29,29 @@ TEST(ConcreteModel, WithoutPlatensTheSpecimenIsTheSame) {
   const auto specimen = small_specimen();
   const auto with = make_concrete_model(specimen, 0.01, 1.0);
   const auto without = make_concrete_model(specimen, std::nullopt, 1.0);
-  EXPECT_EQ(without.model.block_count(), with.model.block_count() - 2);
-  EXPECT_EQ(without.model.contacts.size(), with.model.contacts.size() - with.platen_contacts.size());
-  EXPECT_EQ(without.bottom_side.size(), with.bottom_side.size());
-  EXPECT_EQ(without.top_side.size(), with.top_side.size());
-  EXPECT_TRUE(without.top_support.empty() && without.bottom_face.empty() && without.platen_contacts.empty());
+  EXPECT_EQ(without.block_count(), with.block_count() - 2);
+  const auto at_platens = std::count_if(with.contacts.begin(), with.contacts.end(),
+                                        [](const auto& c) { return c.interface == platen_interface; });
+  EXPECT_EQ(without.contacts.size(), with.contacts.size() - at_platens);
+  for (const auto* side : {"bottom", "top", "left", "right"})
+    EXPECT_EQ(without.set(side).size(), with.set(side).size());
+  EXPECT_EQ(without.set("specimen").size(), with.set("specimen").size());
+  for (const auto* set : {"bottom_support", "top_support", "bottom_face", "top_face", "top_platen"})
+    EXPECT_TRUE(without.set(set).empty());
   double area = 0.0;
-  for (double v : zone_geometry(without.model).volume) area += v;
+  for (double v : zone_geometry(without).volume) area += v;
   EXPECT_NEAR(area, 0.05 * 0.1, 1e-12);  // rounding
 }
 
 TEST(ConcreteModel, ZonesFillSpecimenAndPlatensAndContactsJoinCoincidentGridpoints) {
   const auto specimen = small_specimen();
   const auto body = make_concrete_model(specimen, 0.01, 1.0);
-  const auto geometry = zone_geometry(body.model);
+  const auto geometry = zone_geometry(body);
   double volume = 0.0;
   for (double v : geometry.volume) volume += v;
   EXPECT_NEAR(volume, 0.05 * (0.1 + 2.0 * 0.01), 1e-12);
-  for (const auto& c : body.model.contacts) {
-    EXPECT_EQ(body.model.position[c.a], body.model.position[c.b]);
+  for (const auto& c : body.contacts) {
+    EXPECT_EQ(body.position[c.a], body.position[c.b]);
     EXPECT_NEAR(norm(c.normal), 1.0, 1e-12);
     EXPECT_NEAR(dot(c.normal, c.tangents[0]), 0.0, 1e-12);
   }
@@ -55,7 +60,7 @@ TEST(ConcreteModel, ZonesFillSpecimenAndPlatensAndContactsJoinCoincidentGridpoin
 TEST(ConcreteModel, InterfacesFollowFromTheMaterialsOfTheirTwoBlocks) {
   const auto specimen = small_specimen();
   const auto body = make_concrete_model(specimen, 0.01, 1.0);
-  const auto& m = body.model;
+  const auto& m = body;
   const auto block_of = [&](int g) {
     int block = 0;
     while (m.block_gridpoints[block + 1] <= g) ++block;
@@ -79,7 +84,7 @@ TEST(ConcreteModel, InterfacesFollowFromTheMaterialsOfTheirTwoBlocks) {
 TEST(ConcreteModel, NormalsPointOutOfTheBlockOfSideA) {
   const auto specimen = small_specimen();
   const auto body = make_concrete_model(specimen, 0.01, 1.0);
-  const auto& m = body.model;
+  const auto& m = body;
   std::vector<Vec<2>> centre;
   std::vector<int> block(m.position.size());
   for (int b = 0; b < m.block_count(); ++b) {
@@ -94,6 +99,30 @@ TEST(ConcreteModel, NormalsPointOutOfTheBlockOfSideA) {
     EXPECT_GT(dot(m.position[c.a] - centre[block[c.a]], c.normal), 0.0);
     EXPECT_LT(dot(m.position[c.b] - centre[block[c.b]], c.normal), 0.0);
   }
+}
+
+TEST(ConcreteModel, SetsHoldTheGridpointsThatTheyAreNamedAfter) {
+  const auto body = make_concrete_model(small_specimen(), 0.01, 1.0);
+  const auto lie_at = [&](const char* set, int component, double place) {
+    EXPECT_FALSE(body.set(set).empty());
+    for (int g : body.set(set)) EXPECT_NEAR(body.position[g][component], place, 1e-15) << set;
+  };
+  lie_at("bottom_support", 1, -0.01);
+  lie_at("bottom_face", 1, 0.0);
+  lie_at("bottom", 1, 0.0);
+  lie_at("top", 1, 0.1);
+  lie_at("top_face", 1, 0.1);
+  lie_at("top_support", 1, 0.11);
+  lie_at("left", 0, 0.0);
+  lie_at("right", 0, 0.05);
+  for (int b = 0; b < body.block_count(); ++b)
+    for (int g = body.block_gridpoints[b]; g < body.block_gridpoints[b + 1]; ++g) {
+      const auto is_in = [&](const char* set) { return std::ranges::count(body.set(set), g) == 1; };
+      const bool platen = body.block_material[b] == platen_material;
+      EXPECT_EQ(is_in("specimen"), !platen);
+      EXPECT_EQ(is_in("top_platen"), platen && body.position[g][1] > 0.05);
+    }
+  EXPECT_THROW(body.set("buttom"), Error);
 }
 
 TEST(Model, RefusesAZoneWithoutVolume) {

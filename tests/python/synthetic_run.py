@@ -15,10 +15,10 @@ PEAK_STRAIN, PEAK_STRESS, LAST_STRAIN = 0.003, 34.0, 0.006
 
 HISTORY_COLUMNS = (
     "stage,step,time_s,strain,stress_MPa,stress_top_MPa,stress_bottom_MPa,lateral_strain,unbalanced_ratio,"
-    "kinetic_over_strain,largest_jump,tension_am_softening,tension_am_broken,tension_am_length_m,"
-    "tension_mm_softening,tension_mm_broken,tension_mm_length_m,shear_am_softening,shear_am_broken,"
-    "shear_am_length_m,shear_mm_softening,shear_mm_broken,shear_mm_length_m,mean_opening_m,energy_loading_J,"
-    "energy_gravity_J,energy_heat_J,energy_zones_J,energy_contacts_J,energy_kinetic_J,dissipated_tension_J,"
+    "kinetic_over_strain,largest_jump,tension_am_damaged,tension_am_broken,tension_am_length_m,"
+    "tension_mm_damaged,tension_mm_broken,tension_mm_length_m,shear_am_damaged,shear_am_broken,"
+    "shear_am_length_m,shear_mm_damaged,shear_mm_broken,shear_mm_length_m,mean_opening_m,energy_loading_J,"
+    "energy_gravity_J,energy_property_change_J,energy_zones_J,energy_contacts_J,energy_kinetic_J,dissipated_tension_J,"
     "dissipated_shear_J,dissipated_friction_J,dissipated_compression_J,energy_local_damping_J,"
     "energy_viscous_damping_J,energy_error_J"
 ).split(",")
@@ -112,19 +112,15 @@ def hexagonal_section(columns: int, rows: int, width: float = 0.15) -> Section:
 
 
 def write_run(
-    folder: Path, columns: int = 4, rows: int = 5, strength_factor: float = 1.0, **summary
+    folder: Path, columns: int = 4, rows: int = 5, strength_factor: float = 1.0, **results
 ) -> Section:
-    """A whole run folder; `summary` replaces entries of summary.json."""
+    """A whole run folder; `results` replaces those of the compression in summary.json."""
     (folder / "fields").mkdir(parents=True)
     section = hexagonal_section(columns, rows)
     write_history(folder / "history.csv", strength_factor)
-    facts = {
-        "title": "Synthetic run",
-        "quasi_static": True,
-        "compression": {"E_GPa": 22.67, "f_c_MPa": PEAK_STRESS * strength_factor,
-                        "strain_at_peak": PEAK_STRAIN, "strain_ic": 0.0015},
-    }
-    (folder / "summary.json").write_text(json.dumps(facts | summary))
+    compression = {"E_GPa": 22.67, "f_c_MPa": PEAK_STRESS * strength_factor, "strain_at_peak": PEAK_STRAIN,
+                   "strain_ic": 0.0015, "quasi_static": True}
+    write_summary(folder, "Synthetic run", [("settle", {}), ("compress", compression | results)])
     write_mesh(folder / "fields" / "mesh.h5", section)
     strains = [0.0, 0.0, *np.linspace(0.0005, LAST_STRAIN, 12)]
     frames = [(k, int(k > 0), 1000 * k, 0.1 * k, strain, strength_factor * stress(strain))
@@ -134,6 +130,12 @@ def write_run(
     for frame in frames:
         write_fields(folder / "fields", frame[0], frame[4], section)
     return section
+
+
+def write_summary(folder: Path, title: str, stages: list[tuple[str, dict]]) -> None:
+    """`stages` are kinds and results."""
+    stages = [{"kind": kind, "outcome": "completed", "results": results} for kind, results in stages]
+    (folder / "summary.json").write_text(json.dumps({"title": title, "stages": stages, "warnings": []}))
 
 
 @dataclass
@@ -158,31 +160,17 @@ class Heating:
 
 
 def write_heated_run(
-    folder: Path, heating: Heating, /, columns: int = 4, rows: int = 5, **summary
+    folder: Path, heating: Heating, /, columns: int = 4, rows: int = 5
 ) -> Section:
-    """A run: settled, loaded, heated and what `heating` says; `summary` replaces entries of summary.json."""
+    """A run: settled, loaded, heated and what `heating` says."""
     (folder / "fields").mkdir(parents=True)
     section = hexagonal_section(columns, rows)
     history, stages = _heated_history(heating)
     _write_csv(folder / "history.csv", HEATED_COLUMNS,
-               [[row.get(name, 0.0) for name in HEATED_COLUMNS] for row in history])
-    exchanges = [row for row in history if row["exchange"]]
-    facts = {
-        "title": "Synthetic heating",
-        "quasi_static": True if heating.compressed else None,
-        "compression": None if not heating.compressed else {
-            "E_GPa": 10.0, "f_c_MPa": 0.5 * STRENGTH, "strain_at_peak": PEAK_STRAIN, "strain_ic": 0.001},
-        "stages": [{"kind": kind} for kind in stages],
-        "heating": {
-            "field": "conduction" if heating.spread else "uniform", "expansion_reading": "secant",
-            "load_stress_MPa": heating.level * STRENGTH, "load_level": heating.level,
-            "critical_temperature_degC": heating.critical, "exchanges": len(exchanges),
-            "exchanges_not_converged": sum(not row["converged"] for row in exchanges),
-            "largest_exchange_increment_K": EXCHANGE, "cycles": sum(row["cycles"] for row in exchanges),
-            "platen": "fixed" if heating.restrained else "force",
-        },
-    }
-    (folder / "summary.json").write_text(json.dumps(facts | summary))
+               [[_heated_cell(row, name) for name in HEATED_COLUMNS] for row in history])
+    write_summary(folder, "Synthetic heating",
+                  [(kind, _heated_results(heating, kind, [row for row in history if row["stage"] == number]))
+                   for number, kind in enumerate(stages)])
     write_mesh(folder / "fields" / "mesh.h5", section)
     saved = [row for i, row in enumerate(history)
              if i == len(history) - 1 or not row["exchange"] or row["exchange"] % FRAME_EVERY == 0]
@@ -193,6 +181,29 @@ def write_heated_run(
         write_fields(folder / "fields", number, row["damaging_strain"], section)
         _write_temperature(folder / "fields", number, row, section)
     return section
+
+
+def _heated_cell(row: dict, name: str) -> float | str:
+    """Empty where the row's stage exchanges no temperatures."""
+    return "" if name in ("exchange", "cycles", "converged") and not row["exchange"] else row.get(name, 0.0)
+
+
+def _heated_results(heating: Heating, kind: str, rows: list[dict]) -> dict:
+    """What the summary says of a stage."""
+    if kind == "load":
+        return {"load_stress_MPa": heating.level * STRENGTH, "load_level": heating.level}
+    if kind == "compress":
+        return {"E_GPa": 10.0, "f_c_MPa": 0.5 * STRENGTH, "strain_at_peak": PEAK_STRAIN, "strain_ic": 0.001,
+                "quasi_static": True}
+    if kind == "settle":
+        return {}
+    return {
+        "field": "conduction" if heating.spread else "uniform",
+        "load_stress_MPa": heating.level * STRENGTH, "critical_temperature_degC": heating.critical,
+        "exchanges": len(rows), "exchanges_not_converged": sum(not row["converged"] for row in rows),
+        "largest_exchange_increment_K": EXCHANGE, "cycles": sum(row["cycles"] for row in rows),
+        "platen": "fixed" if heating.restrained else "force",
+    }
 
 
 def _heated_history(heating: Heating) -> tuple[list[dict], list[str]]:
@@ -243,17 +254,17 @@ def _heated_row(heating: Heating, stage: int, temperature: float, exchange: int,
         "converged": int(converged), "mean_opening_m": 4e-5 * damage,
         "cycles": (300 + int(1500 * damage) + 100 * (exchange % 7) if converged else 5000) * (exchange > 0),
         "unbalanced_ratio": 4e-3 if not converged else 9e-4 - 1e-5 * (exchange % 9),
-        "energy_loading_J": 20.0 - 30.0 * share, "energy_gravity_J": 2.0, "energy_heat_J": 120.0 * damage,
+        "energy_loading_J": 20.0 - 30.0 * share, "energy_gravity_J": 2.0, "energy_property_change_J": 120.0 * damage,
         "damaging_strain": 0.8 * LAST_STRAIN * damage**0.5 + (0.2 * LAST_STRAIN if failing else 0.0),
     }
-    work = row["energy_loading_J"] + 2.0 + row["energy_heat_J"]
+    work = row["energy_loading_J"] + 2.0 + row["energy_property_change_J"]
     for column, part in (("energy_zones_J", 0.3), ("energy_contacts_J", 0.2), ("dissipated_tension_J", 0.25),
                          ("dissipated_shear_J", 0.1), ("dissipated_friction_J", 0.1),
                          ("energy_local_damping_J", 0.04)):
         row[column] = part * work
     row["energy_error_J"] = 0.01 * work
     for column, most in (("tension_am", 400), ("tension_mm", 700), ("shear_am", 300), ("shear_mm", 500)):
-        row[f"{column}_softening"] = int(most * damage)
+        row[f"{column}_damaged"] = int(most * damage)
         row[f"{column}_broken"] = int(0.6 * most * damage**2)
         row[f"{column}_length_m"] = 1e-3 * int(most * damage)
     return row
@@ -273,15 +284,15 @@ def write_conduction(folder: Path) -> Section:
     """A run of heat conduction alone, its sides warming to 400 degC, with two probes."""
     (folder / "fields").mkdir(parents=True)
     section = hexagonal_section(4, 5)
-    rows = [{"time_s": 60.0 * i, "temperature_degC": 20.0 + 5.0 * i, "temperature_min_degC": 20.0 + 1.0 * i,
+    rows = [{"stage": 0, "heating_time_s": 60.0 * i, "temperature_degC": 20.0 + 5.0 * i, "temperature_min_degC": 20.0 + 1.0 * i,
              "temperature_max_degC": 20.0 + 19.0 * i, "heat_stored_J": 1e4 * i, "probe_a_degC": 20.0 + 2.0 * i,
              "probe_b_degC": 20.0 + 9.0 * i} for i in range(21)]
     _write_csv(folder / "history.csv", list(rows[0]), [list(row.values()) for row in rows])
-    (folder / "summary.json").write_text(json.dumps({"title": "Synthetic conduction", "warnings": []}))
+    write_summary(folder, "Synthetic conduction", [("conduct", {"steady": False})])
     write_mesh(folder / "fields" / "mesh.h5", section)
     frames = rows[::4]
-    _write_csv(folder / "fields" / "frames.csv", ["frame", "time_s", "temperature_degC"],
-               [(number, row["time_s"], row["temperature_degC"]) for number, row in enumerate(frames)])
+    _write_csv(folder / "fields" / "frames.csv", ["frame", "stage", "temperature_degC", "heating_time_s"],
+               [(number, 0, row["temperature_degC"], row["heating_time_s"]) for number, row in enumerate(frames)])
     for number, row in enumerate(frames):
         _write_temperature(folder / "fields", number, row, section)
     return section
@@ -307,7 +318,7 @@ def write_history(path: Path, strength_factor: float = 1.0) -> None:
             row[column] = share * lost
         row["energy_error_J"] = 0.02 * lost
         for column, most in (("tension_am", 400), ("tension_mm", 700), ("shear_am", 300), ("shear_mm", 500)):
-            row[f"{column}_softening"] = int(most * grown)
+            row[f"{column}_damaged"] = int(most * grown)
             row[f"{column}_broken"] = int(0.6 * most * grown**2)
         rows.append(row)
     _write_csv(path, HISTORY_COLUMNS, [[row.get(name, 0.0) for name in HISTORY_COLUMNS] for row in rows])

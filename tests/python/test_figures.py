@@ -81,16 +81,17 @@ class FolderTest(CommandTest):
 class HeatedTest(CommandTest):
     """Makes heated runs."""
 
-    def heated(self, name: str, heating: Heating | None = None, /, **summary) -> Path:
+    def heated(self, name: str, heating: Heating | None = None, /) -> Path:
         folder = self.root / name
-        synthetic_run.write_heated_run(folder, heating or Heating(), **summary)
+        synthetic_run.write_heated_run(folder, heating or Heating())
         return folder
 
-    def summary_of(self, folder: Path, **heating) -> Run:
-        """The run, entries of its summary's heating replaced."""
+    def summary_of(self, folder: Path, **results) -> Run:
+        """The run, results of those of its stages that have one of the name replaced."""
         path = folder / "summary.json"
         facts = json.loads(path.read_text())
-        facts["heating"] |= heating
+        for stage in facts["stages"]:
+            stage["results"] |= {name: value for name, value in results.items() if name in stage["results"]}
         path.write_text(json.dumps(facts))
         return Run(folder)
 
@@ -132,7 +133,7 @@ class CommandsMakePictures(FolderTest):
 
     def test_compare_writes_the_file_asked_for(self):
         other, out = self.root / "other", self.root / "new" / "both.png"
-        synthetic_run.write_run(other, strength_factor=0.9, compression=None, quasi_static=False)
+        synthetic_run.write_run(other, strength_factor=0.9, E_GPa=None, quasi_static=False)
         code, printed, err = self.command("compare", self.run_folder, other, "--out", out)
         self.assertEqual((code, printed, err), (0, [str(out)], ""))
         self.assertEqual(png_size(out), (round(style.WIDTH * style.DPI), round(4.2 * style.DPI)))
@@ -147,8 +148,7 @@ class CommandsMakePictures(FolderTest):
         self.assertEqual(contents[0], contents[1])
 
     def test_run_without_a_peak_is_drawn(self):
-        summary = {"title": "no peak", "quasi_static": False, "compression": None}
-        (self.run_folder / "summary.json").write_text(json.dumps(summary))
+        synthetic_run.write_summary(self.run_folder, "no peak", [("settle", {}), ("compress", {})])
         self.assertEqual(self.command("run", self.run_folder)[0], 0)
 
     def test_later_columns_do_not_disturb(self):
@@ -369,7 +369,9 @@ class ErrorsOfHeatedRuns(HeatedTest):
         folder = self.heated("run")
         self.summary_of(folder, load_level="high")
         self.assert_fails(["run", folder], "summary.json", "'load_level'")
-        self.assert_fails(["run", self.heated("other", heating=[1])], "summary.json", "'heating'")
+        other = self.heated("other")
+        (other / "summary.json").write_text('{"title": "other", "stages": [1]}')
+        self.assert_fails(["run", other], "summary.json", "'stages'")
 
 
 class FramesOfTheHeatedFractureFigure(unittest.TestCase):

@@ -6,40 +6,19 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
-#include "experiment/heated_specimen.hpp"
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/results/field_files.hpp"
 #include "pyroclast/results/hdf5_file.hpp"
-#include "pyroclast/results/heat_summary.hpp"
 #include "pyroclast/results/history_file.hpp"
+#include "pyroclast/results/recorder.hpp"
 #include "pyroclast/results/run_folder.hpp"
 #include "pyroclast/results/text_file.hpp"
+#include "results/folder.hpp"
+#include "stages/small_runs.hpp"
 
 namespace pyroclast {
 namespace {
-
-namespace fs = std::filesystem;
-
-class Results : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              (std::string("pyroclast_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  static std::string content(const fs::path& file) {
-    std::ifstream stream(file);
-    std::stringstream text;
-    text << stream.rdbuf();
-    return text.str();
-  }
-
-  fs::path folder_;
-};
 
 // Two of the example values of the standard, FIPS 180.
 TEST_F(Results, Sha256IsTheStandardDigest) {
@@ -80,80 +59,93 @@ TEST_F(Results, AnHdf5FileAppearsOnlyOnceItIsClosed) {
   EXPECT_TRUE(fs::exists(path));
 }
 
-TEST_F(Results, HistoryHasAValueForEveryColumn) {
-  {
-    HistoryFile history(folder_ / "history.csv");
-    Sample sample;
-    sample.strain = sample.stage_strain = sample.specimen_strain = 0.00125;
-    sample.stress_top = 30e6;
-    sample.stress_bottom = 28e6;
-    history.write(sample);
-  }
-  std::stringstream text(content(folder_ / "history.csv"));
-  std::string header, row;
-  std::getline(text, header);
-  std::getline(text, row);
-  EXPECT_EQ(header, HistoryFile::header());
-  EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(row.begin(), row.end(), ','));
-  EXPECT_NE(row.find("0.00125,0.00125,0.00125,29,30,28"),
-            std::string::npos);  // strain thrice, then mean, top and bottom stress in MPa
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::stringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
 }
 
-TEST_F(Results, HistoryOfHeatHasAColumnForEachProbeAndALedgerThatCloses) {
-  const auto body = small_body(100);
-  const HeatCase heat = heat_case({on(OutlinePart::left, PrescribedTemperature{Curve::constant(100.0)}),
-                                   on(OutlinePart::right, convection(25.0, Curve::constant(20.0)))});
-  auto field = conduct(body, heat, 60.0);
-  {
-    HeatHistoryFile history(folder_ / "history.csv", body.model, {{"hot", {{0.0, 0.05}}}});
-    history.write(field);
-    field.advance(1e9, 60.0);
-    history.write(field);
-  }
-  std::stringstream text(content(folder_ / "history.csv"));
-  std::string header, first, last;
-  std::getline(text, header);
-  std::getline(text, first);
-  std::getline(text, last);
-  EXPECT_EQ(header.substr(header.rfind(',') + 1), "probe_hot_degC");
+TEST_F(Results, HistoryGivesEveryNumberInFull) {
+  History history;
+  history.add_column({"strain", "1"});
+  HistoryFile file(folder_ / "history.csv", history);
+  history.add_row();
+  history.set("strain", 1.0 / 3.0);
+  file.write(history);
+  EXPECT_EQ(content(folder_ / "history.csv"), "strain\n0.3333333333333333\n");
+}
+
+TEST_F(Results, HistoryHasACellForEveryColumnEmptyWhereThereIsNothing) {
+  History history;
+  for (const auto* name : {"stage", "strain", "exchange"}) history.add_column({name, "1"});
+  HistoryFile file(folder_ / "history.csv", history);
+  history.add_row();
+  history.set("stage", 0.0);
+  history.set("strain", 0.00125);
+  file.write(history);
+  history.add_row();
+  history.set("stage", 1.0);
+  history.set("exchange", 3.0);
+  file.write(history);
+  EXPECT_EQ(lines_of(content(folder_ / "history.csv")),
+            (std::vector<std::string>{"stage,strain,exchange", "0,0.00125,", "1,,3"}));
+}
+
+/// A wall between two temperatures, heated for a minute.
+std::string wall_deck() {
+  std::string text = with(shipped_case("thermal_wall"), "count = 2000", "count = 100");
+  text = with(text, "duration = \"2 h\"", "duration = \"1 min\"\nsteady_rate = \"1e-9 K/s\"");
+  return with(text, "frame_interval = \"15 min\"", "frame_interval = \"40 s\"");
+}
+
+/// Records a whole run of a deck.
+Summary record(const std::string& text, const fs::path& folder) {
+  Setup setup = read_setup(Deck::parse(text, "deck.toml"), ".");
+  const auto simulation = make_simulation(setup);
+  Run run(*simulation, std::move(setup.stages));
+  Recorder recorder(folder, setup, run);
+  while (run.next()) recorder.record(run);
+  return recorder.finish(run);
+}
+
+TEST_F(Results, HeatAloneHasProbesALedgerThatClosesAndNoContacts) {
+  const Summary summary = record(wall_deck(), folder_);
+  const auto rows = lines_of(content(folder_ / "history.csv"));
+  const std::string &header = rows.front(), &last = rows.back();
+  EXPECT_EQ(header.substr(header.rfind(',') + 1), "probe_x_75mm_degC");
+  EXPECT_EQ(header.substr(0, header.find(',', 6)), "stage,heating_time_s");
+  EXPECT_EQ(last.substr(0, 5), "0,60,");
   EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(last.begin(), last.end(), ','));
-  EXPECT_EQ(last.substr(0, 3), "60,");
-  EXPECT_DOUBLE_EQ(std::stod(last.substr(last.rfind(',') + 1)), 100.0);  // held there
-
-  Case c;
-  c.conduct = HeatRun{.duration = 60.0, .steady_rate = 1e-9};
-  const HeatSummary summary = summarize(c, field, HeatOutcome::completed);
-  EXPECT_GT(summary.heat.prescribed, 0.0);
-  EXPECT_LT(summary.heat.boundary.convection, 0.0);
-  EXPECT_LT(summary.ledger_error(), 1e-12);  // conserved to rounding
-  ASSERT_EQ(summary.warnings.size(), 1U);
-  EXPECT_NE(summary.warnings[0].find("no steady state"), std::string::npos);
-}
-
-TEST_F(Results, FieldOfHeatIsAFrameOfTheBlocksOnly) {
-  const auto body = small_body(100);
-  const HeatCase heat = heat_case({on(OutlinePart::left, PrescribedTemperature{Curve::constant(100.0)})});
-  const auto field = conduct(body, heat, 60.0);
-  HeatFieldFiles files(folder_ / "fields", body.model);
-  files.write(field);
+  EXPECT_EQ(lines_of(content(folder_ / "fields" / "frames.csv")).front(),
+            "frame,stage,temperature_degC,heating_time_s");
+  EXPECT_FALSE(summary.energy_error);
+  EXPECT_LT(summary.heat_error.value(), 1e-12);  // conserved to rounding
+  const auto& stage = summary.stages.at(0);
+  ASSERT_EQ(stage.report.warnings.size(), 1U);
+  EXPECT_NE(stage.report.warnings[0].find("no steady state"), std::string::npos);
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder_ / "fields"))
     names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"blocks.hdf.series", "blocks_0000.hdf", "frames.csv", "mesh.h5"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"blocks.hdf.series", "blocks_0000.hdf", "blocks_0001.hdf",
+                                             "blocks_0002.hdf", "frames.csv", "mesh.h5"}));
 }
 
-TEST_F(Results, ARunFolderIsRefusedWhenItExistsAndEmptiedOnlyIfItHoldsARun) {
-  const Manifest manifest{"deck.toml", "title = 1", 1, 1, "portable", "pyroclast"};
-  const RunFolder first(folder_ / "run", false, manifest);
-  EXPECT_EQ(content(folder_ / "run" / "deck.toml"), "title = 1");
-  EXPECT_THROW(RunFolder::check(folder_ / "run", false), Error);
-  EXPECT_NO_THROW(RunFolder::check(folder_ / "run", true));
-  write_text_file(folder_ / "precious.txt", "mine");
-  EXPECT_THROW(RunFolder::check(folder_, true), Error);
-  EXPECT_THROW(RunFolder::check(folder_ / "precious.txt", true), Error);
-  EXPECT_THROW(RunFolder::check(folder_ / "precious.txt" / "run", false), Error);
+TEST_F(Results, TheSummaryHasAReportOfEachStage) {
+  record(deck(kUniform + kSettle + load("level = 0.01\nf_c = \"20 MPa\"") + heat("30 degC") + kCompress +
+              kCompress),
+         folder_);
+  const auto json = nlohmann::json::parse(content(folder_ / "summary.json"));
+  EXPECT_EQ(json["outcome"], "completed");
+  std::vector<std::string> kinds;
+  for (const auto& stage : json["stages"]) kinds.push_back(stage["kind"]);
+  EXPECT_EQ(kinds, (std::vector<std::string>{"settle", "load", "heat", "compress", "compress"}));
+  EXPECT_EQ(json["stages"][1]["results"]["load_level"], 0.01);
+  EXPECT_EQ(json["stages"][2]["results"]["exchanges"], 2);
+  EXPECT_GT(json["stages"][3]["results"]["E_GPa"], 10.0);
+  EXPECT_TRUE(json["stages"][4]["results"]["E_GPa"].is_null());  // it began loaded
+  EXPECT_GT(json["energy_J"]["loading"], 0.0);
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -94,7 +96,7 @@ TEST(Conduction, CarriesALinearFieldExactlyThroughTetrahedra) {
   EXPECT_LT(linear_field_error<3>(model, {constant_material(1.6, 2e6)}, 0.1), round_off);
 }
 
-ConcreteModel concrete_model() {
+Model<2> concrete_model() {
   specimen::SpecimenParameters p;
   p.width = 0.15;
   p.height = 0.3;
@@ -115,7 +117,7 @@ ConcreteModel concrete_model() {
 TEST(Conduction, CarriesALinearFieldExactlyThroughASpecimenWithoutItsPlatens) {
   const auto body = concrete_model();
   const auto material = constant_material(1.6, 2e6);
-  EXPECT_LT(linear_field_error<2>(body.model, {material, material, std::nullopt}, 0.3), round_off);
+  EXPECT_LT(linear_field_error<2>(body, {material, material, std::nullopt}, 0.3), round_off);
 }
 
 /// L2 error of T = 3 + exp(-t) cos(pi x) cos(pi y / 2), conductivity 1 + T/10, heat capacity 2 - T/10, driven
@@ -343,6 +345,98 @@ TEST(Conduction, RunsWithTheSameExchangeTimesHoweverTheyAreAskedFor) {
     EXPECT_NEAR(often.heat.temperature()[node], once.heat.temperature()[node], 0.1);  // error in time
 }
 
+// ---- Batches ---------------------------------------------------------------------------------------------
+
+/// Ten minutes of fire, with a source and a prescribed temperature that jumps when the run begins, in steps
+/// towards each minute. A batch takes at most so many stages; after every so many batches what was begun is
+/// dropped.
+HeatState heat_in_batches(HeatScheme scheme, std::int64_t stages, int batches_to_drop) {
+  auto p = parameters(eurocode_range, 20.0);
+  p.scheme = scheme;
+  p.largest_change = 4.0;
+  Strip strip(p);
+  Conduction<2>& heat = strip.heat;
+  heat.apply(heat.faces(on_plane<2>(1, 0.0, 1e-9)),  // a jump, so that a step is taken back
+             Convection{Curve::constant(500.0),
+                        Curve::table({0.0, 315.0, 316.0, 600.0}, {20.0, 20.0, 900.0, 900.0}, time_axis())});
+  heat.set_source([](const Vec<2>& x, double t) { return 1e5 * x[0] * t; });
+  heat.prescribe_temperature(heat.faces(on_plane<2>(0, 0.06, 1e-9)),
+                             Curve::table({0.0, 600.0}, {60.0, 90.0}, time_axis()));
+  int batches = 0;
+  std::int64_t dropped = -1;
+  for (double minute = 60.0; minute <= 600.0; minute += 60.0)
+    while (heat.time() < minute) {
+      const HeatState before = heat.state();
+      std::int64_t left = stages;
+      const bool completed = heat.advance_step(minute, left);
+      EXPECT_GE(left, 0);
+      if (!completed) {
+        EXPECT_EQ(left, 0);
+        EXPECT_EQ(heat.state(), before);
+        if (++batches % batches_to_drop == 0 && heat.steps() != dropped) {
+          heat.drop_trial();
+          dropped = heat.steps();  // each step once: one that is always dropped comes to no end
+        }
+      }
+    }
+  return heat.state();
+}
+
+TEST(Conduction, IsBitwiseTheSameInBatchesOfAnySizeAndWhenABatchIsDropped) {
+  constexpr int never = std::numeric_limits<int>::max();
+  constexpr auto all = std::numeric_limits<std::int64_t>::max();
+  for (const auto scheme : {HeatScheme::euler, HeatScheme::super_time_stepping}) {
+    const HeatState whole = heat_in_batches(scheme, all, never);
+    EXPECT_GT(whole.retries, 0);
+    EXPECT_EQ(heat_in_batches(scheme, 1, never), whole);
+    EXPECT_EQ(heat_in_batches(scheme, 7, never), whole);
+    EXPECT_EQ(heat_in_batches(scheme, 2, 2), whole);
+  }
+}
+
+TEST(Conduction, ABatchOfALargeBodyByEulerIsShort) {
+  // A step towards the end of the wall of 5 m takes some 1e4 stages; a batch must not.
+  auto p = parameters({0.0, 100.0}, 20.0);
+  p.scheme = HeatScheme::euler;
+  p.largest_change = 100.0;
+  p.largest_step = 1e9;
+  const auto model = plane_body({.blocks = {100, 2}, .size = {5.0, 0.1}, .jitter = 0.3});
+  Conduction<2> heat(model, {constant_material(40.0, 2e6)}, p);
+  std::vector<double> start;
+  for (int g : heat.nodes().gridpoint) start.push_back(20.0 + 0.001 * model.position[g][0]);
+  heat.set_temperature(start);
+  constexpr double end = 1e8;
+  std::int64_t left = std::numeric_limits<std::int64_t>::max();
+  while (heat.state().next_step < 1e4 * heat.step_limit().step) heat.advance_step(end, left);
+  const HeatState before = heat.state();
+  constexpr std::int64_t batch = 1000;
+  for (int i = 0; i < 5; ++i) {
+    left = batch;
+    EXPECT_FALSE(heat.advance_step(end, left));
+    EXPECT_EQ(left, 0);
+    EXPECT_EQ(heat.state(), before);
+  }
+}
+
+TEST(Conduction, ABatchHasFewerStagesTheMoreZonesThereAre) {
+  const auto stages = [](int blocks) {
+    const auto model = plane_body({.blocks = {blocks, blocks}, .size = {0.1, 0.1}});
+    return Conduction<2>(model, {constant_material(1.0, 1e6)}, parameters({0.0, 100.0}, 20.0))
+        .stages_per_batch();
+  };
+  EXPECT_NEAR(static_cast<double>(stages(5)) / static_cast<double>(stages(50)), 100.0, 0.2);  // whole stages
+}
+
+TEST(Conduction, RefusesToStepTowardsAnotherTimeBeforeAStepIsCompleted) {
+  Strip strip(parameters(eurocode_range, 20.0));
+  std::int64_t left = 1;
+  ASSERT_FALSE(strip.heat.advance_step(60.0, left));
+  left = 1;
+  expect_in("step under way", message([&] { strip.heat.advance_step(120.0, left); }));
+  strip.heat.drop_trial();
+  EXPECT_FALSE(strip.heat.advance_step(120.0, left));
+}
+
 // ---- Outline and materials -------------------------------------------------------------------------------
 
 TEST(Conduction, FindsTheOutlineAndItsSides) {
@@ -384,16 +478,16 @@ TEST(Conduction, FindsTheOutlineInThreeDimensions) {
 TEST(Conduction, LeavesOutBlocksOfMaterialsThatDoNotConduct) {
   const auto body = concrete_model();
   const auto material = constant_material(1.6, 2e6);
-  const Conduction<2> heat(body.model, {material, material, std::nullopt}, parameters(eurocode_range, 50.0));
+  const Conduction<2> heat(body, {material, material, std::nullopt}, parameters(eurocode_range, 50.0));
   double area = 0.0;
   for (const auto& face : heat.outline()) area += face.area;
   EXPECT_NEAR(area, 2.0 * (0.15 + 0.3) * 0.15, 1e-12);  // the specimen's own outline
   const auto temperature = heat.gridpoint_temperatures(20.0);
-  for (int b = 0; b < body.model.block_count(); ++b)
-    for (int g = body.model.block_gridpoints[b]; g < body.model.block_gridpoints[b + 1]; ++g)
-      ASSERT_EQ(temperature[g], body.model.block_material[b] == platen_material ? 20.0 : 50.0);
+  for (int b = 0; b < body.block_count(); ++b)
+    for (int g = body.block_gridpoints[b]; g < body.block_gridpoints[b + 1]; ++g)
+      ASSERT_EQ(temperature[g], body.block_material[b] == platen_material ? 20.0 : 50.0);
 
-  const Conduction<2> all(body.model, {material, material, material}, parameters(eurocode_range, 50.0));
+  const Conduction<2> all(body, {material, material, material}, parameters(eurocode_range, 50.0));
   area = 0.0;
   for (const auto& face : all.outline()) area += face.area;
   EXPECT_NEAR(area, 2.0 * (0.15 + 0.3 + 2 * 0.03) * 0.15, 1e-12);  // with platens of 0.03 m
@@ -473,6 +567,27 @@ TEST(Conduction, HoldsOvershootsOfASharpFrontAtTheEndOfTheRange) {
   EXPECT_GT(heat.largest_overshoot(), 0.0);
   for (double t : heat.temperature()) EXPECT_TRUE(20.0 <= t && t <= 1000.0 + heat.largest_overshoot()) << t;
   EXPECT_LT(std::abs(heat.ledger().error()), 1e-10 * heat.ledger().stored);
+}
+
+TEST(Conduction, HeatThatWaitsAtTheEndOfTheRangeComesToItsPlaceWhenTheRangeWidens) {
+  const auto model = plane_body({.blocks = {1, 1}, .size = {0.1, 0.1}});
+  Conduction<2> heat(model, {constant_material(1.0, 1e6)}, parameters({20.0, 100.0}, 20.0));
+  heat.set_source([](const Vec<2>&, double) { return 1e6; });  // 1 K/s
+  heat.advance_to(80.5);
+  for (double t : heat.temperature()) EXPECT_EQ(t, 100.0);
+  heat.widen_temperature_range({50.0, 500.0});
+  for (double t : heat.temperature()) EXPECT_NEAR(t, 100.5, 1e-9);  // rounding of 1e2 K
+  heat.advance_to(300.0);
+  for (double t : heat.temperature()) EXPECT_NEAR(t, 320.0, 1e-9);
+  EXPECT_LT(std::abs(heat.ledger().error()), 1e-10 * heat.ledger().stored);
+}
+
+TEST(Conduction, RefusesToWidenItsRangeBeyondAMaterialsCurves) {
+  const auto model = plane_body({.blocks = {2, 2}, .size = {0.1, 0.1}});
+  Conduction<2> heat(model, {moist_concrete()}, parameters({20.0, 100.0}, 20.0));
+  heat.widen_temperature_range({20.0, 1200.0});
+  expect_in("range of 20 to 1300 degC", message([&] { heat.widen_temperature_range({30.0, 1300.0}); }));
+  expect_in("temperature range is -300", message([&] { heat.widen_temperature_range({-300.0, 0.0}); }));
 }
 
 TEST(Conduction, RefusesContactsBetweenGridpointsThatDoNotCoincide) {

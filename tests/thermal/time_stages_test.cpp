@@ -1,12 +1,21 @@
 #include "pyroclast/thermal/time_stages.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 namespace pyroclast {
 namespace {
+
+std::vector<TimeStage> time_stages(HeatScheme scheme, std::int64_t count) {
+  const TimeStages stages(scheme, count);
+  EXPECT_EQ(stages.count(), count);
+  std::vector<TimeStage> all;
+  for (std::int64_t j = 0; j < count; ++j) all.push_back(stages[j]);
+  return all;
+}
 
 /// Value after one step of dy/dt = rate(t) y with y(0) = 1.
 template <class Rate>
@@ -66,6 +75,14 @@ TEST(TimeStages, AreStableUpToTheRatioThatTheyAreChosenFor) {
         ASSERT_LE(std::abs(advance(stages, 1.0, [&](double) { return -2.0 * ratio * part; })), 1.0 + 1e-12)
             << ratio << " " << part;
     }
+}
+
+TEST(TimeStages, OfEulerMayBeMoreThanMemoryHolds) {
+  const auto count = fewest_stages(HeatScheme::euler, 1e13);
+  EXPECT_EQ(count, 10'000'000'000'000);
+  const TimeStages stages(HeatScheme::euler, count);
+  EXPECT_EQ(stages[count / 2].begin, 0.5);
+  EXPECT_EQ(stages[count - 1].end, 1.0);
 }
 
 TEST(TimeStages, SuperTimeSteppingNeedsTwiceTheRootOfTheStepsOfEuler) {

@@ -1,13 +1,15 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include "pyroclast/app/conduct.hpp"
 #include "pyroclast/app/load.hpp"
 #include "pyroclast/app/progress.hpp"
-#include "pyroclast/experiment/simulation.hpp"
+#include "pyroclast/simulation/coupling.hpp"
+#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/thermal/time_stages.hpp"
 
 namespace pyroclast::app {
 
@@ -15,16 +17,72 @@ namespace {
 
 constexpr int kWarmUpSteps = 10, kMostTimedSteps = 2000;
 constexpr double kSecondsOfTiming = 0.5;
+/// A frame takes about as long as so many rows of the history: it computes and writes every contact.
+constexpr double kRowsPerFrame = 4.0;
+/// Part of the largest change of a temperature that the heat solver's steps aim at, see Conduction.
+constexpr double kAimedChange = 0.8;
+
+template <class Action>
+double seconds_of(Action action) {
+  const auto start = Clock::now();
+  action();
+  return seconds_since(start);
+}
 
 /// Timed over many steps in one go, as a run takes them: the last of a batch costs more, for it is measured.
 double seconds_per_step(Mechanics<2>& mechanics) {
-  const auto time = [&](int steps) {
-    const auto start = Clock::now();
-    mechanics.advance(steps);
-    return seconds_since(start) / steps;
-  };
+  const auto time = [&](int steps) { return seconds_of([&] { mechanics.advance(steps); }) / steps; };
   const double steps = kSecondsOfTiming / time(kWarmUpSteps);
   return time(static_cast<int>(std::clamp<double>(steps, kWarmUpSteps, kMostTimedSteps)));
+}
+
+double seconds_per_exchange(Simulation& simulation) {
+  return seconds_of([&] {
+    simulation.mechanics().set_properties(
+        properties_at(simulation.model(), simulation.materials(), simulation.field()));
+  });
+}
+
+/// Evaluations of the heat solver: while temperatures change fast they bound its steps, later the longest
+/// step does. \param rise  of temperature that boundaries may bring about, K
+double expected_evaluations(const HeatConditions& heat, double stable_step, double rise, double duration) {
+  const double steps = rise / (kAimedChange * heat.largest_change) + duration / heat.largest_step;
+  return steps * fewest_stages(heat.scheme, std::max(1.0, duration / steps / stable_step));
+}
+
+/// Timed over what the solver does in a moment. Heats the field.
+double seconds_per_evaluation(TemperatureField& field, double duration, double largest_change) {
+  const auto start = Clock::now();
+  const std::int64_t before = field.conduction()->stages();
+  while (field.time() < duration && seconds_since(start) < kSecondsOfTiming)
+    field.advance(largest_change, duration);
+  return seconds_since(start) / static_cast<double>(field.conduction()->stages() - before);
+}
+
+Forecast forecast(const std::vector<std::unique_ptr<Stage>>& stages, const Simulation& simulation,
+                  const Interval& temperatures) {
+  Foreseen foreseen{simulation.field().mean(), temperatures.upper};
+  Forecast sum;
+  for (const auto& stage : stages) sum += stage->forecast(simulation, foreseen);
+  return sum;
+}
+
+/// What the forecast takes, s. Moves and heats the simulation.
+/// \param hottest  temperature that the run may come to, °C
+double seconds_of_run(const Forecast& forecast, double hottest, Simulation& simulation, Run& run) {
+  double seconds = 0.0;
+  if (simulation.moves()) seconds += forecast.steps * seconds_per_step(simulation.mechanics());
+  const double row = seconds_of([&] { run.next(); });
+  seconds += (forecast.looks + kRowsPerFrame * forecast.frames) * row;
+  if (forecast.exchanges > 0.0) seconds += forecast.exchanges * seconds_per_exchange(simulation);
+  if (forecast.heating_duration > 0.0) {
+    TemperatureField& field = simulation.field();
+    const HeatConditions& heat = simulation.heat();
+    const double evaluations = expected_evaluations(heat, field.conduction()->step_limit().step,
+                                                    hottest - field.mean(), forecast.heating_duration);
+    seconds += evaluations * seconds_per_evaluation(field, forecast.heating_duration, heat.largest_change);
+  }
+  return seconds;
 }
 
 double peak_memory() {
@@ -33,74 +91,49 @@ double peak_memory() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-/// Steps that a stage takes at most; settling and the rest after a load are not known beforehand and left
-/// out. A computed temperature field is counted as if it reached its whole range.
-double most_steps(const Case& c, const Stage& stage, double from, double time_step) {
-  if (const auto* compress = std::get_if<CompressStage>(&stage))
-    return (compress->stop_strain * c.specimen.height / compress->velocity + 0.5 * compress->ramp_time) /
-           time_step;
-  if (const auto* load = std::get_if<LoadStage>(&stage)) return load->ramp_time / time_step;
-  const auto exchanges = [](const Coupling& coupling, double change) {
-    return static_cast<double>(coupling.most_cycles) * std::ceil(change / coupling.increment);
-  };
-  if (const auto* heat = std::get_if<HeatStage>(&stage))
-    return exchanges(heat->coupling, std::abs(heat->to - from));
-  if (const auto* expose = std::get_if<ExposeStage>(&stage); expose)
-    return exchanges(expose->coupling, c.temperatures.upper - c.temperatures.lower);
-  return 0.0;
-}
-
-double most_steps(const Case& c, double time_step) {
-  double steps = 0.0, temperature = c.heat.initial;
-  for (const auto& stage : c.stages) {
-    steps += most_steps(c, stage, temperature, time_step);
-    if (const auto* heat = std::get_if<HeatStage>(&stage)) temperature = heat->to;
-  }
-  return steps;
+void print_mechanics(const Simulation& simulation, MassChoice mass) {
+  const Mechanics<2>& mechanics = simulation.mechanics();
+  const Model<2>& model = simulation.model();
+  const TimeStepLimit limit = mechanics.real_mass_limit();
+  const int g = limit.gridpoint, block = model.block_of(g);
+  fmt::print("time step       {:.3g} s, {}\n", mechanics.time_step(),
+             mass == MassChoice::scaled
+                 ? fmt::format("by density scaling of all {} gridpoints: moving mass {:.3g} x the real one",
+                               model.gridpoint_count(), mechanics.mass_ratio())
+                 : "with real mass");
+  fmt::print("                with real mass {:.3g} s, set by gridpoint {} of block {} ({})", limit.step, g,
+             block, model.material_names[model.block_material[block]]);
+  fmt::print(" at ({:.2f}, {:.2f}) mm\n", 1e3 * model.position[g][0], 1e3 * model.position[g][1]);
+  fmt::print("materials       E about {:.2f} GPa (uniform stress estimate, a lower bound), t_b {:.3f} mm\n",
+             estimate_modulus(model, simulation.materials()) * 1e-9,
+             1e3 * simulation.materials().fracture_zone);
 }
 
 }  // namespace
 
 int check(const RunOptions& options) {
-  const Loaded loaded(options);
-  const Case& c = loaded.c;
-  if (c.conduct) return check_conduction(loaded);
-  Simulation simulation(c);
-  auto& mechanics = *simulation.mechanics;
-  const auto& model = simulation.body.model;
-  const double modulus = estimate_modulus(simulation.body, simulation.materials);
+  Loaded loaded(options);
+  Setup& setup = loaded.setup;
+  const auto simulation = make_simulation(setup);
+  const Model<2>& model = simulation->model();
+  fmt::print("deck            {} is valid: {}\n", loaded.deck.name(), setup.title);
+  fmt::print("{}", describe(simulation->specimen()));
+  fmt::print("model           {} blocks{}, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
+             simulation->moves() ? " with the platens" : "", model.zone_count(), model.gridpoint_count(),
+             model.contact_count());
+  if (simulation->moves()) print_mechanics(*simulation, setup.motion->mechanics.mass);
+  if (const auto* conduction = simulation->field().conduction())
+    fmt::print("{}", describe(*conduction, model, setup.temperatures));
 
-  fmt::print("deck            {} is valid: {}\n", loaded.deck.name(), c.title);
-  fmt::print("{}", describe(simulation.specimen));
-  fmt::print("model           {} blocks with the platens, {} zones, {} gridpoints, {} contacts\n",
-             model.block_count(), model.zone_count(), model.gridpoint_count(), model.contact_count());
-
-  const TimeStepLimit limit = mechanics.real_mass_limit();
-  const int g = limit.gridpoint;
-  const int block = model.block_of(g);
-  fmt::print("time step       {:.3g} s, {}\n", mechanics.time_step(),
-             c.mechanics.mass == MassChoice::scaled
-                 ? fmt::format("by density scaling of all {} gridpoints: moving mass {:.3g} x the real one",
-                               model.gridpoint_count(), mechanics.mass_ratio())
-                 : "with real mass");
-  fmt::print(
-      "                with real mass {:.3g} s, set by gridpoint {} of block {} ({}) at ({:.2f}, {:.2f}) "
-      "mm\n",
-      limit.step, g, block, model.material_names[model.block_material[block]], 1e3 * model.position[g][0],
-      1e3 * model.position[g][1]);
-  fmt::print("materials       E about {:.2f} GPa (uniform stress estimate, a lower bound), t_b {:.3f} mm\n",
-             modulus * 1e-9, 1e3 * simulation.materials.fracture_zone);
-
-  if (const auto* conduction = simulation.field->conduction())
-    fmt::print("{}", describe(*conduction, model, c.temperatures));
-  const double steps = most_steps(c, mechanics.time_step());
-  const double step_time = seconds_per_step(mechanics);
-  fmt::print(
-      "run             {} stages, at most {:.3g} steps after settling, about {} on {} threads with {} "
-      "instructions, "
-      "{:.0f} MB of memory\n",
-      c.stages.size(), steps, duration(steps * step_time), loaded.threads, name(mechanics.instructions()),
-      peak_memory() * 1e-6);
+  const Forecast expected = forecast(setup.stages, *simulation, setup.temperatures);
+  Run run(*simulation, std::move(setup.stages));
+  const double seconds = seconds_of_run(expected, setup.temperatures.upper, *simulation, run);
+  fmt::print("run             {} stages", run.stages().size());
+  if (expected.steps > 0.0) fmt::print(", about {:.2g} steps", expected.steps);
+  if (expected.heating_duration > 0.0) fmt::print(", heat flows for {}", duration(expected.heating_duration));
+  fmt::print("; about {}\n", duration(seconds));
+  fmt::print("                on {} threads with {} instructions, {:.0f} MB of memory\n", loaded.team->size(),
+             name(loaded.instructions), peak_memory() * 1e-6);
   return 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,8 +44,11 @@ int make_deck(const std::string& name);
 /// ...
 int figures(const std::vector<std::string>& words);
 
-/// Draws the figures of a folder with the Python package; warns when that is not possible. `what` is its
-/// command.
-void draw_figures(const std::string& what, const std::filesystem::path& folder);
+/// Draws the figures of a folder with the Python package; warns when that is not possible.
+/// \param what  the package's command
+/// \param skip  asked before and while they are drawn; true ends it
+void draw_figures(
+    const std::string& what, const std::filesystem::path& folder,
+    const std::function<bool()>& skip = [] { return false; });
 
 }  // namespace pyroclast::app

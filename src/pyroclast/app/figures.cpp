@@ -1,5 +1,8 @@
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,8 +26,23 @@ std::filesystem::path package_folder() {
   return std::filesystem::exists(installed) ? installed : std::filesystem::path(PYROCLAST_SOURCE_PYTHON);
 }
 
-/// Runs the package's command; returns its exit code, or -1 if there is no such program.
-int run_package(std::vector<std::string> words) {
+/// While a program runs, it is asked this often whether to end it.
+constexpr std::chrono::milliseconds kPatience{50};
+
+/// Waits for the end of a program, or ends it. Returns its status.
+int wait_for(pid_t child, const std::function<bool()>& skip) {
+  int status = -1;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    if (skip()) kill(child, SIGTERM);
+    std::this_thread::sleep_for(kPatience);
+  }
+  return status;
+}
+
+/// Runs the package's command; returns its exit code, or -1 if there is no such program or it was ended.
+int run_package(
+    std::vector<std::string> words, const std::function<bool()>& skip = [] { return false; }) {
+  if (skip()) return -1;
   std::vector<std::string> arguments{PYROCLAST_PYTHON, "-m", "pyroclast.figures"};
   arguments.insert(arguments.end(), words.begin(), words.end());
   std::vector<std::string> environment;
@@ -42,7 +60,7 @@ int run_package(std::vector<std::string> words) {
   std::fflush(stdout);
   if (posix_spawn(&child, PYROCLAST_PYTHON, nullptr, nullptr, pointers(arguments).data(),
                   pointers(environment).data()) == 0)
-    waitpid(child, &status, 0);
+    status = wait_for(child, skip);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
@@ -54,12 +72,13 @@ int figures(const std::vector<std::string>& words) {
   return code;
 }
 
-void draw_figures(const std::string& what, const std::filesystem::path& folder) {
-  if (run_package({what, folder.string()}) != 0)
-    fmt::print(stderr,
-               "warning: no figures were drawn; the results are complete without them. To draw them later: "
-               "pyroclast figures {} {}\n",
-               what, folder.string());
+void draw_figures(const std::string& what, const std::filesystem::path& folder,
+                  const std::function<bool()>& skip) {
+  if (run_package({what, folder.string()}, skip) == 0) return;
+  fmt::print(stderr,
+             "warning: no figures were drawn; the results are complete without them.\n"
+             "To draw them later: pyroclast figures {} {}\n",
+             what, folder.string());
 }
 
 }  // namespace pyroclast::app

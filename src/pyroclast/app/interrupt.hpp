@@ -1,33 +1,37 @@
 #pragma once
 
 #include <csignal>
+#include <initializer_list>
 
 namespace pyroclast::app {
 
-/// While one is there, the first SIGINT or SIGTERM only asks for a clean end; the next one has its usual
-/// effect. One at a time.
+/// While one is there, the first SIGINT, SIGTERM or SIGHUP asks for a clean end, and the second one to skip
+/// what can be made later; the third has its usual effect. One at a time.
 class Interrupt {
  public:
   Interrupt() {
-    std::signal(SIGINT, on_signal);
-    std::signal(SIGTERM, on_signal);
+    count_ = 0;
+    for (int signal : kSignals) std::signal(signal, on_signal);
   }
   ~Interrupt() {
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
+    for (int signal : kSignals) std::signal(signal, SIG_DFL);
   }
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
-  static bool asked() { return asked_ != 0; }
+  bool asked() const { return count_ >= 1; }
+  bool asked_twice() const { return count_ >= 2; }
 
  private:
-  static void on_signal(int signal) {
-    asked_ = 1;
-    std::signal(signal, SIG_DFL);
+  static constexpr std::initializer_list<int> kSignals{SIGINT, SIGTERM, SIGHUP};
+
+  static void on_signal(int) {
+    count_ = count_ + 1;
+    if (count_ < 2) return;
+    for (int signal : kSignals) std::signal(signal, SIG_DFL);
   }
 
-  static inline volatile std::sig_atomic_t asked_ = 0;
+  static inline volatile std::sig_atomic_t count_ = 0;
 };
 
 }  // namespace pyroclast::app

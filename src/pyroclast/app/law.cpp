@@ -126,15 +126,15 @@ class Drive {
   }
 
   static constexpr const char* kHeader =
-      "u_n_m,u_s_m,T_degC,sigma_Pa,tau_Pa,D_t,D_s,u_p_m,s_m,stored_J_m2,dissipated_tension_J_m2,dissipated_"
-      "shear_J_m2,"
-      "dissipated_friction_J_m2,dissipated_compression_J_m2,heat_induced_J_m2\n";
+      "u_n_m,u_s_m,T_degC,sigma_Pa,tau_Pa,D_t,D_s,u_p_m,s_m,stored_J_m2,"
+      "dissipated_tension_J_m2,dissipated_shear_J_m2,dissipated_friction_J_m2,dissipated_compression_J_m2,"
+      "heat_induced_J_m2\n";
 
  private:
   void update(const PathPoint& point) {
     response_ = update_contact<2>(properties_, point.opening, {{point.slip}}, history_);
     total_ += response_.dissipated;
-    accumulated_slip_ += response_.slipped;
+    accumulated_slip_ += response_.slip_path;
   }
 
   const ContactMaterial& material_;
@@ -151,11 +151,12 @@ class Drive {
 
 int law(const LawOptions& options) {
   const Deck deck = Deck::load(options.deck);
-  const Case c = read_case(deck, options.deck.parent_path());
-  if (c.conduct)
+  const Setup setup = read_setup(deck, options.deck.parent_path());
+  if (!setup.motion)
     throw Error(fmt::format("{}: is of heat conduction alone and has no contacts, so no contact law",
                             options.deck.string()));
-  const auto concrete = make_concrete(c.solids, c.contacts, expected_block_size(c));
+  const ContactParameters& contacts = setup.motion->contacts;
+  const auto concrete = make_concrete(setup.solids, contacts, expected_block_size(setup.specimen, contacts));
   Drive drive(concrete.contacts[interface_index(options.interface)]);
 
   std::string csv = Drive::kHeader;

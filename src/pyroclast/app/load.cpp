@@ -7,12 +7,26 @@
 
 namespace pyroclast::app {
 
+namespace {
+
+constexpr double kMilli = 1e3;
+
+std::shared_ptr<Team> make_team(int asked) {
+  const int threads = asked > 0 ? asked : available_threads();
+  omp_set_num_threads(threads);
+  return std::make_shared<Team>(threads);
+}
+
+}  // namespace
+
 Loaded::Loaded(const RunOptions& options)
-    : deck(Deck::load(options.deck, options.changes)), c(read_case(deck, options.deck.parent_path())) {
-  if (options.seed) c.specimen.seed = *options.seed;
-  if (!options.instructions.empty()) c.mechanics.instructions = instruction_set(options.instructions);
-  if (options.threads > 0) omp_set_num_threads(options.threads);
-  threads = omp_get_max_threads();
+    : deck(Deck::load(options.deck, options.changes)),
+      setup(read_setup(deck, options.deck.parent_path())),
+      instructions(options.instructions.empty() ? usable_instruction_sets().back()
+                                                : instruction_set(options.instructions)),
+      team(make_team(options.threads)) {
+  if (options.seed) setup.specimen.seed = *options.seed;
+  if (setup.motion) setup.motion->mechanics.instructions = instructions;
 }
 
 std::filesystem::path output_folder(const RunOptions& options) {
@@ -20,25 +34,40 @@ std::filesystem::path output_folder(const RunOptions& options) {
 }
 
 RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options) {
-  return {output_folder(options),
-          options.overwrite,
-          {loaded.deck.name(), loaded.deck.text(), loaded.c.specimen.seed, loaded.threads,
-           name(loaded.c.mechanics.instructions), options.command}};
+  RunFolder folder(output_folder(options), options.overwrite,
+                   {loaded.deck.name(), loaded.deck.text(), loaded.setup.specimen.seed, loaded.team->size(),
+                    name(loaded.instructions), options.command});
+  for (const auto& file : folder.foreign())
+    fmt::print("kept            {}, which no run writes\n", (folder.path() / file).string());
+  return folder;
 }
 
 std::string describe(const specimen::Specimen& s) {
-  return fmt::format(
-      "specimen        {} blocks, {} aggregates; aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} "
-      "after "
-      "superposition\n"
-      "block metrics   mean size {:.3f} mm, mean edge {:.3f} mm; shortest edge {:.3f} mm, block {} at "
-      "({:.2f}, {:.2f}) mm; "
-      "smallest zone angle {:.1f} deg, block {}; {} edges removed, {} left short, {} seeds redrawn\n",
-      s.tessellation.cells.size(), s.aggregates.size(), s.fraction_asked, s.fraction_placed,
-      s.fraction_superposed, 1e3 * s.metrics.mean_size, 1e3 * s.metrics.mean_edge,
-      1e3 * s.metrics.shortest_edge, s.metrics.shortest_edge_cell, 1e3 * s.metrics.shortest_edge_at[0],
-      1e3 * s.metrics.shortest_edge_at[1], s.metrics.smallest_angle, s.metrics.smallest_angle_cell,
-      s.metrics.edges_removed, s.metrics.edges_left_short, s.metrics.seeds_redrawn);
+  const auto& m = s.metrics;
+  std::string text = fmt::format("specimen        {} blocks, {} aggregates\n", s.tessellation.cells.size(),
+                                 s.aggregates.size());
+  text += fmt::format(
+      "                aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} after superposition\n",
+      s.fraction_asked, s.fraction_placed, s.fraction_superposed);
+  text += fmt::format("blocks          mean size {:.3f} mm, mean edge {:.3f} mm\n", kMilli * m.mean_size,
+                      kMilli * m.mean_edge);
+  text += fmt::format("                shortest edge {:.3f} mm, block {} at ({:.2f}, {:.2f}) mm\n",
+                      kMilli * m.shortest_edge, m.shortest_edge_cell, kMilli * m.shortest_edge_at[0],
+                      kMilli * m.shortest_edge_at[1]);
+  text += fmt::format("                smallest zone angle {:.1f} deg, block {}\n", m.smallest_angle,
+                      m.smallest_angle_cell);
+  text += fmt::format("                {} edges removed, {} left short, {} seeds redrawn\n", m.edges_removed,
+                      m.edges_left_short, m.seeds_redrawn);
+  return text;
+}
+
+std::string describe(const Conduction<2>& conduction, const Model<2>& model, const Interval& temperatures) {
+  const HeatStepLimit limit = conduction.step_limit();
+  const Vec<2>& at = model.position[conduction.nodes().gridpoint[limit.node]];
+  return fmt::format("heat            {} nodes, {:.0f} to {:.0f} degC\n", conduction.nodes().count(),
+                     temperatures.lower, temperatures.upper) +
+         fmt::format("                stable step {:.3g} s at first, set at ({:.2f}, {:.2f}) mm\n",
+                     limit.step, kMilli * at[0], kMilli * at[1]);
 }
 
 std::string duration(double seconds) {

@@ -1,18 +1,19 @@
 #pragma once
 
 #include "pyroclast/app/commands.hpp"
-#include "pyroclast/experiment/case.hpp"
 #include "pyroclast/results/run_folder.hpp"
+#include "pyroclast/setup/setup.hpp"
 
 namespace pyroclast::app {
 
-/// Deck and case of the options, with what the command line says in place and the threads set.
+/// A deck of the options, and what it says, with what the command line says in place and the threads set.
 struct Loaded {
   explicit Loaded(const RunOptions& options);
 
   Deck deck;
-  Case c;
-  int threads;
+  Setup setup;
+  InstructionSet instructions;
+  std::shared_ptr<Team> team;
 };
 
 /// Where the results shall be.
@@ -23,6 +24,10 @@ RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options);
 
 /// What came of the specimen, for the screen.
 std::string describe(const specimen::Specimen& specimen);
+
+/// What the heat solver is about to do, for the screen.
+/// \param temperatures  that the run may come to, °C
+std::string describe(const Conduction<2>& conduction, const Model<2>& model, const Interval& temperatures);
 
 /// A duration as one reads it, e.g. "3 min 20 s".
 std::string duration(double seconds);

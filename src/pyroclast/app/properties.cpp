@@ -18,13 +18,15 @@ constexpr Interval kDrawn{20.0, 800.0};
 /// Greatest distance of two rows, K: small enough to show the jump of the standards' specific heat at 100 °C.
 constexpr double kTemperatureStep = 1.0;
 
-void add_solid(const SolidMaterial& solid, const std::string& name, std::vector<ReadCurve>& list) {
+/// \param moves  whether the mechanical properties were read too
+void add_solid(const SolidMaterial& solid, const std::string& name, bool moves,
+               std::vector<ReadCurve>& list) {
   const auto add = [&](const char* key, const Unit& unit, const Curve& curve) {
     list.push_back({fmt::format("materials.{}.{}", name, key), unit.si, curve});
   };
-  add("E", unit::stress, solid.young);
+  if (moves) add("E", unit::stress, solid.young);
   add("density", unit::density, solid.density);
-  add("thermal_strain", unit::dimensionless, solid.thermal_strain);
+  if (moves) add("thermal_strain", unit::dimensionless, solid.thermal_strain);
   if (solid.conductivity) add("conductivity", unit::conductivity, *solid.conductivity);
   if (!solid.specific_heat) return;
   add("specific_heat", unit::specific_heat, *solid.specific_heat);
@@ -48,15 +50,20 @@ void add_contact(const ContactMaterial& contact, const std::string& name, std::v
 
 /// Properties as a run has them, and whatever else the deck gives over the temperature, such as an expansion
 /// coefficient.
-std::vector<ReadCurve> properties_of(const Case& c) {
-  const ConcreteMaterials concrete = make_concrete(c.solids, c.contacts, expected_block_size(c));
+std::vector<ReadCurve> properties_of(const Setup& setup) {
   std::vector<ReadCurve> list;
-  add_solid(concrete.solids[aggregate_material], "aggregate", list);
-  add_solid(concrete.solids[mortar_material], "mortar", list);
-  add_solid(concrete.solids[platen_material], "platen", list);
-  add_contact(concrete.contacts[mortar_mortar], "mortar_mortar", list);
-  add_contact(concrete.contacts[aggregate_mortar], "aggregate_mortar", list);
-  for (const ReadCurve& read : c.curves) {
+  const bool moves = setup.motion.has_value();
+  add_solid(setup.solids[aggregate_material], "aggregate", moves, list);
+  add_solid(setup.solids[mortar_material], "mortar", moves, list);
+  if (moves) {
+    const ContactParameters& contacts = setup.motion->contacts;
+    const auto concrete =
+        make_concrete(setup.solids, contacts, expected_block_size(setup.specimen, contacts));
+    add_solid(setup.solids[platen_material], "platen", moves, list);
+    add_contact(concrete.contacts[mortar_mortar], "mortar_mortar", list);
+    add_contact(concrete.contacts[aggregate_mortar], "aggregate_mortar", list);
+  }
+  for (const ReadCurve& read : setup.curves) {
     const bool listed =
         std::ranges::any_of(list, [&](const ReadCurve& other) { return other.path == read.path; });
     if (!listed) list.push_back(read);
@@ -94,16 +101,16 @@ void print(const std::vector<ReadCurve>& curves) {
 
 int plot_properties(const PropertiesOptions& options) {
   const Deck deck = Deck::load(options.deck);
-  const Case c = read_case(deck, options.deck.parent_path());
+  const Setup setup = read_setup(deck, options.deck.parent_path());
   std::string csv = "property,unit,temperature_degC,value,ratio_to_20_degC\n";
-  for (const ReadCurve& property : properties_of(c))
-    csv += rows(property, drawn_range(property, c.temperatures));
+  for (const ReadCurve& property : properties_of(setup))
+    csv += rows(property, drawn_range(property, setup.temperatures));
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("runs") / (options.deck.stem().string() + "-properties")
                           : options.out;
   std::filesystem::create_directories(out);
   write_text_file(out / "properties.csv", csv);
-  print(c.curves);
+  print(setup.curves);
   fmt::print("{}\n", (out / "properties.csv").string());
   draw_figures("properties", out);
   return 0;

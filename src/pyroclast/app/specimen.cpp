@@ -1,20 +1,23 @@
 #include <fmt/format.h>
 
 #include "pyroclast/app/load.hpp"
-#include "pyroclast/experiment/simulation.hpp"
-#include "pyroclast/results/field_files.hpp"
+#include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/results/specimen_files.hpp"
 
 namespace pyroclast::app {
 
 int make_specimen(const RunOptions& options) {
   const Loaded loaded(options);
+  const Setup& setup = loaded.setup;
   RunFolder::check(output_folder(options), options.overwrite);
-  const HeatSimulation simulation(loaded.c);
+  const specimen::Specimen specimen = make_checked_specimen(setup.specimen);
+  const Model<2> model = make_concrete_model(
+      specimen, setup.motion ? std::optional(setup.motion->platen_thickness) : std::nullopt, setup.thickness);
   const RunFolder folder = make_run_folder(loaded, options);
-  const FieldFiles mesh(folder.path() / "fields", simulation.body.model);
-  write_specimen_files(folder.path() / "specimen", simulation.specimen, loaded.c.specimen.aggregates);
-  fmt::print("{}results         {}\n", describe(simulation.specimen), folder.path().string());
+  std::filesystem::create_directories(folder.path() / "fields");
+  write_mesh(folder.path() / "fields", model);
+  write_specimen_files(folder.path() / "specimen", specimen, setup.specimen.aggregates);
+  fmt::print("{}results         {}\n", describe(specimen), folder.path().string());
   if (options.figures) draw_figures("specimen", folder.path());
   return 0;
 }

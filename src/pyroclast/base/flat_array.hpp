@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <type_traits>
@@ -12,19 +13,21 @@
 
 #include <sys/mman.h>
 
+#include "pyroclast/base/team.hpp"
+
 namespace pyroclast {
 
 /// Array of plain data that starts on a cache line, filled with zero bytes.
 ///
-/// Its pages are first touched by the threads of a static OpenMP loop, so that on a machine with several
-/// memories each thread's share stands near it.
+/// On a machine with several memories a page stands near the thread that first touches it: with a team each
+/// of its threads touches an even share.
 template <class T>
 class FlatArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
   FlatArray() = default;
-  explicit FlatArray(std::size_t size) : size_(size) {
+  explicit FlatArray(std::size_t size, Team* team = nullptr) : size_(size), capacity_(size) {
     const std::size_t needed = size * sizeof(T);
     if (needed == 0) return;
     const std::size_t alignment = needed < kHugePage ? kPage : kHugePage;
@@ -37,10 +40,15 @@ class FlatArray {
     // gathers all over a large array would miss most translations of small pages; a refusal costs only time
     if (alignment == kHugePage) madvise(base, bytes, MADV_HUGEPAGE);
 #endif
+    const auto touch = [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+      std::memset(base + static_cast<std::size_t>(first) * kPage, 0,
+                  static_cast<std::size_t>(last - first) * kPage);
+    };
     const auto pages = static_cast<std::ptrdiff_t>(bytes / kPage);
-#pragma omp parallel for schedule(static)
-    for (std::ptrdiff_t page = 0; page < pages; ++page)
-      for (std::size_t i = 0; i < kPage; ++i) base[static_cast<std::size_t>(page) * kPage + i] = 0;
+    if (team)
+      team->share(pages, kPagesForAThread, touch);
+    else
+      touch(0, pages);
   }
 
   explicit FlatArray(const std::vector<T>& values) : FlatArray(values.size()) {
@@ -51,13 +59,29 @@ class FlatArray {
     std::copy(other.begin(), other.end(), begin());
   }
   FlatArray(FlatArray&& other) noexcept
-      : data_(std::move(other.data_)), size_(std::exchange(other.size_, 0)) {}
+      : data_(std::move(other.data_)),
+        size_(std::exchange(other.size_, 0)),
+        capacity_(std::exchange(other.capacity_, 0)) {}
   FlatArray& operator=(FlatArray other) noexcept {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
     return *this;
   }
   ~FlatArray() = default;
+
+  /// Another number of elements; new ones are zero bytes. Elements move when there is no room left, and then
+  /// room for twice as many is made.
+  void resize(std::size_t size) {
+    if (size > capacity_) {
+      FlatArray bigger(std::max(size, 2 * capacity_));
+      std::copy(begin(), end(), bigger.begin());
+      bigger.size_ = size_;
+      *this = std::move(bigger);
+    }
+    if (size > size_) std::memset(static_cast<void*>(data() + size_), 0, (size - size_) * sizeof(T));
+    size_ = size;
+  }
 
   std::size_t size() const {
     return size_;
@@ -92,6 +116,7 @@ class FlatArray {
 
  private:
   static constexpr std::size_t kPage = 4096, kHugePage = std::size_t{2} << 20;
+  static constexpr std::ptrdiff_t kPagesForAThread = 256;
   struct Free {
     void* base = nullptr;
     void operator()(T*) const { std::free(base); }
@@ -103,7 +128,7 @@ class FlatArray {
     return (made++ % 16) * (kPage + 5 * 64);
   }
   std::unique_ptr<T, Free> data_;
-  std::size_t size_ = 0;
+  std::size_t size_ = 0, capacity_ = 0;
 };
 
 /// Bytes that the elements of an array take.

@@ -133,6 +133,11 @@ class Section {
     return options[choice_index(key, words(options), std::nullopt, {}, meaning)].value;
   }
 
+  /// The same for words that are known only when the program runs: the index of the one chosen.
+  std::size_t choice(std::string_view key, const std::vector<std::string>& words) const {
+    return choice_index(key, words, std::nullopt);
+  }
+
   /// Whether the key is written. A key that is found here but never read, nor named in `error`, is reported
   /// as one that has no effect.
   bool has(std::string_view key) const;

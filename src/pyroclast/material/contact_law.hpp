@@ -141,7 +141,7 @@ struct ContactHistory {
   Real shear_damage{};           ///< D_s = 1 - delta_s, likewise
   Real closure{};                ///< u_p, irreversible closure in compression, m; never decreases
   Tangential<Dim, Real> slip{};  ///< irreversible part of the tangential jump, m
-  Real held_slip{};              ///< length of the elastic part of the tangential jump, m
+  Real held_jump{};              ///< length of the elastic part of the tangential jump, m
 };
 
 /// Energy dissipated at a contact point, by mechanism, J/m².
@@ -167,7 +167,7 @@ struct ContactDissipation {
 /// lost.
 template <class Sum>
 struct ContactLossesOf {
-  Sum slipped;                                ///< length of the slip, m
+  Sum slip_path;                              ///< length of the slip's path, m
   Sum tension, shear, friction, compression;  ///< as of ContactDissipation, J/m²
 };
 
@@ -183,7 +183,7 @@ struct ContactResponse {
 /// With what was lost in the update.
 template <int Dim>
 struct ContactResponseAndLosses : ContactResponse<Dim> {
-  double slipped = 0.0;  ///< m
+  double slip_path = 0.0;  ///< length of the slip's path, m
   ContactDissipation dissipated;
 };
 
@@ -192,6 +192,19 @@ struct ContactResponseAndLosses : ContactResponse<Dim> {
 void validate(const ContactProperties& properties, const std::string& name);
 
 namespace contact_law {
+
+/// A contact that never fails and remembers nothing.
+template <int Dim, class Real, class Number>
+ContactResponse<Dim, Real> respond_elastically(const ContactConstantsOf<Number>& c, const Real& opening,
+                                               const Tangential<Dim, Real>& tangential) {
+  ContactResponse<Dim, Real> r;
+  const auto k_n = c.normal_stiffness;
+  const auto k_s = c.shear_stiffness;
+  r.normal_traction = k_n * opening;
+  r.shear_traction = tangential * Real(k_s);
+  r.stored = 0.5 * k_n * opening * opening + 0.5 * k_s * dot(tangential, tangential);
+  return r;
+}
 
 /// Linear tension softening with unloading to the origin.
 /// \param elastic  opening beyond the closure left behind, m
@@ -262,18 +275,23 @@ void update_normal(const Constants& c, const Real& opening, ContactHistory<Dim, 
 }
 
 /// Exact return of the elastic predictor to the softening envelope.
+///
+/// Where the envelope falls more steeply than K_s, as under pressures beyond f_cm where friction drops, no
+/// softening branch can be followed: the point falls to the residual line at once, and what that releases
+/// beyond G_f2 is booked as shear loss too.
 /// \param elastic  in and out: elastic part of the tangential jump, m
 /// \param held     in and out: its length
 template <int Dim, class Real, class Constants, class Truth, class Losses>
-void slip(const Constants& c, const Truth& slips, const Real& excess, const Real& residual, const Real& drop,
+void return_to_envelope(const Constants& c, const Truth& slips, const Real& excess, const Real& residual, const Real& drop,
           Tangential<Dim, Real>& elastic, Real& held, ContactHistory<Dim, Real>& h,
           ContactResponse<Dim, Real>& r, Losses& losses) {
   const auto softens = slips & (h.shear_damage < 1.0) & (drop > 0.0);
   const Real remaining = 1.0 - h.shear_damage;
   const Real per_slip = drop * c.over_twice_mode_2_energy;  // 1 / s_u
+  const auto follows = drop * per_slip < c.shear_stiffness;
   const Real softening_slip = excess / (c.shear_stiffness - drop * per_slip);
   const Real damage = h.shear_damage + softening_slip * per_slip;
-  const auto partly = softens & (damage < 1.0);
+  const auto partly = softens & follows & (damage < 1.0);
   // all the way down to the residual line where it softens to the end
   Real length = select(softens, held - residual * c.shear_compliance, excess * c.shear_compliance);
   length = select(partly, softening_slip, length);
@@ -281,12 +299,13 @@ void slip(const Constants& c, const Truth& slips, const Real& excess, const Real
   if (any(softens)) {
     const Real new_damage = select(partly, damage, Real(1.0));
     const Real left = 1.0 - new_damage;
-    losses.shear += select(softens, c.mode_2_energy * (remaining - left) * (remaining + left), Real(0.0));
+    const Real energy = select(follows, Real(c.mode_2_energy), 0.5 * drop * drop * c.shear_compliance);
+    losses.shear += select(softens, energy * (remaining - left) * (remaining + left), Real(0.0));
     h.shear_damage = select(softens, new_damage, h.shear_damage);
     r.damaged = true;
   }
   losses.friction += residual * length;
-  losses.slipped += length;
+  losses.slip_path += length;
   Tangential<Dim, Real> step;
   if constexpr (Dim == 2)
     step[0] = signed_like(length, elastic[0]);
@@ -315,11 +334,11 @@ void update_shear(const Constants& c, const Tangential<Dim, Real>& jump, const R
   const Real drop = peak - residual;
   const Real excess = k * held - (peak - h.shear_damage * drop);
   const auto slips = (excess > 0.0) & !open_and_broken;
-  if (any(slips)) slip<Dim>(c, slips, excess, residual, drop, elastic, held, h, r, losses);
+  if (any(slips)) return_to_envelope<Dim>(c, slips, excess, residual, drop, elastic, held, h, r, losses);
   if (any(open_and_broken)) {
     // The bond lets go of the shear it still carried. That energy was held by cohesion, so it is booked
     // there.
-    const Real released = select(open_and_broken, 0.5 * k * h.held_slip * h.held_slip, Real(0.0));
+    const Real released = select(open_and_broken, 0.5 * k * h.held_jump * h.held_jump, Real(0.0));
     if (any(released > 0.0)) losses.shear += released;
     held = select(open_and_broken, Real(0.0), held);
     for (int i = 0; i + 1 < Dim; ++i) {
@@ -328,7 +347,7 @@ void update_shear(const Constants& c, const Tangential<Dim, Real>& jump, const R
     }
     r.slid = true;
   }
-  h.held_slip = held;
+  h.held_jump = held;
   r.shear_traction = elastic * Real(k);
   r.stored += 0.5 * k * held * held;
 }
@@ -344,22 +363,16 @@ void update_shear(const Constants& c, const Tangential<Dim, Real>& jump, const R
 /// \param losses      the energy dissipated by this update is added to them
 /// \return traction and stored energy
 ///
-/// The result does not depend on how the way to the jump is cut into steps as long as it is monotone.
-/// Energies are closed forms of the history, not quadratures: with the temperature fixed, stored(new) -
-/// stored(old) + dissipated is the work along that way.
+/// Along one axis (opening alone, or sliding at a steady opening) the result does not depend on how the way
+/// to the jump is cut into steps. On combined ways friction is that of the pressure at the end of each step,
+/// so it converges with the number of steps. Energies are closed forms of the history, not quadratures.
 template <int Dim, class Real, class Number, class Sum>
 ContactResponse<Dim, Real> update_contact(const ContactConstantsOf<Number>& constants, const Real& opening,
                                           const Tangential<Dim, Real>& tangential,
                                           ContactHistory<Dim, Real>& history, ContactLossesOf<Sum>& losses) {
+  if (constants.behaviour == ContactBehaviour::elastic)
+    return contact_law::respond_elastically<Dim>(constants, opening, tangential);
   ContactResponse<Dim, Real> response;
-  if (constants.behaviour == ContactBehaviour::elastic) {
-    const auto k_n = constants.normal_stiffness;
-    const auto k_s = constants.shear_stiffness;
-    response.normal_traction = k_n * opening;
-    response.shear_traction = tangential * Real(k_s);
-    response.stored = 0.5 * k_n * opening * opening + 0.5 * k_s * dot(tangential, tangential);
-    return response;
-  }
   contact_law::update_normal<Dim>(constants, opening, history, response, losses);
   contact_law::update_shear<Dim>(constants, tangential, opening, history, response, losses);
   return response;
@@ -373,7 +386,7 @@ ContactResponseAndLosses<Dim> update_contact(const ContactProperties& properties
   ContactLossesOf<double> lost{};
   const auto response =
       update_contact<Dim, double>(ContactConstants(properties), opening, tangential, history, lost);
-  return {response, lost.slipped, {lost.tension, lost.shear, lost.friction, lost.compression}};
+  return {response, lost.slip_path, {lost.tension, lost.shear, lost.friction, lost.compression}};
 }
 
 }  // namespace pyroclast

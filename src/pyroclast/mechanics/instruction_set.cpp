@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/mechanics/step.hpp"
+#include "pyroclast/mechanics/step/step.hpp"
 
 namespace pyroclast {
 

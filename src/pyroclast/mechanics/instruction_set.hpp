@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pyroclast/mechanics/step_state.hpp"
+#include "pyroclast/mechanics/state.hpp"
 
 namespace pyroclast {
 

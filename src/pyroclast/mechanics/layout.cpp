@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace pyroclast {
 
@@ -13,12 +15,12 @@ namespace {
 constexpr double kLayerThickness = 2.0;
 /// Blocks that share lanes stand within as many layers of each other.
 constexpr double kLayersToShare = 2.0;
-/// Faces that share lanes have their later bundles within as many of each other.
+/// Faces of a chunk that share lanes have their later bundles within as many of each other.
 constexpr int kBundlesToShare = 64;
-/// A bundle with fewer blocks would leave too many lanes idle; its blocks are spread.
-constexpr std::size_t kFewestBlocks = 4;
+/// A block with more zones, such as a platen, stands in a chunk of its own kind.
+constexpr int kZonesOfALargeBlock = 64;
 
-/// Blocks in layers across the body's longest extent, along the others within a layer.
+/// Blocks in layers across a chunk's longest extent, along the others within a layer.
 template <int Dim>
 struct BlockOrder {
   std::vector<int> blocks;
@@ -26,16 +28,17 @@ struct BlockOrder {
 };
 
 template <int Dim>
-BlockOrder<Dim> order_blocks(const Model<Dim>& model) {
-  const int count = model.block_count();
+BlockOrder<Dim> order_blocks(const Model<Dim>& model, int first_block, int last_block) {
+  const int count = last_block - first_block;
   std::vector<Vec<Dim>> centre(count);
   Vec<Dim> low, high;
-  for (int b = 0; b < count; ++b) {
-    const int first = model.block_gridpoints[b], last = model.block_gridpoints[b + 1];
-    for (int g = first; g < last; ++g) centre[b] += model.position[g] * (1.0 / (last - first));
-    for (int i = 0; i < Dim; ++i) {
-      low[i] = b == 0 ? centre[b][i] : std::min(low[i], centre[b][i]);
-      high[i] = b == 0 ? centre[b][i] : std::max(high[i], centre[b][i]);
+  for (int i = 0; i < count; ++i) {
+    const int first = model.block_gridpoints[first_block + i],
+              last = model.block_gridpoints[first_block + i + 1];
+    for (int g = first; g < last; ++g) centre[i] += model.position[g] * (1.0 / (last - first));
+    for (int d = 0; d < Dim; ++d) {
+      low[d] = i == 0 ? centre[i][d] : std::min(low[d], centre[i][d]);
+      high[d] = i == 0 ? centre[i][d] : std::max(high[d], centre[i][d]);
     }
   }
   std::array<int, Dim> axis;
@@ -44,23 +47,24 @@ BlockOrder<Dim> order_blocks(const Model<Dim>& model) {
                    [&](int i, int j) { return high[i] - low[i] > high[j] - low[j]; });
   double space = 1.0;
   int dimensions = 0;
-  for (int i = 0; i < Dim; ++i)
-    if (high[i] > low[i]) {
-      space *= high[i] - low[i];
+  for (int d = 0; d < Dim; ++d)
+    if (high[d] > low[d]) {
+      space *= high[d] - low[d];
       ++dimensions;
     }
   const double size = dimensions > 0 ? std::pow(space / count, 1.0 / dimensions) : 1.0;
-  const auto layer = [&](int b, int i) {
-    return std::floor((centre[b][axis[i]] - low[axis[i]]) / (kLayerThickness * size));
+  const auto layer = [&](int i, int d) {
+    return std::floor((centre[i][axis[d]] - low[axis[d]]) / (kLayerThickness * size));
   };
   BlockOrder<Dim> order;
   order.blocks.resize(count);
   std::iota(order.blocks.begin(), order.blocks.end(), 0);
   std::stable_sort(order.blocks.begin(), order.blocks.end(), [&](int a, int b) {
-    for (int i = 0; i + 1 < Dim; ++i)
-      if (layer(a, i) != layer(b, i)) return layer(a, i) < layer(b, i);
+    for (int d = 0; d + 1 < Dim; ++d)
+      if (layer(a, d) != layer(b, d)) return layer(a, d) < layer(b, d);
     return centre[a][axis[Dim - 1]] < centre[b][axis[Dim - 1]];
   });
+  for (int& block : order.blocks) block += first_block;
   const double layers = 1.0 + (high[axis[0]] - low[axis[0]]) / (kLayerThickness * size);
   order.per_layer = std::max(1, static_cast<int>(count / layers));
   return order;
@@ -77,14 +81,136 @@ bool is_fan(const std::vector<std::array<int, 3>>& zones) {
 template <int Dim>
 class LayoutBuilder {
  public:
-  LayoutBuilder(const Model<Dim>& model, Layout<Dim>& layout) : model_(model), layout_(layout) {}
+  LayoutBuilder(const Model<Dim>& model, const LayoutParameters& parameters, Layout<Dim>& layout)
+      : model_(model), parameters_(parameters), layout_(layout) {}
+
+  void cut_into_chunks() {
+    auto& begins = layout_.chunks.blocks;
+    const auto is_large = [&](int b) {
+      return model_.block_zones[b + 1] - model_.block_zones[b] > kZonesOfALargeBlock;
+    };
+    for (int b = 0; b < model_.block_count(); ++b)
+      if (begins.empty() || b - begins.back() >= parameters_.chunk_blocks || is_large(b) != is_large(b - 1))
+        begins.push_back(b);
+    begins.push_back(model_.block_count());
+    for (int b : begins) {
+      layout_.chunks.gridpoints.push_back(model_.block_gridpoints[b]);
+      layout_.chunks.zones.push_back(model_.block_zones[b]);
+    }
+  }
 
   void place_blocks() {
-    const auto order = order_blocks(model_);
+    layout_.gridpoint_slot = FlatArray<int>(model_.position.size());
+    layout_.zone_slot = FlatArray<int>(model_.zones.size());
+    layout_.bundle_of_block = FlatArray<int>(model_.block_material.size());
+    const auto& begins = layout_.chunks.blocks;
+    for (std::size_t chunk = 0; chunk + 1 < begins.size(); ++chunk) {
+      layout_.chunks.bundles.push_back(bundle_count());
+      place_chunk(begins[chunk], begins[chunk + 1]);
+    }
+    layout_.chunks.bundles.push_back(bundle_count());
+    layout_.shape_zones = FlatArray<std::array<int, Dim + 1>>(shape_zones_);
+    layout_.spread_zones = FlatArray<ZoneCorners<Dim>>(spread_zones_);
+    layout_.blocks = FlatArray<std::array<int, kLanes>>(blocks_);
+  }
+
+  void place_faces() {
+    std::vector<int> block_of(model_.position.size());
+    for (int b = 0; b < model_.block_count(); ++b)
+      for (int g = model_.block_gridpoints[b]; g < model_.block_gridpoints[b + 1]; ++g) block_of[g] = b;
+    std::vector<int> chunk_of_block(model_.block_count());
+    const auto& begins = layout_.chunks.blocks;
+    const int chunks = static_cast<int>(begins.size()) - 1;
+    for (int chunk = 0; chunk < chunks; ++chunk)
+      std::fill(chunk_of_block.begin() + begins[chunk], chunk_of_block.begin() + begins[chunk + 1], chunk);
+
+    std::vector<FaceToPlace> faces(model_.face_count());
+    for (int f = 0; f < model_.face_count(); ++f) {
+      const int first = model_.face_contacts[f];
+      const auto& c = model_.contacts[first];
+      const int a = block_of[c.a], b = block_of[c.b];
+      const auto [own, other] = std::minmax(chunk_of_block[a], chunk_of_block[b]);
+      faces[f] = {f,           own,
+                  other,       std::max(layout_.bundle_of_block[a], layout_.bundle_of_block[b]),
+                  c.interface, model_.face_contacts[f + 1] - first};
+    }
+    // faces between chunks first
+    std::stable_sort(faces.begin(), faces.end(), [](const FaceToPlace& f, const FaceToPlace& g) {
+      const auto key = [](const FaceToPlace& x) {
+        return std::tuple(x.chunk, x.chunk == x.other, x.chunk == x.other ? x.later_bundle : 0);
+      };
+      return key(f) < key(g);
+    });
+
+    layout_.contact_slot = FlatArray<int>(model_.contacts.size());
+    std::vector<int> reached{0};
+    auto next = faces.begin();
+    for (int chunk = 0; chunk < chunks; ++chunk) {
+      layout_.chunks.face_rows.push_back(static_cast<int>(faces_.size()));
+      layout_.chunks.contacts.push_back(static_cast<int>(contacts_by_chunk_.size()));
+      const auto end =
+          std::find_if(next, faces.end(), [&](const FaceToPlace& f) { return f.chunk != chunk; });
+      place_faces_of_chunk(next, end);
+      next = end;
+    }
+    layout_.chunks.face_rows.push_back(static_cast<int>(faces_.size()));
+    layout_.chunks.contacts.push_back(static_cast<int>(contacts_by_chunk_.size()));
+    finish_faces(block_of);
+  }
+
+  /// Contacts of a gridpoint in the order of their numbers, so that their sum has one order.
+  void gather_contacts() {
+    const auto of_gridpoint = gridpoint_contacts(model_);
+    const int idle = kLanes * (layout_.point_rows - 1);
+    std::vector<int> gridpoint(static_cast<std::size_t>(layout_.gridpoint_rows) * kLanes, -1);
+    for (int g = 0; g < model_.gridpoint_count(); ++g) gridpoint[layout_.gridpoint_slot[g]] = g;
+    std::vector<ContactsOfRow> ranges(layout_.gridpoint_rows);
+    std::vector<ActingContacts> all;
+    for (int row = 0; row < layout_.gridpoint_rows; ++row) {
+      const int begin = static_cast<int>(all.size());
+      int most = 0;
+      for (int lane = 0; lane < kLanes; ++lane)
+        if (const int g = gridpoint[slot_of(row, lane)]; g >= 0)
+          most = std::max(most, of_gridpoint.begin[g + 1] - of_gridpoint.begin[g]);
+      for (int k = 0; k < most; ++k) {
+        ActingContacts acting;
+        for (int lane = 0; lane < kLanes; ++lane) {
+          acting.contact[lane] = offset_of<Dim>(idle);
+          const int g = gridpoint[slot_of(row, lane)];
+          if (g < 0 || of_gridpoint.begin[g] + k >= of_gridpoint.begin[g + 1]) continue;
+          const int side = of_gridpoint.contact_side[of_gridpoint.begin[g] + k];
+          acting.contact[lane] = offset_of<Dim>(layout_.contact_slot[side / 2]);
+          if (side % 2 == 1) acting.side_b |= 1U << lane;
+        }
+        all.push_back(acting);
+      }
+      ranges[row] = {begin, static_cast<int>(all.size())};
+    }
+    layout_.contacts_of_row = FlatArray<ContactsOfRow>(ranges);
+    layout_.acting = FlatArray<ActingContacts>(all);
+  }
+
+ private:
+  using Zones = std::vector<std::array<int, Dim + 1>>;
+  struct Shape {
+    int first_corners = 0;  ///< entry of shape_zones
+    bool fan = false;
+  };
+
+  struct FaceToPlace {
+    int face;
+    int chunk, other;  ///< of its two blocks, the earlier one first
+    int later_bundle;
+    int interface;
+    int points;
+  };
+  using FaceIterator = typename std::vector<FaceToPlace>::const_iterator;
+
+  int bundle_count() const { return static_cast<int>(bundles_.size()); }
+
+  void place_chunk(int first_block, int last_block) {
+    const auto order = order_blocks(model_, first_block, last_block);
     const int span = static_cast<int>(kLayersToShare * order.per_layer) + kLanes;
-    layout_.gridpoint_slot.resize(model_.position.size());
-    layout_.zone_slot.resize(model_.zones.size());
-    layout_.bundle_of_block.resize(order.blocks.size());
     struct Waiting {
       std::vector<int> blocks;
       int since = 0;
@@ -112,115 +238,36 @@ class LayoutBuilder {
     for (const auto& [shape, group] : waiting) add_bundle(shape, group.blocks);
   }
 
-  void place_faces() {
-    const int faces = model_.contact_count() / Dim;
-    std::vector<int> block_of(model_.position.size());
-    for (int b = 0; b < model_.block_count(); ++b)
-      for (int g = model_.block_gridpoints[b]; g < model_.block_gridpoints[b + 1]; ++g) block_of[g] = b;
-    const auto bundle = [&](int gridpoint) { return layout_.bundle_of_block[block_of[gridpoint]]; };
-    const auto later = [&](int f) {
-      const auto& c = model_.contacts[f * Dim];
-      return std::max(bundle(c.a), bundle(c.b));
-    };
-    std::vector<int> order(faces);
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int f, int g) { return later(f) < later(g); });
-
-    layout_.contact_slot.resize(model_.contacts.size());
-    const int bundles = static_cast<int>(layout_.bundles.size());
-    std::map<int, std::vector<int>> waiting;  // by interface
-    for (int f : order) {
-      auto& group = waiting[model_.contacts[f * Dim].interface];
-      group.push_back(f);
-      const bool full = group.size() == kLanes;
-      if (full) {
-        add_faces(group);
-        group.clear();
-      }
-      for (auto& [interface, others] : waiting)
-        if (!others.empty() && later(f) - later(others.front()) > kBundlesToShare) {
-          add_faces(others);
-          others.clear();
-        }
-    }
-    for (const auto& [interface, group] : waiting)
-      if (!group.empty()) add_faces(group);
-    layout_.faces = FlatArray<FaceRow<Dim>>(faces_);
-    for (int r = 0; r < layout_.face_rows(); ++r)
-      for (int f : faces_of_row_[r])
-        for (int g : {model_.contacts[f * Dim].a, model_.contacts[f * Dim].b}) {
-          int& last = layout_.bundles[bundle(g)].last_face_row;
-          last = std::max(last, r);
-        }
-    for (int i = 1; i < bundles; ++i)
-      layout_.bundles[i].last_face_row =
-          std::max(layout_.bundles[i].last_face_row, layout_.bundles[i - 1].last_face_row);
-    layout_.rows_reached.push_back(0);
-    for (const auto& row : faces_of_row_) {
-      int reached = layout_.rows_reached.back();
-      for (int f : row) {
-        const Bundle& b = layout_.bundles[later(f)];
-        reached = std::max(reached, b.first_row + b.rows);
-      }
-      layout_.rows_reached.push_back(reached);
-    }
-  }
-
-  /// Contacts of a gridpoint in the order of their numbers, so that their sum has one order.
-  void gather_contacts() {
-    const auto of_gridpoint = gridpoint_contacts(model_);
-    const int idle = kLanes * (layout_.contact_rows() - 1);
-    std::vector<int> gridpoint(static_cast<std::size_t>(layout_.gridpoint_rows) * kLanes, -1);
-    for (int g = 0; g < model_.gridpoint_count(); ++g) gridpoint[layout_.gridpoint_slot[g]] = g;
-    layout_.contacts_of_row.resize(layout_.gridpoint_rows);
-    for (int row = 0; row < layout_.gridpoint_rows; ++row) {
-      const int begin = static_cast<int>(acting_.size());
-      int most = 0;
-      for (int lane = 0; lane < kLanes; ++lane)
-        if (const int g = gridpoint[slot_of(row, lane)]; g >= 0)
-          most = std::max(most, of_gridpoint.begin[g + 1] - of_gridpoint.begin[g]);
-      for (int k = 0; k < most; ++k) {
-        ActingContacts acting;
-        for (int lane = 0; lane < kLanes; ++lane) {
-          acting.contact[lane] = offset_of<Dim>(idle);
-          const int g = gridpoint[slot_of(row, lane)];
-          if (g < 0 || of_gridpoint.begin[g] + k >= of_gridpoint.begin[g + 1]) continue;
-          const int side = of_gridpoint.contact_side[of_gridpoint.begin[g] + k];
-          acting.contact[lane] = offset_of<Dim>(layout_.contact_slot[side / 2]);
-          if (side % 2 == 1) acting.side_b |= 1U << lane;
-        }
-        acting_.push_back(acting);
-      }
-      layout_.contacts_of_row[row] = {begin, static_cast<int>(acting_.size())};
-    }
-    layout_.acting = FlatArray<ActingContacts>(acting_);
-  }
-
- private:
   int shape_of(int block) {
     const int first = model_.block_gridpoints[block];
-    std::vector<std::array<int, Dim + 1>> zones(model_.zones.begin() + model_.block_zones[block],
-                                                model_.zones.begin() + model_.block_zones[block + 1]);
+    Zones zones(model_.zones.begin() + model_.block_zones[block],
+                model_.zones.begin() + model_.block_zones[block + 1]);
     for (auto& zone : zones)
       for (int& g : zone) g -= first;
     const int gridpoints = model_.block_gridpoints[block + 1] - first;
     const auto [it, is_new] =
-        shape_.try_emplace({gridpoints, std::move(zones)}, static_cast<int>(layout_.shapes.size()));
-    if (is_new) layout_.shapes.push_back(it->first.second);
+        shape_index_.try_emplace({gridpoints, std::move(zones)}, static_cast<int>(shapes_.size()));
+    if (is_new) {
+      const Zones& kept = it->first.second;
+      Shape shape{static_cast<int>(shape_zones_.size())};
+      if constexpr (Dim == 2) shape.fan = is_fan(kept);
+      shape_zones_.insert(shape_zones_.end(), kept.begin(), kept.end());
+      shapes_.push_back(shape);
+    }
     return it->second;
   }
 
   void add_bundle(int shape, const std::vector<int>& blocks) {
-    if (blocks.size() < kFewestBlocks) {
+    if (static_cast<int>(blocks.size()) < parameters_.fewest_blocks) {
       for (int block : blocks) add_spread(block);
       return;
     }
     Bundle bundle;
-    bundle.shape = shape;
+    bundle.first_corners = shapes_[shape].first_corners;
+    bundle.fan = shapes_[shape].fan;
     const int block = blocks.front();
     bundle.rows = model_.block_gridpoints[block + 1] - model_.block_gridpoints[block];
     bundle.zones = model_.block_zones[block + 1] - model_.block_zones[block];
-    if constexpr (Dim == 2) bundle.fan = is_fan(layout_.shapes[shape]);
     start(bundle);
     for (int lane = 0; lane < static_cast<int>(blocks.size()); ++lane) {
       const int b = blocks[lane];
@@ -229,7 +276,10 @@ class LayoutBuilder {
       for (int i = 0; i < bundle.zones; ++i)
         layout_.zone_slot[model_.block_zones[b] + i] = slot_of(bundle.first_zone_row + i, lane);
     }
-    finish(std::move(bundle), blocks);
+    std::array<int, kLanes> lanes;
+    lanes.fill(-1);
+    std::copy(blocks.begin(), blocks.end(), lanes.begin());
+    finish(bundle, lanes);
   }
 
   void add_spread(int block) {
@@ -243,7 +293,21 @@ class LayoutBuilder {
       layout_.gridpoint_slot[model_.block_gridpoints[block] + i] = slot_of(bundle.first_row, i);
     for (int i = 0; i < bundle.zones; ++i)
       layout_.zone_slot[model_.block_zones[block] + i] = slot_of(bundle.first_zone_row, i);
-    finish(std::move(bundle), {block});
+    bundle.first_corners = static_cast<int>(spread_zones_.size());
+    // an idle lane repeats the row's first zone, whose forces are then left out
+    for (int row = 0; row < bundle.zone_rows(); ++row) {
+      ZoneCorners<Dim> corners;
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const int zone = kLanes * row + lane < bundle.zones ? kLanes * row + lane : kLanes * row;
+        for (int n = 0; n <= Dim; ++n)
+          corners.offset[n][lane] =
+              offset_of<Dim>(layout_.gridpoint_slot[model_.zones[model_.block_zones[block] + zone][n]]);
+      }
+      spread_zones_.push_back(corners);
+    }
+    std::array<int, kLanes> lanes;
+    lanes.fill(block);
+    finish(bundle, lanes);
   }
 
   void start(Bundle& bundle) {
@@ -254,72 +318,132 @@ class LayoutBuilder {
     layout_.most_rows = std::max(layout_.most_rows, bundle.rows);
   }
 
-  void finish(Bundle bundle, const std::vector<int>& blocks) {
-    bundle.blocks = blocks;
-    for (int b : blocks) layout_.bundle_of_block[b] = static_cast<int>(layout_.bundles.size());
-    if (bundle.kind == BundleKind::spread) {
-      const int first = model_.block_zones[blocks.front()];
-      bundle.first_spread_row = static_cast<int>(layout_.spread_zones.size());
-      layout_.spread_zones.resize(layout_.spread_zones.size() + bundle.zone_rows());
-      // an idle lane repeats the row's first zone, whose forces are then left out
-      for (int row = 0; row < bundle.zone_rows(); ++row)
-        for (int lane = 0; lane < kLanes; ++lane) {
-          const int zone = kLanes * row + lane < bundle.zones ? kLanes * row + lane : kLanes * row;
-          for (int n = 0; n <= Dim; ++n)
-            layout_.spread_zones[bundle.first_spread_row + row].offset[n][lane] =
-                offset_of<Dim>(layout_.gridpoint_slot[model_.zones[first + zone][n]]);
-        }
-    }
-    layout_.bundles.push_back(std::move(bundle));
+  void finish(const Bundle& bundle, const std::array<int, kLanes>& lanes) {
+    for (int block : lanes)
+      if (block >= 0) layout_.bundle_of_block[block] = bundle_count();
+    bundles_.push_back(bundle);
+    blocks_.push_back(lanes);
   }
 
-  void add_faces(const std::vector<int>& faces) {
-    const int row_index = static_cast<int>(faces_.size());
+  /// Faces that share a row have one interface, one number of points and one pair of chunks.
+  void place_faces_of_chunk(FaceIterator first, FaceIterator last) {
+    using Key = std::tuple<int, int, int>;  // other chunk, interface, points
+    std::map<Key, std::vector<FaceToPlace>> waiting;
+    for (auto f = first; f != last; ++f) {
+      const bool own = f->chunk == f->other;
+      // rows between chunks are through before the first of its own
+      if (own && f != first && std::prev(f)->other != f->chunk) flush(waiting);
+      auto& group = waiting[{f->other, f->interface, f->points}];
+      group.push_back(*f);
+      if (group.size() == kLanes) {
+        add_faces(group);
+        group.clear();
+      }
+      if (!own) continue;
+      for (auto& [key, others] : waiting)
+        if (!others.empty() && f->later_bundle - others.front().later_bundle > kBundlesToShare) {
+          add_faces(others);
+          others.clear();
+        }
+    }
+    flush(waiting);
+    std::vector<int> contacts;
+    for (auto f = first; f != last; ++f)
+      for (int c = model_.face_contacts[f->face]; c < model_.face_contacts[f->face + 1]; ++c)
+        contacts.push_back(c);
+    std::sort(contacts.begin(), contacts.end());
+    contacts_by_chunk_.insert(contacts_by_chunk_.end(), contacts.begin(), contacts.end());
+  }
+
+  template <class Waiting>
+  void flush(Waiting& waiting) {
+    for (auto& [key, group] : waiting)
+      if (!group.empty()) add_faces(group);
+    waiting.clear();
+  }
+
+  void add_faces(const std::vector<FaceToPlace>& faces) {
     FaceRow<Dim> row{};
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const bool idle = lane >= static_cast<int>(faces.size());
-      const int f = idle ? faces.front() : faces[lane];
-      for (int point = 0; point < Dim; ++point) {
-        const auto& c = model_.contacts[f * Dim + point];
-        row.a[point][lane] = offset_of<Dim>(layout_.gridpoint_slot[c.a]);
+    const int first_point = static_cast<int>(points_.size());
+    for (int point = 0; point < faces.front().points; ++point) {
+      PointRow points{};
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const bool idle = lane >= static_cast<int>(faces.size());
+        const int contact = model_.face_contacts[(idle ? faces.front() : faces[lane]).face] + point;
+        const auto& c = model_.contacts[contact];
+        points.a[lane] = offset_of<Dim>(layout_.gridpoint_slot[c.a]);
         // both sides of an idle one are the same gridpoint, so that it never opens
-        row.b[point][lane] = offset_of<Dim>(layout_.gridpoint_slot[idle ? c.a : c.b]);
-        row.area[lane] = idle ? 0.0 : c.area;
+        points.b[lane] = offset_of<Dim>(layout_.gridpoint_slot[idle ? c.a : c.b]);
+        points.area[lane] = idle ? 0.0 : c.area;
         for (int i = 0; i < Dim; ++i)
           for (int t = 0; t + 1 < Dim; ++t) row.tangent[t][i][lane] = c.tangents[t][i];
-        if (!idle) layout_.contact_slot[f * Dim + point] = slot_of(row_index * Dim + point, lane);
+        if (!idle) layout_.contact_slot[contact] = slot_of(first_point + point, lane);
       }
+      points_.push_back(points);
+      face_row_of_point_.push_back(static_cast<int>(faces_.size()));
     }
     faces_.push_back(row);
+    first_point_.push_back(first_point);
+    // within its own chunk a row reaches as far as the later bundles of its faces
+    int reached = 0;
+    for (const FaceToPlace& f : faces)
+      if (f.chunk == f.other)
+        reached = std::max(reached, bundles_[f.later_bundle].first_row + bundles_[f.later_bundle].rows);
+    reached_by_row_.push_back(reached);
     faces_of_row_.push_back(faces);
   }
 
+  void finish_faces(const std::vector<int>& block_of) {
+    for (std::size_t r = 0; r < faces_of_row_.size(); ++r)
+      for (const FaceToPlace& f : faces_of_row_[r]) {
+        const auto& c = model_.contacts[model_.face_contacts[f.face]];
+        for (int g : {c.a, c.b}) {
+          int& last = bundles_[layout_.bundle_of_block[block_of[g]]].last_face_row;
+          last = std::max(last, static_cast<int>(r));
+        }
+      }
+    for (std::size_t i = 1; i < bundles_.size(); ++i)
+      bundles_[i].last_face_row = std::max(bundles_[i].last_face_row, bundles_[i - 1].last_face_row);
+    std::vector<int> rows_reached{0};
+    for (int reached : reached_by_row_) rows_reached.push_back(std::max(rows_reached.back(), reached));
+
+    layout_.point_rows = static_cast<int>(points_.size()) + 1;
+    first_point_.push_back(static_cast<int>(points_.size()));
+    layout_.bundles = FlatArray<Bundle>(bundles_);
+    layout_.faces = FlatArray<FaceRow<Dim>>(faces_);
+    layout_.first_point = FlatArray<int>(first_point_);
+    layout_.points = FlatArray<PointRow>(points_);
+    layout_.rows_reached = FlatArray<int>(rows_reached);
+    layout_.face_row_of_point = FlatArray<int>(face_row_of_point_);
+    layout_.contacts_by_chunk = FlatArray<int>(contacts_by_chunk_);
+  }
+
   const Model<Dim>& model_;
+  const LayoutParameters parameters_;
   Layout<Dim>& layout_;
-  std::map<std::pair<int, std::vector<std::array<int, Dim + 1>>>, int> shape_;
+
+  // what grows while things are placed
+  std::map<std::pair<int, Zones>, int> shape_index_;
+  std::vector<Shape> shapes_;
+  std::vector<std::array<int, Dim + 1>> shape_zones_;
+  std::vector<ZoneCorners<Dim>> spread_zones_;
+  std::vector<Bundle> bundles_;
+  std::vector<std::array<int, kLanes>> blocks_;
   std::vector<FaceRow<Dim>> faces_;
-  std::vector<std::vector<int>> faces_of_row_;
-  std::vector<ActingContacts> acting_;
+  std::vector<PointRow> points_;
+  std::vector<int> first_point_, face_row_of_point_, reached_by_row_, contacts_by_chunk_;
+  std::vector<std::vector<FaceToPlace>> faces_of_row_;
 };
 
 }  // namespace
 
 template <int Dim>
-Layout<Dim>::Layout(const Model<Dim>& model) {
-  LayoutBuilder<Dim> builder(model, *this);
+Layout<Dim>::Layout(const Model<Dim>& model, const LayoutParameters& parameters) {
+  LayoutBuilder<Dim> builder(model, parameters, *this);
+  builder.cut_into_chunks();
   builder.place_blocks();
   builder.place_faces();
   builder.gather_contacts();
-}
-
-template <int Dim>
-std::size_t Layout<Dim>::memory() const {
-  std::size_t bytes = bytes_of(bundles) + bytes_of(spread_zones) + bytes_of(faces) + bytes_of(rows_reached) +
-                      bytes_of(contacts_of_row) + bytes_of(acting) + bytes_of(gridpoint_slot) +
-                      bytes_of(zone_slot) + bytes_of(contact_slot) + bytes_of(bundle_of_block);
-  for (const Bundle& bundle : bundles) bytes += bytes_of(bundle.blocks);
-  for (const auto& zones : shapes) bytes += bytes_of(zones);
-  return bytes;
 }
 
 template struct Layout<2>;

@@ -1,28 +1,50 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/flat_array.hpp"
 #include "pyroclast/base/lanes.hpp"
 #include "pyroclast/model/model.hpp"
 
+/// Where everything of a model stands while it moves.
+///
+///     body    chunk 0                              | chunk 1          | ...   runs of the model's blocks
+///     chunk   bundle  bundle  bundle  ...                                     blocks that go through a step
+///     together
+///
+///     alike   lane 0   1   2   3   4   5   6   7        spread                one block over all lanes
+///     row 0   gridpoint 0 of eight blocks               0  1  2  3  4  5  6  7
+///     row 1   gridpoint 1 of the same blocks            8  9 10  .  .  .  .  .      . idle
+///     ...
+///
+///     row of faces     eight faces between the blocks of one pair of chunks, with one interface
+///     rows of points   contact point 0 of the eight faces, then point 1, ... (2 in 2D, 3 to 8 in 3D)
+///
+/// lane     one of the eight numbers that go through the same arithmetic together
+/// row      eight gridpoints, zones, faces or contact points side by side, one a lane
+/// slot     a place in a row: slot = 8 row + lane
+/// offset   where the vector of a slot begins in an array of numbers: Dim slot
+/// idle     a place that nothing fills; nothing acts on it
+/// bundle   blocks that go through a step together: `alike` or `spread`
+/// shape    the zones of a block, as its own gridpoints; alike blocks have the same
+/// fan      a shape whose zones go round the last gridpoint, in the order of the others
+/// chunk    a run of the model's blocks with bundles and rows of its own: the unit of sums, files and ranks
 namespace pyroclast {
 
-/// Eight gridpoints, zones or contacts side by side are a row; a slot is a place in a row: slot = 8 row +
-/// lane. Places that nothing fills are idle: nothing acts on them.
 inline constexpr int slot_of(int row, int lane) {
   return kLanes * row + lane;
 }
 
-/// Where the vector of a slot begins in an array of numbers.
 template <int Dim>
 inline constexpr int offset_of(int slot) {
   return Dim * slot;
 }
 
-/// How the blocks of a bundle share its lanes.
 enum class BundleKind : std::uint8_t {
   alike,  ///< up to eight blocks with the same zones, one a lane: row i holds the i-th gridpoint of each
   spread  ///< one block over all lanes: its gridpoints and zones follow one another through the rows
@@ -31,21 +53,14 @@ enum class BundleKind : std::uint8_t {
 /// Blocks that go through a step together.
 struct Bundle {
   BundleKind kind = BundleKind::alike;
-  int shape = -1;     ///< BundleKind::alike: index into Layout::shapes
-  bool fan = false;   ///< BundleKind::alike: zones go round the last gridpoint, in the order of the others
-  int first_row = 0;  ///< of gridpoints
-  int rows = 0;       ///< of gridpoints
-  int first_zone_row = 0;    ///< of zones
-  int zones = 0;             ///< alike: of each block, a row each; spread: of the block, eight a row
-  int first_spread_row = 0;  ///< spread: entries of Layout::spread_zones
-  int last_face_row = -1;    ///< no row of faces above it touches the bundle; never falls along the bundles
-  std::vector<int> blocks;
+  bool fan = false;        ///< alike: see above
+  int first_row = 0;       ///< of gridpoints
+  int rows = 0;            ///< of gridpoints
+  int first_zone_row = 0;  ///< of zones
+  int zones = 0;           ///< alike: of each block, a row each; spread: of the block, eight a row
+  int first_corners = 0;   ///< alike: entry of `shape_zones`; spread: entry of `spread_zones`
+  int last_face_row = -1;  ///< no row of faces above it touches the bundle; non-decreasing over bundles
 
-  /// Block in a lane, or -1 where the lane idles.
-  int block_in(int lane) const {
-    if (kind == BundleKind::spread) return blocks.front();
-    return lane < static_cast<int>(blocks.size()) ? blocks[lane] : -1;
-  }
   int zone_rows() const { return kind == BundleKind::alike ? zones : (zones + kLanes - 1) / kLanes; }
 };
 
@@ -55,17 +70,21 @@ struct ZoneCorners {
   std::array<std::array<int, kLanes>, Dim + 1> offset;
 };
 
-/// Eight faces of one interface.
+/// Frames of eight faces.
 template <int Dim>
 struct alignas(64) FaceRow {
-  double tangent[Dim - 1][Dim][kLanes];           ///< the normal follows from them
-  double area[kLanes];                            ///< of one contact point, m²; 0 where idle
-  std::array<std::array<int, kLanes>, Dim> a, b;  ///< offsets of the gridpoints at each point
+  double tangent[Dim - 1][Dim][kLanes];  ///< the normal follows from them
+};
+
+/// One contact point of each of eight faces.
+struct alignas(64) PointRow {
+  double area[kLanes];           ///< m²; 0 where idle
+  std::array<int, kLanes> a, b;  ///< offsets of its gridpoints
 };
 
 /// Which contact points act on the gridpoints of a row. In 2D a corner of a block has two, one of each edge.
 struct ContactsOfRow {
-  int begin = 0, end = 0;  ///< entries of Layout::acting
+  int begin = 0, end = 0;  ///< entries of `acting`
 };
 
 struct ActingContacts {
@@ -73,38 +92,121 @@ struct ActingContacts {
   std::uint32_t side_b = 0;         ///< bit per lane: the gridpoint is on side b
 };
 
-/// Where everything of a model stands while it moves.
-///
-/// Blocks are ordered along the body in layers, so that what touches stands near in memory; among near ones
-/// those with the same zones share lanes. Faces are ordered by the later of their two bundles, so that one
-/// sweep can take a row of faces and, soon after, move the bundles whose faces are all done.
+/// Share of an array that a step touches which damages nothing.
+enum class Touched : std::uint8_t {
+  none,
+  all,
+  alike,     ///< rows of alike bundles
+  gathered,  ///< rows of spread bundles; with finite kinematics all
+  held,      ///< of a history what is always written: the held jump
+  combined   ///< all with combined damping, else none
+};
+
+/// What an array is for. Memory, traffic and copies of a body follow from the lists of arrays.
+struct ArrayInfo {
+  const char* name;
+  Touched read = Touched::none, written = Touched::none;
+};
+
+/// Calls `f(ArrayInfo, array...)` for each array of a list; several lists of the same kind go side by side.
+template <class F, class List, class... Others>
+void for_each_array(F&& f, List& list, Others&... others) {
+  std::remove_const_t<List>::each(f, list, others...);
+}
+
+/// Bytes of all arrays of a list.
+template <class List>
+std::size_t memory(const List& list) {
+  std::size_t bytes = 0;
+  for_each_array([&](const ArrayInfo&, const auto& array) { bytes += bytes_of(array); }, list);
+  return bytes;
+}
+
+template <class T>
+using View = std::span<T>;
+template <class T>
+using ConstView = std::span<const T>;
+
+/// Arrays of a layout, owned (FlatArray) or seen (ConstView).
+template <int Dim, template <class> class Array>
+struct LayoutArrays {
+  Array<Bundle> bundles;
+  Array<std::array<int, Dim + 1>> shape_zones;  ///< of each shape in turn, as gridpoints of a block
+  Array<ZoneCorners<Dim>> spread_zones;         ///< by row of zones of spread blocks
+  Array<FaceRow<Dim>> faces;
+  Array<int> first_point;  ///< of each row of faces, and one more: its first row of points
+  Array<PointRow> points;  ///< by row of points; the last one idles
+  /// Of each row of faces, and one more: number of leading rows of gridpoints that the rows of faces before
+  /// it read, as far as they are of its own chunk.
+  Array<int> rows_reached;
+  Array<ContactsOfRow> contacts_of_row;  ///< of each row of gridpoints
+  Array<ActingContacts> acting;
+
+  Array<int> gridpoint_slot, zone_slot, contact_slot;  ///< of each one of the model
+  Array<int> bundle_of_block;
+  Array<std::array<int, kLanes>> blocks;  ///< of each bundle, by lane; -1 where the lane idles
+  Array<int> face_row_of_point;           ///< of each row of points but the last
+  Array<int> contacts_by_chunk;           ///< of the model, those of the first chunk first
+
+  template <class F, class... L>
+  static void each(F&& f, L&... l) {
+    f(ArrayInfo{"bundles", Touched::all}, l.bundles...);
+    f(ArrayInfo{"shape_zones"}, l.shape_zones...);  // few, and always near
+    f(ArrayInfo{"spread_zones", Touched::all}, l.spread_zones...);
+    f(ArrayInfo{"faces", Touched::all}, l.faces...);
+    f(ArrayInfo{"first_point", Dim == 2 ? Touched::none : Touched::all}, l.first_point...);
+    f(ArrayInfo{"points", Touched::all}, l.points...);
+    f(ArrayInfo{"rows_reached", Touched::all}, l.rows_reached...);
+    f(ArrayInfo{"contacts_of_row", Touched::all}, l.contacts_of_row...);
+    f(ArrayInfo{"acting", Touched::all}, l.acting...);
+    f(ArrayInfo{"gridpoint_slot"}, l.gridpoint_slot...);
+    f(ArrayInfo{"zone_slot"}, l.zone_slot...);
+    f(ArrayInfo{"contact_slot"}, l.contact_slot...);
+    f(ArrayInfo{"bundle_of_block"}, l.bundle_of_block...);
+    f(ArrayInfo{"blocks"}, l.blocks...);
+    f(ArrayInfo{"face_row_of_point"}, l.face_row_of_point...);
+    f(ArrayInfo{"contacts_by_chunk"}, l.contacts_by_chunk...);
+  }
+
+  /// First row of points of a row of faces, and of the one after it.
+  int first_point_of(int face_row) const {
+    if constexpr (Dim == 2)
+      return 2 * face_row;
+    else
+      return first_point[face_row];
+  }
+};
+
+/// Where chunks begin, in each list of a body: chunk i holds items [i] to [i + 1].
+struct Chunks {
+  std::vector<int> blocks, gridpoints, zones;  ///< of the model
+  std::vector<int> contacts;                   ///< entries of contacts_by_chunk
+  std::vector<int> bundles, face_rows;         ///< of the layout
+};
+
+/// How a body is laid out. Speed depends on it; no force does.
+struct LayoutParameters {
+  int fewest_blocks = 4;    ///< a bundle of fewer leaves too many lanes idle: its blocks are spread
+  int chunk_blocks = 1024;  ///< of a chunk, at most
+};
+
+/// Blocks are taken in the order of the model, chunk by chunk. Within a chunk they are ordered in layers, so
+/// that what touches stands near in memory; among near ones those with the same zones share lanes. A face
+/// between two chunks belongs to the earlier one. In a chunk rows of such faces come first, then those of its
+/// own faces by the later of their two bundles, so that one sweep can take a row of faces and, soon after,
+/// move the bundles whose faces are all done.
 template <int Dim>
-struct Layout {
-  explicit Layout(const Model<Dim>& model);
+struct Layout : LayoutArrays<Dim, FlatArray> {
+  explicit Layout(const Model<Dim>& model, const LayoutParameters& parameters = {});
 
-  std::vector<Bundle> bundles;
-  std::vector<std::vector<std::array<int, Dim + 1>>> shapes;  ///< zones of a block, as its own gridpoints
-  std::vector<ZoneCorners<Dim>> spread_zones;                 ///< by row of zones of spread blocks
-  FlatArray<FaceRow<Dim>> faces;
-  /// By row of faces, and one more: rows of gridpoints that rows of faces before it reach, those below in
-  /// all.
-  std::vector<int> rows_reached;
-  std::vector<ContactsOfRow> contacts_of_row;  ///< of each row of gridpoints
-  FlatArray<ActingContacts> acting;
-
+  Chunks chunks;
   int gridpoint_rows = 0;
   int zone_rows = 0;
-  int most_rows = 0;                ///< of gridpoints, in one bundle
-  std::vector<int> gridpoint_slot;  ///< of each gridpoint of the model
-  std::vector<int> zone_slot;       ///< of each zone
-  std::vector<int> contact_slot;    ///< of each contact
-  std::vector<int> bundle_of_block;
+  int point_rows = 0;  ///< with the one that idles
+  int most_rows = 0;   ///< of gridpoints, in one bundle
 
-  int face_rows() const { return static_cast<int>(faces.size()); }
-  /// Rows of contact points: Dim for every row of faces, and one that idles.
-  int contact_rows() const { return Dim * face_rows() + 1; }
-  /// Bytes of all arrays.
-  std::size_t memory() const;
+  int face_rows() const { return static_cast<int>(this->faces.size()); }
+  int block_in(int bundle, int lane) const { return this->blocks[bundle][lane]; }
 };
 
 extern template struct Layout<2>;

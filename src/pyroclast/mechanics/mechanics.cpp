@@ -6,21 +6,11 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <omp.h>
 
+#include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
 
 namespace pyroclast {
-
-namespace {
-
-/// Working memory of one thread for a step.
-template <int Dim>
-FlatArray<double> scratch_for(const Layout<Dim>& layout) {
-  return FlatArray<double>(2 * Dim * kLanes * static_cast<std::size_t>(layout.most_rows));
-}
-
-}  // namespace
 
 template <int Dim>
 BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
@@ -33,89 +23,132 @@ BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties>
 
 template <int Dim>
 Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& densities,
-                          BodyProperties properties, const MechanicsParameters<Dim>& parameters)
+                          BodyProperties properties, const MechanicsParameters<Dim>& parameters,
+                          std::shared_ptr<Team> team)
     : model_(model),
       parameters_(parameters),
+      team_(team ? std::move(team) : std::make_shared<Team>()),
       properties_(std::move(properties)),
       geometry_(zone_geometry(model)),
-      layout_(std::make_unique<const Layout<Dim>>(model)),
+      layout_(std::make_unique<const Layout<Dim>>(model, parameters.layout)),
       step_(step_functions<Dim>(parameters.instructions)) {
   if (Dim != 2 && parameters.kinematics == Kinematics::finite)
     throw Error("kinematics = finite: contact frames that turn are made for 2D only; use small");
   place_model();
+  place_histories();
   place_properties();
   compute_stiffness();
   set_masses(densities);
   sweep(1, Pass::measure);
   // nothing has acted yet
-  for (int row = 0; row < layout_->gridpoint_rows; ++row) state_.force.row(row) = {};
+  std::fill(storage_.force.begin(), storage_.force.end(), VectorRow<Dim>{});
+}
+
+/// Lets the state see the storage as it is now.
+template <int Dim>
+void Mechanics<Dim>::refresh_views() {
+  see(state_, storage_);
+}
+
+/// Working memory of one thread for a step.
+template <int Dim>
+FlatArray<double> Mechanics<Dim>::make_scratch() const {
+  return FlatArray<double>(2 * Dim * kLanes * static_cast<std::size_t>(layout_->most_rows));
 }
 
 /// Puts what does not change in its places.
 template <int Dim>
 void Mechanics<Dim>::place_model() {
-  StepState<Dim>& s = state_;
-  s.layout = layout_.get();
-  s.gravity = parameters_.gravity;
-  s.local_damping = parameters_.local_damping;
-  s.viscous_damping = parameters_.viscous_damping;
-  s.damping_form = parameters_.damping_form;
-  s.kinematics = parameters_.kinematics;
-  s.thickness = model_.thickness;
-  const int rows = layout_->gridpoint_rows;
-  s.position = RowVectors<Dim>(rows);
-  s.velocity = RowVectors<Dim>(rows);
-  s.force = RowVectors<Dim>(rows);
-  s.stiffness = RowVectors<Dim>(rows);
-  s.displacement = FlatArray<Vec<Dim>>(static_cast<std::size_t>(rows) * kLanes);
-  s.step_over_mass = FlatArray<double>(static_cast<std::size_t>(rows) * kLanes);
-  const auto contact_slots = static_cast<std::size_t>(layout_->contact_rows()) * kLanes;
-  s.history = FlatArray<HistoryRow<Dim>>(contact_slots / kLanes);
-  s.loss = FlatArray<LossRow>(contact_slots / kLanes);
-  s.losing = FlatArray<std::uint8_t>(contact_slots / kLanes);
-  s.contact_force = FlatArray<Vec<Dim>>(contact_slots);
-  if (s.kinematics == Kinematics::finite) s.turning_force = FlatArray<Vec<Dim>>(contact_slots);
-  s.constraints_of_bundle.assign(layout_->bundles.size(), -1);
+  see(state_.layout, *layout_);
+  state_.gravity = parameters_.gravity;
+  state_.local_damping = parameters_.local_damping;
+  state_.viscous_damping = parameters_.viscous_damping;
+  state_.damping_form = parameters_.damping_form;
+  state_.kinematics = parameters_.kinematics;
+  state_.thickness = model_.thickness;
+  auto& s = storage_;
+  const auto rows = static_cast<std::size_t>(layout_->gridpoint_rows);
+  s.position = made<VectorRow<Dim>>(rows);
+  s.velocity = made<VectorRow<Dim>>(rows);
+  s.force = made<VectorRow<Dim>>(rows);
+  s.stiffness = made<VectorRow<Dim>>(rows);
+  s.displacement = made<Vec<Dim>>(rows * kLanes);
+  s.gathered_position = made<Vec<Dim>>(rows * kLanes);
+  s.step_over_mass = made<double>(rows * kLanes);
+  const auto point_rows = static_cast<std::size_t>(layout_->point_rows);
+  s.losing = made<bool>(point_rows);
+  s.contact_force = made<Vec<Dim>>(point_rows * kLanes);
+  if (parameters_.kinematics == Kinematics::finite) s.turning_force = made<Vec<Dim>>(point_rows * kLanes);
+  s.constraints_of_bundle = FlatArray<int>(layout_->bundles.size());
+  std::fill(s.constraints_of_bundle.begin(), s.constraints_of_bundle.end(), -1);
   made_constraints_.assign(layout_->bundles.size(), -1);
-  s.bundle_sums.resize(layout_->bundles.size());
-  s.face_sums.resize(layout_->faces.size());
+  s.bundle_sums = made<BundleSums>(layout_->bundles.size());
+  s.face_sums = made<FaceSums>(layout_->faces.size());
 
-  s.gathered_position = FlatArray<Vec<Dim>>(s.displacement.size());
+  const View<VectorRow<Dim>> position(s.position.data(), s.position.size());
   for (int g = 0; g < model_.gridpoint_count(); ++g) {
-    s.position.set(layout_->gridpoint_slot[g], model_.position[g]);
+    set_vector<Dim>(position, layout_->gridpoint_slot[g], model_.position[g]);
     s.gathered_position[layout_->gridpoint_slot[g]] = model_.position[g];
   }
-  for (const Bundle& bundle : layout_->bundles)
+  for (int b = 0; b < static_cast<int>(layout_->bundles.size()); ++b)
     for (int lane = 0; lane < kLanes; ++lane) {
-      if (bundle.block_in(lane) >= 0) continue;
+      if (layout_->block_in(b, lane) >= 0) continue;
       // the shape of the first, without stiffness
+      const Bundle& bundle = layout_->bundles[b];
       for (int i = 0; i < bundle.rows; ++i)
-        s.position.set(slot_of(bundle.first_row + i, lane), s.position[slot_of(bundle.first_row + i, 0)]);
+        set_vector<Dim>(position, slot_of(bundle.first_row + i, lane),
+                        vector_at<Dim>(position, slot_of(bundle.first_row + i, 0)));
     }
+  refresh_views();
+}
+
+/// Gives every row of faces that can fail its part of the histories and losses.
+template <int Dim>
+void Mechanics<Dim>::place_histories() {
+  std::vector<bool> fails(layout_->faces.size());
+  for (int c = 0; c < model_.contact_count(); ++c)
+    if (properties_.contacts[properties_.of_contact[c]].behaviour != ContactBehaviour::elastic)
+      fails[layout_->face_row_of_point[layout_->contact_slot[c] / kLanes]] = true;
+  storage_.first_history = FlatArray<int>(layout_->faces.size());
+  storage_.first_loss = FlatArray<int>(layout_->faces.size());
+  int history = 0, loss = 0;
+  for (int row = 0; row < layout_->face_rows(); ++row) {
+    const int points = layout_->first_point_of(row + 1) - layout_->first_point_of(row);
+    storage_.first_history[row] = fails[row] ? history : -1;
+    storage_.first_loss[row] = fails[row] ? loss : -1;
+    if (!fails[row]) continue;
+    history += points * HistoryLines<Dim>::count;
+    loss += points * LossLines::count;
+  }
+  storage_.history = made<Line>(static_cast<std::size_t>(history));
+  storage_.loss = made<Line>(static_cast<std::size_t>(loss));
+  refresh_views();
 }
 
 /// Puts zone and contact parameters in their places.
 template <int Dim>
 void Mechanics<Dim>::place_properties() {
-  StepState<Dim>& s = state_;
+  auto& rows = storage_.zone_properties;
   const auto same = [](const ZoneProperties& a, const ZoneProperties& b) {
     return a.lambda == b.lambda && a.mu == b.mu && a.thermal_strain == b.thermal_strain;
   };
-  s.by_bundle = true;
-  for (int b = 0; b < model_.block_count() && s.by_bundle; ++b)
+  bool by_bundle = true;
+  for (int b = 0; b < model_.block_count() && by_bundle; ++b)
     for (int z = model_.block_zones[b]; z < model_.block_zones[b + 1]; ++z)
-      s.by_bundle = s.by_bundle && same(properties_.zones[z], properties_.zones[model_.block_zones[b]]);
-  const std::size_t rows = s.by_bundle ? layout_->bundles.size() : layout_->zone_rows;
-  if (s.zone_properties.size() != rows) s.zone_properties = FlatArray<ZonePropertyRow>(rows);
+      by_bundle = by_bundle && same(properties_.zones[z], properties_.zones[model_.block_zones[b]]);
+  state_.by_bundle = by_bundle;
+  const std::size_t count =
+      by_bundle ? layout_->bundles.size() : static_cast<std::size_t>(layout_->zone_rows);
+  if (rows.size() != count) rows = made<ZonePropertyRow>(count);
   const auto place = [&](std::size_t row, int lane, const ZoneProperties& p) {
-    s.zone_properties[row].lambda[lane] = p.lambda;
-    s.zone_properties[row].mu[lane] = p.mu;
-    s.zone_properties[row].thermal_strain[lane] = p.thermal_strain;
+    rows[row].lambda[lane] = p.lambda;
+    rows[row].mu[lane] = p.mu;
+    rows[row].thermal_strain[lane] = p.thermal_strain;
   };
-  if (s.by_bundle) {
-    for (std::size_t b = 0; b < rows; ++b)
+  if (by_bundle) {
+    for (std::size_t b = 0; b < count; ++b)
       for (int lane = 0; lane < kLanes; ++lane)
-        if (const int block = layout_->bundles[b].block_in(lane); block >= 0)
+        if (const int block = layout_->block_in(static_cast<int>(b), lane); block >= 0)
           place(b, lane, properties_.zones[model_.block_zones[block]]);
   } else {
     for (int z = 0; z < model_.zone_count(); ++z)
@@ -126,33 +159,44 @@ void Mechanics<Dim>::place_properties() {
 
 template <int Dim>
 void Mechanics<Dim>::place_contact_properties() {
-  StepState<Dim>& s = state_;
-  s.contact_constants.clear();
-  for (const auto& p : properties_.contacts) s.contact_constants.emplace_back(p);
-  s.set_of_faces.assign(layout_->faces.size(), -1);
-  s.one_set.assign(layout_->faces.size(), 1);
+  auto& s = storage_;
+  s.contact_constants.resize(properties_.contacts.size());
+  for (std::size_t i = 0; i < properties_.contacts.size(); ++i)
+    s.contact_constants[i] = ContactConstants(properties_.contacts[i]);
+  s.set_of_faces.resize(layout_->faces.size());
+  s.one_set.resize(layout_->faces.size());
+  std::fill(s.set_of_faces.begin(), s.set_of_faces.end(), -1);
+  std::fill(s.one_set.begin(), s.one_set.end(), true);
   bool one_set = true;
   for (int c = 0; c < model_.contact_count(); ++c) {
-    const int row = layout_->contact_slot[c] / kLanes / Dim;
+    const int row = layout_->face_row_of_point[layout_->contact_slot[c] / kLanes];
     const int set = properties_.of_contact[c];
+    const bool elastic = properties_.contacts[set].behaviour == ContactBehaviour::elastic;
+    if (elastic != (s.first_history[row] < 0))
+      throw Error(
+          fmt::format("contact {} of interface \"{}\": contacts of one interface are all elastic or none is, "
+                      "from the start of a run to its end",
+                      c, model_.interface_names[model_.contacts[c].interface]));
     if (s.set_of_faces[row] < 0) s.set_of_faces[row] = set;
-    if (s.set_of_faces[row] != set) s.one_set[row] = 0;
-    one_set = one_set && s.one_set[row] != 0;
+    if (s.set_of_faces[row] != set) s.one_set[row] = false;
+    one_set = one_set && s.one_set[row];
   }
-  if (one_set) return;
-  if (s.contact_constants_rows.empty())
-    s.contact_constants_rows = FlatArray<ContactConstantsRow>(layout_->contact_rows());
-  const auto place = [&](int row, int lane, const ContactConstants& constants) {
-    int i = 0;
-    for_each_number(constants,
-                    [&](double value) { s.contact_constants_rows[row].number[i++][lane] = value; });
-  };
-  for (int row = 0; row < Dim * layout_->face_rows(); ++row)  // for idle lanes
-    for (int lane = 0; lane < kLanes; ++lane)
-      place(row, lane, s.contact_constants[s.set_of_faces[row / Dim]]);
-  for (int c = 0; c < model_.contact_count(); ++c)
-    place(layout_->contact_slot[c] / kLanes, layout_->contact_slot[c] % kLanes,
-          s.contact_constants[properties_.of_contact[c]]);
+  if (!one_set) {
+    if (s.contact_constants_rows.empty())
+      s.contact_constants_rows = made<ContactConstantsRow>(static_cast<std::size_t>(layout_->point_rows));
+    const auto place = [&](int row, int lane, const ContactConstants& constants) {
+      int i = 0;
+      for_each_number(constants,
+                      [&](double value) { s.contact_constants_rows[row].number[i++][lane] = value; });
+    };
+    for (int row = 0; row + 1 < layout_->point_rows; ++row)  // for idle lanes
+      for (int lane = 0; lane < kLanes; ++lane)
+        place(row, lane, s.contact_constants[s.set_of_faces[layout_->face_row_of_point[row]]]);
+    for (int c = 0; c < model_.contact_count(); ++c)
+      place(layout_->contact_slot[c] / kLanes, layout_->contact_slot[c] % kLanes,
+            s.contact_constants[properties_.of_contact[c]]);
+  }
+  refresh_views();
 }
 
 /// k_gp of Eq. (9): for every gridpoint the largest sum of |stiffness| over a row of the assembled matrix,
@@ -160,11 +204,11 @@ void Mechanics<Dim>::place_contact_properties() {
 /// safe for any shape.
 template <int Dim>
 void Mechanics<Dim>::compute_stiffness() {
-  FlatArray<double> scratch = scratch_for(*layout_);
+  FlatArray<double> scratch = make_scratch();
   step_.sum_stiffness(state_, scratch.data());
   stiffness_.resize(model_.position.size());
   for (int g = 0; g < model_.gridpoint_count(); ++g) {
-    const Vec<Dim> row = state_.stiffness[layout_->gridpoint_slot[g]];
+    const Vec<Dim> row = vector_at<Dim>(state_.stiffness, layout_->gridpoint_slot[g]);
     stiffness_[g] = *std::max_element(row.c.begin(), row.c.end());
   }
 }
@@ -176,11 +220,12 @@ void Mechanics<Dim>::set_masses(const std::vector<double>& densities) {
     for (int z = model_.block_zones[b]; z < model_.block_zones[b + 1]; ++z)
       for (int g : model_.zones[z])
         gravity_mass_[g] += densities[model_.block_material[b]] * geometry_.volume[z] / (Dim + 1);
-  for (double m : gravity_mass_) real_mass_ += m;
+  real_mass_ = chunked_sum(layout_->chunks.gridpoints, [&](int g) { return gravity_mass_[g]; });
   if (norm(parameters_.gravity) > 0.0) {
-    state_.real_mass = FlatArray<double>(state_.displacement.size());
+    storage_.real_mass = made<double>(storage_.displacement.size());
     for (int g = 0; g < model_.gridpoint_count(); ++g)
-      state_.real_mass[layout_->gridpoint_slot[g]] = gravity_mass_[g];
+      storage_.real_mass[layout_->gridpoint_slot[g]] = gravity_mass_[g];
+    refresh_views();
   }
 
   if (parameters_.mass == MassChoice::real) {
@@ -199,23 +244,23 @@ void Mechanics<Dim>::scale_masses() {
   state_.time_step = parameters_.time_step;
   const double half = 0.5 * time_step() / parameters_.safety;
   mass_.resize(stiffness_.size());
-  moving_mass_ = 0.0;
-  for (std::size_t g = 0; g < mass_.size(); ++g) {
-    const double mass = stiffness_[g] * (1.0 + parameters_.local_damping) * half * half;
-    // of the half step begun with the old mass; nothing moves yet when the first masses are made
-    const Vec<Dim> v = velocity(static_cast<int>(g));
-    begun_mass_scaling_ += 0.5 * (mass - mass_[g]) * dot(v, v);
-    mass_[g] = mass;
-    moving_mass_ += mass;
-  }
+  const auto scaled = [&](int g) { return stiffness_[g] * (1.0 + parameters_.local_damping) * half * half; };
+  // of the half step begun with the old mass; nothing moves yet when the first masses are made
+  begun_mass_scaling_ += chunked_sum(layout_->chunks.gridpoints, [&](int g) {
+    const Vec<Dim> v = velocity(g);
+    return 0.5 * (scaled(g) - mass_[g]) * dot(v, v);
+  });
+  for (int g = 0; g < model_.gridpoint_count(); ++g) mass_[g] = scaled(g);
+  moving_mass_ = chunked_sum(layout_->chunks.gridpoints, [&](int g) { return mass_[g]; });
   set_step_over_mass();
 }
 
 template <int Dim>
 void Mechanics<Dim>::set_step_over_mass() {
-  std::fill(state_.step_over_mass.begin(), state_.step_over_mass.end(), 1.0);  // idle ones never move
+  auto& step_over_mass = storage_.step_over_mass;
+  std::fill(step_over_mass.begin(), step_over_mass.end(), 1.0);  // idle ones never move
   for (std::size_t g = 0; g < mass_.size(); ++g)
-    state_.step_over_mass[layout_->gridpoint_slot[g]] = time_step() / mass_[g];
+    step_over_mass[layout_->gridpoint_slot[g]] = time_step() / mass_[g];
 }
 
 template <int Dim>
@@ -226,18 +271,20 @@ void Mechanics<Dim>::set_properties(BodyProperties properties) {
   const double held_before = before.zones + before.contacts + before.dissipated.total();
   properties_ = std::move(properties);
   place_properties();
-  const std::vector<Vec<Dim>> next(state_.displacement.begin(), state_.displacement.end());
-  const auto old_force = force();
+  auto& displacement = storage_.displacement;
+  const auto next = displacement;
+  const auto old_force = forces();
   const double begun = steps_ > 0 ? time_step() : 0.0;
   for (std::size_t slot = 0; slot < next.size(); ++slot)
-    state_.displacement[slot] -= state_.velocity[static_cast<int>(slot)] * begun;
+    displacement[slot] -= vector_at<Dim>(state_.velocity, static_cast<int>(slot)) * begun;
   sweep(1, Pass::measure);
-  std::copy(next.begin(), next.end(), state_.displacement.begin());
+  std::copy(next.begin(), next.end(), displacement.begin());
 
   const EnergyLedger after = energy();
-  heat_ += after.zones + after.contacts + after.dissipated.total() - held_before;
-  for (int g = 0; g < model_.gridpoint_count(); ++g)
-    begun_heat_ -= 0.5 * begun * dot(force(g) - old_force[g], velocity(g));
+  property_change_ += after.zones + after.contacts + after.dissipated.total() - held_before;
+  begun_property_change_ -= chunked_sum(layout_->chunks.gridpoints, [&](int g) {
+    return 0.5 * begun * dot(force(g) - old_force[g], velocity(g));
+  });
 
   compute_stiffness();
   if (parameters_.mass == MassChoice::scaled) {
@@ -263,43 +310,11 @@ TimeStepLimit Mechanics<Dim>::real_mass_limit() const {
   return limit;
 }
 
+// What holds, drives and loads the body
+
 template <int Dim>
 int Mechanics<Dim>::bundle_of(int gridpoint) const {
   return layout_->bundle_of_block[model_.block_of(gridpoint)];
-}
-
-/// Those of the gridpoint's bundle, made when there are none yet.
-template <int Dim>
-Constraints<Dim>& Mechanics<Dim>::constraints_of(int gridpoint) {
-  const int b = bundle_of(gridpoint);
-  int& index = made_constraints_[b];
-  if (index < 0) {
-    index = static_cast<int>(state_.constraints.size());
-    const int rows = layout_->bundles[b].rows;
-    Constraints<Dim> free;
-    free.prescribed_velocity = RowVectors<Dim>(rows);
-    free.applied = RowVectors<Dim>(rows);
-    free.prescribed.resize(rows);
-    state_.constraints.push_back(std::move(free));
-  }
-  state_.constraints_of_bundle[b] = index;
-  return state_.constraints[index];
-}
-
-/// A bundle that nothing holds, drives or loads any more takes the shorter way through a step.
-template <int Dim>
-void Mechanics<Dim>::drop_if_free(int b) {
-  const int index = made_constraints_[b];
-  if (index < 0) return;
-  const auto& constraints = state_.constraints[index];
-  if (!constraints.ties.empty()) return;
-  for (int row = 0; row < layout_->bundles[b].rows; ++row)
-    for (int i = 0; i < Dim; ++i) {
-      if (constraints.prescribed[row][i] != 0) return;
-      for (double force : constraints.applied.row(row).c[i])
-        if (force != 0.0) return;
-    }
-  state_.constraints_of_bundle[b] = -1;
 }
 
 /// Slot counted from the first of its bundle.
@@ -309,60 +324,133 @@ int Mechanics<Dim>::slot_in_bundle(int gridpoint) const {
   return layout_->gridpoint_slot[gridpoint] - slot_of(bundle.first_row, 0);
 }
 
+/// Index of those of the gridpoint's bundle, made when there are none yet; they act from now on.
+template <int Dim>
+int Mechanics<Dim>::constraints_of(int gridpoint) {
+  const int b = bundle_of(gridpoint);
+  int& index = made_constraints_[b];
+  if (index < 0) {
+    index = static_cast<int>(storage_.constraints.size());
+    const auto first_row = storage_.constraint_rows.size();
+    storage_.constraints.resize(storage_.constraints.size() + 1);
+    storage_.constraints[index].first_row = static_cast<int>(first_row);
+    storage_.constraint_rows.resize(first_row + static_cast<std::size_t>(layout_->bundles[b].rows));
+    refresh_views();
+  }
+  storage_.constraints_of_bundle[b] = index;
+  return index;
+}
+
+template <int Dim>
+ConstraintRow<Dim>& Mechanics<Dim>::constraint_row(int constraints, int gridpoint) {
+  return storage_
+      .constraint_rows[storage_.constraints[constraints].first_row + slot_in_bundle(gridpoint) / kLanes];
+}
+
+/// A bundle that nothing holds, drives or loads any more takes the shorter way through a step.
+template <int Dim>
+void Mechanics<Dim>::drop_if_free(int b) {
+  const int index = made_constraints_[b];
+  if (index < 0) return;
+  const BundleConstraints& constraints = storage_.constraints[index];
+  if (constraints.first_tie != constraints.last_tie) return;
+  for (int row = 0; row < layout_->bundles[b].rows; ++row)
+    for (int i = 0; i < Dim; ++i) {
+      const ConstraintRow<Dim>& held = storage_.constraint_rows[constraints.first_row + row];
+      if (held.prescribed[i] != 0) return;
+      for (double force : held.applied[i])
+        if (force != 0.0) return;
+    }
+  storage_.constraints_of_bundle[b] = -1;
+}
+
 template <int Dim>
 void Mechanics<Dim>::prescribe_velocity(int gridpoint, int component, double velocity) {
-  auto& constraints = constraints_of(gridpoint);
-  const int slot = slot_in_bundle(gridpoint);
-  auto& bits = constraints.prescribed[slot / kLanes][component];
-  bits = static_cast<std::uint8_t>(bits | (1U << slot % kLanes));
-  constraints.prescribed_velocity.row(slot / kLanes).c[component][slot % kLanes] = velocity;
+  auto& row = constraint_row(constraints_of(gridpoint), gridpoint);
+  const int lane = layout_->gridpoint_slot[gridpoint] % kLanes;
+  row.prescribed[component] = static_cast<std::uint8_t>(row.prescribed[component] | (1U << lane));
+  row.prescribed_velocity[component][lane] = velocity;
 }
 
 template <int Dim>
 void Mechanics<Dim>::release(int gridpoint, int component) {
   if (made_constraints_[bundle_of(gridpoint)] < 0) return;
-  const int slot = slot_in_bundle(gridpoint);
-  auto& bits = constraints_of(gridpoint).prescribed[slot / kLanes][component];
-  bits = static_cast<std::uint8_t>(bits & ~(1U << slot % kLanes));
+  auto& row = constraint_row(constraints_of(gridpoint), gridpoint);
+  const int lane = layout_->gridpoint_slot[gridpoint] % kLanes;
+  row.prescribed[component] = static_cast<std::uint8_t>(row.prescribed[component] & ~(1U << lane));
   drop_if_free(bundle_of(gridpoint));
 }
 
 template <int Dim>
 void Mechanics<Dim>::tie(std::vector<int> gridpoints, int component) {
-  Tie tie{component, {}};
+  constraints_of(gridpoints.front());
+  TieOfBundle tie{bundle_of(gridpoints.front()), component, {}};
   double mass = 0.0, momentum = 0.0;
   for (int g : gridpoints) {
     tie.slots.push_back(layout_->gridpoint_slot[g]);
     mass += mass_[g];
     momentum += mass_[g] * velocity(g)[component];
   }
-  for (int slot : tie.slots) state_.velocity.row(slot / kLanes).c[component][slot % kLanes] = momentum / mass;
-  constraints_of(gridpoints.front()).ties.push_back(std::move(tie));
+  for (int slot : tie.slots) storage_.velocity[slot / kLanes].c[component][slot % kLanes] = momentum / mass;
+  ties_.push_back(std::move(tie));
+  place_ties();
 }
 
 template <int Dim>
 void Mechanics<Dim>::untie() {
-  for (auto& constraints : state_.constraints) constraints.ties.clear();
+  ties_.clear();
+  place_ties();
   for (std::size_t b = 0; b < made_constraints_.size(); ++b) drop_if_free(static_cast<int>(b));
 }
 
 template <int Dim>
+void Mechanics<Dim>::place_ties() {
+  std::stable_sort(ties_.begin(), ties_.end(),
+                   [](const TieOfBundle& a, const TieOfBundle& b) { return a.bundle < b.bundle; });
+  storage_.ties.resize(0);
+  storage_.tied_slots.resize(0);
+  for (auto& constraints : storage_.constraints) constraints.first_tie = constraints.last_tie = 0;
+  for (const TieOfBundle& tie : ties_) {
+    const auto begin = storage_.tied_slots.size();
+    storage_.tied_slots.resize(begin + tie.slots.size());
+    std::copy(tie.slots.begin(), tie.slots.end(), storage_.tied_slots.begin() + begin);
+    const auto index = static_cast<int>(storage_.ties.size());
+    storage_.ties.resize(storage_.ties.size() + 1);
+    storage_.ties[index] = {tie.component, static_cast<int>(begin),
+                            static_cast<int>(begin + tie.slots.size())};
+    auto& constraints = storage_.constraints[made_constraints_[tie.bundle]];
+    if (constraints.first_tie == constraints.last_tie) constraints.first_tie = index;
+    constraints.last_tie = index + 1;
+  }
+  refresh_views();
+}
+
+template <int Dim>
 void Mechanics<Dim>::apply_force(int gridpoint, const Vec<Dim>& force) {
-  constraints_of(gridpoint).applied.set(slot_in_bundle(gridpoint), force);
+  auto& row = constraint_row(constraints_of(gridpoint), gridpoint);
+  const int lane = layout_->gridpoint_slot[gridpoint] % kLanes;
+  for (int i = 0; i < Dim; ++i) row.applied[i][lane] = force[i];
   drop_if_free(bundle_of(gridpoint));
 }
 
 template <int Dim>
 void Mechanics<Dim>::break_contact(int contact) {
-  const int slot = layout_->contact_slot[contact];
-  state_.history[slot / kLanes].tension_damage[slot % kLanes] = 1.0;
-  state_.history[slot / kLanes].shear_damage[slot % kLanes] = 1.0;
+  const int slot = layout_->contact_slot[contact], row = layout_->face_row_of_point[slot / kLanes];
+  if (storage_.first_history[row] < 0)
+    throw Error(fmt::format("contact {} is elastic: it cannot start as broken", contact));
+  Line* const line =
+      &storage_.history[storage_.first_history[row] +
+                        (slot / kLanes - layout_->first_point_of(row)) * HistoryLines<Dim>::count];
+  line[HistoryLines<Dim>::tension_damage].number[slot % kLanes] = 1.0;
+  line[HistoryLines<Dim>::shear_damage].number[slot % kLanes] = 1.0;
 }
+
+// Motion
 
 template <int Dim>
 void Mechanics<Dim>::advance(int steps) {
   if (steps <= 0) return;
-  heat_ += std::exchange(begun_heat_, 0.0);
+  property_change_ += std::exchange(begun_property_change_, 0.0);
   mass_scaling_ += std::exchange(begun_mass_scaling_, 0.0);
   if (steps > 1) sweep(steps - 1, Pass::move);
   sweep(1, Pass::move_and_measure);
@@ -371,23 +459,25 @@ void Mechanics<Dim>::advance(int steps) {
 
 template <int Dim>
 void Mechanics<Dim>::sweep(int steps, Pass pass) {
-  const int threads = omp_get_max_threads();
-  if (static_cast<int>(shares_.size()) != threads) shares_ = share_out(*layout_, threads);
-  const bool measure = pass != Pass::move;
-#pragma omp parallel num_threads(threads)
-  {
-    FlatArray<double> scratch = scratch_for(*layout_);
-    const Share& share = shares_[omp_get_thread_num()];
-    for (int i = 0; i < steps; ++i) {
-      for (const auto& faces : share.crossing) step_.update_faces(state_, faces.first, faces.last, measure);
-#pragma omp barrier
-      for (const auto& stride : share.strides) {
-        step_.update_faces(state_, stride.faces.first, stride.faces.last, measure);
-        step_.move_bundles(state_, stride.bundles.first, stride.bundles.last, pass, scratch.data());
-      }
-#pragma omp barrier
-    }
+  const int threads = std::clamp(model_.zone_count() / parameters_.zones_for_a_thread, 1, team_->size());
+  if (static_cast<int>(workers_.size()) != threads) {
+    workers_.clear();
+    for (Share& share : share_out(*layout_, threads)) workers_.push_back({std::move(share), make_scratch()});
   }
+  const bool measure = pass != Pass::move;
+  team_->run(threads, [&](int thread) {
+    Worker& worker = workers_[static_cast<std::size_t>(thread)];
+    State<Dim> s = state_;
+    for (int i = 0; i < steps; ++i) {
+      for (const auto& faces : worker.share.crossing) step_.update_faces(s, faces.first, faces.last, measure);
+      team_->barrier();
+      for (const auto& stride : worker.share.strides) {
+        step_.update_faces(s, stride.faces.first, stride.faces.last, measure);
+        step_.move_bundles(s, stride.bundles.first, stride.bundles.last, pass, worker.scratch.data());
+      }
+      team_->barrier();
+    }
+  });
 }
 
 // The state in the order of the model
@@ -399,18 +489,23 @@ Vec<Dim> Mechanics<Dim>::displacement(int gridpoint) const {
 
 template <int Dim>
 Vec<Dim> Mechanics<Dim>::velocity(int gridpoint) const {
-  return state_.velocity[layout_->gridpoint_slot[gridpoint]];
+  return vector_at<Dim>(state_.velocity, layout_->gridpoint_slot[gridpoint]);
 }
 
 template <int Dim>
 Vec<Dim> Mechanics<Dim>::force(int gridpoint) const {
-  return state_.force[layout_->gridpoint_slot[gridpoint]];
+  return vector_at<Dim>(state_.force, layout_->gridpoint_slot[gridpoint]);
 }
 
 template <int Dim>
 Vec<Dim> Mechanics<Dim>::applied_force(int gridpoint) const {
   const int index = made_constraints_[bundle_of(gridpoint)];
-  return index < 0 ? Vec<Dim>{} : state_.constraints[index].applied[slot_in_bundle(gridpoint)];
+  if (index < 0) return {};
+  const int slot = slot_in_bundle(gridpoint);
+  const auto& row = state_.constraint_rows[state_.constraints[index].first_row + slot / kLanes];
+  Vec<Dim> force;
+  for (int i = 0; i < Dim; ++i) force[i] = row.applied[i][slot % kLanes];
+  return force;
 }
 
 /// That the last forces belong to.
@@ -432,11 +527,11 @@ SymmetricTensor<Dim> Mechanics<Dim>::stress(int zone) const {
 
 template <int Dim>
 ContactFrame<Dim> Mechanics<Dim>::frame_of_forces(int contact) const {
-  const auto& c = model_.contacts[contact / Dim * Dim];
+  const auto& c = model_.contacts[model_.face_contacts[model_.contacts[contact].face]];
   if constexpr (Dim == 2) {
     if (parameters_.kinematics == Kinematics::finite) {
       // mean edge of the two sides
-      const auto& d = model_.contacts[contact / Dim * Dim + 1];
+      const auto& d = model_.contacts[model_.face_contacts[c.face] + 1];
       const auto at = [&](int g) { return model_.position[g] + displacement_of_force(g); };
       const Vec<2> edge = ((at(d.a) - at(c.a)) + (at(d.b) - at(c.b))) * 0.5;
       const Vec<2> t = edge * (1.0 / norm(edge));
@@ -459,15 +554,18 @@ double Mechanics<Dim>::opening(int contact) const {
 
 template <int Dim>
 ContactHistory<Dim> Mechanics<Dim>::contact_history(int contact) const {
-  const int slot = layout_->contact_slot[contact];
-  const auto& row = state_.history[slot / kLanes];
-  const int lane = slot % kLanes;
+  const int slot = layout_->contact_slot[contact], row = layout_->face_row_of_point[slot / kLanes];
   ContactHistory<Dim> h;
-  h.tension_damage = row.tension_damage[lane];
-  h.shear_damage = row.shear_damage[lane];
-  h.closure = row.closure[lane];
-  for (int i = 0; i + 1 < Dim; ++i) h.slip[i] = row.slip[i][lane];
-  h.held_slip = row.held_slip[lane];
+  if (state_.first_history[row] < 0) return h;
+  using H = HistoryLines<Dim>;
+  const Line* const line =
+      &state_.history[state_.first_history[row] + (slot / kLanes - layout_->first_point_of(row)) * H::count];
+  const int lane = slot % kLanes;
+  h.tension_damage = line[H::tension_damage].number[lane];
+  h.shear_damage = line[H::shear_damage].number[lane];
+  h.closure = line[H::closure].number[lane];
+  for (int i = 0; i + 1 < Dim; ++i) h.slip[i] = line[H::slip + i].number[lane];
+  h.held_jump = line[H::held_jump].number[lane];
   return h;
 }
 
@@ -486,11 +584,15 @@ ContactState<Dim> Mechanics<Dim>::contact(int contact) const {
   state.normal_traction = response.normal_traction;
   state.shear_traction = response.shear_traction;
   state.stored = response.stored;
-  const int slot = layout_->contact_slot[contact];
-  const auto& loss = state_.loss[slot / kLanes];
+  const int slot = layout_->contact_slot[contact], row = layout_->face_row_of_point[slot / kLanes];
+  if (state_.first_loss[row] < 0) return state;
+  using L = LossLines;
+  const Line* const loss =
+      &state_.loss[state_.first_loss[row] + (slot / kLanes - layout_->first_point_of(row)) * L::count];
   const int lane = slot % kLanes;
-  state.accumulated_slip = loss.slipped[lane];
-  state.dissipated = {loss.tension[lane], loss.shear[lane], loss.friction[lane], loss.compression[lane]};
+  state.slip_path = loss[L::slip_path].number[lane];
+  state.dissipated = {loss[L::tension].number[lane], loss[L::shear].number[lane],
+                      loss[L::friction].number[lane], loss[L::compression].number[lane]};
   return state;
 }
 
@@ -507,22 +609,22 @@ auto all(int count, At at) {
 }  // namespace
 
 template <int Dim>
-std::vector<Vec<Dim>> Mechanics<Dim>::displacement() const {
+std::vector<Vec<Dim>> Mechanics<Dim>::displacements() const {
   return all(model_.gridpoint_count(), [&](int g) { return displacement(g); });
 }
 
 template <int Dim>
-std::vector<Vec<Dim>> Mechanics<Dim>::velocity() const {
+std::vector<Vec<Dim>> Mechanics<Dim>::velocities() const {
   return all(model_.gridpoint_count(), [&](int g) { return velocity(g); });
 }
 
 template <int Dim>
-std::vector<Vec<Dim>> Mechanics<Dim>::force() const {
+std::vector<Vec<Dim>> Mechanics<Dim>::forces() const {
   return all(model_.gridpoint_count(), [&](int g) { return force(g); });
 }
 
 template <int Dim>
-std::vector<SymmetricTensor<Dim>> Mechanics<Dim>::stress() const {
+std::vector<SymmetricTensor<Dim>> Mechanics<Dim>::stresses() const {
   return all(model_.zone_count(), [&](int z) { return stress(z); });
 }
 
@@ -531,46 +633,98 @@ std::vector<ContactState<Dim>> Mechanics<Dim>::contacts() const {
   return all(model_.contact_count(), [&](int c) { return contact(c); });
 }
 
+// Sums
+
+template <int Dim>
+GridpointSet Mechanics<Dim>::set_of(std::vector<int> gridpoints) const {
+  std::sort(gridpoints.begin(), gridpoints.end());
+  GridpointSet set{std::move(gridpoints), {}};
+  for (int begin : layout_->chunks.gridpoints)
+    set.chunks.push_back(static_cast<int>(
+        std::lower_bound(set.gridpoints.begin(), set.gridpoints.end(), begin) - set.gridpoints.begin()));
+  return set;
+}
+
+template <int Dim>
+Vec<Dim> Mechanics<Dim>::mean_displacement(const GridpointSet& set) const {
+  const auto sum = chunked_sum<Vec<Dim>>(
+      set.chunks, [&](int i, Vec<Dim>& total) { total += displacement(set.gridpoints[i]); });
+  return sum * (1.0 / static_cast<double>(set.gridpoints.size()));
+}
+
+template <int Dim>
+Vec<Dim> Mechanics<Dim>::total_force(const GridpointSet& set) const {
+  return chunked_sum<Vec<Dim>>(set.chunks,
+                               [&](int i, Vec<Dim>& total) { total += force(set.gridpoints[i]); });
+}
+
+template <int Dim>
+Vec<Dim> Mechanics<Dim>::total_applied_force(const GridpointSet& set) const {
+  return chunked_sum<Vec<Dim>>(set.chunks,
+                               [&](int i, Vec<Dim>& total) { total += applied_force(set.gridpoints[i]); });
+}
+
+template <int Dim>
+ContactDissipation Mechanics<Dim>::dissipated() const {
+  using L = LossLines;
+  return chunked_sum<ContactDissipation>(layout_->chunks.face_rows, [&](int row, ContactDissipation& sum) {
+    const int first = state_.first_loss[row];
+    if (first < 0) return;
+    const int first_point = layout_->first_point_of(row), last_point = layout_->first_point_of(row + 1);
+    for (int point = first_point; point < last_point; ++point) {
+      const Line* const loss = &state_.loss[first + (point - first_point) * L::count];
+      const double* const area = layout_->points[point].area;
+      for (int lane = 0; lane < kLanes; ++lane)
+        sum += {loss[L::tension].number[lane] * area[lane], loss[L::shear].number[lane] * area[lane],
+                loss[L::friction].number[lane] * area[lane], loss[L::compression].number[lane] * area[lane]};
+    }
+  });
+}
+
 template <int Dim>
 EnergyLedger Mechanics<Dim>::energy() const {
-  EnergyLedger e;
-  e.heat = heat_;
-  e.mass_scaling = mass_scaling_;
-  for (std::size_t b = 0; b < state_.bundle_sums.size(); ++b) {
-    const BundleSums& sums = state_.bundle_sums[b];
-    e.zones += sums.stored;
-    e.kinetic += sums.kinetic;
-    e.local_damping += sums.damping_work - sums.begun_damping;
-    e.viscous_damping += sums.viscous_work - sums.begun_viscous;
-    if (const int c = made_constraints_[b]; c >= 0)
-      e.loading += state_.constraints[c].loading_work - sums.begun_loading;
-  }
-  for (const FaceSums& sums : state_.face_sums) e.contacts += sums.stored;
-  for (int row = 0; row < Dim * layout_->face_rows(); ++row) {
-    const LossRow& loss = state_.loss[row];
-    const auto& area = layout_->faces[row / Dim].area;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      e.dissipated.tension += loss.tension[lane] * area[lane];
-      e.dissipated.shear += loss.shear[lane] * area[lane];
-      e.dissipated.friction += loss.friction[lane] * area[lane];
-      e.dissipated.compression += loss.compression[lane] * area[lane];
+  struct Sums {
+    double zones = 0.0, kinetic = 0.0, local_damping = 0.0, viscous_damping = 0.0, loading = 0.0;
+    void operator+=(const Sums& o) {
+      zones += o.zones;
+      kinetic += o.kinetic;
+      local_damping += o.local_damping;
+      viscous_damping += o.viscous_damping;
+      loading += o.loading;
     }
-  }
+  };
+  const auto sums = chunked_sum<Sums>(layout_->chunks.bundles, [&](int b, Sums& sum) {
+    const BundleSums& of_bundle = state_.bundle_sums[b];
+    const int c = made_constraints_[b];
+    sum += {of_bundle.stored, of_bundle.kinetic, of_bundle.damping_work - of_bundle.begun_damping,
+            of_bundle.viscous_work - of_bundle.begun_viscous,
+            c >= 0 ? state_.constraints[c].loading_work - of_bundle.begun_loading : 0.0};
+  });
+  EnergyLedger e;
+  e.property_change = property_change_;
+  e.mass_scaling = mass_scaling_;
+  e.zones = sums.zones;
+  e.kinetic = sums.kinetic;
+  e.local_damping = sums.local_damping;
+  e.viscous_damping = sums.viscous_damping;
+  e.loading = sums.loading;
+  e.contacts = chunked_sum(layout_->chunks.face_rows, [&](int row) { return state_.face_sums[row].stored; });
+  e.dissipated = dissipated();
   // weights are constant, so their work follows from the way made
   if (state_.weighs())
-    for (int g = 0; g < model_.gridpoint_count(); ++g)
-      e.gravity += gravity_mass_[g] * dot(parameters_.gravity, displacement_of_force(g));
+    e.gravity = chunked_sum(layout_->chunks.gridpoints, [&](int g) {
+      return gravity_mass_[g] * dot(parameters_.gravity, displacement_of_force(g));
+    });
   return e;
 }
 
 template <int Dim>
 double Mechanics<Dim>::unbalanced_ratio() const {
-  double applied = 0.0, unbalanced = 0.0;
-  for (const BundleSums& sums : state_.bundle_sums) {
-    applied += sums.applied;
-    unbalanced += sums.unbalanced;
-  }
-  for (const FaceSums& sums : state_.face_sums) applied += sums.applied;
+  const double unbalanced =
+      chunked_sum(layout_->chunks.bundles, [&](int b) { return state_.bundle_sums[b].unbalanced; });
+  const double applied =
+      chunked_sum(layout_->chunks.bundles, [&](int b) { return state_.bundle_sums[b].applied; }) +
+      chunked_sum(layout_->chunks.face_rows, [&](int row) { return state_.face_sums[row].applied; });
   return applied > 0.0 ? unbalanced / applied : 0.0;
 }
 

@@ -5,8 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "pyroclast/base/team.hpp"
 #include "pyroclast/mechanics/instruction_set.hpp"
-#include "pyroclast/mechanics/step_state.hpp"
+#include "pyroclast/mechanics/state.hpp"
 #include "pyroclast/mechanics/sweep.hpp"
 #include "pyroclast/model/model.hpp"
 
@@ -30,6 +31,9 @@ struct MechanicsParameters {
   double time_step = 0.0;  ///< s; the common step of MassChoice::scaled, not used with real mass
   double safety = 0.0;     ///< fraction of the stable step that is taken, in (0, 1]
   InstructionSet instructions = usable_instruction_sets().back();
+  // these change speed, not results
+  LayoutParameters layout;
+  int zones_for_a_thread = 500;  ///< with fewer a thread waits longer at barriers than it saves
 };
 
 /// Where the energy of a body went since the start, J. Work in = everything else; the rest is the ledger's
@@ -38,7 +42,8 @@ struct EnergyLedger {
   // put in
   double loading = 0.0;  ///< work of prescribed motion and applied forces
   double gravity = 0.0;
-  double heat = 0.0;  ///< change of stored and dissipated energy when properties or thermal strains change
+  /// Change of stored and dissipated energy when properties or thermal strains change.
+  double property_change = 0.0;
   double mass_scaling = 0.0;  ///< change of kinetic energy when scaled masses follow the stiffness
   // held
   double zones = 0.0;     ///< elastic, in zones
@@ -49,15 +54,15 @@ struct EnergyLedger {
   double local_damping = 0.0;
   double viscous_damping = 0.0;
 
-  double work_in() const { return loading + gravity + heat + mass_scaling; }
+  double work_in() const { return loading + gravity + property_change + mass_scaling; }
   double accounted() const {
     return zones + contacts + kinetic + dissipated.total() + local_damping + viscous_damping;
   }
   double error() const { return work_in() - accounted(); }
-  /// What the error is measured by: all that was put in or taken out, each by its size. Heat takes stored
-  /// energy out where a body softens, so that work_in alone may be near zero.
+  /// What the error is measured by: all that was put in or taken out, each by its size. A change of
+  /// properties takes stored energy out where a body softens, so that work_in alone may be near zero.
   double turnover() const {
-    return std::abs(loading) + std::abs(gravity) + std::abs(heat) + std::abs(mass_scaling);
+    return std::abs(loading) + std::abs(gravity) + std::abs(property_change) + std::abs(mass_scaling);
   }
 };
 
@@ -70,7 +75,7 @@ struct ContactState {
   double normal_traction = 0.0;       ///< Pa, tension positive
   Tangential<Dim> shear_traction{};   ///< Pa
   double stored = 0.0;                ///< J/m²
-  double accumulated_slip = 0.0;      ///< s, length of the slip path, m
+  double slip_path = 0.0;             ///< s, length of the slip's path, m
   ContactDissipation dissipated;      ///< since the start, J/m²
 };
 
@@ -100,7 +105,13 @@ template <int Dim>
 BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
                             std::vector<ContactProperties> interfaces);
 
-/// Explicit motion of a body of deformable blocks, paper Eqs. (3)-(15), small displacements.
+/// Gridpoints over which something is summed, in the order of chunks.
+struct GridpointSet {
+  std::vector<int> gridpoints;
+  std::vector<int> chunks;  ///< where those of each chunk begin
+};
+
+/// Explicit motion of a body of deformable blocks, paper Eqs. (3)-(15).
 ///
 /// The state stands in lanes (see Layout); here is its view in the order of the model. Forces are gathered by
 /// the gridpoint that they act on and every sum has one order, so results are bitwise the same for any number
@@ -110,12 +121,13 @@ class Mechanics {
  public:
   /// \param model        kept by reference; must outlive this
   /// \param densities    of each material, kg/m³
+  /// \param team         the threads of the run; one alone where there is none
   Mechanics(const Model<Dim>& model, const std::vector<double>& densities, BodyProperties properties,
-            const MechanicsParameters<Dim>& parameters);
+            const MechanicsParameters<Dim>& parameters, std::shared_ptr<Team> team = nullptr);
 
   /// Takes the body to other temperatures: displacements, jumps and damage stay, stresses follow the new
   /// parameters and come back to the new envelopes (staggered coupling, paper Fig. 2). The energy that this
-  /// adds or takes is `EnergyLedger::heat`. Scaled masses follow the stiffness.
+  /// adds or takes is `EnergyLedger::property_change`. Scaled masses follow the stiffness.
   /// Throws Error when the body would get too stiff for the time step of its real mass.
   void set_properties(BodyProperties properties);
 
@@ -146,9 +158,13 @@ class Mechanics {
 
   const Model<Dim>& model() const { return model_; }
   const Layout<Dim>& layout() const { return *layout_; }
-  const StepState<Dim>& state() const { return state_; }
+  const State<Dim>& state() const { return state_; }
+  /// What `state` sees.
+  const StateArrays<Dim, FlatArray>& storage() const { return storage_; }
+  /// Bytes of all arrays of layout and state.
+  std::size_t memory() const { return pyroclast::memory(*layout_) + pyroclast::memory(storage_); }
   /// Takes another compilation of the step from the next one on; for benches. Results stay the same bits as
-  /// long as it is one of the templates of step.hpp.
+  /// long as it is one of the templates of step/step.hpp.
   void use(const StepFunctions<Dim>& step) { step_ = step; }
   Vec<Dim> displacement(int gridpoint) const;  ///< m
   Vec<Dim> velocity(int gridpoint) const;      ///< m/s
@@ -160,11 +176,17 @@ class Mechanics {
   ContactHistory<Dim> contact_history(int contact) const;
   double opening(int contact) const;  ///< u_n at the displacements of the last forces, m
   // of all, in the order of the model
-  std::vector<Vec<Dim>> displacement() const;
-  std::vector<Vec<Dim>> velocity() const;
-  std::vector<Vec<Dim>> force() const;
-  std::vector<SymmetricTensor<Dim>> stress() const;
+  std::vector<Vec<Dim>> displacements() const;
+  std::vector<Vec<Dim>> velocities() const;
+  std::vector<Vec<Dim>> forces() const;
+  std::vector<SymmetricTensor<Dim>> stresses() const;
   std::vector<ContactState<Dim>> contacts() const;
+
+  // Sums over sets of gridpoints
+  GridpointSet set_of(std::vector<int> gridpoints) const;
+  Vec<Dim> mean_displacement(const GridpointSet& set) const;    ///< m
+  Vec<Dim> total_force(const GridpointSet& set) const;          ///< N, as of `force`
+  Vec<Dim> total_applied_force(const GridpointSet& set) const;  ///< N
 
   /// Energies at the displacements that the last step started from. With kinetic energy as half m v(t - dt/2)
   /// v(t + dt/2), central differences conserve their sum exactly in a linear body, so the ledger's error is
@@ -177,32 +199,56 @@ class Mechanics {
   double largest_relative_jump() const;
 
  private:
+  /// What a thread needs for a step.
+  struct Worker {
+    Share share;
+    FlatArray<double> scratch;
+  };
+  /// A tie before its slots stand one after the other in the state.
+  struct TieOfBundle {
+    int bundle, component;
+    std::vector<int> slots;
+  };
+
   void place_model();
+  void place_histories();
   void place_properties();
   void place_contact_properties();
+  void place_ties();
+  void refresh_views();
+  template <class T>
+  FlatArray<T> made(std::size_t size) const {
+    return FlatArray<T>(size, team_.get());
+  }
+  FlatArray<double> make_scratch() const;
   void compute_stiffness();
   void set_masses(const std::vector<double>& densities);
   void scale_masses();
   void set_step_over_mass();
-  Constraints<Dim>& constraints_of(int gridpoint);
+  int constraints_of(int gridpoint);
   void drop_if_free(int bundle);
+  ConstraintRow<Dim>& constraint_row(int constraints, int gridpoint);
   int slot_in_bundle(int gridpoint) const;
   int bundle_of(int gridpoint) const;
   void sweep(int steps, Pass pass);
   Vec<Dim> jump_of_forces(int contact) const;
   ContactFrame<Dim> frame_of_forces(int contact) const;
   Vec<Dim> displacement_of_force(int gridpoint) const;
+  ContactDissipation dissipated() const;
 
   const Model<Dim>& model_;
   MechanicsParameters<Dim> parameters_;
+  std::shared_ptr<Team> team_;
   BodyProperties properties_;
   ZoneGeometry<Dim> geometry_;
-  std::unique_ptr<const Layout<Dim>> layout_;  ///< where the state points to
-  StepState<Dim> state_;
+  std::unique_ptr<const Layout<Dim>> layout_;
+  StateArrays<Dim, FlatArray> storage_;
+  State<Dim> state_;  ///< sees layout and storage
   StepFunctions<Dim> step_;
-  std::vector<Share> shares_;  ///< by thread
+  std::vector<Worker> workers_;  ///< by thread
 
   std::vector<int> made_constraints_;  ///< of each bundle that was ever held, driven or loaded; else -1
+  std::vector<TieOfBundle> ties_;
 
   std::vector<double> gravity_mass_;  ///< real mass, which gravity acts on, kg
   std::vector<double> mass_;          ///< mass that moves, kg
@@ -210,9 +256,9 @@ class Mechanics {
   double real_mass_ = 0.0, moving_mass_ = 0.0;
 
   std::int64_t steps_ = 0;
-  double heat_ = 0.0, mass_scaling_ = 0.0;  ///< see EnergyLedger
+  double property_change_ = 0.0, mass_scaling_ = 0.0;  ///< see EnergyLedger
   /// What a change of properties adds to them through the half step already begun; the next step books it.
-  double begun_heat_ = 0.0, begun_mass_scaling_ = 0.0;
+  double begun_property_change_ = 0.0, begun_mass_scaling_ = 0.0;
 };
 
 extern template BodyProperties by_interface<2>(const Model<2>&, std::vector<ZoneProperties>,

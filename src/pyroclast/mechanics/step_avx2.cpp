@@ -1,5 +1,5 @@
 // The step for processors with AVX2; compiled with that set's options, so nothing else may stand here.
-#include "pyroclast/mechanics/step.hpp"
+#include "pyroclast/mechanics/step/step.hpp"
 
 namespace pyroclast {
 

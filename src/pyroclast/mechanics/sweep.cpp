@@ -14,9 +14,10 @@ std::vector<IndexRange> bundles_of_faces(const Layout<Dim>& layout) {
     for (int i = 0; i < layout.bundles[b].rows; ++i) bundle[layout.bundles[b].first_row + i] = b;
   std::vector<IndexRange> touched(layout.faces.size());
   for (std::size_t r = 0; r < touched.size(); ++r) {
-    IndexRange range{bundle[layout.faces[r].a[0][0] / offset_of<Dim>(kLanes)], 0};
+    const PointRow& point = layout.points[layout.first_point_of(static_cast<int>(r))];
+    IndexRange range{bundle[point.a[0] / offset_of<Dim>(kLanes)], 0};
     for (int lane = 0; lane < kLanes; ++lane)
-      for (int offset : {layout.faces[r].a[0][lane], layout.faces[r].b[0][lane]}) {
+      for (int offset : {point.a[lane], point.b[lane]}) {
         const int row = offset / offset_of<Dim>(kLanes);
         range.first = std::min(range.first, bundle[row]);
         range.last = std::max(range.last, bundle[row]);

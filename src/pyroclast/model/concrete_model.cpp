@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace pyroclast {
 
@@ -77,10 +78,9 @@ std::size_t place_on_wall(const Specimen& specimen, const std::vector<int>& wall
 
 }  // namespace
 
-ConcreteModel make_concrete_model(const Specimen& specimen, std::optional<double> platen_thickness,
-                                  double thickness) {
-  ConcreteModel result;
-  Model<2>& model = result.model;
+Model<2> make_concrete_model(const Specimen& specimen, std::optional<double> platen_thickness,
+                             double thickness) {
+  Model<2> model;
   model.thickness = thickness;
   model.material_names = {"aggregate", "mortar", "platen"};
   model.interface_names = {"aggregate-aggregate", "aggregate-mortar", "mortar-mortar", "platen"};
@@ -97,7 +97,7 @@ ConcreteModel make_concrete_model(const Specimen& specimen, std::optional<double
 
   Platen bottom, top;
   if (platen_thickness) bottom = add_platen(model, columns(bottom_wall), 0.0, -*platen_thickness);
-  const int first_cell = model.block_count();
+  const int first_cell = model.block_count(), first_gridpoint = model.gridpoint_count();
   for (std::size_t cell = 0; cell < tessellation.cells.size(); ++cell) {
     std::vector<Vec<2>> corners;
     for (int v : tessellation.cells[cell]) corners.push_back(tessellation.vertices[v]);
@@ -106,6 +106,7 @@ ConcreteModel make_concrete_model(const Specimen& specimen, std::optional<double
         zoned.gridpoints, zoned.zones,
         specimen.constituent[cell] == Constituent::aggregate ? aggregate_material : mortar_material);
   }
+  const int first_platen_above = model.gridpoint_count();
   if (platen_thickness)
     top = add_platen(model, columns(top_wall), specimen.height, specimen.height + *platen_thickness);
 
@@ -114,7 +115,11 @@ ConcreteModel make_concrete_model(const Specimen& specimen, std::optional<double
     const auto at = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
     return model.block_gridpoints[first_cell + cell] + static_cast<int>(at);
   };
-  const auto join_platen = [&](const std::array<int, 2>& face, const specimen::Edge& e,
+  const auto add_to = [&](const char* name, const std::vector<int>& gridpoints) {
+    auto& set = model.sets[name];
+    set.insert(set.end(), gridpoints.begin(), gridpoints.end());
+  };
+  const auto join_platen = [&](const std::vector<int>& face, const specimen::Edge& e,
                                const std::vector<int>& wall, const Platen& platen) {
     if (!platen_thickness) return;
     const auto opposite = [&](int vertex) { return platen.inner[place_on_wall(specimen, wall, vertex)]; };
@@ -122,7 +127,7 @@ ConcreteModel make_concrete_model(const Specimen& specimen, std::optional<double
   };
 
   for (const auto& e : specimen::edges(tessellation)) {
-    const std::array<int, 2> a{gridpoint(e.left, e.v0), gridpoint(e.left, e.v1)};
+    const std::vector<int> a{gridpoint(e.left, e.v0), gridpoint(e.left, e.v1)};
     if (e.right >= 0) {
       model.join_faces(a, {gridpoint(e.right, e.v0), gridpoint(e.right, e.v1)},
                        interface_between(specimen.constituent[e.left], specimen.constituent[e.right]));
@@ -132,23 +137,26 @@ ConcreteModel make_concrete_model(const Specimen& specimen, std::optional<double
     const Vec<2>& x1 = tessellation.vertices[e.v1];
     if (x0[1] == 0.0 && x1[1] == 0.0) {
       join_platen(a, e, bottom_wall, bottom);
-      result.bottom_side.insert(result.bottom_side.end(), a.begin(), a.end());
+      add_to("bottom", a);
     } else if (x0[1] == specimen.height && x1[1] == specimen.height) {
       join_platen(a, e, top_wall, top);
-      result.top_side.insert(result.top_side.end(), a.begin(), a.end());
+      add_to("top", a);
     } else {
-      auto& side = x0[0] == 0.0 ? result.left_side : result.right_side;
-      side.insert(side.end(), a.begin(), a.end());
+      add_to(x0[0] == 0.0 ? "left" : "right", a);
     }
   }
-  for (int c = 0; c < model.contact_count(); ++c)
-    if (model.contacts[c].interface == platen_interface) result.platen_contacts.push_back(c);
 
-  result.bottom_support = bottom.outer;
-  result.bottom_face = bottom.inner;
-  result.top_support = top.outer;
-  result.top_face = top.inner;
-  return result;
+  auto& specimen_set = model.sets["specimen"];
+  specimen_set.resize(first_platen_above - first_gridpoint);
+  std::iota(specimen_set.begin(), specimen_set.end(), first_gridpoint);
+  auto& top_platen = model.sets["top_platen"];
+  top_platen.resize(model.gridpoint_count() - first_platen_above);
+  std::iota(top_platen.begin(), top_platen.end(), first_platen_above);
+  model.sets["bottom_support"] = bottom.outer;
+  model.sets["bottom_face"] = bottom.inner;
+  model.sets["top_support"] = top.outer;
+  model.sets["top_face"] = top.inner;
+  return model;
 }
 
 }  // namespace pyroclast

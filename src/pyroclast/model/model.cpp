@@ -11,32 +11,37 @@ namespace pyroclast {
 
 namespace {
 
-struct FaceFrame2 {
-  double area;
-  Vec<2> normal;
-  std::array<Vec<2>, 1> tangents;
+template <int Dim>
+struct FaceFrame {
+  Vec<Dim> normal;
+  std::array<Vec<Dim>, Dim - 1> tangents;
+  std::vector<double> area;  ///< of each corner, m²
 };
 
-FaceFrame2 face_frame(const std::array<Vec<2>, 2>& corner, double thickness) {
+FaceFrame<2> face_frame(const std::vector<Vec<2>>& corner, double thickness) {
   const Vec<2> along = corner[1] - corner[0];
   const double length = norm(along);
   const Vec<2> t = along * (1.0 / length);
-  return {length * thickness, {{t[1], -t[0]}}, {t}};
+  return {{{t[1], -t[0]}}, {t}, {length * thickness / 2, length * thickness / 2}};
 }
 
-struct FaceFrame3 {
-  double area;
-  Vec<3> normal;
-  std::array<Vec<3>, 2> tangents;
-};
-
-FaceFrame3 face_frame(const std::array<Vec<3>, 3>& corner, double) {
-  const Vec<3> along = corner[1] - corner[0];
-  const Vec<3> doubled = cross(along, corner[2] - corner[0]);
-  const double twice_area = norm(doubled);
-  const Vec<3> n = doubled * (1.0 / twice_area);
+/// Each corner has a third of the triangles at it, as seen along the mean normal: the shares that zones on
+/// those triangles give it too.
+FaceFrame<3> face_frame(const std::vector<Vec<3>>& corner, double) {
+  std::vector<Vec<3>> doubled;  // area vectors of the triangles (0, i, i + 1)
+  Vec<3> all{};
+  for (std::size_t i = 1; i + 1 < corner.size(); ++i) {
+    doubled.push_back(cross(corner[i] - corner[0], corner[i + 1] - corner[0]));
+    all += doubled.back();
+  }
+  const Vec<3> n = all * (1.0 / norm(all));
+  const Vec<3> edge = corner[1] - corner[0];
+  const Vec<3> along = edge - n * dot(edge, n);
   const Vec<3> t = along * (1.0 / norm(along));
-  return {0.5 * twice_area, n, {t, cross(n, t)}};
+  FaceFrame<3> frame{n, {t, cross(n, t)}, std::vector<double>(corner.size())};
+  for (std::size_t i = 1; i + 1 < corner.size(); ++i)
+    for (std::size_t at : {std::size_t{0}, i, i + 1}) frame.area[at] += dot(doubled[i - 1], n) / 6.0;
+  return frame;
 }
 
 }  // namespace
@@ -57,15 +62,27 @@ int Model<Dim>::add_block(const std::vector<Vec<Dim>>& gridpoints,
 }
 
 template <int Dim>
-void Model<Dim>::join_faces(const std::array<int, Dim>& a, const std::array<int, Dim>& b, int interface) {
-  std::array<Vec<Dim>, Dim> corner;
-  for (int i = 0; i < Dim; ++i) corner[i] = position[a[i]];
+void Model<Dim>::join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface) {
+  const std::size_t fewest = Dim, most = Dim == 2 ? 2 : 8;
+  if (a.size() != b.size() || a.size() < fewest || a.size() > most)
+    throw Error(fmt::format("faces with {} and {} corners cannot be joined: both must have {}", a.size(),
+                            b.size(), Dim == 2 ? "2" : "the same number, from 3 to 8"));
+  std::vector<Vec<Dim>> corner;
+  for (int g : a) corner.push_back(position[g]);
   const auto frame = face_frame(corner, thickness);
-  if (!(frame.area > 0.0))
-    throw Error(fmt::format("face at gridpoint {} has no area, so no contact can stand on it", a[0]));
-  const int face = contacts.empty() ? 0 : contacts.back().face + 1;
-  for (int i = 0; i < Dim; ++i)
-    contacts.push_back({a[i], b[i], face, interface, frame.area / Dim, frame.normal, frame.tangents});
+  const int face = face_count();
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!(frame.area[i] > 0.0))
+      throw Error(fmt::format("face at gridpoint {} has no area, so no contact can stand on it", a[0]));
+    contacts.push_back({a[i], b[i], face, interface, frame.area[i], frame.normal, frame.tangents});
+  }
+  face_contacts.push_back(contact_count());
+}
+
+template <int Dim>
+const std::vector<int>& Model<Dim>::set(std::string_view name) const {
+  if (const auto found = sets.find(name); found != sets.end()) return found->second;
+  throw Error(fmt::format("the model has no set of gridpoints \"{}\"", name));
 }
 
 template <int Dim>

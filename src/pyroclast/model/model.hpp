@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pyroclast/base/vec.hpp"
@@ -13,7 +15,7 @@ namespace pyroclast {
 template <int Dim>
 struct Contact {
   int a, b;                                ///< gridpoints
-  int face;                                ///< shared face; its Dim contact points stand together
+  int face;                                ///< shared face, see Model::face_contacts
   int interface;                           ///< index into Model::interface_names
   double area;                             ///< tributary area, m² (2D: half the edge times the thickness)
   Vec<Dim> normal;                         ///< unit, from a to b
@@ -24,7 +26,7 @@ struct Contact {
 ///
 /// Every block owns its gridpoints and zones, which stand together in the arrays. Blocks meet only through
 /// contacts. In 2D a zone is a triangle and a face an edge with two contact points; in 3D a tetrahedron and a
-/// triangle with three.
+/// polygon of 3 to 8 corners with a contact point at each.
 template <int Dim>
 struct Model {
   double thickness = 1.0;  ///< out of plane, m (2D only; 1 in 3D)
@@ -35,15 +37,22 @@ struct Model {
   std::vector<int> block_material;              ///< index into material_names
   std::vector<std::array<int, Dim + 1>> zones;  ///< gridpoints of each zone, positively oriented
   std::vector<Contact<Dim>> contacts;
+  std::vector<int> face_contacts{0};  ///< contacts of shared face i: [i] to [i + 1]
 
   std::vector<std::string> material_names;
   std::vector<std::string> interface_names;
+
+  std::map<std::string, std::vector<int>, std::less<>> sets;  ///< of gridpoints, by name
+
+  /// A set by its name. Throws Error naming it when the model has none.
+  const std::vector<int>& set(std::string_view name) const;
 
   int block_count() const { return static_cast<int>(block_material.size()); }
   int block_of(int gridpoint) const;
   int gridpoint_count() const { return static_cast<int>(position.size()); }
   int zone_count() const { return static_cast<int>(zones.size()); }
   int contact_count() const { return static_cast<int>(contacts.size()); }
+  int face_count() const { return static_cast<int>(face_contacts.size()) - 1; }
 
   /// Appends a block; its zones index its own gridpoints from 0. Returns the block's index.
   int add_block(const std::vector<Vec<Dim>>& gridpoints,
@@ -51,9 +60,11 @@ struct Model {
 
   /// Joins a face of one block to the coinciding face of another: corner i of `a` to corner i of `b`, both
   /// gridpoint indices of the model, ordered so that the normal (2D: the edge direction turned clockwise, for
-  /// a block walked counter-clockwise; 3D: right-handed) points out of a's block into b's. Throws Error for a
-  /// face without area.
-  void join_faces(const std::array<int, Dim>& a, const std::array<int, Dim>& b, int interface);
+  /// a block walked counter-clockwise; 3D: right-handed) points out of a's block into b's. In 3D zones meet
+  /// the face in the triangles of the fan from its first corner. All contact points of a face have the frame
+  /// of its mean plane, and each its share of the area. Throws Error for a face without area, and for one
+  /// without 2 corners in 2D or 3 to 8 in 3D.
+  void join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface);
 };
 
 /// What follows from the geometry alone and the solvers read in every step.

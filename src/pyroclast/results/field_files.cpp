@@ -1,8 +1,11 @@
 #include "pyroclast/results/field_files.hpp"
 
-#include <vector>
+#include <array>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pyroclast/results/history_file.hpp"
 
 namespace pyroclast {
 
@@ -24,10 +27,10 @@ void write_temperatures(Hdf5File& file, const TemperatureField& field) {
 
 void write_motion(Hdf5File& file, const Mechanics<2>& mechanics) {
   std::vector<float> displacement, stress;
-  displacement.reserve(3 * mechanics.displacement().size());
-  stress.reserve(3 * mechanics.stress().size());
-  for (const auto& u : mechanics.displacement()) append(displacement, u);
-  for (const auto& s : mechanics.stress())
+  displacement.reserve(3 * mechanics.displacements().size());
+  stress.reserve(3 * mechanics.stresses().size());
+  for (const auto& u : mechanics.displacements()) append(displacement, u);
+  for (const auto& s : mechanics.stresses())
     for (double component : s) stress.push_back(static_cast<float>(component));
   file.dataset("/VTKHDF/PointData/displacement", displacement, 3);
   file.dataset("/VTKHDF/CellData/stress", stress, 3);
@@ -35,11 +38,13 @@ void write_motion(Hdf5File& file, const Mechanics<2>& mechanics) {
 
 void write_contacts(Hdf5File& file, const Mechanics<2>& mechanics) {
   const auto& model = mechanics.model();
-  std::vector<float> displacement, tension, shear, opening, slip, normal_traction, shear_traction, closure;
+  std::vector<float> displacement, tension, shear, opening, tangential_jump, normal_traction, shear_traction,
+      closure;
   displacement.reserve(6 * model.contacts.size());
-  for (auto* values : {&tension, &shear, &opening, &slip, &normal_traction, &shear_traction, &closure})
+  for (auto* values :
+       {&tension, &shear, &opening, &tangential_jump, &normal_traction, &shear_traction, &closure})
     values->reserve(model.contacts.size());
-  const auto u = mechanics.displacement();
+  const auto u = mechanics.displacements();
   for (int i = 0; i < model.contact_count(); ++i) {
     const auto& c = model.contacts[i];
     const auto& partner = model.contacts[i ^ 1];  // the two contacts of an edge stand together
@@ -51,7 +56,7 @@ void write_contacts(Hdf5File& file, const Mechanics<2>& mechanics) {
     shear.push_back(static_cast<float>(state.history.shear_damage));
     closure.push_back(static_cast<float>(state.history.closure));
     opening.push_back(static_cast<float>(state.opening));
-    slip.push_back(static_cast<float>(state.tangential_jump[0]));
+    tangential_jump.push_back(static_cast<float>(state.tangential_jump[0]));
     normal_traction.push_back(static_cast<float>(state.normal_traction));
     shear_traction.push_back(static_cast<float>(state.shear_traction[0]));
   }
@@ -59,45 +64,46 @@ void write_contacts(Hdf5File& file, const Mechanics<2>& mechanics) {
   file.dataset("/VTKHDF/CellData/tension_damage", tension);
   file.dataset("/VTKHDF/CellData/shear_damage", shear);
   file.dataset("/VTKHDF/CellData/opening", opening);
-  file.dataset("/VTKHDF/CellData/slip", slip);
+  file.dataset("/VTKHDF/CellData/tangential_jump", tangential_jump);
   file.dataset("/VTKHDF/CellData/normal_traction", normal_traction);
   file.dataset("/VTKHDF/CellData/shear_traction", shear_traction);
   file.dataset("/VTKHDF/CellData/closure", closure);
 }
 
+/// What frames.csv has of the history, where that has it.
+constexpr std::array<const char*, 7> kFrameColumns{
+    "stage", "step", "time_s", "strain", "stress_MPa", "temperature_degC", "heating_time_s"};
+
+std::vector<std::string> frame_columns(const History& history) {
+  std::vector<std::string> names;
+  for (const char* name : kFrameColumns)
+    if (history.has(name)) names.emplace_back(name);
+  return names;
+}
+
 }  // namespace
 
-FieldFiles::FieldFiles(const std::filesystem::path& folder, const Model<2>& model)
+FieldFiles::FieldFiles(const std::filesystem::path& folder, const Simulation& simulation,
+                       const History& history)
     : frames_(created(folder) / "frames.csv"),
-      blocks_(folder, MeshPart::blocks),
-      contacts_(folder, MeshPart::contacts) {
-  frames_.line("frame,stage,step,time_s,strain,stress_MPa,temperature_degC,heating_time_s");
-  write_mesh(folder, model);
+      columns_(frame_columns(history)),
+      blocks_(folder, MeshPart::blocks) {
+  if (simulation.moves()) contacts_.emplace(folder, MeshPart::contacts);
+  frames_.line(fmt::format("frame,{}", fmt::join(columns_, ",")));
+  write_mesh(folder, simulation.model());
 }
 
-void FieldFiles::write(const Experiment& experiment, const Sample& sample) {
-  const int frame = blocks_.count();
-  const auto& mechanics = experiment.mechanics();
-  blocks_.write(sample.time, [&](Hdf5File& file) {
-    write_motion(file, mechanics);
-    write_temperatures(file, experiment.field());
+void FieldFiles::write(const Simulation& simulation, const History& history) {
+  std::vector<std::string> cells{std::to_string(blocks_.count())};
+  for (const auto& name : columns_) cells.push_back(printed(history.last(name)));
+  const double time = simulation.moves() ? simulation.mechanics().time() : simulation.heating_time();
+  blocks_.write(time, [&](Hdf5File& file) {
+    if (simulation.moves()) write_motion(file, simulation.mechanics());
+    write_temperatures(file, simulation.field());
   });
-  contacts_.write(sample.time, [&](Hdf5File& file) { write_contacts(file, mechanics); });
-  frames_.line(fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", frame, sample.stage, sample.step,
-                           sample.time, sample.strain, sample.stress() * 1e-6, sample.heat.mean,
-                           sample.heat.time));
-}
-
-HeatFieldFiles::HeatFieldFiles(const std::filesystem::path& folder, const Model<2>& model)
-    : frames_(created(folder) / "frames.csv"), blocks_(folder, MeshPart::blocks) {
-  frames_.line("frame,time_s,temperature_degC");
-  write_mesh(folder, model);
-}
-
-void HeatFieldFiles::write(const TemperatureField& field) {
-  const int frame = blocks_.count();
-  blocks_.write(field.time(), [&](Hdf5File& file) { write_temperatures(file, field); });
-  frames_.line(fmt::format("{},{:.9g},{:.9g}", frame, field.time(), field.mean()));
+  if (contacts_)
+    contacts_->write(time, [&](Hdf5File& file) { write_contacts(file, simulation.mechanics()); });
+  frames_.line(fmt::format("{}", fmt::join(cells, ",")));
 }
 
 }  // namespace pyroclast

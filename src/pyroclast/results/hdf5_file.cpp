@@ -7,6 +7,7 @@
 #include <hdf5.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/results/publish.hpp"
 
 namespace pyroclast {
 
@@ -122,9 +123,7 @@ void Hdf5File::close() {
     if (!flushed) errno = cause;
     fail("cannot be written");
   }
-  std::error_code error;
-  std::filesystem::rename(partial_, path_, error);
-  if (error) throw Error(fmt::format("{}: cannot be written ({})", path_.string(), error.message()));
+  publish(partial_, path_);
 }
 
 }  // namespace pyroclast

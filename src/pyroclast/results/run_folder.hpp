@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace pyroclast {
 
@@ -16,20 +17,24 @@ struct Manifest {
   std::string command;
 };
 
-/// One folder holding everything of one run. Refused when it exists, unless overwriting was asked for; even
-/// then only a folder that holds a manifest is emptied, so that nothing else is ever lost.
+/// One folder holding everything of one run. Refused when it holds anything, unless overwriting was asked
+/// for; even then only a folder with the manifest of a run is taken, and only files that a run writes are
+/// removed from it.
 class RunFolder {
  public:
-  /// Checks that the folder can be made; makes nothing yet. Throws Error otherwise.
+  /// Checks that the folder can be made; leaves nothing behind. Throws Error otherwise.
   static void check(const std::filesystem::path& path, bool overwrite);
 
   /// Makes the folder, with `deck.toml` and `manifest.json` in it.
   RunFolder(std::filesystem::path path, bool overwrite, const Manifest& manifest);
 
   const std::filesystem::path& path() const { return path_; }
+  /// Files that were in the folder and that no run writes: they are still there. Relative to it, in order.
+  const std::vector<std::filesystem::path>& foreign() const { return foreign_; }
 
  private:
   std::filesystem::path path_;
+  std::vector<std::filesystem::path> foreign_;
 };
 
 /// SHA-256 of a text, in hexadecimal, as `sha256sum` prints it.

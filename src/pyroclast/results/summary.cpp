@@ -1,6 +1,8 @@
 #include "pyroclast/results/summary.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,158 +13,192 @@ namespace pyroclast {
 
 namespace {
 
-/// Contacts are joined at the start and their normals stay; a jump of this share of the edge is no longer
-/// small.
+using Json = nlohmann::ordered_json;
+
+/// A jump of this share of the edge is no longer small.
 constexpr double kSmallJump = 0.1;
-/// The ledger of a sound run closes within this share of the energy turned over.
-constexpr double kLedgerTolerance = 0.005;
+/// The energy ledger of a sound run closes within this share of the energy turned over.
+constexpr double kEnergyTolerance = 0.005;
+/// Heat is conserved to rounding, which adds up over some 1e5 evaluations to far less than this share.
+constexpr double kHeatTolerance = 1e-6;
 
-/// First row at which jumps are no longer small; null if they always are.
-const Sample* large_jumps(const std::vector<Sample>& history) {
-  const auto row = std::find_if(history.begin(), history.end(),
-                                [](const Sample& s) { return s.largest_jump > kSmallJump; });
-  return row == history.end() ? nullptr : &*row;
-}
-
-const char* name(PlatenControl control) {
-  return control == PlatenControl::force ? "force" : "fixed";
-}
-
-struct StageName {
-  const char* operator()(const SettleStage&) const { return "settle"; }
-  const char* operator()(const LoadStage&) const { return "load"; }
-  const char* operator()(const CompressStage&) const { return "compress"; }
-  const char* operator()(const HeatStage&) const { return "heat"; }
-  const char* operator()(const ExposeStage&) const { return "expose"; }
+/// An entry of the summary and the column of the history that it is the last value of.
+struct Entry {
+  const char* name;
+  const char* column;
 };
 
-template <class T>
-nlohmann::ordered_json or_null(const std::optional<T>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+constexpr auto kEnergy = std::to_array<Entry>({
+    {"loading", "energy_loading_J"},
+    {"gravity", "energy_gravity_J"},
+    {"property_change", "energy_property_change_J"},
+    {"mass_scaling", "energy_mass_scaling_J"},
+    {"elastic_zones", "energy_zones_J"},
+    {"elastic_contacts", "energy_contacts_J"},
+    {"kinetic", "energy_kinetic_J"},
+    {"dissipated_tension", "dissipated_tension_J"},
+    {"dissipated_shear", "dissipated_shear_J"},
+    {"dissipated_friction", "dissipated_friction_J"},
+    {"dissipated_compression", "dissipated_compression_J"},
+    {"local_damping", "energy_local_damping_J"},
+    {"viscous_damping", "energy_viscous_damping_J"},
+    {"error", "energy_error_J"},
+});
+/// What was put in; the error of the ledger is measured by the sum of their sizes.
+constexpr std::array kPutIn{"energy_loading_J", "energy_gravity_J", "energy_property_change_J",
+                            "energy_mass_scaling_J"};
+
+constexpr auto kHeat = std::to_array<Entry>({
+    {"stored", "heat_stored_J"},
+    {"prescribed", "heat_prescribed_J"},
+    {"flux", "heat_flux_J"},
+    {"convection", "heat_convection_J"},
+    {"radiation", "heat_radiation_J"},
+    {"error", "heat_error_J"},
+});
+
+/// The last value of a column that the run has; what a stage without it left stands in earlier rows.
+std::optional<double> last_of(const History& history, const char* column) {
+  for (std::size_t row = history.row_count(); row-- > 0;)
+    if (const auto value = history.cell(row, column)) return value;
+  return std::nullopt;
 }
 
-nlohmann::ordered_json heating_json(const Summary& s) {
-  if (!s.heating) return nullptr;
-  const HeatingResponse& h = *s.heating;
-  return {{"field", s.uniform_temperature ? "uniform" : "conduction"},
-          {"expansion_reading", s.expansion_reading},
-          {"platen", name(h.platen)},
-          {"load_stress_MPa", h.load_stress * 1e-6},
-          {"load_level", or_null(h.level)},
-          {"critical_temperature_degC", or_null(h.critical_temperature)},
-          {"critical_time_s", h.critical_temperature ? nlohmann::ordered_json(h.critical_time) : nullptr},
-          {"highest_temperature_degC", h.highest},
-          {"largest_exchange_increment_K", h.increment},
-          {"exchanges", h.exchanges},
-          {"exchanges_not_converged", h.not_converged},
-          {"worst_unbalanced_ratio", h.worst_ratio},
-          {"cycles", h.cycles},
-          {"largest_thrust_MPa", h.largest_thrust * 1e-6}};
+std::optional<double> energy_error(const History& history) {
+  const auto error = last_of(history, "energy_error_J");
+  if (!error) return std::nullopt;
+  double turnover = 0.0;
+  for (const char* column : kPutIn) turnover += std::abs(last_of(history, column).value_or(0.0));
+  return *error / turnover;
 }
 
-nlohmann::ordered_json crack_json(const CrackCount& c) {
-  return {{"softening", c.softening}, {"broken", c.broken}, {"length_m", c.length}};
+std::optional<double> heat_error(const History& history) {
+  const auto error = last_of(history, "heat_error_J");
+  if (!error) return std::nullopt;
+  double largest = 0.0;
+  for (const Entry& entry : kHeat)
+    if (entry.name != std::string("error"))
+      largest = std::max(largest, std::abs(last_of(history, entry.column).value_or(0.0)));
+  return largest > 0.0 ? std::abs(*error) / largest : 0.0;
+}
+
+/// First row at which jumps are no longer small.
+std::optional<std::size_t> large_jumps(const History& history) {
+  for (std::size_t row = 0; row < history.row_count(); ++row)
+    if (history.cell(row, "largest_jump").value_or(0.0) > kSmallJump) return row;
+  return std::nullopt;
+}
+
+template <std::size_t N>
+Json json_of(const std::array<Entry, N>& entries, const History& history) {
+  Json json;
+  for (const Entry& entry : entries)
+    if (const auto value = last_of(history, entry.column)) json[entry.name] = *value;
+  return json;
+}
+
+Json json_of(const Result::Value& value) {
+  return std::visit(
+      [](const auto& v) -> Json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::monostate>)
+          return nullptr;
+        else
+          return v;
+      },
+      value);
+}
+
+Json json_of(const Summary::OfStage& stage) {
+  Json results = Json::object();
+  for (const Result& result : stage.report.results) results[result.name] = json_of(result.value);
+  return {{"kind", stage.kind},
+          {"outcome", describe(stage.outcome)},
+          {"results", results},
+          {"warnings", stage.report.warnings}};
+}
+
+Json crack_json(const History& history, const std::string& crack) {
+  const auto last = [&](const char* what) { return *last_of(history, (crack + what).c_str()); };
+  return {{"damaged", static_cast<std::int64_t>(last("_damaged"))},
+          {"broken", static_cast<std::int64_t>(last("_broken"))},
+          {"length_m", last("_length_m")}};
+}
+
+void add_motion(Json& json, const Summary& summary, const Run& run) {
+  const Simulation& simulation = run.simulation();
+  const History& history = run.history();
+  json["energy_J"] = json_of(kEnergy, history);
+  json["energy_J"]["error_over_turnover"] = *summary.energy_error;
+  json["cracks"] = {{"tension_aggregate_mortar", crack_json(history, "tension_am")},
+                    {"tension_mortar_mortar", crack_json(history, "tension_mm")},
+                    {"shear_aggregate_mortar", crack_json(history, "shear_am")},
+                    {"shear_mortar_mortar", crack_json(history, "shear_mm")},
+                    {"mean_opening_m", *last_of(history, "mean_opening_m")}};
+  json["expansion_reading"] = summary.expansion_reading;
+  json["estimated_E_GPa"] = estimate_modulus(simulation.model(), simulation.materials()) * 1e-9;
+  json["t_b_m"] = simulation.materials().fracture_zone;
+  json["time_step_s"] = simulation.mechanics().time_step();
+  json["mass_over_real_mass"] = simulation.mechanics().mass_ratio();
+  json["steps"] = static_cast<std::int64_t>(*last_of(history, "step"));
+}
+
+void add_heat(Json& json, const Summary& summary, const Run& run) {
+  const Conduction<2>& conduction = *run.simulation().field().conduction();
+  json["heat_J"] = json_of(kHeat, run.history());
+  json["heat_J"]["error_over_largest"] = *summary.heat_error;
+  json["heat_solver"] = {{"steps", conduction.steps()},
+                         {"steps_taken_back", conduction.retries()},
+                         {"evaluations", conduction.stages()},
+                         {"largest_overshoot_K", conduction.largest_overshoot()}};
 }
 
 }  // namespace
 
-Summary summarize(const Case& c, const Experiment& experiment, Outcome outcome) {
-  const auto& history = experiment.history();
+Summary summarize(const Run& run) {
+  const History& history = run.history();
   Summary s;
-  s.title = c.title;
-  s.outcome = outcome;
-  s.compression = compression_response(history, c.stages);
-  s.quasi_static = quasi_static_report(history, c.stages);
-  s.heating = heating_response(history, c.stages, outcome);
-  s.uniform_temperature = c.heat.uniform;
-  s.expansion_reading = c.expansion_reading == ExpansionReading::secant ? "secant" : "tangent";
-  for (const Stage& stage : c.stages) s.stages.push_back(std::visit(StageName{}, stage));
-  s.time_step = experiment.mechanics().time_step();
-  s.mass_ratio = experiment.mechanics().mass_ratio();
-  s.last = history.back();
-  if (outcome == Outcome::interrupted || outcome == Outcome::not_settled || outcome == Outcome::unstable)
-    s.warnings.push_back(describe(outcome));
-  if (s.compression && !s.compression->peak_passed)
-    s.warnings.push_back("the stress never fell after its largest value, so f_c is only what was reached");
-  if (s.compression && !s.quasi_static.to_peak)
-    s.warnings.push_back(
-        fmt::format("not quasi-static up to the peak: kinetic over elastic energy up to {:.1e}, platen "
-                    "stresses differ by up to "
-                    "{:.1f} % of f_c; load more slowly or take a shorter time step",
-                    s.quasi_static.kinetic_to_peak, 100.0 * s.quasi_static.difference_to_peak));
-  if (s.heating && s.heating->not_converged > 0)
+  s.outcome = run.outcome();
+  for (std::size_t i = 0; i < run.stages().size(); ++i) {
+    const Stage& stage = *run.stages()[i];
+    const StageRecord& record = run.records()[i];
+    s.stages.push_back({stage.kind(), record.outcome, {}});
+    if (record.outcome != Outcome::not_begun)
+      s.stages.back().report = stage.report(history, record.rows, record.outcome);
+  }
+  s.energy_error = energy_error(history);
+  s.heat_error = heat_error(history);
+  if (s.outcome == Outcome::stopped || s.outcome == Outcome::not_settled || s.outcome == Outcome::unstable)
+    s.warnings.emplace_back(describe(s.outcome));
+  if (s.energy_error && std::abs(*s.energy_error) > kEnergyTolerance)
     s.warnings.push_back(fmt::format(
-        "{} of {} exchanges of temperature did not come to rest within the stated cycles (worst unbalanced "
-        "ratio {:.1e}); history.csv flags them",
-        s.heating->not_converged, s.heating->exchanges, s.heating->worst_ratio));
-  const double ledger = s.last.energy.error() / s.last.energy.turnover();
-  if (std::abs(ledger) > kLedgerTolerance)
-    s.warnings.push_back(fmt::format(
-        "the energy ledger closes only within {:.2f} % of the energy turned over", 100.0 * ledger));
-  if (const Sample* row = large_jumps(history))
+        "the energy ledger closes only within {:.2f} % of the energy turned over", 100.0 * *s.energy_error));
+  if (s.heat_error && *s.heat_error > kHeatTolerance)
     s.warnings.push_back(
-        fmt::format("jumps exceed {:.0f} % of an edge from {:.0f} degC and strain {:.5f} on: contacts keep "
-                    "the partners and "
-                    "normals they started with, so what follows is approximate",
-                    100.0 * kSmallJump, row->heat.mean, row->strain));
+        fmt::format("the heat ledger closes only within {:.2g} of its largest term", *s.heat_error));
+  if (const auto row = large_jumps(history))
+    s.warnings.push_back(fmt::format(
+        "jumps exceed {:.0f} % of an edge from {:.0f} degC and strain {:.5f} on: "
+        "contacts keep the partners they started with, so what follows is approximate",
+        100.0 * kSmallJump, *history.cell(*row, "temperature_degC"), *history.cell(*row, "strain")));
   return s;
 }
 
-void write_summary(const std::filesystem::path& path, const Summary& s, const specimen::Specimen& specimen) {
-  nlohmann::ordered_json json;
+void write_summary(const std::filesystem::path& path, const Summary& s, const Run& run) {
+  const Simulation& simulation = run.simulation();
+  const specimen::Specimen& specimen = simulation.specimen();
+  Json json;
   json["title"] = s.title;
   json["outcome"] = describe(s.outcome);
   json["sign"] = "stress and strain of the test are positive in compression";
-  json["stages"] = nlohmann::json::array();
-  for (const auto& stage : s.stages) json["stages"].push_back({{"kind", stage}});
-  json["compression"] = nullptr;
-  if (s.compression)
-    json["compression"] = {
-        {"E_GPa", s.compression->modulus * 1e-9},          {"f_c_MPa", s.compression->strength * 1e-6},
-        {"strain_at_peak", s.compression->strain_at_peak}, {"strain_ic", s.compression->inelastic_strain},
-        {"peak_passed", s.compression->peak_passed},       {"estimated_E_GPa", s.estimated_modulus * 1e-9}};
-  json["quasi_static"] = nullptr;
-  if (s.compression) {
-    json["quasi_static"] = s.quasi_static.to_peak;
-    json["quasi_static_detail"] = {
-        {"kinetic_over_elastic_to_peak", s.quasi_static.kinetic_to_peak},
-        {"kinetic_over_elastic_after_peak", s.quasi_static.kinetic_after_peak},
-        {"platen_difference_over_f_c_to_peak", s.quasi_static.difference_to_peak},
-        {"platen_difference_over_f_c_after_peak", s.quasi_static.difference_after_peak},
-        {"after_peak", s.quasi_static.after_peak}};
-  }
-  json["heating"] = heating_json(s);
-  const EnergyLedger& e = s.last.energy;
-  json["energy_J"] = {{"loading", e.loading},
-                      {"gravity", e.gravity},
-                      {"heat", e.heat},
-                      {"mass_scaling", e.mass_scaling},
-                      {"elastic_zones", e.zones},
-                      {"elastic_contacts", e.contacts},
-                      {"kinetic", e.kinetic},
-                      {"dissipated_tension", e.dissipated.tension},
-                      {"dissipated_shear", e.dissipated.shear},
-                      {"dissipated_friction", e.dissipated.friction},
-                      {"dissipated_compression", e.dissipated.compression},
-                      {"local_damping", e.local_damping},
-                      {"viscous_damping", e.viscous_damping},
-                      {"error", e.error()},
-                      {"error_over_turnover", e.error() / e.turnover()}};
-  const Cracks& c = s.last.cracks;
-  json["cracks"] = {{"tension_aggregate_mortar", crack_json(c.tension_am)},
-                    {"tension_mortar_mortar", crack_json(c.tension_mm)},
-                    {"shear_aggregate_mortar", crack_json(c.shear_am)},
-                    {"shear_mortar_mortar", crack_json(c.shear_mm)},
-                    {"mean_opening_m", c.mean_opening}};
+  json["stages"] = Json::array();
+  for (const auto& stage : s.stages) json["stages"].push_back(json_of(stage));
+  if (s.energy_error) add_motion(json, s, run);
+  if (s.heat_error) add_heat(json, s, run);
   json["specimen"] = {{"blocks", specimen.tessellation.cells.size()},
                       {"mean_block_size_m", specimen.metrics.mean_size},
                       {"aggregate_fraction_asked", specimen.fraction_asked},
                       {"aggregate_fraction_placed", specimen.fraction_placed},
                       {"aggregate_fraction_superposed", specimen.fraction_superposed}};
-  json["t_b_m"] = s.fracture_zone;
-  json["time_step_s"] = s.time_step;
-  json["mass_over_real_mass"] = s.mass_ratio;
-  json["steps"] = s.last.step;
   json["wall_time_s"] = s.wall_time;
   json["warnings"] = s.warnings;
   write_text_file(path, json.dump(2) + "\n");

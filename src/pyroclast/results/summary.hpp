@@ -1,41 +1,39 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "pyroclast/experiment/case.hpp"
-#include "pyroclast/experiment/heating_response.hpp"
-#include "pyroclast/experiment/response.hpp"
-#include "pyroclast/specimen/specimen.hpp"
+#include "pyroclast/simulation/run.hpp"
 
 namespace pyroclast {
 
 /// What a reader of a run wants to know first.
 struct Summary {
+  struct OfStage {
+    std::string kind;
+    Outcome outcome = Outcome::not_begun;
+    StageReport report;
+  };
+
   std::string title;
   Outcome outcome = Outcome::completed;
-  std::optional<CompressionResponse> compression;
-  QuasiStaticReport quasi_static;
-  std::optional<HeatingResponse> heating;
-  std::vector<std::string> stages;  ///< kinds, in order
-  bool uniform_temperature = true;
+  std::vector<OfStage> stages;
   std::string expansion_reading;
-  double estimated_modulus = 0.0;  ///< Pa
-  double fracture_zone = 0.0;      ///< t_b, m
-  double time_step = 0.0;          ///< s
-  double mass_ratio = 0.0;         ///< moving over real mass
-  double wall_time = 0.0;          ///< s
-  Sample last;
-  std::vector<std::string> warnings;
+  double wall_time = 0.0;  ///< s
+  /// Error of the energy ledger over the energy turned over; empty where nothing moves.
+  std::optional<double> energy_error;
+  /// Error of the heat ledger over the largest of its terms; empty where no heat is conducted.
+  std::optional<double> heat_error;
+  std::vector<std::string> warnings;  ///< of the run as a whole; those of stages stand in their reports
 };
 
-/// Gathers it after a run, with a warning for each thing that keeps the result from being taken at face
-/// value.
-Summary summarize(const Case& c, const Experiment& experiment, Outcome outcome);
+/// Gathers it from the rows so far, with a warning for each thing that keeps the result from being taken at
+/// face value.
+Summary summarize(const Run& run);
 
 /// `summary.json`.
-void write_summary(const std::filesystem::path& path, const Summary& summary,
-                   const specimen::Specimen& specimen);
+void write_summary(const std::filesystem::path& path, const Summary& summary, const Run& run);
 
 }  // namespace pyroclast

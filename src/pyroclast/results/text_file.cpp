@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/results/publish.hpp"
 
 namespace pyroclast {
 
@@ -31,9 +32,7 @@ void write_text_file(const std::filesystem::path& path, const std::string& text)
       fail(path);
     }
   }
-  std::error_code error;
-  std::filesystem::rename(partial, path, error);
-  if (error) throw Error(fmt::format("{}: cannot be written ({})", path.string(), error.message()));
+  publish(partial, path);
 }
 
 LineFile::LineFile(std::filesystem::path path) : path_(std::move(path)), stream_(path_, std::ios::binary) {

@@ -6,11 +6,12 @@
 
 namespace pyroclast {
 
-/// Writes a whole text file: all of it appears under its name, or none. Throws Error naming the file.
+/// Writes a whole text file: all of it appears under its name, or none (see publish). Throws Error naming the
+/// file.
 void write_text_file(const std::filesystem::path& path, const std::string& text);
 
-/// A text file that grows line by line, each line on disk before the next. Throws Error naming the file when
-/// a line cannot be written.
+/// A text file that grows line by line, each line handed to the system before the next. Throws Error naming
+/// the file when a line cannot be written.
 class LineFile {
  public:
   explicit LineFile(std::filesystem::path path);

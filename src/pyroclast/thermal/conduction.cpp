@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,18 +19,25 @@ namespace {
 /// tessellation in the standard fire of ISO 834 showed 0.00015.)
 constexpr double kDoubtfulExcess = 0.01;
 
+/// Zones times stages that take some tenths of a second on one thread.
+constexpr std::int64_t kZonesPerBatch = 4'000'000;
+
 void require(bool allowed, const char* parameter, double value, const char* what) {
   if (!allowed)
     throw Error(fmt::format("heat conduction: {} is {}, but it must be {}", parameter, value, what));
 }
 
+const Interval& checked(const Interval& range) {
+  if (!(absolute_zero <= range.lower && range.lower <= range.upper && std::isfinite(range.upper)))
+    throw Error(fmt::format(
+        "heat conduction: the temperature range is {} to {} degC, but it must not descend, and begin "
+        "no lower than {} degC",
+        range.lower, range.upper, absolute_zero));
+  return range;
+}
+
 const HeatParameters& checked(const HeatParameters& p) {
-  const auto [lower, upper] = p.temperature_range;
-  if (!(absolute_zero <= lower && lower < upper && std::isfinite(upper)))
-    throw Error(
-        fmt::format("heat conduction: the temperature range is {} to {} degC, but it must ascend and begin "
-                    "no lower than {} degC",
-                    lower, upper, absolute_zero));
+  checked(p.temperature_range);
   require(p.temperature_range.contains(p.initial_temperature), "the initial temperature",
           p.initial_temperature, "within the temperature range");
   require(p.safety > 0.0 && p.safety <= 1.0, "the safety factor", p.safety, "greater than 0 and at most 1");
@@ -107,8 +115,10 @@ Conduction<Dim>::Conduction(const Model<Dim>& model,
   const auto count = static_cast<std::size_t>(nodes_.count());
   if (count == 0) throw Error("heat conduction: no block is of a material that conducts heat");
   prescription_.assign(count, -1);
-  for (auto* field : {&enthalpy_, &increment_, &before_, &first_rate_, &boundary_heat_, &source_heat_})
+  for (auto* field : {&state_.enthalpy, &trial_.increment, &trial_.before, &trial_.first_rate,
+                      &boundary_heat_, &source_heat_})
     field->assign(count, 0.0);
+  state_.temperature_range = parameters.temperature_range;
   set_uniform_temperature(parameters.initial_temperature);
 }
 
@@ -116,6 +126,7 @@ Conduction<Dim>::Conduction(const Model<Dim>& model,
 
 template <int Dim>
 void Conduction<Dim>::apply(const std::vector<int>& faces, const BoundaryCondition& condition) {
+  drop_trial();
   std::vector<double> area(volume_.size());
   for (int face : faces)
     for (int g : outline_.at(face).gridpoints) area[nodes_.of_gridpoint[g]] += outline_[face].area / Dim;
@@ -127,6 +138,7 @@ void Conduction<Dim>::apply(const std::vector<int>& faces, const BoundaryConditi
 
 template <int Dim>
 void Conduction<Dim>::prescribe_temperature(const std::vector<int>& faces, const Curve& temperature) {
+  drop_trial();
   require_curve_of_time(temperature, "prescribed temperature");
   const int prescription = static_cast<int>(prescriptions_.size());
   for (int face : faces)
@@ -136,23 +148,43 @@ void Conduction<Dim>::prescribe_temperature(const std::vector<int>& faces, const
 
 template <int Dim>
 void Conduction<Dim>::prescribe_node(int node, const Curve& temperature) {
+  drop_trial();
   require_curve_of_time(temperature, "prescribed temperature");
   prescription_.at(node) = static_cast<int>(prescriptions_.size());
   prescriptions_.push_back(temperature);
 }
 
 template <int Dim>
+void Conduction<Dim>::widen_temperature_range(const Interval& range) {
+  drop_trial();
+  checked(range);
+  const Interval present = grid_.range();
+  const Interval wider{std::min(present.lower, range.lower), std::max(present.upper, range.upper)};
+  if (wider == present) return;
+  std::vector<int> waiting;  // with heat beyond the present range, which comes to where it belongs now
+  for (int node = 0; node < nodes_.count(); ++node)
+    if (excess(node, state_.temperature[node], state_.enthalpy[node]) != 0.0) waiting.push_back(node);
+  grid_ = TemperatureGrid(wider);
+  for (auto& table : tables_) table.extend(grid_);
+  store_.set_grid(grid_);
+  state_.temperature_range = wider;
+  for (int node : waiting)
+    state_.temperature[node] = store_.temperature(node, state_.enthalpy[node], state_.temperature[node]);
+}
+
+template <int Dim>
 void Conduction<Dim>::set_temperature(const std::vector<double>& temperature) {
+  drop_trial();
   if (temperature.size() != volume_.size())
     throw Error(fmt::format("heat conduction: {} temperatures are given for {} nodes", temperature.size(),
                             volume_.size()));
   for (double t : temperature)
-    require(grid_.range.contains(t), "a node's temperature", t, "within the temperature range");
-  temperature_ = temperature;
+    require(grid_.range().contains(t), "a node's temperature", t, "within the temperature range");
+  state_.temperature = temperature;
   for (int node = 0; node < nodes_.count(); ++node)
-    enthalpy_[node] = store_.enthalpy(node, temperature[node]);
-  stored_at_start_ = std::accumulate(enthalpy_.begin(), enthalpy_.end(), 0.0);
-  ledger_ = {};
+    state_.enthalpy[node] = store_.enthalpy(node, temperature[node]);
+  state_.stored_at_start = std::accumulate(state_.enthalpy.begin(), state_.enthalpy.end(), 0.0);
+  state_.ledger = {};
 }
 
 template <int Dim>
@@ -164,86 +196,135 @@ void Conduction<Dim>::set_uniform_temperature(double temperature) {
 
 template <int Dim>
 void Conduction<Dim>::advance_to(double end) {
+  drop_trial();
   begin_run(end);
-  while (time_ < end) run_step(end);
+  while (time() < end) complete_step(end);
 }
 
 template <int Dim>
 SteadyState Conduction<Dim>::advance_to_steady(double tolerance, double latest) {
   require(tolerance > 0.0, "the tolerance of the steady state [K/s]", tolerance, "greater than 0");
+  drop_trial();
   begin_run(latest);
-  while (time_ < latest) {
-    run_step(latest);
-    if (rate_ < tolerance) return {true, rate_};
+  while (time() < latest) {
+    complete_step(latest);
+    if (rate() < tolerance) return {true, rate()};
   }
-  return {false, rate_};
+  return {false, rate()};
+}
+
+template <int Dim>
+bool Conduction<Dim>::advance_step(double end, std::int64_t& stages) {
+  if (trial_.under_way)
+    require(end == trial_.end, "the time to step towards [s]", end, "that of the step under way");
+  else
+    begin_run(end);
+  return time() == end || continue_step(end, stages);
+}
+
+template <int Dim>
+void Conduction<Dim>::drop_trial() {
+  if (!trial_.under_way) return;
+  trial_.under_way = false;
+  undo_begin(state_);
+}
+
+template <int Dim>
+std::int64_t Conduction<Dim>::stages_per_batch() const {
+  return std::max<std::int64_t>(1, kZonesPerBatch / zones_.zone_count());
 }
 
 template <int Dim>
 void Conduction<Dim>::begin_run(double end) {
-  require(end >= time_, "the time to run to [s]", end, "no earlier than the present");
-  boundary_.require_defined(time_, end);
+  require(end >= time(), "the time to run to [s]", end, "no earlier than the present");
+  boundary_.require_defined(time(), end);
   require_prescriptions(end);
   prescribed_.clear();
   for (int node = 0; node < nodes_.count(); ++node)
     if (prescription_[node] >= 0) prescribed_.push_back(node);
   held_at_.resize(prescriptions_.size());
-  read_prescriptions(time_);
+  read_prescriptions(time());
+  before_run_ = {true, state_.next_step, state_.ledger.prescribed, {}, {}};
+  for (int node : prescribed_) {
+    before_run_.temperature.push_back(state_.temperature[node]);
+    before_run_.enthalpy.push_back(state_.enthalpy[node]);
+  }
   hold_prescribed();
   // Without these the exact solution stays within the range, so that all excess is numerical.
-  const bool may_leave = source_ || !boundary_.draws_into(grid_.range, time_, end);
-  allowed_excess_ = may_leave ? kDoubtfulExcess * (grid_.range.upper - grid_.range.lower)
+  const bool may_leave = source_ || !boundary_.draws_into(grid_.range(), time(), end);
+  allowed_excess_ = may_leave ? kDoubtfulExcess * (grid_.range().upper - grid_.range().lower)
                               : std::numeric_limits<double>::max();
   safe_step_ = range_limit(end).step;
-  if (step_ == 0.0) step_ = std::min(safe_step_, parameters_.largest_step);
+  if (state_.next_step == 0.0) state_.next_step = std::min(safe_step_, parameters_.largest_step);
 }
 
 template <int Dim>
-void Conduction<Dim>::run_step(double end) {
-  const double remaining = end - time_;
-  // Two equal steps to the end rather than a last one that is tiny.
-  double step = step_ >= remaining ? remaining : std::min(step_, std::max(0.5 * remaining, safe_step_));
-  const double limit = present_limit(step).step;
+void Conduction<Dim>::complete_step(double end) {
+  std::int64_t stages = std::numeric_limits<std::int64_t>::max();
+  continue_step(end, stages);
+}
+
+/// By at most so many stages; true when the step is completed.
+template <int Dim>
+bool Conduction<Dim>::continue_step(double end, std::int64_t& stages) {
+  const double remaining = end - time();
+  if (!trial_.under_way) {
+    // Two equal steps to the end rather than a last one that is tiny.
+    const double step = state_.next_step >= remaining
+                            ? remaining
+                            : std::min(state_.next_step, std::max(0.5 * remaining, safe_step_));
+    trial_.under_way = true;
+    trial_.end = end;
+    trial_.limit = present_limit(step).step;
+    trial_.stages_done = trial_.retries = 0;
+    begin_trial(step);
+  }
   for (;;) {
-    const Trial trial = try_step(step, fewest_stages(parameters_.scheme, step / limit));
-    const bool smallest = step <= safe_step_;
-    if (trial.excess <= allowed_excess_ && (smallest || trial.change <= parameters_.largest_change)) {
-      accept_step(step, trial);
-      if (step == remaining) time_ = end;
-      return;
+    for (; trial_.next_stage < trial_.stages.count(); ++trial_.next_stage, --stages) {
+      if (stages <= 0) return false;
+      run_stage(trial_.stages[trial_.next_stage]);
     }
-    temperature_ = start_temperature_;
+    const bool smallest = trial_.step <= safe_step_;
+    if (trial_.excess <= allowed_excess_ && (smallest || trial_.change <= parameters_.largest_change)) break;
     if (smallest) refuse_excess();
-    step = std::max(0.5 * step, safe_step_);
-    ++retries_;
+    ++trial_.retries;
+    begin_trial(std::max(0.5 * trial_.step, safe_step_));
   }
+  accept_trial();
+  if (trial_.step == remaining) state_.time = end;
+  return true;
 }
 
 template <int Dim>
-typename Conduction<Dim>::Trial Conduction<Dim>::try_step(double step, int stages) {
-  start_temperature_ = temperature_;
-  std::fill(increment_.begin(), increment_.end(), 0.0);
-  std::fill(before_.begin(), before_.end(), 0.0);
-  Trial trial;
-  for (const TimeStage& stage : time_stages(parameters_.scheme, stages)) {
-    const Inflow inflow = compute_inflow(time_ + stage.begin * step);
-    trial.heat.boundary.add(stage.weight * step, inflow.boundary);
-    trial.heat.source += stage.weight * step * inflow.source;
-    trial.heat.prescribed -= stage.weight * step * inflow.held;
-    read_prescriptions(time_ + stage.end * step);
-    update_nodes(stage, step, trial);
-    ++stages_;
-  }
-  for (int node : prescribed_) trial.heat.prescribed += increment_[node];
-  return trial;
+void Conduction<Dim>::begin_trial(double step) {
+  trial_.step = step;
+  trial_.stages = TimeStages(parameters_.scheme, fewest_stages(parameters_.scheme, step / trial_.limit));
+  trial_.next_stage = 0;
+  trial_.change = trial_.excess = 0.0;
+  trial_.heat = {};
+  trial_.temperature = state_.temperature;
+  std::fill(trial_.increment.begin(), trial_.increment.end(), 0.0);
+  std::fill(trial_.before.begin(), trial_.before.end(), 0.0);
+}
+
+template <int Dim>
+void Conduction<Dim>::run_stage(const TimeStage& stage) {
+  const double step = trial_.step;
+  const Inflow inflow = compute_inflow(time() + stage.begin * step);
+  trial_.heat.boundary.add(stage.weight * step, inflow.boundary);
+  trial_.heat.source += stage.weight * step * inflow.source;
+  trial_.heat.prescribed -= stage.weight * step * inflow.held;
+  read_prescriptions(time() + stage.end * step);
+  update_nodes(stage);
+  ++trial_.stages_done;
 }
 
 /// Right side of Eq. (1), integrated over each node's part of the body.
 template <int Dim>
 typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
   Inflow sum;
-  zones_.update(temperature_);
-  sum.boundary = boundary_.inflow(time, temperature_, boundary_heat_);
+  zones_.update(trial_.temperature);
+  sum.boundary = boundary_.inflow(time, trial_.temperature, boundary_heat_);
   if (source_) {
 #pragma omp parallel for schedule(static) if (nodes_.count() >= fewest_for_threads)
     for (int node = 0; node < nodes_.count(); ++node)
@@ -257,69 +338,94 @@ typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
 /// Temperature that a node at an end of the range would have beyond it, K, see NodeEnthalpy.
 template <int Dim>
 double Conduction<Dim>::excess(int node, double temperature, double enthalpy) const {
-  const bool held = temperature == grid_.range.lower || temperature == grid_.range.upper;
+  const bool held = temperature == grid_.range().lower || temperature == grid_.range().upper;
   return held ? store_.excess(node, enthalpy) : 0.0;
 }
 
 template <int Dim>
-void Conduction<Dim>::update_nodes(const TimeStage& stage, double step, Trial& trial) {
+void Conduction<Dim>::update_nodes(const TimeStage& stage) {
   const bool first = stage.begin == 0.0;
   const bool threads = nodes_.count() >= fewest_for_threads;
-  double change = trial.change, most_beyond = 0.0;
+  double change = trial_.change, most_beyond = 0.0;
 #pragma omp parallel for schedule(static) if (threads) reduction(max : change, most_beyond)
   for (int node = 0; node < nodes_.count(); ++node) {
+    const double start = state_.temperature[node], enthalpy = state_.enthalpy[node];
+    double& temperature = trial_.temperature[node];
     double increment;
     if (const int prescription = prescription_[node]; prescription >= 0) {
-      temperature_[node] = held_at_[prescription];
-      increment = store_.enthalpy(node, temperature_[node]) - enthalpy_[node];
+      temperature = held_at_[prescription];
+      increment = store_.enthalpy(node, temperature) - enthalpy;
     } else {
       const double rate = inflow(node);
-      if (first) first_rate_[node] = rate;
-      increment = stage.previous * increment_[node] + stage.before * before_[node] +
-                  step * (stage.rate * rate + stage.first_rate * first_rate_[node]);
-      temperature_[node] = store_.temperature(node, enthalpy_[node] + increment, temperature_[node]);
+      if (first) trial_.first_rate[node] = rate;
+      increment = stage.previous * trial_.increment[node] + stage.before * trial_.before[node] +
+                  trial_.step * (stage.rate * rate + stage.first_rate * trial_.first_rate[node]);
+      temperature = store_.temperature(node, enthalpy + increment, temperature);
     }
-    before_[node] = increment_[node];
-    increment_[node] = increment;
-    const double beyond = excess(node, temperature_[node], enthalpy_[node] + increment);
-    const double start_beyond = excess(node, start_temperature_[node], enthalpy_[node]);
-    change =
-        std::max(change, std::abs(temperature_[node] + beyond - start_temperature_[node] - start_beyond));
+    trial_.before[node] = trial_.increment[node];
+    trial_.increment[node] = increment;
+    const double beyond = excess(node, temperature, enthalpy + increment);
+    const double start_beyond = excess(node, start, enthalpy);
+    change = std::max(change, std::abs(temperature + beyond - start - start_beyond));
     most_beyond = std::max(most_beyond, std::abs(beyond));
   }
-  trial.change = change;
-  trial.excess = most_beyond;
+  trial_.change = change;
+  trial_.excess = most_beyond;
 }
 
 template <int Dim>
-void Conduction<Dim>::accept_step(double step, const Trial& trial) {
+void Conduction<Dim>::accept_trial() {
+  for (int node : prescribed_) trial_.heat.prescribed += trial_.increment[node];
   double squares = 0.0, volume = 0.0;
   for (int node = 0; node < nodes_.count(); ++node) {
-    enthalpy_[node] += increment_[node];
-    const double speed = (temperature_[node] - start_temperature_[node]) / step;
+    state_.enthalpy[node] += trial_.increment[node];
+    const double speed = (trial_.temperature[node] - state_.temperature[node]) / trial_.step;
     squares += volume_[node] * speed * speed;
     volume += volume_[node];
   }
-  rate_ = std::sqrt(squares / volume);
-  ledger_.boundary.add(1.0, trial.heat.boundary);
-  ledger_.source += trial.heat.source;
-  ledger_.prescribed += trial.heat.prescribed;
-  largest_overshoot_ = std::max(largest_overshoot_, trial.excess);
-  time_ += step;
-  ++steps_;
-  adapt_step(step, trial.change);
+  state_.largest_change = trial_change();
+  std::swap(state_.temperature, trial_.temperature);
+  state_.rate = std::sqrt(squares / volume);
+  state_.largest_overshoot = std::max(state_.largest_overshoot, trial_.excess);
+  state_.ledger.boundary.add(1.0, trial_.heat.boundary);
+  state_.ledger.source += trial_.heat.source;
+  state_.ledger.prescribed += trial_.heat.prescribed;
+  state_.time += trial_.step;
+  ++state_.steps;
+  state_.retries += trial_.retries;
+  state_.stages += trial_.stages_done;
+  adapt_step();
+  trial_.under_way = false;
+  before_run_.holds = false;
+}
+
+/// Largest change of a temperature over the trial, with the jumps of prescribed ones at its beginning.
+template <int Dim>
+double Conduction<Dim>::trial_change() const {
+  double largest = 0.0;
+  for (int node = 0; node < nodes_.count(); ++node)
+    if (prescription_[node] < 0)
+      largest = std::max(largest, std::abs(trial_.temperature[node] - state_.temperature[node]));
+  for (std::size_t i = 0; i < prescribed_.size(); ++i) {
+    const int node = prescribed_[i];
+    const double start = before_run_.holds ? before_run_.temperature[i] : state_.temperature[node];
+    largest = std::max(largest, std::abs(trial_.temperature[node] - start));
+  }
+  return largest;
 }
 
 /// Chooses the next step so that the largest change stays a little below what is allowed.
 template <int Dim>
-void Conduction<Dim>::adapt_step(double step, double change) {
+void Conduction<Dim>::adapt_step() {
+  const double step = trial_.step;
   constexpr double aim = 0.8, fastest_growth = 2.0;
-  const double growth = aim * parameters_.largest_change / change;  // infinite when nothing changes
+  const double growth = aim * parameters_.largest_change / trial_.change;  // infinite when nothing changes
   const double wanted = std::clamp(step * std::min(growth, fastest_growth), safe_step_,
                                    std::max(safe_step_, parameters_.largest_step));
   // A step cut short by the end of a run says nothing against the longer one that was meant.
-  const bool cut_short = step < step_ && growth > 1.0;
-  step_ = std::min(cut_short ? std::max(step_, wanted) : wanted, parameters_.largest_step);
+  const bool cut_short = step < state_.next_step && growth > 1.0;
+  state_.next_step =
+      std::min(cut_short ? std::max(state_.next_step, wanted) : wanted, parameters_.largest_step);
 }
 
 template <int Dim>
@@ -331,10 +437,21 @@ void Conduction<Dim>::read_prescriptions(double time) {
 template <int Dim>
 void Conduction<Dim>::hold_prescribed() {
   for (int node : prescribed_) {
-    temperature_[node] = held_at_[prescription_[node]];
-    const double enthalpy = store_.enthalpy(node, temperature_[node]);
-    ledger_.prescribed += enthalpy - enthalpy_[node];
-    enthalpy_[node] = enthalpy;
+    state_.temperature[node] = held_at_[prescription_[node]];
+    const double enthalpy = store_.enthalpy(node, state_.temperature[node]);
+    state_.ledger.prescribed += enthalpy - state_.enthalpy[node];
+    state_.enthalpy[node] = enthalpy;
+  }
+}
+
+template <int Dim>
+void Conduction<Dim>::undo_begin(HeatState& state) const {
+  if (!before_run_.holds) return;
+  state.next_step = before_run_.next_step;
+  state.ledger.prescribed = before_run_.prescribed;
+  for (std::size_t i = 0; i < prescribed_.size(); ++i) {
+    state.temperature[prescribed_[i]] = before_run_.temperature[i];
+    state.enthalpy[prescribed_[i]] = before_run_.enthalpy[i];
   }
 }
 
@@ -343,19 +460,19 @@ void Conduction<Dim>::hold_prescribed() {
 /// Valid while no temperature changes by more than the largest change.
 template <int Dim>
 HeatStepLimit Conduction<Dim>::present_limit(double step) const {
-  auto rows = zones_.row_bound(temperature_);
-  auto hottest = temperature_;
-  for (double& t : hottest) t = std::min(t + parameters_.largest_change, grid_.range.upper);
-  boundary_.add_slope(time_, time_ + step, hottest, rows);
+  auto rows = zones_.row_bound(state_.temperature);
+  auto hottest = state_.temperature;
+  for (double& t : hottest) t = std::min(t + parameters_.largest_change, grid_.range().upper);
+  boundary_.add_slope(time(), time() + step, hottest, rows);
   return strictest(rows, parameters_.safety,
-                   [&](int node) { return store_.least_capacity(node, temperature_[node]); });
+                   [&](int node) { return store_.least_capacity(node, state_.temperature[node]); });
 }
 
 /// Valid whatever the temperatures.
 template <int Dim>
 HeatStepLimit Conduction<Dim>::range_limit(double end) const {
   auto rows = zones_.row_bound();
-  boundary_.add_slope(time_, end, std::vector<double>(rows.size(), grid_.range.upper), rows);
+  boundary_.add_slope(time(), end, std::vector<double>(rows.size(), grid_.range().upper), rows);
   return strictest(rows, parameters_.safety, [&](int node) { return store_.least_capacity(node); });
 }
 
@@ -367,28 +484,29 @@ HeatStepLimit Conduction<Dim>::step_limit() const {
 template <int Dim>
 void Conduction<Dim>::require_prescriptions(double end) const {
   for (const Curve& curve : prescriptions_) {
-    require_defined(curve, "prescribed temperature", time_, end);
-    const double least = curve.minimum(time_, end);
-    const double greatest = curve.maximum(time_, end);
-    if (!grid_.range.contains(least) || !grid_.range.contains(greatest))
+    require_defined(curve, "prescribed temperature", time(), end);
+    const double least = curve.minimum(time(), end);
+    const double greatest = curve.maximum(time(), end);
+    if (!grid_.range().contains(least) || !grid_.range().contains(greatest))
       throw Error(
           fmt::format("prescribed temperature ({}) goes from {} to {} degC, but the run's temperature range "
                       "is {} to {} degC",
-                      curve.describe(), least, greatest, grid_.range.lower, grid_.range.upper));
+                      curve.describe(), least, greatest, grid_.range().lower, grid_.range().upper));
   }
 }
 
 template <int Dim>
-void Conduction<Dim>::refuse_excess() const {
+void Conduction<Dim>::refuse_excess() {
   const auto beyond = [&](int node) {
-    return std::abs(store_.excess(node, enthalpy_[node] + increment_[node]));
+    return std::abs(store_.excess(node, state_.enthalpy[node] + trial_.increment[node]));
   };
   int node = 0;
   for (int other = 1; other < nodes_.count(); ++other)
     if (beyond(other) > beyond(node)) node = other;
+  drop_trial();
   const Vec<Dim>& x = model_.position[nodes_.gridpoint[node]];
   throw Error(fmt::format("the temperature at ({:g}) m leaves the run's range of {} to {} degC at {:g} s",
-                          fmt::join(x.c, ", "), grid_.range.lower, grid_.range.upper, time_));
+                          fmt::join(x.c, ", "), grid_.range().lower, grid_.range().upper, time()));
 }
 
 // ---- Looking ---------------------------------------------------------------------------------------------
@@ -396,14 +514,22 @@ void Conduction<Dim>::refuse_excess() const {
 template <int Dim>
 std::vector<double> Conduction<Dim>::gridpoint_temperatures(double elsewhere) const {
   std::vector<double> result;
-  for (int node : nodes_.of_gridpoint) result.push_back(node < 0 ? elsewhere : temperature_[node]);
+  for (int node : nodes_.of_gridpoint) result.push_back(node < 0 ? elsewhere : state_.temperature[node]);
   return result;
 }
 
 template <int Dim>
+HeatState Conduction<Dim>::state() const {
+  HeatState state = state_;
+  if (trial_.under_way) undo_begin(state);
+  return state;
+}
+
+template <int Dim>
 HeatLedger Conduction<Dim>::ledger() const {
-  HeatLedger ledger = ledger_;
-  ledger.stored = std::accumulate(enthalpy_.begin(), enthalpy_.end(), 0.0) - stored_at_start_;
+  HeatLedger ledger = state_.ledger;
+  ledger.stored =
+      std::accumulate(state_.enthalpy.begin(), state_.enthalpy.end(), 0.0) - state_.stored_at_start;
   return ledger;
 }
 

@@ -14,7 +14,7 @@
 namespace pyroclast {
 
 struct HeatParameters {
-  Interval temperature_range;        ///< that the run stays within, °C
+  Interval temperature_range;        ///< that the run stays within until it is widened, °C
   double initial_temperature = 0.0;  ///< °C
   HeatScheme scheme = HeatScheme::super_time_stepping;
   double safety = 0.0;          ///< fraction of the stable step that is taken, in (0, 1]
@@ -32,6 +32,7 @@ struct HeatLedger {
 
   double heat_in() const { return boundary.total() + prescribed + source; }
   double error() const { return heat_in() - stored; }
+  bool operator==(const HeatLedger&) const = default;
 };
 
 /// The stable step of forward Euler and the node that sets it.
@@ -44,6 +45,23 @@ struct HeatStepLimit {
 struct SteadyState {
   bool reached = false;
   double rate = 0.0;  ///< L2 norm of the temperature's change, K/s, see Conduction::rate
+};
+
+/// What a conduction that runs has come to at the end of its last completed step. This and what it was set up
+/// with are all that it needs to go on bitwise as before.
+struct HeatState {
+  Interval temperature_range;      ///< as widened so far, °C
+  double time = 0.0;               ///< s
+  double next_step = 0.0;          ///< to try next, s
+  double rate = 0.0;               ///< K/s, see Conduction::rate
+  double largest_change = 0.0;     ///< K, see Conduction::largest_change
+  double largest_overshoot = 0.0;  ///< K
+  std::int64_t steps = 0, retries = 0, stages = 0;
+  HeatLedger ledger;                          ///< without what is stored
+  double stored_at_start = 0.0;               ///< J
+  std::vector<double> temperature, enthalpy;  ///< of each node, °C, J
+
+  bool operator==(const HeatState&) const = default;
 };
 
 /// Transient conduction of heat in a body of blocks, paper Eqs. (1) and (2).
@@ -95,7 +113,14 @@ class Conduction {
   void prescribe_temperature(const std::vector<int>& faces, const Curve& temperature);
   /// Prescribes the temperature of a node.
   void prescribe_node(int node, const Curve& temperature);
-  void set_source(Source source) { source_ = std::move(source); }
+  void set_source(Source source) {
+    drop_trial();
+    source_ = std::move(source);
+  }
+
+  /// Lets temperatures from now on come to the given range, °C, as well as to the present one. What was
+  /// computed before does not depend on it. Throws Error when a material's curve does not cover it.
+  void widen_temperature_range(const Interval& range);
 
   /// Sets the temperature of every node, °C, and starts the ledger anew.
   void set_temperature(const std::vector<double>& temperature);
@@ -105,28 +130,42 @@ class Conduction {
 
   /// Runs to a time, s. Throws Error when a temperature leaves the range, naming the place.
   void advance_to(double time);
+  /// Takes one step towards a time, s, or goes on with the one that was begun, by at most `stages` stages,
+  /// which it counts down. Returns whether the step is completed; until then `state` is as it was when
+  /// the step began. Where it is broken off changes no bit. Throws Error as advance_to does, and when a step
+  /// towards another time is under way.
+  bool advance_step(double end, std::int64_t& stages);
+  /// Forgets what was done of a step that is not completed; the next one does it again.
+  void drop_trial();
+  /// Stages that take some tenths of a second on one thread, by the number of zones.
+  std::int64_t stages_per_batch() const;
+
   /// Runs until the rate falls below a tolerance, K/s, or to the latest time, s.
   SteadyState advance_to_steady(double tolerance, double latest);
 
-  double time() const { return time_; }
+  HeatState state() const;
+  double time() const { return state_.time; }
   const ThermalNodes& nodes() const { return nodes_; }
   /// Of each node, °C.
-  const std::vector<double>& temperature() const { return temperature_; }
+  const std::vector<double>& temperature() const { return state_.temperature; }
   /// Of each gridpoint, °C; `elsewhere` for those of blocks that are left out.
   std::vector<double> gridpoint_temperatures(double elsewhere) const;
 
   HeatLedger ledger() const;
   /// L2 norm of the temperature's change per time in the last step, sqrt(mean over the volume of (dT/dt)²),
   /// K/s.
-  double rate() const { return rate_; }
+  double rate() const { return state_.rate; }
+  /// Of any temperature in the last step, with the jumps of prescribed ones at its beginning, K.
+  double largest_change() const { return state_.largest_change; }
   /// Stable step of forward Euler at the present temperatures, safety included.
   HeatStepLimit step_limit() const;
   /// Farthest that heat would have taken a node beyond the temperature range had it not been held there, K.
-  double largest_overshoot() const { return largest_overshoot_; }
+  double largest_overshoot() const { return state_.largest_overshoot; }
 
-  std::int64_t steps() const { return steps_; }      ///< completed
-  std::int64_t retries() const { return retries_; }  ///< taken back because a temperature changed too much
-  std::int64_t stages() const { return stages_; }    ///< evaluations of Eq. (1), what a run costs
+  std::int64_t steps() const { return state_.steps; }  ///< completed
+  /// Taken back because a temperature changed too much.
+  std::int64_t retries() const { return state_.retries; }
+  std::int64_t stages() const { return state_.stages; }  ///< evaluations of Eq. (1), what a run costs
 
  private:
   /// What flows in, W; `held` flows into nodes whose temperature is prescribed.
@@ -134,28 +173,48 @@ class Conduction {
     HeatByKind boundary;
     double source = 0.0, held = 0.0;
   };
-  /// What a step did, before it is accepted.
+  /// A step that is being tried. The state stays at its start until the step is accepted.
   struct Trial {
-    double change = 0.0;  ///< largest of any temperature at any stage, held or not, K
-    double excess = 0.0;  ///< largest beyond the temperature range at the end, K
-    HeatLedger heat;      ///< without what is stored
+    bool under_way = false;
+    double end = 0.0;    ///< time that it leads towards, s
+    double step = 0.0;   ///< s
+    double limit = 0.0;  ///< stable step of Euler while no temperature changes by more than is allowed, s
+    TimeStages stages;
+    std::int64_t next_stage = 0;
+    std::int64_t stages_done = 0, retries = 0;  ///< with longer steps that were tried before
+    double change = 0.0;                        ///< largest of any temperature at any stage, held or not, K
+    double excess = 0.0;                        ///< largest beyond the temperature range at the end, K
+    HeatLedger heat;                            ///< without what is stored
+    std::vector<double> temperature;            ///< °C
+    std::vector<double> increment, before, first_rate;  ///< see TimeStage
+  };
+  /// What the beginning of a run changed of the state, until its first step is completed.
+  struct BeforeRun {
+    bool holds = false;
+    double next_step = 0.0;                     ///< s
+    double prescribed = 0.0;                    ///< in the ledger, J
+    std::vector<double> temperature, enthalpy;  ///< of the prescribed nodes, in the order of `prescribed_`
   };
 
   void begin_run(double end);
-  void run_step(double end);
-  Trial try_step(double step, int stages);
-  void accept_step(double step, const Trial& trial);
-  void adapt_step(double step, double change);
+  void complete_step(double end);
+  bool continue_step(double end, std::int64_t& stages);
+  void begin_trial(double step);
+  void run_stage(const TimeStage& stage);
+  void accept_trial();
+  double trial_change() const;
+  void adapt_step();
   Inflow compute_inflow(double time);
-  void update_nodes(const TimeStage& stage, double step, Trial& trial);
+  void update_nodes(const TimeStage& stage);
   double excess(int node, double temperature, double enthalpy) const;
   double inflow(int node) const { return zones_.inflow(node) + boundary_heat_[node] + source_heat_[node]; }
   void read_prescriptions(double time);
   void hold_prescribed();
+  void undo_begin(HeatState& state) const;
   HeatStepLimit present_limit(double step) const;
   HeatStepLimit range_limit(double end) const;
   void require_prescriptions(double end) const;
-  [[noreturn]] void refuse_excess() const;
+  [[noreturn]] void refuse_excess();
 
   const Model<Dim>& model_;
   HeatParameters parameters_;
@@ -178,19 +237,12 @@ class Conduction {
   std::vector<int> prescribed_;    ///< nodes, ascending
   std::vector<double> held_at_;    ///< by prescription, °C
 
-  double time_ = 0.0;
-  double step_ = 0.0;            ///< to try next, s
-  double safe_step_ = 0.0;       ///< stable whatever the temperatures, s
-  double allowed_excess_ = 0.0;  ///< over the temperature range, K
-  double rate_ = 0.0, largest_overshoot_ = 0.0;
-  std::int64_t steps_ = 0, retries_ = 0, stages_ = 0;
-  HeatLedger ledger_;
-  double stored_at_start_ = 0.0;  ///< J
-
-  std::vector<double> temperature_, enthalpy_;           ///< °C, J
-  std::vector<double> start_temperature_;                ///< of the step
-  std::vector<double> increment_, before_, first_rate_;  ///< see TimeStage
-  std::vector<double> boundary_heat_, source_heat_;      ///< into each node, W
+  HeatState state_;
+  Trial trial_;
+  BeforeRun before_run_;
+  double safe_step_ = 0.0;                           ///< of the run: stable whatever the temperatures, s
+  double allowed_excess_ = 0.0;                      ///< of the run: over the temperature range, K
+  std::vector<double> boundary_heat_, source_heat_;  ///< into each node, W
 };
 
 extern template class Conduction<2>;

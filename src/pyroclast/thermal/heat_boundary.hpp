@@ -18,6 +18,7 @@ struct HeatByKind {
     convection += weight * other.convection;
     radiation += weight * other.radiation;
   }
+  bool operator==(const HeatByKind&) const = default;
 };
 
 /// Part of the outline that belongs to a node.

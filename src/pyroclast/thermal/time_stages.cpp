@@ -7,15 +7,8 @@ namespace pyroclast {
 
 namespace {
 
-std::vector<TimeStage> euler_stages(int count) {
-  std::vector<TimeStage> stages;
-  const double part = 1.0 / count;
-  for (int j = 0; j < count; ++j) stages.push_back({1.0, 0.0, part, 0.0, j * part, (j + 1) * part, part});
-  return stages;
-}
-
 /// b_j of Meyer et al., Eq. (15).
-double legendre_weight(int j) {
+double legendre_weight(double j) {
   return j < 2 ? 1.0 / 3.0 : (j * j + j - 2.0) / (2.0 * j * (j + 1.0));
 }
 
@@ -33,10 +26,12 @@ void set_weights(std::vector<TimeStage>& stages) {
 }
 
 /// Meyer et al., Eqs. (16) and (17), written for increments.
-std::vector<TimeStage> legendre_stages(int count) {
-  const double w = 4.0 / (count * (count + 1.0) - 2.0);
+std::vector<TimeStage> legendre_stages(std::int64_t count) {
+  const auto last = static_cast<double>(count);
+  const double w = 4.0 / (last * (last + 1.0) - 2.0);
   std::vector<TimeStage> stages{{0.0, 0.0, w / 3.0, 0.0, 0.0, w / 3.0, 0.0}};
-  for (int j = 2; j <= count; ++j) {
+  for (std::int64_t number = 2; number <= count; ++number) {
+    const auto j = static_cast<double>(number);
     TimeStage stage{};
     stage.previous = (2.0 * j - 1.0) / j * legendre_weight(j) / legendre_weight(j - 1);
     stage.before = -(j - 1.0) / j * legendre_weight(j) / legendre_weight(j - 2);
@@ -53,15 +48,23 @@ std::vector<TimeStage> legendre_stages(int count) {
 
 }  // namespace
 
-int fewest_stages(HeatScheme scheme, double ratio) {
-  if (scheme == HeatScheme::euler) return std::max(1, static_cast<int>(std::ceil(ratio)));
+std::int64_t fewest_stages(HeatScheme scheme, double ratio) {
+  if (scheme == HeatScheme::euler)
+    return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(ratio)));
   // n stages are stable for (n² + n - 2)/4 steps. Odd numbers damp the shortest waves, even ones do not.
-  const int count = static_cast<int>(std::ceil(0.5 * (std::sqrt(9.0 + 16.0 * ratio) - 1.0)));
-  return std::max(3, count + 1 - count % 2);
+  const auto count = static_cast<std::int64_t>(std::ceil(0.5 * (std::sqrt(9.0 + 16.0 * ratio) - 1.0)));
+  return std::max<std::int64_t>(3, count + 1 - count % 2);
 }
 
-std::vector<TimeStage> time_stages(HeatScheme scheme, int count) {
-  return scheme == HeatScheme::euler ? euler_stages(count) : legendre_stages(count);
+TimeStages::TimeStages(HeatScheme scheme, std::int64_t count) : count_(count) {
+  if (scheme == HeatScheme::super_time_stepping) legendre_ = legendre_stages(count);
+}
+
+TimeStage TimeStages::operator[](std::int64_t j) const {
+  if (!legendre_.empty()) return legendre_[static_cast<std::size_t>(j)];
+  const double part = 1.0 / static_cast<double>(count_);
+  const auto before = static_cast<double>(j);
+  return {1.0, 0.0, part, 0.0, before * part, (before + 1.0) * part, part};
 }
 
 }  // namespace pyroclast

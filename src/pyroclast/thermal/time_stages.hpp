@@ -23,9 +23,21 @@ struct TimeStage {
 };
 
 /// Fewest stages that are stable for a step of `ratio` stable steps of forward Euler.
-int fewest_stages(HeatScheme scheme, double ratio);
+std::int64_t fewest_stages(HeatScheme scheme, double ratio);
 
-/// The stages of one step; `count` as from `fewest_stages`.
-std::vector<TimeStage> time_stages(HeatScheme scheme, int count);
+/// The stages of one step. Those of Euler are worked out as they are read: there may be very many.
+class TimeStages {
+ public:
+  TimeStages() = default;
+  /// \param count  as from `fewest_stages`
+  TimeStages(HeatScheme scheme, std::int64_t count);
+
+  std::int64_t count() const { return count_; }
+  TimeStage operator[](std::int64_t j) const;
+
+ private:
+  std::int64_t count_ = 0;
+  std::vector<TimeStage> legendre_;  ///< empty for Euler
+};
 
 }  // namespace pyroclast

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "pyroclast/thermal/heat_material.hpp"
@@ -20,6 +21,8 @@ class ZoneConduction {
   /// \param tables             kept by reference
   ZoneConduction(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry, const ThermalNodes& nodes,
                  const std::vector<int>& table_of_material, const std::vector<HeatTable>& tables);
+
+  std::int64_t zone_count() const { return static_cast<std::int64_t>(zones_.size()); }
 
   /// Computes the heat flow to the corners of every zone, for `inflow`.
   void update(const std::vector<double>& temperature);

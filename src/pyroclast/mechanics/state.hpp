@@ -1,0 +1,216 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "pyroclast/material/contact_law.hpp"
+#include "pyroclast/material/zone_law.hpp"
+#include "pyroclast/mechanics/layout.hpp"
+
+namespace pyroclast {
+
+/// Form of the local damping. The force opposing motion is lambda |F| times a sign.
+enum class DampingForm : std::uint8_t {
+  local,  ///< sgn(v), Eq. (8). A body in steady motion keeps vibrating, since v does not change sign, and is
+          ///< dragged.
+  combined  ///< (sgn(v) - sgn(dF/dt)) / 2: damps vibration about a steady motion too (Itasca's combined
+            ///< damping)
+};
+
+/// Vectors of the gridpoints of a row, component by component.
+template <int Dim>
+struct alignas(64) VectorRow {
+  double c[Dim][kLanes];
+};
+
+/// The vector of a slot in an array of rows.
+template <int Dim>
+Vec<Dim> vector_at(ConstView<VectorRow<Dim>> rows, int slot) {
+  Vec<Dim> v;
+  for (int i = 0; i < Dim; ++i) v[i] = rows[slot / kLanes].c[i][slot % kLanes];
+  return v;
+}
+template <int Dim>
+void set_vector(View<VectorRow<Dim>> rows, int slot, const Vec<Dim>& v) {
+  for (int i = 0; i < Dim; ++i) rows[slot / kLanes].c[i][slot % kLanes] = v[i];
+}
+
+struct alignas(64) ZonePropertyRow {
+  double lambda[kLanes], mu[kLanes], thermal_strain[kLanes];
+};
+
+/// One number of each of eight contact points: a cache line.
+struct alignas(64) Line {
+  double number[kLanes];
+};
+
+/// Lines of a row of contact points in the history, in this order.
+template <int Dim>
+struct HistoryLines {
+  static constexpr int tension_damage = 0, shear_damage = 1, closure = 2, slip = 3, held_jump = 3 + Dim - 1;
+  static constexpr int count = held_jump + 1;
+};
+/// Likewise of what was lost, ContactLossesOf: a step touches it only where something breaks, slips or
+/// yields.
+struct LossLines {
+  static constexpr int slip_path = 0, tension = 1, shear = 2, friction = 3, compression = 4, count = 5;
+};
+
+/// Numbers of ContactConstantsOf for contact points that have each their own temperature, one after the
+/// other.
+struct alignas(64) ContactConstantsRow {
+  double number[kContactConstants][kLanes];
+};
+
+/// What holds, drives or loads the gridpoints of a row.
+template <int Dim>
+struct alignas(64) ConstraintRow {
+  double prescribed_velocity[Dim][kLanes];   ///< m/s
+  double applied[Dim][kLanes];               ///< N
+  std::array<std::uint8_t, Dim> prescribed;  ///< by component, a bit a lane
+};
+
+/// Gridpoints of one block that share one component of their motion.
+struct Tie {
+  int component = 0;
+  int begin = 0, end = 0;  ///< entries of tied_slots
+};
+
+/// What holds, drives or loads a bundle.
+struct BundleConstraints {
+  int first_row = 0;                ///< entry of constraint_rows, one for each row of gridpoints
+  int first_tie = 0, last_tie = 0;  ///< entries of ties: [first, last)
+  double loading_work = 0.0;        ///< of the reactions and applied forces, J
+};
+
+/// Sums over a bundle, taken when a step is measured but for the work, which every step adds to.
+struct BundleSums {
+  double damping_work = 0.0, viscous_work = 0.0;  ///< with the whole of the last step, J
+  double begun_damping = 0.0, begun_viscous = 0.0, begun_loading = 0.0;  ///< second half of the last step, J
+  double stored = 0.0;                                                   ///< J
+  double kinetic = 0.0;                                                  ///< J
+  double applied = 0.0;     ///< sum of the magnitudes of zone forces, weights and applied forces, N
+  double unbalanced = 0.0;  ///< of the magnitudes of the sums of forces, N
+};
+
+/// Sums over a row of faces.
+struct FaceSums {
+  double stored = 0.0;   ///< J
+  double applied = 0.0;  ///< sum of the magnitudes of contact forces, N
+  double jump = 0.0;     ///< largest, over the length of its face
+};
+
+/// Every array of a state, owned (FlatArray) or seen (View).
+template <int Dim, template <class> class Array>
+struct StateArrays {
+  Array<VectorRow<Dim>> position, velocity;
+  Array<VectorRow<Dim>> force;             ///< sum at the last step, N
+  Array<VectorRow<Dim>> stiffness;         ///< sum of |stiffness| over each row of the assembled matrix, N/m
+  Array<Vec<Dim>> gathered_position;       ///< by slot: zones of spread blocks gather from it, m
+  Array<Vec<Dim>> displacement;            ///< by slot: faces gather from it
+  Array<double> step_over_mass;            ///< by slot, s/kg; where idle any finite number
+  Array<double> real_mass;                 ///< by slot, which gravity acts on, kg; empty where there is none
+  Array<ZonePropertyRow> zone_properties;  ///< by row of zones, or by bundle
+
+  Array<Line> history, loss;      ///< HistoryLines and LossLines of each row of points; of elastic ones none
+  Array<int> first_history;       ///< of each row of faces: entry of history; -1: none
+  Array<int> first_loss;          ///< likewise
+  Array<bool> losing;             ///< by row of points: something was lost in the last step
+  Array<Vec<Dim>> contact_force;  ///< on side a, by slot: gridpoints gather from it, N
+  Array<Vec<Dim>> turning_force;  ///< on both sides, by slot; finite kinematics only, N
+  Array<ContactConstants> contact_constants;
+  Array<int> set_of_faces;  ///< by row of faces: into contact_constants; where lanes differ its choices only
+  Array<bool> one_set;      ///< by row of faces: all its points share one set
+  Array<ContactConstantsRow>
+      contact_constants_rows;  ///< by row of points, if any row of faces has no one set
+
+  Array<int> constraints_of_bundle;  ///< -1 where nothing holds, drives or loads it now
+  Array<BundleConstraints> constraints;
+  Array<ConstraintRow<Dim>> constraint_rows;
+  Array<Tie> ties;
+  Array<int> tied_slots;
+
+  Array<BundleSums> bundle_sums;
+  Array<FaceSums> face_sums;
+
+  template <class F, class... S>
+  static void each(F&& f, S&... s) {
+    f(ArrayInfo{"position", Touched::alike}, s.position...);
+    f(ArrayInfo{"velocity", Touched::all, Touched::all}, s.velocity...);
+    f(ArrayInfo{"force", Touched::combined, Touched::all}, s.force...);
+    f(ArrayInfo{"stiffness"}, s.stiffness...);
+    f(ArrayInfo{"gathered_position", Touched::gathered}, s.gathered_position...);
+    f(ArrayInfo{"displacement", Touched::all, Touched::all}, s.displacement...);
+    f(ArrayInfo{"step_over_mass", Touched::all}, s.step_over_mass...);
+    f(ArrayInfo{"real_mass", Touched::all}, s.real_mass...);
+    f(ArrayInfo{"zone_properties", Touched::all}, s.zone_properties...);
+    f(ArrayInfo{"history", Touched::all, Touched::held}, s.history...);
+    f(ArrayInfo{"loss"}, s.loss...);
+    f(ArrayInfo{"first_history", Touched::all}, s.first_history...);
+    f(ArrayInfo{"first_loss", Touched::all}, s.first_loss...);
+    f(ArrayInfo{"losing", Touched::none, Touched::all}, s.losing...);
+    f(ArrayInfo{"contact_force", Touched::all, Touched::all}, s.contact_force...);  // read where it is summed
+    f(ArrayInfo{"turning_force", Touched::all, Touched::all}, s.turning_force...);
+    f(ArrayInfo{"contact_constants"}, s.contact_constants...);  // few, and always near
+    f(ArrayInfo{"set_of_faces", Touched::all}, s.set_of_faces...);
+    f(ArrayInfo{"one_set", Touched::all}, s.one_set...);
+    f(ArrayInfo{"contact_constants_rows", Touched::all}, s.contact_constants_rows...);
+    f(ArrayInfo{"constraints_of_bundle", Touched::all}, s.constraints_of_bundle...);
+    f(ArrayInfo{"constraints", Touched::all, Touched::all}, s.constraints...);
+    f(ArrayInfo{"constraint_rows", Touched::all}, s.constraint_rows...);
+    f(ArrayInfo{"ties", Touched::all}, s.ties...);
+    f(ArrayInfo{"tied_slots", Touched::all}, s.tied_slots...);
+    f(ArrayInfo{"bundle_sums", Touched::all, Touched::all}, s.bundle_sums...);
+    f(ArrayInfo{"face_sums"}, s.face_sums...);
+  }
+};
+
+/// What a step of the whole body has in common.
+template <int Dim>
+struct StepParameters {
+  Vec<Dim> gravity;  ///< m/s²
+  double time_step = 0.0, local_damping = 0.0, viscous_damping = 0.0;
+  DampingForm damping_form = DampingForm::local;
+  Kinematics kinematics = Kinematics::small;
+  double thickness = 1.0;  ///< m
+  bool by_bundle = false;  ///< every zone of a block has the same properties
+};
+
+/// All that a step sees: numbers, and views of arrays that stand elsewhere.
+template <int Dim>
+struct State : StepParameters<Dim>, StateArrays<Dim, View> {
+  LayoutArrays<Dim, ConstView> layout;
+
+  bool weighs() const { return !this->real_mass.empty(); }
+};
+
+/// Lets one list of arrays see another.
+template <class Views, class Owners>
+void see(Views& views, Owners& owners) {
+  for_each_array(
+      [](const ArrayInfo&, auto& view, auto& owner) {
+        view = {owner.data(), owner.size()};
+      },
+      views, owners);
+}
+
+/// What a pass over bundles does.
+enum class Pass : std::uint8_t {
+  move,              ///< a step
+  move_and_measure,  ///< a step whose sums are taken
+  measure            ///< forces and their sums, without motion
+};
+
+/// The step, compiled for one instruction set.
+template <int Dim>
+struct StepFunctions {
+  /// Takes the contact points of rows of faces through the law.
+  void (*update_faces)(State<Dim>&, int first, int last, bool measure);
+  /// Sums the forces of bundles and moves their gridpoints.
+  /// \param scratch  2 Dim kLanes numbers for every row of the largest bundle, aligned to 64 bytes
+  void (*move_bundles)(State<Dim>&, int first, int last, Pass, double* scratch);
+  /// Works out `State::stiffness`; leaves the contact forces unset until faces are updated.
+  void (*sum_stiffness)(State<Dim>&, double* scratch);
+};
+
+}  // namespace pyroclast

@@ -1,0 +1,223 @@
+#pragma once
+
+#include "pyroclast/mechanics/step/rows.hpp"
+
+/// Contact points: jumps to tractions to forces, Eqs. (10)-(15), and their sums at the gridpoints.
+namespace pyroclast {
+
+template <int Dim, class Set>
+struct Contacts {
+  using R = Rows<Dim, Set>;
+  using Real = typename R::Real;
+  using Vector = typename R::Vector;
+
+  /// Takes rows of faces through a step.
+  template <Kinematics kKinematics, bool kMeasure>
+  static void update_rows(State<Dim>& s, int first, int last) {
+    for (int row = first; row < last; ++row) {
+      R::fetch_faces_ahead(s, row);
+      const ContactConstants& set = s.contact_constants[s.set_of_faces[row]];
+      if (s.first_history[row] < 0) {
+        update_row<kKinematics, kMeasure>(
+            s, row, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
+              return s.one_set[row] ? contact_law::respond_elastically<Dim>(set, opening, tangential)
+                                    : contact_law::respond_elastically<Dim>(own_constants(s, row, point),
+                                                                            opening, tangential);
+            });
+      } else if (s.one_set[row]) {
+        update_row<kKinematics, kMeasure>(
+            s, row, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
+              return update_history(s, row, point, set, opening, tangential);
+            });
+      } else {
+        update_row<kKinematics, kMeasure>(
+            s, row, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
+              return update_history(s, row, point, own_constants(s, row, point), opening, tangential);
+            });
+      }
+    }
+  }
+
+  /// Adds to the weight of a row of gridpoints what the contact points on it exert: with opposite signs on
+  /// the two sides, or alike.
+  template <Kinematics kKinematics, bool kOpposite>
+  static Vector add_forces(const State<Dim>& s, int row, Vector total) {
+    const ContactsOfRow range = s.layout.contacts_of_row[row];
+    for (int k = range.begin; k < range.end; ++k) {
+      const ActingContacts& acting = s.layout.acting[k];
+      const Vector force = R::gather(s.contact_force, acting.contact);
+      if constexpr (kOpposite) {
+        const auto side_b = Real::Truth::from_bits(acting.side_b);
+        for (int i = 0; i < Dim; ++i) total[i] += select(side_b, -force[i], force[i]);
+        if constexpr (kKinematics == Kinematics::finite) total += R::gather(s.turning_force, acting.contact);
+      } else {
+        total += force;
+      }
+    }
+    return total;
+  }
+
+  /// Puts the sums of |stiffness| over the rows of the contacts' matrix where their forces stand, N/m.
+  template <Kinematics kKinematics>
+  static void place_stiffness(State<Dim>& s, int row) {
+    const Frame frame = frame_of<kKinematics>(s, row);
+    const int first = s.layout.first_point_of(row), last = s.layout.first_point_of(row + 1);
+    for (int at = first; at < last; ++at) {
+      const Real area = Real::load(s.layout.points[at].area);
+      R::store(s.one_set[row] ? stiffness(s.contact_constants[s.set_of_faces[row]], frame.normal, area)
+                              : stiffness(own_constants(s, row, at - first), frame.normal, area),
+               &s.contact_force[slot_of(at, 0)]);
+    }
+  }
+
+ private:
+  struct Frame {
+    Vector normal;
+    std::array<Vector, Dim - 1> tangents;
+    Real edge;  ///< length of the edge that turns the frame, m; finite kinematics only
+  };
+
+  template <Kinematics kKinematics>
+  static Frame frame_of(const State<Dim>& s, int row) {
+    Frame frame;
+    for (int t = 0; t + 1 < Dim; ++t) frame.tangents[t] = R::load(s.layout.faces[row].tangent[t]);
+    if constexpr (kKinematics == Kinematics::finite) {
+      // mean edge of the two sides
+      const PointRow* const point = &s.layout.points[s.layout.first_point_of(row)];
+      const auto at = [&](const std::array<int, kLanes>& offset) {
+        return R::gather(s.gathered_position, offset) + R::gather(s.displacement, offset);
+      };
+      const Vector edge = ((at(point[1].a) - at(point[0].a)) + (at(point[1].b) - at(point[0].b))) * Real(0.5);
+      frame.edge = norm(edge);
+      const Vector t = edge * (1.0 / frame.edge);
+      frame.tangents[0] = t;
+    }
+    if constexpr (Dim == 2)
+      frame.normal = {{frame.tangents[0][1], -frame.tangents[0][0]}};
+    else
+      frame.normal = cross(frame.tangents[0], frame.tangents[1]);
+    return frame;
+  }
+
+  /// \param respond  takes (point, opening, tangential jump) to a ContactResponse
+  template <Kinematics kKinematics, bool kMeasure, class Respond>
+  static void update_row(State<Dim>& s, int row, Respond respond) {
+    const Frame frame = frame_of<kKinematics>(s, row);
+    const int first = s.layout.first_point_of(row), last = s.layout.first_point_of(row + 1);
+    Real turning = 0.0;
+    Real stored = 0.0, applied = 0.0, widest = 0.0;
+    for (int at = first; at < last; ++at) {
+      const PointRow& point = s.layout.points[at];
+      const Real area = Real::load(point.area);
+      const Vector jump = R::gather_differences(s.displacement, point.b, point.a);
+      const Real opening = dot(jump, frame.normal);
+      Tangential<Dim, Real> tangential;
+      for (int t = 0; t + 1 < Dim; ++t) tangential[t] = dot(jump, frame.tangents[t]);
+      const ContactResponse<Dim, Real> response = respond(at - first, opening, tangential);
+      Vector force = frame.normal * (response.normal_traction * area);
+      for (int t = 0; t + 1 < Dim; ++t) force += frame.tangents[t] * (response.shear_traction[t] * area);
+      R::store(force, &s.contact_force[slot_of(at, 0)]);
+      if constexpr (kKinematics == Kinematics::finite)
+        turning += response.shear_traction[0] * opening - response.normal_traction * tangential[0];
+      if constexpr (kMeasure) {
+        stored += response.stored * area;
+        applied += 2.0 * norm(force);  // on both sides
+        widest = larger(widest, norm(jump));
+      }
+    }
+    if constexpr (kKinematics == Kinematics::finite)
+      add_turning_forces(s, first, frame, turning * Real::load(s.layout.points[first].area));
+    if constexpr (kMeasure) {
+      FaceSums& sums = s.face_sums[row];
+      sums.stored = sum(stored);
+      sums.applied = sum(applied);
+      sums.jump = largest(
+          select(Real::load(s.layout.points[first].area) > 0.0, widest / length(s, first, last), 0.0));
+    }
+  }
+
+  /// Of the edge in 2D; in 3D the root of twice the area of a face.
+  static Real length(const State<Dim>& s, int first, int last) {
+    if constexpr (Dim == 2) return Real::load(s.layout.points[first].area) * (Dim / s.thickness);
+    Real area = 0.0;
+    for (int at = first; at < last; ++at) area += Real::load(s.layout.points[at].area);
+    return sqrt(2.0 * area);
+  }
+
+  /// Constants of points that have each their own temperature.
+  static ContactConstantsOf<Real> own_constants(const State<Dim>& s, int row, int point) {
+    ContactConstantsOf<Real> c;
+    const ContactConstants& choices = s.contact_constants[s.set_of_faces[row]];
+    c.behaviour = choices.behaviour;
+    c.compression = choices.compression;
+    c.coupled = choices.coupled;
+    const auto& number = s.contact_constants_rows[s.layout.first_point_of(row) + point].number;
+    int i = 0;
+    for_each_number(c, [&](Real& value) { value = Real::load(number[i++]); });
+    return c;
+  }
+
+  template <class Constants>
+  static ContactResponse<Dim, Real> update_history(State<Dim>& s, int row, int point,
+                                                   const Constants& constants, const Real& opening,
+                                                   const Tangential<Dim, Real>& tangential) {
+    using H = HistoryLines<Dim>;
+    using L = LossLines;
+    Line* const line = &s.history[s.first_history[row] + point * H::count];
+    Line* const loss = &s.loss[s.first_loss[row] + point * L::count];
+    ContactHistory<Dim, Real> h;
+    h.tension_damage = Real::load(line[H::tension_damage].number);
+    h.shear_damage = Real::load(line[H::shear_damage].number);
+    h.closure = Real::load(line[H::closure].number);
+    for (int t = 0; t + 1 < Dim; ++t) h.slip[t] = Real::load(line[H::slip + t].number);
+    h.held_jump = Real::load(line[H::held_jump].number);
+    ContactLossesOf<LineSum> losses{{loss[L::slip_path].number},
+                                    {loss[L::tension].number},
+                                    {loss[L::shear].number},
+                                    {loss[L::friction].number},
+                                    {loss[L::compression].number}};
+    const auto response = update_contact<Dim>(constants, opening, tangential, h, losses);
+    h.held_jump.store(line[H::held_jump].number);
+    s.losing[s.layout.first_point_of(row) + point] = response.slid || response.damaged;
+    if (response.slid)
+      for (int t = 0; t + 1 < Dim; ++t) h.slip[t].store(line[H::slip + t].number);
+    if (response.damaged) {
+      h.tension_damage.store(line[H::tension_damage].number);
+      h.shear_damage.store(line[H::shear_damage].number);
+      h.closure.store(line[H::closure].number);
+    }
+    return response;
+  }
+
+  /// Adds to eight numbers in an array.
+  struct LineSum {
+    double* number;
+    void operator+=(const Real& more) const { (Real::load(number) + more).store(number); }
+  };
+
+  /// Where the frame turns with the edge, so do the components of a jump. The forces that do the work of the
+  /// tractions on that part keep moments in balance: minus the derivative of the jump's components by the
+  /// edge's gridpoints.
+  static void add_turning_forces(State<Dim>& s, int first_point, const Frame& frame, const Real& turning) {
+    const Vector force = frame.normal * (0.5 * turning / frame.edge);
+    R::store(force, &s.turning_force[slot_of(first_point, 0)]);
+    R::store(-force, &s.turning_force[slot_of(first_point + 1, 0)]);
+  }
+
+  /// Once for the gridpoint itself, once for the one across.
+  template <class Constants>
+  static Vector stiffness(const Constants& c, const Vector& normal, const Real& area) {
+    Vector row;
+    for (int i = 0; i < Dim; ++i) {
+      Real sum = 0.0;
+      for (int j = 0; j < Dim; ++j) {
+        const Real nn = normal[i] * normal[j];
+        sum += abs(c.normal_stiffness * nn + c.shear_stiffness * ((i == j ? 1.0 : 0.0) - nn));
+      }
+      row[i] = 2.0 * sum * area;
+    }
+    return row;
+  }
+};
+
+}  // namespace pyroclast

@@ -1,0 +1,154 @@
+#pragma once
+
+#include "pyroclast/mechanics/step/rows.hpp"
+
+/// Motion of gridpoints under the sums of forces, Eqs. (6)-(8), held, driven and loaded as asked.
+namespace pyroclast {
+
+template <int Dim, class Set>
+struct Motion {
+  using R = Rows<Dim, Set>;
+  using Real = typename R::Real;
+  using Vector = typename R::Vector;
+  using Scratch = typename R::Scratch;
+  using Sums = typename R::Sums;
+
+  /// Adds applied forces and shares out the sum (4) where gridpoints are tied.
+  template <bool kMeasure>
+  static void hold_and_load(const State<Dim>& s, const Bundle& bundle, const BundleConstraints& constraints,
+                            const Scratch& scratch, Sums& sums) {
+    for (int i = 0; i < bundle.rows; ++i) {
+      const Vector applied = R::load(s.constraint_rows[constraints.first_row + i].applied);
+      R::store(R::load(scratch.sum[i].c) + applied, scratch.sum[i].c);
+      if constexpr (kMeasure) sums.applied += norm(applied);
+    }
+    for (int t = constraints.first_tie; t < constraints.last_tie; ++t) {
+      const Tie& tie = s.ties[t];
+      const auto force = [&](int slot) -> double& {
+        const int own = slot - slot_of(bundle.first_row, 0);
+        return scratch.sum[own / kLanes].c[tie.component][own % kLanes];
+      };
+      double total = 0.0, mass = 0.0;
+      for (int i = tie.begin; i < tie.end; ++i) {
+        const int slot = s.tied_slots[i];
+        total += force(slot);
+        mass += s.time_step / s.step_over_mass[slot];
+      }
+      for (int i = tie.begin; i < tie.end; ++i) {
+        const int slot = s.tied_slots[i];
+        force(slot) = total * (s.time_step / s.step_over_mass[slot]) / mass;
+      }
+    }
+  }
+
+  /// Moves the gridpoints of a bundle.
+  template <Pass kPass>
+  static void move_rows(State<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
+    const Bundle& bundle = s.layout.bundles[index];
+    const Parameters parameters(s);
+    if (const int c = s.constraints_of_bundle[index]; c >= 0) {
+      const ConstraintRow<Dim>* const rows = &s.constraint_rows[s.constraints[c].first_row];
+      for (int i = 0; i < bundle.rows; ++i)
+        move_row<kPass, true>(s, parameters, bundle, i, &rows[i], scratch, sums);
+    } else {
+      for (int i = 0; i < bundle.rows; ++i)
+        move_row<kPass, false>(s, parameters, bundle, i, nullptr, scratch, sums);
+    }
+  }
+
+  /// Books the sums of a bundle.
+  template <Pass kPass>
+  static void keep(State<Dim>& s, int index, const Sums& sums) {
+    BundleSums& kept = s.bundle_sums[index];
+    if constexpr (kPass != Pass::measure) {
+      kept.damping_work += sum(sums.damping) * (0.5 * s.time_step);
+      if (s.viscous_damping != 0.0) kept.viscous_work += sum(sums.viscous);
+      if (const int c = s.constraints_of_bundle[index]; c >= 0)
+        s.constraints[c].loading_work += sum(sums.loading);
+    }
+    if constexpr (kPass == Pass::move_and_measure) {
+      kept.begun_damping = sum(sums.begun_damping);
+      kept.begun_viscous = sum(sums.begun_viscous);
+      kept.begun_loading = sum(sums.begun_loading);
+      kept.kinetic = sum(sums.kinetic);
+    }
+    if constexpr (kPass != Pass::move) {
+      kept.stored = sum(sums.stored);
+      kept.applied = sum(sums.applied);
+      kept.unbalanced = sum(sums.unbalanced);
+    }
+  }
+
+ private:
+  /// As the motion needs them. A copy: otherwise aliasing forces reloads after every store.
+  struct Parameters {
+    explicit Parameters(const StepParameters<Dim>& p)
+        : dt(p.time_step),
+          half_dt(0.5 * p.time_step),
+          combined(p.damping_form == DampingForm::combined),
+          viscous(p.viscous_damping != 0.0),
+          lambda(combined ? 0.5 * p.local_damping : p.local_damping),
+          drag(p.viscous_damping * half_dt),
+          kept(1.0 - drag),
+          over(1.0 / (1.0 + drag)) {}
+    double dt, half_dt;
+    bool combined, viscous;
+    double lambda, drag, kept, over;
+  };
+
+  /// Damps the sum of forces (8) and integrates velocity and displacement (6), (7).
+  template <Pass kPass, bool kConstrained>
+  static void move_row(State<Dim>& s, const Parameters& m, const Bundle& bundle, int i,
+                       const ConstraintRow<Dim>* constraints, const Scratch& scratch, Sums& sums) {
+    constexpr bool kMeasure = kPass != Pass::move;
+    const int row = bundle.first_row + i;
+    const Vector force = R::load(scratch.sum[i].c);
+    if constexpr (kMeasure) {
+      Vector free = force;
+      if constexpr (kConstrained)
+        for (int j = 0; j < Dim; ++j)
+          free[j] = select(Real::Truth::from_bits(constraints->prescribed[j]), Real(0.0), free[j]);
+      sums.unbalanced += norm(free);
+    }
+    if constexpr (kPass == Pass::measure) {
+      R::store(force, s.force[row].c);
+      return;
+    }
+    R::fetch_ahead(s.velocity, row);
+    R::fetch_ahead(s.step_over_mass, row);
+    const Real step_over_mass = Real::load(&s.step_over_mass[slot_of(row, 0)]);
+    const Vector before = R::load(s.velocity[row].c);
+    Vector after;
+    for (int j = 0; j < Dim; ++j) {
+      const Real magnitude = abs(force[j]) * m.lambda;
+      Real damping = signed_like(magnitude, before[j]);
+      if (m.combined) damping -= signed_like(magnitude, force[j] - Real::load(s.force[row].c[j]));
+      after[j] = before[j] + (force[j] - damping) * step_over_mass;
+      if (m.viscous) after[j] = (m.kept * before[j] + (force[j] - damping) * step_over_mass) * m.over;
+      if constexpr (kConstrained) {
+        const auto prescribed = Real::Truth::from_bits(constraints->prescribed[j]);
+        after[j] = select(prescribed, Real::load(constraints->prescribed_velocity[j]), after[j]);
+        damping = select(prescribed, Real(0.0), damping);
+        const Real reaction = (after[j] - before[j]) / step_over_mass - force[j];
+        const Real loading = Real::load(constraints->applied[j]) + select(prescribed, reaction, Real(0.0));
+        sums.loading += loading * (before[j] + after[j]) * m.half_dt;
+        if constexpr (kMeasure) sums.begun_loading += loading * after[j] * m.half_dt;
+      }
+      sums.damping += damping * (before[j] + after[j]);
+      if constexpr (kMeasure) sums.begun_damping += damping * after[j] * m.half_dt;
+      if (m.viscous) {
+        Real drag = m.drag * (before[j] + after[j]) / step_over_mass;
+        if constexpr (kConstrained)
+          drag = select(Real::Truth::from_bits(constraints->prescribed[j]), Real(0.0), drag);
+        sums.viscous += drag * (before[j] + after[j]) * m.half_dt;
+        if constexpr (kMeasure) sums.begun_viscous += drag * after[j] * m.half_dt;
+      }
+    }
+    if constexpr (kMeasure) sums.kinetic += dot(before, after) * m.half_dt / step_over_mass;
+    R::store(force, s.force[row].c);
+    R::store(after, s.velocity[row].c);
+    R::store(R::load(scratch.displacement[i].c) + after * m.dt, &s.displacement[slot_of(row, 0)]);
+  }
+};
+
+}  // namespace pyroclast

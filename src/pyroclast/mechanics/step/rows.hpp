@@ -1,0 +1,132 @@
+#pragma once
+
+#include "pyroclast/mechanics/state.hpp"
+
+/// Rows of eight: how lanes are loaded, stored and gathered, and how memory is asked for ahead.
+namespace pyroclast {
+
+/// \tparam Set  an instruction set of base/lanes.hpp
+template <int Dim, class Set>
+struct Rows {
+  using Real = Lanes<Set>;
+  using Vector = Vec<Dim, Real>;
+
+  static Vector load(const double (&c)[Dim][kLanes]) {
+    Vector v;
+    for (int i = 0; i < Dim; ++i) v[i] = Real::load(c[i]);
+    return v;
+  }
+  static void store(const Vector& v, double (&c)[Dim][kLanes]) {
+    for (int i = 0; i < Dim; ++i) v[i].store(c[i]);
+  }
+  /// Eight vectors that follow one another.
+  static Vector load(const Vec<Dim>* p) {
+    Vector v;
+    if constexpr (Dim == 2) {
+      for (int i = 0; i < Real::kParts; ++i)
+        Set::load_pairs(p[i * Set::kWidth].c.data(), v[0].part[i], v[1].part[i]);
+    } else {
+      alignas(64) double c[Dim][kLanes];
+      for (int lane = 0; lane < kLanes; ++lane)
+        for (int i = 0; i < Dim; ++i) c[i][lane] = p[lane][i];
+      v = load(c);
+    }
+    return v;
+  }
+  static void store(const Vector& v, Vec<Dim>* p) {
+    if constexpr (Dim == 2) {
+      for (int i = 0; i < Real::kParts; ++i)
+        Set::store_pairs(p[i * Set::kWidth].c.data(), v[0].part[i], v[1].part[i]);
+    } else {
+      alignas(64) double c[Dim][kLanes];
+      store(v, c);
+      for (int lane = 0; lane < kLanes; ++lane)
+        for (int i = 0; i < Dim; ++i) p[lane][i] = c[i][lane];
+    }
+  }
+
+  static Vector gather(ConstView<Vec<Dim>> vectors, const std::array<int, kLanes>& offset) {
+    const double* const numbers = vectors.data()->c.data();
+    Vector v;
+    if constexpr (Dim == 2) {
+      for (int i = 0; i < Real::kParts; ++i)
+        Set::gather_pairs(numbers, offset.data() + i * Set::kWidth, v[0].part[i], v[1].part[i]);
+    } else {
+      alignas(64) double c[Dim][kLanes];
+      for (int lane = 0; lane < kLanes; ++lane)
+        for (int i = 0; i < Dim; ++i) c[i][lane] = numbers[offset[lane] + i];
+      v = load(c);
+    }
+    return v;
+  }
+  static Vector gather_differences(ConstView<Vec<Dim>> vectors, const std::array<int, kLanes>& offset,
+                                   const std::array<int, kLanes>& less) {
+    if constexpr (Dim == 2) {
+      const double* const numbers = vectors.data()->c.data();
+      Vector v;
+      for (int i = 0; i < Real::kParts; ++i)
+        Set::gather_differences(numbers, offset.data() + i * Set::kWidth, less.data() + i * Set::kWidth,
+                                v[0].part[i], v[1].part[i]);
+      return v;
+    } else {
+      return gather(vectors, offset) - gather(vectors, less);
+    }
+  }
+
+  // Processors foresee streams badly between so much arithmetic; lines come best a few at a time, all through
+  // the step.
+
+  static constexpr int kRowsAhead = 16;     ///< of gridpoints
+  static constexpr int kFaceRowsAhead = 8;  ///< about as far
+
+  static void fetch(const void* begin, std::size_t bytes) {
+    for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(begin) + i);
+  }
+  static void fetch_ahead(ConstView<VectorRow<Dim>> vectors, int row) {
+    const auto ahead = static_cast<std::size_t>(row) + kRowsAhead;
+    if (ahead < vectors.size()) fetch(&vectors[ahead], sizeof(VectorRow<Dim>));
+  }
+  static void fetch_ahead(ConstView<double> numbers, int row) {
+    const auto ahead = static_cast<std::size_t>(slot_of(row + kRowsAhead, 0));
+    if (ahead < numbers.size()) fetch(&numbers[ahead], kLanes * sizeof(double));
+  }
+  /// What a row of faces needs, and the displacements that none before it reads.
+  static void fetch_faces_ahead(const State<Dim>& s, int row) {
+    const auto& layout = s.layout;
+    const int ahead = row + kFaceRowsAhead;
+    if (ahead >= static_cast<int>(layout.faces.size())) return;
+    const int first = layout.first_point_of(ahead), last = layout.first_point_of(ahead + 1);
+    fetch(&layout.faces[ahead], sizeof(FaceRow<Dim>));
+    fetch(&layout.points[first], static_cast<std::size_t>(last - first) * sizeof(PointRow));
+    if (const int history = s.first_history[ahead]; history >= 0) {
+      fetch(&s.history[history],
+            static_cast<std::size_t>(last - first) * HistoryLines<Dim>::count * sizeof(Line));
+      for (int point = first; point < last; ++point)
+        if (s.losing[point])
+          fetch(&s.loss[s.first_loss[ahead] + (point - first) * LossLines::count],
+                LossLines::count * sizeof(Line));
+    }
+    for (int r = layout.rows_reached[ahead]; r < layout.rows_reached[ahead + 1]; ++r)
+      fetch(&s.displacement[slot_of(r, 0)], kLanes * sizeof(Vec<Dim>));
+  }
+
+  /// Displacements and sums of forces of a bundle while it is in hand, a row for each of its rows.
+  struct Scratch {
+    VectorRow<Dim>* displacement;
+    VectorRow<Dim>* sum;
+  };
+  /// \param memory  as of StepFunctions::move_bundles
+  static Scratch scratch_of(const Bundle& bundle, double* memory) {
+    auto* rows = reinterpret_cast<VectorRow<Dim>*>(memory);
+    return {rows, rows + bundle.rows};
+  }
+
+  /// What a step of a bundle books, still lane by lane; see BundleSums.
+  struct Sums {
+    Real stored = 0.0, kinetic = 0.0, applied = 0.0, unbalanced = 0.0;
+    Real damping = 0.0, viscous = 0.0, begun_damping = 0.0, begun_viscous = 0.0;
+    Real loading = 0.0, begun_loading = 0.0;
+  };
+};
+
+}  // namespace pyroclast

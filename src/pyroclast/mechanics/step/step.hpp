@@ -1,0 +1,139 @@
+#pragma once
+
+#include "pyroclast/mechanics/step/contacts.hpp"
+#include "pyroclast/mechanics/step/motion.hpp"
+#include "pyroclast/mechanics/step/zones.hpp"
+
+/// One step of the method, on lanes:
+///
+///     faces      displacements -> jump -> law -> traction -> contact force     Eqs. (10)-(15)  contacts.hpp
+///                      ^                                          |
+///                      |                                          v
+///     bundles          |   weight + contact forces + zone forces + loads       Eqs. (4), (5)   zones.hpp
+///                      |                                          |
+///                      +--------------- motion <------------------+            Eqs. (6)-(8)    motion.hpp
+///
+/// mechanics/layout.hpp draws where everything stands and explains its words; rows.hpp loads, stores and
+/// gathers; base/lanes.hpp says what a lane is; the laws stand in material. sweep.hpp shares a step out to
+/// threads: it takes rows of faces and, soon after, the bundles whose faces are all done. Forces are gathered
+/// by the gridpoint that they act on, never scattered. This header is compiled once for each instruction set.
+namespace pyroclast {
+
+/// \tparam Set  an instruction set of base/lanes.hpp
+template <int Dim, class Set>
+class Step {
+ public:
+  using R = Rows<Dim, Set>;
+  using C = Contacts<Dim, Set>;
+  using Z = Zones<Dim, Set>;
+  using M = Motion<Dim, Set>;
+  using Vector = typename R::Vector;
+  using Scratch = typename R::Scratch;
+  using Sums = typename R::Sums;
+
+  /// First half: rows of faces.
+  static void update_faces(State<Dim>& s, int first, int last, bool measure) {
+    with_kinematics(s, [&](auto kinematics) {
+      if (measure)
+        faces<kinematics(), true>(s, first, last);
+      else
+        faces<kinematics(), false>(s, first, last);
+    });
+  }
+
+  /// Second half: bundles whose faces are all done.
+  static void move_bundles(State<Dim>& s, int first, int last, Pass pass, double* memory) {
+    with_kinematics(s, [&](auto kinematics) {
+      for (int b = first; b < last; ++b) {
+        if (pass == Pass::move) {
+          bundle<kinematics(), Pass::move>(s, b, memory);
+        } else if (pass == Pass::move_and_measure) {
+          bundle<kinematics(), Pass::move_and_measure>(s, b, memory);
+        } else {
+          bundle<kinematics(), Pass::measure>(s, b, memory);
+        }
+      }
+    });
+  }
+
+  /// Sums of |stiffness| over the rows of the assembled matrix, zones and contacts, N/m.
+  static void sum_stiffness(State<Dim>& s, double* memory) {
+    with_kinematics(s, [&](auto kinematics) { stiffness<kinematics()>(s, memory); });
+  }
+
+  // flatten: lanes that cross a call go through memory
+
+  template <Kinematics kKinematics, bool kMeasure>
+  [[gnu::flatten]] static void faces(State<Dim>& s, int first, int last) {
+    C::template update_rows<kKinematics, kMeasure>(s, first, last);
+  }
+
+  template <Kinematics kKinematics, Pass kPass>
+  [[gnu::flatten]] static void bundle(State<Dim>& s, int index, double* memory) {
+    const Bundle& bundle = s.layout.bundles[index];
+    const Scratch scratch = R::scratch_of(bundle, memory);
+    constexpr bool kMeasure = kPass != Pass::move;
+    Sums sums;
+    take_displacements(s, bundle, scratch);
+    sum_weights_and_contacts<kKinematics, kMeasure>(s, bundle, scratch, sums);
+    Z::template add_forces<kKinematics, kMeasure>(s, index, scratch, sums);
+    if (const int c = s.constraints_of_bundle[index]; c >= 0)
+      M::template hold_and_load<kMeasure>(s, bundle, s.constraints[c], scratch, sums);
+    M::template move_rows<kPass>(s, index, scratch, sums);
+    M::template keep<kPass>(s, index, sums);
+  }
+
+  // The parts of a bundle's step, open so that each can be timed alone.
+
+  static void take_displacements(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch) {
+    for (int i = 0; i < bundle.rows; ++i)
+      R::store(R::load(&s.displacement[slot_of(bundle.first_row + i, 0)]), scratch.displacement[i].c);
+  }
+
+  /// Begins the sums of forces of a bundle.
+  template <Kinematics kKinematics, bool kMeasure>
+  static void sum_weights_and_contacts(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch,
+                                       Sums& sums) {
+    const bool weighs = s.weighs();
+    const Vec<Dim> gravity = s.gravity;
+    for (int i = 0; i < bundle.rows; ++i) {
+      const int row = bundle.first_row + i;
+      R::fetch_ahead(s.force, row);
+      Vector total{};
+      if (weighs) {
+        const auto mass = R::Real::load(&s.real_mass[slot_of(row, 0)]);
+        for (int j = 0; j < Dim; ++j) total[j] = mass * gravity[j];
+        if constexpr (kMeasure) sums.applied += norm(total);
+      }
+      R::store(C::template add_forces<kKinematics, true>(s, row, total), scratch.sum[i].c);
+    }
+  }
+
+ private:
+  /// Calls `f` with the body's kinematics as a constant.
+  template <class F>
+  static void with_kinematics(const State<Dim>& s, F f) {
+    if constexpr (Dim == 2)
+      if (s.kinematics == Kinematics::finite)
+        return f(std::integral_constant<Kinematics, Kinematics::finite>());
+    f(std::integral_constant<Kinematics, Kinematics::small>());
+  }
+
+  template <Kinematics kKinematics>
+  [[gnu::flatten]] static void stiffness(State<Dim>& s, double* memory) {
+    for (int row = 0; row < static_cast<int>(s.layout.faces.size()); ++row)
+      C::template place_stiffness<kKinematics>(s, row);
+    for (int index = 0; index < static_cast<int>(s.layout.bundles.size()); ++index) {
+      const Bundle& bundle = s.layout.bundles[index];
+      const Scratch scratch = R::scratch_of(bundle, memory);
+      for (int i = 0; i < bundle.rows; ++i)
+        R::store(C::template add_forces<kKinematics, false>(s, bundle.first_row + i, Vector{}),
+                 scratch.sum[i].c);
+      Z::add_stiffness(s, index, scratch);
+      for (int i = 0; i < bundle.rows; ++i)
+        R::store(R::load(scratch.sum[i].c), s.stiffness[bundle.first_row + i].c);
+    }
+  }
+};
+
+}  // namespace pyroclast

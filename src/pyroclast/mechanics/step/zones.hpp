@@ -1,0 +1,186 @@
+#pragma once
+
+#include "pyroclast/mechanics/step/rows.hpp"
+#include "pyroclast/model/zone_shape.hpp"
+
+/// Zones: displacements to strain to stress to forces, Eqs. (4) and (5).
+namespace pyroclast {
+
+template <int Dim, class Set>
+struct Zones {
+  using R = Rows<Dim, Set>;
+  using Real = typename R::Real;
+  using Vector = typename R::Vector;
+  using Scratch = typename R::Scratch;
+  using Sums = typename R::Sums;
+  using Corners = std::array<Vector, Dim + 1>;
+
+  /// Adds the forces of a bundle's zones.
+  template <Kinematics kKinematics, bool kMeasure>
+  static void add_forces(const State<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
+    const double thickness = s.thickness;
+    add_over_zones(s, index, scratch,
+                   [&](const Corners& x, const Corners& u, const auto& properties, const auto& used) {
+                     return forces<kKinematics, kMeasure>(thickness, x, u, properties, used, sums);
+                   });
+  }
+
+  /// Adds the sums of |stiffness| over the rows of the zones' matrices, N/m.
+  static void add_stiffness(const State<Dim>& s, int index, const Scratch& scratch) {
+    add_over_zones(s, index, scratch, [&](const Corners& x, const Corners&, const auto& p, const auto&) {
+      return stiffness(s, x, p);
+    });
+  }
+
+ private:
+  static ZonePropertiesOf<Real> properties(const State<Dim>& s, int index, int zone_row) {
+    const ZonePropertyRow& row = s.zone_properties[s.by_bundle ? index : zone_row];
+    return {Real::load(row.lambda), Real::load(row.mu), Real::load(row.thermal_strain)};
+  }
+
+  /// Forces of eight zones on their gridpoints.
+  /// \param used  lanes that are not idle
+  template <Kinematics kKinematics, bool kMeasure>
+  static Corners forces(double thickness, const Corners& x, const Corners& u,
+                        const ZonePropertiesOf<Real>& properties, const typename Real::Truth& used,
+                        Sums& sums) {
+    // Shape gradients times the determinant; the volume is a constant share of the determinant, which leaves
+    // the division by it out of the way of the forces.
+    std::array<Vector, Dim> vectors;
+    const Real determinant = shape_vectors(x, vectors);
+    const double share = volume_over_determinant<Dim> * thickness;
+    Rotation<Real> rotation;
+    const auto strain = mechanical_strain<Dim>(vectors, 1.0 / determinant, u, properties.thermal_strain,
+                                               kKinematics, rotation);
+    const auto stress =  // times minus the share
+        zone_stress<Dim>({properties.lambda * -share, properties.mu * -share, properties.thermal_strain},
+                         strain);
+    Corners force;
+    for (int n = 0; n < Dim; ++n) {
+      force[n] = apply<Dim>(stress, vectors[n]);
+      if constexpr (kKinematics == Kinematics::finite) force[n] = rotated<Dim>(rotation, force[n]);
+    }
+    force[Dim] = -force[0];
+    for (int n = 1; n < Dim; ++n) force[Dim] -= force[n];
+    if constexpr (kMeasure) {
+      Real applied = 0.0;
+      for (const auto& f : force) applied += norm(f);
+      sums.stored -= select(used, energy_density<Dim>(stress, strain) * determinant, Real(0.0));
+      sums.applied += select(used, applied, Real(0.0));
+    }
+    return force;
+  }
+
+  /// Of eight zones.
+  static Corners stiffness(const State<Dim>& s, const Corners& x, const ZonePropertiesOf<Real>& p) {
+    std::array<Vector, Dim> vectors;
+    const Real determinant = shape_vectors(x, vectors);
+    Corners g, row;
+    for (int n = 0; n < Dim; ++n) {
+      g[n] = vectors[n];
+      g[Dim] = n == 0 ? -vectors[n] : g[Dim] - vectors[n];
+    }
+    const Real over = volume_over_determinant<Dim> * s.thickness / determinant;
+    for (int m = 0; m <= Dim; ++m)
+      for (int i = 0; i < Dim; ++i) {
+        Real sum = 0.0;
+        for (int n = 0; n <= Dim; ++n)
+          for (int j = 0; j < Dim; ++j) {
+            Real k = p.lambda * g[m][i] * g[n][j] + p.mu * g[m][j] * g[n][i];
+            if (i == j) k += p.mu * dot(g[m], g[n]);
+            sum += abs(k);
+          }
+        row[m][i] = sum * over;
+      }
+    return row;
+  }
+
+  // Forces are added zone by zone in every kind of bundle, so that none depends on how blocks are bundled.
+
+  /// Adds what `zone(x, u, properties, used)` gives for the corners of zones, for all of a bundle.
+  template <class Zone>
+  static void add_over_zones(const State<Dim>& s, int index, const Scratch& scratch, Zone zone) {
+    const Bundle& bundle = s.layout.bundles[index];
+    if (bundle.kind == BundleKind::spread) return add_over_spread(s, index, bundle, scratch, zone);
+    if constexpr (Dim == 2)
+      if (bundle.fan) return add_over_fan(s, index, bundle, scratch, zone);
+    add_over_alike(s, index, bundle, scratch, zone);
+  }
+
+  /// Each zone shares an edge with the one before, so that its corners and the sum at one are at hand.
+  template <class Zone>
+  static void add_over_fan(const State<Dim>& s, int index, const Bundle& bundle, const Scratch& scratch,
+                           Zone zone) {
+    Corners x, u;
+    const auto take = [&](int n, int gridpoint) {
+      x[n] = R::load(s.position[bundle.first_row + gridpoint].c);
+      u[n] = R::load(scratch.displacement[gridpoint].c);
+    };
+    const int zones = bundle.zones;
+    take(0, 0);
+    take(2, zones);
+    R::fetch_ahead(s.position, bundle.first_row + zones);
+    Vector total = R::load(scratch.sum[0].c), middle = R::load(scratch.sum[zones].c);
+    for (int z = 0; z < zones; ++z) {
+      const int next = z + 1 < zones ? z + 1 : 0;
+      R::fetch_ahead(s.position, bundle.first_row + z);
+      take(1, next);
+      const Corners more =
+          zone(x, u, properties(s, index, bundle.first_zone_row + z), Real::Truth::from_bits(0xFF));
+      R::store(total + more[0], scratch.sum[z].c);
+      total = R::load(scratch.sum[next].c) + more[1];
+      middle += more[2];
+      x[0] = x[1];
+      u[0] = u[1];
+    }
+    R::store(total, scratch.sum[0].c);
+    R::store(middle, scratch.sum[zones].c);
+  }
+
+  template <class Zone>
+  static void add_over_alike(const State<Dim>& s, int index, const Bundle& bundle, const Scratch& scratch,
+                             Zone zone) {
+    const auto* const zones = &s.layout.shape_zones[bundle.first_corners];
+    for (int z = 0; z < bundle.zones; ++z) {
+      if (z < bundle.rows) R::fetch_ahead(s.position, bundle.first_row + z);
+      const auto& corner = zones[z];
+      Corners x, u;
+      for (int n = 0; n <= Dim; ++n) {
+        x[n] = R::load(s.position[bundle.first_row + corner[n]].c);
+        u[n] = R::load(scratch.displacement[corner[n]].c);
+      }
+      const Corners more =
+          zone(x, u, properties(s, index, bundle.first_zone_row + z), Real::Truth::from_bits(0xFF));
+      for (int n = 0; n <= Dim; ++n) {
+        auto& total = scratch.sum[corner[n]].c;
+        R::store(R::load(total) + more[n], total);
+      }
+    }
+  }
+
+  template <class Zone>
+  static void add_over_spread(const State<Dim>& s, int index, const Bundle& bundle, const Scratch& scratch,
+                              Zone zone) {
+    for (int z = 0; z < bundle.zone_rows(); ++z) {
+      const int used = bundle.zones - kLanes * z < kLanes ? bundle.zones - kLanes * z : kLanes;
+      const auto& corner = s.layout.spread_zones[bundle.first_corners + z].offset;
+      Corners x, u;
+      for (int n = 0; n <= Dim; ++n) {
+        x[n] = R::gather(s.gathered_position, corner[n]);
+        u[n] = R::gather(s.displacement, corner[n]);
+      }
+      const Corners more = zone(x, u, properties(s, index, bundle.first_zone_row + z),
+                                Real::Truth::from_bits((1U << used) - 1U));
+      // one lane after the other: zones of a row may share gridpoints
+      alignas(64) double c[Dim + 1][Dim][kLanes];
+      for (int n = 0; n <= Dim; ++n) R::store(more[n], c[n]);
+      for (int lane = 0; lane < used; ++lane)
+        for (int n = 0; n <= Dim; ++n) {
+          const int slot = corner[n][lane] / offset_of<Dim>(1) - slot_of(bundle.first_row, 0);
+          for (int i = 0; i < Dim; ++i) scratch.sum[slot / kLanes].c[i][slot % kLanes] += c[n][i][lane];
+        }
+    }
+  }
+};
+
+}  // namespace pyroclast

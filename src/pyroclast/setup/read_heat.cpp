@@ -1,0 +1,158 @@
+#include "pyroclast/setup/read_heat.hpp"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace pyroclast {
+
+namespace {
+
+// Numerical parameters that a deck may leave out. A specimen of 150 x 300 mm whose one side is heated at 5
+// K/min to 800 degC has the same least, mean and greatest temperature to 0.001 K with changes of 0.5, 2 and 5
+// K per step.
+constexpr double kSafety = 0.9;
+constexpr double kLargestChange = 2.0;  // K
+constexpr double kLargestStep = 60.0;   // s
+
+constexpr Range kTemperature = Range::at_least(absolute_zero);
+
+std::optional<Vec<2>> read_point(const Section& s, std::string_view key) {
+  const auto x = s.quantities(key, unit::length, Range::any());
+  if (x.size() == 2) return Vec<2>{{x[0], x[1]}};
+  if (!x.empty()) s.error(key, fmt::format("has {} coordinates; x and y are needed", x.size()));
+  return std::nullopt;
+}
+
+HeatedFaces read_faces(const Section& s) {
+  s.know({"box_low", "box_high"});
+  HeatedFaces faces;
+  faces.part = s.choice<OutlinePart>("faces", {{"left", OutlinePart::left},
+                                               {"right", OutlinePart::right},
+                                               {"bottom", OutlinePart::bottom},
+                                               {"top", OutlinePart::top},
+                                               {"outline", OutlinePart::whole},
+                                               {"box", OutlinePart::box}});
+  if (faces.part != OutlinePart::box) return faces;
+  const auto low = read_point(s, "box_low"), high = read_point(s, "box_high");
+  if (!low || !high) return faces;
+  if ((*low)[0] > (*high)[0] || (*low)[1] > (*high)[1])
+    s.error("box_high", "the box is inside out: no coordinate may be less than that of box_low");
+  faces.box_low = *low;
+  faces.box_high = *high;
+  return faces;
+}
+
+HeatCondition read_condition(const Section& s, CurveReader& curves) {
+  enum class Kind { temperature, flux, convection, radiation, adiabatic };
+  s.know({"temperature", "flux", "coefficient", "emissivity", "gas_temperature"});
+  const auto gas = [&] { return curves.read(s, "gas_temperature", unit::temperature, kTemperature); };
+  switch (s.choice<Kind>("kind", {{"temperature", Kind::temperature},
+                                  {"flux", Kind::flux},
+                                  {"convection", Kind::convection},
+                                  {"radiation", Kind::radiation},
+                                  {"adiabatic", Kind::adiabatic}})) {
+    case Kind::temperature:
+      return PrescribedTemperature{curves.read(s, "temperature", unit::temperature, kTemperature)};
+    case Kind::flux:
+      return HeatFlux{curves.read(s, "flux", unit::heat_flux, Range::any())};
+    case Kind::convection:
+      return Convection{curves.read(s, "coefficient", unit::heat_transfer, Range::non_negative()), gas()};
+    case Kind::radiation:
+      return Radiation{curves.read(s, "emissivity", unit::dimensionless, Range::fraction()), gas()};
+    case Kind::adiabatic:
+      break;
+  }
+  return Adiabatic{};
+}
+
+/// Whether two choices of faces meet whatever the specimen. Boxes are looked at when there is one.
+bool overlap(const HeatedFaces& a, const HeatedFaces& b) {
+  if (a.part == OutlinePart::box || b.part == OutlinePart::box)
+    return a.part == OutlinePart::whole || b.part == OutlinePart::whole;
+  return a.part == b.part || a.part == OutlinePart::whole || b.part == OutlinePart::whole;
+}
+
+std::vector<HeatBoundaryCondition> read_boundaries(const Section& heat, CurveReader& curves) {
+  std::vector<HeatBoundaryCondition> boundaries;
+  for (const Section& s : heat.sections("boundaries")) {
+    HeatBoundaryCondition boundary{read_faces(s), read_condition(s, curves),
+                                   fmt::format("{}: {}", s.where("faces"), s.path())};
+    if (!s.ok()) continue;  // what stands in for an error contradicts nothing
+    for (const auto& other : boundaries)
+      if (overlap(other.faces, boundary.faces) && contradict(other.condition, boundary.condition))
+        s.error("faces", fmt::format("\"{}\" acts on faces that have \"{}\" already ({})",
+                                     kind_name(boundary.condition), kind_name(other.condition), other.place));
+    boundaries.push_back(std::move(boundary));
+  }
+  return boundaries;
+}
+
+/// The range stated; empty after an error, or if none is stated and none is needed.
+std::optional<Interval> read_range(const Section& s, const HeatConditions& heat) {
+  if (!s.has("temperature_range")) {
+    const bool needed = std::any_of(heat.boundaries.begin(), heat.boundaries.end(),
+                                    [](const HeatBoundaryCondition& boundary) {
+                                      return std::holds_alternative<HeatFlux>(boundary.condition);
+                                    });
+    if (needed)
+      s.error("temperature_range",
+              "missing; a given flux does not say how hot the specimen gets, so the temperatures that the "
+              "run stays within are needed, e.g. [\"20 degC\", \"900 degC\"]");
+    return std::nullopt;
+  }
+  const auto ends = s.quantities("temperature_range", unit::temperature, kTemperature);
+  if (ends.empty()) return std::nullopt;
+  if (ends.size() != 2 || !(ends[0] < ends[1])) {
+    s.error("temperature_range", "two temperatures are needed, the lower one first");
+    return std::nullopt;
+  }
+  const Interval range{ends[0], ends[1]};
+  if (range.contains(heat.initial)) return range;
+  s.error("temperature_range", fmt::format("the initial temperature of {} degC is not in it", heat.initial));
+  return std::nullopt;
+}
+
+void require_heat_properties(const Section& root) {
+  const auto materials = root.optional_section("materials");
+  for (const auto name : {"aggregate", "mortar"}) {
+    const auto material = materials ? materials->optional_section(name) : std::nullopt;
+    if (!material) continue;  // told by the reader of the materials
+    for (const auto key : {"conductivity", "specific_heat"})
+      if (!material->has(key)) material->error(key, "missing; [heat] with field = \"conduction\" needs it");
+  }
+}
+
+void read_conduction(const Section& s, CurveReader& time_curves, HeatConditions& heat) {
+  heat.scheme = s.choice<HeatScheme>(
+      "scheme", {{"rkl2", HeatScheme::super_time_stepping}, {"euler", HeatScheme::euler}},
+      HeatScheme::super_time_stepping);
+  heat.safety = s.number("safety", {.lower = 0.0, .upper = 1.0, .lower_inclusive = false}, kSafety);
+  heat.largest_change =
+      s.quantity("largest_change", unit::temperature_difference, Range::positive(), kLargestChange);
+  heat.largest_step = s.quantity("largest_step", unit::time, Range::positive(), kLargestStep);
+  heat.boundaries = read_boundaries(s, time_curves);
+  heat.temperature_range = read_range(s, heat);
+  // Stands in, so that the deck's reader can go on and find every error.
+  if (!s.ok()) heat.temperature_range = Interval{heat.initial, heat.initial + 1.0};
+}
+
+}  // namespace
+
+std::optional<HeatConditions> read_heat(const Section& root, CurveReader& time_curves) {
+  const auto s = root.optional_section("heat");
+  if (!s) return std::nullopt;
+  s->know({"scheme", "safety", "largest_change", "largest_step", "temperature_range", "boundaries"});
+  HeatConditions heat;
+  heat.uniform = s->choice<bool>("field", {{"conduction", false}, {"uniform", true}});
+  heat.initial = s->quantity("initial", unit::temperature, kTemperature, kReferenceTemperature);
+  if (heat.uniform) return heat;
+  read_conduction(*s, time_curves, heat);
+  require_heat_properties(root);
+  return heat;
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <optional>
+
+#include "pyroclast/deck/deck.hpp"
+#include "pyroclast/material/curve_reader.hpp"
+#include "pyroclast/simulation/heat_conditions.hpp"
+
+namespace pyroclast {
+
+/// Reads [heat] (docs/heat.md); empty if the deck has none. What is wrong is recorded in the deck.
+/// \param time_curves  reader of curves of the time from the start of heating
+std::optional<HeatConditions> read_heat(const Section& root, CurveReader& time_curves);
+
+}  // namespace pyroclast

@@ -1,0 +1,166 @@
+#include "pyroclast/setup/read_materials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "pyroclast/material/thermal_strain.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Where strains from a coefficient are defined, beside what the run needs: the range of the fire standards,
+/// °C.
+constexpr Interval kStandardRange{20.0, 1200.0};
+
+/// Free strain at the reference temperature that is taken for none: the standards' own polynomials leave
+/// 2e-7.
+constexpr double kNoStrain = 1e-6;
+
+/// Records an error unless the curve, where it is defined there, has this value at the reference temperature.
+void require_at_reference(const Section& s, std::string_view key, const Curve& curve, double expected,
+                          double tolerance) {
+  if (!s.ok() || !curve.range().contains(kReferenceTemperature)) return;
+  const double value = curve(kReferenceTemperature);
+  if (std::abs(value - expected) <= tolerance) return;
+  s.error(key,
+          fmt::format("is {:.6g} at {} degC, but must be {} there", value, kReferenceTemperature, expected));
+}
+
+Interval strain_range(const Interval& needed) {
+  return {std::min(needed.lower, kStandardRange.lower), std::max(needed.upper, kStandardRange.upper)};
+}
+
+Curve read_thermal_strain(const Section& s, ExpansionReading reading, CurveReader& curves) {
+  if (s.has("expansion")) {
+    const Curve expansion = curves.read(s, "expansion", unit::expansion, Range::any());
+    if (s.has("thermal_strain"))
+      s.error("thermal_strain", "has no meaning beside \"expansion\": give one of the two");
+    if (!s.ok()) return Curve::constant(0.0);
+    try {
+      return free_thermal_strain(expansion, reading, strain_range(curves.needed()))
+          .named(s.path() + ".thermal_strain");
+    } catch (const Error& error) {
+      s.error("expansion", error.what());
+      return Curve::constant(0.0);
+    }
+  }
+  const Curve strain = curves.read(s, "thermal_strain", unit::dimensionless, Range::any(), 0.0);
+  require_at_reference(s, "thermal_strain", strain, 0.0, kNoStrain);
+  return strain;
+}
+
+/// Density, and what conduction needs where it is given.
+SolidMaterial read_heat_properties(const Section& s, CurveReader& curves) {
+  const auto optional = [&](std::string_view key, const Unit& unit) -> std::optional<Curve> {
+    if (!s.has(key)) return std::nullopt;
+    return curves.read(s, key, unit, Range::positive());
+  };
+  SolidMaterial m;
+  m.density = curves.read(s, "density", unit::density, Range::positive());
+  m.conductivity = optional("conductivity", unit::conductivity);
+  m.specific_heat = optional("specific_heat", unit::specific_heat);
+  return m;
+}
+
+SolidMaterial read_solid(const Section& s, ExpansionReading reading, CurveReader& curves) {
+  SolidMaterial m = read_heat_properties(s, curves);
+  m.young = curves.read(s, "E", unit::stress, Range::positive());
+  m.poisson = s.number("nu", Range{-1.0, 0.5, false, false});
+  m.thermal_strain = read_thermal_strain(s, reading, curves);
+  return m;
+}
+
+SolidMaterial read_conducting_solid(const Section& s, CurveReader& curves) {
+  s.know({"E", "nu", "expansion", "thermal_strain"});
+  return read_heat_properties(s, curves);
+}
+
+std::optional<Curve> read_temperature_ratio(const Section& s, CurveReader& curves) {
+  if (!s.has("temperature_ratio")) return std::nullopt;
+  const Curve ratio = curves.read(s, "temperature_ratio", unit::dimensionless, Range::positive());
+  require_at_reference(s, "temperature_ratio", ratio, 1.0, kRatioTolerance);
+  return ratio;
+}
+
+ContactMaterial read_mortar_contact(const Section& s, CurveReader& curves) {
+  const std::optional<Curve> ratio = read_temperature_ratio(s, curves);
+  bool ratio_has_effect = false;
+  const auto property = [&](const char* key, const Unit& unit, const Range& range) {
+    const Curve curve = curves.read(s, key, unit, range);
+    if (!ratio || !curve.is_constant()) return curve;
+    ratio_has_effect = true;
+    return (curve * *ratio).named(s.path() + "." + key);
+  };
+  const auto angle = [&](const char* key) {
+    return std::tan(s.quantity(key, unit::angle, {.lower = 0.0, .upper = 1.57, .upper_inclusive = false}));
+  };
+  ContactMaterial m;
+  m.tensile_strength = property("f_t", unit::stress, Range::positive());
+  m.mode_1_energy = property("G_f1", unit::fracture_energy, Range::positive());
+  m.compressive_limit = property("f_cm", unit::stress, Range::positive());
+  m.hardening = s.number("beta", Range::inside(0.0, 1.0));
+  m.cohesion = property("c_o", unit::stress, Range::positive());
+  m.residual_cohesion = property("c_res", unit::stress, Range::non_negative());
+  m.friction = angle("phi");
+  m.residual_friction = angle("phi_res");
+  m.mode_2_energy = property("G_f2", unit::fracture_energy, Range::positive());
+  if (ratio && !ratio_has_effect)
+    s.error("temperature_ratio", "has no effect: no property of this contact is a plain constant");
+  return m;
+}
+
+}  // namespace
+
+ExpansionReading read_expansion_reading(const Section& root) {
+  return root.section("materials")
+      .choice<ExpansionReading>(
+          "expansion_reading", {{"secant", ExpansionReading::secant}, {"tangent", ExpansionReading::tangent}},
+          ExpansionReading::secant);
+}
+
+std::array<SolidMaterial, 3> read_solids(const Section& root, ExpansionReading reading, CurveReader& curves) {
+  const Section s = root.section("materials");
+  return {read_solid(s.section("aggregate"), reading, curves),
+          read_solid(s.section("mortar"), reading, curves), read_solid(s.section("platen"), reading, curves)};
+}
+
+std::array<SolidMaterial, 3> read_conducting_solids(const Section& root, CurveReader& curves) {
+  const Section s = root.section("materials");
+  s.know({"expansion_reading", "platen"});
+  return {read_conducting_solid(s.section("aggregate"), curves),
+          read_conducting_solid(s.section("mortar"), curves), SolidMaterial{}};
+}
+
+ContactParameters read_contacts(const Section& root, CurveReader& curves) {
+  const Section s = root.section("contacts");
+  ContactParameters c;
+  c.fracture_zone = s.quantity("t_b", unit::length, Range::positive());
+  const bool scales = s.choice<bool>("t_b_scaling", {{"block size", true}, {"fixed", false}});
+  if (scales) c.fracture_zone_size = s.quantity("t_b_block_size", unit::length, Range::positive());
+  c.platen_friction = s.number("platen_friction", Range::non_negative());
+
+  const Section mortar = s.section("mortar_mortar");
+  c.mortar = read_mortar_contact(mortar, curves);
+  if (mortar.has("K_n"))
+    c.normal_stiffness = mortar.quantity("K_n", unit::stiffness_per_area, Range::positive());
+  if (mortar.has("K_s"))
+    c.shear_stiffness = mortar.quantity("K_s", unit::stiffness_per_area, Range::positive());
+  c.mortar.compression = s.choice<CompressionReading>(
+      "compression",
+      {{"irreversible", CompressionReading::irreversible}, {"reversible", CompressionReading::reversible}},
+      CompressionReading::irreversible);
+  c.mortar.coupled = s.flag("coupled", false);
+
+  const Section itz = s.section("aggregate_mortar");
+  c.interface_stiffness = itz.number("stiffness_factor", Range::positive());
+  c.interface_strength = itz.number("strength_factor", Range::positive());
+  c.scale_interface_energy = itz.flag("scale_fracture_energy", false);
+  return c;
+}
+
+}  // namespace pyroclast

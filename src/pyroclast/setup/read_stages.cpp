@@ -1,0 +1,56 @@
+#include "pyroclast/setup/read_stages.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "pyroclast/stages/exchange_stage.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Between two frames while the temperature changes, K, where the deck does not say.
+constexpr double kFrameTemperature = 50.0;
+
+OutputIntervals read_output(const Section& s, bool moves, bool frames_in_time) {
+  OutputIntervals output;
+  s.know({"history_strain", "frame_strain", "frame_temperature", "frame_interval"});
+  if (moves) {
+    output.history_strain = s.number("history_strain", Range::positive());
+    output.frame_strain = s.number("frame_strain", Range::positive());
+    output.frame_temperature =
+        s.quantity("frame_temperature", unit::temperature_difference, Range::positive(), kFrameTemperature);
+  }
+  if (frames_in_time) output.frame_interval = s.quantity("frame_interval", unit::time, Range::positive());
+  return output;
+}
+
+}  // namespace
+
+ReadStages read_stages(const Section& root, const StageRegistry& kinds) {
+  std::vector<std::string> names;
+  for (const StageKind& kind : kinds.kinds()) names.push_back(kind.name);
+  const auto sections = root.sections("stages");
+  std::vector<const StageKind*> chosen;
+  for (const Section& s : sections) chosen.push_back(&kinds.kinds()[s.choice("kind", names)]);
+  const auto any = [&](auto needs) {
+    return std::ranges::any_of(chosen, [&](const StageKind* kind) { return needs(kind->needs); });
+  };
+  // Without a stage that could be read, what belongs to mechanics is known at least.
+  const bool moves = chosen.empty() || any([](const StageNeeds& n) { return n.mechanics; });
+  StageTables tables;
+  tables.output =
+      read_output(root.section("output"), moves, any([](const StageNeeds& n) { return n.frames_in_time; }));
+  if (moves)
+    tables.coupling_table = root.optional_section("coupling");
+  else
+    root.know({"coupling"});
+  if (tables.coupling_table) tables.coupling = read_coupling(*tables.coupling_table);
+  ReadStages read;
+  read.any_moves = moves;
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    read.stages.push_back(chosen[i]->read(sections[i], tables));
+  return read;
+}
+
+}  // namespace pyroclast

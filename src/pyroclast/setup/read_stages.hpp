@@ -1,0 +1,19 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "pyroclast/stages/registry.hpp"
+
+namespace pyroclast {
+
+struct ReadStages {
+  std::vector<std::unique_ptr<Stage>> stages;
+  bool any_moves = false;  ///< the body
+};
+
+/// Reads [[stages]], and [output] and [coupling] as far as their kinds need them. What is wrong is recorded
+/// in the deck.
+ReadStages read_stages(const Section& root, const StageRegistry& kinds);
+
+}  // namespace pyroclast

@@ -1,0 +1,170 @@
+#include "pyroclast/setup/setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/material/builtin_curves.hpp"
+#include "pyroclast/setup/read_heat.hpp"
+#include "pyroclast/setup/read_materials.hpp"
+#include "pyroclast/setup/read_probes.hpp"
+#include "pyroclast/setup/read_specimen.hpp"
+#include "pyroclast/setup/read_stages.hpp"
+#include "pyroclast/thermal/fire_curves.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+constexpr double kGravity = 9.80665;  // m/s², standard
+
+/// Even temperatures of the run at which the contact law must be possible.
+constexpr int kCheckedTemperatures = 33;
+
+MechanicsParameters<2> read_mechanics(const Section& s) {
+  MechanicsParameters<2> m;
+  m.gravity = {{0.0, -s.quantity("gravity", unit::acceleration, Range::non_negative(), kGravity)}};
+  m.local_damping = s.number("local_damping", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false});
+  m.damping_form = s.choice<DampingForm>(
+      "damping_form", {{"combined", DampingForm::combined}, {"local", DampingForm::local}});
+  m.viscous_damping = s.quantity("viscous_damping", unit::frequency, Range::non_negative(), 0.0);
+  m.mass = s.choice<MassChoice>("mass", {{"scaled", MassChoice::scaled}, {"real", MassChoice::real}});
+  if (m.mass == MassChoice::scaled) m.time_step = s.quantity("time_step", unit::time, Range::positive());
+  m.kinematics = s.choice<Kinematics>(
+      "kinematics", {{"small", Kinematics::small}, {"finite", Kinematics::finite}}, Kinematics::small);
+  m.safety = s.number("safety", {.lower = 0.0, .upper = 1.0, .lower_inclusive = false});
+  return m;
+}
+
+/// Time for which boundaries act, s.
+double exposure(const std::vector<std::unique_ptr<Stage>>& stages) {
+  double duration = 0.0;
+  for (const auto& stage : stages) duration += stage->heating().duration;
+  return duration;
+}
+
+/// A uniform field is changed by stages that set it, a computed one by exposing the specimen.
+void check_heat(const Section& root, const HeatConditions& conditions,
+                const std::vector<std::unique_ptr<Stage>>& stages) {
+  const auto heat = root.optional_section("heat");
+  for (const auto& stage : stages) {
+    const FieldChoice field = stage->needs().field;
+    if (field == FieldChoice::computed && conditions.uniform) {
+      const auto message =
+          fmt::format("a stage of kind \"{}\" needs [heat] with field = \"conduction\"", stage->kind());
+      heat ? heat->error("field", message) : root.error("stages", message);
+      return;
+    }
+    if (field == FieldChoice::uniform && !conditions.uniform) {
+      heat->error("field", fmt::format("a stage of kind \"{}\" needs field = \"uniform\"; "
+                                       "with conduction use \"expose\"",
+                                       stage->kind()));
+      return;
+    }
+  }
+}
+
+/// All temperatures that a run may come to, and the reference temperature, at which masses and stated
+/// stiffnesses hold.
+Interval run_temperatures(const Section& root, const HeatConditions& conditions,
+                          const std::vector<std::unique_ptr<Stage>>& stages) {
+  Interval t{std::min(kReferenceTemperature, conditions.initial),
+             std::max(kReferenceTemperature, conditions.initial)};
+  const auto include = [&](double low, double high) {
+    t = {std::min(t.lower, low), std::max(t.upper, high)};
+  };
+  for (const auto& stage : stages)
+    if (const auto to = stage->heating().to) include(*to, *to);
+  const auto heat_table = root.optional_section("heat");
+  if (!conditions.uniform && heat_table && heat_table->ok()) {
+    const Interval computed = temperature_range(conditions, exposure(stages));
+    include(computed.lower, computed.upper);
+  }
+  return t;
+}
+
+/// The contact law's own conditions, told where the user can act on them: at 20 °C and over what the run
+/// needs.
+void check_contacts(const Section& root, const Setup& setup) {
+  const Section contacts = root.section("contacts");
+  if (!root.ok()) return;
+  const auto concrete = make_concrete(setup.solids, setup.motion->contacts,
+                                      expected_block_size(setup.specimen, setup.motion->contacts));
+  const auto check = [&](InterfaceIndex interface, const char* key) {
+    const auto [lower, upper] = setup.temperatures;
+    double T = kReferenceTemperature;
+    try {
+      validate(concrete.contacts[interface].at(T), key);
+      for (int i = 0; i < kCheckedTemperatures; ++i) {
+        T = lower + i * (upper - lower) / (kCheckedTemperatures - 1);
+        validate(concrete.contacts[interface].at(T), key);
+      }
+    } catch (const Error& e) {
+      contacts.error(key, fmt::format("at {:.6g} degC: {}", T, e.what()));
+    }
+  };
+  check(mortar_mortar, "mortar_mortar");
+  check(aggregate_mortar, "aggregate_mortar");
+}
+
+/// Materials, and what moves, where a stage moves the body.
+void read_moving(const Section& root, CurveReader& curves, Setup& setup) {
+  setup.expansion_reading = read_expansion_reading(root);
+  setup.solids = read_solids(root, setup.expansion_reading, curves);
+  setup.motion.emplace();
+  setup.motion->platen_thickness =
+      root.section("platens").quantity("thickness", unit::length, Range::positive());
+  setup.motion->contacts = read_contacts(root, curves);
+  setup.motion->mechanics = read_mechanics(root.section("mechanics"));
+  check_contacts(root, setup);
+}
+
+/// The same where only heat moves.
+void read_resting(const Section& root, CurveReader& curves, Setup& setup) {
+  setup.solids = read_conducting_solids(root, curves);
+  root.know({"platens", "contacts", "mechanics"});
+}
+
+}  // namespace
+
+Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const StageRegistry& kinds) {
+  const Section root = deck.root();
+  Setup setup;
+  setup.title = root.text("title");
+  auto read = read_stages(root, kinds);
+  setup.stages = std::move(read.stages);
+  CurveReader time_curves(folder, time_axis(), {0.0, exposure(setup.stages)}, fire_curves());
+  if (auto heat = read_heat(root, time_curves)) setup.heat = std::move(*heat);
+  check_heat(root, setup.heat, setup.stages);
+  setup.temperatures = run_temperatures(root, setup.heat, setup.stages);
+  setup.specimen = read_specimen(root, folder);
+  setup.thickness = root.section("specimen").quantity("thickness", unit::length, Range::positive(), 1.0);
+  if (setup.heat.uniform)
+    root.know({"probes"});
+  else
+    setup.probes = read_probes(root, setup.specimen.width, setup.specimen.height);
+  CurveReader curves(folder, temperature_axis(), setup.temperatures, builtin_curves());
+  if (read.any_moves)
+    read_moving(root, curves, setup);
+  else
+    read_resting(root, curves, setup);
+  setup.curves = curves.curves();
+  deck.finish();
+  return setup;
+}
+
+std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team) {
+  return std::make_unique<Simulation>(make_checked_specimen(setup.specimen), setup.thickness, setup.solids,
+                                      setup.heat, setup.probes, setup.motion,
+                                      team ? std::move(team) : std::make_shared<Team>());
+}
+
+double expected_block_size(const specimen::SpecimenParameters& specimen, const ContactParameters& contacts) {
+  if (specimen.blocks.count == 0) return contacts.fracture_zone_size.value_or(1.0);
+  return std::sqrt(specimen.width * specimen.height / specimen.blocks.count);
+}
+
+}  // namespace pyroclast

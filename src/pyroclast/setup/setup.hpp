@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pyroclast/deck/deck.hpp"
+#include "pyroclast/material/curve_reader.hpp"
+#include "pyroclast/material/thermal_strain.hpp"
+#include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/stages/registry.hpp"
+
+namespace pyroclast {
+
+/// What a deck says, in its parts and in SI.
+struct Setup {
+  std::string title;
+  specimen::SpecimenParameters specimen;
+  double thickness = 0.0;               ///< out of plane, m
+  std::array<SolidMaterial, 3> solids;  ///< aggregate, mortar, platen
+  ExpansionReading expansion_reading = ExpansionReading::secant;
+  std::vector<ReadCurve> curves;  ///< properties over the temperature, as the deck gave them
+  Interval temperatures;          ///< that the run may come to, °C; its curves are checked for these
+  std::optional<MotionParameters> motion;  ///< empty where no stage moves the body
+  HeatConditions heat;                     ///< uniform at the reference temperature without [heat]
+  std::vector<ProbePosition> probes;
+  std::vector<std::unique_ptr<Stage>> stages;
+};
+
+/// Reads a deck. A relative file name in it is taken from `folder`.
+/// \param kinds  of stages that the deck may ask for
+/// Throws DeckError with every error of the deck.
+Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const StageRegistry& kinds = {});
+
+/// Makes specimen, model, field and mechanics. Throws Error when they cannot be made, see Simulation and
+/// make_checked_specimen.
+/// \param team  the threads of the run; one alone where there is none
+std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team = nullptr);
+
+/// Block size that a deck foresees, m; where the tessellation is read from a file, the one at which t_b
+/// holds.
+double expected_block_size(const specimen::SpecimenParameters& specimen, const ContactParameters& contacts);
+
+}  // namespace pyroclast

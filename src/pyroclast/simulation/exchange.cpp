@@ -1,0 +1,119 @@
+#include "pyroclast/simulation/exchange.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pyroclast/simulation/coupling.hpp"
+#include "pyroclast/simulation/simulation.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// The body is looked at this often on its way to rest.
+constexpr std::int64_t kCyclesPerCheck = 50;
+/// A platen that sinks by less than this share of the failure strain within the stated cycles is not running
+/// away.
+constexpr double kSlowSinking = 0.1;
+/// Steps of straining evenly: there, and halt.
+constexpr std::int64_t kEvenSteps = 2;
+/// Cycles of an exchange over the least, mean of a run, as measured: 1.0 to 1.5
+/// (validation/transient_heating.csv).
+constexpr double kCyclesOverLeast = 1.3;
+
+}  // namespace
+
+const char* name(PlatenControl control) {
+  return control == PlatenControl::force ? "force" : "fixed";
+}
+
+void Exchange::begin(Simulation& simulation) const {
+  Press<2>& press = simulation.press();
+  if (coupling_.platen == PlatenControl::fixed) {
+    press.control_by_motion(0.0);
+  } else {
+    press.control_by_force();
+    press.hold(press.stress_held());
+  }
+}
+
+void Exchange::hand_over(Simulation& simulation) {
+  number_ = simulation.count_exchange();
+  cycles_ = 0;
+  converged_ = false;
+  is_handed_over_ = true;
+  simulation.mechanics().set_properties(
+      properties_at(simulation.model(), simulation.materials(), simulation.field()));
+}
+
+void Exchange::strain_evenly_first(const Press<2>::EvenStrain& strain) {
+  even_strain_ = strain;
+  even_steps_left_ = kEvenSteps;
+}
+
+/// One step of it; true when there was none left.
+bool Exchange::strain_evenly(Simulation& simulation) {
+  if (even_steps_left_ == 0) return true;
+  Press<2>& press = simulation.press();
+  press.strain_evenly(even_strain_, even_steps_left_ == kEvenSteps ? 1.0 : 0.0, platen_follows());
+  simulation.mechanics().advance(1);
+  if (--even_steps_left_ == 0) press.end_even_strain(platen_follows());
+  return false;
+}
+
+bool Exchange::advance(Simulation& simulation, int most_steps) {
+  if (!strain_evenly(simulation)) return false;
+  const bool may_fail = platen_follows();
+  if (is_handed_over_) strain_before_ = last_ = simulation.press().specimen_strain();
+  is_handed_over_ = false;
+  const std::int64_t done = cycles_ % coupling_.most_cycles;
+  const std::int64_t to_check =
+      std::min(coupling_.most_cycles - done, kCyclesPerCheck - done % kCyclesPerCheck);
+  const auto steps = std::min<std::int64_t>(to_check, most_steps);
+  simulation.mechanics().advance(static_cast<int>(steps));
+  cycles_ += steps;
+  if (steps < to_check) return false;
+  const double now = simulation.press().specimen_strain();
+  ran_away_ = may_fail && now - strain_before_ > coupling_.failure_strain;
+  if (ran_away_) return true;
+  converged_ = cycles_ >= coupling_.least_cycles && at_rest(simulation);
+  if (converged_) return true;
+  if (cycles_ % coupling_.most_cycles != 0) return false;
+  if (!may_fail || !(now - last_ > kSlowSinking * coupling_.failure_strain)) return true;
+  last_ = now;
+  return false;
+}
+
+bool Exchange::at_rest(const Simulation& simulation) const {
+  const Press<2>& press = simulation.press();
+  return std::abs(press.stress_top() - press.stress_bottom()) < coupling_.platen_difference &&
+         simulation.mechanics().unbalanced_ratio() < coupling_.unbalanced_ratio;
+}
+
+std::vector<Column> Exchange::columns() {
+  return {{"exchange", "1"}, {"cycles", "1"}, {"converged", "1"}};
+}
+
+std::vector<double> Exchange::values() const {
+  return {static_cast<double>(number_), static_cast<double>(cycles_), converged_ ? 1.0 : 0.0};
+}
+
+double Exchange::expected_cycles() const {
+  const auto least = static_cast<double>(std::max(coupling_.least_cycles, kCyclesPerCheck));
+  return std::min(kCyclesOverLeast * least, static_cast<double>(coupling_.most_cycles));
+}
+
+void Exchange::visit_state(StateVisitor& visitor) {
+  visitor.visit("exchange", number_);
+  visitor.visit("cycles", cycles_);
+  visitor.visit("converged", converged_);
+  visitor.visit("ran_away", ran_away_);
+  visitor.visit("is_handed_over", is_handed_over_);
+  visitor.visit("even_steps_left", even_steps_left_);
+  visitor.visit("even_strain_axial", even_strain_.axial);
+  visitor.visit("even_strain_lateral", even_strain_.lateral);
+  visitor.visit("strain_before", strain_before_);
+  visitor.visit("last_strain", last_);
+}
+
+}  // namespace pyroclast

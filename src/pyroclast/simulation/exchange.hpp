@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pyroclast/simulation/press.hpp"
+#include "pyroclast/simulation/stage.hpp"
+
+namespace pyroclast {
+
+/// What the upper platen does while the temperature changes.
+enum class PlatenControl : std::uint8_t {
+  force,  ///< its force stays (none but its weight where no load was applied)
+  fixed   ///< its height stays
+};
+
+const char* name(PlatenControl control);
+
+/// Staggered one-way coupling (paper, Fig. 2): heat to the next exchange, then mechanics at that temperature
+/// field, stepped until it rests.
+struct Coupling {
+  double increment = 0.0;  ///< change of temperature between two exchanges, K
+  // The mechanics is at rest when both are below these. The ratio does not see a small force that acts on all
+  // gridpoints alike, such as the inertia of a specimen that expands; the platens do.
+  double unbalanced_ratio = 0.0;
+  double platen_difference = 0.0;  ///< between the stresses on the platens, Pa
+  /// Steps for one exchange at least: a force out of balance needs time to move a body of that size.
+  std::int64_t least_cycles = 0;
+  /// And at most; an exchange that did not come to rest by then is flagged.
+  std::int64_t most_cycles = 0;
+  bool predictor = false;  ///< moves the body to where its last exchange foretells it to rest; uniform fields
+  PlatenControl platen = PlatenControl::force;
+  /// The specimen has failed when the platen sinks by this share of the height at one temperature.
+  double failure_strain = 0.0;
+};
+
+/// Hands temperatures over to the mechanics and lets the body come to rest at them.
+class Exchange {
+ public:
+  explicit Exchange(const Coupling& coupling) : coupling_(coupling) {}
+
+  const Coupling& coupling() const { return coupling_; }
+
+  /// Controls the platen as the coupling says.
+  void begin(Simulation& simulation) const;
+  /// Hands the field's temperatures over; `advance` does the rest.
+  void hand_over(Simulation& simulation);
+  /// Then moves the body first to where it will probably rest. Takes two steps and leaves the body at rest:
+  /// without this it would have to push itself to its new size, and its inertia would press on the lower
+  /// platen.
+  void strain_evenly_first(const Press<2>::EvenStrain& strain);
+  /// One batch of steps; true when the body rests, has failed, or has used up its cycles. A specimen that is
+  /// being crushed then gets more of them, until it stops or the platen has run away. The specimen's own ends
+  /// tell, for a platen without load may have left them.
+  bool advance(Simulation& simulation, int most_steps);
+
+  bool ran_away() const { return ran_away_; }
+
+  /// `exchange`, counted over the run from 1; `cycles` in steps; `converged`, 1 where the body came to rest.
+  static std::vector<Column> columns();
+  std::vector<double> values() const;
+  /// Steps that one exchange will probably take.
+  double expected_cycles() const;
+
+  void visit_state(StateVisitor& visitor);
+
+ private:
+  bool strain_evenly(Simulation& simulation);
+  bool at_rest(const Simulation& simulation) const;
+  bool platen_follows() const { return coupling_.platen == PlatenControl::force; }
+
+  Coupling coupling_;
+  std::int64_t number_ = 0;
+  std::int64_t cycles_ = 0;
+  bool converged_ = true;
+  bool ran_away_ = false;
+  bool is_handed_over_ = false;              ///< and not a step done since
+  std::int64_t even_steps_left_ = 0;         ///< of straining evenly, and of the halt
+  Press<2>::EvenStrain even_strain_;         ///< to come
+  double strain_before_ = 0.0, last_ = 0.0;  ///< of the specimen: at the exchange; when cycles were added
+};
+
+}  // namespace pyroclast

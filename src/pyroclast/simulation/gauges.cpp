@@ -1,0 +1,187 @@
+#include "pyroclast/simulation/gauges.hpp"
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "pyroclast/simulation/cracks.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// A column, and its value of what was measured.
+template <class Measured>
+struct ColumnOf {
+  const char* name;
+  const char* unit;
+  double (*value)(const Measured&);
+};
+
+/// A gauge that measures once for all its columns. The table must outlive it.
+template <class Measured, std::size_t N, class Measure>
+Gauge make_gauge(const std::array<ColumnOf<Measured>, N>& table, Measure measure, bool of_motion) {
+  Gauge gauge;
+  for (const auto& column : table) gauge.columns.push_back({column.name, column.unit});
+  gauge.read = [&table, measure](const Simulation& simulation) {
+    const Measured& measured = measure(simulation);
+    std::vector<double> values;
+    for (const auto& column : table) values.push_back(column.value(measured));
+    return values;
+  };
+  gauge.of_motion = of_motion;
+  return gauge;
+}
+
+constexpr double kMega = 1e-6;
+
+using M = Mechanics<2>;
+constexpr auto kClock = std::to_array<ColumnOf<M>>({
+    {"step", "1", [](const M& m) { return static_cast<double>(m.steps()); }},
+    {"time_s", "s", [](const M& m) { return m.time(); }},
+});
+
+using S = Simulation;
+constexpr auto kTemperature = std::to_array<ColumnOf<S>>({
+    {"heating_time_s", "s", [](const S& s) { return s.heating_time(); }},
+    {"temperature_degC", "degC", [](const S& s) { return s.field().mean(); }},
+    {"temperature_min_degC", "degC", [](const S& s) { return s.field().minimum(); }},
+    {"temperature_max_degC", "degC", [](const S& s) { return s.field().maximum(); }},
+});
+
+using P = Press<2>;
+constexpr auto kPress = std::to_array<ColumnOf<P>>({
+    {"strain", "1", [](const P& p) { return p.strain(); }},
+    {"stage_strain", "1", [](const P& p) { return p.stage_strain(); }},
+    {"specimen_strain", "1", [](const P& p) { return p.specimen_strain(); }},
+    {"stress_MPa", "MPa", [](const P& p) { return p.stress() * kMega; }},
+    {"stress_top_MPa", "MPa", [](const P& p) { return p.stress_top() * kMega; }},
+    {"stress_bottom_MPa", "MPa", [](const P& p) { return p.stress_bottom() * kMega; }},
+    {"lateral_strain", "1", [](const P& p) { return p.lateral_strain(); }},
+});
+
+constexpr auto kCracks = std::to_array<ColumnOf<Cracks>>({
+    {"tension_am_damaged", "1", [](const Cracks& c) { return static_cast<double>(c.tension_am.damaged); }},
+    {"tension_am_broken", "1", [](const Cracks& c) { return static_cast<double>(c.tension_am.broken); }},
+    {"tension_am_length_m", "m", [](const Cracks& c) { return c.tension_am.length; }},
+    {"tension_mm_damaged", "1", [](const Cracks& c) { return static_cast<double>(c.tension_mm.damaged); }},
+    {"tension_mm_broken", "1", [](const Cracks& c) { return static_cast<double>(c.tension_mm.broken); }},
+    {"tension_mm_length_m", "m", [](const Cracks& c) { return c.tension_mm.length; }},
+    {"shear_am_damaged", "1", [](const Cracks& c) { return static_cast<double>(c.shear_am.damaged); }},
+    {"shear_am_broken", "1", [](const Cracks& c) { return static_cast<double>(c.shear_am.broken); }},
+    {"shear_am_length_m", "m", [](const Cracks& c) { return c.shear_am.length; }},
+    {"shear_mm_damaged", "1", [](const Cracks& c) { return static_cast<double>(c.shear_mm.damaged); }},
+    {"shear_mm_broken", "1", [](const Cracks& c) { return static_cast<double>(c.shear_mm.broken); }},
+    {"shear_mm_length_m", "m", [](const Cracks& c) { return c.shear_mm.length; }},
+    {"mean_opening_m", "m", [](const Cracks& c) { return c.mean_opening; }},
+});
+
+/// What is measured of the whole body's motion.
+struct Motion {
+  double unbalanced_ratio = 0.0, largest_jump = 0.0;
+  EnergyLedger energy;
+};
+
+Motion measure_motion(const Mechanics<2>& mechanics) {
+  return {mechanics.unbalanced_ratio(), mechanics.largest_relative_jump(), mechanics.energy()};
+}
+
+constexpr auto kEquilibrium = std::to_array<ColumnOf<Motion>>({
+    {"unbalanced_ratio", "1", [](const Motion& m) { return m.unbalanced_ratio; }},
+    {"kinetic_over_strain", "1",
+     [](const Motion& m) {
+       const double elastic = m.energy.zones + m.energy.contacts;
+       return elastic > 0.0 ? std::abs(m.energy.kinetic) / elastic : 0.0;
+     }},
+    {"largest_jump", "1", [](const Motion& m) { return m.largest_jump; }},
+});
+
+using E = EnergyLedger;
+constexpr auto kEnergy = std::to_array<ColumnOf<E>>({
+    {"energy_loading_J", "J", [](const E& e) { return e.loading; }},
+    {"energy_gravity_J", "J", [](const E& e) { return e.gravity; }},
+    {"energy_property_change_J", "J", [](const E& e) { return e.property_change; }},
+    {"energy_mass_scaling_J", "J", [](const E& e) { return e.mass_scaling; }},
+    {"energy_zones_J", "J", [](const E& e) { return e.zones; }},
+    {"energy_contacts_J", "J", [](const E& e) { return e.contacts; }},
+    {"energy_kinetic_J", "J", [](const E& e) { return e.kinetic; }},
+    {"dissipated_tension_J", "J", [](const E& e) { return e.dissipated.tension; }},
+    {"dissipated_shear_J", "J", [](const E& e) { return e.dissipated.shear; }},
+    {"dissipated_friction_J", "J", [](const E& e) { return e.dissipated.friction; }},
+    {"dissipated_compression_J", "J", [](const E& e) { return e.dissipated.compression; }},
+    {"energy_local_damping_J", "J", [](const E& e) { return e.local_damping; }},
+    {"energy_viscous_damping_J", "J", [](const E& e) { return e.viscous_damping; }},
+    {"energy_error_J", "J", [](const E& e) { return e.error(); }},
+});
+
+/// What is measured of a computed field.
+struct Transport {
+  double rate = 0.0;
+  HeatLedger heat;
+};
+
+Transport measure_transport(const Conduction<2>& conduction) {
+  return {conduction.rate(), conduction.ledger()};
+}
+
+using T = Transport;
+constexpr auto kTransport = std::to_array<ColumnOf<T>>({
+    {"rate_K_s", "K/s", [](const T& t) { return t.rate; }},
+    {"heat_stored_J", "J", [](const T& t) { return t.heat.stored; }},
+    {"heat_prescribed_J", "J", [](const T& t) { return t.heat.prescribed; }},
+    {"heat_flux_J", "J", [](const T& t) { return t.heat.boundary.flux; }},
+    {"heat_convection_J", "J", [](const T& t) { return t.heat.boundary.convection; }},
+    {"heat_radiation_J", "J", [](const T& t) { return t.heat.boundary.radiation; }},
+    {"heat_error_J", "J", [](const T& t) { return t.heat.error(); }},
+});
+
+const Mechanics<2>& mechanics_of(const Simulation& simulation) {
+  return simulation.mechanics();
+}
+
+}  // namespace
+
+std::vector<Gauge> clock_gauges(const Simulation& simulation) {
+  if (!simulation.moves()) return {};
+  return {make_gauge(kClock, mechanics_of, true)};
+}
+
+std::vector<Gauge> temperature_gauges() {
+  return {make_gauge(
+      kTemperature, [](const Simulation& s) -> const Simulation& { return s; }, false)};
+}
+
+std::vector<Gauge> motion_gauges(const Simulation& simulation) {
+  if (!simulation.moves()) return {};
+  return {
+      make_gauge(
+          kPress, [](const Simulation& s) -> const Press<2>& { return s.press(); }, true),
+      make_gauge(
+          kEquilibrium, [](const Simulation& s) { return measure_motion(s.mechanics()); }, true),
+      make_gauge(
+          kCracks, [](const Simulation& s) { return count_cracks(s.mechanics()); }, true),
+      make_gauge(
+          kEnergy, [](const Simulation& s) { return s.mechanics().energy(); }, true),
+  };
+}
+
+std::vector<Gauge> transport_gauges(const Simulation& simulation) {
+  if (simulation.field().is_uniform()) return {};
+  return {make_gauge(
+      kTransport, [](const Simulation& s) { return measure_transport(*s.field().conduction()); }, false)};
+}
+
+std::vector<Gauge> probe_gauges(const Simulation& simulation) {
+  Gauge gauge;
+  for (const auto& probe : simulation.probes())
+    gauge.columns.push_back({fmt::format("probe_{}_degC", probe.name()), "degC"});
+  gauge.read = [](const Simulation& s) {
+    std::vector<double> values;
+    for (const auto& probe : s.probes()) values.push_back(probe.read(s.field().gridpoints()));
+    return values;
+  };
+  return {std::move(gauge)};
+}
+
+}  // namespace pyroclast

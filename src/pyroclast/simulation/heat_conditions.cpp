@@ -1,0 +1,217 @@
+#include "pyroclast/simulation/heat_conditions.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Accuracy to which the time of the last change is found, as a fraction of the duration.
+constexpr double kTimeAccuracy = 1e-6;
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+
+/// Curves of a condition, in the order: temperature (if it has one), others.
+struct ConditionCurves {
+  const Curve* temperature = nullptr;
+  const Curve* other = nullptr;
+};
+
+ConditionCurves curves_of(const HeatCondition& condition) {
+  return std::visit(Overloaded{
+                        [](const PrescribedTemperature& c) {
+                          return ConditionCurves{&c.temperature, nullptr};
+                        },
+                        [](const HeatFlux& c) {
+                          return ConditionCurves{nullptr, &c.flux};
+                        },
+                        [](const Convection& c) {
+                          return ConditionCurves{&c.gas_temperature, &c.coefficient};
+                        },
+                        [](const Radiation& c) {
+                          return ConditionCurves{&c.gas_temperature, &c.emissivity};
+                        },
+                        [](const Adiabatic&) { return ConditionCurves{}; },
+                    },
+                    condition);
+}
+
+bool is_constant(const Curve* curve, double begin, double end) {
+  return !curve || curve->is_constant() || curve->minimum(begin, end) == curve->maximum(begin, end);
+}
+
+bool boundaries_are_constant(const HeatConditions& heat, double begin, double end) {
+  return std::all_of(heat.boundaries.begin(), heat.boundaries.end(), [&](const HeatBoundaryCondition& b) {
+    const auto curves = curves_of(b.condition);
+    return is_constant(curves.temperature, begin, end) && is_constant(curves.other, begin, end);
+  });
+}
+
+HeatMaterial heat_material(const SolidMaterial& solid, const std::string& name) {
+  const auto require = [&](const std::optional<Curve>& curve, const char* key) -> const Curve& {
+    if (!curve) throw Error(fmt::format("heat conduction needs materials.{}.{}", name, key));
+    return *curve;
+  };
+  return {require(solid.conductivity, "conductivity"),
+          solid.density * require(solid.specific_heat, "specific_heat")};
+}
+
+std::vector<std::optional<HeatMaterial>> heat_materials(const Model<2>& model,
+                                                        const std::array<SolidMaterial, 3>& solids) {
+  std::vector<std::optional<HeatMaterial>> materials(solids.size());
+  for (const int m : {aggregate_material, mortar_material})
+    materials[m] = heat_material(solids[m], model.material_names[m]);
+  return materials;
+}
+
+struct Box {
+  Vec<2> low, high;
+};
+
+Box bounding_box(const std::vector<OutlineFace<2>>& outline, const Model<2>& model) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Box box{{{infinity, infinity}}, {{-infinity, -infinity}}};
+  for (const auto& face : outline)
+    for (int g : face.gridpoints)
+      for (int d = 0; d < 2; ++d) {
+        box.low[d] = std::min(box.low[d], model.position[g][d]);
+        box.high[d] = std::max(box.high[d], model.position[g][d]);
+      }
+  return box;
+}
+
+std::vector<int> choose_faces(const Conduction<2>& conduction, const HeatedFaces& faces,
+                              const Box& specimen) {
+  const double tolerance = 1e-9 * norm(specimen.high - specimen.low);  // rounding
+  const Vec<2> slack{{tolerance, tolerance}};
+  switch (faces.part) {
+    case OutlinePart::left:
+      return conduction.faces(on_plane<2>(0, specimen.low[0], tolerance));
+    case OutlinePart::right:
+      return conduction.faces(on_plane<2>(0, specimen.high[0], tolerance));
+    case OutlinePart::bottom:
+      return conduction.faces(on_plane<2>(1, specimen.low[1], tolerance));
+    case OutlinePart::top:
+      return conduction.faces(on_plane<2>(1, specimen.high[1], tolerance));
+    case OutlinePart::whole:
+      return conduction.faces([](const OutlineFace<2>&) { return true; });
+    case OutlinePart::box:
+      break;
+  }
+  auto chosen = conduction.faces(in_box<2>(faces.box_low - slack, faces.box_high + slack));
+  if (chosen.empty())
+    throw Error(fmt::format(
+        "no face of the outline has its centre in the box from ({:g}) to ({:g}) m; the specimen lies from "
+        "({:g}) to ({:g}) m",
+        fmt::join(faces.box_low.c, ", "), fmt::join(faces.box_high.c, ", "), fmt::join(specimen.low.c, ", "),
+        fmt::join(specimen.high.c, ", ")));
+  return chosen;
+}
+
+void apply(Conduction<2>& conduction, const std::vector<int>& faces, const HeatCondition& condition) {
+  std::visit(
+      Overloaded{
+          [&](const PrescribedTemperature& c) { conduction.prescribe_temperature(faces, c.temperature); },
+          [](const Adiabatic&) {},
+          [&](const auto& c) { conduction.apply(faces, c); },
+      },
+      condition);
+}
+
+/// Which conditions act on each face of an outline.
+class FaceUse {
+ public:
+  explicit FaceUse(std::size_t faces) : conditions_(faces) {}
+
+  /// Throws Error when one that is there already contradicts the new one.
+  void add(const std::vector<int>& faces, const HeatBoundaryCondition& boundary) {
+    for (int face : faces) {
+      for (const HeatBoundaryCondition* other : conditions_[face])
+        if (contradict(other->condition, boundary.condition))
+          throw Error(fmt::format("\"{}\" acts on faces that have \"{}\" already ({})",
+                                  kind_name(boundary.condition), kind_name(other->condition), other->place));
+      conditions_[face].push_back(&boundary);
+    }
+  }
+
+ private:
+  std::vector<std::vector<const HeatBoundaryCondition*>> conditions_;
+};
+
+}  // namespace
+
+bool contradict(const HeatCondition& a, const HeatCondition& b) {
+  const auto excludes_others = [](const HeatCondition& c) {
+    return std::holds_alternative<PrescribedTemperature>(c) || std::holds_alternative<Adiabatic>(c);
+  };
+  return a.index() == b.index() || excludes_others(a) || excludes_others(b);
+}
+
+const char* kind_name(const HeatCondition& condition) {
+  return std::visit(Overloaded{
+                        [](const PrescribedTemperature&) { return "temperature"; },
+                        [](const HeatFlux&) { return "flux"; },
+                        [](const Convection&) { return "convection"; },
+                        [](const Radiation&) { return "radiation"; },
+                        [](const Adiabatic&) { return "adiabatic"; },
+                    },
+                    condition);
+}
+
+Interval temperature_range(const HeatConditions& heat, double duration) {
+  if (heat.temperature_range) return *heat.temperature_range;
+  Interval range{heat.initial, heat.initial};
+  for (const auto& boundary : heat.boundaries) {
+    if (std::holds_alternative<HeatFlux>(boundary.condition))
+      throw Error(fmt::format("{}: with a given flux the temperature_range must be stated", boundary.place));
+    if (const Curve* temperature = curves_of(boundary.condition).temperature) {
+      range.lower = std::min(range.lower, temperature->minimum(0.0, duration));
+      range.upper = std::max(range.upper, temperature->maximum(0.0, duration));
+    }
+  }
+  return range;
+}
+
+double constant_from(const HeatConditions& heat, double duration) {
+  if (boundaries_are_constant(heat, 0.0, duration)) return 0.0;
+  double changing = 0.0, constant = duration;
+  while (constant - changing > kTimeAccuracy * duration) {
+    const double middle = 0.5 * (changing + constant);
+    (boundaries_are_constant(heat, middle, duration) ? constant : changing) = middle;
+  }
+  return constant;
+}
+
+std::unique_ptr<Conduction<2>> make_conduction(const Model<2>& model,
+                                               const std::array<SolidMaterial, 3>& solids,
+                                               const HeatConditions& heat, const Interval& range) {
+  auto conduction = std::make_unique<Conduction<2>>(model, heat_materials(model, solids),
+                                                    HeatParameters{.temperature_range = range,
+                                                                   .initial_temperature = heat.initial,
+                                                                   .scheme = heat.scheme,
+                                                                   .safety = heat.safety,
+                                                                   .largest_change = heat.largest_change,
+                                                                   .largest_step = heat.largest_step});
+  const Box specimen = bounding_box(conduction->outline(), model);
+  FaceUse use(conduction->outline().size());
+  for (const auto& boundary : heat.boundaries) {
+    try {
+      const auto faces = choose_faces(*conduction, boundary.faces, specimen);
+      use.add(faces, boundary);
+      apply(*conduction, faces, boundary.condition);
+    } catch (const Error& e) {
+      throw Error(fmt::format("{}: {}", boundary.place, e.what()));
+    }
+  }
+  return conduction;
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "pyroclast/simulation/state.hpp"
+#include "pyroclast/thermal/temperature_field.hpp"
+
+namespace pyroclast {
+
+/// Conducts heat through a computed field in batches.
+class HeatFlow {
+ public:
+  /// What to conduct until, see TemperatureField::advance.
+  void begin(double largest_change, double until, double steady_rate = 0.0) {
+    largest_change_ = largest_change;
+    until_ = until;
+    steady_rate_ = steady_rate;
+    flows_ = true;
+  }
+  bool flows() const { return flows_; }
+  /// One batch; true when it has arrived.
+  bool advance(TemperatureField& field) {
+    if (!advances_) field.begin_advance(largest_change_, until_, steady_rate_);
+    advances_ = !field.advance(field.conduction()->stages_per_batch());
+    flows_ = advances_;
+    return !advances_;
+  }
+
+  void visit_state(StateVisitor& visitor) {
+    visitor.visit("largest_change", largest_change_);
+    visitor.visit("until", until_);
+    visitor.visit("steady_rate", steady_rate_);
+    visitor.visit("flows", flows_);
+    visitor.visit("advances", advances_);
+  }
+
+ private:
+  double largest_change_ = 0.0;  ///< K
+  double until_ = 0.0;           ///< s
+  double steady_rate_ = 0.0;     ///< K/s
+  bool flows_ = false;
+  bool advances_ = false;  ///< the field is on its way
+};
+
+}  // namespace pyroclast

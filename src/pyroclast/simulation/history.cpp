@@ -1,0 +1,66 @@
+#include "pyroclast/simulation/history.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+
+void History::add_column(const Column& column) {
+  const auto found = find(column.name);
+  if (!found) {
+    columns_.push_back(column);
+    return;
+  }
+  if (columns_[*found] == column) return;
+  throw Error(fmt::format("column \"{}\" of the history is in \"{}\", but in \"{}\" elsewhere", column.name,
+                          columns_[*found].unit, column.unit));
+}
+
+void History::add_row() {
+  cells_.emplace_back(columns_.size());
+}
+
+void History::set(std::string_view column, double value) {
+  cells_.back()[index(column)] = value;
+}
+
+bool History::has(std::string_view column) const {
+  return find(column).has_value();
+}
+
+std::optional<double> History::cell(std::size_t row, std::string_view column) const {
+  const auto found = find(column);
+  return found ? cells_.at(row)[*found] : std::nullopt;
+}
+
+std::optional<double> History::last(std::string_view column) const {
+  return cells_.empty() ? std::nullopt : cell(cells_.size() - 1, column);
+}
+
+std::vector<double> History::values(std::string_view column, RowRange rows) const {
+  const std::size_t c = index(column);
+  std::vector<double> values;
+  for (std::size_t row = rows.first; row < rows.last; ++row) {
+    if (!cells_.at(row)[c])
+      throw Error(fmt::format("row {} of the history has no value in column \"{}\"", row, column));
+    values.push_back(*cells_[row][c]);
+  }
+  return values;
+}
+
+std::optional<std::size_t> History::find(std::string_view column) const {
+  for (std::size_t i = 0; i < columns_.size(); ++i)
+    if (columns_[i].name == column) return i;
+  return std::nullopt;
+}
+
+std::size_t History::index(std::string_view column) const {
+  if (const auto found = find(column)) return *found;
+  std::vector<std::string> names;
+  for (const auto& c : columns_) names.push_back(c.name);
+  throw Error(fmt::format("the history has no column \"{}\"; it has {}", column, fmt::join(names, ", ")));
+}
+
+}  // namespace pyroclast

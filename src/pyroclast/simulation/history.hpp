@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pyroclast {
+
+/// A column of the history. The unit is also the end of the name, where it has one: "stress_MPa".
+struct Column {
+  std::string name;
+  std::string unit;  ///< "1" for a number
+
+  bool operator==(const Column&) const = default;
+};
+
+/// Rows of a history, from `first` up to but without `last`.
+struct RowRange {
+  std::size_t first = 0, last = 0;
+
+  bool empty() const { return first == last; }
+};
+
+/// What a run measured: a row for each look, in full precision. A cell is empty where the stage of its row
+/// does not have the quantity.
+class History {
+ public:
+  /// Adds a column after those that are there, unless there is the same one already. To be called before the
+  /// first row. Throws Error when a column of this name has another unit.
+  void add_column(const Column& column);
+  void add_row();
+  /// Sets a cell of the last row. Throws Error when there is no such column.
+  void set(std::string_view column, double value);
+
+  const std::vector<Column>& columns() const { return columns_; }
+  bool has(std::string_view column) const;
+  std::size_t row_count() const { return cells_.size(); }
+  /// By column, in their order.
+  const std::vector<std::optional<double>>& row(std::size_t row) const { return cells_.at(row); }
+  /// Empty also where there is no such column.
+  std::optional<double> cell(std::size_t row, std::string_view column) const;
+  /// The same of the last row.
+  std::optional<double> last(std::string_view column) const;
+  /// Values of a column over some rows. Throws Error when there is no such column, or a cell is empty.
+  std::vector<double> values(std::string_view column, RowRange rows) const;
+
+ private:
+  std::optional<std::size_t> find(std::string_view column) const;
+  std::size_t index(std::string_view column) const;
+
+  std::vector<Column> columns_;
+  std::vector<std::vector<std::optional<double>>> cells_;  ///< by row
+};
+
+}  // namespace pyroclast

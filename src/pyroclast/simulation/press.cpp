@@ -1,0 +1,177 @@
+#include "pyroclast/simulation/press.hpp"
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/simulation/sums.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Sides of the specimen across the axis, lower and upper, in the order of the components.
+constexpr std::array<std::array<std::string_view, 2>, 2> kSides{{{"left", "right"}, {"front", "back"}}};
+
+template <int Dim>
+std::array<int, Dim - 1> components_across(int axis) {
+  if (axis < 0 || axis >= Dim)
+    throw Error(fmt::format("the axis of the press is {}, but it must be from 0 to {}", axis, Dim - 1));
+  std::array<int, Dim - 1> across{};
+  for (int i = 0, next = 0; i < Dim; ++i)
+    if (i != axis) across[next++] = i;
+  return across;
+}
+
+}  // namespace
+
+template <int Dim>
+Press<Dim>::Press(Mechanics<Dim>& mechanics, int axis, double height,
+                  const std::array<double, Dim - 1>& widths)
+    : mechanics_(mechanics),
+      axis_(axis),
+      height_(height),
+      widths_(widths),
+      across_(components_across<Dim>(axis)) {
+  for (int g : set("bottom_support"))
+    for (int i = 0; i < Dim; ++i) mechanics_.prescribe_velocity(g, i, 0.0);
+  for (int g : set("top_support"))
+    for (int i : across_) mechanics_.prescribe_velocity(g, i, 0.0);
+}
+
+template <int Dim>
+void Press<Dim>::let_go() {
+  for (int g : set("top_support")) mechanics_.release(g, axis_);
+}
+
+template <int Dim>
+void Press<Dim>::control_by_force() {
+  mechanics_.untie();
+  let_go();
+  mechanics_.tie(set("top_support"), axis_);
+}
+
+template <int Dim>
+void Press<Dim>::control_by_motion(double velocity) {
+  mechanics_.untie();
+  hold(0.0);
+  drive(velocity);
+}
+
+template <int Dim>
+void Press<Dim>::drive(double velocity) {
+  for (int g : set("top_support")) mechanics_.prescribe_velocity(g, axis_, -velocity);
+}
+
+template <int Dim>
+void Press<Dim>::hold(double stress) {
+  double force = stress;
+  for (double width : widths_) force *= width;
+  force *= mechanics_.model().thickness;
+  const auto& support = set("top_support");
+  Vec<Dim> share{};
+  share[axis_] = -force / static_cast<double>(support.size());
+  for (int g : support) mechanics_.apply_force(g, share);
+  stress_held_ = stress;
+}
+
+template <int Dim>
+double Press<Dim>::area() const {
+  double area = mechanics_.model().thickness;
+  for (double width : widths_) area *= width;
+  return area;
+}
+
+template <int Dim>
+double Press<Dim>::shortening(std::string_view top, std::string_view bottom) const {
+  return mean_displacement(mechanics_, set(bottom), axis_) - mean_displacement(mechanics_, set(top), axis_);
+}
+
+template <int Dim>
+double Press<Dim>::widening(int direction) const {
+  const auto& [lower, upper] = kSides[direction];
+  return mean_displacement(mechanics_, set(upper), across_[direction]) -
+         mean_displacement(mechanics_, set(lower), across_[direction]);
+}
+
+template <int Dim>
+void Press<Dim>::set_zero() {
+  shortening_at_zero_ += strain() * height_;
+  specimen_shortening_at_zero_ += specimen_strain() * height_;
+  for (int d = 0; d < Dim - 1; ++d)
+    widening_at_zero_[d] += (widening(d) - widening_at_zero_[d]) / widths_[d] * widths_[d];
+}
+
+template <int Dim>
+void Press<Dim>::begin_stage() {
+  stage_first_strain_ = strain();
+}
+
+template <int Dim>
+double Press<Dim>::strain() const {
+  return (shortening("top_face", "bottom_face") - shortening_at_zero_) / height_;
+}
+
+template <int Dim>
+double Press<Dim>::specimen_strain() const {
+  return (shortening("top", "bottom") - specimen_shortening_at_zero_) / height_;
+}
+
+template <int Dim>
+double Press<Dim>::lateral_strain() const {
+  double sum = 0.0;
+  for (int d = 0; d < Dim - 1; ++d) sum += (widening(d) - widening_at_zero_[d]) / widths_[d];
+  return sum / (Dim - 1);
+}
+
+template <int Dim>
+double Press<Dim>::stress_top() const {
+  const auto& support = set("top_support");
+  return (total_force(mechanics_, support, axis_) - total_applied_force(mechanics_, support, axis_)) / area();
+}
+
+template <int Dim>
+double Press<Dim>::stress_bottom() const {
+  return -total_force(mechanics_, set("bottom_support"), axis_) / area();
+}
+
+template <int Dim>
+void Press<Dim>::strain_evenly(const EvenStrain& strain, double speed, bool platen_follows) {
+  const auto& model = mechanics_.model();
+  const double bottom = model.position[set("bottom").front()][axis_];
+  std::array<double, Dim - 1> middle{};
+  for (int d = 0; d < Dim - 1; ++d)
+    middle[d] = 0.5 * (mean_position(mechanics_, set(kSides[d][0]), across_[d]) +
+                       mean_position(mechanics_, set(kSides[d][1]), across_[d]));
+  const double rate = speed / mechanics_.time_step();
+  for (int g : set("specimen")) {
+    const Vec<Dim>& x = model.position[g];
+    for (int d = 0; d < Dim - 1; ++d)
+      mechanics_.prescribe_velocity(g, across_[d], rate * strain.lateral * (x[across_[d]] - middle[d]));
+    mechanics_.prescribe_velocity(g, axis_, rate * strain.axial * (x[axis_] - bottom));
+  }
+  if (!platen_follows) return;
+  for (int g : set("top_platen")) mechanics_.prescribe_velocity(g, axis_, rate * strain.axial * height_);
+}
+
+template <int Dim>
+void Press<Dim>::end_even_strain(bool platen_follows) {
+  for (int g : set("specimen"))
+    for (int i = 0; i < Dim; ++i) mechanics_.release(g, i);
+  if (!platen_follows) return;
+  for (int g : set("top_platen")) mechanics_.release(g, axis_);
+}
+
+template <int Dim>
+void Press<Dim>::visit_state(StateVisitor& visitor) {
+  visitor.visit("stress_held", stress_held_);
+  visitor.visit("shortening_at_zero", shortening_at_zero_);
+  visitor.visit("specimen_shortening_at_zero", specimen_shortening_at_zero_);
+  for (int d = 0; d < Dim - 1; ++d)
+    visitor.visit(fmt::format("widening_at_zero_{}", kSides[d][1]), widening_at_zero_[d]);
+  visitor.visit("stage_first_strain", stage_first_strain_);
+}
+
+template class Press<2>;
+template class Press<3>;
+
+}  // namespace pyroclast

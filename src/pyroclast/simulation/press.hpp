@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/simulation/state.hpp"
+
+namespace pyroclast {
+
+/// A press with a fixed lower and a movable upper platen, and the specimen between them.
+///
+/// It holds, drives and watches named sets of the model's gridpoints (Model::sets): `bottom_support` and
+/// `top_support`, the outer faces of the platens; `bottom_face` and `top_face`, their inner faces; `bottom`,
+/// `top`, `left`, `right` and in 3D `front`, `back`, the sides of the specimen; `specimen` and `top_platen`,
+/// all gridpoints of those.
+///
+/// Stress and strain are positive in compression, lateral strain in expansion.
+template <int Dim>
+class Press {
+ public:
+  /// Changes of length of the whole specimen, expansion positive.
+  struct EvenStrain {
+    double axial = 0.0, lateral = 0.0;
+  };
+
+  /// Holds the lower platen, and the upper one across the axis.
+  /// \param mechanics  kept by reference; must outlive this
+  /// \param axis       along which the platens stand: the component of a position
+  /// \param height     of the specimen along the axis, m
+  /// \param widths     across the axis, in the order of the other components, m
+  Press(Mechanics<Dim>& mechanics, int axis, double height, const std::array<double, Dim - 1>& widths);
+
+  // What the upper platen does.
+
+  /// Lets it lie on the specimen, and tilt.
+  void let_go();
+  /// Moves it by its force only, without tilting.
+  void control_by_force();
+  /// Moves it down at a velocity, m/s; the force on it ends.
+  void control_by_motion(double velocity);
+  /// Another velocity while it is controlled by motion, m/s downwards.
+  void drive(double velocity);
+  /// The force on it over the area of the specimen, Pa, from the next step on.
+  void hold(double stress);
+  double stress_held() const { return stress_held_; }
+
+  // Readings at the displacements and forces of the last step.
+
+  /// Takes the present length and width for those from which strains count.
+  void set_zero();
+  /// Takes the present strain for that from which the strain of a stage counts.
+  void begin_stage();
+  /// Approach of the platens' inner faces since the zero over the height.
+  double strain() const;
+  /// The same since `begin_stage`.
+  double stage_strain() const { return strain() - stage_first_strain_; }
+  /// Approach of the specimen's own ends since the zero over the height.
+  double specimen_strain() const;
+  /// Mean widening since the zero over the width, mean of all directions across the axis.
+  double lateral_strain() const;
+  /// Reaction of the upper platen over the area, Pa.
+  double stress_top() const;
+  double stress_bottom() const;
+  double stress() const { return 0.5 * (stress_top() + stress_bottom()); }
+  /// Between the platens and the specimen's ends, m.
+  double gap() const { return (specimen_strain() - strain()) * height_; }
+  double height() const { return height_; }
+
+  // Even strain: contacts keep their jumps.
+
+  /// Strains the whole specimen evenly in the next step, and halts it there in the step after one with
+  /// `speed` 0.
+  /// \param speed           share of the strain to come in one step
+  /// \param platen_follows  the upper platen moves with the end it lies on
+  void strain_evenly(const EvenStrain& strain, double speed, bool platen_follows);
+  /// Lets the specimen move freely again.
+  void end_even_strain(bool platen_follows);
+
+  void visit_state(StateVisitor& visitor);
+
+ private:
+  const std::vector<int>& set(std::string_view name) const { return mechanics_.model().set(name); }
+  double shortening(std::string_view top, std::string_view bottom) const;
+  double widening(int direction) const;
+  double area() const;
+
+  Mechanics<Dim>& mechanics_;
+  int axis_;
+  double height_;
+  std::array<double, Dim - 1> widths_;
+  std::array<int, Dim - 1> across_;  ///< components across the axis
+
+  double stress_held_ = 0.0;                        ///< Pa
+  double shortening_at_zero_ = 0.0;                 ///< of the distance of the platens, m
+  double specimen_shortening_at_zero_ = 0.0;        ///< m
+  std::array<double, Dim - 1> widening_at_zero_{};  ///< m
+  double stage_first_strain_ = 0.0;
+};
+
+extern template class Press<2>;
+extern template class Press<3>;
+
+}  // namespace pyroclast

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "pyroclast/model/model.hpp"
+
+namespace pyroclast {
+
+/// A point of the specimen at which a run watches the temperature.
+struct ProbePosition {
+  std::string name;
+  Vec<2> position{};  ///< from the specimen's lower left corner, m
+};
+
+/// Reads a field of the gridpoints at a point, linearly within the zone that holds it.
+class Probe {
+ public:
+  /// Throws Error when the point lies outside the specimen.
+  Probe(const Model<2>& model, const ProbePosition& at);
+
+  const std::string& name() const { return name_; }
+
+  /// \param gridpoints  a value for each
+  double read(const std::vector<double>& gridpoints) const;
+
+ private:
+  std::string name_;
+  std::array<int, 3> gridpoints_{};
+  std::array<double, 3> weights_{};
+};
+
+}  // namespace pyroclast

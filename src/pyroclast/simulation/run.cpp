@@ -1,0 +1,165 @@
+#include "pyroclast/simulation/run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// A batch has at most so many steps, and fewer in a large body: so that a stop is heard within a second.
+constexpr int kMostSteps = 250;
+constexpr double kMostZoneSteps = 25e6;
+
+int most_steps(const Simulation& simulation) {
+  return static_cast<int>(
+      std::clamp<double>(kMostZoneSteps / simulation.model().zone_count(), 1, kMostSteps));
+}
+
+std::vector<Column> row_columns() {
+  return {{"stage", "1"}};
+}
+
+void append(std::vector<Gauge>& all, std::vector<Gauge> more) {
+  for (auto& gauge : more) all.push_back(std::move(gauge));
+}
+
+}  // namespace
+
+Run::Run(Simulation& simulation, std::vector<std::unique_ptr<Stage>> stages)
+    : simulation_(simulation),
+      stages_(std::move(stages)),
+      records_(stages_.size()),
+      most_steps_(most_steps(simulation)) {
+  if (stages_.empty()) throw Error("a run needs at least one stage");
+  // The stated order of the columns: number of the stage, clocks, temperatures, the stages' own, motion,
+  // transport, probes.
+  for (const Column& column : row_columns()) history_.add_column(column);
+  const auto add = [&](std::vector<Gauge> gauges) {
+    for (const Gauge& gauge : gauges)
+      for (const Column& column : gauge.columns) history_.add_column(column);
+    append(gauges_, std::move(gauges));
+  };
+  add(clock_gauges(simulation));
+  add(temperature_gauges());
+  for (const auto& stage : stages_)
+    for (const Column& column : stage->columns()) history_.add_column(column);
+  add(motion_gauges(simulation));
+  add(transport_gauges(simulation));
+  add(probe_gauges(simulation));
+}
+
+bool Run::next() {
+  if (outcome_ != Outcome::running) return false;
+  frame_is_due_ = false;
+  if (!has_started_) {
+    has_started_ = true;
+    add_row();
+    frame_is_due_ = true;
+    return true;
+  }
+  if (stage_is_over_) ++stage_;
+  if (stage_is_over_ || !stage_is_begun_) begin_stage();
+  if (!move_to_look()) return false;
+  add_row();
+  records_[stage_].rows.last = history_.row_count();
+  const auto& row = history_.row(history_.row_count() - 1);
+  const bool finite =
+      std::all_of(row.begin(), row.end(), [](const auto& cell) { return !cell || std::isfinite(*cell); });
+  const Verdict verdict = finite ? stages_[stage_]->judge(simulation_)
+                                 : Verdict{.over = true, .last = true, .outcome = Outcome::unstable};
+  frame_is_due_ = verdict.over || verdict.frame;
+  if (verdict.over) end_stage(verdict);
+  return true;
+}
+
+Outcome Run::run() {
+  while (next()) continue;
+  return outcome_;
+}
+
+void Run::begin_stage() {
+  stage_is_begun_ = true;
+  stage_is_over_ = false;
+  records_[stage_] = {Outcome::running, {history_.row_count(), history_.row_count()}};
+  if (simulation_.moves()) simulation_.press().begin_stage();
+  stages_[stage_]->begin(simulation_);
+}
+
+/// False when it was stopped on the way.
+bool Run::move_to_look() {
+  for (bool there = false; !there;) {
+    if (stop_asked_()) {
+      records_[stage_].outcome = Outcome::stopped;
+      outcome_ = Outcome::stopped;
+      return false;
+    }
+    there = stages_[stage_]->advance(simulation_, batch());
+    call_back();
+  }
+  return true;
+}
+
+int Run::batch() const {
+  if (calls_.empty()) return most_steps_;
+  const std::int64_t to_call = calls_.begin()->first - simulation_.mechanics().steps();
+  return static_cast<int>(std::min<std::int64_t>(most_steps_, to_call));
+}
+
+void Run::call_back() {
+  while (!calls_.empty() && calls_.begin()->first <= simulation_.mechanics().steps()) {
+    const auto call = std::move(calls_.extract(calls_.begin()).mapped());
+    call(*this);
+  }
+}
+
+void Run::call_at(std::int64_t step, std::function<void(Run&)> call) {
+  if (!simulation_.moves()) throw Error("nothing moves in this run, so there is no step to call back at");
+  if (step <= simulation_.mechanics().steps())
+    throw Error(fmt::format("step {} is past: the mechanics has done {} steps", step,
+                            simulation_.mechanics().steps()));
+  calls_.emplace(step, std::move(call));
+}
+
+void Run::limit_batch(int most_steps) {
+  if (most_steps < 1)
+    throw Error(fmt::format("the steps of a batch are {}, but there must be at least 1", most_steps));
+  most_steps_ = std::min(most_steps_, most_steps);
+}
+
+void Run::add_row() {
+  history_.add_row();
+  history_.set("stage", static_cast<double>(stage_));
+  const Stage* stage = stage_is_begun_ ? stages_[stage_].get() : nullptr;  // none at the start of the run
+  for (const Gauge& gauge : gauges_) {
+    if (gauge.of_motion && stage && !stage->needs().mechanics) continue;
+    const std::vector<double> values = gauge.read(simulation_);
+    for (std::size_t i = 0; i < values.size(); ++i) history_.set(gauge.columns[i].name, values[i]);
+  }
+  if (!stage) return;
+  const auto columns = stage->columns();
+  const auto values = stage->values();
+  for (std::size_t i = 0; i < values.size(); ++i) history_.set(columns[i].name, values[i]);
+}
+
+void Run::end_stage(const Verdict& verdict) {
+  stage_is_over_ = true;
+  records_[stage_].outcome = verdict.outcome;
+  if (verdict.last || stage_ + 1 == static_cast<std::int64_t>(stages_.size())) outcome_ = verdict.outcome;
+}
+
+void Run::visit_state(StateVisitor& visitor) {
+  visitor.visit("stage", stage_);
+  visitor.visit("has_started", has_started_);
+  visitor.visit("stage_is_begun", stage_is_begun_);
+  visitor.visit("stage_is_over", stage_is_over_);
+  simulation_.visit_state(visitor);
+  stages_[stage_]->visit_state(visitor);
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "pyroclast/simulation/gauges.hpp"
+#include "pyroclast/simulation/history.hpp"
+#include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/simulation/stage.hpp"
+
+namespace pyroclast {
+
+/// How a stage of a run went.
+struct StageRecord {
+  Outcome outcome = Outcome::not_begun;
+  RowRange rows;  ///< in the history; the row at the start of the run belongs to no stage
+};
+
+/// Takes a simulation through a list of stages, from look to look:
+///
+///     while (run.next()) recorder.record(run);
+///
+/// The first look is that at the start. Between two looks the simulation moves in batches; only between them,
+/// and at their ends, the run asks whether it shall stop, and calls back. Where batches end changes no
+/// result.
+class Run {
+ public:
+  /// \param simulation  kept by reference; must outlive this
+  Run(Simulation& simulation, std::vector<std::unique_ptr<Stage>> stages);
+
+  /// Goes on to the next look and adds a row to the history. False when the run is over, or was stopped: then
+  /// there is no new look, and what was broken off has left no row.
+  bool next();
+  /// All the rest of it.
+  Outcome run();
+
+  /// Asked before every batch; true stops the run.
+  void stop_when(std::function<bool()> asked) { stop_asked_ = std::move(asked); }
+  /// Calls back once, when the mechanics has done so many steps since its beginning. The batch ends there.
+  /// Throws Error when that step is past, or nothing moves.
+  void call_at(std::int64_t step, std::function<void(Run&)> call);
+  /// Bounds the steps of a batch further.
+  void limit_batch(int most_steps);
+
+  /// Of the last look.
+  bool frame_is_due() const { return frame_is_due_; }
+  /// Number of the stage of the last look, from 0.
+  int stage_number() const { return static_cast<int>(stage_); }
+  const Stage& stage() const { return *stages_[stage_]; }
+  /// Share of that stage that is done, 0 to 1, as far as it can be foreseen.
+  double progress() const { return stage().progress(simulation_); }
+
+  Outcome outcome() const { return outcome_; }
+  const std::vector<std::unique_ptr<Stage>>& stages() const { return stages_; }
+  const std::vector<StageRecord>& records() const { return records_; }
+  const History& history() const { return history_; }
+  const Simulation& simulation() const { return simulation_; }
+
+  /// Of the run, the present stage and the simulation's press and clock; not of the solvers.
+  void visit_state(StateVisitor& visitor);
+
+ private:
+  void begin_stage();
+  bool move_to_look();
+  int batch() const;
+  void call_back();
+  void add_row();
+  void end_stage(const Verdict& verdict);
+
+  Simulation& simulation_;
+  std::vector<std::unique_ptr<Stage>> stages_;
+  std::vector<StageRecord> records_;
+  std::vector<Gauge> gauges_;
+  History history_;
+  std::function<bool()> stop_asked_ = [] { return false; };
+  std::multimap<std::int64_t, std::function<void(Run&)>> calls_;  ///< by step
+  int most_steps_;                                                ///< of a batch
+
+  std::int64_t stage_ = 0;
+  bool has_started_ = false;
+  bool stage_is_begun_ = false;
+  bool stage_is_over_ = false;
+  bool frame_is_due_ = false;
+  Outcome outcome_ = Outcome::running;
+};
+
+}  // namespace pyroclast

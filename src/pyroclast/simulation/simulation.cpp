@@ -1,0 +1,124 @@
+#include "pyroclast/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/simulation/coupling.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Measured peak over the number of blocks, from 5,000 to 1,000,000 blocks (docs/performance.md), rounded up:
+/// heat conduction takes half as much again.
+constexpr double kBytesPerBlock = 6000.0;
+constexpr double kBytesFixed = 40e6;
+
+/// Memory that this process may still take, bytes: what the machine has free, or the process limit if
+/// smaller.
+double available_memory() {
+  double available = std::numeric_limits<double>::infinity();
+  std::ifstream file("/proc/meminfo");
+  for (std::string name; file >> name;) {
+    double kilobytes = 0.0;
+    if (name == "MemAvailable:" && file >> kilobytes) {
+      available = 1024.0 * kilobytes;
+      break;
+    }
+    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+    available = std::min(available, static_cast<double>(limit.rlim_cur));
+  return available;
+}
+
+TemperatureField make_field(const Model<2>& model, const std::array<SolidMaterial, 3>& solids,
+                            const HeatConditions& heat) {
+  if (heat.uniform) return {model, heat.initial};
+  const Interval initial{heat.initial, heat.initial};  // each exposure widens it
+  return {model, make_conduction(model, solids, heat, initial)};
+}
+
+std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const ConcreteMaterials& materials,
+                                             const TemperatureField& field,
+                                             const MechanicsParameters<2>& parameters,
+                                             const std::shared_ptr<Team>& team) {
+  std::vector<double> densities;
+  for (const auto& solid : materials.solids) densities.push_back(solid.density(kReferenceTemperature));
+  auto mechanics = std::make_unique<Mechanics<2>>(model, densities, properties_at(model, materials, field),
+                                                  parameters, team);
+  for (int c = 0; c < model.contact_count(); ++c)
+    if (model.contacts[c].interface == platen_interface) mechanics->break_contact(c);
+  return mechanics;
+}
+
+/// Component of a position along which the press stands.
+constexpr int kVertical = 1;
+
+}  // namespace
+
+Simulation::Simulation(specimen::Specimen specimen, double thickness,
+                       const std::array<SolidMaterial, 3>& solids, const HeatConditions& heat,
+                       const std::vector<ProbePosition>& probes,
+                       const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team)
+    : team_(std::move(team)),
+      specimen_(std::move(specimen)),
+      model_(make_concrete_model(specimen_, motion ? std::optional(motion->platen_thickness) : std::nullopt,
+                                 thickness)),
+      heat_(heat),
+      field_(make_field(model_, solids, heat)) {
+  for (const auto& probe : probes) probes_.emplace_back(model_, probe);
+  if (!motion) return;
+  materials_ = make_concrete(solids, motion->contacts, specimen_.metrics.mean_size);
+  mechanics_ = make_mechanics(model_, materials_, field_, motion->mechanics, team_);
+  press_ = std::make_unique<Press<2>>(*mechanics_, kVertical, specimen_.height, std::array{specimen_.width});
+}
+
+void Simulation::visit_state(StateVisitor& visitor) {
+  visitor.visit("heating_time", heating_time_);
+  visitor.visit("exchanges", exchanges_);
+  if (press_) press_->visit_state(visitor);
+}
+
+double estimate_memory(std::int64_t blocks) {
+  return kBytesFixed + kBytesPerBlock * static_cast<double>(blocks);
+}
+
+specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& parameters) {
+  const double needed = estimate_memory(parameters.blocks.count);
+  const double available = available_memory();
+  if (needed > available)
+    throw Error(fmt::format("blocks.count = {}: needs about {:.1f} GB of memory, but only {:.1f} GB is free",
+                            parameters.blocks.count, needed * 1e-9, available * 1e-9));
+  return specimen::make_specimen(parameters);
+}
+
+double estimate_modulus(const Model<2>& model, const ConcreteMaterials& materials) {
+  const auto geometry = zone_geometry(model);
+  const auto blocks = zone_blocks(model);
+  double volume = 0.0, compliance = 0.0;
+  for (int z = 0; z < model.zone_count(); ++z) {
+    const int material = model.block_material[blocks[z]];
+    if (material == platen_material) continue;
+    volume += geometry.volume[z];
+    compliance += geometry.volume[z] / materials.solids[material].young(kReferenceTemperature);
+  }
+  for (const auto& c : model.contacts) {
+    if (c.interface == platen_interface) continue;
+    const auto p = materials.contacts[c.interface].at(kReferenceTemperature);
+    const double normal = c.normal[1] * c.normal[1];           // traction over stress, along the normal
+    const double tangential = c.normal[1] * c.tangents[0][1];  // and along the face
+    compliance +=
+        c.area * (normal * normal / p.normal_stiffness + tangential * tangential / p.shear_stiffness);
+  }
+  return volume / compliance;
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pyroclast/base/team.hpp"
+#include "pyroclast/material/concrete.hpp"
+#include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/simulation/heat_conditions.hpp"
+#include "pyroclast/simulation/press.hpp"
+#include "pyroclast/simulation/probe.hpp"
+#include "pyroclast/specimen/specimen.hpp"
+#include "pyroclast/thermal/temperature_field.hpp"
+
+namespace pyroclast {
+
+/// What a simulation that moves the body is made from, beside what every one is made from.
+struct MotionParameters {
+  double platen_thickness = 0.0;  ///< m
+  ContactParameters contacts;
+  MechanicsParameters<2> mechanics;
+};
+
+/// A specimen as a model, its temperatures, and, where a stage moves it, its mechanics and the press around
+/// it. Not movable: the solvers refer to the model beside them.
+class Simulation {
+ public:
+  /// \param thickness     of the specimen, out of plane, m
+  /// \param solids        aggregate, mortar, platen
+  /// \param probes        of temperature
+  /// \param motion        empty where nothing moves: then there are no platens and no mechanics
+  /// \param team          the threads of the run
+  ///
+  /// Throws Error when the model or a solver cannot be made, see make_conduction and properties_at, or a
+  /// probe lies outside.
+  Simulation(specimen::Specimen specimen, double thickness, const std::array<SolidMaterial, 3>& solids,
+             const HeatConditions& heat, const std::vector<ProbePosition>& probes,
+             const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team);
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// May change in number between two batches.
+  Team& team() { return *team_; }
+  const specimen::Specimen& specimen() const { return specimen_; }
+  const Model<2>& model() const { return model_; }
+  const ConcreteMaterials& materials() const { return materials_; }
+  const HeatConditions& heat() const { return heat_; }
+  TemperatureField& field() { return field_; }
+  const TemperatureField& field() const { return field_; }
+  const std::vector<Probe>& probes() const { return probes_; }
+
+  /// Whether there are mechanics and a press.
+  bool moves() const { return mechanics_ != nullptr; }
+  Mechanics<2>& mechanics() { return *mechanics_; }
+  const Mechanics<2>& mechanics() const { return *mechanics_; }
+  Press<2>& press() { return *press_; }
+  const Press<2>& press() const { return *press_; }
+
+  /// Since heating began, s: at the temperatures that the last exchange or conduction came to.
+  double heating_time() const { return heating_time_; }
+  void set_heating_time(double time) { heating_time_ = time; }
+  /// Number of a new exchange of temperatures, from 1.
+  std::int64_t count_exchange() { return ++exchanges_; }
+
+  void visit_state(StateVisitor& visitor);
+
+ private:
+  std::shared_ptr<Team> team_;
+  specimen::Specimen specimen_;
+  Model<2> model_;
+  ConcreteMaterials materials_;
+  HeatConditions heat_;
+  TemperatureField field_;
+  std::vector<Probe> probes_;
+  std::unique_ptr<Mechanics<2>> mechanics_;
+  std::unique_ptr<Press<2>> press_;
+  double heating_time_ = 0.0;
+  std::int64_t exchanges_ = 0;
+};
+
+/// Upper estimate of the memory that a run with so many blocks needs, bytes.
+double estimate_memory(std::int64_t blocks);
+
+/// Makes a specimen. Throws Error when it cannot be made, or a run of it would not fit into the memory that
+/// is free.
+specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& parameters);
+
+/// Lower estimate of Young's modulus of the model in the vertical direction, Pa: the same vertical stress
+/// everywhere, compliances of zones and contacts added up (Reuss). Platens left out.
+double estimate_modulus(const Model<2>& model, const ConcreteMaterials& materials);
+
+}  // namespace pyroclast

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "pyroclast/stages/registry.hpp"
+
+namespace pyroclast {
+
+/// A platen velocity as high as three measures of inertia and one of cracking allow.
+struct VelocityControl {
+  double fastest = 0.0;              ///< m/s; the stage's velocity is the lowest
+  double unbalanced_ratio = 0.0;     ///< tolerance
+  double kinetic_over_strain = 0.0;  ///< tolerance of kinetic over elastic energy
+  /// Tolerance of the difference between the stresses on the platens, over the largest stress so far.
+  double platen_difference = 0.0;
+  double dissipation_rate = 0.0;  ///< tolerance of the power that contacts dissipate over elastic energy, 1/s
+};
+
+/// Drives the upper platen down, the lower one fixed. First brings it back to ends that it left, or that left
+/// it, while the temperature changed.
+class Compress : public Stage {
+ public:
+  struct Keys {
+    double velocity = 0.0;  ///< m/s
+    /// Time over which the velocity is brought up, s. A controlled velocity then rises by no more than a
+    /// factor e in as much time.
+    double ramp_time = 0.0;
+    std::optional<VelocityControl> control = {};
+    double stop_strain = 0.0;  ///< ends at this axial strain, from the beginning of the stage
+    double stop_fraction =
+        0.0;  ///< ends when the stress has fallen below this fraction of the peak; 0: never
+    double history_strain = 0.0;  ///< see OutputIntervals
+    double frame_strain = 0.0;    ///< see OutputIntervals
+  };
+
+  explicit Compress(const Keys& keys) : keys_(keys) {}
+
+  const char* kind() const override { return "compress"; }
+  StageNeeds needs() const override { return {}; }
+  void begin(Simulation& simulation) override;
+  bool advance(Simulation& simulation, int most_steps) override;
+  Verdict judge(Simulation& simulation) override;
+  double progress(const Simulation& simulation) const override;
+  StageReport report(const History& history, RowRange rows, Outcome outcome) const override;
+  Forecast forecast(const Simulation& simulation, Foreseen& foreseen) const override;
+  void visit_state(StateVisitor& visitor) override;
+
+  double velocity() const { return keys_.velocity; }  ///< m/s
+
+ private:
+  void begin_loading(Simulation& simulation);
+  void close_gap(Simulation& simulation, int most_steps);
+  bool move_at_velocity(Simulation& simulation, int most_steps);
+  bool move_controlled(Simulation& simulation, int most_steps);
+  void choose_velocity(const Simulation& simulation);
+  double excess(const Simulation& simulation, double time);
+  std::int64_t steps_per_look(const Simulation& simulation) const;
+
+  Keys keys_;
+  std::int64_t gap_steps_left_ = 0;
+  bool is_loading_ = false;      ///< the gap is closed
+  std::int64_t steps_ = 0;       ///< since loading began
+  std::int64_t steps_left_ = 0;  ///< to the next look, or to the next choice of a controlled velocity
+  double velocity_ = 0.0;        ///< where it is controlled, m/s
+  double way_ = 0.0;             ///< since the last look, where the velocity is controlled, m
+  double dissipated_ = 0.0;      ///< at the last choice of the velocity, J
+  double peak_stress_ = 0.0;     ///< Pa
+  double next_frame_ = 0.0;      ///< strain of the stage
+};
+
+StageKind compress_kind();
+
+}  // namespace pyroclast

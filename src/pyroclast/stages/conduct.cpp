@@ -1,0 +1,124 @@
+#include "pyroclast/stages/conduct.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "pyroclast/simulation/simulation.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+constexpr StageNeeds kNeeds{.mechanics = false, .field = FieldChoice::computed, .frames_in_time = true};
+
+std::unique_ptr<Stage> read_conduct(const Section& s, const StageTables& tables) {
+  Conduct::Keys keys;
+  keys.duration = s.quantity("duration", unit::time, Range::positive());
+  keys.interval = s.quantity("interval", unit::time, Range::positive());
+  keys.change = s.quantity("change", unit::temperature_difference, Range::positive(), keys.change);
+  if (s.has("steady_rate"))
+    keys.steady_rate = s.quantity("steady_rate", unit::heating_rate, Range::positive());
+  keys.frame_interval = tables.output.frame_interval;
+  return std::make_unique<Conduct>(keys);
+}
+
+/// The first multiple of the interval after a time.
+double next_multiple(double interval, double time) {
+  if (interval == kNever) return kNever;
+  const double next = interval * (std::floor(time / interval) + 1.0);
+  return next > time ? next : next + interval;  // rounding
+}
+
+}  // namespace
+
+StageKind conduct_kind() {
+  return {"conduct", kNeeds, read_conduct};
+}
+
+StageNeeds Conduct::needs() const {
+  return kNeeds;
+}
+
+void Conduct::begin(Simulation& simulation) {
+  began_ = simulation.field().time();
+  simulation.field().begin_exposure(temperature_range(simulation.heat(), end()));
+  steady_from_ = keys_.steady_rate ? constant_from(simulation.heat(), end()) : kNever;
+  next_frame_ = next_multiple(keys_.frame_interval, began_);
+}
+
+double Conduct::steady_rate(const Simulation& simulation) const {
+  return simulation.field().time() >= steady_from_ ? *keys_.steady_rate : 0.0;
+}
+
+void Conduct::begin_flow(const Simulation& simulation) {
+  const double time = simulation.field().time();
+  flow_steady_ = steady_rate(simulation);
+  double until = std::min({end(), next_frame_, next_multiple(keys_.interval, time)});
+  if (flow_steady_ == 0.0) until = std::min(until, steady_from_);
+  flow_.begin(keys_.change, until, flow_steady_);
+}
+
+bool Conduct::advance(Simulation& simulation, int) {
+  if (!flow_.flows()) begin_flow(simulation);
+  if (!flow_.advance(simulation.field())) return false;
+  simulation.set_heating_time(simulation.field().time());
+  return true;
+}
+
+Verdict Conduct::judge(Simulation& simulation) {
+  const double time = simulation.field().time();
+  if (simulation.field().conduction()->rate() < flow_steady_)
+    return {.over = true, .outcome = Outcome::steady};
+  if (time >= end()) return {.over = true};
+  if (time < next_frame_) return {};
+  next_frame_ = next_multiple(keys_.frame_interval, time);
+  return {.frame = true};
+}
+
+double Conduct::progress(const Simulation& simulation) const {
+  return std::clamp((simulation.field().time() - began_) / keys_.duration, 0.0, 1.0);
+}
+
+StageReport Conduct::report(const History& history, RowRange rows, Outcome outcome) const {
+  StageReport report;
+  if (rows.empty()) return report;
+  const auto last = [&](const char* name) { return history.values(name, rows).back(); };
+  const double rate = last("rate_K_s");
+  report.results = {
+      {"steady", outcome == Outcome::steady},
+      {"heating_time_s", last("heating_time_s")},
+      {"temperature_mean_degC", last("temperature_degC")},
+      {"temperature_min_degC", last("temperature_min_degC")},
+      {"temperature_max_degC", last("temperature_max_degC")},
+      {"rate_K_s", rate},
+  };
+  report.lines.push_back(fmt::format("mean {:.1f} degC, {:.1f} to {:.1f}, changing by {:.2g} K/s",
+                                     last("temperature_degC"), last("temperature_min_degC"),
+                                     last("temperature_max_degC"), rate));
+  if (outcome == Outcome::completed && keys_.steady_rate)
+    report.warnings.push_back(
+        fmt::format("no steady state: the temperatures still change by {:.2g} K/s, more than {:.2g} K/s",
+                    rate, *keys_.steady_rate));
+  return report;
+}
+
+Forecast Conduct::forecast(const Simulation&, Foreseen& foreseen) const {
+  foreseen.temperature = foreseen.hottest;
+  return {.looks = keys_.duration / keys_.interval,
+          .frames = keys_.duration / keys_.frame_interval + 1.0,
+          .heating_duration = keys_.duration};
+}
+
+void Conduct::visit_state(StateVisitor& visitor) {
+  visitor.visit("began", began_);
+  visitor.visit("steady_from", steady_from_);
+  visitor.visit("flow_steady", flow_steady_);
+  visitor.visit("next_frame", next_frame_);
+  flow_.visit_state(visitor);
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,167 @@
+#include "pyroclast/stages/exchange_stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "pyroclast/simulation/simulation.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Temperatures that differ by less are the same, K.
+constexpr double kSameTemperature = 1e-6;
+
+/// What the exchanges of a stage came to.
+struct ExchangeResponse {
+  std::optional<double> critical_temperature;  ///< mean over the specimen when the platen ran away, °C
+  double critical_time = 0.0;                  ///< heating time then, s
+  double highest = 0.0;                        ///< temperature reached anywhere, °C
+  std::int64_t exchanges = 0;
+  std::int64_t not_converged = 0;  ///< exchanges after which the body did not come to rest
+  double worst_ratio = 0.0;        ///< largest unbalanced ratio left by an exchange before any failure
+  double cycles = 0.0;             ///< in all
+  double largest_thrust = 0.0;     ///< largest stress on the platens, MPa, compression positive
+};
+
+ExchangeResponse exchange_response(const History& history, RowRange rows, Outcome outcome) {
+  const auto column = [&](const char* name) { return history.values(name, rows); };
+  const auto mean = column("temperature_degC"), hottest = column("temperature_max_degC"),
+             time = column("heating_time_s"), cycles = column("cycles"), converged = column("converged"),
+             ratio = column("unbalanced_ratio"), stress = column("stress_MPa");
+  ExchangeResponse r;
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    ++r.exchanges;
+    r.cycles += cycles[i];
+    r.highest = std::max(r.highest, hottest[i]);
+    r.largest_thrust = std::max(r.largest_thrust, stress[i]);
+    if (outcome == Outcome::ran_away && i + 1 == mean.size()) {
+      r.critical_temperature = mean[i];
+      r.critical_time = time[i];
+    } else {
+      r.not_converged += converged[i] > 0.0 ? 0 : 1;
+      r.worst_ratio = std::max(r.worst_ratio, ratio[i]);
+    }
+  }
+  return r;
+}
+
+PlatenControl read_platen(const Section& s) {
+  return s.choice<PlatenControl>("platen",
+                                 {{"force", PlatenControl::force}, {"fixed", PlatenControl::fixed}});
+}
+
+}  // namespace
+
+Coupling read_coupling(const Section& s) {
+  Coupling c;
+  c.increment = s.quantity("exchange_increment", unit::temperature_difference, Range::positive());
+  c.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive());
+  c.platen_difference = s.quantity("platen_difference", unit::stress, Range::positive());
+  c.least_cycles = s.integer("least_cycles", Range::between(0, 1e12));
+  c.most_cycles = s.integer("most_cycles", Range::between(1, 1e12));
+  if (s.ok() && c.most_cycles < c.least_cycles) s.error("most_cycles", "must not be less than least_cycles");
+  c.predictor = s.flag("predictor", false);
+  c.failure_strain = s.number("failure_strain", Range::inside(0.0, 1.0));
+  return c;
+}
+
+ExchangeStage::Keys read_exchange(const Section& own, const StageTables& tables) {
+  if (!tables.coupling_table)
+    own.error("kind", "a stage that changes temperatures needs the table [coupling]");
+  ExchangeStage::Keys keys{tables.coupling, tables.output.frame_temperature};
+  keys.coupling.platen = read_platen(own);
+  return keys;
+}
+
+void ExchangeStage::begin(Simulation& simulation) {
+  load_stress_ = simulation.press().stress_held();
+  begin_change(simulation);
+  exchange_.begin(simulation);
+  last_interval_ = interval_of(simulation.field().mean());
+}
+
+bool ExchangeStage::advance(Simulation& simulation, int most_steps) {
+  if (!rests_) {
+    rests_ = change(simulation, exchange_, most_steps);
+    return false;
+  }
+  if (!exchange_.advance(simulation, most_steps)) return false;
+  rests_ = false;
+  return true;
+}
+
+Verdict ExchangeStage::judge(Simulation& simulation) {
+  if (exchange_.ran_away()) return {.over = true, .last = true, .outcome = Outcome::ran_away};
+  if (progress(simulation) >= 1.0) return {.over = true};
+  const double interval = interval_of(simulation.field().mean());
+  const bool is_new = interval != last_interval_;
+  last_interval_ = interval;
+  return {.frame = is_new};
+}
+
+/// Which of the even intervals between frames a temperature lies in.
+double ExchangeStage::interval_of(double temperature) const {
+  return std::floor((temperature + kSameTemperature) / keys_.frame_temperature);
+}
+
+StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome outcome) const {
+  StageReport report;
+  if (rows.empty()) return report;
+  const ExchangeResponse r = exchange_response(history, rows, outcome);
+  const auto or_none = [](bool is_there, double value) {
+    return is_there ? Result::Value(value) : Result::Value();
+  };
+  const bool failed = r.critical_temperature.has_value();
+  report.results = {
+      {"field", needs().field == FieldChoice::uniform ? "uniform" : "conduction"},
+      {"platen", name(coupling().platen)},
+      {"load_stress_MPa", load_stress_ * 1e-6},
+      {"critical_temperature_degC", or_none(failed, r.critical_temperature.value_or(0.0))},
+      {"critical_time_s", or_none(failed, r.critical_time)},
+      {"highest_temperature_degC", r.highest},
+      {"largest_exchange_increment_K", coupling().increment},
+      {"exchanges", r.exchanges},
+      {"exchanges_not_converged", r.not_converged},
+      {"worst_unbalanced_ratio", r.worst_ratio},
+      {"cycles", static_cast<std::int64_t>(r.cycles)},
+      {"largest_thrust_MPa", r.largest_thrust},
+  };
+  report.lines.push_back(
+      fmt::format("to {:.0f} degC in {} exchanges of up to {:g} K, {:.0f} cycles; {} did not come to rest",
+                  r.highest, r.exchanges, coupling().increment, r.cycles, r.not_converged));
+  if (coupling().platen == PlatenControl::fixed)
+    report.lines.push_back(fmt::format("thrust up to {:.2f} MPa", r.largest_thrust));
+  else
+    report.lines.push_back(fmt::format(
+        "load {:.2f} MPa: {}", load_stress_ * 1e-6,
+        failed ? fmt::format("critical temperature {:.0f} degC", *r.critical_temperature) : "no failure"));
+  if (r.not_converged > 0)
+    report.warnings.push_back(
+        fmt::format("{} of {} exchanges of temperature did not come to rest within the stated cycles "
+                    "(worst unbalanced ratio {:.1e}); history.csv flags them",
+                    r.not_converged, r.exchanges, r.worst_ratio));
+  return report;
+}
+
+Forecast ExchangeStage::forecast(const Simulation&, Foreseen& foreseen) const {
+  const double from = foreseen.temperature;
+  const double exchanges = std::ceil(foreseen_change(foreseen) / coupling().increment);
+  return {.steps = exchanges * exchange_.expected_cycles(),
+          .looks = exchanges,
+          .frames = std::abs(foreseen.temperature - from) / keys_.frame_temperature + 1.0,
+          .exchanges = exchanges,
+          .heating_duration = needs().field == FieldChoice::computed ? heating().duration : 0.0};
+}
+
+void ExchangeStage::visit_state(StateVisitor& visitor) {
+  visitor.visit("rests", rests_);
+  visitor.visit("load_stress", load_stress_);
+  visitor.visit("last_interval", last_interval_);
+  exchange_.visit_state(visitor);
+  visit_change(visitor);
+}
+
+}  // namespace pyroclast

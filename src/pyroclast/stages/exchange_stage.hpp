@@ -1,0 +1,52 @@
+#pragma once
+
+#include "pyroclast/stages/registry.hpp"
+
+namespace pyroclast {
+
+/// A stage that changes temperatures and hands them over to the mechanics: a look follows each exchange.
+class ExchangeStage : public Stage {
+ public:
+  struct Keys {
+    Coupling coupling;
+    double frame_temperature = 0.0;  ///< see OutputIntervals
+  };
+
+  void begin(Simulation& simulation) final;
+  bool advance(Simulation& simulation, int most_steps) final;
+  Verdict judge(Simulation& simulation) final;
+  std::vector<Column> columns() const final { return Exchange::columns(); }
+  std::vector<double> values() const final { return exchange_.values(); }
+  StageReport report(const History& history, RowRange rows, Outcome outcome) const final;
+  Forecast forecast(const Simulation& simulation, Foreseen& foreseen) const final;
+  void visit_state(StateVisitor& visitor) final;
+
+ protected:
+  explicit ExchangeStage(const Keys& keys) : keys_(keys), exchange_(keys.coupling) {}
+
+  const Coupling& coupling() const { return keys_.coupling; }
+
+  virtual void begin_change(Simulation& simulation) = 0;
+  /// One batch of changing the temperatures to the next exchange, and hands them over; true when done.
+  virtual bool change(Simulation& simulation, Exchange& exchange, int most_evaluations) = 0;
+  /// Change of temperature to come as far as it can be foreseen, K, and where it ends.
+  virtual double foreseen_change(Foreseen& foreseen) const = 0;
+  virtual void visit_change(StateVisitor& visitor) = 0;
+
+ private:
+  double interval_of(double temperature) const;
+
+  Keys keys_;
+  Exchange exchange_;
+  bool rests_ = false;          ///< the temperatures are handed over, and the body comes to rest
+  double load_stress_ = 0.0;    ///< held at the beginning, Pa
+  double last_interval_ = 0.0;  ///< of temperature, in which the last row lay
+};
+
+/// Reads the keys that stages of this sort share. What is wrong is recorded in the deck.
+ExchangeStage::Keys read_exchange(const Section& own, const StageTables& tables);
+
+/// Reads [coupling].
+Coupling read_coupling(const Section& s);
+
+}  // namespace pyroclast

@@ -1,0 +1,59 @@
+#include "pyroclast/stages/expose.hpp"
+
+#include "pyroclast/simulation/simulation.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Shares of a duration that differ by less are the same.
+constexpr double kSameTime = 1e-9;
+/// The mean temperature changes by about this share of what the hottest boundary could bring about.
+constexpr double kMeanChange = 0.5;
+
+std::unique_ptr<Stage> read_expose(const Section& s, const StageTables& tables) {
+  Expose::Keys keys;
+  keys.duration = s.quantity("duration", unit::time, Range::positive());
+  keys.exchange = read_exchange(s, tables);
+  if (tables.coupling.predictor)
+    tables.coupling_table->error("predictor",
+                                 "is for stages of kind \"heat\": it takes the temperature as uniform");
+  return std::make_unique<Expose>(keys);
+}
+
+}  // namespace
+
+StageKind expose_kind() {
+  return {"expose", {.field = FieldChoice::computed}, read_expose};
+}
+
+void Expose::begin_change(Simulation& simulation) {
+  began_ = simulation.field().time();
+  simulation.field().begin_exposure(temperature_range(simulation.heat(), began_ + keys_.duration));
+}
+
+bool Expose::change(Simulation& simulation, Exchange& exchange, int) {
+  if (!flow_.flows()) flow_.begin(coupling().increment, began_ + keys_.duration);
+  if (!flow_.advance(simulation.field())) return false;
+  simulation.set_heating_time(simulation.field().time());
+  exchange.hand_over(simulation);
+  return true;
+}
+
+double Expose::progress(const Simulation& simulation) const {
+  const double share = (simulation.heating_time() - began_) / keys_.duration;
+  return share > 1.0 - kSameTime ? 1.0 : share;
+}
+
+double Expose::foreseen_change(Foreseen& foreseen) const {
+  const double change = foreseen.hottest - foreseen.temperature;
+  foreseen.temperature += kMeanChange * change;
+  return change;
+}
+
+void Expose::visit_change(StateVisitor& visitor) {
+  visitor.visit("began", began_);
+  flow_.visit_state(visitor);
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "pyroclast/simulation/heat_flow.hpp"
+#include "pyroclast/stages/exchange_stage.hpp"
+
+namespace pyroclast {
+
+/// Lets heat flow through the specimen by its boundary conditions.
+class Expose : public ExchangeStage {
+ public:
+  struct Keys {
+    double duration = 0.0;  ///< s
+    ExchangeStage::Keys exchange;
+  };
+
+  explicit Expose(const Keys& keys) : ExchangeStage(keys.exchange), keys_(keys) {}
+
+  const char* kind() const override { return "expose"; }
+  StageNeeds needs() const override { return {.field = FieldChoice::computed}; }
+  HeatingPlan heating() const override { return {.duration = keys_.duration}; }
+  double progress(const Simulation& simulation) const override;
+
+ private:
+  void begin_change(Simulation& simulation) override;
+  bool change(Simulation& simulation, Exchange& exchange, int most_evaluations) override;
+  double foreseen_change(Foreseen& foreseen) const override;
+  void visit_change(StateVisitor& visitor) override;
+
+  Keys keys_;
+  HeatFlow flow_;
+  double began_ = 0.0;  ///< heating time, s
+};
+
+StageKind expose_kind();
+
+}  // namespace pyroclast

@@ -1,0 +1,94 @@
+#include "pyroclast/stages/heat.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pyroclast/simulation/simulation.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Temperatures that differ by less are the same, K.
+constexpr double kSameTemperature = 1e-6;
+
+std::unique_ptr<Stage> read_heat_stage(const Section& s, const StageTables& tables) {
+  Heat::Keys keys;
+  keys.to = s.quantity("to", unit::temperature, Range::at_least(absolute_zero));
+  keys.rate = s.quantity("rate", unit::heating_rate, Range::positive());
+  keys.exchange = read_exchange(s, tables);
+  return std::make_unique<Heat>(keys);
+}
+
+/// Change of the specimen's free thermal strain between two temperatures: the least and the greatest of its
+/// solids, or none.
+Interval free_strain_change(const ConcreteMaterials& materials, double from, double to) {
+  Interval change{0.0, 0.0};
+  for (const auto m : {aggregate_material, mortar_material}) {
+    const Curve& strain = materials.solids[m].thermal_strain;
+    const double solid = strain(to) - strain(from);
+    change = {std::min(change.lower, solid), std::max(change.upper, solid)};
+  }
+  return change;
+}
+
+}  // namespace
+
+StageKind heat_kind() {
+  return {"heat", {.field = FieldChoice::uniform}, read_heat_stage};
+}
+
+void Heat::begin_change(Simulation& simulation) {
+  first_temperature_ = simulation.field().mean();
+  last_change_ = 0.0;
+}
+
+/// The predictor moves the body to where it will come to rest at its new temperature, as far as its last
+/// change foretells. What is left to the motion is what differs from place to place.
+bool Heat::change(Simulation& simulation, Exchange& exchange, int) {
+  TemperatureField& field = simulation.field();
+  const double now = field.mean();
+  const double left = std::abs(keys_.to - now);
+  const double change = std::min(coupling().increment, left);
+  const bool last = left <= coupling().increment + kSameTemperature;
+  field.set_uniform(last ? keys_.to : now + std::copysign(change, keys_.to - now));
+  simulation.set_heating_time(simulation.heating_time() + change / keys_.rate);
+  const Press<2>::EvenStrain strain{-simulation.press().specimen_strain(),
+                                    simulation.press().lateral_strain()};
+  exchange.hand_over(simulation);
+  if (coupling().predictor) {
+    if (last_change_ > 0.0) {
+      const auto [least, greatest] = free_strain_change(simulation.materials(), now, field.mean());
+      const auto foreseen = [&](double after, double before) {
+        return std::clamp((after - before) * change / last_change_, least, greatest);
+      };
+      exchange.strain_evenly_first(
+          {foreseen(strain.axial, last_strain_.axial), foreseen(strain.lateral, last_strain_.lateral)});
+    }
+    last_strain_ = strain;
+    last_change_ = change;
+  }
+  return true;
+}
+
+double Heat::progress(const Simulation& simulation) const {
+  const double mean = simulation.field().mean();
+  const double way = std::abs(keys_.to - first_temperature_);
+  if (std::abs(mean - keys_.to) < kSameTemperature || way == 0.0) return 1.0;
+  return std::abs(mean - first_temperature_) / way;
+}
+
+double Heat::foreseen_change(Foreseen& foreseen) const {
+  const double change = std::abs(keys_.to - foreseen.temperature);
+  foreseen.temperature = keys_.to;
+  return change;
+}
+
+void Heat::visit_change(StateVisitor& visitor) {
+  visitor.visit("first_temperature", first_temperature_);
+  visitor.visit("last_strain_axial", last_strain_.axial);
+  visitor.visit("last_strain_lateral", last_strain_.lateral);
+  visitor.visit("last_change", last_change_);
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "pyroclast/stages/exchange_stage.hpp"
+
+namespace pyroclast {
+
+/// Changes the temperature of the whole specimen evenly (paper, section 4).
+class Heat : public ExchangeStage {
+ public:
+  struct Keys {
+    double to = 0.0;    ///< °C
+    double rate = 0.0;  ///< K/s, positive; heating or cooling follows from `to`
+    ExchangeStage::Keys exchange;
+  };
+
+  explicit Heat(const Keys& keys) : ExchangeStage(keys.exchange), keys_(keys) {}
+
+  const char* kind() const override { return "heat"; }
+  StageNeeds needs() const override { return {.field = FieldChoice::uniform}; }
+  HeatingPlan heating() const override { return {.to = keys_.to}; }
+  double progress(const Simulation& simulation) const override;
+
+ private:
+  void begin_change(Simulation& simulation) override;
+  bool change(Simulation& simulation, Exchange& exchange, int most_evaluations) override;
+  double foreseen_change(Foreseen& foreseen) const override;
+  void visit_change(StateVisitor& visitor) override;
+
+  Keys keys_;
+  double first_temperature_ = 0.0;    ///< °C
+  Press<2>::EvenStrain last_strain_;  ///< before the last exchange
+  double last_change_ = 0.0;          ///< of temperature at the last exchange, K; 0 at none yet
+};
+
+StageKind heat_kind();
+
+}  // namespace pyroclast

@@ -1,0 +1,141 @@
+#include "pyroclast/thermal/temperature_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/model/concrete_model.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Fraction of a change that counts as the whole: rates that fall would else divide the rest for ever.
+constexpr double kReached = 0.95;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+}  // namespace
+
+TemperatureField::TemperatureField(const Model<2>& model)
+    : model_(model),
+      gridpoints_(model_.position.size(), kReferenceTemperature),
+      zones_(model_.zones.size()),
+      contacts_(model_.contacts.size()) {
+  specimen_volume_ = zone_geometry(model_).volume;
+  std::vector<bool> in_specimen(model_.position.size());
+  for (int b = 0; b < model_.block_count(); ++b) {
+    if (model_.block_material[b] == platen_material) {
+      std::fill(specimen_volume_.begin() + model_.block_zones[b],
+                specimen_volume_.begin() + model_.block_zones[b + 1], 0.0);
+      continue;
+    }
+    for (int g = model_.block_gridpoints[b]; g < model_.block_gridpoints[b + 1]; ++g) {
+      in_specimen[g] = true;
+      specimen_gridpoints_.push_back(g);
+    }
+  }
+  for (const auto& c : model_.contacts) contact_gridpoint_.push_back(in_specimen[c.a] ? c.a : c.b);
+}
+
+TemperatureField::TemperatureField(const Model<2>& model, double temperature) : TemperatureField(model) {
+  set_uniform(temperature);
+}
+
+TemperatureField::TemperatureField(const Model<2>& model, std::unique_ptr<Conduction<2>> conduction)
+    : TemperatureField(model) {
+  conduction_ = std::move(conduction);
+  read_conduction();
+}
+
+void TemperatureField::set_uniform(double temperature) {
+  if (!is_uniform()) throw Error("the temperature of a field that conduction computes cannot be set");
+  for (int g : specimen_gridpoints_) gridpoints_[g] = temperature;
+  update();
+}
+
+void TemperatureField::begin_exposure(const Interval& temperatures) {
+  if (is_uniform()) throw Error("a uniform temperature does not conduct heat; it is set");
+  conduction_->widen_temperature_range(temperatures);
+}
+
+double TemperatureField::advance(double largest_change, double until, double steady_rate) {
+  begin_advance(largest_change, until, steady_rate);
+  while (!advance(std::numeric_limits<std::int64_t>::max())) {
+  }
+  return time();
+}
+
+void TemperatureField::begin_advance(double largest_change, double until, double steady_rate) {
+  if (is_uniform()) throw Error("a uniform temperature does not conduct heat; it is set");
+  if (!(largest_change > 0.0))
+    throw Error(fmt::format("the change of temperature to advance by is {} K, but it must be greater than 0",
+                            largest_change));
+  end_advance();
+  if (!(until >= time()))
+    throw Error(fmt::format("the time to advance to is {} s, but it is {} s already", until, time()));
+  advance_ = {true, largest_change, until, steady_rate, 0.0, conduction_->temperature()};
+}
+
+bool TemperatureField::advance(std::int64_t stages) {
+  if (!advance_.under_way) throw Error("no advance of the temperatures was begun");
+  if (stages < 1)
+    throw Error(fmt::format("the solver may take {} stages, but it must be allowed 1 or more", stages));
+  const auto& [under_way, largest_change, until, steady_rate, change, begin] = advance_;
+  while (conduction_->time() < until && change < kReached * largest_change) {
+    const double now = conduction_->time();
+    const double foreseen = fastest_ > 0.0 ? now + (largest_change - change) / fastest_ : until;
+    if (!conduction_->advance_step(foreseen > now ? std::min(foreseen, until) : until, stages)) return false;
+    fastest_ = conduction_->largest_change() / (conduction_->time() - now);
+    advance_.change = largest_difference(begin, conduction_->temperature());
+    if (conduction_->rate() < steady_rate) break;
+    if (stages == 0) return false;
+  }
+  end_advance();
+  return true;
+}
+
+void TemperatureField::end_advance() {
+  if (!advance_.under_way) return;
+  advance_.under_way = false;
+  conduction_->drop_trial();
+  read_conduction();
+}
+
+void TemperatureField::read_conduction() {
+  gridpoints_ = conduction_->gridpoint_temperatures(kReferenceTemperature);
+  time_ = conduction_->time();
+  update();
+}
+
+/// What follows from the gridpoints.
+void TemperatureField::update() {
+  double volume = 0.0, content = 0.0;
+  for (std::size_t z = 0; z < zones_.size(); ++z) {
+    const auto& [a, b, c] = model_.zones[z];
+    zones_[z] = (gridpoints_[a] + gridpoints_[b] + gridpoints_[c]) / 3.0;
+    volume += specimen_volume_[z];
+    content += specimen_volume_[z] * zones_[z];
+  }
+  mean_ = content / volume;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) contacts_[c] = gridpoints_[contact_gridpoint_[c]];
+  minimum_ = kInfinity;
+  maximum_ = -kInfinity;
+  for (int g : specimen_gridpoints_) {
+    minimum_ = std::min(minimum_, gridpoints_[g]);
+    maximum_ = std::max(maximum_, gridpoints_[g]);
+  }
+  if (is_uniform()) mean_ = minimum_;  // without the rounding of a mean
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "pyroclast/model/model.hpp"
+#include "pyroclast/thermal/conduction.hpp"
+
+namespace pyroclast {
+
+/// The temperatures of a specimen during a run: one for the whole specimen, or the computed field. The
+/// platens are at the reference temperature throughout.
+class TemperatureField {
+ public:
+  /// One temperature for the whole specimen, °C. `model` must outlive the field.
+  TemperatureField(const Model<2>& model, double temperature);
+  /// The field that conduction computes, see make_conduction. `model` must outlive the field.
+  TemperatureField(const Model<2>& model, std::unique_ptr<Conduction<2>> conduction);
+
+  bool is_uniform() const { return !conduction_; }
+
+  /// Sets the specimen's temperature, °C. Throws Error for a computed field.
+  void set_uniform(double temperature);
+
+  /// Says to which temperatures, °C, the specimen may come by the end of what it is exposed to next, beside
+  /// those of earlier exposures; before the first one it stays at its initial temperature. So no result
+  /// depends on a later, hotter exposure. Throws Error for a uniform field.
+  void begin_exposure(const Interval& temperatures);
+
+  /// Conducts heat until some gridpoint of the specimen has changed by `largest_change`, K, since the call,
+  /// or to the time `until`, s, or until the rate (Conduction::rate) is below `steady_rate`, K/s. Returns the
+  /// time reached.
+  ///
+  /// The solver is stopped where the rates of its last step foresee the change, and asked after every step:
+  /// the change ends between 95 % of what is asked for and that plus one step's largest change
+  /// (HeatConditions::largest_change). It ends beyond only where a prescribed temperature jumps, or where
+  /// less than one stable step brings more. Throws Error for a uniform field.
+  double advance(double largest_change, double until, double steady_rate = 0.0);
+
+  /// The same in batches: begin, then call `advance` until it returns true. Until then all that can be read
+  /// here is as it was at the beginning; where batches end changes no bit.
+  void begin_advance(double largest_change, double until, double steady_rate = 0.0);
+  /// Goes on by at most `stages` stages of the solver (Conduction::stages_per_batch), 1 or more. Returns
+  /// whether the advance is over.
+  bool advance(std::int64_t stages);
+  /// Ends an advance that is under way after the last step that the solver completed.
+  void end_advance();
+
+  /// Temperatures, °C: of each gridpoint; of each zone, the mean of its gridpoints; of each contact point
+  /// that of its gridpoints, at a platen that of the specimen.
+  const std::vector<double>& gridpoints() const { return gridpoints_; }
+  const std::vector<double>& zones() const { return zones_; }
+  const std::vector<double>& contacts() const { return contacts_; }
+
+  /// Over the specimen, °C; the mean is one over the volume.
+  double mean() const { return mean_; }
+  double minimum() const { return minimum_; }
+  double maximum() const { return maximum_; }
+
+  /// Of these temperatures from the start of heating, s; 0 for a uniform field, which knows no time.
+  double time() const { return time_; }
+
+  /// The solver, with its ledger and rates; null for a uniform field.
+  const Conduction<2>* conduction() const { return conduction_.get(); }
+
+ private:
+  /// How far an advance has come.
+  struct Advance {
+    bool under_way = false;
+    double largest_change = 0.0, until = 0.0, steady_rate = 0.0;  ///< as asked for, K, s, K/s
+    double change = 0.0;                                          ///< so far, K
+    std::vector<double> begin;                                    ///< temperatures of the nodes then, °C
+  };
+
+  explicit TemperatureField(const Model<2>& model);
+
+  void read_conduction();
+  void update();
+
+  const Model<2>& model_;
+  std::unique_ptr<Conduction<2>> conduction_;
+  std::vector<int> specimen_gridpoints_;
+  std::vector<int> contact_gridpoint_;   ///< of each contact, on the specimen's side
+  std::vector<double> specimen_volume_;  ///< of each zone, m³; 0 in the platens
+
+  // what a checkpoint holds, beside the state of the conduction
+  Advance advance_;
+  double fastest_ = 0.0;  ///< rate of any temperature in the last step, K/s
+
+  double time_ = 0.0;
+  std::vector<double> gridpoints_, zones_, contacts_;
+  double mean_ = 0.0, minimum_ = 0.0, maximum_ = 0.0;
+};
+
+}  // namespace pyroclast

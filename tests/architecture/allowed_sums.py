@@ -1,0 +1,88 @@
+"""What sums.py finds and is right, with the reason. An entry that finds nothing any more must go."""
+
+from sums import Allowed
+
+_GEOMETRY = "geometry of the specimen, on one thread, before there is a body"
+_ZONE = "inside one zone"
+_FACE = "inside one row of faces: its contact points, components or sides"
+_BUNDLE = "of one bundle, in the step; chunked_sum takes the bundles"
+_GRIDPOINT = "at one gridpoint, from what touches it, in the order of the contacts or zones"
+_NODE = "at one node, from what shares it, in one order"
+_TIE = "over the gridpoints of one tie, in the order that it was made with"
+
+ALLOWED = [
+    # Not over a body
+    Allowed("app/check.cpp", "", "over the stages of a deck"),
+    Allowed("base/chunked_sum.hpp", "total += sum;", "chunked_sum itself"),
+    Allowed("base/vec.hpp", "", "components of one vector"),
+    Allowed("*", "exposure()", "durations of the stages of a deck"),
+    Allowed("*response.cpp", "compression_response()", "over the rows of a history"),
+    Allowed("results/summary.cpp", "energy_error()", "over the columns of energies in one row of a history"),
+    Allowed("simulation/press.cpp", "Press::lateral_strain()", "over the directions across the press"),
+    Allowed("stages/exchange_stage.cpp", "exchange_response()", "over the rows of a history"),
+    Allowed("stages/expose.cpp", "Expose::foreseen_change()", "over the stages of a deck"),
+    Allowed("thermal/time_stages.cpp", "set_weights()", "over the stages of one time step"),
+    Allowed("thermal/heat_material.cpp", "HeatTable::extend()", "over the knots of a table"),
+    # Before there is a body
+    Allowed("specimen/*", "", _GEOMETRY),
+    Allowed("*", "estimate_modulus()", "an estimate for the screen, on one thread, from the model as built"),
+    Allowed("mechanics/layout.cpp", "order_blocks()", "centre of one block"),
+    Allowed("thermal/thermal_mesh.cpp", "outline()", "centre of one face"),
+    Allowed("model/model.cpp", "face_frame()", "corners of one face"),
+    # Inside one item
+    Allowed("material/contact_law.hpp", "", "inside one contact point"),
+    Allowed("material/zone_law.hpp", "", _ZONE),
+    Allowed("*probe.cpp", "", _ZONE),
+    Allowed("thermal/thermal_mesh.cpp", "opposite_gradient()", _ZONE),
+    Allowed("thermal/zone_conduction.cpp", "gradient[Dim] -=", _ZONE),
+    Allowed("thermal/zone_conduction.cpp", "row[i] +=", _ZONE),
+    Allowed("thermal/zone_conduction.cpp", "ZoneConduction::mean_temperature()", _ZONE),
+    Allowed("thermal/zone_conduction.cpp", "ZoneConduction::update()", _ZONE),
+    Allowed("thermal/zone_conduction.cpp", "ZoneConduction::inflow()", _NODE),
+    Allowed("thermal/zone_conduction.cpp", "ZoneConduction::gather_rows()", _NODE),
+    Allowed("thermal/zone_conduction.cpp", "ZoneConduction::shares()", _NODE),
+    Allowed("thermal/conduction.cpp", "total_volumes()", _NODE),
+    Allowed("thermal/conduction.cpp", "area[nodes_.of_gridpoint[g]] +=", _NODE),
+    Allowed("thermal/heat_boundary.cpp", "heat[patch.node] +=", _NODE),
+    Allowed("thermal/heat_boundary.cpp", "HeatBoundary::add_slope()", _NODE),
+    Allowed("thermal/heat_material.cpp", "NodeEnthalpy::at()", _NODE),
+    Allowed("thermal/heat_material.cpp", "NodeEnthalpy::least_capacity()", _NODE),
+    Allowed("mechanics/mechanics.cpp", "gravity_mass_[g] +=", _GRIDPOINT),
+    # The step
+    Allowed("mechanics/step/*", "force[Dim] -= force[n]", _ZONE),
+    Allowed("mechanics/step/*", "applied += norm(f)", _ZONE),
+    Allowed("mechanics/step/*", "g[Dim] - vectors[n]", _ZONE),
+    Allowed("mechanics/step/*", "sum += abs(k)", _ZONE),
+    Allowed("mechanics/step/*", "force += frame.tangents[t]", _FACE),
+    Allowed("mechanics/step/*", "turning += response.", _FACE),
+    Allowed("mechanics/step/*", "stored += response.stored", _FACE),
+    Allowed("mechanics/step/*", "applied += 2.0 * norm(force)", _FACE),
+    Allowed("mechanics/step/*", "sum += abs(c.normal_stiffness", _FACE),
+    Allowed("mechanics/step/*", "area += Real::load(", _FACE),
+    Allowed("mechanics/step/*", "total[i] += select(side_b", _GRIDPOINT),
+    Allowed("mechanics/step/*", "gather(s.turning_force", _GRIDPOINT),
+    Allowed("mechanics/step/*", "total += force;", _GRIDPOINT),
+    Allowed("mechanics/step/*", "middle += more[2]", _GRIDPOINT),
+    Allowed("mechanics/step/*", "scratch.sum[slot / kLanes].c[i][slot % kLanes] +=", _GRIDPOINT),
+    Allowed("mechanics/step/*", "sums.applied += norm(", _BUNDLE),
+    Allowed("mechanics/step/*", "sums.stored -=", _BUNDLE),
+    Allowed("mechanics/step/*", "sums.applied += select(", _BUNDLE),
+    Allowed("mechanics/step/*", "move_row()", _BUNDLE),
+    Allowed("mechanics/step/*", "loading_work +=", _BUNDLE),
+    Allowed("mechanics/step/*", "total += force(slot)", _TIE),
+    Allowed("mechanics/step/*", "mass += s.time_step / s.step_over_mass[slot]", _TIE),
+    Allowed("mechanics/mechanics.cpp", "Mechanics::tie()", _TIE),
+]
+
+# Sums over the body that must become a chunked_sum. No line may be added here.
+NOT_YET = [
+    Allowed("*temperature_field.cpp", "TemperatureField::update()", "the mean temperature"),
+    Allowed("thermal/conduction.cpp", "Conduction::set_temperature()", "the heat that is stored"),
+    Allowed("thermal/conduction.cpp", "Conduction::ledger()", "the heat that is stored"),
+    Allowed("thermal/conduction.cpp", "Conduction::compute_inflow()", "heat of the source and of prescribed nodes"),
+    Allowed("thermal/conduction.cpp", "heat.prescribed +=", "heat of prescribed nodes"),
+    Allowed("thermal/conduction.cpp", "Conduction::hold_prescribed()", "heat of prescribed nodes"),
+    Allowed("thermal/conduction.cpp", "squares += volume_[node]", "the mean rate of heating"),
+    Allowed("thermal/conduction.cpp", "volume += volume_[node]", "the mean rate of heating"),
+    Allowed("thermal/heat_boundary.cpp", "of_entry", "heat through the faces of one entry"),
+]

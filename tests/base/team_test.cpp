@@ -1,0 +1,111 @@
+#include "pyroclast/base/team.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <ctime>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+namespace {
+
+TEST(Team, CallsEveryThreadOnce) {
+  Team team(3);
+  std::vector<int> calls(3);
+  for (int i = 0; i < 1000; ++i) team.run(3, [&](int thread) { ++calls[static_cast<std::size_t>(thread)]; });
+  EXPECT_EQ(calls, (std::vector<int>{1000, 1000, 1000}));
+}
+
+TEST(Team, CallsFewerThreadsWhereFewerAreAskedForAndNoMoreThanItHas) {
+  Team team(3);
+  std::vector<int> calls(3);
+  team.run(2, [&](int thread) { ++calls[static_cast<std::size_t>(thread)]; });
+  team.run(1, [&](int thread) { ++calls[static_cast<std::size_t>(thread)]; });
+  team.run(8, [&](int thread) { ++calls[static_cast<std::size_t>(thread)]; });
+  EXPECT_EQ(calls, (std::vector<int>{3, 2, 1}));
+}
+
+// What was written before a barrier is seen behind it, on any number of threads, again and again.
+TEST(Team, NobodyPassesABarrierBeforeAllAreThere) {
+  for (const int threads : {1, 2, 3, 5}) {
+    Team team(threads);
+    std::vector<int> place(static_cast<std::size_t>(threads));
+    std::atomic<int> wrong{0};
+    team.run(threads, [&](int thread) {
+      for (int round = 1; round <= 100; ++round) {
+        place[static_cast<std::size_t>(thread)] = round;
+        team.barrier();
+        for (const int other : place)
+          if (other != round) ++wrong;
+        team.barrier();
+      }
+    });
+    EXPECT_EQ(wrong, 0) << threads;
+  }
+}
+
+TEST(Team, MayChangeInNumberBetweenCalls) {
+  Team team;
+  for (const int threads : {1, 4, 2, 1, 3}) {
+    team.resize(threads);
+    EXPECT_EQ(team.size(), threads);
+    std::atomic<int> calls{0};
+    team.run(threads, [&](int) { ++calls; });
+    EXPECT_EQ(calls, threads);
+  }
+  EXPECT_THROW(team.resize(0), Error);
+  EXPECT_THROW(Team(-1), Error);
+}
+
+TEST(Team, WhatAThreadThrowsIsThrownHereAndTheTeamGoesOn) {
+  Team team(2);
+  for (const int thrower : {0, 1})
+    EXPECT_THROW(team.run(2,
+                          [&](int thread) {
+                            if (thread == thrower) throw std::runtime_error("no");
+                          }),
+                 std::runtime_error);
+  std::atomic<int> calls{0};
+  team.run(2, [&](int) { ++calls; });
+  EXPECT_EQ(calls, 2);
+}
+
+TEST(Team, SharesARangeWithoutGapOrOverlap) {
+  Team team(3);
+  for (const int count : {0, 1, 2, 7, 1000})
+    for (const int fewest : {0, 1, 400, 5000}) {
+      std::vector<int> taken(static_cast<std::size_t>(count));
+      std::atomic<int> ranges{0};
+      team.share(count, fewest, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+        ++ranges;
+        for (auto i = first; i < last; ++i) ++taken[static_cast<std::size_t>(i)];
+      });
+      EXPECT_EQ(taken, std::vector<int>(static_cast<std::size_t>(count), 1));
+      EXPECT_LE(ranges, fewest > 0 ? std::max(1, count / fewest) : 3);
+    }
+}
+
+// A thread that waits for long sleeps: of 200 ms at a barrier it burns at most a tenth, as every thread of
+// the team between two calls.
+TEST(Team, WaitsWithoutBurningTheMachine) {
+  Team team(3);
+  const auto nap = [] { std::this_thread::sleep_for(std::chrono::milliseconds(200)); };
+  team.run(3, [](int) {});
+  const std::clock_t begin = std::clock();
+  nap();
+  team.run(3, [&](int thread) {
+    if (thread == 0) nap();
+    team.barrier();
+  });
+  const double burnt = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  EXPECT_LT(burnt, 0.04);
+}
+
+}  // namespace
+}  // namespace pyroclast

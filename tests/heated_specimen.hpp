@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <utility>
+
+#include "model/small_specimen.hpp"
+#include "pyroclast/simulation/heat_conditions.hpp"
+#include "pyroclast/thermal/temperature_field.hpp"
+
+/// A small specimen between platens and what it needs to be heated, for tests.
+namespace pyroclast {
+
+inline constexpr double kSpecimenWidth = 0.05, kSpecimenHeight = 0.1, kSpecimenThickness = 0.5;  // m
+
+inline Model<2> small_body(int blocks = 300) {
+  return make_concrete_model(small_specimen(blocks), 0.01, kSpecimenThickness);
+}
+
+struct HeatConstants {
+  double conductivity = 1.6;     // W/(m K)
+  double specific_heat = 900.0;  // J/(kg K)
+  double density = 2400.0;       // kg/m³
+  double diffusivity() const { return conductivity / (specific_heat * density); }
+};
+
+/// Aggregate and mortar conduct alike.
+inline std::array<SolidMaterial, 3> alike_solids(const HeatConstants& constants = {}) {
+  std::array<SolidMaterial, 3> solids;
+  for (const int m : {aggregate_material, mortar_material}) {
+    solids[m].conductivity = Curve::constant(constants.conductivity);
+    solids[m].specific_heat = Curve::constant(constants.specific_heat);
+    solids[m].density = Curve::constant(constants.density);
+  }
+  return solids;
+}
+
+inline HeatConditions heat_conditions(std::vector<HeatBoundaryCondition> boundaries) {
+  HeatConditions heat;
+  heat.uniform = false;
+  heat.safety = 0.9;
+  heat.largest_change = 2.0;
+  heat.largest_step = 60.0;
+  heat.boundaries = std::move(boundaries);
+  return heat;
+}
+
+inline HeatBoundaryCondition on(OutlinePart part, HeatCondition condition) {
+  return {{.part = part}, std::move(condition), "deck.toml:1: heat.boundaries[0]"};
+}
+
+inline Convection convection(double coefficient, Curve gas) {
+  return {Curve::constant(coefficient), std::move(gas)};
+}
+
+/// The field of heat conditions on a body, for a run of `duration`, s.
+inline TemperatureField conduct(const Model<2>& body, const HeatConditions& heat, double duration,
+                                const HeatConstants& constants = {}) {
+  return {body, make_conduction(body, alike_solids(constants), heat, temperature_range(heat, duration))};
+}
+
+}  // namespace pyroclast

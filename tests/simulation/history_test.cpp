@@ -1,0 +1,54 @@
+#include "pyroclast/simulation/history.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+namespace {
+
+History two_columns() {
+  History history;
+  history.add_column({"stage", "1"});
+  history.add_column({"stress_MPa", "MPa"});
+  history.add_column({"stage", "1"});
+  return history;
+}
+
+TEST(History, HasEachColumnOnceInTheOrderOfAdding) {
+  EXPECT_EQ(two_columns().columns(), (std::vector<Column>{{"stage", "1"}, {"stress_MPa", "MPa"}}));
+  EXPECT_THROW(two_columns().add_column({"stress_MPa", "Pa"}), Error);
+}
+
+TEST(History, ACellThatNobodySetIsEmpty) {
+  History history = two_columns();
+  history.add_row();
+  history.set("stage", 0.0);
+  history.add_row();
+  history.set("stress_MPa", 1.0 / 3.0);
+  EXPECT_EQ(history.row_count(), 2U);
+  EXPECT_EQ(history.cell(0, "stage"), 0.0);
+  EXPECT_FALSE(history.cell(0, "stress_MPa"));
+  EXPECT_EQ(history.last("stress_MPa"), 1.0 / 3.0);  // in full precision
+  EXPECT_FALSE(history.last("strain"));
+  EXPECT_EQ(history.values("stress_MPa", {1, 2}), (std::vector<double>{1.0 / 3.0}));
+}
+
+TEST(History, SaysWhichColumnOrValueIsMissing) {
+  History history = two_columns();
+  history.add_row();
+  const auto message = [](auto action) -> std::string {
+    try {
+      action();
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message([&] { history.set("strain", 0.0); }).find("\"strain\"; it has stage, stress_MPa"),
+            std::string::npos);
+  EXPECT_NE(message([&] { history.values("stress_MPa", {0, 1}); }).find("row 0"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pyroclast

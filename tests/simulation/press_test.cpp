@@ -1,0 +1,186 @@
+#include "pyroclast/simulation/press.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "mechanics/bodies.hpp"
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+namespace {
+
+constexpr double kYoung = 30e9, kPoisson = 0.2, kDensity = 2400.0;
+
+/// Gridpoints with a component at a place.
+template <int Dim>
+std::vector<int> at(const Model<Dim>& model, int component, double place) {
+  std::vector<int> set;
+  for (int g = 0; g < model.gridpoint_count(); ++g)
+    if (std::abs(model.position[g][component] - place) < 1e-12) set.push_back(g);
+  return set;
+}
+
+/// A body of height 1 that is its own platens: a press that grips it.
+template <int Dim>
+Model<Dim> gripped(Model<Dim> model, double width) {
+  const int axis = Dim == 2 ? 1 : 2;
+  for (const char* name : {"bottom", "bottom_face", "bottom_support"})
+    model.sets[name] = at(model, axis, 0.0);
+  for (const char* name : {"top", "top_face", "top_support"}) model.sets[name] = at(model, axis, 1.0);
+  model.sets["left"] = at(model, 0, 0.0);
+  model.sets["right"] = at(model, 0, width);
+  if (Dim == 3) {
+    model.sets["front"] = at(model, 1, 0.0);
+    model.sets["back"] = at(model, 1, width);
+  }
+  for (int g = 0; g < model.gridpoint_count(); ++g) model.sets["specimen"].push_back(g);
+  model.sets["top_platen"] = {};
+  return model;
+}
+
+template <int Dim>
+Mechanics<Dim> elastic(const Model<Dim>& model) {
+  std::vector<ZoneProperties> zones(model.zones.size(), zone_properties<Dim>(kYoung, kPoisson, 0.0));
+  MechanicsParameters<Dim> parameters;
+  parameters.local_damping = 0.8;
+  parameters.damping_form = DampingForm::combined;
+  parameters.mass = MassChoice::scaled;
+  parameters.time_step = 1e-5;
+  parameters.safety = 0.9;
+  return {model, {kDensity}, by_interface(model, std::move(zones), {bodies::elastic_contact()}), parameters};
+}
+
+Model<2> square() {
+  return gripped(bodies::lattice(4, 4, [](double x, double y) { return Vec<2>{{0.5 * x, y}}; }), 0.5);
+}
+
+/// Two cubes of five tetrahedra each, one the mirror image of the other on top of it, half as large.
+Model<3> tower() {
+  Model<3> model = bodies::five_tetrahedra();
+  for (auto& x : model.position) x = 0.5 * x;
+  const Model<3> lower = model;
+  const int gridpoints = lower.gridpoint_count();
+  for (int b = 0; b < lower.block_count(); ++b) {
+    std::vector<Vec<3>> corners;
+    for (int g = lower.block_gridpoints[b]; g < lower.block_gridpoints[b + 1]; ++g) {
+      const Vec<3>& x = lower.position[g];
+      corners.push_back({{x[0], x[1], 1.0 - x[2]}});
+    }
+    model.add_block(corners, {{1, 0, 2, 3}}, 0);
+  }
+  for (int c = 0; c < lower.contact_count(); c += 3) {
+    const auto* point = &lower.contacts[c];
+    model.join_faces({gridpoints + point[1].a, gridpoints + point[0].a, gridpoints + point[2].a},
+                     {gridpoints + point[1].b, gridpoints + point[0].b, gridpoints + point[2].b}, 0);
+  }
+  constexpr std::array<std::array<int, 3>, 4> kOutward{{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  for (const auto& zone : lower.zones)
+    for (const auto& [i, j, k] : kOutward) {
+      const std::array<int, 3> face{zone[i], zone[j], zone[k]};
+      if (std::ranges::any_of(face, [&](int g) { return lower.position[g][2] != 0.5; })) continue;
+      model.join_faces(face, {gridpoints + face[0], gridpoints + face[1], gridpoints + face[2]}, 0);
+    }
+  return gripped(model, 0.5);
+}
+
+/// Presses to a stress, and tells what the press reads and what the body bears.
+template <int Dim>
+void carries_what_it_is_loaded_with(const Model<Dim>& model) {
+  std::array<double, Dim - 1> widths;
+  widths.fill(0.5);
+  auto mechanics = elastic(model);
+  Press<Dim> press(mechanics, Dim - 1, 1.0, widths);
+  press.control_by_force();
+  press.hold(1e6);
+  mechanics.advance(20000);
+  EXPECT_LT(mechanics.unbalanced_ratio(), 1e-6);
+  EXPECT_NEAR(press.stress_top(), 1e6, 1.0);
+  EXPECT_NEAR(press.stress_bottom(), 1e6, 1.0);
+  EXPECT_EQ(press.stress_held(), 1e6);
+  // Sides that the platens hold at their ends stiffen it; contacts between blocks soften it.
+  const double strain = press.strain();
+  EXPECT_GT(strain, 0.0);
+  EXPECT_DOUBLE_EQ(strain, press.specimen_strain());
+  EXPECT_EQ(press.gap(), 0.0);
+  EXPECT_GT(press.lateral_strain(), 0.0);
+  EXPECT_LT(press.lateral_strain(), strain);
+
+  press.begin_stage();
+  EXPECT_EQ(press.stage_strain(), 0.0);
+  press.set_zero();
+  EXPECT_NEAR(press.strain(), 0.0, 1e-18);
+  EXPECT_NEAR(press.lateral_strain(), 0.0, 1e-18);
+
+  press.control_by_motion(1e-4);
+  EXPECT_EQ(press.stress_held(), 0.0);
+  const double before = press.strain(), time = 100.0 * mechanics.time_step();
+  mechanics.advance(100);
+  EXPECT_NEAR(press.strain() - before, 1e-4 * time, 1e-9 * time);
+  press.drive(0.0);
+  mechanics.advance(20000);
+  EXPECT_NEAR(press.stress(), 1e6 * (1.0 + 1e-4 * time / strain), 1e3);
+}
+
+TEST(Press, CarriesWhatItIsLoadedWithIn2d) {
+  carries_what_it_is_loaded_with(square());
+}
+
+TEST(Press, CarriesWhatItIsLoadedWithIn3d) {
+  carries_what_it_is_loaded_with(tower());
+}
+
+/// Strains the body evenly: every gridpoint moves by the strain times its place, and no faster after.
+template <int Dim>
+void strains_evenly(const Model<Dim>& model) {
+  std::array<double, Dim - 1> widths;
+  widths.fill(0.5);
+  auto mechanics = elastic(model);
+  Press<Dim> press(mechanics, Dim - 1, 1.0, widths);
+  const typename Press<Dim>::EvenStrain strain{.axial = 1e-6, .lateral = 2e-6};
+  press.strain_evenly(strain, 1.0, false);
+  mechanics.advance(1);
+  press.strain_evenly(strain, 0.0, false);
+  mechanics.advance(1);
+  press.end_even_strain(false);
+  for (int g = 0; g < model.gridpoint_count(); ++g) {
+    const Vec<Dim> u = mechanics.displacement(g), x = model.position[g];
+    for (int i = 0; i < Dim; ++i) {
+      const double expected = i == Dim - 1 ? 1e-6 * x[i] : 2e-6 * (x[i] - 0.25);
+      EXPECT_NEAR(u[i], expected, 1e-18);
+      EXPECT_EQ(mechanics.velocity(g)[i], 0.0);
+    }
+  }
+  EXPECT_NEAR(press.specimen_strain(), -1e-6, 1e-18);
+  EXPECT_NEAR(press.lateral_strain(), 2e-6, 1e-18);
+}
+
+TEST(Press, StrainsABodyEvenlyIn2d) {
+  strains_evenly(square());
+}
+
+TEST(Press, StrainsABodyEvenlyIn3d) {
+  strains_evenly(tower());
+}
+
+TEST(Press, RefusesAnAxisThatIsNone) {
+  const auto model = square();
+  auto mechanics = elastic(model);
+  EXPECT_THROW(Press<2>(mechanics, 2, 1.0, {0.5}), Error);
+}
+
+TEST(Press, NamesASetThatTheModelDoesNotHave) {
+  auto model = square();
+  model.sets.erase("top_support");
+  auto mechanics = elastic(model);
+  try {
+    Press<2>(mechanics, 1, 1.0, {0.5});
+    FAIL() << "a press without an upper support";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("\"top_support\""), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace pyroclast

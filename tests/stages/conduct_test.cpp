@@ -1,0 +1,143 @@
+#include "pyroclast/stages/conduct.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "heated_specimen.hpp"
+#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/thermal/fire_curves.hpp"
+#include "stages/small_runs.hpp"
+
+namespace pyroclast {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+HeatConditions fire_from_the_left() {
+  return heat_conditions(
+      {on(OutlinePart::left, convection(25.0, fire_curves().at("iso834").curve)),
+       on(OutlinePart::left, Radiation{Curve::constant(0.7), fire_curves().at("iso834").curve})});
+}
+
+/// Heat alone in a small specimen.
+struct Conducted {
+  Conducted(const HeatConditions& heat, const Conduct::Keys& keys, int blocks = 100)
+      : simulation(small_specimen(blocks), kSpecimenThickness, alike_solids(), heat,
+                   temperature_range(heat, keys.duration), {}, std::nullopt),
+        run(simulation, stages_of(keys)) {}
+
+  /// To the end, or until a temperature has come so far, °C.
+  void go_on(double enough = kInfinity) {
+    run.stop_when([this, enough] { return simulation.field().maximum() >= enough; });
+    while (run.next()) {
+      looks.push_back(*run.history().last("heating_time_s"));
+      if (run.frame_is_due()) frames.push_back(looks.back());
+    }
+  }
+
+  static std::vector<std::unique_ptr<Stage>> stages_of(const Conduct::Keys& keys) {
+    std::vector<std::unique_ptr<Stage>> stages;
+    stages.push_back(std::make_unique<Conduct>(keys));
+    return stages;
+  }
+
+  Simulation simulation;
+  Run run;
+  std::vector<double> looks, frames;
+};
+
+TEST(Conduct, LooksAtTheStartAtEvenTimesAndAtTheEnd) {
+  Conducted c(fire_from_the_left(), {.duration = 250.0, .interval = 100.0});
+  c.go_on();
+  EXPECT_EQ(c.run.outcome(), Outcome::completed);
+  EXPECT_EQ(c.looks, (std::vector<double>{0.0, 100.0, 200.0, 250.0}));
+}
+
+TEST(Conduct, KeepsFramesAtTheStartAtTheirOwnTimesAndAtTheEnd) {
+  Conducted c(fire_from_the_left(), {.duration = 250.0, .interval = 100.0, .frame_interval = 90.0});
+  c.go_on();
+  EXPECT_EQ(c.frames, (std::vector<double>{0.0, 90.0, 180.0, 250.0}));
+  EXPECT_EQ(c.looks, (std::vector<double>{0.0, 90.0, 100.0, 180.0, 200.0, 250.0}));  // one at each frame
+}
+
+TEST(Conduct, StopsAfterALookWhenAskedTo) {
+  const HeatConditions heat = fire_from_the_left();
+  Conducted c(heat, {.duration = 250.0, .change = 10.0});
+  c.go_on(100.0);
+  EXPECT_EQ(c.run.outcome(), Outcome::stopped);
+  EXPECT_EQ(c.frames, (std::vector<double>{0.0}));
+  EXPECT_EQ(c.looks.back(), c.simulation.field().time());
+  EXPECT_GE(c.simulation.field().maximum(), 100.0);
+  EXPECT_LT(c.simulation.field().maximum(), 100.0 + 10.0 + heat.largest_change);  // within one increment
+}
+
+TEST(Conduct, ReachesTheSteadyStateBetweenTwoFaces) {
+  const Curve ramp = Curve::table({0.0, 600.0, 1e9}, {20.0, 120.0, 120.0}, time_axis());
+  constexpr double tolerance = 1e-6;
+  Conducted c(heat_conditions({on(OutlinePart::left, PrescribedTemperature{ramp}),
+                               on(OutlinePart::right, PrescribedTemperature{Curve::constant(20.0)})}),
+              {.duration = 1e6, .steady_rate = tolerance}, 300);
+  c.go_on();
+  EXPECT_EQ(c.run.outcome(), Outcome::steady);
+  const TemperatureField& field = c.simulation.field();
+  EXPECT_GT(field.time(), 600.0);  // the first, slow steps of the ramp are no steady state
+  EXPECT_LT(field.time(), 1e5);
+  double worst = 0.0;
+  for (int g = 0; g < c.simulation.model().gridpoint_count(); ++g)
+    worst = std::max(worst, std::abs(field.gridpoints()[g] -
+                                     (120.0 - 100.0 * c.simulation.model().position[g][0] / kSpecimenWidth)));
+  // A mode that decays with the time l^2 / (pi^2 a) = 342 s is left by 342 s times the rate, and its peak is
+  // sqrt(2) of its mean square.
+  EXPECT_LT(worst, 2.0 * 342.0 * tolerance);
+}
+
+TEST(Conduct, SaysWhenTheSteadyStateWasNotReached) {
+  Conducted c(fire_from_the_left(), {.duration = 60.0, .steady_rate = 1.0});
+  c.go_on();
+  EXPECT_EQ(c.run.outcome(), Outcome::completed);
+  EXPECT_EQ(c.simulation.field().time(), 60.0);
+  const StageRecord& record = c.run.records()[0];
+  const auto warnings = c.run.stages()[0]->report(c.run.history(), record.rows, record.outcome).warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("no steady state"), std::string::npos);
+}
+
+TEST(Conduct, AloneNeedsNoMechanics) {
+  Conducted c(fire_from_the_left(), {.duration = 60.0});
+  c.go_on();
+  EXPECT_FALSE(c.simulation.moves());
+  EXPECT_FALSE(c.run.history().has("step"));
+  EXPECT_TRUE(c.run.history().has("heat_stored_J"));
+}
+
+// Promise: among other stages it moves heat only, and the next exchange hands its temperatures over.
+TEST(Conduct, AmongOtherStagesItLeavesTheBodyAtRest) {
+  const std::string conduct = "[[stages]]\nkind = \"conduct\"\nduration = \"5 min\"\ninterval = \"1 min\"\n";
+  const std::string expose = with(kExpose, "6 min", "1 min"), face = with(kHeatedFace, "70 degC", "30 degC");
+  const auto patient = [](const std::string& text) {
+    return with(text, "least_cycles = 50", "least_cycles = 2000");
+  };
+  const Finished r(patient(with(deck(kSettle + conduct + expose + face), "frame_strain = 1e-3",
+                                "frame_strain = 1e-3\nframe_interval = \"2 min\"")));
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  const History& history = r.run.history();
+  const RowRange settled = r.run.records()[0].rows, conducted = r.run.records()[1].rows,
+                 exposed = r.run.records()[2].rows;
+  EXPECT_EQ(history.values("heating_time_s", conducted), (std::vector<double>{60, 120, 180, 240, 300}));
+  for (std::size_t row = conducted.first; row < conducted.last; ++row)
+    EXPECT_FALSE(history.cell(row, "strain"));
+  const double steps = history.values("step", settled).back();
+  EXPECT_EQ(history.values("step", exposed).front() - steps, history.values("cycles", exposed).front());
+  EXPECT_EQ(r.last("heating_time_s"), 360.0);
+  EXPECT_NEAR(r.last("temperature_max_degC"), 30.0, 0.1);
+  // so little heat leaves the body sound, but for single points; then it comes to the same state as when it
+  // is exposed all the time, but for what motion is left
+  const Finished exposed_only(patient(deck(kSettle + kExpose + face)));
+  EXPECT_NEAR(r.last("lateral_strain"), exposed_only.last("lateral_strain"), 1e-6);
+  EXPECT_GT(exposed_only.last("lateral_strain"), 5e-5);
+}
+
+}  // namespace
+}  // namespace pyroclast

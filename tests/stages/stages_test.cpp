@@ -1,0 +1,234 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "stages/small_runs.hpp"
+
+namespace pyroclast {
+namespace {
+
+// Promise: the load is what was asked for on both platens, whether as a stress or as a level.
+TEST(LoadStage, BothPlatensCarryTheStressAskedFor) {
+  const Finished a(deck(kUniform + kSettle + load("stress = \"6 MPa\"")));
+  EXPECT_EQ(a.run.outcome(), Outcome::completed);
+  // 1e-4: the platen's own weight is 1e-4 of it, the unbalanced ratio 1e-6
+  EXPECT_NEAR(a.last("stress_top_MPa"), 6.0, 6.0 * 3e-4);
+  EXPECT_NEAR(a.last("stress_bottom_MPa"), 6.0, 6.0 * 1e-3);  // with the weight of the specimen
+  const Finished b(deck(kUniform + kSettle + load("level = 0.2\nf_c = \"30 MPa\"")));
+  EXPECT_DOUBLE_EQ(a.last("strain"), b.last("strain"));
+}
+
+// Promise: an even body of one expansion expands by alpha dT in both directions and stays sound; the energy
+// ledger closes.
+TEST(HeatStage, AnEvenBodyExpandsFreely) {
+  const Finished r(deck(kUniform + kSettle + load("stress = \"0.5 MPa\"") + heat("220 degC")));
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  EXPECT_DOUBLE_EQ(r.last("temperature_degC"), 220.0);
+  EXPECT_NEAR(r.last("heating_time_s"), 200.0 / (5.0 / 60.0), 1e-9);
+  const double softening = 1.0 - 0.8 * 200.0 / 800.0;
+  const double loaded = r.end_of(1, "specimen_strain") / softening;
+  EXPECT_NEAR(r.last("specimen_strain"), loaded - 2e-3, 1e-5);  // 0.5 % of the expansion: what motion is left
+  EXPECT_NEAR(r.last("lateral_strain"), 2e-3, 1e-5);            // and Poisson's part of the load
+  EXPECT_EQ(r.last("tension_mm_damaged"), 0);
+  EXPECT_EQ(r.result(2, "exchanges"), 40);
+  EXPECT_EQ(r.result(2, "exchanges_not_converged"), 0);
+  EXPECT_FALSE(r.result(2, "critical_temperature_degC"));
+  EXPECT_LT(r.energy_error_over_turnover(), 1e-6);
+}
+
+// Promise: cooled down again, an elastic body is where it was.
+TEST(HeatStage, CoolingBringsAnElasticBodyBack) {
+  const Finished r(
+      deck(kUniform + kSettle + load("stress = \"3 MPa\"") + heat("320 degC") + heat("20 degC")));
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  EXPECT_NEAR(r.last("strain"), r.end_of(1, "strain"), 1e-6);
+  EXPECT_NEAR(1e6 * r.last("stress_top_MPa"), 3e6,
+              2e4);  // the difference between platens that counts as rest
+}
+
+// Promise: a modulus that falls adds strain under a constant load (total form, physics of the zones).
+TEST(HeatStage, ALoadedBodyShortensAsItSoftens) {
+  const Finished r(deck(kUniform + kSettle + load("stress = \"3 MPa\"") + heat("420 degC")));
+  const double softening = 1.0 - 0.8 * 400.0 / 800.0;  // E(420) / E(20)
+  EXPECT_NEAR(r.last("strain") + 4e-3, r.end_of(1, "strain") / softening, 0.02 * r.end_of(1, "strain"));
+}
+
+// Promise: between fixed platens the thrust is that of the thermal strain, less what the platens give, E as
+// measured at 20 degC.
+TEST(HeatStage, FixedPlatensTakeTheThrust) {
+  const Finished measured(deck(kUniform + kSettle + load("stress = \"1 MPa\"")));
+  const double young = 1e6 / measured.last("strain");
+  const Finished r(deck(kUniform + kSettle + heat("70 degC", "fixed")));
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  const double expected = young * (1.0 - 0.8 * 50.0 / 800.0) * (5e-4 + r.last("strain"));
+  EXPECT_NEAR(1e6 * r.last("stress_top_MPa"), expected, 0.005 * expected);
+  EXPECT_NEAR(r.last("strain"), 0.0, 0.02 * 5e-4);
+}
+
+// Promise: a load above the strength that is left is found: the platen runs away, and where is told.
+TEST(HeatStage, ASpecimenThatIsTooWeakRunsAway) {
+  const Finished r(deck(kUniform + kSettle + load("stress = \"15 MPa\"") + heat("820 degC")));
+  EXPECT_EQ(r.run.outcome(), Outcome::ran_away);
+  const auto critical = r.result(2, "critical_temperature_degC");
+  ASSERT_TRUE(critical);
+  EXPECT_EQ(*critical, r.last("temperature_degC"));
+  EXPECT_GT(*critical, 200.0);
+  EXPECT_LT(*critical, 700.0);
+  EXPECT_DOUBLE_EQ(r.result(2, "load_stress_MPa").value(), 15.0);
+}
+
+// Promise: an exchange that does not come to rest within its cycles is flagged.
+TEST(HeatStage, AnExchangeThatIsCutShortIsFlagged) {
+  const Finished r(with(deck(kUniform + kSettle + heat("120 degC"), "\"3e-5 1/K\""), "most_cycles = 5000",
+                        "most_cycles = 60"));
+  EXPECT_EQ(r.result(1, "exchanges_not_converged"), 20);
+  EXPECT_EQ(r.result(1, "cycles"), 1200);
+  EXPECT_GT(r.result(1, "worst_unbalanced_ratio"), 1e-5);
+}
+
+// Promise: strain of a compression after heating counts from its own beginning, so that the modulus is that
+// of the hot body.
+TEST(CompressStage, AfterHeatingMeasuresTheHotModulus) {
+  const Finished cold(deck(kUniform + kSettle + kCompress));
+  const Finished hot(deck(kUniform + kSettle + load("stress = \"0.2 MPa\"") + heat("420 degC") + kCompress));
+  const auto a = cold.result(1, "E_GPa"), b = hot.result(3, "E_GPa");
+  ASSERT_TRUE(a && b);
+  EXPECT_NEAR(*b / *a, 0.6, 0.02);
+  EXPECT_NEAR(hot.last("stage_strain"), 0.0002, 2e-5);
+}
+
+const std::string kPredictor = "least_cycles = 50\npredictor = true";
+
+// Promise: the predictor changes how a body gets to its new size, not which size: an even body under load
+// expands by alpha dT and softens as without it, in fewer cycles, and the energy ledger closes.
+TEST(Predictor, BringsABodyToTheSameStateInFewerCycles) {
+  const std::string text = deck(kUniform + kSettle + load("stress = \"3 MPa\"") + heat("320 degC"));
+  const Finished plain(text);
+  const Finished predicted(with(text, "least_cycles = 50", kPredictor));
+  EXPECT_EQ(predicted.run.outcome(), Outcome::completed);
+  EXPECT_NEAR(predicted.last("specimen_strain"), plain.last("specimen_strain"),
+              1e-5);  // motion left in `plain`
+  EXPECT_NEAR(predicted.last("lateral_strain"), plain.last("lateral_strain"), 1e-5);
+  EXPECT_EQ(predicted.result(2, "exchanges_not_converged"), 0);
+  EXPECT_LT(predicted.result(2, "cycles").value(), plain.result(2, "cycles").value());
+  EXPECT_LT(predicted.energy_error_over_turnover(), 1e-6);
+}
+
+// Promise: cooled down again with the predictor, an elastic body is where it was.
+TEST(Predictor, CoolingBringsAnElasticBodyBack) {
+  const Finished r(
+      with(deck(kUniform + kSettle + load("stress = \"3 MPa\"") + heat("320 degC") + heat("20 degC")),
+           "least_cycles = 50", kPredictor));
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  EXPECT_NEAR(r.last("strain"), r.end_of(1, "strain"), 1e-6);
+}
+
+// Promise: the predictor leaves fixed platens where they are.
+TEST(Predictor, FixedPlatensTakeTheThrust) {
+  const std::string text = deck(kUniform + kSettle + heat("70 degC", "fixed"));
+  const Finished plain(text);
+  const Finished predicted(with(text, "least_cycles = 50", kPredictor));
+  EXPECT_NEAR(predicted.last("stress_top_MPa"), plain.last("stress_top_MPa"),
+              0.01 * plain.last("stress_top_MPa"));
+  EXPECT_NEAR(predicted.last("strain"), 0.0, 0.02 * 5e-4);  // but for the platens' own give
+}
+
+// Promise: a controlled velocity finds the modulus and the strength of the slow test in fewer steps, and is
+// quasi-static up to the peak.
+TEST(CompressStage, AControlledVelocityFindsTheSlowStrengthInFewerSteps) {
+  const Finished slow(deck(kUniform + kSettle + kFailure));
+  const Finished fast(deck(kUniform + kSettle + kFailure + kControl));
+  const auto modulus = slow.result(1, "E_GPa"), strength = slow.result(1, "f_c_MPa");
+  ASSERT_TRUE(modulus && strength);
+  EXPECT_NEAR(fast.result(1, "E_GPa").value(), *modulus, 0.005 * *modulus);
+  // a brittle body of 60 blocks: one crack more or less
+  EXPECT_NEAR(fast.result(1, "f_c_MPa").value(), *strength, 0.02 * *strength);
+  EXPECT_LT(fast.last("step"), slow.last("step") / 2);
+  EXPECT_EQ(fast.result(1, "quasi_static"), 1.0);
+  EXPECT_LT(fast.energy_error_over_turnover(), 5e-3);
+}
+
+// Promise: the controlled velocity stays between its bounds, whatever the tolerances.
+TEST(CompressStage, AControlledVelocityStaysWithinItsBounds) {
+  for (const auto* tolerance : {"unbalanced_ratio = 1e-12", "unbalanced_ratio = 1"}) {
+    const Finished r(deck(kUniform + kSettle + with(kFailure, "0.004", "0.0005") +
+                          with(kControl, "unbalanced_ratio = 2e-4", tolerance)));
+    const RowRange rows = r.run.records()[1].rows;
+    const auto strain = r.run.history().values("strain", rows), time = r.run.history().values("time_s", rows),
+               stage_strain = r.run.history().values("stage_strain", rows);
+    for (std::size_t i = 1; i < strain.size(); ++i) {
+      if (stage_strain[i] < 1e-4) continue;  // past the ramp
+      // the platens' faces give a little less than their outer sides are driven
+      const double velocity = (strain[i] - strain[i - 1]) * 0.12 / (time[i] - time[i - 1]);
+      EXPECT_GT(velocity, 0.9e-3);
+      EXPECT_LT(velocity, 10.5e-3);
+    }
+  }
+}
+
+// Promise: frames come at the stated steps of temperature, and at the end.
+TEST(Frames, ComeAtStepsOfTemperature) {
+  const Finished r(with(deck(kUniform + kSettle + load("stress = \"0.5 MPa\"") + heat("220 degC")),
+                        "frame_strain = 1e-3", "frame_strain = 1e-3\nframe_temperature = \"50 K\""));
+  const std::vector<double> expected{20, 20, 20, 50, 100, 150, 200, 220};
+  ASSERT_EQ(r.frames.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_DOUBLE_EQ(r.frames[i], expected[i]);
+}
+
+// Promise: with conduction the mechanics gets the computed field: a prism heated on one side bends that way,
+// and temperatures differ over it.
+TEST(ExposeStage, HeatsOneSideMoreThanTheOther) {
+  const Finished r(with(deck(kSettle + kExpose + kHeatedFace), "most_cycles = 5000", "most_cycles = 2000"));
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  EXPECT_NEAR(r.last("heating_time_s"), 360.0, 1e-6);
+  EXPECT_NEAR(r.last("temperature_max_degC"), 70.0, 0.1);
+  EXPECT_LT(r.last("temperature_min_degC"), 69.9);
+  EXPECT_GT(r.last("temperature_degC"), r.last("temperature_min_degC"));
+  // 5 %: what motion is left, and the weight
+  EXPECT_NEAR(r.last("lateral_strain"), 1e-5 * (r.last("temperature_degC") - 20.0), 2.5e-5);
+}
+
+// Promise: each compression of a run is a test of its own: with its own modulus and strength, from its own
+// rows.
+TEST(CompressStage, TwoOfThemAreReportedEachByItself) {
+  const std::string further = with(kCompress, "stop_strain = 0.0002", "stop_strain = 0.0001");
+  const Finished one(deck(kUniform + kSettle + kCompress));
+  const Finished two(deck(kUniform + kSettle + kCompress + further));
+  const auto modulus = one.result(1, "E_GPa");
+  ASSERT_TRUE(modulus);
+  EXPECT_EQ(two.result(1, "E_GPa"), modulus);
+  EXPECT_EQ(two.result(1, "strain_at_peak"), one.result(1, "strain_at_peak"));
+  EXPECT_NEAR(two.result(2, "strain_at_peak").value(), 0.0001, 1e-5);
+  EXPECT_GT(two.result(2, "f_c_MPa").value(), two.result(1, "f_c_MPa").value());
+}
+
+// Promise: what contradicts itself is refused at its line.
+TEST(Stages, ContradictionsAreRefused) {
+  const auto message = [](const std::string& text) -> std::string {
+    try {
+      read(text);
+    } catch (const DeckError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message(deck(kUniform + kSettle + heat("120 degC"))), "");
+  EXPECT_NE(message(deck(kUniform + kSettle + heat("920 degC"))).find("820"), std::string::npos);
+  EXPECT_EQ(message(deck(kUniform + kSettle + kFailure + kControl)), "");
+  EXPECT_NE(message(deck(kUniform + kSettle + with(kFailure, "1 mm/s", "20 mm/s") + kControl))
+                .find("must not be less than velocity"),
+            std::string::npos);
+  EXPECT_NE(message(deck(kUniform + kSettle + with(kFailure, "10 ms", "0 s") + kControl)).find("ramp_time"),
+            std::string::npos);
+  EXPECT_NE(message(deck(kUniform + kSettle + kFailure + "unbalanced_ratio = 1e-4\n")).find("has no effect"),
+            std::string::npos);
+  EXPECT_NE(message(deck(kUniform + kSettle + load("level = 0.2\nf_c = \"30 MPa\"\nstress = \"6 MPa\"")))
+                .find("either stress, or level"),
+            std::string::npos);
+  EXPECT_NE(message(deck(kUniform + kSettle + kExpose)).find("conduction"), std::string::npos);
+  EXPECT_NE(message(with(deck(kSettle + kExpose), "least_cycles = 50", kPredictor)).find("uniform"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace pyroclast
