@@ -76,7 +76,7 @@ TEST(Survey, KeepsWhatTheReaderSaysOfAKey) {
     s.text("unit", "m", "of what follows");
     s.choice<Mass>("mass", {{"scaled", Mass::scaled, "by density"}, {"real", Mass::real, "as it is"}},
                    "that moves");
-    s.choice<Mass>("other", {{"scaled", Mass::scaled}, {"real", Mass::real}}, Mass::real, "as well");
+    s.choice<Mass>("other", {{"scaled", Mass::scaled, ""}, {"real", Mass::real, ""}}, Mass::real, "as well");
     s.choice("kind", std::vector<Choice<int>>{{"a", 1, "first"}, {"b", 2, "second"}}, "of two");
   });
   ASSERT_EQ(schema.tables.size(), 1U);
@@ -127,23 +127,25 @@ TEST(Survey, KeepsWhatTheReaderSaysOfAKey) {
 TEST(Survey, FindsKeysBehindEveryDecision) {
   const DeckSchema schema = survey_deck([](const Deck& deck) {
     const Section root = deck.root();
-    if (root.choice<Mass>("mass", {{"scaled", Mass::scaled}, {"real", Mass::real}}) == Mass::scaled) return;
+    if (root.choice<Mass>("mass", {{"scaled", Mass::scaled, ""}, {"real", Mass::real, ""}}, "") ==
+        Mass::scaled)
+      return;
     if (root.has("stress")) {
-      root.number("stress", Range::any());
+      root.number("stress", Range::any(), "");
       return;
     }
-    root.number("level", Range::any());
-    if (!root.flag("coupled", false)) return;
+    root.number("level", Range::any(), "");
+    if (!root.flag("coupled", false, "")) return;
     const auto table = root.optional_section("heat");
     if (table) {
-      table->number("initial", Range::any());
+      table->number("initial", Range::any(), "");
       return;
     }
     for (const Section& s : root.optional_sections("probes")) {
-      s.number("x", Range::any());
+      s.number("x", Range::any(), "");
       return;
     }
-    root.number("deepest", Range::any());
+    root.number("deepest", Range::any(), "");
   });
   const Conditions real{with("", "mass", {"\"real\""}, {"\"scaled\""})};
   EXPECT_EQ(only_key(schema, "", "stress").conditions, real);
@@ -164,16 +166,17 @@ TEST(Survey, FindsKeysBehindEveryDecision) {
 TEST(Survey, AKeyDependsOnlyOnWhatDecidesOnIt) {
   const DeckSchema schema = survey_deck([](const Deck& deck) {
     const Section s = deck.root();
-    s.flag("before");
-    const auto kind =
-        s.choice<Kind>("kind", {{"press", Kind::press}, {"fire", Kind::fire}, {"wait", Kind::wait}});
-    const bool fast = s.flag("fast");
-    if (kind != Kind::wait) s.number("of_two", Range::any());
-    if (kind == Kind::fire && fast) s.number("of_both", Range::any());
-    if (kind == Kind::fire || fast) s.number("of_either", Range::any());
-    if (kind == Kind::press || (kind == Kind::fire && s.has("file"))) s.number("of_one_or_two", Range::any());
-    s.number("of_none", Range::any());
-    s.flag("after");
+    s.flag("before", "");
+    const auto kind = s.choice<Kind>(
+        "kind", {{"press", Kind::press, ""}, {"fire", Kind::fire, ""}, {"wait", Kind::wait, ""}}, "");
+    const bool fast = s.flag("fast", "");
+    if (kind != Kind::wait) s.number("of_two", Range::any(), "");
+    if (kind == Kind::fire && fast) s.number("of_both", Range::any(), "");
+    if (kind == Kind::fire || fast) s.number("of_either", Range::any(), "");
+    if (kind == Kind::press || (kind == Kind::fire && s.has("file")))
+      s.number("of_one_or_two", Range::any(), "");
+    s.number("of_none", Range::any(), "");
+    s.flag("after", "");
   });
   EXPECT_EQ(only_key(schema, "", "of_two").conditions,
             (Conditions{with("", "kind", {"\"press\"", "\"fire\""}, {"\"wait\""})}));
@@ -197,7 +200,7 @@ TEST(Survey, AKeyDependsOnlyOnWhatDecidesOnIt) {
 TEST(Survey, TheSameKeyMayMeanDifferentThings) {
   const DeckSchema schema = survey_deck([](const Deck& deck) {
     for (const Section& s : deck.root().sections("stages"))
-      if (s.choice<Kind>("kind", {{"press", Kind::press}, {"fire", Kind::fire}}) == Kind::press)
+      if (s.choice<Kind>("kind", {{"press", Kind::press, ""}, {"fire", Kind::fire, ""}}, "") == Kind::press)
         s.quantity("rate", unit::velocity, Range::any(), "of the platen");
       else
         s.quantity("rate", unit::heating_rate, Range::any(), "of the temperature");
@@ -215,7 +218,7 @@ TEST(Survey, FormsOfAValueAreDescribedOnceForAllKeys) {
     s.describe(key, {.value = "curve", .unit = unit, .range = Range::positive(), .name = "curve over T"},
                "property");
     if (!s.is_table(key)) {
-      s.quantity(key, unit, Range::positive());
+      s.quantity(key, unit, Range::positive(), "");
       return;
     }
     const Section forms = *s.optional_section(key, "one of");
@@ -248,9 +251,9 @@ TEST(Survey, NamesWhatHasNoMeaningAndWhatIsNeverRead) {
     root.text("title", "of the run");
     root.know({"title", "mechanics", "forgotten"});
     if (const auto mechanics = root.optional_section("mechanics"))
-      mechanics->choice<Mass>("mass", {{"scaled", Mass::scaled, "by density"}, {"real", Mass::real}},
+      mechanics->choice<Mass>("mass", {{"scaled", Mass::scaled, "by density"}, {"real", Mass::real, ""}},
                               "that moves");
-    root.section("specimen", "its size").number("width", Range::any());
+    root.section("specimen", "its size").number("width", Range::any(), "");
   });
   EXPECT_EQ(schema.never_read, std::vector<std::string>{"forgotten"});
   EXPECT_EQ(schema.undocumented(), (std::vector<std::string>{"forgotten", "mechanics",
@@ -262,9 +265,9 @@ TEST(Survey, TellsOfAKeyThatOnlyTwoAnswersOpenTogether) {
   const DeckSchema schema = survey_deck([](const Deck& deck) {
     const Section s = deck.root();
     s.know({"of_both", "of_zero"});
-    const bool first = s.flag("first"), second = s.flag("second");
-    if (first && second) s.number("of_both", Range::any());
-    if (s.number("count", Range::positive()) == 0.0) s.number("of_zero", Range::any());
+    const bool first = s.flag("first", ""), second = s.flag("second", "");
+    if (first && second) s.number("of_both", Range::any(), "");
+    if (s.number("count", Range::positive(), "") == 0.0) s.number("of_zero", Range::any(), "");
   });
   EXPECT_EQ(schema.never_read, (std::vector<std::string>{"of_both", "of_zero"}));
 }
@@ -274,7 +277,7 @@ TEST(Survey, StandsInForADeckInWhichNothingGoesTogether) {
   survey_deck([&](const Deck& deck) {
     ++calls;
     const Section s = deck.root().section("part");
-    EXPECT_GT(s.quantity("width", unit::length, Range::above(2.0)), 2.0);
+    EXPECT_GT(s.quantity("width", unit::length, Range::above(2.0), ""), 2.0);
     EXPECT_FALSE(s.ok());
     s.error("width", "contradicts the height");
     s.error("is wrong as a whole");
@@ -289,7 +292,7 @@ TEST(Meaning, IsNoFallback) {
   const Section root = deck.root();
   root.text("title", "of the run");
   EXPECT_FALSE(root.flag("coupled", "both at once"));
-  root.choice<bool>("field", {{"uniform", true}, {"conduction", false}}, "how temperatures follow");
+  root.choice<bool>("field", {{"uniform", true, ""}, {"conduction", false, ""}}, "how temperatures follow");
   const auto diagnostics = diagnostics_of(deck);
   ASSERT_EQ(diagnostics.size(), 2U);
   EXPECT_TRUE(mentions(diagnostics[0].message, "missing")) << diagnostics[0].message;
@@ -333,7 +336,7 @@ What is done, one after the other.
 
 | key | value | unit | allowed | default | meaning |
 |---|---|---|---|---|---|
-| `kind` | one of `"press"`, `"fire"` |  |  | needed | What the stage does. `"press"`: The platen moves. `"fire"`: Heat flows. |
+| `kind` | one of `"press"`, `"fire"` |  |  | needed | What the stage does. |
 
 ### `kind = "press"`
 
@@ -371,16 +374,29 @@ How fields act on each other. May be left out.
 )");
 }
 
+// Greek letters count once, whatever their bytes.
+TEST(Reference, BreaksWhatStandsOutsideOfTablesAfter120Characters) {
+  const DeckSchema schema = survey_deck([](const Deck& deck) {
+    deck.root()
+        .section("heat",
+                 "ααααααααα βββββββββ γγγγγγγγγ δδδδδδδδδ εεεεεεεεε ζζζζζζζζζ ηηηηηηηηη θθθθθθθθθ ιιιιιιιιι "
+                 "κκκκκκκκκ λλλλλλλλλ μμμμμμμμμμ ννννννννν")
+        .number("initial", Range::any(), "");
+  });
+  const std::string text = deck_reference(schema);
+  EXPECT_TRUE(mentions(text, " λλλλλλλλλ μμμμμμμμμμ\nννννννννν.\n\n|")) << text;
+}
+
 TEST(Reference, TellsWhatAKeyDependsOn) {
   const DeckSchema schema = survey_deck([](const Deck& deck) {
     const Section root = deck.root();
     const auto kind = root.section("run").choice<Kind>(
-        "kind", {{"press", Kind::press}, {"fire", Kind::fire}, {"wait", Kind::wait}});
+        "kind", {{"press", Kind::press, ""}, {"fire", Kind::fire, ""}, {"wait", Kind::wait, ""}}, "");
     const Section s = root.section("output");
-    if (kind != Kind::wait) s.number("often", Range::any());
-    if (kind == Kind::wait) s.number("seldom", Range::any());
-    if (!s.has("file")) s.number("count", Range::any());
-    if (s.flag("all")) root.section("fields").number("each", Range::any());
+    if (kind != Kind::wait) s.number("often", Range::any(), "");
+    if (kind == Kind::wait) s.number("seldom", Range::any(), "");
+    if (!s.has("file")) s.number("count", Range::any(), "");
+    if (s.flag("all", "")) root.section("fields").number("each", Range::any(), "");
   });
   const std::string text = deck_reference(schema);
   for (const char* row : {"| `often` | number |  |  | needed | Not with `run.kind = \"wait\"`. |",

@@ -24,11 +24,10 @@ struct DeckKey;
 struct DeckSchema;
 struct TableRecord;
 
-/// What a key, a word or a table means, for the deck reference: a literal, so that no number is taken for
-/// one.
+/// What a key, a word or a table means, for the deck reference; empty where another place says it. A literal,
+/// so that no number is taken for one.
 class Meaning {
  public:
-  constexpr Meaning() = default;
   template <std::size_t N>
   constexpr Meaning(const char (&text)[N]) : text_(text, N - 1) {}  // NOLINT(google-explicit-constructor)
   explicit constexpr Meaning(std::string_view text) : text_(text) {}
@@ -44,7 +43,7 @@ template <class E>
 struct Choice {
   std::string_view word;
   E value;
-  Meaning meaning = {};
+  Meaning meaning;
 };
 
 /// How the deck reference describes a key that is read in several forms.
@@ -70,43 +69,43 @@ struct KeyForms {
 class Section {
  public:
   /// A table that must be there.
-  Section section(std::string_view key, Meaning meaning = {}) const;
+  Section section(std::string_view key, Meaning meaning = "") const;
   /// A table that may be there; empty also if the key is not a table, which is recorded.
-  std::optional<Section> optional_section(std::string_view key, Meaning meaning = {}) const;
+  std::optional<Section> optional_section(std::string_view key, Meaning meaning = "") const;
   /// An array of tables ([[key]]) of at least one; empty also after an error.
-  std::vector<Section> sections(std::string_view key, Meaning meaning = {}) const;
+  std::vector<Section> sections(std::string_view key, Meaning meaning = "") const;
   /// An array of tables that may be absent.
-  std::vector<Section> optional_sections(std::string_view key, Meaning meaning = {}) const;
+  std::vector<Section> optional_sections(std::string_view key, Meaning meaning = "") const;
 
   /// A quantity, written as a string with its unit, in `unit.si`; `range` is in that unit.
-  double quantity(std::string_view key, const Unit& unit, const Range& range, Meaning meaning = {}) const;
+  double quantity(std::string_view key, const Unit& unit, const Range& range, Meaning meaning) const;
   double quantity(std::string_view key, const Unit& unit, const Range& range, double fallback,
-                  Meaning meaning = {}) const;
+                  Meaning meaning) const;
   /// A list of at least one quantity; empty after an error.
   std::vector<double> quantities(std::string_view key, const Unit& unit, const Range& range,
-                                 Meaning meaning = {}) const;
+                                 Meaning meaning) const;
 
   /// A dimensionless number, written as a number or as a string such as "31 %".
-  double number(std::string_view key, const Range& range, Meaning meaning = {}) const;
-  double number(std::string_view key, const Range& range, double fallback, Meaning meaning = {}) const;
+  double number(std::string_view key, const Range& range, Meaning meaning) const;
+  double number(std::string_view key, const Range& range, double fallback, Meaning meaning) const;
   /// A list of at least one dimensionless number; empty after an error.
-  std::vector<double> numbers(std::string_view key, const Range& range, Meaning meaning = {}) const;
+  std::vector<double> numbers(std::string_view key, const Range& range, Meaning meaning) const;
 
   /// A list of two or more points, `[[x, y], ...]`, in `x_unit.si` and `y_unit.si`, x ascending strictly;
   /// empty after an error, which names the element.
   std::vector<std::pair<double, double>> points(std::string_view key, const Unit& x_unit, const Unit& y_unit,
-                                                Meaning meaning = {}) const;
+                                                Meaning meaning) const;
 
-  long long integer(std::string_view key, const Range& range, Meaning meaning = {}) const;
-  long long integer(std::string_view key, const Range& range, long long fallback, Meaning meaning = {}) const;
-  bool flag(std::string_view key, Meaning meaning = {}) const;
+  long long integer(std::string_view key, const Range& range, Meaning meaning) const;
+  long long integer(std::string_view key, const Range& range, long long fallback, Meaning meaning) const;
+  bool flag(std::string_view key, Meaning meaning) const;
   /// \tparam Bool  bool itself, so that no text is taken for a fallback
   template <std::same_as<bool> Bool>
-  bool flag(std::string_view key, Bool fallback, Meaning meaning = {}) const {
+  bool flag(std::string_view key, Bool fallback, Meaning meaning) const {
     return flag_or(key, fallback, meaning);
   }
   /// A string that is not empty.
-  std::string text(std::string_view key, Meaning meaning = {}) const;
+  std::string text(std::string_view key, Meaning meaning) const;
   std::string text(std::string_view key, std::string fallback, Meaning meaning) const;
 
   /// One of several words: `choice<Mass>("mass", {{"scaled", Mass::scaled}, {"real", Mass::real}})`. A
@@ -114,13 +113,13 @@ class Section {
   /// table that are missing or unknown are not reported from then on, since which ones are needed depends on
   /// the choice.
   template <class E>
-  E choice(std::string_view key, std::initializer_list<Choice<E>> options, Meaning meaning = {}) const {
+  E choice(std::string_view key, std::initializer_list<Choice<E>> options, Meaning meaning) const {
     return std::data(options)[choice_index(key, words(options), std::nullopt, {}, meaning)].value;
   }
   /// \tparam F  E itself, so that no text is taken for a fallback
   template <class E, std::same_as<E> F>
   E choice(std::string_view key, std::initializer_list<Choice<E>> options, F fallback,
-           Meaning meaning = {}) const {
+           Meaning meaning) const {
     std::string_view word;
     for (const auto& option : options)
       if (option.value == fallback) word = option.word;
@@ -129,13 +128,8 @@ class Section {
   }
   /// The same for words that are known only when the deck is read, at least one.
   template <class E>
-  E choice(std::string_view key, const std::vector<Choice<E>>& options, Meaning meaning = {}) const {
+  E choice(std::string_view key, const std::vector<Choice<E>>& options, Meaning meaning) const {
     return options[choice_index(key, words(options), std::nullopt, {}, meaning)].value;
-  }
-
-  /// The same for words that are known only when the program runs: the index of the one chosen.
-  std::size_t choice(std::string_view key, const std::vector<std::string>& words) const {
-    return choice_index(key, words, std::nullopt);
   }
 
   /// Whether the key is written. A key that is found here but never read, nor named in `error`, is reported

@@ -12,6 +12,9 @@ namespace {
 
 constexpr auto kNoWord = "";
 
+/// Longest line outside of tables, in characters.
+constexpr int kLineLength = 120;
+
 std::string code(std::string_view text) {
   return fmt::format("`{}`", text);
 }
@@ -36,6 +39,24 @@ std::string paragraph(const std::vector<std::string>& sentences) {
 
 bool is_array(const DeckTable& table) {
   return table.path.ends_with("[]");
+}
+
+/// The same words in lines.
+std::string wrapped(const std::string& text) {
+  std::string result;
+  int length = 0;  // of the present line
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    const auto characters = static_cast<int>(
+        std::count_if(word.begin(), word.end(), [](char c) { return (c & 0xC0) != 0x80; }));  // UTF-8
+    const bool fits = length + 1 + characters <= kLineLength;
+    if (!result.empty()) result += fits ? ' ' : '\n';
+    length = result.empty() || !fits ? characters : length + 1 + characters;
+    result += word;
+    begin = end + 1;
+  }
+  return result;
 }
 
 std::string header(const DeckTable& table) {
@@ -106,6 +127,9 @@ std::string rows(const DeckTable& table, const std::string& decisive, const std:
       if (std::find(with.begin(), with.end(), word) == with.end()) continue;
       key.conditions.erase(condition);
     }
+    if (key.key == decisive)  // what has a part of its own is told there
+      for (DeckWord& w : key.words)
+        if (!rows(table, decisive, w.word).empty()) w.meaning.clear();
     text += row(table, key);
   }
   if (text.empty()) return "";
@@ -137,7 +161,7 @@ std::string body(const DeckTable& table) {
     const std::string part = rows(table, decisive->key, word.word);
     if (part.empty()) continue;
     text += fmt::format("\n### `{} = {}`\n\n", decisive->key, word.word);
-    if (!word.meaning.empty()) text += fmt::format("{}\n\n", sentence(word.meaning));
+    if (!word.meaning.empty()) text += fmt::format("{}\n\n", wrapped(sentence(word.meaning)));
     text += part;
   }
   return text;
@@ -163,7 +187,8 @@ std::string deck_reference(const DeckSchema& schema) {
     for (const DeckTable* table : open)
       if (is_alike(table)) headers.push_back(header(*table));
     text += fmt::format("{}## {}\n\n", text.empty() ? "" : "\n", fmt::join(headers, ", "));
-    if (const std::string words = introduction(first); !words.empty()) text += fmt::format("{}\n\n", words);
+    if (const std::string words = introduction(first); !words.empty())
+      text += fmt::format("{}\n\n", wrapped(words));
     text += body(first);
     std::erase_if(open, is_alike);
   }

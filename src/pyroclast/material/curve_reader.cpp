@@ -99,7 +99,7 @@ Curve CurveReader::read_described(const Section& section, std::string_view key, 
                                   const Range& range) {
   std::optional<Curve> curve;
   if (!section.is_table(key)) {
-    curve = Curve::constant(section.quantity(key, unit, range));
+    curve = Curve::constant(section.quantity(key, unit, range, ""));
   } else {
     const Section forms =
         *section.optional_section(key, "a key that depends on it may hold one of these forms");
@@ -142,9 +142,10 @@ std::optional<Curve> CurveReader::read_form(const Section& forms, const std::str
 
 std::optional<Curve> CurveReader::read_product(const Section& forms, const Unit& unit) const {
   forms.describe("value", {.value = kQuantity}, "what the ratio `times` is multiplied with");
-  forms.describe("times", {.value = "name of a built-in ratio, or curve", .name = forms_name()},
-                 "ratio; over the temperature it is 1 at 20 °C");
-  const double value = forms.quantity("value", unit, Range::any());
+  forms.describe(
+      "times", {.value = fmt::format("name of a built-in ratio, or {}", forms_name()), .name = forms_name()},
+      "ratio; over the temperature it is 1 at 20 °C");
+  const double value = forms.quantity("value", unit, Range::any(), "");
   const std::optional<Curve> ratio =
       forms.is_table("times") ? read_forms(*forms.optional_section("times"), unit::dimensionless, false)
                               : read_builtin(forms, "times", unit::dimensionless);
@@ -163,7 +164,7 @@ std::optional<Curve> CurveReader::read_product(const Section& forms, const Unit&
 std::optional<Curve> CurveReader::read_table(const Section& forms, const Unit& unit) const {
   forms.describe("table", {.value = fmt::format("list of points, [[{}, value], ...]", abscissa().name)},
                  "two points or more, ascending; the curve is linear between them");
-  const auto points = forms.points("table", abscissa(), unit);
+  const auto points = forms.points("table", abscissa(), unit, "");
   if (points.empty()) return std::nullopt;
   std::vector<double> abscissae, values;
   for (const auto& [x, y] : points) {
@@ -210,7 +211,7 @@ std::optional<Curve> CurveReader::read_expression(const Section& forms, const Un
       "expression", axis_ == time_axis() ? Meaning("formula in t, in s") : Meaning("formula in T, in °C"));
   forms.describe("unit", {.value = "text"}, "unit of the formula's value; a ratio needs none");
   const std::string given =
-      is_same(unit, unit::dimensionless) ? forms.text("unit", unit.si, {}) : forms.text("unit");
+      is_same(unit, unit::dimensionless) ? forms.text("unit", unit.si, "") : forms.text("unit", "");
   const auto range = forms.quantities("range", abscissa(), Range::any(),
                                       "where the formula holds: the lower end, the upper end");
   if (!range.empty() && (range.size() != 2 || !(range[0] < range[1])))

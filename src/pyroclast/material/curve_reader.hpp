@@ -48,10 +48,10 @@ class CurveReader {
 
   /// The curve in `unit.si`, named by its path in the deck. `range` holds over the needed interval.
   Curve read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
-             Meaning meaning = {});
+             Meaning meaning);
   /// The same for a key that may be absent; `fallback` is then the value.
   Curve read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
-             double fallback, Meaning meaning = {});
+             double fallback, Meaning meaning);
 
   Interval needed() const { return needed_; }
   /// All that was read from keys that are there, in order of reading.
