@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -7,6 +6,7 @@
 
 #include "pyroclast/deck/reference.hpp"
 #include "pyroclast/setup/setup.hpp"
+#include "pyroclast/stages/settle.hpp"
 
 namespace pyroclast {
 namespace {
@@ -24,7 +24,7 @@ TEST(DeckReference, HasAKindOfStageThatSomeoneElseAdds) {
              {},
              [](const Section& s, const StageTables&) -> std::unique_ptr<Stage> {
                s.integer("turns", Range::at_least(1), "before the stage ends");
-               return nullptr;
+               return std::make_unique<Settle>(Settle::Keys{});
              }});
   const DeckSchema schema = deck_schema(kinds);
   EXPECT_EQ(schema.undocumented(), std::vector<std::string>{});
