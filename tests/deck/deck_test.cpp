@@ -19,7 +19,7 @@ Deck parse(const std::string& text) {
 
 TEST(UnknownKey, IsReportedAtTheKeyWithTheNearestMatch) {
   const Deck deck = parse("\n[specimen]\n  heihgt = \"300 mm\"\n");
-  deck.root().section("specimen").quantity("height", unit::length, Range::positive(), 0.3);
+  deck.root().section("specimen").quantity("height", unit::length, Range::positive(), 0.3, "");
   EXPECT_EQ(to_string(only_diagnostic_of(deck)),
             "case.toml:3:3: specimen.heihgt = \"300 mm\": unknown key; did you mean \"height\"?");
 }
@@ -27,7 +27,7 @@ TEST(UnknownKey, IsReportedAtTheKeyWithTheNearestMatch) {
 TEST(UnknownKey, WithoutANearMatchListsWhatIsAllowed) {
   const Deck deck = parse("[specimen]\ncolour = \"grey\"\n");
   const Section specimen = deck.root().section("specimen");
-  specimen.quantity("width", unit::length, Range::positive(), 0.1);
+  specimen.quantity("width", unit::length, Range::positive(), 0.1, "");
   specimen.has("height");
   const Diagnostic diagnostic = only_diagnostic_of(deck);
   EXPECT_EQ(diagnostic.message, "unknown key; allowed in [specimen]: \"width\", \"height\"");
@@ -37,10 +37,10 @@ TEST(UnknownKey, WithoutANearMatchListsWhatIsAllowed) {
 TEST(UnknownKey, OfAnotherTableIsSentThere) {
   const Deck deck = parse("[specimen]\nseed = 1\n[blocks]\ncount = 5000\n");
   const Section specimen = deck.root().section("specimen");
-  specimen.quantity("width", unit::length, Range::positive(), 0.1);
+  specimen.quantity("width", unit::length, Range::positive(), 0.1, "");
   const Section blocks = deck.root().section("blocks");
-  blocks.integer("count", Range::positive());
-  blocks.integer("seed", Range::non_negative(), 0);
+  blocks.integer("count", Range::positive(), "");
+  blocks.integer("seed", Range::non_negative(), 0, "");
   EXPECT_EQ(only_diagnostic_of(deck).hint, "\"seed\" belongs in [blocks]");
 }
 
@@ -56,7 +56,7 @@ TEST(UnknownTable, IsReportedOnceWithTheNearestMatch) {
 
 TEST(UnknownKey, IsFoundInEveryElementOfAnArrayOfTables) {
   const Deck deck = parse("[[stages]]\nrate = 1\n[[stages]]\nrat = 2\n");
-  for (const Section& stage : deck.root().sections("stages")) stage.number("rate", Range::any(), 0.0);
+  for (const Section& stage : deck.root().sections("stages")) stage.number("rate", Range::any(), 0.0, "");
   EXPECT_EQ(only_diagnostic_of(deck).key, "stages[1].rat");
 }
 
@@ -75,7 +75,7 @@ TEST(KeyThatIsOnlyLookedFor, IsReportedAsWithoutEffect) {
 
 TEST(KeyThatIsAskedForTwice, IsFine) {
   const Deck deck = parse("rate = 1\n");
-  EXPECT_EQ(deck.root().number("rate", Range::any()), deck.root().number("rate", Range::any()));
+  EXPECT_EQ(deck.root().number("rate", Range::any(), ""), deck.root().number("rate", Range::any(), ""));
   EXPECT_NO_THROW(deck.finish());
 }
 
@@ -120,13 +120,13 @@ damping = 1.5
 )");
   const Section root = deck.root();
   const Section solver = root.section("solver");
-  solver.choice<int>("mass", {{"scaled", 0}, {"real", 1}});
-  solver.number("damping", Range::fraction());
+  solver.choice<int>("mass", {{"scaled", 0, ""}, {"real", 1, ""}}, "");
+  solver.number("damping", Range::fraction(), "");
   const Section specimen = root.section("specimen");
-  specimen.quantity("thickness", unit::length, Range::positive());
-  specimen.quantity("height", unit::length, Range::positive());
-  specimen.quantity("width", unit::length, Range::positive());
-  root.integer("seed", Range::any());
+  specimen.quantity("thickness", unit::length, Range::positive(), "");
+  specimen.quantity("height", unit::length, Range::positive(), "");
+  specimen.quantity("width", unit::length, Range::positive(), "");
+  root.integer("seed", Range::any(), "");
   root.section("contacts");
 
   const std::vector<std::string> expected{
@@ -154,7 +154,7 @@ TEST(Deck, CanBeMovedWhileSectionsAreHeld) {
   Deck deck = parse("a = 1\n");
   const Section root = deck.root();
   const Deck moved = std::move(deck);
-  EXPECT_EQ(root.integer("a", Range::any()), 1);
+  EXPECT_EQ(root.integer("a", Range::any(), ""), 1);
   EXPECT_NO_THROW(moved.finish());
 }
 

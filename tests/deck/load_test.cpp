@@ -53,7 +53,7 @@ TEST_F(DeckFile, IsKeptAsReadForTheManifest) {
   const Deck deck = Deck::load(file);
   EXPECT_EQ(deck.text(), text);
   EXPECT_EQ(deck.name(), file.string());
-  EXPECT_EQ(deck.root().text("title"), "x");
+  EXPECT_EQ(deck.root().text("title", ""), "x");
   EXPECT_NO_THROW(deck.finish());
 }
 
@@ -111,7 +111,7 @@ TEST(DeckText, ThatIsNotUtf8IsLocated) {
 
 TEST(DeckText, MayBeginWithAByteOrderMark) {
   const Deck deck = Deck::parse("\xef\xbb\xbfseed = 1\n", "case.toml");
-  EXPECT_EQ(deck.root().integer("seed", Range::any()), 1);
+  EXPECT_EQ(deck.root().integer("seed", Range::any(), ""), 1);
   EXPECT_NO_THROW(deck.finish());
 }
 
@@ -123,7 +123,7 @@ TEST_F(DeckFile, ChangesReplaceValuesInTheText) {
   const Deck deck = Deck::load(file, {"a.length=5 mm", "stages[1].to = 7", "a.E=\"2 GPa\""});
   EXPECT_EQ(deck.text(),
             "[a]\nlength = \"5 mm\"  # note\nE = \"2 GPa\"\n[[stages]]\nto = 1\n[[stages]]\nto = 7\n");
-  EXPECT_DOUBLE_EQ(deck.root().section("a").quantity("length", unit::length, Range::positive()), 5e-3);
+  EXPECT_DOUBLE_EQ(deck.root().section("a").quantity("length", unit::length, Range::positive(), ""), 5e-3);
 }
 
 // Promise: a change that cannot be made says why.

@@ -30,17 +30,18 @@ TEST(Section, ReadsEveryKindOfValue) {
     mass = "real"
   )");
   const Section root = deck.root();
-  EXPECT_DOUBLE_EQ(root.quantity("width", unit::length, Range::positive()), 0.15);
-  EXPECT_EQ(root.quantities("sieves", unit::length, Range::positive()),
+  EXPECT_DOUBLE_EQ(root.quantity("width", unit::length, Range::positive(), ""), 0.15);
+  EXPECT_EQ(root.quantities("sieves", unit::length, Range::positive(), ""),
             (std::vector<double>{0.00475, 0.008}));
-  EXPECT_DOUBLE_EQ(root.number("fraction", Range::fraction()), 0.34);
-  EXPECT_EQ(root.number("exponent", Range::fraction()), 0.45);
-  EXPECT_EQ(root.number("whole", Range::any()), 2.0);
-  EXPECT_EQ(root.numbers("weights", Range::fraction()), (std::vector<double>{1.0, 0.5, 0.2}));
-  EXPECT_EQ(root.integer("seed", Range::non_negative()), 9007199254740993);
-  EXPECT_FALSE(root.flag("report"));
-  EXPECT_EQ(root.text("name"), "reference");
-  EXPECT_EQ(root.choice<Mass>("mass", {{"scaled", Mass::scaled}, {"real", Mass::real}}), Mass::real);
+  EXPECT_DOUBLE_EQ(root.number("fraction", Range::fraction(), ""), 0.34);
+  EXPECT_EQ(root.number("exponent", Range::fraction(), ""), 0.45);
+  EXPECT_EQ(root.number("whole", Range::any(), ""), 2.0);
+  EXPECT_EQ(root.numbers("weights", Range::fraction(), ""), (std::vector<double>{1.0, 0.5, 0.2}));
+  EXPECT_EQ(root.integer("seed", Range::non_negative(), ""), 9007199254740993);
+  EXPECT_FALSE(root.flag("report", ""));
+  EXPECT_EQ(root.text("name", ""), "reference");
+  EXPECT_EQ(root.choice<Mass>("mass", {{"scaled", Mass::scaled, ""}, {"real", Mass::real, ""}}, ""),
+            Mass::real);
   EXPECT_TRUE(root.ok());
   EXPECT_NO_THROW(deck.finish());
 }
@@ -48,14 +49,15 @@ TEST(Section, ReadsEveryKindOfValue) {
 TEST(Section, FallsBackOnlyIfTheKeyIsAbsent) {
   const Deck deck = parse("gap = \"2 mm\"\n");
   const Section root = deck.root();
-  EXPECT_EQ(root.quantity("gap", unit::length, Range::non_negative(), 7.0), 0.002);
-  EXPECT_EQ(root.quantity("thickness", unit::length, Range::positive(), 7.0), 7.0);
-  EXPECT_EQ(root.number("damping", Range::fraction(), 0.8), 0.8);
-  EXPECT_EQ(root.integer("seed", Range::any(), 5), 5);
-  EXPECT_TRUE(root.flag("report", true));
-  EXPECT_EQ(root.text("name", "unnamed"), "unnamed");
-  EXPECT_EQ(root.choice<Mass>("mass", {{"real", Mass::real}, {"scaled", Mass::scaled}}, Mass::scaled),
-            Mass::scaled);
+  EXPECT_EQ(root.quantity("gap", unit::length, Range::non_negative(), 7.0, ""), 0.002);
+  EXPECT_EQ(root.quantity("thickness", unit::length, Range::positive(), 7.0, ""), 7.0);
+  EXPECT_EQ(root.number("damping", Range::fraction(), 0.8, ""), 0.8);
+  EXPECT_EQ(root.integer("seed", Range::any(), 5, ""), 5);
+  EXPECT_TRUE(root.flag("report", true, ""));
+  EXPECT_EQ(root.text("name", "unnamed", ""), "unnamed");
+  EXPECT_EQ(
+      root.choice<Mass>("mass", {{"real", Mass::real, ""}, {"scaled", Mass::scaled, ""}}, Mass::scaled, ""),
+      Mass::scaled);
   EXPECT_FALSE(root.optional_section("heating"));
   EXPECT_TRUE(root.optional_sections("stages").empty());
   EXPECT_NO_THROW(deck.finish());
@@ -68,7 +70,7 @@ TEST(Section, IsReachedByHeadersDotsAndInlineTables) {
     const Deck deck = parse(text);
     const Section section = deck.root().section("contacts").section("mortar_mortar");
     EXPECT_EQ(section.path(), "contacts.mortar_mortar");
-    EXPECT_EQ(section.quantity("f_t", unit::stress, Range::positive()), 2.5e6);
+    EXPECT_EQ(section.quantity("f_t", unit::stress, Range::positive(), ""), 2.5e6);
     EXPECT_NO_THROW(deck.finish());
   }
 }
@@ -77,7 +79,7 @@ TEST(Section, ArraysOfTablesKeepTheirOrder) {
   const Deck deck = parse("[[stages]]\nn = 1\n[[stages]]\nn = 2\n");
   std::vector<long long> read;
   for (const Section& stage : deck.root().sections("stages"))
-    read.push_back(stage.integer("n", Range::any()));
+    read.push_back(stage.integer("n", Range::any(), ""));
   EXPECT_EQ(read, (std::vector<long long>{1, 2}));
   EXPECT_NO_THROW(deck.finish());
 }
@@ -109,7 +111,7 @@ TEST(BadValue, OfAQuantityIsExplained) {
         BadValue{"\"-5 mm\"", "must be greater than 0 m"}, BadValue{"true", "not true or false"},
         BadValue{"[\"1 m\"]", "not a list"}, BadValue{"2000-01-01", "not a date or time"}}) {
     const Deck deck = with_value(bad.value);
-    const double stand_in = deck.root().section("part").quantity("key", unit::length, Range::positive());
+    const double stand_in = deck.root().section("part").quantity("key", unit::length, Range::positive(), "");
     EXPECT_GT(stand_in, 0.0) << bad.value;
     expect_error(deck, bad);
   }
@@ -121,7 +123,7 @@ TEST(BadValue, OfANumberIsExplained) {
         BadValue{"\"5 mm\"", "wrong dimension"}, BadValue{"nan", "not finite"},
         BadValue{"-inf", "not finite"}, BadValue{"false", "a number is needed"}}) {
     const Deck deck = with_value(bad.value);
-    deck.root().section("part").number("key", Range::fraction());
+    deck.root().section("part").number("key", Range::fraction(), "");
     expect_error(deck, bad);
   }
 }
@@ -130,32 +132,32 @@ TEST(BadValue, OfAnIntegerIsExplained) {
   for (const BadValue& bad : {BadValue{"0", "must be between 1 and 10"}, BadValue{"3.0", "a whole number"},
                               BadValue{"1e1", "a whole number"}, BadValue{"\"3\"", "not a string"}}) {
     const Deck deck = with_value(bad.value);
-    deck.root().section("part").integer("key", Range::between(1, 10));
+    deck.root().section("part").integer("key", Range::between(1, 10), "");
     expect_error(deck, bad);
   }
 }
 
 TEST(BadValue, OfAFlagOrATextIsExplained) {
   const Deck flag = with_value("\"true\"");
-  flag.root().section("part").flag("key");
+  flag.root().section("part").flag("key", "");
   expect_error(flag, {"\"true\"", "without quotes"});
   const Deck text = with_value("3");
-  text.root().section("part").text("key");
+  text.root().section("part").text("key", "");
   expect_error(text, {"3", "a string is needed, not an integer"});
   const Deck empty = with_value("\"\"");
-  empty.root().section("part").text("key");
+  empty.root().section("part").text("key", "");
   expect_error(empty, {"\"\"", "must not be empty"});
 }
 
 TEST(BadValue, IsReportedAlsoWhereThereIsAFallback) {
   const Deck deck = with_value("\"-5 mm\"");
-  deck.root().section("part").quantity("key", unit::length, Range::non_negative(), 0.001);
+  deck.root().section("part").quantity("key", unit::length, Range::non_negative(), 0.001, "");
   expect_error(deck, {"\"-5 mm\"", "must be at least 0 m"});
 }
 
 TEST(BadValue, OfAListIsLocatedAtItsElement) {
   const Deck deck = parse("sieves = [\"4 mm\", 8,\n  \"16 MPa\"]\n");
-  EXPECT_TRUE(deck.root().quantities("sieves", unit::length, Range::positive()).empty());
+  EXPECT_TRUE(deck.root().quantities("sieves", unit::length, Range::positive(), "").empty());
   const auto errors = diagnostics_of(deck);
   ASSERT_EQ(errors.size(), 2U);
   EXPECT_EQ(to_string(errors[0]).find("case.toml:1:19: sieves[1] = 8: no unit"), 0U) << to_string(errors[0]);
@@ -166,14 +168,14 @@ TEST(BadValue, OfAListIsLocatedAtItsElement) {
 TEST(BadValue, OfAListThatIsEmptyOrNoneIsExplained) {
   for (const BadValue& bad : {BadValue{"[]", "at least one length"}, BadValue{"\"4 mm\"", "a list of"}}) {
     const Deck deck = with_value(bad.value);
-    EXPECT_TRUE(deck.root().section("part").quantities("key", unit::length, Range::positive()).empty());
+    EXPECT_TRUE(deck.root().section("part").quantities("key", unit::length, Range::positive(), "").empty());
     expect_error(deck, bad);
   }
 }
 
 TEST(Section, ReadsPointsInSiUnits) {
   const Deck deck = parse("modulus = [[\"20 degC\", \"70 GPa\"], [\"800 degC\", \"4000 MPa\"]]\n");
-  const auto points = deck.root().points("modulus", unit::temperature, unit::stress);
+  const auto points = deck.root().points("modulus", unit::temperature, unit::stress, "");
   EXPECT_EQ(points, (std::vector<std::pair<double, double>>{{20.0, 70e9}, {800.0, 4e9}}));
   EXPECT_NO_THROW(deck.finish());
 }
@@ -197,7 +199,7 @@ TEST(BadValue, OfAPointIsLocatedAtItsElement) {
         std::tuple{"[[\"20 degC\", \"4 Pa\"]]", "key", "two or more points"},
         std::tuple{"\"4 Pa\"", "key", "two or more points"}}) {
     const Deck deck = with_value(list);
-    EXPECT_TRUE(deck.root().section("part").points("key", unit::temperature, unit::stress).empty());
+    EXPECT_TRUE(deck.root().section("part").points("key", unit::temperature, unit::stress, "").empty());
     const Diagnostic diagnostic = only_diagnostic_of(deck);
     EXPECT_EQ(diagnostic.key, std::string("part.") + path);
     EXPECT_TRUE(mentions(diagnostic.message, message)) << diagnostic.message;
@@ -206,8 +208,8 @@ TEST(BadValue, OfAPointIsLocatedAtItsElement) {
 
 TEST(Choice, ThatIsMisspeltIsReadAsTheNearest) {
   const Deck deck = with_value("\"scald\"");
-  const Mass mass =
-      deck.root().section("part").choice<Mass>("key", {{"real", Mass::real}, {"scaled", Mass::scaled}});
+  const Mass mass = deck.root().section("part").choice<Mass>(
+      "key", {{"real", Mass::real, ""}, {"scaled", Mass::scaled, ""}}, "");
   EXPECT_EQ(mass, Mass::scaled);
   expect_error(deck, {"\"scald\"", "must be one of \"real\", \"scaled\""});
   EXPECT_EQ(only_diagnostic_of(deck).hint, "did you mean \"scaled\"?");
@@ -215,10 +217,12 @@ TEST(Choice, ThatIsMisspeltIsReadAsTheNearest) {
 
 TEST(Choice, OfTheWrongTypeOrMissingListsTheWords) {
   const Deck wrong = with_value("3");
-  wrong.root().section("part").choice<Mass>("key", {{"real", Mass::real}, {"scaled", Mass::scaled}});
+  wrong.root().section("part").choice<Mass>("key", {{"real", Mass::real, ""}, {"scaled", Mass::scaled, ""}},
+                                            "");
   expect_error(wrong, {"3", "one of \"real\", \"scaled\" is needed, not an integer"});
   const Deck missing = parse("[part]\n");
-  missing.root().section("part").choice<Mass>("key", {{"real", Mass::real}, {"scaled", Mass::scaled}});
+  missing.root().section("part").choice<Mass>("key", {{"real", Mass::real, ""}, {"scaled", Mass::scaled, ""}},
+                                              "");
   EXPECT_TRUE(mentions(only_diagnostic_of(missing).message, "missing; one of \"real\", \"scaled\""));
 }
 
@@ -226,9 +230,9 @@ TEST(Choice, OfTheWrongTypeOrMissingListsTheWords) {
 TEST(Choice, ThatCannotBeReadDoesNotBlameTheKeysThatHangOnIt) {
   const Deck deck = parse("heating = \"furnace\"\nrate = \"5 K/min\"\nsed = 3\n");
   const Section root = deck.root();
-  root.choice<int>("heating", {{"ramp", 0}, {"uniform", 1}});
-  root.integer("seed", Range::any());
-  root.quantity("duration", unit::time, Range::positive());
+  root.choice<int>("heating", {{"ramp", 0, ""}, {"uniform", 1, ""}}, "");
+  root.integer("seed", Range::any(), "");
+  root.quantity("duration", unit::time, Range::positive(), "");
   const auto errors = diagnostics_of(deck);
   ASSERT_EQ(errors.size(), 2U);
   EXPECT_EQ(errors[0].key, "heating");
@@ -238,7 +242,7 @@ TEST(Choice, ThatCannotBeReadDoesNotBlameTheKeysThatHangOnIt) {
 
 TEST(MissingKey, IsReportedAtItsTableWithWhatIsAllowed) {
   const Deck deck = parse("\n[specimen]\n");
-  deck.root().section("specimen").quantity("width", unit::length, Range::positive());
+  deck.root().section("specimen").quantity("width", unit::length, Range::positive(), "");
   const Diagnostic diagnostic = only_diagnostic_of(deck);
   EXPECT_EQ(diagnostic.line, 2);
   EXPECT_EQ(diagnostic.key, "specimen.width");
@@ -251,14 +255,14 @@ TEST(MissingKey, IsReportedAtItsTableWithWhatIsAllowed) {
 TEST(MissingKey, OfEveryKindIsReported) {
   const Deck deck = parse("[part]\n");
   const Section part = deck.root().section("part");
-  part.number("a", Range::fraction());
-  part.integer("b", Range::positive());
-  part.flag("c");
-  part.text("d");
-  part.numbers("e", Range::any());
+  part.number("a", Range::fraction(), "");
+  part.integer("b", Range::positive(), "");
+  part.flag("c", "");
+  part.text("d", "");
+  part.numbers("e", Range::any(), "");
   part.section("f");
   part.sections("g");
-  part.points("h", unit::temperature, unit::stress);
+  part.points("h", unit::temperature, unit::stress, "");
   std::string keys;
   for (const Diagnostic& diagnostic : diagnostics_of(deck)) {
     EXPECT_EQ(diagnostic.message.find("missing; "), 0U);
@@ -269,9 +273,9 @@ TEST(MissingKey, OfEveryKindIsReported) {
 
 TEST(MissingTable, IsOneErrorWhateverIsReadFromIt) {
   const Deck deck = parse("seed = 1\n");
-  deck.root().integer("seed", Range::any());
+  deck.root().integer("seed", Range::any(), "");
   const Section contacts = deck.root().section("contacts");
-  EXPECT_GT(contacts.section("mortar_mortar").quantity("f_t", unit::stress, Range::positive()), 0.0);
+  EXPECT_GT(contacts.section("mortar_mortar").quantity("f_t", unit::stress, Range::positive(), ""), 0.0);
   EXPECT_TRUE(contacts.sections("stages").empty());
   EXPECT_FALSE(contacts.has("f_t"));
   EXPECT_FALSE(contacts.ok());

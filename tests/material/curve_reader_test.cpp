@@ -42,7 +42,7 @@ Deck deck_of(const std::string& value) {
 Curve read(const Deck& deck, const Unit& unit, const Range& range = Range::any(), Interval needed = kFire,
            const fs::path& folder = ".") {
   CurveReader reader(folder, temperature_axis(), needed, builtin_curves());
-  return reader.read(deck.root().section("materials").section("mortar"), "key", unit, range);
+  return reader.read(deck.root().section("materials").section("mortar"), "key", unit, range, "");
 }
 
 Curve read_good(const std::string& value, const Unit& unit, const fs::path& folder = ".") {
@@ -99,8 +99,8 @@ TEST(CurveReader, ConvertsANamedCurveToTheUnitOfTheKey) {
                                   {"modulus", "", "", "GPa", Curve::table({0, 60}, {70, 10}, time_axis())}});
   const Deck deck = Deck::parse("gas = { builtin = \"slow\" }\nE = { builtin = \"modulus\" }\n", "case.toml");
   CurveReader reader(".", time_axis(), {0.0, 60.0}, catalogue);
-  const Curve gas = reader.read(deck.root(), "gas", unit::temperature, Range::any());
-  const Curve modulus = reader.read(deck.root(), "E", unit::stress, Range::any());
+  const Curve gas = reader.read(deck.root(), "gas", unit::temperature, Range::any(), "");
+  const Curve modulus = reader.read(deck.root(), "E", unit::stress, Range::any(), "");
   EXPECT_NO_THROW(deck.finish());
   // The offset of the scales differs in the 13th digit.
   EXPECT_NEAR(gas(0.0), 0.0, 1e-9);
@@ -132,7 +132,7 @@ TEST(CurveReader, MakesARampOverTheTimeAndHoldsItsEnd) {
   const Deck deck =
       Deck::parse("gas = { from = \"20 degC\", rate = \"5 K/min\", to = \"800 degC\" }\n", "case.toml");
   CurveReader reader(".", time_axis(), {0.0, 1e6}, builtin_curves());
-  const Curve gas = reader.read(deck.root(), "gas", unit::temperature, Range::any());
+  const Curve gas = reader.read(deck.root(), "gas", unit::temperature, Range::any(), "");
   EXPECT_NO_THROW(deck.finish());
   EXPECT_DOUBLE_EQ(gas(0.0), 20.0);
   EXPECT_NEAR(gas(60.0), 25.0, 1e-9);
@@ -144,14 +144,14 @@ TEST(CurveReader, CoolsAlongARampToALowerTemperature) {
   const Deck deck =
       Deck::parse("gas = { from = \"800 degC\", rate = \"1 K/s\", to = \"20 degC\" }\n", "case.toml");
   CurveReader reader(".", time_axis(), {0.0, 1000.0}, builtin_curves());
-  EXPECT_DOUBLE_EQ(reader.read(deck.root(), "gas", unit::temperature, Range::any())(100.0), 700.0);
+  EXPECT_DOUBLE_EQ(reader.read(deck.root(), "gas", unit::temperature, Range::any(), "")(100.0), 700.0);
 }
 
 TEST(CurveReader, FallsBackOnlyIfTheKeyIsAbsent) {
   const Deck deck = Deck::parse("there = \"3 1/K\"\n", "case.toml");
   CurveReader reader(".", temperature_axis(), kFire, builtin_curves());
-  EXPECT_EQ(reader.read(deck.root(), "there", unit::expansion, Range::any(), 0.0)(20.0), 3.0);
-  EXPECT_EQ(reader.read(deck.root(), "absent", unit::expansion, Range::any(), 7.0)(20.0), 7.0);
+  EXPECT_EQ(reader.read(deck.root(), "there", unit::expansion, Range::any(), 0.0, "")(20.0), 3.0);
+  EXPECT_EQ(reader.read(deck.root(), "absent", unit::expansion, Range::any(), 7.0, "")(20.0), 7.0);
   EXPECT_NO_THROW(deck.finish());
   ASSERT_EQ(reader.curves().size(), 1U);
 }
@@ -161,8 +161,8 @@ TEST(CurveReader, KeepsWhatItReadWithPathAndUnit) {
       "width = \"3 Pa\"\n[materials.mortar]\nE = { value = \"2 GPa\", times = \"glasgow_modulus\" }\n",
       "case.toml");
   CurveReader reader(".", temperature_axis(), kFire, builtin_curves());
-  reader.read(deck.root(), "width", unit::stress, Range::any());
-  reader.read(deck.root().section("materials").section("mortar"), "E", unit::stress, Range::positive());
+  reader.read(deck.root(), "width", unit::stress, Range::any(), "");
+  reader.read(deck.root().section("materials").section("mortar"), "E", unit::stress, Range::positive(), "");
   ASSERT_EQ(reader.curves().size(), 2U);
   EXPECT_EQ(reader.curves()[0].path, "width");
   EXPECT_EQ(reader.curves()[1].path, "materials.mortar.E");
@@ -290,7 +290,7 @@ TEST(BadCurve, RampThatGoesNowhereIsRefused) {
   const Deck deck =
       Deck::parse("gas = { from = \"20 degC\", rate = \"5 K/min\", to = \"20 degC\" }\n", "case.toml");
   CurveReader reader(".", time_axis(), {0.0, 1.0}, builtin_curves());
-  reader.read(deck.root(), "gas", unit::temperature, Range::any());
+  reader.read(deck.root(), "gas", unit::temperature, Range::any(), "");
   EXPECT_EQ(only_diagnostic_of(deck).key, "gas.to");
 }
 

@@ -32,8 +32,8 @@ void expose(Simulation& simulation, double duration) {
 }
 
 TEST(TemperatureField, WhatALaterAndHotterExposureBringsChangesNoBitBeforeIt) {
-  const Setup alone = fire_and_then("");
-  const Setup followed =
+  const auto alone = fire_and_then("");
+  const auto followed =
       fire_and_then("[[stages]]\nkind = \"expose\"\nduration = \"10 min\"\nplaten = \"force\"\n");
   ASSERT_GT(followed.temperatures.upper, alone.temperatures.upper + 100.0);
   const auto first = make_simulation(alone), second = make_simulation(followed);

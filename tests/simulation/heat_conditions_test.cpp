@@ -167,7 +167,7 @@ TEST(ReadHeat, ConductionNeedsTheHeatPropertiesOfAggregateAndMortar) {
              "[materials.aggregate]\nspecific_heat = \"900 J/(kg K)\"\n[materials.mortar]\n");
   const Section materials = d.deck.root().section("materials");
   for (const char* name : {"aggregate", "mortar"})
-    materials.section(name).quantity("specific_heat", unit::specific_heat, Range::positive(), 1.0);
+    materials.section(name).quantity("specific_heat", unit::specific_heat, Range::positive(), 1.0, "");
   std::vector<std::string> keys;
   for (const auto& diagnostic : diagnostics_of(d.deck)) keys.push_back(diagnostic.key);
   EXPECT_EQ(keys,

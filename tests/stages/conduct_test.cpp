@@ -24,8 +24,8 @@ HeatConditions fire_from_the_left() {
 /// Heat alone in a small specimen.
 struct Conducted {
   Conducted(const HeatConditions& heat, const Conduct::Keys& keys, int blocks = 100)
-      : simulation(small_specimen(blocks), kSpecimenThickness, alike_solids(), heat,
-                   temperature_range(heat, keys.duration), {}, std::nullopt),
+      : simulation(small_specimen(blocks), kSpecimenThickness, alike_solids(), heat, {}, std::nullopt,
+                   std::make_shared<Team>()),
         run(simulation, stages_of(keys)) {}
 
   /// To the end, or until a temperature has come so far, °C.

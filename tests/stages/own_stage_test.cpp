@@ -48,10 +48,15 @@ class Shake : public Stage {
 };
 
 StageKind shake_kind() {
-  return {"shake", {}, [](const Section& s, const StageTables&) -> std::unique_ptr<Stage> {
-            const double velocity = s.quantity("velocity", unit::velocity, Range::positive());
-            const auto half_period = s.integer("half_period", Range::at_least(1));
-            return std::make_unique<Shake>(velocity, half_period, s.integer("turns", Range::at_least(1)));
+  return {"shake",
+          "drives the platen up and down",
+          {},
+          [](const Section& s, const StageTables&) -> std::unique_ptr<Stage> {
+            const double velocity =
+                s.quantity("velocity", unit::velocity, Range::positive(), "of the platen");
+            const auto half_period = s.integer("half_period", Range::at_least(1), "steps between two turns");
+            const auto turns = s.integer("turns", Range::at_least(1), "before the stage ends");
+            return std::make_unique<Shake>(velocity, half_period, turns);
           }};
 }
 

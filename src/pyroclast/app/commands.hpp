@@ -39,6 +39,7 @@ int run(const RunOptions& options);
 int law(const LawOptions& options);
 int plot_properties(const PropertiesOptions& options);
 int make_deck(const std::string& name);
+int print_keys();
 
 /// Draws figures of results that are there, by the command of the Python package: `run`, `compare`, `levels`
 /// ...

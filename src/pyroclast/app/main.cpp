@@ -94,6 +94,8 @@ int command_line(int argc, char** argv) {
   auto* starter = cli.add_subcommand("new", "Write a commented starter deck");
   starter->add_option("NAME", name, "The deck will be NAME.toml")->required();
 
+  auto* keys = cli.add_subcommand("keys", "Print every key that a deck may hold, as Markdown");
+
   CLI11_PARSE(cli, argc, argv);
   if (*run) return app::run(options);
   if (*check) return app::check(options);
@@ -101,6 +103,7 @@ int command_line(int argc, char** argv) {
   if (*law) return app::law(law_options);
   if (*properties) return app::plot_properties(properties_options);
   if (*figures) return app::figures(figures->remaining());
+  if (*keys) return app::print_keys();
   return app::make_deck(name);
 }
 

@@ -1,13 +1,14 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,8 +18,44 @@
 
 namespace pyroclast {
 
+class Deck;
 class DeckRecord;
+struct DeckKey;
+struct DeckSchema;
 struct TableRecord;
+
+/// What a key, a word or a table means, for the deck reference; empty where another place says it. A literal,
+/// so that no number is taken for one.
+class Meaning {
+ public:
+  template <std::size_t N>
+  constexpr Meaning(const char (&text)[N]) : text_(text, N - 1) {}  // NOLINT(google-explicit-constructor)
+  explicit constexpr Meaning(std::string_view text) : text_(text) {}
+
+  constexpr std::string_view text() const { return text_; }
+
+ private:
+  std::string_view text_;
+};
+
+/// One of the words that a key may hold, and what it stands for.
+template <class E>
+struct Choice {
+  std::string_view word;
+  E value;
+  Meaning meaning;
+};
+
+/// How the deck reference describes a key that is read in several forms.
+struct KeyForms {
+  std::string value;                       ///< what is written, such as "curve over the temperature: stress"
+  const Unit& unit = unit::dimensionless;  ///< of the range and the fallback
+  Range range = Range::any();
+  std::optional<double> fallback = {};
+  /// Name under which the tables at and below the key are described, once for all keys; empty if there are
+  /// none.
+  std::string name = {};
+};
 
 /// One table of a deck: a cheap handle, valid as long as its Deck.
 ///
@@ -27,61 +64,72 @@ struct TableRecord;
 /// throws them. A table that is missing is one error: what is read from it records no more.
 ///
 /// Every key that is read, or asked for with `has`, is a known key of its table. The reading functions with a
-/// `fallback` return it if the key is absent.
+/// `fallback` return it if the key is absent. The `meaning` of a key goes into the deck reference (see
+/// `survey_deck`); that of a table may be given at any one of the places that ask for it.
 class Section {
  public:
   /// A table that must be there.
-  Section section(std::string_view key) const;
+  Section section(std::string_view key, Meaning meaning = "") const;
   /// A table that may be there; empty also if the key is not a table, which is recorded.
-  std::optional<Section> optional_section(std::string_view key) const;
+  std::optional<Section> optional_section(std::string_view key, Meaning meaning = "") const;
   /// An array of tables ([[key]]) of at least one; empty also after an error.
-  std::vector<Section> sections(std::string_view key) const;
+  std::vector<Section> sections(std::string_view key, Meaning meaning = "") const;
   /// An array of tables that may be absent.
-  std::vector<Section> optional_sections(std::string_view key) const;
+  std::vector<Section> optional_sections(std::string_view key, Meaning meaning = "") const;
 
   /// A quantity, written as a string with its unit, in `unit.si`; `range` is in that unit.
-  double quantity(std::string_view key, const Unit& unit, const Range& range) const;
-  double quantity(std::string_view key, const Unit& unit, const Range& range, double fallback) const;
+  double quantity(std::string_view key, const Unit& unit, const Range& range, Meaning meaning) const;
+  double quantity(std::string_view key, const Unit& unit, const Range& range, double fallback,
+                  Meaning meaning) const;
   /// A list of at least one quantity; empty after an error.
-  std::vector<double> quantities(std::string_view key, const Unit& unit, const Range& range) const;
+  std::vector<double> quantities(std::string_view key, const Unit& unit, const Range& range,
+                                 Meaning meaning) const;
 
   /// A dimensionless number, written as a number or as a string such as "31 %".
-  double number(std::string_view key, const Range& range) const;
-  double number(std::string_view key, const Range& range, double fallback) const;
+  double number(std::string_view key, const Range& range, Meaning meaning) const;
+  double number(std::string_view key, const Range& range, double fallback, Meaning meaning) const;
   /// A list of at least one dimensionless number; empty after an error.
-  std::vector<double> numbers(std::string_view key, const Range& range) const;
+  std::vector<double> numbers(std::string_view key, const Range& range, Meaning meaning) const;
 
   /// A list of two or more points, `[[x, y], ...]`, in `x_unit.si` and `y_unit.si`, x ascending strictly;
   /// empty after an error, which names the element.
-  std::vector<std::pair<double, double>> points(std::string_view key, const Unit& x_unit,
-                                                const Unit& y_unit) const;
+  std::vector<std::pair<double, double>> points(std::string_view key, const Unit& x_unit, const Unit& y_unit,
+                                                Meaning meaning) const;
 
-  long long integer(std::string_view key, const Range& range) const;
-  long long integer(std::string_view key, const Range& range, long long fallback) const;
-  bool flag(std::string_view key) const;
-  bool flag(std::string_view key, bool fallback) const;
+  long long integer(std::string_view key, const Range& range, Meaning meaning) const;
+  long long integer(std::string_view key, const Range& range, long long fallback, Meaning meaning) const;
+  bool flag(std::string_view key, Meaning meaning) const;
+  /// \tparam Bool  bool itself, so that no text is taken for a fallback
+  template <std::same_as<bool> Bool>
+  bool flag(std::string_view key, Bool fallback, Meaning meaning) const {
+    return flag_or(key, fallback, meaning);
+  }
   /// A string that is not empty.
-  std::string text(std::string_view key) const;
-  std::string text(std::string_view key, std::string fallback) const;
+  std::string text(std::string_view key, Meaning meaning) const;
+  std::string text(std::string_view key, std::string fallback, Meaning meaning) const;
 
   /// One of several words: `choice<Mass>("mass", {{"scaled", Mass::scaled}, {"real", Mass::real}})`. A
   /// misspelt word is read as the nearest one. If there is none, the first choice stands in, and keys of this
   /// table that are missing or unknown are not reported from then on, since which ones are needed depends on
   /// the choice.
   template <class E>
-  E choice(std::string_view key, std::initializer_list<std::pair<std::string_view, E>> options) const {
-    return std::data(options)[choice_index(key, words(options), std::nullopt)].second;
+  E choice(std::string_view key, std::initializer_list<Choice<E>> options, Meaning meaning) const {
+    return std::data(options)[choice_index(key, words(options), std::nullopt, {}, meaning)].value;
   }
+  /// \tparam F  E itself, so that no text is taken for a fallback
+  template <class E, std::same_as<E> F>
+  E choice(std::string_view key, std::initializer_list<Choice<E>> options, F fallback,
+           Meaning meaning) const {
+    std::string_view word;
+    for (const auto& option : options)
+      if (option.value == fallback) word = option.word;
+    const std::size_t index = choice_index(key, words(options), options.size(), word, meaning);
+    return index < options.size() ? std::data(options)[index].value : fallback;
+  }
+  /// The same for words that are known only when the deck is read, at least one.
   template <class E>
-  E choice(std::string_view key, std::initializer_list<std::pair<std::string_view, E>> options,
-           std::type_identity_t<E> fallback) const {
-    const std::size_t index = choice_index(key, words(options), options.size());
-    return index < options.size() ? std::data(options)[index].second : fallback;
-  }
-
-  /// The same for words that are known only when the program runs: the index of the one chosen.
-  std::size_t choice(std::string_view key, const std::vector<std::string>& words) const {
-    return choice_index(key, words, std::nullopt);
+  E choice(std::string_view key, const std::vector<Choice<E>>& options, Meaning meaning) const {
+    return options[choice_index(key, words(options), std::nullopt, {}, meaning)].value;
   }
 
   /// Whether the key is written. A key that is found here but never read, nor named in `error`, is reported
@@ -89,11 +137,12 @@ class Section {
   bool has(std::string_view key) const;
   /// Makes keys known that are read with other settings only: a deck that holds one is told that it has no
   /// effect, and not that there is no such key.
-  void know(std::initializer_list<std::string_view> keys) const {
-    for (const auto key : keys) has(key);
-  }
+  void know(std::initializer_list<std::string_view> keys) const;
   /// Whether the key is written and holds a table; otherwise like `has`.
   bool is_table(std::string_view key) const;
+  /// Says for the deck reference what a key holds that is read in several forms, before it is read: then
+  /// nothing that the reading functions are told of the key counts.
+  void describe(std::string_view key, const KeyForms& forms, Meaning meaning) const;
   /// Whether no error was recorded so far in this table and the tables below: guards a check between values
   /// against reporting the stand-in of a value that could not be read.
   bool ok() const;
@@ -112,15 +161,23 @@ class Section {
   friend class Deck;
   Section(DeckRecord& deck, TableRecord* table) : deck_(&deck), table_(table) {}
 
-  template <class E>
-  static std::vector<std::string> words(std::initializer_list<std::pair<std::string_view, E>> options) {
-    std::vector<std::string> result;
-    for (const auto& option : options) result.emplace_back(option.first);
+  struct Word {
+    std::string word;
+    Meaning meaning;
+  };
+  template <class Options>
+  static std::vector<Word> words(const Options& options) {
+    std::vector<Word> result;
+    for (const auto& option : options) result.push_back({std::string(option.word), option.meaning});
     return result;
   }
   /// Index of the word chosen; `fallback` is returned if the key is absent, which is an error without one.
-  std::size_t choice_index(std::string_view key, const std::vector<std::string>& words,
-                           std::optional<std::size_t> fallback) const;
+  std::size_t choice_index(std::string_view key, const std::vector<Word>& words,
+                           std::optional<std::size_t> fallback, std::string_view fallback_word,
+                           Meaning meaning) const;
+  bool flag_or(std::string_view key, bool fallback, Meaning meaning) const;
+  /// In a survey, keeps that the key was read.
+  void note(DeckKey key, Meaning meaning) const;
 
   DeckRecord* deck_;
   TableRecord* table_;  ///< null for a table that is missing
@@ -155,6 +212,7 @@ class Deck {
   void finish() const;
 
  private:
+  friend DeckSchema survey_deck(const std::function<void(const Deck&)>& read);
   explicit Deck(std::unique_ptr<DeckRecord> record);
 
   std::unique_ptr<DeckRecord> record_;

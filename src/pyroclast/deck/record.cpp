@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/nearest.hpp"
+#include "pyroclast/deck/survey_run.hpp"
 
 namespace pyroclast {
 namespace {
@@ -97,6 +98,12 @@ std::string TableRecord::path_of(std::string_view key) const {
 DeckRecord::DeckRecord(std::string text, std::string name)
     : name_(std::move(name)), source_(std::move(text)), root_(parse_toml(source_, name_)) {}
 
+DeckRecord::DeckRecord(SurveyRun& survey) : name_("survey"), source_(""), survey_(&survey) {}
+
+TableRecord& DeckRecord::root() {
+  return survey_ ? survey_->table("", false, "") : table(root_, "");
+}
+
 TableRecord& DeckRecord::table(const toml::table& table, const std::string& path) {
   auto& record = tables_[&table];
   if (!record) {
@@ -108,6 +115,7 @@ TableRecord& DeckRecord::table(const toml::table& table, const std::string& path
 
 void DeckRecord::report(const std::string& path, const toml::node& node, std::string message,
                         std::string hint) {
+  if (survey_) return;
   Diagnostic diagnostic = locate(path, node.source());
   diagnostic.value = as_written(node);
   diagnostic.message = std::move(message);
@@ -116,6 +124,7 @@ void DeckRecord::report(const std::string& path, const toml::node& node, std::st
 }
 
 void DeckRecord::report(const TableRecord& table, const std::string& path, std::string message) {
+  if (survey_) return;
   Diagnostic diagnostic = locate(path, table.table.source());
   diagnostic.message = std::move(message);
   diagnostics_.push_back(std::move(diagnostic));
@@ -140,8 +149,8 @@ std::string DeckRecord::with_value(std::string_view path, const std::string& val
 }
 
 bool DeckRecord::is_clean(std::string_view path) const {
-  return std::none_of(diagnostics_.begin(), diagnostics_.end(),
-                      [&](const Diagnostic& d) { return is_at_or_below(d.key, path); });
+  return !survey_ && std::none_of(diagnostics_.begin(), diagnostics_.end(),
+                                  [&](const Diagnostic& d) { return is_at_or_below(d.key, path); });
 }
 
 std::vector<Diagnostic> DeckRecord::diagnostics() const {

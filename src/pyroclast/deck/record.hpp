@@ -13,6 +13,8 @@
 
 namespace pyroclast {
 
+class SurveyRun;
+
 /// What is known about one table: its place in the deck, and what its reader asked for.
 struct TableRecord {
   struct Asked {
@@ -36,16 +38,20 @@ struct TableRecord {
   Asked& ask(std::string_view key);
 };
 
-/// A deck while it is read: the text, its tree, and the errors so far. Private to this room.
+/// A deck while it is read: the text, its tree, and the errors so far. Private to this module.
 class DeckRecord {
  public:
   /// @throws DeckError
   DeckRecord(std::string text, std::string name);
+  /// A deck without text; `survey` answers what its reader asks, and no error is kept.
+  explicit DeckRecord(SurveyRun& survey);
 
+  /// Null but for a survey.
+  SurveyRun* survey() const { return survey_; }
   const std::string& name() const { return name_; }
   const std::string& text() const { return source_.text(); }
 
-  TableRecord& root() { return table(root_, ""); }
+  TableRecord& root();
   /// The record of a table, the same at each call.
   TableRecord& table(const toml::table& table, const std::string& path);
 
@@ -56,7 +62,7 @@ class DeckRecord {
   void report(const std::string& path, const toml::node& node, std::string message, std::string hint = {});
   /// An error of a table, such as a missing key of the given path.
   void report(const TableRecord& table, const std::string& path, std::string message);
-  /// Whether nothing was reported at or below a path.
+  /// Whether nothing was reported at or below a path; false in a survey.
   bool is_clean(std::string_view path) const;
 
   /// What was reported, and a report of each key that nobody read.
@@ -76,6 +82,7 @@ class DeckRecord {
   std::map<const toml::table*, std::unique_ptr<TableRecord>> tables_;
   std::vector<const TableRecord*> tables_as_read_;
   std::vector<Diagnostic> diagnostics_;
+  SurveyRun* survey_ = nullptr;
 };
 
 }  // namespace pyroclast

@@ -11,6 +11,7 @@
 #include "pyroclast/base/nearest.hpp"
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/deck/record.hpp"
+#include "pyroclast/deck/survey_run.hpp"
 
 namespace pyroclast {
 namespace {
@@ -229,6 +230,43 @@ std::optional<Entry> require(DeckRecord& deck, TableRecord* table, std::string_v
   return entry;
 }
 
+/// A number of a deck's, with its unit, as the deck reference has it.
+std::string fallback_text(double value, const Unit& unit) {
+  if (!std::isfinite(value)) return "none";
+  return fmt::format("{}{}{}", value, is_dimensionless(unit) ? "" : " ", suffix(unit));
+}
+
+DeckKey key_of(std::string_view key, std::string value) {
+  DeckKey result;
+  result.key = key;
+  result.value = std::move(value);
+  return result;
+}
+
+DeckKey quantity_key(std::string_view key, const Unit& unit, const Range& range) {
+  DeckKey result = key_of(key, is_dimensionless(unit) ? "number" : unit.name);
+  result.unit = suffix(unit);
+  result.allowed = range.describe();
+  return result;
+}
+
+DeckKey quantities_key(std::string_view key, const Unit& unit, const Range& range) {
+  DeckKey result = quantity_key(key, unit, range);
+  result.value = fmt::format("list of {}", result.value);
+  return result;
+}
+
+DeckKey integer_key(std::string_view key, const Range& range) {
+  DeckKey result = key_of(key, "whole number");
+  result.allowed = range.describe();
+  return result;
+}
+
+DeckKey with_fallback(DeckKey key, std::string fallback) {
+  key.fallback = std::move(fallback);
+  return key;
+}
+
 std::string header(const TableRecord* table, std::string_view key, std::string_view form) {
   return table ? fmt::format(fmt::runtime(form), table->path_of(key)) : "";
 }
@@ -254,25 +292,37 @@ std::vector<TableRecord*> read_tables(const Entry& entry) {
 
 }  // namespace
 
-Section Section::section(std::string_view key) const {
+Section Section::section(std::string_view key, Meaning meaning) const {
+  if (auto* survey = deck_->survey())
+    return {*deck_, &survey->table(table_->path_of(key), false, meaning.text())};
   const auto entry = require(*deck_, table_, key, header(table_, key, "the table [{}] is needed"));
   return {*deck_, entry ? read_table(*entry) : nullptr};
 }
 
-std::optional<Section> Section::optional_section(std::string_view key) const {
+std::optional<Section> Section::optional_section(std::string_view key, Meaning meaning) const {
+  if (auto* survey = deck_->survey()) {
+    if (!survey->is_present(table_->path, key)) return std::nullopt;
+    return Section(*deck_, &survey->table(table_->path_of(key), true, meaning.text()));
+  }
   const auto entry = read(*deck_, table_, key);
   TableRecord* table = entry ? read_table(*entry) : nullptr;
   if (!table) return std::nullopt;
   return Section(*deck_, table);
 }
 
-std::vector<Section> Section::sections(std::string_view key) const {
+std::vector<Section> Section::sections(std::string_view key, Meaning meaning) const {
+  if (auto* survey = deck_->survey())
+    return {Section(*deck_, &survey->table(table_->path_of(key) + "[]", false, meaning.text()))};
   const std::string needed = header(table_, key, "at least one table [[{}]] is needed");
   if (!require(*deck_, table_, key, needed)) return {};
   return optional_sections(key);
 }
 
-std::vector<Section> Section::optional_sections(std::string_view key) const {
+std::vector<Section> Section::optional_sections(std::string_view key, Meaning meaning) const {
+  if (auto* survey = deck_->survey()) {
+    if (!survey->is_present(table_->path, key)) return {};
+    return {Section(*deck_, &survey->table(table_->path_of(key) + "[]", true, meaning.text()))};
+  }
   const auto entry = read(*deck_, table_, key);
   std::vector<Section> result;
   if (!entry) return result;
@@ -280,42 +330,49 @@ std::vector<Section> Section::optional_sections(std::string_view key) const {
   return result;
 }
 
-double Section::quantity(std::string_view key, const Unit& unit, const Range& range) const {
+double Section::quantity(std::string_view key, const Unit& unit, const Range& range, Meaning meaning) const {
+  note(quantity_key(key, unit, range), meaning);
   const auto entry = require(*deck_, table_, key, requirement(unit, range));
   return (entry ? read_quantity(*entry, unit, range) : std::nullopt).value_or(range.any_value());
 }
 
-double Section::quantity(std::string_view key, const Unit& unit, const Range& range, double fallback) const {
+double Section::quantity(std::string_view key, const Unit& unit, const Range& range, double fallback,
+                         Meaning meaning) const {
+  note(with_fallback(quantity_key(key, unit, range), fallback_text(fallback, unit)), meaning);
   const auto entry = read(*deck_, table_, key);
   return (entry ? read_quantity(*entry, unit, range) : std::nullopt).value_or(fallback);
 }
 
-std::vector<double> Section::quantities(std::string_view key, const Unit& unit, const Range& range) const {
+std::vector<double> Section::quantities(std::string_view key, const Unit& unit, const Range& range,
+                                        Meaning meaning) const {
+  note(quantities_key(key, unit, range), meaning);
   const auto entry = require(*deck_, table_, key, requirement(unit, range));
   return entry ? read_quantities(*entry, unit, range) : std::vector<double>{};
 }
 
-double Section::number(std::string_view key, const Range& range) const {
-  return quantity(key, unit::dimensionless, range);
+double Section::number(std::string_view key, const Range& range, Meaning meaning) const {
+  return quantity(key, unit::dimensionless, range, meaning);
 }
 
-double Section::number(std::string_view key, const Range& range, double fallback) const {
-  return quantity(key, unit::dimensionless, range, fallback);
+double Section::number(std::string_view key, const Range& range, double fallback, Meaning meaning) const {
+  return quantity(key, unit::dimensionless, range, fallback, meaning);
 }
 
-std::vector<double> Section::numbers(std::string_view key, const Range& range) const {
-  return quantities(key, unit::dimensionless, range);
+std::vector<double> Section::numbers(std::string_view key, const Range& range, Meaning meaning) const {
+  return quantities(key, unit::dimensionless, range, meaning);
 }
 
 std::vector<std::pair<double, double>> Section::points(std::string_view key, const Unit& x_unit,
-                                                       const Unit& y_unit) const {
+                                                       const Unit& y_unit, Meaning meaning) const {
+  note(key_of(key, fmt::format("list of points, {} and {}", x_unit.name, y_unit.name)), meaning);
   const auto entry = require(
       *deck_, table_, key,
       fmt::format("a list of points, [[\"{}\", \"{}\"], ...], is needed", x_unit.example, y_unit.example));
   return entry ? read_points(*entry, x_unit, y_unit) : std::vector<Point>{};
 }
 
-long long Section::integer(std::string_view key, const Range& range) const {
+long long Section::integer(std::string_view key, const Range& range, Meaning meaning) const {
+  note(integer_key(key, range), meaning);
   const std::string words = range.describe();
   const auto entry =
       require(*deck_, table_, key,
@@ -324,33 +381,52 @@ long long Section::integer(std::string_view key, const Range& range) const {
   return (entry ? read_integer(*entry, range) : std::nullopt).value_or(stand_in);
 }
 
-long long Section::integer(std::string_view key, const Range& range, long long fallback) const {
+long long Section::integer(std::string_view key, const Range& range, long long fallback,
+                           Meaning meaning) const {
+  note(with_fallback(integer_key(key, range), fmt::format("{}", fallback)), meaning);
   const auto entry = read(*deck_, table_, key);
   return (entry ? read_integer(*entry, range) : std::nullopt).value_or(fallback);
 }
 
-bool Section::flag(std::string_view key) const {
+bool Section::flag(std::string_view key, Meaning meaning) const {
+  note(key_of(key, "true or false"), meaning);
+  if (auto* survey = deck_->survey()) return survey->is_set(table_->path, key, false);
   const auto entry = require(*deck_, table_, key, "true or false is needed");
   return (entry ? read_flag(*entry) : std::nullopt).value_or(false);
 }
 
-bool Section::flag(std::string_view key, bool fallback) const {
+bool Section::flag_or(std::string_view key, bool fallback, Meaning meaning) const {
+  note(with_fallback(key_of(key, "true or false"), fmt::format("{}", fallback)), meaning);
+  if (auto* survey = deck_->survey()) return survey->is_set(table_->path, key, fallback);
   const auto entry = read(*deck_, table_, key);
   return (entry ? read_flag(*entry) : std::nullopt).value_or(fallback);
 }
 
-std::string Section::text(std::string_view key) const {
+std::string Section::text(std::string_view key, Meaning meaning) const {
+  note(key_of(key, "text"), meaning);
   const auto entry = require(*deck_, table_, key, "a string is needed");
   return (entry ? read_text(*entry) : std::nullopt).value_or("");
 }
 
-std::string Section::text(std::string_view key, std::string fallback) const {
+std::string Section::text(std::string_view key, std::string fallback, Meaning meaning) const {
+  note(with_fallback(key_of(key, "text"), fmt::format("\"{}\"", fallback)), meaning);
   const auto entry = read(*deck_, table_, key);
   return (entry ? read_text(*entry) : std::nullopt).value_or(std::move(fallback));
 }
 
-std::size_t Section::choice_index(std::string_view key, const std::vector<std::string>& words,
-                                  std::optional<std::size_t> fallback) const {
+std::size_t Section::choice_index(std::string_view key, const std::vector<Word>& options,
+                                  std::optional<std::size_t> fallback, std::string_view fallback_word,
+                                  Meaning meaning) const {
+  std::vector<std::string> words;
+  for (const Word& option : options) words.push_back(option.word);
+  if (auto* survey = deck_->survey()) {
+    DeckKey read = key_of(key, "word");
+    for (const Word& option : options)
+      read.words.push_back({fmt::format("\"{}\"", option.word), std::string(option.meaning.text())});
+    if (fallback) read.fallback = fmt::format("\"{}\"", fallback_word);
+    note(std::move(read), meaning);
+    return survey->chosen(table_->path, key, words);
+  }
   const auto entry =
       fallback ? read(*deck_, table_, key) : require(*deck_, table_, key, one_of(words) + " is needed");
   if (!entry && fallback) return *fallback;
@@ -360,12 +436,46 @@ std::size_t Section::choice_index(std::string_view key, const std::vector<std::s
 }
 
 bool Section::has(std::string_view key) const {
+  if (auto* survey = deck_->survey()) {
+    survey->know(table_->path, key);
+    return survey->is_present(table_->path, key);
+  }
   return table_ && table_->look(key);
 }
 
+void Section::know(std::initializer_list<std::string_view> keys) const {
+  for (const auto key : keys)
+    if (auto* survey = deck_->survey())
+      survey->know(table_->path, key);
+    else
+      has(key);
+}
+
 bool Section::is_table(std::string_view key) const {
+  if (auto* survey = deck_->survey()) {
+    survey->know(table_->path, key);
+    return survey->is_table(table_->path, key);
+  }
   const toml::node* node = table_ ? table_->look(key) : nullptr;
   return node && node->is_table();
+}
+
+void Section::describe(std::string_view key, const KeyForms& forms, Meaning meaning) const {
+  auto* survey = deck_->survey();
+  if (!survey) return;
+  DeckKey read = key_of(key, forms.value);
+  read.unit = suffix(forms.unit);
+  read.allowed = forms.range.describe();
+  if (forms.fallback) read.fallback = fallback_text(*forms.fallback, forms.unit);
+  read.meaning = meaning.text();
+  survey->read_in_forms(table_->path, std::move(read), forms.name);
+}
+
+void Section::note(DeckKey key, Meaning meaning) const {
+  auto* survey = deck_->survey();
+  if (!survey) return;
+  key.meaning = meaning.text();
+  survey->read(table_->path, std::move(key));
 }
 
 bool Section::ok() const {

@@ -14,6 +14,9 @@ namespace {
 /// End of a ramp's range, s: 30 years, later than any run.
 constexpr double kRampEnd = 1e9;
 
+/// What the deck reference says of a value that is of its key's kind.
+constexpr auto kQuantity = "quantity of the key's kind";
+
 /// Part of the needed interval's width by which a curve may fall short of it: rounding, as in Curve.
 constexpr double kRounding = 1e-9;
 
@@ -80,12 +83,26 @@ CurveReader::CurveReader(std::filesystem::path folder, CurveAxis axis, Interval 
                          const CurveCatalogue& builtins)
     : folder_(std::move(folder)), axis_(std::move(axis)), needed_(needed), builtins_(builtins) {}
 
-Curve CurveReader::read(const Section& section, std::string_view key, const Unit& unit, const Range& range) {
+Curve CurveReader::read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
+                        Meaning meaning) {
+  section.describe(key, {or_curve(unit), unit, range, std::nullopt, forms_name()}, meaning);
+  return read_described(section, key, unit, range);
+}
+
+Curve CurveReader::read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
+                        double fallback, Meaning meaning) {
+  section.describe(key, {or_curve(unit), unit, range, fallback, forms_name()}, meaning);
+  return section.has(key) ? read_described(section, key, unit, range) : Curve::constant(fallback);
+}
+
+Curve CurveReader::read_described(const Section& section, std::string_view key, const Unit& unit,
+                                  const Range& range) {
   std::optional<Curve> curve;
   if (!section.is_table(key)) {
-    curve = Curve::constant(section.quantity(key, unit, range));
+    curve = Curve::constant(section.quantity(key, unit, range, ""));
   } else {
-    const Section forms = *section.optional_section(key);
+    const Section forms =
+        *section.optional_section(key, "a key that depends on it may hold one of these forms");
     curve = read_forms(forms, unit, true);
     if (!curve || !forms.ok() || !covers(section, key, *curve) || !within(section, key, *curve, unit, range))
       curve = Curve::constant(range.any_value());
@@ -93,11 +110,6 @@ Curve CurveReader::read(const Section& section, std::string_view key, const Unit
   const std::string path = path_of(section, key);
   curves_.push_back({path, unit.si, curve->named(path)});
   return curves_.back().curve;
-}
-
-Curve CurveReader::read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
-                        double fallback) {
-  return section.has(key) ? read(section, key, unit, range) : Curve::constant(fallback);
 }
 
 /// \param has_value  whether "value times curve" is among the forms
@@ -129,7 +141,11 @@ std::optional<Curve> CurveReader::read_form(const Section& forms, const std::str
 }
 
 std::optional<Curve> CurveReader::read_product(const Section& forms, const Unit& unit) const {
-  const double value = forms.quantity("value", unit, Range::any());
+  forms.describe("value", {.value = kQuantity}, "what the ratio `times` is multiplied with");
+  forms.describe(
+      "times", {.value = fmt::format("name of a built-in ratio, or {}", forms_name()), .name = forms_name()},
+      "ratio; over the temperature it is 1 at 20 °C");
+  const double value = forms.quantity("value", unit, Range::any(), "");
   const std::optional<Curve> ratio =
       forms.is_table("times") ? read_forms(*forms.optional_section("times"), unit::dimensionless, false)
                               : read_builtin(forms, "times", unit::dimensionless);
@@ -146,7 +162,9 @@ std::optional<Curve> CurveReader::read_product(const Section& forms, const Unit&
 }
 
 std::optional<Curve> CurveReader::read_table(const Section& forms, const Unit& unit) const {
-  const auto points = forms.points("table", abscissa(), unit);
+  forms.describe("table", {.value = fmt::format("list of points, [[{}, value], ...]", abscissa().name)},
+                 "two points or more, ascending; the curve is linear between them");
+  const auto points = forms.points("table", abscissa(), unit, "");
   if (points.empty()) return std::nullopt;
   std::vector<double> abscissae, values;
   for (const auto& [x, y] : points) {
@@ -157,7 +175,8 @@ std::optional<Curve> CurveReader::read_table(const Section& forms, const Unit& u
 }
 
 std::optional<Curve> CurveReader::read_csv(const Section& forms, const Unit& unit) const {
-  const std::string file = forms.text("csv");
+  const std::string file =
+      forms.text("csv", "CSV file beside the deck: two columns under a header with units");
   if (file.empty()) return std::nullopt;
   return try_at(forms, "csv", [&] {
     return read_curve_csv(
@@ -170,7 +189,7 @@ std::optional<Curve> CurveReader::read_csv(const Section& forms, const Unit& uni
 /// A curve of the catalogue by its name at the key.
 std::optional<Curve> CurveReader::read_builtin(const Section& section, std::string_view key,
                                                const Unit& unit) const {
-  const std::string name = section.text(key);
+  const std::string name = section.text(key, "name of a built-in curve");
   if (name.empty()) return std::nullopt;
   return try_at(section, key, [&] {
     const NamedCurve& entry = builtins_.at(name);
@@ -188,10 +207,13 @@ std::optional<Curve> CurveReader::read_builtin(const Section& section, std::stri
 }
 
 std::optional<Curve> CurveReader::read_expression(const Section& forms, const Unit& unit) const {
-  const std::string formula = forms.text("expression");
+  const std::string formula = forms.text(
+      "expression", axis_ == time_axis() ? Meaning("formula in t, in s") : Meaning("formula in T, in °C"));
+  forms.describe("unit", {.value = "text"}, "unit of the formula's value; a ratio needs none");
   const std::string given =
-      is_same(unit, unit::dimensionless) ? forms.text("unit", unit.si) : forms.text("unit");
-  const auto range = forms.quantities("range", abscissa(), Range::any());
+      is_same(unit, unit::dimensionless) ? forms.text("unit", unit.si, "") : forms.text("unit", "");
+  const auto range = forms.quantities("range", abscissa(), Range::any(),
+                                      "where the formula holds: the lower end, the upper end");
   if (!range.empty() && (range.size() != 2 || !(range[0] < range[1])))
     forms.error("range", "must be two values, the first below the second");
   if (!forms.ok()) return std::nullopt;
@@ -204,9 +226,11 @@ std::optional<Curve> CurveReader::read_expression(const Section& forms, const Un
 }
 
 std::optional<Curve> CurveReader::read_ramp(const Section& forms, const Unit& unit) const {
-  const double from = forms.quantity("from", unit, Range::any());
-  const double rate = forms.quantity("rate", unit::heating_rate, Range::positive());
-  const double to = forms.quantity("to", unit, Range::any());
+  const double from = forms.quantity("from", unit, Range::any(), "temperature at which a ramp begins");
+  const double rate = forms.quantity("rate", unit::heating_rate, Range::positive(),
+                                     "change of the temperature over the time");
+  const double to =
+      forms.quantity("to", unit, Range::any(), "temperature at which the ramp ends; constant from then on");
   if (!forms.ok()) return std::nullopt;
   const double duration = std::abs(to - from) / rate;
   if (!(0.0 < duration && duration < kRampEnd)) {
@@ -246,6 +270,14 @@ bool CurveReader::within(const Section& section, std::string_view key, const Cur
     return false;
   }
   return true;
+}
+
+std::string CurveReader::forms_name() const {
+  return axis_ == time_axis() ? "curve over the time" : "curve over the temperature";
+}
+
+std::string CurveReader::or_curve(const Unit& unit) const {
+  return fmt::format("{}, or {}", is_same(unit, unit::dimensionless) ? "number" : unit.name, forms_name());
 }
 
 const Unit& CurveReader::abscissa() const {

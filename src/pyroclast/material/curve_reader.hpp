@@ -47,16 +47,18 @@ class CurveReader {
   CurveReader(std::filesystem::path folder, CurveAxis axis, Interval needed, const CurveCatalogue& builtins);
 
   /// The curve in `unit.si`, named by its path in the deck. `range` holds over the needed interval.
-  Curve read(const Section& section, std::string_view key, const Unit& unit, const Range& range);
+  Curve read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
+             Meaning meaning);
   /// The same for a key that may be absent; `fallback` is then the value.
   Curve read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
-             double fallback);
+             double fallback, Meaning meaning);
 
   Interval needed() const { return needed_; }
   /// All that was read from keys that are there, in order of reading.
   const std::vector<ReadCurve>& curves() const { return curves_; }
 
  private:
+  Curve read_described(const Section& section, std::string_view key, const Unit& unit, const Range& range);
   std::optional<Curve> read_forms(const Section& forms, const Unit& unit, bool has_value) const;
   std::optional<Curve> read_form(const Section& forms, const std::string& form, const Unit& unit) const;
   std::optional<Curve> read_product(const Section& forms, const Unit& unit) const;
@@ -69,6 +71,10 @@ class CurveReader {
   bool within(const Section& section, std::string_view key, const Curve& curve, const Unit& unit,
               const Range& range) const;
   const Unit& abscissa() const;
+  /// Name of the forms of a curve in the deck reference.
+  std::string forms_name() const;
+  /// What a key that may hold a curve holds, in words.
+  std::string or_curve(const Unit& unit) const;
 
   std::filesystem::path folder_;
   CurveAxis axis_;

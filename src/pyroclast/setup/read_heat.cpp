@@ -20,8 +20,8 @@ constexpr double kLargestStep = 60.0;   // s
 
 constexpr Range kTemperature = Range::at_least(absolute_zero);
 
-std::optional<Vec<2>> read_point(const Section& s, std::string_view key) {
-  const auto x = s.quantities(key, unit::length, Range::any());
+std::optional<Vec<2>> read_point(const Section& s, std::string_view key, Meaning meaning) {
+  const auto x = s.quantities(key, unit::length, Range::any(), meaning);
   if (x.size() == 2) return Vec<2>{{x[0], x[1]}};
   if (!x.empty()) s.error(key, fmt::format("has {} coordinates; x and y are needed", x.size()));
   return std::nullopt;
@@ -30,14 +30,19 @@ std::optional<Vec<2>> read_point(const Section& s, std::string_view key) {
 HeatedFaces read_faces(const Section& s) {
   s.know({"box_low", "box_high"});
   HeatedFaces faces;
-  faces.part = s.choice<OutlinePart>("faces", {{"left", OutlinePart::left},
-                                               {"right", OutlinePart::right},
-                                               {"bottom", OutlinePart::bottom},
-                                               {"top", OutlinePart::top},
-                                               {"outline", OutlinePart::whole},
-                                               {"box", OutlinePart::box}});
+  faces.part =
+      s.choice<OutlinePart>("faces",
+                            {{"left", OutlinePart::left, "all of that side"},
+                             {"right", OutlinePart::right, "likewise"},
+                             {"bottom", OutlinePart::bottom, "likewise, under a platen too"},
+                             {"top", OutlinePart::top, "likewise, under a platen too"},
+                             {"outline", OutlinePart::whole, "all four sides"},
+                             {"box", OutlinePart::box, "faces of the outline whose centres lie in a box"}},
+                            "where the boundary acts");
   if (faces.part != OutlinePart::box) return faces;
-  const auto low = read_point(s, "box_low"), high = read_point(s, "box_high");
+  const auto low = read_point(s, "box_low",
+                              "lower left corner: x and y from the lower left corner of the specimen"),
+             high = read_point(s, "box_high", "upper right corner, likewise");
   if (!low || !high) return faces;
   if ((*low)[0] > (*high)[0] || (*low)[1] > (*high)[1])
     s.error("box_high", "the box is inside out: no coordinate may be less than that of box_low");
@@ -49,20 +54,30 @@ HeatedFaces read_faces(const Section& s) {
 HeatCondition read_condition(const Section& s, CurveReader& curves) {
   enum class Kind { temperature, flux, convection, radiation, adiabatic };
   s.know({"temperature", "flux", "coefficient", "emissivity", "gas_temperature"});
-  const auto gas = [&] { return curves.read(s, "gas_temperature", unit::temperature, kTemperature); };
-  switch (s.choice<Kind>("kind", {{"temperature", Kind::temperature},
-                                  {"flux", Kind::flux},
-                                  {"convection", Kind::convection},
-                                  {"radiation", Kind::radiation},
-                                  {"adiabatic", Kind::adiabatic}})) {
+  const auto gas = [&] {
+    return curves.read(s, "gas_temperature", unit::temperature, kTemperature, "gas temperature T_gas");
+  };
+  switch (s.choice<Kind>(
+      "kind",
+      {{"temperature", Kind::temperature, "the faces have a given temperature"},
+       {"flux", Kind::flux, "a given heat flows in"},
+       {"convection", Kind::convection, "heat h (T_gas − T) flows in, Eq. (2)"},
+       {"radiation", Kind::radiation, "heat ε σ (T_gas⁴ − T⁴) flows in, of absolute temperatures"},
+       {"adiabatic", Kind::adiabatic, "no heat flows; holds for all faces of which nothing is said"}},
+      "what happens there")) {
     case Kind::temperature:
-      return PrescribedTemperature{curves.read(s, "temperature", unit::temperature, kTemperature)};
+      return PrescribedTemperature{
+          curves.read(s, "temperature", unit::temperature, kTemperature, "of the faces")};
     case Kind::flux:
-      return HeatFlux{curves.read(s, "flux", unit::heat_flux, Range::any())};
+      return HeatFlux{curves.read(s, "flux", unit::heat_flux, Range::any(), "positive into the specimen")};
     case Kind::convection:
-      return Convection{curves.read(s, "coefficient", unit::heat_transfer, Range::non_negative()), gas()};
+      return Convection{curves.read(s, "coefficient", unit::heat_transfer, Range::non_negative(),
+                                    "coefficient h of heat transfer"),
+                        gas()};
     case Kind::radiation:
-      return Radiation{curves.read(s, "emissivity", unit::dimensionless, Range::fraction()), gas()};
+      return Radiation{
+          curves.read(s, "emissivity", unit::dimensionless, Range::fraction(), "resultant emissivity ε"),
+          gas()};
     case Kind::adiabatic:
       break;
   }
@@ -78,7 +93,8 @@ bool overlap(const HeatedFaces& a, const HeatedFaces& b) {
 
 std::vector<HeatBoundaryCondition> read_boundaries(const Section& heat, CurveReader& curves) {
   std::vector<HeatBoundaryCondition> boundaries;
-  for (const Section& s : heat.sections("boundaries")) {
+  for (const Section& s :
+       heat.sections("boundaries", "what acts on faces of the specimen; see [heat.md](heat.md)")) {
     HeatBoundaryCondition boundary{read_faces(s), read_condition(s, curves),
                                    fmt::format("{}: {}", s.where("faces"), s.path())};
     if (!s.ok()) continue;  // what stands in for an error contradicts nothing
@@ -104,7 +120,9 @@ std::optional<Interval> read_range(const Section& s, const HeatConditions& heat)
               "run stays within are needed, e.g. [\"20 degC\", \"900 degC\"]");
     return std::nullopt;
   }
-  const auto ends = s.quantities("temperature_range", unit::temperature, kTemperature);
+  const auto ends = s.quantities(
+      "temperature_range", unit::temperature, kTemperature,
+      "two temperatures between which the run stays; needed with a flux; see [heat.md](heat.md)");
   if (ends.empty()) return std::nullopt;
   if (ends.size() != 2 || !(ends[0] < ends[1])) {
     s.error("temperature_range", "two temperatures are needed, the lower one first");
@@ -128,12 +146,16 @@ void require_heat_properties(const Section& root) {
 
 void read_conduction(const Section& s, CurveReader& time_curves, HeatConditions& heat) {
   heat.scheme = s.choice<HeatScheme>(
-      "scheme", {{"rkl2", HeatScheme::super_time_stepping}, {"euler", HeatScheme::euler}},
-      HeatScheme::super_time_stepping);
-  heat.safety = s.number("safety", {.lower = 0.0, .upper = 1.0, .lower_inclusive = false}, kSafety);
-  heat.largest_change =
-      s.quantity("largest_change", unit::temperature_difference, Range::positive(), kLargestChange);
-  heat.largest_step = s.quantity("largest_step", unit::time, Range::positive(), kLargestStep);
+      "scheme",
+      {{"rkl2", HeatScheme::super_time_stepping, "Runge-Kutta-Legendre super-time-stepping, second order"},
+       {"euler", HeatScheme::euler, "forward Euler, first order"}},
+      HeatScheme::super_time_stepping, "how time is advanced; see [heat.md](heat.md)");
+  heat.safety = s.number("safety", {.lower = 0.0, .upper = 1.0, .lower_inclusive = false}, kSafety,
+                         "fraction of the stable step that is taken");
+  heat.largest_change = s.quantity("largest_change", unit::temperature_difference, Range::positive(),
+                                   kLargestChange, "of any temperature in one step of the solver");
+  heat.largest_step =
+      s.quantity("largest_step", unit::time, Range::positive(), kLargestStep, "of the solver");
   heat.boundaries = read_boundaries(s, time_curves);
   heat.temperature_range = read_range(s, heat);
   // Stands in, so that the deck's reader can go on and find every error.
@@ -143,12 +165,18 @@ void read_conduction(const Section& s, CurveReader& time_curves, HeatConditions&
 }  // namespace
 
 std::optional<HeatConditions> read_heat(const Section& root, CurveReader& time_curves) {
-  const auto s = root.optional_section("heat");
+  const auto s =
+      root.optional_section("heat", "how the specimen is heated; without it the specimen stays at 20 °C");
   if (!s) return std::nullopt;
   s->know({"scheme", "safety", "largest_change", "largest_step", "temperature_range", "boundaries"});
   HeatConditions heat;
-  heat.uniform = s->choice<bool>("field", {{"conduction", false}, {"uniform", true}});
-  heat.initial = s->quantity("initial", unit::temperature, kTemperature, kReferenceTemperature);
+  heat.uniform = s->choice<bool>(
+      "field",
+      {{"conduction", false, "temperatures follow from the boundaries"},
+       {"uniform", true, "the whole specimen has one temperature, which stages of kind heat change"}},
+      "temperatures in the specimen");
+  heat.initial = s->quantity("initial", unit::temperature, kTemperature, kReferenceTemperature,
+                             "temperature of the specimen at the start of heating");
   if (heat.uniform) return heat;
   read_conduction(*s, time_curves, heat);
   require_heat_properties(root);

@@ -21,6 +21,8 @@ constexpr Interval kStandardRange{20.0, 1200.0};
 /// 2e-7.
 constexpr double kNoStrain = 1e-6;
 
+constexpr Meaning kSolid = "a solid of the specimen";
+
 /// Records an error unless the curve, where it is defined there, has this value at the reference temperature.
 void require_at_reference(const Section& s, std::string_view key, const Curve& curve, double expected,
                           double tolerance) {
@@ -37,7 +39,8 @@ Interval strain_range(const Interval& needed) {
 
 Curve read_thermal_strain(const Section& s, ExpansionReading reading, CurveReader& curves) {
   if (s.has("expansion")) {
-    const Curve expansion = curves.read(s, "expansion", unit::expansion, Range::any());
+    const Curve expansion = curves.read(s, "expansion", unit::expansion, Range::any(),
+                                        "coefficient of thermal expansion; may be negative");
     if (s.has("thermal_strain"))
       s.error("thermal_strain", "has no meaning beside \"expansion\": give one of the two");
     if (!s.ok()) return Curve::constant(0.0);
@@ -49,28 +52,32 @@ Curve read_thermal_strain(const Section& s, ExpansionReading reading, CurveReade
       return Curve::constant(0.0);
     }
   }
-  const Curve strain = curves.read(s, "thermal_strain", unit::dimensionless, Range::any(), 0.0);
+  const Curve strain = curves.read(s, "thermal_strain", unit::dimensionless, Range::any(), 0.0,
+                                   "free thermal strain since 20 °C, instead of expansion");
   require_at_reference(s, "thermal_strain", strain, 0.0, kNoStrain);
   return strain;
 }
 
 /// Density, and what conduction needs where it is given.
 SolidMaterial read_heat_properties(const Section& s, CurveReader& curves) {
-  const auto optional = [&](std::string_view key, const Unit& unit) -> std::optional<Curve> {
+  const auto optional = [&](std::string_view key, const Unit& unit, Meaning meaning) -> std::optional<Curve> {
     if (!s.has(key)) return std::nullopt;
-    return curves.read(s, key, unit, Range::positive());
+    return curves.read(s, key, unit, Range::positive(), meaning);
   };
   SolidMaterial m;
-  m.density = curves.read(s, "density", unit::density, Range::positive());
-  m.conductivity = optional("conductivity", unit::conductivity);
-  m.specific_heat = optional("specific_heat", unit::specific_heat);
+  m.density = curves.read(s, "density", unit::density, Range::positive(),
+                          "masses are those at 20 °C; heat conduction follows the curve");
+  m.conductivity = optional("conductivity", unit::conductivity,
+                            "thermal conductivity; heat conduction needs that of aggregate and mortar");
+  m.specific_heat =
+      optional("specific_heat", unit::specific_heat, "heat conduction needs that of aggregate and mortar");
   return m;
 }
 
 SolidMaterial read_solid(const Section& s, ExpansionReading reading, CurveReader& curves) {
   SolidMaterial m = read_heat_properties(s, curves);
-  m.young = curves.read(s, "E", unit::stress, Range::positive());
-  m.poisson = s.number("nu", Range{-1.0, 0.5, false, false});
+  m.young = curves.read(s, "E", unit::stress, Range::positive(), "Young's modulus");
+  m.poisson = s.number("nu", Range{-1.0, 0.5, false, false}, "Poisson's ratio");
   m.thermal_strain = read_thermal_strain(s, reading, curves);
   return m;
 }
@@ -82,7 +89,9 @@ SolidMaterial read_conducting_solid(const Section& s, CurveReader& curves) {
 
 std::optional<Curve> read_temperature_ratio(const Section& s, CurveReader& curves) {
   if (!s.has("temperature_ratio")) return std::nullopt;
-  const Curve ratio = curves.read(s, "temperature_ratio", unit::dimensionless, Range::positive());
+  const Curve ratio = curves.read(
+      s, "temperature_ratio", unit::dimensionless, Range::positive(),
+      "multiplies those of f_t, f_cm, c_o, c_res, G_f1 and G_f2 that are plain constants; 1 at 20 °C");
   require_at_reference(s, "temperature_ratio", ratio, 1.0, kRatioTolerance);
   return ratio;
 }
@@ -90,25 +99,27 @@ std::optional<Curve> read_temperature_ratio(const Section& s, CurveReader& curve
 ContactMaterial read_mortar_contact(const Section& s, CurveReader& curves) {
   const std::optional<Curve> ratio = read_temperature_ratio(s, curves);
   bool ratio_has_effect = false;
-  const auto property = [&](const char* key, const Unit& unit, const Range& range) {
-    const Curve curve = curves.read(s, key, unit, range);
+  const auto property = [&](const char* key, const Unit& unit, const Range& range, Meaning meaning) {
+    const Curve curve = curves.read(s, key, unit, range, meaning);
     if (!ratio || !curve.is_constant()) return curve;
     ratio_has_effect = true;
     return (curve * *ratio).named(s.path() + "." + key);
   };
-  const auto angle = [&](const char* key) {
-    return std::tan(s.quantity(key, unit::angle, {.lower = 0.0, .upper = 1.57, .upper_inclusive = false}));
+  const auto angle = [&](const char* key, Meaning meaning) {
+    return std::tan(
+        s.quantity(key, unit::angle, {.lower = 0.0, .upper = 1.57, .upper_inclusive = false}, meaning));
   };
   ContactMaterial m;
-  m.tensile_strength = property("f_t", unit::stress, Range::positive());
-  m.mode_1_energy = property("G_f1", unit::fracture_energy, Range::positive());
-  m.compressive_limit = property("f_cm", unit::stress, Range::positive());
-  m.hardening = s.number("beta", Range::inside(0.0, 1.0));
-  m.cohesion = property("c_o", unit::stress, Range::positive());
-  m.residual_cohesion = property("c_res", unit::stress, Range::non_negative());
-  m.friction = angle("phi");
-  m.residual_friction = angle("phi_res");
-  m.mode_2_energy = property("G_f2", unit::fracture_energy, Range::positive());
+  m.tensile_strength = property("f_t", unit::stress, Range::positive(), "tensile strength");
+  m.mode_1_energy = property("G_f1", unit::fracture_energy, Range::positive(), "mode I fracture energy");
+  m.compressive_limit =
+      property("f_cm", unit::stress, Range::positive(), "compression at which the second slope begins");
+  m.hardening = s.number("beta", Range::inside(0.0, 1.0), "second slope in compression over the first");
+  m.cohesion = property("c_o", unit::stress, Range::positive(), "cohesion");
+  m.residual_cohesion = property("c_res", unit::stress, Range::non_negative(), "residual cohesion");
+  m.friction = angle("phi", "friction angle");
+  m.residual_friction = angle("phi_res", "residual friction angle");
+  m.mode_2_energy = property("G_f2", unit::fracture_energy, Range::positive(), "mode II fracture energy");
   if (ratio && !ratio_has_effect)
     s.error("temperature_ratio", "has no effect: no property of this contact is a plain constant");
   return m;
@@ -117,49 +128,67 @@ ContactMaterial read_mortar_contact(const Section& s, CurveReader& curves) {
 }  // namespace
 
 ExpansionReading read_expansion_reading(const Section& root) {
-  return root.section("materials")
+  return root.section("materials", "solids that the body is made of")
       .choice<ExpansionReading>(
-          "expansion_reading", {{"secant", ExpansionReading::secant}, {"tangent", ExpansionReading::tangent}},
-          ExpansionReading::secant);
+          "expansion_reading",
+          {{"secant", ExpansionReading::secant, "thermal strain is α(T) (T − 20 °C)"},
+           {"tangent", ExpansionReading::tangent, "thermal strain is ∫ α dT from 20 °C"}},
+          ExpansionReading::secant, "how the coefficients of thermal expansion α are read");
 }
 
 std::array<SolidMaterial, 3> read_solids(const Section& root, ExpansionReading reading, CurveReader& curves) {
   const Section s = root.section("materials");
-  return {read_solid(s.section("aggregate"), reading, curves),
-          read_solid(s.section("mortar"), reading, curves), read_solid(s.section("platen"), reading, curves)};
+  return {read_solid(s.section("aggregate", kSolid), reading, curves),
+          read_solid(s.section("mortar", kSolid), reading, curves),
+          read_solid(s.section("platen", "the platens' solid, at 20 °C in every run"), reading, curves)};
 }
 
 std::array<SolidMaterial, 3> read_conducting_solids(const Section& root, CurveReader& curves) {
   const Section s = root.section("materials");
   s.know({"expansion_reading", "platen"});
-  return {read_conducting_solid(s.section("aggregate"), curves),
-          read_conducting_solid(s.section("mortar"), curves), SolidMaterial{}};
+  return {read_conducting_solid(s.section("aggregate", kSolid), curves),
+          read_conducting_solid(s.section("mortar", kSolid), curves), SolidMaterial{}};
 }
 
 ContactParameters read_contacts(const Section& root, CurveReader& curves) {
-  const Section s = root.section("contacts");
+  const Section s =
+      root.section("contacts", "what all contacts share: K_n = E / t_b, K_s = G / t_b, Eq. (17)");
   ContactParameters c;
-  c.fracture_zone = s.quantity("t_b", unit::length, Range::positive());
-  const bool scales = s.choice<bool>("t_b_scaling", {{"block size", true}, {"fixed", false}});
-  if (scales) c.fracture_zone_size = s.quantity("t_b_block_size", unit::length, Range::positive());
-  c.platen_friction = s.number("platen_friction", Range::non_negative());
+  c.fracture_zone = s.quantity("t_b", unit::length, Range::positive(), "thickness of the fracture zone, t_b");
+  const bool scales = s.choice<bool>(
+      "t_b_scaling",
+      {{"block size", true, "yes, it scales with it, so that the specimen's E does not depend on it"},
+       {"fixed", false, "no, it holds for any block size"}},
+      "whether t_b depends on the block size");
+  if (scales)
+    c.fracture_zone_size = s.quantity("t_b_block_size", unit::length, Range::positive(),
+                                      "block size √(area / count) at which t_b holds");
+  c.platen_friction = s.number("platen_friction", Range::non_negative(),
+                               "coefficient of friction between platen and specimen");
 
-  const Section mortar = s.section("mortar_mortar");
+  const Section mortar = s.section("mortar_mortar", "contacts between two blocks of mortar (Table 2)");
   c.mortar = read_mortar_contact(mortar, curves);
   if (mortar.has("K_n"))
-    c.normal_stiffness = mortar.quantity("K_n", unit::stiffness_per_area, Range::positive());
+    c.normal_stiffness = mortar.quantity("K_n", unit::stiffness_per_area, Range::positive(),
+                                         "normal stiffness at 20 °C, instead of E / t_b");
   if (mortar.has("K_s"))
-    c.shear_stiffness = mortar.quantity("K_s", unit::stiffness_per_area, Range::positive());
+    c.shear_stiffness = mortar.quantity("K_s", unit::stiffness_per_area, Range::positive(),
+                                        "shear stiffness at 20 °C, instead of G / t_b");
   c.mortar.compression = s.choice<CompressionReading>(
       "compression",
-      {{"irreversible", CompressionReading::irreversible}, {"reversible", CompressionReading::reversible}},
-      CompressionReading::irreversible);
-  c.mortar.coupled = s.flag("coupled", false);
+      {{"irreversible", CompressionReading::irreversible, "unloading has slope K_n and leaves a closure"},
+       {"reversible", CompressionReading::reversible, "unloading retraces the bilinear curve"}},
+      CompressionReading::irreversible, "how contacts unload from compression");
+  c.mortar.coupled =
+      s.flag("coupled", false, "whether damage in tension also lowers the cohesion, by the factor 1 − D_t");
 
-  const Section itz = s.section("aggregate_mortar");
-  c.interface_stiffness = itz.number("stiffness_factor", Range::positive());
-  c.interface_strength = itz.number("strength_factor", Range::positive());
-  c.scale_interface_energy = itz.flag("scale_fracture_energy", false);
+  const Section itz =
+      s.section("aggregate_mortar",
+                "contacts between aggregate and mortar, as factors of those between mortar and mortar");
+  c.interface_stiffness = itz.number("stiffness_factor", Range::positive(), "of K_n and K_s");
+  c.interface_strength = itz.number("strength_factor", Range::positive(), "of f_t, c_o, c_res and f_cm");
+  c.scale_interface_energy =
+      itz.flag("scale_fracture_energy", false, "whether strength_factor acts on G_f1 and G_f2 too");
   return c;
 }
 

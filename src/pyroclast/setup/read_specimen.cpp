@@ -11,13 +11,18 @@ constexpr int kPlacementAttempts = 100'000;
 
 specimen::AggregateParameters read_aggregates(const Section& s) {
   specimen::AggregateParameters a;
-  a.fraction = s.number("fraction", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false});
-  a.d_min = s.quantity("d_min", unit::length, Range::positive());
-  a.d_max = s.quantity("d_max", unit::length, Range::positive());
-  a.fuller_exponent = s.number("fuller_exponent", Range::positive());
-  a.minimum_gap = s.quantity("minimum_gap", unit::length, Range::non_negative());
-  a.attempts = static_cast<int>(s.integer("attempts", Range::between(1, 1e9), kPlacementAttempts));
-  const auto between = s.quantities("sieves", unit::length, Range::positive());
+  a.fraction = s.number("fraction", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false},
+                        "area of coarse aggregate over area of the specimen");
+  a.d_min = s.quantity("d_min", unit::length, Range::positive(), "smallest diameter");
+  a.d_max = s.quantity("d_max", unit::length, Range::positive(), "largest diameter");
+  a.fuller_exponent = s.number("fuller_exponent", Range::positive(), "of Fuller's curve");
+  a.minimum_gap = s.quantity("minimum_gap", unit::length, Range::non_negative(),
+                             "between two aggregates, and between an aggregate and the outline");
+  a.attempts = static_cast<int>(
+      s.integer("attempts", Range::between(1, 1e9), kPlacementAttempts,
+                "random centres that are tried for one aggregate before placing is given up"));
+  const auto between = s.quantities("sieves", unit::length, Range::positive(),
+                                    "bounds of the size intervals between d_min and d_max, ascending");
   if (!s.ok()) return a;
   if (a.d_max <= a.d_min) s.error("d_max", "must be greater than d_min");
   a.sieves = {a.d_min};
@@ -34,15 +39,23 @@ specimen::AggregateParameters read_aggregates(const Section& s) {
 
 specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::path& folder) {
   specimen::BlockParameters b;
-  b.shortest_edge = s.number("shortest_edge", Range::between(0.0, 0.5));
+  b.shortest_edge =
+      s.number("shortest_edge", Range::between(0.0, 0.5),
+               "shorter edges are removed where the blocks allow it; as a fraction of the mean edge");
   if (s.has("file")) {
-    b.file = folder / s.text("file");
+    b.file =
+        folder /
+        s.text("file", "Neper tessellation (.tess), beside the deck, that is read instead of making one");
     if (s.has("count")) s.error("count", "has no meaning beside file: the tessellation is read, not made");
     return b;
   }
-  b.count = static_cast<int>(s.integer("count", Range::between(4, 100e6)));
-  b.relaxation = static_cast<int>(s.integer("relaxation", Range::between(0, 1000), 0));
-  b.radius_spread = s.number("radius_spread", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0);
+  b.count = static_cast<int>(s.integer("count", Range::between(4, 100e6), "number of blocks"));
+  b.relaxation =
+      static_cast<int>(s.integer("relaxation", Range::between(0, 1000), 0,
+                                 "iterations of Lloyd's relaxation; 0 leaves the seeds at random"));
+  b.radius_spread = s.number("radius_spread", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0,
+                             "Laguerre radii are uniform within 1 ± radius_spread times half the mean "
+                             "spacing; 0 makes a Voronoi tessellation");
   return b;
 }
 
@@ -50,18 +63,25 @@ specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::p
 
 specimen::SpecimenParameters read_specimen(const Section& root, const std::filesystem::path& folder) {
   specimen::SpecimenParameters p;
-  const Section s = root.section("specimen");
-  p.width = s.quantity("width", unit::length, Range::positive());
-  p.height = s.quantity("height", unit::length, Range::positive());
-  p.seed = static_cast<std::uint64_t>(s.integer("seed", Range::between(0, 9e15)));
-  p.aggregates = read_aggregates(root.section("aggregates"));
-  p.blocks = read_blocks(root.section("blocks"), folder);
-  const Section superposition = root.section("superposition");
+  const Section s = root.section("specimen", "size of the specimen, and its seed");
+  p.width = s.quantity("width", unit::length, Range::positive(), "of the specimen");
+  p.height = s.quantity("height", unit::length, Range::positive(), "of the specimen");
+  p.seed = static_cast<std::uint64_t>(s.integer(
+      "seed", Range::between(0, 9e15), "of the random numbers; the same seed gives the same specimen"));
+  p.aggregates = read_aggregates(root.section("aggregates",
+                                              "coarse aggregates, placed as circles with diameters after "
+                                              "Fuller's curve P(d) = (d / d_max)^fuller_exponent, Eq. (16)"));
+  p.blocks = read_blocks(root.section("blocks", "the tessellation into blocks"), folder);
+  const Section superposition = root.section("superposition", "which blocks are aggregate");
   p.superposition = superposition.choice<specimen::Superposition>(
-      "rule", {{"area", specimen::Superposition::area}, {"centroid", specimen::Superposition::centroid}});
+      "rule",
+      {{"area", specimen::Superposition::area, "circles cover more than covered_fraction of the block"},
+       {"centroid", specimen::Superposition::centroid, "the block's centroid lies in a circle"}},
+      "when a block is aggregate");
   if (p.superposition == specimen::Superposition::area)
     p.covered_fraction =
-        superposition.number("covered_fraction", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false});
+        superposition.number("covered_fraction", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false},
+                             "share of a block above which circles make it aggregate");
   return p;
 }
 

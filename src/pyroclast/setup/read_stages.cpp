@@ -16,33 +16,44 @@ OutputIntervals read_output(const Section& s, bool moves, bool frames_in_time) {
   OutputIntervals output;
   s.know({"history_strain", "frame_strain", "frame_temperature", "frame_interval"});
   if (moves) {
-    output.history_strain = s.number("history_strain", Range::positive());
-    output.frame_strain = s.number("frame_strain", Range::positive());
-    output.frame_temperature =
-        s.quantity("frame_temperature", unit::temperature_difference, Range::positive(), kFrameTemperature);
+    output.history_strain = s.number("history_strain", Range::positive(),
+                                     "strain between two rows of history.csv while compressing");
+    output.frame_strain = s.number("frame_strain", Range::positive(),
+                                   "strain between two frames of the fields while compressing");
+    output.frame_temperature = s.quantity(
+        "frame_temperature", unit::temperature_difference, Range::positive(), kFrameTemperature,
+        "while temperatures change: frames of the fields at its multiples, of the mean temperature");
   }
-  if (frames_in_time) output.frame_interval = s.quantity("frame_interval", unit::time, Range::positive());
+  if (frames_in_time)
+    output.frame_interval = s.quantity("frame_interval", unit::time, Range::positive(),
+                                       "frames of the field at its multiples, of the heating time");
   return output;
 }
 
 }  // namespace
 
 ReadStages read_stages(const Section& root, const StageRegistry& kinds) {
-  std::vector<std::string> names;
-  for (const StageKind& kind : kinds.kinds()) names.push_back(kind.name);
-  const auto sections = root.sections("stages");
+  std::vector<Choice<const StageKind*>> options;
+  for (const StageKind& kind : kinds.kinds()) options.push_back({kind.name, &kind, Meaning(kind.meaning)});
+  const auto sections =
+      root.sections("stages", "what is done to the specimen, in this order; see [deck.md](deck.md#stages)");
   std::vector<const StageKind*> chosen;
-  for (const Section& s : sections) chosen.push_back(&kinds.kinds()[s.choice("kind", names)]);
+  for (const Section& s : sections) chosen.push_back(s.choice("kind", options, "what the stage does"));
   const auto any = [&](auto needs) {
     return std::ranges::any_of(chosen, [&](const StageKind* kind) { return needs(kind->needs); });
   };
   // Without a stage that could be read, what belongs to mechanics is known at least.
   const bool moves = chosen.empty() || any([](const StageNeeds& n) { return n.mechanics; });
   StageTables tables;
-  tables.output =
-      read_output(root.section("output"), moves, any([](const StageNeeds& n) { return n.frames_in_time; }));
+  tables.output = read_output(
+      root.section("output",
+                   "how often rows and frames are written; both are written at the end of each stage too"),
+      moves, any([](const StageNeeds& n) { return n.frames_in_time; }));
   if (moves)
-    tables.coupling_table = root.optional_section("coupling");
+    tables.coupling_table =
+        root.optional_section("coupling",
+                              "how temperatures are handed to the mechanics; needed by stages that change "
+                              "them; see [deck.md](deck.md#exchanges-of-temperature)");
   else
     root.know({"coupling"});
   if (tables.coupling_table) tables.coupling = read_coupling(*tables.coupling_table);

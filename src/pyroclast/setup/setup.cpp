@@ -26,16 +26,33 @@ constexpr int kCheckedTemperatures = 33;
 
 MechanicsParameters<2> read_mechanics(const Section& s) {
   MechanicsParameters<2> m;
-  m.gravity = {{0.0, -s.quantity("gravity", unit::acceleration, Range::non_negative(), kGravity)}};
-  m.local_damping = s.number("local_damping", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false});
+  m.gravity = {{0.0, -s.quantity("gravity", unit::acceleration, Range::non_negative(), kGravity,
+                                 "acceleration downwards")}};
+  m.local_damping = s.number("local_damping", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false},
+                             "coefficient λ of Eq. (8)");
   m.damping_form = s.choice<DampingForm>(
-      "damping_form", {{"combined", DampingForm::combined}, {"local", DampingForm::local}});
-  m.viscous_damping = s.quantity("viscous_damping", unit::frequency, Range::non_negative(), 0.0);
-  m.mass = s.choice<MassChoice>("mass", {{"scaled", MassChoice::scaled}, {"real", MassChoice::real}});
-  if (m.mass == MassChoice::scaled) m.time_step = s.quantity("time_step", unit::time, Range::positive());
-  m.kinematics = s.choice<Kinematics>(
-      "kinematics", {{"small", Kinematics::small}, {"finite", Kinematics::finite}}, Kinematics::small);
-  m.safety = s.number("safety", {.lower = 0.0, .upper = 1.0, .lower_inclusive = false});
+      "damping_form",
+      {{"combined", DampingForm::combined,
+        "with (sgn v − sgn dF/dt)/2: damps vibration about a steady motion too"},
+       {"local", DampingForm::local, "Eq. (8) as printed, sgn v: drags a body in steady motion"}},
+      "form of local damping");
+  m.viscous_damping =
+      s.quantity("viscous_damping", unit::frequency, Range::non_negative(), 0.0, "coefficient ξ of Eq. (3)");
+  m.mass = s.choice<MassChoice>(
+      "mass",
+      {{"scaled", MassChoice::scaled,
+        "density scaling, for quasi-static runs: the limit of each gridpoint is the common time step"},
+       {"real", MassChoice::real, "density times volume, for dynamics"}},
+      "mass that moves; weight is always that of the real mass");
+  if (m.mass == MassChoice::scaled)
+    m.time_step = s.quantity("time_step", unit::time, Range::positive(), "common time step");
+  m.kinematics =
+      s.choice<Kinematics>("kinematics",
+                           {{"small", Kinematics::small, "zones and contact frames keep their orientation"},
+                            {"finite", Kinematics::finite, "they turn with the body; strains stay small"}},
+                           Kinematics::small, "whether the body may turn");
+  m.safety = s.number("safety", {.lower = 0.0, .upper = 1.0, .lower_inclusive = false},
+                      "fraction of the stable step that is taken");
   return m;
 }
 
@@ -116,9 +133,11 @@ void read_moving(const Section& root, CurveReader& curves, Setup& setup) {
   setup.solids = read_solids(root, setup.expansion_reading, curves);
   setup.motion.emplace();
   setup.motion->platen_thickness =
-      root.section("platens").quantity("thickness", unit::length, Range::positive());
+      root.section("platens", "two elastic blocks as wide as the specimen, under and above it")
+          .quantity("thickness", unit::length, Range::positive(), "of each platen");
   setup.motion->contacts = read_contacts(root, curves);
-  setup.motion->mechanics = read_mechanics(root.section("mechanics"));
+  setup.motion->mechanics =
+      read_mechanics(root.section("mechanics", "how the body moves; see [method.md](method.md#motion)"));
   check_contacts(root, setup);
 }
 
@@ -133,7 +152,7 @@ void read_resting(const Section& root, CurveReader& curves, Setup& setup) {
 Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const StageRegistry& kinds) {
   const Section root = deck.root();
   Setup setup;
-  setup.title = root.text("title");
+  setup.title = root.text("title", "name of the run, for figures and summary");
   auto read = read_stages(root, kinds);
   setup.stages = std::move(read.stages);
   CurveReader time_curves(folder, time_axis(), {0.0, exposure(setup.stages)}, fire_curves());
@@ -141,7 +160,9 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   check_heat(root, setup.heat, setup.stages);
   setup.temperatures = run_temperatures(root, setup.heat, setup.stages);
   setup.specimen = read_specimen(root, folder);
-  setup.thickness = root.section("specimen").quantity("thickness", unit::length, Range::positive(), 1.0);
+  setup.thickness = root.section("specimen")
+                        .quantity("thickness", unit::length, Range::positive(), 1.0,
+                                  "out of plane; forces, energies and heats are those of this thickness");
   if (setup.heat.uniform)
     root.know({"probes"});
   else
@@ -154,6 +175,10 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   setup.curves = curves.curves();
   deck.finish();
   return setup;
+}
+
+DeckSchema deck_schema(const StageRegistry& kinds) {
+  return survey_deck([&](const Deck& deck) { read_setup(deck, {}, kinds); });
 }
 
 std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pyroclast/deck/deck.hpp"
+#include "pyroclast/deck/survey.hpp"
 #include "pyroclast/material/curve_reader.hpp"
 #include "pyroclast/material/thermal_strain.hpp"
 #include "pyroclast/simulation/simulation.hpp"
@@ -34,6 +35,9 @@ struct Setup {
 /// \param kinds  of stages that the deck may ask for
 /// Throws DeckError with every error of the deck.
 Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const StageRegistry& kinds = {});
+
+/// Everything that `read_setup` asks of a deck.
+DeckSchema deck_schema(const StageRegistry& kinds = {});
 
 /// Makes specimen, model, field and mechanics. Throws Error when they cannot be made, see Simulation and
 /// make_checked_specimen.

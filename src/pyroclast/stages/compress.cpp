@@ -31,28 +31,42 @@ constexpr double kControlledShare = 0.2;
 /// The velocity changes between `velocity` and `fastest_velocity`.
 VelocityControl read_velocity_control(const Section& s, const Compress::Keys& keys) {
   VelocityControl c;
-  c.fastest = s.quantity("fastest_velocity", unit::velocity, Range::positive());
+  c.fastest = s.quantity(
+      "fastest_velocity", unit::velocity, Range::positive(),
+      "highest velocity; with it the stage [chooses the velocity itself](deck.md#a-controlled-velocity)");
   if (s.ok() && c.fastest < keys.velocity) s.error("fastest_velocity", "must not be less than velocity");
   if (s.ok() && keys.ramp_time == 0.0)
     s.error("ramp_time", "must be greater than 0 with fastest_velocity: it bounds the acceleration");
-  c.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive());
-  c.kinetic_over_strain = s.number("kinetic_over_strain", Range::positive());
-  c.platen_difference = s.number("platen_difference", Range::positive());
-  c.dissipation_rate = s.quantity("dissipation_rate", unit::frequency, Range::positive());
+  c.unbalanced_ratio =
+      s.number("unbalanced_ratio", Range::positive(), "tolerance 1: unbalanced over applied forces");
+  c.kinetic_over_strain =
+      s.number("kinetic_over_strain", Range::positive(),
+               "tolerance 2: kinetic over elastic energy; a run counts as quasi-static up to 0.01");
+  c.platen_difference = s.number("platen_difference", Range::positive(),
+                                 "tolerance 3: difference between the stresses on the platens over the "
+                                 "largest stress so far; a run counts as quasi-static up to 0.02");
+  c.dissipation_rate =
+      s.quantity("dissipation_rate", unit::frequency, Range::positive(),
+                 "tolerance 4: power that cracks, slip and crushing dissipate over elastic energy");
   return c;
 }
 
 std::unique_ptr<Stage> read_compress(const Section& s, const StageTables& tables) {
   Compress::Keys keys;
-  keys.velocity = s.quantity("velocity", unit::velocity, Range::positive());
-  keys.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative());
+  keys.velocity = s.quantity("velocity", unit::velocity, Range::positive(),
+                             "of the upper platen; the lowest one with fastest_velocity");
+  keys.ramp_time = s.quantity(
+      "ramp_time", unit::time, Range::non_negative(),
+      "in which velocity is reached; greater than 0 with fastest_velocity, where it also bounds the changes");
   if (s.has("fastest_velocity"))
     keys.control = read_velocity_control(s, keys);
   else
     s.know({"unbalanced_ratio", "kinetic_over_strain", "platen_difference", "dissipation_rate"});
-  keys.stop_strain = s.number("stop_strain", Range::inside(0.0, 1.0));
+  keys.stop_strain =
+      s.number("stop_strain", Range::inside(0.0, 1.0), "the stage ends at this strain since its beginning");
   keys.stop_fraction =
-      s.number("stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0);
+      s.number("stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0,
+               "the run ends when the stress has fallen below this share of its largest value");
   keys.history_strain = tables.output.history_strain;
   keys.frame_strain = tables.output.frame_strain;
   return std::make_unique<Compress>(keys);
@@ -61,7 +75,10 @@ std::unique_ptr<Stage> read_compress(const Section& s, const StageTables& tables
 }  // namespace
 
 StageKind compress_kind() {
-  return {"compress", {}, read_compress};
+  return {"compress",
+          "drives the upper platen down; strain counts from the beginning of the stage",
+          {},
+          read_compress};
 }
 
 void Compress::begin(Simulation& simulation) {

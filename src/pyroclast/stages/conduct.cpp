@@ -17,11 +17,14 @@ constexpr StageNeeds kNeeds{.mechanics = false, .field = FieldChoice::computed, 
 
 std::unique_ptr<Stage> read_conduct(const Section& s, const StageTables& tables) {
   Conduct::Keys keys;
-  keys.duration = s.quantity("duration", unit::time, Range::positive());
-  keys.interval = s.quantity("interval", unit::time, Range::positive());
-  keys.change = s.quantity("change", unit::temperature_difference, Range::positive(), keys.change);
+  keys.duration = s.quantity("duration", unit::time, Range::positive(), "time for which the boundaries act");
+  keys.interval = s.quantity("interval", unit::time, Range::positive(),
+                             "rows of history.csv at its multiples, of the heating time");
+  keys.change = s.quantity("change", unit::temperature_difference, Range::positive(), keys.change,
+                           "another row when a temperature has changed by so much since the last one");
   if (s.has("steady_rate"))
-    keys.steady_rate = s.quantity("steady_rate", unit::heating_rate, Range::positive());
+    keys.steady_rate = s.quantity("steady_rate", unit::heating_rate, Range::positive(),
+                                  "the stage ends earlier when it is [steady](heat.md#steady-state)");
   keys.frame_interval = tables.output.frame_interval;
   return std::make_unique<Conduct>(keys);
 }
@@ -36,7 +39,8 @@ double next_multiple(double interval, double time) {
 }  // namespace
 
 StageKind conduct_kind() {
-  return {"conduct", kNeeds, read_conduct};
+  return {"conduct", "lets heat flow by the boundaries of [heat], and moves nothing; needs conduction",
+          kNeeds, read_conduct};
 }
 
 StageNeeds Conduct::needs() const {

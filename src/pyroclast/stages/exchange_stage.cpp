@@ -49,22 +49,33 @@ ExchangeResponse exchange_response(const History& history, RowRange rows, Outcom
 }
 
 PlatenControl read_platen(const Section& s) {
-  return s.choice<PlatenControl>("platen",
-                                 {{"force", PlatenControl::force}, {"fixed", PlatenControl::fixed}});
+  return s.choice<PlatenControl>(
+      "platen",
+      {{"force", PlatenControl::force, "its force stays; none but its weight if no load was applied"},
+       {"fixed", PlatenControl::fixed, "its height stays"}},
+      "what the upper platen does");
 }
 
 }  // namespace
 
 Coupling read_coupling(const Section& s) {
   Coupling c;
-  c.increment = s.quantity("exchange_increment", unit::temperature_difference, Range::positive());
-  c.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive());
-  c.platen_difference = s.quantity("platen_difference", unit::stress, Range::positive());
-  c.least_cycles = s.integer("least_cycles", Range::between(0, 1e12));
-  c.most_cycles = s.integer("most_cycles", Range::between(1, 1e12));
+  c.increment = s.quantity("exchange_increment", unit::temperature_difference, Range::positive(),
+                           "change of temperature between two exchanges, of the fastest gridpoint");
+  c.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive(),
+                                "rest, 1: unbalanced over applied forces are below this");
+  c.platen_difference = s.quantity("platen_difference", unit::stress, Range::positive(),
+                                   "rest, 2: the stresses on the two platens differ by less");
+  c.least_cycles = s.integer("least_cycles", Range::between(0, 1e12), "rest, 3: not before so many steps");
+  c.most_cycles = s.integer(
+      "most_cycles", Range::between(1, 1e12),
+      "an exchange that did not come to rest within so many steps is flagged, and the next one follows");
   if (s.ok() && c.most_cycles < c.least_cycles) s.error("most_cycles", "must not be less than least_cycles");
-  c.predictor = s.flag("predictor", false);
-  c.failure_strain = s.number("failure_strain", Range::inside(0.0, 1.0));
+  c.predictor = s.flag("predictor", false,
+                       "whether an exchange first moves the body to where the last one foretells it to rest; "
+                       "stages of kind heat only");
+  c.failure_strain = s.number("failure_strain", Range::inside(0.0, 1.0),
+                              "the specimen has failed when its ends approach by this at one temperature");
   return c;
 }
 

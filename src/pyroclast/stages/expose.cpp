@@ -13,7 +13,7 @@ constexpr double kMeanChange = 0.5;
 
 std::unique_ptr<Stage> read_expose(const Section& s, const StageTables& tables) {
   Expose::Keys keys;
-  keys.duration = s.quantity("duration", unit::time, Range::positive());
+  keys.duration = s.quantity("duration", unit::time, Range::positive(), "time for which the boundaries act");
   keys.exchange = read_exchange(s, tables);
   if (tables.coupling.predictor)
     tables.coupling_table->error("predictor",
@@ -24,7 +24,10 @@ std::unique_ptr<Stage> read_expose(const Section& s, const StageTables& tables) 
 }  // namespace
 
 StageKind expose_kind() {
-  return {"expose", {.field = FieldChoice::computed}, read_expose};
+  return {"expose",
+          "lets heat flow by the boundaries of [heat], and the body follow; needs conduction",
+          {.field = FieldChoice::computed},
+          read_expose};
 }
 
 void Expose::begin_change(Simulation& simulation) {

@@ -14,8 +14,9 @@ constexpr double kSameTemperature = 1e-6;
 
 std::unique_ptr<Stage> read_heat_stage(const Section& s, const StageTables& tables) {
   Heat::Keys keys;
-  keys.to = s.quantity("to", unit::temperature, Range::at_least(absolute_zero));
-  keys.rate = s.quantity("rate", unit::heating_rate, Range::positive());
+  keys.to = s.quantity("to", unit::temperature, Range::at_least(absolute_zero), "temperature at the end");
+  keys.rate = s.quantity("rate", unit::heating_rate, Range::positive(),
+                         "change of the temperature over the time, up or down");
   keys.exchange = read_exchange(s, tables);
   return std::make_unique<Heat>(keys);
 }
@@ -35,7 +36,10 @@ Interval free_strain_change(const ConcreteMaterials& materials, double from, dou
 }  // namespace
 
 StageKind heat_kind() {
-  return {"heat", {.field = FieldChoice::uniform}, read_heat_stage};
+  return {"heat",
+          "changes the temperature of the whole specimen evenly, up or down; needs a uniform field",
+          {.field = FieldChoice::uniform},
+          read_heat_stage};
 }
 
 void Heat::begin_change(Simulation& simulation) {

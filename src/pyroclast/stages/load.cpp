@@ -17,22 +17,29 @@ constexpr std::int64_t kStepsPerForce = 20;
 std::unique_ptr<Stage> read_load(const Section& s, const StageTables&) {
   Load::Keys keys;
   if (s.has("level")) {
-    keys.level = s.number("level", Range::non_negative());
-    keys.stress = *keys.level * s.quantity("f_c", unit::stress, Range::positive());
+    keys.level = s.number("level", Range::non_negative(), "stress over f_c");
+    keys.stress =
+        *keys.level * s.quantity("f_c", unit::stress, Range::positive(), "strength that level is a share of");
     if (s.has("stress")) s.error("stress", "either stress, or level and f_c; not both");
   } else {
-    keys.stress = s.quantity("stress", unit::stress, Range::non_negative());
+    keys.stress = s.quantity("stress", unit::stress, Range::non_negative(),
+                             "force on the upper platen over the area of the specimen");
   }
-  keys.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative());
-  keys.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive());
-  keys.most_steps = s.integer("most_steps", Range::between(1, 1e12));
+  keys.ramp_time =
+      s.quantity("ramp_time", unit::time, Range::non_negative(), "in which the force rises evenly");
+  keys.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive(), kAtRest);
+  keys.most_steps = s.integer("most_steps", Range::between(1, 1e12),
+                              "after so many steps behind the ramp without rest the run ends, and says so");
   return std::make_unique<Load>(keys);
 }
 
 }  // namespace
 
 StageKind load_kind() {
-  return {"load", {}, read_load};
+  return {"load",
+          "brings the force on the upper platen to a value, and the body to rest; the platen does not tilt",
+          {},
+          read_load};
 }
 
 double ramp_share(std::int64_t steps, double time_step, double ramp_time) {

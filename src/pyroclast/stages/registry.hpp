@@ -31,6 +31,7 @@ struct StageTables {
 /// A kind of stage.
 struct StageKind {
   std::string name;
+  std::string meaning;  ///< what it does, for the deck reference
   StageNeeds needs;
   /// Reads a stage of this kind. What is wrong is recorded in the deck.
   /// \param own  its table of [[stages]]

@@ -17,15 +17,20 @@ constexpr double kStepsPerDecade = 1100.0;
 
 std::unique_ptr<Stage> read_settle(const Section& s, const StageTables&) {
   Settle::Keys keys;
-  keys.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive());
-  keys.most_steps = s.integer("most_steps", Range::between(1, 1e12));
+  keys.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive(), kAtRest);
+  keys.most_steps = s.integer("most_steps", Range::between(1, 1e12),
+                              "after so many steps without rest the run ends, and says so");
   return std::make_unique<Settle>(keys);
 }
 
 }  // namespace
 
 StageKind settle_kind() {
-  return {"settle", {}, read_settle};
+  return {
+      "settle",
+      "lets the body come to rest under its weight, the upper platen lying on it; strain counts from there",
+      {},
+      read_settle};
 }
 
 void Settle::begin(Simulation& simulation) {

@@ -32,6 +32,9 @@ class Settle : public Stage {
 
 StageKind settle_kind();
 
+/// What `unbalanced_ratio` means in stages that bring the body to rest.
+inline constexpr Meaning kAtRest = "the body is at rest when unbalanced over applied forces are below this";
+
 /// Steps that a body will probably need to come to rest when its load has changed at once.
 /// \param unbalanced_ratio  at which it counts as at rest
 double steps_to_rest(double unbalanced_ratio);

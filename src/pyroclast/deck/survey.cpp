@@ -1,0 +1,428 @@
+#include "pyroclast/deck/survey.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <iterator>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/deck/survey_run.hpp"
+
+namespace pyroclast {
+namespace {
+
+const toml::table& no_table() {
+  static const toml::table none;
+  return none;
+}
+
+std::string joined(const std::string& table, std::string_view key) {
+  return table.empty() ? std::string(key) : fmt::format("{}.{}", table, key);
+}
+
+/// Whether a path is that of a table or stands below it.
+bool is_at_or_below(std::string_view path, std::string_view table) {
+  return path.starts_with(table) &&
+         (path.size() == table.size() || path[table.size()] == '.' || path[table.size()] == '[');
+}
+
+/// What makes two readings of a key the same.
+auto content(const SurveyRun::Read& r) {
+  const auto words = [](const DeckWord& w) { return w.word + '\0' + w.meaning; };
+  std::vector<std::string> all;
+  std::transform(r.key.words.begin(), r.key.words.end(), std::back_inserter(all), words);
+  return std::tuple(r.table, r.key.key, r.key.value, r.key.unit, r.key.allowed, r.key.fallback, r.key.meaning,
+                    all);
+}
+using Content = decltype(content(std::declval<SurveyRun::Read>()));
+
+/// Number of each thing in the order of meeting it.
+template <class Thing>
+class Numbers {
+ public:
+  /// The number, and whether the thing is new.
+  std::pair<int, bool> of(const Thing& thing) {
+    const auto [known, is_new] = numbers_.emplace(thing, static_cast<int>(numbers_.size()));
+    return {known->second, is_new};
+  }
+
+ private:
+  std::map<Thing, int> numbers_;
+};
+
+constexpr std::size_t kNotAsked = -1;
+
+/// What one run told. Questions and keys have the numbers of the surveyor.
+struct Told {
+  struct Read {
+    SurveyRun::Read what;
+    int key = 0;
+  };
+
+  std::vector<SurveyRun::Answered> answered;
+  std::vector<int> questions;  ///< of `answered`
+  std::vector<Read> read;
+  std::vector<std::size_t> answers;  ///< by question, kNotAsked or beyond the end where it was not asked
+  std::vector<bool> keys;            ///< by key, whether it was read
+
+  std::size_t answer(int question) const {
+    return static_cast<std::size_t>(question) < answers.size() ? answers[question] : kNotAsked;
+  }
+  bool reads(int key) const { return static_cast<std::size_t>(key) < keys.size() && keys[key]; }
+};
+
+/// A key as one run read it.
+struct Found {
+  Told::Read read;
+  SurveyAnswers given;  ///< in that run
+  const Told* run = nullptr;
+  bool in_form = false;
+  /// By question before the key: the answers with which it is read, those to the others being the run's.
+  std::vector<std::set<std::size_t>> with;
+};
+
+template <class Tables>
+auto find_table(Tables& tables, const std::string& path) {
+  return std::find_if(tables.begin(), tables.end(), [&](const DeckTable& t) { return t.path == path; });
+}
+
+class Surveyor {
+ public:
+  /// \param read  calls the reader, which asks the run
+  explicit Surveyor(std::function<void(SurveyRun&)> read) : read_(std::move(read)) {
+    plan({});
+    visit_planned();
+    while (correct()) visit_planned();
+  }
+
+  DeckSchema schema() const {
+    DeckSchema schema{.tables = tables_, .never_read = {}};
+    put_parts_together(schema.tables);
+    for (const Found& f : found_) {
+      std::vector<DeckKey>& keys = find_table(schema.tables, f.read.what.table)->keys;
+      DeckKey key = described(f);
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(std::move(key));
+    }
+    for (const auto& [table, key] : known_) {
+      const bool is_read = std::any_of(found_.begin(), found_.end(), [&](const Found& f) {
+        return f.read.what.table == table && f.read.what.key.key == key;
+      });
+      const std::string path = joined(table, key);
+      if (!is_read && !is_table(path) && !is_table(path + "[]")) schema.never_read.push_back(path);
+    }
+    std::erase_if(schema.tables, [](const DeckTable& t) { return t.keys.empty(); });
+    for (DeckTable& table : schema.tables) take_common_conditions(table);
+    return schema;
+  }
+
+ private:
+  bool is_table(const std::string& path) const { return find_table(tables_, path) != tables_.end(); }
+  bool is_form(const std::string& path) const { return find_table(tables_, path)->is_form; }
+
+  void plan(SurveyAnswers given) {
+    if (planned_.insert(given).second) open_.push_back(std::move(given));
+  }
+
+  void visit_planned() {
+    while (!open_.empty()) {
+      const SurveyAnswers next = std::move(open_.front());
+      open_.pop_front();
+      visit(next);
+    }
+  }
+
+  /// What the reader tells with these answers.
+  const Told& told(const SurveyAnswers& given) {
+    planned_.insert(given);
+    visit(given);
+    return told_.at(given);
+  }
+
+  /// Calls the reader with these answers; where that brings something new, each other answer is planned.
+  void visit(const SurveyAnswers& given) {
+    if (told_.contains(given)) return;
+    SurveyRun run(given);
+    read_(run);
+    Told& told = told_[given];
+    visited_.push_back(given);
+    told.answered = run.answered();
+    for (const DeckTable& t : run.tables()) merge(t);
+    for (const auto& k : run.known())
+      if (std::find(known_.begin(), known_.end(), k) == known_.end()) known_.push_back(k);
+    bool is_new = false;
+    for (const auto& a : told.answered) {
+      const auto [question, is_new_question] = questions_.of(a.question);
+      is_new = is_new || is_new_question;
+      told.questions.push_back(question);
+      told.answers.resize(std::max<std::size_t>(told.answers.size(), question + 1), kNotAsked);
+      told.answers[question] = a.answer;
+    }
+    for (const auto& r : run.keys_read()) {
+      const auto [key, is_new_key] = keys_.of(content(r));
+      is_new = is_new || is_new_key;
+      told.read.push_back({r, key});
+      told.keys.resize(std::max<std::size_t>(told.keys.size(), key + 1));
+      told.keys[key] = true;
+    }
+    if (!is_new) return;
+    for (const auto& a : told.answered)
+      for (std::size_t other = 0; other < a.possible.size(); ++other)
+        if (other != a.answer) plan(changed(given, a.question, other));
+  }
+
+  static SurveyAnswers changed(SurveyAnswers given, const SurveyQuestion& question, std::size_t answer) {
+    given[question] = answer;
+    return given;
+  }
+
+  void merge(const DeckTable& table) {
+    const auto known = find_table(tables_, table.path);
+    if (known == tables_.end()) {
+      tables_.push_back(table);
+      return;
+    }
+    known->optional = known->optional && table.optional;
+    if (known->meaning.empty()) known->meaning = table.meaning;
+  }
+
+  /// Compares what was found with all runs: narrows what a run contradicts, adds what no finding explains.
+  /// False if nothing was to be done.
+  bool correct() {
+    bool is_changed = false;
+    const std::size_t runs = visited_.size();
+    for (std::size_t run = 0; run < runs; ++run) {
+      const SurveyAnswers given = visited_[run];
+      const Told& told = told_.at(given);
+      for (Found& f : found_)
+        if (!f.in_form && !told.reads(f.read.key) && is_explained(f, told))
+          is_changed = narrow(f, told) || is_changed;
+      for (const auto& r : told.read) {
+        if (is_explained(r.key, told)) continue;
+        found_.push_back(find(r, given));
+        is_changed = true;
+      }
+    }
+    return is_changed;
+  }
+
+  /// Whether a question counts for a finding: a form is the same wherever it stands.
+  static bool counts(const Found& f, const SurveyQuestion& question) {
+    return !f.in_form || question.table == f.read.what.table;
+  }
+
+  /// Changes the answers before the key one by one; what another finding explains is left to that.
+  Found find(const Told::Read& read, const SurveyAnswers& given) {
+    Found f{read, given, &told_.at(given), is_form(read.what.table), {}};
+    for (std::size_t i = 0; i < read.what.after; ++i) {
+      const auto& a = f.run->answered[i];
+      f.with.push_back({a.answer});
+      if (!counts(f, a.question)) continue;
+      for (std::size_t answer = 0; answer < a.possible.size(); ++answer) {
+        const Told& other = told(changed(given, a.question, answer));
+        if (other.reads(read.key) && !is_explained(read.key, other)) f.with[i].insert(answer);
+      }
+    }
+    return f;
+  }
+
+  /// Whether a finding tells that a run reads a key; one finding tells all of a form.
+  bool is_explained(int key, const Told& run) const {
+    return std::any_of(found_.begin(), found_.end(), [&](const Found& f) {
+      return f.read.key == key && (f.in_form || is_explained(f, run));
+    });
+  }
+
+  /// Whether a run's answers are those with which the key is read.
+  bool is_explained(const Found& f, const Told& run) const {
+    for (std::size_t i = 0; i < f.with.size(); ++i) {
+      const auto& a = f.run->answered[i];
+      if (f.with[i].size() == a.possible.size() || !counts(f, a.question)) continue;
+      if (!f.with[i].contains(run.answer(f.run->questions[i]))) return false;
+    }
+    return true;
+  }
+
+  /// Takes back an answer with which a key is read only if questions that follow from it are answered
+  /// otherwise than in a run that does not read the key. False if there is none.
+  bool narrow(Found& f, const Told& run) {
+    SurveyAnswers as_in_run = f.given;
+    for (std::size_t i = 0; i < run.answered.size(); ++i)
+      if (f.run->answer(run.questions[i]) == kNotAsked)
+        as_in_run[run.answered[i].question] = run.answered[i].answer;
+    for (std::size_t i = 0; i < f.with.size(); ++i) {
+      const auto& a = f.run->answered[i];
+      const std::size_t answer = run.answer(f.run->questions[i]);
+      if (answer == a.answer || !f.with[i].contains(answer)) continue;
+      if (told(changed(as_in_run, a.question, answer)).reads(f.read.key)) continue;
+      f.with[i].erase(answer);
+      return true;
+    }
+    return false;
+  }
+
+  DeckKey described(const Found& f) const {
+    DeckKey key = f.read.what.key;
+    for (std::size_t i = 0; i < f.with.size(); ++i) {
+      const auto& a = f.run->answered[i];
+      if (!counts(f, a.question) || f.with[i].size() == a.possible.size()) continue;
+      std::vector<std::string> with, without;
+      for (std::size_t answer = 0; answer < a.possible.size(); ++answer)
+        (f.with[i].contains(answer) ? with : without).push_back(a.possible[answer]);
+      add_condition(key, f, a.question, with, without);
+    }
+    return key;
+  }
+
+  static void add_condition(DeckKey& key, const Found& f, const SurveyQuestion& question,
+                            const std::vector<std::string>& with, const std::vector<std::string>& without) {
+    using Kind = SurveyQuestion::Kind;
+    KeyCondition condition{.table = question.table, .key = question.key, .with = {}, .without = {}};
+    if (question.kind == Kind::word || question.kind == Kind::flag) {
+      condition.with = with;
+      condition.without = without;
+    } else {
+      const bool present = with.front() == "true";
+      if (!present && f.in_form) return;  // forms exclude each other
+      if (present && question.table == f.read.what.table && question.key == key.key) {
+        key.optional = key.fallback.empty();
+        return;
+      }
+      // That a key's own table is there goes without saying.
+      const std::string path = joined(question.table, question.key);
+      if (present && is_at_or_below(f.read.what.table, path)) return;
+      condition.kind = present ? KeyCondition::Kind::present : KeyCondition::Kind::absent;
+    }
+    key.conditions.push_back(std::move(condition));
+  }
+
+  /// Tables below one table of the root stand together.
+  static void put_parts_together(std::vector<DeckTable>& tables) {
+    std::vector<std::string> order;
+    const auto place = [&](const DeckTable& table) {
+      const std::string top = table.path.substr(0, table.path.find_first_of(".["));
+      const auto known = std::find(order.begin(), order.end(), top);
+      const auto index = std::distance(order.begin(), known);
+      if (known == order.end()) order.push_back(top);
+      return index;
+    };
+    for (const DeckTable& table : tables) place(table);
+    std::stable_sort(tables.begin(), tables.end(),
+                     [&](const DeckTable& a, const DeckTable& b) { return place(a) < place(b); });
+  }
+
+  /// Conditions from outside that all keys share are the table's.
+  static void take_common_conditions(DeckTable& table) {
+    for (const KeyCondition& condition : std::vector(table.keys.front().conditions)) {
+      if (condition.table == table.path) continue;
+      const auto has_it = [&](const DeckKey& k) {
+        return std::find(k.conditions.begin(), k.conditions.end(), condition) != k.conditions.end();
+      };
+      if (!std::all_of(table.keys.begin(), table.keys.end(), has_it)) continue;
+      table.conditions.push_back(condition);
+      for (DeckKey& key : table.keys) std::erase(key.conditions, condition);
+    }
+  }
+
+  std::function<void(SurveyRun&)> read_;
+  std::deque<SurveyAnswers> open_;
+  std::set<SurveyAnswers> planned_;
+  std::map<SurveyAnswers, Told> told_;
+  std::vector<SurveyAnswers> visited_;  ///< about from the fewest changed answers to the most
+  Numbers<SurveyQuestion> questions_;
+  Numbers<Content> keys_;
+  std::vector<Found> found_;
+  std::vector<DeckTable> tables_;
+  std::vector<std::pair<std::string, std::string>> known_;
+};
+
+}  // namespace
+
+std::size_t SurveyRun::answer(const std::string& table, std::string_view key, SurveyQuestion::Kind kind,
+                              std::vector<std::string> possible, std::size_t usual) {
+  SurveyQuestion question{described(table), std::string(key), kind};
+  for (const Answered& a : answered_)
+    if (a.question == question) return a.answer;
+  const auto given = given_.find(question);
+  const std::size_t answer = given != given_.end() ? given->second : usual;
+  answered_.push_back({std::move(question), answer, std::move(possible)});
+  return answer;
+}
+
+bool SurveyRun::is_present(const std::string& table, std::string_view key) {
+  const SurveyQuestion as_table{described(table), std::string(key), SurveyQuestion::Kind::is_table};
+  for (const Answered& a : answered_)
+    if (a.question == as_table && a.answer == 1) return true;
+  return answer(table, key, SurveyQuestion::Kind::present, {"false", "true"}, 1) == 1;
+}
+
+bool SurveyRun::is_table(const std::string& table, std::string_view key) {
+  return answer(table, key, SurveyQuestion::Kind::is_table, {"false", "true"}, 0) == 1;
+}
+
+bool SurveyRun::is_set(const std::string& table, std::string_view key, bool usual) {
+  return answer(table, key, SurveyQuestion::Kind::flag, {"false", "true"}, usual ? 1 : 0) == 1;
+}
+
+std::size_t SurveyRun::chosen(const std::string& table, std::string_view key,
+                              const std::vector<std::string>& words) {
+  std::vector<std::string> possible;
+  for (const std::string& word : words) possible.push_back(fmt::format("\"{}\"", word));
+  return answer(table, key, SurveyQuestion::Kind::word, std::move(possible), 0);
+}
+
+void SurveyRun::know(const std::string& table, std::string_view key) {
+  known_.emplace_back(described(table), key);
+}
+
+void SurveyRun::read(const std::string& table, DeckKey key) {
+  if (forms_.contains(joined(table, key.key))) return;
+  read_.push_back({described(table), std::move(key), answered_.size()});
+}
+
+void SurveyRun::read_in_forms(const std::string& table, DeckKey key, const std::string& forms) {
+  const std::string path = joined(table, key.key);
+  read(table, std::move(key));
+  forms_.emplace(path, forms.empty() ? path : forms);
+}
+
+TableRecord& SurveyRun::table(const std::string& path, bool optional, std::string_view meaning) {
+  DeckTable table{.path = described(path),
+                  .optional = optional,
+                  .meaning = std::string(meaning),
+                  .keys = {},
+                  .conditions = {}};
+  table.is_form = table.path != path;
+  tables_.push_back(std::move(table));
+  auto& record = records_[path];
+  if (!record) record.reset(new TableRecord{.table = no_table(), .path = path, .asked = {}});
+  return *record;
+}
+
+std::string SurveyRun::described(const std::string& path) const {
+  const auto known = std::find_if(forms_.rbegin(), forms_.rend(),  // of several, the longest
+                                  [&](const auto& f) { return is_at_or_below(path, f.first); });
+  return known == forms_.rend() ? path : known->second + path.substr(known->first.size());
+}
+
+DeckSchema survey_deck(const DeckReader& read) {
+  return Surveyor([&](SurveyRun& run) { read(Deck(std::make_unique<DeckRecord>(run))); }).schema();
+}
+
+std::vector<std::string> DeckSchema::undocumented() const {
+  std::vector<std::string> paths = never_read;
+  for (const DeckTable& table : tables) {
+    if (table.meaning.empty() && !table.path.empty()) paths.push_back(table.path);
+    for (const DeckKey& key : table.keys) {
+      const std::string path = joined(table.path, key.key);
+      if (key.meaning.empty()) paths.push_back(path);
+      for (const DeckWord& word : key.words)
+        if (word.meaning.empty()) paths.push_back(fmt::format("{} = {}", path, word.word));
+    }
+  }
+  return paths;
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pyroclast/deck/record.hpp"
+#include "pyroclast/deck/survey.hpp"
+
+namespace pyroclast {
+
+/// A question that a reader asks of a deck, and whose answer may decide what it asks next.
+struct SurveyQuestion {
+  enum class Kind : std::uint8_t { present, is_table, word, flag };
+
+  std::string table, key;
+  Kind kind = Kind::present;
+
+  auto operator<=>(const SurveyQuestion&) const = default;
+};
+
+/// Answers by question, as indices into the possible ones.
+using SurveyAnswers = std::map<SurveyQuestion, std::size_t>;
+
+/// One call of a reader with a deck that has no text: answers what it asks, and keeps it. Private to this
+/// module.
+class SurveyRun {
+ public:
+  /// What was asked: a question, its answer and all possible ones as a deck has them.
+  struct Answered {
+    SurveyQuestion question;
+    std::size_t answer = 0;
+    std::vector<std::string> possible;
+  };
+  /// A key that was read, after so many answers.
+  struct Read {
+    std::string table;
+    DeckKey key;
+    std::size_t after = 0;
+  };
+
+  explicit SurveyRun(SurveyAnswers given) : given_(std::move(given)) {}
+
+  bool is_present(const std::string& table, std::string_view key);
+  bool is_table(const std::string& table, std::string_view key);
+  bool is_set(const std::string& table, std::string_view key, bool usual);
+  std::size_t chosen(const std::string& table, std::string_view key, const std::vector<std::string>& words);
+
+  void know(const std::string& table, std::string_view key);
+  void read(const std::string& table, DeckKey key);
+  /// The same for a key that is read in several forms, which the calls of `read` that follow would describe.
+  /// \param forms  name under which the tables at and below the key are described; may be empty
+  void read_in_forms(const std::string& table, DeckKey key, const std::string& forms);
+  /// The table at a path; array elements have the path of their array with "[]".
+  TableRecord& table(const std::string& path, bool optional, std::string_view meaning);
+
+  const std::vector<Answered>& answered() const { return answered_; }
+  const std::vector<Read>& keys_read() const { return read_; }
+  const std::vector<DeckTable>& tables() const { return tables_; }
+  const std::vector<std::pair<std::string, std::string>>& known() const { return known_; }
+
+ private:
+  /// \param usual  the answer where none was given
+  std::size_t answer(const std::string& table, std::string_view key, SurveyQuestion::Kind kind,
+                     std::vector<std::string> possible, std::size_t usual);
+  /// The path under which a table is described.
+  std::string described(const std::string& path) const;
+
+  SurveyAnswers given_;
+  std::vector<Answered> answered_;
+  std::vector<Read> read_;
+  std::vector<DeckTable> tables_;
+  std::vector<std::pair<std::string, std::string>> known_;  ///< table and key
+  std::map<std::string, std::string> forms_;                ///< path of a key in forms: their name
+  std::map<std::string, std::unique_ptr<TableRecord>> records_;
+};
+
+}  // namespace pyroclast

@@ -1,0 +1,38 @@
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "pyroclast/deck/reference.hpp"
+#include "pyroclast/setup/setup.hpp"
+#include "pyroclast/stages/settle.hpp"
+
+namespace pyroclast {
+namespace {
+
+TEST(DeckReference, SaysWhatEveryKeyWordAndTableMeans) {
+  const DeckSchema schema = deck_schema();
+  EXPECT_GT(schema.tables.size(), 15U);
+  EXPECT_EQ(schema.undocumented(), std::vector<std::string>{});
+}
+
+TEST(DeckReference, HasAKindOfStageThatSomeoneElseAdds) {
+  StageRegistry kinds;
+  kinds.add({"shake",
+             "drives the platen up and down",
+             {},
+             [](const Section& s, const StageTables&) -> std::unique_ptr<Stage> {
+               s.integer("turns", Range::at_least(1), "before the stage ends");
+               return std::make_unique<Settle>(Settle::Keys{});
+             }});
+  const DeckSchema schema = deck_schema(kinds);
+  EXPECT_EQ(schema.undocumented(), std::vector<std::string>{});
+  const std::string page = deck_reference(schema);
+  EXPECT_NE(page.find("### `kind = \"shake\"`\n\nDrives the platen up and down."), std::string::npos);
+  EXPECT_NE(page.find("| `turns` | whole number |"), std::string::npos);
+  EXPECT_EQ(deck_reference(deck_schema()).find("shake"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pyroclast
