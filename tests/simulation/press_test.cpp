@@ -78,7 +78,7 @@ Model<3> tower() {
   constexpr std::array<std::array<int, 3>, 4> kOutward{{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
   for (const auto& zone : lower.zones)
     for (const auto& [i, j, k] : kOutward) {
-      const std::array<int, 3> face{zone[i], zone[j], zone[k]};
+      const std::vector<int> face{zone[i], zone[j], zone[k]};
       if (std::ranges::any_of(face, [&](int g) { return lower.position[g][2] != 0.5; })) continue;
       model.join_faces(face, {gridpoints + face[0], gridpoints + face[1], gridpoints + face[2]}, 0);
     }

@@ -143,8 +143,8 @@ TEST(TemperatureField, WhatComesInIsStored) {
 
 TEST(TemperatureField, AnAdvanceInBatchesIsBitwiseTheSame) {
   const auto body = small_body(100);
-  HeatCase heat =
-      heat_case({on(OutlinePart::left, convection(25.0, fire_curves().at("iso834").curve)),
+  HeatConditions heat =
+      heat_conditions({on(OutlinePart::left, convection(25.0, fire_curves().at("iso834").curve)),
                  on(OutlinePart::right,  // jumps at the start
                     PrescribedTemperature{Curve::table({0.0, 600.0}, {60.0, 80.0}, time_axis())})});
   for (const auto scheme : {HeatScheme::euler, HeatScheme::super_time_stepping}) {

@@ -78,6 +78,7 @@ double seconds_of_run(const Forecast& forecast, double hottest, Simulation& simu
   if (forecast.heating_duration > 0.0) {
     TemperatureField& field = simulation.field();
     const HeatConditions& heat = simulation.heat();
+    field.begin_exposure(temperature_range(heat, forecast.heating_duration));
     const double evaluations = expected_evaluations(heat, field.conduction()->step_limit().step,
                                                     hottest - field.mean(), forecast.heating_duration);
     seconds += evaluations * seconds_per_evaluation(field, forecast.heating_duration, heat.largest_change);
