@@ -14,7 +14,7 @@ namespace {
 
 /// Others that come at all come within this time where the cores are free, and a thread that sleeps takes
 /// about as long to wake.
-constexpr std::chrono::microseconds kSpin{20};
+constexpr std::chrono::microseconds kSpin{100};
 /// Looks at the word between two looks at the clock.
 constexpr int kLooksPerClock = 16;
 
