@@ -12,6 +12,20 @@
 
 namespace pyroclast {
 
+namespace {
+
+/// Lines of a contact in the history or the losses; null where its row of faces has none.
+/// \param first  of each row of faces, its entry of `lines` or -1
+/// \param count  of lines of a point
+template <int Dim, class Lines, class First>
+auto lines_of(const Layout<Dim>& layout, Lines& lines, const First& first, int contact, int count)
+    -> decltype(&lines[0]) {
+  const int point = layout.contact_slot[contact] / kLanes, row = layout.face_row_of_point[point];
+  return first[row] < 0 ? nullptr : &lines[first[row] + (point - layout.first_point_of(row)) * count];
+}
+
+}  // namespace
+
 template <int Dim>
 BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
                             std::vector<ContactProperties> interfaces) {
@@ -435,14 +449,12 @@ void Mechanics<Dim>::apply_force(int gridpoint, const Vec<Dim>& force) {
 
 template <int Dim>
 void Mechanics<Dim>::break_contact(int contact) {
-  const int slot = layout_->contact_slot[contact], row = layout_->face_row_of_point[slot / kLanes];
-  if (storage_.first_history[row] < 0)
-    throw Error(fmt::format("contact {} is elastic: it cannot start as broken", contact));
+  const int lane = layout_->contact_slot[contact] % kLanes;
   Line* const line =
-      &storage_.history[storage_.first_history[row] +
-                        (slot / kLanes - layout_->first_point_of(row)) * HistoryLines<Dim>::count];
-  line[HistoryLines<Dim>::tension_damage].number[slot % kLanes] = 1.0;
-  line[HistoryLines<Dim>::shear_damage].number[slot % kLanes] = 1.0;
+      lines_of(*layout_, storage_.history, storage_.first_history, contact, HistoryLines<Dim>::count);
+  if (!line) throw Error(fmt::format("contact {} is elastic: it cannot start as broken", contact));
+  line[HistoryLines<Dim>::tension_damage].number[lane] = 1.0;
+  line[HistoryLines<Dim>::shear_damage].number[lane] = 1.0;
 }
 
 // Motion
@@ -554,13 +566,11 @@ double Mechanics<Dim>::opening(int contact) const {
 
 template <int Dim>
 ContactHistory<Dim> Mechanics<Dim>::contact_history(int contact) const {
-  const int slot = layout_->contact_slot[contact], row = layout_->face_row_of_point[slot / kLanes];
-  ContactHistory<Dim> h;
-  if (state_.first_history[row] < 0) return h;
   using H = HistoryLines<Dim>;
-  const Line* const line =
-      &state_.history[state_.first_history[row] + (slot / kLanes - layout_->first_point_of(row)) * H::count];
-  const int lane = slot % kLanes;
+  const int lane = layout_->contact_slot[contact] % kLanes;
+  ContactHistory<Dim> h;
+  const Line* const line = lines_of(*layout_, state_.history, state_.first_history, contact, H::count);
+  if (!line) return h;
   h.tension_damage = line[H::tension_damage].number[lane];
   h.shear_damage = line[H::shear_damage].number[lane];
   h.closure = line[H::closure].number[lane];
@@ -584,12 +594,10 @@ ContactState<Dim> Mechanics<Dim>::contact(int contact) const {
   state.normal_traction = response.normal_traction;
   state.shear_traction = response.shear_traction;
   state.stored = response.stored;
-  const int slot = layout_->contact_slot[contact], row = layout_->face_row_of_point[slot / kLanes];
-  if (state_.first_loss[row] < 0) return state;
   using L = LossLines;
-  const Line* const loss =
-      &state_.loss[state_.first_loss[row] + (slot / kLanes - layout_->first_point_of(row)) * L::count];
-  const int lane = slot % kLanes;
+  const int lane = layout_->contact_slot[contact] % kLanes;
+  const Line* const loss = lines_of(*layout_, state_.loss, state_.first_loss, contact, L::count);
+  if (!loss) return state;
   state.slip_path = loss[L::slip_path].number[lane];
   state.dissipated = {loss[L::tension].number[lane], loss[L::shear].number[lane],
                       loss[L::friction].number[lane], loss[L::compression].number[lane]};

@@ -27,8 +27,8 @@ void write_temperatures(Hdf5File& file, const TemperatureField& field) {
 
 void write_motion(Hdf5File& file, const Mechanics<2>& mechanics) {
   std::vector<float> displacement, stress;
-  displacement.reserve(3 * mechanics.displacements().size());
-  stress.reserve(3 * mechanics.stresses().size());
+  displacement.reserve(3 * mechanics.model().position.size());
+  stress.reserve(3 * mechanics.model().zones.size());
   for (const auto& u : mechanics.displacements()) append(displacement, u);
   for (const auto& s : mechanics.stresses())
     for (double component : s) stress.push_back(static_cast<float>(component));

@@ -32,6 +32,10 @@ Press<Dim>::Press(Mechanics<Dim>& mechanics, int axis, double height,
       height_(height),
       widths_(widths),
       across_(components_across<Dim>(axis)) {
+  for (const char* name : {"bottom_support", "top_support", "bottom_face", "top_face", "bottom", "top"})
+    summed_.emplace(name, mechanics_.set_of(set(name)));
+  for (int d = 0; d < Dim - 1; ++d)
+    for (const auto side : kSides[d]) summed_.emplace(side, mechanics_.set_of(set(side)));
   for (int g : set("bottom_support"))
     for (int i = 0; i < Dim; ++i) mechanics_.prescribe_velocity(g, i, 0.0);
   for (int g : set("top_support"))
@@ -83,14 +87,15 @@ double Press<Dim>::area() const {
 
 template <int Dim>
 double Press<Dim>::shortening(std::string_view top, std::string_view bottom) const {
-  return mean_displacement(mechanics_, set(bottom), axis_) - mean_displacement(mechanics_, set(top), axis_);
+  return mechanics_.mean_displacement(summed(bottom))[axis_] -
+         mechanics_.mean_displacement(summed(top))[axis_];
 }
 
 template <int Dim>
 double Press<Dim>::widening(int direction) const {
   const auto& [lower, upper] = kSides[direction];
-  return mean_displacement(mechanics_, set(upper), across_[direction]) -
-         mean_displacement(mechanics_, set(lower), across_[direction]);
+  return mechanics_.mean_displacement(summed(upper))[across_[direction]] -
+         mechanics_.mean_displacement(summed(lower))[across_[direction]];
 }
 
 template <int Dim>
@@ -125,13 +130,13 @@ double Press<Dim>::lateral_strain() const {
 
 template <int Dim>
 double Press<Dim>::stress_top() const {
-  const auto& support = set("top_support");
-  return (total_force(mechanics_, support, axis_) - total_applied_force(mechanics_, support, axis_)) / area();
+  const GridpointSet& support = summed("top_support");
+  return (mechanics_.total_force(support)[axis_] - mechanics_.total_applied_force(support)[axis_]) / area();
 }
 
 template <int Dim>
 double Press<Dim>::stress_bottom() const {
-  return -total_force(mechanics_, set("bottom_support"), axis_) / area();
+  return -mechanics_.total_force(summed("bottom_support"))[axis_] / area();
 }
 
 template <int Dim>
@@ -140,8 +145,8 @@ void Press<Dim>::strain_evenly(const EvenStrain& strain, double speed, bool plat
   const double bottom = model.position[set("bottom").front()][axis_];
   std::array<double, Dim - 1> middle{};
   for (int d = 0; d < Dim - 1; ++d)
-    middle[d] = 0.5 * (mean_position(mechanics_, set(kSides[d][0]), across_[d]) +
-                       mean_position(mechanics_, set(kSides[d][1]), across_[d]));
+    middle[d] = 0.5 * (mean_position(model, summed(kSides[d][0]), across_[d]) +
+                       mean_position(model, summed(kSides[d][1]), across_[d]));
   const double rate = speed / mechanics_.time_step();
   for (int g : set("specimen")) {
     const Vec<Dim>& x = model.position[g];

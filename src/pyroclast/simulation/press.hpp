@@ -1,6 +1,9 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -82,6 +85,7 @@ class Press {
 
  private:
   const std::vector<int>& set(std::string_view name) const { return mechanics_.model().set(name); }
+  const GridpointSet& summed(std::string_view name) const { return summed_.find(name)->second; }
   double shortening(std::string_view top, std::string_view bottom) const;
   double widening(int direction) const;
   double area() const;
@@ -90,7 +94,8 @@ class Press {
   int axis_;
   double height_;
   std::array<double, Dim - 1> widths_;
-  std::array<int, Dim - 1> across_;  ///< components across the axis
+  std::array<int, Dim - 1> across_;                          ///< components across the axis
+  std::map<std::string, GridpointSet, std::less<>> summed_;  ///< sets that are read, in the order of sums
 
   double stress_held_ = 0.0;                        ///< Pa
   double shortening_at_zero_ = 0.0;                 ///< of the distance of the platens, m
