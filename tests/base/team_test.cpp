@@ -40,10 +40,10 @@ TEST(Team, NobodyPassesABarrierBeforeAllAreThere) {
     team.run(threads, [&](int thread) {
       for (int round = 1; round <= 100; ++round) {
         place[static_cast<std::size_t>(thread)] = round;
-        team.barrier();
+        team.barrier(thread);
         for (const int other : place)
           if (other != round) ++wrong;
-        team.barrier();
+        team.barrier(thread);
       }
     });
     EXPECT_EQ(wrong, 0) << threads;
@@ -101,10 +101,32 @@ TEST(Team, WaitsWithoutBurningTheMachine) {
   nap();
   team.run(3, [&](int thread) {
     if (thread == 0) nap();
-    team.barrier();
+    team.barrier(thread);
   });
   const double burnt = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   EXPECT_LT(burnt, 0.04);
+}
+
+// A thread that naps within calls stands for one whose core is taken.
+TEST(Team, GivesWayWhileItsThreadsWaitForLongAndComesBack) {
+  const auto nap = [](int milliseconds) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+  };
+  const auto one_naps = [&](int thread) {
+    if (thread == 1) nap(25);
+  };
+  Team stays(2), gives_way(2, WhenCrowded::give_way);
+  for (Team* team : {&stays, &gives_way}) {
+    EXPECT_EQ(team->offered(), 2);
+    for (int i = 0; i < 2; ++i) team->run(2, one_naps);
+  }
+  EXPECT_EQ(stays.offered(), 2);
+  EXPECT_EQ(gives_way.offered(), 1);
+  int ranges = 0;
+  gives_way.share(1000, 0, [&](std::ptrdiff_t, std::ptrdiff_t) { ++ranges; });
+  EXPECT_EQ(ranges, 1);
+  while (gives_way.offered() == 1) nap(50);
+  EXPECT_EQ(gives_way.offered(), 2);
 }
 
 }  // namespace

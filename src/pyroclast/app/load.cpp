@@ -11,7 +11,8 @@ namespace {
 constexpr double kMilli = 1e3;
 
 std::shared_ptr<Team> make_team(int asked) {
-  return std::make_shared<Team>(asked > 0 ? asked : available_threads());
+  return asked > 0 ? std::make_shared<Team>(asked)
+                   : std::make_shared<Team>(available_threads(), WhenCrowded::give_way);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include <fmt/format.h>
 #include <sched.h>
@@ -12,11 +13,18 @@ namespace pyroclast {
 
 namespace {
 
-/// Others that come at all come within this time where the cores are free, and a thread that sleeps takes
-/// about as long to wake.
-constexpr std::chrono::microseconds kSpin{100};
+/// Others come within this time where the cores are free. Shorter, and a virtual machine that loses a core for a
+/// moment puts the other to sleep as well, at every barrier.
+constexpr std::chrono::microseconds kSpin{500};
 /// Looks at the word between two looks at the clock.
 constexpr int kLooksPerClock = 16;
+
+// When a team gives way. On free cores long waits take less than a twentieth of the threads' time in calls; beside
+// as many loops as cores, two fifths.
+constexpr double kMostKeptWaiting = 0.2;                       ///< share of the threads' time in calls
+constexpr std::chrono::milliseconds kWindow{20};          ///< of each thread's calls, between two judgements
+constexpr std::chrono::milliseconds kShortestPause{250};  ///< doubled each time that it was too short
+constexpr std::chrono::seconds kLongestPause{8};
 
 void relax() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -24,18 +32,20 @@ void relax() {
 #endif
 }
 
-/// Returns when the word is no longer `old`.
-void wait_while(const std::atomic<std::uint32_t>& word, std::uint32_t old) {
+/// Returns when the word is no longer `old`: how long that took, or 0 where it did not have to sleep.
+std::chrono::steady_clock::duration wait_while(const std::atomic<std::uint32_t>& word, std::uint32_t old) {
+  using Clock = std::chrono::steady_clock;
   const auto changed = [&] { return word.load(std::memory_order_acquire) != old; };
-  if (changed()) return;
-  const auto end = std::chrono::steady_clock::now() + kSpin;
+  if (changed()) return {};
+  const auto begin = Clock::now();
   do {
     for (int i = 0; i < kLooksPerClock; ++i) {
       relax();
-      if (changed()) return;
+      if (changed()) return {};
     }
-  } while (std::chrono::steady_clock::now() < end);
+  } while (Clock::now() - begin < kSpin);
   while (!changed()) word.wait(old, std::memory_order_acquire);
+  return Clock::now() - begin;
 }
 
 }  // namespace
@@ -47,7 +57,7 @@ int available_threads() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-Team::Team(int threads) {
+Team::Team(int threads, WhenCrowded when_crowded) : when_crowded_(when_crowded) {
   start(threads);
 }
 
@@ -58,8 +68,11 @@ Team::~Team() {
 void Team::start(int threads) {
   if (threads < 1)
     throw Error(fmt::format("the number of threads is {}, but it must be at least 1", threads));
-  size_ = threads;
+  size_ = offered_ = threads;
   thrown_.resize(static_cast<std::size_t>(threads));
+  waited_.assign(static_cast<std::size_t>(threads), {});
+  in_window_ = {};
+  pause_ = kShortestPause;
   const std::uint32_t seen = jobs_.load();
   for (int thread = 1; thread < threads; ++thread) others_.emplace_back([=, this] { work(thread, seen); });
 }
@@ -106,13 +119,15 @@ void Team::run_job(const Job& job, int threads) {
     job.call(job.function, 0);
     return;
   }
+  const auto begin = Clock::now();
   working_.store(static_cast<std::uint32_t>(size_ - 1), std::memory_order_relaxed);
   jobs_.fetch_add(1, std::memory_order_release);
   jobs_.notify_all();
   call(0);
   for (auto left = working_.load(std::memory_order_acquire); left != 0;
        left = working_.load(std::memory_order_acquire))
-    wait_while(working_, left);
+    waited_[0].time += wait_while(working_, left);
+  if (when_crowded_ == WhenCrowded::give_way) see_whether_crowded(Clock::now() - begin);
   in_run_ = 1;
   std::exception_ptr first;
   for (auto& thrown : thrown_) {
@@ -122,14 +137,35 @@ void Team::run_job(const Job& job, int threads) {
   if (first) std::rethrow_exception(first);
 }
 
-void Team::wait_for_others() {
+int Team::offered() {
+  if (offered_ < size_ && Clock::now() - lowered_at_ > pause_) offered_ = size_;
+  return offered_;
+}
+
+/// \param took  the time of the present call
+void Team::see_whether_crowded(Clock::duration took) {
+  in_window_ += in_run_ * took;
+  if (in_window_ < in_run_ * Clock::duration(kWindow)) return;
+  Clock::duration waited{};
+  for (auto& thread : waited_) waited += std::exchange(thread.time, {});
+  const bool is_crowded = waited > kMostKeptWaiting * std::exchange(in_window_, {});
+  if (is_crowded) {
+    if (offered_ == size_) pause_ = std::min<Clock::duration>(2 * pause_, kLongestPause);
+    offered_ = in_run_ / 2;
+    lowered_at_ = Clock::now();
+  } else if (offered_ == size_) {
+    pause_ = kShortestPause;
+  }
+}
+
+void Team::wait_for_others(int thread) {
   const auto passed = passed_.load(std::memory_order_acquire);
   if (waiting_.fetch_add(1, std::memory_order_acq_rel) + 1 == static_cast<std::uint32_t>(in_run_)) {
     waiting_.store(0, std::memory_order_relaxed);
     passed_.fetch_add(1, std::memory_order_release);
     passed_.notify_all();
   } else {
-    wait_while(passed_, passed);
+    waited_[static_cast<std::size_t>(thread)].time += wait_while(passed_, passed);
   }
 }
 

@@ -471,7 +471,7 @@ void Mechanics<Dim>::advance(int steps) {
 
 template <int Dim>
 void Mechanics<Dim>::sweep(int steps, Pass pass) {
-  const int threads = std::clamp(model_.zone_count() / parameters_.zones_for_a_thread, 1, team_->size());
+  const int threads = std::clamp(model_.zone_count() / parameters_.zones_for_a_thread, 1, team_->offered());
   if (static_cast<int>(workers_.size()) != threads) {
     workers_.clear();
     for (Share& share : share_out(*layout_, threads)) workers_.push_back({std::move(share), make_scratch()});
@@ -482,12 +482,12 @@ void Mechanics<Dim>::sweep(int steps, Pass pass) {
     State<Dim> s = state_;
     for (int i = 0; i < steps; ++i) {
       for (const auto& faces : worker.share.crossing) step_.update_faces(s, faces.first, faces.last, measure);
-      team_->barrier();
+      team_->barrier(thread);
       for (const auto& stride : worker.share.strides) {
         step_.update_faces(s, stride.faces.first, stride.faces.last, measure);
         step_.move_bundles(s, stride.bundles.first, stride.bundles.last, pass, worker.scratch.data());
       }
-      team_->barrier();
+      team_->barrier(thread);
     }
   });
 }
