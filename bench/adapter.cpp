@@ -8,8 +8,8 @@ double damaged_share(const pyroclast::Mechanics<2>& body) {
   const int contacts = body.model().contact_count();
   int damaged = 0;
   for (int c = 0; c < contacts; ++c) {
-    const auto history = body.contact_history(c);
-    damaged += history.tension_damage > 0.0 || history.shear_damage > 0.0;
+    damaged += body.remembered(c, pyroclast::Remembers::tension_damage) > 0.0 ||
+               body.remembered(c, pyroclast::Remembers::shear_damage) > 0.0;
   }
   return static_cast<double>(damaged) / contacts;
 }

@@ -69,8 +69,6 @@ void start_compression(Body& body, const Specimen& specimen, double rate) {
 template <class Body>
 std::unique_ptr<Body> loaded(std::unique_ptr<Body> body, const Specimen& specimen, Loading loading,
                              double velocity) {
-  for (int c = 0; c < specimen.model.contact_count(); ++c)
-    if (specimen.model.contacts[c].interface == pyroclast::platen_interface) body->break_contact(c);
   const bool cracked = loading == Loading::cracked;
   const int steps = cracked ? kCrackedSteps : kIntactSteps;
   const double strain = cracked ? kCrackedStrain : kIntactStrain;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pyroclast/laws/registry.hpp"
 #include "pyroclast/mechanics/step/step.hpp"
 
 namespace bench {
@@ -19,10 +20,16 @@ using CountingStep = pyroclast::Step<2, Counting>;
 
 Operations counted;
 
+template <class Law>
 void update_faces(State<2>& s, int first, int last, bool measure) {
   const auto before = Counted::operations;
-  CountingStep::update_faces(s, first, last, measure);
+  pyroclast::Contacts<2, Counting, Law>::update(s, first, last, measure);
   if (!measure) counted.faces += Counted::operations - before;
+}
+
+template <class... Laws>
+std::array<pyroclast::RowFunctions<2>, sizeof...(Laws)> laws(pyroclast::LawList<Laws...>) {
+  return {{{update_faces<Laws>, pyroclast::Contacts<2, Counting, Laws>::place_stiffness}...}};
 }
 
 void move_bundles(State<2>& s, int first, int last, Pass pass, double* scratch) {
@@ -34,7 +41,8 @@ void move_bundles(State<2>& s, int first, int last, Pass pass, double* scratch) 
 /// Shares of the arrays that a step touches, as far as they hang on the body.
 class Shares {
  public:
-  explicit Shares(const State<2>& s) : combined_(s.damping_form == pyroclast::DampingForm::combined) {
+  explicit Shares(const State<2>& s)
+      : held_(held_share(s)), combined_(s.damping_form == pyroclast::DampingForm::combined) {
     int spread_rows = 0;
     for (const Bundle& bundle : s.layout.bundles)
       if (bundle.kind == BundleKind::spread) spread_rows += bundle.rows;
@@ -54,7 +62,7 @@ class Shares {
       case Touched::gathered:
         return gathered_;
       case Touched::held:
-        return 1.0 / pyroclast::HistoryLines<2>::count;
+        return held_;
       case Touched::combined:
         return combined_ ? 1.0 : 0.0;
     }
@@ -62,14 +70,25 @@ class Shares {
   }
 
  private:
-  double alike_, gathered_;
+  /// Share of the history that is always written.
+  static double held_share(const State<2>& s) {
+    double all = 0.0, always = 0.0;
+    for (int row = 0; row < static_cast<int>(s.layout.faces.size()); ++row)
+      for (const auto& info : pyroclast::laws()[s.law_of_faces[row]]->history(2)) {
+        all += 1.0;
+        always += info.when == 0;
+      }
+    return all > 0.0 ? always / all : 0.0;
+  }
+
+  double held_, alike_, gathered_;
   bool combined_;
 };
 
 }  // namespace
 
 pyroclast::StepFunctions<2> counting_step() {
-  return {update_faces, move_bundles, CountingStep::sum_stiffness};
+  return {laws(pyroclast::BuiltInLaws()), move_bundles, CountingStep::sum_stiffness};
 }
 
 Operations operations() {

@@ -28,7 +28,12 @@ int bundles(const State<2>& s) {
 }
 
 void contacts(State<2>& s, double*) {
-  NativeStep::faces<kSmall, false>(s, 0, static_cast<int>(s.layout.faces.size()));
+  static constexpr auto kLaws = NativeStep::laws(pyroclast::BuiltInLaws());
+  const auto* const laws = std::exchange(s.laws, kLaws.data());
+  pyroclast::for_each_law(
+      s, 0, static_cast<int>(s.layout.faces.size()),
+      [&](const pyroclast::RowFunctions<2>& law, int first, int last) { law.update(s, first, last, false); });
+  s.laws = laws;
 }
 
 [[gnu::flatten]] void gather(State<2>& s, double* memory) {

@@ -9,10 +9,38 @@
 
 namespace textbook {
 
-using pyroclast::ContactBehaviour;
+namespace {
+
+constexpr double kNeverReached = 1e300;  // Pa
+
+/// Every law that the textbook knows, as the paper's.
+pyroclast::Cohesive::Properties<double> as_cohesive(const pyroclast::ContactProperties& properties) {
+  if (properties.law == &pyroclast::table_of<pyroclast::Cohesive>())
+    return properties.as<pyroclast::Cohesive>();
+  pyroclast::Cohesive::Properties<double> p;
+  p.compressive_limit = kNeverReached;
+  p.hardening = 0.5;
+  if (properties.law == &pyroclast::table_of<pyroclast::Elastic>()) {
+    const auto elastic = properties.as<pyroclast::Elastic>();
+    p.normal_stiffness = elastic.normal_stiffness;
+    p.shear_stiffness = elastic.shear_stiffness;
+  } else {
+    const auto frictional = properties.as<pyroclast::Frictional>();
+    p.normal_stiffness = frictional.normal_stiffness;
+    p.shear_stiffness = frictional.shear_stiffness;
+    p.friction_angle = p.residual_friction_angle = std::atan(frictional.friction);
+  }
+  return p;
+}
+
+}  // namespace
 
 Law::Law(const pyroclast::ContactProperties& properties)
-    : p(properties),
+    : p(as_cohesive(properties)),
+      fails(properties.law != &pyroclast::table_of<pyroclast::Elastic>()),
+      held(properties.law != &pyroclast::table_of<pyroclast::Frictional>()),
+      friction(std::tan(p.friction_angle)),
+      residual_friction(std::tan(p.residual_friction_angle)),
       elastic_opening(p.tensile_strength / p.normal_stiffness),
       ultimate_opening(p.tensile_strength > 0.0 ? 2.0 * p.mode_1_energy / p.tensile_strength : 0.0),
       yield_slope(p.hardening * p.normal_stiffness / (1.0 - p.hardening)) {}
@@ -53,7 +81,7 @@ void Body::make_zones(const pyroclast::Model<2>& model, const pyroclast::BodyPro
 }
 
 void Body::make_contacts(const pyroclast::Model<2>& model, const pyroclast::BodyProperties& properties) {
-  for (const auto& p : properties.contacts) laws_.emplace_back(p);
+  for (int set = 0; set < properties.contacts.size(); ++set) laws_.emplace_back(properties.contacts[set]);
   for (std::size_t i = 0; i < model.contacts.size(); ++i) {
     const auto& c = model.contacts[i];
     contacts_.push_back({.a = c.a,
@@ -176,12 +204,12 @@ namespace {
 void update_normal(const Law& law, double opening, ContactPoint& c) {
   const auto& p = law.p;
   const double k = p.normal_stiffness;
-  if (p.behaviour == ContactBehaviour::elastic) {
+  if (!law.fails) {
     c.normal_traction = k * opening;
     return;
   }
   if (opening + c.closure <= 0.0) {
-    if (p.compression == pyroclast::CompressionReading::reversible) {
+    if (p.compression == pyroclast::Cohesive::Compression::reversible) {
       const double limit = p.compressive_limit / k;
       c.normal_traction =
           -opening > limit ? -p.compressive_limit + p.hardening * k * (opening + limit) : k * opening;
@@ -194,7 +222,7 @@ void update_normal(const Law& law, double opening, ContactPoint& c) {
     return;
   }
   const double stretch = opening + c.closure;
-  if (c.tension_damage < 1.0) {
+  if (law.held && c.tension_damage < 1.0) {
     const double softening = law.ultimate_opening - law.elastic_opening;
     c.tension_damage = std::min(1.0, std::max(c.tension_damage, (stretch - law.elastic_opening) / softening));
     const double furthest = law.elastic_opening + c.tension_damage * softening;
@@ -211,15 +239,15 @@ void update_shear(const Law& law, double opening, double tangential_jump, Contac
   const double trial = c.shear_traction + k * (tangential_jump - c.tangential_jump);
   c.tangential_jump = tangential_jump;
   c.shear_traction = trial;
-  if (p.behaviour == ContactBehaviour::elastic) return;
-  if (c.tension_damage >= 1.0 && opening + c.closure > 0.0) {
+  if (!law.fails) return;
+  if ((!law.held || c.tension_damage >= 1.0) && opening + c.closure > 0.0) {
     c.shear_traction = 0.0;
     return;
   }
   const double cohesion = p.coupled ? (1.0 - c.tension_damage) * p.cohesion : p.cohesion;
-  const double peak = std::max(0.0, cohesion - c.normal_traction * p.friction);
-  const double residual = std::min(
-      peak, std::max(0.0, std::min(p.residual_cohesion, cohesion) - c.normal_traction * p.residual_friction));
+  const double peak = std::max(0.0, cohesion - c.normal_traction * law.friction);
+  const double residual = std::min(peak, std::max(0.0, std::min(p.residual_cohesion, cohesion) -
+                                                           c.normal_traction * law.residual_friction));
   const double drop = peak - residual;
   const double excess = std::abs(trial) - (peak - c.shear_damage * drop);
   if (excess <= 0.0) return;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "pyroclast/laws/built_in.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
 
 /// The step of Mechanics<2> as one writes it straight from the paper's equations: arrays of structures, one
@@ -37,7 +38,10 @@ struct Zone {
 struct Law {
   explicit Law(const pyroclast::ContactProperties& properties);
 
-  pyroclast::ContactProperties p;
+  pyroclast::Cohesive::Properties<double> p;
+  bool fails = true;  ///< else elastic in every direction
+  bool held = true;   ///< else neither tension nor cohesion ever held it
+  double friction, residual_friction;
   double elastic_opening;   ///< u_e = f_t / K_n
   double ultimate_opening;  ///< u_f = 2 G_f1 / f_t
   double yield_slope;       ///< of the compressive limit over the closure, beta K_n / (1 - beta)

@@ -10,6 +10,7 @@ SOURCE = pathlib.Path(__file__).parents[2] / "src" / "pyroclast"
 # A module is a folder of src/pyroclast. It may include itself and the modules above it in this list.
 MODULES = [
     "base",
+    "laws",
     "units",
     "deck",
     "specimen",

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "pyroclast/material/contact_law.hpp"
+#include "pyroclast/laws/built_in.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 #include "table_2.hpp"
@@ -13,10 +13,9 @@
 /// Small bodies that the mechanics tests share.
 namespace pyroclast::bodies {
 
-inline ContactProperties elastic_contact() {
-  ContactProperties p = mortar_contact();
-  p.behaviour = ContactBehaviour::elastic;
-  return p;
+inline Elastic::Properties<double> elastic_contact() {
+  const auto mortar = mortar_contact();
+  return {mortar.normal_stiffness, mortar.shear_stiffness};
 }
 
 inline Vec<2> turned(const Vec<2>& x, double angle) {

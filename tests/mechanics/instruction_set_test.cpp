@@ -20,9 +20,8 @@ auto outcome(const Mechanics<Dim>& m) {
   std::vector<double> numbers;
   for (int c = 0; c < m.model().contact_count(); ++c) {
     const auto state = m.contact(c);
-    numbers.insert(numbers.end(), {state.history.tension_damage, state.history.shear_damage,
-                                   state.history.closure, state.slip_path, state.dissipated.total()});
-    for (double s : state.history.slip.c) numbers.push_back(s);
+    numbers.insert(numbers.end(), state.history.begin(), state.history.end());
+    numbers.insert(numbers.end(), state.losses.begin(), state.losses.end());
   }
   const EnergyLedger e = m.energy();
   for (double part :
@@ -35,8 +34,8 @@ auto outcome(const Mechanics<Dim>& m) {
 double damaged_share(const Mechanics<2>& m) {
   int damaged = 0;
   for (int c = 0; c < m.model().contact_count(); ++c) {
-    const auto h = m.contact_history(c);
-    damaged += h.tension_damage > 0.0 || h.shear_damage > 0.0;
+    damaged +=
+        m.remembered(c, Remembers::tension_damage) > 0.0 || m.remembered(c, Remembers::shear_damage) > 0.0;
   }
   return static_cast<double>(damaged) / m.model().contact_count();
 }
@@ -53,10 +52,10 @@ Mechanics<2> cracked(const Model<2>& model, MechanicsParameters<2> parameters, I
     for (int z = 0; z < model.zone_count(); ++z)
       p.zones.push_back(zone_properties<2>((20.0 + 0.001 * z) * 1e9, 0.2, 1e-6 * z));
     for (int c = 0; c < model.contact_count(); ++c) {
-      ContactProperties weaker = mortar_contact();
+      auto weaker = mortar_contact();
       weaker.tensile_strength *= 1.0 - 1e-4 * c;
       weaker.cohesion *= 1.0 - 1e-4 * c;
-      p.contacts.push_back(weaker);
+      p.contacts.add(weaker);
       p.of_contact.push_back(c);
     }
     m.set_properties(p);
@@ -132,10 +131,7 @@ TEST(AnyLayout, GivesTheSameBits) {
       EXPECT_TRUE(m.velocities() == expected.velocities()) << what;
       EXPECT_TRUE(m.forces() == expected.forces()) << what;
       for (int c = 0; c < model.contact_count(); ++c) {
-        const auto a = m.contact_history(c), b = expected.contact_history(c);
-        ASSERT_TRUE(a.tension_damage == b.tension_damage && a.shear_damage == b.shear_damage &&
-                    a.closure == b.closure && a.slip == b.slip && a.held_jump == b.held_jump)
-            << what << ", contact " << c;
+        ASSERT_TRUE(m.contact(c).history == expected.contact(c).history) << what << ", contact " << c;
       }
       const EnergyLedger a = m.energy(), b = expected.energy();
       EXPECT_NEAR(a.loading, b.loading, 1e-12 * b.turnover()) << what;

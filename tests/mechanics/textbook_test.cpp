@@ -32,10 +32,6 @@ class Pair {
     mechanics_.prescribe_velocity(gridpoint, component, velocity);
     textbook_.prescribe_velocity(gridpoint, component, velocity);
   }
-  void break_contact(int contact) {
-    mechanics_.break_contact(contact);
-    textbook_.break_contact(contact);
-  }
   void advance(int steps) {
     mechanics_.advance(steps);
     textbook_.advance(steps);
@@ -98,10 +94,10 @@ Difference of_tractions(const Pair& pair) {
 double of_damages(const Pair& pair) {
   double largest = 0.0;
   for (int c = 0; c < pair.mechanics().model().contact_count(); ++c) {
-    const auto ours = pair.mechanics().contact_history(c);
     const auto& theirs = pair.textbook().contacts()[c];
-    largest = std::max({largest, std::abs(ours.tension_damage - theirs.tension_damage),
-                        std::abs(ours.shear_damage - theirs.shear_damage)});
+    largest = std::max(
+        {largest, std::abs(pair.mechanics().remembered(c, Remembers::tension_damage) - theirs.tension_damage),
+         std::abs(pair.mechanics().remembered(c, Remembers::shear_damage) - theirs.shear_damage)});
   }
   return largest;
 }
@@ -109,10 +105,8 @@ double of_damages(const Pair& pair) {
 /// Sum of all damages of a body, tension and shear.
 double total_damage(const Mechanics<2>& m) {
   double sum = 0.0;
-  for (int c = 0; c < m.model().contact_count(); ++c) {
-    const auto history = m.contact_history(c);
-    sum += history.tension_damage + history.shear_damage;
-  }
+  for (int c = 0; c < m.model().contact_count(); ++c)
+    sum += m.remembered(c, Remembers::tension_damage) + m.remembered(c, Remembers::shear_damage);
   return sum;
 }
 
@@ -133,14 +127,14 @@ void PrintTo(const NamedContact& c, std::ostream* stream) {
 
 std::vector<NamedContact> contacts() {
   std::vector<NamedContact> all{{"Mortar", mortar_contact()}, {"Elastic", elastic_contact()}};
-  ContactProperties p = mortar_contact();
-  p.compression = CompressionReading::reversible;
+  auto p = mortar_contact();
+  p.compression = Cohesive::Compression::reversible;
   all.push_back({"Reversible", p});
   p = mortar_contact();
   p.coupled = true;
   all.push_back({"Coupled", p});
   p = mortar_contact();
-  p.residual_friction = 0.5 * p.friction;
+  p.residual_friction_angle = std::atan(0.5 * std::tan(p.friction_angle));
   all.push_back({"FrictionThatDrops", p});
   return all;
 }
@@ -183,7 +177,7 @@ TEST_P(LawBesideTextbook, SameTractionsAndDamagesOnARandomWay) {
     EXPECT_LT(of_damages(pair), 2000 * 1e-16);
     most_damage = std::max(most_damage, total_damage(pair.textbook()));
   }
-  if (GetParam().contact.behaviour == ContactBehaviour::cohesive) {
+  if (GetParam().contact.law == &table_of<Cohesive>()) {
     EXPECT_GT(most_damage, 3.0);  // of 4: two contact points, tension and shear
   }
 }
@@ -319,26 +313,17 @@ struct Compression {
                                                zone_properties<2>(200e9, 0.3)};
     std::vector<ZoneProperties> zones;
     for (int block : zone_blocks(model)) zones.push_back(solids[model.block_material[block]]);
-    ContactProperties weaker = mortar_contact(), platen = mortar_contact();
-    for (double ContactProperties::*of :
-         {&ContactProperties::normal_stiffness, &ContactProperties::shear_stiffness,
-          &ContactProperties::tensile_strength, &ContactProperties::cohesion,
-          &ContactProperties::residual_cohesion, &ContactProperties::compressive_limit})
-      weaker.*of *= 0.8;
-    for (double ContactProperties::*of :
-         {&ContactProperties::tensile_strength, &ContactProperties::mode_1_energy,
-          &ContactProperties::cohesion, &ContactProperties::residual_cohesion,
-          &ContactProperties::mode_2_energy, &ContactProperties::friction,
-          &ContactProperties::residual_friction})
-      platen.*of = 0.0;
-    platen.compressive_limit = 1e300;
+    auto weaker = mortar_contact();
+    for (double* of : {&weaker.normal_stiffness, &weaker.shear_stiffness, &weaker.tensile_strength,
+                       &weaker.cohesion, &weaker.residual_cohesion, &weaker.compressive_limit})
+      *of *= 0.8;
+    const Frictional::Properties<double> platen{mortar_contact().normal_stiffness,
+                                                mortar_contact().shear_stiffness, 0.0};
     auto parameters = quasi_static<2>();
     parameters.damping_form = DampingForm::combined;
     parameters.gravity = {{0.0, -9.81}};
     Pair p(model, {2650.0, 2200.0, 7850.0},
            by_interface(model, zones, {elastic_contact(), weaker, mortar_contact(), platen}), parameters);
-    for (int c = 0; c < model.contact_count(); ++c)
-      if (model.contacts[c].interface == platen_interface) p.break_contact(c);
     for (int g : model.set("bottom_support"))
       for (int i : {0, 1}) p.prescribe_velocity(g, i, 0.0);
     for (int g : model.set("top_support")) {

@@ -139,7 +139,7 @@ TEST(ReadContacts, TemperatureRatioScalesWhatIsAConstant) {
   Properties p;
   p.contact += "temperature_ratio = { builtin = \"en1992_siliceous_strength\" }\n";
   const ContactMaterial c = read_good(p).contacts.mortar;
-  const ContactProperties cold = c.at(20.0), hot = c.at(600.0);  // K_n, K_s are not set yet
+  const auto cold = c.at(20.0).as<Cohesive>(), hot = c.at(600.0).as<Cohesive>();  // K_n, K_s are not set yet
   EXPECT_DOUBLE_EQ(hot.tensile_strength, 0.45 * 2.5e6);
   EXPECT_DOUBLE_EQ(hot.compressive_limit, 0.45 * 31e6);
   EXPECT_DOUBLE_EQ(hot.cohesion, 0.45 * 3.8e6);
@@ -156,8 +156,8 @@ TEST(ReadContacts, APropertyWithACurveOfItsOwnDoesNotFollowTheTemperatureRatio) 
       "G_f1 = { value = \"60 N/m\", times = { table = [[\"20 degC\", 1], [\"800 degC\", 0.5]] } }\n"
       "temperature_ratio = { builtin = \"en1992_siliceous_strength\" }\n";
   const ContactMaterial c = read_good(p).contacts.mortar;
-  EXPECT_DOUBLE_EQ(c.mode_1_energy(800.0), 30.0);
-  EXPECT_DOUBLE_EQ(c.tensile_strength(800.0), 0.15 * 2.5e6);
+  EXPECT_DOUBLE_EQ(c["G_f1"](800.0), 30.0);
+  EXPECT_DOUBLE_EQ(c["f_t"](800.0), 0.15 * 2.5e6);
 }
 
 TEST(ReadContacts, StatedStiffnessesFollowTheMortarsModulus) {
@@ -166,8 +166,8 @@ TEST(ReadContacts, StatedStiffnessesFollowTheMortarsModulus) {
   p.mortar = "E = { value = \"29.4 GPa\", times = \"glasgow_modulus\" }\n";
   const Materials m = read_good(p);
   const auto concrete = make_concrete(m.solids, m.contacts, 3e-3);
-  EXPECT_DOUBLE_EQ(concrete.contacts[mortar_mortar].normal_stiffness(520.0), 0.25 * 18400e9);
-  EXPECT_DOUBLE_EQ(concrete.contacts[mortar_mortar].shear_stiffness(520.0), 0.25 * 7660e9);
+  EXPECT_DOUBLE_EQ(concrete.contacts[mortar_mortar]["K_n"](520.0), 0.25 * 18400e9);
+  EXPECT_DOUBLE_EQ(concrete.contacts[mortar_mortar]["K_s"](520.0), 0.25 * 7660e9);
 }
 
 TEST(ReadContacts, RefusesARatioThatIsNotOneAtTheReferenceTemperature) {

@@ -26,7 +26,7 @@ TEST(PaperCase, HoldsTablesOneAndTwoAsPrinted) {
   EXPECT_EQ(c.specimen.blocks.relaxation, 0);
   EXPECT_EQ(c.motion->mechanics.local_damping, 0.8);
   const auto concrete = make_concrete(c.solids, c.motion->contacts, 3e-3);
-  const auto mm = concrete.contacts[mortar_mortar].at(20.0);
+  const auto mm = concrete.contacts[mortar_mortar].at(20.0).as<Cohesive>();
   EXPECT_DOUBLE_EQ(mm.normal_stiffness, 18400e9);
   EXPECT_DOUBLE_EQ(mm.shear_stiffness, 7660e9);
   EXPECT_DOUBLE_EQ(mm.tensile_strength, 2.5e6);
@@ -35,15 +35,15 @@ TEST(PaperCase, HoldsTablesOneAndTwoAsPrinted) {
   EXPECT_DOUBLE_EQ(mm.hardening, 0.05);
   EXPECT_DOUBLE_EQ(mm.cohesion, 3.8e6);
   EXPECT_DOUBLE_EQ(mm.residual_cohesion, 0.01 * 3.8e6);
-  EXPECT_NEAR(std::atan(mm.friction) * 180.0 / 3.14159265358979, 34.0, 1e-9);
+  EXPECT_NEAR(mm.friction_angle * 180.0 / 3.14159265358979, 34.0, 1e-9);
   EXPECT_DOUBLE_EQ(mm.mode_2_energy, 240.0);
 }
 
 TEST(PaperCase, InterfaceHasEightTenthsOfStiffnessAndStrengthAndTheSameFractureEnergies) {
   const pyroclast::Setup c = read(paper_deck());
   const auto concrete = make_concrete(c.solids, c.motion->contacts, 3e-3);
-  const auto mm = concrete.contacts[mortar_mortar].at(20.0);
-  const auto am = concrete.contacts[aggregate_mortar].at(20.0);
+  const auto mm = concrete.contacts[mortar_mortar].at(20.0).as<Cohesive>();
+  const auto am = concrete.contacts[aggregate_mortar].at(20.0).as<Cohesive>();
   EXPECT_DOUBLE_EQ(am.normal_stiffness, 0.8 * mm.normal_stiffness);
   EXPECT_DOUBLE_EQ(am.tensile_strength, 0.8 * mm.tensile_strength);
   EXPECT_DOUBLE_EQ(am.cohesion, 0.8 * mm.cohesion);
@@ -60,9 +60,10 @@ TEST(PaperCase, FractureZoneScalesWithTheBlockSizeUnlessFixed) {
       read(with(with(deck, "t_b_scaling = \"block size\"", "t_b_scaling = \"fixed\""),
                 "t_b_block_size = \"3 mm\"", ""));
   EXPECT_DOUBLE_EQ(make_concrete(fixed.solids, fixed.motion->contacts, 6e-3).fracture_zone, 1.6e-3);
-  const auto aa =
-      make_concrete(fixed.solids, fixed.motion->contacts, 6e-3).contacts[aggregate_aggregate].at(20.0);
-  EXPECT_EQ(aa.behaviour, ContactBehaviour::elastic);
+  const auto aa = make_concrete(fixed.solids, fixed.motion->contacts, 6e-3)
+                      .contacts[aggregate_aggregate]
+                      .at(20.0)
+                      .as<Elastic>();
   EXPECT_DOUBLE_EQ(aa.normal_stiffness, 70e9 / 1.6e-3);  // Eq. (17)
   EXPECT_DOUBLE_EQ(aa.shear_stiffness, 70e9 / (2.0 * 1.2) / 1.6e-3);
 }

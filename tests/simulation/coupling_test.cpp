@@ -19,16 +19,19 @@ TEST(PropertiesOfAComputedField, AreRefusedWhereTheyMakeNoLaw) {
   field.advance(100.0, 600.0);
   ConcreteMaterials materials;
   for (auto& solid : materials.solids) solid.young = Curve::constant(30e9);
-  for (auto& contact : materials.contacts) {
-    contact.normal_stiffness = contact.shear_stiffness = Curve::constant(1e13);
-    contact.tensile_strength = Curve::constant(2e6);
-    contact.mode_1_energy = contact.mode_2_energy = Curve::constant(100.0);
-    contact.compressive_limit = Curve::constant(30e6);
-    contact.hardening = 0.05;
-  }
+  for (auto& contact : materials.contacts)
+    for (const auto& [key, value] : {std::pair{"K_n", 1e13},
+                                     {"K_s", 1e13},
+                                     {"f_t", 2e6},
+                                     {"G_f1", 100.0},
+                                     {"G_f2", 100.0},
+                                     {"f_cm", 30e6},
+                                     {"beta", 0.05},
+                                     {"c_o", 3e6}})
+      contact[key] = Curve::constant(value);
   EXPECT_NO_THROW(properties_at(body, materials, field));
   // without fracture energy from 50 to 60 degC
-  materials.contacts[mortar_mortar].mode_1_energy = Curve::table(
+  materials.contacts[mortar_mortar]["G_f1"] = Curve::table(
       {0.0, 49.0, 50.0, 60.0, 61.0, 1000.0}, {100.0, 100.0, 0.0, 0.0, 100.0, 100.0}, temperature_axis());
   try {
     properties_at(body, materials, field);

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -102,49 +104,76 @@ InterfaceIndex interface_index(const std::string& name) {
 /// One contact point on its way along a path, with its energies added up.
 class Drive {
  public:
-  Drive(const ContactMaterial& material)
-      : material_(material), properties_(material.at(kReferenceTemperature)) {}
+  explicit Drive(const ContactMaterial& material)
+      : material_(material),
+        law_(*material.law),
+        history_(law_.history(2).size()),
+        losses_(law_.losses.size()) {
+    warm_to(kReferenceTemperature);
+  }
 
   void go(const PathPoint& to) {
     if (to.temperature != at_.temperature) {
-      properties_ = material_.at(to.temperature);
-      const double before = response_.stored;
+      warm_to(to.temperature);
+      const double before = response_.stored + dissipated();
       update(at_);
-      heat_ += response_.stored + response_.dissipated.total() - before;
+      property_change_ += response_.stored + dissipated() - before;
     }
     update(to);
     at_ = to;
   }
 
-  std::string row() const {
-    return fmt::format(
-        "{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},"
-        "{:.12g},{:.12g},{:.12g}\n",
-        at_.opening, at_.slip, at_.temperature, response_.normal_traction, response_.shear_traction[0],
-        history_.tension_damage, history_.shear_damage, history_.closure, accumulated_slip_, response_.stored,
-        total_.tension, total_.shear, total_.friction, total_.compression, heat_);
+  std::string header() const {
+    std::string names = "u_n_m,u_s_m,T_degC,sigma_Pa,tau_Pa,stored_J_m2,property_change_J_m2";
+    const auto add = [&](const char* prefix, const char* name, const Unit& unit) {
+      names += fmt::format(",{}{}", prefix, name);
+      if (unit.si != unit::dimensionless.si) names += fmt::format("_{}", spelt(unit));
+    };
+    for (const HistoryInfo& info : law_.history(2)) add("", info.name, info.unit);
+    for (const LossInfo& info : law_.losses) add(is_energy(info) ? "dissipated_" : "", info.name, info.unit);
+    return names + "\n";
   }
 
-  static constexpr const char* kHeader =
-      "u_n_m,u_s_m,T_degC,sigma_Pa,tau_Pa,D_t,D_s,u_p_m,s_m,stored_J_m2,"
-      "dissipated_tension_J_m2,dissipated_shear_J_m2,dissipated_friction_J_m2,dissipated_compression_J_m2,"
-      "heat_induced_J_m2\n";
+  std::string row() const {
+    std::string cells = fmt::format("{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g}", at_.opening,
+                                    at_.slip, at_.temperature, response_.normal_traction,
+                                    response_.shear_traction[0], response_.stored, property_change_);
+    for (double value : history_) cells += fmt::format(",{:.12g}", value);
+    for (double value : losses_) cells += fmt::format(",{:.12g}", value);
+    return cells + "\n";
+  }
 
  private:
+  static bool is_energy(const LossInfo& info) {
+    return info.unit.si == std::string_view(unit::fracture_energy.si);
+  }
+  static std::string spelt(const Unit& unit) {
+    std::string name = unit.si;
+    std::ranges::replace(name, '/', '_');
+    return name;
+  }
+
+  void warm_to(double temperature) { constants_ = material_.at(temperature).constants(); }
+
   void update(const PathPoint& point) {
-    response_ = update_contact<2>(properties_, point.opening, {{point.slip}}, history_);
-    total_ += response_.dissipated;
-    accumulated_slip_ += response_.slip_path;
+    const std::array jump{point.opening, point.slip};
+    response_ = law_.update(2)(constants_.data(), jump.data(), history_.data(), losses_.data());
+  }
+
+  double dissipated() const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < losses_.size(); ++i)
+      if (is_energy(law_.losses[i])) sum += losses_[i];
+    return sum;
   }
 
   const ContactMaterial& material_;
-  ContactProperties properties_;
-  ContactHistory<2> history_;
-  ContactResponseAndLosses<2> response_;
-  ContactDissipation total_;
+  const LawTable& law_;
+  std::vector<std::byte> constants_;
+  std::vector<double> history_, losses_;
+  PointResponse response_;
   PathPoint at_;
-  double heat_ = 0.0;
-  double accumulated_slip_ = 0.0;
+  double property_change_ = 0.0;
 };
 
 }  // namespace
@@ -159,7 +188,7 @@ int law(const LawOptions& options) {
   const auto concrete = make_concrete(setup.solids, contacts, expected_block_size(setup.specimen, contacts));
   Drive drive(concrete.contacts[interface_index(options.interface)]);
 
-  std::string csv = Drive::kHeader;
+  std::string csv = drive.header();
   PathPoint from;
   for (const PathPoint& to : read_path(options.path)) {
     for (int i = 1; i <= options.steps; ++i) {

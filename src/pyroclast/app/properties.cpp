@@ -35,17 +35,11 @@ void add_solid(const SolidMaterial& solid, const std::string& name, bool moves,
 }
 
 void add_contact(const ContactMaterial& contact, const std::string& name, std::vector<ReadCurve>& list) {
-  const auto add = [&](const char* key, const Unit& unit, const Curve& curve) {
-    list.push_back({fmt::format("contacts.{}.{}", name, key), unit.si, curve});
-  };
-  add("K_n", unit::stiffness_per_area, contact.normal_stiffness);
-  add("K_s", unit::stiffness_per_area, contact.shear_stiffness);
-  add("f_t", unit::stress, contact.tensile_strength);
-  add("G_f1", unit::fracture_energy, contact.mode_1_energy);
-  add("f_cm", unit::stress, contact.compressive_limit);
-  add("c_o", unit::stress, contact.cohesion);
-  add("c_res", unit::stress, contact.residual_cohesion);
-  add("G_f2", unit::fracture_energy, contact.mode_2_energy);
+  for (std::size_t i = 0; i < contact.numbers.size(); ++i) {
+    const PropertyInfo& info = contact.law->properties[i];
+    if (info.role == Role::plain) continue;
+    list.push_back({fmt::format("contacts.{}.{}", name, info.key), info.unit.si, contact.numbers[i]});
+  }
 }
 
 /// Properties as a run has them, and whatever else the deck gives over the temperature, such as an expansion

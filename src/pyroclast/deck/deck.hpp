@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "pyroclast/base/range.hpp"
 #include "pyroclast/deck/diagnostic.hpp"
-#include "pyroclast/deck/range.hpp"
 #include "pyroclast/units/units.hpp"
 
 namespace pyroclast {
@@ -130,6 +130,13 @@ class Section {
   template <class E>
   E choice(std::string_view key, const std::vector<Choice<E>>& options, Meaning meaning) const {
     return options[choice_index(key, words(options), std::nullopt, {}, meaning)].value;
+  }
+  /// The first of them stands where the deck says nothing.
+  template <class E>
+  E choice_or_first(std::string_view key, const std::vector<Choice<E>>& options, Meaning meaning) const {
+    const std::size_t index =
+        choice_index(key, words(options), options.size(), options.front().word, meaning);
+    return options[index < options.size() ? index : 0].value;
   }
 
   /// Whether the key is written. A key that is found here but never read, nor named in `error`, is reported

@@ -2,8 +2,11 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
+#include <vector>
 
-#include "pyroclast/material/contact_law.hpp"
+#include "pyroclast/laws/built_in.hpp"
+#include "pyroclast/laws/contact_properties.hpp"
 #include "pyroclast/material/curve.hpp"
 #include "pyroclast/material/zone_law.hpp"
 
@@ -19,21 +22,24 @@ struct SolidMaterial {
   std::optional<Curve> specific_heat;           ///< c, J/(kg K); likewise
 };
 
-/// A contact's parameters as functions of temperature (paper, Table 2 and §4.1).
+/// A contact's parameters as functions of temperature (paper, Table 2 and §4.1), of any law.
 struct ContactMaterial {
-  Curve normal_stiffness = Curve::constant(0.0);   ///< K_n, Pa/m
-  Curve shear_stiffness = Curve::constant(0.0);    ///< K_s, Pa/m
-  Curve tensile_strength = Curve::constant(0.0);   ///< f_t, Pa
-  Curve mode_1_energy = Curve::constant(0.0);      ///< G_f1, J/m²
-  Curve compressive_limit = Curve::constant(0.0);  ///< f_cm, Pa
-  Curve cohesion = Curve::constant(0.0);           ///< c_o, Pa
-  Curve residual_cohesion = Curve::constant(0.0);  ///< c_res, Pa
-  Curve mode_2_energy = Curve::constant(0.0);      ///< G_f2, J/m²
-  double hardening = 0.0;                          ///< beta
-  double friction = 0.0, residual_friction = 0.0;  ///< tan(phi), tan(phi_res)
-  ContactBehaviour behaviour = ContactBehaviour::cohesive;
-  CompressionReading compression = CompressionReading::irreversible;
-  bool coupled = false;
+  const LawTable* law = nullptr;
+  std::vector<Curve> numbers;  ///< in the order of LawTable::properties
+  std::vector<int> choices;    ///< likewise
+
+  /// All zero, with the first option of each choice.
+  explicit ContactMaterial(const LawTable& of = table_of<Cohesive>());
+
+  /// The property of that key. Throws Error when the law has none.
+  Curve& operator[](std::string_view key);
+  const Curve& operator[](std::string_view key) const;
+  /// Sets every property of a role.
+  void set(Role role, const Curve& curve);
+  /// The property of a role, where there is one alone.
+  const Curve& of(Role role) const;
+  /// With every property of a role multiplied.
+  ContactMaterial times(Role role, double factor) const;
 
   /// Parameters at a temperature, °C. Throws Error when a curve is not defined there.
   ContactProperties at(double temperature) const;

@@ -55,8 +55,7 @@ StepFunctions<Dim> step_functions(InstructionSet set) {
   if (set == InstructionSet::avx2) return avx2_step<Dim>();
 #endif
   (void)set;
-  using S = Step<Dim, Portable>;
-  return {S::update_faces, S::move_bundles, S::sum_stiffness};
+  return Step<Dim, Portable>::functions();
 }
 
 template StepFunctions<2> step_functions(InstructionSet);

@@ -3,33 +3,40 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/laws/registry.hpp"
 
 namespace pyroclast {
 
 namespace {
 
-/// Lines of a contact in the history or the losses; null where its row of faces has none.
-/// \param first  of each row of faces, its entry of `lines` or -1
+/// Lines of the point of a contact in the history or the losses, from the first of its row of faces on.
+/// \param first  of each row of faces, its first line
 /// \param count  of lines of a point
 template <int Dim, class Lines, class First>
-auto lines_of(const Layout<Dim>& layout, Lines& lines, const First& first, int contact, int count)
-    -> decltype(&lines[0]) {
+auto lines_of(const Layout<Dim>& layout, Lines& lines, const First& first, int contact, std::size_t count) {
   const int point = layout.contact_slot[contact] / kLanes, row = layout.face_row_of_point[point];
-  return first[row] < 0 ? nullptr : &lines[first[row] + (point - layout.first_point_of(row)) * count];
+  return lines.data() + first[row] + static_cast<std::size_t>(point - layout.first_point_of(row)) * count;
+}
+
+int place_of(const LawTable& law, Remembers what, int dim) {
+  const auto history = law.history(dim);
+  const auto found = std::ranges::find(history, what, &HistoryInfo::what);
+  return found == history.end() ? -1 : static_cast<int>(found - history.begin());
 }
 
 }  // namespace
 
 template <int Dim>
 BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
-                            std::vector<ContactProperties> interfaces) {
-  BodyProperties p{std::move(zones), std::move(interfaces), {}};
+                            const std::vector<ContactProperties>& interfaces) {
+  BodyProperties p{std::move(zones), ContactSets(interfaces), {}};
   p.of_contact.reserve(model.contacts.size());
   for (const auto& c : model.contacts) p.of_contact.push_back(c.interface);
   return p;
@@ -46,6 +53,7 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
       geometry_(zone_geometry(model)),
       layout_(std::make_unique<const Layout<Dim>>(model, parameters.layout)),
       step_(step_functions<Dim>(parameters.instructions)) {
+  use(step_);
   if (Dim != 2 && parameters.kinematics == Kinematics::finite)
     throw Error("kinematics = finite: contact frames that turn are made for 2D only; use small");
   place_model();
@@ -116,27 +124,41 @@ void Mechanics<Dim>::place_model() {
   refresh_views();
 }
 
-/// Gives every row of faces that can fail its part of the histories and losses.
+/// Gives every row of faces its law, and the part of the histories and losses that it takes.
 template <int Dim>
 void Mechanics<Dim>::place_histories() {
-  std::vector<bool> fails(layout_->faces.size());
+  auto& s = storage_;
+  const auto rows = static_cast<std::size_t>(layout_->face_rows());
+  s.law_of_faces = FlatArray<std::uint8_t>(rows);
   for (int c = 0; c < model_.contact_count(); ++c)
-    if (properties_.contacts[properties_.of_contact[c]].behaviour != ContactBehaviour::elastic)
-      fails[layout_->face_row_of_point[layout_->contact_slot[c] / kLanes]] = true;
-  storage_.first_history = FlatArray<int>(layout_->faces.size());
-  storage_.first_loss = FlatArray<int>(layout_->faces.size());
-  int history = 0, loss = 0;
+    s.law_of_faces[layout_->face_row_of_point[layout_->contact_slot[c] / kLanes]] =
+        static_cast<std::uint8_t>(index_of(properties_.contacts.law(properties_.of_contact[c])));
+  s.first_history = FlatArray<int>(rows + 1);
+  s.first_loss = FlatArray<int>(rows + 1);
   for (int row = 0; row < layout_->face_rows(); ++row) {
+    const LawTable& law = *laws()[s.law_of_faces[row]];
     const int points = layout_->first_point_of(row + 1) - layout_->first_point_of(row);
-    storage_.first_history[row] = fails[row] ? history : -1;
-    storage_.first_loss[row] = fails[row] ? loss : -1;
-    if (!fails[row]) continue;
-    history += points * HistoryLines<Dim>::count;
-    loss += points * LossLines::count;
+    s.first_history[row + 1] = s.first_history[row] + points * static_cast<int>(law.history(Dim).size());
+    s.first_loss[row + 1] = s.first_loss[row] + points * static_cast<int>(law.losses.size());
   }
-  storage_.history = made<Line>(static_cast<std::size_t>(history));
-  storage_.loss = made<Line>(static_cast<std::size_t>(loss));
+  s.history = made<Line>(static_cast<std::size_t>(s.first_history[rows]));
+  s.loss = made<Line>(static_cast<std::size_t>(s.first_loss[rows]));
+  name_dissipations();
   refresh_views();
+}
+
+/// Energies that the laws of the body lose, each name once.
+template <int Dim>
+void Mechanics<Dim>::name_dissipations() {
+  for (int set = 0; set < properties_.contacts.size(); ++set)
+    for (const LossInfo& loss : properties_.contacts.law(set).losses)
+      if (loss.unit.si == std::string_view(unit::fracture_energy.si) &&
+          std::ranges::find(dissipations_, std::string_view(loss.name)) == dissipations_.end())
+        dissipations_.emplace_back(loss.name);
+  if (dissipations_.size() > kMostDissipations)
+    throw Error(fmt::format(
+        "the contact laws of this body name {} kinds of dissipated energy; at most {} are counted",
+        dissipations_.size(), kMostDissipations));
 }
 
 /// Puts zone and contact parameters in their places.
@@ -174,9 +196,15 @@ void Mechanics<Dim>::place_properties() {
 template <int Dim>
 void Mechanics<Dim>::place_contact_properties() {
   auto& s = storage_;
-  s.contact_constants.resize(properties_.contacts.size());
-  for (std::size_t i = 0; i < properties_.contacts.size(); ++i)
-    s.contact_constants[i] = ContactConstants(properties_.contacts[i]);
+  const ContactSets& sets = properties_.contacts;
+  s.first_constant.resize(static_cast<std::size_t>(sets.size()));
+  std::size_t bytes = 0;
+  for (int set = 0; set < sets.size(); ++set)
+    s.first_constant[set] = static_cast<int>(std::exchange(bytes, bytes + sets.law(set).size));
+  s.contact_constants.resize(bytes);
+  for (int set = 0; set < sets.size(); ++set)
+    sets.law(set).derive(sets.numbers(set).data(), sets.choices(set).data(),
+                         s.contact_constants.data() + s.first_constant[set]);
   s.set_of_faces.resize(layout_->faces.size());
   s.one_set.resize(layout_->faces.size());
   std::fill(s.set_of_faces.begin(), s.set_of_faces.end(), -1);
@@ -185,32 +213,48 @@ void Mechanics<Dim>::place_contact_properties() {
   for (int c = 0; c < model_.contact_count(); ++c) {
     const int row = layout_->face_row_of_point[layout_->contact_slot[c] / kLanes];
     const int set = properties_.of_contact[c];
-    const bool elastic = properties_.contacts[set].behaviour == ContactBehaviour::elastic;
-    if (elastic != (s.first_history[row] < 0))
-      throw Error(
-          fmt::format("contact {} of interface \"{}\": contacts of one interface are all elastic or none is, "
-                      "from the start of a run to its end",
-                      c, model_.interface_names[model_.contacts[c].interface]));
+    if (&sets.law(set) != laws()[s.law_of_faces[row]])
+      throw Error(fmt::format(
+          "contact {} of interface \"{}\" has the law \"{}\", others of it have \"{}\": contacts of "
+          "one interface have one law, from the start of a run to its end",
+          c, model_.interface_names[model_.contacts[c].interface], sets.law(set).name,
+          laws()[s.law_of_faces[row]]->name));
     if (s.set_of_faces[row] < 0) s.set_of_faces[row] = set;
     if (s.set_of_faces[row] != set) s.one_set[row] = false;
     one_set = one_set && s.one_set[row];
   }
-  if (!one_set) {
-    if (s.contact_constants_rows.empty())
-      s.contact_constants_rows = made<ContactConstantsRow>(static_cast<std::size_t>(layout_->point_rows));
-    const auto place = [&](int row, int lane, const ContactConstants& constants) {
-      int i = 0;
-      for_each_number(constants,
-                      [&](double value) { s.contact_constants_rows[row].number[i++][lane] = value; });
-    };
-    for (int row = 0; row + 1 < layout_->point_rows; ++row)  // for idle lanes
-      for (int lane = 0; lane < kLanes; ++lane)
-        place(row, lane, s.contact_constants[s.set_of_faces[layout_->face_row_of_point[row]]]);
-    for (int c = 0; c < model_.contact_count(); ++c)
-      place(layout_->contact_slot[c] / kLanes, layout_->contact_slot[c] % kLanes,
-            s.contact_constants[properties_.of_contact[c]]);
-  }
+  if (!one_set) place_own_constants();
   refresh_views();
+}
+
+/// Constants of each contact point, for rows of faces that have no one set.
+template <int Dim>
+void Mechanics<Dim>::place_own_constants() {
+  auto& s = storage_;
+  const auto constants = [&](int row) { return laws()[s.law_of_faces[row]]->constants; };
+  if (s.own_constants.empty()) {
+    s.first_own_constant = FlatArray<int>(layout_->faces.size() + 1);
+    for (int row = 0; row < layout_->face_rows(); ++row)
+      s.first_own_constant[row + 1] =
+          s.first_own_constant[row] +
+          (layout_->first_point_of(row + 1) - layout_->first_point_of(row)) * constants(row);
+    s.own_constants = made<Line>(static_cast<std::size_t>(s.first_own_constant[layout_->face_rows()]));
+  }
+  std::vector<double> numbers;
+  const auto place = [&](int row, Line* line, int lane, int set) {
+    numbers.resize(static_cast<std::size_t>(constants(row)));
+    laws()[s.law_of_faces[row]]->numbers_of(s.contact_constants.data() + s.first_constant[set],
+                                            numbers.data());
+    for (const double number : numbers) line++->number[lane] = number;
+  };
+  for (int row = 0; row < layout_->face_rows(); ++row)  // for idle lanes
+    for (int line = s.first_own_constant[row]; line < s.first_own_constant[row + 1]; line += constants(row))
+      for (int lane = 0; lane < kLanes; ++lane) place(row, &s.own_constants[line], lane, s.set_of_faces[row]);
+  for (int c = 0; c < model_.contact_count(); ++c) {
+    const int slot = layout_->contact_slot[c], row = layout_->face_row_of_point[slot / kLanes];
+    place(row, lines_of(*layout_, s.own_constants, s.first_own_constant, c, constants(row)), slot % kLanes,
+          properties_.of_contact[c]);
+  }
 }
 
 /// k_gp of Eq. (9): for every gridpoint the largest sum of |stiffness| over a row of the assembled matrix,
@@ -449,12 +493,15 @@ void Mechanics<Dim>::apply_force(int gridpoint, const Vec<Dim>& force) {
 
 template <int Dim>
 void Mechanics<Dim>::break_contact(int contact) {
-  const int lane = layout_->contact_slot[contact] % kLanes;
-  Line* const line =
-      lines_of(*layout_, storage_.history, storage_.first_history, contact, HistoryLines<Dim>::count);
-  if (!line) throw Error(fmt::format("contact {} is elastic: it cannot start as broken", contact));
-  line[HistoryLines<Dim>::tension_damage].number[lane] = 1.0;
-  line[HistoryLines<Dim>::shear_damage].number[lane] = 1.0;
+  const LawTable& law = law_of(contact);
+  bool breaks = false;
+  for (const auto what : {Remembers::tension_damage, Remembers::shear_damage, Remembers::mixed_damage})
+    if (const int place = place_of(law, what, Dim); place >= 0) {
+      lines_of(*layout_, storage_.history, storage_.first_history, contact, law.history(Dim).size())[place]
+          .number[layout_->contact_slot[contact] % kLanes] = 1.0;
+      breaks = true;
+    }
+  if (!breaks) throw Error(fmt::format("contact {} is {}: it cannot start as broken", contact, law.name));
 }
 
 // Motion
@@ -477,14 +524,19 @@ void Mechanics<Dim>::sweep(int steps, Pass pass) {
     for (Share& share : share_out(*layout_, threads)) workers_.push_back({std::move(share), make_scratch()});
   }
   const bool measure = pass != Pass::move;
+  const auto update_faces = [](State<Dim>& s, int first, int last, bool measured) {
+    for_each_law(s, first, last, [&](const RowFunctions<Dim>& law, int begin, int end) {
+      law.update(s, begin, end, measured);
+    });
+  };
   team_->run(threads, [&](int thread) {
     Worker& worker = workers_[static_cast<std::size_t>(thread)];
     State<Dim> s = state_;
     for (int i = 0; i < steps; ++i) {
-      for (const auto& faces : worker.share.crossing) step_.update_faces(s, faces.first, faces.last, measure);
+      for (const auto& faces : worker.share.crossing) update_faces(s, faces.first, faces.last, measure);
       team_->barrier(thread);
       for (const auto& stride : worker.share.strides) {
-        step_.update_faces(s, stride.faces.first, stride.faces.last, measure);
+        update_faces(s, stride.faces.first, stride.faces.last, measure);
         step_.move_bundles(s, stride.bundles.first, stride.bundles.last, pass, worker.scratch.data());
       }
       team_->barrier(thread);
@@ -565,43 +617,63 @@ double Mechanics<Dim>::opening(int contact) const {
 }
 
 template <int Dim>
-ContactHistory<Dim> Mechanics<Dim>::contact_history(int contact) const {
-  using H = HistoryLines<Dim>;
-  const int lane = layout_->contact_slot[contact] % kLanes;
-  ContactHistory<Dim> h;
-  const Line* const line = lines_of(*layout_, state_.history, state_.first_history, contact, H::count);
-  if (!line) return h;
-  h.tension_damage = line[H::tension_damage].number[lane];
-  h.shear_damage = line[H::shear_damage].number[lane];
-  h.closure = line[H::closure].number[lane];
-  for (int i = 0; i + 1 < Dim; ++i) h.slip[i] = line[H::slip + i].number[lane];
-  h.held_jump = line[H::held_jump].number[lane];
-  return h;
+double Mechanics<Dim>::remembered(int contact, Remembers what) const {
+  const LawTable& law = law_of(contact);
+  const int place = place_of(law, what, Dim);
+  if (place < 0) return 0.0;
+  return lines_of(*layout_, state_.history, state_.first_history, contact, law.history(Dim).size())[place]
+      .number[layout_->contact_slot[contact] % kLanes];
 }
 
 template <int Dim>
 ContactState<Dim> Mechanics<Dim>::contact(int contact) const {
+  const int set = properties_.of_contact[contact], lane = layout_->contact_slot[contact] % kLanes;
+  ContactState<Dim> state;
+  state.law = &law_of(contact);
+  const auto values = [&](const auto& lines, const auto& first, std::size_t count) {
+    std::vector<double> numbers(count);
+    const Line* line = lines_of(*layout_, lines, first, contact, count);
+    for (double& number : numbers) number = line++->number[lane];
+    return numbers;
+  };
+  state.history = values(state_.history, state_.first_history, state.law->history(Dim).size());
+  state.losses = values(state_.loss, state_.first_loss, state.law->losses.size());
   const auto frame = frame_of_forces(contact);
   const Vec<Dim> u = jump_of_forces(contact);
-  ContactState<Dim> state;
-  state.history = contact_history(contact);
   state.opening = dot(u, frame.normal);
   for (int i = 0; i + 1 < Dim; ++i) state.tangential_jump[i] = dot(u, frame.tangents[i]);
   // the law at the jump that it was last taken to gives the tractions again
-  auto history = state.history;
-  const auto response = update_contact<Dim>(properties_.contacts[properties_.of_contact[contact]],
-                                            state.opening, state.tangential_jump, history);
+  std::array<double, Dim> jump{state.opening};
+  for (int i = 0; i + 1 < Dim; ++i) jump[i + 1] = state.tangential_jump[i];
+  auto history = state.history, losses = state.losses;
+  const PointResponse response =
+      state.law->update(Dim)(state_.contact_constants.data() + state_.first_constant[set], jump.data(),
+                             history.data(), losses.data());
   state.normal_traction = response.normal_traction;
-  state.shear_traction = response.shear_traction;
+  for (int i = 0; i + 1 < Dim; ++i) state.shear_traction[i] = response.shear_traction[i];
   state.stored = response.stored;
-  using L = LossLines;
-  const int lane = layout_->contact_slot[contact] % kLanes;
-  const Line* const loss = lines_of(*layout_, state_.loss, state_.first_loss, contact, L::count);
-  if (!loss) return state;
-  state.slip_path = loss[L::slip_path].number[lane];
-  state.dissipated = {loss[L::tension].number[lane], loss[L::shear].number[lane],
-                      loss[L::friction].number[lane], loss[L::compression].number[lane]};
   return state;
+}
+
+template <int Dim>
+double ContactState<Dim>::remembered(Remembers what) const {
+  const int place = place_of(*law, what, Dim);
+  return place < 0 ? 0.0 : history[place];
+}
+
+template <int Dim>
+double ContactState<Dim>::remembered(std::string_view name) const {
+  const auto infos = law->history(Dim);
+  for (std::size_t i = 0; i < infos.size(); ++i)
+    if (infos[i].name == name) return history[i];
+  return 0.0;
+}
+
+template <int Dim>
+double ContactState<Dim>::lost(std::string_view name) const {
+  for (std::size_t i = 0; i < losses.size(); ++i)
+    if (law->losses[i].name == name) return losses[i];
+  return 0.0;
 }
 
 namespace {
@@ -673,20 +745,42 @@ Vec<Dim> Mechanics<Dim>::total_applied_force(const GridpointSet& set) const {
 }
 
 template <int Dim>
-ContactDissipation Mechanics<Dim>::dissipated() const {
-  using L = LossLines;
-  return chunked_sum<ContactDissipation>(layout_->chunks.face_rows, [&](int row, ContactDissipation& sum) {
-    const int first = state_.first_loss[row];
-    if (first < 0) return;
-    const int first_point = layout_->first_point_of(row), last_point = layout_->first_point_of(row + 1);
-    for (int point = first_point; point < last_point; ++point) {
-      const Line* const loss = &state_.loss[first + (point - first_point) * L::count];
+Dissipation Mechanics<Dim>::dissipated() const {
+  struct Sums {
+    std::array<double, kMostDissipations> energy{};
+    void operator+=(const Sums& o) {
+      for (std::size_t i = 0; i < energy.size(); ++i) energy[i] += o.energy[i];
+    }
+  };
+  // of each law, where its losses count
+  std::vector<std::vector<int>> places;
+  for (const LawTable* law : laws())
+    for (auto& of_law = places.emplace_back(); const LossInfo& loss : law->losses) {
+      const auto found = std::ranges::find(dissipations_, std::string_view(loss.name));
+      of_law.push_back(found == dissipations_.end() ? -1 : static_cast<int>(found - dissipations_.begin()));
+    }
+  const Sums sums = chunked_sum<Sums>(layout_->chunks.face_rows, [&](int row, Sums& sum) {
+    const Line* line = state_.loss.data() + state_.first_loss[row];
+    for (int point = layout_->first_point_of(row); point < layout_->first_point_of(row + 1); ++point) {
       const double* const area = layout_->points[point].area;
-      for (int lane = 0; lane < kLanes; ++lane)
-        sum += {loss[L::tension].number[lane] * area[lane], loss[L::shear].number[lane] * area[lane],
-                loss[L::friction].number[lane] * area[lane], loss[L::compression].number[lane] * area[lane]};
+      for (const int place : places[state_.law_of_faces[row]]) {
+        if (place >= 0)
+          for (int lane = 0; lane < kLanes; ++lane) sum.energy[place] += line->number[lane] * area[lane];
+        ++line;
+      }
     }
   });
+  return {dissipations_,
+          {sums.energy.begin(), sums.energy.begin() + static_cast<std::ptrdiff_t>(dissipations_.size())}};
+}
+
+double Dissipation::of(std::string_view name) const {
+  const auto found = std::ranges::find(names, name);
+  return found == names.end() ? 0.0 : energies[static_cast<std::size_t>(found - names.begin())];
+}
+
+double Dissipation::total() const {
+  return std::accumulate(energies.begin(), energies.end(), 0.0);
 }
 
 template <int Dim>
@@ -744,9 +838,11 @@ double Mechanics<Dim>::largest_relative_jump() const {
 }
 
 template BodyProperties by_interface<2>(const Model<2>&, std::vector<ZoneProperties>,
-                                        std::vector<ContactProperties>);
+                                        const std::vector<ContactProperties>&);
 template BodyProperties by_interface<3>(const Model<3>&, std::vector<ZoneProperties>,
-                                        std::vector<ContactProperties>);
+                                        const std::vector<ContactProperties>&);
+template struct ContactState<2>;
+template struct ContactState<3>;
 template class Mechanics<2>;
 template class Mechanics<3>;
 

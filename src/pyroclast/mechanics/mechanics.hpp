@@ -3,9 +3,11 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "pyroclast/base/team.hpp"
+#include "pyroclast/laws/contact_properties.hpp"
 #include "pyroclast/mechanics/instruction_set.hpp"
 #include "pyroclast/mechanics/state.hpp"
 #include "pyroclast/mechanics/sweep.hpp"
@@ -36,6 +38,16 @@ struct MechanicsParameters {
   int zones_for_a_thread = 500;  ///< with fewer a thread waits longer at barriers than it saves
 };
 
+/// Energies lost for good at contacts, J, by what their laws call them.
+struct Dissipation {
+  std::vector<std::string_view> names;
+  std::vector<double> energies;  ///< likewise
+
+  /// 0 where no law has that name.
+  double of(std::string_view name) const;
+  double total() const;
+};
+
 /// Where the energy of a body went since the start, J. Work in = everything else; the rest is the ledger's
 /// error.
 struct EnergyLedger {
@@ -50,7 +62,7 @@ struct EnergyLedger {
   double contacts = 0.0;  ///< elastic, in contacts
   double kinetic = 0.0;
   // lost
-  ContactDissipation dissipated;
+  Dissipation dissipated;
   double local_damping = 0.0;
   double viscous_damping = 0.0;
 
@@ -69,14 +81,19 @@ struct EnergyLedger {
 /// State of one contact point at the displacements that the last forces belong to.
 template <int Dim>
 struct ContactState {
-  ContactHistory<Dim> history;
+  const LawTable* law = nullptr;
+  std::vector<double> history;        ///< in the order of `law->history(Dim)`
+  std::vector<double> losses;         ///< since the start, in the order of `law->losses`
   double opening = 0.0;               ///< u_n, m
   Tangential<Dim> tangential_jump{};  ///< u_s, m
   double normal_traction = 0.0;       ///< Pa, tension positive
   Tangential<Dim> shear_traction{};   ///< Pa
   double stored = 0.0;                ///< J/m²
-  double slip_path = 0.0;             ///< s, length of the slip's path, m
-  ContactDissipation dissipated;      ///< since the start, J/m²
+
+  // 0 where the law remembers no such thing
+  double remembered(Remembers what) const;
+  double remembered(std::string_view name) const;
+  double lost(std::string_view name) const;  ///< 0 where the law loses no such thing
 };
 
 /// Directions of a contact.
@@ -94,16 +111,16 @@ struct TimeStepLimit {
 
 /// Parameters of a body at its present temperatures.
 struct BodyProperties {
-  std::vector<ZoneProperties> zones;        ///< of each zone
-  std::vector<ContactProperties> contacts;  ///< each set that occurs, validated
-  std::vector<int> of_contact;              ///< index into `contacts` of each contact
+  std::vector<ZoneProperties> zones;  ///< of each zone
+  ContactSets contacts;               ///< each set that occurs, validated
+  std::vector<int> of_contact;        ///< index into `contacts` of each contact
 };
 
 /// Contacts that differ by interface alone.
 /// \param interfaces  contact properties of each interface, validated
 template <int Dim>
 BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
-                            std::vector<ContactProperties> interfaces);
+                            const std::vector<ContactProperties>& interfaces);
 
 /// Gridpoints over which something is summed, in the order of chunks.
 struct GridpointSet {
@@ -142,7 +159,8 @@ class Mechanics {
   void untie();
   /// Force on a gridpoint, N, until set again; free components only.
   void apply_force(int gridpoint, const Vec<Dim>& force);
-  /// Starts a contact as broken: neither tension nor cohesion ever held it.
+  /// Starts a contact as broken: neither tension nor cohesion ever held it. Throws Error where its law knows
+  /// no damage.
   void break_contact(int contact);
 
   /// Runs a number of steps.
@@ -165,7 +183,11 @@ class Mechanics {
   std::size_t memory() const { return pyroclast::memory(*layout_) + pyroclast::memory(storage_); }
   /// Takes another compilation of the step from the next one on; for benches. Results stay the same bits as
   /// long as it is one of the templates of step/step.hpp.
-  void use(const StepFunctions<Dim>& step) { step_ = step; }
+  void use(const StepFunctions<Dim>& step) {
+    step_ = step;
+    laws_.assign(step.laws.begin(), step.laws.end());
+    state_.laws = laws_.data();
+  }
   Vec<Dim> displacement(int gridpoint) const;  ///< m
   Vec<Dim> velocity(int gridpoint) const;      ///< m/s
   /// Sum of all forces at the last step, N; on a prescribed component minus the reaction.
@@ -173,7 +195,13 @@ class Mechanics {
   Vec<Dim> applied_force(int gridpoint) const;  ///< N
   SymmetricTensor<Dim> stress(int zone) const;  ///< Pa, at the displacements of the last forces
   ContactState<Dim> contact(int contact) const;
-  ContactHistory<Dim> contact_history(int contact) const;
+  const LawTable& law_of(int contact) const {
+    return properties_.contacts.law(properties_.of_contact[contact]);
+  }
+  /// Of a contact's history; 0 where its law remembers no such thing.
+  double remembered(int contact, Remembers what) const;
+  /// What the laws of this body call the energies that they lose.
+  const std::vector<std::string_view>& dissipations() const { return dissipations_; }
   double opening(int contact) const;  ///< u_n at the displacements of the last forces, m
   // of all, in the order of the model
   std::vector<Vec<Dim>> displacements() const;
@@ -199,6 +227,8 @@ class Mechanics {
   double largest_relative_jump() const;
 
  private:
+  static constexpr std::size_t kMostDissipations = 16;
+
   /// What a thread needs for a step.
   struct Worker {
     Share share;
@@ -213,7 +243,9 @@ class Mechanics {
   void place_model();
   void place_histories();
   void place_properties();
+  void name_dissipations();
   void place_contact_properties();
+  void place_own_constants();
   void place_ties();
   void refresh_views();
   template <class T>
@@ -234,7 +266,7 @@ class Mechanics {
   Vec<Dim> jump_of_forces(int contact) const;
   ContactFrame<Dim> frame_of_forces(int contact) const;
   Vec<Dim> displacement_of_force(int gridpoint) const;
-  ContactDissipation dissipated() const;
+  Dissipation dissipated() const;
 
   const Model<Dim>& model_;
   MechanicsParameters<Dim> parameters_;
@@ -245,7 +277,9 @@ class Mechanics {
   StateArrays<Dim, FlatArray> storage_;
   State<Dim> state_;  ///< sees layout and storage
   StepFunctions<Dim> step_;
-  std::vector<Worker> workers_;  ///< by thread
+  std::vector<RowFunctions<Dim>> laws_;  ///< of step_; the state sees them
+  std::vector<Worker> workers_;          ///< by thread
+  std::vector<std::string_view> dissipations_;
 
   std::vector<int> made_constraints_;  ///< of each bundle that was ever held, driven or loaded; else -1
   std::vector<TieOfBundle> ties_;
@@ -262,9 +296,11 @@ class Mechanics {
 };
 
 extern template BodyProperties by_interface<2>(const Model<2>&, std::vector<ZoneProperties>,
-                                               std::vector<ContactProperties>);
+                                               const std::vector<ContactProperties>&);
 extern template BodyProperties by_interface<3>(const Model<3>&, std::vector<ZoneProperties>,
-                                               std::vector<ContactProperties>);
+                                               const std::vector<ContactProperties>&);
+extern template struct ContactState<2>;
+extern template struct ContactState<3>;
 extern template class Mechanics<2>;
 extern template class Mechanics<3>;
 

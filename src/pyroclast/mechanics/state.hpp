@@ -1,9 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
-#include "pyroclast/material/contact_law.hpp"
+#include "pyroclast/laws/built_in.hpp"
 #include "pyroclast/material/zone_law.hpp"
 #include "pyroclast/mechanics/layout.hpp"
 
@@ -42,24 +43,6 @@ struct alignas(64) ZonePropertyRow {
 /// One number of each of eight contact points: a cache line.
 struct alignas(64) Line {
   double number[kLanes];
-};
-
-/// Lines of a row of contact points in the history, in this order.
-template <int Dim>
-struct HistoryLines {
-  static constexpr int tension_damage = 0, shear_damage = 1, closure = 2, slip = 3, held_jump = 3 + Dim - 1;
-  static constexpr int count = held_jump + 1;
-};
-/// Likewise of what was lost, ContactLossesOf: a step touches it only where something breaks, slips or
-/// yields.
-struct LossLines {
-  static constexpr int slip_path = 0, tension = 1, shear = 2, friction = 3, compression = 4, count = 5;
-};
-
-/// Numbers of ContactConstantsOf for contact points that have each their own temperature, one after the
-/// other.
-struct alignas(64) ContactConstantsRow {
-  double number[kContactConstants][kLanes];
 };
 
 /// What holds, drives or loads the gridpoints of a row.
@@ -112,17 +95,21 @@ struct StateArrays {
   Array<double> real_mass;                 ///< by slot, which gravity acts on, kg; empty where there is none
   Array<ZonePropertyRow> zone_properties;  ///< by row of zones, or by bundle
 
-  Array<Line> history, loss;      ///< HistoryLines and LossLines of each row of points; of elastic ones none
-  Array<int> first_history;       ///< of each row of faces: entry of history; -1: none
-  Array<int> first_loss;          ///< likewise
-  Array<bool> losing;             ///< by row of points: something was lost in the last step
-  Array<Vec<Dim>> contact_force;  ///< on side a, by slot: gridpoints gather from it, N
-  Array<Vec<Dim>> turning_force;  ///< on both sides, by slot; finite kinematics only, N
-  Array<ContactConstants> contact_constants;
-  Array<int> set_of_faces;  ///< by row of faces: into contact_constants; where lanes differ its choices only
-  Array<bool> one_set;      ///< by row of faces: all its points share one set
-  Array<ContactConstantsRow>
-      contact_constants_rows;  ///< by row of points, if any row of faces has no one set
+  // Contact points. Those of a row of faces have one law; each list holds what that law has, a line for eight
+  // points, and nothing for a law that has none. A step touches losses only where something is lost.
+  Array<std::uint8_t> law_of_faces;    ///< by row of faces: entry of `State::laws`
+  Array<Line> history, loss;           ///< of each row of points in turn
+  Array<int> first_history;            ///< of each row of faces, and one more: its first line
+  Array<int> first_loss;               ///< likewise
+  Array<bool> losing;                  ///< by row of points: something was lost in the last step
+  Array<Vec<Dim>> contact_force;       ///< on side a, by slot: gridpoints gather from it, N
+  Array<Vec<Dim>> turning_force;       ///< on both sides, by slot; finite kinematics only, N
+  Array<std::byte> contact_constants;  ///< of each set in turn
+  Array<int> first_constant;           ///< of each set, a byte
+  Array<int> set_of_faces;             ///< by row of faces; where lanes differ its choices only
+  Array<bool> one_set;                 ///< by row of faces: all its points share one set
+  Array<Line> own_constants;           ///< of each row of points in turn, if any row of faces has no one set
+  Array<int> first_own_constant;       ///< of each row of faces: its first line
 
   Array<int> constraints_of_bundle;  ///< -1 where nothing holds, drives or loads it now
   Array<BundleConstraints> constraints;
@@ -144,6 +131,7 @@ struct StateArrays {
     f(ArrayInfo{"step_over_mass", Touched::all}, s.step_over_mass...);
     f(ArrayInfo{"real_mass", Touched::all}, s.real_mass...);
     f(ArrayInfo{"zone_properties", Touched::all}, s.zone_properties...);
+    f(ArrayInfo{"law_of_faces", Touched::all}, s.law_of_faces...);
     f(ArrayInfo{"history", Touched::all, Touched::held}, s.history...);
     f(ArrayInfo{"loss"}, s.loss...);
     f(ArrayInfo{"first_history", Touched::all}, s.first_history...);
@@ -152,9 +140,11 @@ struct StateArrays {
     f(ArrayInfo{"contact_force", Touched::all, Touched::all}, s.contact_force...);  // read where it is summed
     f(ArrayInfo{"turning_force", Touched::all, Touched::all}, s.turning_force...);
     f(ArrayInfo{"contact_constants"}, s.contact_constants...);  // few, and always near
+    f(ArrayInfo{"first_constant"}, s.first_constant...);
     f(ArrayInfo{"set_of_faces", Touched::all}, s.set_of_faces...);
     f(ArrayInfo{"one_set", Touched::all}, s.one_set...);
-    f(ArrayInfo{"contact_constants_rows", Touched::all}, s.contact_constants_rows...);
+    f(ArrayInfo{"own_constants", Touched::all}, s.own_constants...);
+    f(ArrayInfo{"first_own_constant", Touched::all}, s.first_own_constant...);
     f(ArrayInfo{"constraints_of_bundle", Touched::all}, s.constraints_of_bundle...);
     f(ArrayInfo{"constraints", Touched::all, Touched::all}, s.constraints...);
     f(ArrayInfo{"constraint_rows", Touched::all}, s.constraint_rows...);
@@ -176,10 +166,23 @@ struct StepParameters {
   bool by_bundle = false;  ///< every zone of a block has the same properties
 };
 
+template <int Dim>
+struct State;
+
+/// What a law does to rows of faces that have it, compiled for one instruction set.
+template <int Dim>
+struct RowFunctions {
+  /// Takes their contact points through the law, from jumps to forces.
+  void (*update)(State<Dim>&, int first, int last, bool measure);
+  /// Puts the sums of |stiffness| over the rows of the contacts' matrix where their forces stand, N/m.
+  void (*place_stiffness)(State<Dim>&, int first, int last);
+};
+
 /// All that a step sees: numbers, and views of arrays that stand elsewhere.
 template <int Dim>
 struct State : StepParameters<Dim>, StateArrays<Dim, View> {
   LayoutArrays<Dim, ConstView> layout;
+  const RowFunctions<Dim>* laws = nullptr;
 
   bool weighs() const { return !this->real_mass.empty(); }
 };
@@ -204,13 +207,24 @@ enum class Pass : std::uint8_t {
 /// The step, compiled for one instruction set.
 template <int Dim>
 struct StepFunctions {
-  /// Takes the contact points of rows of faces through the law.
-  void (*update_faces)(State<Dim>&, int first, int last, bool measure);
+  std::array<RowFunctions<Dim>, BuiltInLaws::count> laws;
   /// Sums the forces of bundles and moves their gridpoints.
   /// \param scratch  2 Dim kLanes numbers for every row of the largest bundle, aligned to 64 bytes
   void (*move_bundles)(State<Dim>&, int first, int last, Pass, double* scratch);
   /// Works out `State::stiffness`; leaves the contact forces unset until faces are updated.
   void (*sum_stiffness)(State<Dim>&, double* scratch);
 };
+
+/// Calls `f(functions, first, last)` for runs of rows of faces that have one law.
+template <int Dim, class F>
+void for_each_law(const State<Dim>& s, int first, int last, F f) {
+  for (int row = first; row < last;) {
+    const auto law = s.law_of_faces[row];
+    int end = row + 1;
+    while (end < last && s.law_of_faces[end] == law) ++end;
+    f(s.laws[law], row, end);
+    row = end;
+  }
+}
 
 }  // namespace pyroclast

@@ -5,8 +5,7 @@ namespace pyroclast {
 
 template <int Dim>
 StepFunctions<Dim> avx2_step() {
-  using S = Step<Dim, Avx2>;
-  return {S::update_faces, S::move_bundles, S::sum_stiffness};
+  return Step<Dim, Avx2>::functions();
 }
 
 template StepFunctions<2> avx2_step<2>();

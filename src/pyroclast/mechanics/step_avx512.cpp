@@ -5,8 +5,7 @@ namespace pyroclast {
 
 template <int Dim>
 StepFunctions<Dim> avx512_step() {
-  using S = Step<Dim, Avx512>;
-  return {S::update_faces, S::move_bundles, S::sum_stiffness};
+  return Step<Dim, Avx512>::functions();
 }
 
 template StepFunctions<2> avx512_step<2>();

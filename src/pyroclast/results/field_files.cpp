@@ -1,6 +1,8 @@
 #include "pyroclast/results/field_files.hpp"
 
+#include <algorithm>
 #include <array>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -36,13 +38,24 @@ void write_motion(Hdf5File& file, const Mechanics<2>& mechanics) {
   file.dataset("/VTKHDF/CellData/stress", stress, 3);
 }
 
+/// Numbers of the contacts' histories that go into files, by name, in the order of the laws; zero where a law
+/// has none.
+std::vector<std::string_view> remembered_names(const Mechanics<2>& mechanics) {
+  std::vector<std::string_view> names;
+  for (int i = 0; i < mechanics.model().contact_count(); ++i)
+    for (const HistoryInfo& info : mechanics.law_of(i).history(2))
+      if (info.in_files && std::ranges::find(names, std::string_view(info.name)) == names.end())
+        names.emplace_back(info.name);
+  return names;
+}
+
 void write_contacts(Hdf5File& file, const Mechanics<2>& mechanics) {
   const auto& model = mechanics.model();
-  std::vector<float> displacement, tension, shear, opening, tangential_jump, normal_traction, shear_traction,
-      closure;
+  const auto names = remembered_names(mechanics);
+  std::vector<float> displacement, opening, tangential_jump, normal_traction, shear_traction;
+  std::vector<std::vector<float>> remembered(names.size());
   displacement.reserve(6 * model.contacts.size());
-  for (auto* values :
-       {&tension, &shear, &opening, &tangential_jump, &normal_traction, &shear_traction, &closure})
+  for (auto* values : {&opening, &tangential_jump, &normal_traction, &shear_traction})
     values->reserve(model.contacts.size());
   const auto u = mechanics.displacements();
   for (int i = 0; i < model.contact_count(); ++i) {
@@ -52,22 +65,20 @@ void write_contacts(Hdf5File& file, const Mechanics<2>& mechanics) {
     append(displacement, here);
     append(displacement, 0.5 * (here + 0.5 * (u[partner.a] + u[partner.b])));
     const auto state = mechanics.contact(i);
-    tension.push_back(static_cast<float>(state.history.tension_damage));
-    shear.push_back(static_cast<float>(state.history.shear_damage));
-    closure.push_back(static_cast<float>(state.history.closure));
+    for (std::size_t n = 0; n < names.size(); ++n)
+      remembered[n].push_back(static_cast<float>(state.remembered(names[n])));
     opening.push_back(static_cast<float>(state.opening));
     tangential_jump.push_back(static_cast<float>(state.tangential_jump[0]));
     normal_traction.push_back(static_cast<float>(state.normal_traction));
     shear_traction.push_back(static_cast<float>(state.shear_traction[0]));
   }
   file.dataset("/VTKHDF/PointData/displacement", displacement, 3);
-  file.dataset("/VTKHDF/CellData/tension_damage", tension);
-  file.dataset("/VTKHDF/CellData/shear_damage", shear);
+  for (std::size_t n = 0; n < names.size(); ++n)
+    file.dataset(fmt::format("/VTKHDF/CellData/{}", names[n]), remembered[n]);
   file.dataset("/VTKHDF/CellData/opening", opening);
   file.dataset("/VTKHDF/CellData/tangential_jump", tangential_jump);
   file.dataset("/VTKHDF/CellData/normal_traction", normal_traction);
   file.dataset("/VTKHDF/CellData/shear_traction", shear_traction);
-  file.dataset("/VTKHDF/CellData/closure", closure);
 }
 
 /// What frames.csv has of the history, where that has it.

@@ -28,6 +28,7 @@ struct Entry {
   const char* column;
 };
 
+/// Beside what the contact laws lose.
 constexpr auto kEnergy = std::to_array<Entry>({
     {"loading", "energy_loading_J"},
     {"gravity", "energy_gravity_J"},
@@ -36,10 +37,6 @@ constexpr auto kEnergy = std::to_array<Entry>({
     {"elastic_zones", "energy_zones_J"},
     {"elastic_contacts", "energy_contacts_J"},
     {"kinetic", "energy_kinetic_J"},
-    {"dissipated_tension", "dissipated_tension_J"},
-    {"dissipated_shear", "dissipated_shear_J"},
-    {"dissipated_friction", "dissipated_friction_J"},
-    {"dissipated_compression", "dissipated_compression_J"},
     {"local_damping", "energy_local_damping_J"},
     {"viscous_damping", "energy_viscous_damping_J"},
     {"error", "energy_error_J"},
@@ -128,6 +125,9 @@ void add_motion(Json& json, const Summary& summary, const Run& run) {
   const Simulation& simulation = run.simulation();
   const History& history = run.history();
   json["energy_J"] = json_of(kEnergy, history);
+  for (const auto& name : simulation.mechanics().dissipations())
+    json["energy_J"][fmt::format("dissipated_{}", name)] =
+        *last_of(history, fmt::format("dissipated_{}_J", name).c_str());
   json["energy_J"]["error_over_turnover"] = *summary.energy_error;
   json["cracks"] = {{"tension_aggregate_mortar", crack_json(history, "tension_am")},
                     {"tension_mortar_mortar", crack_json(history, "tension_mm")},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -96,32 +97,39 @@ std::optional<Curve> read_temperature_ratio(const Section& s, CurveReader& curve
   return ratio;
 }
 
-ContactMaterial read_mortar_contact(const Section& s, CurveReader& curves) {
+/// A number of a law that follows the temperature, but for a stiffness: that comes from the solids.
+Curve read_property(const Section& s, const PropertyInfo& info, const std::optional<Curve>& ratio,
+                    bool& ratio_has_effect, CurveReader& curves) {
+  const Curve curve = curves.read(s, info.key, info.unit, info.range, Meaning(info.meaning));
+  const bool scales = info.role == Role::strength || info.role == Role::energy;
+  if (!ratio || !scales || !curve.is_constant()) return curve;
+  ratio_has_effect = true;
+  return (curve * *ratio).named(s.path() + "." + info.key);
+}
+
+int read_choice(const Section& s, const ChoiceInfo& info) {
+  if (info.options[0].name == std::string_view("false"))
+    return s.flag(info.key, false, Meaning(info.meaning)) ? 1 : 0;
+  std::vector<Choice<int>> options;
+  for (int i = 0; i < ChoiceInfo::kMostOptions && info.options[i].name; ++i)
+    options.push_back({info.options[i].name, i, Meaning(info.options[i].meaning)});
+  return s.choice_or_first(info.key, options, Meaning(info.meaning));
+}
+
+/// \param choices  where the law's choices stand
+ContactMaterial read_contact(const Section& s, const LawTable& law, const Section& choices,
+                             CurveReader& curves) {
   const std::optional<Curve> ratio = read_temperature_ratio(s, curves);
   bool ratio_has_effect = false;
-  const auto property = [&](const char* key, const Unit& unit, const Range& range, Meaning meaning) {
-    const Curve curve = curves.read(s, key, unit, range, meaning);
-    if (!ratio || !curve.is_constant()) return curve;
-    ratio_has_effect = true;
-    return (curve * *ratio).named(s.path() + "." + key);
-  };
-  const auto angle = [&](const char* key, Meaning meaning) {
-    return std::tan(
-        s.quantity(key, unit::angle, {.lower = 0.0, .upper = 1.57, .upper_inclusive = false}, meaning));
-  };
-  ContactMaterial m;
-  m.tensile_strength = property("f_t", unit::stress, Range::positive(), "tensile strength");
-  m.mode_1_energy = property("G_f1", unit::fracture_energy, Range::positive(), "mode I fracture energy");
-  m.compressive_limit =
-      property("f_cm", unit::stress, Range::positive(), "compression at which the second slope begins");
-  m.hardening = s.number("beta", Range::inside(0.0, 1.0), "second slope in compression over the first");
-  m.cohesion = property("c_o", unit::stress, Range::positive(), "cohesion");
-  m.residual_cohesion = property("c_res", unit::stress, Range::non_negative(), "residual cohesion");
-  m.friction = angle("phi", "friction angle");
-  m.residual_friction = angle("phi_res", "residual friction angle");
-  m.mode_2_energy = property("G_f2", unit::fracture_energy, Range::positive(), "mode II fracture energy");
+  ContactMaterial m(law);
+  for (std::size_t i = 0; i < law.properties.size(); ++i) {
+    const PropertyInfo& info = law.properties[i];
+    if (info.role != Role::normal_stiffness && info.role != Role::shear_stiffness)
+      m.numbers[i] = read_property(s, info, ratio, ratio_has_effect, curves);
+  }
   if (ratio && !ratio_has_effect)
     s.error("temperature_ratio", "has no effect: no property of this contact is a plain constant");
+  for (std::size_t i = 0; i < law.choices.size(); ++i) m.choices[i] = read_choice(choices, law.choices[i]);
   return m;
 }
 
@@ -167,20 +175,13 @@ ContactParameters read_contacts(const Section& root, CurveReader& curves) {
                                "coefficient of friction between platen and specimen");
 
   const Section mortar = s.section("mortar_mortar", "contacts between two blocks of mortar (Table 2)");
-  c.mortar = read_mortar_contact(mortar, curves);
+  c.mortar = read_contact(mortar, table_of<Cohesive>(), s, curves);
   if (mortar.has("K_n"))
     c.normal_stiffness = mortar.quantity("K_n", unit::stiffness_per_area, Range::positive(),
                                          "normal stiffness at 20 °C, instead of E / t_b");
   if (mortar.has("K_s"))
     c.shear_stiffness = mortar.quantity("K_s", unit::stiffness_per_area, Range::positive(),
                                         "shear stiffness at 20 °C, instead of G / t_b");
-  c.mortar.compression = s.choice<CompressionReading>(
-      "compression",
-      {{"irreversible", CompressionReading::irreversible, "unloading has slope K_n and leaves a closure"},
-       {"reversible", CompressionReading::reversible, "unloading retraces the bilinear curve"}},
-      CompressionReading::irreversible, "how contacts unload from compression");
-  c.mortar.coupled =
-      s.flag("coupled", false, "whether damage in tension also lowers the cohesion, by the factor 1 − D_t");
 
   const Section itz =
       s.section("aggregate_mortar",

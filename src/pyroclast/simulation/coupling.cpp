@@ -22,7 +22,7 @@ BodyProperties properties_at_one_temperature(const Model<2>& model, const Concre
     interfaces.push_back(materials.contacts[i].at(temperature));
     validate(interfaces.back(), model.interface_names[i]);
   }
-  return by_interface(model, std::move(zones), std::move(interfaces));
+  return by_interface(model, std::move(zones), interfaces);
 }
 
 }  // namespace
@@ -35,13 +35,13 @@ BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& mat
   const auto blocks = zone_blocks(model);
   for (int z = 0; z < model.zone_count(); ++z)
     p.zones.push_back(zone_at(materials.solids[model.block_material[blocks[z]]], field.zones()[z]));
-  p.contacts.reserve(model.contacts.size());
   p.of_contact.reserve(model.contacts.size());
   for (int c = 0; c < model.contact_count(); ++c) {
     const int interface = model.contacts[c].interface;
     p.of_contact.push_back(c);
-    p.contacts.push_back(materials.contacts[interface].at(field.contacts()[c]));
-    validate(p.contacts.back(), model.interface_names[interface]);
+    const ContactProperties properties = materials.contacts[interface].at(field.contacts()[c]);
+    validate(properties, model.interface_names[interface]);
+    p.contacts.add(properties);
   }
   return p;
 }

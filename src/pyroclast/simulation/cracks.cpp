@@ -46,12 +46,14 @@ Cracks count_cracks(const Mechanics<2>& mechanics) {
     const auto& contact = model.contacts[c];
     if (contact.interface != aggregate_mortar && contact.interface != mortar_mortar) return;
     const bool itz = contact.interface == aggregate_mortar;
-    const auto h = mechanics.contact_history(c);
+    const double tension = mechanics.remembered(c, Remembers::tension_damage);
+    const double shear = mechanics.remembered(c, Remembers::shear_damage);
     const double length = contact.area / model.thickness;
-    (itz ? sum.tension_am : sum.tension_mm).add(h.tension_damage, length);
-    (itz ? sum.shear_am : sum.shear_mm).add(h.shear_damage, length);
-    if (h.tension_damage > 0.0) {
-      sum.opening += std::max(0.0, mechanics.opening(c) + h.closure) * length;
+    (itz ? sum.tension_am : sum.tension_mm).add(tension, length);
+    (itz ? sum.shear_am : sum.shear_mm).add(shear, length);
+    if (tension > 0.0) {
+      sum.opening +=
+          std::max(0.0, mechanics.opening(c) + mechanics.remembered(c, Remembers::closure)) * length;
       sum.length += length;
     }
   });

@@ -102,10 +102,8 @@ constexpr auto kMotion = std::to_array<ColumnOf<Motion>>({
     {"energy_zones_J", "J", [](const Motion& m) { return m.energy.zones; }},
     {"energy_contacts_J", "J", [](const Motion& m) { return m.energy.contacts; }},
     {"energy_kinetic_J", "J", [](const Motion& m) { return m.energy.kinetic; }},
-    {"dissipated_tension_J", "J", [](const Motion& m) { return m.energy.dissipated.tension; }},
-    {"dissipated_shear_J", "J", [](const Motion& m) { return m.energy.dissipated.shear; }},
-    {"dissipated_friction_J", "J", [](const Motion& m) { return m.energy.dissipated.friction; }},
-    {"dissipated_compression_J", "J", [](const Motion& m) { return m.energy.dissipated.compression; }},
+});
+constexpr auto kLost = std::to_array<ColumnOf<Motion>>({
     {"energy_local_damping_J", "J", [](const Motion& m) { return m.energy.local_damping; }},
     {"energy_viscous_damping_J", "J", [](const Motion& m) { return m.energy.viscous_damping; }},
     {"energy_error_J", "J", [](const Motion& m) { return m.energy.error(); }},
@@ -132,6 +130,28 @@ constexpr auto kTransport = std::to_array<ColumnOf<T>>({
     {"heat_error_J", "J", [](const T& t) { return t.heat.error(); }},
 });
 
+/// With a column for each energy that the contact laws of the body lose.
+Gauge motion_gauge(const Mechanics<2>& mechanics) {
+  Gauge gauge;
+  const auto add = [&](const auto& table) {
+    for (const auto& column : table) gauge.columns.push_back({column.name, column.unit});
+  };
+  add(kMotion);
+  for (const auto& name : mechanics.dissipations())
+    gauge.columns.push_back({fmt::format("dissipated_{}_J", name), "J"});
+  add(kLost);
+  gauge.read = [](const Simulation& simulation) {
+    const Motion measured = measure_motion(simulation.mechanics());
+    std::vector<double> values;
+    for (const auto& column : kMotion) values.push_back(column.value(measured));
+    for (double energy : measured.energy.dissipated.energies) values.push_back(energy);
+    for (const auto& column : kLost) values.push_back(column.value(measured));
+    return values;
+  };
+  gauge.of_motion = true;
+  return gauge;
+}
+
 const Mechanics<2>& mechanics_of(const Simulation& simulation) {
   return simulation.mechanics();
 }
@@ -153,8 +173,7 @@ std::vector<Gauge> motion_gauges(const Simulation& simulation) {
   return {
       make_gauge(
           kPress, [](const Simulation& s) -> const Press<2>& { return s.press(); }, true),
-      make_gauge(
-          kMotion, [](const Simulation& s) { return measure_motion(s.mechanics()); }, true),
+      motion_gauge(simulation.mechanics()),
       make_gauge(
           kCracks, [](const Simulation& s) { return count_cracks(s.mechanics()); }, true),
   };

@@ -52,11 +52,8 @@ std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const Concre
                                              const std::shared_ptr<Team>& team) {
   std::vector<double> densities;
   for (const auto& solid : materials.solids) densities.push_back(solid.density(kReferenceTemperature));
-  auto mechanics = std::make_unique<Mechanics<2>>(model, densities, properties_at(model, materials, field),
-                                                  parameters, team);
-  for (int c = 0; c < model.contact_count(); ++c)
-    if (model.contacts[c].interface == platen_interface) mechanics->break_contact(c);
-  return mechanics;
+  return std::make_unique<Mechanics<2>>(model, densities, properties_at(model, materials, field), parameters,
+                                        team);
 }
 
 /// Component of a position along which the press stands.
@@ -112,11 +109,10 @@ double estimate_modulus(const Model<2>& model, const ConcreteMaterials& material
   }
   for (const auto& c : model.contacts) {
     if (c.interface == platen_interface) continue;
-    const auto p = materials.contacts[c.interface].at(kReferenceTemperature);
+    const auto k = materials.contacts[c.interface].at(kReferenceTemperature).stiffness();
     const double normal = c.normal[1] * c.normal[1];           // traction over stress, along the normal
     const double tangential = c.normal[1] * c.tangents[0][1];  // and along the face
-    compliance +=
-        c.area * (normal * normal / p.normal_stiffness + tangential * tangential / p.shear_stiffness);
+    compliance += c.area * (normal * normal / k.normal + tangential * tangential / k.shear);
   }
   return volume / compliance;
 }

@@ -4,43 +4,9 @@
 #include <string_view>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/unit.hpp"
 
 namespace pyroclast {
-
-/// A kind of physical quantity, by the unit in which the program computes with it.
-struct Unit {
-  const char* si;       ///< the unit of the value inside, in the notation of UDUNITS-2
-  const char* name;     ///< what the quantity is called in messages
-  const char* example;  ///< a quantity of this kind as a user would write it
-};
-
-/// The kinds of quantity that decks hold. Values are SI, except that a temperature is in °C.
-namespace unit {
-inline constexpr Unit dimensionless{"1", "dimensionless number", "31 %"};
-inline constexpr Unit length{"m", "length", "150 mm"};
-inline constexpr Unit area{"m2", "area", "450 cm2"};
-inline constexpr Unit angle{"rad", "angle", "34 deg"};
-inline constexpr Unit time{"s", "time", "90 min"};
-inline constexpr Unit frequency{"1/s", "frequency", "10 1/s"};
-inline constexpr Unit velocity{"m/s", "velocity", "0.8 mm/s"};
-inline constexpr Unit acceleration{"m/s2", "acceleration", "9.81 m/s2"};
-inline constexpr Unit density{"kg/m3", "density", "2650 kg/m3"};
-inline constexpr Unit force{"N", "force", "120 kN"};
-inline constexpr Unit stress{"Pa", "stress", "30 MPa"};
-/// Stiffness of a contact per unit of its area.
-inline constexpr Unit stiffness_per_area{"Pa/m", "contact stiffness", "18400 GPa/m"};
-inline constexpr Unit fracture_energy{"J/m2", "fracture energy", "40 N/m"};
-/// A temperature, in °C.
-inline constexpr Unit temperature{"degC", "temperature", "20 degC"};
-/// A difference of two temperatures, in K; a quantity in degC is refused here, because it is a temperature.
-inline constexpr Unit temperature_difference{"K", "temperature difference", "5 K"};
-inline constexpr Unit heating_rate{"K/s", "heating rate", "5 K/min"};
-inline constexpr Unit conductivity{"W/m/K", "thermal conductivity", "1.6 W/m/K"};
-inline constexpr Unit specific_heat{"J/kg/K", "specific heat", "900 J/kg/K"};
-inline constexpr Unit heat_transfer{"W/m2/K", "heat transfer coefficient", "25 W/m2/K"};
-inline constexpr Unit heat_flux{"W/m2", "heat flux", "15 kW/m2"};
-inline constexpr Unit expansion{"1/K", "thermal expansion coefficient", "1e-5 1/K"};
-}  // namespace unit
 
 /// A text that is not a quantity of the kind asked for. `what()` is the text in quotes and the reason.
 class QuantityError : public Error {

@@ -5,38 +5,12 @@
 /// Contact points: jumps to tractions to forces, Eqs. (10)-(15), and their sums at the gridpoints.
 namespace pyroclast {
 
+/// Sums of contact forces at gridpoints.
 template <int Dim, class Set>
-struct Contacts {
+struct ContactForces {
   using R = Rows<Dim, Set>;
   using Real = typename R::Real;
   using Vector = typename R::Vector;
-
-  /// Takes rows of faces through a step.
-  template <Kinematics kKinematics, bool kMeasure>
-  static void update_rows(State<Dim>& s, int first, int last) {
-    for (int row = first; row < last; ++row) {
-      R::fetch_faces_ahead(s, row);
-      const ContactConstants& set = s.contact_constants[s.set_of_faces[row]];
-      if (s.first_history[row] < 0) {
-        update_row<kKinematics, kMeasure>(
-            s, row, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
-              return s.one_set[row] ? contact_law::respond_elastically<Dim>(set, opening, tangential)
-                                    : contact_law::respond_elastically<Dim>(own_constants(s, row, point),
-                                                                            opening, tangential);
-            });
-      } else if (s.one_set[row]) {
-        update_row<kKinematics, kMeasure>(
-            s, row, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
-              return update_history(s, row, point, set, opening, tangential);
-            });
-      } else {
-        update_row<kKinematics, kMeasure>(
-            s, row, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
-              return update_history(s, row, point, own_constants(s, row, point), opening, tangential);
-            });
-      }
-    }
-  }
 
   /// Adds to the weight of a row of gridpoints what the contact points on it exert: with opposite signs on
   /// the two sides, or alike.
@@ -56,21 +30,72 @@ struct Contacts {
     }
     return total;
   }
+};
 
-  /// Puts the sums of |stiffness| over the rows of the contacts' matrix where their forces stand, N/m.
-  template <Kinematics kKinematics>
-  static void place_stiffness(State<Dim>& s, int row) {
-    const Frame frame = frame_of<kKinematics>(s, row);
-    const int first = s.layout.first_point_of(row), last = s.layout.first_point_of(row + 1);
-    for (int at = first; at < last; ++at) {
-      const Real area = Real::load(s.layout.points[at].area);
-      R::store(s.one_set[row] ? stiffness(s.contact_constants[s.set_of_faces[row]], frame.normal, area)
-                              : stiffness(own_constants(s, row, at - first), frame.normal, area),
-               &s.contact_force[slot_of(at, 0)]);
+/// Rows of faces that have one law.
+template <int Dim, class Set, class Law>
+struct Contacts {
+  using R = Rows<Dim, Set>;
+  using Real = typename R::Real;
+  using Vector = typename R::Vector;
+  using OneForAll = typename Law::template Constants<double>;
+  using ForEach = typename Law::template Constants<Real>;
+  using History = typename Law::template History<Dim, Real>;
+
+  static constexpr int kHistory = count_of<History>();
+  static constexpr int kLosses = count_of<typename Law::template Losses<double>>();
+  static constexpr int kConstants = count_of<OneForAll>();
+
+  /// As of RowFunctions.
+  static void update(State<Dim>& s, int first, int last, bool measure) {
+    with_kinematics(s, [&](auto kinematics) {
+      if (measure)
+        update_rows<kinematics(), true>(s, first, last);
+      else
+        update_rows<kinematics(), false>(s, first, last);
+    });
+  }
+
+  /// As of RowFunctions.
+  static void place_stiffness(State<Dim>& s, int first, int last) {
+    with_kinematics(s, [&](auto kinematics) { place_stiffness_of<kinematics()>(s, first, last); });
+  }
+
+  // flatten: lanes that cross a call go through memory
+  template <Kinematics kKinematics, bool kMeasure>
+  [[gnu::flatten]] static void update_rows(State<Dim>& s, int first, int last) {
+    for (int row = first; row < last; ++row) {
+      R::fetch_faces_ahead(s, row);
+      if (s.one_set[row]) {
+        const OneForAll& constants = constants_of_set(s, s.set_of_faces[row]);
+        update_row<kKinematics, kMeasure>(
+            s, row, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
+              return update_point(s, row, point, constants, opening, tangential);
+            });
+      } else {
+        update_row<kKinematics, kMeasure>(
+            s, row, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
+              return update_point(s, row, point, own_constants(s, row, point), opening, tangential);
+            });
+      }
     }
   }
 
  private:
+  template <Kinematics kKinematics>
+  [[gnu::flatten]] static void place_stiffness_of(State<Dim>& s, int first_row, int last_row) {
+    for (int row = first_row; row < last_row; ++row) {
+      const Frame frame = frame_of<kKinematics>(s, row);
+      const int first = s.layout.first_point_of(row), last = s.layout.first_point_of(row + 1);
+      for (int at = first; at < last; ++at) {
+        const Real area = Real::load(s.layout.points[at].area);
+        R::store(s.one_set[row] ? stiffness(constants_of_set(s, s.set_of_faces[row]), frame.normal, area)
+                                : stiffness(own_constants(s, row, at - first), frame.normal, area),
+                 &s.contact_force[slot_of(at, 0)]);
+      }
+    }
+  }
+
   struct Frame {
     Vector normal;
     std::array<Vector, Dim - 1> tangents;
@@ -144,54 +169,52 @@ struct Contacts {
     return sqrt(2.0 * area);
   }
 
+  static const OneForAll& constants_of_set(const State<Dim>& s, int set) {
+    return *reinterpret_cast<const OneForAll*>(&s.contact_constants[s.first_constant[set]]);
+  }
+
   /// Constants of points that have each their own temperature.
-  static ContactConstantsOf<Real> own_constants(const State<Dim>& s, int row, int point) {
-    ContactConstantsOf<Real> c;
-    const ContactConstants& choices = s.contact_constants[s.set_of_faces[row]];
-    c.behaviour = choices.behaviour;
-    c.compression = choices.compression;
-    c.coupled = choices.coupled;
-    const auto& number = s.contact_constants_rows[s.layout.first_point_of(row) + point].number;
-    int i = 0;
-    for_each_number(c, [&](Real& value) { value = Real::load(number[i++]); });
+  static ForEach own_constants(const State<Dim>& s, int row, int point) {
+    ForEach c;
+    ForEach::each_choice([](const auto&, auto& mine, const auto& of_set) { mine = of_set; }, c,
+                         constants_of_set(s, s.set_of_faces[row]));
+    const Line* line = &s.own_constants[s.first_own_constant[row] + point * kConstants];
+    ForEach::each([&](const auto&, Real& number) { number = Real::load(line++->number); }, c);
     return c;
   }
 
   template <class Constants>
-  static ContactResponse<Dim, Real> update_history(State<Dim>& s, int row, int point,
-                                                   const Constants& constants, const Real& opening,
-                                                   const Tangential<Dim, Real>& tangential) {
-    using H = HistoryLines<Dim>;
-    using L = LossLines;
-    Line* const line = &s.history[s.first_history[row] + point * H::count];
-    Line* const loss = &s.loss[s.first_loss[row] + point * L::count];
-    ContactHistory<Dim, Real> h;
-    h.tension_damage = Real::load(line[H::tension_damage].number);
-    h.shear_damage = Real::load(line[H::shear_damage].number);
-    h.closure = Real::load(line[H::closure].number);
-    for (int t = 0; t + 1 < Dim; ++t) h.slip[t] = Real::load(line[H::slip + t].number);
-    h.held_jump = Real::load(line[H::held_jump].number);
-    ContactLossesOf<LineSum> losses{{loss[L::slip_path].number},
-                                    {loss[L::tension].number},
-                                    {loss[L::shear].number},
-                                    {loss[L::friction].number},
-                                    {loss[L::compression].number}};
-    const auto response = update_contact<Dim>(constants, opening, tangential, h, losses);
-    h.held_jump.store(line[H::held_jump].number);
-    s.losing[s.layout.first_point_of(row) + point] = response.slid || response.damaged;
-    if (response.slid)
-      for (int t = 0; t + 1 < Dim; ++t) h.slip[t].store(line[H::slip + t].number);
-    if (response.damaged) {
-      h.tension_damage.store(line[H::tension_damage].number);
-      h.shear_damage.store(line[H::shear_damage].number);
-      h.closure.store(line[H::closure].number);
+  static ContactResponse<Dim, Real> update_point(State<Dim>& s, int row, int point,
+                                                 const Constants& constants, const Real& opening,
+                                                 const Tangential<Dim, Real>& tangential) {
+    History h;
+    typename Law::template Losses<LineSum> losses;
+    if constexpr (kHistory > 0) {
+      const Line* line = &s.history[s.first_history[row] + point * kHistory];
+      History::each([&](const auto&, Real& number) { number = Real::load(line++->number); }, h);
     }
+    if constexpr (kLosses > 0) {
+      Line* line = &s.loss[s.first_loss[row] + point * kLosses];
+      Law::template Losses<LineSum>::each([&](const auto&, LineSum& sum) { sum.number = line++->number; },
+                                          losses);
+    }
+    const auto response = Law::template update<Dim>(constants, opening, tangential, h, losses);
+    if constexpr (kHistory > 0) {
+      Line* line = &s.history[s.first_history[row] + point * kHistory];
+      History::each(
+          [&](const HistoryInfo& info, const Real& number) {
+            if (info.when == 0 || (response.changed & info.when) != 0) number.store(line->number);
+            ++line;
+          },
+          h);
+    }
+    if constexpr (kLosses > 0) s.losing[s.layout.first_point_of(row) + point] = response.changed != 0;
     return response;
   }
 
   /// Adds to eight numbers in an array.
   struct LineSum {
-    double* number;
+    double* number = nullptr;
     void operator+=(const Real& more) const { (Real::load(number) + more).store(number); }
   };
 
@@ -206,13 +229,14 @@ struct Contacts {
 
   /// Once for the gridpoint itself, once for the one across.
   template <class Constants>
-  static Vector stiffness(const Constants& c, const Vector& normal, const Real& area) {
+  static Vector stiffness(const Constants& constants, const Vector& normal, const Real& area) {
+    const auto k = Law::stiffness(constants);
     Vector row;
     for (int i = 0; i < Dim; ++i) {
       Real sum = 0.0;
       for (int j = 0; j < Dim; ++j) {
         const Real nn = normal[i] * normal[j];
-        sum += abs(c.normal_stiffness * nn + c.shear_stiffness * ((i == j ? 1.0 : 0.0) - nn));
+        sum += abs(k.normal * nn + k.shear * ((i == j ? 1.0 : 0.0) - nn));
       }
       row[i] = 2.0 * sum * area;
     }

@@ -5,6 +5,15 @@
 /// Rows of eight: how lanes are loaded, stored and gathered, and how memory is asked for ahead.
 namespace pyroclast {
 
+/// Calls `f` with the body's kinematics as a constant.
+template <int Dim, class F>
+void with_kinematics(const State<Dim>& s, F f) {
+  if constexpr (Dim == 2)
+    if (s.kinematics == Kinematics::finite)
+      return f(std::integral_constant<Kinematics, Kinematics::finite>());
+  f(std::integral_constant<Kinematics, Kinematics::small>());
+}
+
 /// \tparam Set  an instruction set of base/lanes.hpp
 template <int Dim, class Set>
 struct Rows {
@@ -112,14 +121,14 @@ struct Rows {
     const int first = layout.first_point_of(ahead), last = layout.first_point_of(ahead + 1);
     fetch(&layout.faces[ahead], sizeof(FaceRow<Dim>));
     fetch(&layout.points[first], static_cast<std::size_t>(last - first) * sizeof(PointRow));
-    if (const int history = s.first_history[ahead]; history >= 0) {
-      fetch(&s.history[history],
-            static_cast<std::size_t>(last - first) * HistoryLines<Dim>::count * sizeof(Line));
+    const int history = s.first_history[ahead], loss = s.first_loss[ahead];
+    if (const int lines = s.first_history[ahead + 1] - history; lines > 0)
+      fetch(&s.history[history], static_cast<std::size_t>(lines) * sizeof(Line));
+    const int points = Dim == 2 ? 2 : last - first;  // a division by a constant where it can be
+    if (const int lines = (s.first_loss[ahead + 1] - loss) / points; lines > 0)
       for (int point = first; point < last; ++point)
         if (s.losing[point])
-          fetch(&s.loss[s.first_loss[ahead] + (point - first) * LossLines::count],
-                LossLines::count * sizeof(Line));
-    }
+          fetch(&s.loss[loss + (point - first) * lines], static_cast<std::size_t>(lines) * sizeof(Line));
     for (int r = layout.rows_reached[ahead]; r < layout.rows_reached[ahead + 1]; ++r)
       fetch(&s.displacement[slot_of(r, 0)], kLanes * sizeof(Vec<Dim>));
   }

@@ -14,7 +14,7 @@
 ///                      +--------------- motion <------------------+            Eqs. (6)-(8)    motion.hpp
 ///
 /// mechanics/layout.hpp draws where everything stands and explains its words; rows.hpp loads, stores and
-/// gathers; base/lanes.hpp says what a lane is; the laws stand in material. sweep.hpp shares a step out to
+/// gathers; base/lanes.hpp says what a lane is; the laws stand in laws/. sweep.hpp shares a step out to
 /// threads: it takes rows of faces and, soon after, the bundles whose faces are all done. Forces are gathered
 /// by the gridpoint that they act on, never scattered. This header is compiled once for each instruction set.
 namespace pyroclast {
@@ -24,21 +24,18 @@ template <int Dim, class Set>
 class Step {
  public:
   using R = Rows<Dim, Set>;
-  using C = Contacts<Dim, Set>;
+  using C = ContactForces<Dim, Set>;
   using Z = Zones<Dim, Set>;
   using M = Motion<Dim, Set>;
   using Vector = typename R::Vector;
   using Scratch = typename R::Scratch;
   using Sums = typename R::Sums;
 
-  /// First half: rows of faces.
-  static void update_faces(State<Dim>& s, int first, int last, bool measure) {
-    with_kinematics(s, [&](auto kinematics) {
-      if (measure)
-        faces<kinematics(), true>(s, first, last);
-      else
-        faces<kinematics(), false>(s, first, last);
-    });
+  /// First half: rows of faces, by law.
+  template <class... Laws>
+  static constexpr auto laws(LawList<Laws...>) {
+    return std::array<RowFunctions<Dim>, sizeof...(Laws)>{
+        {{Contacts<Dim, Set, Laws>::update, Contacts<Dim, Set, Laws>::place_stiffness}...}};
   }
 
   /// Second half: bundles whose faces are all done.
@@ -56,18 +53,18 @@ class Step {
     });
   }
 
+  /// All of it, with the laws that are part of the program.
+  static StepFunctions<Dim> functions() { return {laws(BuiltInLaws()), move_bundles, sum_stiffness}; }
+
   /// Sums of |stiffness| over the rows of the assembled matrix, zones and contacts, N/m.
   static void sum_stiffness(State<Dim>& s, double* memory) {
+    for_each_law(
+        s, 0, static_cast<int>(s.layout.faces.size()),
+        [&](const RowFunctions<Dim>& law, int first, int last) { law.place_stiffness(s, first, last); });
     with_kinematics(s, [&](auto kinematics) { stiffness<kinematics()>(s, memory); });
   }
 
   // flatten: lanes that cross a call go through memory
-
-  template <Kinematics kKinematics, bool kMeasure>
-  [[gnu::flatten]] static void faces(State<Dim>& s, int first, int last) {
-    C::template update_rows<kKinematics, kMeasure>(s, first, last);
-  }
-
   template <Kinematics kKinematics, Pass kPass>
   [[gnu::flatten]] static void bundle(State<Dim>& s, int index, double* memory) {
     const Bundle& bundle = s.layout.bundles[index];
@@ -110,19 +107,8 @@ class Step {
   }
 
  private:
-  /// Calls `f` with the body's kinematics as a constant.
-  template <class F>
-  static void with_kinematics(const State<Dim>& s, F f) {
-    if constexpr (Dim == 2)
-      if (s.kinematics == Kinematics::finite)
-        return f(std::integral_constant<Kinematics, Kinematics::finite>());
-    f(std::integral_constant<Kinematics, Kinematics::small>());
-  }
-
   template <Kinematics kKinematics>
   [[gnu::flatten]] static void stiffness(State<Dim>& s, double* memory) {
-    for (int row = 0; row < static_cast<int>(s.layout.faces.size()); ++row)
-      C::template place_stiffness<kKinematics>(s, row);
     for (int index = 0; index < static_cast<int>(s.layout.bundles.size()); ++index) {
       const Bundle& bundle = s.layout.bundles[index];
       const Scratch scratch = R::scratch_of(bundle, memory);

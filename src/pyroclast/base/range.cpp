@@ -1,4 +1,4 @@
-#include "pyroclast/deck/range.hpp"
+#include "pyroclast/base/range.hpp"
 
 #include <cmath>
 

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "pyroclast/laws/cohesive.hpp"
+#include "pyroclast/laws/elastic.hpp"
+#include "pyroclast/laws/frictional.hpp"
+
+namespace pyroclast {
+
+template <class... Laws>
+struct LawList {
+  static constexpr int count = sizeof...(Laws);
+};
+
+/// The laws that are part of the program: one line for each.
+using BuiltInLaws = LawList<Cohesive,  //
+                            Elastic,   //
+                            Frictional>;
+
+}  // namespace pyroclast

@@ -1,0 +1,401 @@
+#pragma once
+
+#include "pyroclast/laws/law.hpp"
+
+namespace pyroclast {
+
+/// The contact law of the paper, Eqs. (10)-(15): linear softening in tension, softening Mohr-Coulomb friction
+/// in shear, bilinear compression.
+///
+/// Along one axis (opening alone, or sliding at a steady opening) the result does not depend on how the way
+/// to the jump is cut into steps. On combined ways friction is that of the pressure at the end of each step,
+/// so it converges with the number of steps. Energies are closed forms of the history, not quadratures. At
+/// the jump that it was last taken to, the law gives the same tractions again and loses nothing.
+struct Cohesive {
+  static constexpr const char* name = "cohesive";
+  static constexpr const char* meaning = "softens in tension and shear, yields in compression (the paper's)";
+
+  /// The reading of the compression law, Eq. (15).
+  enum class Compression : std::uint8_t {
+    irreversible,  ///< unloading has slope K_n and leaves a closure
+    reversible     ///< unloading retraces the bilinear curve
+  };
+
+  /// Parameters at one temperature (paper, Tables 1 and 2).
+  template <class Real>
+  struct Properties {
+    using Law = Cohesive;
+
+    Real normal_stiffness{};         ///< K_n, Pa/m
+    Real shear_stiffness{};          ///< K_s, Pa/m
+    Real tensile_strength{};         ///< f_t, Pa
+    Real mode_1_energy{};            ///< G_f1, J/m²
+    Real compressive_limit{};        ///< f_cm, end of the first slope in compression, Pa; may be infinite
+    Real hardening{};                ///< beta, second slope over first
+    Real cohesion{};                 ///< c_o, Pa
+    Real residual_cohesion{};        ///< c_res, Pa
+    Real friction_angle{};           ///< phi, rad
+    Real residual_friction_angle{};  ///< phi_res, rad
+    Real mode_2_energy{};            ///< G_f2, J/m²
+    Compression compression = Compression::irreversible;
+    bool coupled = false;  ///< cohesion also scaled by 1 - D_t
+
+    template <class F, class... P>
+    static constexpr void each(F&& f, P&... p) {
+      f(PropertyInfo{"K_n", "normal stiffness", unit::stiffness_per_area, Range::positive(),
+                     Role::normal_stiffness},
+        p.normal_stiffness...);
+      f(PropertyInfo{"K_s", "shear stiffness", unit::stiffness_per_area, Range::positive(),
+                     Role::shear_stiffness},
+        p.shear_stiffness...);
+      f(PropertyInfo{"f_t", "tensile strength", unit::stress, Range::positive(), Role::strength},
+        p.tensile_strength...);
+      f(PropertyInfo{"G_f1", "mode I fracture energy", unit::fracture_energy, Range::positive(),
+                     Role::energy},
+        p.mode_1_energy...);
+      f(PropertyInfo{"f_cm", "compression at which the second slope begins", unit::stress, Range::positive(),
+                     Role::strength},
+        p.compressive_limit...);
+      f(PropertyInfo{"beta", "second slope in compression over the first", unit::dimensionless,
+                     Range::inside(0.0, 1.0)},
+        p.hardening...);
+      f(PropertyInfo{"c_o", "cohesion", unit::stress, Range::positive(), Role::strength}, p.cohesion...);
+      f(PropertyInfo{"c_res", "residual cohesion", unit::stress, Range::non_negative(), Role::strength},
+        p.residual_cohesion...);
+      f(PropertyInfo{"phi", "friction angle", unit::angle, kAngles}, p.friction_angle...);
+      f(PropertyInfo{"phi_res", "residual friction angle", unit::angle, kAngles},
+        p.residual_friction_angle...);
+      f(PropertyInfo{"G_f2", "mode II fracture energy", unit::fracture_energy, Range::positive(),
+                     Role::energy},
+        p.mode_2_energy...);
+    }
+    template <class F, class... P>
+    static constexpr void each_choice(F&& f, P&... p) {
+      f(ChoiceInfo{"compression",
+                   "how contacts unload from compression",
+                   {{"irreversible", "unloading has slope K_n and leaves a closure"},
+                    {"reversible", "unloading retraces the bilinear curve"}}},
+        p.compression...);
+      f(ChoiceInfo{"coupled",
+                   "whether damage in tension also lowers the cohesion, by the factor 1 − D_t",
+                   {{"false", "no"}, {"true", "by the factor 1 - D_t"}}},
+        p.coupled...);
+    }
+
+    /// u_e = f_t / K_n, opening at which softening begins, m.
+    Real elastic_opening() const { return tensile_strength / normal_stiffness; }
+    /// u_f = 2 G_f1 / f_t, opening at which nothing is left, m.
+    Real ultimate_opening() const { return 2.0 * mode_1_energy / tensile_strength; }
+
+   private:
+    static constexpr Range kAngles{.lower = 0.0, .upper = 1.57, .upper_inclusive = false};
+  };
+
+  /// What follows from the parameters.
+  template <class Real>
+  struct Constants {
+    Real normal_stiffness, shear_stiffness;        ///< Pa/m
+    Real shear_compliance;                         ///< 1 / K_s, m/Pa
+    Real tensile_strength, mode_1_energy;          ///< Pa, J/m²
+    Real elastic_opening;                          ///< u_e, m
+    Real softening_range, over_softening_range;    ///< u_f - u_e, m; 1/m
+    Real compressive_limit;                        ///< Pa
+    Real closure_at_limit;                         ///< f_cm / K_n, m
+    Real share_left;                               ///< of a closure beyond the limit, as u_p: 1 - beta
+    Real hardening_slope;                          ///< of the yield stress over u_p, Pa/m
+    Real cohesion, residual_cohesion;              ///< Pa
+    Real friction, residual_friction;              ///< tan(phi), tan(phi_res)
+    Real mode_2_energy, over_twice_mode_2_energy;  ///< J/m², m²/J
+    Compression compression = Compression::irreversible;
+    bool coupled = false;
+
+    template <class F, class... C>
+    static constexpr void each(F&& f, C&... c) {
+      f(Nothing{}, c.normal_stiffness...);
+      f(Nothing{}, c.shear_stiffness...);
+      f(Nothing{}, c.shear_compliance...);
+      f(Nothing{}, c.tensile_strength...);
+      f(Nothing{}, c.mode_1_energy...);
+      f(Nothing{}, c.elastic_opening...);
+      f(Nothing{}, c.softening_range...);
+      f(Nothing{}, c.over_softening_range...);
+      f(Nothing{}, c.compressive_limit...);
+      f(Nothing{}, c.closure_at_limit...);
+      f(Nothing{}, c.share_left...);
+      f(Nothing{}, c.hardening_slope...);
+      f(Nothing{}, c.cohesion...);
+      f(Nothing{}, c.residual_cohesion...);
+      f(Nothing{}, c.friction...);
+      f(Nothing{}, c.residual_friction...);
+      f(Nothing{}, c.mode_2_energy...);
+      f(Nothing{}, c.over_twice_mode_2_energy...);
+    }
+    template <class F, class... C>
+    static constexpr void each_choice(F&& f, C&... c) {
+      f(Nothing{}, c.compression...);
+      f(Nothing{}, c.coupled...);
+    }
+  };
+
+  static Constants<double> derive(const Properties<double>& p) {
+    Constants<double> c;
+    c.normal_stiffness = p.normal_stiffness;
+    c.shear_stiffness = p.shear_stiffness;
+    c.shear_compliance = 1.0 / p.shear_stiffness;
+    c.tensile_strength = p.tensile_strength;
+    c.mode_1_energy = p.mode_1_energy;
+    c.elastic_opening = p.elastic_opening();
+    c.softening_range = p.ultimate_opening() - p.elastic_opening();
+    c.over_softening_range = 1.0 / c.softening_range;
+    c.compressive_limit = p.compressive_limit;
+    c.closure_at_limit = p.compressive_limit / p.normal_stiffness;
+    c.share_left = 1.0 - p.hardening;
+    // on monotone loading exactly Eq. (15)
+    c.hardening_slope = p.hardening * p.normal_stiffness / (1.0 - p.hardening);
+    c.cohesion = p.cohesion;
+    c.residual_cohesion = p.residual_cohesion;
+    c.friction = std::tan(p.friction_angle);
+    c.residual_friction = std::tan(p.residual_friction_angle);
+    c.mode_2_energy = p.mode_2_energy;
+    c.over_twice_mode_2_energy = 0.5 / p.mode_2_energy;
+    c.compression = p.compression;
+    c.coupled = p.coupled;
+    return c;
+  }
+
+  /// A softening branch may not be steeper than the elastic one: it would snap back.
+  static Objection check(const Properties<double>& p) {
+    if (p.residual_cohesion > p.cohesion) return {"c_res", "between 0 and c_o = %g", p.cohesion};
+    if (p.residual_friction_angle > p.friction_angle)
+      return {"phi_res", "between 0 and phi = %g", p.friction_angle};
+    const double snap_1 = p.tensile_strength * p.tensile_strength / (2.0 * p.normal_stiffness);
+    if (!(p.mode_1_energy > snap_1))
+      return {"G_f1", "greater than f_t^2 / (2 K_n) = %g, else softening snaps back", snap_1};
+    // Where friction does not drop, tau_max - tau_res is largest at c_o - c_res; a drop in friction adds p
+    // times it, which the limit f_cm bounds in the elastic range. Beyond it the law falls to the residual
+    // line.
+    double drop = p.cohesion - p.residual_cohesion;
+    const double friction_drop = std::tan(p.friction_angle) - std::tan(p.residual_friction_angle);
+    if (friction_drop > 0.0 && std::isfinite(p.compressive_limit))
+      drop += p.compressive_limit * friction_drop;
+    const double snap_2 = drop * drop / (2.0 * p.shear_stiffness);
+    if (drop != 0.0 && !(p.mode_2_energy > snap_2))
+      return {"G_f2", "greater than (tau_max - tau_res)^2 / (2 K_s) = %g, else softening snaps back", snap_2};
+    return {};
+  }
+
+  template <class Real>
+  static ContactStiffness<Real> stiffness(const Constants<Real>& c) {
+    return {c.normal_stiffness, c.shear_stiffness};
+  }
+
+  // Bits of ContactResponse::changed.
+  static constexpr unsigned kSlid = 1;     ///< the slip
+  static constexpr unsigned kDamaged = 2;  ///< a damage or the closure
+
+  /// What a contact point remembers.
+  template <int Dim, class Real>
+  struct History {
+    Real tension_damage{};         ///< D_t = 1 - delta_t of the paper
+    Real shear_damage{};           ///< D_s = 1 - delta_s
+    Real closure{};                ///< u_p, m
+    Tangential<Dim, Real> slip{};  ///< m
+    Real held_jump{};              ///< m
+
+    template <class F, class... H>
+    static constexpr void each(F&& f, H&... h) {
+      f(HistoryInfo{"tension_damage", "0 intact, 1 broken; never decreases", unit::dimensionless,
+                    Remembers::tension_damage, kDamaged},
+        h.tension_damage...);
+      f(HistoryInfo{"shear_damage", "0 intact, 1 broken; never decreases", unit::dimensionless,
+                    Remembers::shear_damage, kDamaged},
+        h.shear_damage...);
+      f(HistoryInfo{"closure", "irreversible, in compression; never decreases", unit::length,
+                    Remembers::closure, kDamaged},
+        h.closure...);
+      for (int i = 0; i + 1 < Dim; ++i)
+        f(HistoryInfo{"slip", "irreversible part of the tangential jump", unit::length, Remembers::other,
+                      kSlid, false},
+          h.slip[i]...);
+      f(HistoryInfo{"held_jump", "length of the elastic part of the tangential jump", unit::length,
+                    Remembers::other, 0, false},
+        h.held_jump...);
+    }
+  };
+
+  /// What it lost for good. Nothing is added while nothing is lost.
+  template <class Sum>
+  struct Losses {
+    Sum slip_path, tension, shear, friction, compression;
+
+    template <class F, class... L>
+    static constexpr void each(F&& f, L&... l) {
+      f(LossInfo{"slip_path", "length of the slip's path", unit::length}, l.slip_path...);
+      f(LossInfo{"tension", "G_f1 when torn apart", unit::fracture_energy}, l.tension...);
+      f(LossInfo{"shear", "above the residual line; G_f2 when fully softened", unit::fracture_energy},
+        l.shear...);
+      f(LossInfo{"friction", "along the residual line", unit::fracture_energy}, l.friction...);
+      f(LossInfo{"compression", "irreversible closure", unit::fracture_energy}, l.compression...);
+    }
+  };
+
+  template <int Dim, class Real, class Number, class Sum>
+  static ContactResponse<Dim, Real> update(const Constants<Number>& constants, const Real& opening,
+                                           const Tangential<Dim, Real>& tangential,
+                                           History<Dim, Real>& history, Losses<Sum>& losses) {
+    ContactResponse<Dim, Real> response;
+    update_normal<Dim>(constants, opening, history, response, losses);
+    update_shear<Dim>(constants, tangential, opening, history, response, losses);
+    return response;
+  }
+
+ private:
+  /// Linear tension softening with unloading to the origin.
+  /// \param elastic  opening beyond the closure left behind, m
+  template <int Dim, class Real, class Constants, class Losses>
+  static void update_tension(const Constants& c, const Real& elastic, History<Dim, Real>& h,
+                             ContactResponse<Dim, Real>& r, Losses& losses) {
+    const auto open = elastic > 0.0;
+    // In this order a contact without any strength, 0 / 0, breaks.
+    const Real damage = smaller(Real(1.0), (elastic - c.elastic_opening) * c.over_softening_range);
+    const auto grows = open & (damage > h.tension_damage);
+    if (any(grows)) {
+      // The area between the envelope and the secant grows by G_f1 dD, whatever the step.
+      losses.tension += select(grows, c.mode_1_energy * (damage - h.tension_damage), Real(0.0));
+      h.tension_damage = select(grows, damage, h.tension_damage);
+      r.changed |= kDamaged;
+    }
+    const auto holds = open & (h.tension_damage < 1.0);
+    const Real kappa = c.elastic_opening + h.tension_damage * c.softening_range;
+    const Real traction =
+        select(holds, (1.0 - h.tension_damage) * c.tensile_strength * elastic / kappa, Real(0.0));
+    r.normal_traction += traction;
+    r.stored += 0.5 * traction * elastic;
+  }
+
+  /// Compression with unloading along K_n, which leaves a closure: yield stress f_cm + H u_p.
+  /// \param elastic  in and out: opening beyond the closure left behind, m
+  template <int Dim, class Real, class Constants, class Losses>
+  static void update_compression(const Constants& c, const Real& opening, Real& elastic,
+                                 History<Dim, Real>& h, ContactResponse<Dim, Real>& r, Losses& losses) {
+    const Real closure = c.share_left * (-opening - c.closure_at_limit);
+    const auto yields = closure > h.closure;
+    if (any(yields)) {
+      losses.compression += select(
+          yields,
+          (closure - h.closure) * (c.compressive_limit + 0.5 * c.hardening_slope * (closure + h.closure)),
+          Real(0.0));
+      h.closure = select(yields, closure, h.closure);
+      elastic = opening + h.closure;
+      r.changed |= kDamaged;
+    }
+    const Real pressed = smaller(elastic, Real(0.0));
+    r.normal_traction = c.normal_stiffness * pressed;
+    r.stored = 0.5 * r.normal_traction * pressed;
+  }
+
+  /// Compression that retraces the bilinear curve (15).
+  template <int Dim, class Real, class Constants>
+  static void follow_compression(const Constants& c, const Real& opening, ContactResponse<Dim, Real>& r) {
+    const auto k = c.normal_stiffness;
+    const Real pressed = smaller(opening, Real(0.0));
+    const Real beyond = larger(-pressed - c.closure_at_limit, Real(0.0));
+    const Real within = -pressed - beyond;
+    r.normal_traction = k * (pressed + c.share_left * beyond);
+    const Real yielded = beyond * (c.compressive_limit + 0.5 * (1.0 - c.share_left) * k * beyond);
+    r.stored = 0.5 * k * within * within + select(beyond > 0.0, yielded, Real(0.0));  // f_cm may be infinite
+  }
+
+  /// Normal part: bilinear compression and linear tension softening over the elastic opening u_n + u_p.
+  template <int Dim, class Real, class Constants, class Losses>
+  static void update_normal(const Constants& c, const Real& opening, History<Dim, Real>& h,
+                            ContactResponse<Dim, Real>& r, Losses& losses) {
+    Real elastic = opening + h.closure;  // zero traction at zero
+    if (c.compression == Compression::irreversible)
+      update_compression<Dim>(c, opening, elastic, h, r, losses);
+    else
+      follow_compression<Dim>(c, opening, r);
+    if (any((elastic > 0.0) & (h.tension_damage < 1.0))) update_tension<Dim>(c, elastic, h, r, losses);
+  }
+
+  /// Exact return of the elastic predictor to the softening envelope.
+  ///
+  /// Where the envelope falls more steeply than K_s, as under pressures beyond f_cm where friction drops, no
+  /// softening branch can be followed: the point falls to the residual line at once, and what that releases
+  /// beyond G_f2 is booked as shear loss too.
+  /// \param elastic  in and out: elastic part of the tangential jump, m
+  /// \param held     in and out: its length
+  template <int Dim, class Real, class Constants, class Truth, class Losses>
+  static void return_to_envelope(const Constants& c, const Truth& slips, const Real& excess,
+                                 const Real& residual, const Real& drop, Tangential<Dim, Real>& elastic,
+                                 Real& held, History<Dim, Real>& h, ContactResponse<Dim, Real>& r,
+                                 Losses& losses) {
+    const auto softens = slips & (h.shear_damage < 1.0) & (drop > 0.0);
+    const Real remaining = 1.0 - h.shear_damage;
+    const Real per_slip = drop * c.over_twice_mode_2_energy;  // 1 / s_u
+    const auto follows = drop * per_slip < c.shear_stiffness;
+    const Real softening_slip = excess / (c.shear_stiffness - drop * per_slip);
+    const Real damage = h.shear_damage + softening_slip * per_slip;
+    const auto partly = softens & follows & (damage < 1.0);
+    // all the way down to the residual line where it softens to the end
+    Real length = select(softens, held - residual * c.shear_compliance, excess * c.shear_compliance);
+    length = select(partly, softening_slip, length);
+    length = select(slips, length, Real(0.0));
+    if (any(softens)) {
+      const Real new_damage = select(partly, damage, Real(1.0));
+      const Real left = 1.0 - new_damage;
+      const Real energy = select(follows, Real(c.mode_2_energy), 0.5 * drop * drop * c.shear_compliance);
+      losses.shear += select(softens, energy * (remaining - left) * (remaining + left), Real(0.0));
+      h.shear_damage = select(softens, new_damage, h.shear_damage);
+      r.changed |= kDamaged;
+    }
+    losses.friction += residual * length;
+    losses.slip_path += length;
+    Tangential<Dim, Real> step;
+    if constexpr (Dim == 2)
+      step[0] = signed_like(length, elastic[0]);
+    else
+      step = elastic * select(slips, length / held, Real(0.0));
+    h.slip += step;
+    elastic -= step;
+    held = norm(elastic);
+    r.changed |= kSlid;
+  }
+
+  /// Shear part: elastic predictor and exact return to the softening Mohr-Coulomb envelope.
+  template <int Dim, class Real, class Constants, class Losses>
+  static void update_shear(const Constants& c, const Tangential<Dim, Real>& jump, const Real& opening,
+                           History<Dim, Real>& h, ContactResponse<Dim, Real>& r, Losses& losses) {
+    const auto k = c.shear_stiffness;
+    Tangential<Dim, Real> elastic = jump - h.slip;
+    Real held = norm(elastic);
+    const auto open_and_broken = (h.tension_damage >= 1.0) & (opening + h.closure > 0.0);
+    Real cohesion = c.cohesion;
+    if (c.coupled) cohesion *= 1.0 - h.tension_damage;
+    const Real residual_cohesion = smaller(cohesion, Real(c.residual_cohesion));
+    const Real peak = larger(cohesion - r.normal_traction * c.friction, Real(0.0));
+    const Real residual =
+        smaller(peak, larger(residual_cohesion - r.normal_traction * c.residual_friction, Real(0.0)));
+    const Real drop = peak - residual;
+    const Real excess = k * held - (peak - h.shear_damage * drop);
+    const auto slips = (excess > 0.0) & !open_and_broken;
+    if (any(slips)) return_to_envelope<Dim>(c, slips, excess, residual, drop, elastic, held, h, r, losses);
+    if (any(open_and_broken)) {
+      // The bond lets go of the shear it still carried. That energy was held by cohesion, so it is booked
+      // there.
+      const Real released = select(open_and_broken, 0.5 * k * h.held_jump * h.held_jump, Real(0.0));
+      if (any(released > 0.0)) losses.shear += released;
+      held = select(open_and_broken, Real(0.0), held);
+      for (int i = 0; i + 1 < Dim; ++i) {
+        h.slip[i] = select(open_and_broken, jump[i], h.slip[i]);
+        elastic[i] = select(open_and_broken, Real(0.0), elastic[i]);
+      }
+      r.changed |= kSlid;
+    }
+    h.held_jump = held;
+    r.shear_traction = elastic * Real(k);
+    r.stored += 0.5 * k * held * held;
+  }
+};
+
+}  // namespace pyroclast

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <concepts>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pyroclast/laws/table.hpp"
+
+namespace pyroclast {
+
+/// Parameters of a contact at one temperature, of any law.
+struct ContactProperties {
+  const LawTable* law = nullptr;
+  std::vector<double> numbers;  ///< in the order of LawTable::properties
+  std::vector<int> choices;     ///< likewise
+
+  ContactProperties() = default;
+  ContactProperties(const LawTable& of, std::vector<double> with, std::vector<int> chosen);
+  /// Of a law's own struct.
+  template <class P>
+  requires std::same_as<P, typename P::Law::template Properties<double>> ContactProperties(const P& p)
+      : law(&table_of<typename P::Law>()),
+        numbers(static_cast<std::size_t>(count_of<P>())),
+        choices(static_cast<std::size_t>(choices_of<P>())) {
+    put(p, numbers.data());
+    put_choices(p, choices.data());
+  }
+
+  /// As the struct of its law. Throws Error when it is of another one.
+  template <class Law>
+  typename Law::template Properties<double> as() const {
+    require(table_of<Law>());
+    return law_table::properties<Law>(numbers.data(), choices.data());
+  }
+
+  /// What the law works with.
+  std::vector<std::byte> constants() const;
+  ContactStiffness<double> stiffness() const { return law->stiffness(constants().data()); }
+
+ private:
+  void require(const LawTable& wanted) const;
+};
+
+/// Throws Error, naming the quantity, when a parameter is out of its range or the law objects.
+/// \param name  of the contact, for the message
+void validate(const ContactProperties& properties, const std::string& name);
+
+/// Parameters of many contacts, one set after the other.
+class ContactSets {
+ public:
+  ContactSets() = default;
+  ContactSets(std::initializer_list<ContactProperties> sets) {
+    for (const auto& set : sets) add(set);
+  }
+  explicit ContactSets(const std::vector<ContactProperties>& sets) {
+    for (const auto& set : sets) add(set);
+  }
+
+  void add(const ContactProperties& set);
+  int size() const { return static_cast<int>(law_.size()); }
+  const LawTable& law(int set) const { return *law_[set]; }
+  std::span<const double> numbers(int set) const {
+    return {numbers_.data() + first_number_[set], law(set).properties.size()};
+  }
+  std::span<const int> choices(int set) const {
+    return {choices_.data() + first_choice_[set], law(set).choices.size()};
+  }
+  ContactProperties operator[](int set) const {
+    const auto n = numbers(set);
+    const auto c = choices(set);
+    return {law(set), {n.begin(), n.end()}, {c.begin(), c.end()}};
+  }
+
+ private:
+  std::vector<const LawTable*> law_;
+  std::vector<std::size_t> first_number_, first_choice_;
+  std::vector<double> numbers_;
+  std::vector<int> choices_;
+};
+
+}  // namespace pyroclast

@@ -1,0 +1,44 @@
+#include "pyroclast/laws/registry.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/laws/built_in.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+template <class... Laws>
+std::span<const LawTable* const> tables_of(LawList<Laws...>) {
+  static const std::array<const LawTable*, sizeof...(Laws)> tables{&table_of<Laws>()...};
+  return tables;
+}
+
+}  // namespace
+
+std::span<const LawTable* const> laws() {
+  return tables_of(BuiltInLaws());
+}
+
+const LawTable& law(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const LawTable* table : laws()) {
+    if (table->name == name) return *table;
+    names.emplace_back(table->name);
+  }
+  throw Error(fmt::format("there is no contact law \"{}\"; there are {}", name, fmt::join(names, ", ")));
+}
+
+int index_of(const LawTable& law) {
+  const auto found = std::ranges::find(laws(), &law);
+  if (found == laws().end()) throw Error(fmt::format("the contact law \"{}\" is not registered", law.name));
+  return static_cast<int>(found - laws().begin());
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,126 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <new>
+#include <span>
+#include <type_traits>
+
+#include "pyroclast/laws/law.hpp"
+
+/// A law behind pointers: what decks, files and the driver of one point know of it. The step is compiled with
+/// the law itself, see mechanics/step/contacts.hpp.
+namespace pyroclast {
+
+/// What a single contact point answers; of a plane body the second shear component is zero.
+struct PointResponse {
+  double normal_traction = 0.0;            ///< Pa, tension positive
+  std::array<double, 2> shear_traction{};  ///< Pa
+  double stored = 0.0;                     ///< J/m²
+};
+
+struct LawTable {
+  const char* name;
+  const char* meaning;
+  std::span<const PropertyInfo> properties;
+  std::span<const ChoiceInfo> choices;
+  std::array<std::span<const HistoryInfo>, 2> history_of;  ///< in 2D and 3D
+  std::span<const LossInfo> losses;
+  std::size_t size;  ///< of its constants, bytes
+  int constants;     ///< numbers among them
+
+  /// Makes the constants, in memory that is aligned for doubles.
+  void (*derive)(const double* properties, const int* choices, void* constants);
+  /// Puts their numbers one after the other.
+  void (*numbers_of)(const void* constants, double* numbers);
+  Objection (*check)(const double* properties, const int* choices);
+  ContactStiffness<double> (*stiffness)(const void* constants);
+  /// Takes a point to a jump: opening, tangential components. Adds to the losses.
+  std::array<PointResponse (*)(const void* constants, const double* jump, double* history, double* losses), 2>
+      update_of;
+
+  std::span<const HistoryInfo> history(int dim) const { return history_of[dim - 2]; }
+  auto update(int dim) const { return update_of[dim - 2]; }
+};
+
+namespace law_table {
+
+/// The infos of a list, one after the other.
+template <class Info, class List>
+constexpr auto infos() {
+  std::array<Info, count_of<List>()> all{};
+  List list{};
+  std::size_t i = 0;
+  List::each([&](const auto& info, auto&) { all[i++] = info; }, list);
+  return all;
+}
+template <class List>
+constexpr auto choice_infos() {
+  std::array<ChoiceInfo, choices_of<List>()> all{};
+  List list{};
+  std::size_t i = 0;
+  List::each_choice([&](const auto& info, auto&) { all[i++] = info; }, list);
+  return all;
+}
+
+template <class Law>
+typename Law::template Properties<double> properties(const double* numbers, const int* choices) {
+  typename Law::template Properties<double> p;
+  take(p, numbers);
+  take_choices(p, choices);
+  return p;
+}
+
+template <class Law, int Dim>
+PointResponse update(const void* constants, const double* jump, double* history, double* losses) {
+  const auto& c = *static_cast<const typename Law::template Constants<double>*>(constants);
+  typename Law::template History<Dim, double> h;
+  take(h, history);
+  typename Law::template Losses<double> l;
+  take(l, losses);
+  Tangential<Dim> tangential;
+  for (int i = 0; i + 1 < Dim; ++i) tangential[i] = jump[i + 1];
+  const auto r = Law::template update<Dim, double>(c, jump[0], tangential, h, l);
+  put(h, history);
+  put(l, losses);
+  PointResponse response{r.normal_traction, {}, r.stored};
+  for (int i = 0; i + 1 < Dim; ++i) response.shear_traction[i] = r.shear_traction[i];
+  return response;
+}
+
+}  // namespace law_table
+
+template <class Law>
+const LawTable& table_of() {
+  using Properties = typename Law::template Properties<double>;
+  using Constants = typename Law::template Constants<double>;
+  static_assert(std::is_trivially_copyable_v<Constants>);
+  static constexpr auto kProperties = law_table::infos<PropertyInfo, Properties>();
+  static constexpr auto kChoices = law_table::choice_infos<Properties>();
+  static constexpr auto kHistory2 =
+      law_table::infos<HistoryInfo, typename Law::template History<2, double>>();
+  static constexpr auto kHistory3 =
+      law_table::infos<HistoryInfo, typename Law::template History<3, double>>();
+  static constexpr auto kLosses = law_table::infos<LossInfo, typename Law::template Losses<double>>();
+  static constexpr LawTable table{
+      Law::name,
+      Law::meaning,
+      kProperties,
+      kChoices,
+      {kHistory2, kHistory3},
+      kLosses,
+      sizeof(Constants),
+      count_of<Constants>(),
+      [](const double* numbers, const int* choices, void* constants) {
+        new (constants) Constants(Law::derive(law_table::properties<Law>(numbers, choices)));
+      },
+      [](const void* constants, double* numbers) { put(*static_cast<const Constants*>(constants), numbers); },
+      [](const double* numbers, const int* choices) {
+        return Law::check(law_table::properties<Law>(numbers, choices));
+      },
+      [](const void* constants) { return Law::stiffness(*static_cast<const Constants*>(constants)); },
+      {law_table::update<Law, 2>, law_table::update<Law, 3>}};
+  return table;
+}
+
+}  // namespace pyroclast
