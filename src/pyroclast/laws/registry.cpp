@@ -1,11 +1,8 @@
 #include "pyroclast/laws/registry.hpp"
 
 #include <algorithm>
-#include <string>
-#include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/built_in.hpp"
@@ -24,15 +21,6 @@ std::span<const LawTable* const> tables_of(LawList<Laws...>) {
 
 std::span<const LawTable* const> laws() {
   return tables_of(BuiltInLaws());
-}
-
-const LawTable& law(std::string_view name) {
-  std::vector<std::string_view> names;
-  for (const LawTable* table : laws()) {
-    if (table->name == name) return *table;
-    names.emplace_back(table->name);
-  }
-  throw Error(fmt::format("there is no contact law \"{}\"; there are {}", name, fmt::join(names, ", ")));
 }
 
 int index_of(const LawTable& law) {

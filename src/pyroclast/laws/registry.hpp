@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <string_view>
 
 #include "pyroclast/laws/table.hpp"
 
@@ -9,9 +8,6 @@ namespace pyroclast {
 
 /// All laws of the program, in the order of BuiltInLaws.
 std::span<const LawTable* const> laws();
-
-/// The law of that name. Throws Error when there is none.
-const LawTable& law(std::string_view name);
 
 /// Its place among `laws`. Throws Error when it is not one of them.
 int index_of(const LawTable& law);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -42,10 +43,14 @@ void write_motion(Hdf5File& file, const Mechanics<2>& mechanics) {
 /// has none.
 std::vector<std::string_view> remembered_names(const Mechanics<2>& mechanics) {
   std::vector<std::string_view> names;
-  for (int i = 0; i < mechanics.model().contact_count(); ++i)
-    for (const HistoryInfo& info : mechanics.law_of(i).history(2))
+  const LawTable* last = nullptr;
+  for (int i = 0; i < mechanics.model().contact_count(); ++i) {
+    const LawTable* const law = &mechanics.law_of(i);
+    if (std::exchange(last, law) == law) continue;
+    for (const HistoryInfo& info : law->history(2))
       if (info.in_files && std::ranges::find(names, std::string_view(info.name)) == names.end())
         names.emplace_back(info.name);
+  }
   return names;
 }
 
