@@ -63,9 +63,9 @@ struct Contacts {
 
   // flatten: lanes that cross a call go through memory
   template <Kinematics kKinematics, bool kMeasure>
-  [[gnu::flatten]] static void update_rows(State<Dim>& s, int first, int last) {
+  [[gnu::flatten, gnu::noinline]] static void update_rows(State<Dim>& __restrict s, int first, int last) {
     for (int row = first; row < last; ++row) {
-      R::fetch_faces_ahead(s, row);
+      R::template fetch_faces_ahead<kHistory, kLosses>(s, row);
       if (s.one_set[row]) {
         const OneForAll& constants = constants_of_set(s, s.set_of_faces[row]);
         update_row<kKinematics, kMeasure>(

@@ -91,16 +91,21 @@ struct Rows {
   /// points itself has come.
   static constexpr int kScatteredRowsAhead = 4;
 
-  static void fetch(const void* begin, std::size_t bytes) {
-    for (std::size_t i = 0; i < bytes; i += 64) __builtin_prefetch(static_cast<const char*>(begin) + i);
+  template <int kLines>
+  static void fetch(const void* begin) {
+    for (int i = 0; i < kLines; ++i) __builtin_prefetch(static_cast<const char*>(begin) + 64 * i);
+  }
+  template <class Row>
+  static void fetch(const Row& row) {
+    fetch<(sizeof(Row) + 63) / 64>(&row);
   }
   static void fetch_ahead(ConstView<VectorRow<Dim>> vectors, int row) {
     const auto ahead = static_cast<std::size_t>(row) + kRowsAhead;
-    if (ahead < vectors.size()) fetch(&vectors[ahead], sizeof(VectorRow<Dim>));
+    if (ahead < vectors.size()) fetch(vectors[ahead]);
   }
   static void fetch_ahead(ConstView<double> numbers, int row) {
     const auto ahead = static_cast<std::size_t>(slot_of(row + kRowsAhead, 0));
-    if (ahead < numbers.size()) fetch(&numbers[ahead], kLanes * sizeof(double));
+    if (ahead < numbers.size()) fetch<1>(&numbers[ahead]);
   }
   static void fetch_scattered(const State<Dim>& s, int row) {
     for (int point = s.layout.first_point_of(row); point < s.layout.first_point_of(row + 1); ++point)
@@ -110,7 +115,18 @@ struct Rows {
         __builtin_prefetch(&s.displacement[points.b[lane] / offset_of<Dim>(1)]);
       }
   }
+  /// Of any law.
+  [[gnu::noinline]] static void fetch_histories(const State<Dim>& s, int row) {
+    for (int i = s.first_history[row]; i < s.first_history[row + 1]; ++i) fetch(s.history[i]);
+    const int first = s.layout.first_point_of(row), points = s.layout.first_point_of(row + 1) - first;
+    const int losses = (s.first_loss[row + 1] - s.first_loss[row]) / points;
+    for (int point = 0; point < points; ++point)
+      for (int i = 0; i < losses && s.losing[first + point]; ++i)
+        fetch(s.loss[s.first_loss[row] + point * losses + i]);
+  }
   /// What a row of faces needs, and the displacements that none before it reads.
+  /// \tparam kHistory, kLosses  lines of a point of the row in hand; in runs of one law those ahead have as many
+  template <int kHistory, int kLosses>
   static void fetch_faces_ahead(const State<Dim>& s, int row) {
     const auto& layout = s.layout;
     if (const int next = row + kScatteredRowsAhead;
@@ -118,19 +134,20 @@ struct Rows {
       fetch_scattered(s, next);
     const int ahead = row + kFaceRowsAhead;
     if (ahead >= static_cast<int>(layout.faces.size())) return;
+    fetch(layout.faces[ahead]);
+    const bool same = s.law_of_faces[ahead] == s.law_of_faces[row];
     const int first = layout.first_point_of(ahead), last = layout.first_point_of(ahead + 1);
-    fetch(&layout.faces[ahead], sizeof(FaceRow<Dim>));
-    fetch(&layout.points[first], static_cast<std::size_t>(last - first) * sizeof(PointRow));
-    const int history = s.first_history[ahead], loss = s.first_loss[ahead];
-    if (const int lines = s.first_history[ahead + 1] - history; lines > 0)
-      fetch(&s.history[history], static_cast<std::size_t>(lines) * sizeof(Line));
-    const int points = Dim == 2 ? 2 : last - first;  // a division by a constant where it can be
-    if (const int lines = (s.first_loss[ahead + 1] - loss) / points; lines > 0)
-      for (int point = first; point < last; ++point)
-        if (s.losing[point])
-          fetch(&s.loss[loss + (point - first) * lines], static_cast<std::size_t>(lines) * sizeof(Line));
+    for (int point = first; point < last; ++point) {
+      fetch(layout.points[point]);
+      if (!same) continue;  // below
+      if constexpr (kHistory > 0)
+        fetch<kHistory>(&s.history[s.first_history[ahead] + (point - first) * kHistory]);
+      if constexpr (kLosses > 0)
+        if (s.losing[point]) fetch<kLosses>(&s.loss[s.first_loss[ahead] + (point - first) * kLosses]);
+    }
+    if (!same) fetch_histories(s, ahead);
     for (int r = layout.rows_reached[ahead]; r < layout.rows_reached[ahead + 1]; ++r)
-      fetch(&s.displacement[slot_of(r, 0)], kLanes * sizeof(Vec<Dim>));
+      fetch<Dim>(&s.displacement[slot_of(r, 0)]);
   }
 
   /// Displacements and sums of forces of a bundle while it is in hand, a row for each of its rows.
