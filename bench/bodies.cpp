@@ -87,7 +87,8 @@ const char* name(Loading loading) {
 
 Specimen::Specimen(const Setup& setup, int blocks)
     : made(make(setup.specimen, blocks)),
-      model(pyroclast::make_concrete_model(made, setup.motion->platen_thickness, setup.thickness)),
+      model(pyroclast::make_concrete_model(made, setup.motion->platen_thickness, setup.thickness,
+                                           setup.motion->contacts.interfaces)),
       width(made.width),
       height(made.height),
       parameters(setup.motion->mechanics) {

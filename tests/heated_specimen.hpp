@@ -1,10 +1,11 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "model/small_specimen.hpp"
+#include "phases.hpp"
 #include "pyroclast/simulation/heat_conditions.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 
@@ -25,8 +26,10 @@ struct HeatConstants {
 };
 
 /// Aggregate and mortar conduct alike.
-inline std::array<SolidMaterial, 3> alike_solids(const HeatConstants& constants = {}) {
-  std::array<SolidMaterial, 3> solids;
+inline std::vector<SolidMaterial> alike_solids(const HeatConstants& constants = {}) {
+  std::vector<SolidMaterial> solids(3);
+  solids[aggregate_material].name = "aggregate";
+  solids[mortar_material].name = "mortar";
   for (const int m : {aggregate_material, mortar_material}) {
     solids[m].conductivity = Curve::constant(constants.conductivity);
     solids[m].specific_heat = Curve::constant(constants.specific_heat);

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import cycle
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -155,7 +156,8 @@ def compare_cracks(runs: Sequence[Run]) -> Figure:
 
 
 def _broken(course, mode: str):
-    return course[f"{mode}_am_broken"] + course[f"{mode}_mm_broken"]
+    interfaces = course.run.crack_modes.get(mode, [])
+    return sum((course[f"{mode}_{name}_broken"] for name in interfaces), np.zeros(len(course.over)))
 
 
 def _draw_group(axes: Axes, group: _Group) -> None:

@@ -13,7 +13,6 @@ from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
 from . import style
-from .mesh import PLATEN
 from .run import Frame, Run, RunError
 from .sections import Panel, count_cracks, draw_scale_bar, fracture_panels, frame_section, height_over_width
 
@@ -25,7 +24,7 @@ LEVEL_TEMPERATURES = (300.0, 400.0, 500.0, 600.0)
 _NEAR = 25.0  # K: a frame stands for a temperature that is not farther from its own
 _MOST_PANELS = 5
 _FIELDS = 4
-_NOTE = "Counts are contact points (two an edge) of A–M and M–M contacts: broken | damaged by more than half."
+_NOTE = "Counts are contact points (two an edge): broken | damaged by more than half."
 
 
 def frame_near(frames: Sequence[Frame], temperature: float) -> Frame | None:
@@ -129,11 +128,8 @@ def _panel(run: Run, frame: Frame) -> Panel:
     counts = count_cracks(run, frame)
     stress = f"$\\sigma$ = {frame.stress:.1f} MPa\n" if run.restrained else ""
     strain = f"{style.PER_MILLE * run.total_strain_at(frame):.2f}\\times 10^{{-3}}"
-    caption = (
-        f"$\\varepsilon_{{\\mathrm{{tot}}}} = {strain}$\n{stress}"
-        f"tension: {counts['tension', True]} | {counts['tension', False]}\n"
-        f"shear: {counts['shear', True]} | {counts['shear', False]}"
-    )
+    modes = "\n".join(f"{mode}: {counts[mode, True]} | {counts[mode, False]}" for mode in run.crack_modes)
+    caption = f"$\\varepsilon_{{\\mathrm{{tot}}}} = {strain}$\n{stress}{modes}"
     return Panel(run, frame, title, caption)
 
 
@@ -143,7 +139,7 @@ def temperature_field(run: Run) -> Figure:
     frames = _spread(run.heated_frames)
     fields = [run.gridpoint_temperature(frame) for frame in frames]
     blocks = run.mesh.blocks
-    specimen = blocks.triangles[blocks.material != PLATEN]
+    specimen = blocks.triangles[~blocks.of_platen]
     within = [field[np.unique(specimen)] for field in fields]
     scale = Normalize(min(field.min() for field in within), max(field.max() for field in within))
     panel_height = (style.WIDTH / (_FIELDS + 0.4) - 0.12) * height_over_width(blocks)
@@ -175,9 +171,9 @@ def _spread(frames: Sequence[Frame]) -> list[Frame]:
 def _draw_temperature(axes: Axes, run: Run, field: np.ndarray, scale: Normalize) -> TriMesh:
     blocks = run.mesh.blocks
     x, y = style.MILLI * blocks.points.T
-    platens = style.MILLI * blocks.points[blocks.triangles[blocks.material == PLATEN]]
+    platens = style.MILLI * blocks.points[blocks.triangles[blocks.of_platen]]
     axes.add_collection(PolyCollection(platens, color=style.PLATEN_COLOUR, linewidths=0.15, rasterized=True))
-    specimen = Triangulation(x, y, blocks.triangles[blocks.material != PLATEN])
+    specimen = Triangulation(x, y, blocks.triangles[~blocks.of_platen])
     colours = axes.tripcolor(specimen, field, norm=scale, cmap="inferno", shading="gouraud", rasterized=True)
     frame_section(axes, blocks)
     return colours

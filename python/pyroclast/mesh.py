@@ -11,12 +11,6 @@ import numpy as np
 
 from .files import RunError, dataset, open_hdf
 
-AGGREGATE, MORTAR, PLATEN = 0, 1, 2
-"""Values of `BlockMesh.material`."""
-
-AGGREGATE_AGGREGATE, AGGREGATE_MORTAR, MORTAR_MORTAR, PLATEN_CONTACT = 0, 1, 2, 3
-"""Values of `ContactMesh.interface`."""
-
 _VTK_LINE, _VTK_TRIANGLE = 3, 5
 
 
@@ -28,7 +22,13 @@ class BlockMesh:
     points: np.ndarray  #: (N, 2) gridpoints, m
     triangles: np.ndarray  #: (Z, 3) gridpoints of each zone, counter-clockwise
     block: np.ndarray  #: (Z,) block of each zone
-    material: np.ndarray  #: (Z,) AGGREGATE, MORTAR or PLATEN
+    material: np.ndarray  #: (Z,) indices into `materials`
+    materials: tuple[str, ...]  #: names of the phases, and last of the platens' solid
+
+    @property
+    def of_platen(self) -> np.ndarray:
+        """(Z,) bool: zones of the platens."""
+        return self.material == len(self.materials) - 1
 
     @cached_property
     def outlines(self) -> tuple[list[np.ndarray], np.ndarray]:
@@ -45,7 +45,8 @@ class ContactMesh:
 
     points: np.ndarray  #: (2C, 2), m
     lines: np.ndarray  #: (C, 2) indices into points
-    interface: np.ndarray  #: (C,) AGGREGATE_AGGREGATE, AGGREGATE_MORTAR, MORTAR_MORTAR or PLATEN_CONTACT
+    interface: np.ndarray  #: (C,) indices into `interfaces`
+    interfaces: tuple[str, ...]  #: names, and last that of the platens
     length: np.ndarray  #: (C,) tributary length, m
 
 
@@ -65,15 +66,26 @@ def read_mesh(path: Path) -> Mesh:
             _counter_clockwise(points, triangles),
             _cell_values(file, "blocks/block", len(triangles)),
             _cell_values(file, "blocks/material", len(triangles)),
+            _names(file, "blocks/material"),
         )
         points, lines = _cells(file, "contacts", _VTK_LINE, "lines of two points")
         contacts = ContactMesh(
             points,
             lines,
             _cell_values(file, "contacts/interface", len(lines)),
+            _names(file, "contacts/interface"),
             _cell_values(file, "contacts/length", len(lines)),
         )
     return Mesh(blocks, contacts)
+
+
+def _names(file: h5py.File, name: str) -> tuple[str, ...]:
+    """What the values of a dataset stand for."""
+    names = file[name].attrs.get("names")
+    if names is None:
+        raise RunError(f"{file.filename}: /{name} has no attribute 'names'")
+    text = names.decode() if isinstance(names, bytes) else str(names)
+    return tuple(text.split("\n"))
 
 
 def _cells(file: h5py.File, group: str, cell_type: int, name: str) -> tuple[np.ndarray, np.ndarray]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import cycle
 
 import matplotlib
 import numpy as np
@@ -25,7 +26,8 @@ _ENERGY_OUT = (
     ("energy_local_damping_J", "local damping", "#d9d9d9", "...."),
     ("energy_viscous_damping_J", "viscous damping", style.FAINT, "xxxx"),
 )
-_INTERFACES = (("am", "A–M", "-"), ("mm", "M–M", (0, (5, 1.5))))
+_DASHES = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (5, 1.5, 1, 1.5)))  # by interface
+_MODE_COLOURS = {"tension": style.TENSION_COLOUR, "shear": style.SHEAR_COLOUR, "mixed": style.MIXED_COLOUR}
 _COOLED = 1.0  # K below the hottest before, from which temperature no longer orders the rows
 
 
@@ -66,19 +68,19 @@ def temperature_label(run: Run) -> str:
 @matplotlib.rc_context(style.STYLE)
 def cracks(run: Run) -> Figure:
     """Cracked contact points by mode and interface over strain, the stress curve behind."""
-    figure = style.new_figure(4.8)
-    upper, lower, below = figure.subplots(3, 1, height_ratios=[1.0, 1.0, 0.3])
-    lower.sharex(upper)
-    upper.set_title(style.title_of(run))
+    modes = list(run.crack_modes) or ["tension"]
+    figure = style.new_figure(1.2 + 1.8 * len(modes))
+    *panels, below = figure.subplots(len(modes) + 1, 1, height_ratios=[1.0] * len(modes) + [0.3])
+    panels[0].set_title(style.title_of(run))
     course = loading_course(run)
-    for axes in (upper, lower):
+    for axes, mode in zip(panels, modes):
+        axes.sharex(panels[0]) if axes is not panels[0] else None
         _draw_stress_behind(axes, course)
-    _draw_counts(upper, course, "tension", style.TENSION_COLOUR)
-    _draw_counts(lower, course, "shear", style.SHEAR_COLOUR)
-    upper.set_xlim(left=0.0)
-    upper.tick_params(labelbottom=False)
-    lower.set_xlabel(course.label)
-    style.legend_alone(below, *_legends(upper, lower), loc="center", ncols=2)
+        _draw_counts(axes, course, mode)
+        axes.tick_params(labelbottom=axes is panels[-1])
+    panels[0].set_xlim(left=0.0)
+    panels[-1].set_xlabel(course.label)
+    style.legend_alone(below, *_legends(*panels), loc="center", ncols=2)
     return figure
 
 
@@ -87,15 +89,18 @@ def heating_cracks(run: Run) -> Figure:
     """Cracked contact points and crack length by mode and interface, and the mean opening, while heated."""
     figure = style.new_figure(5.4)
     figure.suptitle(style.title_of(run), fontsize=9.0)
+    modes = list(run.crack_modes) or ["tension"]
     grid = figure.add_gridspec(3, 2, height_ratios=[1.0, 1.0, 0.32])
-    tension, shear, length, opening = panels = [figure.add_subplot(grid[i // 2, i % 2]) for i in range(4)]
+    upper = figure.add_gridspec(3, max(len(modes), 1), height_ratios=[1.0, 1.0, 0.32])
+    counts = [figure.add_subplot(upper[0, i]) for i in range(len(modes))]
+    length, opening = figure.add_subplot(grid[1, 0]), figure.add_subplot(grid[1, 1])
+    panels = [*counts, length, opening]
     course = heating_course(run)
-    _draw_counts(tension, course, "tension", style.TENSION_COLOUR)
-    _draw_counts(shear, course, "shear", style.SHEAR_COLOUR)
-    for mode, colour in (("tension", style.TENSION_COLOUR), ("shear", style.SHEAR_COLOUR)):
-        for interface, _, dashes in _INTERFACES:
-            length.plot(course.over, course[f"{mode}_{interface}_length_m"], color=colour, linestyle=dashes,
-                        linewidth=0.7)
+    for axes, mode in zip(counts, modes):
+        _draw_counts(axes, course, mode)
+        for interface, dashes in zip(run.crack_modes.get(mode, []), cycle(_DASHES)):
+            length.plot(course.over, course[f"{mode}_{interface}_length_m"], color=_MODE_COLOURS[mode],
+                        linestyle=dashes, linewidth=0.7)
     length.set_ylabel("Length of all cracks, $D>0$ [m]")
     opening.plot(course.over, 1e6 * course["mean_opening_m"], color=style.BLACK)
     opening.set_ylabel("Mean opening of contacts\ndamaged in tension [µm]")
@@ -103,7 +108,7 @@ def heating_cracks(run: Run) -> Figure:
         axes.set_xlim(course.start, course.over.max())
         axes.set_ylim(bottom=0.0)
         axes.set_xlabel(course.label)
-    style.legend_alone(figure.add_subplot(grid[2, :]), *_legends(tension, shear), loc="center", ncols=2)
+    style.legend_alone(figure.add_subplot(grid[2, :]), *_legends(*counts), loc="center", ncols=2)
     return figure
 
 
@@ -120,8 +125,10 @@ def _draw_stress_behind(axes: Axes, course: Course) -> None:
     axes.patch.set_visible(False)
 
 
-def _draw_counts(axes: Axes, course: Course, mode: str, colour: str) -> None:
-    for interface, name, dashes in _INTERFACES:
+def _draw_counts(axes: Axes, course: Course, mode: str) -> None:
+    colour = _MODE_COLOURS[mode]
+    for interface, dashes in zip(course.run.crack_modes.get(mode, []), cycle(_DASHES)):
+        name = interface.replace("_", "–")
         axes.plot(course.over, course[f"{mode}_{interface}_broken"], color=colour, linestyle=dashes,
                   linewidth=1.8, label=f"{mode}, {name}: broken ($D=1$)")
         axes.plot(course.over, course[f"{mode}_{interface}_damaged"], color=colour, linestyle=dashes,

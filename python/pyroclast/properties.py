@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import cycle
 from pathlib import Path
 
 import matplotlib
@@ -16,8 +17,7 @@ from . import style
 from .run import RunError
 
 _COLUMNS = ("property", "unit", "temperature_degC", "value", "ratio_to_20_degC")
-_SOLIDS = {"aggregate": style.VERMILLION, "mortar": style.BLUE}
-_CONTACT = "contacts.mortar_mortar."
+_SOLID_COLOURS = (style.VERMILLION, style.BLUE, style.GREEN, style.PURPLE, style.ORANGE)
 _SYMBOLS = {"f_t": "$f_t$", "f_cm": "$f_{cm}$", "c_o": "$c_o$", "c_res": "$c_{res}$", "G_f1": "$G_{f1}$",
             "G_f2": "$G_{f2}$"}
 _COLOURS = (style.BLACK, style.GREEN, style.PURPLE, style.ORANGE, style.SKY, style.VERMILLION)
@@ -64,9 +64,9 @@ def read_properties(path: Path) -> dict[str, Property]:
 def properties(table: Mapping[str, Property]) -> Figure:
     """One panel for each kind of property that the table holds."""
     panels: list[Callable[[Axes, Mapping[str, Property]], None]] = [_modulus, _strengths, _thermal_strain]
-    if any(f"materials.{solid}.conductivity" in table for solid in _SOLIDS):
+    if any(f"materials.{solid}.conductivity" in table for solid in _solids(table)):
         panels.append(_conductivity)
-    if any(f"materials.{solid}.heat_capacity" in table for solid in _SOLIDS):
+    if any(f"materials.{solid}.heat_capacity" in table for solid in _solids(table)):
         panels.append(_heat_capacity)
     rows = (len(panels) + 1) // 2
     figure = style.new_figure(2.5 * rows)
@@ -81,6 +81,18 @@ def properties(table: Mapping[str, Property]) -> Figure:
     return figure
 
 
+def _solids(table: Mapping[str, Property]) -> list[str]:
+    """Names of the phases, in the order of the file."""
+    names = [path.split(".")[1] for path in table if path.startswith("materials.")]
+    return [name for name in dict.fromkeys(names) if name != "platen"]
+
+
+def _shown_contact(table: Mapping[str, Property]) -> str:
+    """The interface whose strengths are drawn: that of the mortar, or the last one."""
+    names = list(dict.fromkeys(path.split(".")[1] for path in table if path.startswith("contacts.")))
+    return "mortar_mortar" if "mortar_mortar" in names or not names else names[-1]
+
+
 def _modulus(axes: Axes, table: Mapping[str, Property]) -> None:
     _draw_solids(axes, table, "E", lambda p: p.ratio)
     axes.set_title("Young's modulus")
@@ -90,9 +102,10 @@ def _modulus(axes: Axes, table: Mapping[str, Property]) -> None:
 
 def _strengths(axes: Axes, table: Mapping[str, Property]) -> None:
     """Properties with the same ratio share a line."""
+    contact = _shown_contact(table)
     groups: list[tuple[Property, list[str]]] = []
     for key, symbol in _SYMBOLS.items():
-        curve = table.get(_CONTACT + key)
+        curve = table.get(f"contacts.{contact}.{key}")
         if curve is None:
             continue
         for other, names in groups:
@@ -104,7 +117,7 @@ def _strengths(axes: Axes, table: Mapping[str, Property]) -> None:
     for number, (curve, names) in enumerate(groups):
         axes.plot(curve.temperature, curve.ratio, color=_COLOURS[number % len(_COLOURS)],
                   linestyle=_DASHES[number % len(_DASHES)], label=", ".join(names))
-    axes.set_title("Strengths and fracture energies, mortar–mortar")
+    axes.set_title(f"Strengths and fracture energies, {contact.replace('_', '–')}")
     axes.set_ylabel("Ratio to 20 °C [–]")
     axes.set_ylim(bottom=0.0)
 
@@ -135,8 +148,8 @@ def _heat_capacity(axes: Axes, table: Mapping[str, Property]) -> None:
 
 def _draw_solids(axes: Axes, table: Mapping[str, Property], key: str,
                  shown: Callable[[Property], np.ndarray]) -> None:
-    """Aggregate and mortar, dashed where the second would hide the first."""
-    for dashes, (solid, colour) in zip(_DASHES, _SOLIDS.items()):
+    """The phases, dashed where the second would hide the first."""
+    for dashes, solid, colour in zip(cycle(_DASHES), _solids(table), cycle(_SOLID_COLOURS)):
         curve = table.get(f"materials.{solid}.{key}")
         if curve is not None:
             axes.plot(curve.temperature, shown(curve), color=colour, linestyle=dashes, label=solid)

@@ -47,6 +47,16 @@ class Run:
         return Table(self.folder / "history.csv")
 
     @cached_property
+    def crack_modes(self) -> dict[str, list[str]]:
+        """Interfaces that can break, by the mode of their damage: "tension", "shear" or "mixed"."""
+        modes: dict[str, list[str]] = {}
+        for column in self.history.names:
+            if column.endswith("_broken"):
+                mode, interface = column.removesuffix("_broken").split("_", 1)
+                modes.setdefault(mode, []).append(interface)
+        return modes
+
+    @cached_property
     def summary(self) -> dict:
         return read_json(self.folder / "summary.json")
 

@@ -14,18 +14,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from . import style
-from .mesh import (
-    AGGREGATE,
-    AGGREGATE_MORTAR,
-    MORTAR,
-    MORTAR_MORTAR,
-    PLATEN,
-    BlockMesh,
-    ContactMesh,
-)
+from .mesh import BlockMesh, ContactMesh
 from .run import Frame, Run, RunError, Specimen
 
-_COLOURS = {AGGREGATE: style.AGGREGATE_COLOUR, MORTAR: style.MORTAR_COLOUR, PLATEN: style.PLATEN_COLOUR}
 _BEFORE_PEAK = 0.85  # strain of frame A over that of the peak: the first cracks have opened
 _AFTER_PEAK = 0.8  # stress of frame C over that of the peak
 _HALF = 0.5  # damage from which a crack is drawn
@@ -77,8 +68,10 @@ class _CrackStyle:
 
 # Drawn in this order: the thin dark shear lines stay visible on the wide tension lines.
 _CRACKS = (
+    _CrackStyle("mixed", False, style.MIXED_TINT, 0.7),
     _CrackStyle("tension", False, style.TENSION_TINT, 0.7),
     _CrackStyle("shear", False, style.SHEAR_TINT, 0.4),
+    _CrackStyle("mixed", True, style.MIXED_COLOUR, 1.8),
     _CrackStyle("tension", True, style.TENSION_COLOUR, 1.8),
     _CrackStyle("shear", True, style.SHEAR_COLOUR, 0.8),
 )
@@ -128,7 +121,7 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
         if row == 0:
             draw_scale_bar(all_axes[0], panels[0].run.mesh.blocks)
     figure.suptitle(f"{heading}\ndisplacements ×{magnification:g}".lstrip(), fontsize=9.0)
-    handles = _fracture_legend(rows[0][1][0].run.mesh.blocks)
+    handles = _fracture_legend(rows[0][1][0].run)
     style.legend_alone(figure.add_subplot(grid[-1, :]), handles, [handle.get_label() for handle in handles],
                        loc="center", ncols=4, title_fontsize=7.0, title=note)
     return figure
@@ -147,7 +140,7 @@ def _draw_panel(axes: Axes, panel: Panel, magnification: float, columns: int) ->
 
 def _specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
     """Lower left and upper right corner of the specimen without platens, m."""
-    points = blocks.points[blocks.triangles[blocks.material != PLATEN].ravel()]
+    points = blocks.points[blocks.triangles[~blocks.of_platen].ravel()]
     if not len(points):
         raise RunError(f"{blocks.path}: /blocks/material has platens only")
     return points.min(axis=0), points.max(axis=0)
@@ -169,15 +162,19 @@ def _visible_magnification(run: Run, frame: Frame) -> float:
 
 def _cracked(run: Run, frame: Frame, crack: _CrackStyle) -> np.ndarray:
     """(C,) bool: contact points that are drawn so."""
-    # Platen contacts start as broken and A-A contacts never fail: neither is a crack.
-    interface = run.mesh.contacts.interface
-    can_crack = (interface == AGGREGATE_MORTAR) | (interface == MORTAR_MORTAR)
+    contacts = run.mesh.contacts
+    names = run.crack_modes[crack.mode]
+    can_crack = np.isin(contacts.interface, [i for i, name in enumerate(contacts.interfaces) if name in names])
     return can_crack & crack.holds(run.contact_field(frame, f"{crack.mode}_damage"))
 
 
 def count_cracks(run: Run, frame: Frame) -> dict[tuple[str, bool], int]:
-    """Cracked contact points that `fracture` draws, by mode ("tension", "shear") and whether broken."""
-    return {(crack.mode, crack.broken): int(_cracked(run, frame, crack).sum()) for crack in _CRACKS}
+    """Cracked contact points that `fracture` draws, by mode (of `Run.crack_modes`) and whether broken."""
+    return {(crack.mode, crack.broken): int(_cracked(run, frame, crack).sum()) for crack in _cracks_of(run)}
+
+
+def _cracks_of(run: Run) -> list[_CrackStyle]:
+    return [crack for crack in _CRACKS if crack.mode in run.crack_modes]
 
 
 def height_over_width(blocks: BlockMesh) -> float:
@@ -191,7 +188,7 @@ def _draw_fractured(axes: Axes, run: Run, frame: Frame, magnification: float, co
     _draw_blocks(axes, blocks, blocks.points + magnification * run.gridpoint_displacement(frame))
     lines = (contacts.points + magnification * run.contact_displacement(frame))[contacts.lines]
     thinning = _thinning(blocks, contacts, max(columns, _PANELS))
-    for crack in _CRACKS:
+    for crack in _cracks_of(run):
         drawn = style.MILLI * lines[_cracked(run, frame, crack)]
         axes.add_collection(LineCollection(drawn, colors=crack.colour, linewidths=thinning * crack.width,
                                            capstyle="round", rasterized=True))
@@ -209,7 +206,7 @@ def _thinning(blocks: BlockMesh, contacts: ContactMesh, columns: int) -> float:
 def _draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None) -> None:
     """Fills the blocks, one collection a material; without an edge colour their seams are closed."""
     outlines, material = blocks.outlines
-    for kind, colour in _COLOURS.items():
+    for kind, colour in enumerate(style.phase_colours(blocks.materials)):
         polygons = [style.MILLI * points[outlines[i]] for i in np.flatnonzero(material == kind)]
         axes.add_collection(PolyCollection(polygons, facecolors=colour, edgecolors=edge or colour,
                                            linewidths=0.15, rasterized=True))
@@ -233,9 +230,13 @@ def _caption(run: Run, frame: Frame) -> str:
     return (
         f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$\n"
         f"$\\sigma$ = {frame.stress:.1f} MPa ({100.0 * frame.stress / run.peak[1]:.0f} % of peak)\n"
-        f"broken: {counts['tension', True]} tension, {counts['shear', True]} shear\n"
-        f"damaged by more than half: {counts['tension', False]} tension, {counts['shear', False]} shear"
+        f"broken: {_listed(counts, True)}\n"
+        f"damaged by more than half: {_listed(counts, False)}"
     )
+
+
+def _listed(counts: dict[tuple[str, bool], int], broken: bool) -> str:
+    return ", ".join(f"{count} {mode}" for (mode, is_broken), count in counts.items() if is_broken == broken)
 
 
 def draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
@@ -248,16 +249,16 @@ def draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
     axes.text(x + length + 0.03 * width, y, f"{length} mm", va="center", fontsize=7.0)
 
 
-def _fracture_legend(blocks: BlockMesh) -> list:
+def _fracture_legend(run: Run) -> list:
     lines = [Line2D([], [], color=crack.colour, linewidth=crack.width, label=crack.label)
-             for crack in _CRACKS]
-    return lines + _material_legend(blocks)
+             for crack in _cracks_of(run)]
+    return lines + _material_legend(run.mesh.blocks)
 
 
 def _material_legend(blocks: BlockMesh) -> list[Patch]:
-    names = {AGGREGATE: "aggregate", MORTAR: "mortar", PLATEN: "platen"}
-    return [Patch(facecolor=_COLOURS[kind], edgecolor=style.FAINT, linewidth=0.4, label=name)
-            for kind, name in names.items() if (blocks.material == kind).any()]
+    colours = style.phase_colours(blocks.materials)
+    return [Patch(facecolor=colour, edgecolor=style.FAINT, linewidth=0.4, label=name)
+            for kind, (name, colour) in enumerate(zip(blocks.materials, colours)) if (blocks.material == kind).any()]
 
 
 @matplotlib.rc_context(style.STYLE)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import cycle
 from pathlib import Path
 
 import matplotlib
@@ -34,8 +36,17 @@ STYLE = {
 BLACK, ORANGE, SKY, GREEN = "#000000", "#e69f00", "#56b4e9", "#009e73"
 YELLOW, BLUE, VERMILLION, PURPLE = "#f0e442", "#0072b2", "#d55e00", "#cc79a7"
 AGGREGATE_COLOUR, MORTAR_COLOUR, PLATEN_COLOUR = "#b4b4b4", "#f4f0e6", "#5a5a5a"
+_MORE_PHASE_COLOURS = ("#8fa9c4", "#c9b48c", "#9dbf9e", "#b79bb8")
+
+
+def phase_colours(names: Sequence[str]) -> list[str]:
+    """A fill for each material of a mesh: aggregate and mortar as ever, the platens last, others in turn."""
+    known = {"aggregate": AGGREGATE_COLOUR, "mortar": MORTAR_COLOUR}
+    more = cycle(_MORE_PHASE_COLOURS)
+    return [known.get(name) or next(more) for name in names[:-1]] + [PLATEN_COLOUR]
 TENSION_COLOUR, SHEAR_COLOUR = VERMILLION, "#10245e"
 TENSION_TINT, SHEAR_TINT = "#f2a566", "#7787bd"
+MIXED_COLOUR, MIXED_TINT = PURPLE, "#e3bdd2"
 FAINT = "#9a9a9a"
 
 # One colour and dash after the other, for curves that stand side by side.

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "phases.hpp"
 #include "pyroclast/base/error.hpp"
 #include "small_specimen.hpp"
 
@@ -16,7 +17,7 @@ TEST(ConcreteModel, PlatensMeetTheSpecimenAlongItsWholeWidth) {
   const auto body = make_concrete_model(specimen, 0.01, 0.5);
   double bottom = 0.0, top = 0.0;
   for (const auto& contact : body.contacts) {
-    if (contact.interface != platen_interface) continue;
+    if (contact.interface != platen_interface(body)) continue;
     EXPECT_EQ(body.position[contact.a], body.position[contact.b]);
     EXPECT_NEAR(std::abs(contact.normal[1]), 1.0, 1e-12);
     (contact.normal[1] < 0.0 ? bottom : top) += contact.area;
@@ -31,7 +32,7 @@ TEST(ConcreteModel, WithoutPlatensTheSpecimenIsTheSame) {
   const auto without = make_concrete_model(specimen, std::nullopt, 1.0);
   EXPECT_EQ(without.block_count(), with.block_count() - 2);
   const auto at_platens = std::count_if(with.contacts.begin(), with.contacts.end(),
-                                        [](const auto& c) { return c.interface == platen_interface; });
+                                        [&](const auto& c) { return c.interface == platen_interface(with); });
   EXPECT_EQ(without.contacts.size(), with.contacts.size() - at_platens);
   for (const auto* side : {"bottom", "top", "left", "right"})
     EXPECT_EQ(without.set(side).size(), with.set(side).size());
@@ -70,8 +71,8 @@ TEST(ConcreteModel, InterfacesFollowFromTheMaterialsOfTheirTwoBlocks) {
   for (const auto& c : m.contacts) {
     const int a = m.block_material[block_of(c.a)], b = m.block_material[block_of(c.b)];
     ++found[c.interface];
-    if (a == platen_material || b == platen_material)
-      EXPECT_EQ(c.interface, platen_interface);
+    if (a == platen_material(body) || b == platen_material(body))
+      EXPECT_EQ(c.interface, platen_interface(body));
     else if (a != b)
       EXPECT_EQ(c.interface, aggregate_mortar);
     else
@@ -118,7 +119,7 @@ TEST(ConcreteModel, SetsHoldTheGridpointsThatTheyAreNamedAfter) {
   for (int b = 0; b < body.block_count(); ++b)
     for (int g = body.block_gridpoints[b]; g < body.block_gridpoints[b + 1]; ++g) {
       const auto is_in = [&](const char* set) { return std::ranges::count(body.set(set), g) == 1; };
-      const bool platen = body.block_material[b] == platen_material;
+      const bool platen = body.block_material[b] == platen_material(body);
       EXPECT_EQ(is_in("specimen"), !platen);
       EXPECT_EQ(is_in("top_platen"), platen && body.position[g][1] > 0.05);
     }

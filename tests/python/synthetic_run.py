@@ -15,9 +15,9 @@ PEAK_STRAIN, PEAK_STRESS, LAST_STRAIN = 0.003, 34.0, 0.006
 
 HISTORY_COLUMNS = (
     "stage,step,time_s,strain,stress_MPa,stress_top_MPa,stress_bottom_MPa,lateral_strain,unbalanced_ratio,"
-    "kinetic_over_strain,largest_jump,tension_am_damaged,tension_am_broken,tension_am_length_m,"
-    "tension_mm_damaged,tension_mm_broken,tension_mm_length_m,shear_am_damaged,shear_am_broken,"
-    "shear_am_length_m,shear_mm_damaged,shear_mm_broken,shear_mm_length_m,mean_opening_m,energy_loading_J,"
+    "kinetic_over_strain,largest_jump,tension_aggregate_mortar_damaged,tension_aggregate_mortar_broken,tension_aggregate_mortar_length_m,"
+    "tension_mortar_mortar_damaged,tension_mortar_mortar_broken,tension_mortar_mortar_length_m,shear_aggregate_mortar_damaged,shear_aggregate_mortar_broken,"
+    "shear_aggregate_mortar_length_m,shear_mortar_mortar_damaged,shear_mortar_mortar_broken,shear_mortar_mortar_length_m,mean_opening_m,energy_loading_J,"
     "energy_gravity_J,energy_property_change_J,energy_zones_J,energy_contacts_J,energy_kinetic_J,dissipated_tension_J,"
     "dissipated_shear_J,dissipated_friction_J,dissipated_compression_J,energy_local_damping_J,"
     "energy_viscous_damping_J,energy_error_J"
@@ -264,7 +264,7 @@ def _heated_row(heating: Heating, stage: int, temperature: float, exchange: int,
                          ("energy_local_damping_J", 0.04)):
         row[column] = part * work
     row["energy_error_J"] = 0.01 * work
-    for column, most in (("tension_am", 400), ("tension_mm", 700), ("shear_am", 300), ("shear_mm", 500)):
+    for column, most in (("tension_aggregate_mortar", 400), ("tension_mortar_mortar", 700), ("shear_aggregate_mortar", 300), ("shear_mortar_mortar", 500)):
         row[f"{column}_damaged"] = int(most * damage)
         row[f"{column}_broken"] = int(0.6 * most * damage**2)
         row[f"{column}_length_m"] = 1e-3 * int(most * damage)
@@ -319,7 +319,7 @@ def write_history(path: Path, strength_factor: float = 1.0) -> None:
                               ("energy_local_damping_J", 0.08)):
             row[column] = share * lost
         row["energy_error_J"] = 0.02 * lost
-        for column, most in (("tension_am", 400), ("tension_mm", 700), ("shear_am", 300), ("shear_mm", 500)):
+        for column, most in (("tension_aggregate_mortar", 400), ("tension_mortar_mortar", 700), ("shear_aggregate_mortar", 300), ("shear_mortar_mortar", 500)):
             row[f"{column}_damaged"] = int(most * grown)
             row[f"{column}_broken"] = int(0.6 * most * grown**2)
         rows.append(row)
@@ -331,9 +331,11 @@ def write_mesh(path: Path, section: Section) -> None:
         _write_cells(file.create_group("blocks"), section.points, section.triangles, 5)
         file["blocks/block"] = section.block.astype(np.int32)
         file["blocks/material"] = section.material.astype(np.uint8)
+        file["blocks/material"].attrs["names"] = "aggregate\nmortar\nplaten"
         lines = np.arange(len(section.line_points)).reshape(-1, 2)
         _write_cells(file.create_group("contacts"), section.line_points, lines, 3)
         file["contacts/interface"] = section.interface.astype(np.uint8)
+        file["contacts/interface"].attrs["names"] = "aggregate_aggregate\naggregate_mortar\nmortar_mortar\nplaten"
         file["contacts/length"] = section.length
 
 

@@ -210,7 +210,7 @@ class ErrorsNameTheThing(FolderTest):
                 aside.rename(path)
 
     def test_missing_column(self):
-        for name in ("stress_MPa", "shear_mm_broken", "energy_error_J"):
+        for name in ("stress_MPa", "shear_mortar_mortar_damaged", "energy_error_J"):
             with self.subTest(name):
                 path = self.run_folder / "history.csv"
                 before = path.read_text()

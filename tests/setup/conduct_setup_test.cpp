@@ -51,7 +51,8 @@ TEST(ConductSetup, MakesASpecimenWithoutPlatensThatConducts) {
   const pyroclast::Setup setup =
       read_setup(Deck::parse(with(wall_deck(), "count = 2000", "count = 100"), "deck.toml"), ".");
   const auto simulation = make_simulation(setup);
-  for (int material : simulation->model().block_material) EXPECT_NE(material, platen_material);
+  for (int material : simulation->model().block_material)
+    EXPECT_NE(material, platen_material(simulation->model()));
   EXPECT_FALSE(simulation->moves());
   EXPECT_TRUE(simulation->field().conduction());
 }

@@ -1,10 +1,12 @@
 #include "pyroclast/setup/read_materials.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "deck/diagnostics_of.hpp"
+#include "phases.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 
@@ -26,25 +28,34 @@ Deck deck_of(const Properties& p) {
                          "[materials.aggregate]\nE = \"70 GPa\"\nnu = 0.2\ndensity = \"2650 kg/m3\"\n"
                          "[materials.platen]\nE = \"200 GPa\"\nnu = 0.3\ndensity = \"7850 kg/m3\"\n"
                          "[contacts]\nt_b = \"1.6 mm\"\nt_b_scaling = \"fixed\"\nplaten_friction = 0\n"
-                         "[contacts.aggregate_mortar]\nstiffness_factor = 0.8\nstrength_factor = 0.8\n"
+                         "[contacts.aggregate_mortar]\nlike = \"mortar_mortar\"\nstiffness_factor = "
+                         "0.8\nstrength_factor = 0.8\n"
                          "[contacts.mortar_mortar]\nbeta = 0.05\nphi = \"34 deg\"\nphi_res = \"34 deg\"\n" +
                          p.contact + "[materials.mortar]\nnu = 0.2\ndensity = \"2200 kg/m3\"\n" + p.mortar,
                      "deck.toml");
 }
 
 struct Materials {
-  std::array<SolidMaterial, 3> solids;
+  std::vector<SolidMaterial> solids;
   ContactParameters contacts;
   std::vector<ReadCurve> curves;
 
   const SolidMaterial& mortar() const { return solids[mortar_material]; }
 };
 
+/// Of two blocks of mortar.
+ContactMaterial mortar_contact(const Materials& m) {
+  return std::ranges::find(m.contacts.interfaces, "mortar_mortar", &InterfaceParameters::name)->contact;
+}
+
 Materials read(const Deck& deck, Interval needed = kFire) {
   CurveReader curves(".", temperature_axis(), needed, builtin_curves());
   Materials m;
-  m.solids = read_solids(deck.root(), read_expansion_reading(deck.root()), curves);
-  m.contacts = read_contacts(deck.root(), curves);
+  const std::vector<std::string> phases{"aggregate", "mortar"};
+  m.solids = read_solids(deck.root(), phases, read_expansion_reading(deck.root()), curves);
+  m.contacts = read_contacts(
+      deck.root(), phases, "mortar", [](const auto&) -> const LawTable& { return table_of<Cohesive>(); },
+      curves);
   m.curves = curves.curves();
   return m;
 }
@@ -138,7 +149,7 @@ TEST(ReadMaterials, RefusesACurveThatEndsBeforeTheRun) {
 TEST(ReadContacts, TemperatureRatioScalesWhatIsAConstant) {
   Properties p;
   p.contact += "temperature_ratio = { builtin = \"en1992_siliceous_strength\" }\n";
-  const ContactMaterial c = read_good(p).contacts.mortar;
+  const ContactMaterial c = mortar_contact(read_good(p));
   const auto cold = c.at(20.0).as<Cohesive>(), hot = c.at(600.0).as<Cohesive>();  // K_n, K_s are not set yet
   EXPECT_DOUBLE_EQ(hot.tensile_strength, 0.45 * 2.5e6);
   EXPECT_DOUBLE_EQ(hot.compressive_limit, 0.45 * 31e6);
@@ -155,7 +166,7 @@ TEST(ReadContacts, APropertyWithACurveOfItsOwnDoesNotFollowTheTemperatureRatio) 
       "f_t = \"2.5 MPa\"\nf_cm = \"31 MPa\"\nc_o = \"3.8 MPa\"\nc_res = \"0.038 MPa\"\nG_f2 = \"240 N/m\"\n"
       "G_f1 = { value = \"60 N/m\", times = { table = [[\"20 degC\", 1], [\"800 degC\", 0.5]] } }\n"
       "temperature_ratio = { builtin = \"en1992_siliceous_strength\" }\n";
-  const ContactMaterial c = read_good(p).contacts.mortar;
+  const ContactMaterial c = mortar_contact(read_good(p));
   EXPECT_DOUBLE_EQ(c["G_f1"](800.0), 30.0);
   EXPECT_DOUBLE_EQ(c["f_t"](800.0), 0.15 * 2.5e6);
 }

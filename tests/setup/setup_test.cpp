@@ -1,8 +1,11 @@
 #include "pyroclast/setup/setup.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "decks.hpp"
+#include "phases.hpp"
 #include "pyroclast/simulation/run.hpp"
 
 namespace pyroclast {
@@ -14,6 +17,16 @@ std::string paper_deck() {
 
 Setup read(const std::string& deck) {
   return read_setup(Deck::parse(deck, "deck.toml"), ".");
+}
+
+/// What a deck is refused with.
+std::string message(const std::string& text) {
+  try {
+    read(text);
+  } catch (const Error& e) {
+    return std::string(e.what());
+  }
+  return std::string();
 }
 
 // Promise: the shipped case holds the paper's Tables 1 and 2 as printed, with the readings of the open
@@ -70,14 +83,6 @@ TEST(PaperCase, FractureZoneScalesWithTheBlockSizeUnlessFixed) {
 
 TEST(Setup, TellsOfKeysThatContradictEachOther) {
   const std::string deck = paper_deck();
-  const auto message = [](const std::string& text) {
-    try {
-      read(text);
-    } catch (const Error& e) {
-      return std::string(e.what());
-    }
-    return std::string();
-  };
   EXPECT_NE(message(with(deck, "count = 5000", "count = 5000\nfile = \"a.tess\"")).find("blocks.count"),
             std::string::npos);
   EXPECT_NE(message(with(deck, "mass = \"scaled\"", "mass = \"real\"")).find("time_step"), std::string::npos);
@@ -109,6 +114,107 @@ TEST(Simulation, EstimatedModulusIsALowerBoundNearTheMeasuredOne) {
   EXPECT_LT(estimate, measured);
   EXPECT_GT(estimate,
             0.85 * measured);  // uniform stress underestimates a composite of 70 and 29 GPa by some per cent
+}
+
+/// The deck of cases/starter.toml with a second aggregate that cracks, fibres and pores.
+std::string deck_of_many_phases() {
+  std::string deck = shipped_case("starter");
+  const auto insert = [&](const std::string& before, const std::string& more) {
+    deck.insert(deck.find(before), more);
+  };
+  const std::string circles =
+      "fuller_exponent = 0.45\nsieves = [\"7 mm\"]\nminimum_gap = \"0.5 mm\"\nd_min = \"6 mm\"\nd_max = \"8 "
+      "mm\"\n";
+  insert("[blocks]", "[[inclusions]]\nshape = \"circle\"\nphase = \"light\"\nfraction = 0.05\n" + circles +
+                         "[[inclusions]]\nshape = \"circle\"\nphase = \"pore\"\nfraction = 0.02\n" + circles +
+                         "[[inclusions]]\nshape = \"fibre\"\nphase = \"steel\"\ncount = 9\n"
+                         "length = \"30 mm\"\nminimum_gap = \"0.5 mm\"\n");
+  const auto solid = [](const std::string& name, const std::string& young) {
+    return "[materials." + name + "]\nE = \"" + young + "\"\nnu = 0.2\ndensity = \"1200 kg/m3\"\n";
+  };
+  insert("[materials.platen]",
+         solid("light", "12 GPa") + solid("pore", "10 MPa") + solid("steel", "200 GPa"));
+  insert(
+      "[mechanics]",
+      "[contacts.light_light]\nlike = \"mortar_mortar\"\nstrength_factor = 0.6\nstiffness_factor = 0.4\n"
+      "[contacts.light_mortar]\nbetween = [\"light\", \"mortar\", \"aggregate\", \"light\"]\n"
+      "like = \"aggregate_mortar\"\nG_f1 = \"40 N/m\"\n"
+      "[contacts.slides]\nbetween = [\"steel\", \"mortar\", \"steel\", \"aggregate\", \"steel\", \"light\"]\n"
+      "law = \"frictional\"\nfriction = 0.4\n"
+      "[contacts.void]\nbetween = [\"pore\", \"mortar\", \"pore\", \"aggregate\", \"pore\", \"light\", "
+      "\"pore\", \"steel\"]\nlaw = \"frictional\"\nK_n = \"1 GPa/m\"\nK_s = \"1 GPa/m\"\nfriction = 0\n");
+  return deck;
+}
+
+TEST(Phases, InAnyNumberNeedADeckAndNoCode) {
+  const auto setup = read(deck_of_many_phases());
+  ASSERT_EQ(phases_of(setup.solids),
+            (std::vector<std::string>{"aggregate", "light", "pore", "steel", "mortar"}));
+  const auto simulation = make_simulation(setup);
+  const auto& specimen = simulation->specimen();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < specimen.phases.size(); ++i) {
+    EXPECT_GT(specimen.fraction[i], 0.0) << specimen.phases[i];
+    sum += specimen.fraction[i];
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-12);  // rounding
+  EXPECT_EQ(specimen.fibres.size(), 9U);
+  // the interface of each contact is the one between the phases of its blocks
+  const auto& model = simulation->model();
+  const InterfaceTable table(phases_of(setup.solids), setup.motion->contacts.interfaces);
+  for (const auto& c : model.contacts) {
+    const int a = model.block_material[model.block_of(c.a)], b = model.block_material[model.block_of(c.b)];
+    const bool platen = std::max(a, b) == platen_material(model);
+    EXPECT_EQ(c.interface, platen ? table.platen() : table.between(a, b));
+  }
+  // "like" hands on law, numbers and stiffness, times the factors of each
+  const auto of = [&](const char* name) {
+    const auto found = std::ranges::find(table.names(), name);
+    return simulation->materials().contacts.at(found - table.names().begin());
+  };
+  const auto at = [](const ContactMaterial& contact, const char* key) { return contact[key](20.0); };
+  EXPECT_DOUBLE_EQ(at(of("light_mortar"), "f_t"), 0.8 * at(of("mortar_mortar"), "f_t"));
+  EXPECT_DOUBLE_EQ(at(of("light_mortar"), "K_n"), 0.8 * at(of("mortar_mortar"), "K_n"));
+  EXPECT_DOUBLE_EQ(at(of("light_mortar"), "G_f1"), 40.0);
+  EXPECT_DOUBLE_EQ(at(of("light_light"), "K_s"), 0.4 * at(of("mortar_mortar"), "K_s"));
+  EXPECT_DOUBLE_EQ(at(of("light_light"), "c_o"), 0.6 * at(of("mortar_mortar"), "c_o"));
+  EXPECT_EQ(of("slides").law, &table_of<Frictional>());
+  // what no interface is for stays elastic
+  EXPECT_EQ(of("steel_steel").law, &table_of<Elastic>());
+}
+
+TEST(Phases, WhatAnInterfaceCannotBeIsSaid) {
+  const std::string deck = deck_of_many_phases();
+  const auto says = [&](const std::string& from, const std::string& to, const char* what) {
+    const std::string errors = message(with(deck, from, to));
+    EXPECT_NE(errors.find(what), std::string::npos) << errors;
+  };
+  says("like = \"aggregate_mortar\"", "like = \"agregate_mortar\"", "must be another interface");
+  says("\"steel\", \"light\"]", "\"stel\", \"light\"]", "\"stel\" is no phase of the specimen; phases are");
+  says(", \"pore\", \"steel\"]", "]", "no interface is between pore and steel");
+  says("\"aggregate\", \"light\"]", "\"aggregate\", \"light\", \"light\", \"light\"]",
+       "light and light are joined by");
+  says("[contacts.light_light]", "[contacts.soft]", "names no two phases of the specimen");
+  says("law = \"frictional\"\nfriction = 0.4", "law = \"friction\"\nfriction = 0.4",
+       "must be one of \"cohesive\"");
+  says("between = [\"light\", \"mortar\", \"aggregate\", \"light\"]", "between = [\"light\"]",
+       "must name two phases");
+  says("phase = \"pore\"", "phase = \"platen\"", "\"platen\" is the solid of the platens");
+  says("friction = 0.4", "friction = 0.4\nstrength_factor = 0.5", "strength_factor = 0.5: has no effect");
+}
+
+// A stated stiffness scales with the block size as E / t_b does, and is as printed at the stated size.
+TEST(Stiffness, FollowsTheBlockSizeWhereItIsStated) {
+  const auto setup = read(paper_deck());
+  const auto stiffness = [&](double size, double foreseen) {
+    const auto concrete = make_concrete(setup.solids, setup.motion->contacts, size, foreseen);
+    return concrete.contacts[mortar_mortar]["K_n"](20.0);
+  };
+  EXPECT_EQ(stiffness(0.003 * (1 + 1e-15), 0.003), 18400e9);  // at 5,000 blocks to the last bit
+  EXPECT_DOUBLE_EQ(stiffness(0.006, 0.006), 9200e9);
+  auto fixed = setup.motion->contacts;
+  fixed.fracture_zone_size.reset();
+  EXPECT_EQ(make_concrete(setup.solids, fixed, 0.006).contacts[mortar_mortar]["K_n"](20.0), 18400e9);
 }
 
 }  // namespace

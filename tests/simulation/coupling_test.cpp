@@ -18,6 +18,8 @@ TEST(PropertiesOfAComputedField, AreRefusedWhereTheyMakeNoLaw) {
       body, heat_conditions({on(OutlinePart::left, convection(25.0, Curve::constant(600.0)))}), 600.0);
   field.advance(100.0, 600.0);
   ConcreteMaterials materials;
+  materials.solids.resize(3);
+  materials.contacts.resize(4);
   for (auto& solid : materials.solids) solid.young = Curve::constant(30e9);
   for (auto& contact : materials.contacts)
     for (const auto& [key, value] : {std::pair{"K_n", 1e13},

@@ -43,7 +43,7 @@ Diagnostic error_of(const std::string& text) {
 }
 
 std::string message_of(const Model<2>& body, const HeatConditions& heat,
-                       const std::array<SolidMaterial, 3>& solids = alike_solids()) {
+                       const std::vector<SolidMaterial>& solids = alike_solids()) {
   try {
     make_conduction(body, solids, heat, {20.0, 1000.0});
   } catch (const Error& e) {

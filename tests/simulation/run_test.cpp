@@ -200,7 +200,8 @@ TEST(Run, NewStagesWithTheNumbersOfTheOldGoOnAlike) {
       EXPECT_EQ(history.values("step", {0, history.row_count()}),
                 std::vector<double>(all.begin() + static_cast<std::ptrdiff_t>(before), all.end()));
       EXPECT_EQ(history.last("strain"), whole.run.history().last("strain"));
-      EXPECT_EQ(history.last("tension_mm_damaged"), whole.run.history().last("tension_mm_damaged"));
+      EXPECT_EQ(history.last("tension_mortar_mortar_damaged"),
+                whole.run.history().last("tension_mortar_mortar_damaged"));
     }
   }
 }

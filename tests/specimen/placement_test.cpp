@@ -11,7 +11,7 @@ namespace {
 
 std::vector<Aggregate> place_paper_aggregates(const AggregateParameters& p, std::uint64_t seed) {
   Random random(seed);
-  return place(draw_diameters(p, 0.15 * 0.3, random), 0.15, 0.3, p, random);
+  return place(draw_diameters(p, 0.15 * 0.3, random), 0.15, 0.3, p, {}, random);
 }
 
 TEST(Placement, KeepsTheGapBetweenAggregatesAndToTheOutline) {
@@ -41,7 +41,7 @@ TEST(Placement, PlacesThousandsOfSmallAggregatesBetweenLargeOnes) {
   Random random(1);
   const std::vector<double> diameters = draw_diameters(p, 0.15 * 0.3, random);
   ASSERT_GT(diameters.size(), 1000U);
-  EXPECT_EQ(place(diameters, 0.15, 0.3, p, random).size(), diameters.size());
+  EXPECT_EQ(place(diameters, 0.15, 0.3, p, {}, random).size(), diameters.size());
 }
 
 TEST(Placement, SaysHowMuchIsMissing) {
@@ -58,7 +58,7 @@ TEST(Placement, AnAggregateWiderThanTheSpecimenIsMissing) {
   AggregateParameters p = paper_aggregates();
   Random random(1);
   const std::vector<double> diameters{30e-3};
-  EXPECT_TRUE(says(error_of([&] { place(diameters, 0.02, 0.3, p, random); }), "1 of 1"));
+  EXPECT_TRUE(says(error_of([&] { place(diameters, 0.02, 0.3, p, {}, random); }), "1 of 1"));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ TEST(Specimen, MeetsThePapersRequest) {
     // The paper loses 0.03 by superposition; a rule that loses or gains more is another specimen.
     EXPECT_NEAR(s.fraction_superposed, s.fraction_placed, 0.03);
     EXPECT_EQ(s.tessellation.cells.size(), 5000U);
-    EXPECT_EQ(s.constituent.size(), 5000U);
+    EXPECT_EQ(s.phase.size(), 5000U);
     EXPECT_GE(s.metrics.shortest_edge, 0.2 * s.metrics.mean_edge * (1 - 1e-12));
     EXPECT_EQ(s.metrics.edges_left_short, 0);
     EXPECT_NEAR(s.metrics.mean_size, 3e-3, 1e-12);   // sqrt(150 mm x 300 mm / 5000)
@@ -35,7 +35,7 @@ TEST(Specimen, TheSameSeedGivesTheSameSpecimen) {
   const Specimen other = make_specimen(paper_specimen(12));
   EXPECT_EQ(a.tessellation.vertices, b.tessellation.vertices);
   EXPECT_EQ(a.tessellation.cells, b.tessellation.cells);
-  EXPECT_EQ(a.constituent, b.constituent);
+  EXPECT_EQ(a.phase, b.phase);
   EXPECT_NE(a.tessellation.vertices, other.tessellation.vertices);
 }
 

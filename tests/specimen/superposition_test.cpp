@@ -1,5 +1,6 @@
 #include "pyroclast/specimen/superposition.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -23,6 +24,8 @@ SpecimenParameters unit_square(Superposition rule, double covered_fraction = 0.5
   return p;
 }
 
+constexpr int kMatrix = 2;
+
 TEST(Superposition, CoveredFractionIsTheShareOfACircleInEachCell) {
   const std::vector<Aggregate> circle{{{{0.5, 0.5}}, 0.5}};
   for (const double covered : covered_fractions(quarters, 1, 1, circle)) {
@@ -40,23 +43,41 @@ TEST(Superposition, SeveralCirclesAddUpInACell) {
 TEST(Superposition, AreaRuleTurnsACellAtTheStatedFraction) {
   const std::vector<Aggregate> circle{{{{0.25, 0.25}}, 0.4}};  // covers 0.50 of cell 0
   const double covered = covered_fractions(quarters, 1, 1, circle)[0];
-  EXPECT_EQ(superpose(quarters, circle, unit_square(Superposition::area, covered - 1e-9))[0],
-            Constituent::aggregate);
-  EXPECT_EQ(superpose(quarters, circle, unit_square(Superposition::area, covered + 1e-9))[0],
-            Constituent::mortar);
+  EXPECT_EQ(superpose(quarters, circle, unit_square(Superposition::area, covered - 1e-9), kMatrix)[0], 0);
+  EXPECT_EQ(superpose(quarters, circle, unit_square(Superposition::area, covered + 1e-9), kMatrix)[0],
+            kMatrix);
 }
 
 TEST(Superposition, CentroidRuleLooksAtTheCentroidOnly) {
   const std::vector<Aggregate> small{{{{0.25, 0.25}}, 0.02}};
   const std::vector<Aggregate> beside{{{{0.6, 0.6}}, 0.2}};
-  EXPECT_EQ(superpose(quarters, small, unit_square(Superposition::centroid))[0], Constituent::aggregate);
-  EXPECT_EQ(superpose(quarters, beside, unit_square(Superposition::centroid))[3], Constituent::mortar);
+  EXPECT_EQ(superpose(quarters, small, unit_square(Superposition::centroid), kMatrix)[0], 0);
+  EXPECT_EQ(superpose(quarters, beside, unit_square(Superposition::centroid), kMatrix)[3], kMatrix);
 }
 
 TEST(Superposition, WithoutAggregatesAllIsMortar) {
-  for (const Constituent c : superpose(quarters, {}, unit_square(Superposition::area, 0.0))) {
-    EXPECT_EQ(c, Constituent::mortar);
-  }
+  for (const int phase : superpose(quarters, {}, unit_square(Superposition::area, 0.0), kMatrix))
+    EXPECT_EQ(phase, kMatrix);
+}
+
+TEST(Superposition, ACellIsOfThePhaseThatCoversMostOfIt) {
+  const std::vector<Aggregate> circles{{{{0.15, 0.15}}, 0.2, 0}, {{{0.3, 0.35}}, 0.26, 1}};
+  const double covered = covered_fractions(quarters, 1, 1, circles)[0];
+  EXPECT_EQ(superpose(quarters, circles, unit_square(Superposition::area, covered - 1e-9), kMatrix)[0], 1);
+  EXPECT_EQ(superpose(quarters, circles, unit_square(Superposition::area, covered + 1e-9), kMatrix)[0],
+            kMatrix);
+}
+
+TEST(Superposition, AFibreTakesTheCellsThatItRunsThrough) {
+  std::vector<int> phase(4, kMatrix);
+  const std::vector<Fibre> fibre{{{{0.1, 0.1}}, {{0.9, 0.2}}, 0}};
+  superpose(quarters, fibre, phase);
+  EXPECT_EQ(std::ranges::count(phase, 0), 2);
+  EXPECT_EQ(phase[0], 0);
+  EXPECT_EQ(phase[3], kMatrix);
+  const std::vector<Fibre> along_an_edge{{{{0.1, 0.5}}, {{0.4, 0.5}}, 1}};  // runs through none
+  superpose(quarters, along_an_edge, phase);
+  EXPECT_EQ(std::ranges::count(phase, 1), 0);
 }
 
 TEST(Superposition, CellsShareOutTheCirclesExactly) {

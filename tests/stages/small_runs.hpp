@@ -68,6 +68,7 @@ phi = "34 deg"
 phi_res = "34 deg"
 G_f2 = "240 N/m"
 [contacts.aggregate_mortar]
+like = "mortar_mortar"
 stiffness_factor = 1.0
 strength_factor = 1.0
 [mechanics]

@@ -29,7 +29,7 @@ TEST(HeatStage, AnEvenBodyExpandsFreely) {
   const double loaded = r.end_of(1, "specimen_strain") / softening;
   EXPECT_NEAR(r.last("specimen_strain"), loaded - 2e-3, 1e-5);  // 0.5 % of the expansion: what motion is left
   EXPECT_NEAR(r.last("lateral_strain"), 2e-3, 1e-5);            // and Poisson's part of the load
-  EXPECT_EQ(r.last("tension_mm_damaged"), 0);
+  EXPECT_EQ(r.last("tension_mortar_mortar_damaged"), 0);
   EXPECT_EQ(r.result(2, "exchanges"), 40);
   EXPECT_EQ(r.result(2, "exchanges_not_converged"), 0);
   EXPECT_FALSE(r.result(2, "critical_temperature_degC"));

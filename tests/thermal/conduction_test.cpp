@@ -483,7 +483,7 @@ TEST(Conduction, LeavesOutBlocksOfMaterialsThatDoNotConduct) {
   const auto temperature = heat.gridpoint_temperatures(20.0);
   for (int b = 0; b < body.block_count(); ++b)
     for (int g = body.block_gridpoints[b]; g < body.block_gridpoints[b + 1]; ++g)
-      ASSERT_EQ(temperature[g], body.block_material[b] == platen_material ? 20.0 : 50.0);
+      ASSERT_EQ(temperature[g], body.block_material[b] == platen_material(body) ? 20.0 : 50.0);
 
   const Conduction<2> all(body, {material, material, material}, parameters(eurocode_range, 50.0));
   area = 0.0;

@@ -22,7 +22,7 @@ std::vector<bool> in_platen(const Model<2>& model) {
   std::vector<bool> result(model.position.size());
   for (int b = 0; b < model.block_count(); ++b)
     for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g)
-      result[g] = model.block_material[b] == platen_material;
+      result[g] = model.block_material[b] == platen_material(model);
   return result;
 }
 
@@ -88,7 +88,7 @@ TEST(TemperatureField, ZonesTakeTheMeanOfTheirGridpointsAndContactsTheSpecimensS
   for (int c = 0; c < model.contact_count(); ++c) {
     const auto& contact = model.contacts[c];
     EXPECT_EQ(field.contacts()[c], t[platen[contact.a] ? contact.b : contact.a]);
-    if (contact.interface != platen_interface) {
+    if (contact.interface != platen_interface(body)) {
       EXPECT_EQ(t[contact.a], t[contact.b]);
     }
   }
@@ -145,8 +145,8 @@ TEST(TemperatureField, AnAdvanceInBatchesIsBitwiseTheSame) {
   const auto body = small_body(100);
   HeatConditions heat =
       heat_conditions({on(OutlinePart::left, convection(25.0, fire_curves().at("iso834").curve)),
-                 on(OutlinePart::right,  // jumps at the start
-                    PrescribedTemperature{Curve::table({0.0, 600.0}, {60.0, 80.0}, time_axis())})});
+                       on(OutlinePart::right,  // jumps at the start
+                          PrescribedTemperature{Curve::table({0.0, 600.0}, {60.0, 80.0}, time_axis())})});
   for (const auto scheme : {HeatScheme::euler, HeatScheme::super_time_stepping}) {
     heat.scheme = scheme;
     auto whole = conduct(body, heat, 600.0), in_batches = conduct(body, heat, 600.0);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pyroclast/app/load.hpp"
 #include "pyroclast/base/error.hpp"
@@ -96,9 +97,14 @@ std::vector<PathPoint> read_path(const std::filesystem::path& file) {
   return path;
 }
 
-InterfaceIndex interface_index(const std::string& name) {
-  if (name == "aggregate-aggregate") return aggregate_aggregate;
-  return name == "aggregate-mortar" ? aggregate_mortar : mortar_mortar;
+/// The contacts of an interface, of the deck or of two blocks of one phase. Throws Error when there is none.
+const ContactMaterial& contact_of(const ConcreteMaterials& concrete, const InterfaceTable& table,
+                                  const std::string& name) {
+  const auto& names = table.names();
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end())
+    throw Error(fmt::format("--interface {}: must be one of {}", name, fmt::join(names, ", ")));
+  return concrete.contacts[found - names.begin()];
 }
 
 /// One contact point on its way along a path, with its energies added up.
@@ -186,7 +192,9 @@ int law(const LawOptions& options) {
                             options.deck.string()));
   const ContactParameters& contacts = setup.motion->contacts;
   const auto concrete = make_concrete(setup.solids, contacts, expected_block_size(setup.specimen, contacts));
-  Drive drive(concrete.contacts[interface_index(options.interface)]);
+  const InterfaceTable table(phases_of(setup.solids), contacts.interfaces);
+  const std::string matrix = contacts.matrix + "_" + contacts.matrix;
+  Drive drive(contact_of(concrete, table, options.interface.empty() ? matrix : options.interface));
 
   std::string csv = drive.header();
   PathPoint from;

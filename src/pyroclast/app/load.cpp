@@ -47,6 +47,8 @@ std::string describe(const specimen::Specimen& s) {
   text += fmt::format(
       "                aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} after superposition\n",
       s.fraction_asked, s.fraction_placed, s.fraction_superposed);
+  for (std::size_t i = 0; i < s.phases.size(); ++i)
+    text += fmt::format("                {:<12} {:.3f} of the area\n", s.phases[i], s.fraction[i]);
   text += fmt::format("blocks          mean size {:.3f} mm, mean edge {:.3f} mm\n", kMilli * m.mean_size,
                       kMilli * m.mean_edge);
   text += fmt::format("                shortest edge {:.3f} mm, block {} at ({:.2f}, {:.2f}) mm\n",

@@ -69,9 +69,8 @@ int command_line(int argc, char** argv) {
   law->add_option("--path", law_options.path,
                   "CSV: columns u_n, u_s and optionally T, each with its unit: u_n [um]")
       ->required();
-  law->add_option("--interface", law_options.interface, "Which contact")
-      ->check(CLI::IsMember({"mortar-mortar", "aggregate-mortar", "aggregate-aggregate"}))
-      ->default_val("mortar-mortar");
+  law->add_option("--interface", law_options.interface,
+                  "A table of [contacts], or a_a for two blocks of phase a (default: that of the matrix)");
   law->add_option("--steps", law_options.steps, "Cut each leg of the path into so many steps")
       ->check(CLI::PositiveNumber)
       ->default_val(1);

@@ -19,10 +19,9 @@ constexpr Interval kDrawn{20.0, 800.0};
 constexpr double kTemperatureStep = 1.0;
 
 /// \param moves  whether the mechanical properties were read too
-void add_solid(const SolidMaterial& solid, const std::string& name, bool moves,
-               std::vector<ReadCurve>& list) {
+void add_solid(const SolidMaterial& solid, bool moves, std::vector<ReadCurve>& list) {
   const auto add = [&](const char* key, const Unit& unit, const Curve& curve) {
-    list.push_back({fmt::format("materials.{}.{}", name, key), unit.si, curve});
+    list.push_back({fmt::format("materials.{}.{}", solid.name, key), unit.si, curve});
   };
   if (moves) add("E", unit::stress, solid.young);
   add("density", unit::density, solid.density);
@@ -30,8 +29,8 @@ void add_solid(const SolidMaterial& solid, const std::string& name, bool moves,
   if (solid.conductivity) add("conductivity", unit::conductivity, *solid.conductivity);
   if (!solid.specific_heat) return;
   add("specific_heat", unit::specific_heat, *solid.specific_heat);
-  list.push_back(
-      {fmt::format("materials.{}.heat_capacity", name), "J/m3/K", solid.density * *solid.specific_heat});
+  list.push_back({fmt::format("materials.{}.heat_capacity", solid.name), "J/m3/K",
+                  solid.density * *solid.specific_heat});
 }
 
 void add_contact(const ContactMaterial& contact, const std::string& name, std::vector<ReadCurve>& list) {
@@ -47,15 +46,14 @@ void add_contact(const ContactMaterial& contact, const std::string& name, std::v
 std::vector<ReadCurve> properties_of(const Setup& setup) {
   std::vector<ReadCurve> list;
   const bool moves = setup.motion.has_value();
-  add_solid(setup.solids[aggregate_material], "aggregate", moves, list);
-  add_solid(setup.solids[mortar_material], "mortar", moves, list);
+  for (const SolidMaterial& solid : setup.solids)
+    if (moves || !solid.name.empty()) add_solid(solid, moves, list);
   if (moves) {
     const ContactParameters& contacts = setup.motion->contacts;
     const auto concrete =
         make_concrete(setup.solids, contacts, expected_block_size(setup.specimen, contacts));
-    add_solid(setup.solids[platen_material], "platen", moves, list);
-    add_contact(concrete.contacts[mortar_mortar], "mortar_mortar", list);
-    add_contact(concrete.contacts[aggregate_mortar], "aggregate_mortar", list);
+    const InterfaceTable table(phases_of(setup.solids), contacts.interfaces);
+    for (int i = 0; i < table.platen(); ++i) add_contact(concrete.contacts[i], table.names()[i], list);
   }
   for (const ReadCurve& read : setup.curves) {
     const bool listed =

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdint>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -14,6 +15,14 @@ namespace pyroclast::app {
 
 namespace {
 
+/// Contact points that are broken now, in any way.
+std::int64_t broken(const History& history) {
+  std::int64_t count = 0;
+  for (const Column& column : history.columns())
+    if (column.name.ends_with("_broken")) count += std::llround(*history.last(column.name));
+  return count;
+}
+
 /// What a row of the history says, in short.
 std::string describe_row(const History& history) {
   const auto last = [&](const char* column) { return history.last(column); };
@@ -27,9 +36,7 @@ std::string describe_row(const History& history) {
         fmt::format("  {:.0f} cycles{}", *last("cycles"), *last("converged") > 0.0 ? "" : " (not at rest)");
   if (last("strain")) {
     text += fmt::format("  strain {:.5f}  stress {:6.2f} MPa", *last("strain"), *last("stress_MPa"));
-    text += fmt::format("  broken: tension {:.0f}, shear {:.0f}",
-                        *last("tension_am_broken") + *last("tension_mm_broken"),
-                        *last("shear_am_broken") + *last("shear_mm_broken"));
+    text += fmt::format("  broken: {}", broken(history));
     text += fmt::format("  unbalanced {:.1e}", *last("unbalanced_ratio"));
   }
   return text;

@@ -11,12 +11,14 @@ int make_specimen(const RunOptions& options) {
   const Setup& setup = loaded.setup;
   RunFolder::check(output_folder(options), options.overwrite);
   const specimen::Specimen specimen = make_checked_specimen(setup.specimen, loaded.team.get());
-  const Model<2> model = make_concrete_model(
-      specimen, setup.motion ? std::optional(setup.motion->platen_thickness) : std::nullopt, setup.thickness);
+  const Model<2> model = setup.motion
+                             ? make_concrete_model(specimen, setup.motion->platen_thickness, setup.thickness,
+                                                   setup.motion->contacts.interfaces)
+                             : make_concrete_model(specimen, std::nullopt, setup.thickness);
   const RunFolder folder = make_run_folder(loaded, options);
   std::filesystem::create_directories(folder.path() / "fields");
   write_mesh(folder.path() / "fields", model);
-  write_specimen_files(folder.path() / "specimen", specimen, setup.specimen.aggregates);
+  write_specimen_files(folder.path() / "specimen", specimen, setup.specimen);
   fmt::print("{}results         {}\n", describe(specimen), folder.path().string());
   if (options.figures) draw_figures("specimen", folder.path());
   return 0;

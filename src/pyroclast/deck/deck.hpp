@@ -77,6 +77,11 @@ class Section {
   /// An array of tables that may be absent.
   std::vector<Section> optional_sections(std::string_view key, Meaning meaning = "") const;
 
+  /// Every table in this one, with its name, in the order of the names.
+  /// \param placeholder  stands for the names in the deck reference
+  std::vector<std::pair<std::string, Section>> named_sections(std::string_view placeholder,
+                                                              Meaning meaning = "") const;
+
   /// A quantity, written as a string with its unit, in `unit.si`; `range` is in that unit.
   double quantity(std::string_view key, const Unit& unit, const Range& range, Meaning meaning) const;
   double quantity(std::string_view key, const Unit& unit, const Range& range, double fallback,
@@ -139,6 +144,13 @@ class Section {
     return options[index < options.size() ? index : 0].value;
   }
 
+  /// One of several words, or any other text that `other` explains; the first word where the deck says
+  /// nothing.
+  std::string word_or_text(std::string_view key, const std::vector<Choice<int>>& words, Meaning other,
+                           Meaning meaning) const;
+  /// A list of strings; empty if the key is absent.
+  std::vector<std::string> texts(std::string_view key, Meaning meaning) const;
+
   /// Whether the key is written. A key that is found here but never read, nor named in `error`, is reported
   /// as one that has no effect.
   bool has(std::string_view key) const;
@@ -150,6 +162,9 @@ class Section {
   /// Says for the deck reference what a key holds that is read in several forms, before it is read: then
   /// nothing that the reading functions are told of the key counts.
   void describe(std::string_view key, const KeyForms& forms, Meaning meaning) const;
+  /// Which keys belong here depends on a value that could not be read: from now on those of this table that
+  /// are missing or unknown are not reported.
+  void leave_open() const;
   /// Whether no error was recorded so far in this table and the tables below: guards a check between values
   /// against reporting the stand-in of a value that could not be read.
   bool ok() const;

@@ -330,6 +330,16 @@ std::vector<Section> Section::optional_sections(std::string_view key, Meaning me
   return result;
 }
 
+std::vector<std::pair<std::string, Section>> Section::named_sections(std::string_view placeholder,
+                                                                     Meaning meaning) const {
+  if (deck_->survey()) return {{std::string(placeholder), section(placeholder, meaning)}};
+  std::vector<std::pair<std::string, Section>> result;
+  if (!table_) return result;
+  for (const auto& [key, node] : table_->table)
+    if (node.is_table()) result.emplace_back(key.str(), section(key.str()));
+  return result;
+}
+
 double Section::quantity(std::string_view key, const Unit& unit, const Range& range, Meaning meaning) const {
   note(quantity_key(key, unit, range), meaning);
   const auto entry = require(*deck_, table_, key, requirement(unit, range));
@@ -435,6 +445,45 @@ std::size_t Section::choice_index(std::string_view key, const std::vector<Word>&
   return index.value_or(0);
 }
 
+std::string Section::word_or_text(std::string_view key, const std::vector<Choice<int>>& options,
+                                  Meaning other, Meaning meaning) const {
+  if (auto* survey = deck_->survey()) {
+    DeckKey read = key_of(key, "word or text");
+    std::vector<std::string> asked;
+    for (const auto& option : options) {
+      asked.emplace_back(option.word);
+      read.words.push_back({fmt::format("\"{}\"", option.word), std::string(option.meaning.text())});
+    }
+    read.words.push_back({"other text", std::string(other.text())});
+    read.fallback = fmt::format("\"{}\"", options.front().word);
+    note(std::move(read), meaning);
+    return asked[survey->chosen(table_->path, key, asked)];
+  }
+  const auto entry = read(*deck_, table_, key);
+  return (entry ? read_text(*entry) : std::nullopt).value_or(std::string(options.front().word));
+}
+
+std::vector<std::string> Section::texts(std::string_view key, Meaning meaning) const {
+  note(key_of(key, "list of texts"), meaning);
+  const auto entry = read(*deck_, table_, key);
+  std::vector<std::string> list;
+  if (!entry) return list;
+  const auto* array = entry->node.as_array();
+  if (!array) {
+    entry->error("must be a list of texts, such as [\"aggregate\", \"mortar\"]");
+    return list;
+  }
+  for (const auto& element : *array) {
+    const auto text = element.value<std::string>();
+    if (!text) {
+      entry->error("must hold texts only, such as [\"aggregate\", \"mortar\"]");
+      return {};
+    }
+    list.push_back(*text);
+  }
+  return list;
+}
+
 bool Section::has(std::string_view key) const {
   if (auto* survey = deck_->survey()) {
     survey->know(table_->path, key);
@@ -458,6 +507,10 @@ bool Section::is_table(std::string_view key) const {
   }
   const toml::node* node = table_ ? table_->look(key) : nullptr;
   return node && node->is_table();
+}
+
+void Section::leave_open() const {
+  if (table_) table_->undecided = true;
 }
 
 void Section::describe(std::string_view key, const KeyForms& forms, Meaning meaning) const {

@@ -1,5 +1,6 @@
 #include "pyroclast/material/concrete.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,11 +11,72 @@ namespace pyroclast {
 
 namespace {
 
+/// K_n and K_s as functions of temperature, Pa/m.
+struct Stiffness {
+  Curve normal, shear;
+
+  void put_into(ContactMaterial& contact) const {
+    contact.set(Role::normal_stiffness, normal);
+    contact.set(Role::shear_stiffness, shear);
+  }
+};
+
 /// E(T) / t_b and G(T) / t_b of Eq. (17).
-void set_stiffness(ContactMaterial& contact, const SolidMaterial& solid, double fracture_zone) {
-  contact.set(Role::normal_stiffness, solid.young * (1.0 / fracture_zone));
-  contact.set(Role::shear_stiffness, solid.young * (0.5 / (1.0 + solid.poisson) / fracture_zone));
+Stiffness stiffness_of(const SolidMaterial& solid, double fracture_zone) {
+  return {solid.young * (1.0 / fracture_zone), solid.young * (0.5 / (1.0 + solid.poisson) / fracture_zone)};
 }
+
+const InterfaceParameters* find(const std::vector<InterfaceParameters>& interfaces, const std::string& name) {
+  const auto found = std::ranges::find(interfaces, name, &InterfaceParameters::name);
+  return found == interfaces.end() ? nullptr : &*found;
+}
+
+/// Works out the stiffnesses of interfaces, of which some have that of others.
+class StiffnessOfInterfaces {
+ public:
+  StiffnessOfInterfaces(const std::vector<SolidMaterial>& solids, const ContactParameters& parameters,
+                        double fracture_zone, double stated_scale)
+      : solids_(solids), parameters_(parameters), fracture_zone_(fracture_zone), scale_(stated_scale) {}
+
+  Stiffness of(const InterfaceParameters& interface, std::size_t depth = 0) const {
+    if (depth > parameters_.interfaces.size())
+      throw Error(fmt::format("contacts.{}: \"like\" leads back to itself", interface.name));
+    const SolidMaterial& solid = softest(interface);
+    Stiffness k = stiffness_of(solid, fracture_zone_);
+    if (interface.like) {
+      const InterfaceParameters* other = find(parameters_.interfaces, *interface.like);
+      if (!other)
+        throw Error(
+            fmt::format("contacts.{}: there is no interface \"{}\"", interface.name, *interface.like));
+      k = of(*other, depth + 1);
+      k = {k.normal * interface.stiffness_factor, k.shear * interface.stiffness_factor};
+    }
+    // A stated stiffness follows E(T) like a computed one.
+    const double young = solid.young(kReferenceTemperature);
+    if (interface.normal_stiffness) k.normal = solid.young * (*interface.normal_stiffness * scale_ / young);
+    if (interface.shear_stiffness) k.shear = solid.young * (*interface.shear_stiffness * scale_ / young);
+    return k;
+  }
+
+ private:
+  /// Of the phases that it joins the one that gives way first.
+  const SolidMaterial& softest(const InterfaceParameters& interface) const {
+    const SolidMaterial* softest = nullptr;
+    for (const auto& pair : interface.between)
+      for (const auto& name : pair)
+        for (const SolidMaterial& solid : solids_)
+          if (solid.name == name &&
+              (!softest || solid.young(kReferenceTemperature) < softest->young(kReferenceTemperature)))
+            softest = &solid;
+    if (!softest)
+      throw Error(fmt::format("contacts.{}: none of its phases is in the specimen", interface.name));
+    return *softest;
+  }
+
+  const std::vector<SolidMaterial>& solids_;
+  const ContactParameters& parameters_;
+  double fracture_zone_, scale_;
+};
 
 std::size_t place_of(const LawTable& law, std::string_view key) {
   for (std::size_t i = 0; i < law.properties.size(); ++i)
@@ -60,34 +122,72 @@ ContactProperties ContactMaterial::at(double temperature) const {
   return {*law, std::move(values), choices};
 }
 
-ConcreteMaterials make_concrete(const std::array<SolidMaterial, 3>& solids, const ContactParameters& p,
-                                double block_size) {
-  const auto& [aggregate, mortar, platen] = solids;
+InterfaceTable::InterfaceTable(const std::vector<std::string>& phases,
+                               const std::vector<InterfaceParameters>& interfaces)
+    : phases_(static_cast<int>(phases.size())), of_pair_(phases.size() * phases.size()) {
+  const auto stated = [&](const std::string& a, const std::string& b) -> const InterfaceParameters* {
+    for (const InterfaceParameters& interface : interfaces)
+      for (const auto& [first, second] : interface.between)
+        if ((first == a && second == b) || (first == b && second == a)) return &interface;
+    return nullptr;
+  };
+  for (int a = 0; a < phases_; ++a)
+    for (int b = a; b < phases_; ++b) {
+      const InterfaceParameters* own = stated(phases[a], phases[b]);
+      const std::string name = own ? own->name : phases[a] + "_" + phases[b];
+      auto known = std::ranges::find(names_, name);
+      if (known == names_.end()) known = names_.insert(names_.end(), name);
+      const int index = static_cast<int>(known - names_.begin());
+      of_pair_[a * phases_ + b] = of_pair_[b * phases_ + a] = index;
+    }
+  names_.emplace_back("platen");
+}
+
+std::optional<std::array<int, 2>> InterfaceTable::pair_of(int interface) const {
+  for (int a = 0; a < phases_; ++a)
+    for (int b = a; b < phases_; ++b)
+      if (between(a, b) == interface) return {{a, b}};
+  return std::nullopt;
+}
+
+std::vector<std::string> phases_of(const std::vector<SolidMaterial>& solids) {
+  std::vector<std::string> names;
+  for (const SolidMaterial& solid : solids) names.push_back(solid.name);
+  names.pop_back();
+  return names;
+}
+
+ConcreteMaterials make_concrete(const std::vector<SolidMaterial>& solids, const ContactParameters& p,
+                                double block_size, std::optional<double> foreseen) {
+  const InterfaceTable table(phases_of(solids), p.interfaces);
   ConcreteMaterials concrete;
   concrete.solids = solids;
   concrete.fracture_zone =
       p.fracture_zone_size ? p.fracture_zone * block_size / *p.fracture_zone_size : p.fracture_zone;
-  auto& [aa, am, mm, pc] = concrete.contacts;
+  const double scale = p.fracture_zone_size ? *p.fracture_zone_size / foreseen.value_or(block_size) : 1.0;
+  const StiffnessOfInterfaces stiffness(solids, p, concrete.fracture_zone, scale);
+  std::optional<Stiffness> of_matrix;
+  for (int i = 0; i < table.platen(); ++i) {
+    const auto [a, b] = *table.pair_of(i);
+    if (const InterfaceParameters* stated = find(p.interfaces, table.names()[i])) {
+      concrete.contacts.push_back(stated->contact);
+      const Stiffness k = stiffness.of(*stated);
+      k.put_into(concrete.contacts.back());
+      if (solids[a].name == p.matrix && a == b) of_matrix = k;
+    } else if (a == b) {
+      concrete.contacts.emplace_back(table_of<Elastic>());
+      stiffness_of(solids[a], concrete.fracture_zone).put_into(concrete.contacts.back());
+    } else {
+      throw Error(fmt::format("contacts: blocks of {} and {} may meet, but no interface is between them",
+                              solids[a].name, solids[b].name));
+    }
+  }
+  if (!of_matrix)
+    throw Error(fmt::format("contacts: no interface is between two blocks of the matrix, {}", p.matrix));
 
-  aa = ContactMaterial(table_of<Elastic>());
-  set_stiffness(aa, aggregate, concrete.fracture_zone);
-
-  mm = p.mortar;
-  set_stiffness(mm, mortar, concrete.fracture_zone);
-  // A stated stiffness follows E(T) like a computed one.
-  const double young = mortar.young(kReferenceTemperature);
-  if (p.normal_stiffness) mm.set(Role::normal_stiffness, mortar.young * (*p.normal_stiffness / young));
-  if (p.shear_stiffness) mm.set(Role::shear_stiffness, mortar.young * (*p.shear_stiffness / young));
-
-  am = mm.times(Role::normal_stiffness, p.interface_stiffness)
-           .times(Role::shear_stiffness, p.interface_stiffness)
-           .times(Role::strength, p.interface_strength)
-           .times(Role::energy, p.scale_interface_energy ? p.interface_strength : 1.0);
-
-  pc = ContactMaterial(table_of<Frictional>());
-  pc.set(Role::normal_stiffness, mm.of(Role::normal_stiffness));
-  pc.set(Role::shear_stiffness, mm.of(Role::shear_stiffness));
-  pc["friction"] = Curve::constant(p.platen_friction);
+  ContactMaterial& platen = concrete.contacts.emplace_back(table_of<Frictional>());
+  of_matrix->put_into(platen);
+  platen["friction"] = Curve::constant(p.platen_friction);
   return concrete;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace pyroclast {
 
 /// What a block is made of: the zones' parameters as functions of temperature.
 struct SolidMaterial {
+  std::string name;                             ///< as in [materials]
   Curve young = Curve::constant(0.0);           ///< E, Pa
   double poisson = 0.0;                         ///< nu
   Curve density = Curve::constant(0.0);         ///< kg/m³; mass is that at the reference temperature
@@ -45,29 +47,67 @@ struct ContactMaterial {
   ContactProperties at(double temperature) const;
 };
 
-/// How the contacts of a concrete follow from its mortar (paper §3.1, physics of contacts A-A, A-M, platen).
+/// What holds the blocks of two phases together, as a deck says it.
+struct InterfaceParameters {
+  std::string name;
+  std::vector<std::array<std::string, 2>> between;  ///< pairs of phases, in any order
+  ContactMaterial contact;                          ///< its stiffnesses are filled in by make_concrete
+  std::optional<double> normal_stiffness;  ///< K_n at the reference temperature, Pa/m; else see below
+  std::optional<double> shear_stiffness;   ///< K_s, likewise
+  std::optional<std::string> like;         ///< interface whose stiffness it has, times the factor;
+                                           ///< without one E / t_b of the phase, Eq. (17)
+  double stiffness_factor = 1.0;
+};
+
+/// The contacts of a concrete.
 struct ContactParameters {
-  ContactMaterial mortar;                  ///< M-M; its stiffnesses are filled in by make_contacts
-  std::optional<double> normal_stiffness;  ///< K_n of M-M at the reference temperature, Pa/m; else E / t_b
-  std::optional<double> shear_stiffness;   ///< K_s, likewise; else G / t_b
-  double fracture_zone = 0.0;              ///< t_b, m, Eq. (17)
-  std::optional<double>
-      fracture_zone_size;  ///< block size at which t_b holds, m; it scales with the size; else fixed
-  double interface_stiffness = 0.0;     ///< A-M over M-M: K_n, K_s
-  double interface_strength = 0.0;      ///< A-M over M-M: f_t, c, f_cm
-  bool scale_interface_energy = false;  ///< G_f of A-M scaled like its strengths
-  double platen_friction = 0.0;         ///< tan(phi) between platen and concrete
+  std::vector<InterfaceParameters> interfaces;
+  double fracture_zone = 0.0;  ///< t_b, m, Eq. (17)
+  /// Block size at which t_b and the stated stiffnesses hold, m; they scale with the size; else fixed.
+  std::optional<double> fracture_zone_size;
+  double platen_friction = 0.0;  ///< tan(phi) between platen and concrete
+  std::string matrix;            ///< phase whose own contacts' stiffness those of the platens have
 };
 
-/// Everything a concrete specimen is made of; arrays by MaterialIndex and InterfaceIndex of the model.
+/// Which interface blocks of two phases have. The last one is that of the platens.
+class InterfaceTable {
+ public:
+  InterfaceTable() = default;
+  /// Without a word of the deck each pair of phases has an interface of its own, named `a_b`; so have two
+  /// blocks of one phase that no interface of the deck is for.
+  /// \param phases      of the specimen
+  /// \param interfaces  of the deck; none where nothing moves
+  explicit InterfaceTable(const std::vector<std::string>& phases,
+                          const std::vector<InterfaceParameters>& interfaces = {});
+
+  const std::vector<std::string>& names() const { return names_; }
+  int between(int phase, int other) const { return of_pair_.at(phase * phases_ + other); }
+  int platen() const { return static_cast<int>(names_.size()) - 1; }
+  /// A pair of phases that has the interface, the first one; nothing for that of the platens.
+  std::optional<std::array<int, 2>> pair_of(int interface) const;
+
+ private:
+  int phases_ = 0;
+  std::vector<std::string> names_;
+  std::vector<int> of_pair_;
+};
+
+/// Everything a concrete specimen is made of.
 struct ConcreteMaterials {
-  std::array<SolidMaterial, 3> solids;      ///< aggregate, mortar, platen
-  std::array<ContactMaterial, 4> contacts;  ///< A-A, A-M, M-M, platen
-  double fracture_zone = 0.0;               ///< t_b as it came out, m
+  std::vector<SolidMaterial> solids;      ///< by phase, and last the platens'
+  std::vector<ContactMaterial> contacts;  ///< by interface, see InterfaceTable
+  double fracture_zone = 0.0;             ///< t_b as it came out, m
 };
 
-/// \param block_size  square root of the mean block area, m
-ConcreteMaterials make_concrete(const std::array<SolidMaterial, 3>& solids,
-                                const ContactParameters& parameters, double block_size);
+/// Names of solids but the last, the platens'.
+std::vector<std::string> phases_of(const std::vector<SolidMaterial>& solids);
+
+/// \param solids      by phase, and last the platens'
+/// \param block_size  square root of the mean block area, m: t_b scales with it
+/// \param foreseen    that size as a deck foresees it, sqrt(area / count); else the same. Stated stiffnesses
+///                    scale with it: they are as printed, to the last bit, where it is fracture_zone_size.
+/// Throws Error when blocks of two phases would have no interface.
+ConcreteMaterials make_concrete(const std::vector<SolidMaterial>& solids, const ContactParameters& parameters,
+                                double block_size, std::optional<double> foreseen = std::nullopt);
 
 }  // namespace pyroclast

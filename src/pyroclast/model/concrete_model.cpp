@@ -8,7 +8,6 @@ namespace pyroclast {
 
 namespace {
 
-using specimen::Constituent;
 using specimen::Specimen;
 
 /// Zones of a platen stand about this many times as high as they are wide: contact forces vary along the face
@@ -45,18 +44,13 @@ Platen add_platen(Model<2>& model, const std::vector<double>& x, double inner_y,
       }
     }
   const int first = model.gridpoint_count();
-  model.add_block(gridpoints, zones, platen_material);
+  model.add_block(gridpoints, zones, platen_material(model));
   Platen platen;
   for (int i = 0; i < columns; ++i) {
     platen.inner.push_back(first + i);
     platen.outer.push_back(first + rows * columns + i);
   }
   return platen;
-}
-
-InterfaceIndex interface_between(Constituent a, Constituent b) {
-  if (a != b) return aggregate_mortar;
-  return a == Constituent::aggregate ? aggregate_aggregate : mortar_mortar;
 }
 
 /// Vertices on a horizontal wall, left to right.
@@ -79,11 +73,13 @@ std::size_t place_on_wall(const Specimen& specimen, const std::vector<int>& wall
 }  // namespace
 
 Model<2> make_concrete_model(const Specimen& specimen, std::optional<double> platen_thickness,
-                             double thickness) {
+                             double thickness, const std::vector<InterfaceParameters>& stated) {
+  const InterfaceTable interfaces(specimen.phases, stated);
   Model<2> model;
   model.thickness = thickness;
-  model.material_names = {"aggregate", "mortar", "platen"};
-  model.interface_names = {"aggregate-aggregate", "aggregate-mortar", "mortar-mortar", "platen"};
+  model.material_names = specimen.phases;
+  model.material_names.emplace_back("platen");
+  model.interface_names = interfaces.names();
   const auto& tessellation = specimen.tessellation;
 
   const auto bottom_wall = wall_vertices(specimen, 0.0);
@@ -102,9 +98,7 @@ Model<2> make_concrete_model(const Specimen& specimen, std::optional<double> pla
     std::vector<Vec<2>> corners;
     for (int v : tessellation.cells[cell]) corners.push_back(tessellation.vertices[v]);
     const auto zoned = specimen::zone_block(corners);
-    model.add_block(
-        zoned.gridpoints, zoned.zones,
-        specimen.constituent[cell] == Constituent::aggregate ? aggregate_material : mortar_material);
+    model.add_block(zoned.gridpoints, zoned.zones, specimen.phase[cell]);
   }
   const int first_platen_above = model.gridpoint_count();
   if (platen_thickness)
@@ -123,14 +117,14 @@ Model<2> make_concrete_model(const Specimen& specimen, std::optional<double> pla
                                const std::vector<int>& wall, const Platen& platen) {
     if (!platen_thickness) return;
     const auto opposite = [&](int vertex) { return platen.inner[place_on_wall(specimen, wall, vertex)]; };
-    model.join_faces(face, {opposite(e.v0), opposite(e.v1)}, platen_interface);
+    model.join_faces(face, {opposite(e.v0), opposite(e.v1)}, interfaces.platen());
   };
 
   for (const auto& e : specimen::edges(tessellation)) {
     const std::vector<int> a{gridpoint(e.left, e.v0), gridpoint(e.left, e.v1)};
     if (e.right >= 0) {
       model.join_faces(a, {gridpoint(e.right, e.v0), gridpoint(e.right, e.v1)},
-                       interface_between(specimen.constituent[e.left], specimen.constituent[e.right]));
+                       interfaces.between(specimen.phase[e.left], specimen.phase[e.right]));
       continue;
     }
     const Vec<2>& x0 = tessellation.vertices[e.v0];

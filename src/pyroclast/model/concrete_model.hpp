@@ -3,16 +3,20 @@
 #include <optional>
 #include <vector>
 
+#include "pyroclast/material/concrete.hpp"
 #include "pyroclast/model/model.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast {
 
-/// Materials of a concrete model; indices into Model::material_names.
-enum MaterialIndex : int { aggregate_material, mortar_material, platen_material };
-
-/// Interfaces of a concrete model; indices into Model::interface_names.
-enum InterfaceIndex : int { aggregate_aggregate, aggregate_mortar, mortar_mortar, platen_interface };
+/// Materials of a concrete model are the phases of the specimen and last the platens' steel; interfaces are
+/// those between phases and last that of the platens.
+inline int platen_material(const Model<2>& model) {
+  return static_cast<int>(model.material_names.size()) - 1;
+}
+inline int platen_interface(const Model<2>& model) {
+  return static_cast<int>(model.interface_names.size()) - 1;
+}
 
 /// A specimen as a model, between two platens or without. Its sets of gridpoints:
 ///
@@ -26,9 +30,10 @@ enum InterfaceIndex : int { aggregate_aggregate, aggregate_mortar, mortar_mortar
 ///
 /// \param platen_thickness  m; without one there are no platens, and the sets of them are empty
 /// \param thickness         of the specimen, out of plane, m
+/// \param interfaces        of the deck, see InterfaceTable
 ///
 /// Each platen is one block as wide as the specimen, its inner face zoned to meet the specimen's gridpoints.
 Model<2> make_concrete_model(const specimen::Specimen& specimen, std::optional<double> platen_thickness,
-                             double thickness);
+                             double thickness, const std::vector<InterfaceParameters>& interfaces = {});
 
 }  // namespace pyroclast

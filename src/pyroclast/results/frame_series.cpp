@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "pyroclast/results/text_file.hpp"
@@ -77,6 +78,7 @@ void write_blocks(Hdf5File& file, const Model<2>& model) {
   write_grid(file, "/blocks", points, connectivity, 3, kVtkTriangle);
   file.dataset("/blocks/block", block);
   file.dataset("/blocks/material", material);
+  file.attribute("/blocks/material", "names", fmt::format("{}", fmt::join(model.material_names, "\n")));
 }
 
 void write_contacts(Hdf5File& file, const Model<2>& model) {
@@ -96,6 +98,7 @@ void write_contacts(Hdf5File& file, const Model<2>& model) {
   }
   write_grid(file, "/contacts", points, connectivity, 2, kVtkLine);
   file.dataset("/contacts/interface", interface);
+  file.attribute("/contacts/interface", "names", fmt::format("{}", fmt::join(model.interface_names, "\n")));
   file.dataset("/contacts/length", length);
 }
 

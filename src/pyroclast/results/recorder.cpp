@@ -12,7 +12,7 @@ Recorder::Recorder(std::filesystem::path folder, const Setup& setup, const Run& 
       expansion_reading_(setup.expansion_reading == ExpansionReading::secant ? "secant" : "tangent"),
       history_(folder_ / "history.csv", run.history()),
       fields_(folder_ / "fields", run.simulation(), run.history()) {
-  write_specimen_files(folder_ / "specimen", run.simulation().specimen(), setup.specimen.aggregates);
+  write_specimen_files(folder_ / "specimen", run.simulation().specimen(), setup.specimen);
 }
 
 void Recorder::record(const Run& run) {

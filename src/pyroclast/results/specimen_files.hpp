@@ -8,6 +8,6 @@ namespace pyroclast {
 
 /// Writes `specimen.json`, `aggregates.csv` and `gradation.csv` of a specimen into a folder.
 void write_specimen_files(const std::filesystem::path& folder, const specimen::Specimen& specimen,
-                          const specimen::AggregateParameters& asked);
+                          const specimen::SpecimenParameters& asked);
 
 }  // namespace pyroclast

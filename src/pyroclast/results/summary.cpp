@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pyroclast/results/text_file.hpp"
+#include "pyroclast/simulation/cracks.hpp"
 
 namespace pyroclast {
 
@@ -129,11 +130,9 @@ void add_motion(Json& json, const Summary& summary, const Run& run) {
     json["energy_J"][fmt::format("dissipated_{}", name)] =
         *last_of(history, fmt::format("dissipated_{}_J", name).c_str());
   json["energy_J"]["error_over_turnover"] = *summary.energy_error;
-  json["cracks"] = {{"tension_aggregate_mortar", crack_json(history, "tension_am")},
-                    {"tension_mortar_mortar", crack_json(history, "tension_mm")},
-                    {"shear_aggregate_mortar", crack_json(history, "shear_am")},
-                    {"shear_mortar_mortar", crack_json(history, "shear_mm")},
-                    {"mean_opening_m", *last_of(history, "mean_opening_m")}};
+  for (const CrackKind& kind : crack_kinds(simulation.mechanics()))
+    json["cracks"][kind.name] = crack_json(history, kind.name);
+  json["cracks"]["mean_opening_m"] = *last_of(history, "mean_opening_m");
   json["expansion_reading"] = summary.expansion_reading;
   json["estimated_E_GPa"] = estimate_modulus(simulation.model(), simulation.materials()) * 1e-9;
   json["t_b_m"] = simulation.materials().fracture_zone;
@@ -199,6 +198,8 @@ void write_summary(const std::filesystem::path& path, const Summary& s, const Ru
                       {"aggregate_fraction_asked", specimen.fraction_asked},
                       {"aggregate_fraction_placed", specimen.fraction_placed},
                       {"aggregate_fraction_superposed", specimen.fraction_superposed}};
+  for (std::size_t i = 0; i < specimen.phases.size(); ++i)
+    json["specimen"]["fraction"][specimen.phases[i]] = specimen.fraction[i];
   json["wall_time_s"] = s.wall_time;
   json["warnings"] = s.warnings;
   write_text_file(path, json.dump(2) + "\n");

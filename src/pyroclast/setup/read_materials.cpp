@@ -1,13 +1,19 @@
 #include "pyroclast/setup/read_materials.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/laws/registry.hpp"
 #include "pyroclast/material/thermal_strain.hpp"
 
 namespace pyroclast {
@@ -22,7 +28,7 @@ constexpr Interval kStandardRange{20.0, 1200.0};
 /// 2e-7.
 constexpr double kNoStrain = 1e-6;
 
-constexpr Meaning kSolid = "a solid of the specimen";
+constexpr Meaning kSolid = "a phase of the specimen; each phase has such a table";
 
 /// Records an error unless the curve, where it is defined there, has this value at the reference temperature.
 void require_at_reference(const Section& s, std::string_view key, const Curve& curve, double expected,
@@ -66,12 +72,13 @@ SolidMaterial read_heat_properties(const Section& s, CurveReader& curves) {
     return curves.read(s, key, unit, Range::positive(), meaning);
   };
   SolidMaterial m;
+  m.name = s.path().substr(s.path().rfind('.') + 1);
   m.density = curves.read(s, "density", unit::density, Range::positive(),
                           "masses are those at 20 °C; heat conduction follows the curve");
   m.conductivity = optional("conductivity", unit::conductivity,
-                            "thermal conductivity; heat conduction needs that of aggregate and mortar");
+                            "thermal conductivity; heat conduction needs that of every phase");
   m.specific_heat =
-      optional("specific_heat", unit::specific_heat, "heat conduction needs that of aggregate and mortar");
+      optional("specific_heat", unit::specific_heat, "heat conduction needs that of every phase");
   return m;
 }
 
@@ -90,9 +97,9 @@ SolidMaterial read_conducting_solid(const Section& s, CurveReader& curves) {
 
 std::optional<Curve> read_temperature_ratio(const Section& s, CurveReader& curves) {
   if (!s.has("temperature_ratio")) return std::nullopt;
-  const Curve ratio = curves.read(
-      s, "temperature_ratio", unit::dimensionless, Range::positive(),
-      "multiplies those of f_t, f_cm, c_o, c_res, G_f1 and G_f2 that are plain constants; 1 at 20 °C");
+  const Curve ratio =
+      curves.read(s, "temperature_ratio", unit::dimensionless, Range::positive(),
+                  "multiplies the strengths and fracture energies that are plain constants; 1 at 20 °C");
   require_at_reference(s, "temperature_ratio", ratio, 1.0, kRatioTolerance);
   return ratio;
 }
@@ -116,21 +123,203 @@ int read_choice(const Section& s, const ChoiceInfo& info) {
   return s.choice_or_first(info.key, options, Meaning(info.meaning));
 }
 
-/// \param choices  where the law's choices stand
-ContactMaterial read_contact(const Section& s, const LawTable& law, const Section& choices,
-                             CurveReader& curves) {
+bool is_stiffness(const PropertyInfo& info) {
+  return info.role == Role::normal_stiffness || info.role == Role::shear_stiffness;
+}
+
+/// Numbers and choices of a law; those that an interface does not state are as in `like`, where it has one.
+/// \param shared  table whose choices hold where the interface says nothing
+ContactMaterial read_contact(const Section& s, const LawTable& law, const Section& shared,
+                             const std::optional<ContactMaterial>& like, CurveReader& curves) {
   const std::optional<Curve> ratio = read_temperature_ratio(s, curves);
   bool ratio_has_effect = false;
-  ContactMaterial m(law);
+  ContactMaterial m = like.value_or(ContactMaterial(law));
   for (std::size_t i = 0; i < law.properties.size(); ++i) {
     const PropertyInfo& info = law.properties[i];
-    if (info.role != Role::normal_stiffness && info.role != Role::shear_stiffness)
-      m.numbers[i] = read_property(s, info, ratio, ratio_has_effect, curves);
+    if (is_stiffness(info) || (like && !s.has(info.key))) continue;
+    m.numbers[i] = read_property(s, info, ratio, ratio_has_effect, curves);
   }
   if (ratio && !ratio_has_effect)
     s.error("temperature_ratio", "has no effect: no property of this contact is a plain constant");
-  for (std::size_t i = 0; i < law.choices.size(); ++i) m.choices[i] = read_choice(choices, law.choices[i]);
+  for (std::size_t i = 0; i < law.choices.size(); ++i) {
+    const char* const key = law.choices[i].key;
+    if (s.has(key))
+      m.choices[i] = read_choice(s, law.choices[i]);
+    else if (!like)
+      m.choices[i] = read_choice(shared, law.choices[i]);
+  }
   return m;
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  return fmt::format("\"{}\"", fmt::join(names, "\", \""));
+}
+
+/// What an interface called `a_b` is between where it does not say.
+std::vector<std::array<std::string, 2>> pair_in_name(const std::string& name,
+                                                     const std::vector<std::string>& phases) {
+  for (const auto& a : phases)
+    for (const auto& b : phases)
+      if (name == a + "_" + b) return {{a, b}};
+  return {};
+}
+
+/// Of one interface: names that follow one another two and two.
+std::vector<std::array<std::string, 2>> read_between(const Section& s, const std::string& name,
+                                                     const std::vector<std::string>& phases) {
+  const auto list = s.texts("between",
+                            "the two phases whose blocks it joins, or several pairs in a row: a, b, c, d; "
+                            "without it those in its name, a_b");
+  if (!s.ok()) return {};
+  if (!s.has("between")) {
+    auto pair = pair_in_name(name, phases);
+    if (pair.empty())
+      s.error(
+          fmt::format("names no two phases of the specimen, as a_b, and has no \"between\"; phases are {}",
+                      list_of(phases)));
+    return pair;
+  }
+  std::vector<std::array<std::string, 2>> pairs;
+  for (std::size_t i = 0; i + 1 < list.size(); i += 2) pairs.push_back({list[i], list[i + 1]});
+  if (list.empty() || list.size() % 2 == 1) s.error("between", "must name two phases, or pairs of them");
+  for (const auto& phase : list)
+    if (std::ranges::find(phases, phase) == phases.end())
+      s.error("between",
+              fmt::format("\"{}\" is no phase of the specimen; phases are {}", phase, list_of(phases)));
+  return pairs;
+}
+
+/// One table of [contacts].
+class InterfaceReader {
+ public:
+  InterfaceReader(const Section& shared, const std::vector<std::string>& phases, const LawFinder& find_law,
+                  CurveReader& curves)
+      : shared_(shared),
+        sections_(shared.named_sections("NAME", "contacts between the blocks of two phases (Table 2)")),
+        phases_(phases),
+        find_law_(find_law),
+        curves_(curves) {}
+
+  /// All of them. Those that others are like come before these.
+  std::vector<InterfaceParameters> read() {
+    for (const auto& [name, section] : sections_) find(name);
+    return std::move(read_);
+  }
+
+  const std::vector<std::pair<std::string, Section>>& sections() const { return sections_; }
+
+ private:
+  /// The interface of that name, read if it was not yet; none if there is none.
+  const InterfaceParameters* find(const std::string& name) {
+    const auto known = std::ranges::find(read_, name, &InterfaceParameters::name);
+    if (known != read_.end()) return &*known;
+    const auto stated = std::ranges::find(sections_, name, &std::pair<std::string, Section>::first);
+    if (stated == sections_.end() || std::ranges::find(begun_, name) != begun_.end()) return nullptr;
+    begun_.push_back(name);
+    InterfaceParameters interface = read_interface(stated->second, name);
+    read_.push_back(std::move(interface));
+    return &read_.back();
+  }
+
+  InterfaceParameters read_interface(const Section& s, const std::string& name) {
+    InterfaceParameters p;
+    p.name = name;
+    p.between = read_between(s, name, phases_);
+    std::optional<ContactMaterial> base;
+    if (s.has("like")) base = read_like(s, p);
+    const LawTable& law = base ? *base->law : read_law(s);
+    if (base)
+      s.know({"law"});
+    else
+      s.know({"stiffness_factor", "strength_factor", "scale_fracture_energy"});
+    p.contact = read_contact(s, law, shared_, base, curves_);
+    for (const PropertyInfo& info : law.properties) {
+      if (!is_stiffness(info) || !s.has(info.key)) continue;
+      const double value = s.quantity(
+          info.key, info.unit, info.range,
+          Meaning(info.role == Role::normal_stiffness ? "normal stiffness at 20 °C and at t_b_block_size"
+                                                      : "shear stiffness at 20 °C and at t_b_block_size"));
+      (info.role == Role::normal_stiffness ? p.normal_stiffness : p.shear_stiffness) = value;
+    }
+    return p;
+  }
+
+  /// What it takes from the interface that it is like; nothing after an error.
+  std::optional<ContactMaterial> read_like(const Section& s, InterfaceParameters& p) {
+    p.like = s.text("like", "interface that gives the law and all that is not stated, times the factors");
+    p.stiffness_factor = s.number("stiffness_factor", Range::positive(), 1.0, "of K_n and K_s");
+    const double strength = s.number("strength_factor", Range::positive(), 1.0, "of strengths and cohesions");
+    const bool energy =
+        s.flag("scale_fracture_energy", false, "whether strength_factor acts on fracture energies too");
+    const InterfaceParameters* other = find(*p.like);
+    if (!other) {
+      s.error("like",
+              fmt::format("must be another interface that is not like this one; got \"{}\"", *p.like));
+      return ContactMaterial();
+    }
+    if (s.has("law"))
+      s.error("law", fmt::format("has no meaning beside \"like\": the law is that of {}", *p.like));
+    return other->contact.times(Role::strength, strength).times(Role::energy, energy ? strength : 1.0);
+  }
+
+  const LawTable& read_law(const Section& s) {
+    std::vector<Choice<int>> words;
+    for (const LawTable* law : laws())
+      words.push_back({law->name, static_cast<int>(words.size()), Meaning(law->meaning)});
+    const std::string stated =
+        s.word_or_text("law", words, "a law of your own, see [laws.md](laws.md)", "contact law");
+    try {
+      return find_law_(stated);
+    } catch (const Error& error) {
+      s.error("law", error.what());
+      s.leave_open();
+      return *laws().front();
+    }
+  }
+
+  const Section& shared_;
+  std::vector<std::pair<std::string, Section>> sections_;
+  const std::vector<std::string>& phases_;
+  const LawFinder& find_law_;
+  CurveReader& curves_;
+  std::vector<std::string> begun_;
+  std::vector<InterfaceParameters> read_;
+};
+
+/// Two interfaces for one pair of phases contradict each other.
+void check_pairs(const std::vector<std::pair<std::string, Section>>& sections,
+                 const std::vector<InterfaceParameters>& interfaces) {
+  std::map<std::array<std::string, 2>, std::string> taken;
+  for (const InterfaceParameters& interface : interfaces)
+    for (std::array<std::string, 2> pair : interface.between) {
+      std::ranges::sort(pair);
+      const auto [known, is_new] = taken.emplace(pair, interface.name);
+      if (is_new) continue;
+      const auto stated =
+          std::ranges::find(sections, interface.name, &std::pair<std::string, Section>::first);
+      stated->second.error(
+          "between", fmt::format("{} and {} are joined by {} already", pair[0], pair[1], known->second));
+    }
+}
+
+/// Every two phases that may meet need an interface, and so does the matrix with itself.
+void check_complete(const Section& s, const std::vector<InterfaceParameters>& interfaces,
+                    const std::vector<std::string>& phases, const std::string& matrix) {
+  if (!s.ok()) return;
+  const auto has = [&](const std::string& a, const std::string& b) {
+    return std::ranges::any_of(interfaces, [&](const InterfaceParameters& interface) {
+      return std::ranges::any_of(interface.between, [&](const auto& pair) {
+        return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
+      });
+    });
+  };
+  for (std::size_t i = 0; i < phases.size(); ++i)
+    for (std::size_t j = i; j < phases.size(); ++j)
+      if ((i != j || phases[i] == matrix) && !has(phases[i], phases[j]))
+        s.error(
+            fmt::format("no interface is between {} and {}: [contacts.{}_{}] is needed, or another with "
+                        "between = [\"{}\", \"{}\"]",
+                        phases[i], phases[j], phases[i], phases[j], phases[i], phases[j]));
 }
 
 }  // namespace
@@ -144,52 +333,48 @@ ExpansionReading read_expansion_reading(const Section& root) {
           ExpansionReading::secant, "how the coefficients of thermal expansion α are read");
 }
 
-std::array<SolidMaterial, 3> read_solids(const Section& root, ExpansionReading reading, CurveReader& curves) {
+std::vector<SolidMaterial> read_solids(const Section& root, const std::vector<std::string>& phases,
+                                       ExpansionReading reading, CurveReader& curves) {
   const Section s = root.section("materials");
-  return {read_solid(s.section("aggregate", kSolid), reading, curves),
-          read_solid(s.section("mortar", kSolid), reading, curves),
-          read_solid(s.section("platen", "the platens' solid, at 20 °C in every run"), reading, curves)};
+  std::vector<SolidMaterial> solids;
+  for (const auto& phase : phases) solids.push_back(read_solid(s.section(phase, kSolid), reading, curves));
+  solids.push_back(
+      read_solid(s.section("platen", "the platens' solid, at 20 °C in every run"), reading, curves));
+  return solids;
 }
 
-std::array<SolidMaterial, 3> read_conducting_solids(const Section& root, CurveReader& curves) {
+std::vector<SolidMaterial> read_conducting_solids(const Section& root, const std::vector<std::string>& phases,
+                                                  CurveReader& curves) {
   const Section s = root.section("materials");
   s.know({"expansion_reading", "platen"});
-  return {read_conducting_solid(s.section("aggregate", kSolid), curves),
-          read_conducting_solid(s.section("mortar", kSolid), curves), SolidMaterial{}};
+  std::vector<SolidMaterial> solids;
+  for (const auto& phase : phases) solids.push_back(read_conducting_solid(s.section(phase, kSolid), curves));
+  solids.emplace_back();
+  return solids;
 }
 
-ContactParameters read_contacts(const Section& root, CurveReader& curves) {
+ContactParameters read_contacts(const Section& root, const std::vector<std::string>& phases,
+                                const std::string& matrix, const LawFinder& find_law, CurveReader& curves) {
   const Section s =
       root.section("contacts", "what all contacts share: K_n = E / t_b, K_s = G / t_b, Eq. (17)");
   ContactParameters c;
+  c.matrix = matrix;
   c.fracture_zone = s.quantity("t_b", unit::length, Range::positive(), "thickness of the fracture zone, t_b");
-  const bool scales = s.choice<bool>(
-      "t_b_scaling",
-      {{"block size", true, "yes, it scales with it, so that the specimen's E does not depend on it"},
-       {"fixed", false, "no, it holds for any block size"}},
-      "whether t_b depends on the block size");
+  const bool scales = s.choice<bool>("t_b_scaling",
+                                     {{"block size", true,
+                                       "yes, it scales with it, and so do stated stiffnesses, so that the "
+                                       "specimen's E does not depend on it"},
+                                      {"fixed", false, "no, it holds for any block size"}},
+                                     "whether t_b depends on the block size");
   if (scales)
     c.fracture_zone_size = s.quantity("t_b_block_size", unit::length, Range::positive(),
-                                      "block size √(area / count) at which t_b holds");
+                                      "block size √(area / count) at which t_b and stated stiffnesses hold");
   c.platen_friction = s.number("platen_friction", Range::non_negative(),
                                "coefficient of friction between platen and specimen");
-
-  const Section mortar = s.section("mortar_mortar", "contacts between two blocks of mortar (Table 2)");
-  c.mortar = read_contact(mortar, table_of<Cohesive>(), s, curves);
-  if (mortar.has("K_n"))
-    c.normal_stiffness = mortar.quantity("K_n", unit::stiffness_per_area, Range::positive(),
-                                         "normal stiffness at 20 °C, instead of E / t_b");
-  if (mortar.has("K_s"))
-    c.shear_stiffness = mortar.quantity("K_s", unit::stiffness_per_area, Range::positive(),
-                                        "shear stiffness at 20 °C, instead of G / t_b");
-
-  const Section itz =
-      s.section("aggregate_mortar",
-                "contacts between aggregate and mortar, as factors of those between mortar and mortar");
-  c.interface_stiffness = itz.number("stiffness_factor", Range::positive(), "of K_n and K_s");
-  c.interface_strength = itz.number("strength_factor", Range::positive(), "of f_t, c_o, c_res and f_cm");
-  c.scale_interface_energy =
-      itz.flag("scale_fracture_energy", false, "whether strength_factor acts on G_f1 and G_f2 too");
+  InterfaceReader reader(s, phases, find_law, curves);
+  c.interfaces = reader.read();
+  check_pairs(reader.sections(), c.interfaces);
+  check_complete(s, c.interfaces, phases, matrix);
   return c;
 }
 

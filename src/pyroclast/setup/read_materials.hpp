@@ -1,6 +1,8 @@
 #pragma once
 
-#include <array>
+#include <functional>
+#include <string>
+#include <vector>
 
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/material/concrete.hpp"
@@ -12,15 +14,22 @@ namespace pyroclast {
 /// Reads how [materials] means its `expansion`.
 ExpansionReading read_expansion_reading(const Section& root);
 
-/// Reads [materials]: aggregate, mortar, platen. `curves` must be of the temperature. Errors are recorded in
-/// the deck.
-std::array<SolidMaterial, 3> read_solids(const Section& root, ExpansionReading reading, CurveReader& curves);
+/// Reads [materials]: a table for each phase, and `platen`, which comes last. `curves` must be of the
+/// temperature. Errors are recorded in the deck.
+std::vector<SolidMaterial> read_solids(const Section& root, const std::vector<std::string>& phases,
+                                       ExpansionReading reading, CurveReader& curves);
 
-/// The same for heat conduction alone: of aggregate and mortar only density, conductivity and specific heat;
-/// other properties have no effect.
-std::array<SolidMaterial, 3> read_conducting_solids(const Section& root, CurveReader& curves);
+/// The same for heat conduction alone: of the phases only density, conductivity and specific heat; other
+/// properties have no effect.
+std::vector<SolidMaterial> read_conducting_solids(const Section& root, const std::vector<std::string>& phases,
+                                                  CurveReader& curves);
 
-/// Reads [contacts]. A property of mortar_mortar that is a plain constant follows its `temperature_ratio`.
-ContactParameters read_contacts(const Section& root, CurveReader& curves);
+/// Finds the contact law that a deck names. Throws Error when there is none.
+using LawFinder = std::function<const LawTable&(const std::string& name)>;
+
+/// Reads [contacts]. A property that is a plain constant follows the `temperature_ratio` of its interface.
+/// \param matrix  phase whose own interface there must be
+ContactParameters read_contacts(const Section& root, const std::vector<std::string>& phases,
+                                const std::string& matrix, const LawFinder& find_law, CurveReader& curves);
 
 }  // namespace pyroclast

@@ -9,8 +9,17 @@ namespace {
 /// Placing an aggregate is given up after this many random centres.
 constexpr int kPlacementAttempts = 100'000;
 
+constexpr Meaning kPhase = "what they are made of: a table of [materials]";
+
+int read_attempts(const Section& s) {
+  return static_cast<int>(
+      s.integer("attempts", Range::between(1, 1e9), kPlacementAttempts,
+                "random places that are tried for one of them before placing is given up"));
+}
+
 specimen::AggregateParameters read_aggregates(const Section& s) {
   specimen::AggregateParameters a;
+  a.phase = s.text("phase", "aggregate", kPhase);
   a.fraction = s.number("fraction", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false},
                         "area of coarse aggregate over area of the specimen");
   a.d_min = s.quantity("d_min", unit::length, Range::positive(), "smallest diameter");
@@ -18,9 +27,7 @@ specimen::AggregateParameters read_aggregates(const Section& s) {
   a.fuller_exponent = s.number("fuller_exponent", Range::positive(), "of Fuller's curve");
   a.minimum_gap = s.quantity("minimum_gap", unit::length, Range::non_negative(),
                              "between two aggregates, and between an aggregate and the outline");
-  a.attempts = static_cast<int>(
-      s.integer("attempts", Range::between(1, 1e9), kPlacementAttempts,
-                "random centres that are tried for one aggregate before placing is given up"));
+  a.attempts = read_attempts(s);
   const auto between = s.quantities("sieves", unit::length, Range::positive(),
                                     "bounds of the size intervals between d_min and d_max, ascending");
   if (!s.ok()) return a;
@@ -35,6 +42,35 @@ specimen::AggregateParameters read_aggregates(const Section& s) {
   }
   a.sieves.push_back(a.d_max);
   return a;
+}
+
+specimen::FibreParameters read_fibres(const Section& s) {
+  specimen::FibreParameters f;
+  f.phase = s.text("phase", "fibre", kPhase);
+  f.count = static_cast<int>(s.integer("count", Range::between(0, 1e6), "number of fibres"));
+  f.length = s.quantity("length", unit::length, Range::positive(), "of each fibre");
+  f.minimum_gap = s.quantity("minimum_gap", unit::length, Range::non_negative(),
+                             "between a fibre and aggregates, and between a fibre and the outline");
+  f.attempts = read_attempts(s);
+  return f;
+}
+
+std::vector<specimen::Inclusions> read_inclusions(const Section& root) {
+  std::vector<specimen::Inclusions> list;
+  for (const Section& s : root.optional_sections(
+           "inclusions", "what stands in the matrix beside [aggregates]; placed after these, in turn")) {
+    enum class Shape { circle, fibre };
+    const auto shape = s.choice<Shape>(
+        "shape",
+        {{"circle", Shape::circle, "circles with a gradation of their own: another aggregate, or pores"},
+         {"fibre", Shape::fibre, "straight fibres: the blocks that one crosses are of its phase"}},
+        "shape of the inclusions");
+    if (shape == Shape::circle)
+      list.emplace_back(read_aggregates(s));
+    else
+      list.emplace_back(read_fibres(s));
+  }
+  return list;
 }
 
 specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::path& folder) {
@@ -71,8 +107,13 @@ specimen::SpecimenParameters read_specimen(const Section& root, const std::files
   p.aggregates = read_aggregates(root.section("aggregates",
                                               "coarse aggregates, placed as circles with diameters after "
                                               "Fuller's curve P(d) = (d / d_max)^fuller_exponent, Eq. (16)"));
+  p.inclusions = read_inclusions(root);
   p.blocks = read_blocks(root.section("blocks", "the tessellation into blocks"), folder);
-  const Section superposition = root.section("superposition", "which blocks are aggregate");
+  const Section superposition = root.section("superposition", "which blocks are of which phase");
+  p.matrix = superposition.text("matrix", "mortar", "phase of the blocks that nothing else covers");
+  for (const auto& phase : specimen::phases(p))
+    if (phase == "platen")
+      superposition.error("\"platen\" is the solid of the platens; a phase needs another name");
   p.superposition = superposition.choice<specimen::Superposition>(
       "rule",
       {{"area", specimen::Superposition::area, "circles cover more than covered_fraction of the block"},

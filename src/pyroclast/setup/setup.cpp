@@ -5,8 +5,10 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/laws/registry.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/setup/read_heat.hpp"
 #include "pyroclast/setup/read_materials.hpp"
@@ -110,32 +112,42 @@ void check_contacts(const Section& root, const Setup& setup) {
   if (!root.ok()) return;
   const auto concrete = make_concrete(setup.solids, setup.motion->contacts,
                                       expected_block_size(setup.specimen, setup.motion->contacts));
-  const auto check = [&](InterfaceIndex interface, const char* key) {
+  const InterfaceTable table(phases_of(setup.solids), setup.motion->contacts.interfaces);
+  const auto check = [&](const ContactMaterial& contact, const std::string& key) {
     const auto [lower, upper] = setup.temperatures;
     double T = kReferenceTemperature;
     try {
-      validate(concrete.contacts[interface].at(T), key);
+      validate(contact.at(T), key);
       for (int i = 0; i < kCheckedTemperatures; ++i) {
         T = lower + i * (upper - lower) / (kCheckedTemperatures - 1);
-        validate(concrete.contacts[interface].at(T), key);
+        validate(contact.at(T), key);
       }
     } catch (const Error& e) {
       contacts.error(key, fmt::format("at {:.6g} degC: {}", T, e.what()));
     }
   };
-  check(mortar_mortar, "mortar_mortar");
-  check(aggregate_mortar, "aggregate_mortar");
+  for (int i = 0; i < table.platen(); ++i) check(concrete.contacts[i], table.names()[i]);
+}
+
+const LawTable& built_in_law(const std::string& name) {
+  std::vector<std::string> names;
+  for (const LawTable* law : laws()) {
+    if (law->name == name) return *law;
+    names.emplace_back(law->name);
+  }
+  throw Error(fmt::format("must be one of \"{}\"; got \"{}\"", fmt::join(names, "\", \""), name));
 }
 
 /// Materials, and what moves, where a stage moves the body.
 void read_moving(const Section& root, CurveReader& curves, Setup& setup) {
   setup.expansion_reading = read_expansion_reading(root);
-  setup.solids = read_solids(root, setup.expansion_reading, curves);
+  const auto phases = specimen::phases(setup.specimen);
+  setup.solids = read_solids(root, phases, setup.expansion_reading, curves);
   setup.motion.emplace();
   setup.motion->platen_thickness =
       root.section("platens", "two elastic blocks as wide as the specimen, under and above it")
           .quantity("thickness", unit::length, Range::positive(), "of each platen");
-  setup.motion->contacts = read_contacts(root, curves);
+  setup.motion->contacts = read_contacts(root, phases, setup.specimen.matrix, built_in_law, curves);
   setup.motion->mechanics =
       read_mechanics(root.section("mechanics", "how the body moves; see [method.md](method.md#motion)"));
   check_contacts(root, setup);
@@ -143,7 +155,7 @@ void read_moving(const Section& root, CurveReader& curves, Setup& setup) {
 
 /// The same where only heat moves.
 void read_resting(const Section& root, CurveReader& curves, Setup& setup) {
-  setup.solids = read_conducting_solids(root, curves);
+  setup.solids = read_conducting_solids(root, specimen::phases(setup.specimen), curves);
   root.know({"platens", "contacts", "mechanics"});
 }
 

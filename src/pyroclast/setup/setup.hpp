@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -20,8 +19,8 @@ namespace pyroclast {
 struct Setup {
   std::string title;
   specimen::SpecimenParameters specimen;
-  double thickness = 0.0;               ///< out of plane, m
-  std::array<SolidMaterial, 3> solids;  ///< aggregate, mortar, platen
+  double thickness = 0.0;             ///< out of plane, m
+  std::vector<SolidMaterial> solids;  ///< by phase of the specimen, and last the platens'
   ExpansionReading expansion_reading = ExpansionReading::secant;
   std::vector<ReadCurve> curves;  ///< properties over the temperature, as the deck gave them
   Interval temperatures;          ///< that the run may come to, °C; its curves are checked for these

@@ -11,9 +11,10 @@ ZoneProperties zone_at(const SolidMaterial& solid, double temperature) {
 /// One set of parameters a material and an interface; platens keep the reference temperature.
 BodyProperties properties_at_one_temperature(const Model<2>& model, const ConcreteMaterials& materials,
                                              double temperature) {
-  std::array<ZoneProperties, 3> solids;
-  for (std::size_t i = 0; i < solids.size(); ++i)
-    solids[i] = zone_at(materials.solids[i], i == platen_material ? kReferenceTemperature : temperature);
+  std::vector<ZoneProperties> solids;
+  for (int i = 0; i < static_cast<int>(materials.solids.size()); ++i)
+    solids.push_back(
+        zone_at(materials.solids[i], i == platen_material(model) ? kReferenceTemperature : temperature));
   std::vector<ZoneProperties> zones;
   zones.reserve(model.zones.size());
   for (int block : zone_blocks(model)) zones.push_back(solids[model.block_material[block]]);

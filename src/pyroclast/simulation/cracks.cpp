@@ -1,23 +1,37 @@
 #include "pyroclast/simulation/cracks.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "pyroclast/base/chunked_sum.hpp"
-#include "pyroclast/model/concrete_model.hpp"
 
 namespace pyroclast {
 
 namespace {
 
+constexpr Remembers kModes[] = {Remembers::tension_damage, Remembers::shear_damage, Remembers::mixed_damage};
+
+const char* name_of(Remembers damage) {
+  if (damage == Remembers::tension_damage) return "tension";
+  return damage == Remembers::shear_damage ? "shear" : "mixed";
+}
+
+/// Of an interface, by its first contact; none where no contact has it.
+const LawTable* law_of_interface(const Mechanics<2>& mechanics, int interface) {
+  const auto& contacts = mechanics.model().contacts;
+  const auto first = std::ranges::find(contacts, interface, &Contact<2>::interface);
+  return first == contacts.end() ? nullptr : &mechanics.law_of(static_cast<int>(first - contacts.begin()));
+}
+
 struct CrackSums {
-  CrackCount tension_am, tension_mm, shear_am, shear_mm;
-  double opening = 0.0, length = 0.0;  ///< of contacts with tension damage, m², m
+  std::vector<CrackCount> of_kind;
+  double opening = 0.0, length = 0.0;  ///< of contacts that have come apart, m², m
 
   void operator+=(const CrackSums& other) {
-    tension_am += other.tension_am;
-    tension_mm += other.tension_mm;
-    shear_am += other.shear_am;
-    shear_mm += other.shear_mm;
+    of_kind.resize(std::max(of_kind.size(), other.of_kind.size()));
+    for (std::size_t k = 0; k < other.of_kind.size(); ++k) of_kind[k] += other.of_kind[k];
     opening += other.opening;
     length += other.length;
   }
@@ -38,27 +52,40 @@ void CrackCount::operator+=(const CrackCount& other) {
   length += other.length;
 }
 
-Cracks count_cracks(const Mechanics<2>& mechanics) {
+std::vector<CrackKind> crack_kinds(const Mechanics<2>& mechanics) {
+  const auto& names = mechanics.model().interface_names;
+  std::vector<const LawTable*> laws;
+  for (int i = 0; i < static_cast<int>(names.size()); ++i) laws.push_back(law_of_interface(mechanics, i));
+  std::vector<CrackKind> kinds;
+  for (const Remembers damage : kModes)
+    for (int i = 0; i < static_cast<int>(names.size()); ++i)
+      if (laws[i] && std::ranges::count(laws[i]->history(2), damage, &HistoryInfo::what) > 0)
+        kinds.push_back({damage, i, fmt::format("{}_{}", name_of(damage), names[i])});
+  return kinds;
+}
+
+Cracks count_cracks(const Mechanics<2>& mechanics, const std::vector<CrackKind>& kinds) {
   const auto& model = mechanics.model();
   const auto& layout = mechanics.layout();
-  const auto sums = chunked_sum<CrackSums>(layout.chunks.contacts, [&](int i, CrackSums& sum) {
+  std::vector<std::vector<std::size_t>> of_interface(model.interface_names.size());
+  for (std::size_t k = 0; k < kinds.size(); ++k) of_interface[kinds[k].interface].push_back(k);
+  auto sums = chunked_sum<CrackSums>(layout.chunks.contacts, [&](int i, CrackSums& sum) {
     const int c = layout.contacts_by_chunk[i];
     const auto& contact = model.contacts[c];
-    if (contact.interface != aggregate_mortar && contact.interface != mortar_mortar) return;
-    const bool itz = contact.interface == aggregate_mortar;
-    const double tension = mechanics.remembered(c, Remembers::tension_damage);
-    const double shear = mechanics.remembered(c, Remembers::shear_damage);
     const double length = contact.area / model.thickness;
-    (itz ? sum.tension_am : sum.tension_mm).add(tension, length);
-    (itz ? sum.shear_am : sum.shear_mm).add(shear, length);
-    if (tension > 0.0) {
-      sum.opening +=
-          std::max(0.0, mechanics.opening(c) + mechanics.remembered(c, Remembers::closure)) * length;
-      sum.length += length;
+    bool apart = false;
+    sum.of_kind.resize(kinds.size());
+    for (const std::size_t k : of_interface[contact.interface]) {
+      const double damage = mechanics.remembered(c, kinds[k].damage);
+      sum.of_kind[k].add(damage, length);
+      apart = apart || (damage > 0.0 && kinds[k].damage != Remembers::shear_damage);
     }
+    if (!apart) return;
+    sum.opening += std::max(0.0, mechanics.opening(c) + mechanics.remembered(c, Remembers::closure)) * length;
+    sum.length += length;
   });
-  return {sums.tension_am, sums.tension_mm, sums.shear_am, sums.shear_mm,
-          sums.length > 0.0 ? sums.opening / sums.length : 0.0};
+  sums.of_kind.resize(kinds.size());
+  return {std::move(sums.of_kind), sums.length > 0.0 ? sums.opening / sums.length : 0.0};
 }
 
 }  // namespace pyroclast

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "pyroclast/mechanics/mechanics.hpp"
 
@@ -17,13 +19,25 @@ struct CrackCount {
   void operator+=(const CrackCount& other);
 };
 
-/// Cracks by mode and interface: aggregate-mortar (am), mortar-mortar (mm).
+/// Cracks that are counted apart.
+struct CrackKind {
+  Remembers damage;  ///< mode: tension_damage, shear_damage or mixed_damage
+  int interface;     ///< index into Model::interface_names
+  std::string name;  ///< mode and interface, "tension_aggregate_mortar"
+};
+
+/// By mode, then interface, what the laws of a body's interfaces can break by.
+std::vector<CrackKind> crack_kinds(const Mechanics<2>& mechanics);
+
+/// Cracks of a body.
 struct Cracks {
-  CrackCount tension_am, tension_mm, shear_am, shear_mm;
-  double mean_opening = 0.0;  ///< of contacts with tension damage, weighted by length, m
+  std::vector<CrackCount> of_kind;  ///< by crack_kinds
+  /// Of contacts with damage in tension or mixed mode, weighted by length, m.
+  double mean_opening = 0.0;
 };
 
 /// Cracks of a body now.
-Cracks count_cracks(const Mechanics<2>& mechanics);
+/// \param kinds  of crack_kinds
+Cracks count_cracks(const Mechanics<2>& mechanics, const std::vector<CrackKind>& kinds);
 
 }  // namespace pyroclast

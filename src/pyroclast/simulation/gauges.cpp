@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -59,22 +60,6 @@ constexpr auto kPress = std::to_array<ColumnOf<P>>({
     {"stress_top_MPa", "MPa", [](const P& p) { return p.stress_top() * kMega; }},
     {"stress_bottom_MPa", "MPa", [](const P& p) { return p.stress_bottom() * kMega; }},
     {"lateral_strain", "1", [](const P& p) { return p.lateral_strain(); }},
-});
-
-constexpr auto kCracks = std::to_array<ColumnOf<Cracks>>({
-    {"tension_am_damaged", "1", [](const Cracks& c) { return static_cast<double>(c.tension_am.damaged); }},
-    {"tension_am_broken", "1", [](const Cracks& c) { return static_cast<double>(c.tension_am.broken); }},
-    {"tension_am_length_m", "m", [](const Cracks& c) { return c.tension_am.length; }},
-    {"tension_mm_damaged", "1", [](const Cracks& c) { return static_cast<double>(c.tension_mm.damaged); }},
-    {"tension_mm_broken", "1", [](const Cracks& c) { return static_cast<double>(c.tension_mm.broken); }},
-    {"tension_mm_length_m", "m", [](const Cracks& c) { return c.tension_mm.length; }},
-    {"shear_am_damaged", "1", [](const Cracks& c) { return static_cast<double>(c.shear_am.damaged); }},
-    {"shear_am_broken", "1", [](const Cracks& c) { return static_cast<double>(c.shear_am.broken); }},
-    {"shear_am_length_m", "m", [](const Cracks& c) { return c.shear_am.length; }},
-    {"shear_mm_damaged", "1", [](const Cracks& c) { return static_cast<double>(c.shear_mm.damaged); }},
-    {"shear_mm_broken", "1", [](const Cracks& c) { return static_cast<double>(c.shear_mm.broken); }},
-    {"shear_mm_length_m", "m", [](const Cracks& c) { return c.shear_mm.length; }},
-    {"mean_opening_m", "m", [](const Cracks& c) { return c.mean_opening; }},
 });
 
 /// What is measured of the whole body's motion.
@@ -152,6 +137,27 @@ Gauge motion_gauge(const Mechanics<2>& mechanics) {
   return gauge;
 }
 
+/// With columns for each mode and interface that the laws of the body can break by.
+Gauge crack_gauge(const Mechanics<2>& mechanics) {
+  Gauge gauge;
+  const auto kinds = crack_kinds(mechanics);
+  for (const CrackKind& kind : kinds)
+    for (const auto& [what, unit] : {std::pair{"damaged", "1"}, {"broken", "1"}, {"length_m", "m"}})
+      gauge.columns.push_back({fmt::format("{}_{}", kind.name, what), unit});
+  gauge.columns.push_back({"mean_opening_m", "m"});
+  gauge.read = [kinds](const Simulation& simulation) {
+    const Cracks cracks = count_cracks(simulation.mechanics(), kinds);
+    std::vector<double> values;
+    for (const CrackCount& count : cracks.of_kind)
+      values.insert(values.end(),
+                    {static_cast<double>(count.damaged), static_cast<double>(count.broken), count.length});
+    values.push_back(cracks.mean_opening);
+    return values;
+  };
+  gauge.of_motion = true;
+  return gauge;
+}
+
 const Mechanics<2>& mechanics_of(const Simulation& simulation) {
   return simulation.mechanics();
 }
@@ -174,8 +180,7 @@ std::vector<Gauge> motion_gauges(const Simulation& simulation) {
       make_gauge(
           kPress, [](const Simulation& s) -> const Press<2>& { return s.press(); }, true),
       motion_gauge(simulation.mechanics()),
-      make_gauge(
-          kCracks, [](const Simulation& s) { return count_cracks(s.mechanics()); }, true),
+      crack_gauge(simulation.mechanics()),
   };
 }
 

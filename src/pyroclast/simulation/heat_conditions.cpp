@@ -55,20 +55,19 @@ bool boundaries_are_constant(const HeatConditions& heat, double begin, double en
   });
 }
 
-HeatMaterial heat_material(const SolidMaterial& solid, const std::string& name) {
+HeatMaterial heat_material(const SolidMaterial& solid) {
   const auto require = [&](const std::optional<Curve>& curve, const char* key) -> const Curve& {
-    if (!curve) throw Error(fmt::format("heat conduction needs materials.{}.{}", name, key));
+    if (!curve) throw Error(fmt::format("heat conduction needs materials.{}.{}", solid.name, key));
     return *curve;
   };
   return {require(solid.conductivity, "conductivity"),
           solid.density * require(solid.specific_heat, "specific_heat")};
 }
 
-std::vector<std::optional<HeatMaterial>> heat_materials(const Model<2>& model,
-                                                        const std::array<SolidMaterial, 3>& solids) {
+/// None of the platens, which stand last.
+std::vector<std::optional<HeatMaterial>> heat_materials(const std::vector<SolidMaterial>& solids) {
   std::vector<std::optional<HeatMaterial>> materials(solids.size());
-  for (const int m : {aggregate_material, mortar_material})
-    materials[m] = heat_material(solids[m], model.material_names[m]);
+  for (std::size_t m = 0; m + 1 < solids.size(); ++m) materials[m] = heat_material(solids[m]);
   return materials;
 }
 
@@ -191,10 +190,10 @@ double constant_from(const HeatConditions& heat, double duration) {
 }
 
 std::unique_ptr<Conduction<2>> make_conduction(const Model<2>& model,
-                                               const std::array<SolidMaterial, 3>& solids,
+                                               const std::vector<SolidMaterial>& solids,
                                                const HeatConditions& heat, const Interval& range,
                                                std::shared_ptr<Team> team) {
-  auto conduction = std::make_unique<Conduction<2>>(model, heat_materials(model, solids),
+  auto conduction = std::make_unique<Conduction<2>>(model, heat_materials(solids),
                                                     HeatParameters{.temperature_range = range,
                                                                    .initial_temperature = heat.initial,
                                                                    .scheme = heat.scheme,

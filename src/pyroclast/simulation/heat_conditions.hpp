@@ -75,7 +75,7 @@ double constant_from(const HeatConditions& heat, double duration);
 /// Throws Error when a material has no conductivity or specific heat, a boundary condition meets no face, or
 /// two contradict each other on one.
 std::unique_ptr<Conduction<2>> make_conduction(const Model<2>& model,
-                                               const std::array<SolidMaterial, 3>& solids,
+                                               const std::vector<SolidMaterial>& solids,
                                                const HeatConditions& heat, const Interval& range,
                                                std::shared_ptr<Team> team = nullptr);
 

@@ -39,7 +39,7 @@ double available_memory() {
   return available;
 }
 
-TemperatureField make_field(const Model<2>& model, const std::array<SolidMaterial, 3>& solids,
+TemperatureField make_field(const Model<2>& model, const std::vector<SolidMaterial>& solids,
                             const HeatConditions& heat, const std::shared_ptr<Team>& team) {
   if (heat.uniform) return {model, heat.initial};
   const Interval initial{heat.initial, heat.initial};  // each exposure widens it
@@ -62,18 +62,20 @@ constexpr int kVertical = 1;
 }  // namespace
 
 Simulation::Simulation(specimen::Specimen specimen, double thickness,
-                       const std::array<SolidMaterial, 3>& solids, const HeatConditions& heat,
+                       const std::vector<SolidMaterial>& solids, const HeatConditions& heat,
                        const std::vector<ProbePosition>& probes,
                        const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team)
     : team_(std::move(team)),
       specimen_(std::move(specimen)),
-      model_(make_concrete_model(specimen_, motion ? std::optional(motion->platen_thickness) : std::nullopt,
-                                 thickness)),
+      model_(motion ? make_concrete_model(specimen_, motion->platen_thickness, thickness,
+                                          motion->contacts.interfaces)
+                    : make_concrete_model(specimen_, std::nullopt, thickness)),
       heat_(heat),
       field_(make_field(model_, solids, heat, team_)) {
   for (const auto& probe : probes) probes_.emplace_back(model_, probe);
   if (!motion) return;
-  materials_ = make_concrete(solids, motion->contacts, specimen_.metrics.mean_size);
+  materials_ =
+      make_concrete(solids, motion->contacts, specimen_.metrics.mean_size, specimen::block_size(specimen_));
   mechanics_ = make_mechanics(model_, materials_, field_, motion->mechanics, team_);
   press_ = std::make_unique<Press<2>>(*mechanics_, kVertical, specimen_.height, std::array{specimen_.width});
 }
@@ -103,12 +105,12 @@ double estimate_modulus(const Model<2>& model, const ConcreteMaterials& material
   double volume = 0.0, compliance = 0.0;
   for (int z = 0; z < model.zone_count(); ++z) {
     const int material = model.block_material[blocks[z]];
-    if (material == platen_material) continue;
+    if (material == platen_material(model)) continue;
     volume += geometry.volume[z];
     compliance += geometry.volume[z] / materials.solids[material].young(kReferenceTemperature);
   }
   for (const auto& c : model.contacts) {
-    if (c.interface == platen_interface) continue;
+    if (c.interface == platen_interface(model)) continue;
     const auto k = materials.contacts[c.interface].at(kReferenceTemperature).stiffness();
     const double normal = c.normal[1] * c.normal[1];           // traction over stress, along the normal
     const double tangential = c.normal[1] * c.tangents[0][1];  // and along the face

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -31,14 +30,14 @@ struct MotionParameters {
 class Simulation {
  public:
   /// \param thickness     of the specimen, out of plane, m
-  /// \param solids        aggregate, mortar, platen
+  /// \param solids        by phase of the specimen, and last the platens'
   /// \param probes        of temperature
   /// \param motion        empty where nothing moves: then there are no platens and no mechanics
   /// \param team          the threads of the run
   ///
   /// Throws Error when the model or a solver cannot be made, see make_conduction and properties_at, or a
   /// probe lies outside.
-  Simulation(specimen::Specimen specimen, double thickness, const std::array<SolidMaterial, 3>& solids,
+  Simulation(specimen::Specimen specimen, double thickness, const std::vector<SolidMaterial>& solids,
              const HeatConditions& heat, const std::vector<ProbePosition>& probes,
              const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team);
   Simulation(const Simulation&) = delete;

@@ -45,6 +45,13 @@ void require_valid(const AggregateParameters& p) {
   }
 }
 
+void require_valid(const FibreParameters& p) {
+  require(p.count >= 0, "The number of fibres", p.count, "0 or more");
+  require(p.length > 0.0, "The length of fibres", p.length, "a positive length");
+  require(p.minimum_gap >= 0.0, "The minimum gap of fibres", p.minimum_gap, "0 or more");
+  require(p.attempts > 0, "The number of attempts to place a fibre", p.attempts, "1 or more");
+}
+
 void require_valid(const BlockParameters& p) {
   require(p.shortest_edge >= 0.0 && p.shortest_edge <= 0.5, "The shortest edge", p.shortest_edge,
           "0 to 0.5 of the mean edge");
@@ -61,13 +68,33 @@ void require_valid(const SpecimenParameters& p) {
   require(p.covered_fraction >= 0.0 && p.covered_fraction < 1.0, "The covered fraction", p.covered_fraction,
           "0 to below 1");
   require_valid(p.aggregates);
+  for (const Inclusions& kind : p.inclusions) std::visit([](const auto& k) { require_valid(k); }, kind);
   require_valid(p.blocks);
 }
 
-std::vector<Aggregate> make_aggregates(const SpecimenParameters& p, Random& random) {
-  if (p.aggregates.fraction == 0.0) return {};
-  return place(draw_diameters(p.aggregates, p.width * p.height, random), p.width, p.height, p.aggregates,
-               random);
+int index_of(const std::vector<std::string>& phases, const std::string& name) {
+  return static_cast<int>(std::find(phases.begin(), phases.end(), name) - phases.begin());
+}
+
+/// Adds circles of one kind to those that stand.
+void add_aggregates(const SpecimenParameters& p, const AggregateParameters& asked, int kind, Random& random,
+                    Specimen& specimen) {
+  specimen.fraction_asked += asked.fraction;
+  if (asked.fraction == 0.0) return;
+  const auto diameters = draw_diameters(asked, p.width * p.height, random);
+  for (Aggregate& circle : place(diameters, p.width, p.height, asked, specimen.aggregates, random)) {
+    circle.phase = index_of(specimen.phases, asked.phase);
+    circle.kind = kind;
+    specimen.aggregates.push_back(circle);
+  }
+}
+
+void add_fibres(const SpecimenParameters& p, const FibreParameters& kind, Random& random,
+                Specimen& specimen) {
+  for (Fibre& fibre : place_fibres(kind, p.width, p.height, specimen.aggregates, random)) {
+    fibre.phase = index_of(specimen.phases, kind.phase);
+    specimen.fibres.push_back(fibre);
+  }
 }
 
 double fraction_of(const std::vector<Aggregate>& aggregates, double specimen_area) {
@@ -76,19 +103,37 @@ double fraction_of(const std::vector<Aggregate>& aggregates, double specimen_are
   return sum / specimen_area;
 }
 
-double fraction_of(const Tessellation& tessellation, const std::vector<Constituent>& constituent,
-                   double specimen_area) {
+/// Share of the specimen's area that blocks take for which `counts(phase)` holds.
+template <class Counts>
+double fraction_of(const Specimen& specimen, Counts counts) {
   double sum = 0.0;
   std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < constituent.size(); ++c) {
-    if (constituent[c] != Constituent::aggregate) continue;
-    corners(tessellation, c, polygon);
+  for (std::size_t c = 0; c < specimen.phase.size(); ++c) {
+    if (!counts(specimen.phase[c])) continue;
+    corners(specimen.tessellation, c, polygon);
     sum += area(polygon);
   }
-  return sum / specimen_area;
+  return sum / (specimen.width * specimen.height);
 }
 
 }  // namespace
+
+double block_size(const Specimen& specimen) {
+  return std::sqrt(specimen.width * specimen.height /
+                   static_cast<double>(specimen.tessellation.cells.size()));
+}
+
+std::vector<std::string> phases(const SpecimenParameters& parameters) {
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  add(parameters.aggregates.phase);
+  for (const Inclusions& kind : parameters.inclusions)
+    add(std::visit([](const auto& k) { return k.phase; }, kind));
+  add(parameters.matrix);
+  return names;
+}
 
 Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
   require_valid(parameters);
@@ -100,8 +145,14 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
   Specimen specimen{};
   specimen.width = parameters.width;
   specimen.height = parameters.height;
-  specimen.aggregates = make_aggregates(parameters, aggregate_random);
-  specimen.fraction_asked = parameters.aggregates.fraction;
+  specimen.phases = phases(parameters);
+  int kind = 0;
+  add_aggregates(parameters, parameters.aggregates, kind, aggregate_random, specimen);
+  for (const Inclusions& inclusions : parameters.inclusions)
+    if (const auto* circles = std::get_if<AggregateParameters>(&inclusions))
+      add_aggregates(parameters, *circles, ++kind, aggregate_random, specimen);
+    else
+      add_fibres(parameters, std::get<FibreParameters>(inclusions), aggregate_random, specimen);
   specimen.fraction_placed = fraction_of(specimen.aggregates, specimen_area);
   if (std::abs(specimen.fraction_placed - specimen.fraction_asked) > 0.01) {
     throw Error(fmt::format(
@@ -112,8 +163,12 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
 
   Blocks blocks = make_blocks(parameters.blocks, parameters.width, parameters.height, block_random, team);
   specimen.tessellation = std::move(blocks.tessellation);
-  specimen.constituent = superpose(specimen.tessellation, specimen.aggregates, parameters);
-  specimen.fraction_superposed = fraction_of(specimen.tessellation, specimen.constituent, specimen_area);
+  const int matrix = index_of(specimen.phases, parameters.matrix);
+  specimen.phase = superpose(specimen.tessellation, specimen.aggregates, parameters, matrix);
+  superpose(specimen.tessellation, specimen.fibres, specimen.phase);
+  specimen.fraction_superposed = fraction_of(specimen, [&](int phase) { return phase != matrix; });
+  for (int phase = 0; phase < static_cast<int>(specimen.phases.size()); ++phase)
+    specimen.fraction.push_back(fraction_of(specimen, [&](int p) { return p == phase; }));
 
   specimen.metrics = measure(specimen.tessellation);
   specimen.metrics.edges_removed = blocks.edges_removed;

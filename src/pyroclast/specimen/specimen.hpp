@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "pyroclast/base/team.hpp"
@@ -11,18 +12,24 @@
 
 namespace pyroclast::specimen {
 
-/// What a block is made of.
-enum class Constituent : std::uint8_t { aggregate, mortar };
-
 /// Circular aggregate as placed, before superposition on the blocks.
 struct Aggregate {
   Vec<2> centre;    ///< m
   double diameter;  ///< m
+  int phase = 0;    ///< index into Specimen::phases
+  int kind = 0;     ///< 0 of the first aggregates, then of the inclusions that are circles, in turn
+};
+
+/// Straight fibre as placed: the blocks that it crosses become its phase.
+struct Fibre {
+  Vec<2> from, to;  ///< m
+  int phase = 0;    ///< index into Specimen::phases
 };
 
 /// Coarse aggregate asked for: Fuller's curve P(d) = (d/d_max)^nf between d_min and d_max (paper, Eq. 16).
 /// With a fraction of 0 the other members are not looked at.
 struct AggregateParameters {
+  std::string phase = "aggregate";
   double fraction = 0.0;         ///< area fraction of coarse aggregate asked for, in [0, 1)
   double d_min = 0.0;            ///< smallest diameter, m
   double d_max = 0.0;            ///< largest diameter, m
@@ -32,9 +39,21 @@ struct AggregateParameters {
   int attempts = 0;              ///< random centres tried for one aggregate before placing fails
 };
 
+/// Fibres asked for: each at a random place, in a random direction.
+struct FibreParameters {
+  std::string phase;
+  int count = 0;
+  double length = 0.0;       ///< m
+  double minimum_gap = 0.0;  ///< smallest distance of a fibre to aggregates and to the outline, m
+  int attempts = 0;          ///< random places tried for one fibre before placing fails
+};
+
+/// What stands in the matrix beside the first aggregates.
+using Inclusions = std::variant<AggregateParameters, FibreParameters>;
+
 enum class Superposition : std::uint8_t {
-  area,     ///< aggregate where circles cover more than a stated fraction of the block
-  centroid  ///< aggregate where the block's centroid lies in a circle
+  area,     ///< a block is of the aggregates where circles cover more than a stated fraction of it
+  centroid  ///< a block is of the aggregate whose circle its centroid lies in
 };
 
 /// Tessellation asked for.
@@ -51,11 +70,16 @@ struct SpecimenParameters {
   double width = 0.0;   ///< m
   double height = 0.0;  ///< m
   std::uint64_t seed = 0;
+  std::string matrix = "mortar";  ///< phase of the blocks that nothing else covers
   AggregateParameters aggregates;
+  std::vector<Inclusions> inclusions;  ///< placed after the aggregates, in turn; none overlap
   BlockParameters blocks;
   Superposition superposition = Superposition::area;
   double covered_fraction = 0.5;  ///< for Superposition::area
 };
+
+/// Names of what the blocks can be made of: aggregates, inclusions, matrix; each once.
+std::vector<std::string> phases(const SpecimenParameters& parameters);
 
 /// Convex cells that tile the rectangle [0, width] x [0, height] exactly; neighbours share vertices.
 struct Tessellation {
@@ -91,9 +115,13 @@ struct BlockMetrics {
 struct Specimen {
   double width, height;  ///< m
   Tessellation tessellation;
-  std::vector<Constituent> constituent;  ///< per cell
-  std::vector<Aggregate> aggregates;     ///< circles as placed, largest first
+  std::vector<std::string> phases;    ///< what blocks can be made of
+  std::vector<int> phase;             ///< per cell, index into `phases`
+  std::vector<Aggregate> aggregates;  ///< circles as placed, those of each kind largest first
+  std::vector<Fibre> fibres;          ///< as placed
+  /// Area of circles asked for and placed, and of blocks that are not matrix, over that of the specimen.
   double fraction_asked, fraction_placed, fraction_superposed;
+  std::vector<double> fraction;  ///< by phase: area of its blocks over that of the specimen
   BlockMetrics metrics;
 };
 
@@ -103,6 +131,9 @@ struct Specimen {
 /// fraction is off by more than 0.01, or no valid tessellation comes about.
 /// \param team  shares the cells of the tessellation out; one thread alone where there is none
 Specimen make_specimen(const SpecimenParameters& parameters, Team* team = nullptr);
+
+/// Block size as a deck foresees it: square root of the specimen's area over the number of blocks, m.
+double block_size(const Specimen& specimen);
 
 /// A block cut into zones.
 struct ZonedBlock {

@@ -1,6 +1,7 @@
 #include "pyroclast/specimen/superposition.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "pyroclast/specimen/circle_grid.hpp"
 #include "pyroclast/specimen/polygon.hpp"
@@ -37,41 +38,82 @@ auto for_each_cell(const Tessellation& tessellation, double width, double height
   return result;
 }
 
+/// What covers a cell.
+struct Cover {
+  double share = 0.0;  ///< of its area, by all circles together
+  int phase = -1;      ///< of the circles that cover most of it
+};
+
+Cover cover_of(Corners polygon, const std::vector<Aggregate>& nearby) {
+  constexpr double rounding = 1e-12;  // left by circles that do not touch the cell
+  double covered = 0.0;
+  std::map<int, double> by_phase;
+  for (const Aggregate& a : nearby) {
+    const double common = common_area(polygon, a.centre, 0.5 * a.diameter);
+    covered += common;
+    by_phase[a.phase] += common;
+  }
+  Cover cover;
+  double most = 0.0;
+  for (const auto& [phase, area] : by_phase)
+    if (area > most) {
+      most = area;
+      cover.phase = phase;
+    }
+  const double share = covered / area(polygon);
+  cover.share = share < rounding ? 0.0 : std::min(share, 1.0);
+  return cover;
+}
+
+/// Whether a fibre runs through the inside of a convex cell: clips it by the half planes of the edges.
+bool crosses(const std::vector<Vec<2>>& polygon, const Fibre& fibre) {
+  const Vec<2> along = fibre.to - fibre.from;
+  double enters = 0.0, leaves = 1.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec<2> edge = polygon[(i + 1) % polygon.size()] - polygon[i];
+    const Vec<2> inward{{-edge[1], edge[0]}};
+    const double start = dot(fibre.from - polygon[i], inward), rate = dot(along, inward);
+    if (rate > 0.0)
+      enters = std::max(enters, -start / rate);
+    else if (rate < 0.0)
+      leaves = std::min(leaves, -start / rate);
+    else if (start <= 0.0)
+      return false;
+  }
+  return leaves > enters;
+}
+
 }  // namespace
 
 std::vector<double> covered_fractions(const Tessellation& tessellation, double width, double height,
                                       std::span<const Aggregate> aggregates) {
-  return for_each_cell(tessellation, width, height, aggregates,
-                       [](Corners polygon, const std::vector<Aggregate>& nearby) {
-                         double covered = 0.0;
-                         for (const Aggregate& a : nearby) {
-                           covered += common_area(polygon, a.centre, 0.5 * a.diameter);
-                         }
-                         constexpr double rounding = 1e-12;  // left by circles that do not touch the cell
-                         const double share = covered / area(polygon);
-                         return share < rounding ? 0.0 : std::min(share, 1.0);
-                       });
+  return for_each_cell(
+      tessellation, width, height, aggregates,
+      [](Corners polygon, const std::vector<Aggregate>& nearby) { return cover_of(polygon, nearby).share; });
 }
 
-std::vector<Constituent> superpose(const Tessellation& tessellation, std::span<const Aggregate> aggregates,
-                                   const SpecimenParameters& parameters) {
-  if (parameters.superposition == Superposition::centroid) {
-    return for_each_cell(tessellation, parameters.width, parameters.height, aggregates,
-                         [](Corners polygon, const std::vector<Aggregate>& nearby) {
-                           const Vec<2> centre = centroid(polygon);
-                           const bool inside =
-                               std::any_of(nearby.begin(), nearby.end(), [&](const Aggregate& a) {
-                                 return norm(centre - a.centre) <= 0.5 * a.diameter;
-                               });
-                           return inside ? Constituent::aggregate : Constituent::mortar;
-                         });
+std::vector<int> superpose(const Tessellation& tessellation, std::span<const Aggregate> aggregates,
+                           const SpecimenParameters& parameters, int matrix) {
+  const auto phase_of = [&](Corners polygon, const std::vector<Aggregate>& nearby) {
+    if (parameters.superposition == Superposition::area) {
+      const Cover cover = cover_of(polygon, nearby);
+      return cover.share > parameters.covered_fraction ? cover.phase : matrix;
+    }
+    const Vec<2> centre = centroid(polygon);
+    const auto around = std::ranges::find_if(
+        nearby, [&](const Aggregate& a) { return norm(centre - a.centre) <= 0.5 * a.diameter; });
+    return around == nearby.end() ? matrix : around->phase;
+  };
+  return for_each_cell(tessellation, parameters.width, parameters.height, aggregates, phase_of);
+}
+
+void superpose(const Tessellation& tessellation, std::span<const Fibre> fibres, std::vector<int>& phase) {
+  std::vector<Vec<2>> polygon;
+  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
+    corners(tessellation, c, polygon);
+    for (const Fibre& fibre : fibres)
+      if (crosses(polygon, fibre)) phase[c] = fibre.phase;
   }
-  std::vector<Constituent> result;
-  for (const double covered :
-       covered_fractions(tessellation, parameters.width, parameters.height, aggregates)) {
-    result.push_back(covered > parameters.covered_fraction ? Constituent::aggregate : Constituent::mortar);
-  }
-  return result;
 }
 
 }  // namespace pyroclast::specimen

@@ -11,8 +11,12 @@ namespace pyroclast::specimen {
 std::vector<double> covered_fractions(const Tessellation& tessellation, double width, double height,
                                       std::span<const Aggregate> aggregates);
 
-/// What each cell is made of, by `parameters.superposition`.
-std::vector<Constituent> superpose(const Tessellation& tessellation, std::span<const Aggregate> aggregates,
-                                   const SpecimenParameters& parameters);
+/// What each cell is made of, by `parameters.superposition`: the phase of the circles that cover most of it,
+/// or the matrix.
+std::vector<int> superpose(const Tessellation& tessellation, std::span<const Aggregate> aggregates,
+                           const SpecimenParameters& parameters, int matrix);
+
+/// Gives the cells that a fibre crosses its phase.
+void superpose(const Tessellation& tessellation, std::span<const Fibre> fibres, std::vector<int>& phase);
 
 }  // namespace pyroclast::specimen

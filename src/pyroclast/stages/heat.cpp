@@ -25,8 +25,8 @@ std::unique_ptr<Stage> read_heat_stage(const Section& s, const StageTables& tabl
 /// solids, or none.
 Interval free_strain_change(const ConcreteMaterials& materials, double from, double to) {
   Interval change{0.0, 0.0};
-  for (const auto m : {aggregate_material, mortar_material}) {
-    const Curve& strain = materials.solids[m].thermal_strain;
+  for (std::size_t phase = 0; phase + 1 < materials.solids.size(); ++phase) {
+    const Curve& strain = materials.solids[phase].thermal_strain;
     const double solid = strain(to) - strain(from);
     change = {std::min(change.lower, solid), std::max(change.upper, solid)};
   }
