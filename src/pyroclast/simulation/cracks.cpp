@@ -46,7 +46,9 @@ Cracks count_cracks(const Mechanics<2>& mechanics) {
     const auto& contact = model.contacts[c];
     if (contact.interface != aggregate_mortar && contact.interface != mortar_mortar) return;
     const bool itz = contact.interface == aggregate_mortar;
-    const double tension = mechanics.remembered(c, Remembers::tension_damage);
+    // one damage of both modes counts once, as tension
+    const double tension = std::max(mechanics.remembered(c, Remembers::tension_damage),
+                                    mechanics.remembered(c, Remembers::mixed_damage));
     const double shear = mechanics.remembered(c, Remembers::shear_damage);
     const double length = contact.area / model.thickness;
     (itz ? sum.tension_am : sum.tension_mm).add(tension, length);
