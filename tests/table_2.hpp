@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "pyroclast/laws/cohesive.hpp"
+#include "pyroclast/laws/mixed_mode.hpp"
 
 namespace pyroclast {
 
@@ -19,6 +20,24 @@ inline Cohesive::Properties<double> mortar_contact() {
   p.residual_cohesion = 0.038e6;
   p.friction_angle = p.residual_friction_angle = 34.0 * std::numbers::pi / 180.0;
   p.mode_2_energy = 240.0;
+  return p;
+}
+
+/// The same with one damage for tension and shear, and a dilatancy of its own.
+inline MixedMode::Properties<double> mixed_mode_contact() {
+  const auto mortar = mortar_contact();
+  MixedMode::Properties<double> p;
+  p.normal_stiffness = mortar.normal_stiffness;
+  p.shear_stiffness = mortar.shear_stiffness;
+  p.tensile_strength = mortar.tensile_strength;
+  p.mode_1_energy = mortar.mode_1_energy;
+  p.compressive_limit = mortar.compressive_limit;
+  p.hardening = mortar.hardening;
+  p.cohesion = mortar.cohesion;
+  p.friction_angle = mortar.friction_angle;
+  p.mode_2_energy = mortar.mode_2_energy;
+  p.dilatancy_angle = 25.0 * std::numbers::pi / 180.0;
+  p.fading_slip = 100e-6;
   return p;
 }
 

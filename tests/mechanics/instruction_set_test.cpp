@@ -34,25 +34,27 @@ auto outcome(const Mechanics<Dim>& m) {
 double damaged_share(const Mechanics<2>& m) {
   int damaged = 0;
   for (int c = 0; c < m.model().contact_count(); ++c) {
-    damaged +=
-        m.remembered(c, Remembers::tension_damage) > 0.0 || m.remembered(c, Remembers::shear_damage) > 0.0;
+    damaged += m.remembered(c, Remembers::tension_damage) > 0.0 ||
+               m.remembered(c, Remembers::shear_damage) > 0.0 ||
+               m.remembered(c, Remembers::mixed_damage) > 0.0;
   }
   return static_cast<double>(damaged) / m.model().contact_count();
 }
 
 /// A specimen pulled, sheared and pressed until it is cracked all over.
+template <class Contact = Cohesive::Properties<double>>
 Mechanics<2> cracked(const Model<2>& model, MechanicsParameters<2> parameters, InstructionSet set,
-                     bool own_temperatures, int threads = 1) {
+                     bool own_temperatures, int threads = 1, const Contact& contact = mortar_contact()) {
   parameters.instructions = set;
   parameters.gravity = {{0.0, -9.81}};
   parameters.zones_for_a_thread = 1;
-  auto m = mechanics(model, mortar_contact(), parameters, 29.4e9, 0.2, std::make_shared<Team>(threads));
+  auto m = mechanics(model, contact, parameters, 29.4e9, 0.2, std::make_shared<Team>(threads));
   if (own_temperatures) {  // every zone and contact has properties of its own
     BodyProperties p;
     for (int z = 0; z < model.zone_count(); ++z)
       p.zones.push_back(zone_properties<2>((20.0 + 0.001 * z) * 1e9, 0.2, 1e-6 * z));
     for (int c = 0; c < model.contact_count(); ++c) {
-      auto weaker = mortar_contact();
+      auto weaker = contact;
       weaker.tensile_strength *= 1.0 - 1e-4 * c;
       weaker.cohesion *= 1.0 - 1e-4 * c;
       p.contacts.add(weaker);
@@ -103,6 +105,23 @@ TEST_P(EveryInstructionSet, GivesTheSameBits) {
   const auto expected = run(InstructionSet::portable, 1);
   for (InstructionSet set : usable_instruction_sets())
     for (int threads : {1, 2, 3}) EXPECT_TRUE(run(set, threads) == expected) << name(set) << ' ' << threads;
+}
+
+TEST(MixedModeContacts, HaveTheSameBitsInEveryInstructionSet) {
+  const Model<2> model = tessellated(150, 0.05, 0.05, 3);
+  for (const bool own_temperatures : {false, true}) {
+    for (const auto softening : {MixedMode::Softening::bilinear, MixedMode::Softening::exponential}) {
+      auto contact = mixed_mode_contact();
+      contact.softening = softening;
+      const auto run = [&](InstructionSet set, int threads) {
+        const auto m = cracked(model, quasi_static<2>(), set, own_temperatures, threads, contact);
+        EXPECT_GT(damaged_share(m), 0.3);
+        return outcome(m);
+      };
+      const auto expected = run(InstructionSet::portable, 1);
+      for (InstructionSet set : usable_instruction_sets()) EXPECT_TRUE(run(set, 2) == expected) << name(set);
+    }
+  }
 }
 
 // Promise: neither how blocks are bundled nor how they are cut into chunks changes a force, so no

@@ -133,10 +133,10 @@ class Drive {
     std::string names = "u_n_m,u_s_m,T_degC,sigma_Pa,tau_Pa,stored_J_m2,property_change_J_m2";
     const auto add = [&](const char* prefix, const char* name, const Unit& unit) {
       names += fmt::format(",{}{}", prefix, name);
-      if (unit.si != unit::dimensionless.si) names += fmt::format("_{}", spelt(unit));
+      if (unit != unit::dimensionless) names += fmt::format("_{}", spelt(unit));
     };
     for (const HistoryInfo& info : law_.history(2)) add("", info.name, info.unit);
-    for (const LossInfo& info : law_.losses) add(is_energy(info) ? "dissipated_" : "", info.name, info.unit);
+    for (const LossInfo& info : law_.losses) add(info.is_energy() ? "dissipated_" : "", info.name, info.unit);
     return names + "\n";
   }
 
@@ -150,9 +150,6 @@ class Drive {
   }
 
  private:
-  static bool is_energy(const LossInfo& info) {
-    return info.unit.si == std::string_view(unit::fracture_energy.si);
-  }
   static std::string spelt(const Unit& unit) {
     std::string name = unit.si;
     std::ranges::replace(name, '/', '_');
@@ -169,7 +166,7 @@ class Drive {
   double dissipated() const {
     double sum = 0.0;
     for (std::size_t i = 0; i < losses_.size(); ++i)
-      if (is_energy(law_.losses[i])) sum += losses_[i];
+      if (law_.losses[i].is_energy()) sum += losses_[i];
     return sum;
   }
 

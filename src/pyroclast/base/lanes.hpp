@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -41,6 +42,15 @@ inline double signed_like(double v, double s) {
   return s > 0.0 ? v : s < 0.0 ? -v : 0.0;
 }
 
+/// Added to a whole number n in [-1022, 1023] it leaves n + 1023, which is how a double writes the exponent
+/// of 2^n, in the lowest bits of the sum.
+inline constexpr double kToExponent = 0x1.8p52 + 1023.0;
+
+/// 2^n of a whole number n in [-1022, 1023].
+inline double power_of_two(double n) {
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(n + kToExponent) << 52);
+}
+
 // Instruction sets. A file that names one other than Portable is compiled with that set's options.
 
 /// One lane after the other, no more than the language.
@@ -65,6 +75,7 @@ struct OneByOne {
   static Value signed_like(Value v, Value s) { return Value{0.0} < s ? v : s < Value{0.0} ? -v : Value{0.0}; }
   static Value smaller(Value a, Value b) { return b < a ? b : a; }
   static Value larger(Value a, Value b) { return a < b ? b : a; }
+  static Value power_of_two(Value n) { return Value{pyroclast::power_of_two(static_cast<double>(n))}; }
   static Truth less(Value a, Value b) { return a < b; }
   static Truth less_equal(Value a, Value b) { return a <= b; }
   static Truth both(Truth a, Truth b) { return a && b; }
@@ -112,6 +123,10 @@ struct Avx2 {
   }
   static Value smaller(Value a, Value b) { return _mm256_min_pd(b, a); }
   static Value larger(Value a, Value b) { return _mm256_max_pd(b, a); }
+  static Value power_of_two(Value n) {
+    const __m256i bits = _mm256_castpd_si256(_mm256_add_pd(n, _mm256_set1_pd(kToExponent)));
+    return _mm256_castsi256_pd(_mm256_slli_epi64(bits, 52));
+  }
   static Truth less(Value a, Value b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
   static Truth less_equal(Value a, Value b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
   static Truth both(Truth a, Truth b) { return _mm256_and_pd(a, b); }
@@ -169,6 +184,10 @@ struct Avx512 {
   }
   static Value smaller(Value a, Value b) { return _mm512_min_pd(b, a); }
   static Value larger(Value a, Value b) { return _mm512_max_pd(b, a); }
+  static Value power_of_two(Value n) {
+    const __m512i bits = _mm512_castpd_si512(_mm512_add_pd(n, _mm512_set1_pd(kToExponent)));
+    return _mm512_castsi512_pd(_mm512_slli_epi64(bits, 52));
+  }
   static Truth less(Value a, Value b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
   static Truth less_equal(Value a, Value b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
   static Truth both(Truth a, Truth b) { return _kand_mask8(a, b); }
@@ -331,6 +350,12 @@ struct Lanes {
   friend Lanes larger(const Lanes& a, const Lanes& b) {
     Lanes r;
     for (int i = 0; i < kParts; ++i) r.part[i] = Set::larger(a.part[i], b.part[i]);
+    return r;
+  }
+  /// 2^n of whole numbers n in [-1022, 1023].
+  friend Lanes power_of_two(const Lanes& n) {
+    Lanes r;
+    for (int i = 0; i < kParts; ++i) r.part[i] = Set::power_of_two(n.part[i]);
     return r;
   }
   /// Of all lanes, added in the order of a tree that does not depend on the instruction set.

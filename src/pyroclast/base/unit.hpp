@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 namespace pyroclast {
 
 /// A kind of physical quantity, by the unit in which the program computes with it.
@@ -7,6 +9,9 @@ struct Unit {
   const char* si;       ///< the unit of the value inside, in the notation of UDUNITS-2
   const char* name;     ///< what the quantity is called in messages
   const char* example;  ///< a quantity of this kind as a user would write it
+
+  /// Whether values of both are in the same unit.
+  friend constexpr bool operator==(const Unit& a, const Unit& b) { return std::string_view(a.si) == b.si; }
 };
 
 /// The kinds of quantity that decks hold. Values are SI, except that a temperature is in °C.

@@ -50,12 +50,8 @@ void wrong_type(const Entry& entry, std::string_view needed) {
   entry.error(fmt::format("{} is needed, not {}", needed, type_name(entry.node)));
 }
 
-bool is_dimensionless(const Unit& unit) {
-  return std::string_view(unit.si) == unit::dimensionless.si;
-}
-
 std::string_view suffix(const Unit& unit) {
-  return is_dimensionless(unit) ? "" : unit.si;
+  return unit == unit::dimensionless ? "" : unit.si;
 }
 
 /// What a quantity must look like, its range included.
@@ -80,7 +76,7 @@ std::optional<double> read_written_quantity(const Entry& entry, const std::strin
 }
 
 std::optional<double> read_plain_number(const Entry& entry, const Unit& unit) {
-  if (!is_dimensionless(unit)) {
+  if (unit != unit::dimensionless) {
     entry.error(fmt::format("no unit; {}", requirement(unit)), "the quotes are needed");
     return std::nullopt;
   }
@@ -97,8 +93,8 @@ std::optional<double> read_quantity(const Entry& entry, const Unit& unit, const 
   } else if (entry.node.is_number()) {
     value = read_plain_number(entry, unit);
   } else {
-    wrong_type(entry,
-               is_dimensionless(unit) ? "a number" : fmt::format("a string such as \"{}\"", unit.example));
+    wrong_type(entry, unit == unit::dimensionless ? "a number"
+                                                  : fmt::format("a string such as \"{}\"", unit.example));
   }
   if (value && !check_range(entry, *value, range, suffix(unit))) return std::nullopt;
   return value;
@@ -233,7 +229,7 @@ std::optional<Entry> require(DeckRecord& deck, TableRecord* table, std::string_v
 /// A number of a deck's, with its unit, as the deck reference has it.
 std::string fallback_text(double value, const Unit& unit) {
   if (!std::isfinite(value)) return "none";
-  return fmt::format("{}{}{}", value, is_dimensionless(unit) ? "" : " ", suffix(unit));
+  return fmt::format("{}{}{}", value, unit == unit::dimensionless ? "" : " ", suffix(unit));
 }
 
 DeckKey key_of(std::string_view key, std::string value) {
@@ -244,7 +240,7 @@ DeckKey key_of(std::string_view key, std::string value) {
 }
 
 DeckKey quantity_key(std::string_view key, const Unit& unit, const Range& range) {
-  DeckKey result = key_of(key, is_dimensionless(unit) ? "number" : unit.name);
+  DeckKey result = key_of(key, unit == unit::dimensionless ? "number" : unit.name);
   result.unit = suffix(unit);
   result.allowed = range.describe();
   return result;

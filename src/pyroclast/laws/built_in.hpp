@@ -3,6 +3,7 @@
 #include "pyroclast/laws/cohesive.hpp"
 #include "pyroclast/laws/elastic.hpp"
 #include "pyroclast/laws/frictional.hpp"
+#include "pyroclast/laws/mixed_mode.hpp"
 
 namespace pyroclast {
 
@@ -12,8 +13,9 @@ struct LawList {
 };
 
 /// The laws that are part of the program: one line for each.
-using BuiltInLaws = LawList<Cohesive,  //
-                            Elastic,   //
-                            Frictional>;
+using BuiltInLaws = LawList<Cohesive,    //
+                            Elastic,     //
+                            Frictional,  //
+                            MixedMode>;
 
 }  // namespace pyroclast

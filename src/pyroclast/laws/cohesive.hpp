@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pyroclast/laws/law.hpp"
+#include "pyroclast/laws/common.hpp"
 
 namespace pyroclast {
 
@@ -15,11 +15,7 @@ struct Cohesive {
   static constexpr const char* name = "cohesive";
   static constexpr const char* meaning = "softens in tension and shear, yields in compression (the paper's)";
 
-  /// The reading of the compression law, Eq. (15).
-  enum class Compression : std::uint8_t {
-    irreversible,  ///< unloading has slope K_n and leaves a closure
-    reversible     ///< unloading retraces the bilinear curve
-  };
+  using Compression = pyroclast::Compression;
 
   /// Parameters at one temperature (paper, Tables 1 and 2).
   template <class Real>
@@ -42,40 +38,23 @@ struct Cohesive {
 
     template <class F, class... P>
     static constexpr void each(F&& f, P&... p) {
-      f(PropertyInfo{"K_n", "normal stiffness", unit::stiffness_per_area, Range::positive(),
-                     Role::normal_stiffness},
-        p.normal_stiffness...);
-      f(PropertyInfo{"K_s", "shear stiffness", unit::stiffness_per_area, Range::positive(),
-                     Role::shear_stiffness},
-        p.shear_stiffness...);
-      f(PropertyInfo{"f_t", "tensile strength", unit::stress, Range::positive(), Role::strength},
-        p.tensile_strength...);
-      f(PropertyInfo{"G_f1", "mode I fracture energy", unit::fracture_energy, Range::positive(),
-                     Role::energy},
-        p.mode_1_energy...);
-      f(PropertyInfo{"f_cm", "compression at which the second slope begins", unit::stress, Range::positive(),
-                     Role::strength},
-        p.compressive_limit...);
-      f(PropertyInfo{"beta", "second slope in compression over the first", unit::dimensionless,
-                     Range::inside(0.0, 1.0)},
-        p.hardening...);
-      f(PropertyInfo{"c_o", "cohesion", unit::stress, Range::positive(), Role::strength}, p.cohesion...);
+      f(info::normal_stiffness, p.normal_stiffness...);
+      f(info::shear_stiffness, p.shear_stiffness...);
+      f(info::tensile_strength, p.tensile_strength...);
+      f(info::mode_1_energy, p.mode_1_energy...);
+      f(info::compressive_limit, p.compressive_limit...);
+      f(info::hardening, p.hardening...);
+      f(info::cohesion, p.cohesion...);
       f(PropertyInfo{"c_res", "residual cohesion", unit::stress, Range::non_negative(), Role::strength},
         p.residual_cohesion...);
-      f(PropertyInfo{"phi", "friction angle", unit::angle, kAngles}, p.friction_angle...);
-      f(PropertyInfo{"phi_res", "residual friction angle", unit::angle, kAngles},
+      f(info::friction_angle, p.friction_angle...);
+      f(PropertyInfo{"phi_res", "residual friction angle", unit::angle, info::kAngles},
         p.residual_friction_angle...);
-      f(PropertyInfo{"G_f2", "mode II fracture energy", unit::fracture_energy, Range::positive(),
-                     Role::energy},
-        p.mode_2_energy...);
+      f(info::mode_2_energy, p.mode_2_energy...);
     }
     template <class F, class... P>
     static constexpr void each_choice(F&& f, P&... p) {
-      f(ChoiceInfo{"compression",
-                   "how contacts unload from compression",
-                   {{"irreversible", "unloading has slope K_n and leaves a closure"},
-                    {"reversible", "unloading retraces the bilinear curve"}}},
-        p.compression...);
+      f(info::compression, p.compression...);
       f(ChoiceInfo{"coupled",
                    "whether damage in tension also lowers the cohesion, by the factor 1 − D_t",
                    {{"false", "no"}, {"true", "by the factor 1 - D_t"}}},
@@ -86,9 +65,6 @@ struct Cohesive {
     Real elastic_opening() const { return tensile_strength / normal_stiffness; }
     /// u_f = 2 G_f1 / f_t, opening at which nothing is left, m.
     Real ultimate_opening() const { return 2.0 * mode_1_energy / tensile_strength; }
-
-   private:
-    static constexpr Range kAngles{.lower = 0.0, .upper = 1.57, .upper_inclusive = false};
   };
 
   /// What follows from the parameters.
@@ -189,10 +165,6 @@ struct Cohesive {
     return {c.normal_stiffness, c.shear_stiffness};
   }
 
-  // Bits of ContactResponse::changed.
-  static constexpr unsigned kSlid = 1;     ///< the slip
-  static constexpr unsigned kDamaged = 2;  ///< a damage or the closure
-
   /// What a contact point remembers.
   template <int Dim, class Real>
   struct History {
@@ -205,21 +177,14 @@ struct Cohesive {
     template <class F, class... H>
     static constexpr void each(F&& f, H&... h) {
       f(HistoryInfo{"tension_damage", "0 intact, 1 broken; never decreases", unit::dimensionless,
-                    Remembers::tension_damage, kDamaged},
+                    Remembers::tension_damage, info::kDamaged},
         h.tension_damage...);
       f(HistoryInfo{"shear_damage", "0 intact, 1 broken; never decreases", unit::dimensionless,
-                    Remembers::shear_damage, kDamaged},
+                    Remembers::shear_damage, info::kDamaged},
         h.shear_damage...);
-      f(HistoryInfo{"closure", "irreversible, in compression; never decreases", unit::length,
-                    Remembers::closure, kDamaged},
-        h.closure...);
-      for (int i = 0; i + 1 < Dim; ++i)
-        f(HistoryInfo{"slip", "irreversible part of the tangential jump", unit::length, Remembers::other,
-                      kSlid, false},
-          h.slip[i]...);
-      f(HistoryInfo{"held_jump", "length of the elastic part of the tangential jump", unit::length,
-                    Remembers::other, 0, false},
-        h.held_jump...);
+      f(info::closure, h.closure...);
+      for (int i = 0; i + 1 < Dim; ++i) f(info::slip, h.slip[i]...);
+      f(info::held_jump, h.held_jump...);
     }
   };
 
@@ -230,12 +195,12 @@ struct Cohesive {
 
     template <class F, class... L>
     static constexpr void each(F&& f, L&... l) {
-      f(LossInfo{"slip_path", "length of the slip's path", unit::length}, l.slip_path...);
+      f(info::slip_path, l.slip_path...);
       f(LossInfo{"tension", "G_f1 when torn apart", unit::fracture_energy}, l.tension...);
       f(LossInfo{"shear", "above the residual line; G_f2 when fully softened", unit::fracture_energy},
         l.shear...);
       f(LossInfo{"friction", "along the residual line", unit::fracture_energy}, l.friction...);
-      f(LossInfo{"compression", "irreversible closure", unit::fracture_energy}, l.compression...);
+      f(info::lost_in_compression, l.compression...);
     }
   };
 
@@ -263,7 +228,7 @@ struct Cohesive {
       // The area between the envelope and the secant grows by G_f1 dD, whatever the step.
       losses.tension += select(grows, c.mode_1_energy * (damage - h.tension_damage), Real(0.0));
       h.tension_damage = select(grows, damage, h.tension_damage);
-      r.changed |= kDamaged;
+      r.changed |= info::kDamaged;
     }
     const auto holds = open & (h.tension_damage < 1.0);
     const Real kappa = c.elastic_opening + h.tension_damage * c.softening_range;
@@ -273,48 +238,11 @@ struct Cohesive {
     r.stored += 0.5 * traction * elastic;
   }
 
-  /// Compression with unloading along K_n, which leaves a closure: yield stress f_cm + H u_p.
-  /// \param elastic  in and out: opening beyond the closure left behind, m
-  template <int Dim, class Real, class Constants, class Losses>
-  static void update_compression(const Constants& c, const Real& opening, Real& elastic,
-                                 History<Dim, Real>& h, ContactResponse<Dim, Real>& r, Losses& losses) {
-    const Real closure = c.share_left * (-opening - c.closure_at_limit);
-    const auto yields = closure > h.closure;
-    if (any(yields)) {
-      losses.compression += select(
-          yields,
-          (closure - h.closure) * (c.compressive_limit + 0.5 * c.hardening_slope * (closure + h.closure)),
-          Real(0.0));
-      h.closure = select(yields, closure, h.closure);
-      elastic = opening + h.closure;
-      r.changed |= kDamaged;
-    }
-    const Real pressed = smaller(elastic, Real(0.0));
-    r.normal_traction = c.normal_stiffness * pressed;
-    r.stored = 0.5 * r.normal_traction * pressed;
-  }
-
-  /// Compression that retraces the bilinear curve (15).
-  template <int Dim, class Real, class Constants>
-  static void follow_compression(const Constants& c, const Real& opening, ContactResponse<Dim, Real>& r) {
-    const auto k = c.normal_stiffness;
-    const Real pressed = smaller(opening, Real(0.0));
-    const Real beyond = larger(-pressed - c.closure_at_limit, Real(0.0));
-    const Real within = -pressed - beyond;
-    r.normal_traction = k * (pressed + c.share_left * beyond);
-    const Real yielded = beyond * (c.compressive_limit + 0.5 * (1.0 - c.share_left) * k * beyond);
-    r.stored = 0.5 * k * within * within + select(beyond > 0.0, yielded, Real(0.0));  // f_cm may be infinite
-  }
-
   /// Normal part: bilinear compression and linear tension softening over the elastic opening u_n + u_p.
   template <int Dim, class Real, class Constants, class Losses>
   static void update_normal(const Constants& c, const Real& opening, History<Dim, Real>& h,
                             ContactResponse<Dim, Real>& r, Losses& losses) {
-    Real elastic = opening + h.closure;  // zero traction at zero
-    if (c.compression == Compression::irreversible)
-      update_compression<Dim>(c, opening, elastic, h, r, losses);
-    else
-      follow_compression<Dim>(c, opening, r);
+    const Real elastic = compress<Dim, Real>(c, opening, h.closure, r, losses.compression);
     if (any((elastic > 0.0) & (h.tension_damage < 1.0))) update_tension<Dim>(c, elastic, h, r, losses);
   }
 
@@ -347,19 +275,12 @@ struct Cohesive {
       const Real energy = select(follows, Real(c.mode_2_energy), 0.5 * drop * drop * c.shear_compliance);
       losses.shear += select(softens, energy * (remaining - left) * (remaining + left), Real(0.0));
       h.shear_damage = select(softens, new_damage, h.shear_damage);
-      r.changed |= kDamaged;
+      r.changed |= info::kDamaged;
     }
     losses.friction += residual * length;
     losses.slip_path += length;
-    Tangential<Dim, Real> step;
-    if constexpr (Dim == 2)
-      step[0] = signed_like(length, elastic[0]);
-    else
-      step = elastic * select(slips, length / held, Real(0.0));
-    h.slip += step;
-    elastic -= step;
-    held = norm(elastic);
-    r.changed |= kSlid;
+    slide<Dim>(slips, length, h.slip, elastic, held);
+    r.changed |= info::kSlid;
   }
 
   /// Shear part: elastic predictor and exact return to the softening Mohr-Coulomb envelope.
@@ -383,14 +304,8 @@ struct Cohesive {
     if (any(open_and_broken)) {
       // The bond lets go of the shear it still carried. That energy was held by cohesion, so it is booked
       // there.
-      const Real released = select(open_and_broken, 0.5 * k * h.held_jump * h.held_jump, Real(0.0));
-      if (any(released > 0.0)) losses.shear += released;
-      held = select(open_and_broken, Real(0.0), held);
-      for (int i = 0; i + 1 < Dim; ++i) {
-        h.slip[i] = select(open_and_broken, jump[i], h.slip[i]);
-        elastic[i] = select(open_and_broken, Real(0.0), elastic[i]);
-      }
-      r.changed |= kSlid;
+      let_go<Dim>(open_and_broken, k, jump, h.held_jump, h.slip, elastic, held, losses.shear);
+      r.changed |= info::kSlid;
     }
     h.held_jump = held;
     r.shear_traction = elastic * Real(k);

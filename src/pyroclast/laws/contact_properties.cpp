@@ -34,8 +34,7 @@ namespace {
 
 [[noreturn]] void fail(const std::string& name, const PropertyInfo& property, double value,
                        const std::string& wanted) {
-  const std::string unit =
-      property.unit.si == unit::dimensionless.si ? "" : fmt::format(" ({})", property.unit.si);
+  const std::string unit = property.unit == unit::dimensionless ? "" : fmt::format(" ({})", property.unit.si);
   throw Error(fmt::format("{}: {}{} = {:g}, but it must be {}", name, property.key, unit, value, wanted));
 }
 

@@ -50,9 +50,6 @@ void validate(const ContactProperties& properties, const std::string& name);
 class ContactSets {
  public:
   ContactSets() = default;
-  ContactSets(std::initializer_list<ContactProperties> sets) {
-    for (const auto& set : sets) add(set);
-  }
   explicit ContactSets(const std::vector<ContactProperties>& sets) {
     for (const auto& set : sets) add(set);
   }

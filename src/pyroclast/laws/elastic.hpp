@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pyroclast/laws/law.hpp"
+#include "pyroclast/laws/common.hpp"
 
 namespace pyroclast {
 
@@ -18,12 +18,8 @@ struct Elastic {
 
     template <class F, class... P>
     static constexpr void each(F&& f, P&... p) {
-      f(PropertyInfo{"K_n", "normal stiffness", unit::stiffness_per_area, Range::positive(),
-                     Role::normal_stiffness},
-        p.normal_stiffness...);
-      f(PropertyInfo{"K_s", "shear stiffness", unit::stiffness_per_area, Range::positive(),
-                     Role::shear_stiffness},
-        p.shear_stiffness...);
+      f(info::normal_stiffness, p.normal_stiffness...);
+      f(info::shear_stiffness, p.shear_stiffness...);
     }
     template <class F, class... P>
     static constexpr void each_choice(F&&, P&...) {}

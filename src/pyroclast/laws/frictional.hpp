@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pyroclast/laws/law.hpp"
+#include "pyroclast/laws/common.hpp"
 
 namespace pyroclast {
 
@@ -20,12 +20,8 @@ struct Frictional {
 
     template <class F, class... P>
     static constexpr void each(F&& f, P&... p) {
-      f(PropertyInfo{"K_n", "normal stiffness", unit::stiffness_per_area, Range::positive(),
-                     Role::normal_stiffness},
-        p.normal_stiffness...);
-      f(PropertyInfo{"K_s", "shear stiffness", unit::stiffness_per_area, Range::positive(),
-                     Role::shear_stiffness},
-        p.shear_stiffness...);
+      f(info::normal_stiffness, p.normal_stiffness...);
+      f(info::shear_stiffness, p.shear_stiffness...);
       f(PropertyInfo{"friction", "coefficient of friction", unit::dimensionless, Range::non_negative()},
         p.friction...);
     }
@@ -50,9 +46,6 @@ struct Frictional {
     static constexpr void each_choice(F&&, C&...) {}
   };
 
-  /// Of History.
-  static constexpr unsigned kSlid = 1;
-
   template <int Dim, class Real>
   struct History {
     Tangential<Dim, Real> slip{};  ///< m
@@ -60,13 +53,8 @@ struct Frictional {
 
     template <class F, class... H>
     static constexpr void each(F&& f, H&... h) {
-      for (int i = 0; i + 1 < Dim; ++i)
-        f(HistoryInfo{"slip", "irreversible part of the tangential jump", unit::length, Remembers::other,
-                      kSlid, false},
-          h.slip[i]...);
-      f(HistoryInfo{"held_jump", "length of the elastic part of the tangential jump", unit::length,
-                    Remembers::other, 0, false},
-        h.held_jump...);
+      for (int i = 0; i + 1 < Dim; ++i) f(info::slip, h.slip[i]...);
+      f(info::held_jump, h.held_jump...);
     }
   };
 
@@ -76,7 +64,7 @@ struct Frictional {
 
     template <class F, class... L>
     static constexpr void each(F&& f, L&... l) {
-      f(LossInfo{"slip_path", "length of the slip's path", unit::length}, l.slip_path...);
+      f(info::slip_path, l.slip_path...);
       f(LossInfo{"friction", "rubbed off", unit::fracture_energy}, l.friction...);
     }
   };
@@ -109,25 +97,12 @@ struct Frictional {
       const Real length = select(slips, excess * c.shear_compliance, Real(0.0));
       losses.friction += carried * length;
       losses.slip_path += length;
-      Tangential<Dim, Real> step;
-      if constexpr (Dim == 2)
-        step[0] = signed_like(length, elastic[0]);
-      else
-        step = elastic * select(slips, length / held, Real(0.0));
-      h.slip += step;
-      elastic -= step;
-      held = norm(elastic);
-      r.changed = kSlid;
+      slide<Dim>(slips, length, h.slip, elastic, held);
+      r.changed = info::kSlid;
     }
     if (any(open)) {
-      const Real released = select(open, 0.5 * k * h.held_jump * h.held_jump, Real(0.0));
-      if (any(released > 0.0)) losses.friction += released;
-      held = select(open, Real(0.0), held);
-      for (int i = 0; i + 1 < Dim; ++i) {
-        h.slip[i] = select(open, tangential[i], h.slip[i]);
-        elastic[i] = select(open, Real(0.0), elastic[i]);
-      }
-      r.changed = kSlid;
+      let_go<Dim>(open, k, tangential, h.held_jump, h.slip, elastic, held, losses.friction);
+      r.changed = info::kSlid;
     }
     h.held_jump = held;
     r.shear_traction = elastic * Real(k);

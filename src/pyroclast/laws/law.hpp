@@ -83,7 +83,10 @@ struct HistoryInfo {
 struct LossInfo {
   const char* name;
   const char* meaning;
-  Unit unit;  ///< J/m2: an energy, counted in the ledger
+  Unit unit;
+
+  /// Energies are counted in the ledger.
+  constexpr bool is_energy() const { return unit == unit::fracture_energy; }
 };
 
 /// What a contact point answers to a jump.

@@ -45,21 +45,28 @@ struct LawTable {
 
 namespace law_table {
 
-/// The infos of a list, one after the other.
+/// Calls `f(info, number)` for the numbers of a list, or for its choices.
+template <class Info, class F, class List>
+constexpr void for_each(F f, List& list) {
+  if constexpr (std::is_same_v<Info, ChoiceInfo>)
+    List::each_choice(f, list);
+  else
+    List::each(f, list);
+}
+
+/// The infos of a list, or of its choices, one after the other.
 template <class Info, class List>
 constexpr auto infos() {
-  std::array<Info, count_of<List>()> all{};
+  constexpr auto kCount = [] {
+    List list{};
+    std::size_t count = 0;
+    for_each<Info>([&](const auto&, auto&) { ++count; }, list);
+    return count;
+  }();
+  std::array<Info, kCount> all{};
   List list{};
   std::size_t i = 0;
-  List::each([&](const auto& info, auto&) { all[i++] = info; }, list);
-  return all;
-}
-template <class List>
-constexpr auto choice_infos() {
-  std::array<ChoiceInfo, choices_of<List>()> all{};
-  List list{};
-  std::size_t i = 0;
-  List::each_choice([&](const auto& info, auto&) { all[i++] = info; }, list);
+  for_each<Info>([&](const auto& info, auto&) { all[i++] = info; }, list);
   return all;
 }
 
@@ -96,7 +103,7 @@ const LawTable& table_of() {
   using Constants = typename Law::template Constants<double>;
   static_assert(std::is_trivially_copyable_v<Constants>);
   static constexpr auto kProperties = law_table::infos<PropertyInfo, Properties>();
-  static constexpr auto kChoices = law_table::choice_infos<Properties>();
+  static constexpr auto kChoices = law_table::infos<ChoiceInfo, Properties>();
   static constexpr auto kHistory2 =
       law_table::infos<HistoryInfo, typename Law::template History<2, double>>();
   static constexpr auto kHistory3 =

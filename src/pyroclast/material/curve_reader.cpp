@@ -20,12 +20,8 @@ constexpr auto kQuantity = "quantity of the key's kind";
 /// Part of the needed interval's width by which a curve may fall short of it: rounding, as in Curve.
 constexpr double kRounding = 1e-9;
 
-bool is_same(const Unit& a, const Unit& b) {
-  return std::string_view(a.si) == b.si;
-}
-
 std::string suffix(const Unit& unit) {
-  return is_same(unit, unit::dimensionless) ? "" : unit.si;
+  return unit == unit::dimensionless ? "" : unit.si;
 }
 
 std::string with_unit(double value, const Unit& unit) {
@@ -116,7 +112,7 @@ Curve CurveReader::read_described(const Section& section, std::string_view key, 
 std::optional<Curve> CurveReader::read_forms(const Section& forms, const Unit& unit, bool has_value) const {
   std::vector<std::string> allowed = {"table", "csv", "builtin", "expression"};
   if (has_value) allowed.insert(allowed.begin(), "value");
-  if (axis_ == time_axis() && is_same(unit, unit::temperature)) allowed.emplace_back("from");
+  if (axis_ == time_axis() && unit == unit::temperature) allowed.emplace_back("from");
   std::vector<std::string> given;
   for (const std::string& form : allowed)
     if (forms.has(form)) given.push_back(form);
@@ -211,7 +207,7 @@ std::optional<Curve> CurveReader::read_expression(const Section& forms, const Un
       "expression", axis_ == time_axis() ? Meaning("formula in t, in s") : Meaning("formula in T, in °C"));
   forms.describe("unit", {.value = "text"}, "unit of the formula's value; a ratio needs none");
   const std::string given =
-      is_same(unit, unit::dimensionless) ? forms.text("unit", unit.si, "") : forms.text("unit", "");
+      unit == unit::dimensionless ? forms.text("unit", unit.si, "") : forms.text("unit", "");
   const auto range = forms.quantities("range", abscissa(), Range::any(),
                                       "where the formula holds: the lower end, the upper end");
   if (!range.empty() && (range.size() != 2 || !(range[0] < range[1])))
@@ -277,7 +273,7 @@ std::string CurveReader::forms_name() const {
 }
 
 std::string CurveReader::or_curve(const Unit& unit) const {
-  return fmt::format("{}, or {}", is_same(unit, unit::dimensionless) ? "number" : unit.name, forms_name());
+  return fmt::format("{}, or {}", unit == unit::dimensionless ? "number" : unit.name, forms_name());
 }
 
 const Unit& CurveReader::abscissa() const {

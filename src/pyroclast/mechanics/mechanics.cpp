@@ -152,7 +152,7 @@ template <int Dim>
 void Mechanics<Dim>::name_dissipations() {
   for (int set = 0; set < properties_.contacts.size(); ++set)
     for (const LossInfo& loss : properties_.contacts.law(set).losses)
-      if (loss.unit.si == std::string_view(unit::fracture_energy.si) &&
+      if (loss.is_energy() &&
           std::ranges::find(dissipations_, std::string_view(loss.name)) == dissipations_.end())
         dissipations_.emplace_back(loss.name);
   if (dissipations_.size() > kMostDissipations)

@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -261,10 +260,6 @@ double convert(double number, std::string_view text, std::string_view given, con
   return value;
 }
 
-bool is_dimensionless(const Unit& unit) {
-  return std::strcmp(unit.si, unit::dimensionless.si) == 0;
-}
-
 }  // namespace
 
 QuantityError::QuantityError(Kind kind, std::string_view text, const std::string& reason)
@@ -273,12 +268,12 @@ QuantityError::QuantityError(Kind kind, std::string_view text, const std::string
 double parse_quantity(std::string_view text, const Unit& unit) {
   const auto [number, given] = split(text, unit);
   if (!given.empty()) return convert(number, text, given, unit);
-  if (is_dimensionless(unit)) return number;
+  if (unit == unit::dimensionless) return number;
   throw QuantityError(QuantityError::Kind::no_unit, text, "no unit; " + requirement(unit));
 }
 
 std::string requirement(const Unit& unit) {
-  if (is_dimensionless(unit))
+  if (unit == unit::dimensionless)
     return fmt::format("a number without unit is needed, or e.g. \"{}\"", unit.example);
   return fmt::format("a unit of {} ({}) is needed, e.g. \"{}\"", unit.name, unit.si, unit.example);
 }
