@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,11 +15,12 @@
 /// MPa where a law has none. Eight paths go side by side, so that lanes differ in what they do.
 namespace pyroclast {
 
-/// Eight points through the law in lanes of some instruction set. Those of the table are always tried, these
-/// too.
+/// Another way to take eight points through the law, as of LanesUpdate. That of the law's table is always
+/// tried.
 struct KitLanes {
-  const char* name;  ///< for messages
-  std::array<LanesUpdate, 2> update_of;
+  std::string name;  ///< for messages
+  std::array<std::function<LanesResponse(const void*, const double*, const double*, double*, double*)>, 2>
+      update_of;  ///< in 2D and 3D
 };
 
 struct KitOptions {
