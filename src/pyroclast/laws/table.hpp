@@ -42,8 +42,9 @@ struct LawTable {
   std::span<const ChoiceInfo> choices;
   std::array<std::span<const HistoryInfo>, 2> history_of;  ///< in 2D and 3D
   std::span<const LossInfo> losses;
-  std::size_t size;  ///< of its constants, bytes
-  int constants;     ///< numbers among them
+  std::size_t size;     ///< of its constants, bytes
+  int constants;        ///< numbers among them
+  bool exact_in_shear;  ///< sliding at a steady opening does not depend on how it is cut into steps
 
   /// Makes the constants, in memory that is aligned for doubles.
   void (*derive)(const double* properties, const int* choices, void* constants);
@@ -167,6 +168,14 @@ LanesResponse update_lanes(const void* constants, const double* own, const doubl
   return response;
 }
 
+template <class Law>
+constexpr bool exact_in_shear() {
+  if constexpr (requires { Law::exact_in_shear; })
+    return Law::exact_in_shear;
+  else
+    return true;
+}
+
 }  // namespace law_table
 
 template <class Law>
@@ -190,6 +199,7 @@ const LawTable& table_of() {
       kLosses,
       sizeof(Constants),
       count_of<Constants>(),
+      law_table::exact_in_shear<Law>(),
       [](const double* numbers, const int* choices, void* constants) {
         new (constants) Constants(Law::derive(law_table::properties<Law>(numbers, choices)));
       },
