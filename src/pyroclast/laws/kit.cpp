@@ -482,7 +482,8 @@ class Kit {
     };
     const Jump t = traction(path.point.response);
     compare(path.turned, turn(path, path.point.jump, dim_), turn(path, t, dim_), dim_);
-    if (dim_ == 2) compare(path.in_space, into_space(path, path.point.jump), into_space(path, t), 3);
+    if (dim_ == 2 && std::ranges::count(options_.dimensions, 3) > 0)
+      compare(path.in_space, into_space(path, path.point.jump), into_space(path, t), 3);
   }
 
   /// Small and large steps from where the point stands.
