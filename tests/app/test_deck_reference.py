@@ -41,8 +41,10 @@ def missing(tables: dict[str, dict[str, str]], name: str, values: dict) -> list[
         inner = value if isinstance(value, list) else [value]
         if all(isinstance(one, dict) for one in inner) and inner:
             forms = FORMS.search(tables.get(name, {}).get(key, ""))
+            named = f"{name}.NAME"  # stands for tables of any name
             for one in inner:
-                found += missing(tables, forms[0] if forms else path, one)
+                described = path if path in tables or named not in tables else named
+                found += missing(tables, forms[0] if forms else described, one)
         elif key not in tables.get(name, {}):
             found.append(path)
     return found

@@ -508,6 +508,23 @@ class Law(UserTest):
                 self.assertIn(word, done.stderr)
             self.assertFalse((self.folder / "law.csv").exists())
 
+    def test_laws_are_verified_without_a_deck(self):
+        done = self.pyroclast("law", "--verify", "elastic", "frictional", "--paths", 40, "--seed", 3)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        for law in ("elastic", "frictional"):
+            self.assertIn(f"{law}: 40 paths in each of 2 dimensions, seed 3: passed", done.stdout)
+        self.assertNotIn("cohesive", done.stdout)
+
+    def test_what_verifying_needs_and_refuses(self):
+        for words, message in ((("--verify", "plastic"), '"plastic"; there are cohesive, elastic'),
+                               (("--path", "path.csv"), "DECK is required"),
+                               (("mine.toml",), "--path is required"),
+                               (("mine.toml", "--path", "path.csv", "--verify"), "--verify"),
+                               (("--paths", 3), "--verify")):
+            done = self.pyroclast("law", *words)
+            self.assertNotEqual(done.returncode, 0, words)
+            self.assertIn(message, done.stderr)
+
 
 class DecksGoneWrong(UserTest):
     def refuse(self, deck: str, *words: str, **options) -> str:

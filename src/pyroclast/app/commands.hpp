@@ -27,6 +27,12 @@ struct LawOptions {
   int steps = 1;  ///< each leg of the path is cut into as many
 };
 
+struct VerifyOptions {
+  std::vector<std::string> laws;  ///< by name; empty: all
+  int paths = 10000;              ///< in each dimension
+  std::uint64_t seed = 1;
+};
+
 struct PropertiesOptions {
   std::filesystem::path deck;
   std::filesystem::path out;  ///< empty: runs/<name of the deck>-properties
@@ -37,6 +43,8 @@ int check(const RunOptions& options);
 int make_specimen(const RunOptions& options);
 int run(const RunOptions& options);
 int law(const LawOptions& options);
+/// 1 when a law fails.
+int verify_laws(const VerifyOptions& options);
 int plot_properties(const PropertiesOptions& options);
 int make_deck(const std::string& name);
 int print_keys();

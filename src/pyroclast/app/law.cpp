@@ -9,6 +9,9 @@
 
 #include "pyroclast/app/load.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/laws/kit.hpp"
+#include "pyroclast/laws/registry.hpp"
+#include "pyroclast/mechanics/law_row.hpp"
 #include "pyroclast/results/text_file.hpp"
 
 namespace pyroclast::app {
@@ -210,6 +213,32 @@ int law(const LawOptions& options) {
   else
     write_text_file(options.out, csv);
   return 0;
+}
+
+int verify_laws(const VerifyOptions& options) {
+  std::vector<const LawTable*> wanted;
+  for (const std::string& name : options.laws) {
+    const auto found = std::ranges::find_if(
+        laws(), [&](const LawTable* law) { return std::string_view(law->name) == name; });
+    if (found == laws().end()) {
+      std::vector<const char*> names;
+      for (const LawTable* law : laws()) names.push_back(law->name);
+      throw Error(fmt::format("there is no contact law \"{}\"; there are {}", name, fmt::join(names, ", ")));
+    }
+    wanted.push_back(*found);
+  }
+  if (wanted.empty()) wanted.assign(laws().begin(), laws().end());
+  bool passed = true;
+  for (const LawTable* law : wanted) {
+    KitOptions kit;
+    kit.paths = options.paths;
+    kit.seed = options.seed;
+    kit.lanes = lanes_of_step(*law);
+    const KitReport report = verify(*law, kit);
+    fmt::print("{}", report.text());
+    passed = passed && report.passed();
+  }
+  return passed ? 0 : 1;
 }
 
 }  // namespace pyroclast::app

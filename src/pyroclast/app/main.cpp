@@ -63,18 +63,34 @@ int command_line(int argc, char** argv) {
   add_threads(specimen, options.threads);
 
   app::LawOptions law_options;
-  auto* law =
-      cli.add_subcommand("law", "Drive the contact law of a deck along a path of jumps and temperatures");
-  add_deck(law, law_options.deck);
-  law->add_option("--path", law_options.path,
-                  "CSV: columns u_n, u_s and optionally T, each with its unit: u_n [um]")
-      ->required();
+  auto* law = cli.add_subcommand("law",
+                                 "Drive the contact law of a deck along a path of jumps and temperatures, or "
+                                 "try laws on random paths: law --verify");
+  auto* law_deck = law->add_option("DECK", law_options.deck, "TOML file that describes the run");
+  auto* law_path = law->add_option("--path", law_options.path,
+                                   "CSV: columns u_n, u_s and optionally T, each with its unit: u_n [um]");
   law->add_option("--interface", law_options.interface,
                   "A table of [contacts], or a_a for two blocks of phase a (default: that of the matrix)");
   law->add_option("--steps", law_options.steps, "Cut each leg of the path into so many steps")
       ->check(CLI::PositiveNumber)
       ->default_val(1);
   law->add_option("-o,--out", law_options.out, "CSV file to write (default: standard output)");
+  app::VerifyOptions verify_options;
+  auto* verify =
+      law->add_option("--verify", verify_options.laws,
+                      "Instead: try these laws, or all, against the properties that a law must have")
+          ->expected(0, -1)
+          ->excludes(law_deck)
+          ->excludes(law_path);
+  law->add_option("--paths", verify_options.paths, "Random paths in each dimension")
+      ->check(CLI::PositiveNumber)
+      ->needs(verify)
+      ->default_val(10000);
+  law->add_option("--seed", verify_options.seed, "Of the random paths")->needs(verify)->default_val(1);
+  law->callback([&] {
+    for (const auto* needed : {law_deck, law_path})
+      if (!*verify && !*needed) throw CLI::RequiredError(needed->get_name());
+  });
 
   app::PropertiesOptions properties_options;
   auto* properties = cli.add_subcommand("plot-properties",
@@ -99,7 +115,7 @@ int command_line(int argc, char** argv) {
   if (*run) return app::run(options);
   if (*check) return app::check(options);
   if (*specimen) return app::make_specimen(options);
-  if (*law) return app::law(law_options);
+  if (*law) return *verify ? app::verify_laws(verify_options) : app::law(law_options);
   if (*properties) return app::plot_properties(properties_options);
   if (*figures) return app::figures(figures->remaining());
   if (*keys) return app::print_keys();

@@ -18,6 +18,10 @@
 ///     Losses<Sum>         what it lost for good                      each(f, l...)
 ///     derive, update, stiffness, check                               see laws/cohesive.hpp
 ///
+/// Opening alone gives the same however it is cut into steps; so does sliding at a steady opening, unless the
+/// law says `static constexpr bool exact_in_shear = false`. Elsewhere a law converges with the number of
+/// steps. What else a law must hold, laws/kit.cpp tries.
+///
 /// Each list calls `f(info, number...)` for one number after the other; several objects of the same kind go
 /// side by side. The info says once what the number is called, its unit and its meaning: decks, docs, memory,
 /// fields and columns follow from it.
