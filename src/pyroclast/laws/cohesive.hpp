@@ -14,6 +14,7 @@ namespace pyroclast {
 struct Cohesive {
   static constexpr const char* name = "cohesive";
   static constexpr const char* meaning = "softens in tension and shear, yields in compression (the paper's)";
+  static const LawRows rows;
 
   /// The reading of the compression law, Eq. (15).
   enum class Compression : std::uint8_t {
