@@ -31,7 +31,7 @@ StepCost step_cost(pyroclast::Mechanics<2>& body) {
   const auto in_use = [](int items, int rows) {
     return static_cast<double>(items) / (static_cast<double>(rows) * pyroclast::kLanes);
   };
-  const Traffic arrays = traffic(body.state());
+  const Traffic arrays = traffic(body);
   StepCost cost;
   cost.flops = static_cast<double>(done.faces) * in_use(model.contact_count() / 2, layout.face_rows()) +
                static_cast<double>(done.bundles) * in_use(model.zone_count(), layout.zone_rows);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "pyroclast/laws/built_in.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/mechanics/step/step.hpp"
 
@@ -28,8 +29,14 @@ void update_faces(State<2>& s, int first, int last, bool measure) {
 }
 
 template <class... Laws>
-std::array<pyroclast::RowFunctions<2>, sizeof...(Laws)> laws(pyroclast::LawList<Laws...>) {
-  return {{{update_faces<Laws>, pyroclast::Contacts<2, Counting, Laws>::place_stiffness}...}};
+pyroclast::RowFunctions<2> rows(pyroclast::LawList<Laws...>, int law) {
+  static constexpr std::array<pyroclast::RowFunctions<2>, sizeof...(Laws)> kRows{
+      {{update_faces<Laws>, pyroclast::Contacts<2, Counting, Laws>::place_stiffness}...}};
+  return kRows[static_cast<std::size_t>(law)];
+}
+
+pyroclast::RowFunctions<2> rows_of(const pyroclast::LawTable& law) {
+  return rows(pyroclast::BuiltInLaws(), pyroclast::index_of(law));
 }
 
 void move_bundles(State<2>& s, int first, int last, Pass pass, double* scratch) {
@@ -41,8 +48,8 @@ void move_bundles(State<2>& s, int first, int last, Pass pass, double* scratch) 
 /// Shares of the arrays that a step touches, as far as they hang on the body.
 class Shares {
  public:
-  explicit Shares(const State<2>& s)
-      : held_(held_share(s)), combined_(s.damping_form == pyroclast::DampingForm::combined) {
+  Shares(const State<2>& s, const std::vector<const pyroclast::LawTable*>& laws)
+      : held_(held_share(s, laws)), combined_(s.damping_form == pyroclast::DampingForm::combined) {
     int spread_rows = 0;
     for (const Bundle& bundle : s.layout.bundles)
       if (bundle.kind == BundleKind::spread) spread_rows += bundle.rows;
@@ -71,10 +78,10 @@ class Shares {
 
  private:
   /// Share of the history that is always written.
-  static double held_share(const State<2>& s) {
+  static double held_share(const State<2>& s, const std::vector<const pyroclast::LawTable*>& laws) {
     double all = 0.0, always = 0.0;
     for (int row = 0; row < static_cast<int>(s.layout.faces.size()); ++row)
-      for (const auto& info : pyroclast::laws()[s.law_of_faces[row]]->history(2)) {
+      for (const auto& info : laws[s.law_of_faces[row]]->history(2)) {
         all += 1.0;
         always += info.when == 0;
       }
@@ -88,7 +95,7 @@ class Shares {
 }  // namespace
 
 pyroclast::StepFunctions<2> counting_step() {
-  return {laws(pyroclast::BuiltInLaws()), move_bundles, CountingStep::sum_stiffness};
+  return {rows_of, move_bundles, CountingStep::sum_stiffness};
 }
 
 Operations operations() {
@@ -99,8 +106,9 @@ void reset_operations() {
   counted = {};
 }
 
-Traffic traffic(const State<2>& state) {
-  const Shares shares(state);
+Traffic traffic(const pyroclast::Mechanics<2>& body) {
+  const State<2>& state = body.state();
+  const Shares shares(state, body.laws());
   Traffic traffic;
   const auto add = [&](const pyroclast::ArrayInfo& info, const auto& array) {
     const auto bytes = static_cast<double>(bytes_of(array));

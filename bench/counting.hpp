@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "pyroclast/mechanics/state.hpp"
+#include "pyroclast/mechanics/mechanics.hpp"
 
 /// Counts what a step of the library does, by doing it with numbers that count.
 namespace bench {
@@ -54,6 +54,6 @@ struct Traffic {
   double moved = 0.0;        ///< read plus written
   double working_set = 0.0;  ///< all that is read or written, once
 };
-Traffic traffic(const pyroclast::State<2>& state);
+Traffic traffic(const pyroclast::Mechanics<2>& body);
 
 }  // namespace bench

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
 #include "native_step.hpp"
+#include "pyroclast/laws/registry.hpp"
 #include "register.hpp"
 
 namespace bench {
@@ -17,6 +19,10 @@ void time_part(benchmark::State& state, const pyroclast::Mechanics<2>& body, con
   auto storage = body.storage();
   pyroclast::State<2> copy = body.state();
   pyroclast::see(copy, storage);
+  std::vector<pyroclast::RowFunctions<2>> laws;
+  for (const auto* law : body.laws())
+    laws.push_back(kNativeLaws[static_cast<std::size_t>(pyroclast::index_of(*law))]);
+  copy.laws = laws.data();
   const auto& history = body.storage().history;
   pyroclast::FlatArray<double> scratch(static_cast<std::size_t>(4 * pyroclast::kLanes) *
                                        body.layout().most_rows);

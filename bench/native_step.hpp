@@ -1,8 +1,15 @@
 #pragma once
 
+#include <array>
+
+#include "pyroclast/laws/built_in.hpp"
 #include "pyroclast/mechanics/state.hpp"
 
 namespace bench {
+
+/// The rows of the program's laws, in the order of BuiltInLaws, as the parts are compiled.
+using NativeLaws = std::array<pyroclast::RowFunctions<2>, pyroclast::BuiltInLaws::count>;
+extern const NativeLaws kNativeLaws;
 
 /// One part of the step over a whole body, the fastest compilation for this machine.
 struct Part {

@@ -2,9 +2,7 @@
 add_library(pyroclast_options INTERFACE)
 target_compile_options(pyroclast_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                                    -Woverloaded-virtual -Wcast-align)
-# Contracting a*b+c into one instruction differently in two inlined copies of a loop would make the result
-# depend on the optimizer; results are promised bitwise, so it is off.
-target_compile_options(pyroclast_options INTERFACE -ffp-contract=off -fno-math-errno)
+target_compile_options(pyroclast_options INTERFACE ${pyroclast_arithmetic_flags})
 if(PYROCLAST_WERROR)
   target_compile_options(pyroclast_options INTERFACE -Werror)
 endif()

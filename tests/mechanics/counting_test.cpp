@@ -76,7 +76,7 @@ TEST(Counting, CombinedDampingReadsTheForcesOfTheLastStep) {
   const auto local = mechanics(model, mortar_contact(), parameters);
   parameters.damping_form = DampingForm::combined;
   const auto combined = mechanics(model, mortar_contact(), parameters);
-  const auto one = bench::traffic(local.state()), other = bench::traffic(combined.state());
+  const auto one = bench::traffic(local), other = bench::traffic(combined);
   EXPECT_EQ(other.moved - one.moved, static_cast<double>(bytes_of(local.state().force)));
   EXPECT_EQ(other.working_set, one.working_set);
   EXPECT_GT(one.moved, one.working_set);

@@ -219,15 +219,15 @@ int verify_laws(const VerifyOptions& options) {
   std::vector<const LawTable*> wanted;
   for (const std::string& name : options.laws) {
     const auto found = std::ranges::find_if(
-        laws(), [&](const LawTable* law) { return std::string_view(law->name) == name; });
-    if (found == laws().end()) {
+        built_in_laws(), [&](const LawTable* law) { return std::string_view(law->name) == name; });
+    if (found == built_in_laws().end()) {
       std::vector<const char*> names;
-      for (const LawTable* law : laws()) names.push_back(law->name);
+      for (const LawTable* law : built_in_laws()) names.push_back(law->name);
       throw Error(fmt::format("there is no contact law \"{}\"; there are {}", name, fmt::join(names, ", ")));
     }
     wanted.push_back(*found);
   }
-  if (wanted.empty()) wanted.assign(laws().begin(), laws().end());
+  if (wanted.empty()) wanted.assign(built_in_laws().begin(), built_in_laws().end());
   bool passed = true;
   for (const LawTable* law : wanted) {
     KitOptions kit;

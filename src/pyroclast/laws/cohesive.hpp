@@ -14,6 +14,7 @@ namespace pyroclast {
 struct Cohesive {
   static constexpr const char* name = "cohesive";
   static constexpr const char* meaning = "softens in tension and shear, yields in compression (the paper's)";
+  static const LawRows rows;
 
   using Compression = pyroclast::Compression;
 

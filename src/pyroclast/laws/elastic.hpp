@@ -8,6 +8,7 @@ namespace pyroclast {
 struct Elastic {
   static constexpr const char* name = "elastic";
   static constexpr const char* meaning = "never fails";
+  static const LawRows rows;
 
   template <class Real>
   struct Properties {

@@ -9,6 +9,7 @@ namespace pyroclast {
 struct Frictional {
   static constexpr const char* name = "frictional";
   static constexpr const char* meaning = "presses and rubs, never held";
+  static const LawRows rows;
 
   template <class Real>
   struct Properties {

@@ -30,6 +30,10 @@
 /// positive. All energies are per unit of contact area, J/m².
 namespace pyroclast {
 
+/// What the step compiles of a law (mechanics/law_rows.hpp); a law that is part of the program declares its
+/// own as `static const LawRows rows`.
+struct LawRows;
+
 /// Components of a contact's tangential jump and traction: 1 in 2D, 2 in 3D.
 template <int Dim, class Real = double>
 using Tangential = Vec<Dim - 1, Real>;

@@ -18,6 +18,7 @@ namespace pyroclast {
 /// Both secants fall with D, so damage never wins energy back, on whatever way. G_f1 and G_f2 are exact in
 /// the pure modes in any number of steps. On combined ways energies converge with the number of steps.
 struct MixedMode {
+  static const LawRows rows;
   static constexpr const char* name = "mixed_mode";
   static constexpr const char* meaning =
       "one damage for tension and shear; what is broken rubs and dilates; yields in compression";

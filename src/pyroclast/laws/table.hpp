@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <new>
 #include <span>
 #include <type_traits>
@@ -35,6 +36,14 @@ struct LanesResponse {
 using LanesUpdate = LanesResponse (*)(const void* constants, const double* own, const double* jump,
                                       double* history, double* losses);
 
+/// Those of the bodies' dimensions that a law is made for.
+enum class Dimensions : std::uint8_t { plane = 1, space = 2, both = 3 };
+
+constexpr bool includes(Dimensions dimensions, int dim) {
+  return (static_cast<int>(dimensions) & (dim == 2 ? 1 : 2)) != 0;
+}
+
+/// Plain data of standard layout: a law from outside the program hands over its own (plugin/plugin.hpp).
 struct LawTable {
   const char* name;
   const char* meaning;
@@ -54,9 +63,10 @@ struct LawTable {
   ContactStiffness<double> (*stiffness)(const void* constants);
   /// Takes a point to a jump: opening, tangential components. Adds to the losses.
   std::array<PointResponse (*)(const void* constants, const double* jump, double* history, double* losses), 2>
-      update_of;
+      update_of;  ///< in 2D and 3D; null where the law is not made for them
   /// The same in lanes that are no more than the language: what the step does, without its memory.
   std::array<LanesUpdate, 2> update_lanes_of;
+  const LawRows* rows;  ///< null where none are part of the program
 
   std::span<const HistoryInfo> history(int dim) const { return history_of[dim - 2]; }
   auto update(int dim) const { return update_of[dim - 2]; }
@@ -183,19 +193,53 @@ constexpr bool exact_in_shear() {
     return true;
 }
 
+template <class Law, int Dim, Dimensions kDimensions>
+constexpr auto history() {
+  if constexpr (includes(kDimensions, Dim))
+    return infos<HistoryInfo, typename Law::template History<Dim, double>>();
+  else
+    return std::array<HistoryInfo, 0>{};
+}
+
+template <class Law, int Dim, Dimensions kDimensions>
+constexpr auto update_or_null() {
+  if constexpr (includes(kDimensions, Dim))
+    return update<Law, Dim>;
+  else
+    return nullptr;
+}
+template <class Law, int Dim, Dimensions kDimensions>
+constexpr LanesUpdate update_lanes_or_null() {
+  if constexpr (includes(kDimensions, Dim))
+    return update_lanes<Law, Dim>;
+  else
+    return nullptr;
+}
+
+/// `Law::rows` of a law that is part of the program.
+template <class Law>
+constexpr const LawRows* rows_of() {
+  // a law made from another one inherits its rows, but they are not its own
+  if constexpr (requires {
+                  requires std::is_same_v<typename Law::template Properties<double>::Law, Law>;
+                  &Law::rows;
+                })
+    return &Law::rows;
+  else
+    return nullptr;
+}
+
 }  // namespace law_table
 
-template <class Law>
+template <class Law, Dimensions kDimensions = Dimensions::both>
 const LawTable& table_of() {
   using Properties = typename Law::template Properties<double>;
   using Constants = typename Law::template Constants<double>;
   static_assert(std::is_trivially_copyable_v<Constants>);
   static constexpr auto kProperties = law_table::infos<PropertyInfo, Properties>();
   static constexpr auto kChoices = law_table::infos<ChoiceInfo, Properties>();
-  static constexpr auto kHistory2 =
-      law_table::infos<HistoryInfo, typename Law::template History<2, double>>();
-  static constexpr auto kHistory3 =
-      law_table::infos<HistoryInfo, typename Law::template History<3, double>>();
+  static constexpr auto kHistory2 = law_table::history<Law, 2, kDimensions>();
+  static constexpr auto kHistory3 = law_table::history<Law, 3, kDimensions>();
   static constexpr auto kLosses = law_table::infos<LossInfo, typename Law::template Losses<double>>();
   static constexpr LawTable table{
       Law::name,
@@ -215,8 +259,11 @@ const LawTable& table_of() {
         return Law::check(law_table::properties<Law>(numbers, choices));
       },
       [](const void* constants) { return Law::stiffness(*static_cast<const Constants*>(constants)); },
-      {law_table::update<Law, 2>, law_table::update<Law, 3>},
-      {law_table::update_lanes<Law, 2>, law_table::update_lanes<Law, 3>}};
+      {law_table::update_or_null<Law, 2, kDimensions>(), law_table::update_or_null<Law, 3, kDimensions>()},
+      {law_table::update_lanes_or_null<Law, 2, kDimensions>(),
+       law_table::update_lanes_or_null<Law, 3, kDimensions>()},
+      law_table::rows_of<Law>()};
+  static_assert(std::is_standard_layout_v<LawTable> && std::is_trivially_copyable_v<LawTable>);
   return table;
 }
 

@@ -14,6 +14,7 @@ enum class InstructionSet : std::uint8_t {
   avx2,      ///< 4 lanes an instruction
   avx512     ///< 8 lanes an instruction (AVX-512 F, DQ and VL)
 };
+inline constexpr int kInstructionSets = 3;
 
 const char* name(InstructionSet set);
 

@@ -129,7 +129,7 @@ class LawRow {
 template <int Dim>
 std::function<LanesResponse(const void*, const double*, const double*, double*, double*)> lanes_of_row(
     const LawTable& law, InstructionSet set) {
-  const auto row = std::make_shared<LawRow<Dim>>(law, step_functions<Dim>(set).laws[index_of(law)]);
+  const auto row = std::make_shared<LawRow<Dim>>(law, rows_of<Dim>(law, set));
   return [row](const void* constants, const double* own, const double* jump, double* history,
                double* losses) { return row->update(constants, own, jump, history, losses); };
 }

@@ -10,7 +10,6 @@
 
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/laws/registry.hpp"
 
 namespace pyroclast {
 
@@ -53,9 +52,9 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
       geometry_(zone_geometry(model)),
       layout_(std::make_unique<const Layout<Dim>>(model, parameters.layout)),
       step_(step_functions<Dim>(parameters.instructions)) {
-  use(step_);
   if (Dim != 2 && parameters.kinematics == Kinematics::finite)
     throw Error("kinematics = finite: contact frames that turn are made for 2D only; use small");
+  list_laws();
   place_model();
   place_histories();
   place_properties();
@@ -124,6 +123,26 @@ void Mechanics<Dim>::place_model() {
   refresh_views();
 }
 
+/// Laws of the body, each once.
+template <int Dim>
+void Mechanics<Dim>::list_laws() {
+  for (int set = 0; set < properties_.contacts.size(); ++set)
+    if (const LawTable* law = &properties_.contacts.law(set); std::ranges::find(laws_, law) == laws_.end())
+      laws_.push_back(law);
+  if (laws_.size() > kMostLaws)
+    throw Error(fmt::format("the contacts of this body have {} laws; at most {} are possible", laws_.size(),
+                            kMostLaws));
+  use(step_);
+}
+
+template <int Dim>
+void Mechanics<Dim>::use(const StepFunctions<Dim>& step) {
+  step_ = step;
+  law_functions_.clear();
+  for (const LawTable* law : laws_) law_functions_.push_back(step_.rows_of(*law));
+  state_.laws = law_functions_.data();
+}
+
 /// Gives every row of faces its law, and the part of the histories and losses that it takes.
 template <int Dim>
 void Mechanics<Dim>::place_histories() {
@@ -132,11 +151,11 @@ void Mechanics<Dim>::place_histories() {
   s.law_of_faces = FlatArray<std::uint8_t>(rows);
   for (int c = 0; c < model_.contact_count(); ++c)
     s.law_of_faces[layout_->face_row_of_point[layout_->contact_slot[c] / kLanes]] =
-        static_cast<std::uint8_t>(index_of(properties_.contacts.law(properties_.of_contact[c])));
+        static_cast<std::uint8_t>(std::ranges::find(laws_, &law_of(c)) - laws_.begin());
   s.first_history = FlatArray<int>(rows + 1);
   s.first_loss = FlatArray<int>(rows + 1);
   for (int row = 0; row < layout_->face_rows(); ++row) {
-    const LawTable& law = *laws()[s.law_of_faces[row]];
+    const LawTable& law = law_of_row(row);
     const int points = layout_->first_point_of(row + 1) - layout_->first_point_of(row);
     s.first_history[row + 1] = s.first_history[row] + points * static_cast<int>(law.history(Dim).size());
     s.first_loss[row + 1] = s.first_loss[row] + points * static_cast<int>(law.losses.size());
@@ -213,12 +232,11 @@ void Mechanics<Dim>::place_contact_properties() {
   for (int c = 0; c < model_.contact_count(); ++c) {
     const int row = layout_->face_row_of_point[layout_->contact_slot[c] / kLanes];
     const int set = properties_.of_contact[c];
-    if (&sets.law(set) != laws()[s.law_of_faces[row]])
+    if (&sets.law(set) != &law_of_row(row))
       throw Error(fmt::format(
           "contact {} of interface \"{}\" has the law \"{}\", others of it have \"{}\": contacts of "
           "one interface have one law, from the start of a run to its end",
-          c, model_.interface_names[model_.contacts[c].interface], sets.law(set).name,
-          laws()[s.law_of_faces[row]]->name));
+          c, model_.interface_names[model_.contacts[c].interface], sets.law(set).name, law_of_row(row).name));
     if (s.set_of_faces[row] < 0) s.set_of_faces[row] = set;
     if (s.set_of_faces[row] != set) s.one_set[row] = false;
     one_set = one_set && s.one_set[row];
@@ -231,7 +249,7 @@ void Mechanics<Dim>::place_contact_properties() {
 template <int Dim>
 void Mechanics<Dim>::place_own_constants() {
   auto& s = storage_;
-  const auto constants = [&](int row) { return laws()[s.law_of_faces[row]]->constants; };
+  const auto constants = [&](int row) { return law_of_row(row).constants; };
   if (s.own_constants.empty()) {
     s.first_own_constant = FlatArray<int>(layout_->faces.size() + 1);
     for (int row = 0; row < layout_->face_rows(); ++row)
@@ -243,8 +261,7 @@ void Mechanics<Dim>::place_own_constants() {
   std::vector<double> numbers;
   const auto place = [&](int row, Line* line, int lane, int set) {
     numbers.resize(static_cast<std::size_t>(constants(row)));
-    laws()[s.law_of_faces[row]]->numbers_of(s.contact_constants.data() + s.first_constant[set],
-                                            numbers.data());
+    law_of_row(row).numbers_of(s.contact_constants.data() + s.first_constant[set], numbers.data());
     for (const double number : numbers) line++->number[lane] = number;
   };
   for (int row = 0; row < layout_->face_rows(); ++row)  // for idle lanes
@@ -754,7 +771,7 @@ Dissipation Mechanics<Dim>::dissipated() const {
   };
   // of each law, where its losses count
   std::vector<std::vector<int>> places;
-  for (const LawTable* law : laws())
+  for (const LawTable* law : laws_)
     for (auto& of_law = places.emplace_back(); const LossInfo& loss : law->losses) {
       const auto found = std::ranges::find(dissipations_, std::string_view(loss.name));
       of_law.push_back(found == dissipations_.end() ? -1 : static_cast<int>(found - dissipations_.begin()));

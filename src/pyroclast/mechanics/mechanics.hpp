@@ -183,11 +183,9 @@ class Mechanics {
   std::size_t memory() const { return pyroclast::memory(*layout_) + pyroclast::memory(storage_); }
   /// Takes another compilation of the step from the next one on; for benches. Results stay the same bits as
   /// long as it is one of the templates of step/step.hpp.
-  void use(const StepFunctions<Dim>& step) {
-    step_ = step;
-    laws_.assign(step.laws.begin(), step.laws.end());
-    state_.laws = laws_.data();
-  }
+  void use(const StepFunctions<Dim>& step);
+  /// Of the contacts of this body, in the order that `State::law_of_faces` counts.
+  const std::vector<const LawTable*>& laws() const { return laws_; }
   Vec<Dim> displacement(int gridpoint) const;  ///< m
   Vec<Dim> velocity(int gridpoint) const;      ///< m/s
   /// Sum of all forces at the last step, N; on a prescribed component minus the reaction.
@@ -228,6 +226,7 @@ class Mechanics {
 
  private:
   static constexpr std::size_t kMostDissipations = 16;
+  static constexpr std::size_t kMostLaws = 256;  ///< what State::law_of_faces can tell apart
 
   /// What a thread needs for a step.
   struct Worker {
@@ -240,6 +239,7 @@ class Mechanics {
     std::vector<int> slots;
   };
 
+  void list_laws();
   void place_model();
   void place_histories();
   void place_properties();
@@ -263,6 +263,7 @@ class Mechanics {
   int slot_in_bundle(int gridpoint) const;
   int bundle_of(int gridpoint) const;
   void sweep(int steps, Pass pass);
+  const LawTable& law_of_row(int face_row) const { return *laws_[storage_.law_of_faces[face_row]]; }
   Vec<Dim> jump_of_forces(int contact) const;
   ContactFrame<Dim> frame_of_forces(int contact) const;
   Vec<Dim> displacement_of_force(int gridpoint) const;
@@ -277,8 +278,9 @@ class Mechanics {
   StateArrays<Dim, FlatArray> storage_;
   State<Dim> state_;  ///< sees layout and storage
   StepFunctions<Dim> step_;
-  std::vector<RowFunctions<Dim>> laws_;  ///< of step_; the state sees them
-  std::vector<Worker> workers_;          ///< by thread
+  std::vector<const LawTable*> laws_;
+  std::vector<RowFunctions<Dim>> law_functions_;  ///< of each law, by step_; the state sees them
+  std::vector<Worker> workers_;                   ///< by thread
   std::vector<std::string_view> dissipations_;
 
   std::vector<int> made_constraints_;  ///< of each bundle that was ever held, driven or loaded; else -1

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "pyroclast/laws/built_in.hpp"
 #include "pyroclast/material/zone_law.hpp"
 #include "pyroclast/mechanics/layout.hpp"
 
@@ -169,6 +168,8 @@ struct StepParameters {
 template <int Dim>
 struct State;
 
+struct LawTable;
+
 /// What a law does to rows of faces that have it, compiled for one instruction set.
 template <int Dim>
 struct RowFunctions {
@@ -182,7 +183,7 @@ struct RowFunctions {
 template <int Dim>
 struct State : StepParameters<Dim>, StateArrays<Dim, View> {
   LayoutArrays<Dim, ConstView> layout;
-  const RowFunctions<Dim>* laws = nullptr;
+  const RowFunctions<Dim>* laws = nullptr;  ///< of the body
 
   bool weighs() const { return !this->real_mass.empty(); }
 };
@@ -207,7 +208,7 @@ enum class Pass : std::uint8_t {
 /// The step, compiled for one instruction set.
 template <int Dim>
 struct StepFunctions {
-  std::array<RowFunctions<Dim>, BuiltInLaws::count> laws;
+  RowFunctions<Dim> (*rows_of)(const LawTable& law);
   /// Sums the forces of bundles and moves their gridpoints.
   /// \param scratch  2 Dim kLanes numbers for every row of the largest bundle, aligned to 64 bytes
   void (*move_bundles)(State<Dim>&, int first, int last, Pass, double* scratch);

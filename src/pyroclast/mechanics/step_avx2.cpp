@@ -4,11 +4,11 @@
 namespace pyroclast {
 
 template <int Dim>
-StepFunctions<Dim> avx2_step() {
-  return Step<Dim, Avx2>::functions();
+StepFunctions<Dim> avx2_step(RowFunctions<Dim> (*rows_of)(const LawTable&)) {
+  return Step<Dim, Avx2>::functions(rows_of);
 }
 
-template StepFunctions<2> avx2_step<2>();
-template StepFunctions<3> avx2_step<3>();
+template StepFunctions<2> avx2_step(RowFunctions<2> (*)(const LawTable&));
+template StepFunctions<3> avx2_step(RowFunctions<3> (*)(const LawTable&));
 
 }  // namespace pyroclast

@@ -4,11 +4,11 @@
 namespace pyroclast {
 
 template <int Dim>
-StepFunctions<Dim> avx512_step() {
-  return Step<Dim, Avx512>::functions();
+StepFunctions<Dim> avx512_step(RowFunctions<Dim> (*rows_of)(const LawTable&)) {
+  return Step<Dim, Avx512>::functions(rows_of);
 }
 
-template StepFunctions<2> avx512_step<2>();
-template StepFunctions<3> avx512_step<3>();
+template StepFunctions<2> avx512_step(RowFunctions<2> (*)(const LawTable&));
+template StepFunctions<3> avx512_step(RowFunctions<3> (*)(const LawTable&));
 
 }  // namespace pyroclast

@@ -264,7 +264,7 @@ class InterfaceReader {
 
   const LawTable& read_law(const Section& s) {
     std::vector<Choice<int>> words;
-    for (const LawTable* law : laws())
+    for (const LawTable* law : built_in_laws())
       words.push_back({law->name, static_cast<int>(words.size()), Meaning(law->meaning)});
     const std::string stated =
         s.word_or_text("law", words, "a law of your own, see [laws.md](laws.md)", "contact law");
@@ -273,7 +273,7 @@ class InterfaceReader {
     } catch (const Error& error) {
       s.error("law", error.what());
       s.leave_open();
-      return *laws().front();
+      return *built_in_laws().front();
     }
   }
 

@@ -131,7 +131,7 @@ void check_contacts(const Section& root, const Setup& setup) {
 
 const LawTable& built_in_law(const std::string& name) {
   std::vector<std::string> names;
-  for (const LawTable* law : laws()) {
+  for (const LawTable* law : built_in_laws()) {
     if (law->name == name) return *law;
     names.emplace_back(law->name);
   }

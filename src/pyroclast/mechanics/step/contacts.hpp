@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pyroclast/laws/law.hpp"
 #include "pyroclast/mechanics/step/rows.hpp"
 
 /// Contact points: jumps to tractions to forces, Eqs. (10)-(15), and their sums at the gridpoints.

@@ -31,13 +31,6 @@ class Step {
   using Scratch = typename R::Scratch;
   using Sums = typename R::Sums;
 
-  /// First half: rows of faces, by law.
-  template <class... Laws>
-  static constexpr auto laws(LawList<Laws...>) {
-    return std::array<RowFunctions<Dim>, sizeof...(Laws)>{
-        {{Contacts<Dim, Set, Laws>::update, Contacts<Dim, Set, Laws>::place_stiffness}...}};
-  }
-
   /// Second half: bundles whose faces are all done.
   static void move_bundles(State<Dim>& s, int first, int last, Pass pass, double* memory) {
     with_kinematics(s, [&](auto kinematics) {
@@ -53,8 +46,10 @@ class Step {
     });
   }
 
-  /// All of it, with the laws that are part of the program.
-  static StepFunctions<Dim> functions() { return {laws(BuiltInLaws()), move_bundles, sum_stiffness}; }
+  /// All of it. The first half, rows of faces, is compiled by law.
+  static StepFunctions<Dim> functions(RowFunctions<Dim> (*rows_of)(const LawTable&)) {
+    return {rows_of, move_bundles, sum_stiffness};
+  }
 
   /// Sums of |stiffness| over the rows of the assembled matrix, zones and contacts, N/m.
   static void sum_stiffness(State<Dim>& s, double* memory) {
