@@ -48,6 +48,7 @@ int verify_laws(const VerifyOptions& options);
 int plot_properties(const PropertiesOptions& options);
 int make_deck(const std::string& name);
 int print_keys();
+int print_laws();
 
 /// Draws figures of results that are there, by the command of the Python package: `run`, `compare`, `levels`
 /// ...

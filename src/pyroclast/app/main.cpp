@@ -110,6 +110,7 @@ int command_line(int argc, char** argv) {
   starter->add_option("NAME", name, "The deck will be NAME.toml")->required();
 
   auto* keys = cli.add_subcommand("keys", "Print every key that a deck may hold, as Markdown");
+  auto* laws = cli.add_subcommand("laws", "Print the contact laws of the program, as Markdown");
 
   CLI11_PARSE(cli, argc, argv);
   if (*run) return app::run(options);
@@ -119,6 +120,7 @@ int command_line(int argc, char** argv) {
   if (*properties) return app::plot_properties(properties_options);
   if (*figures) return app::figures(figures->remaining());
   if (*keys) return app::print_keys();
+  if (*laws) return app::print_laws();
   return app::make_deck(name);
 }
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/flat_array.hpp"
-#include "pyroclast/laws/registry.hpp"
+#include "pyroclast/mechanics/law_rows.hpp"
 #include "pyroclast/mechanics/state.hpp"
 
 namespace pyroclast {

@@ -1,0 +1,97 @@
+#include <string>
+
+#include <fmt/format.h>
+
+#include "pyroclast/app/commands.hpp"
+#include "pyroclast/laws/registry.hpp"
+
+namespace pyroclast::app {
+
+namespace {
+
+constexpr auto kIntroduction = R"(# Contact laws
+
+The laws that are part of the program. `pyroclast laws` prints this page from the laws themselves. A deck chooses one
+with `law = "name"` in a table of `[contacts]` ([deck.md](deck.md#phases-and-interfaces)); [method.md](method.md) tells
+how they work; [architecture.md](architecture.md#add-a-law) how to add one. What each of them is tried for stands in
+[laws-verified.md](laws-verified.md).
+
+- **Role.** Factors of an interface and `temperature_ratio` act on strengths and energies, K = E / t_b on stiffnesses.
+- **Remembered.** What a contact point carries from step to step. A value "in files" is a field of the contacts in
+  `fields/`, and a column of `pyroclast law`.
+- **Lost.** Energies are columns `dissipated_<name>_J` of the history and entries of the energy ledger.
+
+The pictures are of one contact point, driven by `pyroclast law`; `validation/law-paths` draws them anew.
+)";
+
+const char* name_of(Role role) {
+  switch (role) {
+    case Role::normal_stiffness:
+    case Role::shear_stiffness:
+      return "stiffness";
+    case Role::strength:
+      return "strength";
+    case Role::energy:
+      return "energy";
+    case Role::plain:
+      break;
+  }
+  return "–";
+}
+
+const char* name_of(Remembers what) {
+  switch (what) {
+    case Remembers::tension_damage:
+      return "damage in tension";
+    case Remembers::shear_damage:
+      return "damage in shear";
+    case Remembers::mixed_damage:
+      return "damage in tension and shear";
+    case Remembers::closure:
+      return "closure";
+    case Remembers::other:
+      break;
+  }
+  return "–";
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string page_of(const LawTable& law) {
+  std::string text = fmt::format("\n## `{}`\n\n{}.\n", law.name, capitalised(law.meaning));
+  text += fmt::format("\n![{} along a path](images/law_{}.png)\n", law.name, law.name);
+  text += "\n| property | meaning | unit | allowed | role |\n|---|---|---|---|---|\n";
+  for (const PropertyInfo& p : law.properties)
+    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", p.key, p.meaning, p.unit.si, p.range.describe(),
+                        name_of(p.role));
+  if (!law.choices.empty()) text += "\n| choice | meaning | options |\n|---|---|---|\n";
+  for (const ChoiceInfo& c : law.choices) {
+    std::string options;
+    for (const OptionInfo& option : c.options)
+      if (option.name)
+        options += fmt::format("{}`{}`: {}", options.empty() ? "" : "; ", option.name, option.meaning);
+    text += fmt::format("| `{}` | {} | {} |\n", c.key, c.meaning, options);
+  }
+  if (!law.history(3).empty())
+    text += "\n| remembered | meaning | unit | to cracks | in files |\n|---|---|---|---|---|\n";
+  for (const HistoryInfo& h : law.history(2))
+    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", h.name, h.meaning, h.unit.si, name_of(h.what),
+                        h.in_files ? "yes" : "no");
+  if (!law.losses.empty()) text += "\n| lost | meaning | unit |\n|---|---|---|\n";
+  for (const LossInfo& l : law.losses)
+    text += fmt::format("| `{}` | {} | {} |\n", l.name, l.meaning, l.unit.si);
+  return text;
+}
+
+}  // namespace
+
+int print_laws() {
+  fmt::print("{}", kIntroduction);
+  for (const LawTable* law : built_in_laws()) fmt::print("{}", page_of(*law));
+  return 0;
+}
+
+}  // namespace pyroclast::app
