@@ -24,6 +24,10 @@ struct RunOptions {
 struct LawOptions {
   std::filesystem::path deck, path, out;
   std::string interface;
+  std::string law;                             ///< instead of a deck's, see find_law
+  std::vector<std::string> values;             ///< "key=value" of its properties
+  std::vector<std::filesystem::path> folders;  ///< see LawSources
+  bool may_compile = true;
   int steps = 1;  ///< each leg of the path is cut into as many
 };
 

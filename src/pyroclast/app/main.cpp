@@ -65,7 +65,18 @@ int command_line(int argc, char** argv) {
   app::LawOptions law_options;
   auto* law =
       cli.add_subcommand("law", "Drive the contact law of a deck along a path of jumps and temperatures");
-  add_deck(law, law_options.deck);
+  auto* deck = law->add_option("DECK", law_options.deck, "TOML file that describes a run");
+  auto* stated =
+      law->add_option("--law", law_options.law,
+                      "A law instead of a deck's: a name, a shared object (mine.so) or a header (mine.hpp), "
+                      "which is compiled");
+  stated->excludes(deck);
+  law->add_option("--set", law_options.values, "With --law: a property of it, --set f_t='3 MPa', or a choice")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->needs(stated);
+  law->add_option("--law-path", law_options.folders, "Folders with laws, before those of PYROCLAST_LAW_PATH");
+  law->add_flag("!--no-compile", law_options.may_compile, "Compile no law in a header");
   law->add_option("--path", law_options.path,
                   "CSV: columns u_n, u_s and optionally T, each with its unit: u_n [um]")
       ->required();
