@@ -18,6 +18,7 @@ MODULES = [
     "model",
     "thermal",
     "mechanics",
+    "plugin",
     "simulation",
     "stages",
     "setup",
@@ -33,6 +34,7 @@ NEVER = {
     "model": {"units": [], "deck": []},
     "thermal": {"units": [], "deck": []},
     "mechanics": {"units": [], "deck": []},
+    "plugin": {"units": [], "deck": []},
     "simulation": {"units": [], "deck": []},
 }
 

@@ -18,3 +18,25 @@ string(REPLACE "duration = \"2 h\"" "duration = \"1 min\"" deck "${deck}")
 file(WRITE ${WORK}/deck.toml "${deck}")
 run(${WORK}/examples/run_deck ${WORK}/deck.toml ${WORK}/out)
 run(${WORK}/prefix/bin/pyroclast --version)
+
+# A contact law of one's own: built from the headers alone, in a build without optimization, loaded and driven by the
+# installed program; from the header, which the program compiles, it gives the same numbers.
+set(without)
+foreach(package HDF5 muparser fmt spdlog CLI11 tomlplusplus nlohmann_json Threads)
+  list(APPEND without -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+set(own_law ${SOURCE}/examples/own_law)
+run(${CMAKE_COMMAND} -G Ninja -S ${own_law} -B ${WORK}/own_law -DCMAKE_PREFIX_PATH=${WORK}/prefix
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS=-ffast-math ${without})
+run(${CMAKE_COMMAND} --build ${WORK}/own_law)
+run(${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/own_law --output-on-failure)
+set(properties --set "G_n=60 N/m" --set "G_t=240 N/m" --set "sigma_max=2.5 MPa" --set "tau_max=4 MPa"
+    --set alpha=5 --set beta=2 --set lambda_n=0.01 --set lambda_t=0.01 --set friction=0.6)
+set(ENV{PYROCLAST_CACHE} ${WORK}/cache)
+foreach(law ppr ${own_law}/ppr.hpp)
+  get_filename_component(extension ${law} LAST_EXT)
+  run(${WORK}/prefix/bin/pyroclast law --law ${law} --law-path ${WORK}/own_law ${properties} --path ${own_law}/path.csv
+      --steps 200 -o ${WORK}/path${extension}.csv)
+endforeach()
+run(${CMAKE_COMMAND} -E compare_files ${WORK}/path.csv ${WORK}/path.hpp.csv)
+run(${PYTHON} ${own_law}/figure.py ${WORK}/path.csv ${WORK}/path.png)

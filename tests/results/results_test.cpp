@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/sha256.hpp"
 #include "pyroclast/results/hdf5_file.hpp"
 #include "pyroclast/results/history_file.hpp"
 #include "pyroclast/results/recorder.hpp"

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/sha256.hpp"
 #include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "results/folder.hpp"

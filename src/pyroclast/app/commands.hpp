@@ -9,6 +9,12 @@
 
 namespace pyroclast::app {
 
+/// Contact laws that are not part of the program.
+struct OwnLawOptions {
+  std::vector<std::filesystem::path> folders;  ///< see LawSources
+  bool may_compile = true;
+};
+
 struct RunOptions {
   std::filesystem::path deck;
   std::filesystem::path out;  ///< empty: runs/<name of the deck>
@@ -18,18 +24,23 @@ struct RunOptions {
   std::string instructions;           ///< instruction set of the step; empty: the best that there is
   std::optional<std::uint64_t> seed;  ///< instead of the deck's
   std::vector<std::string> changes;   ///< "key=value", see Deck::load
-  std::string command;                ///< as typed, for the manifest
+  OwnLawOptions laws;
+  std::string command;  ///< as typed, for the manifest
 };
 
 struct LawOptions {
   std::filesystem::path deck, path, out;
   std::string interface;
+  std::string law;                  ///< instead of a deck's, see find_law
+  std::vector<std::string> values;  ///< "key=value" of its properties
+  OwnLawOptions sources;
   int steps = 1;  ///< each leg of the path is cut into as many
 };
 
 struct VerifyOptions {
-  std::vector<std::string> laws;  ///< by name; empty: all
-  int paths = 10000;              ///< in each dimension
+  std::vector<std::string> laws;  ///< as find_law takes them; empty: all of the program
+  OwnLawOptions sources;
+  int paths = 10000;  ///< in each dimension
   std::uint64_t seed = 1;
 };
 

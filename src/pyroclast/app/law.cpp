@@ -12,6 +12,7 @@
 #include "pyroclast/laws/kit.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/mechanics/law_row.hpp"
+#include "pyroclast/plugin/find_law.hpp"
 #include "pyroclast/results/text_file.hpp"
 
 namespace pyroclast::app {
@@ -184,9 +185,65 @@ class Drive {
 
 }  // namespace
 
-int law(const LawOptions& options) {
+namespace {
+
+/// Property or choice `key` of a law, from "key=value".
+void set_value(ContactMaterial& material, const LawTable& law, const std::string& change,
+               std::vector<bool>& given) {
+  const auto equals = change.find('=');
+  const std::string key = change.substr(0, equals);
+  const std::string value = equals == std::string::npos ? "" : change.substr(equals + 1);
+  std::vector<std::string_view> keys;
+  for (std::size_t i = 0; i < law.properties.size(); ++i) {
+    const PropertyInfo& info = law.properties[i];
+    keys.emplace_back(info.key);
+    if (key != info.key) continue;
+    try {
+      material.numbers[i] = Curve::constant(parse_quantity(value, info.unit));
+    } catch (const Error& e) {
+      throw Error(fmt::format("--set {}: {}", change, e.what()));
+    }
+    given[i] = true;
+    return;
+  }
+  for (std::size_t i = 0; i < law.choices.size(); ++i) {
+    const ChoiceInfo& info = law.choices[i];
+    keys.emplace_back(info.key);
+    if (key != info.key) continue;
+    std::vector<std::string_view> options;
+    for (int option = 0; option < ChoiceInfo::kMostOptions && info.options[option].name; ++option) {
+      options.emplace_back(info.options[option].name);
+      if (value != info.options[option].name) continue;
+      material.choices[i] = option;
+      return;
+    }
+    throw Error(fmt::format("--set {}: allowed are {}", change, fmt::join(options, ", ")));
+  }
+  throw Error(fmt::format("--set {}: the contact law \"{}\" has no \"{}\"; it has {}", change, law.name, key,
+                          fmt::join(keys, ", ")));
+}
+
+/// A law that the command line states, with all its properties.
+ContactMaterial stated_material(const LawOptions& options) {
+  const LawTable& law = find_law(options.law, {}, sources_of(options.sources));
+  if (!law.update(2))
+    throw Error(fmt::format("the contact law \"{}\" is made for bodies in 3D alone", law.name));
+  fmt::print(stderr, "{}", describe_own_laws());
+  ContactMaterial material(law);
+  std::vector<bool> given(law.properties.size());
+  for (const std::string& change : options.values) set_value(material, law, change, given);
+  for (std::size_t i = 0; i < given.size(); ++i)
+    if (!given[i])
+      throw Error(fmt::format("the contact law \"{}\" needs {}: {}; say for example --set {}='{}'", law.name,
+                              law.properties[i].key, law.properties[i].meaning, law.properties[i].key,
+                              law.properties[i].unit.example));
+  validate(material.at(kReferenceTemperature), law.name);
+  return material;
+}
+
+ContactMaterial material_of_deck(const LawOptions& options) {
   const Deck deck = Deck::load(options.deck);
-  const Setup setup = read_setup(deck, options.deck.parent_path());
+  const Setup setup = read_setup(deck, options.deck.parent_path(), {}, sources_of(options.sources));
   if (!setup.motion)
     throw Error(fmt::format("{}: is of heat conduction alone and has no contacts, so no contact law",
                             options.deck.string()));
@@ -194,7 +251,16 @@ int law(const LawOptions& options) {
   const auto concrete = make_concrete(setup.solids, contacts, expected_block_size(setup.specimen, contacts));
   const InterfaceTable table(phases_of(setup.solids), contacts.interfaces);
   const std::string matrix = contacts.matrix + "_" + contacts.matrix;
-  Drive drive(contact_of(concrete, table, options.interface.empty() ? matrix : options.interface));
+  return contact_of(concrete, table, options.interface.empty() ? matrix : options.interface);
+}
+
+}  // namespace
+
+int law(const LawOptions& options) {
+  if (options.law.empty() && options.deck.empty())
+    throw Error("law: state a deck, or a law with --law and its properties with --set");
+  const ContactMaterial material = options.law.empty() ? material_of_deck(options) : stated_material(options);
+  Drive drive(material);
 
   std::string csv = drive.header();
   PathPoint from;
@@ -218,15 +284,9 @@ int law(const LawOptions& options) {
 int verify_laws(const VerifyOptions& options) {
   std::vector<const LawTable*> wanted;
   for (const std::string& name : options.laws) {
-    const auto found = std::ranges::find_if(
-        built_in_laws(), [&](const LawTable* law) { return std::string_view(law->name) == name; });
-    if (found == built_in_laws().end()) {
-      std::vector<const char*> names;
-      for (const LawTable* law : built_in_laws()) names.push_back(law->name);
-      throw Error(fmt::format("there is no contact law \"{}\"; there are {}", name, fmt::join(names, ", ")));
-    }
-    wanted.push_back(*found);
+    wanted.push_back(&find_law(name, {}, sources_of(options.sources)));
   }
+  fmt::print(stderr, "{}", describe_own_laws());
   if (wanted.empty()) wanted.assign(built_in_laws().begin(), built_in_laws().end());
   bool passed = true;
   for (const LawTable* law : wanted) {

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/plugin/load.hpp"
+
 namespace pyroclast::app {
 
 namespace {
@@ -19,7 +21,7 @@ std::shared_ptr<Team> make_team(int asked) {
 
 Loaded::Loaded(const RunOptions& options)
     : deck(Deck::load(options.deck, options.changes)),
-      setup(read_setup(deck, options.deck.parent_path())),
+      setup(read_setup(deck, options.deck.parent_path(), {}, sources_of(options.laws))),
       instructions(options.instructions.empty() ? usable_instruction_sets().back()
                                                 : instruction_set(options.instructions)),
       team(make_team(options.threads)) {
@@ -31,10 +33,41 @@ std::filesystem::path output_folder(const RunOptions& options) {
   return options.out.empty() ? std::filesystem::path("runs") / options.deck.stem() : options.out;
 }
 
+namespace {
+
+std::vector<OwnLaw> own_laws() {
+  std::vector<OwnLaw> laws;
+  for (const LoadedLaw* law : loaded_laws())
+    laws.push_back({law->table.name, law->shared_object, law->header.file, law->header.text, law->compiler});
+  return laws;
+}
+
+}  // namespace
+
+LawSources sources_of(const OwnLawOptions& options) {
+  auto sources = LawSources::of_environment();
+  sources.folders.insert(sources.folders.begin(), options.folders.begin(), options.folders.end());
+  sources.may_compile = sources.may_compile && options.may_compile;
+  sources.compiler.tell = [](const std::string& command) {
+    fmt::print(stderr, "compiling a law: {}\n", command);
+  };
+  return sources;
+}
+
+std::string describe_own_laws() {
+  std::string text;
+  for (const LoadedLaw* law : loaded_laws())
+    text +=
+        fmt::format("law             \"{}\" is code that is not part of pyroclast: {}{}, compiled by {}\n",
+                    law->table.name, law->header.file.empty() ? "" : law->header.file.string() + " in ",
+                    law->shared_object.string(), law->compiler);
+  return text;
+}
+
 RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options) {
   RunFolder folder(output_folder(options), options.overwrite,
                    {loaded.deck.name(), loaded.deck.text(), loaded.setup.specimen.seed, loaded.team->size(),
-                    name(loaded.instructions), options.command});
+                    name(loaded.instructions), options.command, own_laws()});
   for (const auto& file : folder.foreign())
     fmt::print("kept            {}, which no run writes\n", (folder.path() / file).string());
   return folder;

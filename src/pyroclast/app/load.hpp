@@ -22,6 +22,13 @@ std::filesystem::path output_folder(const RunOptions& options);
 /// The folder for the results, made, with deck and manifest in it.
 RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options);
 
+/// Where laws come from as environment and command line say; the command that compiles one is printed.
+LawSources sources_of(const OwnLawOptions& options);
+
+/// The contact laws that are not part of the program and that it was asked to run, for the screen; empty
+/// without any.
+std::string describe_own_laws();
+
 /// What came of the specimen, for the screen.
 std::string describe(const specimen::Specimen& specimen);
 

@@ -38,6 +38,16 @@ void add_processor(CLI::App* command, app::RunOptions& options) {
                       "results are the same for any");
 }
 
+void add_own_laws(CLI::App* command, app::OwnLawOptions& options) {
+  command
+      ->add_option("--law-path", options.folders,
+                   "Folders with contact laws, before those of PYROCLAST_LAW_PATH")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_flag("!--no-compile", options.may_compile,
+                    "Compile no contact law that a deck states as a header");
+}
+
 int command_line(int argc, char** argv) {
   CLI::App cli{"Pyroclast: how concrete breaks under load and fire, by the discrete element method",
                "pyroclast"};
@@ -51,6 +61,7 @@ int command_line(int argc, char** argv) {
   auto* specimen = cli.add_subcommand("specimen", "Make only the specimen of a deck, with its pictures");
   for (auto* command : {run, check, specimen}) {
     add_deck(command, options.deck);
+    add_own_laws(command, options.laws);
     add_seed(command, options.seed);
     command
         ->add_option("--set", options.changes,
@@ -64,9 +75,19 @@ int command_line(int argc, char** argv) {
 
   app::LawOptions law_options;
   auto* law = cli.add_subcommand("law",
-                                 "Drive the contact law of a deck along a path of jumps and temperatures, or "
-                                 "try laws on random paths: law --verify");
+                                 "Drive a contact law along a path of jumps and temperatures, or try laws on "
+                                 "random paths: law --verify");
   auto* law_deck = law->add_option("DECK", law_options.deck, "TOML file that describes the run");
+  auto* stated =
+      law->add_option("--law", law_options.law,
+                      "A law instead of a deck's: a name, a shared object (mine.so) or a header (mine.hpp), "
+                      "which is compiled");
+  stated->excludes(law_deck);
+  law->add_option("--set", law_options.values, "With --law: a property of it, --set f_t='3 MPa', or a choice")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->needs(stated);
+  add_own_laws(law, law_options.sources);
   auto* law_path = law->add_option("--path", law_options.path,
                                    "CSV: columns u_n, u_s and optionally T, each with its unit: u_n [um]");
   law->add_option("--interface", law_options.interface,
@@ -88,8 +109,10 @@ int command_line(int argc, char** argv) {
       ->default_val(10000);
   law->add_option("--seed", verify_options.seed, "Of the random paths")->needs(verify)->default_val(1);
   law->callback([&] {
-    for (const auto* needed : {law_deck, law_path})
-      if (!*verify && !*needed) throw CLI::RequiredError(needed->get_name());
+    verify_options.sources = law_options.sources;
+    if (*verify) return;
+    if (!*law_deck && !*stated) throw CLI::RequiredError("DECK, or --law");
+    if (!*law_path) throw CLI::RequiredError(law_path->get_name());
   });
 
   app::PropertiesOptions properties_options;

@@ -66,7 +66,7 @@ void print_result(const Summary& s, const std::filesystem::path& folder) {
 }
 
 void print_start(const Simulation& simulation, const Loaded& loaded) {
-  fmt::print("{}", describe(simulation.specimen()));
+  fmt::print("{}{}", describe_own_laws(), describe(simulation.specimen()));
   const Model<2>& model = simulation.model();
   fmt::print("model           {} zones, {} contacts\n", model.zone_count(), model.contact_count());
   if (const auto* conduction = simulation.field().conduction())

@@ -1,22 +1,19 @@
 #include "pyroclast/results/run_folder.hpp"
 
-#include <fmt/chrono.h>
-#include <fmt/format.h>
-#include <sys/types.h>
-// libmd's header needs sys/types.h before it
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <fstream>
 #include <string_view>
 #include <system_error>
 
+#include <fmt/chrono.h>
+#include <fmt/format.h>
 #include <fnmatch.h>
 #include <nlohmann/json.hpp>
-#include <sha256.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
+#include "pyroclast/base/sha256.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/version.hpp"
 
@@ -35,6 +32,7 @@ constexpr auto kWritten = std::to_array<const char*>({
     "deck.toml",
     "history.csv",
     "summary.json",
+    "laws/*",
     "specimen/aggregates.csv",
     "specimen/gradation.csv",
     "specimen/specimen.json",
@@ -132,12 +130,6 @@ fs::path plain(const fs::path& path) {
 
 }  // namespace
 
-std::string sha256(const std::string& text) {
-  std::array<char, SHA256_DIGEST_STRING_LENGTH> digest{};
-  SHA256Data(reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), digest.data());
-  return digest.data();
-}
-
 void RunFolder::check(const fs::path& path, bool overwrite) {
   if (fs::exists(path)) {
     if (!fs::is_directory(path)) throw Error(fmt::format("{}: exists and is not a folder", path.string()));
@@ -181,8 +173,18 @@ RunFolder::RunFolder(fs::path path, bool overwrite, const Manifest& manifest) : 
   json["threads"] = manifest.threads;
   json["instructions"] = manifest.instructions;
   json["started"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
+  for (const OwnLaw& law : manifest.laws)
+    json["laws"].push_back({{"name", law.name},
+                            {"shared_object", law.shared_object.string()},
+                            {"compiler", law.compiler},
+                            {"header", law.header.string()}});
   write_text_file(path_ / kManifest, json.dump(2) + "\n");
   write_text_file(path_ / "deck.toml", manifest.deck_text);
+  for (const OwnLaw& law : manifest.laws)
+    if (!law.header.empty()) {
+      fs::create_directory(path_ / "laws");
+      write_text_file(path_ / "laws" / law.header.filename(), law.header_text);
+    }
 }
 
 }  // namespace pyroclast

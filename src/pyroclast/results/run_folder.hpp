@@ -7,6 +7,15 @@
 
 namespace pyroclast {
 
+/// A contact law that is not part of the program.
+struct OwnLaw {
+  std::string name;
+  std::filesystem::path shared_object;
+  std::filesystem::path header;  ///< that it was compiled from; may be empty
+  std::string header_text;
+  std::string compiler;
+};
+
 /// What a run was made from.
 struct Manifest {
   std::string deck_name;
@@ -15,6 +24,7 @@ struct Manifest {
   int threads = 1;
   std::string instructions;  ///< instruction set of the step
   std::string command;
+  std::vector<OwnLaw> laws;
 };
 
 /// One folder holding everything of one run. Refused when it holds anything, unless overwriting was asked
@@ -36,8 +46,5 @@ class RunFolder {
   std::filesystem::path path_;
   std::vector<std::filesystem::path> foreign_;
 };
-
-/// SHA-256 of a text, in hexadecimal, as `sha256sum` prints it.
-std::string sha256(const std::string& text);
 
 }  // namespace pyroclast

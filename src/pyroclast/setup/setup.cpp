@@ -5,10 +5,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/laws/registry.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/setup/read_heat.hpp"
 #include "pyroclast/setup/read_materials.hpp"
@@ -129,17 +127,8 @@ void check_contacts(const Section& root, const Setup& setup) {
   for (int i = 0; i < table.platen(); ++i) check(concrete.contacts[i], table.names()[i]);
 }
 
-const LawTable& built_in_law(const std::string& name) {
-  std::vector<std::string> names;
-  for (const LawTable* law : built_in_laws()) {
-    if (law->name == name) return *law;
-    names.emplace_back(law->name);
-  }
-  throw Error(fmt::format("must be one of \"{}\"; got \"{}\"", fmt::join(names, "\", \""), name));
-}
-
 /// Materials, and what moves, where a stage moves the body.
-void read_moving(const Section& root, CurveReader& curves, Setup& setup) {
+void read_moving(const Section& root, CurveReader& curves, const LawFinder& find_law, Setup& setup) {
   setup.expansion_reading = read_expansion_reading(root);
   const auto phases = specimen::phases(setup.specimen);
   setup.solids = read_solids(root, phases, setup.expansion_reading, curves);
@@ -147,7 +136,7 @@ void read_moving(const Section& root, CurveReader& curves, Setup& setup) {
   setup.motion->platen_thickness =
       root.section("platens", "two elastic blocks as wide as the specimen, under and above it")
           .quantity("thickness", unit::length, Range::positive(), "of each platen");
-  setup.motion->contacts = read_contacts(root, phases, setup.specimen.matrix, built_in_law, curves);
+  setup.motion->contacts = read_contacts(root, phases, setup.specimen.matrix, find_law, curves);
   setup.motion->mechanics =
       read_mechanics(root.section("mechanics", "how the body moves; see [method.md](method.md#motion)"));
   check_contacts(root, setup);
@@ -161,7 +150,8 @@ void read_resting(const Section& root, CurveReader& curves, Setup& setup) {
 
 }  // namespace
 
-Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const StageRegistry& kinds) {
+Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const StageRegistry& kinds,
+                 const LawSources& laws) {
   const Section root = deck.root();
   Setup setup;
   setup.title = root.text("title", "name of the run, for figures and summary");
@@ -181,7 +171,9 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
     setup.probes = read_probes(root, setup.specimen.width, setup.specimen.height);
   CurveReader curves(folder, temperature_axis(), setup.temperatures, builtin_curves());
   if (read.any_moves)
-    read_moving(root, curves, setup);
+    read_moving(
+        root, curves,
+        [&](const std::string& name) -> const LawTable& { return find_law(name, folder, laws); }, setup);
   else
     read_resting(root, curves, setup);
   setup.curves = curves.curves();

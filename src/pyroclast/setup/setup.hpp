@@ -10,6 +10,7 @@
 #include "pyroclast/deck/survey.hpp"
 #include "pyroclast/material/curve_reader.hpp"
 #include "pyroclast/material/thermal_strain.hpp"
+#include "pyroclast/plugin/find_law.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/stages/registry.hpp"
 
@@ -32,8 +33,10 @@ struct Setup {
 
 /// Reads a deck. A relative file name in it is taken from `folder`.
 /// \param kinds  of stages that the deck may ask for
+/// \param laws   where contact laws come from that are not part of the program
 /// Throws DeckError with every error of the deck.
-Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const StageRegistry& kinds = {});
+Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const StageRegistry& kinds = {},
+                 const LawSources& laws = LawSources::of_environment());
 
 /// Everything that `read_setup` asks of a deck.
 DeckSchema deck_schema(const StageRegistry& kinds = {});

@@ -1,0 +1,303 @@
+#include "pyroclast/plugin/compile.hpp"
+
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spawn.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/sha256.hpp"
+#include "pyroclast/plugin/stamp.hpp"
+
+extern char** environ;
+
+namespace pyroclast {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Error(fmt::format("{}: cannot be read", file.string()));
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+void write(const fs::path& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream << text;
+  if (!stream.flush()) throw Error(fmt::format("{}: cannot be written", file.string()));
+}
+
+/// C++ without comments and the text of literals, each as one blank.
+std::string bare(const std::string& text) {
+  std::string code;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto skip_to = [&](std::string_view end) {
+      const auto at = text.find(end, i + 2);
+      i = at == std::string::npos ? text.size() : at + end.size();
+      code += ' ';
+    };
+    if (text.compare(i, 2, "//") == 0) {
+      skip_to("\n");
+    } else if (text.compare(i, 2, "/*") == 0) {
+      skip_to("*/");
+    } else if (text[i] == '"') {
+      for (++i; i < text.size() && text[i] != '"'; ++i) i += text[i] == '\\';
+      ++i;
+      code += ' ';
+    } else {
+      code += text[i++];
+    }
+  }
+  return code;
+}
+
+/// Names, and every other character alone.
+std::vector<std::string> words_of(const std::string& code) {
+  std::vector<std::string> words;
+  const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  for (std::size_t i = 0; i < code.size();) {
+    std::size_t end = i + 1;
+    if (in_name(code[i]))
+      while (end < code.size() && in_name(code[end])) ++end;
+    if (std::isspace(static_cast<unsigned char>(code[i])) == 0) words.push_back(code.substr(i, end - i));
+    i = end;
+  }
+  return words;
+}
+
+/// A folder that only its owner may read and write.
+void make_private(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder.parent_path(), error);
+  if (mkdir(folder.c_str(), S_IRWXU) != 0 && errno != EEXIST)
+    throw Error(fmt::format("{}: cannot be made: {}", folder.string(), std::strerror(errno)));
+  struct stat is {};
+  if (lstat(folder.c_str(), &is) != 0 || !S_ISDIR(is.st_mode))
+    throw Error(fmt::format("{}: is not a folder, so compiled laws cannot be kept there", folder.string()));
+  if (is.st_uid != geteuid() || (is.st_mode & (S_IRWXG | S_IRWXO)) != 0)
+    throw Error(fmt::format(
+        "{}: others than you may write or read it, so code from it is not trusted; it must be yours, with "
+        "mode 0700",
+        folder.string()));
+}
+
+/// One process at a time, until it goes.
+class FileLock {
+ public:
+  explicit FileLock(const fs::path& file)
+      : descriptor_(open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR)) {
+    if (descriptor_ < 0 || flock(descriptor_, LOCK_EX) != 0)
+      throw Error(fmt::format("{}: cannot be locked: {}", file.string(), std::strerror(errno)));
+  }
+  ~FileLock() { close(descriptor_); }
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+/// Runs a program without a shell; both its streams go to a file. True when it ends well.
+bool run(std::vector<std::string> words, const fs::path& output) {
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_CREAT | O_WRONLY | O_TRUNC,
+                                   S_IRUSR | S_IWUSR);
+  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  pid_t child = 0;
+  const int failed =
+      posix_spawnp(&child, words.front().c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0)
+    throw Error(fmt::format("{}: the compiler cannot be run: {}", words.front(), std::strerror(failed)));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/// What a reader of the law needs of the compiler's words: errors, what stands in the law's own lines, and
+/// the excerpts of code below them.
+std::string essence(const std::string& messages, const fs::path& header) {
+  constexpr int kMostLines = 40;
+  std::istringstream stream(messages);
+  std::string kept;
+  int lines = 0;
+  bool of_interest = false;
+  for (std::string line; std::getline(stream, line) && lines < kMostLines;) {
+    const auto first = line.find_first_not_of(" 0123456789");
+    const bool excerpt = line.starts_with(' ') && first != std::string::npos && line[first] == '|';
+    if (!excerpt)
+      of_interest =
+          line.find(header.string() + ":") != std::string::npos || line.find("error: ") != std::string::npos;
+    if (!of_interest) continue;
+    kept += "\n  " + line;
+    ++lines;
+  }
+  return kept;
+}
+
+/// Folders that hold the headers of this program: beside an installed one, in the source tree of a built one.
+std::vector<std::string> include_flags() {
+  std::error_code ignored;
+  const auto program = fs::read_symlink("/proc/self/exe", ignored);
+  const fs::path installed = program.parent_path().parent_path() / PYROCLAST_INSTALLED_INCLUDE;
+  for (const std::vector<fs::path>& folders : {std::vector<fs::path>{installed},
+                                               {PYROCLAST_SOURCE_INCLUDE, PYROCLAST_GENERATED_INCLUDE},
+                                               {PYROCLAST_FULL_INCLUDE}}) {
+    if (!fs::exists(folders.front() / "pyroclast" / "plugin" / "stamp.hpp")) continue;
+    std::vector<std::string> flags;
+    for (const auto& folder : folders) flags.push_back("-I" + folder.string());
+    return flags;
+  }
+  throw Error(
+      fmt::format("the headers of pyroclast, which a law in a header needs, are in none of {}, {}, {}; "
+                  "install pyroclast with them",
+                  installed.string(), PYROCLAST_SOURCE_INCLUDE, PYROCLAST_FULL_INCLUDE));
+}
+
+std::vector<std::string> flags_of(InstructionSet set) {
+  std::string all = PYROCLAST_LAW_FLAGS;
+  if (set == InstructionSet::avx2) all += " " PYROCLAST_LAW_FLAGS_AVX2;
+  if (set == InstructionSet::avx512) all += " " PYROCLAST_LAW_FLAGS_AVX512;
+  std::vector<std::string> flags;
+  std::istringstream stream(all);
+  for (std::string flag; stream >> flag;) flags.push_back(flag);
+  const auto includes = include_flags();
+  flags.insert(flags.end(), includes.begin(), includes.end());
+  return flags;
+}
+
+std::string source_of(const fs::path& header, const std::string& type, const LawCompiler& compiler) {
+  constexpr std::string_view kTypes[kInstructionSets]{"Portable", "Avx2", "Avx512"};
+  const auto set = static_cast<std::size_t>(compiler.instructions);
+  const auto dimensions = compiler.dimension == 2 ? "plane" : "space";
+  std::string rows[kInstructionSets]{"nullptr", "nullptr", "nullptr"};
+  rows[set] = fmt::format("&pyroclast::Compiled<pyroclast::{}, {}, pyroclast::Dimensions::{}>::law",
+                          kTypes[set], type, dimensions);
+  return fmt::format(R"(// Written by pyroclast to compile a contact law.
+#include {0}
+
+#include "pyroclast/mechanics/step/compiled_law.hpp"
+#include "pyroclast/plugin/stamp.hpp"
+
+extern "C" [[gnu::visibility("default")]] const pyroclast_law* pyroclast_law_v1() {{
+  static const pyroclast_law law = pyroclast::describe_law<{1}, pyroclast::Dimensions::{2}>(
+      "{3}", pyroclast::LawRows{{{{{4}, {5}, {6}}}}});
+  return &law;
+}}
+)",
+                     fmt::format("\"{}\"", header.string()), type, dimensions, PYROCLAST_VERSION, rows[0],
+                     rows[1], rows[2]);
+}
+
+}  // namespace
+
+std::string law_type(const fs::path& header, const std::string& text) {
+  const auto words = words_of(bare(text));
+  std::vector<std::string> scopes;  // of each open brace; empty where it is of neither namespace nor struct
+  std::vector<std::string> types;
+  std::string opens;  // what the next brace opens
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (word == "namespace" || word == "struct" || word == "class") {
+      opens.clear();
+      for (std::size_t j = i + 1;
+           j < words.size() && (std::isalnum(static_cast<unsigned char>(words[j][0])) != 0 ||
+                                words[j][0] == '_' || words[j] == ":");
+           ++j) {
+        // the colon of a base class stands alone, that of a nested namespace twice
+        if (words[j] == ":" && (j + 1 == words.size() || words[j + 1] != ":") && words[j - 1] != ":") break;
+        if (words[j] != "final") opens += words[j];
+      }
+    } else if (word == ";" || word == ")") {
+      opens.clear();
+    } else if (word == "{") {
+      scopes.push_back(std::exchange(opens, {}));
+    } else if (word == "}") {
+      if (!scopes.empty()) scopes.pop_back();
+    } else if (word == "name" && i + 1 < words.size() && words[i + 1] == "=" && !scopes.empty()) {
+      bool constant = false;
+      for (std::size_t j = i; j-- > 0 && words[j] != ";" && words[j] != "{" && words[j] != "}";)
+        constant = constant || words[j] == "constexpr";
+      std::vector<std::string> path;
+      for (const auto& scope : scopes)
+        if (!scope.empty()) path.push_back(scope);
+      if (constant && !scopes.back().empty()) types.push_back(fmt::format("{}", fmt::join(path, "::")));
+    }
+  }
+  if (types.size() == 1) return types.front();
+  if (types.empty())
+    throw Error(
+        fmt::format("{}: holds no contact law: no struct with `static constexpr const char* name = ...`",
+                    header.string()));
+  throw Error(fmt::format("{}: holds {} contact laws: {}; say which one, as {}:{}", header.string(),
+                          types.size(), fmt::join(types, ", "), header.filename().string(), types.front()));
+}
+
+fs::path compile_law(const fs::path& header, const std::string& type, const LawCompiler& compiler) {
+  const fs::path file = fs::canonical(header);
+  if (file.string().find_first_of("\"\\\n") != std::string::npos)
+    throw Error(
+        fmt::format("{}: a name with quotes, backslashes or line breaks cannot be included", file.string()));
+  make_private(compiler.cache);
+  const FileLock lock(compiler.cache / "lock");
+  const auto in_cache = [&](const char* name) { return compiler.cache / name; };
+  const fs::path source = in_cache("law.cpp"), messages = in_cache("messages.txt");
+  write(source, source_of(file, type, compiler));
+
+  std::vector<std::string> command{compiler.program};
+  const auto flags = flags_of(compiler.instructions);
+  command.insert(command.end(), flags.begin(), flags.end());
+  const auto with = [&](std::vector<std::string> more) {
+    auto words = command;
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  const auto attempt = [&](const std::vector<std::string>& words) {
+    if (!run(words, messages))
+      throw Error(fmt::format(
+          "{}: does not compile as the contact law {}; the compiler says:{}\nIt was run as: {}\n"
+          "All that it says: {}",
+          file.string(), type, essence(text_of(messages), file), fmt::join(words, " "), messages.string()));
+  };
+  if (!run({compiler.program, "--version"}, messages))
+    throw Error(fmt::format("{}: does not tell its version; see {}", compiler.program, messages.string()));
+  const std::string version = text_of(messages);
+  const fs::path preprocessed = in_cache("law.ii");
+  attempt(with({"-E", source.string(), "-o", preprocessed.string()}));
+  const std::string key =
+      sha256(fmt::format("{}\n{}\n{}\n{} {} {:016x}", text_of(preprocessed), version, fmt::join(command, " "),
+                         PYROCLAST_VERSION, kLawTableVersion, layout_hash()));
+  fs::remove(preprocessed);
+  const fs::path kept = compiler.cache / (key + ".so");
+  if (fs::exists(kept)) return kept;
+  const fs::path aside = in_cache("law.so");
+  const auto words = with({"-shared", source.string(), "-o", aside.string()});
+  compiler.tell(fmt::format("{}", fmt::join(words, " ")));
+  attempt(words);
+  fs::rename(aside, kept);
+  return kept;
+}
+
+}  // namespace pyroclast

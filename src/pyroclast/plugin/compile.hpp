@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "pyroclast/mechanics/instruction_set.hpp"
+
+namespace pyroclast {
+
+/// How a law's header becomes a shared object.
+struct LawCompiler {
+  std::string program = "c++";  ///< the system's compiler
+  /// Folder of the shared objects that were compiled before; only its owner may read and write it.
+  std::filesystem::path cache;
+  /// That the rows are compiled for: those of this machine.
+  InstructionSet instructions = usable_instruction_sets().back();
+  int dimension = 2;  ///< of the bodies that it is compiled for
+  /// Is shown the command before it is run.
+  std::function<void(const std::string& command)> tell = [](const std::string&) {};
+};
+
+/// The type of the law in a header, such as "mine::Law": the struct that holds `static constexpr const char*
+/// name`. Throws Error when there is none, or more than one.
+/// \param file  that the text is of
+std::string law_type(const std::filesystem::path& file, const std::string& text);
+
+/// The shared object of a law, from the cache where the same was compiled before: the same text of all its
+/// headers, compiler, flags and layout. Throws Error with the compiler's words where it does not compile.
+/// \param type  of the law, as C++ names it
+std::filesystem::path compile_law(const std::filesystem::path& header, const std::string& type,
+                                  const LawCompiler& compiler);
+
+}  // namespace pyroclast

@@ -1,0 +1,119 @@
+#include "pyroclast/plugin/find_law.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/laws/registry.hpp"
+#include "pyroclast/plugin/load.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string variable(const char* name) {
+  const char* const value = std::getenv(name);
+  return value ? value : "";
+}
+
+fs::path cache_folder() {
+  if (const auto own = variable("PYROCLAST_CACHE"); !own.empty()) return fs::path(own) / "laws";
+  if (const auto shared = variable("XDG_CACHE_HOME"); !shared.empty())
+    return fs::path(shared) / "pyroclast" / "laws";
+  if (const auto home = variable("HOME"); !home.empty())
+    return fs::path(home) / ".cache" / "pyroclast" / "laws";
+  return {};
+}
+
+const LawTable& law_of_header(const fs::path& header, std::string type, const LawSources& sources) {
+  if (!fs::exists(header))
+    throw Error(fmt::format("{}: there is no such header of a contact law", header.string()));
+  if (!sources.may_compile)
+    throw Error(
+        fmt::format("{}: is a contact law in a header, and compiling is switched off (--no-compile, "
+                    "PYROCLAST_NO_COMPILE); "
+                    "build it with pyroclast_add_law and state its shared object",
+                    header.string()));
+  if (sources.compiler.cache.empty())
+    throw Error(fmt::format("{}: no folder for compiled laws: set PYROCLAST_CACHE", header.string()));
+  std::ifstream stream(header, std::ios::binary);
+  std::string text(std::istreambuf_iterator<char>(stream), {});
+  if (!stream) throw Error(fmt::format("{}: cannot be read", header.string()));
+  if (type.empty()) type = law_type(header, text);
+  return load_law(compile_law(header, type, sources.compiler), {fs::canonical(header), std::move(text)})
+      .table;
+}
+
+const LawTable& law_of_object(const fs::path& file, const LawSources& sources) {
+  if (!fs::exists(file))
+    throw Error(fmt::format("{}: there is no such shared object of a contact law", file.string()));
+  const LoadedLaw& law = load_law(file);
+  if (const int dim = sources.compiler.dimension; !includes(law.dimensions, dim))
+    throw Error(fmt::format("{}: the contact law \"{}\" is made for bodies in {}D, not in {}D", file.string(),
+                            law.table.name, dim == 2 ? 3 : 2, dim));
+  return law.table;
+}
+
+/// "mine.hpp:a::Law" in its parts; the type is empty where none is stated.
+std::pair<std::string, std::string> header_and_type(std::string_view stated) {
+  for (const char* const ending : {".hpp", ".hh", ".hxx", ".h"}) {
+    if (stated.ends_with(ending)) return {std::string(stated), {}};
+    if (const auto at = stated.find(fmt::format("{}:", ending)); at != std::string_view::npos) {
+      const auto end = at + std::string_view(ending).size();
+      return {std::string(stated.substr(0, end)), std::string(stated.substr(end + 1))};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+LawSources LawSources::of_environment() {
+  LawSources sources;
+  const std::string path = variable("PYROCLAST_LAW_PATH");
+  for (std::size_t begin = 0; begin < path.size();) {
+    const auto end = std::min(path.find(':', begin), path.size());
+    if (end > begin) sources.folders.emplace_back(path.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  const std::string refused = variable("PYROCLAST_NO_COMPILE");
+  sources.may_compile = refused.empty() || refused == "0";
+  if (const auto compiler = variable("CXX"); !compiler.empty()) sources.compiler.program = compiler;
+  sources.compiler.cache = cache_folder();
+  return sources;
+}
+
+const LawTable& find_law(std::string_view stated, const fs::path& deck_folder, const LawSources& sources) {
+  for (const LawTable* law : built_in_laws())
+    if (law->name == stated) return *law;
+  if (const auto [header, type] = header_and_type(stated); !header.empty())
+    return law_of_header(deck_folder / header, type, sources);
+  if (stated.ends_with(".so")) return law_of_object(deck_folder / stated, sources);
+
+  std::vector<std::string> searched, names;
+  std::vector<fs::path> folders{deck_folder};
+  folders.insert(folders.end(), sources.folders.begin(), sources.folders.end());
+  if (stated.find('/') == std::string_view::npos && !stated.empty())
+    for (const fs::path& folder : folders) {
+      const fs::path file = folder / fmt::format("{}.so", stated);
+      if (fs::exists(file)) return law_of_object(file, sources);
+      searched.push_back(folder.empty() ? "." : folder.string());
+    }
+  for (const LawTable* law : built_in_laws()) names.emplace_back(law->name);
+  throw Error(
+      fmt::format("the contact law \"{0}\" is neither part of the program ({1}) nor is there a {0}.so in "
+                  "{2}; allowed are these "
+                  "names, a shared object (mine.so), and a header (mine.hpp)",
+                  stated, fmt::join(names, ", "), fmt::join(searched, ", ")));
+}
+
+}  // namespace pyroclast

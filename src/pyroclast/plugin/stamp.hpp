@@ -1,0 +1,143 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+
+#include "pyroclast/laws/table.hpp"
+#include "pyroclast/mechanics/law_rows.hpp"
+#include "pyroclast/mechanics/state.hpp"
+
+/// What a shared object with a contact law hands over, seen from both sides. Only plain data and functions
+/// cross; the stamp says whether both sides mean the same by them.
+extern "C" {
+
+struct pyroclast_law {
+  // the stamp: read before anything else is believed
+  char magic[16];
+  std::uint32_t table_version;
+  std::uint32_t size;    ///< of this struct, bytes
+  const char* version;   ///< of pyroclast
+  std::uint64_t layout;  ///< hash of what crosses
+  std::uint32_t lanes;
+  const char* compiler;  ///< recorded, not compared
+
+  pyroclast::Dimensions dimensions;
+  const pyroclast::LawTable* table;  ///< its rows are those below
+  pyroclast::LawRows rows;
+  pyroclast::ArithmeticProbe probe;  ///< of what is compiled for any processor
+  const void* device;                ///< for a compilation for other processors; null so far
+};
+
+/// The one symbol of a shared object with a law.
+using pyroclast_law_function = const pyroclast_law* (*)();
+
+}  // extern "C"
+
+namespace pyroclast {
+
+inline constexpr char kLawMagic[16] = "pyroclast law";
+inline constexpr std::uint32_t kLawTableVersion = 1;
+inline constexpr const char* kLawSymbol = "pyroclast_law_v1";
+
+/// FNV-1a over sizes, places and names.
+class LayoutHash {
+ public:
+  template <class... N>
+  void add(N... numbers) {
+    (add_number(static_cast<std::uint64_t>(numbers)), ...);
+  }
+  void add(std::string_view name) {
+    for (const char c : name) add_number(static_cast<unsigned char>(c));
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  void add_number(std::uint64_t number) {
+    for (int byte = 0; byte < 8; ++byte) hash_ = (hash_ ^ ((number >> (8 * byte)) & 0xff)) * 0x100000001b3U;
+  }
+
+  std::uint64_t hash_ = 0xcbf29ce484222325U;
+};
+
+/// What the rows of a law see of a body: the place of every array and number, and the size of their items.
+template <int Dim>
+void add_state(LayoutHash& hash) {
+  static_assert(std::is_trivially_copyable_v<State<Dim>>);
+  const State<Dim> s{};
+  const auto place = [&](const auto& member) {
+    return reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&s);
+  };
+  const auto add_array = [&](const ArrayInfo& info, const auto& array) {
+    using Item = typename std::decay_t<decltype(array)>::value_type;
+    hash.add(std::string_view(info.name));
+    hash.add(place(array), sizeof(array), sizeof(Item), alignof(Item));
+  };
+  hash.add(sizeof(s), sizeof(StepParameters<Dim>), place(s.gravity), place(s.time_step), place(s.kinematics),
+           place(s.thickness), place(s.laws), sizeof(Kinematics), static_cast<int>(Kinematics::finite));
+  for_each_array(add_array, s);
+  for_each_array(add_array, s.layout);
+  using Faces = FaceRow<Dim>;
+  hash.add(sizeof(Faces), offsetof(Faces, tangent), sizeof(VectorRow<Dim>), sizeof(Vec<Dim>));
+}
+
+/// Differs where the two sides of a shared object would read each other's data wrongly.
+inline std::uint64_t layout_hash() {
+  LayoutHash hash;
+  add_state<2>(hash);
+  add_state<3>(hash);
+  hash.add(sizeof(PointRow), offsetof(PointRow, area), offsetof(PointRow, a), offsetof(PointRow, b));
+  hash.add(sizeof(FaceSums), offsetof(FaceSums, stored), offsetof(FaceSums, applied),
+           offsetof(FaceSums, jump));
+  hash.add(sizeof(Line), kLanes, kInstructionSets);
+  hash.add(sizeof(RowFunctions<2>), offsetof(RowFunctions<2>, update),
+           offsetof(RowFunctions<2>, place_stiffness), sizeof(CompiledLaw), offsetof(CompiledLaw, in_2d),
+           offsetof(CompiledLaw, in_3d), offsetof(CompiledLaw, probe), sizeof(LawRows));
+  hash.add(sizeof(LawTable), offsetof(LawTable, name), offsetof(LawTable, meaning),
+           offsetof(LawTable, properties), offsetof(LawTable, choices), offsetof(LawTable, history_of),
+           offsetof(LawTable, losses), offsetof(LawTable, size), offsetof(LawTable, constants),
+           offsetof(LawTable, derive), offsetof(LawTable, numbers_of), offsetof(LawTable, check),
+           offsetof(LawTable, stiffness), offsetof(LawTable, update_of), offsetof(LawTable, rows));
+  hash.add(sizeof(Unit), offsetof(Unit, si), offsetof(Unit, name), offsetof(Unit, example));
+  hash.add(sizeof(Range), offsetof(Range, lower), offsetof(Range, upper), offsetof(Range, lower_inclusive),
+           offsetof(Range, upper_inclusive));
+  hash.add(sizeof(PropertyInfo), offsetof(PropertyInfo, key), offsetof(PropertyInfo, meaning),
+           offsetof(PropertyInfo, unit), offsetof(PropertyInfo, range), offsetof(PropertyInfo, role),
+           static_cast<int>(Role::energy));
+  hash.add(sizeof(ChoiceInfo), offsetof(ChoiceInfo, key), offsetof(ChoiceInfo, meaning),
+           offsetof(ChoiceInfo, options), sizeof(OptionInfo), ChoiceInfo::kMostOptions);
+  hash.add(sizeof(HistoryInfo), offsetof(HistoryInfo, name), offsetof(HistoryInfo, meaning),
+           offsetof(HistoryInfo, unit), offsetof(HistoryInfo, what), offsetof(HistoryInfo, when),
+           offsetof(HistoryInfo, in_files), static_cast<int>(Remembers::closure));
+  hash.add(sizeof(LossInfo), offsetof(LossInfo, name), offsetof(LossInfo, meaning), offsetof(LossInfo, unit));
+  hash.add(sizeof(Objection), offsetof(Objection, key), offsetof(Objection, wanted),
+           offsetof(Objection, bound));
+  hash.add(sizeof(PointResponse), offsetof(PointResponse, normal_traction),
+           offsetof(PointResponse, shear_traction), offsetof(PointResponse, stored),
+           sizeof(ContactStiffness<double>));
+  return hash.value();
+}
+
+/// What a shared object hands over.
+/// \param rows  by instruction set
+template <class Law, Dimensions kDimensions>
+pyroclast_law describe_law(const char* version, const LawRows& rows) {
+  struct ForAnyProcessor;
+  using P = Probes<ForAnyProcessor>;
+  pyroclast_law law{};
+  for (std::size_t i = 0; i < sizeof(law.magic); ++i) law.magic[i] = kLawMagic[i];
+  law.table_version = kLawTableVersion;
+  law.size = sizeof(pyroclast_law);
+  law.version = version;
+  law.layout = layout_hash();
+  law.lanes = kLanes;
+  law.compiler = __VERSION__;
+  law.dimensions = kDimensions;
+  law.table = &table_of<Law, kDimensions>();
+  law.rows = rows;
+  law.probe = P::functions();
+  return law;
+}
+
+}  // namespace pyroclast

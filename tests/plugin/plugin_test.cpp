@@ -1,0 +1,277 @@
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "mechanics/bodies.hpp"
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/laws/registry.hpp"
+#include "pyroclast/plugin/find_law.hpp"
+#include "pyroclast/plugin/load.hpp"
+
+namespace pyroclast {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string refusal(const std::function<void()>& what) {
+  try {
+    what();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "nothing was refused";
+}
+
+/// Whether a text holds all the words.
+testing::AssertionResult says(const std::string& text, const std::vector<std::string>& words) {
+  for (const auto& word : words)
+    if (text.find(word) == std::string::npos)
+      return testing::AssertionFailure() << '"' << word << "\" is not in:\n" << text;
+  return testing::AssertionSuccess();
+}
+
+fs::path law_file(const std::string& name) {
+  return fs::path(LAWS) / (name + ".so");
+}
+
+std::string refusal_of(const std::string& name) {
+  return refusal([&] { load_law(law_file("refused_" + name)); });
+}
+
+TEST(Plugin, ASharedObjectThatIsNoLawIsRefused) {
+  EXPECT_TRUE(says(refusal_of("symbol"), {"refused_symbol.so", "no symbol pyroclast_law_v1"}));
+  EXPECT_TRUE(says(refusal_of("magic"), {"does not give a contact law"}));
+  EXPECT_TRUE(says(refusal([] { load_law(fs::path(HEADERS) / "small.hpp"); }),
+                   {"small.hpp", "cannot be loaded as a contact law"}));
+}
+
+TEST(Plugin, ALawForAnotherVersionOrLayoutIsRefusedWithBothValues) {
+  EXPECT_TRUE(says(refusal_of("table"), {"form 1000", "takes form 1 "}));
+  EXPECT_TRUE(says(refusal_of("version"), {"pyroclast 0.0.1;", "build it again"}));
+  EXPECT_TRUE(says(refusal_of("layout"), {"another layout", "with 8 lanes"}));
+}
+
+TEST(Plugin, ALawThatBearsTheNameOfOneOfTheProgramIsRefused) {
+  EXPECT_TRUE(says(refusal_of("name"), {"called \"cohesive\""}));
+}
+
+TEST(Plugin, FastMathIsRefused) {
+  EXPECT_TRUE(says(refusal_of("fast_math"), {"-ffast-math"}));
+}
+
+#ifdef X86
+TEST(Plugin, ContractionIsRefused) {
+  if (!__builtin_cpu_supports("fma")) GTEST_SKIP() << "this processor contracts nothing";
+  EXPECT_TRUE(says(refusal_of("contraction"), {"contraction", "-ffp-contract=off"}));
+}
+
+TEST(Plugin, FlushToZeroIsRefusedAndUndone) {
+  EXPECT_TRUE(says(refusal_of("flush"), {"MXCSR"}));
+  volatile double least = std::numeric_limits<double>::min();
+  EXPECT_GT(0.5 * least, 0.0);
+}
+#endif
+
+TEST(Plugin, ALoadedLawIsATableLikeAnyOther) {
+  const LoadedLaw& law = load_law(law_file("renamed"));
+  EXPECT_STREQ(law.table.name, "renamed");
+  EXPECT_EQ(law.dimensions, Dimensions::both);
+  EXPECT_FALSE(law.compiler.empty());
+  const auto paper = mortar_contact();
+  const int own = count_of<Cohesive::Properties<double>>();
+  ASSERT_EQ(law.table.properties.size(), own + 1);
+  EXPECT_STREQ(law.table.properties[own].key, "u_mark");
+  EXPECT_EQ(law.table.history(2).size(), (count_of<Cohesive::History<2, double>>()) + 1);
+  EXPECT_EQ(law.table.losses.size(), count_of<Cohesive::Losses<double>>() + 1);
+  EXPECT_EQ(&load_law(law_file("renamed")), &law) << "a file is loaded once";
+
+  // torn apart in one go
+  std::vector<double> numbers(own + 1);
+  put(paper, numbers.data());
+  ContactProperties p(law.table, numbers, std::vector<int>(law.table.choices.size()));
+  EXPECT_NO_THROW(validate(p, "contact"));
+  p.numbers[own] = -1.0;
+  EXPECT_TRUE(says(refusal([&] { validate(p, "contact"); }), {"u_mark (m) = -1"}));
+  const auto constants = p.constants();
+  std::vector<double> history(law.table.history(2).size()), losses(law.table.losses.size());
+  const std::array jump{1e-4, 0.0};
+  law.table.update(2)(constants.data(), jump.data(), history.data(), losses.data());
+  EXPECT_DOUBLE_EQ(losses[1], paper.mode_1_energy);
+  EXPECT_EQ(history.back(), 1e-4);
+  EXPECT_EQ(losses.back(), 1.0);
+}
+
+TEST(Plugin, ALawForPlaneBodiesIsRefusedInSpace) {
+  LawSources sources;
+  sources.folders = {LAWS};
+  EXPECT_STREQ(find_law("small", "", sources).name, "small");
+  sources.compiler.dimension = 3;
+  EXPECT_TRUE(says(refusal([&] { find_law("small", "", sources); }), {"made for bodies in 2D, not in 3D"}));
+
+  const auto model = bodies::five_tetrahedra();
+  const LawTable& law = load_law(law_file("small")).table;
+  BodyProperties properties;
+  properties.zones.assign(model.zones.size(), zone_properties<3>(30e9, 0.2));
+  properties.contacts.add({law, {1e12}, {}});
+  properties.of_contact.assign(static_cast<std::size_t>(model.contact_count()), 0);
+  MechanicsParameters<3> parameters;
+  parameters.safety = 0.5;
+  EXPECT_TRUE(says(refusal([&] { Mechanics<3>(model, {2300.0}, properties, parameters); }),
+                   {"\"small\" is made for bodies in 2D, not in 3D"}));
+}
+
+TEST(Plugin, ANameIsSearchedInTheProgramBesideTheDeckAndInTheFolders) {
+  LawSources sources;
+  EXPECT_EQ(&find_law("cohesive", "", sources), &table_of<Cohesive>());
+  EXPECT_STREQ(find_law("renamed", LAWS, sources).name, "renamed");
+  EXPECT_STREQ(find_law("renamed.so", LAWS, sources).name, "renamed");
+  EXPECT_TRUE(says(refusal([&] { find_law("absent", "some/deck", sources); }),
+                   {"\"absent\"", "cohesive", "absent.so in some/deck"}));
+  sources.folders = {"here", LAWS};
+  EXPECT_STREQ(find_law("renamed", "some/deck", sources).name, "renamed");
+  EXPECT_TRUE(says(refusal([&] { find_law("absent.so", "some/deck", sources); }), {"some/deck/absent.so"}));
+  EXPECT_TRUE(says(refusal([&] { find_law("absent.hpp", "some/deck", sources); }), {"some/deck/absent.hpp"}));
+}
+
+TEST(Plugin, TheEnvironmentNamesFoldersAndForbidsCompiling) {
+  setenv("PYROCLAST_LAW_PATH", "/one::/two", 1);
+  setenv("PYROCLAST_NO_COMPILE", "1", 1);
+  setenv("PYROCLAST_CACHE", "/three", 1);
+  const auto sources = LawSources::of_environment();
+  for (const char* name : {"PYROCLAST_LAW_PATH", "PYROCLAST_NO_COMPILE", "PYROCLAST_CACHE"}) unsetenv(name);
+  EXPECT_EQ(sources.folders, (std::vector<fs::path>{"/one", "/two"}));
+  EXPECT_FALSE(sources.may_compile);
+  EXPECT_EQ(sources.compiler.cache, "/three/laws");
+  EXPECT_TRUE(LawSources::of_environment().may_compile);
+}
+
+/// A header that is compiled here, in a folder of the test's own.
+class LawInAHeader : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / (std::string("pyroclast_plugin_") +
+                                           testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    sources_.compiler.cache = folder_ / "cache";
+    sources_.compiler.instructions = InstructionSet::portable;
+    sources_.compiler.tell = [this](const std::string& command) { commands_.push_back(command); };
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static std::string small() {
+    std::ifstream stream(fs::path(HEADERS) / "small.hpp");
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+  std::string refusal_of(const std::string& stated) {
+    return refusal([&] { find_law(stated, folder_, sources_); });
+  }
+
+  fs::path folder_;
+  LawSources sources_;
+  std::vector<std::string> commands_;
+};
+
+TEST_F(LawInAHeader, AHeaderIsCompiledOnceForEachText) {
+  write("mine.hpp", small());
+  const LawTable& law = find_law("mine.hpp", folder_, sources_);
+  EXPECT_STREQ(law.name, "small");
+  ASSERT_EQ(commands_.size(), 1U);
+  EXPECT_TRUE(says(commands_[0], {"-ffp-contract=off", "-O3"}));
+  EXPECT_EQ(commands_[0].find("march=native"), std::string::npos);
+  EXPECT_EQ(loaded_laws().back()->header.file, fs::canonical(folder_ / "mine.hpp"));
+  struct stat cache {};
+  ASSERT_EQ(stat(sources_.compiler.cache.c_str(), &cache), 0);
+  EXPECT_EQ(cache.st_mode & 0777, 0700U);
+
+  const auto compile = [&] { return compile_law(folder_ / "mine.hpp", "small::Law", sources_.compiler); };
+  std::vector<fs::path> found(2);
+  std::thread other([&] { found[0] = compile(); });
+  found[1] = compile();
+  other.join();
+  EXPECT_EQ(found[0], found[1]);
+  EXPECT_EQ(commands_.size(), 1U) << "the same text is compiled once";
+
+  // a body moves with it
+  const auto model = bodies::column(3, 0.01);
+  BodyProperties properties;
+  properties.zones.assign(model.zones.size(), zone_properties<2>(30e9, 0.2));
+  properties.contacts.add({law, {1e12}, {}});
+  properties.of_contact.assign(static_cast<std::size_t>(model.contact_count()), 0);
+  MechanicsParameters<2> parameters;
+  parameters.safety = 0.5;
+  parameters.instructions = InstructionSet::portable;
+  Mechanics<2> body(model, {2300.0}, properties, parameters);
+  body.prescribe_velocity(0, 1, 0.01);
+  body.advance(10);
+  EXPECT_NE(body.contact(0).normal_traction, 0.0);
+  if (usable_instruction_sets().size() > 1) {
+    parameters.instructions = usable_instruction_sets().back();
+    EXPECT_TRUE(says(refusal([&] { Mechanics<2>(model, {2300.0}, properties, parameters); }),
+                     {"\"small\" is not compiled for the instruction set"}));
+  }
+}
+
+TEST_F(LawInAHeader, WhatDoesNotCompileIsRefusedWithTheLineOfTheLaw) {
+  std::string text = small();
+  const std::string line = "    r.normal_traction = c.stiffness * opening;";
+  ASSERT_NE(text.find(line), std::string::npos);
+  text.replace(text.find(line), line.size(), "    r.normal_traction = c.stifness * opening;");
+  const auto number =
+      std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("stifness")), '\n') + 1;
+  write("wrong.hpp", text);
+  EXPECT_TRUE(says(refusal_of("wrong.hpp"), {fmt::format("wrong.hpp:{}:", number), "error:", "stifness",
+                                             "does not compile as the contact law small::Law"}));
+}
+
+TEST_F(LawInAHeader, CompilingCanBeForbidden) {
+  write("mine.hpp", small());
+  sources_.may_compile = false;
+  EXPECT_TRUE(says(refusal_of("mine.hpp"), {"--no-compile", "pyroclast_add_law"}));
+  EXPECT_FALSE(fs::exists(sources_.compiler.cache));
+}
+
+TEST_F(LawInAHeader, ACacheThatOthersMayWriteIsNotTrusted) {
+  write("mine.hpp", small());
+  fs::create_directories(sources_.compiler.cache);
+  fs::permissions(sources_.compiler.cache, fs::perms::group_write, fs::perm_options::add);
+  EXPECT_TRUE(says(refusal_of("mine.hpp"), {"cache", "not trusted", "0700"}));
+  fs::remove(sources_.compiler.cache);
+  fs::create_directories(folder_ / "elsewhere");
+  fs::create_directory_symlink(folder_ / "elsewhere", sources_.compiler.cache);
+  EXPECT_TRUE(says(refusal_of("mine.hpp"), {"is not a folder"}));
+}
+
+TEST_F(LawInAHeader, ACompilerThatIsNotThereIsNamed) {
+  write("mine.hpp", small());
+  sources_.compiler.program = "no-such-compiler";
+  EXPECT_TRUE(says(refusal_of("mine.hpp"), {"no-such-compiler"}));
+}
+
+TEST(Plugin, TheTypeOfAHeaderIsTheStructWithAName) {
+  EXPECT_EQ(law_type("a.hpp", R"(// struct Not { static constexpr const char* name = "no"; };
+namespace a::b { struct Helper { const char* name = "x"; };
+struct Base {}; /* struct Nor { */ struct Law final : Base { static constexpr const char* name = "struct {"; }; })"),
+            "a::b::Law");
+  EXPECT_EQ(
+      law_type("b.hpp", "struct Law { void f() { for (;;) {} } static constexpr auto name = \"b\"; };\n"),
+      "Law");
+  const auto refused = [](const std::string& text) { return refusal([&] { law_type("c.hpp", text); }); };
+  EXPECT_TRUE(
+      says(refused("namespace a { struct B { static constexpr auto name = 1; }; struct C { static constexpr "
+                   "auto name = 2; }; }"),
+           {"2 contact laws: a::B, a::C", "c.hpp:a::B"}));
+  EXPECT_TRUE(says(refused("struct D { int name = 1; };"), {"c.hpp", "holds no contact law"}));
+}
+
+}  // namespace
+}  // namespace pyroclast
