@@ -516,7 +516,7 @@ class Law(UserTest):
         self.assertNotIn("cohesive", done.stdout)
 
     def test_what_verifying_needs_and_refuses(self):
-        for words, message in ((("--verify", "plastic"), '"plastic"; there are cohesive, elastic'),
+        for words, message in ((("--verify", "plastic"), '"plastic" is neither part of the program (cohesive, elastic'),
                                (("--path", "path.csv"), "DECK is required"),
                                (("mine.toml",), "--path is required"),
                                (("mine.toml", "--path", "path.csv", "--verify"), "--verify"),

@@ -107,7 +107,7 @@ struct Heals : Cohesively<Heals> {
   static void spoil(const auto&, const auto& opening, const auto&, const auto&, auto& history, auto&,
                     auto& response) {
     history.tension_damage *= select(opening < 0.0, 0.999 + 0.0 * opening, 1.0 + 0.0 * opening);
-    response.changed |= kDamaged;
+    response.changed |= info::kDamaged;
   }
 };
 TEST(Kit, FindsADamageThatHeals) {
@@ -150,7 +150,7 @@ struct Creeps : Cohesively<Creeps> {
   static void spoil(const auto&, const auto& opening, const auto&, const auto&, auto& history, auto&,
                     auto& response) {
     history.closure += select(opening < 0.0, 1e-9 + 0.0 * opening, 0.0 * opening);
-    response.changed |= kDamaged;
+    response.changed |= info::kDamaged;
   }
 };
 TEST(Kit, FindsAnAnswerThatChangesWhenAskedAgain) {

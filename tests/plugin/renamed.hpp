@@ -45,7 +45,7 @@ struct Law {
     static constexpr void each(F&& f, H&... h) {
       Paper::History<Dim, Real>::each(f, h...);
       f(pyroclast::HistoryInfo{"torn_at", "opening at which damage last grew", pyroclast::unit::length,
-                               pyroclast::Remembers::other, Paper::kDamaged},
+                               pyroclast::Remembers::other, pyroclast::info::kDamaged},
         h.torn_at...);
     }
   };
@@ -77,7 +77,7 @@ struct Law {
     using pyroclast::select;  // for one number; of lanes it is found by itself
     const Real before = h.tension_damage;
     const auto response = Paper::update<Dim, Real, Number, Sum>(c, opening, tangential, h, losses);
-    if ((response.changed & Paper::kDamaged) != 0) {
+    if ((response.changed & pyroclast::info::kDamaged) != 0) {
       const auto grew = h.tension_damage > before;
       h.torn_at = select(grew, opening, h.torn_at);
       losses.marked += select(grew & (opening > c.mark), h.tension_damage - before, Real(0.0));
