@@ -196,7 +196,7 @@ TEST(Phases, WhatAnInterfaceCannotBeIsSaid) {
        "light and light are joined by");
   says("[contacts.light_light]", "[contacts.soft]", "names no two phases of the specimen");
   says("law = \"frictional\"\nfriction = 0.4", "law = \"friction\"\nfriction = 0.4",
-       "must be one of \"cohesive\"");
+       "is neither part of the program (cohesive, elastic");
   says("between = [\"light\", \"mortar\", \"aggregate\", \"light\"]", "between = [\"light\"]",
        "must name two phases");
   says("phase = \"pore\"", "phase = \"platen\"", "\"platen\" is the solid of the platens");

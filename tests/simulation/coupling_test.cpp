@@ -19,7 +19,7 @@ TEST(PropertiesOfAComputedField, AreRefusedWhereTheyMakeNoLaw) {
   field.advance(100.0, 600.0);
   ConcreteMaterials materials;
   materials.solids.resize(3);
-  materials.contacts.resize(4);
+  materials.contacts.resize(4, ContactMaterial(table_of<Cohesive>()));
   for (auto& solid : materials.solids) solid.young = Curve::constant(30e9);
   for (auto& contact : materials.contacts)
     for (const auto& [key, value] : {std::pair{"K_n", 1e13},

@@ -20,6 +20,7 @@ namespace pyroclast {
 struct MixedMode {
   static const LawRows rows;
   static constexpr const char* name = "mixed_mode";
+  static constexpr bool exact_in_shear = false;  // dilatancy turns sliding into a combined way
   static constexpr const char* meaning =
       "one damage for tension and shear; what is broken rubs and dilates; yields in compression";
 
@@ -200,9 +201,13 @@ struct MixedMode {
     return {};
   }
 
+  /// Where slip dilates, pressure and shear raise each other. Of that rank-one coupling the stiffest mode is
+  /// 1 + K_n / K_s tan(phi) tan(psi) times as stiff as without.
   template <class Real>
   static ContactStiffness<Real> stiffness(const Constants<Real>& c) {
-    return {c.normal_stiffness, c.shear_stiffness};
+    const Real stiffest =
+        1.0 + c.normal_stiffness / c.shear_stiffness * c.friction * (c.last_dilation * c.over_fading_slip);
+    return {c.normal_stiffness * stiffest, c.shear_stiffness * stiffest};
   }
 
   /// What a contact point remembers.
@@ -216,7 +221,7 @@ struct MixedMode {
 
     template <class F, class... H>
     static constexpr void each(F&& f, H&... h) {
-      f(HistoryInfo{"damage", "of tension and shear: 0 intact, 1 broken; never decreases",
+      f(HistoryInfo{"mixed_damage", "of tension and shear: 0 intact, 1 broken; never decreases",
                     unit::dimensionless, Remembers::mixed_damage, info::kDamaged},
         h.damage...);
       f(info::closure, h.closure...);

@@ -30,8 +30,9 @@ struct ContactMaterial {
   std::vector<Curve> numbers;  ///< in the order of LawTable::properties
   std::vector<int> choices;    ///< likewise
 
+  ContactMaterial() = default;
   /// All zero, with the first option of each choice.
-  explicit ContactMaterial(const LawTable& of = table_of<Cohesive>());
+  explicit ContactMaterial(const LawTable& of);
 
   /// The property of that key. Throws Error when the law has none.
   Curve& operator[](std::string_view key);

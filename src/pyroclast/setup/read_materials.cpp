@@ -255,7 +255,7 @@ class InterfaceReader {
     if (!other) {
       s.error("like",
               fmt::format("must be another interface that is not like this one; got \"{}\"", *p.like));
-      return ContactMaterial();
+      return ContactMaterial(*built_in_laws().front());
     }
     if (s.has("law"))
       s.error("law", fmt::format("has no meaning beside \"like\": the law is that of {}", *p.like));
