@@ -29,8 +29,10 @@ TEST_P(EveryLaw, HoldsEveryProperty) {
   EXPECT_GE(options.lanes.size(), 1U);
   const KitReport report = verify(*GetParam(), options);
   EXPECT_TRUE(report.passed()) << report.text();
-  for (const KitFinding& f : report.findings)
-    if (f.property != std::string_view("objections")) EXPECT_GT(f.checks, 0) << f.property;
+  for (const KitFinding& f : report.findings) {
+    const bool may_have_none = f.property == std::string_view("objections");  // a law need not object
+    EXPECT_TRUE(f.checks > 0 || may_have_none) << f.property;
+  }
 }
 
 TEST(Kit, TakesTheSamePathsForTheSameSeed) {
@@ -258,7 +260,7 @@ struct NeverConverges : Cohesively<NeverConverges> {
                     auto&) {
     using std::sqrt;
     const auto slid = history.slip[0] - before.slip[0];
-    losses.friction += 1e-4 * c.mode_2_energy * sqrt(larger(slid, 0.0 - slid) * 1e6);
+    losses.friction += 1e-3 * c.mode_2_energy * sqrt(larger(slid, 0.0 - slid) * 1e6);
   }
 };
 TEST(Kit, FindsEnergiesThatDoNotConverge) {

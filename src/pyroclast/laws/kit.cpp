@@ -690,6 +690,7 @@ class Kit {
       }
     }
 
+    if (!failed_little(balance)) return;
     Point p = from;
     most_updates_ = updates_ + 20000;
     for (const double share : equal_shares(128))
@@ -869,7 +870,7 @@ class Kit {
         const bool exact = path.kind == Kind::normal || (path.kind == Kind::shear && law_.exact_in_shear);
         if (exact && random.uniform() < 0.3 && failed_little(balance_on_one_axis))
           check_on_one_axis(path, from[l], lost[l], random);
-        if (!exact && random.uniform() < 0.04 && failed_little(balance)) check_on_any_leg(path, from[l]);
+        if (!exact && random.uniform() < 0.04) check_on_any_leg(path, from[l]);
       }
     }
   }
