@@ -60,7 +60,8 @@ TEST(Plugin, ALawForAnotherVersionOrLayoutIsRefusedWithBothValues) {
 }
 
 TEST(Plugin, ALawThatBearsTheNameOfOneOfTheProgramIsRefused) {
-  EXPECT_TRUE(says(refusal_of("name"), {"called \"cohesive\""}));
+  EXPECT_TRUE(
+      says(refusal([] { find_law("refused_name", LAWS, {}); }), {"refused_name.so", "called \"cohesive\""}));
 }
 
 TEST(Plugin, FastMathIsRefused) {

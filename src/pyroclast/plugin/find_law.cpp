@@ -34,6 +34,16 @@ fs::path cache_folder() {
   return {};
 }
 
+/// A law of one's own that bears the name of one of the program would be taken for that.
+const LawTable& with_own_name(const LoadedLaw& law) {
+  for (const LawTable* own : built_in_laws())
+    if (std::string_view(own->name) == law.table.name)
+      throw Error(fmt::format(
+          "{}: its law is called \"{}\", as one that is part of the program; give it another name",
+          law.shared_object.string(), own->name));
+  return law.table;
+}
+
 const LawTable& law_of_header(const fs::path& header, std::string type, const LawSources& sources) {
   if (!fs::exists(header))
     throw Error(fmt::format("{}: there is no such header of a contact law", header.string()));
@@ -49,8 +59,8 @@ const LawTable& law_of_header(const fs::path& header, std::string type, const La
   std::string text(std::istreambuf_iterator<char>(stream), {});
   if (!stream) throw Error(fmt::format("{}: cannot be read", header.string()));
   if (type.empty()) type = law_type(header, text);
-  return load_law(compile_law(header, type, sources.compiler), {fs::canonical(header), std::move(text)})
-      .table;
+  return with_own_name(
+      load_law(compile_law(header, type, sources.compiler), {fs::canonical(header), std::move(text)}));
 }
 
 const LawTable& law_of_object(const fs::path& file, const LawSources& sources) {
@@ -60,7 +70,7 @@ const LawTable& law_of_object(const fs::path& file, const LawSources& sources) {
   if (const int dim = sources.compiler.dimension; !includes(law.dimensions, dim))
     throw Error(fmt::format("{}: the contact law \"{}\" is made for bodies in {}D, not in {}D", file.string(),
                             law.table.name, dim == 2 ? 3 : 2, dim));
-  return law.table;
+  return with_own_name(law);
 }
 
 /// "mine.hpp:a::Law" in its parts; the type is empty where none is stated.

@@ -15,7 +15,6 @@
 #endif
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/laws/registry.hpp"
 #include "pyroclast/mechanics/instruction_set.hpp"
 #include "pyroclast/plugin/stamp.hpp"
 
@@ -60,10 +59,6 @@ class Loader {
       refuse("has no symbol {}: it is no contact law of pyroclast {}", kLawSymbol, PYROCLAST_VERSION);
     const pyroclast_law* const law = function();
     compare(law);
-    for (const LawTable* own : built_in_laws())
-      if (std::string_view(own->name) == law->table->name)
-        refuse("its law is called \"{}\", as one that is part of the program; give it another name",
-               own->name);
     examine(law->probe, "code for any processor");
     for (const InstructionSet set : usable_instruction_sets())
       if (const CompiledLaw* const compiled = law->rows.of_set[static_cast<std::size_t>(set)])
