@@ -57,6 +57,11 @@ class DeckReference(unittest.TestCase):
         printed = subprocess.run([PROGRAM, "keys"], capture_output=True, text=True, check=True, encoding="utf-8").stdout
         self.assertEqual(printed, PAGE.read_text("utf-8"), f"to renew it: pyroclast keys > {PAGE.relative_to(ROOT)}")
 
+    def test_page_of_laws_is_what_the_program_prints(self):
+        page = ROOT / "docs" / "laws.md"
+        printed = subprocess.run([PROGRAM, "laws"], capture_output=True, text=True, check=True, encoding="utf-8").stdout
+        self.assertEqual(printed, page.read_text("utf-8"), "to renew it: pyroclast laws > docs/laws.md")
+
     def test_has_every_key_of_every_case(self):
         tables = read_reference(PAGE.read_text("utf-8"))
         cases = sorted((ROOT / "cases").glob("*.toml"))

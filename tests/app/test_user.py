@@ -517,7 +517,7 @@ class Law(UserTest):
 
     def test_what_verifying_needs_and_refuses(self):
         for words, message in ((("--verify", "plastic"), '"plastic" is neither part of the program (cohesive, elastic'),
-                               (("--path", "path.csv"), "DECK is required"),
+                               (("--path", "path.csv"), "DECK, or --law is required"),
                                (("mine.toml",), "--path is required"),
                                (("mine.toml", "--path", "path.csv", "--verify"), "--verify"),
                                (("--paths", 3), "--verify")):

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/base/sha256.hpp"
 #include "pyroclast/base/physics_version.hpp"
+#include "pyroclast/base/sha256.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "results/folder.hpp"
 #include "results/system_calls.hpp"
