@@ -18,7 +18,7 @@ namespace {
 
 class EveryLaw : public testing::TestWithParam<const LawTable*> {};
 INSTANTIATE_TEST_SUITE_P(Kit, EveryLaw, testing::ValuesIn(built_in_laws().begin(), built_in_laws().end()),
-                         [](const auto& info) { return std::string(info.param->name); });
+                         [](const auto& tried) { return std::string(tried.param->name); });
 
 /// What a law does not hold yet (docs/laws-verified.md). What it comes to hold must be taken out here.
 bool is_open(const LawTable& law, std::string_view property) {
