@@ -14,7 +14,7 @@
 namespace pyroclast {
 namespace {
 
-const Manifest kManifest{"deck.toml", "title = 1", 1, 1, "portable", "pyroclast"};
+const Manifest kManifest{"deck.toml", "title = 1", 1, 1, "portable", "pyroclast", {}};
 
 TEST_F(Results, ARunFolderHoldsTheDeckAndWhatTheRunWasMadeFrom) {
   const RunFolder run(folder_ / "run", false, kManifest);
