@@ -20,11 +20,6 @@ class EveryLaw : public testing::TestWithParam<const LawTable*> {};
 INSTANTIATE_TEST_SUITE_P(Kit, EveryLaw, testing::ValuesIn(built_in_laws().begin(), built_in_laws().end()),
                          [](const auto& tried) { return std::string(tried.param->name); });
 
-/// What a law does not hold yet (docs/laws-verified.md). What it comes to hold must be taken out here.
-bool is_open(const LawTable& law, std::string_view property) {
-  return law.name == std::string_view("mixed_mode") && (property == "steps" || property == "stiffness");
-}
-
 TEST_P(EveryLaw, HoldsEveryProperty) {
   KitOptions options;
 #ifndef __OPTIMIZE__
@@ -34,11 +29,7 @@ TEST_P(EveryLaw, HoldsEveryProperty) {
   EXPECT_GE(options.lanes.size(), 1U);
   const KitReport report = verify(*GetParam(), options);
   for (const KitFinding& f : report.findings) {
-#ifdef __OPTIMIZE__
-    EXPECT_EQ(f.passed(), !is_open(*GetParam(), f.property)) << f.property << "\n" << report.text();
-#else
-    EXPECT_TRUE(f.passed() || is_open(*GetParam(), f.property)) << f.property << "\n" << report.text();
-#endif
+    EXPECT_TRUE(f.passed()) << f.property << "\n" << report.text();
     const bool may_have_none = f.property == std::string_view("objections");  // a law need not object
     EXPECT_TRUE(f.checks > 0 || may_have_none) << f.property;
   }

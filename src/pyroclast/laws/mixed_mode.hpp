@@ -201,13 +201,11 @@ struct MixedMode {
     return {};
   }
 
-  /// Where slip dilates, pressure and shear raise each other. Of that rank-one coupling the stiffest mode is
-  /// 1 + K_n / K_s tan(phi) tan(psi) times as stiff as without.
+  /// Where slip dilates, pressure and shear raise each other, but no mode of both is stiffer for it
+  /// (docs/method.md, "Mixed mode").
   template <class Real>
   static ContactStiffness<Real> stiffness(const Constants<Real>& c) {
-    const Real stiffest =
-        1.0 + c.normal_stiffness / c.shear_stiffness * c.friction * (c.last_dilation * c.over_fading_slip);
-    return {c.normal_stiffness * stiffest, c.shear_stiffness * stiffest};
+    return {c.normal_stiffness, c.shear_stiffness};
   }
 
   /// What a contact point remembers.
