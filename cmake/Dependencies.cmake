@@ -8,7 +8,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(HDF5 REQUIRED COMPONENTS C)
 find_package(muparser REQUIRED)
 
-# UDUNITS-2, Voro++ and libmd ship no CMake package.
+# UDUNITS-2, Voro++, libmd and xxHash ship no CMake package.
 function(pyroclast_find_library name header library)
   find_path(${name}_INCLUDE_DIR ${header} PATH_SUFFIXES ${ARGN} REQUIRED)
   find_library(${name}_LIBRARY ${library} REQUIRED)
@@ -19,3 +19,4 @@ endfunction()
 pyroclast_find_library(udunits2 udunits2.h udunits2 udunits2)
 pyroclast_find_library(voropp voro++.hh voro++ voro++)
 pyroclast_find_library(libmd sha256.h md)
+pyroclast_find_library(xxhash xxhash.h xxhash)

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <pyroclast/base/error.hpp>
+#include <pyroclast/results/folder_lock.hpp>
 #include <pyroclast/results/recorder.hpp>
 #include <pyroclast/results/run_folder.hpp>
 
@@ -20,9 +21,11 @@ int main(int argc, char** argv) try {
   const auto simulation = make_simulation(setup);
 
   // 3. Go from look to look, and write what comes.
-  const RunFolder folder(argv[2], false, {.deck_name = deck.name(), .deck_text = deck.text()});
+  const FolderLock lock(argv[2]);
+  const RunFolder folder(argv[2], false, {.deck_name = deck.name(), .inputs = inputs_of(deck, setup)});
+  Recorder recorder(folder.path(), setup);
   Run run(*simulation, std::move(setup.stages));
-  Recorder recorder(folder.path(), setup, run);
+  recorder.begin(run);
   while (run.next()) recorder.record(run);
   recorder.finish(run);
 

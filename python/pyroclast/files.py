@@ -25,11 +25,14 @@ class Table:
         self.path = path
         try:
             with open(path, newline="", encoding="utf-8") as file:
-                lines = list(csv.reader(file))
+                text = file.read()
         except (OSError, UnicodeDecodeError) as error:
             raise RunError(f"{path}: cannot be read: {_reason(error)}") from error
+        lines = list(csv.reader(text.splitlines()))
         if not lines:
             raise RunError(f"{path}: is empty; a header line is expected")
+        if not text.endswith("\n") and len(lines[-1]) != len(lines[0]):
+            lines.pop()  # the row that a run was killed in
         self.names = [name.strip() for name in lines[0]]
         rows = [self._numbers(number, cells) for number, cells in enumerate(lines[1:], start=2) if cells]
         if not rows and not may_be_empty:

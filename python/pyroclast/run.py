@@ -58,7 +58,9 @@ class Run:
 
     @cached_property
     def summary(self) -> dict:
-        return read_json(self.folder / "summary.json")
+        """summary.json; of a run that was killed and has none, one without results."""
+        path = self.folder / "summary.json"
+        return read_json(path) if path.exists() else {"stages": []}
 
     @property
     def title(self) -> str:

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "decks.hpp"
 #include "diagnostics_of.hpp"
 
 namespace pyroclast {
@@ -126,10 +127,27 @@ TEST_F(DeckFile, ChangesReplaceValuesInTheText) {
   EXPECT_DOUBLE_EQ(deck.root().section("a").quantity("length", unit::length, Range::positive(), ""), 5e-3);
 }
 
+// Promise: a key that the deck does not have is added in its table, and a table that it does not have, too.
+TEST_F(DeckFile, ChangesAddKeysThatAreMissing) {
+  const std::string text =
+      "title = \"a\"\n[a]  # of a\nlength = \"3 mm\"\n[[stages]]\nto = 1\n[[stages]]\nto = 2\n";
+  const auto changed = [&](const std::vector<std::string>& changes) {
+    return Deck::load(write(text), changes).text();
+  };
+  EXPECT_EQ(changed({"a.width=5 mm"}), with(text, "# of a\n", "# of a\nwidth = \"5 mm\"\n"));
+  EXPECT_EQ(changed({"stages[1].rate=2"}), with(text, "to = 2", "rate = 2\nto = 2"));
+  EXPECT_EQ(changed({"stages[0].b.c=2", "stages[0].b.d=3"}),
+            with(text, "to = 1", "b.d = 3\nb.c = 2\nto = 1"));
+  EXPECT_EQ(changed({"seed=2"}), "seed = 2\n" + text);
+  const Deck deck = Deck::load(write(text), {"new.table.key=true", "new.table.other=1"});
+  EXPECT_TRUE(deck.root().section("new").section("table").flag("key", ""));
+  EXPECT_EQ(deck.root().section("new").section("table").integer("other", Range::any(), ""), 1);
+}
+
 // Promise: a change that cannot be made says why.
-TEST_F(DeckFile, ChangesOfWhatTheDeckDoesNotHaveAreRefused) {
-  const auto file = write("[a]\nlength = \"3 mm\"\n");
-  for (const char* change : {"a.lenght=5 mm", "a=1", "b.c=1", "stages[0].to=1", "length"}) {
+TEST_F(DeckFile, ChangesThatHaveNoPlaceAreRefused) {
+  const auto file = write("[a]\nlength = \"3 mm\"\n[[stages]]\nto = 1\n");
+  for (const char* change : {"a=1", "stages[1].to=1", "a.length.unit=1", "length", "a..b=1", "=1"}) {
     try {
       Deck::load(file, {change});
       ADD_FAILURE() << change;

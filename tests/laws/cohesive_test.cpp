@@ -369,5 +369,22 @@ TEST(ContactLaw, RefusesParametersThatCannotMakeALaw) {
   EXPECT_TRUE(refused([](auto& p) { p.mode_2_energy = 0.1; }, "snaps back"));
 }
 
+// Where friction drops, the envelope is steepest at the limit f_cm: tau_max - tau_res is larger there by f_cm
+// times the drop of tan(phi).
+TEST(ContactLaw, ObjectsToShearThatSnapsBackUnderPressure) {
+  Properties p = mortar_contact();
+  p.residual_friction_angle = 0.5 * p.friction_angle;
+  const double drop =
+      p.cohesion - p.residual_cohesion +
+      p.compressive_limit * (std::tan(p.friction_angle) - std::tan(p.residual_friction_angle));
+  const double bound = drop * drop / (2.0 * p.shear_stiffness);
+  p.mode_2_energy = 0.999 * bound;
+  const Objection objection = Cohesive::check(p);
+  ASSERT_STREQ(objection.key, "G_f2");
+  EXPECT_NEAR(objection.bound, bound, 1e-12 * bound);
+  p.mode_2_energy = 1.001 * bound;
+  EXPECT_EQ(Cohesive::check(p).key, nullptr);
+}
+
 }  // namespace
 }  // namespace pyroclast

@@ -60,5 +60,13 @@ TEST(FrictionalLaw, OpeningLosesTheShearItHeld) {
   EXPECT_NEAR(p.lost.friction, held, 1e-12 * held);
 }
 
+// Closed without pressure it holds no shear; what slides there counts as slip.
+TEST(FrictionalLaw, TouchingWithoutPressureHoldsNoShear) {
+  Point p;
+  p.go(-10e6 / kPlaten.normal_stiffness, 0.2e-6);
+  EXPECT_EQ(p.go(0.0, 0.2e-6).shear_traction[0], 0.0);
+  EXPECT_EQ(p.lost.slip_path, 0.2e-6);
+}
+
 }  // namespace
 }  // namespace pyroclast

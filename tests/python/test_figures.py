@@ -202,7 +202,7 @@ class ErrorsNameTheThing(FolderTest):
         self.assert_fails(["run", self.root / "nowhere"], "nowhere", "not a folder")
 
     def test_missing_files(self):
-        for name in ("history.csv", "summary.json", "fields/mesh.h5", "fields/contacts_0007.hdf"):
+        for name in ("history.csv", "fields/mesh.h5", "fields/contacts_0007.hdf"):
             with self.subTest(name):
                 path = self.run_folder / name
                 aside = path.rename(self.root / "aside")

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -7,6 +8,7 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/sha256.hpp"
@@ -35,13 +37,35 @@ TEST_F(Results, ATextFileAppearsWholeOrNotAtAll) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
+/// While it is there, no file of this process grows beyond a length: like a full disk.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, SIG_DFL);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
 TEST_F(Results, AFullDeviceIsAnErrorThatNamesTheFile) {
+  LineFile file(folder_ / "a.csv", "one\n");
+  const FullDisk full(6);
   try {
-    LineFile file("/dev/full");
-    file.line("one line");
+    file.line("another line");
     FAIL() << "a full device took a line";
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("/dev/full"), std::string::npos);
+    EXPECT_NE(std::string(e.what()).find("a.csv"), std::string::npos);
   }
 }
 
@@ -104,8 +128,9 @@ std::string wall_deck() {
 Summary record(const std::string& text, const fs::path& folder) {
   Setup setup = read_setup(Deck::parse(text, "deck.toml"), ".");
   const auto simulation = make_simulation(setup);
+  Recorder recorder(folder, setup);
   Run run(*simulation, std::move(setup.stages));
-  Recorder recorder(folder, setup, run);
+  recorder.begin(run);
   while (run.next()) recorder.record(run);
   return recorder.finish(run);
 }

@@ -3,10 +3,13 @@
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
+#include "decks.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/base/sha256.hpp"
+#include "pyroclast/results/folder_lock.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "results/folder.hpp"
 #include "results/system_calls.hpp"
@@ -14,10 +17,16 @@
 namespace pyroclast {
 namespace {
 
-const Manifest kManifest{"deck.toml", "title = 1", 1, 1, "portable", "pyroclast", {}};
+const Manifest kManifest{"deck.toml", {"title = 1", {}}, 1, 1, "portable", "pyroclast", {}, std::nullopt};
+
+/// A run folder that is made where there is none, as long as it is locked.
+RunFolder made(const fs::path& path, bool overwrite = false) {
+  const FolderLock lock(path);
+  return {path, overwrite, kManifest};
+}
 
 TEST_F(Results, ARunFolderHoldsTheDeckAndWhatTheRunWasMadeFrom) {
-  const RunFolder run(folder_ / "run", false, kManifest);
+  const RunFolder run = made(folder_ / "run");
   EXPECT_EQ(content(folder_ / "run" / "deck.toml"), "title = 1");
   const auto manifest = nlohmann::json::parse(content(folder_ / "run" / "manifest.json"));
   EXPECT_EQ(manifest["deck_sha256"], sha256("title = 1"));
@@ -25,13 +34,15 @@ TEST_F(Results, ARunFolderHoldsTheDeckAndWhatTheRunWasMadeFrom) {
 }
 
 TEST_F(Results, ARunFolderIsRefusedWhenItExistsAndTakenOnlyIfItHoldsARun) {
-  const RunFolder first(folder_ / "run", false, kManifest);
+  const RunFolder first = made(folder_ / "run");
   EXPECT_THROW(RunFolder::check(folder_ / "run", false), Error);
   EXPECT_NO_THROW(RunFolder::check(folder_ / "run", true));
   write_text_file(folder_ / "precious.txt", "mine");
   EXPECT_THROW(RunFolder::check(folder_, true), Error);
-  EXPECT_THROW(RunFolder::check(folder_ / "precious.txt", true), Error);
-  EXPECT_THROW(RunFolder::check(folder_ / "precious.txt" / "run", false), Error);
+  EXPECT_THROW(FolderLock(folder_ / "precious.txt"), Error);
+  EXPECT_THROW(FolderLock(folder_ / "precious.txt" / "run"), Error);
+  EXPECT_THROW(RunFolder::require(folder_), Error);
+  EXPECT_NO_THROW(RunFolder::require(folder_ / "run"));
 }
 
 TEST_F(Results, AnotherProgramsManifestIsNotARuns) {
@@ -46,11 +57,12 @@ TEST_F(Results, AnotherProgramsManifestIsNotARuns) {
 
 TEST_F(Results, OverwritingRemovesWhatARunWritesAndNamesWhatItKeeps) {
   const fs::path run = folder_ / "run";
-  const RunFolder first(run, false, kManifest);
-  for (const char* folder : {"fields", "figures", "specimen", "paper/figures"})
+  const RunFolder first = made(run);
+  for (const char* folder : {"fields", "figures", "specimen", "checkpoints", "inputs", "paper/figures"})
     fs::create_directories(run / folder);
   for (const char* own : {"history.csv", "fields/blocks_0012.hdf", "fields/contacts_0003.hdf.partial",
-                          "figures/cracks.svg", "specimen/specimen.json"})
+                          "figures/cracks.svg", "specimen/specimen.json", "run.log",
+                          "checkpoints/000012.state", "checkpoints/stage_1.state", "inputs/table.csv"})
     write_text_file(run / own, "old");
   const std::vector<fs::path> foreign{"fields/blocks_mine.hdf", "notes.txt", "paper/figures/cracks.svg"};
   for (const auto& file : foreign) write_text_file(run / file, "mine");
@@ -59,7 +71,7 @@ TEST_F(Results, OverwritingRemovesWhatARunWritesAndNamesWhatItKeeps) {
   write_text_file(folder_ / "elsewhere" / "history.csv", "mine");
   fs::create_directory_symlink(folder_ / "elsewhere", run / "more");
 
-  const RunFolder second(run, true, kManifest);
+  const RunFolder second = made(run, true);
   std::vector<fs::path> kept = foreign;
   kept.emplace_back("more");
   std::ranges::sort(kept);
@@ -73,31 +85,55 @@ TEST_F(Results, OverwritingRemovesWhatARunWritesAndNamesWhatItKeeps) {
             (std::vector<std::string>{"deck.toml", "fields", "manifest.json", "more", "notes.txt", "paper"}));
 }
 
-TEST_F(Results, CheckingAFolderLeavesNothingBehind) {
-  RunFolder::check(folder_ / "runs" / "a" / "b", false);
+TEST_F(Results, AFolderIsHeldByOneAtATimeAndLeftAsItWas) {
+  {
+    const FolderLock lock(folder_ / "runs" / "a");
+    EXPECT_NO_THROW(RunFolder::check(folder_ / "runs" / "a", false));
+    try {
+      const FolderLock second(folder_ / "runs" / "a");
+      FAIL() << "two hold the folder";
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(std::to_string(getpid())), std::string::npos);
+    }
+    EXPECT_NO_THROW(FolderLock(folder_ / "runs" / "b"));
+  }
   EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_NO_THROW(FolderLock(folder_ / "runs" / "a"));
 }
 
-TEST_F(Results, CheckingAFolderLeavesARunThatBeginsBesideItMeanwhile) {
-  SystemCalls calls;
-  calls.before_mkdir = [&](const std::string& path) {
-    if (!path.ends_with("/mine")) return;
-    const RunFolder other(folder_ / "runs" / "other", false, kManifest);
-  };
-  RunFolder::check(folder_ / "runs" / "mine", false);
-  EXPECT_TRUE(fs::exists(folder_ / "runs" / "other" / "manifest.json"));
-  EXPECT_FALSE(fs::exists(folder_ / "runs" / "mine"));
-}
-
-TEST_F(Results, ARunBeginsThoughACheckBesideItTakesTheirFolderAway) {
+TEST_F(Results, AFolderIsMadeThoughACheckBesideItTakesTheOneAboveAway) {
   SystemCalls calls;
   bool taken_away = false;
   calls.before_mkdir = [&](const std::string& path) {
     if (path.ends_with("/mine") && !taken_away) taken_away = fs::remove(folder_ / "runs");
   };
-  const RunFolder mine(folder_ / "runs" / "mine", false, kManifest);
+  const RunFolder mine = made(folder_ / "runs" / "mine");
   EXPECT_TRUE(taken_away);
   EXPECT_TRUE(fs::exists(folder_ / "runs" / "mine" / "manifest.json"));
+}
+
+TEST_F(Results, AFolderKeepsWhatGivesTheSameRunAgain) {
+  fs::create_directories(folder_ / "tables");
+  write_text_file(folder_ / "tables" / "E.csv", "T [degC],E [GPa]\n20,30\n1000,10\n");
+  const std::string text =
+      with(shipped_case("starter"), "E = \"29.4 GPa\"", "E = { csv = \"tables/E.csv\" }");
+  const Deck deck = Deck::parse(text, "deck.toml");
+  pyroclast::Setup setup = read_setup(deck, folder_);
+  setup.specimen.seed = 77;
+  const Inputs inputs = inputs_of(deck, setup);
+  ASSERT_EQ(inputs.files.size(), 1U);
+  EXPECT_EQ(inputs.files[0].name, "inputs/E.csv");
+  Manifest manifest = kManifest;
+  manifest.inputs = inputs;
+  {
+    const FolderLock lock(folder_ / "run");
+    const RunFolder run(folder_ / "run", false, manifest);
+  }
+  fs::remove_all(folder_ / "tables");
+  const Deck kept = Deck::load(folder_ / "run" / "deck.toml");
+  const pyroclast::Setup again = read_setup(kept, folder_ / "run");
+  EXPECT_EQ(again.specimen.seed, 77U);
+  EXPECT_EQ(inputs_of(kept, again).hash(), inputs.hash());
 }
 
 }  // namespace

@@ -24,8 +24,17 @@ struct RunOptions {
   std::string instructions;           ///< instruction set of the step; empty: the best that there is
   std::optional<std::uint64_t> seed;  ///< instead of the deck's
   std::vector<std::string> changes;   ///< "key=value", see Deck::load
+  std::optional<double> checkpoint;   ///< wall time between two checkpoints instead of the deck's, s
   OwnLawOptions laws;
   std::string command;  ///< as typed, for the manifest
+};
+
+struct ResumeOptions {
+  std::filesystem::path run;         ///< folder of a run
+  std::filesystem::path checkpoint;  ///< to go on from; empty: the newest
+  std::string from_stage;            ///< of a fork: number or name of the last stage in common
+  std::filesystem::path more;        ///< of a fork: a file with stages to append
+  RunOptions as;                     ///< `deck` and `seed` are the run's
 };
 
 struct LawOptions {
@@ -49,10 +58,15 @@ struct PropertiesOptions {
   std::filesystem::path out;  ///< empty: runs/<name of the deck>-properties
 };
 
+/// Reads a duration such as "5 min", s. Throws Error naming the option.
+double time_option(const std::string& name, const std::string& text);
+
 // Each returns the exit code and throws Error for the user.
 int check(const RunOptions& options);
 int make_specimen(const RunOptions& options);
 int run(const RunOptions& options);
+/// Goes on with a run that was broken off, or forks one into a new folder.
+int resume(const ResumeOptions& options);
 int law(const LawOptions& options);
 /// 1 when a law fails.
 int verify_laws(const VerifyOptions& options);

@@ -1,6 +1,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -11,6 +12,7 @@
 
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/results/folder_lock.hpp"
 
 extern char** environ;
 
@@ -67,6 +69,9 @@ int run_package(
 }  // namespace
 
 int figures(const std::vector<std::string>& words) {
+  std::optional<FolderLock> lock;  // of a run whose own figures are drawn; what is only read is not locked
+  if (words.size() >= 2 && words[0] == "run" && std::filesystem::is_directory(words[1]))
+    lock.emplace(words[1]);
   const int code = run_package(words);
   if (code < 0) throw Error(fmt::format("{} cannot be run, which draws the figures", PYROCLAST_PYTHON));
   return code;

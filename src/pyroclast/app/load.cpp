@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/plugin/load.hpp"
+#include "pyroclast/units/units.hpp"
 
 namespace pyroclast::app {
 
@@ -19,14 +20,26 @@ std::shared_ptr<Team> make_team(int asked) {
 
 }  // namespace
 
-Loaded::Loaded(const RunOptions& options)
-    : deck(Deck::load(options.deck, options.changes)),
+Loaded::Loaded(const RunOptions& options, const std::string& more)
+    : deck(Deck::load(options.deck, options.changes, more)),
       setup(read_setup(deck, options.deck.parent_path(), {}, sources_of(options.laws))),
       instructions(options.instructions.empty() ? usable_instruction_sets().back()
                                                 : instruction_set(options.instructions)),
       team(make_team(options.threads)) {
   if (options.seed) setup.specimen.seed = *options.seed;
+  if (options.checkpoint) setup.checkpoints.interval = *options.checkpoint;
   if (setup.motion) setup.motion->mechanics.instructions = instructions;
+}
+
+double time_option(const std::string& name, const std::string& text) {
+  double seconds = 0.0;
+  try {
+    seconds = parse_quantity(text, unit::time);
+  } catch (const QuantityError& error) {
+    throw Error(fmt::format("{}: {}", name, error.what()));
+  }
+  if (!(seconds >= 0.0)) throw Error(fmt::format("{} \"{}\": must not be negative", name, text));
+  return seconds;
 }
 
 std::filesystem::path output_folder(const RunOptions& options) {
@@ -38,7 +51,7 @@ namespace {
 std::vector<OwnLaw> own_laws() {
   std::vector<OwnLaw> laws;
   for (const LoadedLaw* law : loaded_laws())
-    laws.push_back({law->table.name, law->shared_object, law->header.file, law->header.text, law->compiler});
+    laws.push_back({law->table.name, law->shared_object, law->header.file, law->compiler});
   return laws;
 }
 
@@ -64,10 +77,11 @@ std::string describe_own_laws() {
   return text;
 }
 
-RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options) {
+RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options, const Inputs& inputs,
+                          std::optional<Parent> parent) {
   RunFolder folder(output_folder(options), options.overwrite,
-                   {loaded.deck.name(), loaded.deck.text(), loaded.setup.specimen.seed, loaded.team->size(),
-                    name(loaded.instructions), options.command, own_laws()});
+                   {loaded.deck.name(), inputs, loaded.setup.specimen.seed, loaded.team->size(),
+                    name(loaded.instructions), options.command, own_laws(), std::move(parent)});
   for (const auto& file : folder.foreign())
     fmt::print("kept            {}, which no run writes\n", (folder.path() / file).string());
   return folder;

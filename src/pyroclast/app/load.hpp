@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pyroclast/app/commands.hpp"
+#include "pyroclast/results/inputs.hpp"
 #include "pyroclast/results/run_folder.hpp"
 #include "pyroclast/setup/setup.hpp"
 
@@ -8,7 +9,8 @@ namespace pyroclast::app {
 
 /// A deck of the options, and what it says, with what the command line says in place and the threads set.
 struct Loaded {
-  explicit Loaded(const RunOptions& options);
+  /// \param more  text that is appended to the deck
+  explicit Loaded(const RunOptions& options, const std::string& more = "");
 
   Deck deck;
   Setup setup;
@@ -19,8 +21,9 @@ struct Loaded {
 /// Where the results shall be.
 std::filesystem::path output_folder(const RunOptions& options);
 
-/// The folder for the results, made, with deck and manifest in it.
-RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options);
+/// Puts deck and manifest into the folder for the results, which this process has locked.
+RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options, const Inputs& inputs,
+                          std::optional<Parent> parent = std::nullopt);
 
 /// Where laws come from as environment and command line say; the command that compiles one is printed.
 LawSources sources_of(const OwnLawOptions& options);

@@ -38,6 +38,22 @@ void add_processor(CLI::App* command, app::RunOptions& options) {
                       "results are the same for any");
 }
 
+void add_changes(CLI::App* command, app::RunOptions& options) {
+  command
+      ->add_option(
+          "--set", options.changes,
+          "Another value for a key of the deck, or one that it does not have: --set stages[1].to='400 degC'")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+void add_checkpoint(CLI::App* command, app::RunOptions& options) {
+  command->add_option_function<std::string>(
+      "--checkpoint",
+      [&options](const std::string& text) { options.checkpoint = app::time_option("--checkpoint", text); },
+      "Wall time between two checkpoints, instead of the deck's: --checkpoint '5 min'");
+}
+
 void add_own_laws(CLI::App* command, app::OwnLawOptions& options) {
   command
       ->add_option("--law-path", options.folders,
@@ -63,15 +79,29 @@ int command_line(int argc, char** argv) {
     add_deck(command, options.deck);
     add_own_laws(command, options.laws);
     add_seed(command, options.seed);
-    command
-        ->add_option("--set", options.changes,
-                     "Another value for a key of the deck: --set stages[1].to='400 degC'")
-        ->take_all()
-        ->allow_extra_args(false);
+    add_changes(command, options);
   }
   for (auto* command : {run, specimen}) add_output(command, options);
   for (auto* command : {run, check}) add_processor(command, options);
   add_threads(specimen, options.threads);
+
+  add_checkpoint(run, options);
+
+  app::ResumeOptions resume_options;
+  resume_options.as.command = options.command;
+  auto* resume = cli.add_subcommand(
+      "resume", "Go on with a run that was broken off, or fork one: other stages after some that are done");
+  resume->add_option("RUN", resume_options.run, "Folder of a run")->required();
+  resume->add_option("--checkpoint-file", resume_options.checkpoint, "Go on from this one, not the newest");
+  auto* from_stage = resume->add_option("--from-stage", resume_options.from_stage,
+                                        "Fork: the last stage in common, by its number from 0 or its name");
+  resume->add_option("--stages", resume_options.more, "Fork: append the [[stages]] of this file")
+      ->excludes(from_stage);
+  add_changes(resume, resume_options.as);
+  add_output(resume, resume_options.as);
+  add_processor(resume, resume_options.as);
+  add_own_laws(resume, resume_options.as.laws);
+  add_checkpoint(resume, resume_options.as);
 
   app::LawOptions law_options;
   auto* law = cli.add_subcommand("law",
@@ -137,6 +167,7 @@ int command_line(int argc, char** argv) {
 
   CLI11_PARSE(cli, argc, argv);
   if (*run) return app::run(options);
+  if (*resume) return app::resume(resume_options);
   if (*check) return app::check(options);
   if (*specimen) return app::make_specimen(options);
   if (*law) return *verify ? app::verify_laws(verify_options) : app::law(law_options);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/app/load.hpp"
+#include "pyroclast/results/folder_lock.hpp"
 #include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/results/specimen_files.hpp"
 
@@ -9,13 +10,14 @@ namespace pyroclast::app {
 int make_specimen(const RunOptions& options) {
   const Loaded loaded(options);
   const Setup& setup = loaded.setup;
+  const FolderLock lock(output_folder(options));
   RunFolder::check(output_folder(options), options.overwrite);
   const specimen::Specimen specimen = make_checked_specimen(setup.specimen, loaded.team.get());
   const Model<2> model = setup.motion
                              ? make_concrete_model(specimen, setup.motion->platen_thickness, setup.thickness,
                                                    setup.motion->contacts.interfaces)
                              : make_concrete_model(specimen, std::nullopt, setup.thickness);
-  const RunFolder folder = make_run_folder(loaded, options);
+  const RunFolder folder = make_run_folder(loaded, options, inputs_of(loaded.deck, setup));
   std::filesystem::create_directories(folder.path() / "fields");
   write_mesh(folder.path() / "fields", model);
   write_specimen_files(folder.path() / "specimen", specimen, setup.specimen);

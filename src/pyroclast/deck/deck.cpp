@@ -31,8 +31,10 @@ std::string trimmed(const std::string& text) {
 
 }  // namespace
 
-Deck Deck::load(const std::filesystem::path& file, const std::vector<std::string>& changes) {
+Deck Deck::load(const std::filesystem::path& file, const std::vector<std::string>& changes,
+                const std::string& more) {
   std::string text = read_file(file);
+  if (!more.empty()) text += "\n" + more;
   for (const std::string& change : changes) {
     const auto equals = change.find('=');
     if (equals == std::string::npos)
@@ -57,6 +59,15 @@ const std::string& Deck::name() const {
 }
 const std::string& Deck::text() const {
   return record_->text();
+}
+const std::vector<DeckFile>& Deck::files() const {
+  return record_->files();
+}
+std::string Deck::with(const std::vector<std::pair<std::string, std::string>>& values) const {
+  std::string changed = text();
+  for (const auto& [key, value] : values)
+    changed = DeckRecord(std::move(changed), name()).with_value(key, value);
+  return changed;
 }
 Section Deck::root() const {
   return {*record_, &record_->root()};

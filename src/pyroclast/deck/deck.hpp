@@ -57,6 +57,13 @@ struct KeyForms {
   std::string name = {};
 };
 
+/// A file that a deck names.
+struct DeckFile {
+  std::string key;             ///< full path of the key that names it
+  std::filesystem::path file;  ///< where it was found
+  std::string rest;            ///< of the value, behind the file's name
+};
+
 /// One table of a deck: a cheap handle, valid as long as its Deck.
 ///
 /// Nothing in the deck makes reading throw. What cannot be read is recorded, and a value that is allowed is
@@ -174,6 +181,9 @@ class Section {
   /// Records a contradiction of the table as a whole.
   void error(std::string message) const;
 
+  /// Says that the key's value is the name of a file, followed by `rest`.
+  void names_file(std::string_view key, std::filesystem::path file, std::string rest = {}) const;
+
   /// Where the key stands (or its table, if the key is absent), as "file:line".
   std::string where(std::string_view key) const;
   /// Full path of the table, such as "contacts.mortar_mortar"; empty for the root.
@@ -210,11 +220,13 @@ class Section {
 class Deck {
  public:
   /// @throws DeckError if the file cannot be read, is empty or is not TOML.
-  /// @param changes  as "key=value" with the full path of a key that the deck has ("stages[1].rate=10
-  /// K/min");
-  ///                 `text` and places in messages are then those of the changed deck. Throws Error for one
-  ///                 that cannot be made.
-  static Deck load(const std::filesystem::path& file, const std::vector<std::string>& changes = {});
+  /// @param changes  as "key=value" with the full path of a key ("stages[1].rate=10 K/min"); one that the
+  /// deck does
+  ///                 not have is added. `text` and places in messages are then those of the changed deck.
+  ///                 Throws Error for one that cannot be made.
+  /// @param more  is appended before them
+  static Deck load(const std::filesystem::path& file, const std::vector<std::string>& changes = {},
+                   const std::string& more = "");
   /// The same for a text; `name` takes the file's place in messages.
   static Deck parse(std::string text, std::string name);
 
@@ -228,6 +240,11 @@ class Deck {
   const std::string& text() const;
 
   Section root() const;
+
+  /// Files that the deck names, in the order of reading.
+  const std::vector<DeckFile>& files() const;
+  /// The text with other values, by the full paths of their keys; a key that is missing is added.
+  std::string with(const std::vector<std::pair<std::string, std::string>>& values) const;
 
   /// Call once everything is read.
   /// @throws DeckError with every error recorded, and every key that was not read.

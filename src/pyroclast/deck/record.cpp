@@ -55,6 +55,15 @@ toml::table parse_toml(const SourceText& source, const std::string& name) {
   return root;
 }
 
+/// A value that is not TOML as it stands, such as 5 us, is a string.
+std::string as_toml(const std::string& value) {
+  try {
+    if (toml::parse("value = " + value).size() == 1) return value;
+  } catch (const toml::parse_error&) {  // then it is a string
+  }
+  return fmt::format("\"{}\"", value);
+}
+
 bool is_table_like(const toml::node& node) {
   return node.is_table() || node.is_array_of_tables();
 }
@@ -131,21 +140,39 @@ void DeckRecord::report(const TableRecord& table, const std::string& path, std::
 }
 
 std::string DeckRecord::with_value(std::string_view path, const std::string& value) const {
+  const std::string written = as_toml(value);
   const auto node = root_.at_path(path);
+  if (!node) return with_new_key(path, written);
   const auto* table = node.as_table();
-  if (!node || node.is_array_of_tables() || (table && !table->is_inline()))
-    throw Error(fmt::format("--set {}={}: {} has no such key; what it does not have must be written in it",
-                            path, value, name_));
-  // A value that is not TOML as it stands, such as 5 us, is a string.
-  bool is_toml = true;
-  try {
-    is_toml = toml::parse("value = " + value).size() == 1;
-  } catch (const toml::parse_error&) {
-    is_toml = false;
-  }
+  if (node.is_array_of_tables() || (table && !table->is_inline()))
+    throw Error(
+        fmt::format("--set {}={}: {} is a table of {}; name one of its keys", path, value, path, name_));
   const auto& region = node.node()->source();
-  return source_.replaced(position(region.begin), position(region.end),
-                          is_toml ? value : fmt::format("\"{}\"", value));
+  return source_.replaced(position(region.begin), position(region.end), written);
+}
+
+/// Below the header of the nearest table that there is; where that has no header of its own, above all.
+std::string DeckRecord::with_new_key(std::string_view path, const std::string& value) const {
+  const auto fits = [&](const std::string& text) {
+    try {
+      return static_cast<bool>(toml::parse(text).at_path(path));
+    } catch (const toml::parse_error&) {
+      return false;
+    }
+  };
+  for (std::string_view above = path; above.find('.') != std::string_view::npos;) {
+    above = above.substr(0, above.rfind('.'));
+    const auto table = root_.at_path(above);
+    if (!table.is_table()) continue;
+    const std::string_view key = path.substr(above.size() + 1);
+    const int line = position(table.node()->source().begin).line;
+    const SourcePosition end{line, static_cast<int>(source_.line(line).size()) + 1};
+    for (const std::string& text : {source_.replaced(end, end, fmt::format("\n{} = {}", key, value)),
+                                    fmt::format("{}\n[{}]\n{} = {}\n", source_.text(), above, key, value)})
+      if (fits(text)) return text;
+  }
+  if (const auto text = fmt::format("{} = {}\n{}", path, value, source_.text()); fits(text)) return text;
+  throw Error(fmt::format("--set {}={}: there is no place for this key in {}", path, value, name_));
 }
 
 bool DeckRecord::is_clean(std::string_view path) const {

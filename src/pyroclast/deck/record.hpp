@@ -8,6 +8,7 @@
 
 #include <toml++/toml.h>
 
+#include "pyroclast/deck/deck.hpp"
 #include "pyroclast/deck/diagnostic.hpp"
 #include "pyroclast/deck/source_text.hpp"
 
@@ -55,8 +56,12 @@ class DeckRecord {
   /// The record of a table, the same at each call.
   TableRecord& table(const toml::table& table, const std::string& path);
 
-  /// The text with another value at a path such as "stages[1].rate". Throws Error if the deck has none there.
+  /// The text with another value at a path such as "stages[1].rate". A key that is missing is added in its
+  /// table; a table that is missing, too. Throws Error where that cannot be done.
   std::string with_value(std::string_view path, const std::string& value) const;
+
+  void add_file(DeckFile file) { files_.push_back(std::move(file)); }
+  const std::vector<DeckFile>& files() const { return files_; }
 
   /// An error at a value.
   void report(const std::string& path, const toml::node& node, std::string message, std::string hint = {});
@@ -69,6 +74,7 @@ class DeckRecord {
   std::vector<Diagnostic> diagnostics() const;
 
  private:
+  std::string with_new_key(std::string_view path, const std::string& value) const;
   Diagnostic locate(const std::string& path, const toml::source_region& region) const;
   std::string as_written(const toml::node& node) const;
   Diagnostic not_read(const TableRecord& table, const toml::key& key, const toml::node& node) const;
@@ -82,6 +88,7 @@ class DeckRecord {
   std::map<const toml::table*, std::unique_ptr<TableRecord>> tables_;
   std::vector<const TableRecord*> tables_as_read_;
   std::vector<Diagnostic> diagnostics_;
+  std::vector<DeckFile> files_;
   SurveyRun* survey_ = nullptr;
 };
 

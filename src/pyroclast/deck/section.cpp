@@ -543,6 +543,10 @@ void Section::error(std::string message) const {
   if (table_) deck_->report(*table_, table_->path, std::move(message));
 }
 
+void Section::names_file(std::string_view key, std::filesystem::path file, std::string rest) const {
+  if (table_ && !deck_->survey()) deck_->add_file({table_->path_of(key), std::move(file), std::move(rest)});
+}
+
 std::string Section::where(std::string_view key) const {
   if (!table_) return deck_->name();
   const toml::node* node = table_->table.get(key);

@@ -174,6 +174,7 @@ std::optional<Curve> CurveReader::read_csv(const Section& forms, const Unit& uni
   const std::string file =
       forms.text("csv", "CSV file beside the deck: two columns under a header with units");
   if (file.empty()) return std::nullopt;
+  forms.names_file("csv", folder_ / file);
   return try_at(forms, "csv", [&] {
     return read_curve_csv(
         folder_ / file, axis_,

@@ -102,10 +102,18 @@ enum class Touched : std::uint8_t {
   combined   ///< all with combined damping, else none
 };
 
-/// What an array is for. Memory, traffic and copies of a body follow from the lists of arrays.
+/// How long the contents of an array last.
+enum class Lasts : std::uint8_t {
+  made,    ///< follows from the model and its properties
+  kept,    ///< from one step to the next: part of a checkpoint
+  a_step,  ///< is worked out anew by each step
+};
+
+/// What an array is for. Memory, traffic, checkpoints and copies of a body follow from the lists of arrays.
 struct ArrayInfo {
   const char* name;
   Touched read = Touched::none, written = Touched::none;
+  Lasts lasts = Lasts::made;
 };
 
 /// Calls `f(ArrayInfo, array...)` for each array of a list; several lists of the same kind go side by side.

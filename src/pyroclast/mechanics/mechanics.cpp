@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -315,17 +316,26 @@ void Mechanics<Dim>::set_masses(const std::vector<double>& densities) {
 
 /// Density scaling: the mass with which each gridpoint's own limit is the common step.
 template <int Dim>
+double Mechanics<Dim>::scaled_mass(int gridpoint) const {
+  const double half = 0.5 * parameters_.time_step / parameters_.safety;
+  return stiffness_[gridpoint] * (1.0 + parameters_.local_damping) * half * half;
+}
+
+template <int Dim>
 void Mechanics<Dim>::scale_masses() {
   state_.time_step = parameters_.time_step;
-  const double half = 0.5 * time_step() / parameters_.safety;
   mass_.resize(stiffness_.size());
-  const auto scaled = [&](int g) { return stiffness_[g] * (1.0 + parameters_.local_damping) * half * half; };
   // of the half step begun with the old mass; nothing moves yet when the first masses are made
   begun_mass_scaling_ += chunked_sum(layout_->chunks.gridpoints, [&](int g) {
     const Vec<Dim> v = velocity(g);
-    return 0.5 * (scaled(g) - mass_[g]) * dot(v, v);
+    return 0.5 * (scaled_mass(g) - mass_[g]) * dot(v, v);
   });
-  for (int g = 0; g < model_.gridpoint_count(); ++g) mass_[g] = scaled(g);
+  set_moving_mass();
+}
+
+template <int Dim>
+void Mechanics<Dim>::set_moving_mass() {
+  for (int g = 0; g < model_.gridpoint_count(); ++g) mass_[g] = scaled_mass(g);
   moving_mass_ = chunked_sum(layout_->chunks.gridpoints, [&](int g) { return mass_[g]; });
   set_step_over_mass();
 }
@@ -531,6 +541,111 @@ void Mechanics<Dim>::advance(int steps) {
   if (steps > 1) sweep(steps - 1, Pass::move);
   sweep(1, Pass::move_and_measure);
   steps_ += steps;
+}
+
+// Checkpoints
+
+/// Fills all that steps change with NaN; in idle places forces stay zero, for gridpoints gather from them
+/// too.
+template <int Dim>
+void Mechanics<Dim>::forget() {
+  for_each_array(
+      [](const ArrayInfo& info, auto& array) {
+        if (info.lasts == Lasts::kept) std::memset(static_cast<void*>(array.data()), 0xff, bytes_of(array));
+      },
+      storage_);
+  Vec<Dim> nothing;
+  nothing.c.fill(std::numeric_limits<double>::quiet_NaN());
+  for (auto* forces : {&storage_.contact_force, &storage_.turning_force})
+    for (const int slot : layout_->contact_slot)
+      if (!forces->empty()) (*forces)[slot] = nothing;
+}
+
+template <int Dim>
+void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
+  if (visitor.replaces()) forget();
+  visitor.visit("steps", steps_);
+  visitor.visit("time_step", state_.time_step);  // of real mass: fixed when the run began
+  visitor.visit("property_change", property_change_);
+  visitor.visit("mass_scaling", mass_scaling_);
+  visitor.visit("begun_property_change", begun_property_change_);
+  visitor.visit("begun_mass_scaling", begun_mass_scaling_);
+  visitor.visit("made_constraints", made_constraints_);
+  for_each_array(
+      [&](const ArrayInfo& info, auto& array) {
+        if constexpr (!std::is_same_v<decltype(*array.data()), bool&>)
+          if (info.lasts == Lasts::kept) visitor.visit(info.name, array);
+      },
+      storage_);
+  visit_ties(visitor);
+  visit_properties(visitor);
+  if (!visitor.replaces()) return;
+  place_properties();
+  compute_stiffness();
+  if (parameters_.mass == MassChoice::scaled)
+    set_moving_mass();
+  else
+    set_step_over_mass();
+}
+
+template <int Dim>
+void Mechanics<Dim>::visit_ties(StateVisitor& visitor) {
+  std::vector<int> numbers;
+  for (const TieOfBundle& tie : ties_) {
+    numbers.insert(numbers.end(), {tie.bundle, tie.component, static_cast<int>(tie.slots.size())});
+    numbers.insert(numbers.end(), tie.slots.begin(), tie.slots.end());
+  }
+  visitor.visit("ties_of_bundles", numbers);
+  if (!visitor.replaces()) return;
+  ties_.clear();
+  for (auto i = numbers.begin(); i != numbers.end();) {
+    const auto slots = i + 3;
+    const auto end = slots + i[2];
+    ties_.push_back({i[0], i[1], {slots, end}});
+    i = end;
+  }
+}
+
+/// Of the temperatures that were last handed over; the field may be at others by now.
+template <int Dim>
+void Mechanics<Dim>::visit_properties(StateVisitor& visitor) {
+  bool by_block = state_.by_bundle;
+  visitor.visit("properties_by_block", by_block);
+  std::vector<ZoneProperties> zones;
+  if (by_block)
+    for (int b = 0; b < model_.block_count(); ++b) zones.push_back(properties_.zones[model_.block_zones[b]]);
+  else
+    zones = properties_.zones;
+  visitor.visit("zone_properties", zones);
+
+  ContactSets& sets = properties_.contacts;
+  std::vector<int> laws, choices;
+  std::vector<double> numbers;
+  for (int set = 0; set < sets.size(); ++set) {
+    laws.push_back(static_cast<int>(std::ranges::find(laws_, &sets.law(set)) - laws_.begin()));
+    numbers.insert(numbers.end(), sets.numbers(set).begin(), sets.numbers(set).end());
+    choices.insert(choices.end(), sets.choices(set).begin(), sets.choices(set).end());
+  }
+  visitor.visit("law_of_set", laws);
+  visitor.visit("numbers_of_sets", numbers);
+  visitor.visit("choices_of_sets", choices);
+  visitor.visit("set_of_contact", properties_.of_contact);
+  if (!visitor.replaces()) return;
+
+  for (int b = 0; b < model_.block_count(); ++b)
+    for (int z = model_.block_zones[b]; z < model_.block_zones[b + 1]; ++z)
+      properties_.zones[z] = zones.at(by_block ? b : z);
+  sets = {};
+  auto number = numbers.begin();
+  auto choice = choices.begin();
+  for (const int index : laws) {
+    const LawTable& law = *laws_.at(index);
+    const auto last_number = number + static_cast<std::ptrdiff_t>(law.properties.size());
+    const auto last_choice = choice + static_cast<std::ptrdiff_t>(law.choices.size());
+    sets.add({law, {number, last_number}, {choice, last_choice}});
+    number = last_number;
+    choice = last_choice;
+  }
 }
 
 template <int Dim>

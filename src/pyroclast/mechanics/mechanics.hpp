@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/laws/contact_properties.hpp"
 #include "pyroclast/mechanics/instruction_set.hpp"
@@ -166,6 +167,10 @@ class Mechanics {
   /// Runs a number of steps.
   void advance(int steps);
 
+  /// Of a body of the same model and laws. Where the visitor replaces the state, all that lasts from step to
+  /// step is filled with NaN first: what is missing does not pass for what was there.
+  void visit_state(StateVisitor& visitor);
+
   double time() const { return static_cast<double>(steps_) * time_step(); }
   std::int64_t steps() const { return steps_; }
   double time_step() const { return state_.time_step; }
@@ -255,8 +260,13 @@ class Mechanics {
   FlatArray<double> make_scratch() const;
   void compute_stiffness();
   void set_masses(const std::vector<double>& densities);
+  double scaled_mass(int gridpoint) const;
   void scale_masses();
+  void set_moving_mass();
   void set_step_over_mass();
+  void forget();
+  void visit_properties(StateVisitor& visitor);
+  void visit_ties(StateVisitor& visitor);
   int constraints_of(int gridpoint);
   void drop_if_free(int bundle);
   ConstraintRow<Dim>& constraint_row(int constraints, int gridpoint);

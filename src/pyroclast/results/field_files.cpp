@@ -97,21 +97,34 @@ std::vector<std::string> frame_columns(const History& history) {
   return names;
 }
 
+std::string frame_line(const History& history, const std::vector<std::string>& columns, std::size_t frame,
+                       std::int64_t row) {
+  std::vector<std::optional<double>> cells;
+  for (const auto& name : columns) cells.push_back(history.cell(static_cast<std::size_t>(row), name));
+  return fmt::format("{},{}", frame, printed_row(cells));
+}
+
+/// Of frames.csv.
+std::string text_of(const History& history, const std::vector<std::string>& columns,
+                    const FrameRecords& frames) {
+  std::string text = fmt::format("frame,{}\n", fmt::join(columns, ","));
+  for (std::size_t i = 0; i < frames.rows.size(); ++i)
+    text += frame_line(history, columns, i, frames.rows[i]) + "\n";
+  return text;
+}
+
 }  // namespace
 
 FieldFiles::FieldFiles(const std::filesystem::path& folder, const Simulation& simulation,
-                       const History& history)
-    : frames_(created(folder) / "frames.csv"),
-      columns_(frame_columns(history)),
-      blocks_(folder, MeshPart::blocks) {
-  if (simulation.moves()) contacts_.emplace(folder, MeshPart::contacts);
-  frames_.line(fmt::format("frame,{}", fmt::join(columns_, ",")));
+                       const History& history, const FrameRecords& frames)
+    : columns_(frame_columns(history)),
+      frames_(created(folder) / "frames.csv", text_of(history, columns_, frames)),
+      blocks_(folder, MeshPart::blocks, frames.times) {
+  if (simulation.moves()) contacts_.emplace(folder, MeshPart::contacts, frames.times);
   write_mesh(folder, simulation.model());
 }
 
-void FieldFiles::write(const Simulation& simulation, const History& history) {
-  std::vector<std::string> cells{std::to_string(blocks_.count())};
-  for (const auto& name : columns_) cells.push_back(printed(history.last(name)));
+void FieldFiles::write(const Simulation& simulation, const History& history, FrameRecords& frames) {
   const double time = simulation.moves() ? simulation.mechanics().time() : simulation.heating_time();
   blocks_.write(time, [&](Hdf5File& file) {
     if (simulation.moves()) write_motion(file, simulation.mechanics());
@@ -119,7 +132,10 @@ void FieldFiles::write(const Simulation& simulation, const History& history) {
   });
   if (contacts_)
     contacts_->write(time, [&](Hdf5File& file) { write_contacts(file, simulation.mechanics()); });
-  frames_.line(fmt::format("{}", fmt::join(cells, ",")));
+  const auto row = static_cast<std::int64_t>(history.row_count()) - 1;
+  frames_.line(frame_line(history, columns_, frames.rows.size(), row));
+  frames.rows.push_back(row);
+  frames.times.push_back(time);
 }
 
 }  // namespace pyroclast

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,19 +13,27 @@
 
 namespace pyroclast {
 
+/// Frames of the fields that were written so far.
+struct FrameRecords {
+  std::vector<std::int64_t> rows;  ///< of the history, at which they were taken
+  std::vector<double> times;       ///< s
+};
+
 /// The fields of a run: `mesh.h5`, frames of the blocks and, where the body moves, of the contacts, see
 /// FrameSeries, and `frames.csv`, which lists them with some columns of the history.
 class FieldFiles {
  public:
-  /// Creates the folder and writes the mesh.
-  FieldFiles(const std::filesystem::path& folder, const Simulation& simulation, const History& history);
+  /// Creates the folder, writes the mesh and lists the frames that are there.
+  FieldFiles(const std::filesystem::path& folder, const Simulation& simulation, const History& history,
+             const FrameRecords& frames);
 
-  /// A frame of the fields now; its time is that of the mechanics, or of heating where nothing moves.
-  void write(const Simulation& simulation, const History& history);
+  /// A frame of the fields now; its time is that of the mechanics, or of heating where nothing moves. Adds it
+  /// to `frames` once all of it is written.
+  void write(const Simulation& simulation, const History& history, FrameRecords& frames);
 
  private:
-  LineFile frames_;
   std::vector<std::string> columns_;  ///< of the history, that frames.csv has
+  LineFile frames_;
   FrameSeries blocks_;
   std::optional<FrameSeries> contacts_;
 };

@@ -111,11 +111,18 @@ void write_mesh(const std::filesystem::path& folder, const Model<2>& model) {
   file.close();
 }
 
-FrameSeries::FrameSeries(std::filesystem::path folder, MeshPart part)
-    : folder_(std::move(folder)), part_(part) {}
+FrameSeries::FrameSeries(std::filesystem::path folder, MeshPart part, std::vector<double> times)
+    : folder_(std::move(folder)), part_(part), times_(std::move(times)) {
+  for (int later = count(); std::filesystem::remove(folder_ / file_name(part_, later)); ++later) continue;
+  if (count() > 0) write_series();
+}
+
+std::string FrameSeries::file_name(MeshPart part, int frame) {
+  return fmt::format("{}_{:04}.hdf", name(part), frame);
+}
 
 void FrameSeries::write(double time, const std::function<void(Hdf5File&)>& fields) {
-  Hdf5File file(folder_ / fmt::format("{}_{:04}.hdf", name(part_), count()));
+  Hdf5File file(folder_ / file_name(part_, count()));
   link_mesh(file, part_);
   fields(file);
   file.close();
@@ -127,7 +134,7 @@ void FrameSeries::write_series() const {
   nlohmann::ordered_json series;
   series["file-series-version"] = "1.0";
   for (int i = 0; i < count(); ++i)
-    series["files"].push_back({{"name", fmt::format("{}_{:04}.hdf", name(part_), i)}, {"time", times_[i]}});
+    series["files"].push_back({{"name", file_name(part_, i)}, {"time", times_[i]}});
   write_text_file(folder_ / fmt::format("{}.hdf.series", name(part_)), series.dump(1) + "\n");
 }
 

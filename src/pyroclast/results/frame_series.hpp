@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "pyroclast/model/model.hpp"
@@ -22,13 +23,16 @@ void write_mesh(const std::filesystem::path& folder, const Model<2>& model);
 /// `contacts.hdf.series` opens all as a time series.
 class FrameSeries {
  public:
-  FrameSeries(std::filesystem::path folder, MeshPart part);
+  /// \param times  of the frames that are there, s; later ones that a run broken off left are removed
+  FrameSeries(std::filesystem::path folder, MeshPart part, std::vector<double> times = {});
 
   /// \param time    s
   /// \param fields  adds the frame's datasets below /VTKHDF/PointData and /VTKHDF/CellData
   void write(double time, const std::function<void(Hdf5File&)>& fields);
 
   int count() const { return static_cast<int>(times_.size()); }
+  /// Name of a frame's file.
+  static std::string file_name(MeshPart part, int frame);
 
  private:
   void write_series() const;

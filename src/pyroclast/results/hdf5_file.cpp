@@ -7,7 +7,7 @@
 #include <hdf5.h>
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/results/publish.hpp"
+#include "pyroclast/results/text_file.hpp"
 
 namespace pyroclast {
 
@@ -22,20 +22,39 @@ struct Handle {
   }
 };
 
+/// A list of properties.
+class Properties {
+ public:
+  explicit Properties(hid_t kind) : id_(H5Pcreate(kind)) {}
+  ~Properties() { H5Pclose(id_); }
+  Properties(const Properties&) = delete;
+  Properties& operator=(const Properties&) = delete;
+  operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor)
+
+ private:
+  hid_t id_;
+};
+
+/// Of something new, without the times at which it is written: equal runs give equal files.
+class Untimed : public Properties {
+ public:
+  explicit Untimed(hid_t kind) : Properties(kind) { H5Pset_obj_track_times(*this, false); }
+};
+
 }  // namespace
 
-Hdf5File::Hdf5File(std::filesystem::path path) : path_(std::move(path)), partial_(path_) {
+Hdf5File::Hdf5File(std::filesystem::path path) : path_(std::move(path)) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  partial_ += ".partial";
-  file_ = H5Fcreate(partial_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  // It grows in memory and is written by us: the library does not survive a disk that fills up below it.
+  constexpr std::size_t kGrowth = std::size_t{1} << 20;
+  const Properties access(H5P_FILE_ACCESS);
+  H5Pset_fapl_core(access, kGrowth, false);
+  file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, Untimed(H5P_FILE_CREATE), access);
   if (file_ < 0) fail("cannot be created");
 }
 
 Hdf5File::~Hdf5File() {
-  if (file_ < 0) return;
-  H5Fclose(file_);
-  std::error_code ignored;
-  std::filesystem::remove(partial_, ignored);
+  if (file_ >= 0) H5Fclose(file_);
 }
 
 void Hdf5File::fail(const std::string& what) const {
@@ -45,7 +64,8 @@ void Hdf5File::fail(const std::string& what) const {
 }
 
 void Hdf5File::group(const std::string& name) {
-  const Handle<H5Gclose> group{H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)};
+  const Handle<H5Gclose> group{
+      H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, Untimed(H5P_GROUP_CREATE), H5P_DEFAULT)};
   if (group.id < 0) fail("group " + name + " cannot be written");
 }
 
@@ -57,7 +77,7 @@ void Hdf5File::write(const std::string& name, std::int64_t type, const void* dat
   const Handle<H5Sclose> space{H5Screate_simple(rank, dims, nullptr)};
   // Not compressed: most bytes of a field are noise, and deflating a frame takes as long as 150 steps.
   const Handle<H5Dclose> set{
-      H5Dcreate2(file_, name.c_str(), type, space.id, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)};
+      H5Dcreate2(file_, name.c_str(), type, space.id, H5P_DEFAULT, Untimed(H5P_DATASET_CREATE), H5P_DEFAULT)};
   if (set.id < 0 || (count > 0 && H5Dwrite(set.id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0))
     fail("dataset " + name + " cannot be written");
 }
@@ -113,17 +133,13 @@ void Hdf5File::external_link(const std::string& name, const std::string& file, c
 
 void Hdf5File::close() {
   errno = 0;
-  const bool flushed = H5Fflush(file_, H5F_SCOPE_LOCAL) >= 0;
-  const int cause = errno;
-  const bool closed = H5Fclose(file_) >= 0;
+  if (H5Fflush(file_, H5F_SCOPE_LOCAL) < 0) fail("cannot be made");
+  const ssize_t bytes = H5Fget_file_image(file_, nullptr, 0);
+  std::string image(bytes > 0 ? static_cast<std::size_t>(bytes) : 0, '\0');
+  if (bytes <= 0 || H5Fget_file_image(file_, image.data(), image.size()) != bytes) fail("cannot be made");
+  H5Fclose(file_);
   file_ = -1;
-  if (!flushed || !closed) {
-    std::error_code ignored;
-    std::filesystem::remove(partial_, ignored);
-    if (!flushed) errno = cause;
-    fail("cannot be written");
-  }
-  publish(partial_, path_);
+  write_text_file(path_, image);
 }
 
 }  // namespace pyroclast

@@ -7,8 +7,8 @@
 
 namespace pyroclast {
 
-/// An HDF5 file being written. It appears under its name only when `close` succeeded, so a reader never meets
-/// a half-written one. Every failure (a full disk, say) is an Error that names the file.
+/// An HDF5 file being made, in memory. It appears under its name only when `close` succeeded, so a reader
+/// never meets a half-written one. Every failure (a full disk, say) is an Error that names the file.
 class Hdf5File {
  public:
   explicit Hdf5File(std::filesystem::path path);
@@ -37,7 +37,7 @@ class Hdf5File {
                        std::int64_t space, const void* data);
   [[noreturn]] void fail(const std::string& what) const;
 
-  std::filesystem::path path_, partial_;
+  std::filesystem::path path_;
   std::int64_t file_ = -1;
 };
 

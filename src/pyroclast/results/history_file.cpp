@@ -8,16 +8,29 @@
 
 namespace pyroclast {
 
-HistoryFile::HistoryFile(const std::filesystem::path& path, const History& history) : file_(path) {
+namespace {
+
+std::string text_of(const History& history) {
   std::vector<std::string> names;
   for (const Column& column : history.columns()) names.push_back(column.name);
-  file_.line(fmt::format("{}", fmt::join(names, ",")));
+  std::string text = fmt::format("{}\n", fmt::join(names, ","));
+  for (std::size_t row = 0; row < history.row_count(); ++row) text += printed_row(history.row(row)) + "\n";
+  return text;
 }
 
+}  // namespace
+
+HistoryFile::HistoryFile(const std::filesystem::path& path, const History& history)
+    : file_(path, text_of(history)) {}
+
 void HistoryFile::write(const History& history) {
+  file_.line(printed_row(history.row(history.row_count() - 1)));
+}
+
+std::string printed_row(const std::vector<std::optional<double>>& row) {
   std::vector<std::string> cells;
-  for (const auto& value : history.row(history.row_count() - 1)) cells.push_back(printed(value));
-  file_.line(fmt::format("{}", fmt::join(cells, ",")));
+  for (const auto& value : row) cells.push_back(printed(value));
+  return fmt::format("{}", fmt::join(cells, ","));
 }
 
 std::string printed(const std::optional<double>& value) {

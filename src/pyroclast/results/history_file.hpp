@@ -1,6 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/simulation/history.hpp"
@@ -11,7 +14,7 @@ namespace pyroclast {
 /// of its row does not have the quantity.
 class HistoryFile {
  public:
-  /// Writes the names of the columns.
+  /// Writes the names of the columns, and the rows that there are.
   HistoryFile(const std::filesystem::path& path, const History& history);
   /// Writes the last row.
   void write(const History& history);
@@ -19,6 +22,9 @@ class HistoryFile {
  private:
   LineFile file_;
 };
+
+/// A line of a CSV file of some cells of a row.
+std::string printed_row(const std::vector<std::optional<double>>& cells);
 
 /// A value as the result files have it; nothing where there is none.
 std::string printed(const std::optional<double>& value);

@@ -6,27 +6,44 @@
 
 namespace pyroclast {
 
-Recorder::Recorder(std::filesystem::path folder, const Setup& setup, const Run& run)
+Recorder::Recorder(std::filesystem::path folder, const Setup& setup)
     : folder_(std::move(folder)),
       title_(setup.title),
       expansion_reading_(setup.expansion_reading == ExpansionReading::secant ? "secant" : "tangent"),
-      history_(folder_ / "history.csv", run.history()),
-      fields_(folder_ / "fields", run.simulation(), run.history()) {
-  write_specimen_files(folder_ / "specimen", run.simulation().specimen(), setup.specimen);
+      specimen_(setup.specimen) {}
+
+void Recorder::begin(const Run& run) {
+  std::filesystem::remove(folder_ / "summary.json");
+  history_.emplace(folder_ / "history.csv", run.history());
+  fields_.emplace(folder_ / "fields", run.simulation(), run.history(), frames_);
+  write_specimen_files(folder_ / "specimen", run.simulation().specimen(), specimen_);
 }
 
 void Recorder::record(const Run& run) {
-  history_.write(run.history());
-  if (run.frame_is_due()) fields_.write(run.simulation(), run.history());
+  history_->write(run.history());
+  if (run.frame_is_due()) fields_->write(run.simulation(), run.history(), frames_);
 }
 
 Summary Recorder::finish(const Run& run) {
   Summary summary = summarize(run);
   summary.title = title_;
   summary.expansion_reading = expansion_reading_;
-  summary.wall_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  summary.wall_time = wall_time();
   write_summary(folder_ / "summary.json", summary, run);
   return summary;
+}
+
+double Recorder::wall_time() const {
+  return earlier_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void Recorder::visit_state(StateVisitor& visitor) {
+  const StateVisitor::Scope scope(visitor, "results");
+  double time = wall_time();
+  visitor.visit("wall_time", time);
+  visitor.visit("frame_rows", frames_.rows);
+  visitor.visit("frame_times", frames_.times);
+  if (visitor.replaces()) earlier_ = time;
 }
 
 }  // namespace pyroclast

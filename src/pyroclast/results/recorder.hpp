@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "pyroclast/results/field_files.hpp"
@@ -15,25 +16,37 @@ namespace pyroclast {
 /// Writes what a run gives into its folder as it comes: `history.csv`, `fields/`, `specimen/`, and at the end
 /// `summary.json`:
 ///
+///     recorder.begin(run);
 ///     while (run.next()) recorder.record(run);
 ///     recorder.finish(run);
 class Recorder {
  public:
-  /// Writes the specimen and the mesh. Throws Error when a file cannot be written.
+  /// Touches nothing yet.
   /// \param folder  exists, see RunFolder
-  Recorder(std::filesystem::path folder, const Setup& setup, const Run& run);
+  Recorder(std::filesystem::path folder, const Setup& setup);
 
+  /// Writes the specimen, the mesh, and all rows that there are; of a run that goes on from a checkpoint,
+  /// what was written after it goes. Throws Error when a file cannot be written.
+  void begin(const Run& run);
   /// Writes the last row, and the fields where they are due.
   void record(const Run& run);
   /// Writes the summary of the rows so far.
   Summary finish(const Run& run);
 
+  /// Of the run, with those parts of it that other processes did, s.
+  double wall_time() const;
+  const FrameRecords& frames() const { return frames_; }
+  void visit_state(StateVisitor& visitor);
+
  private:
   std::filesystem::path folder_;
   std::string title_;
   std::string expansion_reading_;
-  HistoryFile history_;
-  FieldFiles fields_;
+  specimen::SpecimenParameters specimen_;
+  std::optional<HistoryFile> history_;
+  std::optional<FieldFiles> fields_;
+  FrameRecords frames_;
+  double earlier_ = 0.0;  ///< wall time of earlier processes, s
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

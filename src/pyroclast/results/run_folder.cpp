@@ -32,7 +32,10 @@ constexpr auto kWritten = std::to_array<const char*>({
     "deck.toml",
     "history.csv",
     "summary.json",
-    "laws/*",
+    "lock",
+    "run.log",
+    "inputs/*",
+    "checkpoints/*.state",
     "specimen/aggregates.csv",
     "specimen/gradation.csv",
     "specimen/specimen.json",
@@ -43,6 +46,8 @@ constexpr auto kWritten = std::to_array<const char*>({
     "fields/contacts.hdf.series",
     "fields/contacts_[0-9]*.hdf",
 });
+constexpr auto kFolders =
+    std::to_array<std::string_view>({"specimen", "fields", "figures", "checkpoints", "inputs"});
 /// Names of figures, in any format.
 constexpr auto kFigures = std::to_array<const char*>({
     "convergence",
@@ -96,71 +101,43 @@ std::vector<fs::path> remove_own_files(const fs::path& folder) {
       (is_own(name) ? own : foreign).push_back(name);
   }
   for (const auto& name : own)
-    if (name != kManifest) fs::remove(folder / name);
+    if (name != kManifest && name != "lock") fs::remove(folder / name);
   std::error_code not_empty;
   for (const auto& name : folders)
-    if (name == "specimen" || name == "fields" || name == "figures") fs::remove(folder / name, not_empty);
+    if (std::ranges::find(kFolders, name) != kFolders.end()) fs::remove(folder / name, not_empty);
   std::ranges::sort(foreign);
   return foreign;
-}
-
-/// Makes a folder and those above it that are missing; appends to `made` those that were not there.
-std::error_code make_folders(const fs::path& path, std::vector<fs::path>& made) {
-  // A folder above may go between two calls: another run was only checking, too.
-  constexpr int kAttempts = 10;
-  std::error_code error;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    const fs::file_status status = fs::status(path, error);
-    if (fs::is_directory(status)) return {};
-    if (fs::exists(status)) return std::make_error_code(std::errc::not_a_directory);
-    const fs::path parent = path.parent_path();
-    if (parent != path)
-      if (const auto above = make_folders(parent, made)) return above;
-    if (fs::create_directory(path, error)) made.push_back(path);
-    if (error != std::errc::no_such_file_or_directory) return error;
-  }
-  return error;
-}
-
-/// As `make_folders` needs it: absolute, without dots and a slash at the end.
-fs::path plain(const fs::path& path) {
-  const fs::path whole = fs::absolute(path).lexically_normal();
-  return whole.has_filename() ? whole : whole.parent_path();
 }
 
 }  // namespace
 
 void RunFolder::check(const fs::path& path, bool overwrite) {
-  if (fs::exists(path)) {
-    if (!fs::is_directory(path)) throw Error(fmt::format("{}: exists and is not a folder", path.string()));
-    if (fs::is_empty(path)) return;
-    if (!overwrite)
-      throw Error(fmt::format("{}: exists already; choose another folder with --out, or --overwrite it",
-                              path.string()));
-    if (!holds_a_run(path))
-      throw Error(fmt::format("{}: is not empty and holds no {} of a run, so it is not overwritten",
-                              path.string(), kManifest));
-    return;
-  }
-  // Making it and taking it away again is the only test that knows every file system. Another run may have
-  // begun in a folder above meanwhile; that one is not empty then, and stays.
-  std::vector<fs::path> made;
-  const std::error_code error = make_folders(plain(path), made);
-  std::error_code not_empty;
-  for (auto folder = made.rbegin(); folder != made.rend(); ++folder) fs::remove(*folder, not_empty);
-  if (error) throw Error(fmt::format("{}: cannot be made ({})", path.string(), error.message()));
+  const bool holds_files = std::ranges::any_of(
+      fs::directory_iterator(path), [](const auto& entry) { return entry.path().filename() != "lock"; });
+  if (!holds_files) return;
+  if (!overwrite)
+    throw Error(fmt::format("{}: exists already; choose another folder with --out, or --overwrite it",
+                            path.string()));
+  if (!holds_a_run(path))
+    throw Error(fmt::format("{}: is not empty and holds no {} of a run, so it is not overwritten",
+                            path.string(), kManifest));
+}
+
+void RunFolder::require(const fs::path& path) {
+  if (!fs::is_directory(path))
+    throw Error(fmt::format("{}: there is no such folder of a run", path.string()));
+  if (!holds_a_run(path))
+    throw Error(fmt::format("{}: holds no {} of pyroclast, so it is not the folder of a run", path.string(),
+                            kManifest));
 }
 
 RunFolder::RunFolder(fs::path path, bool overwrite, const Manifest& manifest) : path_(std::move(path)) {
   check(path_, overwrite);
   try {
-    if (fs::exists(path_)) foreign_ = remove_own_files(path_);
+    foreign_ = remove_own_files(path_);
   } catch (const fs::filesystem_error& e) {
     throw Error(fmt::format("{}: cannot be overwritten ({})", e.path1().string(), e.code().message()));
   }
-  std::vector<fs::path> made;
-  if (const std::error_code error = make_folders(plain(path_), made))
-    throw Error(fmt::format("{}: cannot be made ({})", path_.string(), error.message()));
   nlohmann::ordered_json json;
   json["program"] = kProgram;
   json["version"] = kVersion;
@@ -168,7 +145,10 @@ RunFolder::RunFolder(fs::path path, bool overwrite, const Manifest& manifest) : 
   json["physics_version"] = kPhysicsVersion;
   json["command"] = manifest.command;
   json["deck"] = manifest.deck_name;
-  json["deck_sha256"] = sha256(manifest.deck_text);
+  json["deck_sha256"] = sha256(manifest.inputs.deck_text);
+  for (const InputFile& input : manifest.inputs.files)
+    json["inputs"].push_back(
+        {{"name", input.name}, {"sha256", sha256(input.contents)}, {"source", input.source.string()}});
   json["seed"] = manifest.seed;
   json["threads"] = manifest.threads;
   json["instructions"] = manifest.instructions;
@@ -178,13 +158,14 @@ RunFolder::RunFolder(fs::path path, bool overwrite, const Manifest& manifest) : 
                             {"shared_object", law.shared_object.string()},
                             {"compiler", law.compiler},
                             {"header", law.header.string()}});
+  if (manifest.parent)
+    json["parent"] = {{"folder", fs::absolute(manifest.parent->folder).lexically_normal().string()},
+                      {"from_stage", manifest.parent->stage},
+                      {"changes", manifest.parent->changes}};
   write_text_file(path_ / kManifest, json.dump(2) + "\n");
-  write_text_file(path_ / "deck.toml", manifest.deck_text);
-  for (const OwnLaw& law : manifest.laws)
-    if (!law.header.empty()) {
-      fs::create_directory(path_ / "laws");
-      write_text_file(path_ / "laws" / law.header.filename(), law.header_text);
-    }
+  if (!manifest.inputs.files.empty()) fs::create_directory(path_ / "inputs");
+  for (const InputFile& input : manifest.inputs.files) write_text_file(path_ / input.name, input.contents);
+  write_text_file(path_ / "deck.toml", manifest.inputs.deck_text);
 }
 
 }  // namespace pyroclast

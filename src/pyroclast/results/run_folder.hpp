@@ -2,8 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "pyroclast/results/inputs.hpp"
 
 namespace pyroclast {
 
@@ -12,19 +15,26 @@ struct OwnLaw {
   std::string name;
   std::filesystem::path shared_object;
   std::filesystem::path header;  ///< that it was compiled from; may be empty
-  std::string header_text;
   std::string compiler;
+};
+
+/// What a run goes on from that was begun in another folder.
+struct Parent {
+  std::filesystem::path folder;
+  std::int64_t stage = 0;            ///< the last that both have in common, from 0
+  std::vector<std::string> changes;  ///< "key=value", and files of more stages
 };
 
 /// What a run was made from.
 struct Manifest {
   std::string deck_name;
-  std::string deck_text;  ///< as read, byte by byte
+  Inputs inputs;
   std::uint64_t seed = 0;
   int threads = 1;
   std::string instructions;  ///< instruction set of the step
   std::string command;
   std::vector<OwnLaw> laws;
+  std::optional<Parent> parent;
 };
 
 /// One folder holding everything of one run. Refused when it holds anything, unless overwriting was asked
@@ -32,10 +42,12 @@ struct Manifest {
 /// removed from it.
 class RunFolder {
  public:
-  /// Checks that the folder can be made; leaves nothing behind. Throws Error otherwise.
+  /// Throws Error when the folder, which this process has locked, may not be written.
   static void check(const std::filesystem::path& path, bool overwrite);
+  /// Throws Error when it is not the folder of a run.
+  static void require(const std::filesystem::path& path);
 
-  /// Makes the folder, with `deck.toml` and `manifest.json` in it.
+  /// Puts `deck.toml`, `manifest.json` and `inputs/` into the folder, which this process has locked.
   RunFolder(std::filesystem::path path, bool overwrite, const Manifest& manifest);
 
   const std::filesystem::path& path() const { return path_; }

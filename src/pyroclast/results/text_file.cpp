@@ -35,7 +35,9 @@ void write_text_file(const std::filesystem::path& path, const std::string& text)
   publish(partial, path);
 }
 
-LineFile::LineFile(std::filesystem::path path) : path_(std::move(path)), stream_(path_, std::ios::binary) {
+LineFile::LineFile(std::filesystem::path path, const std::string& text) : path_(std::move(path)) {
+  write_text_file(path_, text);
+  stream_.open(path_, std::ios::binary | std::ios::app);
   if (!stream_) fail(path_);
 }
 

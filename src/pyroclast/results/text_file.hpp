@@ -6,7 +6,7 @@
 
 namespace pyroclast {
 
-/// Writes a whole text file: all of it appears under its name, or none (see publish). Throws Error naming the
+/// Writes a whole file: all of it appears under its name, or none (see publish). Throws Error naming the
 /// file.
 void write_text_file(const std::filesystem::path& path, const std::string& text);
 
@@ -14,7 +14,8 @@ void write_text_file(const std::filesystem::path& path, const std::string& text)
 /// the file when a line cannot be written.
 class LineFile {
  public:
-  explicit LineFile(std::filesystem::path path);
+  /// \param text  with which it begins: in place of what stands there, whole or not at all
+  LineFile(std::filesystem::path path, const std::string& text);
   void line(const std::string& text);
 
  private:

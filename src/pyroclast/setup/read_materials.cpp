@@ -15,6 +15,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/material/thermal_strain.hpp"
+#include "pyroclast/plugin/load.hpp"
 
 namespace pyroclast {
 
@@ -269,12 +270,26 @@ class InterfaceReader {
     const std::string stated =
         s.word_or_text("law", words, "a law of your own, see [laws.md](laws.md)", "contact law");
     try {
-      return find_law_(stated);
+      const LawTable& law = find_law_(stated);
+      for (const LoadedLaw* loaded : loaded_laws())
+        if (&loaded->table == &law) name_file(s, *loaded, stated);
+      return law;
     } catch (const Error& error) {
       s.error("law", error.what());
       s.leave_open();
       return *built_in_laws().front();
     }
+  }
+
+  /// Of a law that is not part of the program: mine.so, or mine.hpp with or without ":Type".
+  static void name_file(const Section& s, const LoadedLaw& law, const std::string& stated) {
+    if (law.header.file.empty()) {
+      s.names_file("law", law.shared_object);
+      return;
+    }
+    const std::string name = law.header.file.filename().string();
+    const auto end = stated.rfind(name) + name.size();
+    s.names_file("law", law.header.file, end < stated.size() ? stated.substr(end) : "");
   }
 
   const Section& shared_;

@@ -82,6 +82,7 @@ specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::p
     b.file =
         folder /
         s.text("file", "Neper tessellation (.tess), beside the deck, that is read instead of making one");
+    s.names_file("file", b.file);
     if (s.has("count")) s.error("count", "has no meaning beside file: the tessellation is read, not made");
     return b;
   }

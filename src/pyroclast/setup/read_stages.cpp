@@ -59,8 +59,12 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds) {
   if (tables.coupling_table) tables.coupling = read_coupling(*tables.coupling_table);
   ReadStages read;
   read.any_moves = moves;
-  for (std::size_t i = 0; i < sections.size(); ++i)
+  for (std::size_t i = 0; i < sections.size(); ++i) {
     read.stages.push_back(chosen[i]->read(sections[i], tables));
+    const std::string name =
+        sections[i].text("name", "", "for `resume --from-stage`; without one its kind stands for it");
+    read.names.push_back(name.empty() ? chosen[i]->name : name);
+  }
   return read;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "pyroclast/stages/registry.hpp"
@@ -9,7 +10,8 @@ namespace pyroclast {
 
 struct ReadStages {
   std::vector<std::unique_ptr<Stage>> stages;
-  bool any_moves = false;  ///< the body
+  std::vector<std::string> names;  ///< of the stages
+  bool any_moves = false;          ///< the body
 };
 
 /// Reads [[stages]], and [output] and [coupling] as far as their kinds need them. What is wrong is recorded

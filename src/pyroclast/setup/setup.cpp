@@ -157,6 +157,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   setup.title = root.text("title", "name of the run, for figures and summary");
   auto read = read_stages(root, kinds);
   setup.stages = std::move(read.stages);
+  setup.stage_names = std::move(read.names);
   CurveReader time_curves(folder, time_axis(), {0.0, exposure(setup.stages)}, fire_curves());
   if (auto heat = read_heat(root, time_curves)) setup.heat = std::move(*heat);
   check_heat(root, setup.heat, setup.stages);
@@ -177,6 +178,14 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   else
     read_resting(root, curves, setup);
   setup.curves = curves.curves();
+  const Section output = root.section("output");
+  setup.checkpoints.interval =
+      output.quantity("checkpoint", unit::time, Range::non_negative(), setup.checkpoints.interval,
+                      "wall time between two checkpoints, from which `pyroclast resume` goes on; 0: after "
+                      "every batch of steps");
+  setup.checkpoints.keep_stages =
+      output.flag("keep_stage_checkpoints", true,
+                  "whether the state at the end of each stage is kept, for [forks](restart.md#forks)");
   deck.finish();
   return setup;
 }

@@ -16,6 +16,12 @@
 
 namespace pyroclast {
 
+/// When a run keeps its state.
+struct CheckpointChoice {
+  double interval = 600.0;  ///< of wall time, s; 0: after every batch of steps
+  bool keep_stages = true;  ///< the state at the end of each stage, for forks
+};
+
 /// What a deck says, in its parts and in SI.
 struct Setup {
   std::string title;
@@ -29,6 +35,8 @@ struct Setup {
   HeatConditions heat;                     ///< uniform at the reference temperature without [heat]
   std::vector<ProbePosition> probes;
   std::vector<std::unique_ptr<Stage>> stages;
+  std::vector<std::string> stage_names;
+  CheckpointChoice checkpoints;
 };
 
 /// Reads a deck. A relative file name in it is taken from `folder`.

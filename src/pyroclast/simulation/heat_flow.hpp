@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pyroclast/simulation/state.hpp"
+#include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 
 namespace pyroclast {

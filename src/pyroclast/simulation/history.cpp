@@ -1,5 +1,7 @@
 #include "pyroclast/simulation/history.hpp"
 
+#include <cstdint>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -48,6 +50,35 @@ std::vector<double> History::values(std::string_view column, RowRange rows) cons
     values.push_back(*cells_[row][c]);
   }
   return values;
+}
+
+void History::visit_state(StateVisitor& visitor) {
+  std::string names;
+  for (const Column& column : columns_) names += column.name + '\n';
+  std::vector<double> values;
+  std::vector<std::uint8_t> is_there;
+  for (const auto& row : cells_)
+    for (const auto& cell : row) {
+      values.push_back(cell.value_or(0.0));
+      is_there.push_back(cell ? 1 : 0);
+    }
+  visitor.visit("columns", names);
+  visitor.visit("values", values);
+  visitor.visit("is_there", is_there);
+  if (!visitor.replaces()) return;
+
+  std::vector<std::string> of_values;
+  for (std::size_t begin = 0; begin < names.size();) {
+    const auto end = names.find('\n', begin);
+    of_values.push_back(names.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  cells_.clear();
+  for (std::size_t first = 0; first < values.size(); first += of_values.size()) {
+    add_row();
+    for (std::size_t i = 0; i < of_values.size(); ++i)
+      if (is_there.at(first + i) != 0) set(of_values[i], values[first + i]);
+  }
 }
 
 std::optional<std::size_t> History::find(std::string_view column) const {

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "pyroclast/base/state_visitor.hpp"
+
 namespace pyroclast {
 
 /// A column of the history. The unit is also the end of the name, where it has one: "stress_MPa".
@@ -45,6 +47,10 @@ class History {
   std::optional<double> last(std::string_view column) const;
   /// Values of a column over some rows. Throws Error when there is no such column, or a cell is empty.
   std::vector<double> values(std::string_view column, RowRange rows) const;
+
+  /// All rows. What replaces them may have its columns in another order, or lack some: those cells are empty.
+  /// Throws Error when it has a value in a column that is not here.
+  void visit_state(StateVisitor& visitor);
 
  private:
   std::optional<std::size_t> find(std::string_view column) const;

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
-#include "pyroclast/simulation/state.hpp"
 
 namespace pyroclast {
 

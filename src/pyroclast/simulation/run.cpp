@@ -94,6 +94,7 @@ void Run::begin_stage() {
 /// False when it was stopped on the way.
 bool Run::move_to_look() {
   for (bool there = false; !there;) {
+    between_batches_(*this);
     if (stop_asked_()) {
       records_[stage_].outcome = Outcome::stopped;
       outcome_ = Outcome::stopped;
@@ -149,17 +150,42 @@ void Run::add_row() {
 
 void Run::end_stage(const Verdict& verdict) {
   stage_is_over_ = true;
+  stage_ends_run_ = verdict.last;
   records_[stage_].outcome = verdict.outcome;
   if (verdict.last || stage_ + 1 == static_cast<std::int64_t>(stages_.size())) outcome_ = verdict.outcome;
 }
 
 void Run::visit_state(StateVisitor& visitor) {
   visitor.visit("stage", stage_);
+  if (stage_ < 0 || stage_ >= static_cast<std::int64_t>(stages_.size()))
+    throw Error(fmt::format("the state is that of stage {}, but this run has {}", stage_, stages_.size()));
   visitor.visit("has_started", has_started_);
   visitor.visit("stage_is_begun", stage_is_begun_);
   visitor.visit("stage_is_over", stage_is_over_);
+  visitor.visit("stage_ends_run", stage_ends_run_);
+  visit_records(visitor);
+  {
+    const StateVisitor::Scope scope(visitor, "history");
+    history_.visit_state(visitor);
+  }
   simulation_.visit_state(visitor);
-  stages_[stage_]->visit_state(visitor);
+  for (std::int64_t i = 0; i <= stage_; ++i) {
+    const StateVisitor::Scope scope(visitor, fmt::format("stages[{}]", i));
+    stages_.at(i)->visit_state(visitor);
+  }
+}
+
+/// Of the stages up to the present one; later ones have not begun.
+void Run::visit_records(StateVisitor& visitor) {
+  std::vector<StageRecord> records(records_.begin(), records_.begin() + stage_ + 1);
+  if (outcome_ == Outcome::stopped) records.back().outcome = Outcome::running;
+  visitor.visit("records", records);
+  Outcome outcome = outcome_ == Outcome::stopped ? Outcome::running : outcome_;
+  visitor.visit("outcome", outcome);
+  if (!visitor.replaces()) return;
+  std::ranges::copy(records, records_.begin());
+  const bool has_more = stage_ + 1 < static_cast<std::int64_t>(stages_.size());
+  outcome_ = stage_is_over_ && !stage_ends_run_ && has_more ? Outcome::running : outcome;
 }
 
 }  // namespace pyroclast

@@ -45,9 +45,13 @@ class Run {
   void call_at(std::int64_t step, std::function<void(Run&)> call);
   /// Bounds the steps of a batch further.
   void limit_batch(int most_steps);
+  /// Called between batches, and before the run stops; may read or write the state.
+  void between_batches(std::function<void(Run&)> call) { between_batches_ = std::move(call); }
 
   /// Of the last look.
   bool frame_is_due() const { return frame_is_due_; }
+  /// Whether that look ended its stage.
+  bool stage_is_over() const { return stage_is_over_; }
   /// Number of the stage of the last look, from 0.
   int stage_number() const { return static_cast<int>(stage_); }
   const Stage& stage() const { return *stages_[stage_]; }
@@ -60,7 +64,9 @@ class Run {
   const History& history() const { return history_; }
   const Simulation& simulation() const { return simulation_; }
 
-  /// Of the run, the present stage and the simulation's press and clock; not of the solvers.
+  /// Of the run, its history and stages and the simulation: all of what a checkpoint holds. Between two
+  /// batches, and after a look. What replaces it may be of a run that had the same stages up to the present
+  /// one and others after it.
   void visit_state(StateVisitor& visitor);
 
  private:
@@ -68,6 +74,7 @@ class Run {
   bool move_to_look();
   int batch() const;
   void call_back();
+  void visit_records(StateVisitor& visitor);
   void add_row();
   void end_stage(const Verdict& verdict);
 
@@ -77,6 +84,7 @@ class Run {
   std::vector<Gauge> gauges_;
   History history_;
   std::function<bool()> stop_asked_ = [] { return false; };
+  std::function<void(Run&)> between_batches_ = [](Run&) {};
   std::multimap<std::int64_t, std::function<void(Run&)>> calls_;  ///< by step
   int most_steps_;                                                ///< of a batch
 
@@ -84,6 +92,7 @@ class Run {
   bool has_started_ = false;
   bool stage_is_begun_ = false;
   bool stage_is_over_ = false;
+  bool stage_ends_run_ = false;  ///< by its verdict
   bool frame_is_due_ = false;
   Outcome outcome_ = Outcome::running;
 };

@@ -83,7 +83,17 @@ Simulation::Simulation(specimen::Specimen specimen, double thickness,
 void Simulation::visit_state(StateVisitor& visitor) {
   visitor.visit("heating_time", heating_time_);
   visitor.visit("exchanges", exchanges_);
-  if (press_) press_->visit_state(visitor);
+  {
+    const StateVisitor::Scope scope(visitor, "field");
+    field_.visit_state(visitor);
+  }
+  if (!moves()) return;
+  {
+    const StateVisitor::Scope scope(visitor, "mechanics");
+    mechanics_->visit_state(visitor);
+  }
+  const StateVisitor::Scope scope(visitor, "press");
+  press_->visit_state(visitor);
 }
 
 double estimate_memory(std::int64_t blocks) {

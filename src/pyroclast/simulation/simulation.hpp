@@ -66,6 +66,7 @@ class Simulation {
   /// Number of a new exchange of temperatures, from 1.
   std::int64_t count_exchange() { return ++exchanges_; }
 
+  /// Clock, temperatures, mechanics and press.
   void visit_state(StateVisitor& visitor);
 
  private:

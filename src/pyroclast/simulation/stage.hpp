@@ -6,9 +6,9 @@
 #include <variant>
 #include <vector>
 
+#include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/material/curve.hpp"
 #include "pyroclast/simulation/history.hpp"
-#include "pyroclast/simulation/state.hpp"
 
 namespace pyroclast {
 

@@ -58,31 +58,51 @@ PlatenControl read_platen(const Section& s) {
 
 }  // namespace
 
-Coupling read_coupling(const Section& s) {
+Coupling read_coupling(const Section& s, const Coupling* general) {
+  const auto or_general = [&](auto read, auto Coupling::*key) {
+    return general ? read(general->*key) : read();
+  };
+  const auto quantity = [&](const char* key, const Unit& unit, double Coupling::*value, Meaning meaning) {
+    return or_general(
+        [&](auto... fallback) { return s.quantity(key, unit, Range::positive(), fallback..., meaning); },
+        value);
+  };
+  const auto number = [&](const char* key, const Range& range, double Coupling::*value, Meaning meaning) {
+    return or_general([&](auto... fallback) { return s.number(key, range, fallback..., meaning); }, value);
+  };
+  const auto integer = [&](const char* key, double least, std::int64_t Coupling::*value, Meaning meaning) {
+    return or_general(
+        [&](auto... fallback) {
+          return s.integer(key, Range::between(least, 1e12), static_cast<long long>(fallback)..., meaning);
+        },
+        value);
+  };
   Coupling c;
-  c.increment = s.quantity("exchange_increment", unit::temperature_difference, Range::positive(),
-                           "change of temperature between two exchanges, of the fastest gridpoint");
-  c.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive(),
-                                "rest, 1: unbalanced over applied forces are below this");
-  c.platen_difference = s.quantity("platen_difference", unit::stress, Range::positive(),
-                                   "rest, 2: the stresses on the two platens differ by less");
-  c.least_cycles = s.integer("least_cycles", Range::between(0, 1e12), "rest, 3: not before so many steps");
-  c.most_cycles = s.integer(
-      "most_cycles", Range::between(1, 1e12),
+  c.increment = quantity("exchange_increment", unit::temperature_difference, &Coupling::increment,
+                         "change of temperature between two exchanges, of the fastest gridpoint");
+  c.unbalanced_ratio = number("unbalanced_ratio", Range::positive(), &Coupling::unbalanced_ratio,
+                              "rest, 1: unbalanced over applied forces are below this");
+  c.platen_difference = quantity("platen_difference", unit::stress, &Coupling::platen_difference,
+                                 "rest, 2: the stresses on the two platens differ by less");
+  c.least_cycles = integer("least_cycles", 0, &Coupling::least_cycles, "rest, 3: not before so many steps");
+  c.most_cycles = integer(
+      "most_cycles", 1, &Coupling::most_cycles,
       "an exchange that did not come to rest within so many steps is flagged, and the next one follows");
   if (s.ok() && c.most_cycles < c.least_cycles) s.error("most_cycles", "must not be less than least_cycles");
-  c.predictor = s.flag("predictor", false,
+  c.predictor = s.flag("predictor", general ? general->predictor : false,
                        "whether an exchange first moves the body to where the last one foretells it to rest; "
                        "stages of kind heat only");
-  c.failure_strain = s.number("failure_strain", Range::inside(0.0, 1.0),
-                              "the specimen has failed when its ends approach by this at one temperature");
+  c.failure_strain = number("failure_strain", Range::inside(0.0, 1.0), &Coupling::failure_strain,
+                            "the specimen has failed when its ends approach by this at one temperature");
   return c;
 }
 
 ExchangeStage::Keys read_exchange(const Section& own, const StageTables& tables) {
-  if (!tables.coupling_table)
-    own.error("kind", "a stage that changes temperatures needs the table [coupling]");
   ExchangeStage::Keys keys{tables.coupling, tables.output.frame_temperature};
+  if (const auto other = own.optional_section("coupling", "instead of what [coupling] says, for this stage"))
+    keys.coupling = read_coupling(*other, tables.coupling_table ? &tables.coupling : nullptr);
+  else if (!tables.coupling_table)
+    own.error("kind", "a stage that changes temperatures needs the table [coupling]");
   keys.coupling.platen = read_platen(own);
   return keys;
 }

@@ -47,6 +47,6 @@ class ExchangeStage : public Stage {
 ExchangeStage::Keys read_exchange(const Section& own, const StageTables& tables);
 
 /// Reads [coupling].
-Coupling read_coupling(const Section& s);
+Coupling read_coupling(const Section& s, const Coupling* general = nullptr);
 
 }  // namespace pyroclast

@@ -15,9 +15,9 @@ std::unique_ptr<Stage> read_expose(const Section& s, const StageTables& tables) 
   Expose::Keys keys;
   keys.duration = s.quantity("duration", unit::time, Range::positive(), "time for which the boundaries act");
   keys.exchange = read_exchange(s, tables);
-  if (tables.coupling.predictor)
-    tables.coupling_table->error("predictor",
-                                 "is for stages of kind \"heat\": it takes the temperature as uniform");
+  if (keys.exchange.coupling.predictor)
+    (s.is_table("coupling") ? *s.optional_section("coupling") : *tables.coupling_table)
+        .error("predictor", "is for stages of kind \"heat\": it takes the temperature as uniform");
   return std::make_unique<Expose>(keys);
 }
 

@@ -545,6 +545,32 @@ HeatState Conduction<Dim>::state() const {
 }
 
 template <int Dim>
+void Conduction<Dim>::visit_state(StateVisitor& visitor) {
+  HeatState s = state();
+  const StateVisitor::Scope scope(visitor, "heat");
+  visitor.visit("temperature_range", s.temperature_range);
+  visitor.visit("time", s.time);
+  visitor.visit("next_step", s.next_step);
+  visitor.visit("rate", s.rate);
+  visitor.visit("largest_change", s.largest_change);
+  visitor.visit("largest_overshoot", s.largest_overshoot);
+  visitor.visit("steps", s.steps);
+  visitor.visit("retries", s.retries);
+  visitor.visit("stages", s.stages);
+  visitor.visit("ledger", s.ledger);
+  visitor.visit("stored_at_start", s.stored_at_start);
+  visitor.visit("temperature", s.temperature);
+  visitor.visit("enthalpy", s.enthalpy);
+  if (!visitor.replaces()) return;
+  widen_temperature_range(s.temperature_range);
+  state_ = std::move(s);
+  trial_.under_way = false;
+  before_run_.holds = false;
+  for (auto* of_a_step : {&trial_.increment, &trial_.before, &trial_.first_rate})
+    std::fill(of_a_step->begin(), of_a_step->end(), std::numeric_limits<double>::quiet_NaN());
+}
+
+template <int Dim>
 HeatLedger Conduction<Dim>::ledger() const {
   HeatLedger ledger = state_.ledger;
   ledger.stored = total_enthalpy() - state_.stored_at_start;

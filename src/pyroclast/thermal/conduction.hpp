@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/thermal/heat_boundary.hpp"
 #include "pyroclast/thermal/heat_material.hpp"
@@ -147,6 +148,9 @@ class Conduction {
   SteadyState advance_to_steady(double tolerance, double latest);
 
   HeatState state() const;
+  /// Of `state`, of the same body under the same conditions. What is replaced goes on as if nothing was; a
+  /// step under way is done again from its beginning.
+  void visit_state(StateVisitor& visitor);
   double time() const { return state_.time; }
   const ThermalNodes& nodes() const { return nodes_; }
   /// Of each node, °C.

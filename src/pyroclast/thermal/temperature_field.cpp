@@ -121,6 +121,27 @@ void TemperatureField::read_conduction() {
   update();
 }
 
+void TemperatureField::visit_state(StateVisitor& visitor) {
+  if (is_uniform()) {
+    double temperature = mean_;
+    visitor.visit("temperature", temperature);
+    if (visitor.replaces()) set_uniform(temperature);
+    return;
+  }
+  conduction_->visit_state(visitor);
+  visitor.visit("gridpoints", gridpoints_);  // an advance under way leaves them where it began
+  visitor.visit("time", time_);
+  visitor.visit("fastest", fastest_);
+  const StateVisitor::Scope scope(visitor, "advance");
+  visitor.visit("under_way", advance_.under_way);
+  visitor.visit("largest_change", advance_.largest_change);
+  visitor.visit("until", advance_.until);
+  visitor.visit("steady_rate", advance_.steady_rate);
+  visitor.visit("change", advance_.change);
+  visitor.visit("begin", advance_.begin);
+  if (visitor.replaces()) update();
+}
+
 /// What follows from the gridpoints.
 void TemperatureField::update() {
   for (std::size_t z = 0; z < zones_.size(); ++z) {

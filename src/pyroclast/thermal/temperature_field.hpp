@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/model/model.hpp"
 #include "pyroclast/thermal/conduction.hpp"
 
@@ -64,6 +65,8 @@ class TemperatureField {
   /// The solver, with its ledger and rates; null for a uniform field.
   const Conduction<2>* conduction() const { return conduction_.get(); }
 
+  void visit_state(StateVisitor& visitor);
+
  private:
   /// How far an advance has come.
   struct Advance {
@@ -86,7 +89,6 @@ class TemperatureField {
   std::vector<int> zone_chunks_;
   double volume_ = 0.0;  ///< of the specimen, m³
 
-  // what a checkpoint holds, beside the state of the conduction
   Advance advance_;
   double fastest_ = 0.0;  ///< rate of any temperature in the last step, K/s
 

@@ -1,0 +1,154 @@
+#include "pyroclast/app/drive.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+#include <fmt/format.h>
+
+#include "pyroclast/app/interrupt.hpp"
+#include "pyroclast/app/progress.hpp"
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast::app {
+
+namespace {
+
+/// Contact points that are broken now, in any way.
+std::int64_t broken(const History& history) {
+  std::int64_t count = 0;
+  for (const Column& column : history.columns())
+    if (column.name.ends_with("_broken")) count += std::llround(*history.last(column.name));
+  return count;
+}
+
+/// What a row of the history says, in short.
+std::string describe_row(const History& history) {
+  const auto last = [&](const char* column) { return history.last(column); };
+  std::string text;
+  if (last("rate_K_s") || last("exchange"))
+    text += fmt::format("  T {:.0f} degC ({:.0f} to {:.0f})", *last("temperature_degC"),
+                        *last("temperature_min_degC"), *last("temperature_max_degC"));
+  if (last("rate_K_s")) text += fmt::format("  changing by {:.2g} K/s", *last("rate_K_s"));
+  if (last("exchange"))
+    text +=
+        fmt::format("  {:.0f} cycles{}", *last("cycles"), *last("converged") > 0.0 ? "" : " (not at rest)");
+  if (last("strain")) {
+    text += fmt::format("  strain {:.5f}  stress {:6.2f} MPa", *last("strain"), *last("stress_MPa"));
+    text += fmt::format("  broken: {}", broken(history));
+    text += fmt::format("  unbalanced {:.1e}", *last("unbalanced_ratio"));
+  }
+  return text;
+}
+
+std::string progress_line(const Run& run, const Progress& progress) {
+  const double done = run.progress();
+  return fmt::format("stage {} of {} ({}) {:3.0f} %, {:>14}{}", run.stage_number() + 1, run.stages().size(),
+                     run.stage().kind(), 100.0 * done, progress.left(done), describe_row(run.history()));
+}
+
+std::string describe(const Summary& s, const std::filesystem::path& folder) {
+  std::string text = fmt::format("\nended           {}, after {}\n", describe(s.outcome), duration(s.wall_time));
+  for (std::size_t i = 0; i < s.stages.size(); ++i) {
+    const auto& [kind, outcome, report] = s.stages[i];
+    const std::string label = fmt::format("stage {}", i + 1);
+    text += fmt::format("{:<16}{}: {}\n", label, kind, describe(outcome));
+    for (const auto& line : report.lines) text += fmt::format("{:<16}{}\n", "", line);
+    for (const auto& warning : report.warnings) text += fmt::format("{:<16}{}\n", "warning", warning);
+  }
+  if (s.energy_error)
+    text += fmt::format("energy ledger   closes within {:.3f} % of the energy turned over\n",
+                        100.0 * std::abs(*s.energy_error));
+  if (s.heat_error)
+    text += fmt::format("heat ledger     closes within {:.1e} of its largest term\n", *s.heat_error);
+  for (const auto& warning : s.warnings) text += fmt::format("{:<16}{}\n", "warning", warning);
+  return text + fmt::format("results         {}", folder.string());
+}
+
+int exit_code(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::stopped:
+      return 130;
+    case Outcome::not_settled:
+    case Outcome::unstable:
+      return 2;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+std::string describe_processor(const Loaded& loaded) {
+  return fmt::format("processor       {} threads, {} instructions\n", loaded.team->size(),
+                     name(loaded.instructions));
+}
+
+std::string describe_start(const Simulation& simulation, const Loaded& loaded) {
+  std::string text = describe_own_laws() + describe(simulation.specimen());
+  const Model<2>& model = simulation.model();
+  text += fmt::format("model           {} zones, {} contacts\n", model.zone_count(), model.contact_count());
+  if (const auto* conduction = simulation.field().conduction())
+    text += describe(*conduction, model, loaded.setup.temperatures);
+  if (simulation.moves())
+    text += fmt::format("mechanics       time step {:.3g} s, moving mass {:.3g} x the real one\n",
+                        simulation.mechanics().time_step(), simulation.mechanics().mass_ratio());
+  return text + describe_processor(loaded);
+}
+
+int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log, const std::filesystem::path& folder,
+          bool figures) {
+  const Interrupt interrupt;
+  run.stop_when([&] { return interrupt.asked(); });
+  run.between_batches([&](Run& r) { checkpoints.between_batches(r, interrupt.asked()); });
+  Progress progress;
+  int stage = run.stage_number();
+  Summary summary;
+  try {
+    while (run.next()) {
+      recorder.record(run);
+      if (run.stage_is_over()) checkpoints.end_stage(run);
+      if (run.stage_number() != stage) progress.begin_stage();
+      stage = run.stage_number();
+      if (progress.line_is_due()) log.say_now(progress_line(run, progress));
+    }
+    summary = recorder.finish(run);
+  } catch (const Error& error) {
+    if (checkpoints.last().empty()) throw;
+    throw Error(fmt::format("{}\nthe run is broken off; to go on from {}, its last checkpoint: pyroclast resume {}",
+                            error.what(), checkpoints.last().string(), folder.string()));
+  }
+  log.say(describe(summary, folder));
+  if (run.outcome() == Outcome::stopped) log.say(fmt::format("to go on        pyroclast resume {}", folder.string()));
+  if (figures) draw_figures("run", folder, [&] { return interrupt.asked_twice(); });
+  return exit_code(run.outcome());
+}
+
+Checkpoints::Sources checkpoint_sources(Run& run, Recorder& recorder, const RunLog& log, std::string inputs) {
+  return {std::move(inputs), body_hash(run.simulation()),
+          [&](StateVisitor& visitor) {
+            run.visit_state(visitor);
+            recorder.visit_state(visitor);
+          },
+          [&] { return recorder.wall_time(); }, [&] { return log.bytes(); }};
+}
+
+int run(const RunOptions& options) {
+  Loaded loaded(options);
+  const std::filesystem::path folder = output_folder(options);
+  const FolderLock lock(folder);
+  RunFolder::check(folder, options.overwrite);
+  const Inputs inputs = inputs_of(loaded.deck, loaded.setup);
+  const auto simulation = make_simulation(loaded.setup, loaded.team);
+
+  make_run_folder(loaded, options, inputs);
+  RunLog log(folder / "run.log");
+  log.say(describe_start(*simulation, loaded));
+  Recorder recorder(folder, loaded.setup);
+  Run run(*simulation, std::move(loaded.setup.stages));
+  Checkpoints checkpoints(folder, loaded.setup.checkpoints,
+                          checkpoint_sources(run, recorder, log, inputs.hash()), 0);
+  recorder.begin(run);
+  return drive(run, recorder, checkpoints, log, folder, options.figures);
+}
+
+}  // namespace pyroclast::app

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "pyroclast/app/load.hpp"
+#include "pyroclast/app/run_log.hpp"
+#include "pyroclast/results/checkpoints.hpp"
+#include "pyroclast/results/folder_lock.hpp"
+#include "pyroclast/results/recorder.hpp"
+#include "pyroclast/simulation/run.hpp"
+
+namespace pyroclast::app {
+
+/// What a run will be, for the screen.
+std::string describe_start(const Simulation& simulation, const Loaded& loaded);
+/// Threads and instruction set.
+std::string describe_processor(const Loaded& loaded);
+
+/// What a checkpoint of this run is made of. All are kept by reference.
+/// \param inputs  their hash
+Checkpoints::Sources checkpoint_sources(Run& run, Recorder& recorder, const RunLog& log, std::string inputs);
+
+/// Takes a run to its end, or to where the user stops it, and writes what comes. Returns the exit code.
+int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log,
+          const std::filesystem::path& folder, bool figures);
+
+}  // namespace pyroclast::app

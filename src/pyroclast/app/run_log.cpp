@@ -1,0 +1,42 @@
+#include "pyroclast/app/run_log.hpp"
+
+#include <chrono>
+#include <ctime>
+#include <system_error>
+#include <utility>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+
+namespace pyroclast::app {
+
+RunLog::RunLog(std::filesystem::path file, std::uint64_t kept) : file_(std::move(file)) {
+  std::error_code none;
+  if (std::filesystem::exists(file_) && std::filesystem::file_size(file_) > kept)
+    std::filesystem::resize_file(file_, kept, none);
+  const spdlog::sink_ptr screen = std::make_shared<spdlog::sinks::stdout_sink_st>();
+  const spdlog::sink_ptr log = std::make_shared<spdlog::sinks::basic_file_sink_st>(file_.string());
+  logger_ = std::make_unique<spdlog::logger>("run", spdlog::sinks_init_list{screen, log});
+  logger_->set_pattern("%v");
+  logger_->flush_on(spdlog::level::info);
+  // the terminal may be gone, or the disk full: what a run says is not worth its end
+  logger_->set_error_handler([](const std::string&) {});
+}
+
+void RunLog::say(const std::string& text) {
+  logger_->info("{}", text);
+}
+
+void RunLog::say_now(const std::string& text) {
+  say(fmt::format("{:%H:%M:%S} {}", fmt::localtime(std::time(nullptr)), text));
+}
+
+std::uint64_t RunLog::bytes() const {
+  std::error_code none;
+  const auto size = std::filesystem::file_size(file_, none);
+  return none ? 0 : size;
+}
+
+}  // namespace pyroclast::app

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <spdlog/logger.h>
+
+namespace pyroclast::app {
+
+/// What a run says: on the screen, and in `run.log` of its folder.
+class RunLog {
+ public:
+  /// \param kept  bytes that stay of a log that is there
+  explicit RunLog(std::filesystem::path file, std::uint64_t kept = 0);
+
+  /// A text of one or more lines, without the last line's end.
+  void say(const std::string& text);
+  /// A line with the time of day before it.
+  void say_now(const std::string& text);
+  /// Of the file.
+  std::uint64_t bytes() const;
+
+ private:
+  std::filesystem::path file_;
+  std::unique_ptr<spdlog::logger> logger_;
+};
+
+}  // namespace pyroclast::app

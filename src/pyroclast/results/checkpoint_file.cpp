@@ -1,0 +1,252 @@
+#include "pyroclast/results/checkpoint_file.hpp"
+
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <set>
+#include <span>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/results/publish.hpp"
+
+namespace pyroclast {
+
+static_assert(std::endian::native == std::endian::little, "checkpoints hold numbers little end first");
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::array<char, 8> kBegin{'p', 'y', 'r', 'o', 'c', 'l', 'a', 's'};
+constexpr std::array<char, 8> kEnd{'t', '-', 's', 't', 'a', 't', 'e', '1'};
+
+/// The last bytes of a checkpoint.
+struct Trailer {
+  std::uint64_t table_begin = 0, table_bytes = 0, table_hash = 0;
+  std::array<char, 8> end{};
+};
+
+/// A file by its descriptor.
+class File {
+ public:
+  File(const std::filesystem::path& path, int flags)
+      : path_(path), descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0) fail(flags == O_RDONLY ? "cannot be read" : "cannot be written");
+  }
+  ~File() { close(descriptor_); }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  void write(const void* data, std::uint64_t bytes) {
+    for (std::span rest(static_cast<const char*>(data), bytes); !rest.empty();) {
+      const ssize_t done = ::write(descriptor_, rest.data(), rest.size());
+      if (done < 0 && errno == EINTR) continue;
+      if (done <= 0) fail("cannot be written");
+      rest = rest.subspan(static_cast<std::size_t>(done));
+    }
+  }
+  /// False where the file ends before.
+  bool read(std::uint64_t from, void* data, std::uint64_t bytes) const {
+    for (std::span rest(static_cast<char*>(data), bytes); !rest.empty();) {
+      const ssize_t done =
+          pread(descriptor_, rest.data(), rest.size(), static_cast<off_t>(from + bytes - rest.size()));
+      if (done < 0 && errno == EINTR) continue;
+      if (done < 0) fail("cannot be read");
+      if (done == 0) return false;
+      rest = rest.subspan(static_cast<std::size_t>(done));
+    }
+    return true;
+  }
+  std::uint64_t size() const {
+    const off_t end = lseek(descriptor_, 0, SEEK_END);
+    if (end < 0) fail("cannot be read");
+    return static_cast<std::uint64_t>(end);
+  }
+
+ private:
+  [[noreturn]] void fail(const char* what) const {
+    throw Error(fmt::format("{}: {} ({})", path_.string(), what, std::strerror(errno)));
+  }
+
+  const std::filesystem::path& path_;
+  int descriptor_;
+};
+
+class CheckpointWriter : public StateVisitor {
+ public:
+  explicit CheckpointWriter(File& file) : file_(file) {
+    file_.write(kBegin.data(), kBegin.size());
+    end_ = kBegin.size();
+  }
+  bool replaces() const override { return false; }
+
+  std::uint64_t finish(const CheckpointInfo& info) {
+    Json json;
+    json["number"] = info.number;
+    json["version"] = info.version;
+    json["commit"] = info.commit;
+    json["physics_version"] = info.physics_version;
+    json["inputs"] = info.inputs;
+    json["body"] = info.body;
+    json["stage_kinds"] = info.stage_kinds;
+    json["stage"] = info.stage;
+    json["stage_is_over"] = info.stage_is_over;
+    json["step"] = info.step;
+    json["wall_time"] = info.wall_time;
+    json["log_bytes"] = info.log_bytes;
+    json["rows"] = std::move(rows_);
+    const std::string table = json.dump();
+    const Trailer trailer{end_, table.size(), XXH3_64bits(table.data(), table.size()), kEnd};
+    file_.write(table.data(), table.size());
+    file_.write(&trailer, sizeof(trailer));
+    return end_ + table.size() + sizeof(trailer);
+  }
+
+ protected:
+  void visit_row(const std::string& name, const Row& row) override {
+    if (!names_.insert(name).second)
+      throw Error(fmt::format("the state names \"{}\" twice", name));  // a fault of the program
+    const std::uint64_t bytes = row.item * row.count;
+    rows_.push_back({name, end_, row.item, row.count, XXH3_64bits(row.data, bytes)});
+    file_.write(row.data, bytes);
+    end_ += bytes;
+  }
+
+ private:
+  File& file_;
+  Json rows_ = Json::array();
+  std::set<std::string> names_;
+  std::uint64_t end_ = 0;
+};
+
+}  // namespace
+
+/// Shows rows of a file to what they are restored to.
+class CheckpointReader : public StateVisitor {
+ public:
+  explicit CheckpointReader(const CheckpointFile& checkpoint)
+      : checkpoint_(checkpoint), file_(checkpoint.path(), O_RDONLY) {}
+  bool replaces() const override { return true; }
+
+  void finish() const {
+    for (const auto& [name, row] : checkpoint_.rows_)
+      if (!taken_.contains(name)) fail(fmt::format("holds \"{}\", which this run does not have", name));
+  }
+  /// Where a row does not fit.
+  void verify() {
+    std::vector<std::byte> data;
+    for (const auto& [name, row] : checkpoint_.rows_) {
+      data.resize(row.bytes());
+      read(name, row, data.data());
+    }
+  }
+
+ protected:
+  void visit_row(const std::string& name, const Row& row) override {
+    const auto found = checkpoint_.rows_.find(name);
+    if (found == checkpoint_.rows_.end()) fail(fmt::format("does not hold \"{}\"", name));
+    const CheckpointFile::Row& kept = found->second;
+    if (kept.item != row.item || (!row.resize && kept.count != row.count))
+      fail(fmt::format("holds {} x {} bytes of \"{}\", but this run has {} x {}", kept.count, kept.item, name,
+                       row.count, row.item));
+    read(name, kept, row.resize ? row.resize(kept.count) : row.data);
+    taken_.insert(name);
+  }
+
+ private:
+  void read(const std::string& name, const CheckpointFile::Row& row, std::byte* data) const {
+    if (!file_.read(row.begin, data, row.bytes()) || XXH3_64bits(data, row.bytes()) != row.hash)
+      fail(fmt::format("is damaged: \"{}\" is not what was written", name));
+  }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(fmt::format("{}: {}", checkpoint_.path().string(), what));
+  }
+
+  const CheckpointFile& checkpoint_;
+  File file_;
+  std::set<std::string> taken_;
+};
+
+std::uint64_t write_checkpoint(const std::filesystem::path& path, const CheckpointInfo& info,
+                               const std::function<void(StateVisitor&)>& visit) {
+  std::filesystem::path partial = path;
+  partial += ".partial";
+  std::uint64_t bytes = 0;
+  try {
+    File file(partial, O_WRONLY | O_CREAT | O_TRUNC);
+    CheckpointWriter writer(file);
+    visit(writer);
+    bytes = writer.finish(info);
+  } catch (const Error&) {
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);
+    throw;
+  }
+  publish(partial, path);
+  return bytes;
+}
+
+CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(path)) {
+  const auto fail = [&](const std::string& what) {
+    throw Error(fmt::format("{}: {}", path_.string(), what));
+  };
+  const File file(path_, O_RDONLY);
+  const std::uint64_t size = file.size();
+  std::array<char, 8> begin{};
+  Trailer trailer;
+  if (size < begin.size() || !file.read(0, begin.data(), begin.size()) || begin != kBegin)
+    fail("is no checkpoint of pyroclast");
+  if (size < begin.size() + sizeof(trailer) ||
+      !file.read(size - sizeof(trailer), &trailer, sizeof(trailer)) || trailer.end != kEnd)
+    fail("is cut short, or damaged at its end");
+  if (trailer.table_bytes > size || trailer.table_begin > size ||
+      trailer.table_begin + trailer.table_bytes + sizeof(trailer) != size)
+    fail("is damaged at its end");
+  std::string table(trailer.table_bytes, '\0');
+  if (!file.read(trailer.table_begin, table.data(), table.size()) ||
+      XXH3_64bits(table.data(), table.size()) != trailer.table_hash)
+    fail("is damaged: its table is not what was written");
+  try {
+    const Json json = Json::parse(table);
+    info_.number = json.at("number");
+    info_.version = json.at("version");
+    info_.commit = json.at("commit");
+    info_.physics_version = json.at("physics_version");
+    info_.inputs = json.at("inputs");
+    info_.body = json.at("body");
+    info_.stage_kinds = json.at("stage_kinds").get<std::vector<std::string>>();
+    info_.stage = json.at("stage");
+    info_.stage_is_over = json.at("stage_is_over");
+    info_.step = json.at("step");
+    info_.wall_time = json.at("wall_time");
+    info_.log_bytes = json.at("log_bytes");
+    for (const Json& row : json.at("rows")) {
+      const Row r{row.at(1), row.at(2), row.at(3), row.at(4)};
+      if (r.begin > size || (r.item > 0 && r.count > (size - r.begin) / r.item))
+        fail("is damaged in its table");
+      rows_[row.at(0)] = r;
+    }
+  } catch (const Json::exception&) {
+    fail("is of another version of pyroclast: its table has another form");
+  }
+}
+
+void CheckpointFile::restore(const std::function<void(StateVisitor&)>& visit) const {
+  CheckpointReader reader(*this);
+  visit(reader);
+  reader.finish();
+}
+
+void CheckpointFile::verify() const {
+  CheckpointReader(*this).verify();
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,199 @@
+#include "pyroclast/results/checkpoints.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/physics_version.hpp"
+#include "pyroclast/version.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kEnding = ".state";
+/// Of those that the clock asks for, so many stay.
+constexpr std::size_t kKept = 2;
+/// The next one waits so many times as long as the last took to write.
+constexpr double kLeastRest = 100.0;
+
+/// XXH3 over the numbers of lists.
+class Hash {
+ public:
+  Hash() { XXH3_128bits_reset(state_.get()); }
+
+  template <class T>
+  void add(const std::vector<T>& list) {
+    const std::uint64_t count = list.size();
+    XXH3_128bits_update(state_.get(), &count, sizeof(count));
+    XXH3_128bits_update(state_.get(), list.data(), list.size() * sizeof(T));
+  }
+  void add(const std::string& text) { add(std::vector<char>(text.begin(), text.end())); }
+
+  std::string text() const {
+    const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
+    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  }
+
+ private:
+  struct Free {
+    void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
+  };
+  std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
+};
+
+bool is_stage_checkpoint(const fs::path& path) {
+  return path.filename().string().starts_with("stage_");
+}
+
+/// Whether a file that does not tell its number may have been written after a checkpoint, by its name.
+bool may_be_newer(const fs::path& file, const CheckpointInfo& than) {
+  const std::string stem = file.stem().string();
+  std::int64_t number = 0;
+  if (is_stage_checkpoint(file)) {
+    const auto digits = stem.substr(stem.find('_') + 1);
+    if (std::from_chars(digits.data(), digits.data() + digits.size(), number).ec != std::errc{}) return true;
+    return number > than.stage || (number == than.stage && !than.stage_is_over);
+  }
+  if (std::from_chars(stem.data(), stem.data() + stem.size(), number).ec != std::errc{}) return true;
+  return number > than.number;
+}
+
+std::vector<fs::path> files_of(const fs::path& run_folder) {
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(checkpoint_folder(run_folder), none))
+    if (entry.path().extension() == kEnding) files.push_back(entry.path());
+  return files;
+}
+
+}  // namespace
+
+std::string body_hash(const Simulation& simulation) {
+  const Model<2>& model = simulation.model();
+  Hash hash;
+  hash.add(model.position);
+  hash.add(model.block_gridpoints);
+  hash.add(model.block_zones);
+  hash.add(model.block_material);
+  hash.add(model.zones);
+  std::vector<int> joined;
+  std::vector<double> frames;
+  for (const auto& c : model.contacts) {
+    joined.insert(joined.end(), {c.a, c.b, c.face, c.interface});
+    frames.insert(frames.end(), {c.area, c.normal[0], c.normal[1], c.tangents[0][0], c.tangents[0][1]});
+  }
+  hash.add(joined);
+  hash.add(frames);
+  for (const auto& name : model.interface_names) hash.add(name);
+  if (simulation.moves())
+    for (const LawTable* law : simulation.mechanics().laws()) {
+      hash.add(std::string(law->name));
+      for (const HistoryInfo& number : law->history(2)) hash.add(std::string(number.name));
+      for (const LossInfo& loss : law->losses) hash.add(std::string(loss.name));
+    }
+  return hash.text();
+}
+
+fs::path checkpoint_folder(const fs::path& run_folder) {
+  return run_folder / "checkpoints";
+}
+
+fs::path stage_checkpoint(const fs::path& run_folder, std::int64_t stage) {
+  return checkpoint_folder(run_folder) / fmt::format("stage_{}{}", stage, kEnding);
+}
+
+CheckpointFile newest_checkpoint(const fs::path& run_folder) {
+  std::vector<CheckpointFile> whole;
+  std::vector<std::pair<fs::path, std::string>> damaged;
+  for (const fs::path& file : files_of(run_folder)) {
+    try {
+      CheckpointFile checkpoint(file);
+      checkpoint.verify();
+      whole.push_back(std::move(checkpoint));
+    } catch (const Error& error) {
+      damaged.emplace_back(file, error.what());
+    }
+  }
+  if (whole.empty())
+    throw Error(
+        damaged.empty()
+            ? fmt::format("{}: holds no checkpoint, so there is nothing to go on from; run its deck again",
+                          run_folder.string())
+            : fmt::format("{}; no other checkpoint of {} can be read", damaged.front().second,
+                          run_folder.string()));
+  const auto newest =
+      std::ranges::max_element(whole, {}, [](const CheckpointFile& c) { return c.info().number; });
+  for (const auto& [file, what] : damaged)
+    if (may_be_newer(file, newest->info()))
+      throw Error(
+          fmt::format("{}; to go on from the checkpoint before it, of step {}, say --checkpoint-file {}",
+                      what, newest->info().step, newest->path().string()));
+  return *newest;
+}
+
+Checkpoints::Checkpoints(fs::path run_folder, const CheckpointChoice& choice, Sources sources,
+                         std::int64_t last)
+    : run_folder_(std::move(run_folder)), choice_(choice), sources_(std::move(sources)), number_(last) {
+  fs::create_directories(checkpoint_folder(run_folder_));
+  written_ = Clock::now();
+}
+
+bool Checkpoints::is_due() const {
+  if (last_.empty() && number_ == 0) return true;
+  if (choice_.interval == 0.0) return true;
+  const double age = std::chrono::duration<double>(Clock::now() - written_).count();
+  return age >= std::max(choice_.interval, kLeastRest * took_);
+}
+
+void Checkpoints::between_batches(const Run& run, bool stops) {
+  if (!stops && !is_due()) return;
+  write(run, checkpoint_folder(run_folder_) / fmt::format("{:06}{}", number_ + 1, kEnding));
+}
+
+void Checkpoints::end_stage(const Run& run) {
+  write(run, choice_.keep_stages
+                 ? stage_checkpoint(run_folder_, run.stage_number())
+                 : checkpoint_folder(run_folder_) / fmt::format("{:06}{}", number_ + 1, kEnding));
+}
+
+void Checkpoints::write(const Run& run, const fs::path& path) {
+  const auto begin = Clock::now();
+  CheckpointInfo info;
+  info.number = number_ + 1;
+  info.version = kVersion;
+  info.commit = kCommit;
+  info.physics_version = kPhysicsVersion;
+  info.inputs = sources_.inputs;
+  info.body = sources_.body;
+  for (const auto& stage : run.stages()) info.stage_kinds.emplace_back(stage->kind());
+  info.stage = run.stage_number();
+  info.stage_is_over = run.stage_is_over();
+  info.step = run.simulation().moves() ? run.simulation().mechanics().steps() : 0;
+  info.wall_time = sources_.wall_time();
+  info.log_bytes = sources_.log_bytes();
+  write_checkpoint(path, info, sources_.visit);
+  number_ = info.number;
+  last_ = path;
+  remove_old();
+  written_ = Clock::now();
+  took_ = std::chrono::duration<double>(written_ - begin).count();
+}
+
+void Checkpoints::remove_old() const {
+  auto files = files_of(run_folder_);
+  std::erase_if(files, is_stage_checkpoint);
+  std::ranges::sort(files, std::greater<>());
+  std::error_code ignored;
+  for (std::size_t i = kKept; i < files.size(); ++i) fs::remove(files[i], ignored);
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,106 @@
+#include "pyroclast/results/folder_lock.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::error_code make_folders(const fs::path& path, std::vector<fs::path>& made) {
+  // A folder above may go between two calls: another run was only checking, too.
+  constexpr int kAttempts = 10;
+  std::error_code error;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const fs::file_status status = fs::status(path, error);
+    if (fs::is_directory(status)) return {};
+    if (fs::exists(status)) return std::make_error_code(std::errc::not_a_directory);
+    const fs::path parent = path.parent_path();
+    if (parent != path)
+      if (const auto above = make_folders(parent, made)) return above;
+    if (fs::create_directory(path, error)) made.push_back(path);
+    if (error != std::errc::no_such_file_or_directory) return error;
+  }
+  return error;
+}
+
+/// Absolute, without dots and a slash at the end.
+fs::path plain(const fs::path& path) {
+  const fs::path whole = fs::absolute(path).lexically_normal();
+  return whole.has_filename() ? whole : whole.parent_path();
+}
+
+void remove_if_empty(const std::vector<fs::path>& folders) {
+  std::error_code not_empty;
+  for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) fs::remove(*folder, not_empty);
+}
+
+/// Whether the name still stands for the file that was opened: who held it before may have taken it away.
+bool stands_for(const fs::path& name, int descriptor) {
+  struct stat of_name {
+  }, of_file{};
+  return stat(name.c_str(), &of_name) == 0 && fstat(descriptor, &of_file) == 0 &&
+         of_name.st_ino == of_file.st_ino && of_name.st_dev == of_file.st_dev;
+}
+
+}  // namespace
+
+std::vector<fs::path> make_folders(const fs::path& path) {
+  std::vector<fs::path> made;
+  if (const std::error_code error = make_folders(plain(path), made)) {
+    remove_if_empty(made);
+    throw Error(fmt::format("{}: cannot be made ({})", path.string(), error.message()));
+  }
+  return made;
+}
+
+FolderLock::FolderLock(fs::path folder) : folder_(std::move(folder)), made_(make_folders(folder_)) {
+  const fs::path file = folder_ / "lock";
+  do {
+    if (descriptor_ >= 0) close(descriptor_);
+    descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) {
+      const int cause = errno;
+      remove_if_empty(made_);
+      throw Error(fmt::format("{}: cannot be written ({})", file.string(), std::strerror(cause)));
+    }
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      const int cause = errno;
+      close(descriptor_);
+      std::string holder;
+      std::ifstream(file) >> holder;
+      throw Error(
+          cause == EWOULDBLOCK
+              ? fmt::format("{}: another process{} writes into this folder; wait for its end, or choose "
+                            "another folder",
+                            folder_.string(), holder.empty() ? "" : fmt::format(" ({})", holder))
+              : fmt::format("{}: cannot be locked ({})", file.string(), std::strerror(cause)));
+    }
+  } while (!stands_for(file, descriptor_));
+  const std::string self = fmt::format("{}\n", getpid());
+  if (ftruncate(descriptor_, 0) == 0) [[maybe_unused]]
+    const auto told = pwrite(descriptor_, self.data(), self.size(), 0);
+}
+
+FolderLock::~FolderLock() {
+  std::error_code ignored;
+  fs::remove(folder_ / "lock", ignored);
+  close(descriptor_);
+  remove_if_empty(made_);
+}
+
+}  // namespace pyroclast

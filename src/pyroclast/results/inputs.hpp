@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pyroclast/setup/setup.hpp"
+
+namespace pyroclast {
+
+/// A file that a deck names: a table, a tessellation, a law.
+struct InputFile {
+  std::filesystem::path source;
+  std::string name;  ///< in the folder of a run: "inputs/..."
+  std::string contents;
+};
+
+/// All that a run is made from, as its folder keeps it.
+struct Inputs {
+  /// The deck, with the seed of the run, and files by their names in the folder: run there it gives the same.
+  std::string deck_text;
+  std::vector<InputFile> files;
+
+  /// Of all of it.
+  std::string hash() const;
+};
+
+/// Reads the files that a deck names. Throws Error when one cannot be read.
+/// \param setup  as read from the deck, perhaps with another seed
+Inputs inputs_of(const Deck& deck, const Setup& setup);
+
+}  // namespace pyroclast
