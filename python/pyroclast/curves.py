@@ -28,6 +28,8 @@ def stress_strain(run: Run, marks: Mapping[str, Frame]) -> Figure:
     grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 0.3], width_ratios=[1.25, 1.0])
     axes = figure.add_subplot(grid[0, :])
     axes.set_title("\n".join([style.title_of(run), *_heated_before(run)]))
+    if run.parent and not run.parent.ends_heated:
+        _draw_parent(axes, run.parent)
     _draw_run(axes, run)
     _draw_references(axes, max(run.loaded_strain.max(), _LEAST_STRAIN_SHOWN))
     _draw_marks(axes, marks)
@@ -59,6 +61,11 @@ def _draw_run(axes: Axes, run: Run) -> None:
               label="this run, mean of both platens")
     axes.fill_between(strain, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
                       label="between its upper and lower platen")
+
+
+def _draw_parent(axes: Axes, parent: Run) -> None:
+    axes.plot(style.PER_MILLE * parent.loaded_strain, parent.loaded_history("stress_MPa"), color=style.FAINT,
+              linewidth=1.2, label=style.parent_label(parent.folder))
 
 
 def _draw_references(axes: Axes, last_strain: float) -> None:

@@ -29,10 +29,12 @@ def total_strain(run: Run) -> Figure:
     band = reference.strain_band(run.load_level)
     if band:
         draw_band(upper, band, style.ORANGE, _BAND_LABEL)
+    _draw_parent(upper, run.parent, "specimen_strain", -style.PER_MILLE)
     label = f"this run, {style.load_label(run)}".rstrip(", ")
     upper.plot(run.heated_history("temperature_degC"), strain, color=style.BLUE, linewidth=1.8, label=label)
     upper.axhline(0.0, color=style.BLACK, linewidth=0.6)
-    upper.set_ylim(*strain_limits([run], [band] if band else []))
+    shown = [run, run.parent] if run.parent and run.parent.heated.any() else [run]
+    upper.set_ylim(*strain_limits(shown, [band] if band else []))
     upper.set_ylabel(TOTAL_STRAIN_LABEL)
     _mark_unconverged(upper, run, strain)
     _mark_failure(upper, run)
@@ -46,6 +48,7 @@ def thrust(run: Run) -> Figure:
     figure, upper, lower, below = _two_over_temperature(run)
     temperature, stress = run.heated_history("temperature_degC"), run.heated_history("stress_MPa")
     top, bottom = run.heated_history("stress_top_MPa"), run.heated_history("stress_bottom_MPa")
+    _draw_parent(upper, run.parent, "stress_MPa", 1.0)
     upper.fill_between(temperature, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
                        label="between its upper and lower platen")
     upper.plot(temperature, stress, color=style.BLUE, linewidth=1.8, label="this run, mean of both platens")
@@ -56,6 +59,14 @@ def thrust(run: Run) -> Figure:
     _mark_failure(upper, run)
     style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncols=2)
     return figure
+
+
+def _draw_parent(axes: Axes, parent: Run | None, column: str, factor: float) -> None:
+    """A column of the run that this one is a fork of, where that was heated too."""
+    if parent and parent.heated.any():
+        rows = parent.standing
+        axes.plot(parent.history["temperature_degC"][rows], factor * parent.history[column][rows], color=style.FAINT,
+                  linewidth=1.2, label=style.parent_label(parent.folder))
 
 
 def _two_over_temperature(run: Run) -> tuple[Figure, Axes, Axes, Axes]:

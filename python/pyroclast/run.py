@@ -62,6 +62,14 @@ class Run:
         path = self.folder / "summary.json"
         return read_json(path) if path.exists() else {"stages": []}
 
+    @cached_property
+    def parent(self) -> Run | None:
+        """The run that this one is a fork of; None without one, or when its folder is gone."""
+        path = self.folder / "manifest.json"
+        parent = read_json(path).get("parent") if path.exists() else None
+        folder = Path(parent["folder"]) if isinstance(parent, dict) and "folder" in parent else None
+        return Run(folder) if folder and (folder / "history.csv").exists() else None
+
     @property
     def title(self) -> str:
         """As the summary has it, else the folder's name."""

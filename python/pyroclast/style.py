@@ -39,6 +39,11 @@ AGGREGATE_COLOUR, MORTAR_COLOUR, PLATEN_COLOUR = "#b4b4b4", "#f4f0e6", "#5a5a5a"
 _MORE_PHASE_COLOURS = ("#8fa9c4", "#c9b48c", "#9dbf9e", "#b79bb8")
 
 
+def parent_label(folder: Path) -> str:
+    """Of the run that the one in the figure is a fork of."""
+    return f"{folder.name}, of which this run is a fork"
+
+
 def phase_colours(names: Sequence[str]) -> list[str]:
     """A fill for each material of a mesh: aggregate and mortar as ever, the platens last, others in turn."""
     known = {"aggregate": AGGREGATE_COLOUR, "mortar": MORTAR_COLOUR}

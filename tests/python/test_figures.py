@@ -151,6 +151,20 @@ class CommandsMakePictures(FolderTest):
         synthetic_run.write_summary(self.run_folder, "no peak", [("settle", {}), ("compress", {})])
         self.assertEqual(self.command("run", self.run_folder)[0], 0)
 
+    def test_a_run_that_was_killed_is_drawn_as_far_as_it_came(self):
+        (self.run_folder / "summary.json").unlink()
+        history = self.run_folder / "history.csv"
+        history.write_text(history.read_text() + "1,2")  # in the midst of a row
+        self.assertEqual(self.command("run", self.run_folder)[0], 0)
+
+    def test_a_fork_is_drawn_beside_its_parent(self):
+        fork = self.root / "fork"
+        synthetic_run.write_run(fork, strength_factor=0.9)
+        for parent, drawn in ((self.run_folder, True), (self.root / "gone", False)):
+            (fork / "manifest.json").write_text(json.dumps({"parent": {"folder": str(parent)}}))
+            self.assertEqual(self.command("run", fork, "--format", "svg")[0], 0)
+            self.assertEqual("run, of which this run is a fork" in (fork / "figures/stress_strain.svg").read_text(), drawn)
+
     def test_later_columns_do_not_disturb(self):
         lines = (self.run_folder / "history.csv").read_text().splitlines()
         lines = [lines[0] + ",temperature_C", *(line + ",20" for line in lines[1:])]
