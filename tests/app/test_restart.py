@@ -94,6 +94,10 @@ class Resuming(RestartTest):
             self.assertEqual(log.count("ended "), 1)  # what was said after the checkpoint is gone
         done = self.pyroclast("resume", "whole", code=1)
         self.assertIn("the run is over", done.stderr)
+        # the disk was full at the very end
+        (self.folder / "whole/summary.json").unlink()
+        self.pyroclast("resume", "whole", "--no-figures")
+        self.assert_same("whole", "SIGTERM")
 
     def test_a_damaged_checkpoint_is_refused_and_the_one_before_it_offered(self):
         self.run_case("whole")
@@ -115,6 +119,10 @@ class Resuming(RestartTest):
         deck = self.folder / "out/deck.toml"
         deck.write_text(deck.read_text().replace('f_t = "2.5 MPa"', 'f_t = "2.6 MPa"'))
         self.assertIn("other inputs", self.pyroclast("resume", "out", code=1).stderr)
+        self.broken_off("other", signal.SIGTERM, 60, "--seed", "2")
+        self.broken_off("third", signal.SIGTERM)
+        shutil.copy(self.checkpoints("other")[-1], self.checkpoints("third")[-1])
+        self.assertIn("other inputs", self.pyroclast("resume", "third", code=1).stderr)
         self.assertIn("no such folder", self.pyroclast("resume", "nowhere", code=1).stderr)
         (self.folder / "mine").mkdir()
         (self.folder / "mine/manifest.json").write_text('{"name": "My page"}')

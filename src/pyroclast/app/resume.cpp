@@ -61,13 +61,16 @@ int go_on(const ResumeOptions& options) {
     run.visit_state(visitor);
     recorder.visit_state(visitor);
   });
-  if (run.outcome() != Outcome::running)
+  // where the disk was full at the end, the summary is still to be written
+  if (run.outcome() != Outcome::running && fs::exists(options.run / "summary.json"))
     throw Error(fmt::format(
         "{}: the run is over ({}); to add stages: pyroclast resume {} --stages MORE.toml --out NEW",
         options.run.string(), describe(run.outcome()), options.run.string()));
   RunLog log(options.run / "run.log", checkpoint.info().log_bytes);
   log.say_now(fmt::format("goes on from {}, step {}, stage {} of {}", checkpoint.path().filename().string(),
                           checkpoint.info().step, run.stage_number() + 1, run.stages().size()));
+  if (checkpoint.info().commit != kCommit)
+    log.say(fmt::format("                it was written by another build, of commit {}", checkpoint.info().commit));
   Checkpoints checkpoints(options.run, loaded.setup.checkpoints,
                           checkpoint_sources(run, recorder, log, inputs.hash()), checkpoint.info().number);
   recorder.begin(run);
