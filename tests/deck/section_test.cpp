@@ -16,6 +16,26 @@ Deck parse(const std::string& text) {
   return Deck::parse(text, "case.toml");
 }
 
+// Promise: what is allowed but not usual is read, and warned of with its place; it is no error.
+TEST(Section, WarnsOfWhatIsNotUsual) {
+  const Deck deck = parse("a = \"70 MPa\"\nb = \"70 GPa\"\nc = 3\nd = [\"1 m\", \"1 km\"]\n");
+  const Section root = deck.root();
+  const Range usual = Range::positive().usually(1e9, 500e9);
+  EXPECT_DOUBLE_EQ(root.quantity("a", unit::stress, usual, ""), 70e6);
+  root.quantity("b", unit::stress, usual, "");
+  root.integer("c", Range::any().usually(0, 2), "");
+  root.quantities("d", unit::length, Range::positive().usually(0.1, 10.0), "");
+  root.warn("b", "is mine");
+  deck.finish();
+  EXPECT_EQ(deck.warnings(),
+            (std::vector<std::string>{
+                "case.toml:1:5: a = \"70 MPa\": is 7e+07 Pa, but usually it is between 1000000000 and "
+                "500000000000 Pa",
+                "case.toml:2:5: b = \"70 GPa\": is mine",
+                "case.toml:3:5: c = 3: is 3, but usually it is between 0 and 2",
+                "case.toml:4:13: d[1] = \"1 km\": is 1000 m, but usually it is between 0.1 and 10 m"}));
+}
+
 TEST(Section, ReadsEveryKindOfValue) {
   const Deck deck = parse(R"(
     width = "150 mm"

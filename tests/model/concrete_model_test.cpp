@@ -37,7 +37,8 @@ TEST(ConcreteModel, WithoutPlatensTheSpecimenIsTheSame) {
   for (const auto* side : {"bottom", "top", "left", "right"})
     EXPECT_EQ(without.set(side).size(), with.set(side).size());
   EXPECT_EQ(without.set("specimen").size(), with.set("specimen").size());
-  for (const auto* set : {"bottom_support", "top_support", "bottom_face", "top_face", "top_platen"})
+  for (const auto* set :
+       {"bottom_support", "top_support", "bottom_face", "top_face", "bottom_platen", "top_platen"})
     EXPECT_TRUE(without.set(set).empty());
   double area = 0.0;
   for (double v : zone_geometry(without).volume) area += v;
@@ -122,6 +123,7 @@ TEST(ConcreteModel, SetsHoldTheGridpointsThatTheyAreNamedAfter) {
       const bool platen = body.block_material[b] == platen_material(body);
       EXPECT_EQ(is_in("specimen"), !platen);
       EXPECT_EQ(is_in("top_platen"), platen && body.position[g][1] > 0.05);
+      EXPECT_EQ(is_in("bottom_platen"), platen && body.position[g][1] < 0.05);
     }
   EXPECT_THROW(body.set("buttom"), Error);
 }

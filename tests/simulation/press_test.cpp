@@ -36,7 +36,7 @@ Model<Dim> gripped(Model<Dim> model, double width) {
     model.sets["back"] = at(model, 1, width);
   }
   for (int g = 0; g < model.gridpoint_count(); ++g) model.sets["specimen"].push_back(g);
-  model.sets["top_platen"] = {};
+  for (const char* name : {"bottom_platen", "top_platen"}) model.sets[name] = {};
   return model;
 }
 
@@ -138,12 +138,12 @@ void strains_evenly(const Model<Dim>& model) {
   widths.fill(0.5);
   auto mechanics = elastic(model);
   Press<Dim> press(mechanics, Dim - 1, 1.0, widths);
-  const typename Press<Dim>::EvenStrain strain{.axial = 1e-6, .lateral = 2e-6};
-  press.strain_evenly(strain, 1.0, false);
+  const typename Press<Dim>::EvenMotion strain{.axial = 1e-6, .lateral = 2e-6};
+  press.move_evenly(strain, 1.0, false);
   mechanics.advance(1);
-  press.strain_evenly(strain, 0.0, false);
+  press.move_evenly(strain, 0.0, false);
   mechanics.advance(1);
-  press.end_even_strain(false);
+  press.end_even_motion(false);
   for (int g = 0; g < model.gridpoint_count(); ++g) {
     const Vec<Dim> u = mechanics.displacement(g), x = model.position[g];
     for (int i = 0; i < Dim; ++i) {

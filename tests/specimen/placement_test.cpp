@@ -46,19 +46,20 @@ TEST(Placement, PlacesThousandsOfSmallAggregatesBetweenLargeOnes) {
 
 TEST(Placement, SaysHowMuchIsMissing) {
   AggregateParameters p = paper_aggregates();
-  p.fraction = 0.9;
+  p.fraction = 0.7;
   p.attempts = 100;
+  p.place = "mine.toml:12: aggregates";
   const std::string message = error_of([&] { place_paper_aggregates(p, 1); });
-  EXPECT_TRUE(says(message, "[0-9]+ of [0-9]+ found no place in 100 attempts"));
-  EXPECT_TRUE(says(message, "diameters 0\\.[0-9]+ to 0\\.[0-9]+ m"));
-  EXPECT_TRUE(says(message, "area fraction of 0\\.[0-9]+ of the 0\\.9000 asked for"));
+  EXPECT_TRUE(says(message, "^mine.toml:12: aggregates: the aggregates do not fit: after [0-9]+ of [0-9]+"));
+  EXPECT_TRUE(says(message, "an area fraction of 0\\.[0-9]+ of the 0\\.700 asked for"));
+  EXPECT_TRUE(says(message, "one of [0-9.]+ mm found no place in 100 attempts"));
 }
 
 TEST(Placement, AnAggregateWiderThanTheSpecimenIsMissing) {
   AggregateParameters p = paper_aggregates();
   Random random(1);
   const std::vector<double> diameters{30e-3};
-  EXPECT_TRUE(says(error_of([&] { place(diameters, 0.02, 0.3, p, {}, random); }), "1 of 1"));
+  EXPECT_TRUE(says(error_of([&] { place(diameters, 0.02, 0.3, p, {}, random); }), "after 0 of 1"));
 }
 
 }  // namespace

@@ -88,6 +88,35 @@ TEST(Specimen, NamesAParameterOutOfRangeAndItsValue) {
   EXPECT_TRUE(says(message([](auto& p) { p.covered_fraction = 1; }), "covered fraction is 1"));
 }
 
+// Promise: coarse blocks change the area of the aggregates, which is told; the rule that fits keeps it.
+TEST(Specimen, TellsWhenSuperpositionLosesAggregate) {
+  SpecimenParameters p = paper_specimen(1);
+  p.blocks.count = 500;
+  p.superposition = Superposition::area;
+  p.covered_fraction = 0.55;
+  const Specimen coarse = make_specimen(p);
+  EXPECT_LT(coarse.fraction_superposed, 0.9 * coarse.fraction_placed);
+  ASSERT_EQ(warnings(coarse).size(), 1U);
+  EXPECT_TRUE(says(warnings(coarse).front(), "rule = \"fit\""));
+  p.superposition = Superposition::fit;
+  const Specimen fitted = make_specimen(p);
+  EXPECT_NEAR(fitted.fraction_superposed, fitted.fraction_placed,
+              0.5 * 1.0 / 500 * 3);  // half of a large block
+  EXPECT_TRUE(warnings(fitted).empty());
+  EXPECT_LT(fitted.covered_fraction, 0.55);
+}
+
+// Promise: what can never fit is refused before it is tried, with the place in the deck.
+TEST(Specimen, RefusesAtOnceWhatCannotFit) {
+  SpecimenParameters p = paper_specimen(1);
+  p.aggregates.d_min = p.aggregates.sieves.front() = 0.1e-3;
+  p.aggregates.minimum_gap = 2e-3;  // with it the small ones take more than there is
+  p.aggregates.place = "mine.toml:12: aggregates";
+  p.aggregates.attempts = 1'000'000'000;  // trying would take hours
+  const std::string error = error_of([&] { make_specimen(p); });
+  EXPECT_TRUE(says(error, "mine.toml:12: aggregates: the aggregates cannot fit")) << error;
+}
+
 TEST(ZoneBlock, FansOutAroundTheCentroid) {
   const std::vector<Vec<2>> cell{{{0, 0}}, {{2, 0}}, {{3, 1}}, {{2, 3}}, {{0, 2}}};
   const ZonedBlock block = zone_block(cell);

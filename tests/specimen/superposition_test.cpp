@@ -48,6 +48,20 @@ TEST(Superposition, AreaRuleTurnsACellAtTheStatedFraction) {
             kMatrix);
 }
 
+// Promise: the rule that fits takes the most covered cells, as many as bring their area nearest to that of
+// the circles.
+TEST(Superposition, TheFittingFractionKeepsTheArea) {
+  const std::vector<Aggregate> circles{{{{0.25, 0.25}}, 0.5}, {{{0.75, 0.3}}, 0.3}, {{{0.6, 0.75}}, 0.1}};
+  const std::vector<double> covered = covered_fractions(quarters, 1, 1, circles);  // 0.79, 0.28, 0.02, 0.01
+  const double area = 0.25 * std::numbers::pi * (0.25 + 0.09 + 0.01);              // 0.275: one cell of 0.25
+  ASSERT_NEAR(area, 0.275, 1e-3);
+  const double bound = fitting_fraction(quarters, 1, 1, circles);
+  EXPECT_LT(bound, covered[0]);
+  EXPECT_GT(bound, *std::max_element(covered.begin() + 1, covered.end()));
+  EXPECT_EQ(fitting_fraction(quarters, 1, 1, std::vector<Aggregate>{{{{0.25, 0.25}}, 0.1}}),
+            std::nextafter(1.0, 0.0));  // nothing fits better than no cell
+}
+
 TEST(Superposition, CentroidRuleLooksAtTheCentroidOnly) {
   const std::vector<Aggregate> small{{{{0.25, 0.25}}, 0.02}};
   const std::vector<Aggregate> beside{{{{0.6, 0.6}}, 0.2}};

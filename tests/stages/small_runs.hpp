@@ -106,7 +106,7 @@ inline std::string heat(const std::string& to, const std::string& platen = "forc
 }
 
 inline const std::string kCompress =
-    "[[stages]]\nkind = \"compress\"\nvelocity = \"2 mm/s\"\nramp_time = \"5 ms\"\nstop_strain = 0.0002\n";
+    "[[stages]]\nkind = \"compress\"\nvelocity = \"0.5 mm/s\"\nramp_time = \"20 ms\"\nstop_strain = 0.0002\n";
 
 inline const std::string kFailure =
     "[[stages]]\nkind = \"compress\"\nvelocity = \"1 mm/s\"\nramp_time = \"10 ms\"\nstop_strain = 0.004\n";

@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <cmath>
+#include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "stages/small_runs.hpp"
@@ -16,6 +19,94 @@ TEST(LoadStage, BothPlatensCarryTheStressAskedFor) {
   EXPECT_NEAR(a.last("stress_bottom_MPa"), 6.0, 6.0 * 1e-3);  // with the weight of the specimen
   const Finished b(deck(kUniform + kSettle + load("level = 0.2\nf_c = \"30 MPa\"")));
   EXPECT_DOUBLE_EQ(a.last("strain"), b.last("strain"));
+}
+
+std::string compress(const std::string& until) {
+  return "[[stages]]\nkind = \"compress\"\nvelocity = \"0.5 mm/s\"\nramp_time = \"20 ms\"\n" + until + "\n";
+}
+
+// Promise: a load above the strength is told as a crushed specimen, with the stress it bore: not as rest, and
+// not as steps that ran out.
+TEST(LoadStage, ALoadAboveTheStrengthCrushes) {
+  const Finished strong(deck(kUniform + kSettle + kFailure));
+  const double strength = strong.result(1, "f_c_MPa").value();
+  for (const double share : {1.5, 3.0}) {
+    const Finished r(
+        deck(kUniform + kSettle +
+             with(load(fmt::format("level = {}\nf_c = \"{} MPa\"\nf_c_of = \"the same specimen\"", share,
+                                   strength)),
+                  "ramp_time = \"20 ms\"", fmt::format("ramp_time = \"{} ms\"", 400.0 * share))));
+    EXPECT_EQ(r.run.outcome(), Outcome::crushed);
+    const double borne = r.result(1, "largest_stress_MPa").value();
+    EXPECT_GT(borne, 0.9 * strength);
+    EXPECT_LT(borne, 1.2 * strength);  // inertia: the load rises to it within 0.4 s
+    EXPECT_NE(r.report(1).lines.front().find("the same specimen"), std::string::npos);
+    ASSERT_EQ(r.report(1).warnings.size(), 1u);
+    ASSERT_EQ(r.setup.warnings.size(), 1u);  // of the level
+    EXPECT_NE(r.setup.warnings.front().find("stages[1].level"), std::string::npos);
+  }
+}
+
+// Promise: a force that follows a motion begins where the platens press, so that unloading throws nothing.
+TEST(LoadStage, BeginsAtTheForceThatAMotionLeft) {
+  const Finished r(deck(kUniform + kSettle + compress("stop_strain = 0.0002") + load("stress = \"0 MPa\"") +
+                        compress("stop_strain = 0.0002")));
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  EXPECT_NEAR(r.end_of(2, "strain"), 0.0, 2e-5);  // an elastic body is back
+  EXPECT_NEAR(r.end_of(3, "stress_MPa"), r.end_of(1, "stress_MPa"), 0.03 * r.end_of(1, "stress_MPa"));
+  EXPECT_LT(r.energy_error_over_turnover(), 1e-4);
+}
+
+// Promise: a compression goes to a stress or a strain, down or up; what it unloads has a modulus, and the
+// ledger closes over the cycle.
+TEST(CompressStage, UnloadsAndReloads) {
+  const Finished r(deck(kUniform + kSettle + compress("to_stress = \"5 MPa\"") +
+                        compress("to_stress = \"0 MPa\"") + compress("to_strain = 0.0003")));
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  const double look = 0.3;  // MPa in a look
+  EXPECT_NEAR(r.end_of(1, "stress_top_MPa"), 5.0, look);
+  EXPECT_GE(r.end_of(1, "stress_top_MPa"), 5.0);
+  EXPECT_NEAR(r.end_of(2, "stress_top_MPa"), 0.0, look);
+  EXPECT_NEAR(r.end_of(2, "strain"), 0.0, 2e-5);
+  EXPECT_NEAR(r.end_of(3, "strain"), 0.0003, 2e-5);
+  EXPECT_NEAR(r.result(2, "E_unloading_GPa").value(), r.result(1, "E_GPa").value(),
+              0.02 * r.result(1, "E_GPa").value());
+  EXPECT_LT(r.energy_error_over_turnover(), 1e-4);
+}
+
+// Promise: a stress that the specimen cannot bear ends the run, which says so.
+TEST(CompressStage, SaysWhenAStressIsNotReached) {
+  const Finished r(
+      deck(kUniform + kSettle + compress("to_stress = \"90 MPa\"\nstop_strain = 0.004") + kCompress));
+  EXPECT_EQ(r.run.outcome(), Outcome::not_reached);
+  EXPECT_EQ(r.run.records()[2].outcome, Outcome::not_begun);
+}
+
+// Promise: a body that shrinks under nothing but its weight goes on resting on the lower platen; it does not
+// hover where it shrank to.
+TEST(HeatStage, ABodyThatShrinksStaysOnThePlaten) {
+  const Finished r(deck(kUniform + kSettle + heat("320 degC") + heat("20 degC")));
+  const double weight =
+      2200.0 * 9.81 * 0.12 * 1e-6;  // MPa, of the specimen; the lower platen's is 0.29 of it
+  for (std::size_t row = r.run.records()[2].rows.first; row < r.run.history().row_count(); ++row)
+    if (r.run.history().cell(row, "converged") == 1.0)
+      EXPECT_GT(*r.run.history().cell(row, "stress_bottom_MPa"), (0.79 + 0.29) * weight) << "row " << row;
+  EXPECT_EQ(r.result(2, "exchanges_not_converged"), 0);
+  EXPECT_NEAR(r.last("specimen_strain"), 0.0, 1e-5);
+  EXPECT_NEAR(r.last("strain"), 0.0, 1e-5);  // nor does the upper platen
+  EXPECT_LT(r.energy_error_over_turnover(), 1e-3);
+}
+
+// Promise: what comes back on cooling is told, by the deck already.
+TEST(HeatStage, HealingIsSaid) {
+  const auto healing = [](const std::string& stages) {
+    const pyroclast::Setup setup = pyroclast::read(deck(kUniform + kSettle + stages));
+    return std::ranges::count_if(setup.warnings, [](const std::string& w) {
+      return w.find("real concrete does not heal") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(healing(heat("320 degC")), 0);
+  EXPECT_EQ(healing(heat("320 degC") + heat("20 degC")), 1);
 }
 
 // Promise: an even body of one expansion expands by alpha dT in both directions and stays sound; the energy

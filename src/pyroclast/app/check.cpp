@@ -118,7 +118,8 @@ int check(const RunOptions& options) {
   const auto simulation = make_simulation(setup, loaded.team);
   const Model<2>& model = simulation->model();
   fmt::print("deck            {} is valid: {}\n", loaded.deck.name(), setup.title);
-  fmt::print("{}{}", describe_own_laws(), describe(simulation->specimen()));
+  fmt::print("{}{}{}", describe_warnings(setup.warnings), describe_own_laws(),
+             describe(simulation->specimen()));
   fmt::print("model           {} blocks{}, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
              simulation->moves() ? " with the platens" : "", model.zone_count(), model.gridpoint_count(),
              model.contact_count());

@@ -9,6 +9,9 @@
 
 namespace pyroclast::app {
 
+constexpr std::int64_t kLargestSeed = 9'000'000'000'000'000;
+constexpr int kMostThreads = 1024;
+
 /// Contact laws that are not part of the program.
 struct OwnLawOptions {
   std::vector<std::filesystem::path> folders;  ///< see LawSources
@@ -20,11 +23,11 @@ struct RunOptions {
   std::filesystem::path out;  ///< empty: runs/<name of the deck>
   bool overwrite = false;
   bool figures = true;
-  int threads = 0;                    ///< 0: as many as the machine has
-  std::string instructions;           ///< instruction set of the step; empty: the best that there is
-  std::optional<std::uint64_t> seed;  ///< instead of the deck's
-  std::vector<std::string> changes;   ///< "key=value", see Deck::load
-  std::optional<double> checkpoint;   ///< wall time between two checkpoints instead of the deck's, s
+  int threads = 0;                   ///< 0: as many as the machine has
+  std::string instructions;          ///< instruction set of the step; empty: the best that there is
+  std::optional<std::int64_t> seed;  ///< instead of the deck's
+  std::vector<std::string> changes;  ///< "key=value", see Deck::load
+  std::optional<double> checkpoint;  ///< wall time between two checkpoints instead of the deck's, s
   OwnLawOptions laws;
   std::string command;  ///< as typed, for the manifest
 };

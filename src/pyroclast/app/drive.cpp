@@ -47,44 +47,48 @@ std::string progress_line(const Run& run, const Progress& progress) {
 }
 
 std::string describe(const Summary& s, const std::filesystem::path& folder) {
-  std::string text = fmt::format("\nended           {}, after {}\n", describe(s.outcome), duration(s.wall_time));
+  std::string text =
+      fmt::format("\nended           {}, after {}\n", describe(s.outcome), duration(s.wall_time));
   for (std::size_t i = 0; i < s.stages.size(); ++i) {
     const auto& [kind, outcome, report] = s.stages[i];
     const std::string label = fmt::format("stage {}", i + 1);
     text += fmt::format("{:<16}{}: {}\n", label, kind, describe(outcome));
     for (const auto& line : report.lines) text += fmt::format("{:<16}{}\n", "", line);
-    for (const auto& warning : report.warnings) text += fmt::format("{:<16}{}\n", "warning", warning);
+    text += describe_warnings(report.warnings);
   }
   if (s.energy_error)
     text += fmt::format("energy ledger   closes within {:.3f} % of the energy turned over\n",
                         100.0 * std::abs(*s.energy_error));
   if (s.heat_error)
     text += fmt::format("heat ledger     closes within {:.1e} of its largest term\n", *s.heat_error);
-  for (const auto& warning : s.warnings) text += fmt::format("{:<16}{}\n", "warning", warning);
-  return text + fmt::format("results         {}", folder.string());
+  return text + describe_warnings(s.warnings) + fmt::format("results         {}", folder.string());
 }
 
-int exit_code(Outcome outcome) {
-  switch (outcome) {
+int exit_code(const Summary& summary) {
+  switch (summary.outcome) {
     case Outcome::stopped:
       return 130;
     case Outcome::not_settled:
+    case Outcome::not_reached:
     case Outcome::unstable:
       return 2;
     default:
-      return 0;
+      return summary.is_sound ? 0 : 2;
   }
 }
 
 }  // namespace
 
-std::string describe_processor(const Loaded& loaded) {
-  return fmt::format("processor       {} threads, {} instructions\n", loaded.team->size(),
-                     name(loaded.instructions));
+StateVisit state_of(Run& run, Recorder& recorder) {
+  return [&](StateVisitor& visitor) {
+    run.visit_state(visitor);
+    recorder.visit_state(visitor);
+  };
 }
 
 std::string describe_start(const Simulation& simulation, const Loaded& loaded) {
-  std::string text = describe_own_laws() + describe(simulation.specimen());
+  std::string text =
+      describe_warnings(loaded.setup.warnings) + describe_own_laws() + describe(simulation.specimen());
   const Model<2>& model = simulation.model();
   text += fmt::format("model           {} zones, {} contacts\n", model.zone_count(), model.contact_count());
   if (const auto* conduction = simulation.field().conduction())
@@ -92,11 +96,12 @@ std::string describe_start(const Simulation& simulation, const Loaded& loaded) {
   if (simulation.moves())
     text += fmt::format("mechanics       time step {:.3g} s, moving mass {:.3g} x the real one\n",
                         simulation.mechanics().time_step(), simulation.mechanics().mass_ratio());
-  return text + describe_processor(loaded);
+  return text + fmt::format("processor       {} threads, {} instructions\n", loaded.team->size(),
+                            name(loaded.instructions));
 }
 
-int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log, const std::filesystem::path& folder,
-          bool figures) {
+int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log,
+          const std::filesystem::path& folder, bool figures) {
   const Interrupt interrupt;
   run.stop_when([&] { return interrupt.asked(); });
   run.between_batches([&](Run& r) { checkpoints.between_batches(r, interrupt.asked()); });
@@ -114,21 +119,19 @@ int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log, c
     summary = recorder.finish(run);
   } catch (const Error& error) {
     if (checkpoints.last().empty()) throw;
-    throw Error(fmt::format("{}\nthe run is broken off; to go on from {}, its last checkpoint: pyroclast resume {}",
-                            error.what(), checkpoints.last().string(), folder.string()));
+    throw Error(
+        fmt::format("{}\nthe run is broken off; to go on from {}, its last checkpoint: pyroclast resume {}",
+                    error.what(), checkpoints.last().string(), folder.string()));
   }
   log.say(describe(summary, folder));
-  if (run.outcome() == Outcome::stopped) log.say(fmt::format("to go on        pyroclast resume {}", folder.string()));
+  if (run.outcome() == Outcome::stopped)
+    log.say(fmt::format("to go on        pyroclast resume {}", folder.string()));
   if (figures) draw_figures("run", folder, [&] { return interrupt.asked_twice(); });
-  return exit_code(run.outcome());
+  return exit_code(summary);
 }
 
 Checkpoints::Sources checkpoint_sources(Run& run, Recorder& recorder, const RunLog& log, std::string inputs) {
-  return {std::move(inputs), body_hash(run.simulation()),
-          [&](StateVisitor& visitor) {
-            run.visit_state(visitor);
-            recorder.visit_state(visitor);
-          },
+  return {std::move(inputs), body_hash(run.simulation()), state_of(run, recorder),
           [&] { return recorder.wall_time(); }, [&] { return log.bytes(); }};
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "pyroclast/app/load.hpp"
 #include "pyroclast/app/run_log.hpp"
 #include "pyroclast/results/checkpoints.hpp"
@@ -11,8 +13,10 @@ namespace pyroclast::app {
 
 /// What a run will be, for the screen.
 std::string describe_start(const Simulation& simulation, const Loaded& loaded);
-/// Threads and instruction set.
-std::string describe_processor(const Loaded& loaded);
+/// Shows all that a run keeps to a visitor.
+using StateVisit = std::function<void(StateVisitor&)>;
+/// Of this run; both are kept by reference.
+StateVisit state_of(Run& run, Recorder& recorder);
 
 /// What a checkpoint of this run is made of. All are kept by reference.
 /// \param inputs  their hash

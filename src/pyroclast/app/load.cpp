@@ -26,7 +26,12 @@ Loaded::Loaded(const RunOptions& options, const std::string& more)
       instructions(options.instructions.empty() ? usable_instruction_sets().back()
                                                 : instruction_set(options.instructions)),
       team(make_team(options.threads)) {
-  if (options.seed) setup.specimen.seed = *options.seed;
+  if (options.threads > available_threads())
+    setup.warnings.push_back(
+        fmt::format("--threads {}: only {} processors are free for this process, and more "
+                    "threads than those slow it down",
+                    options.threads, available_threads()));
+  if (options.seed) setup.specimen.seed = static_cast<std::uint64_t>(*options.seed);
   if (options.checkpoint) setup.checkpoints.interval = *options.checkpoint;
   if (setup.motion) setup.motion->mechanics.instructions = instructions;
 }
@@ -105,6 +110,12 @@ std::string describe(const specimen::Specimen& s) {
                       m.smallest_angle_cell);
   text += fmt::format("                {} edges removed, {} left short, {} seeds redrawn\n", m.edges_removed,
                       m.edges_left_short, m.seeds_redrawn);
+  return text + describe_warnings(specimen::warnings(s));
+}
+
+std::string describe_warnings(const std::vector<std::string>& warnings) {
+  std::string text;
+  for (const auto& warning : warnings) text += fmt::format("{:<16}{}\n", "warning", warning);
   return text;
 }
 

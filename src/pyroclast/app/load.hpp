@@ -35,6 +35,9 @@ std::string describe_own_laws();
 /// What came of the specimen, for the screen.
 std::string describe(const specimen::Specimen& specimen);
 
+/// A line each, for the screen; empty without any.
+std::string describe_warnings(const std::vector<std::string>& warnings);
+
 /// What the heat solver is about to do, for the screen.
 /// \param temperatures  that the run may come to, °C
 std::string describe(const Conduction<2>& conduction, const Model<2>& model, const Interval& temperatures);

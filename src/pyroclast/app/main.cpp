@@ -6,6 +6,7 @@
 
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/version.hpp"
 
 namespace {
@@ -16,8 +17,9 @@ void add_deck(CLI::App* command, std::filesystem::path& deck) {
   command->add_option("DECK", deck, "TOML file that describes the run")->required();
 }
 
-void add_seed(CLI::App* command, std::optional<std::uint64_t>& seed) {
-  command->add_option("--seed", seed, "Seed of the specimen, instead of the deck's");
+void add_seed(CLI::App* command, std::optional<std::int64_t>& seed) {
+  command->add_option("--seed", seed, "Seed of the specimen, instead of the deck's, 0 or more")
+      ->check(CLI::Range(std::int64_t{0}, app::kLargestSeed, "a whole number from 0"));
 }
 
 void add_output(CLI::App* command, app::RunOptions& options) {
@@ -28,7 +30,7 @@ void add_output(CLI::App* command, app::RunOptions& options) {
 
 void add_threads(CLI::App* command, int& threads) {
   command->add_option("-t,--threads", threads, "Threads; results are the same for any number")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, app::kMostThreads));
 }
 
 void add_processor(CLI::App* command, app::RunOptions& options) {
@@ -67,7 +69,8 @@ void add_own_laws(CLI::App* command, app::OwnLawOptions& options) {
 int command_line(int argc, char** argv) {
   CLI::App cli{"Pyroclast: how concrete breaks under load and fire, by the discrete element method",
                "pyroclast"};
-  cli.set_version_flag("--version", fmt::format("pyroclast {} ({})", kVersion, kCommit));
+  cli.set_version_flag(
+      "--version", fmt::format("pyroclast {} ({}), physics version {}", kVersion, kCommit, kPhysicsVersion));
   cli.require_subcommand(1);
 
   app::RunOptions options;

@@ -57,10 +57,7 @@ int go_on(const ResumeOptions& options) {
 
   Recorder recorder(options.run, loaded.setup);
   Run run(*simulation, std::move(loaded.setup.stages));
-  checkpoint.restore([&](StateVisitor& visitor) {
-    run.visit_state(visitor);
-    recorder.visit_state(visitor);
-  });
+  checkpoint.restore(state_of(run, recorder));
   // where the disk was full at the end, the summary is still to be written
   if (run.outcome() != Outcome::running && fs::exists(options.run / "summary.json"))
     throw Error(fmt::format(
@@ -70,7 +67,8 @@ int go_on(const ResumeOptions& options) {
   log.say_now(fmt::format("goes on from {}, step {}, stage {} of {}", checkpoint.path().filename().string(),
                           checkpoint.info().step, run.stage_number() + 1, run.stages().size()));
   if (checkpoint.info().commit != kCommit)
-    log.say(fmt::format("                it was written by another build, of commit {}", checkpoint.info().commit));
+    log.say(fmt::format("                it was written by another build, of commit {}",
+                        checkpoint.info().commit));
   Checkpoints checkpoints(options.run, loaded.setup.checkpoints,
                           checkpoint_sources(run, recorder, log, inputs.hash()), checkpoint.info().number);
   recorder.begin(run);
@@ -153,10 +151,7 @@ int fork(const ResumeOptions& options) {
 
   Recorder recorder(own.out, loaded.setup);
   Run run(*simulation, std::move(loaded.setup.stages));
-  checkpoint.restore([&](StateVisitor& visitor) {
-    run.visit_state(visitor);
-    recorder.visit_state(visitor);
-  });
+  checkpoint.restore(state_of(run, recorder));
   if (run.outcome() != Outcome::running)
     throw Error(fmt::format("{}: no stage can follow stage {}, which ended the run ({})",
                             options.run.string(), stage, describe(run.outcome())));

@@ -34,4 +34,8 @@ std::string Range::describe(std::string_view unit) const {
   return words;
 }
 
+std::string Range::describe_usual(std::string_view unit) const {
+  return Range{.lower = usual_lower, .upper = usual_upper}.describe(unit);
+}
+
 }  // namespace pyroclast

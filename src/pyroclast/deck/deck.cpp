@@ -73,6 +73,12 @@ Section Deck::root() const {
   return {*record_, &record_->root()};
 }
 
+std::vector<std::string> Deck::warnings() const {
+  std::vector<std::string> lines;
+  for (const Diagnostic& warning : in_file_order(record_->warnings())) lines.push_back(to_string(warning));
+  return lines;
+}
+
 void Deck::finish() const {
   record_->root();  // so that a deck of which nothing was read is not taken for a good one
   std::vector<Diagnostic> diagnostics = record_->diagnostics();

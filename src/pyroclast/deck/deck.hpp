@@ -181,6 +181,11 @@ class Section {
   /// Records a contradiction of the table as a whole.
   void error(std::string message) const;
 
+  /// Records what is allowed at the key, but most likely not meant; the deck stays valid.
+  void warn(std::string_view key, std::string message) const;
+  /// The same where a value, in `unit.si`, is not what is usual in its range.
+  void warn_if_unusual(std::string_view key, double value, const Unit& unit, const Range& range) const;
+
   /// Says that the key's value is the name of a file, followed by `rest`.
   void names_file(std::string_view key, std::filesystem::path file, std::string rest = {}) const;
 
@@ -241,6 +246,8 @@ class Deck {
 
   Section root() const;
 
+  /// What was warned of, a line each, in the order of the file.
+  std::vector<std::string> warnings() const;
   /// Files that the deck names, in the order of reading.
   const std::vector<DeckFile>& files() const;
   /// The text with other values, by the full paths of their keys; a key that is missing is added.

@@ -9,13 +9,6 @@
 namespace pyroclast {
 namespace {
 
-std::vector<Diagnostic> in_file_order(std::vector<Diagnostic> diagnostics) {
-  std::stable_sort(diagnostics.begin(), diagnostics.end(), [](const Diagnostic& a, const Diagnostic& b) {
-    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
-  });
-  return diagnostics;
-}
-
 std::string listed(const std::vector<Diagnostic>& diagnostics) {
   std::string lines;
   for (const Diagnostic& diagnostic : diagnostics) {
@@ -26,6 +19,13 @@ std::string listed(const std::vector<Diagnostic>& diagnostics) {
 }
 
 }  // namespace
+
+std::vector<Diagnostic> in_file_order(std::vector<Diagnostic> diagnostics) {
+  std::stable_sort(diagnostics.begin(), diagnostics.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+  });
+  return diagnostics;
+}
 
 std::string to_string(const Diagnostic& diagnostic) {
   std::string line = diagnostic.file;

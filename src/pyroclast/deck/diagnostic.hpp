@@ -22,6 +22,8 @@ struct Diagnostic {
 /// `file:line:column: key = value: message; hint`, without the parts that are empty.
 std::string to_string(const Diagnostic& diagnostic);
 
+std::vector<Diagnostic> in_file_order(std::vector<Diagnostic> diagnostics);
+
 /// Everything that is wrong with a deck. `what()` has one line per diagnostic, in the order of the file.
 class DeckError : public Error {
  public:

@@ -132,6 +132,19 @@ void DeckRecord::report(const std::string& path, const toml::node& node, std::st
   diagnostics_.push_back(std::move(diagnostic));
 }
 
+void DeckRecord::warn(const std::string& path, const toml::node& node, std::string message) {
+  if (survey_) return;
+  Diagnostic diagnostic = locate(path, node.source());
+  diagnostic.value = as_written(node);
+  diagnostic.message = std::move(message);
+  warnings_.push_back(std::move(diagnostic));
+}
+
+void DeckRecord::warn(const TableRecord& table, std::string_view key, std::string message) {
+  const toml::node* node = table.table.get(key);
+  warn(table.path_of(key), node ? *node : table.table, std::move(message));
+}
+
 void DeckRecord::report(const TableRecord& table, const std::string& path, std::string message) {
   if (survey_) return;
   Diagnostic diagnostic = locate(path, table.table.source());

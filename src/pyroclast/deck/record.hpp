@@ -67,6 +67,11 @@ class DeckRecord {
   void report(const std::string& path, const toml::node& node, std::string message, std::string hint = {});
   /// An error of a table, such as a missing key of the given path.
   void report(const TableRecord& table, const std::string& path, std::string message);
+  /// Something that is allowed, but most likely not meant, at a value; a key that is absent stands for its
+  /// table.
+  void warn(const TableRecord& table, std::string_view key, std::string message);
+  void warn(const std::string& path, const toml::node& node, std::string message);
+  const std::vector<Diagnostic>& warnings() const { return warnings_; }
   /// Whether nothing was reported at or below a path; false in a survey.
   bool is_clean(std::string_view path) const;
 
@@ -88,6 +93,7 @@ class DeckRecord {
   std::map<const toml::table*, std::unique_ptr<TableRecord>> tables_;
   std::vector<const TableRecord*> tables_as_read_;
   std::vector<Diagnostic> diagnostics_;
+  std::vector<Diagnostic> warnings_;
   std::vector<DeckFile> files_;
   SurveyRun* survey_ = nullptr;
 };

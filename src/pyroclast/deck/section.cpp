@@ -60,10 +60,18 @@ std::string requirement(const Unit& unit, const Range& range) {
   return words.empty() ? requirement(unit) : fmt::format("{}; it must be {}", requirement(unit), words);
 }
 
+std::string unusual(double value, const Range& range, std::string_view unit) {
+  return fmt::format("is {:.6g}{}{}, but usually it is {}", value, unit.empty() ? "" : " ", unit,
+                     range.describe_usual(unit));
+}
+
 bool check_range(const Entry& entry, double value, const Range& range, std::string_view unit) {
-  if (range.contains(value)) return true;
-  entry.error("must be " + range.describe(unit));
-  return false;
+  if (!range.contains(value)) {
+    entry.error("must be " + range.describe(unit));
+    return false;
+  }
+  if (!range.is_usual(value)) entry.deck.warn(entry.path, entry.node, unusual(value, range, unit));
+  return true;
 }
 
 std::optional<double> read_written_quantity(const Entry& entry, const std::string& text, const Unit& unit) {
@@ -232,6 +240,13 @@ std::string fallback_text(double value, const Unit& unit) {
   return fmt::format("{}{}{}", value, unit == unit::dimensionless ? "" : " ", suffix(unit));
 }
 
+/// In words, without unit; what is usual behind it.
+std::string allowed(const Range& range) {
+  const std::string must = range.describe(), usual = range.describe_usual();
+  if (usual.empty()) return must;
+  return fmt::format("{}{}usually {}", must, must.empty() ? "" : "; ", usual);
+}
+
 DeckKey key_of(std::string_view key, std::string value) {
   DeckKey result;
   result.key = key;
@@ -242,7 +257,7 @@ DeckKey key_of(std::string_view key, std::string value) {
 DeckKey quantity_key(std::string_view key, const Unit& unit, const Range& range) {
   DeckKey result = key_of(key, unit == unit::dimensionless ? "number" : unit.name);
   result.unit = suffix(unit);
-  result.allowed = range.describe();
+  result.allowed = allowed(range);
   return result;
 }
 
@@ -254,7 +269,7 @@ DeckKey quantities_key(std::string_view key, const Unit& unit, const Range& rang
 
 DeckKey integer_key(std::string_view key, const Range& range) {
   DeckKey result = key_of(key, "whole number");
-  result.allowed = range.describe();
+  result.allowed = allowed(range);
   return result;
 }
 
@@ -514,7 +529,7 @@ void Section::describe(std::string_view key, const KeyForms& forms, Meaning mean
   if (!survey) return;
   DeckKey read = key_of(key, forms.value);
   read.unit = suffix(forms.unit);
-  read.allowed = forms.range.describe();
+  read.allowed = allowed(forms.range);
   if (forms.fallback) read.fallback = fallback_text(*forms.fallback, forms.unit);
   read.meaning = meaning.text();
   survey->read_in_forms(table_->path, std::move(read), forms.name);
@@ -541,6 +556,15 @@ void Section::error(std::string_view key, std::string message) const {
 
 void Section::error(std::string message) const {
   if (table_) deck_->report(*table_, table_->path, std::move(message));
+}
+
+void Section::warn(std::string_view key, std::string message) const {
+  if (table_ && !deck_->survey()) deck_->warn(*table_, key, std::move(message));
+}
+
+void Section::warn_if_unusual(std::string_view key, double value, const Unit& unit,
+                              const Range& range) const {
+  if (!range.is_usual(value)) warn(key, unusual(value, range, suffix(unit)));
 }
 
 void Section::names_file(std::string_view key, std::filesystem::path file, std::string rest) const {

@@ -8,23 +8,25 @@ namespace pyroclast {
 namespace info {
 
 inline constexpr PropertyInfo normal_stiffness{"K_n", "normal stiffness", unit::stiffness_per_area,
-                                               Range::positive(), Role::normal_stiffness};
+                                               Range::positive().usually(1e9, 1e17), Role::normal_stiffness};
 inline constexpr PropertyInfo shear_stiffness{"K_s", "shear stiffness", unit::stiffness_per_area,
-                                              Range::positive(), Role::shear_stiffness};
+                                              Range::positive().usually(1e9, 1e17), Role::shear_stiffness};
 
 inline constexpr Range kAngles{.lower = 0.0, .upper = 1.57, .upper_inclusive = false};  // rad
-inline constexpr PropertyInfo tensile_strength{"f_t", "tensile strength", unit::stress, Range::positive(),
-                                               Role::strength};
+inline constexpr PropertyInfo tensile_strength{"f_t", "tensile strength", unit::stress,
+                                               Range::positive().usually(1e4, 50e6), Role::strength};
 inline constexpr PropertyInfo mode_1_energy{"G_f1", "mode I fracture energy", unit::fracture_energy,
-                                            Range::positive(), Role::energy};
+                                            Range::positive().usually(0.1, 1e4), Role::energy};
 inline constexpr PropertyInfo compressive_limit{"f_cm", "compression at which the second slope begins",
-                                                unit::stress, Range::positive(), Role::strength};
+                                                unit::stress, Range::positive().usually(1e5, 1e9),
+                                                Role::strength};
 inline constexpr PropertyInfo hardening{"beta", "second slope in compression over the first",
                                         unit::dimensionless, Range::inside(0.0, 1.0)};
-inline constexpr PropertyInfo cohesion{"c_o", "cohesion", unit::stress, Range::positive(), Role::strength};
+inline constexpr PropertyInfo cohesion{"c_o", "cohesion", unit::stress, Range::positive().usually(1e4, 1e8),
+                                       Role::strength};
 inline constexpr PropertyInfo friction_angle{"phi", "friction angle", unit::angle, kAngles};
 inline constexpr PropertyInfo mode_2_energy{"G_f2", "mode II fracture energy", unit::fracture_energy,
-                                            Range::positive(), Role::energy};
+                                            Range::positive().usually(0.1, 1e5), Role::energy};
 
 /// Of Compression.
 inline constexpr ChoiceInfo compression{"compression",

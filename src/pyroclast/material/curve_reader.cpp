@@ -102,6 +102,8 @@ Curve CurveReader::read_described(const Section& section, std::string_view key, 
     curve = read_forms(forms, unit, true);
     if (!curve || !forms.ok() || !covers(section, key, *curve) || !within(section, key, *curve, unit, range))
       curve = Curve::constant(range.any_value());
+    else if (axis_ == temperature_axis() && curve->range().contains(kReferenceTemperature))
+      section.warn_if_unusual(key, (*curve)(kReferenceTemperature), unit, range);
   }
   const std::string path = path_of(section, key);
   curves_.push_back({path, unit.si, curve->named(path)});

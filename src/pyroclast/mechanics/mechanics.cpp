@@ -877,6 +877,17 @@ Vec<Dim> Mechanics<Dim>::total_applied_force(const GridpointSet& set) const {
 }
 
 template <int Dim>
+Vec<Dim> Mechanics<Dim>::total_weight(const GridpointSet& set) const {
+  return parameters_.gravity *
+         chunked_sum(set.chunks, [&](int i) { return gravity_mass_[set.gridpoints[i]]; });
+}
+
+template <int Dim>
+double Mechanics<Dim>::total_moving_mass(const GridpointSet& set) const {
+  return chunked_sum(set.chunks, [&](int i) { return mass_[set.gridpoints[i]]; });
+}
+
+template <int Dim>
 Dissipation Mechanics<Dim>::dissipated() const {
   struct Sums {
     std::array<double, kMostDissipations> energy{};

@@ -218,6 +218,8 @@ class Mechanics {
   Vec<Dim> mean_displacement(const GridpointSet& set) const;    ///< m
   Vec<Dim> total_force(const GridpointSet& set) const;          ///< N, as of `force`
   Vec<Dim> total_applied_force(const GridpointSet& set) const;  ///< N
+  Vec<Dim> total_weight(const GridpointSet& set) const;         ///< N, of the real mass
+  double total_moving_mass(const GridpointSet& set) const;      ///< kg
 
   /// Energies at the displacements that the last step started from. With kinetic energy as half m v(t - dt/2)
   /// v(t + dt/2), central differences conserve their sum exactly in a linear body, so the ledger's error is

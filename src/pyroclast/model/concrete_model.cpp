@@ -143,6 +143,9 @@ Model<2> make_concrete_model(const Specimen& specimen, std::optional<double> pla
   auto& specimen_set = model.sets["specimen"];
   specimen_set.resize(first_platen_above - first_gridpoint);
   std::iota(specimen_set.begin(), specimen_set.end(), first_gridpoint);
+  auto& bottom_platen = model.sets["bottom_platen"];
+  bottom_platen.resize(first_gridpoint);
+  std::iota(bottom_platen.begin(), bottom_platen.end(), 0);
   auto& top_platen = model.sets["top_platen"];
   top_platen.resize(model.gridpoint_count() - first_platen_above);
   std::iota(top_platen.begin(), top_platen.end(), first_platen_above);

@@ -10,7 +10,8 @@ Recorder::Recorder(std::filesystem::path folder, const Setup& setup)
     : folder_(std::move(folder)),
       title_(setup.title),
       expansion_reading_(setup.expansion_reading == ExpansionReading::secant ? "secant" : "tangent"),
-      specimen_(setup.specimen) {}
+      specimen_(setup.specimen),
+      warnings_(setup.warnings) {}
 
 void Recorder::begin(const Run& run) {
   std::filesystem::remove(folder_ / "summary.json");
@@ -27,6 +28,10 @@ void Recorder::record(const Run& run) {
 Summary Recorder::finish(const Run& run) {
   Summary summary = summarize(run);
   summary.title = title_;
+  std::vector<std::string> warnings = warnings_;
+  for (auto list : {specimen::warnings(run.simulation().specimen()), std::exchange(summary.warnings, {})})
+    warnings.insert(warnings.end(), list.begin(), list.end());
+  summary.warnings = std::move(warnings);
   summary.expansion_reading = expansion_reading_;
   summary.wall_time = wall_time();
   write_summary(folder_ / "summary.json", summary, run);

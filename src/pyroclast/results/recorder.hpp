@@ -43,6 +43,7 @@ class Recorder {
   std::string title_;
   std::string expansion_reading_;
   specimen::SpecimenParameters specimen_;
+  std::vector<std::string> warnings_;  ///< of the deck
   std::optional<HistoryFile> history_;
   std::optional<FieldFiles> fields_;
   FrameRecords frames_;

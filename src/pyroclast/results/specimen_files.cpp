@@ -68,6 +68,7 @@ void write_specimen_files(const std::filesystem::path& folder, const specimen::S
   json["fraction_asked"] = s.fraction_asked;
   json["fraction_placed"] = s.fraction_placed;
   json["fraction_superposed"] = s.fraction_superposed;
+  json["covered_fraction"] = s.covered_fraction;
   for (std::size_t i = 0; i < s.phases.size(); ++i) json["fraction"][s.phases[i]] = s.fraction[i];
   json["mean_block_size_m"] = s.metrics.mean_size;
   json["mean_edge_m"] = s.metrics.mean_edge;

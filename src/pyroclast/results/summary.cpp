@@ -20,6 +20,8 @@ using Json = nlohmann::ordered_json;
 constexpr double kSmallJump = 0.1;
 /// The energy ledger of a sound run closes within this share of the energy turned over.
 constexpr double kEnergyTolerance = 0.005;
+/// A run whose ledger is this far off has no results: energy came from nowhere, or a body flew off.
+constexpr double kEnergyNonsense = 0.05;
 /// Heat is conserved to rounding, which adds up over some 1e5 evaluations to far less than this share.
 constexpr double kHeatTolerance = 1e-6;
 
@@ -55,19 +57,36 @@ constexpr auto kHeat = std::to_array<Entry>({
     {"error", "heat_error_J"},
 });
 
-/// The last value of a column that the run has; what a stage without it left stands in earlier rows.
-std::optional<double> last_of(const History& history, const char* column) {
-  for (std::size_t row = history.row_count(); row-- > 0;)
+/// The last value of a column in the first rows; what a stage without it left stands in earlier rows.
+std::optional<double> last_of(const History& history, const char* column, std::size_t rows) {
+  for (std::size_t row = rows; row-- > 0;)
     if (const auto value = history.cell(row, column)) return value;
   return std::nullopt;
 }
 
-std::optional<double> energy_error(const History& history) {
-  const auto error = last_of(history, "energy_error_J");
+std::optional<double> last_of(const History& history, const char* column) {
+  return last_of(history, column, history.row_count());
+}
+
+/// Error of the energy ledger over the energy turned over, after the first rows; none where nothing moves, or
+/// nothing was turned over.
+std::optional<double> energy_error(const History& history, std::size_t rows) {
+  const auto error = last_of(history, "energy_error_J", rows);
   if (!error) return std::nullopt;
   double turnover = 0.0;
-  for (const char* column : kPutIn) turnover += std::abs(last_of(history, column).value_or(0.0));
-  return *error / turnover;
+  for (const char* column : kPutIn) turnover += std::abs(last_of(history, column, rows).value_or(0.0));
+  return turnover > 0.0 ? *error / turnover : 0.0;
+}
+
+/// A report whose results must not be taken for any.
+StageReport without_results(StageReport report, double energy_error) {
+  const auto because = fmt::format("the energy ledger closes only within {:.3g} % of the energy turned over",
+                                   100.0 * std::abs(energy_error));
+  for (Result& result : report.results) result.value = {};
+  report.results.push_back({"none_because", because});
+  report.lines = {"no results, because " + because};
+  report.warnings = {"this stage has no results: " + because + "; a body that flies off, or too long a step"};
+  return report;
 }
 
 std::optional<double> heat_error(const History& history) {
@@ -161,12 +180,18 @@ Summary summarize(const Run& run) {
     const Stage& stage = *run.stages()[i];
     const StageRecord& record = run.records()[i];
     s.stages.push_back({stage.kind(), record.outcome, {}});
-    if (record.outcome != Outcome::not_begun)
-      s.stages.back().report = stage.report(history, record.rows, record.outcome);
+    if (record.outcome == Outcome::not_begun) continue;
+    StageReport& report = s.stages.back().report;
+    report = stage.report(history, record.rows, record.outcome);
+    const double error = energy_error(history, record.rows.last).value_or(0.0);
+    if (std::abs(error) <= kEnergyNonsense) continue;
+    report = without_results(std::move(report), error);
+    s.is_sound = false;
   }
-  s.energy_error = energy_error(history);
+  s.energy_error = energy_error(history, history.row_count());
   s.heat_error = heat_error(history);
-  if (s.outcome == Outcome::stopped || s.outcome == Outcome::not_settled || s.outcome == Outcome::unstable)
+  if (s.outcome == Outcome::stopped || s.outcome == Outcome::not_settled || s.outcome == Outcome::unstable ||
+      s.outcome == Outcome::not_reached)
     s.warnings.emplace_back(describe(s.outcome));
   if (s.energy_error && std::abs(*s.energy_error) > kEnergyTolerance)
     s.warnings.push_back(fmt::format(

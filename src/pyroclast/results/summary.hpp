@@ -26,6 +26,7 @@ struct Summary {
   std::optional<double> energy_error;
   /// Error of the heat ledger over the largest of its terms; empty where no heat is conducted.
   std::optional<double> heat_error;
+  bool is_sound = true;               ///< false where a stage has no results, for its ledger does not close
   std::vector<std::string> warnings;  ///< of the run as a whole; those of stages stand in their reports
 };
 

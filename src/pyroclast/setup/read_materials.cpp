@@ -47,7 +47,7 @@ Interval strain_range(const Interval& needed) {
 
 Curve read_thermal_strain(const Section& s, ExpansionReading reading, CurveReader& curves) {
   if (s.has("expansion")) {
-    const Curve expansion = curves.read(s, "expansion", unit::expansion, Range::any(),
+    const Curve expansion = curves.read(s, "expansion", unit::expansion, Range::any().usually(-5e-5, 1e-4),
                                         "coefficient of thermal expansion; may be negative");
     if (s.has("thermal_strain"))
       s.error("thermal_strain", "has no meaning beside \"expansion\": give one of the two");
@@ -68,25 +68,26 @@ Curve read_thermal_strain(const Section& s, ExpansionReading reading, CurveReade
 
 /// Density, and what conduction needs where it is given.
 SolidMaterial read_heat_properties(const Section& s, CurveReader& curves) {
-  const auto optional = [&](std::string_view key, const Unit& unit, Meaning meaning) -> std::optional<Curve> {
+  const auto optional = [&](std::string_view key, const Unit& unit, const Range& range,
+                            Meaning meaning) -> std::optional<Curve> {
     if (!s.has(key)) return std::nullopt;
-    return curves.read(s, key, unit, Range::positive(), meaning);
+    return curves.read(s, key, unit, range, meaning);
   };
   SolidMaterial m;
   m.name = s.path().substr(s.path().rfind('.') + 1);
-  m.density = curves.read(s, "density", unit::density, Range::positive(),
+  m.density = curves.read(s, "density", unit::density, Range::positive().usually(500.0, 20e3),
                           "masses are those at 20 °C; heat conduction follows the curve");
-  m.conductivity = optional("conductivity", unit::conductivity,
+  m.conductivity = optional("conductivity", unit::conductivity, Range::positive().usually(0.02, 500.0),
                             "thermal conductivity; heat conduction needs that of every phase");
-  m.specific_heat =
-      optional("specific_heat", unit::specific_heat, "heat conduction needs that of every phase");
+  m.specific_heat = optional("specific_heat", unit::specific_heat, Range::positive().usually(100.0, 2e4),
+                             "heat conduction needs that of every phase");
   return m;
 }
 
 SolidMaterial read_solid(const Section& s, ExpansionReading reading, CurveReader& curves) {
   SolidMaterial m = read_heat_properties(s, curves);
-  m.young = curves.read(s, "E", unit::stress, Range::positive(), "Young's modulus");
-  m.poisson = s.number("nu", Range{-1.0, 0.5, false, false}, "Poisson's ratio");
+  m.young = curves.read(s, "E", unit::stress, Range::positive().usually(1e9, 500e9), "Young's modulus");
+  m.poisson = s.number("nu", Range::inside(-1.0, 0.5).usually(0.0, 0.45), "Poisson's ratio");
   m.thermal_strain = read_thermal_strain(s, reading, curves);
   return m;
 }
@@ -374,7 +375,8 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
       root.section("contacts", "what all contacts share: K_n = E / t_b, K_s = G / t_b, Eq. (17)");
   ContactParameters c;
   c.matrix = matrix;
-  c.fracture_zone = s.quantity("t_b", unit::length, Range::positive(), "thickness of the fracture zone, t_b");
+  c.fracture_zone = s.quantity("t_b", unit::length, Range::positive().usually(1e-5, 0.05),
+                               "thickness of the fracture zone, t_b");
   const bool scales = s.choice<bool>("t_b_scaling",
                                      {{"block size", true,
                                        "yes, it scales with it, and so do stated stiffnesses, so that the "
@@ -384,7 +386,7 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
   if (scales)
     c.fracture_zone_size = s.quantity("t_b_block_size", unit::length, Range::positive(),
                                       "block size √(area / count) at which t_b and stated stiffnesses hold");
-  c.platen_friction = s.number("platen_friction", Range::non_negative(),
+  c.platen_friction = s.number("platen_friction", Range::non_negative().usually(0.0, 1.0),
                                "coefficient of friction between platen and specimen");
   InterfaceReader reader(s, phases, find_law, curves);
   c.interfaces = reader.read();

@@ -26,9 +26,10 @@ constexpr int kCheckedTemperatures = 33;
 
 MechanicsParameters<2> read_mechanics(const Section& s) {
   MechanicsParameters<2> m;
-  m.gravity = {{0.0, -s.quantity("gravity", unit::acceleration, Range::non_negative(), kGravity,
-                                 "acceleration downwards")}};
-  m.local_damping = s.number("local_damping", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false},
+  m.gravity = {{0.0, -s.quantity("gravity", unit::acceleration, Range::non_negative().usually(0.0, 10.0),
+                                 kGravity, "acceleration downwards")}};
+  m.local_damping = s.number("local_damping",
+                             Range{.lower = 0.0, .upper = 1.0, .upper_inclusive = false}.usually(0.1, 0.95),
                              "coefficient λ of Eq. (8)");
   m.damping_form = s.choice<DampingForm>(
       "damping_form",
@@ -45,14 +46,16 @@ MechanicsParameters<2> read_mechanics(const Section& s) {
        {"real", MassChoice::real, "density times volume, for dynamics"}},
       "mass that moves; weight is always that of the real mass");
   if (m.mass == MassChoice::scaled)
-    m.time_step = s.quantity("time_step", unit::time, Range::positive(), "common time step");
+    m.time_step =
+        s.quantity("time_step", unit::time, Range::positive().usually(1e-8, 1e-4), "common time step");
   m.kinematics =
       s.choice<Kinematics>("kinematics",
                            {{"small", Kinematics::small, "zones and contact frames keep their orientation"},
                             {"finite", Kinematics::finite, "they turn with the body; strains stay small"}},
                            Kinematics::small, "whether the body may turn");
-  m.safety = s.number("safety", {.lower = 0.0, .upper = 1.0, .lower_inclusive = false},
-                      "fraction of the stable step that is taken");
+  m.safety =
+      s.number("safety", Range{.lower = 0.0, .upper = 1.0, .lower_inclusive = false}.usually(0.3, 0.95),
+               "fraction of the stable step that is taken");
   return m;
 }
 
@@ -81,6 +84,30 @@ void check_heat(const Section& root, const HeatConditions& conditions,
                                        stage->kind()));
       return;
     }
+  }
+}
+
+/// Whether anything but the expansion follows the temperature.
+bool follows_temperature(const ReadCurve& read) {
+  return !read.curve.is_constant() && !read.path.ends_with("expansion") &&
+         !read.path.ends_with("thermal_strain");
+}
+
+/// Properties that come back on cooling.
+void warn_of_healing(const Section& root, const Setup& setup) {
+  if (std::ranges::none_of(setup.curves, follows_temperature)) return;
+  double temperature = setup.heat.initial;
+  for (std::size_t i = 0; i < setup.stages.size(); ++i) {
+    const auto to = setup.stages[i]->heating().to;
+    if (!to) continue;
+    if (*to < temperature) {
+      root.warn("stages", fmt::format("stages[{}] cools to {:.6g} degC: properties come back along their "
+                                      "curves, but real concrete does not heal, so what is left of strength "
+                                      "and stiffness is too high",
+                                      i, *to));
+      return;
+    }
+    temperature = *to;
   }
 }
 
@@ -178,6 +205,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   else
     read_resting(root, curves, setup);
   setup.curves = curves.curves();
+  warn_of_healing(root, setup);
   const Section output = root.section("output");
   setup.checkpoints.interval =
       output.quantity("checkpoint", unit::time, Range::non_negative(), setup.checkpoints.interval,
@@ -187,6 +215,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
       output.flag("keep_stage_checkpoints", true,
                   "whether the state at the end of each stage is kept, for [forks](restart.md#forks)");
   deck.finish();
+  setup.warnings = deck.warnings();
   return setup;
 }
 

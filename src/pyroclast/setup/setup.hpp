@@ -37,6 +37,7 @@ struct Setup {
   std::vector<std::unique_ptr<Stage>> stages;
   std::vector<std::string> stage_names;
   CheckpointChoice checkpoints;
+  std::vector<std::string> warnings;  ///< of the deck: what is allowed, but most likely not meant
 };
 
 /// Reads a deck. A relative file name in it is taken from `folder`.

@@ -15,7 +15,9 @@ constexpr std::int64_t kCyclesPerCheck = 50;
 /// A platen that sinks by less than this share of the failure strain within the stated cycles is not running
 /// away.
 constexpr double kSlowSinking = 0.1;
-/// Steps of straining evenly: there, and halt.
+/// What is nearer to a platen than this share of the height touches it.
+constexpr double kTouches = 1e-7;
+/// Steps of moving evenly: there, and halt.
 constexpr std::int64_t kEvenSteps = 2;
 /// Cycles of an exchange over the least, mean of a run, as measured: 1.0 to 1.5
 /// (validation/transient_heating.csv).
@@ -33,7 +35,6 @@ void Exchange::begin(Simulation& simulation) const {
     press.control_by_motion(0.0);
   } else {
     press.control_by_force();
-    press.hold(press.stress_held());
   }
 }
 
@@ -46,23 +47,30 @@ void Exchange::hand_over(Simulation& simulation) {
       properties_at(simulation.model(), simulation.materials(), simulation.field()));
 }
 
-void Exchange::strain_evenly_first(const Press<2>::EvenStrain& strain) {
-  even_strain_ = strain;
+void Exchange::move_evenly_first(const Press<2>::EvenMotion& motion) {
+  even_motion_ = motion;
   even_steps_left_ = kEvenSteps;
 }
 
 /// One step of it; true when there was none left.
-bool Exchange::strain_evenly(Simulation& simulation) {
+bool Exchange::move_evenly(Simulation& simulation) {
   if (even_steps_left_ == 0) return true;
   Press<2>& press = simulation.press();
-  press.strain_evenly(even_strain_, even_steps_left_ == kEvenSteps ? 1.0 : 0.0, platen_follows());
+  press.move_evenly(even_motion_, even_steps_left_ == kEvenSteps ? 1.0 : 0.0, platen_follows());
   simulation.mechanics().advance(1);
-  if (--even_steps_left_ == 0) press.end_even_strain(platen_follows());
+  if (--even_steps_left_ == 0) press.end_even_motion(platen_follows());
   return false;
 }
 
+/// Where the body hovers. It is halted by that, so that what touches is left to settle.
+void Exchange::set_down(const Press<2>& press) {
+  if (press.stress_held() > 0.0) return;  // that moves it fast enough
+  const Press<2>::EvenMotion motion = press.to_touch();
+  if (press.way(motion) > kTouches * press.height()) move_evenly_first(motion);
+}
+
 bool Exchange::advance(Simulation& simulation, int most_steps) {
-  if (!strain_evenly(simulation)) return false;
+  if (!move_evenly(simulation)) return false;
   const bool may_fail = platen_follows();
   if (is_handed_over_) strain_before_ = last_ = simulation.press().specimen_strain();
   is_handed_over_ = false;
@@ -76,15 +84,19 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
   const double now = simulation.press().specimen_strain();
   ran_away_ = may_fail && now - strain_before_ > coupling_.failure_strain;
   if (ran_away_) return true;
-  converged_ = cycles_ >= coupling_.least_cycles && at_rest(simulation);
-  if (converged_) return true;
+  if (cycles_ >= coupling_.least_cycles) {
+    const bool is_supported = simulation.press().is_supported();
+    converged_ = is_supported && is_still(simulation);
+    if (converged_) return true;
+    if (!is_supported && platen_follows()) set_down(simulation.press());
+  }
   if (cycles_ % coupling_.most_cycles != 0) return false;
   if (!may_fail || !(now - last_ > kSlowSinking * coupling_.failure_strain)) return true;
   last_ = now;
   return false;
 }
 
-bool Exchange::at_rest(const Simulation& simulation) const {
+bool Exchange::is_still(const Simulation& simulation) const {
   const Press<2>& press = simulation.press();
   return std::abs(press.stress_top() - press.stress_bottom()) < coupling_.platen_difference &&
          simulation.mechanics().unbalanced_ratio() < coupling_.unbalanced_ratio;
@@ -110,8 +122,11 @@ void Exchange::visit_state(StateVisitor& visitor) {
   visitor.visit("ran_away", ran_away_);
   visitor.visit("is_handed_over", is_handed_over_);
   visitor.visit("even_steps_left", even_steps_left_);
-  visitor.visit("even_strain_axial", even_strain_.axial);
-  visitor.visit("even_strain_lateral", even_strain_.lateral);
+  visitor.visit("even_axial", even_motion_.axial);
+  visitor.visit("even_lateral", even_motion_.lateral);
+  visitor.visit("even_lift", even_motion_.lift);
+  visitor.visit("even_tilt", even_motion_.tilt);
+  visitor.visit("even_platen_lift", even_motion_.platen_lift);
   visitor.visit("strain_before", strain_before_);
   visitor.visit("last_strain", last_);
 }

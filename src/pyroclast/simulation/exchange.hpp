@@ -24,6 +24,7 @@ struct Coupling {
   // gridpoints alike, such as the inertia of a specimen that expands; the platens do.
   double unbalanced_ratio = 0.0;
   double platen_difference = 0.0;  ///< between the stresses on the platens, Pa
+  // Both do not see weight, which is small beside loads: the lower platen must carry what rests on it.
   /// Steps for one exchange at least: a force out of balance needs time to move a body of that size.
   std::int64_t least_cycles = 0;
   /// And at most; an exchange that did not come to rest by then is flagged.
@@ -48,10 +49,11 @@ class Exchange {
   /// Then moves the body first to where it will probably rest. Takes two steps and leaves the body at rest:
   /// without this it would have to push itself to its new size, and its inertia would press on the lower
   /// platen.
-  void strain_evenly_first(const Press<2>::EvenStrain& strain);
+  void move_evenly_first(const Press<2>::EvenMotion& motion);
   /// One batch of steps; true when the body rests, has failed, or has used up its cycles. A specimen that is
   /// being crushed then gets more of them, until it stops or the platen has run away. The specimen's own ends
-  /// tell, for a platen without load may have left them.
+  /// tell, for a platen without load may have left them. A body without load that hovers, for it shrank away
+  /// from the lower platen, is set down: its weight would take long to move the mass that is scaled.
   bool advance(Simulation& simulation, int most_steps);
 
   bool ran_away() const { return ran_away_; }
@@ -65,8 +67,9 @@ class Exchange {
   void visit_state(StateVisitor& visitor);
 
  private:
-  bool strain_evenly(Simulation& simulation);
-  bool at_rest(const Simulation& simulation) const;
+  bool move_evenly(Simulation& simulation);
+  void set_down(const Press<2>& press);
+  bool is_still(const Simulation& simulation) const;
   bool platen_follows() const { return coupling_.platen == PlatenControl::force; }
 
   Coupling coupling_;
@@ -75,8 +78,8 @@ class Exchange {
   bool converged_ = true;
   bool ran_away_ = false;
   bool is_handed_over_ = false;              ///< and not a step done since
-  std::int64_t even_steps_left_ = 0;         ///< of straining evenly, and of the halt
-  Press<2>::EvenStrain even_strain_;         ///< to come
+  std::int64_t even_steps_left_ = 0;         ///< of moving evenly, and of the halt
+  Press<2>::EvenMotion even_motion_;         ///< to come
   double strain_before_ = 0.0, last_ = 0.0;  ///< of the specimen: at the exchange; when cycles were added
 };
 

@@ -1,5 +1,10 @@
 #include "pyroclast/simulation/press.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
@@ -8,6 +13,9 @@
 namespace pyroclast {
 
 namespace {
+
+/// The lower platen carries the specimen where it bears at least this share of what rests on it.
+constexpr double kCarried = 0.8;
 
 /// Sides of the specimen across the axis, lower and upper, in the order of the components.
 constexpr std::array<std::array<std::string_view, 2>, 2> kSides{{{"left", "right"}, {"front", "back"}}};
@@ -32,7 +40,8 @@ Press<Dim>::Press(Mechanics<Dim>& mechanics, int axis, double height,
       height_(height),
       widths_(widths),
       across_(components_across<Dim>(axis)) {
-  for (const char* name : {"bottom_support", "top_support", "bottom_face", "top_face", "bottom", "top"})
+  for (const char* name : {"bottom_support", "top_support", "bottom_face", "top_face", "bottom", "top",
+                           "specimen", "bottom_platen"})
     summed_.emplace(name, mechanics_.set_of(set(name)));
   for (int d = 0; d < Dim - 1; ++d)
     for (const auto side : kSides[d]) summed_.emplace(side, mechanics_.set_of(set(side)));
@@ -45,17 +54,21 @@ Press<Dim>::Press(Mechanics<Dim>& mechanics, int axis, double height,
 template <int Dim>
 void Press<Dim>::let_go() {
   for (int g : set("top_support")) mechanics_.release(g, axis_);
+  is_driven_ = false;
 }
 
 template <int Dim>
 void Press<Dim>::control_by_force() {
+  const double borne = is_driven_ ? std::max(0.0, stress_top()) : stress_held_;
   mechanics_.untie();
   let_go();
   mechanics_.tie(set("top_support"), axis_);
+  hold(borne);
 }
 
 template <int Dim>
 void Press<Dim>::control_by_motion(double velocity) {
+  is_driven_ = true;
   mechanics_.untie();
   hold(0.0);
   drive(velocity);
@@ -76,6 +89,72 @@ void Press<Dim>::hold(double stress) {
   share[axis_] = -force / static_cast<double>(support.size());
   for (int g : support) mechanics_.apply_force(g, share);
   stress_held_ = stress;
+}
+
+template <int Dim>
+bool Press<Dim>::is_supported() const {
+  const auto weight = [&](const GridpointSet& of) { return -mechanics_.total_weight(of)[axis_] / area(); };
+  const double carries = stress_bottom() - weight(summed("bottom_platen"));
+  return carries >= kCarried * (weight(specimen()) + stress_held_);
+}
+
+template <int Dim>
+double Press<Dim>::volume() const {
+  return area() * height_;
+}
+
+/// Rise over the width of the line that the specimen stands on: that edge of the lower hull of its lower end
+/// that lies under the middle.
+template <int Dim>
+double Press<Dim>::rise_of_stand() const {
+  if constexpr (Dim != 2) {
+    return 0.0;
+  } else {
+    std::vector<Vec<2>> points;  // across, and along the axis
+    for (int g : set("bottom"))
+      points.push_back({{mechanics_.model().position[g][across_[0]], mechanics_.displacement(g)[axis_]}});
+    std::ranges::sort(points, {}, [](const Vec<2>& p) { return std::pair(p[0], p[1]); });
+    std::vector<Vec<2>> hull;
+    for (const Vec<2>& p : points) {
+      while (hull.size() > 1 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0.0)
+        hull.pop_back();
+      hull.push_back(p);
+    }
+    const double middle = 0.5 * (points.front()[0] + points.back()[0]);
+    const auto right = std::ranges::find_if(hull, [&](const Vec<2>& p) { return p[0] > middle; });
+    if (right == hull.begin() || right == hull.end()) return 0.0;
+    const Vec<2> edge = *right - *std::prev(right);
+    return edge[1] / edge[0];
+  }
+}
+
+template <int Dim>
+typename Press<Dim>::EvenMotion Press<Dim>::to_touch() const {
+  const double tilt = -rise_of_stand();
+  const double middle = mean_position(mechanics_.model(), specimen(), across_[0]);
+  const auto up = [&](int g) {
+    return mechanics_.displacement(g)[axis_] + tilt * (mechanics_.model().position[g][across_[0]] - middle);
+  };
+  const double lowest = up(*std::ranges::min_element(set("bottom"), {}, up));
+  const double highest = up(*std::ranges::max_element(set("top"), {}, up));
+  const double below = lowest - mechanics_.mean_displacement(summed("bottom_face"))[axis_];
+  const double above = mechanics_.mean_displacement(summed("top_face"))[axis_] - highest;
+  return {.lift = -std::max(0.0, below), .tilt = tilt, .platen_lift = -above};
+}
+
+template <int Dim>
+double Press<Dim>::way(const EvenMotion& motion) const {
+  return std::abs(motion.lift) + std::abs(motion.tilt) * widths_[0];
+}
+
+template <int Dim>
+double Press<Dim>::gap() const {
+  const auto up = [&](int g) { return mechanics_.displacement(g)[axis_]; };
+  const double lowest = up(*std::ranges::min_element(set("bottom"), {}, up));
+  const double highest = up(*std::ranges::max_element(set("top"), {}, up));
+  const double below = lowest - mechanics_.mean_displacement(summed("bottom_face"))[axis_];
+  const double above = mechanics_.mean_displacement(summed("top_face"))[axis_] - highest;
+  return std::max(0.0, below) + std::max(0.0, above);
 }
 
 template <int Dim>
@@ -140,7 +219,7 @@ double Press<Dim>::stress_bottom() const {
 }
 
 template <int Dim>
-void Press<Dim>::strain_evenly(const EvenStrain& strain, double speed, bool platen_follows) {
+void Press<Dim>::move_evenly(const EvenMotion& motion, double speed, bool platen_follows) {
   const auto& model = mechanics_.model();
   const double bottom = model.position[set("bottom").front()][axis_];
   std::array<double, Dim - 1> middle{};
@@ -150,16 +229,23 @@ void Press<Dim>::strain_evenly(const EvenStrain& strain, double speed, bool plat
   const double rate = speed / mechanics_.time_step();
   for (int g : set("specimen")) {
     const Vec<Dim>& x = model.position[g];
-    for (int d = 0; d < Dim - 1; ++d)
-      mechanics_.prescribe_velocity(g, across_[d], rate * strain.lateral * (x[across_[d]] - middle[d]));
-    mechanics_.prescribe_velocity(g, axis_, rate * strain.axial * (x[axis_] - bottom));
+    const double turned = motion.tilt * (x[across_[0]] - middle[0]);
+    for (int d = 0; d < Dim - 1; ++d) {
+      const double aside = d == 0 ? -motion.tilt * (x[axis_] - bottom) : 0.0;
+      mechanics_.prescribe_velocity(g, across_[d],
+                                    rate * (motion.lateral * (x[across_[d]] - middle[d]) + aside));
+    }
+    mechanics_.prescribe_velocity(g, axis_,
+                                  rate * (motion.axial * (x[axis_] - bottom) + motion.lift + turned));
   }
   if (!platen_follows) return;
-  for (int g : set("top_platen")) mechanics_.prescribe_velocity(g, axis_, rate * strain.axial * height_);
+  for (int g : set("top_platen"))
+    mechanics_.prescribe_velocity(g, axis_,
+                                  rate * (motion.axial * height_ + motion.lift + motion.platen_lift));
 }
 
 template <int Dim>
-void Press<Dim>::end_even_strain(bool platen_follows) {
+void Press<Dim>::end_even_motion(bool platen_follows) {
   for (int g : set("specimen"))
     for (int i = 0; i < Dim; ++i) mechanics_.release(g, i);
   if (!platen_follows) return;
@@ -168,6 +254,7 @@ void Press<Dim>::end_even_strain(bool platen_follows) {
 
 template <int Dim>
 void Press<Dim>::visit_state(StateVisitor& visitor) {
+  visitor.visit("is_driven", is_driven_);
   visitor.visit("stress_held", stress_held_);
   visitor.visit("shortening_at_zero", shortening_at_zero_);
   visitor.visit("specimen_shortening_at_zero", specimen_shortening_at_zero_);

@@ -16,16 +16,19 @@ namespace pyroclast {
 ///
 /// It holds, drives and watches named sets of the model's gridpoints (Model::sets): `bottom_support` and
 /// `top_support`, the outer faces of the platens; `bottom_face` and `top_face`, their inner faces; `bottom`,
-/// `top`, `left`, `right` and in 3D `front`, `back`, the sides of the specimen; `specimen` and `top_platen`,
-/// all gridpoints of those.
+/// `top`, `left`, `right` and in 3D `front`, `back`, the sides of the specimen; `specimen`, `bottom_platen`
+/// and `top_platen`, all gridpoints of those.
 ///
 /// Stress and strain are positive in compression, lateral strain in expansion.
 template <int Dim>
 class Press {
  public:
-  /// Changes of length of the whole specimen, expansion positive.
-  struct EvenStrain {
-    double axial = 0.0, lateral = 0.0;
+  /// Motion of the whole specimen that leaves its contacts their jumps.
+  struct EvenMotion {
+    double axial = 0.0, lateral = 0.0;  ///< strains, expansion positive; the lower end stays where it is
+    double lift = 0.0;                  ///< of the specimen as a whole along the axis, m
+    double tilt = 0.0;                  ///< 2D only: rise of the specimen over its width
+    double platen_lift = 0.0;           ///< of the upper platen beside the end that it lies on, m
   };
 
   /// Holds the lower platen, and the upper one across the axis.
@@ -39,7 +42,8 @@ class Press {
 
   /// Lets it lie on the specimen, and tilt.
   void let_go();
-  /// Moves it by its force only, without tilting.
+  /// Moves it by its force only, without tilting. Where it was controlled by motion, it keeps the force that
+  /// it bore.
   void control_by_force();
   /// Moves it down at a velocity, m/s; the force on it ends.
   void control_by_motion(double velocity);
@@ -67,19 +71,30 @@ class Press {
   double stress_top() const;
   double stress_bottom() const;
   double stress() const { return 0.5 * (stress_top() + stress_bottom()); }
-  /// Between the platens and the specimen's ends, m.
-  double gap() const { return (specimen_strain() - strain()) * height_; }
+  /// Whether the lower platen carries what rests on it, but for a fifth: the specimen's weight and the force
+  /// held. True where that is nothing.
+  bool is_supported() const;
+  /// What the upper platen can sink until both platens touch the specimen, m. Ends that are rough are
+  /// touched where they stand out most.
+  double gap() const;
   double height() const { return height_; }
+  double volume() const;  ///< of the specimen, m³
+  /// Sets the specimen down on the lower platen, in 2D so that it stands on two points on either side of its
+  /// middle, and the upper platen on the specimen.
+  EvenMotion to_touch() const;
+  /// The largest way that a gridpoint of the specimen makes in a motion without strain, m.
+  double way(const EvenMotion& motion) const;
+  const GridpointSet& specimen() const { return summed("specimen"); }
 
-  // Even strain: contacts keep their jumps.
+  // Even motion
 
-  /// Strains the whole specimen evenly in the next step, and halts it there in the step after one with
-  /// `speed` 0.
-  /// \param speed           share of the strain to come in one step
+  /// Moves the whole specimen evenly in the next step, and halts it there in the step after one with `speed`
+  /// 0.
+  /// \param speed           share of the motion to come in one step
   /// \param platen_follows  the upper platen moves with the end it lies on
-  void strain_evenly(const EvenStrain& strain, double speed, bool platen_follows);
+  void move_evenly(const EvenMotion& motion, double speed, bool platen_follows);
   /// Lets the specimen move freely again.
-  void end_even_strain(bool platen_follows);
+  void end_even_motion(bool platen_follows);
 
   void visit_state(StateVisitor& visitor);
 
@@ -89,6 +104,7 @@ class Press {
   double shortening(std::string_view top, std::string_view bottom) const;
   double widening(int direction) const;
   double area() const;
+  double rise_of_stand() const;
 
   Mechanics<Dim>& mechanics_;
   int axis_;
@@ -97,6 +113,7 @@ class Press {
   std::array<int, Dim - 1> across_;                          ///< components across the axis
   std::map<std::string, GridpointSet, std::less<>> summed_;  ///< sets that are read, in the order of sums
 
+  bool is_driven_ = true;                           ///< controlled by motion
   double stress_held_ = 0.0;                        ///< Pa
   double shortening_at_zero_ = 0.0;                 ///< of the distance of the platens, m
   double specimen_shortening_at_zero_ = 0.0;        ///< m

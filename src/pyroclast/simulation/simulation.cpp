@@ -1,6 +1,7 @@
 #include "pyroclast/simulation/simulation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <utility>
@@ -109,7 +110,7 @@ specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& par
   return specimen::make_specimen(parameters, team);
 }
 
-double estimate_modulus(const Model<2>& model, const ConcreteMaterials& materials) {
+double estimate_modulus(const Model<2>& model, const ConcreteMaterials& materials, double temperature) {
   const auto geometry = zone_geometry(model);
   const auto blocks = zone_blocks(model);
   double volume = 0.0, compliance = 0.0;
@@ -117,16 +118,24 @@ double estimate_modulus(const Model<2>& model, const ConcreteMaterials& material
     const int material = model.block_material[blocks[z]];
     if (material == platen_material(model)) continue;
     volume += geometry.volume[z];
-    compliance += geometry.volume[z] / materials.solids[material].young(kReferenceTemperature);
+    compliance += geometry.volume[z] / materials.solids[material].young(temperature);
   }
   for (const auto& c : model.contacts) {
     if (c.interface == platen_interface(model)) continue;
-    const auto k = materials.contacts[c.interface].at(kReferenceTemperature).stiffness();
+    const auto k = materials.contacts[c.interface].at(temperature).stiffness();
     const double normal = c.normal[1] * c.normal[1];           // traction over stress, along the normal
     const double tangential = c.normal[1] * c.tangents[0][1];  // and along the face
     compliance += c.area * (normal * normal / k.normal + tangential * tangential / k.shear);
   }
   return volume / compliance;
+}
+
+double wave_time(const Simulation& simulation) {
+  const Press<2>& press = simulation.press();
+  const double modulus =
+      estimate_modulus(simulation.model(), simulation.materials(), simulation.field().mean());
+  const double mass = simulation.mechanics().total_moving_mass(press.specimen());
+  return press.height() * std::sqrt(mass / press.volume() / modulus);
 }
 
 }  // namespace pyroclast

@@ -94,6 +94,12 @@ specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& par
 
 /// Lower estimate of Young's modulus of the model in the vertical direction, Pa: the same vertical stress
 /// everywhere, compliances of zones and contacts added up (Reuss). Platens left out.
-double estimate_modulus(const Model<2>& model, const ConcreteMaterials& materials);
+/// \param temperature  °C
+double estimate_modulus(const Model<2>& model, const ConcreteMaterials& materials,
+                        double temperature = kReferenceTemperature);
+
+/// Time in which a stress wave runs through the uncracked specimen once, at its mean temperature and with the
+/// mass that moves, s.
+double wave_time(const Simulation& simulation);
 
 }  // namespace pyroclast

@@ -12,6 +12,10 @@ const char* describe(Outcome outcome) {
       return "completed";
     case Outcome::steady:
       return "the temperatures became steady";
+    case Outcome::not_reached:
+      return "the stated stress was not reached";
+    case Outcome::crushed:
+      return "the specimen was crushed while it was loaded";
     case Outcome::stress_fallen:
       return "the stress fell below the stated fraction of the peak";
     case Outcome::ran_away:

@@ -20,8 +20,10 @@ enum class Outcome : std::uint8_t {
   running,
   completed,
   steady,         ///< temperatures no longer changed
+  not_reached,    ///< what a stage should come to
   stress_fallen,  ///< below the stated fraction of the peak
   ran_away,       ///< the specimen failed under its load
+  crushed,        ///< it failed while it was being loaded
   not_settled,    ///< did not come to rest within the stated steps
   unstable,       ///< a result is not finite
   stopped         ///< from outside

@@ -23,6 +23,9 @@
 namespace pyroclast::specimen {
 namespace {
 
+/// Superposition may change the area of the aggregates by this share without a word.
+constexpr double kSmallChange = 0.1;
+
 void require(bool condition, std::string_view what, double value, std::string_view allowed) {
   if (!condition) throw Error(fmt::format("{} is {:.6g}; allowed is {}.", what, value, allowed));
 }
@@ -135,6 +138,18 @@ std::vector<std::string> phases(const SpecimenParameters& parameters) {
   return names;
 }
 
+std::vector<std::string> warnings(const Specimen& s) {
+  if (s.fraction_placed == 0.0) return {};
+  const double change = s.fraction_of_circles / s.fraction_placed - 1.0;
+  if (std::abs(change) <= kSmallChange) return {};
+  return {
+      fmt::format("aggregates take {:.3f} of the specimen as blocks, {:.0f} % {} than the {:.3f} that were "
+                  "placed: blocks "
+                  "of {:.1f} mm are too large for them; more blocks, or [superposition] rule = \"fit\"",
+                  s.fraction_of_circles, 100.0 * std::abs(change), change < 0.0 ? "less" : "more",
+                  s.fraction_placed, 1e3 * s.metrics.mean_size)};
+}
+
 Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
   require_valid(parameters);
   // Streams of their own: another number of blocks leaves the aggregates where they are.
@@ -164,7 +179,13 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
   Blocks blocks = make_blocks(parameters.blocks, parameters.width, parameters.height, block_random, team);
   specimen.tessellation = std::move(blocks.tessellation);
   const int matrix = index_of(specimen.phases, parameters.matrix);
-  specimen.phase = superpose(specimen.tessellation, specimen.aggregates, parameters, matrix);
+  SpecimenParameters rule = parameters;
+  if (rule.superposition == Superposition::fit)
+    rule.covered_fraction =
+        fitting_fraction(specimen.tessellation, parameters.width, parameters.height, specimen.aggregates);
+  specimen.covered_fraction = rule.covered_fraction;
+  specimen.phase = superpose(specimen.tessellation, specimen.aggregates, rule, matrix);
+  specimen.fraction_of_circles = fraction_of(specimen, [&](int phase) { return phase != matrix; });
   superpose(specimen.tessellation, specimen.fibres, specimen.phase);
   specimen.fraction_superposed = fraction_of(specimen, [&](int phase) { return phase != matrix; });
   for (int phase = 0; phase < static_cast<int>(specimen.phases.size()); ++phase)

@@ -37,6 +37,7 @@ struct AggregateParameters {
   std::vector<double> sieves;    ///< ascending bounds of the size intervals, m; first d_min, last d_max
   double minimum_gap = 0.0;      ///< smallest distance between aggregates and to the outline, m
   int attempts = 0;              ///< random centres tried for one aggregate before placing fails
+  std::string place = "";        ///< where they are asked for, "mine.toml:12: aggregates", for errors
 };
 
 /// Fibres asked for: each at a random place, in a random direction.
@@ -46,6 +47,7 @@ struct FibreParameters {
   double length = 0.0;       ///< m
   double minimum_gap = 0.0;  ///< smallest distance of a fibre to aggregates and to the outline, m
   int attempts = 0;          ///< random places tried for one fibre before placing fails
+  std::string place = "";    ///< where they are asked for, for errors
 };
 
 /// What stands in the matrix beside the first aggregates.
@@ -53,6 +55,7 @@ using Inclusions = std::variant<AggregateParameters, FibreParameters>;
 
 enum class Superposition : std::uint8_t {
   area,     ///< a block is of the aggregates where circles cover more than a stated fraction of it
+  fit,      ///< the same with the fraction by which the blocks take the area of the circles
   centroid  ///< a block is of the aggregate whose circle its centroid lies in
 };
 
@@ -75,7 +78,7 @@ struct SpecimenParameters {
   std::vector<Inclusions> inclusions;  ///< placed after the aggregates, in turn; none overlap
   BlockParameters blocks;
   Superposition superposition = Superposition::area;
-  double covered_fraction = 0.5;  ///< for Superposition::area
+  double covered_fraction = 0.5;  ///< of a block above which it is aggregate, for Superposition::area
 };
 
 /// Names of what the blocks can be made of: aggregates, inclusions, matrix; each once.
@@ -121,6 +124,8 @@ struct Specimen {
   std::vector<Fibre> fibres;          ///< as placed
   /// Area of circles asked for and placed, and of blocks that are not matrix, over that of the specimen.
   double fraction_asked, fraction_placed, fraction_superposed;
+  double fraction_of_circles;    ///< the last of these before fibres were superposed
+  double covered_fraction;       ///< of a block above which it became aggregate
   std::vector<double> fraction;  ///< by phase: area of its blocks over that of the specimen
   BlockMetrics metrics;
 };
@@ -131,6 +136,9 @@ struct Specimen {
 /// fraction is off by more than 0.01, or no valid tessellation comes about.
 /// \param team  shares the cells of the tessellation out; one thread alone where there is none
 Specimen make_specimen(const SpecimenParameters& parameters, Team* team = nullptr);
+
+/// What a user should know of a specimen that is not as it was asked for, a line each.
+std::vector<std::string> warnings(const Specimen& specimen);
 
 /// Block size as a deck foresees it: square root of the specimen's area over the number of blocks, m.
 double block_size(const Specimen& specimen);

@@ -1,7 +1,10 @@
 #include "pyroclast/specimen/superposition.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <map>
+#include <numbers>
 
 #include "pyroclast/specimen/circle_grid.hpp"
 #include "pyroclast/specimen/polygon.hpp"
@@ -92,10 +95,31 @@ std::vector<double> covered_fractions(const Tessellation& tessellation, double w
       [](Corners polygon, const std::vector<Aggregate>& nearby) { return cover_of(polygon, nearby).share; });
 }
 
+double fitting_fraction(const Tessellation& tessellation, double width, double height,
+                        std::span<const Aggregate> aggregates) {
+  struct Cell {
+    double covered, area;
+  };
+  std::vector<Cell> cells = for_each_cell(tessellation, width, height, aggregates,
+                                          [](Corners polygon, const std::vector<Aggregate>& nearby) {
+                                            return Cell{cover_of(polygon, nearby).share, area(polygon)};
+                                          });
+  std::ranges::sort(cells, std::greater<>(), &Cell::covered);
+  double missing = 0.0;
+  for (const Aggregate& a : aggregates) missing += 0.25 * std::numbers::pi * a.diameter * a.diameter;
+  // cells become aggregate, the most covered first, while that brings their area nearer to that of the
+  // circles
+  std::size_t taken = 0;
+  for (; taken < cells.size() && 0.5 * cells[taken].area < missing; ++taken) missing -= cells[taken].area;
+  if (taken == 0) return std::nextafter(1.0, 0.0);
+  if (taken == cells.size()) return 0.0;
+  return 0.5 * (cells[taken - 1].covered + cells[taken].covered);
+}
+
 std::vector<int> superpose(const Tessellation& tessellation, std::span<const Aggregate> aggregates,
                            const SpecimenParameters& parameters, int matrix) {
   const auto phase_of = [&](Corners polygon, const std::vector<Aggregate>& nearby) {
-    if (parameters.superposition == Superposition::area) {
+    if (parameters.superposition != Superposition::centroid) {
       const Cover cover = cover_of(polygon, nearby);
       return cover.share > parameters.covered_fraction ? cover.phase : matrix;
     }

@@ -11,8 +11,13 @@ namespace pyroclast::specimen {
 std::vector<double> covered_fractions(const Tessellation& tessellation, double width, double height,
                                       std::span<const Aggregate> aggregates);
 
-/// What each cell is made of, by `parameters.superposition`: the phase of the circles that cover most of it,
-/// or the matrix.
+/// The covered fraction above which cells are aggregate so that their area comes as near as it can to that of
+/// the circles, see Superposition::fit.
+double fitting_fraction(const Tessellation& tessellation, double width, double height,
+                        std::span<const Aggregate> aggregates);
+
+/// What each cell is made of, by `parameters.superposition` and, but for the rule of the centroid,
+/// `parameters.covered_fraction`: the phase of the circles that cover most of it, or the matrix.
 std::vector<int> superpose(const Tessellation& tessellation, std::span<const Aggregate> aggregates,
                            const SpecimenParameters& parameters, int matrix);
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/stages/compression_response.hpp"
 #include "pyroclast/stages/load.hpp"
@@ -25,6 +23,14 @@ constexpr double kFirstTouch = 0.1;
 /// A gap between platen and specimen below this share of the height is none.
 constexpr double kNoGap = 1e-6;
 constexpr double kMostStepsPerLook = 1e9;
+/// A stress that is to be reached is sought up to this strain where the deck does not say.
+constexpr double kLatestStrain = 0.02;
+/// A stress that is to be reached is probably reached at this strain.
+constexpr double kExpectedStrain = 0.001;
+/// A strain that is to be reached is reached.
+constexpr double kNoStopStrain = 1.0;
+/// The stress is that of a wave until it has run through the specimen so many times.
+constexpr double kPassages = 2.0;
 /// A controlled velocity takes about this share of the steps of the lowest one (validation/adaptive.md).
 constexpr double kControlledShare = 0.2;
 
@@ -51,9 +57,33 @@ VelocityControl read_velocity_control(const Section& s, const Compress::Keys& ke
   return c;
 }
 
+/// The stage ends at a strain since its beginning, or at a strain or stress of the test.
+void read_end(const Section& s, Compress::Keys& keys) {
+  constexpr Meaning kStrain =
+      "strain since the beginning of the stage, up or down, at which it ends at the latest";
+  const Range strains = Range::inside(0.0, 1.0).usually(0.0, 0.1);
+  if (s.has("to_strain")) {
+    keys.until = CompressUntil::strain;
+    keys.to =
+        s.number("to_strain", Range::inside(-1.0, 1.0).usually(-0.1, 0.1),
+                 "the stage ends at this strain of the test: the platen moves down to a larger one, and "
+                 "up to a smaller");
+    keys.stop_strain = kNoStopStrain;
+    if (s.has("to_stress")) s.error("to_stress", "either to_strain or to_stress; not both");
+  } else if (s.has("to_stress")) {
+    keys.until = CompressUntil::stress;
+    keys.to = s.quantity("to_stress", unit::stress, Range::non_negative().usually(0.0, 200e6),
+                         "the stage ends at this stress on the upper platen: it moves down to a larger one, "
+                         "and up to a smaller");
+    keys.stop_strain = s.number("stop_strain", strains, kLatestStrain, kStrain);
+  } else {
+    keys.stop_strain = s.number("stop_strain", strains, kStrain);
+  }
+}
+
 std::unique_ptr<Stage> read_compress(const Section& s, const StageTables& tables) {
   Compress::Keys keys;
-  keys.velocity = s.quantity("velocity", unit::velocity, Range::positive(),
+  keys.velocity = s.quantity("velocity", unit::velocity, Range::positive().usually(1e-6, 0.01),
                              "of the upper platen; the lowest one with fastest_velocity");
   keys.ramp_time = s.quantity(
       "ramp_time", unit::time, Range::non_negative(),
@@ -62,8 +92,7 @@ std::unique_ptr<Stage> read_compress(const Section& s, const StageTables& tables
     keys.control = read_velocity_control(s, keys);
   else
     s.know({"unbalanced_ratio", "kinetic_over_strain", "platen_difference", "dissipation_rate"});
-  keys.stop_strain =
-      s.number("stop_strain", Range::inside(0.0, 1.0), "the stage ends at this strain since its beginning");
+  read_end(s, keys);
   keys.stop_fraction =
       s.number("stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0,
                "the run ends when the stress has fallen below this share of its largest value");
@@ -75,16 +104,16 @@ std::unique_ptr<Stage> read_compress(const Section& s, const StageTables& tables
 }  // namespace
 
 StageKind compress_kind() {
-  return {"compress",
-          "drives the upper platen down; strain counts from the beginning of the stage",
-          {},
-          read_compress};
+  return {"compress", "drives the upper platen down, or up to unload", {}, read_compress};
 }
 
 void Compress::begin(Simulation& simulation) {
   Press<2>& press = simulation.press();
+  first_left_ = left(simulation);
+  is_upwards_ = first_left_ < 0.0;
+  wave_time_ = wave_time(simulation);
   const double gap = press.gap();
-  if (gap < kNoGap * press.height()) {
+  if (is_upwards_ || gap < kNoGap * press.height()) {
     begin_loading(simulation);
     return;
   }
@@ -131,7 +160,7 @@ bool Compress::move_at_velocity(Simulation& simulation, int most_steps) {
                              ? static_cast<double>(steps_left_) * mechanics.time_step() / keys_.ramp_time
                              : 0.0;
     const double share = ramp_share(steps_, mechanics.time_step(), keys_.ramp_time);
-    simulation.press().drive(keys_.velocity * std::min(1.0, share + ahead));
+    simulation.press().drive(direction() * keys_.velocity * std::min(1.0, share + ahead));
   }
   const auto steps = std::min<std::int64_t>(steps_left_, most_steps);
   mechanics.advance(static_cast<int>(steps));
@@ -146,7 +175,7 @@ bool Compress::move_controlled(Simulation& simulation, int most_steps) {
   Mechanics<2>& mechanics = simulation.mechanics();
   if (steps_left_ == 0) {
     choose_velocity(simulation);
-    simulation.press().drive(velocity_);
+    simulation.press().drive(direction() * velocity_);
     steps_left_ = kStepsPerChoice;
   }
   const auto steps = std::min<std::int64_t>(steps_left_, most_steps);
@@ -191,71 +220,77 @@ double Compress::excess(const Simulation& simulation, double time) {
                    power / elastic / control.dissipation_rate});
 }
 
+/// Strain of the stage up to which a stress that falls is no failure.
+double Compress::first_touch() const {
+  return keys_.until == CompressUntil::stop_strain ? kFirstTouch * keys_.stop_strain : 0.0;
+}
+
+/// What is left to where the stage ends, strain or Pa; negative upwards.
+double Compress::left(const Simulation& simulation) const {
+  const Press<2>& press = simulation.press();
+  switch (keys_.until) {
+    case CompressUntil::strain:
+      return keys_.to - press.strain();
+    case CompressUntil::stress:
+      return keys_.to - press.stress_top();
+    case CompressUntil::stop_strain:
+      break;
+  }
+  return keys_.stop_strain - press.stage_strain();
+}
+
 Verdict Compress::judge(Simulation& simulation) {
   const double stress = simulation.press().stress(), strain = simulation.press().stage_strain();
-  peak_stress_ = std::max(peak_stress_, stress);
-  if (strain >= keys_.stop_strain) return {.over = true};
-  if (strain > kFirstTouch * keys_.stop_strain && stress < keys_.stop_fraction * peak_stress_)
-    return {.over = true, .last = true, .outcome = Outcome::stress_fallen};
-  if (strain < next_frame_) return {};
+  if (direction() * left(simulation) <= 0.0) return {.over = true};
+  if (std::abs(strain) >= keys_.stop_strain)
+    return {.over = true, .last = true, .outcome = Outcome::not_reached};
+  const double time = static_cast<double>(steps_) * simulation.mechanics().time_step();
+  if (time > kPassages * wave_time_) {
+    peak_stress_ = std::max(peak_stress_, stress);
+    if (strain > first_touch() && stress < keys_.stop_fraction * peak_stress_)
+      return {.over = true, .last = true, .outcome = Outcome::stress_fallen};
+  }
+  if (std::abs(strain) < next_frame_) return {};
   next_frame_ += keys_.frame_strain;
   return {.frame = true};
 }
 
 double Compress::progress(const Simulation& simulation) const {
-  return is_loading_ ? std::clamp(simulation.press().stage_strain() / keys_.stop_strain, 0.0, 1.0) : 0.0;
+  return is_loading_ ? std::clamp(1.0 - left(simulation) / first_left_, 0.0, 1.0) : 0.0;
 }
 
 StageReport Compress::report(const History& history, RowRange rows, Outcome) const {
-  StageReport report;
-  const CompressionRows test = compression_rows(history, rows);
-  const auto response = compression_response(test);
-  if (!response) return report;
-  const QuasiStaticReport inertia = quasi_static_report(test);
-  const auto or_none = [](const std::optional<double>& value, double factor) {
-    return value ? Result::Value(factor * *value) : Result::Value();
-  };
-  report.results = {
-      {"E_GPa", or_none(response->modulus, 1e-9)},
-      {"f_c_MPa", response->strength * 1e-6},
-      {"strain_at_peak", response->strain_at_peak},
-      {"strain_ic", or_none(response->inelastic_strain, 1.0)},
-      {"peak_passed", response->peak_passed},
-      {"quasi_static", inertia.to_peak},
-      {"quasi_static_after_peak", inertia.after_peak},
-      {"kinetic_over_elastic_to_peak", inertia.kinetic_to_peak},
-      {"kinetic_over_elastic_after_peak", inertia.kinetic_after_peak},
-      {"platen_difference_over_f_c_to_peak", inertia.difference_to_peak},
-      {"platen_difference_over_f_c_after_peak", inertia.difference_after_peak},
-  };
-  report.lines.push_back(
-      fmt::format("f_c {:.2f} MPa at strain {:.5f}", response->strength * 1e-6, response->strain_at_peak));
-  if (response->modulus)
-    report.lines.push_back(
-        fmt::format("E {:.2f} GPa, eps_ic {:.5f}", *response->modulus * 1e-9, *response->inelastic_strain));
-  report.lines.push_back(inertia.to_peak ? "quasi-static up to the peak" : "NOT quasi-static up to the peak");
-  if (!response->peak_passed)
-    report.warnings.emplace_back(
-        "the stress never fell after its largest value, so f_c is only what was reached");
-  if (!inertia.to_peak)
-    report.warnings.push_back(fmt::format(
-        "not quasi-static up to the peak: kinetic over elastic energy up to {:.1e}, "
-        "platen stresses differ by up to {:.1f} % of f_c; load more slowly or take a shorter time step",
-        inertia.kinetic_to_peak, 100.0 * inertia.difference_to_peak));
-  return report;
+  return compression_report(compression_rows(history, rows), is_upwards_, kPassages * wave_time_);
+}
+
+/// How far the platen will probably move, over the height.
+double Compress::foreseen_strain() const {
+  switch (keys_.until) {
+    case CompressUntil::strain:
+      return std::abs(keys_.to);
+    case CompressUntil::stress:
+      return std::min(keys_.stop_strain, kExpectedStrain);
+    case CompressUntil::stop_strain:
+      break;
+  }
+  return keys_.stop_strain;
 }
 
 Forecast Compress::forecast(const Simulation& simulation, Foreseen&) const {
-  const double way = keys_.stop_strain * simulation.press().height();
+  const double strain = foreseen_strain();
+  const double way = strain * simulation.press().height();
   const double slowest = (way / keys_.velocity + 0.5 * keys_.ramp_time) / simulation.mechanics().time_step();
   return {.steps = keys_.control ? kControlledShare * slowest : slowest,
-          .looks = keys_.stop_strain / keys_.history_strain,
-          .frames = keys_.stop_strain / keys_.frame_strain + 1.0};
+          .looks = strain / keys_.history_strain,
+          .frames = strain / keys_.frame_strain + 1.0};
 }
 
 void Compress::visit_state(StateVisitor& visitor) {
   visitor.visit("gap_steps_left", gap_steps_left_);
   visitor.visit("is_loading", is_loading_);
+  visitor.visit("is_upwards", is_upwards_);
+  visitor.visit("first_left", first_left_);
+  visitor.visit("wave_time", wave_time_);
   visitor.visit("steps", steps_);
   visitor.visit("steps_left", steps_left_);
   visitor.visit("velocity", velocity_);

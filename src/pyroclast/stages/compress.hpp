@@ -14,8 +14,15 @@ struct VelocityControl {
   double dissipation_rate = 0.0;  ///< tolerance of the power that contacts dissipate over elastic energy, 1/s
 };
 
-/// Drives the upper platen down, the lower one fixed. First brings it back to ends that it left, or that left
-/// it, while the temperature changed.
+/// Where a compression stage ends.
+enum class CompressUntil : std::uint8_t {
+  stop_strain,  ///< at a strain since its beginning
+  strain,       ///< at a strain of the test, up or down
+  stress        ///< at a stress on the upper platen, up or down
+};
+
+/// Drives the upper platen, the lower one fixed: down, or up to unload. First brings it back to ends that it
+/// left, or that left it, while the temperature changed.
 class Compress : public Stage {
  public:
   struct Keys {
@@ -24,7 +31,9 @@ class Compress : public Stage {
     /// factor e in as much time.
     double ramp_time = 0.0;
     std::optional<VelocityControl> control = {};
-    double stop_strain = 0.0;  ///< ends at this axial strain, from the beginning of the stage
+    CompressUntil until = CompressUntil::stop_strain;
+    double to = 0.0;           ///< strain, or stress in Pa, where the stage ends by one of these
+    double stop_strain = 0.0;  ///< ends at this axial strain up or down, from the beginning of the stage
     double stop_fraction =
         0.0;  ///< ends when the stress has fallen below this fraction of the peak; 0: never
     double history_strain = 0.0;  ///< see OutputIntervals
@@ -52,11 +61,18 @@ class Compress : public Stage {
   bool move_controlled(Simulation& simulation, int most_steps);
   void choose_velocity(const Simulation& simulation);
   double excess(const Simulation& simulation, double time);
+  double foreseen_strain() const;
+  double first_touch() const;
+  double left(const Simulation& simulation) const;
+  double direction() const { return is_upwards_ ? -1.0 : 1.0; }
   std::int64_t steps_per_look(const Simulation& simulation) const;
 
   Keys keys_;
   std::int64_t gap_steps_left_ = 0;
   bool is_loading_ = false;      ///< the gap is closed
+  bool is_upwards_ = false;      ///< unloads
+  double first_left_ = 0.0;      ///< from where it began to where it ends, strain or Pa
+  double wave_time_ = 0.0;       ///< in which a stress wave runs through the specimen once, s
   std::int64_t steps_ = 0;       ///< since loading began
   std::int64_t steps_left_ = 0;  ///< to the next look, or to the next choice of a controlled velocity
   double velocity_ = 0.0;        ///< where it is controlled, m/s

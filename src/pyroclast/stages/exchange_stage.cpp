@@ -19,6 +19,7 @@ struct ExchangeResponse {
   std::optional<double> critical_temperature;  ///< mean over the specimen when the platen ran away, °C
   double critical_time = 0.0;                  ///< heating time then, s
   double highest = 0.0;                        ///< temperature reached anywhere, °C
+  double last_mean = 0.0;                      ///< at the last exchange, °C
   std::int64_t exchanges = 0;
   std::int64_t not_converged = 0;  ///< exchanges after which the body did not come to rest
   double worst_ratio = 0.0;        ///< largest unbalanced ratio left by an exchange before any failure
@@ -35,6 +36,7 @@ ExchangeResponse exchange_response(const History& history, RowRange rows, Outcom
   for (std::size_t i = 0; i < mean.size(); ++i) {
     ++r.exchanges;
     r.cycles += cycles[i];
+    r.last_mean = mean[i];
     r.highest = std::max(r.highest, hottest[i]);
     r.largest_thrust = std::max(r.largest_thrust, stress[i]);
     if (outcome == Outcome::ran_away && i + 1 == mean.size()) {
@@ -62,10 +64,10 @@ Coupling read_coupling(const Section& s, const Coupling* general) {
   const auto or_general = [&](auto read, auto Coupling::*key) {
     return general ? read(general->*key) : read();
   };
-  const auto quantity = [&](const char* key, const Unit& unit, double Coupling::*value, Meaning meaning) {
-    return or_general(
-        [&](auto... fallback) { return s.quantity(key, unit, Range::positive(), fallback..., meaning); },
-        value);
+  const auto quantity = [&](const char* key, const Unit& unit, const Range& range, double Coupling::*value,
+                            Meaning meaning) {
+    return or_general([&](auto... fallback) { return s.quantity(key, unit, range, fallback..., meaning); },
+                      value);
   };
   const auto number = [&](const char* key, const Range& range, double Coupling::*value, Meaning meaning) {
     return or_general([&](auto... fallback) { return s.number(key, range, fallback..., meaning); }, value);
@@ -78,12 +80,15 @@ Coupling read_coupling(const Section& s, const Coupling* general) {
         value);
   };
   Coupling c;
-  c.increment = quantity("exchange_increment", unit::temperature_difference, &Coupling::increment,
-                         "change of temperature between two exchanges, of the fastest gridpoint");
-  c.unbalanced_ratio = number("unbalanced_ratio", Range::positive(), &Coupling::unbalanced_ratio,
-                              "rest, 1: unbalanced over applied forces are below this");
-  c.platen_difference = quantity("platen_difference", unit::stress, &Coupling::platen_difference,
-                                 "rest, 2: the stresses on the two platens differ by less");
+  c.increment =
+      quantity("exchange_increment", unit::temperature_difference, Range::positive().usually(0.1, 50.0),
+               &Coupling::increment, "change of temperature between two exchanges, of the fastest gridpoint");
+  c.unbalanced_ratio =
+      number("unbalanced_ratio", Range::positive().usually(1e-8, 0.01), &Coupling::unbalanced_ratio,
+             "rest, 1: unbalanced over applied forces are below this");
+  c.platen_difference =
+      quantity("platen_difference", unit::stress, Range::positive().usually(1e2, 1e6),
+               &Coupling::platen_difference, "rest, 2: the stresses on the two platens differ by less");
   c.least_cycles = integer("least_cycles", 0, &Coupling::least_cycles, "rest, 3: not before so many steps");
   c.most_cycles = integer(
       "most_cycles", 1, &Coupling::most_cycles,
@@ -92,8 +97,9 @@ Coupling read_coupling(const Section& s, const Coupling* general) {
   c.predictor = s.flag("predictor", general ? general->predictor : false,
                        "whether an exchange first moves the body to where the last one foretells it to rest; "
                        "stages of kind heat only");
-  c.failure_strain = number("failure_strain", Range::inside(0.0, 1.0), &Coupling::failure_strain,
-                            "the specimen has failed when its ends approach by this at one temperature");
+  c.failure_strain =
+      number("failure_strain", Range::inside(0.0, 1.0).usually(5e-4, 0.05), &Coupling::failure_strain,
+             "the specimen has failed when its ends approach by this at one temperature");
   return c;
 }
 
@@ -109,6 +115,7 @@ ExchangeStage::Keys read_exchange(const Section& own, const StageTables& tables)
 
 void ExchangeStage::begin(Simulation& simulation) {
   load_stress_ = simulation.press().stress_held();
+  first_temperature_ = simulation.field().mean();
   begin_change(simulation);
   exchange_.begin(simulation);
   last_interval_ = interval_of(simulation.field().mean());
@@ -160,9 +167,13 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
       {"cycles", static_cast<std::int64_t>(r.cycles)},
       {"largest_thrust_MPa", r.largest_thrust},
   };
-  report.lines.push_back(
-      fmt::format("to {:.0f} degC in {} exchanges of up to {:g} K, {:.0f} cycles; {} did not come to rest",
-                  r.highest, r.exchanges, coupling().increment, r.cycles, r.not_converged));
+  report.lines.push_back(fmt::format(
+      "{:.0f} to {:.0f} degC{} in {} exchanges of up to {:g} K, {:.0f} cycles; {} did not come to rest",
+      first_temperature_, r.last_mean,
+      r.highest > std::max(first_temperature_, r.last_mean) + 1.0
+          ? fmt::format(" in the mean, {:.0f} degC where it is hottest,", r.highest)
+          : "",
+      r.exchanges, coupling().increment, r.cycles, r.not_converged));
   if (coupling().platen == PlatenControl::fixed)
     report.lines.push_back(fmt::format("thrust up to {:.2f} MPa", r.largest_thrust));
   else
@@ -190,6 +201,7 @@ Forecast ExchangeStage::forecast(const Simulation&, Foreseen& foreseen) const {
 void ExchangeStage::visit_state(StateVisitor& visitor) {
   visitor.visit("rests", rests_);
   visitor.visit("load_stress", load_stress_);
+  visitor.visit("mean_at_begin", first_temperature_);
   visitor.visit("last_interval", last_interval_);
   exchange_.visit_state(visitor);
   visit_change(visitor);

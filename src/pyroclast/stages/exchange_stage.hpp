@@ -38,9 +38,10 @@ class ExchangeStage : public Stage {
 
   Keys keys_;
   Exchange exchange_;
-  bool rests_ = false;          ///< the temperatures are handed over, and the body comes to rest
-  double load_stress_ = 0.0;    ///< held at the beginning, Pa
-  double last_interval_ = 0.0;  ///< of temperature, in which the last row lay
+  bool rests_ = false;              ///< the temperatures are handed over, and the body comes to rest
+  double load_stress_ = 0.0;        ///< held at the beginning, Pa
+  double first_temperature_ = 0.0;  ///< mean at the beginning, °C
+  double last_interval_ = 0.0;      ///< of temperature, in which the last row lay
 };
 
 /// Reads the keys that stages of this sort share. What is wrong is recorded in the deck.

@@ -14,8 +14,9 @@ constexpr double kSameTemperature = 1e-6;
 
 std::unique_ptr<Stage> read_heat_stage(const Section& s, const StageTables& tables) {
   Heat::Keys keys;
-  keys.to = s.quantity("to", unit::temperature, Range::at_least(absolute_zero), "temperature at the end");
-  keys.rate = s.quantity("rate", unit::heating_rate, Range::positive(),
+  keys.to = s.quantity("to", unit::temperature, Range::at_least(absolute_zero).usually(-50.0, 1300.0),
+                       "temperature at the end");
+  keys.rate = s.quantity("rate", unit::heating_rate, Range::positive().usually(1e-4, 10.0),
                          "change of the temperature over the time, up or down");
   keys.exchange = read_exchange(s, tables);
   return std::make_unique<Heat>(keys);
@@ -57,8 +58,8 @@ bool Heat::change(Simulation& simulation, Exchange& exchange, int) {
   const bool last = left <= coupling().increment + kSameTemperature;
   field.set_uniform(last ? keys_.to : now + std::copysign(change, keys_.to - now));
   simulation.set_heating_time(simulation.heating_time() + change / keys_.rate);
-  const Press<2>::EvenStrain strain{-simulation.press().specimen_strain(),
-                                    simulation.press().lateral_strain()};
+  const Press<2>::EvenMotion strain{.axial = -simulation.press().specimen_strain(),
+                                    .lateral = simulation.press().lateral_strain()};
   exchange.hand_over(simulation);
   if (coupling().predictor) {
     if (last_change_ > 0.0) {
@@ -66,8 +67,8 @@ bool Heat::change(Simulation& simulation, Exchange& exchange, int) {
       const auto foreseen = [&](double after, double before) {
         return std::clamp((after - before) * change / last_change_, least, greatest);
       };
-      exchange.strain_evenly_first(
-          {foreseen(strain.axial, last_strain_.axial), foreseen(strain.lateral, last_strain_.lateral)});
+      exchange.move_evenly_first({.axial = foreseen(strain.axial, last_strain_.axial),
+                                  .lateral = foreseen(strain.lateral, last_strain_.lateral)});
     }
     last_strain_ = strain;
     last_change_ = change;

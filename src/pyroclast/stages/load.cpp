@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/stages/settle.hpp"
 
@@ -10,6 +12,8 @@ namespace pyroclast {
 namespace {
 
 constexpr std::int64_t kStepsPerLook = 200;
+/// Concrete that is shortened so much has long passed its peak, at any temperature.
+constexpr double kFailureStrain = 0.01;
 /// The force of a ramp is adjusted this often; a whole part of a look.
 constexpr std::int64_t kStepsPerForce = 20;
 
@@ -18,18 +22,27 @@ std::unique_ptr<Stage> read_load(const Section& s, const StageTables&) {
   Load::Keys keys;
   if (s.has("level")) {
     keys.level = s.number("level", Range::non_negative(), "stress over f_c");
-    keys.stress =
-        *keys.level * s.quantity("f_c", unit::stress, Range::positive(), "strength that level is a share of");
+    keys.strength = s.quantity("f_c", unit::stress, Range::positive().usually(1e6, 300e6),
+                               "strength that level is a share of");
+    keys.strength_of =
+        s.text("f_c_of", "as the deck states it",
+               "whose strength this is, for the summary: best that of the same specimen, 20 °C");
+    keys.stress = *keys.level * keys.strength;
+    if (*keys.level >= 1.0)
+      s.warn("level", "is the strength or more, so the specimen will probably be crushed");
     if (s.has("stress")) s.error("stress", "either stress, or level and f_c; not both");
   } else {
-    keys.stress = s.quantity("stress", unit::stress, Range::non_negative(),
+    keys.stress = s.quantity("stress", unit::stress, Range::non_negative().usually(0.0, 200e6),
                              "force on the upper platen over the area of the specimen");
   }
   keys.ramp_time =
       s.quantity("ramp_time", unit::time, Range::non_negative(), "in which the force rises evenly");
-  keys.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive(), kAtRest);
+  keys.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive().usually(1e-8, 0.01), kAtRest);
   keys.most_steps = s.integer("most_steps", Range::between(1, 1e12),
                               "after so many steps behind the ramp without rest the run ends, and says so");
+  keys.failure_strain = s.number("failure_strain", Range::inside(0.0, 1.0).usually(1e-3, 0.1), kFailureStrain,
+                                 "the specimen is crushed when its ends have come nearer by this since the "
+                                 "stage began");
   return std::make_unique<Load>(keys);
 }
 
@@ -48,8 +61,9 @@ double ramp_share(std::int64_t steps, double time_step, double ramp_time) {
 }
 
 void Load::begin(Simulation& simulation) {
-  first_stress_ = simulation.press().stress_held();
   simulation.press().control_by_force();
+  first_stress_ = simulation.press().stress_held();
+  first_strain_ = simulation.press().specimen_strain();
 }
 
 /// To what the ramp has in the middle of the steps to come.
@@ -69,6 +83,8 @@ bool Load::advance(Simulation& simulation, int most_steps) {
 }
 
 Verdict Load::judge(Simulation& simulation) {
+  if (simulation.press().specimen_strain() - first_strain_ > keys_.failure_strain)
+    return {.over = true, .last = true, .outcome = Outcome::crushed};
   if (progress(simulation) < 1.0) return {};
   const Mechanics<2>& mechanics = simulation.mechanics();
   if (mechanics.unbalanced_ratio() < keys_.unbalanced_ratio) return {.over = true};
@@ -82,13 +98,27 @@ double Load::progress(const Simulation& simulation) const {
   return ramp_share(steps_, simulation.mechanics().time_step(), keys_.ramp_time);
 }
 
-StageReport Load::report(const History& history, RowRange rows, Outcome) const {
+StageReport Load::report(const History& history, RowRange rows, Outcome outcome) const {
   StageReport report;
-  report.results = {{"load_stress_MPa", keys_.stress * 1e-6},
-                    {"load_level", keys_.level ? Result::Value(*keys_.level) : Result::Value()}};
+  report.results = {
+      {"load_stress_MPa", keys_.stress * 1e-6},
+      {"load_level", keys_.level ? Result::Value(*keys_.level) : Result::Value()},
+      {"f_c_of_level_MPa", keys_.level ? Result::Value(keys_.strength * 1e-6) : Result::Value()},
+      {"f_c_of_level_is", keys_.level ? Result::Value(keys_.strength_of) : Result::Value()}};
+  if (keys_.level)
+    report.lines.push_back(fmt::format("load {:.2f} MPa: {:g} of f_c {:.2f} MPa, {}", keys_.stress * 1e-6,
+                                       *keys_.level, keys_.strength * 1e-6, keys_.strength_of));
   if (rows.empty()) return report;
+  const auto stress = history.values("stress_MPa", rows);
+  const double borne = *std::ranges::max_element(stress);
+  report.results.push_back({"largest_stress_MPa", borne});
   report.results.push_back({"steps", steps_});
   report.results.push_back({"strain", history.values("strain", rows).back()});
+  if (outcome == Outcome::crushed) {
+    report.lines.push_back(fmt::format("crushed: it bore {:.2f} MPa at most of the {:.2f} MPa of the load",
+                                       borne, keys_.stress * 1e-6));
+    report.warnings.push_back(report.lines.back());
+  }
   return report;
 }
 
@@ -103,6 +133,7 @@ Forecast Load::forecast(const Simulation& simulation, Foreseen&) const {
 void Load::visit_state(StateVisitor& visitor) {
   visitor.visit("steps", steps_);
   visitor.visit("first_stress", first_stress_);
+  visitor.visit("first_strain", first_strain_);
 }
 
 }  // namespace pyroclast

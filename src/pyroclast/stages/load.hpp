@@ -11,9 +11,14 @@ class Load : public Stage {
   struct Keys {
     double stress = 0.0;            ///< force over the specimen's area, Pa, compression positive
     std::optional<double> level;    ///< stress over f_c, where the deck gives it so
+    double strength = 0.0;          ///< that f_c, Pa
+    std::string strength_of;        ///< whose it is
     double ramp_time = 0.0;         ///< time over which the force is brought up, s
     double unbalanced_ratio = 0.0;  ///< at rest when below
     std::int64_t most_steps = 0;    ///< after the ramp; gives up, and says so, after as many
+    /// The specimen is crushed when its ends have come nearer by this share of its height since the stage
+    /// began.
+    double failure_strain = 0.0;
   };
 
   explicit Load(const Keys& keys) : keys_(keys) {}
@@ -34,6 +39,7 @@ class Load : public Stage {
   Keys keys_;
   std::int64_t steps_ = 0;     ///< since the stage began
   double first_stress_ = 0.0;  ///< held before, Pa
+  double first_strain_ = 0.0;  ///< of the specimen, before
 };
 
 StageKind load_kind();

@@ -17,7 +17,7 @@ constexpr double kStepsPerDecade = 1100.0;
 
 std::unique_ptr<Stage> read_settle(const Section& s, const StageTables&) {
   Settle::Keys keys;
-  keys.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive(), kAtRest);
+  keys.unbalanced_ratio = s.number("unbalanced_ratio", Range::positive().usually(1e-8, 0.01), kAtRest);
   keys.most_steps = s.integer("most_steps", Range::between(1, 1e12),
                               "after so many steps without rest the run ends, and says so");
   return std::make_unique<Settle>(keys);
