@@ -120,7 +120,7 @@ def compare_thrust(runs: Sequence[Run]) -> Figure:
     for run, name, (colour, dashes) in zip(runs, names_apart(runs), cycle(style.LOOKS)):
         stress = run.heated_history("stress_MPa")
         axes.plot(run.heated_history("temperature_degC"), stress, color=colour, linestyle=dashes,
-                  label=f"{textwrap.fill(name, 34)}\nlargest {stress.max():.2f} MPa")
+                  label=f"{textwrap.fill(name, 34)}\nlargest {run.history.known('stress_MPa', run.heated).max():.2f} MPa")
     axes.set_xlabel(_temperature_label(runs))
     axes.set_ylabel(THRUST_LABEL.replace("\n", " "))
     style.legend_alone(beside, *axes.get_legend_handles_labels(), loc="upper left")

@@ -29,9 +29,10 @@ def stress_strain(run: Run, marks: Mapping[str, Frame]) -> Figure:
     axes = figure.add_subplot(grid[0, :])
     axes.set_title("\n".join([style.title_of(run), *_heated_before(run)]))
     if run.parent and not run.parent.ends_heated:
-        _draw_parent(axes, run.parent)
+        style.draw_parent(axes, run.parent, style.PER_MILLE * run.parent.loaded_strain,
+                          run.parent.loaded_history("stress_MPa"))
     _draw_run(axes, run)
-    _draw_references(axes, max(run.loaded_strain.max(), _LEAST_STRAIN_SHOWN))
+    _draw_references(axes, max(np.nanmax(run.loaded_strain), _LEAST_STRAIN_SHOWN))
     _draw_marks(axes, marks)
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
@@ -47,8 +48,8 @@ def _heated_before(run: Run) -> list[str]:
     """What heat did before the compression, for the title; empty when there was none."""
     if not run.exchanged.any():
         return []
-    hottest = run.heated_history("temperature_degC").max()
-    now = run.loaded_history("temperature_degC")[0]
+    hottest = run.history.known("temperature_degC", run.heated).max()
+    now = run.history.known("temperature_degC", run.loaded)[0]
     retained = run.strength_retained
     told = "" if retained is None else f"; largest stress {retained:.2f} of the strength before heating"
     return [f"heated to {hottest:.0f} °C, compressed at {now:.0f} °C{told}"]
@@ -61,11 +62,6 @@ def _draw_run(axes: Axes, run: Run) -> None:
               label="this run, mean of both platens")
     axes.fill_between(strain, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
                       label="between its upper and lower platen")
-
-
-def _draw_parent(axes: Axes, parent: Run) -> None:
-    axes.plot(style.PER_MILLE * parent.loaded_strain, parent.loaded_history("stress_MPa"), color=style.FAINT,
-              linewidth=1.2, label=style.parent_label(parent.folder))
 
 
 def _draw_references(axes: Axes, last_strain: float) -> None:
@@ -163,8 +159,12 @@ def mean_curve(runs: Sequence[Run]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def mean_of(curves: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
-    """Mean of curves (x, y) where all have values; points whose x does not exceed all before are left out."""
-    advancing = [(x[rows], y[rows]) for x, y in curves
+    """Mean of curves (x, y) where all have values; points whose x does not exceed all before are left out.
+
+    Each curve has a point that is finite.
+    """
+    finite = [(x[rows], y[rows]) for x, y in curves for rows in [np.isfinite(x) & np.isfinite(y)]]
+    advancing = [(x[rows], y[rows]) for x, y in finite
                  for rows in [np.concatenate([[True], x[1:] > np.maximum.accumulate(x)[:-1]])]]
     common = np.linspace(max(x[0] for x, _ in advancing), min(x[-1] for x, _ in advancing), _MEAN_POINTS)
     return common, np.mean([np.interp(common, x, y) for x, y in advancing], axis=0)
@@ -190,4 +190,4 @@ def names_apart(runs: Sequence[Run]) -> list[str]:
     titles = [style.title_of(run) for run in runs]
     if len(set(titles)) == len(titles):
         return titles
-    return [style.title_of(run).replace(run.title, run.folder.resolve().name) for run in runs]
+    return [" – ".join([style.plain(run.folder.resolve().name), *style.warnings_of(run)]) for run in runs]

@@ -18,11 +18,15 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator, Sequence
+import warnings
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+
+from matplotlib.figure import Figure
 
 from .comparisons import KINDS, compare_runs
 from .curves import stress_strain
+from .files import GapWarning
 from .heated_sections import LEVEL_TEMPERATURES, heating_fracture, levels, temperature_field
 from .heating import convergence, temperature_history, thrust, total_strain
 from .progress import cracks, energy, heating_course, heating_cracks, loading_course
@@ -34,6 +38,45 @@ from .style import save
 _FORMATS = ("png", "svg", "pdf")
 
 
+def figures_of(run: Run, magnification: float | None = None,
+               temperatures: Sequence[float] | None = None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+    """Name of each figure that a run has, and what makes it; the arguments are those of `draw_run`."""
+    if run.exchanged.any():
+        yield from _of_heating(run, magnification, temperatures)
+    elif temperatures is not None:
+        raise RunError(f"{run.folder}: was never heated with mechanics, so --temperatures asks for nothing")
+    if run.only_conducts:
+        yield "temperature_history", lambda: temperature_history(run)
+        yield "temperature", lambda: temperature_field(run)
+    elif not run.ends_heated:
+        yield from _of_compression(run, magnification)
+
+
+def _of_heating(run: Run, magnification: float | None,
+                temperatures: Sequence[float] | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+    if run.restrained:
+        yield "thrust", lambda: thrust(run)
+    else:
+        yield "total_strain", lambda: total_strain(run)
+    yield "heating_cracks", lambda: heating_cracks(run)
+    yield "heating_energy", lambda: energy(heating_course(run))
+    yield "convergence", lambda: convergence(run)
+    if not run.uniform:
+        yield "temperature", lambda: temperature_field(run)
+    yield "heating_fracture", lambda: heating_fracture(run, temperatures, magnification)
+
+
+def _of_compression(run: Run, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+    marks = select_frames(run.loaded_frames, *run.peak) if run.loaded_frames else {}
+    yield "stress_strain", lambda: stress_strain(run, marks)
+    yield "cracks", lambda: cracks(run)
+    yield "energy", lambda: energy(loading_course(run))
+    if not marks:
+        path = run.folder / "fields" / "frames.csv"
+        raise RunError(f"{path}: no frame of the loading stage; fracture cannot be drawn")
+    yield "fracture", lambda: fracture(run, marks, magnification)
+
+
 def draw_run(folder: Path, file_format: str = "png", magnification: float | None = None,
              temperatures: Sequence[float] | None = None) -> Iterator[Path]:
     """Draws all figures of a run into its figures/ folder; yields each path once written.
@@ -41,47 +84,8 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
     temperatures [°C]: of the fracture patterns of a heated run, see `heating_fracture`.
     """
     run = Run(folder)
-    if run.exchanged.any():
-        yield from _draw_heating(run, file_format, magnification, temperatures)
-    elif temperatures is not None:
-        raise RunError(f"{run.folder}: was never heated with mechanics, so --temperatures asks for nothing")
-    if run.only_conducts:
-        yield from _draw_conduction(run, file_format)
-    elif not run.ends_heated:
-        yield from _draw_compression(run, file_format, magnification)
-
-
-def _draw_heating(run: Run, file_format: str, magnification: float | None,
-                  temperatures: Sequence[float] | None) -> Iterator[Path]:
-    place = run.folder / "figures"
-    if run.restrained:
-        yield save(thrust(run), place / f"thrust.{file_format}")
-    else:
-        yield save(total_strain(run), place / f"total_strain.{file_format}")
-    yield save(heating_cracks(run), place / f"heating_cracks.{file_format}")
-    yield save(energy(heating_course(run)), place / f"heating_energy.{file_format}")
-    yield save(convergence(run), place / f"convergence.{file_format}")
-    if not run.uniform:
-        yield save(temperature_field(run), place / f"temperature.{file_format}")
-    yield save(heating_fracture(run, temperatures, magnification), place / f"heating_fracture.{file_format}")
-
-
-def _draw_conduction(run: Run, file_format: str) -> Iterator[Path]:
-    place = run.folder / "figures"
-    yield save(temperature_history(run), place / f"temperature_history.{file_format}")
-    yield save(temperature_field(run), place / f"temperature.{file_format}")
-
-
-def _draw_compression(run: Run, file_format: str, magnification: float | None) -> Iterator[Path]:
-    marks = select_frames(run.loaded_frames, *run.peak) if run.loaded_frames else {}
-    place = run.folder / "figures"
-    yield save(stress_strain(run, marks), place / f"stress_strain.{file_format}")
-    yield save(cracks(run), place / f"cracks.{file_format}")
-    yield save(energy(loading_course(run)), place / f"energy.{file_format}")
-    if not marks:
-        path = run.folder / "fields" / "frames.csv"
-        raise RunError(f"{path}: no frame of the loading stage; fracture cannot be drawn")
-    yield save(fracture(run, marks, magnification), place / f"fracture.{file_format}")
+    for name, draw in figures_of(run, magnification, temperatures):
+        yield save(draw(), run.folder / "figures" / f"{name}.{file_format}")
 
 
 def draw_properties(folder: Path, file_format: str = "png") -> Iterator[Path]:
@@ -173,13 +177,20 @@ def _parser() -> argparse.ArgumentParser:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Returns the exit code."""
     asked = _parser().parse_args(arguments)
-    try:
-        for path in asked.draw(asked):
-            print(path)
-    except (RunError, OSError) as problem:
-        print(f"pyroclast figures: {problem}", file=sys.stderr)
-        return 1
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", GapWarning)
+        warnings.showwarning = lambda message, *_: _tell(message)
+        try:
+            for path in asked.draw(asked):
+                print(path)
+        except (RunError, OSError) as problem:
+            _tell(problem)
+            return 1
     return 0
+
+
+def _tell(what: object) -> None:
+    print(f"pyroclast figures: {what}", file=sys.stderr)
 
 
 if __name__ == "__main__":

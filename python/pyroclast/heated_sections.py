@@ -113,7 +113,7 @@ def _panel_near(run: Run, frames: Sequence[Frame], temperature: float) -> Panel:
     if frames and (frame := frame_near(frames, temperature)):
         return _panel(run, frame)
     missing = f"no frame within\n{_NEAR:g} K"
-    if run.history["temperature_degC"][run.standing].max() < temperature - _NEAR:
+    if run.history.known("temperature_degC", run.standing).max() < temperature - _NEAR:
         missing = "not reached" if run.critical_temperature is None else "failed before"
     return Panel(run, None, f"{temperature:g} °C", missing)
 
@@ -157,7 +157,7 @@ def temperature_field(run: Run) -> Figure:
 
 
 def _after(frame: Frame) -> str:
-    return "" if frame.heating_time is None else f"after {frame.heating_time / 60.0:.0f} min\n"
+    return "" if frame.heating_time is None or np.isnan(frame.heating_time) else f"after {frame.heating_time / 60.0:.0f} min\n"
 
 
 def _spread(frames: Sequence[Frame]) -> list[Frame]:

@@ -29,7 +29,7 @@ def total_strain(run: Run) -> Figure:
     band = reference.strain_band(run.load_level)
     if band:
         draw_band(upper, band, style.ORANGE, _BAND_LABEL)
-    _draw_parent(upper, run.parent, "specimen_strain", -style.PER_MILLE)
+    _draw_heated_parent(upper, run, "specimen_strain", -style.PER_MILLE)
     label = f"this run, {style.load_label(run)}".rstrip(", ")
     upper.plot(run.heated_history("temperature_degC"), strain, color=style.BLUE, linewidth=1.8, label=label)
     upper.axhline(0.0, color=style.BLACK, linewidth=0.6)
@@ -48,11 +48,11 @@ def thrust(run: Run) -> Figure:
     figure, upper, lower, below = _two_over_temperature(run)
     temperature, stress = run.heated_history("temperature_degC"), run.heated_history("stress_MPa")
     top, bottom = run.heated_history("stress_top_MPa"), run.heated_history("stress_bottom_MPa")
-    _draw_parent(upper, run.parent, "stress_MPa", 1.0)
+    _draw_heated_parent(upper, run, "stress_MPa", 1.0)
     upper.fill_between(temperature, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
                        label="between its upper and lower platen")
     upper.plot(temperature, stress, color=style.BLUE, linewidth=1.8, label="this run, mean of both platens")
-    if stress.min() >= 0.0:
+    if run.history.known("stress_MPa", run.heated).min() >= 0.0:
         upper.set_ylim(bottom=0.0)
     upper.set_ylabel(THRUST_LABEL)
     _mark_unconverged(upper, run, stress)
@@ -61,12 +61,11 @@ def thrust(run: Run) -> Figure:
     return figure
 
 
-def _draw_parent(axes: Axes, parent: Run | None, column: str, factor: float) -> None:
+def _draw_heated_parent(axes: Axes, run: Run, column: str, factor: float) -> None:
     """A column of the run that this one is a fork of, where that was heated too."""
-    if parent and parent.heated.any():
-        rows = parent.standing
-        axes.plot(parent.history["temperature_degC"][rows], factor * parent.history[column][rows], color=style.FAINT,
-                  linewidth=1.2, label=style.parent_label(parent.folder))
+    if run.parent and run.parent.heated.any():
+        history, rows = run.parent.history, run.parent.standing
+        style.draw_parent(axes, run.parent, history["temperature_degC"][rows], factor * history[column][rows])
 
 
 def _two_over_temperature(run: Run) -> tuple[Figure, Axes, Axes, Axes]:
@@ -79,7 +78,7 @@ def _two_over_temperature(run: Run) -> tuple[Figure, Axes, Axes, Axes]:
     lateral = style.PER_MILLE * run.heated_history("lateral_strain")
     lower.plot(run.heated_history("temperature_degC"), lateral, color=style.BLUE)
     lower.axhline(0.0, color=style.BLACK, linewidth=0.6)
-    lower.set_ylim(*_padded(lateral[run.standing[run.heated]]))
+    lower.set_ylim(*_padded(style.PER_MILLE * run.history.known("lateral_strain", run.standing)))
     lower.set_ylabel("Lateral strain, expansion\npositive [$10^{-3}$]")
     lower.set_xlabel(temperature_label(run))
     _mark_failure(lower, run)
@@ -100,10 +99,13 @@ def draw_band(axes: Axes, band: reference.StrainBand, colour: str, label: str | 
 def strain_limits(runs: Sequence[Run], bands: Sequence[reference.StrainBand]) -> tuple[float, float]:
     """Limits [10^-3] that show bands and total strains, but not how far a failing specimen went."""
     strains = [run.total_strain[run.standing[run.heated]] for run in runs]
+    for run in runs:
+        run.history.known("specimen_strain", run.standing)
     return _padded(style.PER_MILLE * np.concatenate([*strains, *(x for b in bands for x in (b.low, b.high))]))
 
 
 def _padded(values: np.ndarray) -> tuple[float, float]:
+    values = values[np.isfinite(values)]
     margin = 0.06 * (np.ptp(values) or 1.0)
     return float(values.min() - margin), float(values.max() + margin)
 
@@ -147,7 +149,7 @@ def convergence(run: Run) -> Figure:
     lower.set_xlabel(course.label)
     upper.tick_params(labelbottom=False)
     style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncols=3,
-                       title=f"{course['cycles'][exchanged].sum():,.0f} cycles in all")
+                       title=f"{np.nansum(course['cycles'][exchanged]):,.0f} cycles in all")
     return figure
 
 

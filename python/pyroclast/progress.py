@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
-from .run import Run
+from .run import Run, RunError
 
 _ENERGY_IN = ("energy_loading_J", "energy_gravity_J", "energy_property_change_J",
               "energy_mass_scaling_J")
@@ -54,11 +54,12 @@ def loading_course(run: Run) -> Course:
 
 def heating_course(run: Run) -> Course:
     """The heating, over temperature, or over time when the specimen also cools."""
-    temperature = run.heated_history("temperature_degC")
-    if (temperature < np.maximum.accumulate(temperature) - _COOLED).any():
+    temperature, known = run.heated_history("temperature_degC"), run.history.known("temperature_degC", run.heated)
+    if (known < np.maximum.accumulate(known) - _COOLED).any():
         time = run.heated_history("heating_time_s") / 60.0
-        return Course(run, run.heated, time, "Time of heating [min]", start=time[0], ordered=False)
-    return Course(run, run.heated, temperature, temperature_label(run), start=temperature.min())
+        start = run.history.known("heating_time_s", run.heated)[0] / 60.0
+        return Course(run, run.heated, time, "Time of heating [min]", start, ordered=False)
+    return Course(run, run.heated, temperature, temperature_label(run), start=known.min())
 
 
 def temperature_label(run: Run) -> str:
@@ -73,6 +74,7 @@ def cracks(run: Run) -> Figure:
     *panels, below = figure.subplots(len(modes) + 1, 1, height_ratios=[1.0] * len(modes) + [0.3])
     panels[0].set_title(style.title_of(run))
     course = loading_course(run)
+    run.history.known("strain", run.loaded)
     for axes, mode in zip(panels, modes):
         axes.sharex(panels[0]) if axes is not panels[0] else None
         _draw_stress_behind(axes, course)
@@ -105,7 +107,7 @@ def heating_cracks(run: Run) -> Figure:
     opening.plot(course.over, 1e6 * course["mean_opening_m"], color=style.BLACK)
     opening.set_ylabel("Mean opening of contacts\ndamaged in tension [µm]")
     for axes in panels:
-        axes.set_xlim(course.start, course.over.max())
+        axes.set_xlim(course.start, np.nanmax(course.over))
         axes.set_ylim(bottom=0.0)
         axes.set_xlabel(course.label)
     style.legend_alone(figure.add_subplot(grid[2, :]), *_legends(*counts), loc="center", ncols=2)
@@ -159,16 +161,19 @@ def energy(course: Course) -> Figure:
     figure.suptitle(style.title_of(course.run), fontsize=9.0)
     parts = [course[name] for name in _ENERGY_IN if name in course.run.history]
     work_in = sum(parts)
-    turnover = sum(map(np.abs, parts)).max() or 1.0  # heat takes out what a softening body stores
+    turned_over = sum(map(np.abs, parts))
+    if not (np.isfinite(turned_over) & np.isfinite(course.over)).any():
+        raise RunError(f"{course.run.history.path}: no row has all energies that were put in")
+    turnover = np.nanmax(turned_over) or 1.0  # heat takes out what a softening body stores
     _draw_stack(upper, course, turnover)
     upper.plot(course.over, work_in, color=style.BLACK, linewidth=1.4, linestyle=(0, (4, 2)),
                label="work put in (loading,\ngravity, change of\nproperties, mass scaling)")
     if course["energy_property_change_J"].any():
         upper.plot(course.over, course["energy_property_change_J"], color=style.PURPLE, linewidth=1.4,
                    linestyle=(0, (1.5, 1)), label="put in by the change of\nproperties alone")
-    upper.set_xlim(course.start, course.over.max())
+    upper.set_xlim(course.start, np.nanmax(course.over))
     upper.tick_params(labelbottom=False)
-    if min(work_in.min(), course["energy_property_change_J"].min()) >= 0.0:
+    if not (work_in < 0.0).any() and not (course["energy_property_change_J"] < 0.0).any():
         upper.set_ylim(bottom=0.0)
     upper.set_ylabel("Energy since the start [J]")
     handles, labels = upper.get_legend_handles_labels()
@@ -186,7 +191,8 @@ def _draw_stack(axes: Axes, course: Course, turnover: float) -> None:
     below = np.zeros_like(course.over)
     for column, name, colour, hatch in _ENERGY_OUT:
         values = course[column]
+        known = values[np.isfinite(values)]
+        share = f"{100.0 * known[-1] / turnover:.1f} %" if len(known) else "not known"
         axes.fill_between(course.over, below, below + values, facecolor=colour, hatch=hatch,
-                          edgecolor="white", linewidth=0.3,
-                          label=f"{name}: {100.0 * values[-1] / turnover:.1f} %")
+                          edgecolor="white", linewidth=0.3, label=f"{name}: {share}")
         below = below + values

@@ -39,11 +39,6 @@ AGGREGATE_COLOUR, MORTAR_COLOUR, PLATEN_COLOUR = "#b4b4b4", "#f4f0e6", "#5a5a5a"
 _MORE_PHASE_COLOURS = ("#8fa9c4", "#c9b48c", "#9dbf9e", "#b79bb8")
 
 
-def parent_label(folder: Path) -> str:
-    """Of the run that the one in the figure is a fork of."""
-    return f"{folder.name}, of which this run is a fork"
-
-
 def phase_colours(names: Sequence[str]) -> list[str]:
     """A fill for each material of a mesh: aggregate and mortar as ever, the platens last, others in turn."""
     known = {"aggregate": AGGREGATE_COLOUR, "mortar": MORTAR_COLOUR}
@@ -75,9 +70,21 @@ def legend_alone(axes: Axes, handles: list, labels: list[str], **options) -> Non
     axes.legend(handles, labels, borderaxespad=0.0, **options)
 
 
+def plain(text: str) -> str:
+    """Text of the user's, as it stands: on one line, and no formula."""
+    shown = "".join(c if c.isprintable() else " " for c in text)
+    return " ".join(shown.split()).replace("$", r"\$")
+
+
+def draw_parent(axes: Axes, parent, over, values) -> None:
+    """A curve of the run that the one in the figure is a fork of, behind that one's."""
+    axes.plot(over, values, color=FAINT, linewidth=1.2,
+              label=f"{plain(parent.folder.name)}, of which this run is a fork")
+
+
 def title_of(run) -> str:
     """A run's title, with its warnings."""
-    return " – ".join([run.title, *warnings_of(run)])
+    return " – ".join([plain(run.title), *warnings_of(run)])
 
 
 def warnings_of(run) -> list[str]:
@@ -103,8 +110,17 @@ def load_label(run) -> str:
 
 @matplotlib.rc_context(STYLE)
 def save(figure: Figure, path: Path) -> Path:
-    """Writes the figure, its format by the file's ending; makes the folder. Returns the path."""
+    """Writes the figure, its format by the file's ending; makes the folder. Returns the path.
+
+    The file is there whole or not at all: it is written aside, then takes its name.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
+    ending = path.suffix.lower()
     undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-    figure.savefig(path, metadata=undated.get(path.suffix.lower()))
+    aside = path.with_name(f"{path.name}.partial")  # `--overwrite` knows this ending
+    try:
+        figure.savefig(aside, format=ending[1:], metadata=undated.get(ending))
+        aside.replace(path)
+    finally:
+        aside.unlink(missing_ok=True)
     return path
