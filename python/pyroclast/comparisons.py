@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from . import reference, style
-from .curves import compare, mean_of, names_apart
+from .curves import MANY, compare, draw_spread, draw_tables, mean_of, names_apart
 from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL, draw_band, strain_limits
 from .progress import heating_course, loading_course, temperature_label
 from .run import Run, RunError
@@ -80,9 +80,11 @@ def _by_load(runs: Sequence[Run]) -> list[_Group]:
 def _label(group: _Group) -> str:
     lines = [group.label]
     if len(group.runs) > 1:
-        lines.append(f"mean of {len(group.runs)}; thin: each")
-    if failed := [run.critical_temperature for run in group.runs if run.critical_temperature is not None]:
-        lines.append(f"✖ before failure at {', '.join(f'{t:.0f}' for t in sorted(failed))} °C")
+        each = "pale: least to greatest" if len(group.runs) > MANY else "thin: each"
+        lines.append(f"mean of {len(group.runs)}; {each}")
+    if failed := sorted(run.critical_temperature for run in group.runs if run.critical_temperature is not None):
+        told = ", ".join(f"{t:.0f}" for t in failed) if len(failed) <= MANY else f"{failed[0]:.0f} to {failed[-1]:.0f}"
+        lines.append(f"✖ before failure at {told} °C" + (f" ({len(failed)} runs)" if len(failed) > MANY else ""))
     if missed := sum(int(run.unconverged.sum()) for run in group.runs):
         lines.append(f"{missed} EXCHANGES NOT CONVERGED")
     return "\n".join(textwrap.fill(line, 34) for line in lines)
@@ -96,10 +98,12 @@ def compare_total_strain(runs: Sequence[Run]) -> Figure:
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
     bands = []
     for group in _by_load(runs):
-        if band := reference.strain_band(group.runs[0].load_level):
+        asked = any(run.reference.name == reference.TRANSIENT_STRAIN for run in group.runs)
+        if asked and (band := reference.strain_band(group.runs[0].load_level)):
             bands.append(band)
             draw_band(axes, band, group.colour)
         _draw_group(axes, group)
+    draw_tables(axes, runs, ("temperature_degC", 1.0), ("total_strain", style.PER_MILLE))
     axes.axhline(0.0, color=style.BLACK, linewidth=0.6)
     axes.set_ylim(*strain_limits(runs, bands))
     axes.set_xlabel(_temperature_label(runs))
@@ -117,14 +121,23 @@ def compare_thrust(runs: Sequence[Run]) -> Figure:
     _demand_heated(runs)
     figure = style.new_figure(4.2)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
-    for run, name, (colour, dashes) in zip(runs, names_apart(runs), cycle(style.LOOKS)):
-        stress = run.heated_history("stress_MPa")
-        axes.plot(run.heated_history("temperature_degC"), stress, color=colour, linestyle=dashes,
-                  label=f"{textwrap.fill(name, 34)}\nlargest {run.history.known('stress_MPa', run.heated).max():.2f} MPa")
+    if len(runs) > MANY:
+        draw_spread(axes, [(run.heated_history("temperature_degC"), run.heated_history("stress_MPa")) for run in runs],
+                    style.BLUE)
+    else:
+        _draw_thrusts(axes, runs)
+    draw_tables(axes, runs, ("temperature_degC", 1.0), ("stress_MPa", 1.0))
     axes.set_xlabel(_temperature_label(runs))
     axes.set_ylabel(THRUST_LABEL.replace("\n", " "))
     style.legend_alone(beside, *axes.get_legend_handles_labels(), loc="upper left")
     return figure
+
+
+def _draw_thrusts(axes: Axes, runs: Sequence[Run]) -> None:
+    for run, name, (colour, dashes) in zip(runs, names_apart(runs), cycle(style.LOOKS)):
+        largest = run.history.known("stress_MPa", run.heated).max()
+        axes.plot(run.heated_history("temperature_degC"), run.heated_history("stress_MPa"), color=colour,
+                  linestyle=dashes, label=f"{textwrap.fill(name, 34)}\nlargest {largest:.2f} MPa")
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -138,11 +151,16 @@ def compare_cracks(runs: Sequence[Run]) -> Figure:
     figure = style.new_figure(5.4)
     grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 0.42])
     panels = [figure.add_subplot(grid[row, 0]) for row in range(3)]
-    for run, course, name, (colour, dashes) in zip(runs, courses, names_apart(runs), cycle(style.LOOKS)):
-        for axes, values in zip(panels, (_broken(course, "tension"), _broken(course, "shear"),
-                                         1e6 * course["mean_opening_m"])):
-            axes.plot(course.over, values, color=colour, linestyle=dashes, linewidth=1.0,
-                      label=textwrap.fill(name, 34))
+    drawn = [(_broken(course, "tension"), _broken(course, "shear"), 1e6 * course["mean_opening_m"])
+             for course in courses]
+    if len(runs) > MANY:
+        for axes, of_all in zip(panels, zip(*drawn)):
+            draw_spread(axes, [(course.over, values) for course, values in zip(courses, of_all)], style.BLUE)
+    else:
+        for course, of_run, name, (colour, dashes) in zip(courses, drawn, names_apart(runs), cycle(style.LOOKS)):
+            for axes, values in zip(panels, of_run):
+                axes.plot(course.over, values, color=colour, linestyle=dashes, linewidth=1.0,
+                          label=textwrap.fill(name, 34))
     for axes, label in zip(panels, ("Broken contact\npoints, tension", "Broken contact\npoints, shear",
                                     "Mean opening of\ncontacts damaged\nin tension [µm]")):
         axes.set_ylabel(label)
@@ -165,6 +183,8 @@ def _draw_group(axes: Axes, group: _Group) -> None:
               for run in group.runs for rows in [run.standing[run.heated]]]
     if len(curves) == 1:
         axes.plot(*curves[0], color=group.colour, linewidth=1.8, label=_label(group))
+    elif len(curves) > MANY:
+        draw_spread(axes, curves, group.colour, _label(group))
     else:
         for curve in curves:
             axes.plot(*curve, color=group.colour, linewidth=0.5)

@@ -17,7 +17,7 @@ _LARGEST_WHOLE = 2.0**53
 _TIGHTEST_PACKING = 1032  # bytes from one of a file: what deflate reaches at best
 
 LARGEST = 1e30
-"""A number beyond it counts as not finite, in any unit: no quantity of a run is so large, and drawing would overflow."""
+"""A number beyond it counts as not finite: in no unit is a quantity of a run so large, and drawing would overflow."""
 
 
 class RunError(Exception):
@@ -35,13 +35,17 @@ class Table:
     which a GapWarning tells.
     """
 
-    def __init__(self, path: Path, may_be_empty: bool = False):
-        """Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
+    def __init__(self, path: Path, may_be_empty: bool = False, comments: bool = False):
+        """comments: whether lines that begin with # are skipped.
+
+        Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
         self.path = path
         try:
             with open(path, newline="", encoding="utf-8") as file:
                 text = file.read()
-            lines = list(csv.reader(text.splitlines()))
+            written = text.splitlines()
+            first = next((i for i, line in enumerate(written) if not _skipped(line)), 0) if comments else 0
+            lines = list(csv.reader("" if comments and _skipped(line) else line for line in written[first:]))
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             raise RunError(f"{path}: cannot be read: {_reason(error)}") from error
         if not lines or not lines[0]:
@@ -50,7 +54,7 @@ class Table:
             lines.pop()  # the row that a run was killed in
         self.names = [name.strip() for name in lines[0]]
         self._gaps: list[tuple[int, str, str]] = []
-        rows = [self._numbers(number, cells) for number, cells in enumerate(lines[1:], start=2) if cells]
+        rows = [self._numbers(number, cells) for number, cells in enumerate(lines[1:], start=first + 2) if cells]
         if not rows and not may_be_empty:
             raise RunError(f"{path}: has a header but no rows")
         self._columns = dict(zip(self.names, np.array(rows).reshape(-1, len(self.names)).T))
@@ -152,6 +156,10 @@ def read_json(path: Path) -> dict:
     if not isinstance(value, dict):
         raise RunError(f"{path}: is not a JSON object")
     return value
+
+
+def _skipped(line: str) -> bool:
+    return not line.strip() or line.startswith("#")
 
 
 def _reason(error: Exception) -> str:

@@ -157,7 +157,9 @@ def temperature_field(run: Run) -> Figure:
 
 
 def _after(frame: Frame) -> str:
-    return "" if frame.heating_time is None or np.isnan(frame.heating_time) else f"after {frame.heating_time / 60.0:.0f} min\n"
+    if frame.heating_time is None or np.isnan(frame.heating_time):
+        return ""
+    return f"after {frame.heating_time / 60.0:.0f} min\n"
 
 
 def _spread(frames: Sequence[Frame]) -> list[Frame]:

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import reference, style
+from .curves import draw_tables
 from .progress import heating_course, temperature_label
 from .run import Run
 
@@ -26,10 +27,13 @@ def total_strain(run: Run) -> Figure:
     """Total and lateral strain over temperature; the reference's range where it has the run's load level."""
     figure, upper, lower, below = _two_over_temperature(run)
     strain = style.PER_MILLE * run.total_strain
-    band = reference.strain_band(run.load_level)
+    band = None
+    if run.reference.name == reference.TRANSIENT_STRAIN:
+        band = reference.strain_band(run.load_level)
     if band:
         draw_band(upper, band, style.ORANGE, _BAND_LABEL)
     _draw_heated_parent(upper, run, "specimen_strain", -style.PER_MILLE)
+    draw_tables(upper, [run], ("temperature_degC", 1.0), ("total_strain", style.PER_MILLE))
     label = f"this run, {style.load_label(run)}".rstrip(", ")
     upper.plot(run.heated_history("temperature_degC"), strain, color=style.BLUE, linewidth=1.8, label=label)
     upper.axhline(0.0, color=style.BLACK, linewidth=0.6)
@@ -49,6 +53,7 @@ def thrust(run: Run) -> Figure:
     temperature, stress = run.heated_history("temperature_degC"), run.heated_history("stress_MPa")
     top, bottom = run.heated_history("stress_top_MPa"), run.heated_history("stress_bottom_MPa")
     _draw_heated_parent(upper, run, "stress_MPa", 1.0)
+    draw_tables(upper, [run], ("temperature_degC", 1.0), ("stress_MPa", 1.0))
     upper.fill_between(temperature, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
                        label="between its upper and lower platen")
     upper.plot(temperature, stress, color=style.BLUE, linewidth=1.8, label="this run, mean of both platens")
@@ -79,7 +84,7 @@ def _two_over_temperature(run: Run) -> tuple[Figure, Axes, Axes, Axes]:
     lower.plot(run.heated_history("temperature_degC"), lateral, color=style.BLUE)
     lower.axhline(0.0, color=style.BLACK, linewidth=0.6)
     lower.set_ylim(*_padded(style.PER_MILLE * run.history.known("lateral_strain", run.standing)))
-    lower.set_ylabel("Lateral strain, expansion\npositive [$10^{-3}$]")
+    lower.set_ylabel("Lateral strain,\nexpansion\npositive [$10^{-3}$]")
     lower.set_xlabel(temperature_label(run))
     _mark_failure(lower, run)
     return figure, upper, lower, below
@@ -97,11 +102,14 @@ def draw_band(axes: Axes, band: reference.StrainBand, colour: str, label: str | 
 
 
 def strain_limits(runs: Sequence[Run], bands: Sequence[reference.StrainBand]) -> tuple[float, float]:
-    """Limits [10^-3] that show bands and total strains, but not how far a failing specimen went."""
+    """Limits [10^-3] that show bands, tables and total strains, but not how far a failing specimen went."""
+    tables = [run.reference.table[name] for run in runs if run.reference.table for name in run.reference.table.names
+              if name.startswith("total_strain")]
     strains = [run.total_strain[run.standing[run.heated]] for run in runs]
     for run in runs:
         run.history.known("specimen_strain", run.standing)
-    return _padded(style.PER_MILLE * np.concatenate([*strains, *(x for b in bands for x in (b.low, b.high))]))
+    return _padded(style.PER_MILLE * np.concatenate([*strains, *tables,
+                                                     *(x for b in bands for x in (b.low, b.high))]))
 
 
 def _padded(values: np.ndarray) -> tuple[float, float]:
@@ -133,14 +141,15 @@ def convergence(run: Run) -> Figure:
     upper, lower, below = figure.subplots(3, 1, height_ratios=[1.0, 1.0, 0.14])
     lower.sharex(upper)
     upper.set_title(style.title_of(run))
-    for axes, name, label in ((upper, "cycles", "Cycles after the exchange"),
-                              (lower, "unbalanced_ratio", "Unbalanced ratio reached [–]")):
+    for axes, name, label in ((upper, "cycles", "Cycles after\nthe exchange"),
+                              (lower, "unbalanced_ratio", "Unbalanced ratio\nreached [–]")):
         values = course[name][exchanged]
         axes.plot(over, values, color=style.FAINT, linewidth=0.5, zorder=1)
         axes.plot(over[converged], values[converged], "o", color=style.BLUE, markersize=2.5, linestyle="none",
                   label=f"converged ({converged.sum()} exchanges)")
-        axes.plot(over[~converged], values[~converged], "x", color=style.VERMILLION, markersize=5.0,
-                  linestyle="none", label=f"not converged ({(~converged).sum()} exchanges)")
+        if not converged.all():
+            axes.plot(over[~converged], values[~converged], "x", color=style.VERMILLION, markersize=5.0,
+                      linestyle="none", label=f"not converged ({(~converged).sum()} exchanges)")
         axes.set_ylabel(label)
         if course.ordered:
             _mark_failure(axes, run)
@@ -165,6 +174,7 @@ def temperature_history(run: Run) -> Figure:
     axes.plot(minutes, run.history["temperature_degC"], color=style.BLACK, label="mean")
     for (name, values), (colour, dashes) in zip(run.probes.items(), cycle(style.LOOKS)):
         axes.plot(minutes, values, color=colour, linestyle=dashes, linewidth=1.0, label=f"probe {name}")
+    draw_tables(axes, [run], ("heating_time_s", 1.0 / 60.0), ("temperature_degC", 1.0))
     axes.set_xlim(left=0.0)
     axes.set_xlabel("Time [min]")
     axes.set_ylabel("Temperature [°C]")

@@ -28,6 +28,7 @@ _ENERGY_OUT = (
 )
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (5, 1.5, 1, 1.5)))  # by interface
 _MODE_COLOURS = {"tension": style.TENSION_COLOUR, "shear": style.SHEAR_COLOUR, "mixed": style.MIXED_COLOUR}
+_COUNTS_NOTE = "broken: $D=1$; damaged: $D>0$, the broken among them"
 _COOLED = 1.0  # K below the hottest before, from which temperature no longer orders the rows
 
 
@@ -82,7 +83,7 @@ def cracks(run: Run) -> Figure:
         axes.tick_params(labelbottom=axes is panels[-1])
     panels[0].set_xlim(left=0.0)
     panels[-1].set_xlabel(course.label)
-    style.legend_alone(below, *_legends(*panels), loc="center", ncols=2)
+    style.legend_alone(below, *_legends(*panels), loc="center", ncols=2, title=_COUNTS_NOTE, title_fontsize=7.0)
     return figure
 
 
@@ -92,10 +93,10 @@ def heating_cracks(run: Run) -> Figure:
     figure = style.new_figure(5.4)
     figure.suptitle(style.title_of(run), fontsize=9.0)
     modes = list(run.crack_modes) or ["tension"]
-    grid = figure.add_gridspec(3, 2, height_ratios=[1.0, 1.0, 0.32])
-    upper = figure.add_gridspec(3, max(len(modes), 1), height_ratios=[1.0, 1.0, 0.32])
-    counts = [figure.add_subplot(upper[0, i]) for i in range(len(modes))]
-    length, opening = figure.add_subplot(grid[1, 0]), figure.add_subplot(grid[1, 1])
+    rows = figure.add_gridspec(3, 1, height_ratios=[1.0, 1.0, 0.32])
+    upper, lower = rows[0].subgridspec(1, len(modes)), rows[1].subgridspec(1, 2)
+    counts = [figure.add_subplot(upper[i]) for i in range(len(modes))]
+    length, opening = (figure.add_subplot(lower[i]) for i in range(2))
     panels = [*counts, length, opening]
     course = heating_course(run)
     for axes, mode in zip(counts, modes):
@@ -110,7 +111,8 @@ def heating_cracks(run: Run) -> Figure:
         axes.set_xlim(course.start, np.nanmax(course.over))
         axes.set_ylim(bottom=0.0)
         axes.set_xlabel(course.label)
-    style.legend_alone(figure.add_subplot(grid[2, :]), *_legends(*counts), loc="center", ncols=2)
+    style.legend_alone(figure.add_subplot(rows[2]), *_legends(*counts), loc="center", ncols=2, title=_COUNTS_NOTE,
+                       title_fontsize=7.0)
     return figure
 
 
@@ -132,9 +134,9 @@ def _draw_counts(axes: Axes, course: Course, mode: str) -> None:
     for interface, dashes in zip(course.run.crack_modes.get(mode, []), cycle(_DASHES)):
         name = interface.replace("_", "–")
         axes.plot(course.over, course[f"{mode}_{interface}_broken"], color=colour, linestyle=dashes,
-                  linewidth=1.8, label=f"{mode}, {name}: broken ($D=1$)")
+                  linewidth=1.8, label=f"{mode}, {name}: broken")
         axes.plot(course.over, course[f"{mode}_{interface}_damaged"], color=colour, linestyle=dashes,
-                  linewidth=0.7, label=f"{mode}, {name}: damaged ($D>0$), broken among them")
+                  linewidth=0.7, label=f"{mode}, {name}: damaged")
     axes.set_ylim(bottom=0.0)
     axes.set_ylabel(f"Cracked contact points,\n{mode}")
 

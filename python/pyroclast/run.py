@@ -7,6 +7,7 @@ compression; only `Run.total_strain` is positive in expansion.
 from __future__ import annotations
 
 import re
+import tomllib
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -15,6 +16,7 @@ import numpy as np
 
 from .files import LARGEST, RunError, Table, dataset, open_hdf, read_json
 from .mesh import Mesh, read_mesh
+from .reference import NONE, Reference
 
 _UNIFORM = 1.0  # K
 
@@ -74,6 +76,21 @@ class Run:
         if not isinstance(folder, str) or "\0" in folder:
             raise RunError(f"{path}: 'parent' has no 'folder' that is a path")
         return Run(folder) if (Path(folder) / "history.csv").exists() else None
+
+    @cached_property
+    def reference(self) -> Reference:
+        """What the deck that the run keeps asks figures to draw beside the results."""
+        path = self.folder / "deck.toml"
+        if not path.exists():
+            return Reference(self.folder, NONE)
+        try:
+            output = tomllib.loads(path.read_text(encoding="utf-8")).get("output", {})
+        except (OSError, ValueError, RecursionError) as error:
+            raise RunError(f"{path}: cannot be read: {' '.join(str(error).split())}") from error
+        name = output.get("reference", NONE) if isinstance(output, dict) else None
+        if not isinstance(name, str):
+            raise RunError(f"{path}: output.reference is not a text")
+        return Reference(self.folder, name)
 
     @property
     def title(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from itertools import cycle
 from pathlib import Path
@@ -13,6 +14,8 @@ from matplotlib.figure import Figure
 WIDTH = 7.2
 """Width of a page of two columns, inches."""
 DPI = 300
+
+_TITLE_WIDTH = 100  # characters that fit a page
 
 STYLE = {
     "font.size": 8.0,
@@ -83,8 +86,26 @@ def draw_parent(axes: Axes, parent, over, values) -> None:
 
 
 def title_of(run) -> str:
-    """A run's title, with its warnings."""
-    return " – ".join([plain(run.title), *warnings_of(run)])
+    """A run's title, what was done to it as it came out, and its warnings, in lines that fit a page."""
+    return "\n".join(line for text in (plain(run.title), *facts_of(run), *warnings_of(run))
+                     for line in textwrap.wrap(text, _TITLE_WIDTH))
+
+
+def facts_of(run) -> list[str]:
+    """Load and temperatures of a heated run, which the deck's title may not tell or may tell wrong."""
+    if run.only_conducts or not run.exchanged.any():
+        return []
+    temperatures = run.history.known("temperature_degC", run.heated)
+    mean = "" if run.uniform else "mean "
+    if run.ends_heated:
+        held = "between fixed platens" if run.restrained else load_label(run)
+        failed = "" if run.critical_temperature is None else f"failed at {run.critical_temperature:.0f} °C"
+        return [", ".join(filter(None, [held, f"{mean}{temperatures[0]:.0f} to {temperatures.max():.0f} °C", failed]))]
+    now = run.history.known("temperature_degC", run.loaded)[0]
+    told = [f"heated to {mean}{temperatures.max():.0f} °C, compressed at {mean}{now:.0f} °C"]
+    if (retained := run.strength_retained) is not None:
+        told.append(f"largest stress {retained:.2f} of the strength before heating")
+    return ["; ".join(told)]
 
 
 def warnings_of(run) -> list[str]:

@@ -88,6 +88,37 @@ class UserTest(unittest.TestCase):
         return json.loads((self.folder / "out/summary.json").read_text())
 
 
+class ReferenceOfTheFigures(UserTest):
+    """`[output] reference` names what figures draw beside the results."""
+
+    def deck(self, reference: str) -> pathlib.Path:
+        return self.write(small_deck(history_strain=f'history_strain = 4e-6\nreference = "{reference}"'))
+
+    def test_what_is_wrong_is_told_at_its_place(self):
+        self.write("strain,stress\n0,0\n", "columns.csv")
+        self.write("# mine\nstrain,stress_MPa\n0,0\n1,high\n", "word.csv")
+        self.write("strain,stress_MPa\n0,0,0\n", "three.csv")
+        self.write("strain,stress_MPa\n0,0\n", "short.csv")
+        for reference, part in (("compresion", 'did you mean "compression"?'), ("mine", "ends in .csv"),
+                                ("gone.csv", "cannot open"),
+                                ("columns.csv", 'columns.csv:1: the header "strain,stress"'),
+                                ("word.csv", 'word.csv:4: "high"'), ("three.csv", "three.csv:2: 3 values"),
+                                ("short.csv", "1 rows")):
+            with self.subTest(reference):
+                done = self.pyroclast("check", self.deck(reference))
+                self.assertNotEqual(done.returncode, 0)
+                self.assertRegex(done.stderr, rf'deck.toml:\d+:\d+: output.reference = "{reference}": ')
+                self.assertIn(part, done.stderr)
+
+    def test_a_table_is_kept_with_the_run_and_drawn(self):
+        self.write("strain,stress_MPa\n0,0\n0.001,20\n", "tests_of_1976.csv")
+        done = self.pyroclast("run", self.deck("tests_of_1976.csv"), "--out", "run", "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue((self.folder / "run" / "inputs" / "tests_of_1976.csv").exists())
+        self.assertEqual(self.pyroclast("figures", "run", "run", "--format", "svg").returncode, 0)
+        self.assertIn("tests_of_1976", (self.folder / "run" / "figures" / "stress_strain.svg").read_text())
+
+
 class Properties(UserTest):
     def test_are_tabulated_as_the_run_has_them_and_drawn(self):
         deck = STARTER.replace('E = "29.4 GPa"', 'E = { value = "29.4 GPa", times = "glasgow_modulus" }\n'

@@ -130,6 +130,9 @@ class Damaged(unittest.TestCase):
                             ("wall", synthetic_run.write_conduction)):
             write(cls.root / name)
             write(cls.root / f"{name}_whole")
+            (cls.root / name / "mine.csv").write_text("strain,stress_MPa\n" + "0.001,20\n" * 9)
+            reference = {"compressed": "mine.csv", "failed": "transient_strain"}.get(name, "compression")
+            (cls.root / name / "deck.toml").write_text(f'[output]\nreference = "{reference}"\n')
             parent = {"parent": {"folder": str(cls.root / f"{name}_whole")}}
             (cls.root / name / "manifest.json").write_text(json.dumps(parent))
         cls.content = {path: path.read_bytes() for path in cls.root.rglob("*") if path.is_file()}
@@ -137,12 +140,13 @@ class Damaged(unittest.TestCase):
     def damage(self, folder: Path, random) -> tuple[str, list[Path]]:
         """Damages a file or swaps two; returns what was done and to which."""
         files = sorted(path for path in folder.rglob("*") if path.is_file() and path.parent.name != "figures")
-        common = [path for path in files if path.suffix in (".csv", ".json", ".h5")]
+        common = [path for path in files if path.suffix in (".csv", ".json", ".h5", ".toml")]
         path = (common if random.random() < 0.7 else files)[random.integers(len(common))]
         if random.random() < 0.3:
             change_cells(folder / "history.csv", random)
             return "cells of", [folder / "history.csv"]
-        special = {".csv": change_cells, ".json": change_values, ".h5": change_dataset, ".hdf": change_dataset}
+        special = {".csv": change_cells, ".json": change_values, ".h5": change_dataset, ".hdf": change_dataset,
+                   ".toml": flip}
         draw = random.random()
         if draw < 0.35:
             kind = special[path.suffix]
