@@ -16,7 +16,7 @@ from matplotlib.patches import Patch
 from . import reference, style
 from .curves import MANY, compare, draw_spread, draw_tables, mean_of, names_apart
 from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL, draw_band, strain_limits
-from .progress import heating_course, loading_course, temperature_label
+from .progress import MINUTES_LABEL, heating_course, heating_minutes, loading_course, temperature_label
 from .run import Run, RunError
 
 _LEVEL_COLOURS = {0.0: style.BLUE, 0.225: style.GREEN, 0.445: style.ORANGE, 0.675: style.VERMILLION}
@@ -96,17 +96,19 @@ def compare_total_strain(runs: Sequence[Run]) -> Figure:
     _demand_heated(runs)
     figure = style.new_figure(4.2)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
-    bands = []
+    bands, timed = [], _timed(runs)
+    over, label = _axis(runs)
     for group in _by_load(runs):
-        asked = any(run.reference.name == reference.TRANSIENT_STRAIN for run in group.runs)
+        asked = not timed and any(run.reference.name == reference.TRANSIENT_STRAIN for run in group.runs)
         if asked and (band := reference.strain_band(group.runs[0].load_level)):
             bands.append(band)
             draw_band(axes, band, group.colour)
-        _draw_group(axes, group)
-    draw_tables(axes, runs, ("temperature_degC", 1.0), ("total_strain", style.PER_MILLE))
+        _draw_group(axes, group, over)
+    if not timed:
+        draw_tables(axes, runs, ("temperature_degC", 1.0), ("total_strain", style.PER_MILLE))
     axes.axhline(0.0, color=style.BLACK, linewidth=0.6)
     axes.set_ylim(*strain_limits(runs, bands))
-    axes.set_xlabel(_temperature_label(runs))
+    axes.set_xlabel(label)
     axes.set_ylabel(TOTAL_STRAIN_LABEL.replace("\n", " "))
     handles, labels = axes.get_legend_handles_labels()
     if bands:
@@ -117,26 +119,27 @@ def compare_total_strain(runs: Sequence[Run]) -> Figure:
 
 @matplotlib.rc_context(style.STYLE)
 def compare_thrust(runs: Sequence[Run]) -> Figure:
-    """Axial stress over temperature of heated runs, each by itself."""
+    """Axial stress over temperature, or minutes where no run is uniform, each by itself."""
     _demand_heated(runs)
+    over, label = _axis(runs)
     figure = style.new_figure(4.2)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
     if len(runs) > MANY:
-        draw_spread(axes, [(run.heated_history("temperature_degC"), run.heated_history("stress_MPa")) for run in runs],
-                    style.BLUE)
+        draw_spread(axes, [(over(run), run.heated_history("stress_MPa")) for run in runs], style.BLUE)
     else:
-        _draw_thrusts(axes, runs)
-    draw_tables(axes, runs, ("temperature_degC", 1.0), ("stress_MPa", 1.0))
-    axes.set_xlabel(_temperature_label(runs))
+        _draw_thrusts(axes, runs, over)
+    if not _timed(runs):
+        draw_tables(axes, runs, ("temperature_degC", 1.0), ("stress_MPa", 1.0))
+    axes.set_xlabel(label)
     axes.set_ylabel(THRUST_LABEL.replace("\n", " "))
     style.legend_alone(beside, *axes.get_legend_handles_labels(), loc="upper left")
     return figure
 
 
-def _draw_thrusts(axes: Axes, runs: Sequence[Run]) -> None:
+def _draw_thrusts(axes: Axes, runs: Sequence[Run], over: Callable[[Run], np.ndarray]) -> None:
     for run, name, (colour, dashes) in zip(runs, names_apart(runs), cycle(style.LOOKS)):
         largest = run.history.known("stress_MPa", run.heated).max()
-        axes.plot(run.heated_history("temperature_degC"), run.heated_history("stress_MPa"), color=colour,
+        axes.plot(over(run), run.heated_history("stress_MPa"), color=colour,
                   linestyle=dashes, label=f"{textwrap.fill(name, 34)}\nlargest {largest:.2f} MPa")
 
 
@@ -178,8 +181,8 @@ def _broken(course, mode: str):
     return sum((course[f"{mode}_{name}_broken"] for name in interfaces), np.zeros(len(course.over)))
 
 
-def _draw_group(axes: Axes, group: _Group) -> None:
-    curves = [(run.heated_history("temperature_degC")[rows], style.PER_MILLE * run.total_strain[rows])
+def _draw_group(axes: Axes, group: _Group, over: Callable[[Run], np.ndarray]) -> None:
+    curves = [(over(run)[rows], style.PER_MILLE * run.total_strain[rows])
               for run in group.runs for rows in [run.standing[run.heated]]]
     if len(curves) == 1:
         axes.plot(*curves[0], color=group.colour, linewidth=1.8, label=_label(group))
@@ -189,9 +192,9 @@ def _draw_group(axes: Axes, group: _Group) -> None:
         for curve in curves:
             axes.plot(*curve, color=group.colour, linewidth=0.5)
         axes.plot(*mean_of(curves), color=group.colour, linewidth=2.0, label=_label(group))
-    for (temperature, strain), run in zip(curves, group.runs):
+    for (x, strain), run in zip(curves, group.runs):
         if run.critical_temperature is not None:
-            axes.plot(temperature[-1], strain[-1], "X", color=group.colour, markeredgecolor=style.BLACK,
+            axes.plot(x[-1], strain[-1], "X", color=group.colour, markeredgecolor=style.BLACK,
                       markeredgewidth=0.5, markersize=6.0, zorder=4)
 
 
@@ -201,8 +204,17 @@ def _demand_heated(runs: Sequence[Run]) -> None:
             raise RunError(f"{run.folder}: was never heated")
 
 
-def _temperature_label(runs: Sequence[Run]) -> str:
-    return temperature_label(next((run for run in runs if not run.uniform), runs[0]))
+def _timed(runs: Sequence[Run]) -> bool:
+    """Whether the runs are drawn over minutes: no specimen is uniform."""
+    return not any(run.uniform for run in runs)
+
+
+def _axis(runs: Sequence[Run]) -> tuple[Callable[[Run], np.ndarray], str]:
+    """What heated runs are drawn over, and its label."""
+    if _timed(runs):
+        return heating_minutes, MINUTES_LABEL
+    label = temperature_label(next((run for run in runs if not run.uniform), runs[0]))
+    return lambda run: run.heated_history("temperature_degC"), label
 
 
 KINDS: dict[str, Callable[[Sequence[Run]], Figure]] = {

@@ -7,9 +7,10 @@
     python3 -m pyroclast.figures properties DIR     DIR/figures/properties.png, from DIR/properties.csv
 
 A run that was heated gets total_strain.png (thrust.png when its platens were fixed), heating_cracks.png,
-heating_energy.png, convergence.png, temperature.png (when the field is not uniform) and heating_fracture.png;
+heating_energy.png, convergence.png and heating_fracture.png;
 a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png and fracture.png; one of
-heat conduction alone gets temperature_history.png and temperature.png.
+heat conduction alone gets neither. A run that computes its temperatures gets temperature_history.png,
+temperature.png, temperature_profile.png and, if it comes to 500 °C, isotherm.png.
 
 Prints the path of each figure. Ends with 1 and one line on stderr when something is missing or malformed.
 """
@@ -29,6 +30,7 @@ from .curves import stress_strain
 from .files import GapWarning
 from .heated_sections import LEVEL_TEMPERATURES, heating_fracture, levels, temperature_field
 from .heating import convergence, temperature_history, thrust, total_strain
+from .profiles import isotherm, read_profile, temperature_profile, write_profile
 from .progress import cracks, energy, heating_course, heating_cracks, loading_course
 from .properties import properties, read_properties
 from .run import Run, RunError, Specimen
@@ -46,8 +48,7 @@ def figures_of(run: Run, magnification: float | None = None,
     elif temperatures is not None:
         raise RunError(f"{run.folder}: was never heated with mechanics, so --temperatures asks for nothing")
     if run.only_conducts:
-        yield "temperature_history", lambda: temperature_history(run)
-        yield "temperature", lambda: temperature_field(run)
+        yield from _of_conduction(run)
     elif not run.ends_heated:
         yield from _of_compression(run, magnification)
 
@@ -62,8 +63,17 @@ def _of_heating(run: Run, magnification: float | None,
     yield "heating_energy", lambda: energy(heating_course(run))
     yield "convergence", lambda: convergence(run)
     if not run.uniform:
-        yield "temperature", lambda: temperature_field(run)
+        yield from _of_conduction(run)
     yield "heating_fracture", lambda: heating_fracture(run, temperatures, magnification)
+
+
+def _of_conduction(run: Run) -> Iterator[tuple[str, Callable[[], Figure]]]:
+    yield "temperature_history", lambda: temperature_history(run)
+    yield "temperature", lambda: temperature_field(run)
+    profile = read_profile(run)
+    yield "temperature_profile", lambda: temperature_profile(run, profile)
+    if profile.isotherm.any():
+        yield "isotherm", lambda: isotherm(run, profile)
 
 
 def _of_compression(run: Run, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
@@ -79,12 +89,15 @@ def _of_compression(run: Run, magnification: float | None) -> Iterator[tuple[str
 
 def draw_run(folder: Path, file_format: str = "png", magnification: float | None = None,
              temperatures: Sequence[float] | None = None) -> Iterator[Path]:
-    """Draws all figures of a run into its figures/ folder; yields each path once written.
+    """Draws all figures of a run into its figures/ folder; yields each path once written. Where the run conducts heat,
+    it also writes temperature_profile.csv and isotherm.csv into the folder.
 
     temperatures [°C]: of the fracture patterns of a heated run, see `heating_fracture`.
     """
     run = Run(folder)
     for name, draw in figures_of(run, magnification, temperatures):
+        if name == "temperature_profile":
+            write_profile(read_profile(run), run.folder)
         yield save(draw(), run.folder / "figures" / f"{name}.{file_format}")
 
 

@@ -29,6 +29,7 @@ _ENERGY_OUT = (
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (5, 1.5, 1, 1.5)))  # by interface
 _MODE_COLOURS = {"tension": style.TENSION_COLOUR, "shear": style.SHEAR_COLOUR, "mixed": style.MIXED_COLOUR}
 _COUNTS_NOTE = "broken: $D=1$; damaged: $D>0$, the broken among them"
+MINUTES_LABEL = "Time of heating [min]"
 _COOLED = 1.0  # K below the hottest before, from which temperature no longer orders the rows
 
 
@@ -54,13 +55,17 @@ def loading_course(run: Run) -> Course:
 
 
 def heating_course(run: Run) -> Course:
-    """The heating, over temperature, or over time when the specimen also cools."""
+    """The heating, over temperature, or over time when the specimen is not uniform or also cools."""
     temperature, known = run.heated_history("temperature_degC"), run.history.known("temperature_degC", run.heated)
-    if (known < np.maximum.accumulate(known) - _COOLED).any():
-        time = run.heated_history("heating_time_s") / 60.0
+    if not run.uniform or (known < np.maximum.accumulate(known) - _COOLED).any():
         start = run.history.known("heating_time_s", run.heated)[0] / 60.0
-        return Course(run, run.heated, time, "Time of heating [min]", start, ordered=False)
+        return Course(run, run.heated, heating_minutes(run), MINUTES_LABEL, start, ordered=False)
     return Course(run, run.heated, temperature, temperature_label(run), start=known.min())
+
+
+def heating_minutes(run: Run) -> np.ndarray:
+    """Time of heating [min] over the rows of `heated`."""
+    return run.heated_history("heating_time_s") / 60.0
 
 
 def temperature_label(run: Run) -> str:

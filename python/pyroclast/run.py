@@ -349,19 +349,19 @@ class Run:
     def gridpoint_displacement(self, frame: Frame) -> np.ndarray:
         """(N, 2), m."""
         shape = (len(self.mesh.blocks.points), 3)
-        return self._field("blocks", frame, "PointData/displacement", shape)[:, :2]
+        return self._field("blocks", frame, "PointData/displacement [m]", shape)[:, :2]
 
     def gridpoint_temperature(self, frame: Frame) -> np.ndarray:
         """(N,), °C."""
-        return self._field("blocks", frame, "PointData/temperature", (len(self.mesh.blocks.points),))
+        return self._field("blocks", frame, "PointData/temperature [degC]", (len(self.mesh.blocks.points),))
 
     def contact_displacement(self, frame: Frame) -> np.ndarray:
         """(2C, 2), m, of the points of the contact mesh."""
         shape = (len(self.mesh.contacts.points), 3)
-        return self._field("contacts", frame, "PointData/displacement", shape)[:, :2]
+        return self._field("contacts", frame, "PointData/displacement [m]", shape)[:, :2]
 
     def contact_field(self, frame: Frame, name: str) -> np.ndarray:
-        """(C,), for instance tension_damage, shear_damage, opening [m], tangential_jump [m]."""
+        """(C,), by its name with unit, for instance "tension_damage [1]" or "opening [m]"."""
         return self._field("contacts", frame, f"CellData/{name}", (len(self.mesh.contacts.lines),))
 
     def _field(self, kind: str, frame: Frame, name: str, shape: tuple[int, ...]) -> np.ndarray:

@@ -144,7 +144,7 @@ def _draw_panel(axes: Axes, panel: Panel, magnification: float, columns: int) ->
     axes.set_title(panel.title, fontweight="bold")
 
 
-def _specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
+def specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
     """Lower left and upper right corner of the specimen without platens, m."""
     points = blocks.points[blocks.triangles[~blocks.of_platen].ravel()]
     if not len(points):
@@ -160,7 +160,7 @@ def _panel_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _visible_magnification(run: Run, frame: Frame) -> float:
-    low, high = _specimen_box(run.mesh.blocks)
+    low, high = specimen_box(run.mesh.blocks)
     moved = np.percentile(np.linalg.norm(run.gridpoint_displacement(frame), axis=1), 95)
     fitting = [m for m in _MAGNIFICATIONS if m * moved <= _LARGEST_MOVE_DRAWN * (high - low)[1]]
     return fitting[-1] if fitting and moved > 0.0 else 1
@@ -171,7 +171,7 @@ def _cracked(run: Run, frame: Frame, crack: _CrackStyle) -> np.ndarray:
     contacts = run.mesh.contacts
     names = run.crack_modes[crack.mode]
     can_crack = np.isin(contacts.interface, [i for i, name in enumerate(contacts.interfaces) if name in names])
-    return can_crack & crack.holds(run.contact_field(frame, f"{crack.mode}_damage"))
+    return can_crack & crack.holds(run.contact_field(frame, f"{crack.mode}_damage [1]"))
 
 
 def count_cracks(run: Run, frame: Frame) -> dict[tuple[str, bool], int]:
@@ -247,7 +247,7 @@ def _listed(counts: dict[tuple[str, bool], int], broken: bool) -> str:
 
 def draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
     """A round length below the specimen's left side."""
-    low, high = _specimen_box(blocks)
+    low, high = specimen_box(blocks)
     width = style.MILLI * (high - low)[0]
     length = max(step for step in (1, 2, 5, 10, 20, 50, 100, 200, 500) if step <= max(0.4 * width, 1))
     x, y = style.MILLI * low[0], np.mean([axes.get_ylim()[0], style.MILLI * blocks.points[:, 1].min()])

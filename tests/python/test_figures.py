@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import shutil
 import struct
 import sys
 import tempfile
@@ -27,7 +28,8 @@ from pyroclast import figures, reference, style  # noqa: E402
 from pyroclast.comparisons import compare_cracks, compare_thrust, compare_total_strain  # noqa: E402
 from pyroclast.curves import compare, mean_curve, mean_of, names_apart  # noqa: E402
 from pyroclast.heated_sections import frame_near, levels, select_heated_frames  # noqa: E402
-from pyroclast.heating import strain_limits  # noqa: E402
+from pyroclast.heating import strain_limits, total_strain  # noqa: E402
+from pyroclast.profiles import read_profile  # noqa: E402
 from pyroclast.progress import heating_course  # noqa: E402
 from pyroclast.properties import read_properties  # noqa: E402
 from pyroclast.run import Frame, Run, RunError, Specimen, Table  # noqa: E402
@@ -257,13 +259,13 @@ class ErrorsNameTheThing(FolderTest):
 
     def test_missing_dataset(self):
         with h5py.File(self.run_folder / "fields" / "contacts_0007.hdf", "a") as file:
-            del file["VTKHDF/CellData/shear_damage"]
+            del file["VTKHDF/CellData/shear_damage [1]"]
         self.assert_fails(["run", self.run_folder], "contacts_0007.hdf", "shear_damage")
 
     def test_field_of_another_mesh(self):
         with h5py.File(self.run_folder / "fields" / "contacts_0007.hdf", "a") as file:
-            del file["VTKHDF/CellData/shear_damage"]
-            file["VTKHDF/CellData/shear_damage"] = np.zeros(3)
+            del file["VTKHDF/CellData/shear_damage [1]"]
+            file["VTKHDF/CellData/shear_damage [1]"] = np.zeros(3)
         self.assert_fails(["run", self.run_folder], "contacts_0007.hdf", "(3,)")
 
     def test_file_that_is_not_hdf(self):
@@ -305,8 +307,8 @@ class HeatedRunsMakePictures(HeatedTest):
     def test_restrained_and_not_uniform(self):
         folder = self.heated("run", Heating(restrained=True, spread=100.0))
         self.assertEqual(self.names_drawn(folder, "--temperatures", "250,650"),
-                         ["thrust", "heating_cracks", "heating_energy", "convergence", "temperature",
-                          "heating_fracture"])
+                         ["thrust", "heating_cracks", "heating_energy", "convergence", "temperature_history",
+                          "temperature", "temperature_profile", "isotherm", "heating_fracture"])
 
     def test_cooled_then_compressed(self):
         folder = self.heated("run", Heating(level=0.3, hottest=300.0, cooled=True, compressed=True))
@@ -317,7 +319,7 @@ class HeatedRunsMakePictures(HeatedTest):
     def test_conduction_without_mechanics(self):
         folder = self.root / "run"
         synthetic_run.write_conduction(folder)
-        self.assertEqual(self.names_drawn(folder), ["temperature_history", "temperature"])
+        self.assertEqual(self.names_drawn(folder), ["temperature_history", "temperature", "temperature_profile"])
         run = Run(folder)
         self.assertEqual(style.title_of(run), run.title)
         self.assertEqual(list(run.probes), ["a", "b"])
@@ -373,8 +375,8 @@ class ErrorsOfHeatedRuns(HeatedTest):
         folder = self.heated("run", Heating(spread=100.0))
         last = max((folder / "fields").glob("blocks_*.hdf"))
         with h5py.File(last, "a") as file:
-            del file["VTKHDF/PointData/temperature"]
-        self.assert_fails(["run", folder], last.name, "/VTKHDF/PointData/temperature")
+            del file["VTKHDF/PointData/temperature [degC]"]
+        self.assert_fails(["run", folder], last.name, "/VTKHDF/PointData/temperature [degC]")
         replace_in(folder / "fields" / "frames.csv", "temperature_degC", "renamed")
         out = self.root / "out.png"
         self.assert_fails(["levels", folder, "--out", out], "frames.csv", "'temperature_degC'")
@@ -738,6 +740,57 @@ class NothingOverlapsOrIsCutOff(HeatedTest):
                 self.assert_apart(name, figure)
 
 
+class DepthOfTheHeat(HeatedTest):
+    """Profiles across the specimen, and figures over minutes where it is not uniform."""
+
+    def wall(self, temperature) -> Run:
+        """A run of conduction whose last field is a function of x and y over width and height, 0 to 1."""
+        folder = self.root / "wall"
+        section = synthetic_run.write_conduction(folder)
+        x, y = section.points[:, 0] / section.width, section.points[:, 1] / section.height
+        with h5py.File(max((folder / "fields").glob("blocks_*.hdf")), "a") as file:
+            file["VTKHDF/PointData/temperature [degC]"][...] = temperature(x, y)
+        return Run(folder)
+
+    def test_linear_field_is_read_exactly_from_its_hottest_face(self):
+        for face, temperature in (("left", lambda x, y: 900.0 - 800.0 * x), ("right", lambda x, y: 100.0 + 800.0 * x),
+                                  ("lower", lambda x, y: 900.0 - 800.0 * y), ("upper", lambda x, y: 100.0 + 800.0 * y)):
+            with self.subTest(face):
+                profile = read_profile(self.wall(temperature))
+                self.assertEqual(profile.face, face)
+                # Hexagons leave gaps at the sides: where no zone holds a point, the nearest gridpoints stand in.
+                inner = slice(20, -20)
+                expected = 900.0 - 800.0 * profile.depth / profile.depth[-1]
+                np.testing.assert_allclose(profile.temperature[-1][inner], expected[inner], atol=1e-3)
+                self.assertAlmostEqual(profile.isotherm[-1], 0.5 * profile.depth[-1], delta=1e-6)
+                shutil.rmtree(self.root / "wall")
+
+    def test_isotherm_is_none_or_all(self):
+        for temperature, share in ((499.0, 0.0), (501.0, 1.0)):
+            profile = read_profile(self.wall(lambda x, y, t=temperature: t + 0.0 * x))
+            self.assertEqual(profile.isotherm[-1], share * profile.depth[-1])
+            shutil.rmtree(self.root / "wall")
+
+    def test_figures_are_over_minutes(self):
+        run, even = Run(self.heated("a", Heating(spread=80.0))), Run(self.heated("b"))
+        self.assertIn("min", heating_course(run).label)
+        for make, panel in ((total_strain, 1), (compare_total_strain, 0)):
+            for one, unit in ((run, "[min]"), (even, "[°C]")):
+                figure = make(one) if make is total_strain else make([one])
+                self.assertIn(unit, figure.axes[panel].get_xlabel())
+        failed = Run(self.heated("c", Heating(spread=80.0, critical=505.0)))
+        marks = [line for line in total_strain(failed).axes[0].lines if str(line.get_label()).startswith("failed")]
+        self.assertEqual([line.get_label() for line in marks], ["failed at 97 min"])  # 485 K at 5 K/min
+
+    def test_tables_are_written_with_the_figures(self):
+        folder = self.heated("a", Heating(spread=80.0))
+        self.assertEqual(self.command("run", folder)[0], 0)
+        table, depth = Table(folder / "temperature_profile.csv"), Table(folder / "isotherm.csv")
+        self.assertEqual(table.names, ["heating_time_s", "depth_m", "temperature_degC"])
+        self.assertEqual(len(table), 121 * len(depth))
+        self.assertFalse(list(folder.glob("*.partial")))
+
+
 class Titles(HeatedTest):
     def test_tell_load_and_temperatures_of_the_run(self):
         failed = Run(self.heated("a", Heating(critical=505.0)))
@@ -790,7 +843,7 @@ class Reader(FolderTest):
 
     def test_platen_contacts_are_not_counted_as_cracks(self):
         run = Run(self.run_folder)
-        broken_at_start = run.contact_field(run.frames[0], "tension_damage") >= 1.0
+        broken_at_start = run.contact_field(run.frames[0], "tension_damage [1]") >= 1.0
         self.assertTrue(broken_at_start.any())
         counts = count_cracks(run, run.frames[0])
         self.assertEqual(set(counts.values()), {0})
@@ -800,7 +853,7 @@ class Reader(FolderTest):
         last = run.frames[-1]
         counts = count_cracks(run, last)
         inner = np.isin(run.mesh.contacts.interface, (1, 2))
-        damage = run.contact_field(last, "tension_damage")[inner]
+        damage = run.contact_field(last, "tension_damage [1]")[inner]
         self.assertGreater(counts["tension", True], 0)
         self.assertEqual(counts["tension", True], np.sum(damage == 1.0))
         self.assertEqual(counts["tension", False], np.sum((damage > 0.5) & (damage < 1.0)))
