@@ -14,9 +14,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from . import reference, style
-from .curves import compare, mean_of, names_apart
+from .curves import MANY, compare, draw_spread, draw_tables, mean_of, names_apart
 from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL, draw_band, strain_limits
-from .progress import heating_course, loading_course, temperature_label
+from .progress import MINUTES_LABEL, heating_course, heating_minutes, loading_course, temperature_label
 from .run import Run, RunError
 
 _LEVEL_COLOURS = {0.0: style.BLUE, 0.225: style.GREEN, 0.445: style.ORANGE, 0.675: style.VERMILLION}
@@ -80,9 +80,11 @@ def _by_load(runs: Sequence[Run]) -> list[_Group]:
 def _label(group: _Group) -> str:
     lines = [group.label]
     if len(group.runs) > 1:
-        lines.append(f"mean of {len(group.runs)}; thin: each")
-    if failed := [run.critical_temperature for run in group.runs if run.critical_temperature is not None]:
-        lines.append(f"✖ before failure at {', '.join(f'{t:.0f}' for t in sorted(failed))} °C")
+        each = "pale: least to greatest" if len(group.runs) > MANY else "thin: each"
+        lines.append(f"mean of {len(group.runs)}; {each}")
+    if failed := sorted(run.critical_temperature for run in group.runs if run.critical_temperature is not None):
+        told = ", ".join(f"{t:.0f}" for t in failed) if len(failed) <= MANY else f"{failed[0]:.0f} to {failed[-1]:.0f}"
+        lines.append(f"✖ before failure at {told} °C" + (f" ({len(failed)} runs)" if len(failed) > MANY else ""))
     if missed := sum(int(run.unconverged.sum()) for run in group.runs):
         lines.append(f"{missed} EXCHANGES NOT CONVERGED")
     return "\n".join(textwrap.fill(line, 34) for line in lines)
@@ -94,15 +96,19 @@ def compare_total_strain(runs: Sequence[Run]) -> Figure:
     _demand_heated(runs)
     figure = style.new_figure(4.2)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
-    bands = []
+    bands, timed = [], _timed(runs)
+    over, label = _axis(runs)
     for group in _by_load(runs):
-        if band := reference.strain_band(group.runs[0].load_level):
+        asked = not timed and any(run.reference.name == reference.TRANSIENT_STRAIN for run in group.runs)
+        if asked and (band := reference.strain_band(group.runs[0].load_level)):
             bands.append(band)
             draw_band(axes, band, group.colour)
-        _draw_group(axes, group)
+        _draw_group(axes, group, over)
+    if not timed:
+        draw_tables(axes, runs, ("temperature_degC", 1.0), ("total_strain", style.PER_MILLE))
     axes.axhline(0.0, color=style.BLACK, linewidth=0.6)
     axes.set_ylim(*strain_limits(runs, bands))
-    axes.set_xlabel(_temperature_label(runs))
+    axes.set_xlabel(label)
     axes.set_ylabel(TOTAL_STRAIN_LABEL.replace("\n", " "))
     handles, labels = axes.get_legend_handles_labels()
     if bands:
@@ -113,18 +119,28 @@ def compare_total_strain(runs: Sequence[Run]) -> Figure:
 
 @matplotlib.rc_context(style.STYLE)
 def compare_thrust(runs: Sequence[Run]) -> Figure:
-    """Axial stress over temperature of heated runs, each by itself."""
+    """Axial stress over temperature, or minutes where no run is uniform, each by itself."""
     _demand_heated(runs)
+    over, label = _axis(runs)
     figure = style.new_figure(4.2)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
-    for run, name, (colour, dashes) in zip(runs, names_apart(runs), cycle(style.LOOKS)):
-        stress = run.heated_history("stress_MPa")
-        axes.plot(run.heated_history("temperature_degC"), stress, color=colour, linestyle=dashes,
-                  label=f"{textwrap.fill(name, 34)}\nlargest {stress.max():.2f} MPa")
-    axes.set_xlabel(_temperature_label(runs))
+    if len(runs) > MANY:
+        draw_spread(axes, [(over(run), run.heated_history("stress_MPa")) for run in runs], style.BLUE)
+    else:
+        _draw_thrusts(axes, runs, over)
+    if not _timed(runs):
+        draw_tables(axes, runs, ("temperature_degC", 1.0), ("stress_MPa", 1.0))
+    axes.set_xlabel(label)
     axes.set_ylabel(THRUST_LABEL.replace("\n", " "))
     style.legend_alone(beside, *axes.get_legend_handles_labels(), loc="upper left")
     return figure
+
+
+def _draw_thrusts(axes: Axes, runs: Sequence[Run], over: Callable[[Run], np.ndarray]) -> None:
+    for run, name, (colour, dashes) in zip(runs, names_apart(runs), cycle(style.LOOKS)):
+        largest = run.history.known("stress_MPa", run.heated).max()
+        axes.plot(over(run), run.heated_history("stress_MPa"), color=colour,
+                  linestyle=dashes, label=f"{textwrap.fill(name, 34)}\nlargest {largest:.2f} MPa")
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -138,11 +154,16 @@ def compare_cracks(runs: Sequence[Run]) -> Figure:
     figure = style.new_figure(5.4)
     grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 0.42])
     panels = [figure.add_subplot(grid[row, 0]) for row in range(3)]
-    for run, course, name, (colour, dashes) in zip(runs, courses, names_apart(runs), cycle(style.LOOKS)):
-        for axes, values in zip(panels, (_broken(course, "tension"), _broken(course, "shear"),
-                                         1e6 * course["mean_opening_m"])):
-            axes.plot(course.over, values, color=colour, linestyle=dashes, linewidth=1.0,
-                      label=textwrap.fill(name, 34))
+    drawn = [(_broken(course, "tension"), _broken(course, "shear"), 1e6 * course["mean_opening_m"])
+             for course in courses]
+    if len(runs) > MANY:
+        for axes, of_all in zip(panels, zip(*drawn)):
+            draw_spread(axes, [(course.over, values) for course, values in zip(courses, of_all)], style.BLUE)
+    else:
+        for course, of_run, name, (colour, dashes) in zip(courses, drawn, names_apart(runs), cycle(style.LOOKS)):
+            for axes, values in zip(panels, of_run):
+                axes.plot(course.over, values, color=colour, linestyle=dashes, linewidth=1.0,
+                          label=textwrap.fill(name, 34))
     for axes, label in zip(panels, ("Broken contact\npoints, tension", "Broken contact\npoints, shear",
                                     "Mean opening of\ncontacts damaged\nin tension [µm]")):
         axes.set_ylabel(label)
@@ -160,18 +181,20 @@ def _broken(course, mode: str):
     return sum((course[f"{mode}_{name}_broken"] for name in interfaces), np.zeros(len(course.over)))
 
 
-def _draw_group(axes: Axes, group: _Group) -> None:
-    curves = [(run.heated_history("temperature_degC")[rows], style.PER_MILLE * run.total_strain[rows])
+def _draw_group(axes: Axes, group: _Group, over: Callable[[Run], np.ndarray]) -> None:
+    curves = [(over(run)[rows], style.PER_MILLE * run.total_strain[rows])
               for run in group.runs for rows in [run.standing[run.heated]]]
     if len(curves) == 1:
         axes.plot(*curves[0], color=group.colour, linewidth=1.8, label=_label(group))
+    elif len(curves) > MANY:
+        draw_spread(axes, curves, group.colour, _label(group))
     else:
         for curve in curves:
             axes.plot(*curve, color=group.colour, linewidth=0.5)
         axes.plot(*mean_of(curves), color=group.colour, linewidth=2.0, label=_label(group))
-    for (temperature, strain), run in zip(curves, group.runs):
+    for (x, strain), run in zip(curves, group.runs):
         if run.critical_temperature is not None:
-            axes.plot(temperature[-1], strain[-1], "X", color=group.colour, markeredgecolor=style.BLACK,
+            axes.plot(x[-1], strain[-1], "X", color=group.colour, markeredgecolor=style.BLACK,
                       markeredgewidth=0.5, markersize=6.0, zorder=4)
 
 
@@ -181,8 +204,17 @@ def _demand_heated(runs: Sequence[Run]) -> None:
             raise RunError(f"{run.folder}: was never heated")
 
 
-def _temperature_label(runs: Sequence[Run]) -> str:
-    return temperature_label(next((run for run in runs if not run.uniform), runs[0]))
+def _timed(runs: Sequence[Run]) -> bool:
+    """Whether the runs are drawn over minutes: no specimen is uniform."""
+    return not any(run.uniform for run in runs)
+
+
+def _axis(runs: Sequence[Run]) -> tuple[Callable[[Run], np.ndarray], str]:
+    """What heated runs are drawn over, and its label."""
+    if _timed(runs):
+        return heating_minutes, MINUTES_LABEL
+    label = temperature_label(next((run for run in runs if not run.uniform), runs[0]))
+    return lambda run: run.heated_history("temperature_degC"), label
 
 
 KINDS: dict[str, Callable[[Sequence[Run]], Figure]] = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping, Sequence
 from itertools import cycle
+from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -16,22 +17,27 @@ from .run import Frame, Run, RunError
 
 _MEAN_POINTS = 400
 _LEAST_STRAIN_SHOWN = 0.004
+MANY = 6
+"""More runs than these are drawn as a range, not as a curve each."""
 
 
 @matplotlib.rc_context(style.STYLE)
 def stress_strain(run: Run, marks: Mapping[str, Frame]) -> Figure:
-    """The run's curve beside the Anderberg and Thelandersson law and the paper's Table 3 (paper, Figure 8).
+    """The run's curve beside the reference that its deck asks for (paper, Figure 8).
 
     marks: the frames to point out, by letter, as `select_frames` gives them; may be empty.
     """
     figure = style.new_figure(4.8)
     grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 0.3], width_ratios=[1.25, 1.0])
     axes = figure.add_subplot(grid[0, :])
-    axes.set_title("\n".join([style.title_of(run), *_heated_before(run)]))
+    axes.set_title(style.title_of(run))
     if run.parent and not run.parent.ends_heated:
-        _draw_parent(axes, run.parent)
+        style.draw_parent(axes, run.parent, style.PER_MILLE * run.parent.loaded_strain,
+                          run.parent.loaded_history("stress_MPa"))
     _draw_run(axes, run)
-    _draw_references(axes, max(run.loaded_strain.max(), _LEAST_STRAIN_SHOWN))
+    if run.reference.name == reference.COMPRESSION:
+        _draw_references(axes, max(np.nanmax(run.loaded_strain), _LEAST_STRAIN_SHOWN))
+    draw_tables(axes, [run], ("strain", style.PER_MILLE), ("stress_MPa", 1.0))
     _draw_marks(axes, marks)
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
@@ -43,17 +49,6 @@ def stress_strain(run: Run, marks: Mapping[str, Frame]) -> Figure:
     return figure
 
 
-def _heated_before(run: Run) -> list[str]:
-    """What heat did before the compression, for the title; empty when there was none."""
-    if not run.exchanged.any():
-        return []
-    hottest = run.heated_history("temperature_degC").max()
-    now = run.loaded_history("temperature_degC")[0]
-    retained = run.strength_retained
-    told = "" if retained is None else f"; largest stress {retained:.2f} of the strength before heating"
-    return [f"heated to {hottest:.0f} °C, compressed at {now:.0f} °C{told}"]
-
-
 def _draw_run(axes: Axes, run: Run) -> None:
     strain = style.PER_MILLE * run.loaded_strain
     top, bottom = run.loaded_history("stress_top_MPa"), run.loaded_history("stress_bottom_MPa")
@@ -63,23 +58,21 @@ def _draw_run(axes: Axes, run: Run) -> None:
                       label="between its upper and lower platen")
 
 
-def _draw_parent(axes: Axes, parent: Run) -> None:
-    axes.plot(style.PER_MILLE * parent.loaded_strain, parent.loaded_history("stress_MPa"), color=style.FAINT,
-              linewidth=1.2, label=style.parent_label(parent.folder))
-
-
-def _draw_references(axes: Axes, last_strain: float) -> None:
+def _draw_references(axes: Axes, last_strain: float, wrapped: bool = False) -> None:
+    """Anderberg and Thelandersson's law and the peaks of the paper's Table 3. wrapped: labels for a narrow legend."""
     strain = np.linspace(0.0, min(last_strain, reference.AT_LAST_STRAIN), 300)
     axes.plot(style.PER_MILLE * strain, reference.at_stress(strain), color=style.VERMILLION,
               linestyle=(0, (5, 2)), linewidth=1.2,
-              label="Anderberg & Thelandersson law at 20 °C,\ngenerated, not measured points")
+              label="Anderberg & Thelandersson law\nat 20 °C, generated,\nnot measured points" if wrapped else
+              "Anderberg & Thelandersson law at 20 °C,\ngenerated, not measured points")
     for values, marker, name in (
         (reference.EXPERIMENT, "D", "experiment"),
         (reference.PAPER_DEM, "s", "paper's DEM"),
     ):
         axes.plot(style.PER_MILLE * values.strain_at_peak, values.strength, marker, color=style.BLACK,
                   markerfacecolor="white", markersize=4.5, zorder=5, linestyle="none",
-                  label=f"peak, {name}: $f_c$ at $f_c/E+\\varepsilon_{{ic}}$ (Table 3)")
+                  label=f"peak, {name}:" + ("\n" if wrapped else " ")
+                  + "$f_c$ at $f_c/E+\\varepsilon_{ic}$ (Table 3)")
 
 
 def _draw_marks(axes: Axes, marks: Mapping[str, Frame]) -> None:
@@ -101,20 +94,22 @@ def _draw_table(axes: Axes, run: Run) -> None:
             return format(value, form)
         return "not given" if run.compression else "no peak"
 
-    def row(get, form: str) -> list[str]:
-        return [format(get(values), form) for values in (reference.PAPER_DEM, reference.EXPERIMENT)]
-
+    columns = ["this run"]
+    others = []
+    if run.reference.name == reference.COMPRESSION:
+        columns += ["paper's DEM", "experiment"]
+        others = [reference.PAPER_DEM, reference.EXPERIMENT]
     axes.axis("off")
     table = axes.table(
         cellText=[
-            [shown("E_GPa", ".2f"), *row(lambda v: v.modulus, ".2f")],
-            [shown("f_c_MPa", ".2f"), *row(lambda v: v.strength, ".2f")],
-            [shown("strain_ic", ".5f"), *row(lambda v: v.inelastic_strain, ".5f")],
+            [shown("E_GPa", ".2f"), *(f"{other.modulus:.2f}" for other in others)],
+            [shown("f_c_MPa", ".2f"), *(f"{other.strength:.2f}" for other in others)],
+            [shown("strain_ic", ".5f"), *(f"{other.inelastic_strain:.5f}" for other in others)],
         ],
         rowLabels=["$E$ [GPa]", "$f_c$ [MPa]", "$\\varepsilon_{ic}$ [–]"],
-        colLabels=["this run", "paper's DEM", "experiment"],
+        colLabels=columns,
         cellLoc="center",
-        bbox=[0.16, 0.05, 0.84, 0.9],
+        bbox=[0.16, 0.05, 0.28 * len(columns), 0.9],
     )
     table.auto_set_font_size(False)
     table.set_fontsize(7.5)
@@ -127,7 +122,8 @@ def _draw_table(axes: Axes, run: Run) -> None:
 def compare(runs: Sequence[Run]) -> Figure:
     """Curves of several runs, their mean as far as all of them go, and the mean of their peaks.
 
-    A run without a peak (summary's compression is null) is drawn but does not enter the mean of the peaks.
+    More than MANY runs are drawn as the range that they span. A run without a peak (summary's compression is null)
+    is drawn but does not enter the mean of the peaks.
     """
     if not runs:
         raise RunError("compare: no runs were given")
@@ -135,14 +131,22 @@ def compare(runs: Sequence[Run]) -> Figure:
         raise RunError(f"{heated[0].folder}: ends with heating, so it has no stress-strain curve")
     figure = style.new_figure(4.2)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
-    for run, name, (colour, dashes) in zip(runs, names_apart(runs), cycle(style.LOOKS)):
-        strength = f"{run.peak[1]:.2f} MPa" + ("" if run.compression else ", no peak reached")
-        axes.plot(style.PER_MILLE * run.loaded_strain, run.loaded_history("stress_MPa"), color=colour,
-                  linestyle=dashes, linewidth=1.0, label=f"{textwrap.fill(name, 34)}\n{strength}")
-    strain, stress = mean_curve(runs)
-    axes.plot(style.PER_MILLE * strain, stress, color=style.BLACK, linewidth=2.0,
-              label=f"mean of {len(runs)}, as far as all go")
+    curves = [(style.PER_MILLE * strain, stress) for strain, stress in map(_curve, runs)]
+    if len(runs) > MANY:
+        draw_spread(axes, curves, style.BLUE)
+    else:
+        for run, curve, name, (colour, dashes) in zip(runs, curves, names_apart(runs), cycle(style.LOOKS)):
+            strength = f"{run.peak[1]:.2f} MPa" + ("" if run.compression else ", no peak reached")
+            axes.plot(*curve, color=colour, linestyle=dashes, linewidth=1.0,
+                      label=f"{textwrap.fill(name, 34)}\n{strength}")
+        if len(runs) > 1:
+            axes.plot(*mean_of(curves), color=style.BLACK, linewidth=2.0,
+                      label=f"mean of {len(runs)}, as far as all go")
     _draw_mean_peak(axes, runs)
+    last = max(np.nanmax(run.loaded_strain) for run in runs)
+    if any(run.reference.name == reference.COMPRESSION for run in runs):
+        _draw_references(axes, max(last, _LEAST_STRAIN_SHOWN), wrapped=True)
+    draw_tables(axes, runs, ("strain", style.PER_MILLE), ("stress_MPa", 1.0))
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel(style.STRAIN_LABEL)
@@ -151,23 +155,70 @@ def compare(runs: Sequence[Run]) -> Figure:
     return figure
 
 
+def draw_tables(axes: Axes, runs: Sequence[Run], over: tuple[str, float], drawn: tuple[str, float]) -> None:
+    """The tables of the users' own that the runs' decks name, each once.
+
+    over, drawn: column and the factor to the axis' unit. Columns <drawn>_low and <drawn>_high are a range.
+    """
+    (x, x_factor), (y, y_factor) = over, drawn
+    tables = {(own.name, own.table.path.read_bytes()): own for run in runs
+              for own in [run.reference] if own.table is not None}
+    looks = cycle((style.VERMILLION, style.PURPLE, style.GREEN))
+    for own, colour in zip(tables.values(), looks):
+        name = style.plain(own.name)
+        if own.has(x, y):
+            axes.plot(x_factor * own.table[x], y_factor * own.table[y], color=colour, linestyle=(0, (5, 2)),
+                      linewidth=1.2, label=name)
+        elif own.has(x, f"{y}_low", f"{y}_high"):
+            axes.fill_between(x_factor * own.table[x], y_factor * own.table[f"{y}_low"],
+                              y_factor * own.table[f"{y}_high"], color=colour, alpha=0.25, linewidth=0.0, label=name)
+
+
+def draw_spread(axes: Axes, curves: Sequence[tuple[np.ndarray, np.ndarray]], colour: str,
+                label: str | None = None) -> None:
+    """The range of many curves (x, y), least to greatest, and their mean. label: says both, unless it is None."""
+    finite = [_advancing(*curve) for curve in curves]
+    over = np.linspace(min(x[0] for x, _ in finite), max(x[-1] for x, _ in finite), _MEAN_POINTS)
+    values = np.array([np.interp(over, x, y, left=np.nan, right=np.nan) for x, y in finite])
+    known = np.isfinite(values).any(axis=0)
+    low, high = np.nanmin(values[:, known], axis=0), np.nanmax(values[:, known], axis=0)
+    axes.fill_between(over[known], low, high, color=colour, alpha=0.25, linewidth=0.0,
+                      label=None if label else f"{len(curves)} runs:\nleast to greatest")
+    axes.plot(*mean_of(curves), color=colour, linewidth=2.0, label=label or "their mean, as far as all go")
+
+
 def mean_curve(runs: Sequence[Run]) -> tuple[np.ndarray, np.ndarray]:
     """Strain from rest to the largest that all runs reach, and the runs' mean stress [MPa] at it."""
-    curves = []
-    for run in runs:
-        strain, stress = run.loaded_strain, run.loaded_history("stress_MPa")
-        if not run.exchanged.any():  # at rest before loading
-            strain, stress = np.concatenate([[0.0], strain]), np.concatenate([[0.0], stress])
-        curves.append((strain, stress))
-    return mean_of(curves)
+    return mean_of([_curve(run) for run in runs])
+
+
+def _curve(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """Strain and stress [MPa]; from rest, unless heat came before."""
+    strain, stress = run.loaded_strain, run.loaded_history("stress_MPa")
+    run.history.known("strain", run.loaded)
+    if not run.exchanged.any():
+        strain, stress = np.concatenate([[0.0], strain]), np.concatenate([[0.0], stress])
+    return strain, stress
 
 
 def mean_of(curves: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
-    """Mean of curves (x, y) where all have values; points whose x does not exceed all before are left out."""
-    advancing = [(x[rows], y[rows]) for x, y in curves
-                 for rows in [np.concatenate([[True], x[1:] > np.maximum.accumulate(x)[:-1]])]]
+    """Mean of curves (x, y) where all have values; points whose x does not exceed all before are left out.
+
+    Each curve has a point that is finite.
+    """
+    advancing = [_advancing(*curve) for curve in curves]
     common = np.linspace(max(x[0] for x, _ in advancing), min(x[-1] for x, _ in advancing), _MEAN_POINTS)
     return common, np.mean([np.interp(common, x, y) for x, y in advancing], axis=0)
+
+
+def _advancing(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The finite points of a curve whose x exceeds all before."""
+    rows = np.isfinite(x) & np.isfinite(y)
+    if not rows.any():
+        raise RunError("compare: a run has no finite value of what is compared")
+    x, y = x[rows], y[rows]
+    rows = np.concatenate([[True], x[1:] > np.maximum.accumulate(x)[:-1]])
+    return x[rows], y[rows]
 
 
 def _draw_mean_peak(axes: Axes, runs: Sequence[Run]) -> None:
@@ -186,8 +237,18 @@ def _draw_mean_peak(axes: Axes, runs: Sequence[Run]) -> None:
 
 
 def names_apart(runs: Sequence[Run]) -> list[str]:
-    """Titles, or the folders' names where titles do not tell the runs apart; warnings stay."""
-    titles = [style.title_of(run) for run in runs]
-    if len(set(titles)) == len(titles):
-        return titles
-    return [style.title_of(run).replace(run.title, run.folder.resolve().name) for run in runs]
+    """Titles, or the shortest ends of the folders' paths where titles do not tell the runs apart; warnings stay."""
+    names = [style.plain(run.title) for run in runs]
+    if len(set(names)) < len(names):
+        names = [style.plain(end) for end in _ends_apart([run.folder.resolve() for run in runs])]
+    return [" – ".join([name, *style.warnings_of(run)]) for name, run in zip(names, runs)]
+
+
+def _ends_apart(folders: Sequence[Path]) -> list[str]:
+    """Of each path as few of its last parts as no other path ends with."""
+    ends = []
+    for folder in folders:
+        others = [other for other in folders if other != folder]
+        ends.append(next(end for n in range(1, len(folder.parts) + 1) for end in ["/".join(folder.parts[-n:])]
+                         if n == len(folder.parts) or all(other.parts[-n:] != folder.parts[-n:] for other in others)))
+    return ends

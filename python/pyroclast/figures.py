@@ -7,9 +7,10 @@
     python3 -m pyroclast.figures properties DIR     DIR/figures/properties.png, from DIR/properties.csv
 
 A run that was heated gets total_strain.png (thrust.png when its platens were fixed), heating_cracks.png,
-heating_energy.png, convergence.png, temperature.png (when the field is not uniform) and heating_fracture.png;
+heating_energy.png, convergence.png and heating_fracture.png;
 a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png and fracture.png; one of
-heat conduction alone gets temperature_history.png and temperature.png.
+heat conduction alone gets neither. A run that computes its temperatures gets temperature_history.png,
+temperature.png, temperature_profile.png and, if it comes to 500 °C, isotherm.png.
 
 Prints the path of each figure. Ends with 1 and one line on stderr when something is missing or malformed.
 """
@@ -18,13 +19,18 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator, Sequence
+import warnings
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+
+from matplotlib.figure import Figure
 
 from .comparisons import KINDS, compare_runs
 from .curves import stress_strain
+from .files import GapWarning
 from .heated_sections import LEVEL_TEMPERATURES, heating_fracture, levels, temperature_field
 from .heating import convergence, temperature_history, thrust, total_strain
+from .profiles import isotherm, read_profile, temperature_profile, write_profile
 from .progress import cracks, energy, heating_course, heating_cracks, loading_course
 from .properties import properties, read_properties
 from .run import Run, RunError, Specimen
@@ -34,54 +40,65 @@ from .style import save
 _FORMATS = ("png", "svg", "pdf")
 
 
+def figures_of(run: Run, magnification: float | None = None,
+               temperatures: Sequence[float] | None = None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+    """Name of each figure that a run has, and what makes it; the arguments are those of `draw_run`."""
+    if run.exchanged.any():
+        yield from _of_heating(run, magnification, temperatures)
+    elif temperatures is not None:
+        raise RunError(f"{run.folder}: was never heated with mechanics, so --temperatures asks for nothing")
+    if run.only_conducts:
+        yield from _of_conduction(run)
+    elif not run.ends_heated:
+        yield from _of_compression(run, magnification)
+
+
+def _of_heating(run: Run, magnification: float | None,
+                temperatures: Sequence[float] | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+    if run.restrained:
+        yield "thrust", lambda: thrust(run)
+    else:
+        yield "total_strain", lambda: total_strain(run)
+    yield "heating_cracks", lambda: heating_cracks(run)
+    yield "heating_energy", lambda: energy(heating_course(run))
+    yield "convergence", lambda: convergence(run)
+    if not run.uniform:
+        yield from _of_conduction(run)
+    yield "heating_fracture", lambda: heating_fracture(run, temperatures, magnification)
+
+
+def _of_conduction(run: Run) -> Iterator[tuple[str, Callable[[], Figure]]]:
+    yield "temperature_history", lambda: temperature_history(run)
+    yield "temperature", lambda: temperature_field(run)
+    profile = read_profile(run)
+    yield "temperature_profile", lambda: temperature_profile(run, profile)
+    if profile.isotherm.any():
+        yield "isotherm", lambda: isotherm(run, profile)
+
+
+def _of_compression(run: Run, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+    marks = select_frames(run.loaded_frames, *run.peak) if run.loaded_frames else {}
+    yield "stress_strain", lambda: stress_strain(run, marks)
+    yield "cracks", lambda: cracks(run)
+    yield "energy", lambda: energy(loading_course(run))
+    if not marks:
+        path = run.folder / "fields" / "frames.csv"
+        raise RunError(f"{path}: no frame of the loading stage; fracture cannot be drawn")
+    yield "fracture", lambda: fracture(run, marks, magnification)
+
+
 def draw_run(folder: Path, file_format: str = "png", magnification: float | None = None,
              temperatures: Sequence[float] | None = None) -> Iterator[Path]:
-    """Draws all figures of a run into its figures/ folder; yields each path once written.
+    """Draws all figures of a run into its figures/ folder; yields each path once written. Where the run conducts heat,
+    it also writes temperature_profile.csv and isotherm.csv into the folder.
 
     temperatures [°C]: of the fracture patterns of a heated run, see `heating_fracture`.
     """
     run = Run(folder)
-    if run.exchanged.any():
-        yield from _draw_heating(run, file_format, magnification, temperatures)
-    elif temperatures is not None:
-        raise RunError(f"{run.folder}: was never heated with mechanics, so --temperatures asks for nothing")
-    if run.only_conducts:
-        yield from _draw_conduction(run, file_format)
-    elif not run.ends_heated:
-        yield from _draw_compression(run, file_format, magnification)
-
-
-def _draw_heating(run: Run, file_format: str, magnification: float | None,
-                  temperatures: Sequence[float] | None) -> Iterator[Path]:
-    place = run.folder / "figures"
-    if run.restrained:
-        yield save(thrust(run), place / f"thrust.{file_format}")
-    else:
-        yield save(total_strain(run), place / f"total_strain.{file_format}")
-    yield save(heating_cracks(run), place / f"heating_cracks.{file_format}")
-    yield save(energy(heating_course(run)), place / f"heating_energy.{file_format}")
-    yield save(convergence(run), place / f"convergence.{file_format}")
-    if not run.uniform:
-        yield save(temperature_field(run), place / f"temperature.{file_format}")
-    yield save(heating_fracture(run, temperatures, magnification), place / f"heating_fracture.{file_format}")
-
-
-def _draw_conduction(run: Run, file_format: str) -> Iterator[Path]:
-    place = run.folder / "figures"
-    yield save(temperature_history(run), place / f"temperature_history.{file_format}")
-    yield save(temperature_field(run), place / f"temperature.{file_format}")
-
-
-def _draw_compression(run: Run, file_format: str, magnification: float | None) -> Iterator[Path]:
-    marks = select_frames(run.loaded_frames, *run.peak) if run.loaded_frames else {}
-    place = run.folder / "figures"
-    yield save(stress_strain(run, marks), place / f"stress_strain.{file_format}")
-    yield save(cracks(run), place / f"cracks.{file_format}")
-    yield save(energy(loading_course(run)), place / f"energy.{file_format}")
-    if not marks:
-        path = run.folder / "fields" / "frames.csv"
-        raise RunError(f"{path}: no frame of the loading stage; fracture cannot be drawn")
-    yield save(fracture(run, marks, magnification), place / f"fracture.{file_format}")
+    for name, draw in figures_of(run, magnification, temperatures):
+        if name == "temperature_profile":
+            write_profile(read_profile(run), run.folder)
+        yield save(draw(), run.folder / "figures" / f"{name}.{file_format}")
 
 
 def draw_properties(folder: Path, file_format: str = "png") -> Iterator[Path]:
@@ -173,13 +190,20 @@ def _parser() -> argparse.ArgumentParser:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Returns the exit code."""
     asked = _parser().parse_args(arguments)
-    try:
-        for path in asked.draw(asked):
-            print(path)
-    except (RunError, OSError) as problem:
-        print(f"pyroclast figures: {problem}", file=sys.stderr)
-        return 1
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", GapWarning)
+        warnings.showwarning = lambda message, *_: _tell(message)
+        try:
+            for path in asked.draw(asked):
+                print(path)
+        except (RunError, OSError) as problem:
+            _tell(problem)
+            return 1
     return 0
+
+
+def _tell(what: object) -> None:
+    print(f"pyroclast figures: {what}", file=sys.stderr)
 
 
 if __name__ == "__main__":

@@ -4,40 +4,64 @@ from __future__ import annotations
 
 import csv
 import json
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import h5py
 import numpy as np
+
+_MOST_SHOWN = 40  # characters of a cell in a message
+_LARGEST_WHOLE = 2.0**53
+_TIGHTEST_PACKING = 1032  # bytes from one of a file: what deflate reaches at best
+
+LARGEST = 1e30
+"""A number beyond it counts as not finite: in no unit is a quantity of a run so large, and drawing would overflow."""
 
 
 class RunError(Exception):
     """Something in a run or specimen folder is missing or malformed; one line says what and where."""
 
 
+class GapWarning(UserWarning):
+    """A table has cells that are not finite; they are drawn as gaps."""
+
+
 class Table:
     """Columns of numbers of a csv file, by name: `table["strain"]` is a (rows,) float64 array.
 
-    An empty cell is NaN: the stage of its row does not have the quantity.
+    An empty cell is NaN: the stage of its row does not have the quantity. So is a cell that is inf or NaN, of
+    which a GapWarning tells.
     """
 
-    def __init__(self, path: Path, may_be_empty: bool = False):
-        """Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
+    def __init__(self, path: Path, may_be_empty: bool = False, comments: bool = False):
+        """comments: whether lines that begin with # are skipped.
+
+        Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
         self.path = path
         try:
             with open(path, newline="", encoding="utf-8") as file:
                 text = file.read()
-        except (OSError, UnicodeDecodeError) as error:
+            written = text.splitlines()
+            first = next((i for i, line in enumerate(written) if not _skipped(line)), 0) if comments else 0
+            lines = list(csv.reader("" if comments and _skipped(line) else line for line in written[first:]))
+        except (OSError, UnicodeDecodeError, csv.Error) as error:
             raise RunError(f"{path}: cannot be read: {_reason(error)}") from error
-        lines = list(csv.reader(text.splitlines()))
-        if not lines:
+        if not lines or not lines[0]:
             raise RunError(f"{path}: is empty; a header line is expected")
         if not text.endswith("\n") and len(lines[-1]) != len(lines[0]):
             lines.pop()  # the row that a run was killed in
         self.names = [name.strip() for name in lines[0]]
-        rows = [self._numbers(number, cells) for number, cells in enumerate(lines[1:], start=2) if cells]
+        self._gaps: list[tuple[int, str, str]] = []
+        rows = [self._numbers(number, cells) for number, cells in enumerate(lines[1:], start=first + 2) if cells]
         if not rows and not may_be_empty:
             raise RunError(f"{path}: has a header but no rows")
         self._columns = dict(zip(self.names, np.array(rows).reshape(-1, len(self.names)).T))
+        if self._gaps:
+            line, name, cell = self._gaps[0]
+            warnings.warn(f"{path}, line {line}: column {_shown(name)} holds {_shown(cell)}; cells that are not "
+                          f"finite, {len(self._gaps)} in all, are drawn as gaps", GapWarning, stacklevel=2)
 
     def _numbers(self, line: int, cells: list[str]) -> list[float]:
         if len(cells) != len(self.names):
@@ -46,10 +70,14 @@ class Table:
         numbers = []
         for name, cell in zip(self.names, cells):
             try:
-                numbers.append(float(cell) if cell else np.nan)
+                number = float(cell) if cell else np.nan
             except ValueError:
                 where = f"{self.path}, line {line}"
-                raise RunError(f"{where}: column '{name}' holds '{cell}', not a number") from None
+                raise RunError(f"{where}: column {_shown(name)} holds {_shown(cell)}, not a number") from None
+            if cell and not abs(number) <= LARGEST:
+                self._gaps.append((line, name, cell))
+                number = np.nan
+            numbers.append(number)
         return numbers
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -58,6 +86,26 @@ class Table:
             raise RunError(f"{self.path}: has no column '{name}'")
         return self._columns[name]
 
+    def whole(self, name: str, none: int | None = None) -> np.ndarray:
+        """(rows,) int64, a column of whole numbers from zero. none: what an empty cell stands for.
+
+        Throws RunError naming file and column when a cell holds something else.
+        """
+        values = self[name] if none is None else np.where(np.isnan(self[name]), none, self[name])
+        wrong = ~((values >= 0.0) & (values == np.floor(values)) & (values < _LARGEST_WHOLE))
+        if wrong.any():
+            raise RunError(f"{self.path}: column '{name}' holds {values[wrong][0]:g}; "
+                           "whole numbers from 0 are expected")
+        return values.astype(np.int64)
+
+    def known(self, name: str, rows: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """The finite values of a column in some rows; throws RunError when there is none."""
+        values = self[name][rows]
+        values = values[np.isfinite(values)]
+        if not len(values):
+            raise RunError(f"{self.path}: column '{name}' has no finite value in the rows that are drawn")
+        return values
+
     def __contains__(self, name: str) -> bool:
         return name in self._columns
 
@@ -65,33 +113,60 @@ class Table:
         return len(self._columns[self.names[0]])
 
 
-def open_hdf(path: Path) -> h5py.File:
-    """Opens to read; throws RunError when the file is missing or not HDF5."""
+@contextmanager
+def open_hdf(path: Path) -> Iterator[h5py.File]:
+    """Opens to read; throws RunError when the file is missing, or is damaged where it is read."""
     if not path.exists():
         raise RunError(f"{path}: does not exist")
     try:
-        return h5py.File(path, "r")
-    except OSError as error:
+        file = h5py.File(path, "r")
+    except Exception as error:  # of a damaged file the library throws many kinds, here and below
         raise RunError(f"{path}: is not a readable HDF5 file") from error
+    try:
+        with file:
+            yield file
+    except RunError:
+        raise
+    except Exception as error:
+        raise RunError(f"{path}: is a damaged HDF5 file: {_reason(error)}") from error
 
 
 def dataset(file: h5py.File, name: str) -> np.ndarray:
-    """All of a dataset; throws RunError when there is none of that name."""
-    if not isinstance(file.get(name), h5py.Dataset):
+    """All of a dataset of numbers; throws RunError when there is none of that name, or one is not finite."""
+    values = file.get(name)
+    if not isinstance(values, h5py.Dataset):
         raise RunError(f"{file.filename}: has no dataset /{name}")
-    return file[name][()]
+    # A damaged header may ask for more memory than there is.
+    if values.nbytes > _TIGHTEST_PACKING * Path(file.filename).stat().st_size:
+        raise RunError(f"{file.filename}: /{name} is larger than the file; the file is damaged")
+    if values.dtype.kind not in "iuf" or values.shape is None:
+        raise RunError(f"{file.filename}: /{name} does not hold numbers")
+    numbers = values[()]
+    if numbers.dtype.kind == "f" and not (np.abs(numbers) <= LARGEST).all():
+        raise RunError(f"{file.filename}: /{name} has a value that is not finite")
+    return numbers
 
 
 def read_json(path: Path) -> dict:
     """The object in a JSON file; throws RunError when it cannot be read or is something else."""
     try:
         value = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise RunError(f"{path}: cannot be read: {_reason(error)}") from error
     if not isinstance(value, dict):
         raise RunError(f"{path}: is not a JSON object")
     return value
 
 
+def _skipped(line: str) -> bool:
+    return not line.strip() or line.startswith("#")
+
+
 def _reason(error: Exception) -> str:
-    return getattr(error, "strerror", None) or str(error)
+    """One line."""
+    return " ".join((getattr(error, "strerror", None) or str(error) or type(error).__name__).split())
+
+
+def _shown(cell: str) -> str:
+    """What stands in a file, for a message: in quotes, on one line, not long."""
+    return ascii(cell if len(cell) <= _MOST_SHOWN else cell[:_MOST_SHOWN] + "...")

@@ -61,7 +61,8 @@ def heating_fracture(run: Run, temperatures: Sequence[float] | None = None,
     """
     frames = run.heated_frames
     if temperatures is None:
-        selected = select_heated_frames(frames, run.critical_temperature is not None)
+        failed = run.critical_temperature is not None
+        selected = select_heated_frames(frames, failed) if run.uniform else _spread(frames)
     else:
         selected = [_frame_asked_for(run, frames, temperature) for temperature in temperatures]
     panels = [_panel(run, frame) for frame in selected]
@@ -113,14 +114,16 @@ def _panel_near(run: Run, frames: Sequence[Frame], temperature: float) -> Panel:
     if frames and (frame := frame_near(frames, temperature)):
         return _panel(run, frame)
     missing = f"no frame within\n{_NEAR:g} K"
-    if run.history["temperature_degC"][run.standing].max() < temperature - _NEAR:
+    if run.history.known("temperature_degC", run.standing).max() < temperature - _NEAR:
         missing = "not reached" if run.critical_temperature is None else "failed before"
     return Panel(run, None, f"{temperature:g} °C", missing)
 
 
 def _panel(run: Run, frame: Frame) -> Panel:
     last = frame.step == run.heated_frames[-1].step
-    title = f"{frame.temperature:.0f} °C"
+    title, mean = f"{frame.temperature:.0f} °C", ""
+    if not run.uniform and frame.heating_time is not None and np.isfinite(frame.heating_time):
+        title, mean = f"{frame.heating_time / 60.0:.0f} min", f"mean {title}\n"
     if last and run.critical_temperature is not None:
         title = f"failed, {title}"
     elif last:
@@ -129,7 +132,7 @@ def _panel(run: Run, frame: Frame) -> Panel:
     stress = f"$\\sigma$ = {frame.stress:.1f} MPa\n" if run.restrained else ""
     strain = f"{style.PER_MILLE * run.total_strain_at(frame):.2f}\\times 10^{{-3}}"
     modes = "\n".join(f"{mode}: {counts[mode, True]} | {counts[mode, False]}" for mode in run.crack_modes)
-    caption = f"$\\varepsilon_{{\\mathrm{{tot}}}} = {strain}$\n{stress}{modes}"
+    caption = f"{mean}$\\varepsilon_{{\\mathrm{{tot}}}} = {strain}$\n{stress}{modes}"
     return Panel(run, frame, title, caption)
 
 
@@ -157,7 +160,9 @@ def temperature_field(run: Run) -> Figure:
 
 
 def _after(frame: Frame) -> str:
-    return "" if frame.heating_time is None else f"after {frame.heating_time / 60.0:.0f} min\n"
+    if frame.heating_time is None or np.isnan(frame.heating_time):
+        return ""
+    return f"after {frame.heating_time / 60.0:.0f} min\n"
 
 
 def _spread(frames: Sequence[Frame]) -> list[Frame]:

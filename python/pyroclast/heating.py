@@ -12,7 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import reference, style
-from .progress import heating_course, temperature_label
+from .curves import draw_tables
+from .progress import MINUTES_LABEL, heating_course, heating_minutes, temperature_label
 from .run import Run
 
 TOTAL_STRAIN_LABEL = "Total axial strain, expansion\npositive, load included [$10^{-3}$]"
@@ -24,20 +25,24 @@ _BAND_LABEL = ("range of models calibrated on Anderberg &\nThelandersson's tests
 @matplotlib.rc_context(style.STYLE)
 def total_strain(run: Run) -> Figure:
     """Total and lateral strain over temperature; the reference's range where it has the run's load level."""
-    figure, upper, lower, below = _two_over_temperature(run)
+    figure, over, upper, lower, below = _two_while_heated(run)
     strain = style.PER_MILLE * run.total_strain
-    band = reference.strain_band(run.load_level)
+    band = None
+    if run.uniform and run.reference.name == reference.TRANSIENT_STRAIN:
+        band = reference.strain_band(run.load_level)
     if band:
         draw_band(upper, band, style.ORANGE, _BAND_LABEL)
-    _draw_parent(upper, run.parent, "specimen_strain", -style.PER_MILLE)
+    _draw_heated_parent(upper, run, "specimen_strain", -style.PER_MILLE)
+    if run.uniform:
+        draw_tables(upper, [run], ("temperature_degC", 1.0), ("total_strain", style.PER_MILLE))
     label = f"this run, {style.load_label(run)}".rstrip(", ")
-    upper.plot(run.heated_history("temperature_degC"), strain, color=style.BLUE, linewidth=1.8, label=label)
+    upper.plot(over, strain, color=style.BLUE, linewidth=1.8, label=label)
     upper.axhline(0.0, color=style.BLACK, linewidth=0.6)
     shown = [run, run.parent] if run.parent and run.parent.heated.any() else [run]
     upper.set_ylim(*strain_limits(shown, [band] if band else []))
     upper.set_ylabel(TOTAL_STRAIN_LABEL)
-    _mark_unconverged(upper, run, strain)
-    _mark_failure(upper, run)
+    _mark_unconverged(upper, run, over, strain)
+    _mark_failure(upper, run, over)
     style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncols=2)
     return figure
 
@@ -45,45 +50,50 @@ def total_strain(run: Run) -> Figure:
 @matplotlib.rc_context(style.STYLE)
 def thrust(run: Run) -> Figure:
     """Stress that a restrained specimen builds up against its platens, and lateral strain."""
-    figure, upper, lower, below = _two_over_temperature(run)
-    temperature, stress = run.heated_history("temperature_degC"), run.heated_history("stress_MPa")
+    figure, over, upper, lower, below = _two_while_heated(run)
+    stress = run.heated_history("stress_MPa")
     top, bottom = run.heated_history("stress_top_MPa"), run.heated_history("stress_bottom_MPa")
-    _draw_parent(upper, run.parent, "stress_MPa", 1.0)
-    upper.fill_between(temperature, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
+    _draw_heated_parent(upper, run, "stress_MPa", 1.0)
+    if run.uniform:
+        draw_tables(upper, [run], ("temperature_degC", 1.0), ("stress_MPa", 1.0))
+    upper.fill_between(over, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
                        label="between its upper and lower platen")
-    upper.plot(temperature, stress, color=style.BLUE, linewidth=1.8, label="this run, mean of both platens")
-    if stress.min() >= 0.0:
+    upper.plot(over, stress, color=style.BLUE, linewidth=1.8, label="this run, mean of both platens")
+    if run.history.known("stress_MPa", run.heated).min() >= 0.0:
         upper.set_ylim(bottom=0.0)
     upper.set_ylabel(THRUST_LABEL)
-    _mark_unconverged(upper, run, stress)
-    _mark_failure(upper, run)
+    _mark_unconverged(upper, run, over, stress)
+    _mark_failure(upper, run, over)
     style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncols=2)
     return figure
 
 
-def _draw_parent(axes: Axes, parent: Run | None, column: str, factor: float) -> None:
+def _draw_heated_parent(axes: Axes, run: Run, column: str, factor: float) -> None:
     """A column of the run that this one is a fork of, where that was heated too."""
-    if parent and parent.heated.any():
-        rows = parent.standing
-        axes.plot(parent.history["temperature_degC"][rows], factor * parent.history[column][rows], color=style.FAINT,
-                  linewidth=1.2, label=style.parent_label(parent.folder))
+    if run.parent and run.parent.heated.any():
+        history, rows = run.parent.history, run.parent.standing
+        over = history["temperature_degC"] if run.uniform else history["heating_time_s"] / 60.0
+        style.draw_parent(axes, run.parent, over[rows], factor * history[column][rows])
 
 
-def _two_over_temperature(run: Run) -> tuple[Figure, Axes, Axes, Axes]:
-    """Figure with room for a curve, the lateral strain below it, and axes for a legend."""
+def _two_while_heated(run: Run) -> tuple[Figure, np.ndarray, Axes, Axes, Axes]:
+    """Figure with room for a curve, the lateral strain below it, and axes for a legend; and what curves are drawn over:
+    the temperature, or minutes where the specimen is not uniform.
+    """
+    over = run.heated_history("temperature_degC") if run.uniform else heating_minutes(run)
     figure = style.new_figure(5.2)
     upper, lower, below = figure.subplots(3, 1, height_ratios=[1.0, 0.5, 0.26])
     upper.set_title(style.title_of(run))
     lower.sharex(upper)
     upper.tick_params(labelbottom=False)
     lateral = style.PER_MILLE * run.heated_history("lateral_strain")
-    lower.plot(run.heated_history("temperature_degC"), lateral, color=style.BLUE)
+    lower.plot(over, lateral, color=style.BLUE)
     lower.axhline(0.0, color=style.BLACK, linewidth=0.6)
-    lower.set_ylim(*_padded(lateral[run.standing[run.heated]]))
-    lower.set_ylabel("Lateral strain, expansion\npositive [$10^{-3}$]")
-    lower.set_xlabel(temperature_label(run))
-    _mark_failure(lower, run)
-    return figure, upper, lower, below
+    lower.set_ylim(*_padded(style.PER_MILLE * run.history.known("lateral_strain", run.standing)))
+    lower.set_ylabel("Lateral strain,\nexpansion\npositive [$10^{-3}$]")
+    lower.set_xlabel(temperature_label(run) if run.uniform else MINUTES_LABEL)
+    _mark_failure(lower, run, over)
+    return figure, over, upper, lower, below
 
 
 def draw_band(axes: Axes, band: reference.StrainBand, colour: str, label: str | None = None) -> None:
@@ -98,27 +108,35 @@ def draw_band(axes: Axes, band: reference.StrainBand, colour: str, label: str | 
 
 
 def strain_limits(runs: Sequence[Run], bands: Sequence[reference.StrainBand]) -> tuple[float, float]:
-    """Limits [10^-3] that show bands and total strains, but not how far a failing specimen went."""
+    """Limits [10^-3] that show bands, tables and total strains, but not how far a failing specimen went."""
+    tables = [run.reference.table[name] for run in runs if run.reference.table for name in run.reference.table.names
+              if name.startswith("total_strain")]
     strains = [run.total_strain[run.standing[run.heated]] for run in runs]
-    return _padded(style.PER_MILLE * np.concatenate([*strains, *(x for b in bands for x in (b.low, b.high))]))
+    for run in runs:
+        run.history.known("specimen_strain", run.standing)
+    return _padded(style.PER_MILLE * np.concatenate([*strains, *tables,
+                                                     *(x for b in bands for x in (b.low, b.high))]))
 
 
 def _padded(values: np.ndarray) -> tuple[float, float]:
+    values = values[np.isfinite(values)]
     margin = 0.06 * (np.ptp(values) or 1.0)
     return float(values.min() - margin), float(values.max() + margin)
 
 
-def _mark_unconverged(axes: Axes, run: Run, values: np.ndarray) -> None:
+def _mark_unconverged(axes: Axes, run: Run, over: np.ndarray, values: np.ndarray) -> None:
     rows = run.unconverged[run.heated]
     if rows.any():
-        axes.plot(run.heated_history("temperature_degC")[rows], values[rows], "x", color=style.VERMILLION,
+        axes.plot(over[rows], values[rows], "x", color=style.VERMILLION,
                   markersize=4.0, linestyle="none", label=f"not converged ({rows.sum()} exchanges)")
 
 
-def _mark_failure(axes: Axes, run: Run) -> None:
-    if run.critical_temperature is not None:
-        axes.axvline(run.critical_temperature, color=style.VERMILLION, linewidth=1.0, linestyle=(0, (1, 1.5)),
-                     label=f"failed at {run.critical_temperature:.0f} °C")
+def _mark_failure(axes: Axes, run: Run, over: np.ndarray) -> None:
+    """over: of the rows of the heating, temperatures or minutes; the last is that of the failure."""
+    if run.critical_temperature is None or not np.isfinite(over[-1]):
+        return
+    at = f"{run.critical_temperature:.0f} °C" if run.uniform else f"{over[-1]:.0f} min"
+    axes.axvline(over[-1], color=style.VERMILLION, linewidth=1.0, linestyle=(0, (1, 1.5)), label=f"failed at {at}")
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -131,23 +149,24 @@ def convergence(run: Run) -> Figure:
     upper, lower, below = figure.subplots(3, 1, height_ratios=[1.0, 1.0, 0.14])
     lower.sharex(upper)
     upper.set_title(style.title_of(run))
-    for axes, name, label in ((upper, "cycles", "Cycles after the exchange"),
-                              (lower, "unbalanced_ratio", "Unbalanced ratio reached [–]")):
+    for axes, name, label in ((upper, "cycles", "Cycles after\nthe exchange"),
+                              (lower, "unbalanced_ratio", "Unbalanced ratio\nreached [–]")):
         values = course[name][exchanged]
         axes.plot(over, values, color=style.FAINT, linewidth=0.5, zorder=1)
         axes.plot(over[converged], values[converged], "o", color=style.BLUE, markersize=2.5, linestyle="none",
                   label=f"converged ({converged.sum()} exchanges)")
-        axes.plot(over[~converged], values[~converged], "x", color=style.VERMILLION, markersize=5.0,
-                  linestyle="none", label=f"not converged ({(~converged).sum()} exchanges)")
+        if not converged.all():
+            axes.plot(over[~converged], values[~converged], "x", color=style.VERMILLION, markersize=5.0,
+                      linestyle="none", label=f"not converged ({(~converged).sum()} exchanges)")
         axes.set_ylabel(label)
-        if course.ordered:
-            _mark_failure(axes, run)
+        if course.ordered or not run.uniform:
+            _mark_failure(axes, run, course.over)
     upper.set_ylim(bottom=0.0)
     lower.set_yscale("log")
     lower.set_xlabel(course.label)
     upper.tick_params(labelbottom=False)
     style.legend_alone(below, *upper.get_legend_handles_labels(), loc="center", ncols=3,
-                       title=f"{course['cycles'][exchanged].sum():,.0f} cycles in all")
+                       title=f"{np.nansum(course['cycles'][exchanged]):,.0f} cycles in all")
     return figure
 
 
@@ -163,6 +182,7 @@ def temperature_history(run: Run) -> Figure:
     axes.plot(minutes, run.history["temperature_degC"], color=style.BLACK, label="mean")
     for (name, values), (colour, dashes) in zip(run.probes.items(), cycle(style.LOOKS)):
         axes.plot(minutes, values, color=colour, linestyle=dashes, linewidth=1.0, label=f"probe {name}")
+    draw_tables(axes, [run], ("heating_time_s", 1.0 / 60.0), ("temperature_degC", 1.0))
     axes.set_xlim(left=0.0)
     axes.set_xlabel("Time [min]")
     axes.set_ylabel("Temperature [°C]")

@@ -65,15 +65,13 @@ def read_mesh(path: Path) -> Mesh:
             points,
             _counter_clockwise(points, triangles),
             _cell_values(file, "blocks/block", len(triangles)),
-            _cell_values(file, "blocks/material", len(triangles)),
-            _names(file, "blocks/material"),
+            *_kinds(file, "blocks/material", len(triangles)),
         )
         points, lines = _cells(file, "contacts", _VTK_LINE, "lines of two points")
         contacts = ContactMesh(
             points,
             lines,
-            _cell_values(file, "contacts/interface", len(lines)),
-            _names(file, "contacts/interface"),
+            *_kinds(file, "contacts/interface", len(lines)),
             _cell_values(file, "contacts/length", len(lines)),
         )
     return Mesh(blocks, contacts)
@@ -85,6 +83,8 @@ def _names(file: h5py.File, name: str) -> tuple[str, ...]:
     if names is None:
         raise RunError(f"{file.filename}: /{name} has no attribute 'names'")
     text = names.decode() if isinstance(names, bytes) else str(names)
+    if not text.replace("\n", "").isprintable():
+        raise RunError(f"{file.filename}: attribute 'names' of /{name} holds no names")
     return tuple(text.split("\n"))
 
 
@@ -96,7 +96,8 @@ def _cells(file: h5py.File, group: str, cell_type: int, name: str) -> tuple[np.n
     types = dataset(file, f"{group}/Types")
     corners = dataset(file, f"{group}/Connectivity")
     sides = {_VTK_LINE: 2, _VTK_TRIANGLE: 3}[cell_type]
-    if (types != cell_type).any() or len(corners) != sides * len(types):
+    if (types.ndim != 1 or corners.shape != (sides * len(types),) or corners.dtype.kind not in "iu"
+            or (types != cell_type).any()):
         raise RunError(f"{file.filename}: /{group} has cells that are not {name}")
     if len(corners) and not 0 <= corners.min() <= corners.max() < len(points):
         raise RunError(f"{file.filename}: /{group}/Connectivity points outside the {len(points)} points")
@@ -105,9 +106,17 @@ def _cells(file: h5py.File, group: str, cell_type: int, name: str) -> tuple[np.n
 
 def _cell_values(file: h5py.File, name: str, cells: int) -> np.ndarray:
     values = dataset(file, name)
-    if len(values) != cells:
-        raise RunError(f"{file.filename}: /{name} has {len(values)} values for {cells} cells")
+    if values.shape != (cells,):
+        raise RunError(f"{file.filename}: /{name} has shape {values.shape} for {cells} cells")
     return values
+
+
+def _kinds(file: h5py.File, name: str, cells: int) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Of each cell an index into the names, and the names."""
+    values, names = _cell_values(file, name, cells), _names(file, name)
+    if values.dtype.kind not in "iu" or cells and not 0 <= values.min() <= values.max() < len(names):
+        raise RunError(f"{file.filename}: /{name} holds numbers for which there is no name")
+    return values, names
 
 
 def _counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -117,6 +126,8 @@ def _counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 def _outlines(mesh: BlockMesh) -> tuple[list[np.ndarray], np.ndarray]:
+    if not len(mesh.triangles):
+        raise RunError(f"{mesh.path}: /blocks has no zones")
     # A directed zone edge is on the outline when no zone of the block walks it the other way.
     size = len(mesh.points)
     start = mesh.triangles.ravel()
@@ -124,7 +135,7 @@ def _outlines(mesh: BlockMesh) -> tuple[list[np.ndarray], np.ndarray]:
     outer = ~np.isin(start * size + end, end * size + start)
     owner = np.repeat(mesh.block, 3)[outer]
     start, end = start[outer], end[outer]
-    if len(np.unique(start)) != len(start):
+    if not np.array_equal(np.unique(start), np.sort(end)):  # each gridpoint is left once and reached once
         raise RunError(f"{mesh.path}: /blocks has a block whose zones do not make one simple polygon")
     following = dict(zip(start.tolist(), end.tolist()))
 

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
-from .run import Run
+from .run import Run, RunError
 
 _ENERGY_IN = ("energy_loading_J", "energy_gravity_J", "energy_property_change_J",
               "energy_mass_scaling_J")
@@ -28,6 +28,8 @@ _ENERGY_OUT = (
 )
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (5, 1.5, 1, 1.5)))  # by interface
 _MODE_COLOURS = {"tension": style.TENSION_COLOUR, "shear": style.SHEAR_COLOUR, "mixed": style.MIXED_COLOUR}
+_COUNTS_NOTE = "broken: $D=1$; damaged: $D>0$, the broken among them"
+MINUTES_LABEL = "Time of heating [min]"
 _COOLED = 1.0  # K below the hottest before, from which temperature no longer orders the rows
 
 
@@ -53,12 +55,17 @@ def loading_course(run: Run) -> Course:
 
 
 def heating_course(run: Run) -> Course:
-    """The heating, over temperature, or over time when the specimen also cools."""
-    temperature = run.heated_history("temperature_degC")
-    if (temperature < np.maximum.accumulate(temperature) - _COOLED).any():
-        time = run.heated_history("heating_time_s") / 60.0
-        return Course(run, run.heated, time, "Time of heating [min]", start=time[0], ordered=False)
-    return Course(run, run.heated, temperature, temperature_label(run), start=temperature.min())
+    """The heating, over temperature, or over time when the specimen is not uniform or also cools."""
+    temperature, known = run.heated_history("temperature_degC"), run.history.known("temperature_degC", run.heated)
+    if not run.uniform or (known < np.maximum.accumulate(known) - _COOLED).any():
+        start = run.history.known("heating_time_s", run.heated)[0] / 60.0
+        return Course(run, run.heated, heating_minutes(run), MINUTES_LABEL, start, ordered=False)
+    return Course(run, run.heated, temperature, temperature_label(run), start=known.min())
+
+
+def heating_minutes(run: Run) -> np.ndarray:
+    """Time of heating [min] over the rows of `heated`."""
+    return run.heated_history("heating_time_s") / 60.0
 
 
 def temperature_label(run: Run) -> str:
@@ -73,6 +80,7 @@ def cracks(run: Run) -> Figure:
     *panels, below = figure.subplots(len(modes) + 1, 1, height_ratios=[1.0] * len(modes) + [0.3])
     panels[0].set_title(style.title_of(run))
     course = loading_course(run)
+    run.history.known("strain", run.loaded)
     for axes, mode in zip(panels, modes):
         axes.sharex(panels[0]) if axes is not panels[0] else None
         _draw_stress_behind(axes, course)
@@ -80,7 +88,7 @@ def cracks(run: Run) -> Figure:
         axes.tick_params(labelbottom=axes is panels[-1])
     panels[0].set_xlim(left=0.0)
     panels[-1].set_xlabel(course.label)
-    style.legend_alone(below, *_legends(*panels), loc="center", ncols=2)
+    style.legend_alone(below, *_legends(*panels), loc="center", ncols=2, title=_COUNTS_NOTE, title_fontsize=7.0)
     return figure
 
 
@@ -90,10 +98,10 @@ def heating_cracks(run: Run) -> Figure:
     figure = style.new_figure(5.4)
     figure.suptitle(style.title_of(run), fontsize=9.0)
     modes = list(run.crack_modes) or ["tension"]
-    grid = figure.add_gridspec(3, 2, height_ratios=[1.0, 1.0, 0.32])
-    upper = figure.add_gridspec(3, max(len(modes), 1), height_ratios=[1.0, 1.0, 0.32])
-    counts = [figure.add_subplot(upper[0, i]) for i in range(len(modes))]
-    length, opening = figure.add_subplot(grid[1, 0]), figure.add_subplot(grid[1, 1])
+    rows = figure.add_gridspec(3, 1, height_ratios=[1.0, 1.0, 0.32])
+    upper, lower = rows[0].subgridspec(1, len(modes)), rows[1].subgridspec(1, 2)
+    counts = [figure.add_subplot(upper[i]) for i in range(len(modes))]
+    length, opening = (figure.add_subplot(lower[i]) for i in range(2))
     panels = [*counts, length, opening]
     course = heating_course(run)
     for axes, mode in zip(counts, modes):
@@ -105,10 +113,11 @@ def heating_cracks(run: Run) -> Figure:
     opening.plot(course.over, 1e6 * course["mean_opening_m"], color=style.BLACK)
     opening.set_ylabel("Mean opening of contacts\ndamaged in tension [µm]")
     for axes in panels:
-        axes.set_xlim(course.start, course.over.max())
+        axes.set_xlim(course.start, np.nanmax(course.over))
         axes.set_ylim(bottom=0.0)
         axes.set_xlabel(course.label)
-    style.legend_alone(figure.add_subplot(grid[2, :]), *_legends(*counts), loc="center", ncols=2)
+    style.legend_alone(figure.add_subplot(rows[2]), *_legends(*counts), loc="center", ncols=2, title=_COUNTS_NOTE,
+                       title_fontsize=7.0)
     return figure
 
 
@@ -130,9 +139,9 @@ def _draw_counts(axes: Axes, course: Course, mode: str) -> None:
     for interface, dashes in zip(course.run.crack_modes.get(mode, []), cycle(_DASHES)):
         name = interface.replace("_", "–")
         axes.plot(course.over, course[f"{mode}_{interface}_broken"], color=colour, linestyle=dashes,
-                  linewidth=1.8, label=f"{mode}, {name}: broken ($D=1$)")
+                  linewidth=1.8, label=f"{mode}, {name}: broken")
         axes.plot(course.over, course[f"{mode}_{interface}_damaged"], color=colour, linestyle=dashes,
-                  linewidth=0.7, label=f"{mode}, {name}: damaged ($D>0$), broken among them")
+                  linewidth=0.7, label=f"{mode}, {name}: damaged")
     axes.set_ylim(bottom=0.0)
     axes.set_ylabel(f"Cracked contact points,\n{mode}")
 
@@ -159,16 +168,19 @@ def energy(course: Course) -> Figure:
     figure.suptitle(style.title_of(course.run), fontsize=9.0)
     parts = [course[name] for name in _ENERGY_IN if name in course.run.history]
     work_in = sum(parts)
-    turnover = sum(map(np.abs, parts)).max() or 1.0  # heat takes out what a softening body stores
+    turned_over = sum(map(np.abs, parts))
+    if not (np.isfinite(turned_over) & np.isfinite(course.over)).any():
+        raise RunError(f"{course.run.history.path}: no row has all energies that were put in")
+    turnover = np.nanmax(turned_over) or 1.0  # heat takes out what a softening body stores
     _draw_stack(upper, course, turnover)
     upper.plot(course.over, work_in, color=style.BLACK, linewidth=1.4, linestyle=(0, (4, 2)),
                label="work put in (loading,\ngravity, change of\nproperties, mass scaling)")
     if course["energy_property_change_J"].any():
         upper.plot(course.over, course["energy_property_change_J"], color=style.PURPLE, linewidth=1.4,
                    linestyle=(0, (1.5, 1)), label="put in by the change of\nproperties alone")
-    upper.set_xlim(course.start, course.over.max())
+    upper.set_xlim(course.start, np.nanmax(course.over))
     upper.tick_params(labelbottom=False)
-    if min(work_in.min(), course["energy_property_change_J"].min()) >= 0.0:
+    if not (work_in < 0.0).any() and not (course["energy_property_change_J"] < 0.0).any():
         upper.set_ylim(bottom=0.0)
     upper.set_ylabel("Energy since the start [J]")
     handles, labels = upper.get_legend_handles_labels()
@@ -186,7 +198,8 @@ def _draw_stack(axes: Axes, course: Course, turnover: float) -> None:
     below = np.zeros_like(course.over)
     for column, name, colour, hatch in _ENERGY_OUT:
         values = course[column]
+        known = values[np.isfinite(values)]
+        share = f"{100.0 * known[-1] / turnover:.1f} %" if len(known) else "not known"
         axes.fill_between(course.over, below, below + values, facecolor=colour, hatch=hatch,
-                          edgecolor="white", linewidth=0.3,
-                          label=f"{name}: {100.0 * values[-1] / turnover:.1f} %")
+                          edgecolor="white", linewidth=0.3, label=f"{name}: {share}")
         below = below + values

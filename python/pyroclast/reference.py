@@ -1,4 +1,6 @@
-"""What runs are held against: compression at room temperature, and total strain while heated under load."""
+"""What runs are held against: compression at room temperature, total strain while heated under load, and tables of
+the user's.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +10,36 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+
+from .files import RunError, Table
+
+NONE, COMPRESSION, TRANSIENT_STRAIN = "none", "compression", "transient_strain"
+"""What a deck may say at output.reference, beside the name of a CSV file."""
+_TABLES = (("strain", "stress_MPa"), ("temperature_degC", "total_strain"),
+           ("temperature_degC", "total_strain_low", "total_strain_high"), ("temperature_degC", "stress_MPa"),
+           ("heating_time_s", "temperature_degC"))
+
+
+class Reference:
+    """What the deck of a run asks for beside its results."""
+
+    def __init__(self, folder: Path, name: str):
+        """folder: of the run. Throws RunError when the name is none, or its table is missing or malformed."""
+        self.name = name
+        self.table: Table | None = None
+        if name in (NONE, COMPRESSION, TRANSIENT_STRAIN):
+            return
+        if not name.endswith(".csv") or "\0" in name:
+            raise RunError(f"{folder / 'deck.toml'}: output.reference = {ascii(name[:40])} is no reference")
+        self.table = Table(folder / name, comments=True)
+        self.name = Path(name).stem
+        if tuple(self.table.names) not in _TABLES:
+            raise RunError(f"{self.table.path}: has other columns than {', '.join(map('/'.join, _TABLES))}")
+
+    def has(self, *columns: str) -> bool:
+        """Whether it is a table of just these columns."""
+        return self.table is not None and tuple(self.table.names) == columns
+
 
 # Compression at room temperature; stress and strain positive in compression.
 

@@ -7,14 +7,16 @@ compression; only `Run.total_strain` is positive in expansion.
 from __future__ import annotations
 
 import re
+import tomllib
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from .files import RunError, Table, dataset, open_hdf, read_json
+from .files import LARGEST, RunError, Table, dataset, open_hdf, read_json
 from .mesh import Mesh, read_mesh
+from .reference import NONE, Reference
 
 _UNIFORM = 1.0  # K
 
@@ -44,16 +46,17 @@ class Run:
     @cached_property
     def history(self) -> Table:
         """history.csv, all stages."""
-        return Table(self.folder / "history.csv")
+        table = Table(self.folder / "history.csv")
+        table.whole("stage")
+        return table
 
     @cached_property
     def crack_modes(self) -> dict[str, list[str]]:
         """Interfaces that can break, by the mode of their damage: "tension", "shear" or "mixed"."""
         modes: dict[str, list[str]] = {}
         for column in self.history.names:
-            if column.endswith("_broken"):
-                mode, interface = column.removesuffix("_broken").split("_", 1)
-                modes.setdefault(mode, []).append(interface)
+            if match := re.fullmatch(r"(tension|shear|mixed)_(.+)_broken", column):
+                modes.setdefault(match[1], []).append(match[2])
         return modes
 
     @cached_property
@@ -67,8 +70,27 @@ class Run:
         """The run that this one is a fork of; None without one, or when its folder is gone."""
         path = self.folder / "manifest.json"
         parent = read_json(path).get("parent") if path.exists() else None
-        folder = Path(parent["folder"]) if isinstance(parent, dict) and "folder" in parent else None
-        return Run(folder) if folder and (folder / "history.csv").exists() else None
+        if parent is None:
+            return None
+        folder = parent.get("folder") if isinstance(parent, dict) else None
+        if not isinstance(folder, str) or "\0" in folder:
+            raise RunError(f"{path}: 'parent' has no 'folder' that is a path")
+        return Run(folder) if (Path(folder) / "history.csv").exists() else None
+
+    @cached_property
+    def reference(self) -> Reference:
+        """What the deck that the run keeps asks figures to draw beside the results."""
+        path = self.folder / "deck.toml"
+        if not path.exists():
+            return Reference(self.folder, NONE)
+        try:
+            output = tomllib.loads(path.read_text(encoding="utf-8")).get("output", {})
+        except (OSError, ValueError, RecursionError) as error:
+            raise RunError(f"{path}: cannot be read: {' '.join(str(error).split())}") from error
+        name = output.get("reference", NONE) if isinstance(output, dict) else None
+        if not isinstance(name, str):
+            raise RunError(f"{path}: output.reference is not a text")
+        return Reference(self.folder, name)
 
     @property
     def title(self) -> str:
@@ -109,10 +131,10 @@ class Run:
             return {}
         merged = dict(stages[0])
         for name in ("exchanges", "exchanges_not_converged", "cycles"):
-            merged[name] = sum(results[name] for results in stages if name in results)
-        for name in ("highest_temperature_degC", "largest_exchange_increment_K", "worst_unbalanced_ratio",
-                     "largest_thrust_MPa"):
-            merged[name] = max((results[name] for results in stages if name in results), default=None)
+            merged[name] = sum(self._number(results, name) for results in stages if name in results)
+        worst = [self._number(results, "worst_unbalanced_ratio") for results in stages
+                 if results.get("worst_unbalanced_ratio") is not None]
+        merged["worst_unbalanced_ratio"] = max(worst, default=None)
         failures = self._results_with("critical_temperature_degC")
         return merged | {"critical_temperature_degC": failures[0]["critical_temperature_degC"] if failures else None}
 
@@ -121,9 +143,11 @@ class Run:
 
     def _number(self, results: dict, name: str) -> float | None:
         value = results.get(name)
-        if value is not None and (isinstance(value, bool) or not isinstance(value, (int, float))):
-            raise RunError(f"{self.folder / 'summary.json'}: '{name}' is neither a number nor null")
-        return value
+        if value is None:
+            return None
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= LARGEST:
+            raise RunError(f"{self.folder / 'summary.json'}: '{name}' is neither a finite number nor null")
+        return float(value)
 
     @property
     def load_stress(self) -> float | None:
@@ -223,7 +247,7 @@ class Run:
     def uniform(self) -> bool:
         """Whether the specimen's temperatures never differed by more than 1 K."""
         spread = self.history["temperature_max_degC"] - self.history["temperature_min_degC"]
-        return bool((spread <= _UNIFORM).all())
+        return not (spread > _UNIFORM).any()  # a gap tells nothing
 
     @property
     def unconverged(self) -> np.ndarray:
@@ -236,8 +260,7 @@ class Run:
     def loaded(self) -> np.ndarray:
         """(rows,) bool: rows of the last stage in which the body moves, the test itself."""
         stage, is_there = self.history["stage"], np.isfinite(self.history["stress_MPa"])
-        if not is_there.any():
-            raise RunError(f"{self.history.path}: column 'stress_MPa' has no finite value")
+        self.history.known("stress_MPa")
         return (stage == stage[is_there].max()) & is_there
 
     def loaded_history(self, name: str) -> np.ndarray:
@@ -248,7 +271,9 @@ class Run:
     def strain_before(self) -> float:
         """Strain from which the last stage's is counted: that before it, if heat left one, else zero."""
         first = int(self.loaded.argmax())
-        return float(self.history["strain"][first - 1]) if self.exchanged[:first].any() else 0.0
+        if not self.exchanged[:first].any():
+            return 0.0
+        return float(self.history.known("strain", slice(first))[-1])
 
     @property
     def loaded_strain(self) -> np.ndarray:
@@ -261,12 +286,13 @@ class Run:
 
         Throws RunError when the specimen was never compressed.
         """
-        stress = self.loaded_history("stress_MPa")
-        row = int(stress.argmax())
+        strain, stress = self.loaded_strain, self.loaded_history("stress_MPa")
+        self.history.known("strain", self.loaded)
+        row = int(np.where(np.isfinite(strain), stress, -np.inf).argmax())
         if stress[row] <= 0.0:
             path = self.history.path
             raise RunError(f"{path}: column 'stress_MPa' is never positive; the specimen was not compressed")
-        return float(self.loaded_strain[row]), float(stress[row])
+        return float(strain[row]), float(stress[row])
 
     @property
     def strength_retained(self) -> float | None:
@@ -283,26 +309,25 @@ class Run:
             return []
         t = Table(path, may_be_empty=True)
         if self.only_conducts:
-            return [Frame(int(number), int(stage), 0, time, np.nan, np.nan, temperature, time)
-                    for number, stage, time, temperature in zip(t["frame"], t["stage"], t["heating_time_s"],
-                                                                t["temperature_degC"])]
+            return [Frame(number, stage, 0, time, np.nan, np.nan, temperature, time)
+                    for number, stage, time, temperature in zip(t.whole("frame").tolist(), t.whole("stage").tolist(),
+                                                                t["heating_time_s"], t["temperature_degC"])]
         heat = [t[name] if name in t else [None] * len(t) for name in ("temperature_degC", "heating_time_s")]
-        return [
-            Frame(int(number), int(stage), int(np.nan_to_num(step)), *values)
-            for number, stage, step, *values in zip(
-                t["frame"], t["stage"], t["step"], t["time_s"], t["strain"], t["stress_MPa"], *heat
-            )
-        ]
+        whole = [t.whole(name, none=0).tolist() for name in ("frame", "stage", "step")]
+        return [Frame(*values) for values in zip(*whole, t["time_s"], t["strain"], t["stress_MPa"], *heat)]
 
     @property
     def loaded_frames(self) -> list[Frame]:
-        """Frames of the history's last stage, their strain less `strain_before`."""
+        """Frames of the history's last stage, their strain less `strain_before`; not those of unknown strain or
+        stress.
+        """
         last, before = self.history["stage"][self.loaded].max(), self.strain_before
-        return [replace(frame, strain=frame.strain - before) for frame in self.frames if frame.stage == last]
+        return [replace(frame, strain=frame.strain - before) for frame in self.frames
+                if frame.stage == last and np.isfinite([frame.strain, frame.stress]).all()]
 
     @property
     def heated_frames(self) -> list[Frame]:
-        """Frames of all stages that heat; throws RunError when there is none or they have no temperature."""
+        """Frames of all stages that heat, not those of unknown temperature; throws RunError when there is none."""
         path = self.folder / "fields" / "frames.csv"
         frames = self.frames
         if not self.only_conducts:
@@ -312,6 +337,9 @@ class Run:
             raise RunError(f"{path}: no frame of a heating stage")
         if frames[0].temperature is None:
             raise RunError(f"{path}: has no column 'temperature_degC'")
+        frames = [frame for frame in frames if np.isfinite(frame.temperature)]
+        if not frames:
+            raise RunError(f"{path}: column 'temperature_degC' has no finite value")
         return frames
 
     @cached_property
@@ -321,19 +349,19 @@ class Run:
     def gridpoint_displacement(self, frame: Frame) -> np.ndarray:
         """(N, 2), m."""
         shape = (len(self.mesh.blocks.points), 3)
-        return self._field("blocks", frame, "PointData/displacement", shape)[:, :2]
+        return self._field("blocks", frame, "PointData/displacement [m]", shape)[:, :2]
 
     def gridpoint_temperature(self, frame: Frame) -> np.ndarray:
         """(N,), °C."""
-        return self._field("blocks", frame, "PointData/temperature", (len(self.mesh.blocks.points),))
+        return self._field("blocks", frame, "PointData/temperature [degC]", (len(self.mesh.blocks.points),))
 
     def contact_displacement(self, frame: Frame) -> np.ndarray:
         """(2C, 2), m, of the points of the contact mesh."""
         shape = (len(self.mesh.contacts.points), 3)
-        return self._field("contacts", frame, "PointData/displacement", shape)[:, :2]
+        return self._field("contacts", frame, "PointData/displacement [m]", shape)[:, :2]
 
     def contact_field(self, frame: Frame, name: str) -> np.ndarray:
-        """(C,), for instance tension_damage, shear_damage, opening [m], tangential_jump [m]."""
+        """(C,), by its name with unit, for instance "tension_damage [1]" or "opening [m]"."""
         return self._field("contacts", frame, f"CellData/{name}", (len(self.mesh.contacts.lines),))
 
     def _field(self, kind: str, frame: Frame, name: str, shape: tuple[int, ...]) -> np.ndarray:
@@ -362,8 +390,8 @@ class Specimen:
 
     def fact(self, name: str) -> float:
         value = self.facts.get(name)
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise RunError(f"{self._tables / 'specimen.json'}: '{name}' is missing or not a number")
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= LARGEST:
+            raise RunError(f"{self._tables / 'specimen.json'}: '{name}' is missing or not a finite number")
         return value
 
     @cached_property

@@ -24,6 +24,7 @@ _MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _LARGEST_MOVE_DRAWN = 0.06  # of the specimen's height
 _MARGIN = 0.08  # of the drawn width, room for blocks that have moved out
 _PANELS = 4
+_TITLE_HEIGHT, _CAPTION_LINE, _HEADING_LINE, _LEGEND_HEIGHT = 0.3, 0.125, 0.17, 0.65  # in print, inches
 _EDGE_OF_FULL_WIDTH, _LEAST_THINNING = 5.0, 0.45  # edge in print, points; factor on line widths
 
 
@@ -111,8 +112,11 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
     columns = max(len(panels) for _, panels in rows)
     panel_width = style.WIDTH / max(columns, _PANELS) - 0.12
     panel_heights = [panel_width * height_over_width(panels[0].run.mesh.blocks) for _, panels in rows]
-    figure = style.new_figure(sum(panel_heights) + 0.75 * len(rows) + 1.2, dpi=2 * style.DPI)
-    grid = figure.add_gridspec(len(rows) + 1, columns, height_ratios=[*panel_heights, 0.55])
+    lines = [max(panel.caption.count("\n") + 1 for panel in panels) for _, panels in rows]
+    heading = f"{heading}\ndisplacements ×{magnification:g}".lstrip()
+    texts = sum(_TITLE_HEIGHT + _CAPTION_LINE * n for n in lines) + _HEADING_LINE * (heading.count("\n") + 1)
+    figure = style.new_figure(sum(panel_heights) + texts + _LEGEND_HEIGHT, dpi=2 * style.DPI)
+    grid = figure.add_gridspec(len(rows) + 1, columns, height_ratios=[*panel_heights, _LEGEND_HEIGHT])
     for row, (label, panels) in enumerate(rows):
         all_axes = [figure.add_subplot(grid[row, column]) for column in range(len(panels))]
         for axes, panel in zip(all_axes, panels):
@@ -120,10 +124,12 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
         all_axes[0].set_ylabel(label)
         if row == 0:
             draw_scale_bar(all_axes[0], panels[0].run.mesh.blocks)
-    figure.suptitle(f"{heading}\ndisplacements ×{magnification:g}".lstrip(), fontsize=9.0)
+    figure.suptitle(heading, fontsize=9.0)
     handles = _fracture_legend(rows[0][1][0].run)
-    style.legend_alone(figure.add_subplot(grid[-1, :]), handles, [handle.get_label() for handle in handles],
-                       loc="center", ncols=4, title_fontsize=7.0, title=note)
+    below = figure.add_subplot(grid[-1, :])
+    style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center", ncols=4,
+                       title_fontsize=7.0, title=note)
+    below.get_legend().set_in_layout(False)  # it is as wide as the page, and would make the panels narrower
     return figure
 
 
@@ -138,7 +144,7 @@ def _draw_panel(axes: Axes, panel: Panel, magnification: float, columns: int) ->
     axes.set_title(panel.title, fontweight="bold")
 
 
-def _specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
+def specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
     """Lower left and upper right corner of the specimen without platens, m."""
     points = blocks.points[blocks.triangles[~blocks.of_platen].ravel()]
     if not len(points):
@@ -154,7 +160,7 @@ def _panel_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _visible_magnification(run: Run, frame: Frame) -> float:
-    low, high = _specimen_box(run.mesh.blocks)
+    low, high = specimen_box(run.mesh.blocks)
     moved = np.percentile(np.linalg.norm(run.gridpoint_displacement(frame), axis=1), 95)
     fitting = [m for m in _MAGNIFICATIONS if m * moved <= _LARGEST_MOVE_DRAWN * (high - low)[1]]
     return fitting[-1] if fitting and moved > 0.0 else 1
@@ -165,7 +171,7 @@ def _cracked(run: Run, frame: Frame, crack: _CrackStyle) -> np.ndarray:
     contacts = run.mesh.contacts
     names = run.crack_modes[crack.mode]
     can_crack = np.isin(contacts.interface, [i for i, name in enumerate(contacts.interfaces) if name in names])
-    return can_crack & crack.holds(run.contact_field(frame, f"{crack.mode}_damage"))
+    return can_crack & crack.holds(run.contact_field(frame, f"{crack.mode}_damage [1]"))
 
 
 def count_cracks(run: Run, frame: Frame) -> dict[tuple[str, bool], int]:
@@ -229,9 +235,9 @@ def _caption(run: Run, frame: Frame) -> str:
     counts = count_cracks(run, frame)
     return (
         f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$\n"
-        f"$\\sigma$ = {frame.stress:.1f} MPa ({100.0 * frame.stress / run.peak[1]:.0f} % of peak)\n"
-        f"broken: {_listed(counts, True)}\n"
-        f"damaged by more than half: {_listed(counts, False)}"
+        f"$\\sigma$ = {frame.stress:.1f} MPa,\n{100.0 * frame.stress / run.peak[1]:.0f} % of peak\n"
+        f"broken:\n{_listed(counts, True)}\n"
+        f"damaged by more than half:\n{_listed(counts, False)}"
     )
 
 
@@ -241,7 +247,7 @@ def _listed(counts: dict[tuple[str, bool], int], broken: bool) -> str:
 
 def draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
     """A round length below the specimen's left side."""
-    low, high = _specimen_box(blocks)
+    low, high = specimen_box(blocks)
     width = style.MILLI * (high - low)[0]
     length = max(step for step in (1, 2, 5, 10, 20, 50, 100, 200, 500) if step <= max(0.4 * width, 1))
     x, y = style.MILLI * low[0], np.mean([axes.get_ylim()[0], style.MILLI * blocks.points[:, 1].min()])

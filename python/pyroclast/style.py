@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from itertools import cycle
 from pathlib import Path
@@ -13,6 +14,8 @@ from matplotlib.figure import Figure
 WIDTH = 7.2
 """Width of a page of two columns, inches."""
 DPI = 300
+
+_TITLE_WIDTH = 100  # characters that fit a page
 
 STYLE = {
     "font.size": 8.0,
@@ -37,11 +40,6 @@ BLACK, ORANGE, SKY, GREEN = "#000000", "#e69f00", "#56b4e9", "#009e73"
 YELLOW, BLUE, VERMILLION, PURPLE = "#f0e442", "#0072b2", "#d55e00", "#cc79a7"
 AGGREGATE_COLOUR, MORTAR_COLOUR, PLATEN_COLOUR = "#b4b4b4", "#f4f0e6", "#5a5a5a"
 _MORE_PHASE_COLOURS = ("#8fa9c4", "#c9b48c", "#9dbf9e", "#b79bb8")
-
-
-def parent_label(folder: Path) -> str:
-    """Of the run that the one in the figure is a fork of."""
-    return f"{folder.name}, of which this run is a fork"
 
 
 def phase_colours(names: Sequence[str]) -> list[str]:
@@ -75,9 +73,39 @@ def legend_alone(axes: Axes, handles: list, labels: list[str], **options) -> Non
     axes.legend(handles, labels, borderaxespad=0.0, **options)
 
 
+def plain(text: str) -> str:
+    """Text of the user's, as it stands: on one line, and no formula."""
+    shown = "".join(c if c.isprintable() else " " for c in text)
+    return " ".join(shown.split()).replace("$", r"\$")
+
+
+def draw_parent(axes: Axes, parent, over, values) -> None:
+    """A curve of the run that the one in the figure is a fork of, behind that one's."""
+    axes.plot(over, values, color=FAINT, linewidth=1.2,
+              label=f"{plain(parent.folder.name)}, of which this run is a fork")
+
+
 def title_of(run) -> str:
-    """A run's title, with its warnings."""
-    return " – ".join([run.title, *warnings_of(run)])
+    """A run's title, what was done to it as it came out, and its warnings, in lines that fit a page."""
+    return "\n".join(line for text in (plain(run.title), *facts_of(run), *warnings_of(run))
+                     for line in textwrap.wrap(text, _TITLE_WIDTH))
+
+
+def facts_of(run) -> list[str]:
+    """Load and temperatures of a heated run, which the deck's title may not tell or may tell wrong."""
+    if run.only_conducts or not run.exchanged.any():
+        return []
+    temperatures = run.history.known("temperature_degC", run.heated)
+    mean = "" if run.uniform else "mean "
+    if run.ends_heated:
+        held = "between fixed platens" if run.restrained else load_label(run)
+        failed = "" if run.critical_temperature is None else f"failed at {run.critical_temperature:.0f} °C"
+        return [", ".join(filter(None, [held, f"{mean}{temperatures[0]:.0f} to {temperatures.max():.0f} °C", failed]))]
+    now = run.history.known("temperature_degC", run.loaded)[0]
+    told = [f"heated to {mean}{temperatures.max():.0f} °C, compressed at {mean}{now:.0f} °C"]
+    if (retained := run.strength_retained) is not None:
+        told.append(f"largest stress {retained:.2f} of the strength before heating")
+    return ["; ".join(told)]
 
 
 def warnings_of(run) -> list[str]:
@@ -103,8 +131,17 @@ def load_label(run) -> str:
 
 @matplotlib.rc_context(STYLE)
 def save(figure: Figure, path: Path) -> Path:
-    """Writes the figure, its format by the file's ending; makes the folder. Returns the path."""
+    """Writes the figure, its format by the file's ending; makes the folder. Returns the path.
+
+    The file is there whole or not at all: it is written aside, then takes its name.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
+    ending = path.suffix.lower()
     undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-    figure.savefig(path, metadata=undated.get(path.suffix.lower()))
+    aside = path.with_name(f"{path.name}.partial")  # `--overwrite` knows this ending
+    try:
+        figure.savefig(aside, format=ending[1:], metadata=undated.get(ending))
+        aside.replace(path)
+    finally:
+        aside.unlink(missing_ok=True)
     return path

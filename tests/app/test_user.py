@@ -10,6 +10,7 @@ import resource
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -86,6 +87,159 @@ class UserTest(unittest.TestCase):
         self.assertEqual(process.returncode, 130)
         self.assertIn("stopped", output)
         return json.loads((self.folder / "out/summary.json").read_text())
+
+
+class FireUnderLoad(UserTest):
+    """A specimen under load that a fire heats on one side, and its fields as ParaView shows them."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.place = pathlib.Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, cls.place)
+        deck = (CASES / "fire_one_side.toml").read_text()
+        deck += '\n[[probes]]\nname = "near"\nx = "5 mm"\ny = "150 mm"\n'
+        (cls.place / "fire.toml").write_text(deck)
+        changes = ("blocks.count=200", "stages[1].ramp_time=50 ms", "stages[2].duration=14 min",
+                   "coupling.exchange_increment=40 K", 'output.frame_interval="3 min"')
+        done = subprocess.run([PROGRAM, "run", "fire.toml", "--out", "out",
+                               *(word for change in changes for word in ("--set", change))],
+                              cwd=cls.place, capture_output=True, text=True, timeout=300, check=False)
+        assert done.returncode == 0, done.stderr
+        cls.out = cls.place / "out"
+        cls.history = cls.table("history.csv")
+        cls.frames = cls.table("fields/frames.csv")
+
+    @classmethod
+    def table(cls, name: str) -> list[dict]:
+        with open(cls.out / name, newline="", encoding="utf-8") as file:
+            return [{key: float(cell or "nan") for key, cell in row.items()} for row in csv.DictReader(file)]
+
+    def read(self, name: str):
+        from vtkmodules.vtkIOHDF import vtkHDFReader  # pylint: disable=import-outside-toplevel
+
+        reader = vtkHDFReader()
+        reader.SetFileName(str(self.out / "fields" / name))
+        reader.Update()
+        return reader.GetOutput()
+
+    def test_frames_are_at_even_heating_times_and_probes_are_recorded(self):
+        heated = [frame["heating_time_s"] for frame in self.frames if frame["stage"] == 2]
+        self.assertEqual(heated, [180.0, 360.0, 540.0, 720.0, 840.0])  # and one at the end
+        probe = [row["probe_near_degC"] for row in self.history if row["stage"] == 2]
+        self.assertEqual(sorted(probe), probe)
+        self.assertGreater(probe[-1], 150.0)
+        self.assertLess(probe[-1], self.history[-1]["temperature_max_degC"])
+
+    def test_the_axis_of_time_is_that_of_heating(self):
+        for part in ("blocks", "contacts"):
+            series = json.loads((self.out / "fields" / f"{part}.hdf.series").read_text())["files"]
+            times = [file["time"] for file in series]
+            self.assertEqual(times[-6:], [0.0, 180.0, 360.0, 540.0, 720.0, 840.0])
+            self.assertLess(max(times[:-6]), 0.0)
+            self.assertEqual(sorted(set(times)), times)
+
+    def test_profile_and_isotherm_are_those_of_the_field(self):
+        profile, isotherm = self.table("temperature_profile.csv"), self.table("isotherm.csv")
+        self.assertEqual([row["heating_time_s"] for row in isotherm], [180.0, 360.0, 540.0, 720.0, 840.0])
+        last = [row for row in profile if row["heating_time_s"] == 840.0]
+        # The probe lies on the line; the profile's points are 1.25 mm apart, and the fields in single precision.
+        at_probe = next(row["temperature_degC"] for row in last if abs(row["depth_m"] - 5e-3) < 1e-9)
+        self.assertAlmostEqual(at_probe, self.history[-1]["probe_near_degC"], delta=1e-3)
+        depth = isotherm[-1]["depth_500_degC_m"]
+        self.assertGreater(depth, 0.0)
+        self.assertTrue(all(row["temperature_degC"] >= 500.0 for row in last if row["depth_m"] < depth))
+        self.assertLess(next(row["temperature_degC"] for row in last if row["depth_m"] > depth), 500.0)
+        for name in ("temperature_profile", "isotherm", "temperature_history"):
+            self.assertTrue((self.out / "figures" / f"{name}.png").exists(), name)
+
+    def test_stress_and_strain_are_symmetric_tensors(self):
+        blocks = self.read("blocks_0007.hdf")
+        cells, moved = blocks.GetCellData(), blocks.GetPointData().GetArray("displacement [m]")
+        stress, strain = cells.GetArray("stress [Pa]"), cells.GetArray("strain [1]")
+        self.assertEqual((stress.GetNumberOfComponents(), strain.GetNumberOfComponents()), (6, 6))
+        contacts = self.read("contacts_0007.hdf").GetCellData()
+        self.assertEqual(contacts.GetArray("stress [Pa]").GetNumberOfComponents(), 6)
+        largest = max(map(abs, strain.GetRange(1)))
+        for zone in range(0, blocks.GetNumberOfCells(), 37):
+            corners = [blocks.GetCell(zone).GetPointId(i) for i in range(3)]
+            (xa, ya, _), (xb, yb, _), (xc, yc, _) = map(blocks.GetPoint, corners)
+            (ua, va, _), (ub, vb, _), (uc, vc, _) = map(moved.GetTuple, corners)
+            area = (xb - xa) * (yc - ya) - (xc - xa) * (yb - ya)
+            across = ((ub - ua) * (yc - ya) - (uc - ua) * (yb - ya)) / area
+            along = ((vc - va) * (xb - xa) - (vb - va) * (xc - xa)) / area
+            shear = 0.5 * ((uc - ua) * (xb - xa) - (ub - ua) * (xc - xa)
+                           + (vb - va) * (yc - ya) - (vc - va) * (yb - ya)) / area
+            # Displacements of 1e-4 m in single precision, over zones of some mm.
+            for component, expected in ((0, across), (1, along), (3, shear)):
+                self.assertAlmostEqual(strain.GetTuple(zone)[component], expected, delta=1e-3 * largest)
+            self.assertEqual([stress.GetTuple(zone)[i] for i in (2, 4, 5)], [0.0, 0.0, 0.0])
+
+    def test_a_traction_is_the_normal_component_of_its_stress(self):
+        contacts = self.read("contacts_0007.hdf")
+        data = contacts.GetCellData()
+        stress, normal = data.GetArray("stress [Pa]"), data.GetArray("normal_traction [Pa]")
+        for i in range(0, contacts.GetNumberOfCells(), 11):
+            xx, yy, zz, *_ = stress.GetTuple(i)
+            # The trace is the normal traction: the shear part has none.
+            self.assertAlmostEqual(xx + yy + zz, normal.GetTuple1(i), delta=1e-5 * max(map(abs, normal.GetRange())))
+
+    def test_platens_are_not_among_the_cracks(self):
+        contacts = self.read("contacts_0007.hdf")
+        data = contacts.GetCellData()
+        crack, platen = data.GetArray("crack [1]"), data.GetArray("platen")
+        count = contacts.GetNumberOfCells()
+        self.assertGreater(sum(platen.GetTuple1(i) for i in range(count)), 0)
+        self.assertGreater(max(crack.GetTuple1(i) for i in range(count)), 0.0)
+        self.assertTrue(all(crack.GetTuple1(i) == 0.0 for i in range(count) if platen.GetTuple1(i)))
+
+    def test_every_array_is_documented_and_the_script_names_those_that_are_there(self):
+        page = (CASES.parent / "docs" / "fields.md").read_text()
+        names = set()
+        for name in ("blocks_0007.hdf", "contacts_0007.hdf"):
+            fields = self.read(name)
+            for data in (fields.GetPointData(), fields.GetCellData()):
+                names |= {data.GetArrayName(i) for i in range(data.GetNumberOfArrays())}
+        for name in names:
+            self.assertIn(f"`{name}`", page)
+        sys.path.insert(0, str(CASES.parent / "scripts"))
+        import paraview_run  # pylint: disable=import-outside-toplevel,import-error
+
+        for name in (paraview_run.DISPLACEMENT, paraview_run.TEMPERATURE, paraview_run.MATERIAL, paraview_run.CRACK):
+            self.assertIn(name, names)
+        self.assertEqual(set(paraview_run.series_of(self.out)), {"blocks", "contacts"})
+        with self.assertRaisesRegex(paraview_run.Missing, "blocks.hdf.series"):
+            paraview_run.series_of(self.out / "nowhere")
+
+
+class ReferenceOfTheFigures(UserTest):
+    """`[output] reference` names what figures draw beside the results."""
+
+    def deck(self, reference: str) -> pathlib.Path:
+        return self.write(small_deck(history_strain=f'history_strain = 4e-6\nreference = "{reference}"'))
+
+    def test_what_is_wrong_is_told_at_its_place(self):
+        self.write("strain,stress\n0,0\n", "columns.csv")
+        self.write("# mine\nstrain,stress_MPa\n0,0\n1,high\n", "word.csv")
+        self.write("strain,stress_MPa\n0,0,0\n", "three.csv")
+        self.write("strain,stress_MPa\n0,0\n", "short.csv")
+        for reference, part in (("compresion", 'did you mean "compression"?'), ("mine", "ends in .csv"),
+                                ("gone.csv", "cannot open"),
+                                ("columns.csv", 'columns.csv:1: the header "strain,stress"'),
+                                ("word.csv", 'word.csv:4: "high"'), ("three.csv", "three.csv:2: 3 values"),
+                                ("short.csv", "1 rows")):
+            with self.subTest(reference):
+                done = self.pyroclast("check", self.deck(reference))
+                self.assertNotEqual(done.returncode, 0)
+                self.assertRegex(done.stderr, rf'deck.toml:\d+:\d+: output.reference = "{reference}": ')
+                self.assertIn(part, done.stderr)
+
+    def test_a_table_is_kept_with_the_run_and_drawn(self):
+        self.write("strain,stress_MPa\n0,0\n0.001,20\n", "tests_of_1976.csv")
+        done = self.pyroclast("run", self.deck("tests_of_1976.csv"), "--out", "run", "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue((self.folder / "run" / "inputs" / "tests_of_1976.csv").exists())
+        self.assertEqual(self.pyroclast("figures", "run", "run", "--format", "svg").returncode, 0)
+        self.assertIn("tests_of_1976", (self.folder / "run" / "figures" / "stress_strain.svg").read_text())
 
 
 class Properties(UserTest):
@@ -254,7 +408,7 @@ class Running(UserTest):
 
         blocks = read(series[-1]["name"])
         cells, points = blocks.GetCellData(), blocks.GetPointData()
-        stress, material = cells.GetArray("stress"), cells.GetArray("material")
+        stress, material = cells.GetArray("stress [Pa]"), cells.GetArray("material")
         self.assertGreater(blocks.GetNumberOfCells(), 400)
         self.assertEqual({int(material.GetTuple1(i)) for i in range(blocks.GetNumberOfCells())}, {0, 1, 2})
         self.assertEqual(cells.GetArray("block").GetNumberOfTuples(), blocks.GetNumberOfCells())
@@ -262,10 +416,11 @@ class Running(UserTest):
         self.assertLess(mean, -1e6)  # compression is negative in fields
         top = max(range(blocks.GetNumberOfPoints()), key=lambda i: blocks.GetPoint(i)[1])
         # 4e-4 of 100 mm, and a little more through the platens
-        self.assertAlmostEqual(points.GetArray("displacement").GetTuple(top)[1], -4e-5, delta=1e-5)
+        self.assertAlmostEqual(points.GetArray("displacement [m]").GetTuple(top)[1], -4e-5, delta=1e-5)
         contacts = read(series[-1]["name"].replace("blocks", "contacts"))
-        for name in ("interface", "length", "tension_damage", "shear_damage", "opening", "tangential_jump",
-                     "normal_traction", "shear_traction", "closure"):
+        for name in ("interface", "platen", "length [m]", "tension_damage [1]", "shear_damage [1]", "crack [1]",
+                     "opening [m]", "tangential_jump [m]", "normal_traction [Pa]", "shear_traction [Pa]",
+                     "closure [m]"):
             self.assertEqual(contacts.GetCellData().GetArray(name).GetNumberOfTuples(), contacts.GetNumberOfCells())
 
     def test_the_same_deck_gives_the_same_history_on_any_number_of_threads(self):
@@ -437,7 +592,7 @@ class HeatAlone(UserTest):
         reader = vtkHDFReader()
         reader.SetFileName(str(self.folder / "out/fields/blocks_0003.hdf"))
         reader.Update()
-        temperature = reader.GetOutput().GetPointData().GetArray("temperature")
+        temperature = reader.GetOutput().GetPointData().GetArray("temperature [degC]")
         self.assertAlmostEqual(temperature.GetRange()[1], self.rows()[-1]["temperature_max_degC"], delta=0.01)
 
     def test_a_steady_state_ends_the_run_earlier(self):

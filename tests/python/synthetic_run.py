@@ -278,7 +278,7 @@ def _write_temperature(folder: Path, number: int, row: dict, section: Section) -
     temperature = low + (high - low) * off_middle**2
     temperature[np.unique(section.triangles[section.material == 2])] = 20.0
     with h5py.File(folder / f"blocks_{number:04d}.hdf", "a") as file:
-        file["VTKHDF/PointData/temperature"] = temperature.astype(np.float32)
+        file["VTKHDF/PointData/temperature [degC]"] = temperature.astype(np.float32)
 
 
 def write_conduction(folder: Path) -> Section:
@@ -349,8 +349,8 @@ def write_fields(folder: Path, number: int, strain: float, section: Section) -> 
     owner[section.triangles.ravel()] = np.repeat(section.block, 3)
     displacement = moved[owner]
     with h5py.File(folder / f"blocks_{number:04d}.hdf", "w") as file:
-        file["VTKHDF/PointData/displacement"] = _with_z(displacement)
-        file["VTKHDF/CellData/stress"] = np.zeros((len(section.triangles), 3), np.float32)
+        file["VTKHDF/PointData/displacement [m]"] = _with_z(displacement)
+        file["VTKHDF/CellData/stress [Pa]"] = np.zeros((len(section.triangles), 6), np.float32)
 
     random = np.random.default_rng(1)
     middles = section.line_points[1::2]
@@ -364,9 +364,9 @@ def write_fields(folder: Path, number: int, strain: float, section: Section) -> 
         damage[section.interface == 3] = 1.0  # platen contacts start as broken
     with h5py.File(folder / f"contacts_{number:04d}.hdf", "w") as file:
         between = 0.5 * (moved[section.line_blocks[:, 0]] + moved[section.line_blocks[:, 1]])
-        file["VTKHDF/PointData/displacement"] = _with_z(np.repeat(between, 2, axis=0))
-        file["VTKHDF/CellData/tension_damage"] = tension.astype(np.float32)
-        file["VTKHDF/CellData/shear_damage"] = shear.astype(np.float32)
+        file["VTKHDF/PointData/displacement [m]"] = _with_z(np.repeat(between, 2, axis=0))
+        file["VTKHDF/CellData/tension_damage [1]"] = tension.astype(np.float32)
+        file["VTKHDF/CellData/shear_damage [1]"] = shear.astype(np.float32)
 
 
 def write_specimen(folder: Path, section: Section) -> None:

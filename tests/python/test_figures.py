@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import shutil
 import struct
 import sys
 import tempfile
@@ -16,6 +17,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "python")]
@@ -23,9 +25,11 @@ sys.path[:0] = [str(HERE), str(HERE.parents[1] / "python")]
 import synthetic_run  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
 from pyroclast import figures, reference, style  # noqa: E402
-from pyroclast.curves import mean_curve, mean_of, names_apart  # noqa: E402
-from pyroclast.heated_sections import frame_near, select_heated_frames  # noqa: E402
-from pyroclast.heating import strain_limits  # noqa: E402
+from pyroclast.comparisons import compare_cracks, compare_thrust, compare_total_strain  # noqa: E402
+from pyroclast.curves import compare, mean_curve, mean_of, names_apart  # noqa: E402
+from pyroclast.heated_sections import frame_near, levels, select_heated_frames  # noqa: E402
+from pyroclast.heating import strain_limits, total_strain  # noqa: E402
+from pyroclast.profiles import read_profile  # noqa: E402
 from pyroclast.progress import heating_course  # noqa: E402
 from pyroclast.properties import read_properties  # noqa: E402
 from pyroclast.run import Frame, Run, RunError, Specimen, Table  # noqa: E402
@@ -255,13 +259,13 @@ class ErrorsNameTheThing(FolderTest):
 
     def test_missing_dataset(self):
         with h5py.File(self.run_folder / "fields" / "contacts_0007.hdf", "a") as file:
-            del file["VTKHDF/CellData/shear_damage"]
+            del file["VTKHDF/CellData/shear_damage [1]"]
         self.assert_fails(["run", self.run_folder], "contacts_0007.hdf", "shear_damage")
 
     def test_field_of_another_mesh(self):
         with h5py.File(self.run_folder / "fields" / "contacts_0007.hdf", "a") as file:
-            del file["VTKHDF/CellData/shear_damage"]
-            file["VTKHDF/CellData/shear_damage"] = np.zeros(3)
+            del file["VTKHDF/CellData/shear_damage [1]"]
+            file["VTKHDF/CellData/shear_damage [1]"] = np.zeros(3)
         self.assert_fails(["run", self.run_folder], "contacts_0007.hdf", "(3,)")
 
     def test_file_that_is_not_hdf(self):
@@ -303,8 +307,8 @@ class HeatedRunsMakePictures(HeatedTest):
     def test_restrained_and_not_uniform(self):
         folder = self.heated("run", Heating(restrained=True, spread=100.0))
         self.assertEqual(self.names_drawn(folder, "--temperatures", "250,650"),
-                         ["thrust", "heating_cracks", "heating_energy", "convergence", "temperature",
-                          "heating_fracture"])
+                         ["thrust", "heating_cracks", "heating_energy", "convergence", "temperature_history",
+                          "temperature", "temperature_profile", "isotherm", "heating_fracture"])
 
     def test_cooled_then_compressed(self):
         folder = self.heated("run", Heating(level=0.3, hottest=300.0, cooled=True, compressed=True))
@@ -315,7 +319,7 @@ class HeatedRunsMakePictures(HeatedTest):
     def test_conduction_without_mechanics(self):
         folder = self.root / "run"
         synthetic_run.write_conduction(folder)
-        self.assertEqual(self.names_drawn(folder), ["temperature_history", "temperature"])
+        self.assertEqual(self.names_drawn(folder), ["temperature_history", "temperature", "temperature_profile"])
         run = Run(folder)
         self.assertEqual(style.title_of(run), run.title)
         self.assertEqual(list(run.probes), ["a", "b"])
@@ -371,8 +375,8 @@ class ErrorsOfHeatedRuns(HeatedTest):
         folder = self.heated("run", Heating(spread=100.0))
         last = max((folder / "fields").glob("blocks_*.hdf"))
         with h5py.File(last, "a") as file:
-            del file["VTKHDF/PointData/temperature"]
-        self.assert_fails(["run", folder], last.name, "/VTKHDF/PointData/temperature")
+            del file["VTKHDF/PointData/temperature [degC]"]
+        self.assert_fails(["run", folder], last.name, "/VTKHDF/PointData/temperature [degC]")
         replace_in(folder / "fields" / "frames.csv", "temperature_degC", "renamed")
         out = self.root / "out.png"
         self.assert_fails(["levels", folder, "--out", out], "frames.csv", "'temperature_degC'")
@@ -550,7 +554,7 @@ class HeatedReader(HeatedTest):
 
     def test_run_that_converged_has_no_warning(self):
         run = Run(self.heated("run"))
-        self.assertEqual(style.title_of(run), run.title)
+        self.assertEqual(style.warnings_of(run), [])
 
     def test_compression_after_heating_counts_from_its_start(self):
         run = Run(self.heated("run", Heating(level=0.3, hottest=300.0, compressed=True)))
@@ -587,6 +591,225 @@ class HeatedReader(HeatedTest):
         np.testing.assert_allclose(y, x + 1.0, rtol=1e-14)
 
 
+class ReferencesOfTheDeck(HeatedTest):
+    """What is drawn beside results is what the kept deck asks for, by the legend of the figure."""
+
+    def setUp(self):
+        super().setUp()
+        self.compressed = self.root / "compressed"
+        synthetic_run.write_run(self.compressed)
+
+    def legend(self, folder: Path, name: str, reference: str | None) -> str:
+        """Text of a figure of the run, drawn as svg."""
+        deck = folder / "deck.toml"
+        deck.write_text("[output]\n" + ("" if reference is None else f'reference = "{reference}"\n'))
+        code, _, err = self.command("run", folder, "--format", "svg")
+        self.assertEqual((code, err), (0, ""))
+        return (folder / "figures" / f"{name}.svg").read_text()
+
+    def test_none_is_drawn_unless_asked_for(self):
+        for asked in (None, "none"):
+            text = self.legend(self.compressed, "stress_strain", asked)
+            self.assertNotIn("Anderberg", text)
+            self.assertNotIn("experiment", text)
+        self.assertNotIn("Anderberg", self.legend(self.heated("run"), "total_strain", None))
+
+    def test_built_in(self):
+        text = self.legend(self.compressed, "stress_strain", "compression")
+        self.assertIn("Anderberg", text)
+        self.assertIn("experiment", text)
+        self.assertIn("Anderberg", self.legend(self.heated("run"), "total_strain", "transient_strain"))
+
+    def test_table_of_ones_own_is_named(self):
+        for folder, figure, columns in ((self.compressed, "stress_strain", "strain,stress_MPa"),
+                                        (self.heated("a"), "total_strain", "temperature_degC,total_strain"),
+                                        (self.heated("b"), "total_strain",
+                                         "temperature_degC,total_strain_low,total_strain_high"),
+                                        (self.heated("c", Heating(restrained=True)), "thrust",
+                                         "temperature_degC,stress_MPa")):
+            with self.subTest(columns):
+                (folder / "inputs").mkdir()
+                rows = "\n".join(",".join([str(i)] * len(columns.split(","))) for i in range(3))
+                (folder / "inputs" / "tests_of_1976.csv").write_text(f"# comment\n\n{columns}\n{rows}\n")
+                self.assertIn("tests_of_1976", self.legend(folder, figure, "inputs/tests_of_1976.csv"))
+
+    def test_comparison_names_the_references_of_its_runs(self):
+        out = self.root / "out.svg"
+        for asked, drawn in (("none", False), ("compression", True)):
+            (self.compressed / "deck.toml").write_text(f'[output]\nreference = "{asked}"\n')
+            self.assertEqual(self.command("compare", self.compressed, "--out", out)[0], 0)
+            self.assertEqual("Anderberg" in out.read_text(), drawn)
+
+    def test_what_is_wrong_is_named(self):
+        deck = self.compressed / "deck.toml"
+        for text, part in (("[output", "deck.toml"), ("[output]\nreference = 1", "not a text"),
+                           ('[output]\nreference = "other"', "'other'"),
+                           ('[output]\nreference = "gone.csv"', "gone.csv")):
+            deck.write_text(text)
+            self.assert_fails(["run", self.compressed], str(self.compressed), part)
+        (self.compressed / "a.csv").write_text("# a\nstrain,stress_MPa\n0,0\n1,x\n")
+        deck.write_text('[output]\nreference = "a.csv"')
+        self.assert_fails(["run", self.compressed], "a.csv, line 4", "'x'")
+
+
+class ManyRuns(HeatedTest):
+    """Many runs are a range with a mean, and few are curves."""
+
+    def lines_and_bands(self, make, folders) -> tuple[int, int]:
+        axes = make([Run(folder) for folder in folders]).axes[0]
+        return (len([line for line in axes.get_lines() if len(line.get_xdata()) > 2]), len(axes.collections))
+
+    def test_twenty_are_a_range_and_a_mean(self):
+        cold, hot = [], []
+        for i in range(20):
+            cold.append(self.root / f"cold_{i}")
+            synthetic_run.write_run(cold[-1], strength_factor=0.9 + 0.01 * i)
+            hot.append(self.heated(f"hot_{i}", Heating(level=0.3, expansion=0.9 + 0.01 * i)))
+        restrained = [self.heated(f"held_{i}", Heating(restrained=True)) for i in range(7)]
+        self.assertEqual(self.lines_and_bands(compare, cold), (1, 3))  # the others: bars of the mean peak
+        self.assertEqual(self.lines_and_bands(compare_total_strain, hot), (1, 1))
+        self.assertEqual(self.lines_and_bands(compare_cracks, cold), (1, 1))
+        self.assertEqual(self.lines_and_bands(compare_thrust, restrained), (1, 1))
+        labels = compare([Run(folder) for folder in cold]).axes[0].get_legend_handles_labels()[1]
+        self.assertIn("20 runs:\nleast to greatest", labels)
+        self.assertEqual(self.lines_and_bands(compare, cold[:3])[0], 4)
+        self.assertEqual(self.lines_and_bands(compare, cold[:1])[0], 1)  # the mean of one is itself
+
+    def test_the_range_is_that_of_the_runs(self):
+        folders = []
+        for i in range(8):
+            folders.append(self.root / f"run_{i}")
+            synthetic_run.write_run(folders[-1], strength_factor=0.8 + 0.05 * i)
+        band = compare([Run(folder) for folder in folders]).axes[0].collections[0]
+        height = band.get_paths()[0].vertices[:, 1]
+        # The band's 400 points pass the peak by at most half their spacing, over which the parabola falls by 6e-5.
+        self.assertAlmostEqual(height.max(), 1.15 * synthetic_run.PEAK_STRESS, delta=1e-3)
+
+    def test_names_are_the_shortest_ends_of_paths(self):
+        folders = [self.root / "a" / "seed_1", self.root / "b" / "seed_1", self.root / "b" / "seed_2"]
+        for folder in folders:
+            synthetic_run.write_run(folder)
+        runs = [Run(folder) for folder in folders]
+        self.assertEqual(names_apart(runs), ["a/seed_1", "b/seed_1", "seed_2"])
+        self.assertEqual(names_apart(runs[:1]), ["Synthetic run"])
+        self.assertEqual(names_apart([runs[0], runs[0]]), ["seed_1", "seed_1"])
+
+
+class NothingOverlapsOrIsCutOff(HeatedTest):
+    """Panels with their labels, captions and legends lie apart, and within the page."""
+
+    def assert_apart(self, name: str, figure) -> None:
+        figure.set_dpi(100)
+        renderer = FigureCanvasAgg(figure).get_renderer()
+        figure.draw(renderer)
+        boxes = []
+        for axes in figure.axes:
+            box = axes.get_tightbbox(renderer)
+            if box is None or box.width * box.height == 0.0:
+                continue
+            # A pixel: texts are placed at whole ones.
+            inside = (min(box.x0, box.y0) >= -1.0 and box.x1 <= figure.bbox.width + 1.0
+                      and box.y1 <= figure.bbox.height + 1.0)
+            self.assertTrue(inside, f"{name}: {box} reaches out of {figure.bbox}")
+            boxes.append((axes, box))
+        for i, (one, a) in enumerate(boxes):
+            for other, b in boxes[:i]:
+                width = min(a.x1, b.x1) - max(a.x0, b.x0)
+                height = min(a.y1, b.y1) - max(a.y0, b.y0)
+                twins = one in other.get_shared_x_axes().get_siblings(other) and one.bbox.bounds == other.bbox.bounds
+                # Tick labels may stand two pixels beyond the end of an axis.
+                self.assertFalse(not twins and width > 2.0 and height > 2.0, f"{name}: {a} covers {b}")
+
+    def test_in_any_figure(self):
+        cold = self.root / "cold"
+        synthetic_run.write_run(cold)
+        (cold / "deck.toml").write_text('[output]\nreference = "compression"\n')
+        wall = self.root / "wall"
+        synthetic_run.write_conduction(wall)
+        hot = self.heated("hot", Heating(critical=605.0, unconverged=(40,), spread=60.0))
+        (hot / "deck.toml").write_text('[output]\nreference = "transient_strain"\n')
+        after = self.heated("after", Heating(level=0.3, hottest=300.0, cooled=True, compressed=True))
+        held = self.heated("held", Heating(restrained=True, spread=60.0))
+        for folder in (cold, wall, hot, after, held):
+            for name, make in figures.figures_of(Run(folder)):
+                with self.subTest(folder=folder.name, figure=name):
+                    self.assert_apart(name, make())
+        for name, figure in (("compare", compare([Run(cold)])), ("total strain", compare_total_strain([Run(hot)])),
+                             ("cracks", compare_cracks([Run(hot)])), ("levels", levels([Run(hot), Run(held)]))):
+            with self.subTest(figure=name):
+                self.assert_apart(name, figure)
+
+
+class DepthOfTheHeat(HeatedTest):
+    """Profiles across the specimen, and figures over minutes where it is not uniform."""
+
+    def wall(self, temperature) -> Run:
+        """A run of conduction whose last field is a function of x and y over width and height, 0 to 1."""
+        folder = self.root / "wall"
+        section = synthetic_run.write_conduction(folder)
+        x, y = section.points[:, 0] / section.width, section.points[:, 1] / section.height
+        with h5py.File(max((folder / "fields").glob("blocks_*.hdf")), "a") as file:
+            file["VTKHDF/PointData/temperature [degC]"][...] = temperature(x, y)
+        return Run(folder)
+
+    def test_linear_field_is_read_exactly_from_its_hottest_face(self):
+        for face, temperature in (("left", lambda x, y: 900.0 - 800.0 * x), ("right", lambda x, y: 100.0 + 800.0 * x),
+                                  ("lower", lambda x, y: 900.0 - 800.0 * y), ("upper", lambda x, y: 100.0 + 800.0 * y)):
+            with self.subTest(face):
+                profile = read_profile(self.wall(temperature))
+                self.assertEqual(profile.face, face)
+                # Hexagons leave gaps at the sides: where no zone holds a point, the nearest gridpoints stand in.
+                inner = slice(20, -20)
+                expected = 900.0 - 800.0 * profile.depth / profile.depth[-1]
+                np.testing.assert_allclose(profile.temperature[-1][inner], expected[inner], atol=1e-3)
+                self.assertAlmostEqual(profile.isotherm[-1], 0.5 * profile.depth[-1], delta=1e-6)
+                shutil.rmtree(self.root / "wall")
+
+    def test_isotherm_is_none_or_all(self):
+        for temperature, share in ((499.0, 0.0), (501.0, 1.0)):
+            profile = read_profile(self.wall(lambda x, y, t=temperature: t + 0.0 * x))
+            self.assertEqual(profile.isotherm[-1], share * profile.depth[-1])
+            shutil.rmtree(self.root / "wall")
+
+    def test_figures_are_over_minutes(self):
+        run, even = Run(self.heated("a", Heating(spread=80.0))), Run(self.heated("b"))
+        self.assertIn("min", heating_course(run).label)
+        for make, panel in ((total_strain, 1), (compare_total_strain, 0)):
+            for one, unit in ((run, "[min]"), (even, "[°C]")):
+                figure = make(one) if make is total_strain else make([one])
+                self.assertIn(unit, figure.axes[panel].get_xlabel())
+        failed = Run(self.heated("c", Heating(spread=80.0, critical=505.0)))
+        marks = [line for line in total_strain(failed).axes[0].lines if str(line.get_label()).startswith("failed")]
+        self.assertEqual([line.get_label() for line in marks], ["failed at 97 min"])  # 485 K at 5 K/min
+
+    def test_tables_are_written_with_the_figures(self):
+        folder = self.heated("a", Heating(spread=80.0))
+        self.assertEqual(self.command("run", folder)[0], 0)
+        table, depth = Table(folder / "temperature_profile.csv"), Table(folder / "isotherm.csv")
+        self.assertEqual(table.names, ["heating_time_s", "depth_m", "temperature_degC"])
+        self.assertEqual(len(table), 121 * len(depth))
+        self.assertFalse(list(folder.glob("*.partial")))
+
+
+class Titles(HeatedTest):
+    def test_tell_load_and_temperatures_of_the_run(self):
+        failed = Run(self.heated("a", Heating(critical=505.0)))
+        self.assertEqual(style.title_of(failed),
+                         "Synthetic heating\n$\\sigma/f_c$ = 0.225, 20 to 505 °C, failed at 505 °C")
+        held = Run(self.heated("b", Heating(restrained=True, spread=80.0)))
+        self.assertIn("between fixed platens, mean 20 to 700 °C", style.title_of(held))
+        after = Run(self.heated("c", Heating(level=0.3, hottest=300.0, cooled=True, compressed=True)))
+        self.assertIn("heated to 300 °C, compressed at 20 °C; largest stress", style.title_of(after))
+
+    def test_long_ones_are_broken_into_lines_that_fit(self):
+        folder = self.root / "run"
+        synthetic_run.write_run(folder)
+        synthetic_run.write_summary(folder, 30 * "long title ", [("compress", {"quasi_static": True})])
+        lines = style.title_of(Run(folder)).splitlines()
+        self.assertEqual(" ".join(lines), (30 * "long title ").strip())
+        self.assertLessEqual(max(map(len, lines)), 100)
+
+
 class Reader(FolderTest):
     def test_settling_is_not_part_of_the_test(self):
         run = Run(self.run_folder)
@@ -620,7 +843,7 @@ class Reader(FolderTest):
 
     def test_platen_contacts_are_not_counted_as_cracks(self):
         run = Run(self.run_folder)
-        broken_at_start = run.contact_field(run.frames[0], "tension_damage") >= 1.0
+        broken_at_start = run.contact_field(run.frames[0], "tension_damage [1]") >= 1.0
         self.assertTrue(broken_at_start.any())
         counts = count_cracks(run, run.frames[0])
         self.assertEqual(set(counts.values()), {0})
@@ -630,7 +853,7 @@ class Reader(FolderTest):
         last = run.frames[-1]
         counts = count_cracks(run, last)
         inner = np.isin(run.mesh.contacts.interface, (1, 2))
-        damage = run.contact_field(last, "tension_damage")[inner]
+        damage = run.contact_field(last, "tension_damage [1]")[inner]
         self.assertGreater(counts["tension", True], 0)
         self.assertEqual(counts["tension", True], np.sum(damage == 1.0))
         self.assertEqual(counts["tension", False], np.sum((damage > 0.5) & (damage < 1.0)))

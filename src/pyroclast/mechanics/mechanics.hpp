@@ -206,6 +206,9 @@ class Mechanics {
   /// What the laws of this body call the energies that they lose.
   const std::vector<std::string_view>& dissipations() const { return dissipations_; }
   double opening(int contact) const;  ///< u_n at the displacements of the last forces, m
+  /// Directions of a contact at the displacements of the last forces.
+  ContactFrame<Dim> frame_of_forces(int contact) const;
+  const ZoneProperties& properties_of_zone(int zone) const { return properties_.zones[zone]; }
   // of all, in the order of the model
   std::vector<Vec<Dim>> displacements() const;
   std::vector<Vec<Dim>> velocities() const;
@@ -277,7 +280,6 @@ class Mechanics {
   void sweep(int steps, Pass pass);
   const LawTable& law_of_row(int face_row) const { return *laws_[storage_.law_of_faces[face_row]]; }
   Vec<Dim> jump_of_forces(int contact) const;
-  ContactFrame<Dim> frame_of_forces(int contact) const;
   Vec<Dim> displacement_of_force(int gridpoint) const;
   Dissipation dissipated() const;
 

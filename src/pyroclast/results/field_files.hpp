@@ -16,7 +16,6 @@ namespace pyroclast {
 /// Frames of the fields that were written so far.
 struct FrameRecords {
   std::vector<std::int64_t> rows;  ///< of the history, at which they were taken
-  std::vector<double> times;       ///< s
 };
 
 /// The fields of a run: `mesh.h5`, frames of the blocks and, where the body moves, of the contacts, see
@@ -27,8 +26,8 @@ class FieldFiles {
   FieldFiles(const std::filesystem::path& folder, const Simulation& simulation, const History& history,
              const FrameRecords& frames);
 
-  /// A frame of the fields now; its time is that of the mechanics, or of heating where nothing moves. Adds it
-  /// to `frames` once all of it is written.
+  /// A frame of the fields now, at the row that the history has last. Its time is the heating time while
+  /// heated, and before and after it that of the mechanics. Adds it to `frames` once all of it is written.
   void write(const Simulation& simulation, const History& history, FrameRecords& frames);
 
  private:

@@ -1,6 +1,6 @@
 #include "pyroclast/results/frame_series.hpp"
 
-#include <array>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,10 +22,15 @@ const char* name(MeshPart part) {
   return part == MeshPart::blocks ? "blocks" : "contacts";
 }
 
-/// Cell fields that the mesh holds for all frames.
-std::array<const char*, 2> cell_fields(MeshPart part) {
-  if (part == MeshPart::blocks) return {"block", "material"};
-  return {"interface", "length"};
+/// A cell field that the mesh holds for all frames.
+struct CellField {
+  const char* name;  ///< in mesh.h5
+  const char* shown;
+};
+
+std::vector<CellField> cell_fields(MeshPart part) {
+  if (part == MeshPart::blocks) return {{"block", "block"}, {"material", "material"}};
+  return {{"interface", "interface"}, {"platen", "platen"}, {"length", "length [m]"}};
 }
 
 void write_grid(Hdf5File& file, const std::string& group, const std::vector<double>& points,
@@ -55,9 +60,9 @@ void link_mesh(Hdf5File& file, MeshPart part) {
     file.external_link(fmt::format("/VTKHDF/{}", array), "mesh.h5", fmt::format("/{}/{}", grid, array));
   file.group("/VTKHDF/PointData");
   file.group("/VTKHDF/CellData");
-  for (const char* field : cell_fields(part))
-    file.external_link(fmt::format("/VTKHDF/CellData/{}", field), "mesh.h5",
-                       fmt::format("/{}/{}", grid, field));
+  for (const CellField& field : cell_fields(part))
+    file.external_link(fmt::format("/VTKHDF/CellData/{}", field.shown), "mesh.h5",
+                       fmt::format("/{}/{}", grid, field.name));
 }
 
 void append(std::vector<double>& values, const Vec<2>& v) {
@@ -84,7 +89,7 @@ void write_blocks(Hdf5File& file, const Model<2>& model) {
 void write_contacts(Hdf5File& file, const Model<2>& model) {
   std::vector<double> points;
   std::vector<std::int64_t> connectivity;
-  std::vector<std::uint8_t> interface;
+  std::vector<std::uint8_t> interface, platen;
   std::vector<double> length;
   for (std::size_t i = 0; i < model.contacts.size(); ++i) {
     const auto& c = model.contacts[i];
@@ -94,11 +99,13 @@ void write_contacts(Hdf5File& file, const Model<2>& model) {
     connectivity.insert(connectivity.end(),
                         {static_cast<std::int64_t>(2 * i), static_cast<std::int64_t>(2 * i + 1)});
     interface.push_back(static_cast<std::uint8_t>(c.interface));
+    platen.push_back(c.interface + 1 == std::ssize(model.interface_names) ? 1 : 0);
     length.push_back(c.area / model.thickness);
   }
   write_grid(file, "/contacts", points, connectivity, 2, kVtkLine);
   file.dataset("/contacts/interface", interface);
   file.attribute("/contacts/interface", "names", fmt::format("{}", fmt::join(model.interface_names, "\n")));
+  file.dataset("/contacts/platen", platen);
   file.dataset("/contacts/length", length);
 }
 
@@ -121,12 +128,12 @@ std::string FrameSeries::file_name(MeshPart part, int frame) {
   return fmt::format("{}_{:04}.hdf", name(part), frame);
 }
 
-void FrameSeries::write(double time, const std::function<void(Hdf5File&)>& fields) {
+void FrameSeries::write(std::vector<double> times, const std::function<void(Hdf5File&)>& fields) {
   Hdf5File file(folder_ / file_name(part_, count()));
   link_mesh(file, part_);
   fields(file);
   file.close();
-  times_.push_back(time);
+  times_ = std::move(times);
   write_series();
 }
 

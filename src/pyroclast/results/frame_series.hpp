@@ -26,9 +26,9 @@ class FrameSeries {
   /// \param times  of the frames that are there, s; later ones that a run broken off left are removed
   FrameSeries(std::filesystem::path folder, MeshPart part, std::vector<double> times = {});
 
-  /// \param time    s
+  /// \param times   of all frames so far and this one, s
   /// \param fields  adds the frame's datasets below /VTKHDF/PointData and /VTKHDF/CellData
-  void write(double time, const std::function<void(Hdf5File&)>& fields);
+  void write(std::vector<double> times, const std::function<void(Hdf5File&)>& fields);
 
   int count() const { return static_cast<int>(times_.size()); }
   /// Name of a frame's file.

@@ -47,7 +47,6 @@ void Recorder::visit_state(StateVisitor& visitor) {
   double time = wall_time();
   visitor.visit("wall_time", time);
   visitor.visit("frame_rows", frames_.rows);
-  visitor.visit("frame_times", frames_.times);
   if (visitor.replaces()) earlier_ = time;
 }
 

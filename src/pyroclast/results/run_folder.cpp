@@ -31,6 +31,8 @@ constexpr const char* kProgram = "pyroclast";
 constexpr auto kWritten = std::to_array<const char*>({
     "deck.toml",
     "history.csv",
+    "isotherm.csv",
+    "temperature_profile.csv",
     "summary.json",
     "lock",
     "run.log",
@@ -58,10 +60,12 @@ constexpr auto kFigures = std::to_array<const char*>({
     "heating_cracks",
     "heating_energy",
     "heating_fracture",
+    "isotherm",
     "morphology",
     "stress_strain",
     "temperature",
     "temperature_history",
+    "temperature_profile",
     "thrust",
     "total_strain",
 });

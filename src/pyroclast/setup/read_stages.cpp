@@ -12,7 +12,7 @@ namespace {
 /// Between two frames while the temperature changes, K, where the deck does not say.
 constexpr double kFrameTemperature = 50.0;
 
-OutputIntervals read_output(const Section& s, bool moves, bool frames_in_time) {
+OutputIntervals read_output(const Section& s, bool moves, FramesInTime frames_in_time) {
   OutputIntervals output;
   s.know({"history_strain", "frame_strain", "frame_temperature", "frame_interval"});
   if (moves) {
@@ -24,9 +24,12 @@ OutputIntervals read_output(const Section& s, bool moves, bool frames_in_time) {
         "frame_temperature", unit::temperature_difference, Range::positive(), kFrameTemperature,
         "while temperatures change: frames of the fields at its multiples, of the mean temperature");
   }
-  if (frames_in_time)
-    output.frame_interval = s.quantity("frame_interval", unit::time, Range::positive(),
-                                       "frames of the field at its multiples, of the heating time");
+  if (frames_in_time == FramesInTime::needed ||
+      (frames_in_time == FramesInTime::optional && s.has("frame_interval")))
+    output.frame_interval = s.quantity(
+        "frame_interval", unit::time, Range::positive(),
+        "frames of the fields at its multiples, of the heating time; with \"conduct\" it is needed, with "
+        "\"expose\" it takes the place of frame_temperature");
   return output;
 }
 
@@ -44,11 +47,13 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds) {
   };
   // Without a stage that could be read, what belongs to mechanics is known at least.
   const bool moves = chosen.empty() || any([](const StageNeeds& n) { return n.mechanics; });
+  FramesInTime frames_in_time = FramesInTime::none;
+  for (const StageKind* kind : chosen) frames_in_time = std::max(frames_in_time, kind->needs.frames_in_time);
   StageTables tables;
   tables.output = read_output(
       root.section("output",
                    "how often rows and frames are written; both are written at the end of each stage too"),
-      moves, any([](const StageNeeds& n) { return n.frames_in_time; }));
+      moves, frames_in_time);
   if (moves)
     tables.coupling_table =
         root.optional_section("coupling",

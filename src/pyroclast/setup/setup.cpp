@@ -11,6 +11,7 @@
 #include "pyroclast/setup/read_heat.hpp"
 #include "pyroclast/setup/read_materials.hpp"
 #include "pyroclast/setup/read_probes.hpp"
+#include "pyroclast/setup/read_reference.hpp"
 #include "pyroclast/setup/read_specimen.hpp"
 #include "pyroclast/setup/read_stages.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
@@ -214,6 +215,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   setup.checkpoints.keep_stages =
       output.flag("keep_stage_checkpoints", true,
                   "whether the state at the end of each stage is kept, for [forks](restart.md#forks)");
+  read_reference(output, folder);
   deck.finish();
   setup.warnings = deck.warnings();
   return setup;

@@ -1,9 +1,19 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 
 namespace pyroclast {
+
+/// The first multiple of an interval after a heating time, s; never for an infinite interval.
+inline double next_multiple(double interval, double time) {
+  if (interval == std::numeric_limits<double>::infinity()) return interval;
+  const double next = interval * (std::floor(time / interval) + 1.0);
+  return next > time ? next : next + interval;  // rounding
+}
 
 /// Conducts heat through a computed field in batches.
 class HeatFlow {

@@ -43,11 +43,14 @@ struct Verdict {
 /// What the temperatures of a stage are.
 enum class FieldChoice : std::uint8_t { any, uniform, computed };
 
+/// Whether the deck says at which even heating times a stage keeps frames.
+enum class FramesInTime : std::uint8_t { none, optional, needed };
+
 /// What stages of a kind need of a simulation.
 struct StageNeeds {
   bool mechanics = true;                 ///< moves the body
   FieldChoice field = FieldChoice::any;  ///< of temperatures
-  bool frames_in_time = false;           ///< keeps frames at even heating times
+  FramesInTime frames_in_time = FramesInTime::none;
 };
 
 /// How a stage heats.

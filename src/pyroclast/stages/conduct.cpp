@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-constexpr StageNeeds kNeeds{.mechanics = false, .field = FieldChoice::computed, .frames_in_time = true};
+constexpr StageNeeds kNeeds{
+    .mechanics = false, .field = FieldChoice::computed, .frames_in_time = FramesInTime::needed};
 
 std::unique_ptr<Stage> read_conduct(const Section& s, const StageTables& tables) {
   Conduct::Keys keys;
@@ -27,13 +28,6 @@ std::unique_ptr<Stage> read_conduct(const Section& s, const StageTables& tables)
                                   "the stage ends earlier when it is [steady](heat.md#steady-state)");
   keys.frame_interval = tables.output.frame_interval;
   return std::make_unique<Conduct>(keys);
-}
-
-/// The first multiple of the interval after a time.
-double next_multiple(double interval, double time) {
-  if (interval == kNever) return kNever;
-  const double next = interval * (std::floor(time / interval) + 1.0);
-  return next > time ? next : next + interval;  // rounding
 }
 
 }  // namespace

@@ -137,7 +137,8 @@ Verdict ExchangeStage::judge(Simulation& simulation) {
   const double interval = interval_of(simulation.field().mean());
   const bool is_new = interval != last_interval_;
   last_interval_ = interval;
-  return {.frame = is_new};
+  const bool came = frame_time_came(simulation);
+  return {.frame = frames_in_time() ? came : is_new};
 }
 
 /// Which of the even intervals between frames a temperature lies in.
@@ -191,11 +192,13 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
 Forecast ExchangeStage::forecast(const Simulation&, Foreseen& foreseen) const {
   const double from = foreseen.temperature;
   const double exchanges = std::ceil(foreseen_change(foreseen) / coupling().increment);
-  return {.steps = exchanges * exchange_.expected_cycles(),
-          .looks = exchanges,
-          .frames = std::abs(foreseen.temperature - from) / keys_.frame_temperature + 1.0,
-          .exchanges = exchanges,
-          .heating_duration = needs().field == FieldChoice::computed ? heating().duration : 0.0};
+  return {
+      .steps = exchanges * exchange_.expected_cycles(),
+      .looks = exchanges,
+      .frames =
+          frames_in_time().value_or(std::abs(foreseen.temperature - from) / keys_.frame_temperature) + 1.0,
+      .exchanges = exchanges,
+      .heating_duration = needs().field == FieldChoice::computed ? heating().duration : 0.0};
 }
 
 void ExchangeStage::visit_state(StateVisitor& visitor) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "pyroclast/stages/registry.hpp"
 
 namespace pyroclast {
@@ -31,6 +33,10 @@ class ExchangeStage : public Stage {
   virtual bool change(Simulation& simulation, Exchange& exchange, int most_evaluations) = 0;
   /// Change of temperature to come as far as it can be foreseen, K, and where it ends.
   virtual double foreseen_change(Foreseen& foreseen) const = 0;
+  /// Frames to come where the heating time says when they are due; empty where the temperature says it.
+  virtual std::optional<double> frames_in_time() const { return std::nullopt; }
+  /// Whether such a frame is due; told once.
+  virtual bool frame_time_came(const Simulation&) { return false; }
   virtual void visit_change(StateVisitor& visitor) = 0;
 
  private:

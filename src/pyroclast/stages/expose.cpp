@@ -1,5 +1,8 @@
 #include "pyroclast/stages/expose.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "pyroclast/simulation/simulation.hpp"
 
 namespace pyroclast {
@@ -11,9 +14,12 @@ constexpr double kSameTime = 1e-9;
 /// The mean temperature changes by about this share of what the hottest boundary could bring about.
 constexpr double kMeanChange = 0.5;
 
+constexpr StageNeeds kNeeds{.field = FieldChoice::computed, .frames_in_time = FramesInTime::optional};
+
 std::unique_ptr<Stage> read_expose(const Section& s, const StageTables& tables) {
   Expose::Keys keys;
   keys.duration = s.quantity("duration", unit::time, Range::positive(), "time for which the boundaries act");
+  keys.frame_interval = tables.output.frame_interval;
   keys.exchange = read_exchange(s, tables);
   if (keys.exchange.coupling.predictor)
     (s.is_table("coupling") ? *s.optional_section("coupling") : *tables.coupling_table)
@@ -24,22 +30,36 @@ std::unique_ptr<Stage> read_expose(const Section& s, const StageTables& tables) 
 }  // namespace
 
 StageKind expose_kind() {
-  return {"expose",
-          "lets heat flow by the boundaries of [heat], and the body follow; needs conduction",
-          {.field = FieldChoice::computed},
-          read_expose};
+  return {"expose", "lets heat flow by the boundaries of [heat], and the body follow; needs conduction",
+          kNeeds, read_expose};
+}
+
+StageNeeds Expose::needs() const {
+  return kNeeds;
 }
 
 void Expose::begin_change(Simulation& simulation) {
   began_ = simulation.field().time();
+  next_frame_ = next_multiple(keys_.frame_interval, began_);
   simulation.field().begin_exposure(temperature_range(simulation.heat(), began_ + keys_.duration));
 }
 
 bool Expose::change(Simulation& simulation, Exchange& exchange, int) {
-  if (!flow_.flows()) flow_.begin(coupling().increment, began_ + keys_.duration);
+  if (!flow_.flows()) flow_.begin(coupling().increment, std::min(began_ + keys_.duration, next_frame_));
   if (!flow_.advance(simulation.field())) return false;
   simulation.set_heating_time(simulation.field().time());
   exchange.hand_over(simulation);
+  return true;
+}
+
+std::optional<double> Expose::frames_in_time() const {
+  if (keys_.frame_interval == std::numeric_limits<double>::infinity()) return std::nullopt;
+  return keys_.duration / keys_.frame_interval;
+}
+
+bool Expose::frame_time_came(const Simulation& simulation) {
+  if (simulation.heating_time() < next_frame_) return false;
+  next_frame_ = next_multiple(keys_.frame_interval, simulation.heating_time());
   return true;
 }
 
@@ -56,6 +76,7 @@ double Expose::foreseen_change(Foreseen& foreseen) const {
 
 void Expose::visit_change(StateVisitor& visitor) {
   visitor.visit("began", began_);
+  visitor.visit("next_frame", next_frame_);
   flow_.visit_state(visitor);
 }
 

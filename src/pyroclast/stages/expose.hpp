@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "pyroclast/simulation/heat_flow.hpp"
 #include "pyroclast/stages/exchange_stage.hpp"
 
@@ -9,14 +11,15 @@ namespace pyroclast {
 class Expose : public ExchangeStage {
  public:
   struct Keys {
-    double duration = 0.0;  ///< s
+    double duration = 0.0;                                            ///< s
+    double frame_interval = std::numeric_limits<double>::infinity();  ///< see OutputIntervals
     ExchangeStage::Keys exchange;
   };
 
   explicit Expose(const Keys& keys) : ExchangeStage(keys.exchange), keys_(keys) {}
 
   const char* kind() const override { return "expose"; }
-  StageNeeds needs() const override { return {.field = FieldChoice::computed}; }
+  StageNeeds needs() const override;
   HeatingPlan heating() const override { return {.duration = keys_.duration}; }
   double progress(const Simulation& simulation) const override;
 
@@ -24,11 +27,14 @@ class Expose : public ExchangeStage {
   void begin_change(Simulation& simulation) override;
   bool change(Simulation& simulation, Exchange& exchange, int most_evaluations) override;
   double foreseen_change(Foreseen& foreseen) const override;
+  std::optional<double> frames_in_time() const override;
+  bool frame_time_came(const Simulation& simulation) override;
   void visit_change(StateVisitor& visitor) override;
 
   Keys keys_;
   HeatFlow flow_;
-  double began_ = 0.0;  ///< heating time, s
+  double began_ = 0.0;       ///< heating time, s
+  double next_frame_ = 0.0;  ///< likewise
 };
 
 StageKind expose_kind();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,8 +18,8 @@ struct OutputIntervals {
   double history_strain = 0.0;     ///< axial strain between two rows of the history, while compressing
   double frame_strain = 0.0;       ///< axial strain between two frames of the fields, while compressing
   double frame_temperature = 0.0;  ///< frames at its multiples, of the mean temperature, K
-  double frame_interval =
-      0.0;  ///< frames at its multiples, of the heating time, s; of stages that ask for it
+  /// Frames at its multiples, of the heating time, s; never if the deck does not say.
+  double frame_interval = std::numeric_limits<double>::infinity();
 };
 
 /// What a deck says beside the stage's own table.
