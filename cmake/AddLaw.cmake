@@ -4,6 +4,10 @@
 # Its rows are compiled for each instruction set and dimension, with the flags that results need, whatever the build
 # type and the flags of the project. The property LAW_OBJECTS of the target lists the objects of single sets.
 set(pyroclast_law_templates ${CMAKE_CURRENT_LIST_DIR})
+# Those of binutils, whatever the compiler: with Clang, CMake would take LLVM's, which lack an option.
+find_program(PYROCLAST_LD NAMES ld.bfd ld REQUIRED)
+find_program(PYROCLAST_OBJCOPY NAMES objcopy REQUIRED)
+mark_as_advanced(PYROCLAST_LD PYROCLAST_OBJCOPY)
 
 function(pyroclast_add_law)
   cmake_parse_arguments(PARSE_ARGV 0 LAW "" "NAME;HEADER;TYPE" "DIMENSIONS")
@@ -40,9 +44,12 @@ function(pyroclast_add_law)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/${LAW_NAME}_law)
   set(objects)
   set(compiled)
+  set(declared)
   foreach(set IN LISTS pyroclast_instruction_sets)
     set(LAW_SET ${pyroclast_type_of_${set}})
-    list(APPEND compiled "&pyroclast::Compiled<pyroclast::${LAW_SET}, ${LAW_TYPE}, pyroclast::Dimensions::${LAW_DIMENSIONS}>::law")
+    set(rows_type "pyroclast::Compiled<pyroclast::${LAW_SET}, ${LAW_TYPE}, pyroclast::Dimensions::${LAW_DIMENSIONS}>")
+    list(APPEND compiled "&${rows_type}::law")
+    string(APPEND declared "extern template struct ${rows_type};\n")
     configure_file(${pyroclast_law_templates}/law_rows.cpp.in ${folder}/${LAW_NAME}_${set}.cpp @ONLY)
     if(set STREQUAL portable)
       continue()
@@ -54,13 +61,14 @@ function(pyroclast_add_law)
     target_compile_options(${rows} PRIVATE ${flags} ${pyroclast_flags_of_${set}})
     add_custom_command(
       OUTPUT ${folder}/${rows}.o
-      COMMAND ${CMAKE_LINKER} -r --force-group-allocation $<TARGET_OBJECTS:${rows}> -o ${folder}/${rows}.o
-      COMMAND ${CMAKE_OBJCOPY} --wildcard "--keep-global-symbol=_ZN9pyroclast8CompiledI*E3lawE" ${folder}/${rows}.o
+      COMMAND ${PYROCLAST_LD} -r --force-group-allocation $<TARGET_OBJECTS:${rows}> -o ${folder}/${rows}.o
+      COMMAND ${PYROCLAST_OBJCOPY} --wildcard "--keep-global-symbol=_ZN9pyroclast8CompiledI*E3lawE" ${folder}/${rows}.o
       DEPENDS ${rows} $<TARGET_OBJECTS:${rows}>
       COMMAND_EXPAND_LISTS VERBATIM)
     list(APPEND objects ${folder}/${rows}.o)
   endforeach()
   list(JOIN compiled ",\n                          " LAW_COMPILED)
+  string(STRIP "${declared}" LAW_DECLARED)
   configure_file(${pyroclast_law_templates}/law.cpp.in ${folder}/${LAW_NAME}.cpp @ONLY)
   add_library(${LAW_NAME} MODULE ${folder}/${LAW_NAME}.cpp ${folder}/${LAW_NAME}_portable.cpp ${objects})
   target_compile_options(${LAW_NAME} PRIVATE ${flags})

@@ -11,7 +11,11 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(pyroclast_type_of_avx2 Avx2)
   set(pyroclast_flags_of_avx2 -mavx2 -mtune=znver3)
   set(pyroclast_type_of_avx512 Avx512)
-  set(pyroclast_flags_of_avx512 -mavx512f -mavx512dq -mavx512vl -mtune=znver3 -Wno-uninitialized -Wno-maybe-uninitialized)
+  set(pyroclast_quiet_avx512_header)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    set(pyroclast_quiet_avx512_header -Wno-uninitialized -Wno-maybe-uninitialized)
+  endif()
+  set(pyroclast_flags_of_avx512 -mavx512f -mavx512dq -mavx512vl -mtune=znver3 ${pyroclast_quiet_avx512_header})
 endif()
 # Arithmetic as IEEE 754 has it: contracting a*b+c into one instruction differently in two inlined copies of a loop
 # would make the result depend on the optimizer; results are promised bitwise, so it is off.

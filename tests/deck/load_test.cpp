@@ -107,7 +107,15 @@ TEST(DeckText, WithAQuantityOutsideQuotesIsExplained) {
 TEST(DeckText, ThatIsNotUtf8IsLocated) {
   const Diagnostic diagnostic = syntax_error_of("a = 1\nb = \"\xff\"\n");
   EXPECT_EQ(diagnostic.line, 2);
-  EXPECT_TRUE(mentions(diagnostic.message, "utf-8"));
+  EXPECT_EQ(diagnostic.column, 6);
+  EXPECT_TRUE(mentions(diagnostic.message, "UTF-8"));
+}
+
+TEST(DeckText, WithAByteOrderMarkInItsMiddleIsLocated) {
+  const Diagnostic diagnostic = syntax_error_of("a = 1\nb = \"é\xef\xbb\xbf\"\n");
+  EXPECT_EQ(diagnostic.line, 2);
+  EXPECT_EQ(diagnostic.column, 7);
+  EXPECT_TRUE(mentions(diagnostic.message, "byte-order mark"));
 }
 
 TEST(DeckText, MayBeginWithAByteOrderMark) {

@@ -172,6 +172,14 @@ TEST(Curve, AnExpressionKnowsConditionsAndTheUsualPrecedence) {
   EXPECT_DOUBLE_EQ(formula("ln(exp(T / 100))")(250), 2.5);
 }
 
+// Promise: any number but 0 is true, also between constants.
+TEST(Curve, AnExpressionKnowsAndAndOr) {
+  EXPECT_EQ(formula("T > 60 && T < 80 ? 1 : 2")(70), 1.0);
+  EXPECT_EQ(formula("T < 60 || T > 80 ? 1 : 2")(70), 2.0);
+  EXPECT_EQ(formula("0.5 && 1 ? T : 0")(70), 70.0);
+  EXPECT_EQ(formula("0 || 1e300 ? T : 0")(70), 70.0);
+}
+
 TEST(Curve, AnExpressionOfTimeUsesItsOwnVariable) {
   const Curve ramp = Curve::expression("20 + 5 * t / 60", {0, 9360}, time_axis());
   EXPECT_DOUBLE_EQ(ramp(60), 25.0);

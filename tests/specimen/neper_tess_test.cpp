@@ -230,6 +230,7 @@ INSTANTIATE_TEST_SUITE_P(
               "expected as many faces as cells, found '3 cells and 2 faces'"},
         Fault{"overlap", "2 4 2 5 4 3", "2 3 2 5 4", "cells do not fit together"},
         Fault{"stray", " **edge\n", " **vertex 6 edge\n", "line 23"},
+        Fault{"second", " **edge\n", " **vertex\n", "line 23: expected one section '\\*\\*vertex' alone"},
         Fault{"domain", "2  2 0 0 x1y0", "2  2.1 0.2 0 x1y0",
               "expected a domain that is an upright rectangle"},
         Fault{"no domain", " **domain", " **dominion", "a section '\\*\\*domain'"},

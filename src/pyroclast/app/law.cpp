@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +9,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/kit.hpp"
 #include "pyroclast/laws/registry.hpp"
+#include "pyroclast/material/jump_path.hpp"
 #include "pyroclast/mechanics/law_row.hpp"
 #include "pyroclast/plugin/find_law.hpp"
 #include "pyroclast/results/text_file.hpp"
@@ -18,88 +17,6 @@
 namespace pyroclast::app {
 
 namespace {
-
-struct PathPoint {
-  double opening = 0.0, slip = 0.0;  ///< m
-  double temperature = kReferenceTemperature;
-};
-
-[[noreturn]] void fail(const std::filesystem::path& file, int line, const std::string& what) {
-  throw Error(fmt::format("{}:{}: {}", file.string(), line, what));
-}
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-std::vector<std::string> cells(const std::string& line) {
-  std::vector<std::string> list;
-  std::stringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) list.push_back(trimmed(cell));
-  return list;
-}
-
-/// A column of the path file: which quantity, and the unit its numbers are in.
-struct PathColumn {
-  double PathPoint::*quantity;
-  const Unit* dimension;
-  std::string unit;
-};
-
-PathColumn parse_column(const std::filesystem::path& file, int line, const std::string& header) {
-  const auto open = header.find('[');
-  const auto close = header.find(']');
-  if (open == std::string::npos || close == std::string::npos || close < open)
-    fail(file, line, fmt::format("column \"{}\" has no unit; write for example \"u_n [um]\"", header));
-  PathColumn column;
-  const std::string name = trimmed(header.substr(0, open));
-  column.unit = trimmed(header.substr(open + 1, close - open - 1));
-  column.dimension = &unit::length;
-  if (name == "u_n") {
-    column.quantity = &PathPoint::opening;
-  } else if (name == "u_s") {
-    column.quantity = &PathPoint::slip;
-  } else if (name == "T") {
-    column.quantity = &PathPoint::temperature;
-    column.dimension = &unit::temperature;
-  } else {
-    fail(file, line, fmt::format("column \"{}\" is unknown; allowed are u_n, u_s and T", name));
-  }
-  return column;
-}
-
-std::vector<PathPoint> read_path(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw Error(fmt::format("{}: cannot be read", file.string()));
-  std::vector<PathColumn> columns;
-  std::vector<PathPoint> path;
-  int number = 0;
-  for (std::string text; std::getline(stream, text);) {
-    ++number;
-    if (trimmed(text).empty() || trimmed(text).front() == '#') continue;
-    const auto row = cells(text);
-    if (columns.empty()) {
-      for (const auto& header : row) columns.push_back(parse_column(file, number, header));
-      continue;
-    }
-    if (row.size() != columns.size())
-      fail(file, number, fmt::format("{} values, but the header has {} columns", row.size(), columns.size()));
-    PathPoint point;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      try {
-        point.*columns[i].quantity = parse_quantity(row[i] + " " + columns[i].unit, *columns[i].dimension);
-      } catch (const Error& e) {
-        fail(file, number, e.what());
-      }
-    }
-    path.push_back(point);
-  }
-  if (path.empty())
-    throw Error(fmt::format("{}: holds no path; a header and at least one row are needed", file.string()));
-  return path;
-}
 
 /// The contacts of an interface, of the deck or of two blocks of one phase. Throws Error when there is none.
 const ContactMaterial& contact_of(const ConcreteMaterials& concrete, const InterfaceTable& table,
@@ -122,7 +39,7 @@ class Drive {
     warm_to(kReferenceTemperature);
   }
 
-  void go(const PathPoint& to) {
+  void go(const JumpPathPoint& to) {
     if (to.temperature != at_.temperature) {
       warm_to(to.temperature);
       const double before = response_.stored + dissipated();
@@ -162,7 +79,7 @@ class Drive {
 
   void warm_to(double temperature) { constants_ = material_.at(temperature).constants(); }
 
-  void update(const PathPoint& point) {
+  void update(const JumpPathPoint& point) {
     const std::array jump{point.opening, point.slip};
     response_ = law_.update(2)(constants_.data(), jump.data(), history_.data(), losses_.data());
   }
@@ -179,7 +96,7 @@ class Drive {
   std::vector<std::byte> constants_;
   std::vector<double> history_, losses_;
   PointResponse response_;
-  PathPoint at_;
+  JumpPathPoint at_;
   double property_change_ = 0.0;
 };
 
@@ -263,8 +180,8 @@ int law(const LawOptions& options) {
   Drive drive(material);
 
   std::string csv = drive.header();
-  PathPoint from;
-  for (const PathPoint& to : read_path(options.path)) {
+  JumpPathPoint from;
+  for (const JumpPathPoint& to : read_jump_path(options.path)) {
     for (int i = 1; i <= options.steps; ++i) {
       const double share = static_cast<double>(i) / options.steps;
       const auto between = [&](double a, double b) { return i == options.steps ? b : a + share * (b - a); };

@@ -35,17 +35,17 @@ Deck Deck::load(const std::filesystem::path& file, const std::vector<std::string
                 const std::string& more) {
   std::string text = read_file(file);
   if (!more.empty()) text += "\n" + more;
+  return parse(std::move(text), file.string(), changes);
+}
+
+Deck Deck::parse(std::string text, std::string name, const std::vector<std::string>& changes) {
   for (const std::string& change : changes) {
     const auto equals = change.find('=');
     if (equals == std::string::npos)
       throw Error("--set " + change + ": write it as key=value, e.g. specimen.seed=2");
-    text = DeckRecord(std::move(text), file.string())
+    text = DeckRecord(std::move(text), name)
                .with_value(trimmed(change.substr(0, equals)), trimmed(change.substr(equals + 1)));
   }
-  return parse(std::move(text), file.string());
-}
-
-Deck Deck::parse(std::string text, std::string name) {
   return Deck(std::make_unique<DeckRecord>(std::move(text), std::move(name)));
 }
 

@@ -233,7 +233,7 @@ class Deck {
   static Deck load(const std::filesystem::path& file, const std::vector<std::string>& changes = {},
                    const std::string& more = "");
   /// The same for a text; `name` takes the file's place in messages.
-  static Deck parse(std::string text, std::string name);
+  static Deck parse(std::string text, std::string name, const std::vector<std::string>& changes = {});
 
   Deck(Deck&&) noexcept;
   Deck& operator=(Deck&&) noexcept;

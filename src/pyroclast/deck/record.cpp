@@ -9,6 +9,7 @@
 
 #include "pyroclast/base/nearest.hpp"
 #include "pyroclast/deck/survey_run.hpp"
+#include "pyroclast/deck/toml_characters.hpp"
 
 namespace pyroclast {
 namespace {
@@ -42,25 +43,36 @@ toml::table parse_toml(const SourceText& source, const std::string& name) {
                                 .message = std::move(message),
                                 .hint = std::move(hint)}});
   };
+  const auto fail_to_parse = [&](SourcePosition at, std::string_view what) {
+    const bool unquoted = has_unquoted_quantity(source.line(at.line));
+    fail(at, fmt::format("not valid TOML: {}", what),
+         unquoted ? "a value with a unit stands in quotes, e.g. \"150 mm\"" : "");
+  };
+  if (const auto fault = character_fault(source.text())) fail_to_parse(fault->at, fault->what);
   toml::table root;
   try {
     root = toml::parse(source.text());
   } catch (const toml::parse_error& error) {
-    const SourcePosition at = position(error.source().begin);
-    const bool unquoted = has_unquoted_quantity(source.line(at.line));
-    fail(at, fmt::format("not valid TOML: {}", error.description()),
-         unquoted ? "a value with a unit stands in quotes, e.g. \"150 mm\"" : "");
+    fail_to_parse(position(error.source().begin), error.description());
   }
   if (root.empty()) fail({1, 1}, "the deck is empty", "");
   return root;
 }
 
+/// Empty if the text is not TOML.
+std::optional<toml::table> try_toml(const std::string& text) {
+  if (character_fault(text)) return std::nullopt;
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error&) {
+    return std::nullopt;
+  }
+}
+
 /// A value that is not TOML as it stands, such as 5 us, is a string.
 std::string as_toml(const std::string& value) {
-  try {
-    if (toml::parse("value = " + value).size() == 1) return value;
-  } catch (const toml::parse_error&) {  // then it is a string
-  }
+  const auto table = try_toml("value = " + value);
+  if (table && table->size() == 1) return value;
   return fmt::format("\"{}\"", value);
 }
 
@@ -167,11 +179,8 @@ std::string DeckRecord::with_value(std::string_view path, const std::string& val
 /// Below the header of the nearest table that there is; where that has no header of its own, above all.
 std::string DeckRecord::with_new_key(std::string_view path, const std::string& value) const {
   const auto fits = [&](const std::string& text) {
-    try {
-      return static_cast<bool>(toml::parse(text).at_path(path));
-    } catch (const toml::parse_error&) {
-      return false;
-    }
+    const auto table = try_toml(text);
+    return table && table->at_path(path);
   };
   for (std::string_view above = path; above.find('.') != std::string_view::npos;) {
     above = above.substr(0, above.rfind('.'));

@@ -107,11 +107,9 @@ class Surveyor {
       if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(std::move(key));
     }
     for (const auto& [table, key] : known_) {
-      const bool is_read = std::any_of(found_.begin(), found_.end(), [&](const Found& f) {
-        return f.read.what.table == table && f.read.what.key.key == key;
-      });
       const std::string path = joined(table, key);
-      if (!is_read && !is_table(path) && !is_table(path + "[]")) schema.never_read.push_back(path);
+      if (!is_read(table, key) && !is_table(path) && !is_table(path + "[]"))
+        schema.never_read.push_back(path);
     }
     std::erase_if(schema.tables, [](const DeckTable& t) { return t.keys.empty(); });
     for (DeckTable& table : schema.tables) take_common_conditions(table);
@@ -119,6 +117,11 @@ class Surveyor {
   }
 
  private:
+  bool is_read(const std::string& table, const std::string& key) const {
+    return std::any_of(found_.begin(), found_.end(), [&](const Found& f) {
+      return f.read.what.table == table && f.read.what.key.key == key;
+    });
+  }
   bool is_table(const std::string& path) const { return find_table(tables_, path) != tables_.end(); }
   bool is_form(const std::string& path) const { return find_table(tables_, path)->is_form; }
 

@@ -88,6 +88,11 @@ Curve read_curve_csv(const std::filesystem::path& path, const CurveAxis& axis,
                      const UnitConversion& convert_abscissa, const UnitConversion& convert_value) {
   std::ifstream file(path);
   if (!file) throw Error(fmt::format("cannot open the table file {}", path.string()));
+  return read_curve_csv(file, path, axis, convert_abscissa, convert_value);
+}
+
+Curve read_curve_csv(std::istream& file, const std::filesystem::path& path, const CurveAxis& axis,
+                     const UnitConversion& convert_abscissa, const UnitConversion& convert_value) {
   TableReader reader(convert_abscissa, convert_value);
   std::string line;
   for (int line_number = 1; std::getline(file, line); ++line_number) {

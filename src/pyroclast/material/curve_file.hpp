@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <istream>
 #include <string>
 
 #include "pyroclast/material/curve.hpp"
@@ -17,6 +18,9 @@ using UnitConversion = std::function<double(double value, const std::string& uni
 /// naming file and line when the file cannot be read, a line is not two numbers, a unit does not convert, or
 /// the points do not make a table.
 Curve read_curve_csv(const std::filesystem::path& path, const CurveAxis& axis,
+                     const UnitConversion& convert_abscissa, const UnitConversion& convert_value);
+/// The same from a stream; `path` names it in messages.
+Curve read_curve_csv(std::istream& file, const std::filesystem::path& path, const CurveAxis& axis,
                      const UnitConversion& convert_abscissa, const UnitConversion& convert_value);
 
 }  // namespace pyroclast

@@ -65,6 +65,10 @@ class Evaluator {
  public:
   Evaluator(const std::string& formula, const std::string& variable) {
     parser_.DefineVar(variable, &x_);
+    // Where && and || stand between constants, muParser's optimizer casts them to int: 0.5 && 1 is false to
+    // it, and what does not fit into an int is undefined.
+    if (formula.find("&&") != std::string::npos || formula.find("||") != std::string::npos)
+      parser_.EnableOptimizer(false);
     parser_.SetExpr(formula);
   }
   Evaluator(const Evaluator&) = delete;

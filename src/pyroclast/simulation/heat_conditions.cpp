@@ -18,6 +18,8 @@ template <class... F>
 struct Overloaded : F... {
   using F::operator()...;
 };
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;  // Clang before 17 does not deduce it by itself
 
 /// Curves of a condition, in the order: temperature (if it has one), others.
 struct ConditionCurves {

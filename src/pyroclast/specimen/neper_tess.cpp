@@ -4,10 +4,13 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,11 +25,8 @@ namespace {
 /// The words of a .tess file, which may be broken into lines at will, with the line each stands on.
 class Words {
  public:
-  explicit Words(const std::filesystem::path& file) : name_(file.string()) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw Error(fmt::format("Cannot open the tessellation file {}.", name_));
-    text_.assign(std::istreambuf_iterator<char>(stream), {});
-  }
+  Words(std::istream& stream, std::string name)
+      : name_(std::move(name)), text_(std::istreambuf_iterator<char>(stream), {}) {}
 
   /// The next word without taking it; empty at the end of the file.
   std::string_view peek() {
@@ -219,11 +219,13 @@ Box read_domain(Words& words) {
 
 File read(Words& words) {
   File file;
+  std::set<std::string, std::less<>> seen;
   words.expect("***tess");
   while (words.peek() != "***end") {
     const std::string_view section = words.next();
     if (!section.starts_with("**") || section.starts_with("***"))
       words.fail(section, "a section '**...' or '***end'");
+    if (!seen.emplace(section).second) words.fail(section, fmt::format("one section '{}' alone", section));
     if (section == "**format") read_format(words);
     if (section == "**general") read_general(words);
     if (section == "**cell") file.cell_count = words.count("the number of cells", 1);
@@ -267,10 +269,16 @@ void require_aspect_ratio(const Box& domain, double width, double height, const 
 
 }  // namespace
 
-Tessellation read_neper_tess(const std::filesystem::path& path, double width, double height) {
-  Words words(path);
+Tessellation read_neper_tess(const std::filesystem::path& file, double width, double height) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Error(fmt::format("Cannot open the tessellation file {}.", file.string()));
+  return read_neper_tess(stream, file.string(), width, height);
+}
+
+Tessellation read_neper_tess(std::istream& stream, const std::string& name, double width, double height) {
+  Words words(stream, name);
   const File file = read(words);
-  require_aspect_ratio(*file.domain, width, height, path.string());
+  require_aspect_ratio(*file.domain, width, height, name);
 
   Tessellation result;
   std::vector<int> number(file.vertices.size(), -1);
@@ -290,7 +298,7 @@ Tessellation read_neper_tess(const std::filesystem::path& path, double width, do
     corners(result, result.cells.size() - 1, polygon);
     if (area(polygon) < 0.0) std::reverse(result.cells.back().begin(), result.cells.back().end());
   }
-  require_valid(result, width, height, path.string());
+  require_valid(result, width, height, name);
   return result;
 }
 

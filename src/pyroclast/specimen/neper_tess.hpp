@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <istream>
+#include <string>
 
 #include "pyroclast/specimen/specimen.hpp"
 
@@ -12,5 +14,7 @@ namespace pyroclast::specimen {
 /// dropped. Throws Error, with file and line, when the file does not follow the format, and when the cells do
 /// not tile the domain.
 Tessellation read_neper_tess(const std::filesystem::path& file, double width, double height);
+/// The same from a stream; `name` takes the file's place in messages.
+Tessellation read_neper_tess(std::istream& stream, const std::string& name, double width, double height);
 
 }  // namespace pyroclast::specimen

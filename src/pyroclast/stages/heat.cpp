@@ -63,9 +63,9 @@ bool Heat::change(Simulation& simulation, Exchange& exchange, int) {
   exchange.hand_over(simulation);
   if (coupling().predictor) {
     if (last_change_ > 0.0) {
-      const auto [least, greatest] = free_strain_change(simulation.materials(), now, field.mean());
+      const Interval free = free_strain_change(simulation.materials(), now, field.mean());
       const auto foreseen = [&](double after, double before) {
-        return std::clamp((after - before) * change / last_change_, least, greatest);
+        return std::clamp((after - before) * change / last_change_, free.lower, free.upper);
       };
       exchange.move_evenly_first({.axial = foreseen(strain.axial, last_strain_.axial),
                                   .lateral = foreseen(strain.lateral, last_strain_.lateral)});

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <locale.h>
@@ -44,42 +46,6 @@ class ClassicLocale {
  private:
   locale_t classic_;
   locale_t previous_;
-};
-
-/// The unit database. UDUNITS-2 keeps its parser and its status in globals, so one lock guards every call.
-class UnitSystem {
- public:
-  static UnitSystem& instance() {
-    static UnitSystem system;
-    return system;
-  }
-
-  std::mutex& mutex() { return mutex_; }
-
-  /// Null if the text is not a unit.
-  UnitHandle parse(const std::string& text) const {
-    const ClassicLocale locale;
-    return UnitHandle(ut_parse(system_.get(), text.c_str(), UT_UTF8));
-  }
-
- private:
-  UnitSystem() {
-    const ClassicLocale locale;
-    ut_set_error_message_handler(ut_ignore);
-    system_.reset(ut_read_xml(nullptr));
-    if (!system_) {
-      ut_status status = UT_SUCCESS;
-      throw Error(
-          fmt::format("the unit database {} of UDUNITS-2 cannot be read; install it (Debian package "
-                      "libudunits2-data) or set UDUNITS2_XML_PATH",
-                      ut_get_path_xml(nullptr, &status)));
-    }
-    const UnitHandle degree(ut_get_unit_by_name(system_.get(), "degree"));
-    ut_map_symbol_to_unit("deg", UT_ASCII, degree.get());
-  }
-
-  std::mutex mutex_;
-  SystemHandle system_;
 };
 
 /// What UDUNITS-2 has inside a unit: a product of base units, perhaps scaled and shifted.
@@ -132,9 +98,16 @@ bool is_digit(char c) {
 bool is_space(char c) {
   return c == ' ' || c == '\t';
 }
-/// A letter, or a byte of a character outside ASCII, such as "µ" or "°".
-bool is_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (static_cast<unsigned char>(c) & 0x80U) != 0;
+/// Bytes of the letter that a unit's name goes on with; 0 if there is none.
+std::size_t letter_length(std::string_view text) {
+  const char c = text.front();
+  if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_') return 1;
+  // those outside of ASCII in the names and prefixes of UDUNITS-2, each in all its code points
+  static constexpr std::array<std::string_view, 11> others{
+      "µ", "μ", "°", "Ω", "\u2126", "Å", "\u212B", "\u2103", "\u2109", "\u2032", "\u2033"};
+  const auto found = std::find_if(others.begin(), others.end(),
+                                  [&](std::string_view letter) { return text.starts_with(letter); });
+  return found == others.end() ? 0 : found->size();
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -162,38 +135,167 @@ std::string in_ascii(std::string_view unit) {
   return result;
 }
 
-/// The unit as UDUNITS-2 takes it: "/K" becomes "1/K", and a unit right behind an exponent gets the operator
-/// that is meant: "W/m²K" becomes "W/m2/K" and "m2K/W" becomes "m2.K/W".
-std::string normalized(std::string_view unit) {
-  std::string result(unit.starts_with('/') ? "1" : "");
-  bool dividing = false;
-  for (const char c : in_ascii(unit)) {
-    if (!result.empty() && is_digit(result.back()) && is_letter(c)) result += dividing ? '/' : '.';
-    if (c == '/') dividing = true;
-    if (is_space(c) || c == '.' || c == '*' || c == '(' || c == ')') dividing = false;
-    result += c;
-  }
-  return result;
-}
+/// A unit taken apart and written anew in the one form that UDUNITS-2 is given: names, ".", "/", "^" and
+/// parentheses. UDUNITS-2 takes more than anybody means, such as "400 GPa/m" (from "18 400 GPa/m") or
+/// "s since 2000", and loses memory at each text that it cannot read.
+class UnitText {
+ public:
+  explicit UnitText(std::string_view unit) : text_(in_ascii(unit)), rest_(text_) {}
+  UnitText(const UnitText&) = delete;
+  UnitText& operator=(const UnitText&) = delete;
 
-/// Whether every number in the unit is an exponent; only a leading "1/" may stand apart. UDUNITS-2 would take
-/// "400 GPa/m" (from "18 400 GPa/m") or "kg m -3" as a unit with a factor.
-bool numbers_are_exponents(std::string_view unit) {
-  for (std::size_t i = 0; i < unit.size(); ++i) {
-    if (unit[i] == '\0' || unit[i] == '@') return false;
-    if (!is_digit(unit[i]) || (i > 0 && is_digit(unit[i - 1]))) continue;
-    if (i == 0 && unit.starts_with("1/")) continue;
-    std::string_view before = unit.substr(0, i);
-    if (before.ends_with('-') || before.ends_with('+')) before.remove_suffix(1);
-    if (before.ends_with("**")) {
-      before.remove_suffix(2);
-    } else if (before.ends_with('^')) {
-      before.remove_suffix(1);
+  /// Empty if the text does not have the form of a unit.
+  std::optional<std::string> rewritten() {
+    if (rest_.size() > kMostCharacters) return std::nullopt;
+    if (rest_.starts_with('/')) {
+      written_ = "1";
+    } else if (rest_ == "1" || rest_.starts_with("1/")) {
+      written_ += take(1);
+    } else if (!read_power()) {
+      return std::nullopt;
     }
-    if (before.empty() || (!is_letter(before.back()) && before.back() != ')')) return false;
+    if (!read_factors() || !rest_.empty()) return std::nullopt;
+    return written_;
   }
-  return true;
-}
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  static constexpr std::size_t kMostCharacters = 100;
+  static constexpr std::size_t kMostDigits = 2;  ///< of an exponent
+
+  std::string_view take(std::size_t count) {
+    const std::string_view taken = rest_.substr(0, count);
+    rest_.remove_prefix(count);
+    return taken;
+  }
+  bool take(std::string_view word) {
+    if (!rest_.starts_with(word)) return false;
+    rest_.remove_prefix(word.size());
+    return true;
+  }
+  bool take_blanks() {
+    const std::size_t before = rest_.size();
+    while (!rest_.empty() && is_space(rest_.front())) rest_.remove_prefix(1);
+    return rest_.size() != before;
+  }
+
+  /// A product goes on up to the end or a closing parenthesis.
+  bool read_product() {
+    take_blanks();
+    return read_power() && read_factors();
+  }
+
+  bool read_factors() {
+    char before = '.';
+    for (;;) {
+      const bool behind_exponent = is_digit(written_.back()) && written_ != "1";
+      const bool apart = take_blanks();
+      if (rest_.empty() || rest_.front() == ')') return true;
+      char sign = '.';
+      if (take("/")) {
+        sign = '/';
+      } else if (!take(".") && !take("*") && !take("-") && !apart && behind_exponent && name_length() > 0) {
+        sign = before;  // what is set right behind "m2" in "W/m2K" belongs to it
+      }
+      take_blanks();
+      written_ += sign;
+      if (!read_power()) return false;
+      before = sign;
+    }
+  }
+
+  bool read_power() {
+    if (take("(")) {
+      written_ += '(';
+      if (!read_product() || !take(")")) return false;
+      written_ += ')';
+    } else {
+      const std::size_t length = name_length();
+      if (length == 0) return false;
+      names_.emplace_back(take(length));
+      written_ += names_.back();
+    }
+    return read_exponent();
+  }
+
+  /// True if there is none.
+  bool read_exponent() {
+    const bool marked = take("**") || take("^");
+    const bool has_sign = rest_.starts_with('-') || rest_.starts_with('+');
+    const std::size_t first = has_sign ? 1 : 0;
+    std::size_t end = first;
+    while (end < rest_.size() && is_digit(rest_[end])) ++end;
+    if (end == first) return !marked;
+    if (end - first > kMostDigits) return false;
+    written_ += '^';
+    written_ += take(end);
+    return true;
+  }
+
+  /// Of the name that the rest begins with; 0 if there is none.
+  std::size_t name_length() const {
+    if (rest_.starts_with('%') || rest_.starts_with('\'') || rest_.starts_with('"')) return 1;
+    std::size_t length = 0;
+    while (length < rest_.size()) {
+      const std::size_t more = letter_length(rest_.substr(length));
+      if (more == 0) break;
+      length += more;
+    }
+    return length;
+  }
+
+  std::string text_;
+  std::string_view rest_;
+  std::string written_;
+  std::vector<std::string> names_;
+};
+
+/// The unit database. UDUNITS-2 keeps its parser and its status in globals, so one lock guards every call.
+class UnitSystem {
+ public:
+  static UnitSystem& instance() {
+    static UnitSystem system;
+    return system;
+  }
+
+  std::mutex& mutex() { return mutex_; }
+
+  /// Null if the text is not a unit.
+  UnitHandle parse(std::string_view unit) const {
+    const ClassicLocale locale;
+    UnitText text(unit);
+    const auto rewritten = text.rewritten();
+    const auto& names = text.names();
+    if (!rewritten || !std::all_of(names.begin(), names.end(), [&](const auto& n) { return is_known(n); }))
+      return nullptr;
+    return UnitHandle(ut_parse(system_.get(), rewritten->c_str(), UT_UTF8));
+  }
+
+ private:
+  UnitSystem() {
+    const ClassicLocale locale;
+    ut_set_error_message_handler(ut_ignore);
+    system_.reset(ut_read_xml(nullptr));
+    if (!system_) {
+      ut_status status = UT_SUCCESS;
+      throw Error(
+          fmt::format("the unit database {} of UDUNITS-2 cannot be read; install it (Debian package "
+                      "libudunits2-data) or set UDUNITS2_XML_PATH",
+                      ut_get_path_xml(nullptr, &status)));
+    }
+    const UnitHandle degree(ut_get_unit_by_name(system_.get(), "degree"));
+    ut_map_symbol_to_unit("deg", UT_ASCII, degree.get());
+  }
+
+  /// Whether a name alone is a unit that products may hold: neither a date nor a logarithm.
+  bool is_known(const std::string& name) const {
+    const UnitHandle unit(ut_parse(system_.get(), name.c_str(), UT_UTF8));
+    return unit && structure_of(unit.get()).linear;
+  }
+
+  std::mutex mutex_;
+  SystemHandle system_;
+};
 
 struct NumberAndUnit {
   double number;
@@ -237,8 +339,7 @@ NumberAndUnit split(std::string_view text, const Unit& unit) {
 double convert(double number, std::string_view text, std::string_view given, const Unit& unit) {
   UnitSystem& system = UnitSystem::instance();
   const std::scoped_lock lock(system.mutex());
-  const std::string plain = normalized(given);
-  const UnitHandle from = numbers_are_exponents(plain) ? system.parse(plain) : nullptr;
+  const UnitHandle from = system.parse(given);
   if (!from) {
     throw QuantityError(QuantityError::Kind::unknown_unit, text,
                         fmt::format("unknown unit \"{}\"; {}", given, requirement(unit)));

@@ -1,0 +1,137 @@
+#include "pyroclast/deck/toml_characters.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+
+namespace pyroclast {
+namespace {
+
+/// Bytes of the character that a text begins with; 0 if that is not UTF-8 (Unicode 15.0, table 3-7).
+std::size_t utf8_length(std::string_view text) {
+  const auto in = [&](std::size_t i, unsigned char least, unsigned char greatest) {
+    return i < text.size() && least <= static_cast<unsigned char>(text[i]) &&
+           static_cast<unsigned char>(text[i]) <= greatest;
+  };
+  const auto continues = [&](std::size_t i) { return in(i, 0x80, 0xBF); };
+  if (in(0, 0x00, 0x7F)) return 1;
+  if (in(0, 0xC2, 0xDF)) return continues(1) ? 2 : 0;
+  if (in(0, 0xE0, 0xEF)) {
+    const unsigned char least = in(0, 0xE0, 0xE0) ? 0xA0 : 0x80;     // no longer than needed
+    const unsigned char greatest = in(0, 0xED, 0xED) ? 0x9F : 0xBF;  // no surrogates
+    return in(1, least, greatest) && continues(2) ? 3 : 0;
+  }
+  if (in(0, 0xF0, 0xF4)) {
+    const unsigned char least = in(0, 0xF0, 0xF0) ? 0x90 : 0x80;
+    const unsigned char greatest = in(0, 0xF4, 0xF4) ? 0x8F : 0xBF;  // up to U+10FFFF
+    return in(1, least, greatest) && continues(2) && continues(3) ? 4 : 0;
+  }
+  return 0;
+}
+
+/// Follows a text into its strings and comments and out of them, as far as it is TOML: toml++ goes no further
+/// either. A quote opens a string where a key or a value begins, and nowhere else.
+class Scanner {
+ public:
+  /// Whether the character that stands next may be outside of ASCII.
+  bool may_be_foreign() const { return (in_comment_ || quote_ != '\0') && !behind_backslash_; }
+
+  /// Goes behind what stands next: quotes that belong together, or one character.
+  /// \param length  of that character, bytes
+  /// \return bytes
+  std::size_t pass(std::string_view rest, std::size_t length) {
+    const char c = rest.front();
+    if (in_comment_ && c != '\n') return length;
+    in_comment_ = false;
+    return quote_ != '\0' ? pass_in_string(rest, length) : pass_outside(rest, length);
+  }
+
+ private:
+  static std::size_t quotes(std::string_view rest) {
+    return std::min(rest.find_first_not_of(rest.front()), rest.size());
+  }
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+  std::size_t pass_in_string(std::string_view rest, std::size_t length) {
+    const char c = rest.front();
+    const bool was_escaped = escaped_;
+    escaped_ = false;
+    behind_backslash_ = behind_backslash_ && is_blank(c);
+    if (was_escaped) return length;
+    if (quote_ == '"' && c == '\\') escaped_ = behind_backslash_ = true;
+    if (c == '\n' && !has_lines_) quote_ = '\0';  // an error that toml++ finds
+    if (c != quote_) return length;
+    // Three quotes end a string of several lines; up to two more before them are part of it.
+    const std::size_t count = quotes(rest);
+    if (has_lines_ && count < 3) return count;
+    quote_ = '\0';
+    return has_lines_ ? std::min<std::size_t>(count, 5) : 1;
+  }
+
+  std::size_t pass_outside(std::string_view rest, std::size_t length) {
+    const char c = rest.front();
+    in_comment_ = c == '#';
+    if ((c == '"' || c == '\'') && !has_begun_) {
+      quote_ = c;
+      has_lines_ = is_value() && quotes(rest) >= 3;
+      has_begun_ = true;
+      return has_lines_ ? 3 : 1;
+    }
+    follow_structure(c);
+    return length;
+  }
+
+  bool is_value() const { return behind_equals_ || open_.ends_with('['); }
+
+  void follow_structure(char c) {
+    const bool value = is_value();
+    if (c == '\n' && open_.empty()) {
+      behind_equals_ = has_begun_ = false;
+    } else if (c == ',' || (!value && (c == '=' || c == '.'))) {
+      behind_equals_ = c == '=';
+      has_begun_ = false;
+    } else if ((c == '[' || c == '{') && !(value && has_begun_)) {
+      if (value) open_ += c;
+      behind_equals_ = has_begun_ = false;
+    } else if (c == ']' || c == '}') {
+      if (!open_.empty()) open_.pop_back();
+      behind_equals_ = has_begun_ = true;
+    } else if (!is_blank(c)) {
+      has_begun_ = true;
+    }
+  }
+
+  bool in_comment_ = false;
+  char quote_ = '\0';              ///< of the string at hand
+  bool has_lines_ = false;         ///< whether that string may have several
+  bool escaped_ = false;           ///< the next character follows a backslash ...
+  bool behind_backslash_ = false;  ///< ... or blanks that do
+  std::string open_;               ///< brackets of arrays and inline tables
+  bool behind_equals_ = false;
+  bool has_begun_ = false;  ///< the key, a part of it, or the value
+};
+
+}  // namespace
+
+std::optional<CharacterFault> character_fault(std::string_view text) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  SourcePosition at{1, 1};
+  Scanner scanner;
+  for (std::size_t i = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0; i < text.size();) {
+    const std::string_view rest = text.substr(i);
+    const std::size_t length = utf8_length(rest);
+    if (length == 0) return CharacterFault{at, "the text is not UTF-8 here; save the file as UTF-8"};
+    if (rest.starts_with(byte_order_mark))
+      return CharacterFault{at,
+                            "a byte-order mark stands here; only at the beginning of a file is it allowed"};
+    if (length > 1 && !scanner.may_be_foreign())
+      return CharacterFault{at, "a character outside of ASCII stands here; it needs quotes around it"};
+    const std::size_t passed = scanner.pass(rest, length);
+    at.column += length > 1 ? 1 : static_cast<int>(passed);
+    if (rest.front() == '\n') at = {at.line + 1, 1};
+    i += passed;
+  }
+  return std::nullopt;
+}
+
+}  // namespace pyroclast
