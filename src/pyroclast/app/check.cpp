@@ -115,7 +115,7 @@ void print_mechanics(const Simulation& simulation, MassChoice mass) {
 int check(const RunOptions& options) {
   Loaded loaded(options);
   Setup& setup = loaded.setup;
-  const auto simulation = make_simulation(setup, loaded.team);
+  const auto simulation = make_simulation_aloud(loaded, Speech::usual);
   const Model<2>& model = simulation->model();
   fmt::print("deck            {} is valid: {}\n", loaded.deck.name(), setup.title);
   fmt::print("{}{}{}", describe_warnings(setup.warnings), describe_own_laws(),

@@ -18,6 +18,9 @@ struct OwnLawOptions {
   bool may_compile = true;
 };
 
+/// How much a run says on the screen; `run.log` has the lines of `usual` at least.
+enum class Speech : std::uint8_t { quiet, usual, verbose };
+
 struct RunOptions {
   std::filesystem::path deck;
   std::filesystem::path out;  ///< empty: runs/<name of the deck>
@@ -29,6 +32,7 @@ struct RunOptions {
   std::vector<std::string> changes;  ///< "key=value", see Deck::load
   std::optional<double> checkpoint;  ///< wall time between two checkpoints instead of the deck's, s
   OwnLawOptions laws;
+  Speech speech = Speech::usual;
   std::string command;  ///< as typed, for the manifest
 };
 
@@ -74,7 +78,10 @@ int law(const LawOptions& options);
 /// 1 when a law fails.
 int verify_laws(const VerifyOptions& options);
 int plot_properties(const PropertiesOptions& options);
-int make_deck(const std::string& name);
+/// \param from  a case, see case_decks
+int make_deck(const std::string& name, const std::string& from);
+/// \param what  curves, fires, units, keys, cases or laws
+int print_list(const std::string& what);
 int print_keys();
 int print_laws();
 

@@ -46,6 +46,15 @@ std::string progress_line(const Run& run, const Progress& progress) {
                      run.stage().kind(), 100.0 * done, progress.left(done), describe_row(run.history()));
 }
 
+/// Where nothing was looked at for a while.
+std::string doing_line(const Run& run) {
+  std::string text =
+      fmt::format("stage {} of {} ({})", run.stage_number() + 1, run.stages().size(), run.stage().kind());
+  if (const std::string doing = run.stage().doing(); !doing.empty()) text += " " + doing;
+  if (run.simulation().moves()) text += fmt::format(", step {}", run.simulation().mechanics().steps());
+  return text;
+}
+
 std::string describe(const Summary& s, const std::filesystem::path& folder) {
   std::string text =
       fmt::format("\nended           {}, after {}\n", describe(s.outcome), duration(s.wall_time));
@@ -104,8 +113,11 @@ int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log,
           const std::filesystem::path& folder, bool figures) {
   const Interrupt interrupt;
   run.stop_when([&] { return interrupt.asked(); });
-  run.between_batches([&](Run& r) { checkpoints.between_batches(r, interrupt.asked()); });
   Progress progress;
+  run.between_batches([&](Run& r) {
+    checkpoints.between_batches(r, interrupt.asked());
+    if (progress.is_long_silent()) log.say_now(doing_line(r));
+  });
   int stage = run.stage_number();
   Summary summary;
   try {
@@ -114,7 +126,8 @@ int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log,
       if (run.stage_is_over()) checkpoints.end_stage(run);
       if (run.stage_number() != stage) progress.begin_stage();
       stage = run.stage_number();
-      if (progress.line_is_due()) log.say_now(progress_line(run, progress));
+      if (progress.line_is_due() || log.speech() == Speech::verbose)
+        log.say_now(progress_line(run, progress));
     }
     summary = recorder.finish(run);
   } catch (const Error& error) {
@@ -126,6 +139,7 @@ int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log,
   log.say(describe(summary, folder));
   if (run.outcome() == Outcome::stopped)
     log.say(fmt::format("to go on        pyroclast resume {}", folder.string()));
+  if (figures) log.say(fmt::format("figures         drawn in {} ...", (folder / "figures").string()));
   if (figures) draw_figures("run", folder, [&] { return interrupt.asked_twice(); });
   return exit_code(summary);
 }
@@ -141,10 +155,10 @@ int run(const RunOptions& options) {
   const FolderLock lock(folder);
   RunFolder::check(folder, options.overwrite);
   const Inputs inputs = inputs_of(loaded.deck, loaded.setup);
-  const auto simulation = make_simulation(loaded.setup, loaded.team);
+  const auto simulation = make_simulation_aloud(loaded, options.speech);
 
   make_run_folder(loaded, options, inputs);
-  RunLog log(folder / "run.log");
+  RunLog log(folder / "run.log", options.speech);
   log.say(describe_start(*simulation, loaded));
   Recorder recorder(folder, loaded.setup);
   Run run(*simulation, std::move(loaded.setup.stages));

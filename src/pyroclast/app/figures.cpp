@@ -74,7 +74,7 @@ int figures(const std::vector<std::string>& words) {
     lock.emplace(words[1]);
   const int code = run_package(words);
   if (code < 0) throw Error(fmt::format("{} cannot be run, which draws the figures", PYROCLAST_PYTHON));
-  return code;
+  return code == 0 ? 0 : 1;
 }
 
 void draw_figures(const std::string& what, const std::filesystem::path& folder,

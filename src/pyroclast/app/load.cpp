@@ -1,6 +1,7 @@
 #include "pyroclast/app/load.hpp"
 
 #include <cmath>
+#include <cstdio>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,8 @@ namespace pyroclast::app {
 namespace {
 
 constexpr double kMilli = 1e3;
+/// So many take some seconds to be made.
+constexpr int kManyBlocks = 20'000;
 
 std::shared_ptr<Team> make_team(int asked) {
   return asked > 0 ? std::make_shared<Team>(asked)
@@ -34,6 +37,15 @@ Loaded::Loaded(const RunOptions& options, const std::string& more)
   if (options.seed) setup.specimen.seed = static_cast<std::uint64_t>(*options.seed);
   if (options.checkpoint) setup.checkpoints.interval = *options.checkpoint;
   if (setup.motion) setup.motion->mechanics.instructions = instructions;
+}
+
+std::unique_ptr<Simulation> make_simulation_aloud(const Loaded& loaded, Speech speech) {
+  const int blocks = loaded.setup.specimen.blocks.count;
+  if (blocks >= kManyBlocks && speech != Speech::quiet) {
+    fmt::print("making the specimen of {} blocks ...\n", blocks);
+    std::fflush(stdout);
+  }
+  return make_simulation(loaded.setup, loaded.team);
 }
 
 double time_option(const std::string& name, const std::string& text) {

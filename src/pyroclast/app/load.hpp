@@ -18,6 +18,9 @@ struct Loaded {
   std::shared_ptr<Team> team;
 };
 
+/// make_simulation; of many blocks it says first that this takes a while.
+std::unique_ptr<Simulation> make_simulation_aloud(const Loaded& loaded, Speech speech);
+
 /// Where the results shall be.
 std::filesystem::path output_folder(const RunOptions& options);
 

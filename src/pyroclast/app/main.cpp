@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/app/commands.hpp"
+#include "pyroclast/app/manual.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/version.hpp"
@@ -23,9 +24,21 @@ void add_seed(CLI::App* command, std::optional<std::int64_t>& seed) {
 }
 
 void add_output(CLI::App* command, app::RunOptions& options) {
-  command->add_option("-o,--out", options.out, "Folder for the results (default: runs/<name of the deck>)");
+  command->add_option(
+      "-o,--out", options.out,
+      "Folder for the results (default: runs/<name of the deck>, of a specimen <...>-specimen)");
   command->add_flag("--overwrite", options.overwrite, "Replace the results of an earlier run");
   command->add_flag("!--no-figures", options.figures, "Draw no figures");
+}
+
+void add_speech(CLI::App* command, app::RunOptions& options) {
+  auto* quiet = command->add_flag_callback(
+      "--quiet", [&options] { options.speech = app::Speech::quiet; },
+      "Print nothing but errors; run.log has it all");
+  command
+      ->add_flag_callback(
+          "--verbose", [&options] { options.speech = app::Speech::verbose; }, "Print a line for each look")
+      ->excludes(quiet);
 }
 
 void add_threads(CLI::App* command, int& threads) {
@@ -89,6 +102,10 @@ int command_line(int argc, char** argv) {
   add_threads(specimen, options.threads);
 
   add_checkpoint(run, options);
+  add_speech(run, options);
+  run->add_flag_callback(
+      "--no-fields", [&options] { options.changes.emplace_back("output.fields=false"); },
+      "Write no fields, as [output] fields = false");
 
   app::ResumeOptions resume_options;
   resume_options.as.command = options.command;
@@ -105,6 +122,7 @@ int command_line(int argc, char** argv) {
   add_processor(resume, resume_options.as);
   add_own_laws(resume, resume_options.as.laws);
   add_checkpoint(resume, resume_options.as);
+  add_speech(resume, resume_options.as);
 
   app::LawOptions law_options;
   auto* law = cli.add_subcommand("law",
@@ -161,14 +179,28 @@ int command_line(int argc, char** argv) {
   figures->prefix_command();
   figures->set_help_flag();
 
-  std::string name;
-  auto* starter = cli.add_subcommand("new", "Write a commented starter deck");
+  std::string name, from = "starter";
+  auto* starter = cli.add_subcommand("new", "Write a commented deck to begin with");
   starter->add_option("NAME", name, "The deck will be NAME.toml")->required();
+  starter->add_option("--from", from, "Case that it is a copy of, see `pyroclast list cases`")
+      ->capture_default_str();
 
   auto* keys = cli.add_subcommand("keys", "Print every key that a deck may hold, as Markdown");
   auto* laws = cli.add_subcommand("laws", "Print the contact laws of the program, as Markdown");
 
-  CLI11_PARSE(cli, argc, argv);
+  std::string list_of;
+  auto* list = cli.add_subcommand("list", "List what a deck may name, a line each");
+  list->add_option("WHAT", list_of, "curves, fires, units, keys, cases or laws")->required();
+
+  auto* manual = cli.add_subcommand("manual", "Print the manual page, for man");
+  auto* completion = cli.add_subcommand("completion", "Print the completion of bash for this program");
+
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return cli.exit(error);  // --help, --version
+    throw Error(app::what_is_wrong(cli, error, std::vector<std::string>(argv + 1, argv + argc)));
+  }
   if (*run) return app::run(options);
   if (*resume) return app::resume(resume_options);
   if (*check) return app::check(options);
@@ -178,7 +210,10 @@ int command_line(int argc, char** argv) {
   if (*figures) return app::figures(figures->remaining());
   if (*keys) return app::print_keys();
   if (*laws) return app::print_laws();
-  return app::make_deck(name);
+  if (*list) return app::print_list(list_of);
+  if (*manual) return app::print_manual(cli);
+  if (*completion) return app::print_completion(cli);
+  return app::make_deck(name, from);
 }
 
 }  // namespace

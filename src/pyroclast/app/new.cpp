@@ -1,21 +1,32 @@
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
 
+#include "pyroclast/app/cases.hpp"
 #include "pyroclast/app/commands.hpp"
-#include "pyroclast/app/starter_deck.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/nearest.hpp"
 #include "pyroclast/results/text_file.hpp"
 
 namespace pyroclast::app {
 
-int make_deck(const std::string& name) {
+int make_deck(const std::string& name, const std::string& from) {
+  const auto found = std::ranges::find(kCases, from, &CaseDeck::name);
+  if (found == std::end(kCases)) {
+    std::vector<std::string> names;
+    for (const CaseDeck& deck : kCases) names.emplace_back(deck.name);
+    const auto near = nearest(from, names);
+    throw Error(fmt::format("--from {}: there is no such case{}; cases: {}", from,
+                            near ? fmt::format("; did you mean \"{}\"?", names[*near]) : "",
+                            quoted_list(names)));
+  }
   std::filesystem::path file = name;
   if (file.extension() != ".toml") file += ".toml";
   if (std::filesystem::exists(file))
     throw Error(
         fmt::format("{}: exists already, so it is not overwritten; choose another name", file.string()));
-  write_text_file(file, kStarterDeck);
+  write_text_file(file, std::string(found->text));
   fmt::print("{} is written. Next:\n  pyroclast check {}\n  pyroclast run {}\n", file.string(), file.string(),
              file.string());
   return 0;

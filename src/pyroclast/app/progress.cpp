@@ -1,5 +1,7 @@
 #include "pyroclast/app/progress.hpp"
 
+#include <algorithm>
+
 #include "pyroclast/app/load.hpp"
 
 namespace pyroclast::app {
@@ -7,6 +9,7 @@ namespace pyroclast::app {
 namespace {
 
 constexpr double kSecondsBetweenLines = 5.0;
+constexpr double kSecondsOfSilence = 15.0;
 constexpr double kLeastProgressToForesee = 1e-3;
 
 }  // namespace
@@ -17,6 +20,12 @@ double seconds_since(Clock::time_point start) {
 
 bool Progress::line_is_due() {
   if (seconds_since(last_line_) < kSecondsBetweenLines) return false;
+  last_line_ = Clock::now();
+  return true;
+}
+
+bool Progress::is_long_silent() {
+  if (seconds_since(std::max(last_line_, stage_start_)) < kSecondsOfSilence) return false;
   last_line_ = Clock::now();
   return true;
 }

@@ -14,6 +14,8 @@ class Progress {
  public:
   /// Whether the last line was long enough ago; then the next one is counted from now.
   bool line_is_due();
+  /// Whether nothing was told for some time, as where no look is taken; then that is counted from now.
+  bool is_long_silent();
   /// What follows is foreseen from here on.
   void begin_stage() { stage_start_ = Clock::now(); }
   /// Time left of the stage, for the screen; empty where that is too early to say.

@@ -52,7 +52,7 @@ int go_on(const ResumeOptions& options) {
       options.checkpoint.empty() ? newest_checkpoint(options.run) : CheckpointFile(options.checkpoint);
   Loaded loaded(own);
   const Inputs inputs = inputs_of(loaded.deck, loaded.setup);
-  const auto simulation = make_simulation(loaded.setup, loaded.team);
+  const auto simulation = make_simulation_aloud(loaded, options.as.speech);
   require_same(checkpoint, inputs.hash(), *simulation);
 
   Recorder recorder(options.run, loaded.setup);
@@ -63,7 +63,7 @@ int go_on(const ResumeOptions& options) {
     throw Error(fmt::format(
         "{}: the run is over ({}); to add stages: pyroclast resume {} --stages MORE.toml --out NEW",
         options.run.string(), describe(run.outcome()), options.run.string()));
-  RunLog log(options.run / "run.log", checkpoint.info().log_bytes);
+  RunLog log(options.run / "run.log", options.as.speech, checkpoint.info().log_bytes);
   log.say_now(fmt::format("goes on from {}, step {}, stage {} of {}", checkpoint.path().filename().string(),
                           checkpoint.info().step, run.stage_number() + 1, run.stages().size()));
   if (checkpoint.info().commit != kCommit)
@@ -146,7 +146,7 @@ int fork(const ResumeOptions& options) {
   const FolderLock lock(own.out);
   RunFolder::check(own.out, own.overwrite);
   const Inputs inputs = inputs_of(loaded.deck, loaded.setup);
-  const auto simulation = make_simulation(loaded.setup, loaded.team);
+  const auto simulation = make_simulation_aloud(loaded, own.speech);
   require_same(checkpoint, inputs_of(parent.deck, parent.setup).hash(), *simulation);
 
   Recorder recorder(own.out, loaded.setup);
@@ -159,7 +159,7 @@ int fork(const ResumeOptions& options) {
   if (!more.empty()) changes.push_back(options.more.string());
   make_run_folder(loaded, own, inputs, Parent{options.run, stage, changes});
   copy_frames(options.run, own.out, static_cast<int>(recorder.frames().rows.size()));
-  RunLog log(own.out / "run.log");
+  RunLog log(own.out / "run.log", own.speech);
   log.say(fmt::format("fork            of {}, from the end of stage {}", options.run.string(), stage));
   log.say(describe_start(*simulation, loaded));
   Checkpoints checkpoints(own.out, loaded.setup.checkpoints,

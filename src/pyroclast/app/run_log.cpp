@@ -4,6 +4,7 @@
 #include <ctime>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -12,13 +13,14 @@
 
 namespace pyroclast::app {
 
-RunLog::RunLog(std::filesystem::path file, std::uint64_t kept) : file_(std::move(file)) {
+RunLog::RunLog(std::filesystem::path file, Speech speech, std::uint64_t kept)
+    : file_(std::move(file)), speech_(speech) {
   std::error_code none;
   if (std::filesystem::exists(file_) && std::filesystem::file_size(file_) > kept)
     std::filesystem::resize_file(file_, kept, none);
-  const spdlog::sink_ptr screen = std::make_shared<spdlog::sinks::stdout_sink_st>();
-  const spdlog::sink_ptr log = std::make_shared<spdlog::sinks::basic_file_sink_st>(file_.string());
-  logger_ = std::make_unique<spdlog::logger>("run", spdlog::sinks_init_list{screen, log});
+  std::vector<spdlog::sink_ptr> sinks{std::make_shared<spdlog::sinks::basic_file_sink_st>(file_.string())};
+  if (speech != Speech::quiet) sinks.push_back(std::make_shared<spdlog::sinks::stdout_sink_st>());
+  logger_ = std::make_unique<spdlog::logger>("run", sinks.begin(), sinks.end());
   logger_->set_pattern("%v");
   logger_->flush_on(spdlog::level::info);
   // the terminal may be gone, or the disk full: what a run says is not worth its end

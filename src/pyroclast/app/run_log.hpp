@@ -7,13 +7,17 @@
 
 #include <spdlog/logger.h>
 
+#include "pyroclast/app/commands.hpp"
+
 namespace pyroclast::app {
 
 /// What a run says: on the screen, and in `run.log` of its folder.
 class RunLog {
  public:
   /// \param kept  bytes that stay of a log that is there
-  explicit RunLog(std::filesystem::path file, std::uint64_t kept = 0);
+  RunLog(std::filesystem::path file, Speech speech, std::uint64_t kept = 0);
+
+  Speech speech() const { return speech_; }
 
   /// A text of one or more lines, without the last line's end.
   void say(const std::string& text);
@@ -24,6 +28,7 @@ class RunLog {
 
  private:
   std::filesystem::path file_;
+  Speech speech_;
   std::unique_ptr<spdlog::logger> logger_;
 };
 

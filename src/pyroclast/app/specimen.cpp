@@ -7,7 +7,9 @@
 
 namespace pyroclast::app {
 
-int make_specimen(const RunOptions& options) {
+int make_specimen(const RunOptions& asked) {
+  RunOptions options = asked;
+  if (options.out.empty()) options.out = output_folder(asked).string() + "-specimen";
   const Loaded loaded(options);
   const Setup& setup = loaded.setup;
   const FolderLock lock(output_folder(options));

@@ -40,6 +40,14 @@ inline constexpr Unit specific_heat{"J/kg/K", "specific heat", "900 J/kg/K"};
 inline constexpr Unit heat_transfer{"W/m2/K", "heat transfer coefficient", "25 W/m2/K"};
 inline constexpr Unit heat_flux{"W/m2", "heat flux", "15 kW/m2"};
 inline constexpr Unit expansion{"1/K", "thermal expansion coefficient", "1e-5 1/K"};
+
+inline constexpr const Unit* all[] = {&dimensionless,   &length,       &area,
+                                      &angle,           &time,         &frequency,
+                                      &velocity,        &acceleration, &density,
+                                      &force,           &stress,       &stiffness_per_area,
+                                      &fracture_energy, &temperature,  &temperature_difference,
+                                      &heating_rate,    &conductivity, &specific_heat,
+                                      &heat_transfer,   &heat_flux,    &expansion};
 }  // namespace unit
 
 }  // namespace pyroclast

@@ -5,6 +5,8 @@
 #include <system_error>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "pyroclast/deck/record.hpp"
 
 namespace pyroclast {
@@ -24,9 +26,25 @@ std::string read_file(const std::filesystem::path& file) {
   return text;
 }
 
+/// With a mark for each byte that is no printable character of ASCII.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (c < ' ' || c > '~') c = '?';
+  return text;
+}
+
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(' ');
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+/// Tells of a change that a deck is no longer TOML with.
+void require_toml(const std::string& text, const std::string& name, const std::string& change) {
+  try {
+    DeckRecord{text, name};
+  } catch (const DeckError& error) {
+    throw Error(fmt::format("--set {}: {}", printable(change), error.diagnostics().front().message));
+  }
 }
 
 }  // namespace
@@ -39,14 +57,17 @@ Deck Deck::load(const std::filesystem::path& file, const std::vector<std::string
 }
 
 Deck Deck::parse(std::string text, std::string name, const std::vector<std::string>& changes) {
+  std::vector<std::string> keys;
   for (const std::string& change : changes) {
     const auto equals = change.find('=');
     if (equals == std::string::npos)
       throw Error("--set " + change + ": write it as key=value, e.g. specimen.seed=2");
-    text = DeckRecord(std::move(text), name)
-               .with_value(trimmed(change.substr(0, equals)), trimmed(change.substr(equals + 1)));
+    const std::string key = trimmed(change.substr(0, equals));
+    text = DeckRecord(std::move(text), name).with_value(key, trimmed(change.substr(equals + 1)));
+    require_toml(text, name, change);
+    keys.push_back(key);
   }
-  return Deck(std::make_unique<DeckRecord>(std::move(text), std::move(name)));
+  return Deck(std::make_unique<DeckRecord>(std::move(text), std::move(name), std::move(keys)));
 }
 
 Deck::Deck(std::unique_ptr<DeckRecord> record) : record_(std::move(record)) {}

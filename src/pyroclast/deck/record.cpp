@@ -116,8 +116,11 @@ std::string TableRecord::path_of(std::string_view key) const {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-DeckRecord::DeckRecord(std::string text, std::string name)
-    : name_(std::move(name)), source_(std::move(text)), root_(parse_toml(source_, name_)) {}
+DeckRecord::DeckRecord(std::string text, std::string name, std::vector<std::string> changed)
+    : name_(std::move(name)),
+      changed_(std::move(changed)),
+      source_(std::move(text)),
+      root_(parse_toml(source_, name_)) {}
 
 DeckRecord::DeckRecord(SurveyRun& survey) : name_("survey"), source_(""), survey_(&survey) {}
 
@@ -253,6 +256,7 @@ std::string DeckRecord::misplaced_hint(const TableRecord& table, std::string_vie
 }
 
 Diagnostic DeckRecord::locate(const std::string& path, const toml::source_region& region) const {
+  if (std::ranges::find(changed_, path) != changed_.end()) return {.file = "--set", .key = path};
   const SourcePosition at = position(region.begin);
   return {.file = name_, .line = at.line, .column = at.column, .key = path};
 }

@@ -43,7 +43,8 @@ struct TableRecord {
 class DeckRecord {
  public:
   /// @throws DeckError
-  DeckRecord(std::string text, std::string name);
+  /// \param changed  keys whose values come from the command line: what is said of them names --set
+  DeckRecord(std::string text, std::string name, std::vector<std::string> changed = {});
   /// A deck without text; `survey` answers what its reader asks, and no error is kept.
   explicit DeckRecord(SurveyRun& survey);
 
@@ -88,6 +89,7 @@ class DeckRecord {
   std::string misplaced_hint(const TableRecord& table, std::string_view key) const;
 
   std::string name_;
+  std::vector<std::string> changed_;
   SourceText source_;
   toml::table root_;
   std::map<const toml::table*, std::unique_ptr<TableRecord>> tables_;

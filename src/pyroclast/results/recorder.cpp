@@ -11,18 +11,19 @@ Recorder::Recorder(std::filesystem::path folder, const Setup& setup)
       title_(setup.title),
       expansion_reading_(setup.expansion_reading == ExpansionReading::secant ? "secant" : "tangent"),
       specimen_(setup.specimen),
-      warnings_(setup.warnings) {}
+      warnings_(setup.warnings),
+      has_fields_(setup.has_fields) {}
 
 void Recorder::begin(const Run& run) {
   std::filesystem::remove(folder_ / "summary.json");
   history_.emplace(folder_ / "history.csv", run.history());
-  fields_.emplace(folder_ / "fields", run.simulation(), run.history(), frames_);
+  if (has_fields_) fields_.emplace(folder_ / "fields", run.simulation(), run.history(), frames_);
   write_specimen_files(folder_ / "specimen", run.simulation().specimen(), specimen_);
 }
 
 void Recorder::record(const Run& run) {
   history_->write(run.history());
-  if (run.frame_is_due()) fields_->write(run.simulation(), run.history(), frames_);
+  if (fields_ && run.frame_is_due()) fields_->write(run.simulation(), run.history(), frames_);
 }
 
 Summary Recorder::finish(const Run& run) {

@@ -44,6 +44,7 @@ class Recorder {
   std::string expansion_reading_;
   specimen::SpecimenParameters specimen_;
   std::vector<std::string> warnings_;  ///< of the deck
+  bool has_fields_;                    ///< whether they are written
   std::optional<HistoryFile> history_;
   std::optional<FieldFiles> fields_;
   FrameRecords frames_;

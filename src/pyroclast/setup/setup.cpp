@@ -121,6 +121,9 @@ Interval run_temperatures(const Section& root, const HeatConditions& conditions,
   const auto include = [&](double low, double high) {
     t = {std::min(t.lower, low), std::max(t.upper, high)};
   };
+  const bool stages_are_known =
+      std::ranges::all_of(root.sections("stages"), [](const Section& s) { return s.ok(); });
+  if (!stages_are_known) return t;  // what stands in for an error asks nothing of curves
   for (const auto& stage : stages)
     if (const auto to = stage->heating().to) include(*to, *to);
   const auto heat_table = root.optional_section("heat");
@@ -208,6 +211,8 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   setup.curves = curves.curves();
   warn_of_healing(root, setup);
   const Section output = root.section("output");
+  setup.has_fields =
+      output.flag("fields", true, "whether frames of the fields are written, for figures and ParaView");
   setup.checkpoints.interval =
       output.quantity("checkpoint", unit::time, Range::non_negative(), setup.checkpoints.interval,
                       "wall time between two checkpoints, from which `pyroclast resume` goes on; 0: after "

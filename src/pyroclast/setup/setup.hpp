@@ -37,6 +37,7 @@ struct Setup {
   std::vector<std::unique_ptr<Stage>> stages;
   std::vector<std::string> stage_names;
   CheckpointChoice checkpoints;
+  bool has_fields = true;             ///< whether frames of the fields are written
   std::vector<std::string> warnings;  ///< of the deck: what is allowed, but most likely not meant
 };
 

@@ -102,6 +102,8 @@ class Stage {
   /// The name by which a deck asks for it.
   virtual const char* kind() const = 0;
   virtual StageNeeds needs() const = 0;
+  /// What goes on between two looks where that may take long, "moving the platen down"; may be empty.
+  virtual std::string doing() const { return {}; }
   virtual HeatingPlan heating() const { return {}; }
 
   /// Prepares what acts on the body; moves nothing.

@@ -44,6 +44,7 @@ class Compress : public Stage {
 
   const char* kind() const override { return "compress"; }
   StageNeeds needs() const override { return {}; }
+  std::string doing() const override { return is_loading_ ? "" : "moving the platen to the specimen"; }
   void begin(Simulation& simulation) override;
   bool advance(Simulation& simulation, int most_steps) override;
   Verdict judge(Simulation& simulation) override;

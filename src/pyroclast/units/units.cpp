@@ -331,9 +331,18 @@ NumberAndUnit split(std::string_view text, const Unit& unit) {
   return {number, trimmed(rest)};
 }
 
+/// Letters that stand for temperatures where people write, and for coulomb and farad here.
+std::string_view meant_temperature(std::string_view given) {
+  if (given == "C" || given == "°C") return "degC";
+  if (given == "F") return "degF";
+  return "";
+}
+
 [[noreturn]] void throw_wrong_dimension(std::string_view text, std::string_view given, const Unit& unit) {
+  const std::string_view meant = unit == unit::temperature ? meant_temperature(given) : "";
   throw QuantityError(QuantityError::Kind::wrong_dimension, text,
-                      fmt::format("unit \"{}\" has the wrong dimension; {}", given, requirement(unit)));
+                      fmt::format("unit \"{}\" has the wrong dimension; {}{}", given, requirement(unit),
+                                  meant.empty() ? "" : fmt::format("; did you mean \"{}\"?", meant)));
 }
 
 double convert(double number, std::string_view text, std::string_view given, const Unit& unit) {
