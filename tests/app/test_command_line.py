@@ -1,0 +1,94 @@
+"""Words of the command line: what is unknown is named, and what each command ends with. PYROCLAST names the program."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ["PYROCLAST"]
+CASES = pathlib.Path(__file__).parents[2] / "cases"
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def pyroclast(self, *words, code: int = 0) -> subprocess.CompletedProcess:
+        done = subprocess.run([PROGRAM, *words], cwd=self.folder, capture_output=True, timeout=300, check=False)
+        done.stdout, done.stderr = (text.decode(errors="replace") for text in (done.stdout, done.stderr))
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def error(self, *words) -> str:
+        """The one line that a command ends with that comes to nothing."""
+        done = self.pyroclast(*words, code=1)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        return done.stderr
+
+    def test_an_unknown_word_is_named_with_the_nearest(self):
+        self.assertIn('"rnu" is no command; did you mean "run"?', self.error("rnu", "x.toml"))
+        self.assertIn('"--treads" is no option of run; did you mean "--threads"?', self.error("run", "x", "--treads", "3"))
+        self.assertIn("a command is needed: run, check", self.error())
+        self.assertIn('did you mean "curves"?', self.error("list", "curvs"))
+        self.assertIn('did you mean "hot_compression"?', self.error("new", "x", "--from", "hot_compresion"))
+
+    def test_a_value_that_cannot_be_is_refused_with_what_can(self):
+        case = str(CASES / "starter.toml")
+        self.assertIn("--seed: Value -3 not in range 0 to", self.error("check", case, "--seed", "-3"))
+        self.assertIn("--threads: Value 5000 not in range 1 to 1024", self.error("check", case, "--threads", "5000"))
+
+    def test_what_set_broke_is_told_of_set(self):
+        case = str(CASES / "starter.toml")
+        self.assertIn('--set: blocks.cuont = 300: unknown key; did you mean "count"?',
+                      self.error("check", case, "--set", "blocks.cuont=300"))
+        self.assertIn("--set title=??: not valid TOML: the text is not UTF-8 here",
+                      self.error("check", case, "--set", b"title=\xff\xfe"))
+
+    def test_the_true_error_is_alone(self):
+        line = self.error("check", str(CASES / "hot_compression.toml"), "--set", "stages[1].to=400 C")
+        self.assertIn('--set: stages[1].to = "400 C"', line)
+        self.assertIn('did you mean "degC"?', line)
+
+    def test_lists_name_what_there_is(self):
+        self.assertEqual({line.split()[0] for line in self.pyroclast("list", "cases").stdout.splitlines()},
+                         {path.stem for path in CASES.glob("*.toml")})
+        for what, word in (("curves", "en1992_siliceous_strength"), ("fires", "iso834"), ("units", "stress"),
+                           ("keys", "specimen.width"), ("laws", "cohesive")):
+            self.assertIn(word, self.pyroclast("list", what).stdout)
+
+    def test_new_gives_every_case_as_it_is(self):
+        for case in CASES.glob("*.toml"):
+            self.pyroclast("new", f"my_{case.stem}", "--from", case.stem)
+            self.assertEqual((self.folder / f"my_{case.stem}.toml").read_text(), case.read_text())
+
+    def test_manual_and_completion_have_every_command_and_option(self):
+        manual, completion = self.pyroclast("manual").stdout, self.pyroclast("completion").stdout
+        for word in ("run", "resume", "plot-properties", "--law-path", "--from-stage", "--no-fields"):
+            self.assertIn(word.replace("-", "\\-"), manual)
+            self.assertIn(word, completion)
+        for code in (0, 1, 2, 130):
+            self.assertIn(f".TP\n{code}\n", manual)
+        if shutil.which("bash"):
+            script = f"{completion}\nCOMP_WORDS=(pyroclast run --ov) COMP_CWORD=2; _pyroclast; echo ${{COMPREPLY[@]}}"
+            done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
+            self.assertEqual(done.stdout.strip(), "--overwrite")
+
+    def test_exit_codes_speech_and_fields(self):
+        self.pyroclast("new", "mine")
+        small = ["run", "mine.toml", "--no-figures", "--set", "blocks.count=60", "--set", "stages[1].stop_strain=2e-4"]
+        quiet = self.pyroclast(*small, "--out", "quiet", "--quiet", "--no-fields")
+        self.assertEqual(quiet.stdout, "")
+        self.assertIn("ended           completed", (self.folder / "quiet/run.log").read_text())
+        self.assertFalse((self.folder / "quiet/fields").exists())
+        verbose = self.pyroclast(*small, "--out", "verbose", "--verbose")
+        self.assertGreater(verbose.stdout.count("(compress)"), 15)  # 20 looks
+        self.assertTrue((self.folder / "verbose/fields/mesh.h5").exists())
+        # 2: the run ended without what it was for
+        self.pyroclast(*small, "--out", "two", "--set", "stages[0].most_steps=10", code=2)
+
+
+if __name__ == "__main__":
+    unittest.main()

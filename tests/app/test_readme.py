@@ -1,0 +1,47 @@
+"""The commands of the README, as they stand there and in their order. PYROCLAST names the program."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).parents[2]
+
+
+def commands() -> list[str]:
+    """Lines of the README's blocks of shell commands."""
+    blocks = re.findall(r"^```sh\n(.*?)^```$", (ROOT / "README.md").read_text(), re.MULTILINE | re.DOTALL)
+    return [line for block in blocks for line in block.splitlines() if line.strip()]
+
+
+class Readme(unittest.TestCase):
+    def test_its_commands_run_one_after_the_other(self):
+        folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, folder)
+        program = pathlib.Path(os.environ["PYROCLAST"]).resolve()
+        environment = {**os.environ, "PATH": f"{program.parent}:{os.environ['PATH']}"}
+        lines = commands()
+        self.assertGreaterEqual(len(lines), 9)
+        for line in lines:
+            with self.subTest(line):
+                done = subprocess.run(["bash", "-c", line], cwd=folder, env=environment, capture_output=True, text=True,
+                                      timeout=300, check=False)
+                self.assertEqual(done.returncode, 0, done.stdout[-1000:] + done.stderr)
+                self.assertNotIn("no figures were drawn", done.stderr)
+        for promised in ("mine.toml", "fire.toml", "runs/mine-specimen/figures", "runs/mine-properties/figures",
+                         "runs/mine/summary.json", "runs/mine/figures"):
+            self.assertTrue((folder / promised).exists(), promised)
+
+    def test_what_it_links_is_there(self):
+        for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
+            text = re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL)
+            for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", text):
+                if "://" not in target and ("." in target or "/" in target):
+                    self.assertTrue((page.parent / target).exists(), f"{page.name}: {target}")
+
+
+if __name__ == "__main__":
+    unittest.main()
