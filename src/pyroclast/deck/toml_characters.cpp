@@ -127,8 +127,9 @@ std::optional<CharacterFault> character_fault(std::string_view text) {
     if (length > 1 && !scanner.may_be_foreign())
       return CharacterFault{at, "a character outside of ASCII stands here; it needs quotes around it"};
     const std::size_t passed = scanner.pass(rest, length);
-    at.column += length > 1 ? 1 : static_cast<int>(passed);
-    if (rest.front() == '\n') at = {at.line + 1, 1};
+    const int characters = length > 1 ? 1 : static_cast<int>(passed);
+    at = rest.front() == '\n' ? SourcePosition{at.line + 1, 1}
+                              : SourcePosition{at.line, at.column + characters};
     i += passed;
   }
   return std::nullopt;

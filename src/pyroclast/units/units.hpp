@@ -26,12 +26,13 @@ class QuantityError : public Error {
 
 /// The value of a quantity such as "18400 GPa/m", "20 degC" or "25 W/m²/K", in `unit.si`.
 ///
-/// The number is written with a decimal point whatever the locale. The unit is anything UDUNITS-2 knows, as
-/// well as "deg" for an angle; a dimensionless quantity may go without. "/" divides by the one unit that
+/// The number is written with a decimal point whatever the locale. The unit is a product of powers of names
+/// that UDUNITS-2 knows, in at most 100 characters and with exponents of at most two digits, as well as "deg"
+/// for an angle; a dimensionless quantity may go without. "/" divides by the one unit that
 /// follows, and by a unit set right behind its exponent: "W/m2/K", "W/(m2 K)" and "W/m²K" are a heat transfer
 /// coefficient, "W/m2 K" is not. What UDUNITS-2 would take but nobody means is refused: numbers inside a unit
-/// ("18 400 GPa/m"), a unit for its reciprocal ("4 s" for a frequency), radians for a plain number. Safe to
-/// call from several threads.
+/// ("18 400 GPa/m"), dates and logarithms ("s since 2000", "lg(re 1 mW)"), a unit for its reciprocal ("4 s"
+/// for a frequency), radians for a plain number. Safe to call from several threads.
 ///
 /// @throws QuantityError if the text has no number, a number that is not finite, no unit, a unit that is not
 ///         known, or a unit of another dimension.
