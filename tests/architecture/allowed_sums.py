@@ -19,7 +19,7 @@ ALLOWED = [
     Allowed("app/law.cpp", "dissipated()", "over the losses of one contact point"),
     Allowed("mechanics/mechanics.cpp", "Dissipation::total()", "over the energies of one ledger, each a chunked sum"),
     Allowed("*", "exposure()", "durations of the stages of a deck"),
-    Allowed("*response.cpp", "compression_response()", "over the rows of a history"),
+    Allowed("*response.cpp", "fit()", "over the rows of a history"),
     Allowed("results/field_files.cpp", "frame_times()", "over the frames of a run"),
     Allowed("results/summary.cpp", "energy_error()", "over the columns of energies in one row of a history"),
     Allowed("simulation/press.cpp", "Press::lateral_strain()", "over the directions across the press"),

@@ -14,7 +14,7 @@ namespace {
 /// A shipped case on a few blocks: three minutes of fire on one face, and what comes after them. A
 /// conductivity that rises only beyond the first fire's 502 °C makes the stable step one of the range.
 Setup fire_and_then(const std::string& later) {
-  std::string deck = with(shipped_case("fire_one_side"), "count = 1000", "count = 200");
+  std::string deck = with(shipped_case("fire_one_side"), "count = 2000", "count = 200");
   deck = with(deck, "temperature_range = [\"20 degC\", \"800 degC\"]", "");
   deck = with(deck, "duration = \"30 min\"", "duration = \"3 min\"");
   for (int material = 0; material < 2; ++material)

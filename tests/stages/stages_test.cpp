@@ -42,8 +42,10 @@ TEST(LoadStage, ALoadAboveTheStrengthCrushes) {
     EXPECT_LT(borne, 1.2 * strength);  // inertia: the load rises to it within 0.4 s
     EXPECT_NE(r.report(1).lines.front().find("the same specimen"), std::string::npos);
     ASSERT_EQ(r.report(1).warnings.size(), 1u);
-    ASSERT_EQ(r.setup.warnings.size(), 1u);  // of the level
-    EXPECT_NE(r.setup.warnings.front().find("stages[1].level"), std::string::npos);
+    EXPECT_EQ(std::ranges::count_if(
+                  r.setup.warnings,
+                  [](const std::string& w) { return w.find("stages[1].level") != std::string::npos; }),
+              1);
   }
 }
 

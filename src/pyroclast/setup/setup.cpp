@@ -20,6 +20,10 @@ namespace pyroclast {
 
 namespace {
 
+// Block size over d_max, of validation/block_size.md: 250 blocks on 150 mm x 300 mm with d_max = 32 mm, and
+// 1,600.
+constexpr double kCoarsestStudied = 0.42, kCoarsestHeated = 0.165;
+
 constexpr double kGravity = 9.80665;  // m/s², standard
 
 /// Even temperatures of the run at which the contact law must be possible.
@@ -86,6 +90,30 @@ void check_heat(const Section& root, const HeatConditions& conditions,
       return;
     }
   }
+}
+
+/// Blocks that are coarser than what was studied, and fewer than a heated test needs
+/// (validation/block_size.md).
+void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
+  const specimen::SpecimenParameters& s = setup.specimen;
+  if (s.blocks.count == 0 || s.aggregates.fraction == 0.0 || !setup.motion) return;
+  const double size = std::sqrt(s.width * s.height / s.blocks.count), share = size / s.aggregates.d_max;
+  const auto any = [&](auto is) { return std::ranges::any_of(setup.stages, is); };
+  const bool is_heated_under_load =
+      any([](const auto& stage) { return stage->kind() == std::string_view("load"); }) &&
+      any([](const auto& stage) { return stage->heating().to || stage->heating().duration > 0.0; });
+  const Section blocks = root.section("blocks");
+  if (share > kCoarsestStudied)
+    blocks.warn(
+        "count",
+        fmt::format("blocks of {:.3g} mm are {:.2f} of d_max, coarser than any that were studied ({})",
+                    1e3 * size, share, kCoarsestStudied));
+  else if (is_heated_under_load && share > kCoarsestHeated)
+    blocks.warn(
+        "count",
+        fmt::format("blocks of {:.3g} mm are {:.2f} of d_max: above {} critical temperatures scatter by "
+                    "100 K and more from seed to seed",
+                    1e3 * size, share, kCoarsestHeated));
 }
 
 /// Whether anything but the expansion follows the temperature.
@@ -210,6 +238,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
     read_resting(root, curves, setup);
   setup.curves = curves.curves();
   warn_of_healing(root, setup);
+  if (root.ok()) warn_of_coarse_blocks(root, setup);
   const Section output = root.section("output");
   setup.has_fields =
       output.flag("fields", true, "whether frames of the fields are written, for figures and ParaView");

@@ -50,11 +50,12 @@ void require_feasible(std::span<const double> diameters, double specimen_area,
   for (const double d : diameters) area += circle_area(d + parameters.minimum_gap);
   if (area / specimen_area < kDensestPlacement) return;
   throw Error(fmt::format(
-      "{}: the aggregates cannot fit: {} circles of {:.4g} to {:.4g} mm with gaps of {:.4g} mm between them "
+      "{}: the aggregates of a fraction of {:.4g} cannot fit: {} circles of {:.4g} to {:.4g} mm with gaps of "
+      "{:.4g} mm between them "
       "would take {:.2f} of the specimen, and random placement fills {} at most; allow a lower fraction, a "
       "larger d_min, or a smaller minimum_gap",
-      parameters.place, diameters.size(), 1e3 * diameters.back(), 1e3 * diameters.front(),
-      1e3 * parameters.minimum_gap, area / specimen_area, kDensestPlacement));
+      parameters.place, parameters.fraction, diameters.size(), 1e3 * diameters.back(),
+      1e3 * diameters.front(), 1e3 * parameters.minimum_gap, area / specimen_area, kDensestPlacement));
 }
 
 [[noreturn]] void throw_no_place(std::span<const double> diameters, std::size_t placed, double specimen_area,

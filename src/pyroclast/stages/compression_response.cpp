@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFitFrom = 0.05, kFitTo = 1.0 / 3.0;       // of f_c
 constexpr double kToe = 1.1;                                // steepest slope over that of the first stretch
-constexpr double kSteepestUpTo = 0.9;                       // of f_c
+constexpr int kStretches = 12;                              // the last one ends at 88 %
 constexpr double kStretchStep = 0.05;                       // of f_c
 constexpr double kFewestRows = 3.0;                         // on a line that is fitted
 constexpr double kFallThatProvesAPeak = 0.01;               // of f_c
@@ -48,7 +48,8 @@ std::optional<Line> fit(const CompressionRows& rows, std::size_t end, double low
 
 /// Of all stretches as wide as the usual one.
 Line steepest(const CompressionRows& rows, std::size_t peak, double strength, Line line) {
-  for (double from = kFitFrom; from + (kFitTo - kFitFrom) <= kSteepestUpTo; from += kStretchStep) {
+  for (int i = 0; i < kStretches; ++i) {
+    const double from = kFitFrom + i * kStretchStep;
     const auto other = fit(rows, peak, from * strength, (from + kFitTo - kFitFrom) * strength);
     if (other && other->slope > line.slope) line = *other;
   }
