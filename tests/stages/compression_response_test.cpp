@@ -90,7 +90,7 @@ TEST(Response, InelasticStrainHasAMeaningOrThereIsNone) {
   EXPECT_TRUE(shaken.modulus);
   EXPECT_TRUE(says(shaken.inelastic_strain, "not quasi-static up to the peak"));
   rows.platen_difference[60] = 2e6;
-  EXPECT_TRUE(says(compression_response(rows).modulus, "not quasi-static up to 1/3"));
+  EXPECT_TRUE(says(compression_response(rows).modulus, "differ by more than 2 %"));
   rows = parabola(21.5e9, 35e6, 1.3);
   for (double& stress : rows.stress) stress += 5e6;
   EXPECT_TRUE(says(compression_response(rows).inelastic_strain, "began under load"));
