@@ -27,7 +27,9 @@ TEST(Section, WarnsOfWhatIsNotUsual) {
   root.quantities("d", unit::length, Range::positive().usually(0.1, 10.0), "");
   root.warn("b", "is mine");
   deck.finish();
-  EXPECT_EQ(deck.warnings(),
+  std::vector<std::string> lines;
+  for (const Diagnostic& warning : deck.warnings()) lines.push_back(to_string(warning));
+  EXPECT_EQ(lines,
             (std::vector<std::string>{
                 "case.toml:1:5: a = \"70 MPa\": is 7e+07 Pa, but usually it is between 1000000000 and "
                 "500000000000 Pa",

@@ -42,9 +42,8 @@ TEST(LoadStage, ALoadAboveTheStrengthCrushes) {
     EXPECT_LT(borne, 1.2 * strength);  // inertia: the load rises to it within 0.4 s
     EXPECT_NE(r.report(1).lines.front().find("the same specimen"), std::string::npos);
     ASSERT_EQ(r.report(1).warnings.size(), 1u);
-    EXPECT_EQ(std::ranges::count_if(
-                  r.setup.warnings,
-                  [](const std::string& w) { return w.find("stages[1].level") != std::string::npos; }),
+    EXPECT_EQ(std::ranges::count_if(r.setup.warnings,
+                                    [](const Diagnostic& w) { return w.key == "stages[1].level"; }),
               1);
   }
 }
@@ -103,8 +102,8 @@ TEST(HeatStage, ABodyThatShrinksStaysOnThePlaten) {
 TEST(HeatStage, HealingIsSaid) {
   const auto healing = [](const std::string& stages) {
     const pyroclast::Setup setup = pyroclast::read(deck(kUniform + kSettle + stages));
-    return std::ranges::count_if(setup.warnings, [](const std::string& w) {
-      return w.find("real concrete does not heal") != std::string::npos;
+    return std::ranges::count_if(setup.warnings, [](const Diagnostic& w) {
+      return w.message.find("real concrete does not heal") != std::string::npos;
     });
   };
   EXPECT_EQ(healing(heat("320 degC")), 0);

@@ -97,7 +97,7 @@ StateVisit state_of(Run& run, Recorder& recorder) {
 
 std::string describe_start(const Simulation& simulation, const Loaded& loaded) {
   std::string text =
-      describe_warnings(loaded.setup.warnings) + describe_own_laws() + describe(simulation.specimen());
+      describe_warnings(loaded.warnings) + describe_own_laws() + describe(simulation.specimen());
   const Model<2>& model = simulation.model();
   text += fmt::format("model           {} zones, {} contacts\n", model.zone_count(), model.contact_count());
   if (const auto* conduction = simulation.field().conduction())

@@ -29,8 +29,9 @@ Loaded::Loaded(const RunOptions& options, const std::string& more)
       instructions(options.instructions.empty() ? usable_instruction_sets().back()
                                                 : instruction_set(options.instructions)),
       team(make_team(options.threads)) {
+  for (const Diagnostic& warning : setup.warnings) warnings.push_back(to_string(warning));
   if (options.threads > available_threads())
-    setup.warnings.push_back(
+    warnings.push_back(
         fmt::format("--threads {}: only {} processors are free for this process, and more "
                     "threads than those slow it down",
                     options.threads, available_threads()));

@@ -16,6 +16,7 @@ struct Loaded {
   Setup setup;
   InstructionSet instructions;
   std::shared_ptr<Team> team;
+  std::vector<std::string> warnings;  ///< of deck and command line, a line each
 };
 
 /// make_simulation; of many blocks it says first that this takes a while.

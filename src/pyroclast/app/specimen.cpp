@@ -23,7 +23,7 @@ int make_specimen(const RunOptions& asked) {
   std::filesystem::create_directories(folder.path() / "fields");
   write_mesh(folder.path() / "fields", model);
   write_specimen_files(folder.path() / "specimen", specimen, setup.specimen);
-  fmt::print("{}{}results         {}\n", describe_warnings(setup.warnings), describe(specimen),
+  fmt::print("{}{}results         {}\n", describe_warnings(loaded.warnings), describe(specimen),
              folder.path().string());
   if (options.figures) draw_figures("specimen", folder.path());
   return 0;

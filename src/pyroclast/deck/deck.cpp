@@ -94,10 +94,8 @@ Section Deck::root() const {
   return {*record_, &record_->root()};
 }
 
-std::vector<std::string> Deck::warnings() const {
-  std::vector<std::string> lines;
-  for (const Diagnostic& warning : in_file_order(record_->warnings())) lines.push_back(to_string(warning));
-  return lines;
+std::vector<Diagnostic> Deck::warnings() const {
+  return in_file_order(record_->warnings());
 }
 
 void Deck::finish() const {

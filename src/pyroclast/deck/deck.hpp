@@ -246,8 +246,8 @@ class Deck {
 
   Section root() const;
 
-  /// What was warned of, a line each, in the order of the file.
-  std::vector<std::string> warnings() const;
+  /// What was warned of, in the order of the file.
+  std::vector<Diagnostic> warnings() const;
   /// Files that the deck names, in the order of reading.
   const std::vector<DeckFile>& files() const;
   /// The text with other values, by the full paths of their keys; a key that is missing is added.

@@ -30,7 +30,11 @@ std::vector<Diagnostic> in_file_order(std::vector<Diagnostic> diagnostics) {
 std::string to_string(const Diagnostic& diagnostic) {
   std::string line = diagnostic.file;
   if (diagnostic.line > 0) line += fmt::format(":{}:{}", diagnostic.line, diagnostic.column);
-  line += ": ";
+  return line + ": " + without_place(diagnostic);
+}
+
+std::string without_place(const Diagnostic& diagnostic) {
+  std::string line;
   if (!diagnostic.key.empty()) {
     line += diagnostic.key;
     if (!diagnostic.value.empty()) line += " = " + diagnostic.value;

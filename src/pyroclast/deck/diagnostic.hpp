@@ -24,6 +24,9 @@ std::string to_string(const Diagnostic& diagnostic);
 
 std::vector<Diagnostic> in_file_order(std::vector<Diagnostic> diagnostics);
 
+/// The same from the key on: it does not depend on where the deck stands.
+std::string without_place(const Diagnostic& diagnostic);
+
 /// Everything that is wrong with a deck. `what()` has one line per diagnostic, in the order of the file.
 class DeckError : public Error {
  public:

@@ -11,8 +11,9 @@ Recorder::Recorder(std::filesystem::path folder, const Setup& setup)
       title_(setup.title),
       expansion_reading_(setup.expansion_reading == ExpansionReading::secant ? "secant" : "tangent"),
       specimen_(setup.specimen),
-      warnings_(setup.warnings),
-      has_fields_(setup.has_fields) {}
+      has_fields_(setup.has_fields) {
+  for (const Diagnostic& warning : setup.warnings) warnings_.push_back(without_place(warning));
+}
 
 void Recorder::begin(const Run& run) {
   std::filesystem::remove(folder_ / "summary.json");

@@ -37,8 +37,8 @@ struct Setup {
   std::vector<std::unique_ptr<Stage>> stages;
   std::vector<std::string> stage_names;
   CheckpointChoice checkpoints;
-  bool has_fields = true;             ///< whether frames of the fields are written
-  std::vector<std::string> warnings;  ///< of the deck: what is allowed, but most likely not meant
+  bool has_fields = true;            ///< whether frames of the fields are written
+  std::vector<Diagnostic> warnings;  ///< of the deck: what is allowed, but most likely not meant
 };
 
 /// Reads a deck. A relative file name in it is taken from `folder`.
