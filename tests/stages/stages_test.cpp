@@ -90,8 +90,9 @@ TEST(HeatStage, ABodyThatShrinksStaysOnThePlaten) {
   const double weight =
       2200.0 * 9.81 * 0.12 * 1e-6;  // MPa, of the specimen; the lower platen's is 0.29 of it
   for (std::size_t row = r.run.records()[2].rows.first; row < r.run.history().row_count(); ++row)
-    if (r.run.history().cell(row, "converged") == 1.0)
+    if (r.run.history().cell(row, "converged") == 1.0) {
       EXPECT_GT(*r.run.history().cell(row, "stress_bottom_MPa"), (0.79 + 0.29) * weight) << "row " << row;
+    }
   EXPECT_EQ(r.result(2, "exchanges_not_converged"), 0);
   EXPECT_NEAR(r.last("specimen_strain"), 0.0, 1e-5);
   EXPECT_NEAR(r.last("strain"), 0.0, 1e-5);  // nor does the upper platen

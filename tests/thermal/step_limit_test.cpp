@@ -133,8 +133,9 @@ TEST(Prescription, TheLaterOneHoldsAtACorner) {
     if (left_is_later) heat.prescribe_temperature(on_left, Curve::constant(100.0));
     heat.advance_to(1.0);
     for (int node = 0; node < heat.nodes().count(); ++node)
-      if (norm(model.position[heat.nodes().gridpoint[node]]) < 1e-9)
+      if (norm(model.position[heat.nodes().gridpoint[node]]) < 1e-9) {
         EXPECT_EQ(heat.temperature()[node], left_is_later ? 100.0 : 50.0);
+      }
   }
 }
 
