@@ -9,7 +9,6 @@
 
 namespace pyroclast::app {
 
-constexpr std::int64_t kLargestSeed = 9'000'000'000'000'000;
 constexpr int kMostThreads = 1024;
 
 /// Contact laws that are not part of the program.
@@ -78,7 +77,7 @@ int law(const LawOptions& options);
 /// 1 when a law fails.
 int verify_laws(const VerifyOptions& options);
 int plot_properties(const PropertiesOptions& options);
-/// \param from  a case, see case_decks
+/// \param from  a case, see kCases
 int make_deck(const std::string& name, const std::string& from);
 /// \param what  curves, fires, units, keys, cases or laws
 int print_list(const std::string& what);

@@ -139,8 +139,10 @@ int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log,
   log.say(describe(summary, folder));
   if (run.outcome() == Outcome::stopped)
     log.say(fmt::format("to go on        pyroclast resume {}", folder.string()));
-  if (figures) log.say(fmt::format("figures         drawn in {} ...", (folder / "figures").string()));
-  if (figures) draw_figures("run", folder, [&] { return interrupt.asked_twice(); });
+  if (figures) {
+    log.say(fmt::format("figures         drawn in {} ...", (folder / "figures").string()));
+    draw_figures("run", folder, [&] { return interrupt.asked_twice(); });
+  }
   return exit_code(summary);
 }
 

@@ -64,10 +64,8 @@ int print_list(const std::string& what) {
   }
   std::vector<std::string> names;
   for (const auto& [name, print] : lists) names.push_back(name);
-  const auto near = nearest(what, names);
   throw Error(fmt::format("list {}: there is no such list{}; lists: {}", what,
-                          near ? fmt::format("; did you mean \"{}\"?", names[*near]) : "",
-                          quoted_list(names)));
+                          did_you_mean(what, names, "; "), quoted_list(names)));
 }
 
 }  // namespace pyroclast::app

@@ -8,6 +8,7 @@
 #include "pyroclast/app/manual.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
+#include "pyroclast/specimen/specimen.hpp"
 #include "pyroclast/version.hpp"
 
 namespace {
@@ -20,7 +21,7 @@ void add_deck(CLI::App* command, std::filesystem::path& deck) {
 
 void add_seed(CLI::App* command, std::optional<std::int64_t>& seed) {
   command->add_option("--seed", seed, "Seed of the specimen, instead of the deck's, 0 or more")
-      ->check(CLI::Range(std::int64_t{0}, app::kLargestSeed, "a whole number from 0"));
+      ->check(CLI::Range(std::int64_t{0}, specimen::kLargestSeed, "a whole number from 0"));
 }
 
 void add_output(CLI::App* command, app::RunOptions& options) {

@@ -31,7 +31,7 @@ std::vector<const CLI::App*> commands(const CLI::App& cli) {
   return cli.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// "--out" of "-o,--out", "NAME" of a word that has a place.
+/// Long and short ones, "--out" and "-o".
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
@@ -39,11 +39,6 @@ std::vector<std::string> option_names(const CLI::App& command) {
     for (const auto& name : option->get_snames()) names.push_back("-" + name);
   }
   return names;
-}
-
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
-  const auto near = nearest(word, known);
-  return near ? fmt::format("; did you mean \"{}\"?", known[*near]) : "";
 }
 
 /// Text in which roff finds no commands.
@@ -89,7 +84,7 @@ std::string what_is_wrong(const CLI::App& cli, const CLI::ParseError& error,
     if (command == nullptr && !word.starts_with('-')) {
       const auto found = std::ranges::find(names, word);
       if (found == names.end())
-        return fmt::format("\"{}\" is no command{}; commands: {}", word, did_you_mean(word, names),
+        return fmt::format("\"{}\" is no command{}; commands: {}", word, did_you_mean(word, names, "; "),
                            fmt::join(names, ", "));
       command = commands(cli)[found - names.begin()];
       known = option_names(*command);
@@ -98,7 +93,8 @@ std::string what_is_wrong(const CLI::App& cli, const CLI::ParseError& error,
     const std::string name = word.substr(0, word.find('='));
     if (name.starts_with("--") && std::ranges::find(known, name) == known.end())
       return fmt::format("\"{}\" is no option{}{}", name,
-                         command ? " of " + command->get_name() : std::string(), did_you_mean(name, known));
+                         command ? " of " + command->get_name() : std::string(),
+                         did_you_mean(name, known, "; "));
   }
   if (command == nullptr) return fmt::format("a command is needed: {}", fmt::join(names, ", "));
   return fmt::format("{}: {}; pyroclast {} --help tells more", command->get_name(), error.what(),

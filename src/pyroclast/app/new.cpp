@@ -16,10 +16,8 @@ int make_deck(const std::string& name, const std::string& from) {
   if (found == std::end(kCases)) {
     std::vector<std::string> names;
     for (const CaseDeck& deck : kCases) names.emplace_back(deck.name);
-    const auto near = nearest(from, names);
     throw Error(fmt::format("--from {}: there is no such case{}; cases: {}", from,
-                            near ? fmt::format("; did you mean \"{}\"?", names[*near]) : "",
-                            quoted_list(names)));
+                            did_you_mean(from, names, "; "), quoted_list(names)));
   }
   std::filesystem::path file = name;
   if (file.extension() != ".toml") file += ".toml";

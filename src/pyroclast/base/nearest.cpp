@@ -52,6 +52,11 @@ std::optional<std::size_t> nearest(std::string_view text, std::span<const std::s
   return best;
 }
 
+std::string did_you_mean(std::string_view text, std::span<const std::string> words, std::string_view before) {
+  const auto word = nearest(text, words);
+  return word ? fmt::format("{}did you mean \"{}\"?", before, words[*word]) : "";
+}
+
 std::string quoted_list(std::span<const std::string> words) {
   return words.empty() ? "" : fmt::format("\"{}\"", fmt::join(words, "\", \""));
 }

@@ -140,19 +140,13 @@ TableRecord& DeckRecord::table(const toml::table& table, const std::string& path
 void DeckRecord::report(const std::string& path, const toml::node& node, std::string message,
                         std::string hint) {
   if (survey_) return;
-  Diagnostic diagnostic = locate(path, node.source());
-  diagnostic.value = as_written(node);
-  diagnostic.message = std::move(message);
+  Diagnostic diagnostic = at_value(path, node, std::move(message));
   diagnostic.hint = std::move(hint);
   diagnostics_.push_back(std::move(diagnostic));
 }
 
 void DeckRecord::warn(const std::string& path, const toml::node& node, std::string message) {
-  if (survey_) return;
-  Diagnostic diagnostic = locate(path, node.source());
-  diagnostic.value = as_written(node);
-  diagnostic.message = std::move(message);
-  warnings_.push_back(std::move(diagnostic));
+  if (!survey_) warnings_.push_back(at_value(path, node, std::move(message)));
 }
 
 void DeckRecord::warn(const TableRecord& table, std::string_view key, std::string message) {
@@ -234,10 +228,8 @@ Diagnostic DeckRecord::not_read(const TableRecord& table, const toml::key& key,
     return diagnostic;
   }
   diagnostic.message = is_table_like(node) ? "unknown table" : "unknown key";
-  if (const auto index = nearest(name, known)) {
-    diagnostic.hint = fmt::format("did you mean \"{}\"?", known[*index]);
-    return diagnostic;
-  }
+  diagnostic.hint = did_you_mean(name, known);
+  if (!diagnostic.hint.empty()) return diagnostic;
   diagnostic.message += known.empty()
                             ? fmt::format("; no keys are allowed {}", in_brackets(table.path))
                             : fmt::format("; allowed {}: {}", in_brackets(table.path), quoted_list(known));
@@ -253,6 +245,13 @@ std::string DeckRecord::misplaced_hint(const TableRecord& table, std::string_vie
     return fmt::format("\"{}\" belongs {}", key, in_brackets(other->path));
   }
   return {};
+}
+
+Diagnostic DeckRecord::at_value(const std::string& path, const toml::node& node, std::string message) const {
+  Diagnostic diagnostic = locate(path, node.source());
+  diagnostic.value = as_written(node);
+  diagnostic.message = std::move(message);
+  return diagnostic;
 }
 
 Diagnostic DeckRecord::locate(const std::string& path, const toml::source_region& region) const {

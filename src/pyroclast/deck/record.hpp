@@ -81,6 +81,7 @@ class DeckRecord {
 
  private:
   std::string with_new_key(std::string_view path, const std::string& value) const;
+  Diagnostic at_value(const std::string& path, const toml::node& node, std::string message) const;
   Diagnostic locate(const std::string& path, const toml::source_region& region) const;
   std::string as_written(const toml::node& node) const;
   Diagnostic not_read(const TableRecord& table, const toml::key& key, const toml::node& node) const;

@@ -215,7 +215,7 @@ std::optional<std::size_t> read_choice(const Entry& entry, const std::vector<std
     if (text->get() == words[i]) return i;
   }
   const auto near = nearest(text->get(), words);
-  entry.error("must be " + one_of(words), near ? fmt::format("did you mean \"{}\"?", words[*near]) : "");
+  entry.error("must be " + one_of(words), did_you_mean(text->get(), words));
   return near;
 }
 

@@ -10,7 +10,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/results/history_file.hpp"
+#include "pyroclast/simulation/cracks.hpp"
 
 namespace pyroclast {
 
@@ -100,11 +102,9 @@ void append_stress(std::vector<float>& values, const ContactState<2>& state, con
 
 /// The most that a contact between blocks is damaged by any mode, 1: it is a crack. The platens' are none.
 double crack(const Mechanics<2>& mechanics, int contact) {
-  if (mechanics.model().contacts[contact].interface + 1 == std::ssize(mechanics.model().interface_names))
-    return 0.0;
+  if (mechanics.model().contacts[contact].interface == platen_interface(mechanics.model())) return 0.0;
   double most = 0.0;
-  for (const auto mode : {Remembers::tension_damage, Remembers::shear_damage, Remembers::mixed_damage})
-    most = std::max(most, mechanics.remembered(contact, mode));
+  for (const auto mode : kCrackModes) most = std::max(most, mechanics.remembered(contact, mode));
   return most;
 }
 

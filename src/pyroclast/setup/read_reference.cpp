@@ -111,10 +111,8 @@ void read_reference(const Section& output, const std::filesystem::path& folder) 
   for (const auto& word : built_in()) words.emplace_back(word.word);
   if (std::ranges::find(words, name) != words.end()) return;
   if (!name.ends_with(".csv")) {
-    const auto meant = nearest(name, words);
-    output.error("reference",
-                 fmt::format("is none of {}, and no file whose name ends in .csv{}", quoted_list(words),
-                             meant ? fmt::format("; did you mean \"{}\"?", words[*meant]) : ""));
+    output.error("reference", fmt::format("is none of {}, and no file whose name ends in .csv{}",
+                                          quoted_list(words), did_you_mean(name, words, "; ")));
     return;
   }
   try {

@@ -124,8 +124,9 @@ specimen::SpecimenParameters read_specimen(const Section& root, const std::files
   const Section s = root.section("specimen", "size of the specimen, and its seed");
   p.width = s.quantity("width", unit::length, Range::positive().usually(0.01, 10.0), "of the specimen");
   p.height = s.quantity("height", unit::length, Range::positive().usually(0.01, 10.0), "of the specimen");
-  p.seed = static_cast<std::uint64_t>(s.integer(
-      "seed", Range::between(0, 9e15), "of the random numbers; the same seed gives the same specimen"));
+  p.seed = static_cast<std::uint64_t>(
+      s.integer("seed", Range::between(0, static_cast<double>(specimen::kLargestSeed)),
+                "of the random numbers; the same seed gives the same specimen"));
   const Section aggregates =
       root.section("aggregates",
                    "coarse aggregates, placed as circles with diameters after Fuller's curve "

@@ -11,8 +11,6 @@ namespace pyroclast {
 
 namespace {
 
-constexpr Remembers kModes[] = {Remembers::tension_damage, Remembers::shear_damage, Remembers::mixed_damage};
-
 const char* name_of(Remembers damage) {
   if (damage == Remembers::tension_damage) return "tension";
   return damage == Remembers::shear_damage ? "shear" : "mixed";
@@ -57,7 +55,7 @@ std::vector<CrackKind> crack_kinds(const Mechanics<2>& mechanics) {
   std::vector<const LawTable*> laws;
   for (int i = 0; i < static_cast<int>(names.size()); ++i) laws.push_back(law_of_interface(mechanics, i));
   std::vector<CrackKind> kinds;
-  for (const Remembers damage : kModes)
+  for (const Remembers damage : kCrackModes)
     for (int i = 0; i < static_cast<int>(names.size()); ++i)
       if (laws[i] && std::ranges::count(laws[i]->history(2), damage, &HistoryInfo::what) > 0)
         kinds.push_back({damage, i, fmt::format("{}_{}", name_of(damage), names[i])});

@@ -19,6 +19,10 @@ struct CrackCount {
   void operator+=(const CrackCount& other);
 };
 
+/// What a law may remember of a crack.
+inline constexpr Remembers kCrackModes[] = {Remembers::tension_damage, Remembers::shear_damage,
+                                            Remembers::mixed_damage};
+
 /// Cracks that are counted apart.
 struct CrackKind {
   Remembers damage;  ///< mode: tension_damage, shear_damage or mixed_damage

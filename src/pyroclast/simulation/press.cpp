@@ -128,6 +128,17 @@ double Press<Dim>::rise_of_stand() const {
   }
 }
 
+/// Between the platens and the gridpoints of the ends that stand out most, m.
+/// \param up  where a gridpoint is along the axis, since the start
+template <int Dim>
+template <class Up>
+typename Press<Dim>::Clearances Press<Dim>::clearances(const Up& up) const {
+  const double lowest = up(*std::ranges::min_element(set("bottom"), {}, up));
+  const double highest = up(*std::ranges::max_element(set("top"), {}, up));
+  return {lowest - mechanics_.mean_displacement(summed("bottom_face"))[axis_],
+          mechanics_.mean_displacement(summed("top_face"))[axis_] - highest};
+}
+
 template <int Dim>
 typename Press<Dim>::EvenMotion Press<Dim>::to_touch() const {
   const double tilt = -rise_of_stand();
@@ -135,10 +146,7 @@ typename Press<Dim>::EvenMotion Press<Dim>::to_touch() const {
   const auto up = [&](int g) {
     return mechanics_.displacement(g)[axis_] + tilt * (mechanics_.model().position[g][across_[0]] - middle);
   };
-  const double lowest = up(*std::ranges::min_element(set("bottom"), {}, up));
-  const double highest = up(*std::ranges::max_element(set("top"), {}, up));
-  const double below = lowest - mechanics_.mean_displacement(summed("bottom_face"))[axis_];
-  const double above = mechanics_.mean_displacement(summed("top_face"))[axis_] - highest;
+  const auto [below, above] = clearances(up);
   return {.lift = -std::max(0.0, below), .tilt = tilt, .platen_lift = -above};
 }
 
@@ -150,10 +158,7 @@ double Press<Dim>::way(const EvenMotion& motion) const {
 template <int Dim>
 double Press<Dim>::gap() const {
   const auto up = [&](int g) { return mechanics_.displacement(g)[axis_]; };
-  const double lowest = up(*std::ranges::min_element(set("bottom"), {}, up));
-  const double highest = up(*std::ranges::max_element(set("top"), {}, up));
-  const double below = lowest - mechanics_.mean_displacement(summed("bottom_face"))[axis_];
-  const double above = mechanics_.mean_displacement(summed("top_face"))[axis_] - highest;
+  const auto [below, above] = clearances(up);
   return std::max(0.0, below) + std::max(0.0, above);
 }
 

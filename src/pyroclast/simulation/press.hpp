@@ -105,6 +105,11 @@ class Press {
   double widening(int direction) const;
   double area() const;
   double rise_of_stand() const;
+  struct Clearances {
+    double below = 0.0, above = 0.0;
+  };
+  template <class Up>
+  Clearances clearances(const Up& up) const;
 
   Mechanics<Dim>& mechanics_;
   int axis_;

@@ -12,6 +12,9 @@
 
 namespace pyroclast::specimen {
 
+/// Of the random numbers of a specimen; decks and the command line take 0 and up.
+inline constexpr std::int64_t kLargestSeed = 9'000'000'000'000'000;
+
 /// Circular aggregate as placed, before superposition on the blocks.
 struct Aggregate {
   Vec<2> centre;    ///< m
