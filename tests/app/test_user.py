@@ -682,6 +682,87 @@ class Law(UserTest):
             self.assertIn(message, done.stderr)
 
 
+# A spring in each direction that stores as many times the energy it takes as the deck says.
+CARELESS_LAW = """#pragma once
+#include <pyroclast/laws/law.hpp>
+namespace careless {
+struct Law {
+  static constexpr const char* name = "careless";
+  static constexpr const char* meaning = "a spring with a wrong energy";
+  template <class Real>
+  struct Properties {
+    using Law = careless::Law;
+    Real stiffness{}, times{};
+    template <class F, class... P>
+    static constexpr void each(F&& f, P&... p) {
+      f(pyroclast::PropertyInfo{"K", "stiffness", pyroclast::unit::stiffness_per_area, pyroclast::Range::positive()},
+        p.stiffness...);
+      f(pyroclast::PropertyInfo{"times", "energy stored over energy taken", pyroclast::unit::dimensionless,
+                                pyroclast::Range::positive()},
+        p.times...);
+    }
+    template <class F, class... P>
+    static constexpr void each_choice(F&&, P&...) {}
+  };
+  template <class Real>
+  using Constants = Properties<Real>;
+  template <int Dim, class Real>
+  struct History : pyroclast::Nothing {};
+  template <class Sum>
+  struct Losses : pyroclast::Nothing {};
+  static Constants<double> derive(const Properties<double>& p) { return p; }
+  static pyroclast::Objection check(const Properties<double>&) { return {}; }
+  template <class Real>
+  static pyroclast::ContactStiffness<Real> stiffness(const Constants<Real>& c) { return {c.stiffness, c.stiffness}; }
+  template <int Dim, class Real, class Number, class Sum>
+  static pyroclast::ContactResponse<Dim, Real> update(const Constants<Number>& c, const Real& opening,
+                                                      const pyroclast::Tangential<Dim, Real>& tangential,
+                                                      History<Dim, Real>&, Losses<Sum>&) {
+    pyroclast::ContactResponse<Dim, Real> r;
+    r.normal_traction = c.stiffness * opening;
+    r.shear_traction = tangential * Real(c.stiffness);
+    r.stored = 0.5 * c.times * c.stiffness * (opening * opening + dot(tangential, tangential));
+    return r;
+  }
+};
+}  // namespace careless
+"""
+
+
+class LedgerThatDoesNotClose(UserTest):
+    """Energy that comes from nowhere: whatever a stage found is no result."""
+
+    def run_with(self, times: float) -> tuple[int, str, dict]:
+        self.write(CARELESS_LAW, "careless.hpp")
+        head, rest = small_deck(stop_strain="stop_strain = 2e-4").split("[contacts.mortar_mortar]")
+        spring = f'law = "careless.hpp"\nK = "18e12 Pa/m"\ntimes = {times}\n'
+        head = re.sub(r"^compression = .*$", "", head, flags=re.MULTILINE)  # the cohesive law's
+        self.write(f"{head}[contacts.mortar_mortar]\n{spring}[contacts.aggregate_mortar]\n{spring}"
+                   f"[mechanics]{rest.split('[mechanics]')[1]}")
+        done = self.pyroclast("run", "deck.toml", "--out", "out", "--overwrite", "--no-figures",
+                              env=os.environ | {"PYROCLAST_CACHE": str(self.folder / "cache")})
+        said = done.stdout + done.stderr
+        self.assertTrue((self.folder / "out/summary.json").exists(), said)
+        return done.returncode, said, json.loads((self.folder / "out/summary.json").read_text())
+
+    def test_gives_no_results_and_ends_with_2(self):
+        code, said, summary = self.run_with(1.0)
+        self.assertEqual(code, 0, said)
+        self.assertNotIn("none_because", summary["stages"][-1]["results"])
+        self.assertIn("f_c ", said)
+        code, said, summary = self.run_with(3.0)
+        self.assertEqual(code, 2, said)
+        results = summary["stages"][-1]["results"]
+        self.assertGreater(len(results), 3)
+        for name, value in results.items():
+            if name == "none_because":
+                self.assertIn("energy ledger closes only within", value)
+            else:
+                self.assertIsNone(value, name)
+        self.assertIn("no results, because the energy ledger closes only within", said)
+        self.assertNotIn("f_c ", said)
+
+
 class DecksGoneWrong(UserTest):
     def refuse(self, deck: str, *words: str, **options) -> str:
         """The run is refused with these words, and nothing is left behind."""
