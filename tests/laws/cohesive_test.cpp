@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "known.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/contact_properties.hpp"
 #include "pyroclast/laws/elastic.hpp"
@@ -80,29 +81,31 @@ struct Path {
   double accumulated_slip = 0.0;
 };
 
-class ContactLawSteps : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Steps, ContactLawSteps, testing::Values(1, 7, 1000));
+class CohesiveVerification : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Steps, CohesiveVerification, testing::Values(1, 7, 1000));
 
 // The promise: fracture energies are exact in any number of steps. 1e-12: closed forms, only round-off is
 // left.
-TEST_P(ContactLawSteps, TearingApartDissipatesTheModeOneEnergy) {
+TEST_P(CohesiveVerification, TearingApartDissipatesTheModeOneEnergy) {
   Path<2> path;
   path.go(100e-6, {}, GetParam());
-  EXPECT_NEAR(path.dissipated.tension, 60.0, 60.0 * 1e-12);
+  expect_known({"Law cohesive: energy of tearing apart", "G_f1", "J/m2"}, path.dissipated.tension, 60.0,
+               60.0 * 1e-12);
   EXPECT_EQ(path.dissipated.total(), path.dissipated.tension);
   EXPECT_EQ(path.response.stored, 0.0);
   EXPECT_EQ(path.response.normal_traction, 0.0);
 }
 
-TEST_P(ContactLawSteps, TearingApartAcrossUnloadingAndClosureDissipatesTheSame) {
+TEST_P(CohesiveVerification, TearingApartAcrossUnloadingAndClosureDissipatesTheSame) {
   Path<2> path;
   for (double opening : {1e-6, -0.5e-6, 10e-6, 0.0, 5e-6, 20e-6, -1e-6, 100e-6, -1e-6, 60e-6})
     path.go(opening, {}, GetParam());
-  EXPECT_NEAR(path.dissipated.tension, 60.0, 60.0 * 1e-12);
+  expect_known({"Law cohesive: energy of tearing apart across unloading and closure", "G_f1", "J/m2"},
+               path.dissipated.tension, 60.0, 60.0 * 1e-12);
   EXPECT_EQ(path.dissipated.total(), path.dissipated.tension);
 }
 
-TEST_P(ContactLawSteps, ShearingUnderPressureDissipatesTheModeTwoEnergyAboveTheResidualLine) {
+TEST_P(CohesiveVerification, ShearingUnderPressureDissipatesTheModeTwoEnergyAboveTheResidualLine) {
   for (double pressure : {0.0, 1e6, 20e6}) {
     Path<2> path;
     const double opening = -pressure / path.properties.normal_stiffness;
@@ -110,25 +113,29 @@ TEST_P(ContactLawSteps, ShearingUnderPressureDissipatesTheModeTwoEnergyAboveTheR
     path.go(opening, {{200e-6}}, GetParam());
     const double residual =
         path.properties.residual_cohesion + pressure * std::tan(path.properties.friction_angle);
-    EXPECT_NEAR(path.dissipated.shear, 240.0, 240.0 * 1e-12);
+    expect_known(
+        {"Law cohesive: energy of shearing off under pressure, above the residual line", "G_f2", "J/m2"},
+        path.dissipated.shear, 240.0, 240.0 * 1e-12);
     EXPECT_NEAR(path.response.shear_traction[0], residual, residual * 1e-9);
     EXPECT_NEAR(path.dissipated.friction, residual * path.accumulated_slip, 1e-9 * residual);
   }
 }
 
-TEST_P(ContactLawSteps, ReversedShearDissipatesTheModeTwoEnergyOnce) {
+TEST_P(CohesiveVerification, ReversedShearDissipatesTheModeTwoEnergyOnce) {
   Path<2> path;
   path.go(-1e-6, {}, 1);
   for (double slip : {30e-6, -20e-6, 40e-6, -200e-6, 200e-6}) path.go(-1e-6, {{slip}}, GetParam());
-  EXPECT_NEAR(path.dissipated.shear, 240.0, 240.0 * 1e-12);
+  expect_known({"Law cohesive: energy of shear to and fro", "G_f2", "J/m2"}, path.dissipated.shear, 240.0,
+               240.0 * 1e-12);
 }
 
-TEST_P(ContactLawSteps, CompressionIsBilinearAndIrreversible) {
+TEST_P(CohesiveVerification, CompressionIsBilinearAndIrreversible) {
   const double u_limit = 31e6 / 18400e9;
   Path<2> path;
   path.go(-5.0 * u_limit, {}, GetParam());
   const double expected = -(31e6 + 0.05 * 18400e9 * 4.0 * u_limit);  // Eq. (15)
-  EXPECT_NEAR(path.response.normal_traction, expected, 1e-12 * std::abs(expected));
+  expect_known({"Law cohesive: traction of crushing", "the paper, Eq. (15)", "Pa"},
+               path.response.normal_traction, expected, 1e-12 * std::abs(expected));
   const double closure = path.history.closure;
   const double spent = path.dissipated.compression;
   EXPECT_NEAR(spent + path.response.stored, 0.5 * 31e6 * u_limit + 0.5 * (31e6 - expected) * 4.0 * u_limit,
@@ -142,7 +149,7 @@ TEST_P(ContactLawSteps, CompressionIsBilinearAndIrreversible) {
 
 // Monotone shear at constant normal traction follows Eqs. (13) and (14), with the slip that softens taken as
 // u_s - tau/K_s (physics reading): at u_s^l all cohesion above the residual is gone.
-TEST(ContactLaw, MonotoneShearFollowsThePapersSofteningLine) {
+TEST(CohesiveLineVerification, MonotoneShearFollowsThePapersSofteningLine) {
   const Properties p = mortar_contact();
   const double pressure = 5e6;
   const double peak = p.cohesion + pressure * std::tan(p.friction_angle);
@@ -155,7 +162,9 @@ TEST(ContactLaw, MonotoneShearFollowsThePapersSofteningLine) {
     const double u = u_peak + share * (u_last - u_peak);
     path.go(-pressure / p.normal_stiffness, {{u}}, 50);
     const double line = peak + (residual - peak) * share;
-    EXPECT_NEAR(path.response.shear_traction[0], line, 1e-9 * line);
+    expect_known(
+        {"Law cohesive: shear traction that softens under pressure", "the paper, Eqs. (13) and (14)", "Pa"},
+        path.response.shear_traction[0], line, 1e-9 * line);
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "known.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/cohesive.hpp"
 #include "pyroclast/laws/contact_properties.hpp"
@@ -70,15 +71,16 @@ struct Point {
   double missing() const { return (work - response.stored - dissipated(lost)) / work; }
 };
 
-class MixedModeSteps : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Steps, MixedModeSteps, testing::Values(1, 7, 1000));
+class MixedModeVerification : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Steps, MixedModeVerification, testing::Values(1, 7, 1000));
 
 // 1e-12: closed forms, only round-off is left.
-TEST_P(MixedModeSteps, TearingApartDissipatesTheModeOneEnergy) {
+TEST_P(MixedModeVerification, TearingApartDissipatesTheModeOneEnergy) {
   for (const Softening softening : kSoftenings) {
     Point<2> point(without_dilatancy(softening));
     point.go(2.0 * point.properties.last_opening(), {}, GetParam());
-    EXPECT_NEAR(point.lost.tension, 60.0, 60.0 * 1e-12);
+    expect_known({"Law mixed_mode: energy of tearing apart", "G_f1", "J/m2"}, point.lost.tension, 60.0,
+                 60.0 * 1e-12);
     EXPECT_EQ(dissipated(point.lost), point.lost.tension);
     EXPECT_EQ(point.history.damage, 1.0);
     EXPECT_EQ(point.response.normal_traction, 0.0);
@@ -86,7 +88,7 @@ TEST_P(MixedModeSteps, TearingApartDissipatesTheModeOneEnergy) {
   }
 }
 
-TEST_P(MixedModeSteps, TearingApartAcrossUnloadingAndClosureDissipatesTheSame) {
+TEST_P(MixedModeVerification, TearingApartAcrossUnloadingAndClosureDissipatesTheSame) {
   for (const Softening softening : kSoftenings) {
     Point<2> point(without_dilatancy(softening));
     for (double opening : {1e-6, -0.5e-6, 10e-6, 0.0, 5e-6, 20e-6, -1e-6, 400e-6, -1e-6, 60e-6})
@@ -98,7 +100,7 @@ TEST_P(MixedModeSteps, TearingApartAcrossUnloadingAndClosureDissipatesTheSame) {
 
 // Above what friction takes; the friction that stays acts from the first slip on. The stored energy of the
 // closure is there from the start.
-TEST_P(MixedModeSteps, ShearingOffUnderPressureDissipatesTheModeTwoEnergyAboveFriction) {
+TEST_P(MixedModeVerification, ShearingOffUnderPressureDissipatesTheModeTwoEnergyAboveFriction) {
   for (const Softening softening : kSoftenings) {
     for (const double pressure : {0.0, 1e6, 20e6}) {
       Point<2> point(without_dilatancy(softening));
@@ -108,7 +110,8 @@ TEST_P(MixedModeSteps, ShearingOffUnderPressureDissipatesTheModeTwoEnergyAboveFr
       const double friction = pressure * std::tan(point.properties.friction_angle);
       const double slip = end - friction / point.properties.shear_stiffness;
       EXPECT_EQ(point.history.damage, 1.0);
-      EXPECT_NEAR(point.lost.shear, 240.0, 240.0 * 1e-12);
+      expect_known({"Law mixed_mode: energy of shearing off under pressure, above friction", "G_f2", "J/m2"},
+                   point.lost.shear, 240.0, 240.0 * 1e-12);
       EXPECT_NEAR(point.lost.friction, friction * slip, 1e-12 * friction * slip);
       EXPECT_NEAR(point.response.shear_traction[0], friction, 1e-9 * friction);
       EXPECT_NEAR(point.history.slip[0], slip, 1e-12 * slip);
@@ -116,12 +119,13 @@ TEST_P(MixedModeSteps, ShearingOffUnderPressureDissipatesTheModeTwoEnergyAboveFr
   }
 }
 
-TEST_P(MixedModeSteps, ReversedShearDissipatesTheModeTwoEnergyOnce) {
+TEST_P(MixedModeVerification, ReversedShearDissipatesTheModeTwoEnergyOnce) {
   for (const Softening softening : kSoftenings) {
     Point<2> point(without_dilatancy(softening));
     point.go(-1e-6, {}, 1);
     for (double slip : {30e-6, -20e-6, 60e-6, -800e-6, 800e-6}) point.go(-1e-6, {{slip}}, GetParam());
-    EXPECT_NEAR(point.lost.shear, 240.0, 240.0 * 1e-12);
+    expect_known({"Law mixed_mode: energy of shear to and fro", "G_f2", "J/m2"}, point.lost.shear, 240.0,
+                 240.0 * 1e-12);
   }
 }
 
@@ -144,23 +148,25 @@ double left_in_shear(const Properties& p, double way, double pressure) {
 
 // Petersson: a third of the strength at an opening of 0.8 G_f / f_t, the end at 3.6 G_f / f_t. Both count
 // from the end of the elastic branch, whose energy comes out of G_f: 0.3 % here, f_t^2 / (2 K_n) = 0.17 J/m².
-TEST(MixedMode, BilinearSofteningIsPeterssons) {
+TEST(MixedModeCurvesVerification, BilinearSofteningIsPeterssons) {
   const Properties p = without_dilatancy();
   const double unit = 60.0 / p.tensile_strength, first = p.first_opening();
   EXPECT_NEAR(p.last_opening() - first, 3.6 * unit, 0.003 * 3.6 * unit);
   for (const auto& [way, left] : {std::pair(1.0 / 9.0, 2.0 / 3.0), std::pair(2.0 / 9.0, 1.0 / 3.0),
                                   std::pair(11.0 / 18.0, 1.0 / 6.0)}) {
-    EXPECT_NEAR(left_in_tension(p, way), left, 1e-11);
+    expect_known({"Law mixed_mode: bilinear softening", "Petersson 1981", "f_t"}, left_in_tension(p, way),
+                 left, 1e-11);
     for (const double pressure : {0.0, 5e6}) EXPECT_NEAR(left_in_shear(p, way, pressure), left, 1e-11);
   }
 }
 
 // e^(-7 D) less its last value; against the unbounded curve e^(-w f_t / G_f) that is at most 0.0018 f_t off.
-TEST(MixedMode, ExponentialSofteningEndsAfterSevenFoldDecay) {
+TEST(MixedModeCurvesVerification, ExponentialSofteningEndsAfterSevenFoldDecay) {
   const Properties p = without_dilatancy(Softening::exponential);
   for (const double way : {0.01, 0.1, 0.25, 0.5, 0.9}) {
     const double left = (std::exp(-7.0 * way) - std::exp(-7.0)) / (1.0 - std::exp(-7.0));
-    EXPECT_NEAR(left_in_tension(p, way), left, 1e-11);
+    expect_known({"Law mixed_mode: exponential softening", "e^(-7 D), less its last value", "f_t"},
+                 left_in_tension(p, way), left, 1e-11);
     EXPECT_NEAR(left_in_shear(p, way, 5e6), left, 1e-11);
     const double crack = way * (p.last_opening() - p.first_opening());
     const double unbounded =
@@ -225,7 +231,7 @@ TEST(MixedMode, DamageEndsOnTheQuadraticCriterion) {
 
 // Where u_f / u_0 is the same in both modes the shares of the modes are constant on a straight way, and
 // G_I / G_f1 + G_II / G_f2 = 1. 1e-11: then the bookkeeping is exact in any number of steps.
-TEST_P(MixedModeSteps, AStraightWayFollowsTheLinearEnergyCriterion) {
+TEST_P(MixedModeVerification, AStraightWayFollowsTheLinearEnergyCriterion) {
   for (const Softening softening : kSoftenings) {
     Properties p = without_dilatancy(softening);
     p.mode_2_energy =
@@ -240,14 +246,16 @@ TEST_P(MixedModeSteps, AStraightWayFollowsTheLinearEnergyCriterion) {
 }
 
 // Otherwise the sum stays near one: within 0.12 % for the ratios of Table 2, u_f / u_0 = 635 and 457.
-TEST(MixedMode, AStraightWayStaysNearTheLinearEnergyCriterion) {
+TEST(MixedModeCurvesVerification, AStraightWayStaysNearTheLinearEnergyCriterion) {
   for (const Softening softening : kSoftenings) {
     for (const double angle : {0.1, 0.4, 0.8, 1.2, 1.5}) {
       Point<2> point(without_dilatancy(softening));
       const Properties& p = point.properties;
       point.go(1.1 * std::cos(angle) * p.last_opening(), {{1.1 * std::sin(angle) * p.last_slip()}}, 20000);
       ASSERT_EQ(point.history.damage, 1.0);
-      EXPECT_NEAR(point.lost.tension / 60.0 + point.lost.shear / 240.0, 1.0, 0.0012);
+      expect_known(
+          {"Law mixed_mode: G_I / G_f1 + G_II / G_f2 on a straight way", "linear energy criterion", "1"},
+          point.lost.tension / 60.0 + point.lost.shear / 240.0, 1.0, 0.0012);
     }
   }
 }
@@ -337,7 +345,7 @@ TEST(MixedMode, OpenAfterSlipCarriesNoShearAndForgetsWhereItSlid) {
 
 // Dilation is u_r tan(psi) (1 - e^(-path / u_r)) of the path of the slip, in any number of steps; the
 // pressure that it raises at a held opening is part of the friction. 1e-12: the tolerance of Newton's method.
-TEST_P(MixedModeSteps, DilatancyFadesWithTheSlip) {
+TEST_P(MixedModeVerification, DilatancyFadesWithTheSlip) {
   Properties p = mixed_mode_contact();
   p.compressive_limit = std::numeric_limits<double>::infinity();
   const double tan_psi = std::tan(p.dilatancy_angle);

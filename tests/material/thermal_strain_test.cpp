@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "known.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 
@@ -21,22 +22,29 @@ Curve strain(const char* builtin, ExpansionReading reading) {
 void expect_close(double value, double expected) {
   EXPECT_NEAR(value, expected, 1e-12 * std::abs(expected) + 1e-18);
 }
+void expect_close(const Known& known, double value, double expected) {
+  expect_known(known, value, expected, 1e-12 * std::abs(expected) + 1e-18);
+}
 
-TEST(ThermalStrain, SecantIsEquation18TimesTheTemperatureRise) {
+TEST(ThermalStrainVerification, SecantIsEquation18TimesTheTemperatureRise) {
   const Curve aggregate = strain("paper_aggregate_expansion", ExpansionReading::secant);
   const Curve mortar = strain("paper_mortar_expansion", ExpansionReading::secant);
   for (const double T : {20.0, 20.5, 122.5, 433.3, 800.0}) {
-    expect_close(aggregate(T), (9e-6 + 7e-8 * T) * (T - T0));
-    expect_close(mortar(T), (9e-7 - 6e-11 * T * T) * (T - T0));
+    expect_close({"Thermal strain of aggregate, secant reading", "the paper, Eq. (18)", "1"}, aggregate(T),
+                 (9e-6 + 7e-8 * T) * (T - T0));
+    expect_close({"Thermal strain of mortar, secant reading", "the paper, Eq. (18)", "1"}, mortar(T),
+                 (9e-7 - 6e-11 * T * T) * (T - T0));
   }
 }
 
-TEST(ThermalStrain, TangentIsTheIntegralOfEquation18) {
+TEST(ThermalStrainVerification, TangentIsTheIntegralOfEquation18) {
   const Curve aggregate = strain("paper_aggregate_expansion", ExpansionReading::tangent);
   const Curve mortar = strain("paper_mortar_expansion", ExpansionReading::tangent);
   for (const double T : {20.0, 20.5, 122.5, 433.3, 800.0}) {
-    expect_close(aggregate(T), 9e-6 * (T - T0) + 3.5e-8 * (T * T - T0 * T0));
-    expect_close(mortar(T), 9e-7 * (T - T0) - 2e-11 * (T * T * T - T0 * T0 * T0));
+    expect_close({"Thermal strain of aggregate, tangent reading", "integral of Eq. (18)", "1"}, aggregate(T),
+                 9e-6 * (T - T0) + 3.5e-8 * (T * T - T0 * T0));
+    expect_close({"Thermal strain of mortar, tangent reading", "integral of Eq. (18)", "1"}, mortar(T),
+                 9e-7 * (T - T0) - 2e-11 * (T * T * T - T0 * T0 * T0));
   }
 }
 

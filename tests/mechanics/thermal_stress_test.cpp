@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "bodies.hpp"
+#include "known.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
 
@@ -86,19 +87,20 @@ void expect_no_stress_in_the_expanded_body(const Model<Dim>& model) {
   EXPECT_LT(largest_traction(m), 1e-12 * young * strain);
 }
 
-TEST(FreeExpansion, LeavesNoStressWhereGridpointsMoveByThermalStrain) {
+TEST(FreeExpansionVerification, LeavesNoStressWhereGridpointsMoveByThermalStrain) {
   expect_no_stress_in_the_expanded_body(tessellated(150, 0.1, 0.1, 4));
   expect_no_stress_in_the_expanded_body(five_tetrahedra());
 }
 
-TEST(FreeExpansion, IsWhatAnIrregularBodySettlesAt) {
+TEST(FreeExpansionVerification, IsWhatAnIrregularBodySettlesAt) {
   const double strain = 1e-3;
   const Model<2> model = tessellated(40, 0.1, 0.1, 4);
   auto m = mechanics(model, elastic_contact(), settling<2>(40));
   m.set_properties(uniform(model, elastic_contact(), strain));
   m.advance(2000);
   // at rest to round-off: what is left is that of the field above
-  EXPECT_LT(largest_stress(m), 1e-12 * young * strain);
+  expect_known_field({"Stress of a body that expands freely, over E alpha dT", "no restraint, no stress", "1"},
+                     largest_stress(m) / (young * strain), 1.0, 1e-12);
   EXPECT_LT(largest_traction(m), 1e-12 * young * strain);
 }
 
@@ -112,7 +114,7 @@ double deviation(const Mechanics<2>& m, double xx, double yy) {
   return worst;
 }
 
-TEST(Restraint, AColumnBetweenFixedEndsTakesTheStressOfZonesAndContactsInSeries) {
+TEST(RestraintVerification, AColumnBetweenFixedEndsTakesTheStressOfZonesAndContactsInSeries) {
   const int n = 5;
   const double d = 0.01, strain = 1e-4, free = young * strain;
   const Model<2> model = column(n, d);
@@ -127,11 +129,13 @@ TEST(Restraint, AColumnBetweenFixedEndsTakesTheStressOfZonesAndContactsInSeries)
     return deviation(m, 0.0, -free / (1.0 + softness * (n - 1) / n)) / free;
   };
   // 1e-9: settled, which takes the stiff contacts that many steps; they come to E alpha dT within 1e-3
-  EXPECT_LT(error_with(0.5, 10), 1e-9);
-  EXPECT_LT(error_with(1e-3, 200), 1e-9);
+  const Known known{"Stress of a heated column between fixed ends, over E alpha dT",
+                    "zones and contacts in series", "1"};
+  expect_known_field(known, error_with(0.5, 10), 1.0, 1e-9);
+  expect_known_field(known, error_with(1e-3, 200), 1.0, 1e-9);
 }
 
-TEST(Restraint, ASquareBetweenSlidingPlatesTakesTheBiaxialStressOfZonesAndContactsInSeries) {
+TEST(RestraintVerification, ASquareBetweenSlidingPlatesTakesTheBiaxialStressOfZonesAndContactsInSeries) {
   const int n = 4;
   const double d = 0.01, strain = 1e-4, softness = 1e-2;
   const Model<2> model = lattice(n, n, [&](double s, double t) { return Vec<2>{{n * d * s, n * d * t}}; });
@@ -142,11 +146,13 @@ TEST(Restraint, ASquareBetweenSlidingPlatesTakesTheBiaxialStressOfZonesAndContac
   m.advance(1000);
   const double free = young * strain / (1.0 - poisson);
   const double series = free / (1.0 + softness / (1.0 - poisson) * (n - 1) / n);
-  EXPECT_LT(deviation(m, -series, -series), 1e-9 * free);  // settled
+  expect_known_field({"Biaxial stress of a heated square between sliding plates, over E alpha dT / (1 - nu)",
+                      "zones and contacts in series", "1"},
+                     deviation(m, -series, -series) / free, 1.0, 1e-9);  // settled
 }
 
 // The contacts of an irregular body have no series formula; what they take off is in proportion to 1 / K.
-TEST(Restraint, AnIrregularBodyWithAFixedOutlineComesToTheBiaxialStressAsContactsGetStiff) {
+TEST(RestraintVerification, AnIrregularBodyWithAFixedOutlineComesToTheBiaxialStressAsContactsGetStiff) {
   const double size = 0.1, strain = 1e-4;
   const Model<2> model = tessellated(25, size, size, 4);
   const double free = young * strain / (1.0 - poisson);
@@ -162,7 +168,10 @@ TEST(Restraint, AnIrregularBodyWithAFixedOutlineComesToTheBiaxialStressAsContact
     return deviation(m, -free, -free) / free;
   };
   const double stiff = error_with(1e-2), stiffer = error_with(1e-3);
-  EXPECT_LT(stiffer, 5e-3);  // a few times the softness, where small blocks crowd
+  expect_known_field(
+      {"Biaxial stress of an irregular body with a fixed outline, contacts of 0.1 % of the compliance",
+       "E alpha dT / (1 - nu)", "1"},
+      stiffer, 1.0, 5e-3);  // a few times the softness, where small blocks crowd
   EXPECT_NEAR(stiffer, 0.1 * stiff, 0.05 * 0.1 * stiff);  // linear but for the square of 1e-2 times a few
 }
 
@@ -176,12 +185,15 @@ void expect_heat_stored(const Model<Dim>& model, double volume) {
   const double stress = young * strain / (1.0 - (Dim - 1) * poisson);
   for (const auto& s : m.stresses())
     for (int i = 0; i < Dim; ++i) EXPECT_NEAR(s[i], -stress, 1e-12 * stress);
-  EXPECT_NEAR(m.energy().property_change, 0.5 * Dim * stress * strain * volume,
-              1e-12 * stress * strain * volume);
+  expect_known({Dim == 2 ? "Energy that heating puts into a body held everywhere, plane stress"
+                         : "Energy that heating puts into a body held everywhere, 3D",
+                "stress times strain over two", "J"},
+               m.energy().property_change, 0.5 * Dim * stress * strain * volume,
+               1e-12 * stress * strain * volume);
   EXPECT_NEAR(m.energy().zones, m.energy().property_change, 1e-12 * m.energy().property_change);
 }
 
-TEST(Restraint, ABodyHeldEverywhereTakesTheFullStressAndStoresTheHeat) {
+TEST(RestraintVerification, ABodyHeldEverywhereTakesTheFullStressAndStoresTheHeat) {
   expect_heat_stored(tessellated(40, 0.1, 0.1, 4), 0.1 * 0.1);
   expect_heat_stored(five_tetrahedra(), 1.0);
 }
@@ -232,7 +244,7 @@ std::array<double, 2> surface_hoop_stress(double a, double b, int rows, int colu
 }
 
 // Timoshenko and Goodier, Theory of Elasticity, art. 151 (long cylinder) with plane stress for plane strain.
-TEST(ThickCylinder, TakesTheHoopStressesOfALogarithmicTemperature) {
+TEST(ThickCylinderVerification, TakesTheHoopStressesOfALogarithmicTemperature) {
   const double a = 0.05, b = 0.1, modulus = 20e9, thermal_strain = 1e-5 * 100.0;
   const double l = std::log(b / a);
   const auto exact = [&](double r) {
@@ -243,13 +255,16 @@ TEST(ThickCylinder, TakesTheHoopStressesOfALogarithmicTemperature) {
   EXPECT_NEAR(exact(b), 7.76e6, 0.01e6);
   const auto [inner, outer] = surface_hoop_stress(a, b, 16, 14, modulus, thermal_strain, 3e-3);
   // 2 %: linear continuation over half of a row of sixteen (a curved line), contacts that give way by 0.3 %
-  EXPECT_NEAR(inner, exact(a), 0.02 * std::abs(exact(a)));
-  EXPECT_NEAR(outer, exact(b), 0.02 * std::abs(exact(b)));
+  const std::string source = "Timoshenko and Goodier, Theory of Elasticity, art. 151";
+  expect_known({"Hoop stress inside a ring, hotter inside", source, "Pa"}, inner, exact(a),
+               0.02 * std::abs(exact(a)));
+  expect_known({"Hoop stress outside a ring, hotter inside", source, "Pa"}, outer, exact(b),
+               0.02 * std::abs(exact(b)));
 }
 
 // ---- Total form
 
-TEST(TotalForm, ALoadedColumnShortensAsItsModulusFallsAndReturnsOnCooling) {
+TEST(TotalFormVerification, ALoadedColumnShortensAsItsModulusFallsAndReturnsOnCooling) {
   const int n = 4;
   const double d = 0.01, pressure = 1e6;
   const Model<2> model = column(n, d);
@@ -271,7 +286,9 @@ TEST(TotalForm, ALoadedColumnShortensAsItsModulusFallsAndReturnsOnCooling) {
     m.advance(3000);
     // 1e-9: settled
     for (int g : {top, top + 1})
-      EXPECT_NEAR(m.displacements()[g][1] / (n * d), expected, 1e-9 * std::abs(expected));
+      expect_known({"Strain of a loaded column that softens, expands and cools",
+                    "total form, zones and contacts in series", "1"},
+                   m.displacements()[g][1] / (n * d), expected, 1e-9 * std::abs(expected));
   }
 }
 

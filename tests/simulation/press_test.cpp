@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "known.hpp"
 #include "mechanics/bodies.hpp"
 #include "pyroclast/base/error.hpp"
 
@@ -120,14 +121,17 @@ void carries_what_it_is_loaded_with(const Model<Dim>& model) {
   EXPECT_NEAR(press.strain() - before, 1e-4 * time, 1e-9 * time);
   press.drive(0.0);
   mechanics.advance(20000);
-  EXPECT_NEAR(press.stress(), 1e6 * (1.0 + 1e-4 * time / strain), 1e3);
+  expect_known({Dim == 2 ? "Stress of an elastic body between platens, after a motion, 2D"
+                         : "Stress of an elastic body between platens, after a motion, 3D",
+                "load and strain in proportion", "Pa"},
+               press.stress(), 1e6 * (1.0 + 1e-4 * time / strain), 1e3);
 }
 
-TEST(Press, CarriesWhatItIsLoadedWithIn2d) {
+TEST(PressVerification, CarriesWhatItIsLoadedWithIn2d) {
   carries_what_it_is_loaded_with(square());
 }
 
-TEST(Press, CarriesWhatItIsLoadedWithIn3d) {
+TEST(PressVerification, CarriesWhatItIsLoadedWithIn3d) {
   carries_what_it_is_loaded_with(tower());
 }
 

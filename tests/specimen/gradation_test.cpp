@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "examples.hpp"
+#include "known.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -26,13 +27,15 @@ std::vector<Aggregate> anywhere(const std::vector<double>& diameters) {
   return result;
 }
 
-TEST(Gradation, FullerRunsFromNothingAtTheSmallestToAllAtTheLargest) {
+TEST(GradationVerification, FullerRunsFromNothingAtTheSmallestToAllAtTheLargest) {
   const AggregateParameters p = paper_aggregates();
   EXPECT_EQ(fuller_passing(p, p.d_min), 0);
   EXPECT_EQ(fuller_passing(p, p.d_max), 1);
   // Equation 16 with the share below d_min taken off.
   const double below = std::pow(p.d_min / p.d_max, 0.45);
-  EXPECT_NEAR(fuller_passing(p, p.d_max / 2), (std::pow(0.5, 0.45) - below) / (1 - below), 1e-15);
+  expect_known(
+      {"Fuller's curve at half the largest diameter", "the paper, Eq. (16), less what is below d_min", "1"},
+      fuller_passing(p, p.d_max / 2), (std::pow(0.5, 0.45) - below) / (1 - below), 1e-15);
 }
 
 TEST(Gradation, TotalAreaIsOffByAtMostHalfTheSmallestAggregate) {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "known.hpp"
 #include "pyroclast/base/random.hpp"
 
 namespace pyroclast::specimen {
@@ -19,32 +20,33 @@ constexpr double rounding = 1e-13;
 
 const std::vector<Vec<2>> square{{{0, 0}}, {{2, 0}}, {{2, 2}}, {{0, 2}}};
 
-TEST(CommonArea, IsTheCircleInsideAPolygon) {
+TEST(CommonAreaVerification, IsTheCircleInsideAPolygon) {
   EXPECT_NEAR(common_area(square, {{1, 1}}, 0.5), pi / 4, rounding);
 }
 
-TEST(CommonArea, IsThePolygonInsideACircle) {
+TEST(CommonAreaVerification, IsThePolygonInsideACircle) {
   EXPECT_NEAR(common_area(square, {{1.2, 0.9}}, 3), 4, rounding);
 }
 
-TEST(CommonArea, IsZeroOutside) {
+TEST(CommonAreaVerification, IsZeroOutside) {
   EXPECT_NEAR(common_area(square, {{5, 5}}, 1), 0, rounding);
 }
 
-TEST(CommonArea, IsZeroWhereTheCircleOnlyTouches) {
+TEST(CommonAreaVerification, IsZeroWhereTheCircleOnlyTouches) {
   EXPECT_NEAR(common_area(square, {{-1, 1}}, 1), 0, rounding);
 }
 
-TEST(CommonArea, IsHalfTheCircleAtAnEdgeAndAQuarterAtACorner) {
+TEST(CommonAreaVerification, IsHalfTheCircleAtAnEdgeAndAQuarterAtACorner) {
   EXPECT_NEAR(common_area(square, {{0, 1}}, 0.5), pi / 8, rounding);
   EXPECT_NEAR(common_area(square, {{0, 0}}, 0.5), pi / 16, rounding);
 }
 
-TEST(CommonArea, IsTheSegmentBeyondAChord) {
+TEST(CommonAreaVerification, IsTheSegmentBeyondAChord) {
   const double distance = 0.3;
   const double segment = std::acos(distance) - distance * std::sqrt(1 - distance * distance);
   const std::vector<Vec<2>> half_plane{{{distance, -9}}, {{9, -9}}, {{9, 9}}, {{distance, 9}}};
-  EXPECT_NEAR(common_area(half_plane, {{0, 0}}, 1), segment, 1e-12);  // corners at 9: products of order 100
+  expect_known({"Area of a circle beyond a chord", "circular segment", "m2"},
+               common_area(half_plane, {{0, 0}}, 1), segment, 1e-12);  // corners at 9: products of order 100
 }
 
 /// The length that a vertical line has in common with a convex polygon and a circle.
@@ -65,7 +67,7 @@ double common_chord(const std::vector<Vec<2>>& polygon, const Vec<2>& centre, do
   return std::max(0.0, std::min(high, centre[1] + half) - std::max(low, centre[1] - half));
 }
 
-TEST(CommonArea, AgreesWithQuadratureForAnyTriangle) {
+TEST(CommonAreaVerification, AgreesWithQuadratureForAnyTriangle) {
   Random random(7);
   constexpr int strips = 20000;
   for (int trial = 0; trial < 200; ++trial) {
@@ -81,7 +83,8 @@ TEST(CommonArea, AgreesWithQuadratureForAnyTriangle) {
     for (int i = 0; i < strips; ++i)
       sum += common_chord(triangle, centre, radius, (i + 0.5) / strips) / strips;
     // The midpoint rule on strips of 5e-5 misses at most about that squared times the root-like ends' slope.
-    EXPECT_NEAR(common_area(triangle, centre, radius), sum, 2e-6) << "trial " << trial;
+    expect_known({"Area that circles and triangles share", "midpoint rule of 20,000 strips", "m2"},
+                 common_area(triangle, centre, radius), sum, 2e-6);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "bodies.hpp"
+#include "known.hpp"
 #include "pyroclast/material/curve.hpp"
 #include "pyroclast/thermal/time_stages.hpp"
 
@@ -50,7 +51,9 @@ TEST(StepLimitVerification, IsThatOfGershgorinToRounding) {
   const Conduction<2> heat(model, {material(Curve::constant(kConductivity), Curve::constant(kCapacity))},
                            parameters(100.0, 10.0));
   const double exact = limit_of_centre(kConductivity, kCapacity);
-  EXPECT_NEAR(heat.step_limit().step, exact, kRounding * exact);
+  expect_known(
+      {"Stable step of heat conduction: a square of one block", "Gershgorin's theorem, by hand", "s"},
+      heat.step_limit().step, exact, kRounding * exact);
 }
 
 // Promise: the step is stable for the least capacity and the greatest conductivity that the temperatures may
@@ -62,12 +65,16 @@ TEST(StepLimitVerification, ForeseesTheChangeOfTheProperties) {
   const Conduction<2> lighter(model, {material(Curve::constant(kConductivity), falling)},
                               parameters(100.0, 10.0));
   const double exact = limit_of_centre(kConductivity, 0.25 * kCapacity);
-  EXPECT_NEAR(lighter.step_limit().step, exact, kRounding * exact);
+  expect_known({"Stable step where the heat capacity is about to fall to a quarter",
+                "Gershgorin's theorem, by hand", "s"},
+               lighter.step_limit().step, exact, kRounding * exact);
   const Curve rising = over_temperature(
       {0.0, 102.0, 104.0, 1200.0}, {kConductivity, kConductivity, 4.0 * kConductivity, 4.0 * kConductivity});
   const Conduction<2> faster(model, {material(rising, Curve::constant(kCapacity))}, parameters(100.0, 10.0));
   const double exact_of_faster = limit_of_centre(4.0 * kConductivity, kCapacity);
-  EXPECT_NEAR(faster.step_limit().step, exact_of_faster, kRounding * exact_of_faster);
+  expect_known(
+      {"Stable step where the conductivity is about to rise fourfold", "Gershgorin's theorem, by hand", "s"},
+      faster.step_limit().step, exact_of_faster, kRounding * exact_of_faster);
 }
 
 // Promise: radiation counts with its derivative 4 eps sigma T³, at the hottest that the step may come to.
@@ -82,7 +89,8 @@ TEST(StepLimitVerification, RadiationCountsWithItsDerivative) {
   const double slope = 4.0 * 0.7 * kSigma * kelvin * kelvin * kelvin;
   // a corner: capacity rho c a²/6, half of the length of two faces, and its conduction
   const double exact = kSafety * 2.0 * (kCapacity * kSide * kSide / 6.0) / (slope * kSide + 2.0 * kPoor);
-  EXPECT_NEAR(heat.step_limit().step, exact, 1e-6 * exact);
+  expect_known({"Stable step under radiation", "4 eps sigma T^3 and Gershgorin's theorem, by hand", "s"},
+               heat.step_limit().step, exact, 1e-6 * exact);
 }
 
 // Promise: convection likewise, with its coefficient.
@@ -94,7 +102,8 @@ TEST(StepLimitVerification, ConvectionCountsWithItsCoefficient) {
   heat.apply(heat.faces([](const auto&) { return true; }),
              Convection{Curve::constant(25.0), Curve::constant(20.0)});
   const double exact = kSafety * 2.0 * (kCapacity * kSide * kSide / 6.0) / (25.0 * kSide + 2.0 * kPoor);
-  EXPECT_NEAR(heat.step_limit().step, exact, kRounding * exact);
+  expect_known({"Stable step under convection", "Gershgorin's theorem, by hand", "s"}, heat.step_limit().step,
+               exact, kRounding * exact);
 }
 
 // Promise: a number of super-time-stepping stages is odd, so that the shortest wave, for which the step is
@@ -169,7 +178,9 @@ TEST(ConductivityVerification, AWallOfLinearConductivityFollowsKirchhoff) {
     return worst;
   };
   const double coarse = error(8), fine = error(16);
-  EXPECT_LT(fine, 1.0);           // K of 800; first order leaves some ten
+  // K of 800; first order leaves some ten
+  expect_known_field({"A wall of linear conductivity: temperatures", "Kirchhoff's transform", "K"}, fine,
+                     kHot - kCold, 1.0);
   EXPECT_LT(fine, coarse / 3.0);  // second order
 }
 

@@ -7,6 +7,7 @@
 
 #include "bodies.hpp"
 #include "convective_wall.hpp"
+#include "known.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 
@@ -46,7 +47,9 @@ TEST(ThermalVerification, NafemsT4ConvectsAtTheEdgesOfAPlate) {
   RecordProperty("coarse", std::to_string(coarse));
   RecordProperty("medium", std::to_string(medium));
   RecordProperty("fine", std::to_string(fine));
-  EXPECT_NEAR(fine, target, 0.005 * target);
+  expect_known({"Convection at the edges of a plate: temperature of NAFEMS T4",
+                "NAFEMS, Standard Benchmarks, T4", "degC"},
+               fine, target, 0.005 * target);
   EXPECT_LT(std::abs(medium - target), std::abs(coarse - target));
   EXPECT_LT(std::abs(fine - target), std::abs(medium - target));
 }
@@ -65,7 +68,9 @@ TEST(ThermalVerification, NafemsT2RadiatesFromTheEndOfABar) {
              Radiation{Curve::constant(0.98), Curve::constant(300.0 + absolute_zero)});
   ASSERT_TRUE(heat.advance_to_steady(1e-9, 1e6).reached);
   // The benchmark gives 927.0 K. In one dimension linear zones are exact, so that only its rounding is left.
-  EXPECT_NEAR(heat.temperature()[node_at(model, heat, {{0.1, 0.0}})] - absolute_zero, 927.0, 0.05);
+  expect_known(
+      {"Radiation from the end of a bar: temperature of NAFEMS T2", "NAFEMS, Standard Benchmarks, T2", "K"},
+      heat.temperature()[node_at(model, heat, {{0.1, 0.0}})] - absolute_zero, 927.0, 0.05);
 }
 
 TEST(ThermalVerification, NafemsT3FollowsASineAtTheEndOfABar) {
@@ -84,7 +89,9 @@ TEST(ThermalVerification, NafemsT3FollowsASineAtTheEndOfABar) {
           "sine", [](double t) { return 100.0 * std::sin(pi * t / 40.0); }, {0.0, 40.0}, time_axis()));
   heat.advance_to(32.0);
   // The benchmark gives 36.60 degC; blocks of 5 mm leave less than half a percent.
-  EXPECT_NEAR(heat.temperature()[node_at(model, heat, {{0.08, 0.0}})], 36.60, 0.005 * 36.60);
+  expect_known(
+      {"A sine at the end of a bar: temperature of NAFEMS T3", "NAFEMS, Standard Benchmarks, T3", "degC"},
+      heat.temperature()[node_at(model, heat, {{0.08, 0.0}})], 36.60, 0.005 * 36.60);
 }
 
 // ---- Convective wall -------------------------------------------------------------------------------------
@@ -118,7 +125,9 @@ TEST(ThermalVerification, ARectangleThatConvectsFollowsTheProductOfTwoWalls) {
     for (const Vec<2>& x : {Vec<2>{}, Vec<2>{{half_width, 0.0}}, Vec<2>{{half_width, half_height}}})
       worst = std::max(worst, std::abs(heat.temperature()[node_at(model, heat, x)] - exact(x, time)));
     // Half a kelvin of 480: the promise of the project's verification.
-    EXPECT_LT(worst, 0.5) << "at " << time << " s";
+    expect_known_field({"A rectangle that convects on all sides: temperatures",
+                        "product of the series of two walls (Carslaw and Jaeger)", "K"},
+                       worst, gas - initial, 0.5);
   }
 }
 
@@ -211,7 +220,9 @@ TEST(ThermalVerification, AWallInAFireFollowsFiniteVolumes) {
   }
   // Both are second order; blocks of 1.5 mm meet gradients of up to 30 K/mm that change over some
   // millimetres.
-  EXPECT_LT(worst, 0.5);
+  expect_known_field(
+      {"A moist wall in the fire of ISO 834: temperatures", "own finite volumes of 0.5 mm", "K"}, worst,
+      fire(3600.0) - 20.0, 0.5);
 }
 
 }  // namespace
