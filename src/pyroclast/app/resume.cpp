@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,6 +7,7 @@
 #include "pyroclast/app/drive.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
+#include "pyroclast/base/read_file.hpp"
 #include "pyroclast/version.hpp"
 
 namespace pyroclast::app {
@@ -114,13 +113,6 @@ void require_later(const std::string& change, std::int64_t stage) {
       change, stage, stage + 1, stage + 1));
 }
 
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) throw Error(fmt::format("{}: cannot be read", file.string()));
-  return text;
-}
-
 /// Frames that both runs have in common.
 void copy_frames(const fs::path& from, const fs::path& to, int count) {
   fs::create_directories(to / "fields");
@@ -141,7 +133,7 @@ int fork(const ResumeOptions& options) {
 
   RunOptions own = options.as;
   own.deck = options.run / kDeck;
-  const std::string more = options.more.empty() ? "" : text_of(options.more);
+  const std::string more = options.more.empty() ? "" : read_file(options.more);
   Loaded loaded(own, more);
   const FolderLock lock(own.out);
   RunFolder::check(own.out, own.overwrite);

@@ -1,18 +1,17 @@
 #include "pyroclast/deck/deck.hpp"
 
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/read_file.hpp"
 #include "pyroclast/deck/record.hpp"
 
 namespace pyroclast {
 namespace {
 
-std::string read_file(const std::filesystem::path& file) {
+std::string text_of(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& message) {
     throw DeckError({Diagnostic{.file = file.string(), .message = message}});
   };
@@ -20,10 +19,12 @@ std::string read_file(const std::filesystem::path& file) {
   const std::filesystem::file_status status = std::filesystem::status(file, ignored);
   if (!std::filesystem::exists(status)) fail("no such file");
   if (std::filesystem::is_directory(status)) fail("is a directory; a deck is a TOML file");
-  std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) fail("cannot be read");
-  return text;
+  try {
+    return read_file(file);
+  } catch (const Error&) {
+    fail("cannot be read");
+  }
+  return {};
 }
 
 /// With a mark for each byte that is no printable character of ASCII.
@@ -51,7 +52,7 @@ void require_toml(const std::string& text, const std::string& name, const std::s
 
 Deck Deck::load(const std::filesystem::path& file, const std::vector<std::string>& changes,
                 const std::string& more) {
-  std::string text = read_file(file);
+  std::string text = text_of(file);
   if (!more.empty()) text += "\n" + more;
   return parse(std::move(text), file.string(), changes);
 }

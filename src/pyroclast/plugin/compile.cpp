@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -19,6 +18,7 @@
 #include <unistd.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/sha256.hpp"
 #include "pyroclast/plugin/stamp.hpp"
 
@@ -29,14 +29,6 @@ namespace pyroclast {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(fmt::format("{}: cannot be read", file.string()));
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
 
 void write(const fs::path& file, const std::string& text) {
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
@@ -279,16 +271,16 @@ fs::path compile_law(const fs::path& header, const std::string& type, const LawC
       throw Error(fmt::format(
           "{}: does not compile as the contact law {}; the compiler says:{}\nIt was run as: {}\n"
           "All that it says: {}",
-          file.string(), type, essence(text_of(messages), file), fmt::join(words, " "), messages.string()));
+          file.string(), type, essence(read_file(messages), file), fmt::join(words, " "), messages.string()));
   };
   if (!run({compiler.program, "--version"}, messages))
     throw Error(fmt::format("{}: does not tell its version; see {}", compiler.program, messages.string()));
-  const std::string version = text_of(messages);
+  const std::string version = read_file(messages);
   const fs::path preprocessed = in_cache("law.ii");
   attempt(with({"-E", source.string(), "-o", preprocessed.string()}));
   const std::string key =
-      sha256(fmt::format("{}\n{}\n{}\n{} {} {:016x}", text_of(preprocessed), version, fmt::join(command, " "),
-                         PYROCLAST_VERSION, kLawTableVersion, layout_hash()));
+      sha256(fmt::format("{}\n{}\n{}\n{} {} {:016x}", read_file(preprocessed), version,
+                         fmt::join(command, " "), PYROCLAST_VERSION, kLawTableVersion, layout_hash()));
   fs::remove(preprocessed);
   const fs::path kept = compiler.cache / (key + ".so");
   if (fs::exists(kept)) return kept;

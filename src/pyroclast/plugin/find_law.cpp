@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <utility>
 
@@ -11,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/read_file.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/plugin/load.hpp"
 
@@ -55,9 +54,7 @@ const LawTable& law_of_header(const fs::path& header, std::string type, const La
                     header.string()));
   if (sources.compiler.cache.empty())
     throw Error(fmt::format("{}: no folder for compiled laws: set PYROCLAST_CACHE", header.string()));
-  std::ifstream stream(header, std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(stream), {});
-  if (!stream) throw Error(fmt::format("{}: cannot be read", header.string()));
+  std::string text = read_file(header);
   if (type.empty()) type = law_type(header, text);
   return with_own_name(
       load_law(compile_law(header, type, sources.compiler), {fs::canonical(header), std::move(text)}));

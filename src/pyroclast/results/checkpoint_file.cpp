@@ -90,18 +90,7 @@ class CheckpointWriter : public StateVisitor {
 
   std::uint64_t finish(const CheckpointInfo& info) {
     Json json;
-    json["number"] = info.number;
-    json["version"] = info.version;
-    json["commit"] = info.commit;
-    json["physics_version"] = info.physics_version;
-    json["inputs"] = info.inputs;
-    json["body"] = info.body;
-    json["stage_kinds"] = info.stage_kinds;
-    json["stage"] = info.stage;
-    json["stage_is_over"] = info.stage_is_over;
-    json["step"] = info.step;
-    json["wall_time"] = info.wall_time;
-    json["log_bytes"] = info.log_bytes;
+    CheckpointInfo::each(info, [&](const char* name, const auto& value) { json[name] = value; });
     json["rows"] = std::move(rows_);
     const std::string table = json.dump();
     const Trailer trailer{end_, table.size(), XXH3_64bits(table.data(), table.size()), kEnd};
@@ -216,18 +205,7 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
     fail("is damaged: its table is not what was written");
   try {
     const Json json = Json::parse(table);
-    info_.number = json.at("number");
-    info_.version = json.at("version");
-    info_.commit = json.at("commit");
-    info_.physics_version = json.at("physics_version");
-    info_.inputs = json.at("inputs");
-    info_.body = json.at("body");
-    info_.stage_kinds = json.at("stage_kinds").get<std::vector<std::string>>();
-    info_.stage = json.at("stage");
-    info_.stage_is_over = json.at("stage_is_over");
-    info_.step = json.at("step");
-    info_.wall_time = json.at("wall_time");
-    info_.log_bytes = json.at("log_bytes");
+    CheckpointInfo::each(info_, [&](const char* name, auto& value) { json.at(name).get_to(value); });
     for (const Json& row : json.at("rows")) {
       const Row r{row.at(1), row.at(2), row.at(3), row.at(4)};
       if (r.begin > size || (r.item > 0 && r.count > (size - r.begin) / r.item))

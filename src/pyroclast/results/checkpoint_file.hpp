@@ -25,6 +25,23 @@ struct CheckpointInfo {
   std::int64_t step = 0;        ///< of the mechanics
   double wall_time = 0.0;       ///< of the run so far, s
   std::uint64_t log_bytes = 0;  ///< length of the run's log then
+
+  /// Shows each entry of an info by its name in the file.
+  template <class Info, class F>
+  static void each(Info& info, F&& f) {
+    f("number", info.number);
+    f("version", info.version);
+    f("commit", info.commit);
+    f("physics_version", info.physics_version);
+    f("inputs", info.inputs);
+    f("body", info.body);
+    f("stage_kinds", info.stage_kinds);
+    f("stage", info.stage);
+    f("stage_is_over", info.stage_is_over);
+    f("step", info.step);
+    f("wall_time", info.wall_time);
+    f("log_bytes", info.log_bytes);
+  }
 };
 
 /// Writes a checkpoint: whole under its name and on disk, or not at all. Throws Error when it cannot be

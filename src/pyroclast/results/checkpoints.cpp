@@ -112,32 +112,36 @@ fs::path stage_checkpoint(const fs::path& run_folder, std::int64_t stage) {
 }
 
 CheckpointFile newest_checkpoint(const fs::path& run_folder) {
-  std::vector<CheckpointFile> whole;
+  std::vector<CheckpointFile> files;
   std::vector<std::pair<fs::path, std::string>> damaged;
   for (const fs::path& file : files_of(run_folder)) {
     try {
-      CheckpointFile checkpoint(file);
-      checkpoint.verify();
-      whole.push_back(std::move(checkpoint));
+      files.emplace_back(file);
     } catch (const Error& error) {
       damaged.emplace_back(file, error.what());
     }
   }
-  if (whole.empty())
-    throw Error(
-        damaged.empty()
-            ? fmt::format("{}: holds no checkpoint, so there is nothing to go on from; run its deck again",
-                          run_folder.string())
-            : fmt::format("{}; no other checkpoint of {} can be read", damaged.front().second,
-                          run_folder.string()));
-  const auto newest =
-      std::ranges::max_element(whole, {}, [](const CheckpointFile& c) { return c.info().number; });
-  for (const auto& [file, what] : damaged)
-    if (may_be_newer(file, newest->info()))
-      throw Error(
-          fmt::format("{}; to go on from the checkpoint before it, of step {}, say --checkpoint-file {}",
-                      what, newest->info().step, newest->path().string()));
-  return *newest;
+  std::ranges::sort(files, std::greater<>(), [](const CheckpointFile& c) { return c.info().number; });
+  for (const CheckpointFile& newest : files) {
+    try {
+      newest.verify();
+    } catch (const Error& error) {
+      damaged.emplace_back(newest.path(), error.what());
+      continue;
+    }
+    for (const auto& [file, what] : damaged)
+      if (may_be_newer(file, newest.info()))
+        throw Error(
+            fmt::format("{}; to go on from the checkpoint before it, of step {}, say --checkpoint-file {}",
+                        what, newest.info().step, newest.path().string()));
+    return newest;
+  }
+  throw Error(
+      damaged.empty()
+          ? fmt::format("{}: holds no checkpoint, so there is nothing to go on from; run its deck again",
+                        run_folder.string())
+          : fmt::format("{}; no other checkpoint of {} can be read", damaged.front().second,
+                        run_folder.string()));
 }
 
 Checkpoints::Checkpoints(fs::path run_folder, const CheckpointChoice& choice, Sources sources,
@@ -154,15 +158,16 @@ bool Checkpoints::is_due() const {
   return age >= std::max(choice_.interval, kLeastRest * took_);
 }
 
+fs::path Checkpoints::next_file() const {
+  return checkpoint_folder(run_folder_) / fmt::format("{:06}{}", number_ + 1, kEnding);
+}
+
 void Checkpoints::between_batches(const Run& run, bool stops) {
-  if (!stops && !is_due()) return;
-  write(run, checkpoint_folder(run_folder_) / fmt::format("{:06}{}", number_ + 1, kEnding));
+  if (stops || is_due()) write(run, next_file());
 }
 
 void Checkpoints::end_stage(const Run& run) {
-  write(run, choice_.keep_stages
-                 ? stage_checkpoint(run_folder_, run.stage_number())
-                 : checkpoint_folder(run_folder_) / fmt::format("{:06}{}", number_ + 1, kEnding));
+  write(run, choice_.keep_stages ? stage_checkpoint(run_folder_, run.stage_number()) : next_file());
 }
 
 void Checkpoints::write(const Run& run, const fs::path& path) {

@@ -55,6 +55,7 @@ class Checkpoints {
 
   bool is_due() const;
   void write(const Run& run, const std::filesystem::path& path);
+  std::filesystem::path next_file() const;
   void remove_old() const;
 
   std::filesystem::path run_folder_;

@@ -1,27 +1,15 @@
 #include "pyroclast/results/inputs.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/sha256.hpp"
 
 namespace pyroclast {
-
-namespace {
-
-std::string contents_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) throw Error(fmt::format("{}: cannot be read", file.string()));
-  return text;
-}
-
-}  // namespace
 
 std::string Inputs::hash() const {
   std::string all = sha256(deck_text);
@@ -39,7 +27,7 @@ Inputs inputs_of(const Deck& deck, const Setup& setup) {
       for (int other = 2; std::ranges::find(inputs.files, name, &InputFile::name) != inputs.files.end();
            ++other)
         name = fmt::format("inputs/{}_{}", other, named.file.filename().string());
-      file = inputs.files.insert(inputs.files.end(), {named.file, name, contents_of(named.file)});
+      file = inputs.files.insert(inputs.files.end(), {named.file, name, read_file(named.file)});
     }
     values.emplace_back(named.key, fmt::format("\"{}{}\"", file->name, named.rest));
   }

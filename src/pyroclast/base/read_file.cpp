@@ -1,0 +1,19 @@
+#include "pyroclast/base/read_file.hpp"
+
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+
+std::string read_file(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) throw Error(fmt::format("{}: cannot be read", file.string()));
+  return bytes;
+}
+
+}  // namespace pyroclast
