@@ -83,6 +83,9 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(quiet.stdout, "")
         self.assertIn("ended           completed", (self.folder / "quiet/run.log").read_text())
         self.assertFalse((self.folder / "quiet/fields").exists())
+        drawn = self.pyroclast(*[word for word in small if word != "--no-figures"], "--out", "drawn", "--quiet")
+        self.assertEqual(drawn.stdout, "")
+        self.assertTrue((self.folder / "drawn/figures/stress_strain.png").exists())
         verbose = self.pyroclast(*small, "--out", "verbose", "--verbose")
         self.assertGreater(verbose.stdout.count("(compress)"), 15)  # 20 looks
         self.assertTrue((self.folder / "verbose/fields/mesh.h5").exists())

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <ostream>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -33,6 +34,9 @@ struct Target {
   std::string_view name;
   bool (*reads)(std::string_view text);
 };
+inline void PrintTo(const Target& target, std::ostream* stream) {
+  *stream << target.name;
+}
 inline constexpr std::array<Target, 7> kTargets{{{"deck", deck},
                                                  {"changes", changes},
                                                  {"formula", formula},

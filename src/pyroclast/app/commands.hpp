@@ -90,9 +90,10 @@ int figures(const std::vector<std::string>& words);
 
 /// Draws the figures of a folder with the Python package; warns when that is not possible.
 /// \param what  the package's command
-/// \param skip  asked before and while they are drawn; true ends it
+/// \param speech  quiet: the names of the files are not printed
+/// \param skip    asked before and while they are drawn; true ends it
 void draw_figures(
-    const std::string& what, const std::filesystem::path& folder,
+    const std::string& what, const std::filesystem::path& folder, Speech speech = Speech::usual,
     const std::function<bool()>& skip = [] { return false; });
 
 }  // namespace pyroclast::app

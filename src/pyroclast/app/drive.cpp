@@ -141,7 +141,7 @@ int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log,
     log.say(fmt::format("to go on        pyroclast resume {}", folder.string()));
   if (figures) {
     log.say(fmt::format("figures         drawn in {} ...", (folder / "figures").string()));
-    draw_figures("run", folder, [&] { return interrupt.asked_twice(); });
+    draw_figures("run", folder, log.speech(), [&] { return interrupt.asked_twice(); });
   }
   return exit_code(summary);
 }

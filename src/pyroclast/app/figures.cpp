@@ -6,9 +6,11 @@
 #include <thread>
 #include <vector>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/base/error.hpp"
@@ -43,7 +45,8 @@ int wait_for(pid_t child, const std::function<bool()>& skip) {
 
 /// Runs the package's command; returns its exit code, or -1 if there is no such program or it was ended.
 int run_package(
-    std::vector<std::string> words, const std::function<bool()>& skip = [] { return false; }) {
+    std::vector<std::string> words, Speech speech = Speech::usual,
+    const std::function<bool()>& skip = [] { return false; }) {
   if (skip()) return -1;
   std::vector<std::string> arguments{PYROCLAST_PYTHON, "-m", "pyroclast.figures"};
   arguments.insert(arguments.end(), words.begin(), words.end());
@@ -57,12 +60,17 @@ int run_package(
     list.push_back(nullptr);
     return list;
   };
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  if (speech == Speech::quiet)
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   pid_t child = 0;
   int status = -1;
   std::fflush(stdout);
-  if (posix_spawn(&child, PYROCLAST_PYTHON, nullptr, nullptr, pointers(arguments).data(),
+  if (posix_spawn(&child, PYROCLAST_PYTHON, &files, nullptr, pointers(arguments).data(),
                   pointers(environment).data()) == 0)
     status = wait_for(child, skip);
+  posix_spawn_file_actions_destroy(&files);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
@@ -77,9 +85,9 @@ int figures(const std::vector<std::string>& words) {
   return code == 0 ? 0 : 1;
 }
 
-void draw_figures(const std::string& what, const std::filesystem::path& folder,
+void draw_figures(const std::string& what, const std::filesystem::path& folder, Speech speech,
                   const std::function<bool()>& skip) {
-  if (run_package({what, folder.string()}, skip) == 0) return;
+  if (run_package({what, folder.string()}, speech, skip) == 0) return;
   fmt::print(stderr,
              "warning: no figures were drawn; the results are complete without them.\n"
              "To draw them later: pyroclast figures {} {}\n",
