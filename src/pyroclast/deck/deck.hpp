@@ -89,6 +89,9 @@ class Section {
   std::vector<std::pair<std::string, Section>> named_sections(std::string_view placeholder,
                                                               Meaning meaning = "") const;
 
+  /// The same table, whose fallbacks are what another table says: the deck reference names it in their place.
+  Section with_defaults_of(std::string_view table) const;
+
   /// A quantity, written as a string with its unit, in `unit.si`; `range` is in that unit.
   double quantity(std::string_view key, const Unit& unit, const Range& range, Meaning meaning) const;
   double quantity(std::string_view key, const Unit& unit, const Range& range, double fallback,
@@ -217,7 +220,8 @@ class Section {
   void note(DeckKey key, Meaning meaning) const;
 
   DeckRecord* deck_;
-  TableRecord* table_;  ///< null for a table that is missing
+  TableRecord* table_;            ///< null for a table that is missing
+  std::string_view defaults_of_;  ///< see with_defaults_of
 };
 
 /// A TOML file in which every dimensional value is a string with its unit. Its reader asks for the keys it

@@ -351,6 +351,12 @@ std::vector<std::pair<std::string, Section>> Section::named_sections(std::string
   return result;
 }
 
+Section Section::with_defaults_of(std::string_view table) const {
+  Section same = *this;
+  same.defaults_of_ = table;
+  return same;
+}
+
 double Section::quantity(std::string_view key, const Unit& unit, const Range& range, Meaning meaning) const {
   note(quantity_key(key, unit, range), meaning);
   const auto entry = require(*deck_, table_, key, requirement(unit, range));
@@ -538,6 +544,7 @@ void Section::describe(std::string_view key, const KeyForms& forms, Meaning mean
 void Section::note(DeckKey key, Meaning meaning) const {
   auto* survey = deck_->survey();
   if (!survey) return;
+  if (!defaults_of_.empty() && !key.fallback.empty()) key.fallback = fmt::format("as in [{}]", defaults_of_);
   key.meaning = meaning.text();
   survey->read(table_->path, std::move(key));
 }

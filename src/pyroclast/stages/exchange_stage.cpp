@@ -106,7 +106,9 @@ Coupling read_coupling(const Section& s, const Coupling* general) {
 ExchangeStage::Keys read_exchange(const Section& own, const StageTables& tables) {
   ExchangeStage::Keys keys{tables.coupling, tables.output.frame_temperature};
   if (const auto other = own.optional_section("coupling", "instead of what [coupling] says, for this stage"))
-    keys.coupling = read_coupling(*other, tables.coupling_table ? &tables.coupling : nullptr);
+    keys.coupling = tables.coupling_table
+                        ? read_coupling(other->with_defaults_of("coupling"), &tables.coupling)
+                        : read_coupling(*other);
   else if (!tables.coupling_table)
     own.error("kind", "a stage that changes temperatures needs the table [coupling]");
   keys.coupling.platen = read_platen(own);
