@@ -16,6 +16,7 @@
 #include "pyroclast/results/history_file.hpp"
 #include "pyroclast/results/recorder.hpp"
 #include "pyroclast/results/run_folder.hpp"
+#include "pyroclast/results/summary.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "results/folder.hpp"
 #include "stages/small_runs.hpp"
@@ -172,6 +173,29 @@ TEST_F(Results, TheSummaryHasAReportOfEachStage) {
   EXPECT_GT(json["stages"][3]["results"]["E_GPa"], 10.0);
   EXPECT_TRUE(json["stages"][4]["results"]["E_GPa"].is_null());  // it began loaded
   EXPECT_GT(json["energy_J"]["loading"], 0.0);
+}
+
+// Promise: with small kinematics a jump of more than an edge is told where results rest on it: up to the peak
+// of a compression, up to the end of heating. With finite kinematics it is not.
+TEST_F(Results, JumpsOfMoreThanAnEdgeAreToldWhereResultsRestOnThem) {
+  const auto told = [](const Finished& r) {
+    const auto warnings = summarize(r.run).warnings;
+    return std::ranges::any_of(warnings, [](const auto& w) { return w.find("jumps exceed an edge") == 0; });
+  };
+  const auto compress = [](const std::string& until) {
+    return "[[stages]]\nkind = \"compress\"\nvelocity = \"4 mm/s\"\nramp_time = \"20 ms\"\n" + until;
+  };
+  const std::string far = compress("stop_strain = 0.012\nstop_fraction_of_peak = 0.05\n");
+  const Finished crushed(deck(kUniform + kSettle + far));
+  ASSERT_GT(crushed.last("largest_jump"), 1.0);
+  EXPECT_FALSE(told(crushed));
+  const std::string again = deck(kUniform + kSettle + far + compress("stop_strain = 0.001\n"));
+  EXPECT_TRUE(told(Finished(again)));
+  std::string turning = again;
+  turning.replace(turning.find("[mechanics]"), 11, "[mechanics]\nkinematics = \"finite\"");
+  const Finished finite(turning);
+  ASSERT_GT(finite.last("largest_jump"), 1.0);
+  EXPECT_FALSE(told(finite));
 }
 
 }  // namespace

@@ -230,6 +230,7 @@ class Mechanics {
   EnergyLedger energy() const;
   /// Mean unbalanced force over mean force applied to the gridpoints by zones, contacts and gravity.
   double unbalanced_ratio() const;
+  Kinematics kinematics() const { return parameters_.kinematics; }
   /// Largest jump over the length of the face it stands on. Small-displacement contacts are exact while it is
   /// small.
   double largest_relative_jump() const;

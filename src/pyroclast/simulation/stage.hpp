@@ -89,6 +89,8 @@ struct StageReport {
   std::vector<Result> results;
   std::vector<std::string> lines;     ///< for people
   std::vector<std::string> warnings;  ///< each keeps the results from being taken at face value
+  /// Row of the stage, from 0, after which nothing changed the results; empty: its last.
+  std::optional<std::size_t> decided_at = {};
 };
 
 /// Something that is done to a simulation until its verdict says that it is over.

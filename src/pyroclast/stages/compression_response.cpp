@@ -201,6 +201,7 @@ StageReport compression_report(const CompressionRows& rows, bool is_upwards, dou
   StageReport report;
   const CompressionResponse response = compression_response(rows, waves_until);
   const QuasiStaticReport inertia = quasi_static_report(rows);
+  if (response.strength) report.decided_at = peak_of(rows);
   report.results = {
       {"E_GPa", value_of(response.modulus, 1e-9)},
       {"E_none_because", reason_of(response.modulus)},
