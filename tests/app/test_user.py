@@ -565,6 +565,9 @@ class HeatAlone(UserTest):
         self.assertEqual(check.returncode, 0, check.stderr)
         for word in ("stable step", "degC", "heat flows for 10 min"):
             self.assertIn(word, check.stdout)
+        seconds = re.search(r"heat flows for 10 min(?: 0 s)?; about (\d+) s$", check.stdout, re.MULTILINE)
+        self.assertTrue(seconds, check.stdout)
+        self.assertLess(int(seconds.group(1)), 60)  # it takes one or two
         done = self.pyroclast("run", deck, "--out", "out")
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = self.rows()

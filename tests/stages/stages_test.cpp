@@ -213,6 +213,16 @@ TEST(Predictor, BringsABodyToTheSameStateInFewerCycles) {
   EXPECT_LT(predicted.energy_error_over_turnover(), 1e-6);
 }
 
+// Promise: it does so for increments of a fraction of a kelvin too.
+TEST(Predictor, ForetellsSmallIncrements) {
+  const std::string text = with(deck(kUniform + kSettle + load("stress = \"3 MPa\"") + heat("30 degC")),
+                                "exchange_increment = \"5 K\"", "exchange_increment = \"0.5 K\"");
+  const Finished plain(text);
+  const Finished predicted(with(text, "least_cycles = 50", kPredictor));
+  EXPECT_EQ(predicted.result(2, "exchanges"), 20);
+  EXPECT_LT(predicted.result(2, "cycles").value(), 0.8 * plain.result(2, "cycles").value());
+}
+
 // Promise: cooled down again with the predictor, an elastic body is where it was.
 TEST(Predictor, CoolingBringsAnElasticBodyBack) {
   const Finished r(
