@@ -100,15 +100,33 @@ TEST(Response, InelasticStrainHasAMeaningOrThereIsNone) {
 
 // Promise: a report always has the same results, and lines for people say why one is missing.
 TEST(Response, AReportSaysWhatIsMissing) {
-  const auto pulled =
-      compression_report({{0.0, 1e-5}, {-1e6, -2e6}, {0.0, 0.0}, {0.0, 0.0}, {0.0, 1.0}}, false, 0.0);
-  const auto sound = compression_report(parabola(21.5e9, 35e6, 1.3), false, 0.0);
+  const auto pulled = compression_report({{0.0, 1e-5}, {-1e6, -2e6}, {0.0, 0.0}, {0.0, 0.0}, {0.0, 1.0}});
+  const auto sound = compression_report(parabola(21.5e9, 35e6, 1.3));
   ASSERT_EQ(pulled.results.size(), sound.results.size());
   for (std::size_t i = 0; i < sound.results.size(); ++i)
     EXPECT_EQ(pulled.results[i].name, sound.results[i].name);
   EXPECT_EQ(pulled.lines.front().rfind("f_c: none, because ", 0), 0u);
   ASSERT_FALSE(pulled.warnings.empty());
   EXPECT_TRUE(sound.warnings.empty());
+}
+
+// Promise: a stage that was to end below the peak has E but no f_c, and that is nothing to warn of.
+TEST(Response, AStageToAStressNeedsNoPeak) {
+  const auto report = compression_report(parabola(21.5e9, 35e6, 0.5), {.to_a_value = true});
+  EXPECT_TRUE(report.warnings.empty());
+  EXPECT_EQ(
+      report.lines.front().rfind("f_c: none, because the stage was to end before a peak, at 26.25 MPa", 0),
+      0u);
+  for (const Result& result : report.results) {
+    const bool is_none = std::holds_alternative<std::monostate>(result.value);
+    if (result.name == "f_c_MPa" || result.name == "strain_ic") {
+      EXPECT_TRUE(is_none) << result.name;
+    }
+    if (result.name == "E_GPa") {
+      EXPECT_FALSE(is_none);
+    }
+  }
+  EXPECT_EQ(compression_report(parabola(21.5e9, 35e6, 0.5)).warnings.size(), 1u);
 }
 
 TEST(Response, IsReadFromTheColumnsOfItsOwnRows) {

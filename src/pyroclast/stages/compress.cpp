@@ -260,7 +260,10 @@ double Compress::progress(const Simulation& simulation) const {
 }
 
 StageReport Compress::report(const History& history, RowRange rows, Outcome) const {
-  return compression_report(compression_rows(history, rows), is_upwards_, kPassages * wave_time_);
+  return compression_report(compression_rows(history, rows),
+                            {.is_upwards = is_upwards_,
+                             .to_a_value = keys_.until != CompressUntil::stop_strain,
+                             .waves_until = kPassages * wave_time_});
 }
 
 /// How far the platen will probably move, over the height.

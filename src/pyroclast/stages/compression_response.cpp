@@ -196,12 +196,18 @@ CompressionResponse compression_response(const CompressionRows& rows, double wav
   return r;
 }
 
-StageReport compression_report(const CompressionRows& rows, bool is_upwards, double waves_until) {
-  if (is_upwards) return unloading_report(rows);
+StageReport compression_report(const CompressionRows& rows, const CompressionAim& aim) {
+  if (aim.is_upwards) return unloading_report(rows);
   StageReport report;
-  const CompressionResponse response = compression_response(rows, waves_until);
+  CompressionResponse response = compression_response(rows, aim.waves_until);
+  const bool bore = response.strength.value.has_value();
+  const bool before_peak = bore && aim.to_a_value && !response.peak_passed;
+  if (before_peak)
+    response.strength = response.inelastic_strain = {
+        std::nullopt, fmt::format("the stage was to end before a peak, at {:.2f} MPa and strain {:.5f}",
+                                  *response.strength * 1e-6, response.strain_at_peak)};
   const QuasiStaticReport inertia = quasi_static_report(rows);
-  if (response.strength) report.decided_at = peak_of(rows);
+  if (bore) report.decided_at = peak_of(rows);
   report.results = {
       {"E_GPa", value_of(response.modulus, 1e-9)},
       {"E_none_because", reason_of(response.modulus)},
@@ -220,20 +226,20 @@ StageReport compression_report(const CompressionRows& rows, bool is_upwards, dou
       {"platen_difference_over_f_c_after_peak", inertia.difference_after_peak},
   };
   report.lines.push_back(line_of("f_c", response.strength, 1e-6, 2, " MPa"));
-  if (response.strength) {
-    report.lines.back() += fmt::format(" at strain {:.5f}", response.strain_at_peak);
+  if (response.strength) report.lines.back() += fmt::format(" at strain {:.5f}", response.strain_at_peak);
+  if (bore) {
     report.lines.push_back(line_of("E", response.modulus, 1e-9, 2, " GPa"));
     if (response.modulus && response.toe > 0.0)
       report.lines.back() += fmt::format(
           ", where the curve is steepest: it begins with a toe, up to strain {:.5f}", response.toe);
-    report.lines.push_back(line_of("eps_ic", response.inelastic_strain, 1.0, 5, ""));
+    if (!before_peak) report.lines.push_back(line_of("eps_ic", response.inelastic_strain, 1.0, 5, ""));
   }
   report.lines.push_back(inertia.to_peak ? "quasi-static up to the peak" : "NOT quasi-static up to the peak");
-  if (!response.strength) report.warnings.push_back("no f_c and no E: " + response.strength.none_because);
+  if (!bore) report.warnings.push_back("no f_c and no E: " + response.strength.none_because);
   if (response.strength && !response.peak_passed)
     report.warnings.emplace_back(
         "the stress never fell after its largest value, so f_c is only what was reached");
-  if (!inertia.to_peak && response.strength)
+  if (!inertia.to_peak && bore)
     report.warnings.push_back(fmt::format(
         "not quasi-static up to the peak: kinetic over elastic energy up to {:.1e}, "
         "platen stresses differ by up to {:.1f} % of f_c; load more slowly or take a shorter time step",

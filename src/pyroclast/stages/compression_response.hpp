@@ -71,8 +71,14 @@ struct CompressionResponse {
 /// \param waves_until  time since the first row up to which stress is that of a wave, s
 CompressionResponse compression_response(const CompressionRows& rows, double waves_until = 0.0);
 
+/// What a stage was to do.
+struct CompressionAim {
+  bool is_upwards = false;   ///< the platen was moved up, to unload
+  bool to_a_value = false;   ///< it ends at a stress or a strain, and need not pass a peak
+  double waves_until = 0.0;  ///< see compression_response
+};
+
 /// All of this, as the report of a stage.
-/// \param is_upwards  the platen was moved up, to unload
-StageReport compression_report(const CompressionRows& rows, bool is_upwards, double waves_until);
+StageReport compression_report(const CompressionRows& rows, const CompressionAim& aim = {});
 
 }  // namespace pyroclast
