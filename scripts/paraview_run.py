@@ -67,13 +67,13 @@ def show(run: str | Path, magnification: float = MAGNIFICATION):
     coloured = ("POINTS", TEMPERATURE) if high - low > 1.0 else ("CELLS", MATERIAL)
     simple.ColorBy(shown, coloured)
     shown.RescaleTransferFunctionToDataRange(False, True)
-    shown.SetScalarBarVisibility(view, True)
+    shown.SetScalarBarVisibility(view, coloured[1] == TEMPERATURE)
     if moves:
         contacts = simple.OpenDataFile(str(series["contacts"]))
         cracks = simple.Threshold(Input=contacts, Scalars=["CELLS", CRACK], UpperThreshold=CRACKED,
                                   ThresholdMethod="Above Upper Threshold")
         lines = simple.Show(deformed(cracks), view)
-        simple.ColorBy(lines, None)
+        lines.ColorArrayName = ["CELLS", ""]  # one colour; ColorBy(lines, None) fails in ParaView 5.11
         lines.AmbientColor = lines.DiffuseColor = [0.84, 0.37, 0.0]
         lines.LineWidth = 3.0
     view.InteractionMode = "2D"
@@ -100,11 +100,13 @@ def main() -> int:
     from paraview import simple  # pylint: disable=import-outside-toplevel
 
     if asked.save:
-        simple.SaveScreenshot(str(asked.save), view)
+        simple.SaveScreenshot(str(asked.save), view, ImageResolution=[1200, 1200], OverrideColorPalette="WhiteBackground")
     else:
         simple.Interact(view)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    # ParaView 5.11 crashes in sys.exit once something was rendered
+    if code := main():
+        sys.exit(code)
