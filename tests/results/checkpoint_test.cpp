@@ -14,7 +14,6 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/results/checkpoints.hpp"
 #include "pyroclast/results/recorder.hpp"
-#include "pyroclast/results/text_file.hpp"
 #include "results/folder.hpp"
 #include "results/system_calls.hpp"
 #include "stages/small_runs.hpp"
@@ -124,6 +123,13 @@ std::string damaged(std::string bytes, std::mt19937_64& random) {
     }
   }
   return bytes == before ? damaged(before, random) : bytes;
+}
+
+// Promise: a file that is there but empty, as a full disk may leave it, is no unreadable one.
+TEST_F(Results, AnEmptyFileIsNoCheckpoint) {
+  { std::ofstream(folder_ / "a.state"); }
+  const std::string message = message_of([&] { CheckpointFile(folder_ / "a.state"); });
+  EXPECT_NE(message.find("is no checkpoint of pyroclast"), std::string::npos) << message;
 }
 
 TEST_F(Results, AThousandDamagedCheckpointsAreAThousandErrors) {

@@ -184,5 +184,34 @@ TEST(ConductivityVerification, AWallOfLinearConductivityFollowsKirchhoff) {
   EXPECT_LT(fine, coarse / 3.0);  // second order
 }
 
+// Promise: a zone conducts at the mean of its three temperatures. In one square block with the left corners
+// hot and the right ones cold, what comes to the centre from the left, the right, and above and below
+// together is k_l (T_l - T) + k_r (T_r - T) + 2 k_m ((T_l + T_r) / 2 - T) = 0, each k at the mean of its own
+// zone.
+TEST(ConductivityVerification, AZoneConductsAtItsMeanTemperature) {
+  constexpr double kLeft = 900.0, kRight = 100.0;
+  const auto k = [](double t) { return 1.0 + 2e-3 * (t - 100.0); };
+  const auto model = square();
+  auto p = parameters(500.0, 200.0);
+  p.largest_step = 1e5;
+  Conduction<2> heat(
+      model, {material(over_temperature({0.0, 1200.0}, {k(0.0), k(1200.0)}), Curve::constant(1e3))}, p);
+  heat.prescribe_temperature(heat.faces([](const auto& face) { return face.centre[0] < 1e-9; }),
+                             Curve::constant(kLeft));
+  heat.prescribe_temperature(heat.faces([](const auto& face) { return face.centre[0] > kSide - 1e-9; }),
+                             Curve::constant(kRight));
+  EXPECT_TRUE(heat.advance_to_steady(1e-12, 1e8).reached);
+  double exact = 500.0;
+  for (int i = 0; i < 200; ++i) {
+    const double left = k((2.0 * kLeft + exact) / 3.0), right = k((2.0 * kRight + exact) / 3.0);
+    const double middle = k((kLeft + kRight + exact) / 3.0);
+    exact = (left * kLeft + right * kRight + middle * (kLeft + kRight)) / (left + right + 2.0 * middle);
+  }
+  const int centre = node_at(model, heat, {{0.5 * kSide, 0.5 * kSide}});
+  expect_known({"Temperature in the middle of a block whose conductivity rises with the temperature",
+                "heat balance of its centre, by hand", "degC"},
+               heat.temperature()[centre], exact, 1e-6);
+}
+
 }  // namespace
 }  // namespace pyroclast
