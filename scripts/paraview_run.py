@@ -100,7 +100,8 @@ def main() -> int:
     from paraview import simple  # pylint: disable=import-outside-toplevel
 
     if asked.save:
-        simple.SaveScreenshot(str(asked.save), view, ImageResolution=[1200, 1200], OverrideColorPalette="WhiteBackground")
+        simple.SaveScreenshot(str(asked.save), view, ImageResolution=[1200, 1200],
+                              OverrideColorPalette="WhiteBackground")
     else:
         simple.Interact(view)
     return 0
