@@ -175,15 +175,20 @@ TEST(NeperTess, ReadsBackWhatWeWrite) {
   }
 }
 
-TEST(NeperTess, IsRegularisedLikeOurOwn) {
+/// The paper's aggregates on 500 blocks that were written to a file and read back.
+Specimen from_tess(double shortest_edge) {
   BlockParameters p;
   p.count = 500;
   Random random(1);
   const TessFile file(as_tess(make_blocks(p, 0.15, 0.3, random).tessellation, 0.15, 0.3));
   SpecimenParameters parameters = paper_specimen(1);
   parameters.blocks.file = file.path();
-  parameters.blocks.shortest_edge = 0.1;
-  const Specimen s = make_specimen(parameters);
+  parameters.blocks.shortest_edge = shortest_edge;
+  return make_specimen(parameters);
+}
+
+TEST(NeperTess, IsRegularisedLikeOurOwn) {
+  const Specimen s = from_tess(0.1);
   EXPECT_EQ(s.tessellation.cells.size(), 500U);
   EXPECT_GT(s.metrics.edges_removed, 0);
   EXPECT_EQ(s.metrics.seeds_redrawn, 0);
@@ -193,14 +198,7 @@ TEST(NeperTess, IsRegularisedLikeOurOwn) {
 
 // Promise: edges that stay short, since no removal leaves the blocks fit, are told.
 TEST(NeperTess, TellsOfEdgesThatAreLeftShort) {
-  BlockParameters p;
-  p.count = 500;
-  Random random(1);
-  const TessFile file(as_tess(make_blocks(p, 0.15, 0.3, random).tessellation, 0.15, 0.3));
-  SpecimenParameters parameters = paper_specimen(1);
-  parameters.blocks.file = file.path();
-  parameters.blocks.shortest_edge = 0.5;
-  const Specimen s = make_specimen(parameters);
+  const Specimen s = from_tess(0.5);
   EXPECT_GT(s.metrics.edges_left_short, 0);
   EXPECT_LT(s.metrics.shortest_edge, 0.5 * s.metrics.mean_edge);
 }
