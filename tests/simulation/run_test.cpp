@@ -59,6 +59,12 @@ void expect_same(const History& a, const History& b) {
   }
 }
 
+/// What people are told of a stage once the run is over.
+StageReport report_of(const Trial& trial, std::size_t stage) {
+  const StageRecord& record = trial.run.records()[stage];
+  return trial.run.stages()[stage]->report(trial.run.history(), record.rows, record.outcome);
+}
+
 // Promise: where batches end changes no result.
 TEST(Run, BatchesOfAnyLengthGiveTheSameHistory) {
   for (const std::string& text : {every_uniform_stage(), exposed()}) {
@@ -199,6 +205,8 @@ TEST(Run, AnotherBodyWithItsStateGoesOnAlike) {
       expect_same(whole.run.history(), resumed.run.history());
       EXPECT_EQ(whole.simulation->mechanics().displacements(),
                 resumed.simulation->mechanics().displacements());
+      for (std::size_t stage = 0; stage < whole.run.records().size(); ++stage)
+        EXPECT_EQ(report_of(whole, stage).lines, report_of(resumed, stage).lines);
     }
   }
 }

@@ -130,10 +130,10 @@ void warn_of_healing(const Section& root, const Setup& setup) {
     const auto to = setup.stages[i]->heating().to;
     if (!to) continue;
     if (*to < temperature) {
-      root.warn("stages", fmt::format("stages[{}] cools to {:.6g} degC: properties come back along their "
+      root.warn("stages", fmt::format("stage {} cools to {:.6g} degC: properties come back along their "
                                       "curves, but real concrete does not heal, so what is left of strength "
                                       "and stiffness is too high",
-                                      i, *to));
+                                      i + 1, *to));
       return;
     }
     temperature = *to;

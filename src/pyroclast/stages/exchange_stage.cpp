@@ -206,7 +206,7 @@ Forecast ExchangeStage::forecast(const Simulation&, Foreseen& foreseen) const {
 void ExchangeStage::visit_state(StateVisitor& visitor) {
   visitor.visit("rests", rests_);
   visitor.visit("load_stress", load_stress_);
-  visitor.visit("mean_at_begin", first_temperature_);
+  visitor.visit("first_temperature", first_temperature_);
   visitor.visit("last_interval", last_interval_);
   exchange_.visit_state(visitor);
   visit_change(visitor);

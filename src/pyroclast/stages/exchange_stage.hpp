@@ -27,6 +27,7 @@ class ExchangeStage : public Stage {
   explicit ExchangeStage(const Keys& keys) : keys_(keys), exchange_(keys.coupling) {}
 
   const Coupling& coupling() const { return keys_.coupling; }
+  double first_temperature() const { return first_temperature_; }  ///< mean at the beginning, °C
 
   virtual void begin_change(Simulation& simulation) = 0;
   /// One batch of changing the temperatures to the next exchange, and hands them over; true when done.
@@ -44,10 +45,10 @@ class ExchangeStage : public Stage {
 
   Keys keys_;
   Exchange exchange_;
-  bool rests_ = false;              ///< the temperatures are handed over, and the body comes to rest
-  double load_stress_ = 0.0;        ///< held at the beginning, Pa
-  double first_temperature_ = 0.0;  ///< mean at the beginning, °C
-  double last_interval_ = 0.0;      ///< of temperature, in which the last row lay
+  bool rests_ = false;        ///< the temperatures are handed over, and the body comes to rest
+  double load_stress_ = 0.0;  ///< held at the beginning, Pa
+  double first_temperature_ = 0.0;
+  double last_interval_ = 0.0;  ///< of temperature, in which the last row lay
 };
 
 /// Reads the keys that stages of this sort share. What is wrong is recorded in the deck.

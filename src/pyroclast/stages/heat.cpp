@@ -43,8 +43,7 @@ StageKind heat_kind() {
           read_heat_stage};
 }
 
-void Heat::begin_change(Simulation& simulation) {
-  first_temperature_ = simulation.field().mean();
+void Heat::begin_change(Simulation&) {
   last_change_ = 0.0;
 }
 
@@ -78,9 +77,9 @@ bool Heat::change(Simulation& simulation, Exchange& exchange, int) {
 
 double Heat::progress(const Simulation& simulation) const {
   const double mean = simulation.field().mean();
-  const double way = std::abs(keys_.to - first_temperature_);
+  const double way = std::abs(keys_.to - first_temperature());
   if (std::abs(mean - keys_.to) < kSameTemperature || way == 0.0) return 1.0;
-  return std::abs(mean - first_temperature_) / way;
+  return std::abs(mean - first_temperature()) / way;
 }
 
 double Heat::foreseen_change(Foreseen& foreseen) const {
@@ -90,7 +89,6 @@ double Heat::foreseen_change(Foreseen& foreseen) const {
 }
 
 void Heat::visit_change(StateVisitor& visitor) {
-  visitor.visit("first_temperature", first_temperature_);
   visitor.visit("last_strain_axial", last_strain_.axial);
   visitor.visit("last_strain_lateral", last_strain_.lateral);
   visitor.visit("last_change", last_change_);

@@ -27,7 +27,6 @@ class Heat : public ExchangeStage {
   void visit_change(StateVisitor& visitor) override;
 
   Keys keys_;
-  double first_temperature_ = 0.0;    ///< °C
   Press<2>::EvenMotion last_strain_;  ///< before the last exchange
   double last_change_ = 0.0;          ///< of temperature at the last exchange, K; 0 at none yet
 };
