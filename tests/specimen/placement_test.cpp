@@ -55,6 +55,16 @@ TEST(Placement, SaysHowMuchIsMissing) {
   EXPECT_TRUE(says(message, "one of [0-9.]+ mm found no place in 100 attempts"));
 }
 
+TEST(Placement, SaysWhatThoseThatFoundAPlaceTake) {
+  AggregateParameters p = paper_aggregates();
+  p.attempts = 100;
+  Random random(1);
+  const std::vector<double> diameters{20e-3, 10e-3, 50e-3};  // the last is wider than the specimen
+  // pi/4 (20^2 + 10^2) / (40 x 300) = 0.0327
+  EXPECT_TRUE(says(error_of([&] { place(diameters, 0.04, 0.3, p, {}, random); }),
+                   "after 2 of 3, an area fraction of 0\\.033 of"));
+}
+
 TEST(Placement, AnAggregateWiderThanTheSpecimenIsMissing) {
   AggregateParameters p = paper_aggregates();
   Random random(1);
