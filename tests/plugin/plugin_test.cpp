@@ -15,6 +15,7 @@
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/plugin/find_law.hpp"
 #include "pyroclast/plugin/load.hpp"
+#include "pyroclast/plugin/stamp.hpp"
 
 namespace pyroclast {
 namespace {
@@ -80,6 +81,36 @@ TEST(Plugin, FlushToZeroIsRefusedAndUndone) {
   EXPECT_GT(0.5 * least, 0.0);
 }
 #endif
+
+struct NoArrays {
+  template <class... A>
+  static void each(A&&...) {}
+};
+/// What a law's rows see of a body, less its arrays: as it is, and with two numbers that changed places.
+struct Seen : NoArrays {
+  Vec<2> gravity;
+  double time_step, thickness;
+  Kinematics kinematics;
+  const LawTable* const* laws;
+  NoArrays layout;
+};
+struct SeenOtherwise : NoArrays {
+  Vec<2> gravity;
+  double thickness, time_step;
+  Kinematics kinematics;
+  const LawTable* const* laws;
+  NoArrays layout;
+};
+
+// Promise: two numbers of a state that changed places are noticed before a law reads one for the other.
+TEST(Plugin, TheLayoutTellsWhereNumbersOfAStateStand) {
+  LayoutHash seen, again, otherwise;
+  add_state<2, Seen>(seen);
+  add_state<2, Seen>(again);
+  add_state<2, SeenOtherwise>(otherwise);
+  EXPECT_EQ(seen.value(), again.value());
+  EXPECT_NE(seen.value(), otherwise.value());
+}
 
 TEST(Plugin, ALoadedLawIsATableLikeAnyOther) {
   const LoadedLaw& law = load_law(law_file("renamed"));

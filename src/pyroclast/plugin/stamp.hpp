@@ -62,10 +62,11 @@ class LayoutHash {
 };
 
 /// What the rows of a law see of a body: the place of every array and number, and the size of their items.
-template <int Dim>
+/// \tparam S  what they see, another than the state in tests
+template <int Dim, class S = State<Dim>>
 void add_state(LayoutHash& hash) {
-  static_assert(std::is_trivially_copyable_v<State<Dim>>);
-  const State<Dim> s{};
+  static_assert(std::is_trivially_copyable_v<S>);
+  const S s{};
   const auto place = [&](const auto& member) {
     return reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&s);
   };
