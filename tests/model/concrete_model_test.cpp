@@ -128,6 +128,21 @@ TEST(ConcreteModel, SetsHoldTheGridpointsThatTheyAreNamedAfter) {
   EXPECT_THROW(body.set("buttom"), Error);
 }
 
+TEST(Model, AFaceInSpaceHasItsFirstTangentAlongItsFirstEdgeAndAThirdOfItsTrianglesAtEachCorner) {
+  const std::vector<Vec<3>> rectangle{{{0, 0, 0}}, {{2, 0, 0}}, {{2, 1, 0}}, {{0, 1, 0}}};
+  Model<3> model;
+  model.add_block(rectangle, {}, 0);
+  model.add_block(rectangle, {}, 0);
+  model.join_faces({0, 1, 2, 3}, {4, 5, 6, 7}, 0);
+  ASSERT_EQ(model.contact_count(), 4);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(model.contacts[i].normal, (Vec<3>{{0, 0, 1}}));
+    EXPECT_EQ(model.contacts[i].tangents[0], (Vec<3>{{1, 0, 0}}));
+    EXPECT_EQ(model.contacts[i].tangents[1], (Vec<3>{{0, 1, 0}}));
+    EXPECT_NEAR(model.contacts[i].area, i % 2 == 0 ? 2.0 / 3.0 : 1.0 / 3.0, 1e-15);  // two triangles or one
+  }
+}
+
 TEST(Model, RefusesAZoneWithoutVolume) {
   Model<2> model;
   model.add_block({{{0, 0}}, {{1, 0}}, {{2, 0}}}, {{0, 1, 2}}, 0);

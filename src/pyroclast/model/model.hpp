@@ -62,8 +62,8 @@ struct Model {
   /// gridpoint indices of the model, ordered so that the normal (2D: the edge direction turned clockwise, for
   /// a block walked counter-clockwise; 3D: right-handed) points out of a's block into b's. In 3D zones meet
   /// the face in the triangles of the fan from its first corner. All contact points of a face have the frame
-  /// of its mean plane, and each its share of the area. Throws Error for a face without area, and for one
-  /// without 2 corners in 2D or 3 to 8 in 3D.
+  /// of its mean plane, the first tangent along its first edge, and each its share of the area. Throws Error
+  /// for a face without area, and for one without 2 corners in 2D or 3 to 8 in 3D.
   void join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface);
 };
 
