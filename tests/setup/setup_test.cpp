@@ -146,6 +146,15 @@ TEST(Setup, TellsOfKeysThatContradictEachOther) {
 }
 
 // Promise: the estimate printed before a run is a lower bound near what the run gives.
+// Promise: a simulation takes the threads that it is given, and has one of its own where there are none.
+TEST(Simulation, TakesTheThreadsThatItIsGiven) {
+  const pyroclast::Setup setup = read(with(paper_deck(), "count = 5000", "count = 60"));
+  const auto team = std::make_shared<Team>(2);
+  const auto given = make_simulation(setup, team);
+  EXPECT_GT(team.use_count(), 1);
+  EXPECT_NE(make_simulation(setup), nullptr);
+}
+
 TEST(Simulation, EstimatedModulusIsALowerBoundNearTheMeasuredOne) {
   const std::string stages =
       "[[stages]]\nkind = \"compress\"\nvelocity = \"2 mm/s\"\n"
