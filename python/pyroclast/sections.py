@@ -22,7 +22,8 @@ _AFTER_PEAK = 0.8  # stress of frame C over that of the peak
 _HALF = 0.5  # damage from which a crack is drawn
 _MAGNIFICATIONS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 _LARGEST_MOVE_DRAWN = 0.06  # of the specimen's height
-_MARGIN = 0.08  # of the drawn width, room for blocks that have moved out
+_MARGIN = np.full((2, 2), 0.08)  # around what is drawn, of its width: below (x, y) and above
+_LARGEST_MARGIN = 0.3  # for blocks that have moved out
 _PANELS = 4
 _TITLE_HEIGHT, _CAPTION_LINE, _HEADING_LINE, _LEGEND_HEIGHT = 0.3, 0.125, 0.17, 0.65  # in print, inches
 _EDGE_OF_FULL_WIDTH, _LEAST_THINNING = 5.0, 0.45  # edge in print, points; factor on line widths
@@ -109,9 +110,10 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
     if magnification is None:
         lasts = [[panel for panel in panels if panel.frame][-1] for _, panels in rows]
         magnification = min(_visible_magnification(last.run, last.frame) for last in lasts)
+    margin = _margin([panel for _, panels in rows for panel in panels if panel.frame], magnification)
     columns = max(len(panels) for _, panels in rows)
     panel_width = style.WIDTH / max(columns, _PANELS) - 0.12
-    panel_heights = [panel_width * height_over_width(panels[0].run.mesh.blocks) for _, panels in rows]
+    panel_heights = [panel_width * height_over_width(panels[0].run.mesh.blocks, margin) for _, panels in rows]
     lines = [max(panel.caption.count("\n") + 1 for panel in panels) for _, panels in rows]
     heading = f"{heading}\ndisplacements ×{magnification:g}".lstrip()
     texts = sum(_TITLE_HEIGHT + _CAPTION_LINE * n for n in lines) + _HEADING_LINE * (heading.count("\n") + 1)
@@ -120,7 +122,7 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
     for row, (label, panels) in enumerate(rows):
         all_axes = [figure.add_subplot(grid[row, column]) for column in range(len(panels))]
         for axes, panel in zip(all_axes, panels):
-            _draw_panel(axes, panel, magnification, columns)
+            _draw_panel(axes, panel, magnification, columns, margin)
         all_axes[0].set_ylabel(label)
         if row == 0:
             draw_scale_bar(all_axes[0], panels[0].run.mesh.blocks)
@@ -133,12 +135,12 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
     return figure
 
 
-def _draw_panel(axes: Axes, panel: Panel, magnification: float, columns: int) -> None:
+def _draw_panel(axes: Axes, panel: Panel, magnification: float, columns: int, margin: np.ndarray) -> None:
     if panel.frame:
-        _draw_fractured(axes, panel.run, panel.frame, magnification, columns)
+        _draw_fractured(axes, panel.run, panel.frame, magnification, columns, margin)
         axes.set_xlabel(panel.caption, fontsize=6.5, linespacing=1.4)
     else:
-        frame_section(axes, panel.run.mesh.blocks)
+        frame_section(axes, panel.run.mesh.blocks, margin)
         axes.text(0.5, 0.5, panel.caption, transform=axes.transAxes, ha="center", va="center", fontsize=7.0,
                   color="#6a6a6a")
     axes.set_title(panel.title, fontweight="bold")
@@ -152,11 +154,23 @@ def specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
     return points.min(axis=0), points.max(axis=0)
 
 
-def _panel_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
+def _panel_box(blocks: BlockMesh, margin: np.ndarray = _MARGIN) -> tuple[np.ndarray, np.ndarray]:
     """Corners of what a panel shows: all blocks, and a margin, m."""
     low, high = blocks.points.min(axis=0), blocks.points.max(axis=0)
-    margin = _MARGIN * (high - low)[0]
-    return low - margin, high + margin
+    width = (high - low)[0]
+    return low - margin[0] * width, high + margin[1] * width
+
+
+def _margin(panels: Sequence[Panel], magnification: float) -> np.ndarray:
+    """What holds all blocks where they are drawn, as far as _LARGEST_MARGIN allows."""
+    margin = _MARGIN
+    for panel in panels:
+        blocks = panel.run.mesh.blocks
+        low, high = blocks.points.min(axis=0), blocks.points.max(axis=0)
+        drawn = blocks.points + magnification * panel.run.gridpoint_displacement(panel.frame)
+        reach = np.array([low - drawn.min(axis=0), drawn.max(axis=0) - high]) / (high - low)[0]
+        margin = np.maximum(margin, 0.2 * _MARGIN + reach)
+    return np.minimum(margin, _LARGEST_MARGIN)
 
 
 def _visible_magnification(run: Run, frame: Frame) -> float:
@@ -183,13 +197,13 @@ def _cracks_of(run: Run) -> list[_CrackStyle]:
     return [crack for crack in _CRACKS if crack.mode in run.crack_modes]
 
 
-def height_over_width(blocks: BlockMesh) -> float:
+def height_over_width(blocks: BlockMesh, margin: np.ndarray = _MARGIN) -> float:
     """Of what `frame_section` shows."""
-    low, high = _panel_box(blocks)
+    low, high = _panel_box(blocks, margin)
     return (high - low)[1] / (high - low)[0]
 
 
-def _draw_fractured(axes: Axes, run: Run, frame: Frame, magnification: float, columns: int) -> None:
+def _draw_fractured(axes: Axes, run: Run, frame: Frame, magnification: float, columns: int, margin: np.ndarray) -> None:
     blocks, contacts = run.mesh.blocks, run.mesh.contacts
     _draw_blocks(axes, blocks, blocks.points + magnification * run.gridpoint_displacement(frame))
     lines = (contacts.points + magnification * run.contact_displacement(frame))[contacts.lines]
@@ -198,7 +212,7 @@ def _draw_fractured(axes: Axes, run: Run, frame: Frame, magnification: float, co
         drawn = style.MILLI * lines[_cracked(run, frame, crack)]
         axes.add_collection(LineCollection(drawn, colors=crack.colour, linewidths=thinning * crack.width,
                                            capstyle="round", rasterized=True))
-    frame_section(axes, blocks)
+    frame_section(axes, blocks, margin)
 
 
 def _thinning(blocks: BlockMesh, contacts: ContactMesh, columns: int) -> float:
@@ -218,9 +232,9 @@ def _draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | 
                                            linewidths=0.15, rasterized=True))
 
 
-def frame_section(axes: Axes, blocks: BlockMesh) -> None:
+def frame_section(axes: Axes, blocks: BlockMesh, margin: np.ndarray = _MARGIN) -> None:
     """Limits that hold all blocks, millimetres of one size on both axes, and neither ticks nor frame."""
-    low, high = _panel_box(blocks)
+    low, high = _panel_box(blocks, margin)
     axes.set_xlim(style.MILLI * low[0], style.MILLI * high[0])
     axes.set_ylim(style.MILLI * low[1], style.MILLI * high[1])
     axes.set_aspect("equal")

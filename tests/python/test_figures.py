@@ -33,7 +33,7 @@ from pyroclast.profiles import read_profile  # noqa: E402
 from pyroclast.progress import heating_course  # noqa: E402
 from pyroclast.properties import read_properties  # noqa: E402
 from pyroclast.run import Frame, Run, RunError, Specimen, Table  # noqa: E402
-from pyroclast.sections import count_cracks, select_frames  # noqa: E402
+from pyroclast.sections import count_cracks, fracture, select_frames  # noqa: E402
 
 
 def png_size(path: Path) -> tuple[int, int]:
@@ -111,6 +111,24 @@ class CommandsMakePictures(FolderTest):
             self.assertEqual(png_size(self.run_folder / "figures" / name), (page, round(4.8 * style.DPI)))
         # Fine cracks need twice the resolution; the height follows the specimen.
         self.assertEqual(png_size(self.run_folder / "figures" / "fracture.png")[0], 2 * page)
+
+    def test_blocks_that_have_moved_out_are_not_cut_off(self):
+        run = Run(self.run_folder)
+        marks = select_frames(run.frames, *run.peak)
+        points = run.mesh.blocks.points
+
+        def reach(magnification: float) -> float:
+            """Over the width, to the left and right of where the blocks were."""
+            moved = [points + magnification * run.gridpoint_displacement(frame) for frame in marks.values()]
+            return max(np.ptp(np.r_[points[:, 0], places[:, 0]]) for places in moved) / np.ptp(points[:, 0]) - 1.0
+
+        magnification = next(m for m in range(1, 10000) if reach(m) > 0.2)
+        drawn = fracture(run, marks, magnification)
+        for axes in drawn.axes[:len(marks)]:
+            corners = np.concatenate([path.vertices for blocks in axes.collections for path in blocks.get_paths()])
+            for limits, places in zip((axes.get_xlim(), axes.get_ylim()), corners.T):
+                self.assertLess(limits[0], places.min())
+                self.assertGreater(limits[1], places.max())
 
     def test_specimen_writes_both_figures(self):
         folder = self.root / "specimen"
