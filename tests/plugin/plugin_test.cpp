@@ -297,6 +297,12 @@ struct Base {}; /* struct Nor { */ struct Law final : Base { static constexpr co
   EXPECT_EQ(
       law_type("b.hpp", "struct Law { void f() { for (;;) {} } static constexpr auto name = \"b\"; };\n"),
       "Law");
+  // a struct that is named alone opens no brace that comes after it
+  EXPECT_EQ(
+      law_type("d.hpp",
+               "struct Options;\nextern \"C++\" { struct Law { static constexpr auto name = \"d\"; }; }\n"
+               "inline void show(const struct Options&) { static constexpr auto name = \"no law\"; }\n"),
+      "Law");
   const auto refused = [](const std::string& text) { return refusal([&] { law_type("c.hpp", text); }); };
   EXPECT_TRUE(
       says(refused("namespace a { struct B { static constexpr auto name = 1; }; struct C { static constexpr "

@@ -55,6 +55,17 @@ TEST(FireCurvesVerification, AstmE119PassesThroughThePointsThatDetermineIt) {
   expect_points("astm_e119", {{2.5, 279}, {180, 1051.5}}, 1e-9);
 }
 
+// All points of the table lie on a course that gets flatter and flatter: one out of place would not.
+TEST(FireCurves, AstmE119RisesEverMoreSlowly) {
+  const Curve& curve = fire_curves().at("astm_e119").curve;
+  double rise = curve(300.0) - curve(0.0);
+  for (double t = 600.0; t <= 7200.0; t += 300.0) {
+    const double next = curve(t) - curve(t - 300.0);
+    EXPECT_LE(next, rise + 1e-9) << t;
+    rise = next;
+  }
+}
+
 TEST(FireCurves, TheFormulaOfAstmE119ComesCloseToItsTable) {
   const Curve& table = fire_curves().at("astm_e119").curve;
   const Curve& formula = fire_curves().at("astm_e119_formula").curve;
