@@ -185,7 +185,8 @@ class CommandsMakePictures(FolderTest):
         for parent, drawn in ((self.run_folder, True), (self.root / "gone", False)):
             (fork / "manifest.json").write_text(json.dumps({"parent": {"folder": str(parent)}}))
             self.assertEqual(self.command("run", fork, "--format", "svg")[0], 0)
-            self.assertEqual("run, of which this run is a fork" in (fork / "figures/stress_strain.svg").read_text(), drawn)
+            figure = (fork / "figures/stress_strain.svg").read_text()
+            self.assertEqual("run, of which this run is a fork" in figure, drawn)
 
     def test_later_columns_do_not_disturb(self):
         lines = (self.run_folder / "history.csv").read_text().splitlines()
