@@ -84,9 +84,9 @@ def _label(group: _Group) -> str:
         lines.append(f"mean of {len(group.runs)}; {each}")
     if failed := sorted(run.critical_temperature for run in group.runs if run.critical_temperature is not None):
         told = ", ".join(f"{t:.0f}" for t in failed) if len(failed) <= MANY else f"{failed[0]:.0f} to {failed[-1]:.0f}"
-        lines.append(f"✖ before failure at {told} °C" + (f" ({len(failed)} runs)" if len(failed) > MANY else ""))
+        lines.append(f"✖ failed at {told} °C" + (f" ({len(failed)} runs)" if len(failed) > MANY else ""))
     if missed := sum(int(run.unconverged.sum()) for run in group.runs):
-        lines.append(f"{missed} EXCHANGES NOT CONVERGED")
+        lines.append(f"{missed} EXCHANGE{'S' if missed > 1 else ''} NOT CONVERGED")
     return "\n".join(textwrap.fill(line, 34) for line in lines)
 
 
