@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -15,6 +16,30 @@ namespace {
 
 Model<2> small_concrete() {
   return make_concrete_model(small_specimen(800), 0.01, 0.5);
+}
+
+/// That `each` tells of every array of a list, once: they fill it.
+template <class List>
+void expect_each_tells_of_all() {
+  List list;
+  std::size_t bytes = 0;
+  std::set<std::string> names;
+  std::set<const void*> arrays;
+  for_each_array(
+      [&](const ArrayInfo& info, auto& array) {
+        bytes += sizeof(array);
+        EXPECT_TRUE(names.insert(info.name).second) << info.name;
+        EXPECT_TRUE(arrays.insert(&array).second) << info.name;
+      },
+      list);
+  EXPECT_EQ(bytes, sizeof(List));
+}
+
+TEST(Arrays, EachIsInTheListThatMemoryCheckpointsAndViewsFollow) {
+  expect_each_tells_of_all<LayoutArrays<2, FlatArray>>();
+  expect_each_tells_of_all<LayoutArrays<3, FlatArray>>();
+  expect_each_tells_of_all<StateArrays<2, FlatArray>>();
+  expect_each_tells_of_all<StateArrays<3, FlatArray>>();
 }
 
 // Every gridpoint, zone and contact has one place, and no two share one.
