@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import matplotlib
@@ -110,7 +110,9 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
     if magnification is None:
         lasts = [[panel for panel in panels if panel.frame][-1] for _, panels in rows]
         magnification = min(_visible_magnification(last.run, last.frame) for last in lasts)
-    margin = _margin([panel for _, panels in rows for panel in panels if panel.frame], magnification)
+    moved = [[_moved(panel, magnification) for panel in panels] for _, panels in rows]
+    margin = _margin((panel.run.mesh.blocks, points) for (_, panels), row in zip(rows, moved)
+                     for panel, points in zip(panels, row))
     columns = max(len(panels) for _, panels in rows)
     panel_width = style.WIDTH / max(columns, _PANELS) - 0.12
     panel_heights = [panel_width * height_over_width(panels[0].run.mesh.blocks, margin) for _, panels in rows]
@@ -121,8 +123,9 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
     grid = figure.add_gridspec(len(rows) + 1, columns, height_ratios=[*panel_heights, _LEGEND_HEIGHT])
     for row, (label, panels) in enumerate(rows):
         all_axes = [figure.add_subplot(grid[row, column]) for column in range(len(panels))]
-        for axes, panel in zip(all_axes, panels):
-            _draw_panel(axes, panel, magnification, columns, margin)
+        for axes, panel, points in zip(all_axes, panels, moved[row]):
+            _draw_panel(axes, panel, points, magnification, columns)
+            frame_section(axes, panel.run.mesh.blocks, margin)
         all_axes[0].set_ylabel(label)
         if row == 0:
             draw_scale_bar(all_axes[0], panels[0].run.mesh.blocks)
@@ -135,12 +138,17 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
     return figure
 
 
-def _draw_panel(axes: Axes, panel: Panel, magnification: float, columns: int, margin: np.ndarray) -> None:
+def _moved(panel: Panel, magnification: float) -> np.ndarray:
+    """(N, 2), m: gridpoints where they are drawn."""
+    points = panel.run.mesh.blocks.points
+    return points + magnification * panel.run.gridpoint_displacement(panel.frame) if panel.frame else points
+
+
+def _draw_panel(axes: Axes, panel: Panel, points: np.ndarray, magnification: float, columns: int) -> None:
     if panel.frame:
-        _draw_fractured(axes, panel.run, panel.frame, magnification, columns, margin)
+        _draw_fractured(axes, panel.run, panel.frame, points, magnification, columns)
         axes.set_xlabel(panel.caption, fontsize=6.5, linespacing=1.4)
     else:
-        frame_section(axes, panel.run.mesh.blocks, margin)
         axes.text(0.5, 0.5, panel.caption, transform=axes.transAxes, ha="center", va="center", fontsize=7.0,
                   color="#6a6a6a")
     axes.set_title(panel.title, fontweight="bold")
@@ -156,18 +164,24 @@ def specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
 
 def _panel_box(blocks: BlockMesh, margin: np.ndarray = _MARGIN) -> tuple[np.ndarray, np.ndarray]:
     """Corners of what a panel shows: all blocks, and a margin, m."""
-    low, high = blocks.points.min(axis=0), blocks.points.max(axis=0)
+    low, high = _block_box(blocks)
     width = (high - low)[0]
     return low - margin[0] * width, high + margin[1] * width
 
 
-def _margin(panels: Sequence[Panel], magnification: float) -> np.ndarray:
-    """What holds all blocks where they are drawn, as far as _LARGEST_MARGIN allows."""
+def _block_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Lower left and upper right corner of all blocks, platens too, where they were at first, m."""
+    return blocks.points.min(axis=0), blocks.points.max(axis=0)
+
+
+def _margin(panels: Iterable[tuple[BlockMesh, np.ndarray]]) -> np.ndarray:
+    """What holds all blocks where they are drawn, as far as _LARGEST_MARGIN allows.
+
+    panels: blocks, and where their gridpoints are drawn, m.
+    """
     margin = _MARGIN
-    for panel in panels:
-        blocks = panel.run.mesh.blocks
-        low, high = blocks.points.min(axis=0), blocks.points.max(axis=0)
-        drawn = blocks.points + magnification * panel.run.gridpoint_displacement(panel.frame)
+    for blocks, drawn in panels:
+        low, high = _block_box(blocks)
         reach = np.array([low - drawn.min(axis=0), drawn.max(axis=0) - high]) / (high - low)[0]
         margin = np.maximum(margin, 0.2 * _MARGIN + reach)
     return np.minimum(margin, _LARGEST_MARGIN)
@@ -203,16 +217,16 @@ def height_over_width(blocks: BlockMesh, margin: np.ndarray = _MARGIN) -> float:
     return (high - low)[1] / (high - low)[0]
 
 
-def _draw_fractured(axes: Axes, run: Run, frame: Frame, magnification: float, columns: int, margin: np.ndarray) -> None:
+def _draw_fractured(axes: Axes, run: Run, frame: Frame, points: np.ndarray, magnification: float,
+                    columns: int) -> None:
     blocks, contacts = run.mesh.blocks, run.mesh.contacts
-    _draw_blocks(axes, blocks, blocks.points + magnification * run.gridpoint_displacement(frame))
+    _draw_blocks(axes, blocks, points)
     lines = (contacts.points + magnification * run.contact_displacement(frame))[contacts.lines]
     thinning = _thinning(blocks, contacts, max(columns, _PANELS))
     for crack in _cracks_of(run):
         drawn = style.MILLI * lines[_cracked(run, frame, crack)]
         axes.add_collection(LineCollection(drawn, colors=crack.colour, linewidths=thinning * crack.width,
                                            capstyle="round", rasterized=True))
-    frame_section(axes, blocks, margin)
 
 
 def _thinning(blocks: BlockMesh, contacts: ContactMesh, columns: int) -> float:
