@@ -130,12 +130,23 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
         if row == 0:
             draw_scale_bar(all_axes[0], panels[0].run.mesh.blocks)
     figure.suptitle(heading, fontsize=9.0)
-    handles = _fracture_legend(rows[0][1][0].run)
+    handles = fracture_legend(rows[0][1][0].run)
     below = figure.add_subplot(grid[-1, :])
     style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center", ncols=4,
                        title_fontsize=7.0, title=note)
     below.get_legend().set_in_layout(False)  # it is as wide as the page, and would make the panels narrower
     return figure
+
+
+def draw_specimen(axes: Axes, run: Run, frame: Frame) -> float:
+    """The deformed specimen with its cracks, alone in its axes. Returns the magnification of its displacements."""
+    magnification = _visible_magnification(run, frame)
+    panel = Panel(run, frame, "", "")
+    points = _moved(panel, magnification)
+    _draw_fractured(axes, run, frame, points, magnification, columns=1)
+    frame_section(axes, run.mesh.blocks, _margin([(run.mesh.blocks, points)]))
+    draw_scale_bar(axes, run.mesh.blocks)
+    return magnification
 
 
 def _moved(panel: Panel, magnification: float) -> np.ndarray:
@@ -283,7 +294,8 @@ def draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
     axes.text(x + length + 0.03 * width, y, f"{length} mm", va="center", fontsize=7.0)
 
 
-def _fracture_legend(run: Run) -> list:
+def fracture_legend(run: Run) -> list:
+    """Handles of the cracks and materials that `fracture` and `draw_specimen` draw."""
     lines = [Line2D([], [], color=crack.colour, linewidth=crack.width, label=crack.label)
              for crack in _cracks_of(run)]
     return lines + _material_legend(run.mesh.blocks)
