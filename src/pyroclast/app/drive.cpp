@@ -2,11 +2,13 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "pyroclast/app/interrupt.hpp"
 #include "pyroclast/app/progress.hpp"
+#include "pyroclast/app/watcher.hpp"
 #include "pyroclast/base/error.hpp"
 
 namespace pyroclast::app {
@@ -110,12 +112,15 @@ std::string describe_start(const Simulation& simulation, const Loaded& loaded) {
 }
 
 int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log,
-          const std::filesystem::path& folder, bool figures) {
+          const std::filesystem::path& folder, const RunOptions& options) {
   const Interrupt interrupt;
+  std::optional<Watcher> watcher;
+  if (options.watch) watcher.emplace(folder, log);
   run.stop_when([&] { return interrupt.asked(); });
   Progress progress;
   run.between_batches([&](Run& r) {
     checkpoints.between_batches(r, interrupt.asked());
+    if (watcher) watcher->look_after();
     if (progress.is_long_silent()) log.say_now(doing_line(r));
   });
   int stage = run.stage_number();
@@ -130,6 +135,7 @@ int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log,
         log.say_now(progress_line(run, progress));
     }
     summary = recorder.finish(run);
+    if (watcher) watcher->see_out([&] { return interrupt.asked_twice(); });
   } catch (const Error& error) {
     if (checkpoints.last().empty()) throw;
     throw Error(
@@ -139,7 +145,7 @@ int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log,
   log.say(describe(summary, folder));
   if (run.outcome() == Outcome::stopped)
     log.say(fmt::format("to go on        pyroclast resume {}", folder.string()));
-  if (figures) {
+  if (options.figures) {
     log.say(fmt::format("figures         drawn in {} ...", (folder / "figures").string()));
     draw_figures("run", folder, log.speech(), [&] { return interrupt.asked_twice(); });
   }
@@ -167,7 +173,7 @@ int run(const RunOptions& options) {
   Checkpoints checkpoints(folder, loaded.setup.checkpoints,
                           checkpoint_sources(run, recorder, log, inputs.hash()), 0);
   recorder.begin(run);
-  return drive(run, recorder, checkpoints, log, folder, options.figures);
+  return drive(run, recorder, checkpoints, log, folder, options);
 }
 
 }  // namespace pyroclast::app

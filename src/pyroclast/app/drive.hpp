@@ -24,6 +24,6 @@ Checkpoints::Sources checkpoint_sources(Run& run, Recorder& recorder, const RunL
 
 /// Takes a run to its end, or to where the user stops it, and writes what comes. Returns the exit code.
 int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log,
-          const std::filesystem::path& folder, bool figures);
+          const std::filesystem::path& folder, const RunOptions& options);
 
 }  // namespace pyroclast::app

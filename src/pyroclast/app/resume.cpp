@@ -71,7 +71,7 @@ int go_on(const ResumeOptions& options) {
   Checkpoints checkpoints(options.run, loaded.setup.checkpoints,
                           checkpoint_sources(run, recorder, log, inputs.hash()), checkpoint.info().number);
   recorder.begin(run);
-  return drive(run, recorder, checkpoints, log, options.run, own.figures);
+  return drive(run, recorder, checkpoints, log, options.run, own);
 }
 
 /// The stage with this number or name.
@@ -158,7 +158,7 @@ int fork(const ResumeOptions& options) {
                           checkpoint_sources(run, recorder, log, inputs.hash()), checkpoint.info().number);
   recorder.begin(run);
   checkpoints.between_batches(run, true);
-  return drive(run, recorder, checkpoints, log, own.out, own.figures);
+  return drive(run, recorder, checkpoints, log, own.out, own);
 }
 
 }  // namespace

@@ -68,6 +68,7 @@ constexpr auto kFigures = std::to_array<const char*>({
     "temperature_profile",
     "thrust",
     "total_strain",
+    "watch",
 });
 constexpr auto kFigureFormats = std::to_array<const char*>({"png", "svg", "pdf"});
 
