@@ -4,6 +4,7 @@
     python3 -m pyroclast.figures specimen DIR
     python3 -m pyroclast.figures compare RUN_DIR... --out FILE
     python3 -m pyroclast.figures levels RUN_DIR... --out FILE
+    python3 -m pyroclast.watch RUN_DIR
 
 In a script:
 

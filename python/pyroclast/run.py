@@ -397,13 +397,13 @@ class GrowingRun(Run):
     _LASTING = frozenset({"folder", "history", "mesh", "deck", "reference", "parent"})
 
     def refresh(self) -> bool:
-        """Takes in what was written since; returns whether the history has other rows than before."""
+        """Takes in what was written since; returns whether the rows that were there are others or have become more."""
         history = self.__dict__.get("history")
         begun_anew = history is not None and history.is_replaced
         lasting = {"folder"} if begun_anew else self._LASTING
         for name in self.__dict__.keys() - lasting:
             del self.__dict__[name]
-        return begun_anew or history is None or history.grow()
+        return begun_anew or (history is not None and history.grow())
 
 
 class Specimen:

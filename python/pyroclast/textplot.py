@@ -9,7 +9,7 @@ import numpy as np
 
 _THIRDS = ".-'"  # where in its cell the curve is, from below
 _STEEP, _NOW = ":", "o"
-_PLAIN = {"°C": "degC", "µ": "u", "·": "x ", "⁻³": "^-3", "–": "-", "×": "x"}  # not every terminal has these marks
+_PLAIN = {"°C": "degC", "µ": "u", "·": " x ", "⁻³": "^-3", "–": "-", "×": "x"}  # not every terminal has these marks
 _LEAST = (30, 5)  # columns and rows of a plot that still says something
 _ROWS_A_TICK, _COLUMNS_A_TICK = 4, 12
 _LARGEST_PLAIN, _LEAST_PLAIN = 1e5, 1e-4  # numbers beyond are printed with a power of ten

@@ -29,6 +29,7 @@ import re
 import shutil
 import signal
 import sys
+import textwrap
 import time
 import warnings
 from collections.abc import Sequence
@@ -73,20 +74,20 @@ class _Curve:
     values: np.ndarray  #: (n,) in `unit`
     label: str
     name: str
-    unit: str
+    unit: str  #: as it follows a number
 
 
 def _curve_of(run: GrowingRun) -> _Curve:
     if run.only_conducts:
         rows = np.ones(len(run.history), dtype=bool)
         course = Course(run, rows, run.history["heating_time_s"] / 60.0, MINUTES_LABEL, start=0.0)
-        return _Curve(course, course["temperature_degC"], "Mean temperature [°C]", "mean temperature", "°C")
+        return _Curve(course, course["temperature_degC"], "Mean temperature [°C]", "mean temperature", " °C")
     if not run.ends_heated:
         course = loading_course(run)
-        return _Curve(course, course["stress_MPa"], style.STRESS_LABEL, "stress", "MPa")
+        return _Curve(course, course["stress_MPa"], style.STRESS_LABEL, "stress", " MPa")
     course = heating_course(run)
     if run.restrained:
-        return _Curve(course, course["stress_MPa"], THRUST_LABEL, "stress", "MPa")
+        return _Curve(course, course["stress_MPa"], THRUST_LABEL, "stress", " MPa")
     return _Curve(course, style.PER_MILLE * run.total_strain, TOTAL_STRAIN_LABEL, "total strain", "·10⁻³")
 
 
@@ -123,14 +124,14 @@ class Watch:
         as not yet written.
         """
         try:
-            grown = self.run.refresh()
-            frames = len(self.run.frames)
+            is_new = self.run.refresh()
+            rows, frames = len(self.run.history), len(self.run.frames)
         except RunError:
-            grown, frames = False, 0
-        seen = (self._state(), frames)
-        changed = grown or seen != self._seen
+            is_new, rows, frames = False, 0, 0
+        seen = (self._state(), rows, frames)
+        is_new = is_new or seen != self._seen
         self._seen = seen
-        return changed
+        return is_new
 
     def headlines(self) -> list[str]:
         """What the run is, how far it has come, and the latest numbers; a line each."""
@@ -138,7 +139,11 @@ class Watch:
             title = " ".join(self.run.title.split())
         except RunError:
             title = self.folder.resolve().name
-        return [title, self._state(), *self._numbers()]
+        try:
+            numbers = ", ".join(self._numbers())
+        except (RunError, ValueError):
+            numbers = ""
+        return [line for line in (title, self._state(), numbers) if line]
 
     def _state(self) -> str:
         if self._is_over:
@@ -179,15 +184,12 @@ class Watch:
             return ""
 
     def _numbers(self) -> list[str]:
-        try:
-            drawn = _curve_of(self.run)
-        except (RunError, ValueError):
-            return []
+        drawn = _curve_of(self.run)
         parts = []
         known = drawn.values[np.isfinite(drawn.values)]
-        if len(known):
-            parts.append(f"{drawn.name} {known[-1]:.3g} {drawn.unit}")
-            if drawn.unit == "MPa":
+        if len(known) and not self.run.only_conducts:
+            parts.append(f"{drawn.name} {known[-1]:.3g}{drawn.unit}")
+            if drawn.name == "stress":
                 parts[-1] += f" (largest {known.max():.3g})"
         history = self.run.history
         if "temperature_degC" in history and np.isfinite(history["temperature_degC"]).any():
@@ -198,7 +200,7 @@ class Watch:
                      for interface in interfaces)
         if np.isfinite(broken) and self.run.crack_modes:
             parts.append(f"{broken:.0f} contact points broken")
-        return [", ".join(parts)] if parts else []
+        return parts
 
     @matplotlib.rc_context(style.STYLE)
     def draw(self, figure: Figure | None = None) -> Figure:
@@ -249,13 +251,21 @@ class Watch:
             axes.set_title(f"mean {frame.temperature:.0f} °C")
         else:
             magnification = draw_specimen(axes, self.run, frame)
-            axes.set_title(f"{_place_of(frame)}displacements ×{magnification:g}", fontsize=8.0)
+            axes.set_title(f"{self._place_of(frame)}displacements ×{magnification:g}", fontsize=8.0)
             handles = fracture_legend(self.run)
             style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center", ncols=4)
 
+    def _place_of(self, frame: Frame) -> str:
+        """At what state a frame was saved."""
+        if frame.temperature is not None and np.isfinite(frame.temperature) and frame.heating_time:
+            return f"{'' if self.run.uniform else 'mean '}{frame.temperature:.0f} °C, "
+        if not np.isfinite(frame.strain):
+            return ""
+        return f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$, "
+
     def text(self, columns: int, rows: int) -> list[str]:
         """Headlines and curve in plain characters, in at most so many columns and rows."""
-        lines = [plain_label(line) for line in self.headlines()]
+        lines = [part for line in self.headlines() for part in textwrap.wrap(plain_label(line), columns)]
         try:
             drawn = _curve_of(self.run)
             size = (columns, max(rows - len(lines), 0))
@@ -286,15 +296,6 @@ class Watch:
 def _say_in(axes: Axes, text: str) -> None:
     axes.axis("off")
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color="#6a6a6a")
-
-
-def _place_of(frame: Frame) -> str:
-    """At what state a frame was saved."""
-    if frame.temperature is not None and np.isfinite(frame.temperature) and frame.heating_time:
-        return f"{frame.temperature:.0f} °C, "
-    if not np.isfinite(frame.strain):
-        return ""
-    return f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$, "
 
 
 class _Nothing:

@@ -142,6 +142,16 @@ class Reading(WatchTest):
             self.assertFalse(watch.is_running)
             self.assertFalse(watch.update())
 
+    def test_a_run_without_fields_is_new_only_when_it_grows(self):
+        self.begin(rows=100)
+        shutil.rmtree(self.folder / "fields")
+        with self.writer():
+            watch = Watch(self.folder)
+            self.assertFalse(watch.update())
+            self.add(self.rows[101])
+            self.assertTrue(watch.update())
+            self.assertEqual(watch.draw().axes[1].texts[0].get_text(), "no frame of the fields yet")
+
     def test_looking_at_a_lock_keeps_nobody_from_taking_it(self):
         self.folder.mkdir()
         lock = Lock(self.folder)
@@ -218,7 +228,8 @@ class Drawn(WatchTest):
         for write, over, values in (
             (synthetic_run.write_run, "Axial strain", "Axial stress"),
             (lambda to: synthetic_run.write_heated_run(to, Heating()), "Temperature", "Total axial strain"),
-            (lambda to: synthetic_run.write_heated_run(to, Heating(spread=100.0)), "Time of heating", "Total axial strain"),
+            (lambda to: synthetic_run.write_heated_run(to, Heating(spread=100.0)),
+             "Time of heating", "Total axial strain"),
             (lambda to: synthetic_run.write_heated_run(to, Heating(restrained=True)), "Temperature", "Axial stress"),
             (lambda to: synthetic_run.write_heated_run(to, Heating(hottest=300.0, cooled=True, compressed=True)),
              "Axial strain", "Axial stress"),
@@ -255,7 +266,8 @@ class Drawn(WatchTest):
     def test_a_notebook_gets_picture_and_words(self):
         watch = Watch(self.whole)
         self.assertTrue(watch._repr_png_().startswith(b"\x89PNG"))
-        self.assertRegex(watch._repr_html_(), r'^<img alt="Synthetic run; run ended: [^"]*" src="data:image/png;base64,')
+        begin = r'^<img alt="Synthetic run; run ended: [^"]*" src="data:image/png;base64,'
+        self.assertRegex(watch._repr_html_(), begin)
 
     def test_watching_needs_no_compiled_module(self):
         self.assertNotIn("pyroclast._core", sys.modules)
@@ -264,8 +276,9 @@ class Drawn(WatchTest):
 class Text(unittest.TestCase):
     def places(self, lines: list[str], character: str) -> list[tuple[int, int]]:
         """Columns and rows from below, of the picture alone."""
-        rows = [line[line.index(edge) + 1:] for line in lines[1:-3] for edge in re.findall(r"[|+]", line)[:1]]
-        return [(column, row) for row, line in enumerate(reversed(rows)) for column, c in enumerate(line) if c == character]
+        rows = [re.split("[|+]", line, maxsplit=1)[1] for line in lines[1:-3]]
+        return [(column, row) for row, line in enumerate(reversed(rows)) for column, mark in enumerate(line)
+                if mark == character]
 
     def test_a_curve_goes_through_its_points_and_ends_with_the_last(self):
         lines = curve(np.array([0.0, 1.0, 2.0]), np.array([0.0, 40.0, 10.0]), "x [mm]", "y [MPa]", (70, 20))
@@ -276,7 +289,8 @@ class Text(unittest.TestCase):
         self.assertEqual(max(row for mark in ".-':" for _, row in self.places(lines, mark)), rows - 1)
         self.assertEqual(lines[0], "y [MPa]")
         self.assertTrue(lines[-1].endswith("x [mm]"))
-        self.assertEqual([word for line in lines for word in re.findall(r"^ *(\d+) \+", line)], ["40", "30", "20", "10", "0"])
+        ticks = [word for line in lines for word in re.findall(r"^ *(\d+) \+", line)]
+        self.assertEqual(ticks, ["40", "30", "20", "10", "0"])
 
     def test_what_has_no_extent_is_drawn_too(self):
         for x, y in (([], []), ([1.0], [5.0]), ([0.0, 0.0], [0.0, 0.0]), ([1.0, 2.0], [np.nan, np.nan]),
@@ -326,8 +340,9 @@ class Command(WatchTest):
     def test_it_follows_a_run_to_its_end_and_no_picture_is_ever_half_there(self):
         self.begin(rows=60)
         reading, writing = pty.openpty()
-        with self.writer(), subprocess.Popen([sys.executable, "-m", "pyroclast.watch", str(self.folder)], stdout=writing,
-                                             env=environment(TERM="xterm", COLUMNS="70", LINES="24")) as process:
+        words = [sys.executable, "-m", "pyroclast.watch", str(self.folder)]
+        shell = environment(TERM="xterm", COLUMNS="70", LINES="24")
+        with self.writer(), subprocess.Popen(words, stdout=writing, env=shell) as process:
             os.close(writing)
             pictures = set()
             for row in range(61, len(self.rows)):

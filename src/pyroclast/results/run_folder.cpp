@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 constexpr const char* kManifest = "manifest.json";
 constexpr const char* kProgram = "pyroclast";
 
-/// All that a run, `specimen` and `figures` write into the folder of a run, as patterns of fnmatch(3),
-/// besides the manifest. What is not here outlives `--overwrite`.
+/// All that a run, `specimen`, `figures` and `watch` write into the folder of a run, as patterns of
+/// fnmatch(3), besides the manifest. What is not here outlives `--overwrite`.
 constexpr auto kWritten = std::to_array<const char*>({
     "deck.toml",
     "history.csv",
