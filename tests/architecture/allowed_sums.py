@@ -16,7 +16,7 @@ ALLOWED = [
     Allowed("base/chunked_sum.hpp", "total += sum;", "chunked_sum itself"),
     Allowed("base/vec.hpp", "", "components of one vector"),
     Allowed("base/team.cpp", "", "times that threads waited, in whole nanoseconds"),
-    Allowed("app/law.cpp", "dissipated()", "over the losses of one contact point"),
+    Allowed("session/law_point.cpp", "LawPoint::dissipated()", "over the losses of one contact point"),
     Allowed("mechanics/mechanics.cpp", "Dissipation::total()", "over the energies of one ledger, each a chunked sum"),
     Allowed("*", "exposure()", "durations of the stages of a deck"),
     Allowed("*response.cpp", "fit()", "over the rows of a history"),

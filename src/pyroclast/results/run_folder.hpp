@@ -47,6 +47,12 @@ class RunFolder {
   /// Throws Error when it is not the folder of a run.
   static void require(const std::filesystem::path& path);
 
+  /// Why a run is not the one that its deck describes: what a script did to it, in the manifest.
+  static std::vector<std::string> departures(const std::filesystem::path& path);
+  static void note_departure(const std::filesystem::path& path, const std::string& why);
+  /// The deck of a run that goes on with other stages, and what it names.
+  static void replace_inputs(const std::filesystem::path& path, const Inputs& inputs);
+
   /// Puts `deck.toml`, `manifest.json` and `inputs/` into the folder, which this process has locked.
   RunFolder(std::filesystem::path path, bool overwrite, const Manifest& manifest);
 

@@ -216,7 +216,7 @@ Summary summarize(const Run& run) {
   return s;
 }
 
-void write_summary(const std::filesystem::path& path, const Summary& s, const Run& run) {
+std::string summary_text(const Summary& s, const Run& run) {
   const Simulation& simulation = run.simulation();
   const specimen::Specimen& specimen = simulation.specimen();
   Json json;
@@ -236,7 +236,11 @@ void write_summary(const std::filesystem::path& path, const Summary& s, const Ru
     json["specimen"]["fraction"][specimen.phases[i]] = specimen.fraction[i];
   json["wall_time_s"] = s.wall_time;
   json["warnings"] = s.warnings;
-  write_text_file(path, json.dump(2) + "\n");
+  return json.dump(2) + "\n";
+}
+
+void write_summary(const std::filesystem::path& path, const Summary& summary, const Run& run) {
+  write_text_file(path, summary_text(summary, run));
 }
 
 }  // namespace pyroclast

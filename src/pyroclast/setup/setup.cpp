@@ -217,7 +217,8 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   auto read = read_stages(root, kinds);
   setup.stages = std::move(read.stages);
   setup.stage_names = std::move(read.names);
-  CurveReader time_curves(folder, time_axis(), {0.0, exposure(setup.stages)}, fire_curves());
+  setup.exposure = exposure(setup.stages);
+  CurveReader time_curves(folder, time_axis(), {0.0, setup.exposure}, fire_curves());
   if (auto heat = read_heat(root, time_curves)) setup.heat = std::move(*heat);
   check_heat(root, setup.heat, setup.stages);
   setup.temperatures = run_temperatures(root, setup.heat, setup.stages);
@@ -262,6 +263,11 @@ DeckSchema deck_schema(const StageRegistry& kinds) {
 std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team) {
   if (!team) team = std::make_shared<Team>();
   specimen::Specimen specimen = make_checked_specimen(setup.specimen, team.get());
+  return make_simulation(setup, std::move(specimen), std::move(team));
+}
+
+std::unique_ptr<Simulation> make_simulation(const Setup& setup, specimen::Specimen specimen,
+                                            std::shared_ptr<Team> team) {
   return std::make_unique<Simulation>(std::move(specimen), setup.thickness, setup.solids, setup.heat,
                                       setup.probes, setup.motion, std::move(team));
 }

@@ -31,6 +31,7 @@ struct Setup {
   ExpansionReading expansion_reading = ExpansionReading::secant;
   std::vector<ReadCurve> curves;  ///< properties over the temperature, as the deck gave them
   Interval temperatures;          ///< that the run may come to, °C; its curves are checked for these
+  double exposure = 0.0;          ///< time for which boundaries act, s
   std::optional<MotionParameters> motion;  ///< empty where no stage moves the body
   HeatConditions heat;                     ///< uniform at the reference temperature without [heat]
   std::vector<ProbePosition> probes;
@@ -55,6 +56,10 @@ DeckSchema deck_schema(const StageRegistry& kinds = {});
 /// make_checked_specimen.
 /// \param team  the threads of the run; one alone where there is none
 std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team = nullptr);
+
+/// The same of a specimen that was made before.
+std::unique_ptr<Simulation> make_simulation(const Setup& setup, specimen::Specimen specimen,
+                                            std::shared_ptr<Team> team);
 
 /// Block size that a deck foresees, m; where the tessellation is read from a file, the one at which t_b
 /// holds.

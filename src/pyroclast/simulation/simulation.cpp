@@ -81,6 +81,11 @@ Simulation::Simulation(specimen::Specimen specimen, double thickness,
   press_ = std::make_unique<Press<2>>(*mechanics_, kVertical, specimen_.height, std::array{specimen_.width});
 }
 
+void Simulation::set_materials(ConcreteMaterials materials) {
+  mechanics_->set_properties(properties_at(model_, materials, field_));
+  materials_ = std::move(materials);
+}
+
 void Simulation::visit_state(StateVisitor& visitor) {
   visitor.visit("heating_time", heating_time_);
   visitor.visit("exchanges", exchanges_);

@@ -48,6 +48,9 @@ class Simulation {
   const specimen::Specimen& specimen() const { return specimen_; }
   const Model<2>& model() const { return model_; }
   const ConcreteMaterials& materials() const { return materials_; }
+  /// Other properties from now on, at the temperatures that there are: as an exchange of temperatures, see
+  /// Mechanics::set_properties. Densities and laws are those of before.
+  void set_materials(ConcreteMaterials materials);
   const HeatConditions& heat() const { return heat_; }
   TemperatureField& field() { return field_; }
   const TemperatureField& field() const { return field_; }

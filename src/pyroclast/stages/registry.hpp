@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -36,7 +37,7 @@ struct StageKind {
   StageNeeds needs;
   /// Reads a stage of this kind. What is wrong is recorded in the deck.
   /// \param own  its table of [[stages]]
-  std::unique_ptr<Stage> (*read)(const Section& own, const StageTables& tables);
+  std::function<std::unique_ptr<Stage>(const Section& own, const StageTables& tables)> read;
 };
 
 /// The kinds of stages that a deck may ask for, by name.
