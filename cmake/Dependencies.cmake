@@ -5,7 +5,6 @@ find_package(spdlog REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(nlohmann_json REQUIRED)
-find_package(HDF5 REQUIRED COMPONENTS C)
 find_package(muparser REQUIRED)
 
 if(PYROCLAST_SANITIZE)
@@ -15,7 +14,7 @@ if(PYROCLAST_SANITIZE)
                                                               "-DTOML_ASSERT(expr)=static_assert(true)")
 endif()
 
-# UDUNITS-2, Voro++, libmd and xxHash ship no CMake package.
+# UDUNITS-2, Voro++, libmd and xxHash ship no CMake package; that of HDF5 would need a project that has C.
 function(pyroclast_find_library name header library)
   find_path(${name}_INCLUDE_DIR ${header} PATH_SUFFIXES ${ARGN} REQUIRED)
   find_library(${name}_LIBRARY ${library} REQUIRED)
@@ -27,3 +26,4 @@ pyroclast_find_library(udunits2 udunits2.h udunits2 udunits2)
 pyroclast_find_library(voropp voro++.hh voro++ voro++)
 pyroclast_find_library(libmd sha256.h md)
 pyroclast_find_library(xxhash xxhash.h xxhash)
+pyroclast_find_library(hdf5 hdf5.h hdf5_serial hdf5/serial)
