@@ -220,7 +220,7 @@ def height_over_width(blocks: BlockMesh, margin: np.ndarray = _MARGIN) -> float:
 def _draw_fractured(axes: Axes, run: Run, frame: Frame, points: np.ndarray, magnification: float,
                     columns: int) -> None:
     blocks, contacts = run.mesh.blocks, run.mesh.contacts
-    _draw_blocks(axes, blocks, points)
+    draw_blocks(axes, blocks, points)
     lines = (contacts.points + magnification * run.contact_displacement(frame))[contacts.lines]
     thinning = _thinning(blocks, contacts, max(columns, _PANELS))
     for crack in _cracks_of(run):
@@ -237,7 +237,7 @@ def _thinning(blocks: BlockMesh, contacts: ContactMesh, columns: int) -> float:
     return float(np.clip(edge / _EDGE_OF_FULL_WIDTH, _LEAST_THINNING, 1.0))
 
 
-def _draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None) -> None:
+def draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None) -> None:
     """Fills the blocks, one collection a material; without an edge colour their seams are closed."""
     outlines, material = blocks.outlines
     for kind, colour in enumerate(style.phase_colours(blocks.materials)):
@@ -302,7 +302,7 @@ def morphology(specimen: Specimen) -> Figure:
     low, high = _panel_box(blocks)
     figure = style.new_figure(height=1.0 + 4.0 * (high - low)[1] / (high - low)[0], width=6.0)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.32])
-    _draw_blocks(axes, blocks, blocks.points, edge="#7d7d7d")
+    draw_blocks(axes, blocks, blocks.points, edge="#7d7d7d")
     diameters = style.MILLI * circles["diameter_m"]
     axes.add_collection(EllipseCollection(
         diameters, diameters, np.zeros(len(circles)), units="xy", facecolors="none", edgecolors=style.BLUE,
