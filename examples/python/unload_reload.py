@@ -12,7 +12,7 @@ deck["blocks.count"] = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
 deck["stages[1].stop_fraction_of_peak"] = 0.0
 run = pyroclast.Run(deck)
 run.until(strain=2e-4)
-E = np.polyfit(*(run.history[name][-10:] for name in ("strain", "stress")), 1)[0]
+E = np.polyfit(run.history["strain"][-10:], run.history["stress"][-10:], 1)[0]
 run.until(lambda state: state.strain > 5e-4 and state.stress < 0.9 * run.history["stress"].max())
 run.end_stage()
 platen = {"velocity": "0.8 mm/s", "ramp_time": "20 ms"}

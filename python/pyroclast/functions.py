@@ -78,10 +78,10 @@ def tabulate(key: str, function: Function, low: float, high: float) -> list[tupl
 
     points = [(low, known[low])]
     pending = list(zip(at, at[1:]))[::-1]
+    span = max(known.values()) - min(known.values())
+    tolerance = 0.5 * _TOLERANCE * (span or abs(known[low]) or 1.0)
     while pending:
         a, b = pending.pop()
-        span = max(known.values()) - min(known.values()) if len(known) < 4 * _FIRST_INTERVALS else span
-        tolerance = 0.5 * _TOLERANCE * (span or abs(known[low]) or 1.0)
         off = max(abs(value(a + t * (b - a)) - (1.0 - t) * value(a) - t * value(b)) for t in _INSIDE)
         if off > tolerance and b - a > _NARROWEST * (high - low):
             middle = 0.5 * (a + b)

@@ -30,11 +30,11 @@ class Law:
         self._values = [f"{key}={value}" for key, value in properties.items()]
         self.drive([0.0])
 
-    @property
-    def properties(self) -> dict[str, tuple[str, str]]:
-        """SI unit and meaning of each property that the law has, by its key."""
+    @staticmethod
+    def properties_of(law: str | Path, *, folders: Sequence[str | Path] = ()) -> dict[str, tuple[str, str]]:
+        """SI unit and meaning of each property that a law has, by its key."""
         return {key: (unit, meaning) for key, unit, meaning in
-                _core.law_properties(self._law, "", self._folders)}
+                _core.law_properties(str(law), "", [str(folder) for folder in folders])}
 
     def drive(self, opening: ArrayLike, slip: ArrayLike = 0.0, temperature: ArrayLike = _REFERENCE,
               steps: int = 1) -> dict[str, NDArray[np.float64]]:

@@ -611,7 +611,7 @@ class Run:
         import meshio
         block = self.zone_block
         points = {"temperature": self.temperature}
-        cells = {"block": [block], "material": [self.block_material[block]]}
+        cells: dict[str, list[Any]] = {"block": [block], "material": [self.block_material[block]]}
         if self._core.moves:
             points |= {"displacement": self.displacement, "velocity": self.velocity}
             cells["stress"] = [self.stress]

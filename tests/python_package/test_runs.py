@@ -122,7 +122,7 @@ class Going(Case):
         run = pyroclast.Run(deck(), threads=1)
         looks, steps = [], []
         run.at_looks(lambda r: looks.append(r.history.rows))
-        run.every(700, lambda r: steps.append(r.step))
+        run.every(700, lambda r: steps.append(r.step) or r.measure().strain + r.history["strain"][-1])
         run.finish()
         self.assertEqual(looks, list(range(1, run.history.rows + 1)))
         self.assertEqual(steps, list(range(700, run.step + 1, 700)))
@@ -141,6 +141,14 @@ class Going(Case):
         self.assertEqual(run.outcome, "completed")
         np.testing.assert_array_equal(run.history["stress_MPa"],
                                       pyroclast.Run(deck(), threads=1).finish().history["stress_MPa"])
+
+    def test_a_call_back_between_steps_changes_nothing(self):
+        run = pyroclast.Run(deck(), threads=1)
+        run.call_at(2500, lambda r: r.change({"stages[1].stop_strain": 2e-4}))
+        with self.assertRaisesRegex(pyroclast.Error, "stop it, and change it then"):
+            run.finish()
+        run.finish()
+        self.assertEqual(run.outcome, "completed")
 
     def test_a_call_back_can_stop_the_run(self):
         run = pyroclast.Run(deck(), threads=1)
@@ -362,7 +370,7 @@ class Arrays(Case):
         mean = (run.stress[of_specimen, 1] * area[of_specimen]).sum() / area[of_specimen].sum()
         self.assertAlmostEqual(-mean / state.stress, 1.0, delta=0.02)
         contacts = run.contacts()
-        self.assertEqual(set(contacts["law"]), {"cohesive", "elastic"})
+        self.assertEqual(set(contacts["law"]), {"cohesive", "elastic", "frictional"})
         self.assertLess(contacts["normal_traction"].mean(), 0.0)
 
     def test_meshio_and_a_notebook_show_the_run(self):

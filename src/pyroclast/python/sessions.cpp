@@ -1,8 +1,10 @@
 #include <atomic>
 #include <chrono>
 #include <optional>
+#include <thread>
 #include <utility>
 
+#include <fmt/format.h>
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
 #include <unistd.h>
@@ -30,21 +32,24 @@ class Held {
   Held(const Held&) = delete;
   Held& operator=(const Held&) = delete;
 
-  /// To be read or changed. Throws Error in another process, and while a thread is in `next`.
+  /// To be read. Throws Error in another process, and while another thread is in `next`.
   Session& get() const {
     require_own_process();
-    if (stepping_.load())
+    if (const auto thread = stepping_.load();
+        thread != std::thread::id() && thread != std::this_thread::get_id())
       throw Error("this run is stepping in another thread; stepping belongs to one at a time");
     return *session_;
   }
-  /// The same for those who call from a call-back of `next`.
-  Session& within() const {
-    require_own_process();
-    return *session_;
+  /// To be changed: nor from a call-back of `next`.
+  Session& resting() const {
+    Session& session = get();
+    if (stepping_.load() != std::thread::id())
+      throw Error("a call-back between steps may look, and stop the run; stop it, and change it then");
+    return session;
   }
 
   bool next() {
-    Session& session = get();
+    Session& session = resting();
     if (broken_)
       throw Error("this run was ended by an error and cannot go on; copy an earlier state, or resume");
     const Stepping stepping(stepping_);
@@ -61,7 +66,7 @@ class Held {
   }
 
   void call_at(std::int64_t step, const py::function& call) {
-    within().run().call_at(step, [this, held = shared(call)](Run&) {
+    get().run().call_at(step, [this, held = shared(call)](Run&) {
       const py::gil_scoped_acquire gil;
       if (raised_) return;
       try {
@@ -82,12 +87,11 @@ class Held {
     }
   };
   struct Stepping {
-    explicit Stepping(std::atomic<bool>& flag) : flag_(flag) {
-      if (flag_.exchange(true))
-        throw Error("this run is stepping in another thread; stepping belongs to one at a time");
+    explicit Stepping(std::atomic<std::thread::id>& thread) : thread_(thread) {
+      thread_ = std::this_thread::get_id();
     }
-    ~Stepping() { flag_ = false; }
-    std::atomic<bool>& flag_;
+    ~Stepping() { thread_ = std::thread::id(); }
+    std::atomic<std::thread::id>& thread_;
   };
 
   void require_own_process() const {
@@ -115,7 +119,7 @@ class Held {
   }
 
   std::unique_ptr<Session, Leave> session_;
-  std::atomic<bool> stepping_{false};
+  std::atomic<std::thread::id> stepping_{std::thread::id()};
   std::atomic<bool> stop_{false};
   bool broken_ = false;
   std::unique_ptr<py::error_already_set> raised_;
@@ -203,7 +207,7 @@ void bind_sessions(py::module_& m) {
       .def(
           "finish",
           [](const Held& h) {
-            Session& session = h.get();
+            Session& session = h.resting();
             return summary_text(session.finish(), session.run());
           },
           "summary.json of the rows so far, written where there is a folder.")
@@ -218,41 +222,47 @@ void bind_sessions(py::module_& m) {
           "copy",
           [](const Held& h, const std::vector<std::string>& changes, const std::optional<std::string>& out,
              bool overwrite) {
-            Session& session = h.get();
+            Session& session = h.resting();
             return held([&] { return session.copy(changes, output(out, overwrite)); });
           },
           arg("changes"), arg("out"), arg("overwrite"))
-      .def("write_checkpoint", [](const Held& h) { h.get().write_checkpoint(); })
+      .def("write_checkpoint", [](const Held& h) { h.resting().write_checkpoint(); })
       .def(
           "change_stages",
           [](const Held& h, const std::vector<std::string>& changes, const std::string& more) {
-            h.get().change_stages(changes, more);
+            h.resting().change_stages(changes, more);
           },
           arg("changes"), arg("more"))
       .def(
           "change_materials",
-          [](const Held& h, const std::vector<std::string>& changes) { h.get().change_materials(changes); },
+          [](const Held& h, const std::vector<std::string>& changes) {
+            h.resting().change_materials(changes);
+          },
           arg("changes"))
       .def("end_stage",
            [](const Held& h) {
-             Run& run = h.get().run();
+             Run& run = h.resting().run();
              run.end_stage();
-             h.get().depart("stage " + std::to_string(run.stage_number()) + " was ended at row " +
-                            std::to_string(run.history().row_count() - 1));
+             h.resting().depart({fmt::format("stage {} was ended at row {}", run.stage_number(),
+                                             run.history().row_count() - 1)});
            })
       .def(
           "set_temperature",
           [](const Held& h, double temperature) {
-            Session& session = h.get();
+            Session& session = h.resting();
             Simulation& simulation = session.simulation();
             simulation.field().set_uniform(temperature);
             if (simulation.moves()) simulation.set_materials(simulation.materials());
-            session.depart("the temperature was set to " + std::to_string(temperature) + " degC at row " +
-                           std::to_string(session.run().history().row_count() - 1));
+            session.depart({fmt::format("the temperature was set to {:g} degC at row {}", temperature,
+                                        session.run().history().row_count() - 1)});
           },
           arg("temperature"))
       .def(
-          "depart", [](const Held& h, const std::string& why) { h.get().depart(why); }, arg("why"))
+          "depart",
+          [](const Held& h, const std::string& why) {
+            h.resting().depart({why, false});
+          },
+          arg("why"), "Notes that the run needs more than its deck.")
       .def_property_readonly("outcome", read([](const Session& s) { return describe(s.run().outcome()); }))
       .def_property_readonly("is_over", read([](const Session& s) {
                                return s.run().outcome() != Outcome::running &&
@@ -283,16 +293,16 @@ void bind_sessions(py::module_& m) {
            }),
            "The last row, (columns,).")
       .def(
-          "measure", [](const Held& h) { return row(h.within().run().measure()); },
+          "measure", [](const Held& h) { return row(h.get().run().measure()); },
           "What a look would measure now, (columns,).")
       .def_property_readonly("step",
                              [](const Held& h) -> std::int64_t {
-                               const Simulation& s = h.within().simulation();
+                               const Simulation& s = h.get().simulation();
                                return s.moves() ? s.mechanics().steps() : 0;
                              })
-      .def_property_readonly("moves", [](const Held& h) { return h.within().simulation().moves(); })
+      .def_property_readonly("moves", [](const Held& h) { return h.get().simulation().moves(); })
       .def_property_readonly("thickness",
-                             [](const Held& h) { return h.within().simulation().model().thickness; })
+                             [](const Held& h) { return h.get().simulation().model().thickness; })
       .def_property_readonly("title", read([](const Session& s) { return s.loaded().setup.title; }))
       .def_property_readonly("seed", read([](const Session& s) { return s.loaded().setup.specimen.seed; }))
       .def_property_readonly("deck_text", read([](const Session& s) { return s.loaded().deck.text(); }))
@@ -300,20 +310,19 @@ void bind_sessions(py::module_& m) {
       .def_property_readonly("folder", read([](const Session& s) { return s.folder().string(); }))
       .def_property(
           "threads", [](const Held& h) { return h.get().simulation().team().size(); },
-          [](const Held& h, int threads) { h.get().simulation().team().resize(threads); })
+          [](const Held& h, int threads) { h.resting().simulation().team().resize(threads); })
       .def_property_readonly("material_names",
-                             [](const Held& h) { return h.within().simulation().model().material_names; })
+                             [](const Held& h) { return h.get().simulation().model().material_names; })
       .def(
           "view",
           [](const py::object& self, const std::string& what) {
-            return view(self.cast<const Held&>().within().simulation(), what, self);
+            return view(self.cast<const Held&>().get().simulation(), what, self);
           },
           arg("what"), "An array as it lies in memory, read-only; keeps the run alive.")
       .def(
-          "copied",
-          [](const Held& h, const std::string& what) { return copied(h.within().simulation(), what); },
+          "copied", [](const Held& h, const std::string& what) { return copied(h.get().simulation(), what); },
           arg("what"), "An array in the order of the model, as a copy.")
-      .def("contacts", [](const Held& h) { return contacts(h.within().simulation()); });
+      .def("contacts", [](const Held& h) { return contacts(h.get().simulation()); });
 }
 
 }  // namespace pyroclast::python

@@ -157,18 +157,20 @@ void RunFolder::require(const fs::path& path) {
                             kManifest));
 }
 
-std::vector<std::string> RunFolder::departures(const fs::path& path) {
+std::vector<Departure> RunFolder::departures(const fs::path& path) {
   const auto manifest = manifest_of(path);
   if (!manifest.is_object()) return {};
-  std::vector<std::string> all;
-  for (const auto& why : manifest.value(kDepartures, nlohmann::ordered_json::array()))
-    if (why.is_string()) all.push_back(why.get<std::string>());
+  std::vector<Departure> all;
+  for (const auto& one : manifest.value(kDepartures, nlohmann::ordered_json::array()))
+    if (one.is_object()) all.push_back({one.value("why", ""), one.value("changed_by_script", true)});
   return all;
 }
 
-void RunFolder::note_departure(const fs::path& path, const std::string& why) {
+void RunFolder::note_departure(const fs::path& path, const Departure& departure) {
+  const auto known = departures(path);
+  if (std::ranges::find(known, departure) != known.end()) return;
   auto manifest = manifest_of(path);
-  manifest[kDepartures].push_back(why);
+  manifest[kDepartures].push_back({{"why", departure.why}, {"changed_by_script", departure.is_change}});
   write_text_file(path / kManifest, manifest.dump(2) + "\n");
 }
 

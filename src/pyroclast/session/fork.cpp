@@ -63,10 +63,11 @@ std::int64_t stage_of(const std::string& stated, const Setup& setup) {
 
 /// Throws Error for a run that a script changed: its checkpoints do not hold what the script does.
 void require_deck_alone(const fs::path& run) {
-  if (const auto departures = RunFolder::departures(run); !departures.empty())
-    throw Error(
-        fmt::format("{}: only the script that made this run can make it again, for it changed the run: {}",
-                    run.string(), fmt::join(departures, "; ")));
+  for (const Departure& departure : RunFolder::departures(run))
+    if (departure.is_change)
+      throw Error(
+          fmt::format("{}: only the script that made this run can make it again, for it changed the run: {}",
+                      run.string(), departure.why));
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ void Session::make_folder(const RunOutput& output, std::optional<Parent> parent)
                        {loaded_.deck.name(), inputs_, loaded_.setup.specimen.seed, loaded_.team->size(),
                         name(loaded_.instructions), output.command, own_laws(), std::move(parent)});
   foreign_ = made.foreign();
-  for (const std::string& why : departures_) RunFolder::note_departure(folder_, why);
+  for (const Departure& departure : departures_) RunFolder::note_departure(folder_, departure);
 }
 
 /// \param last_checkpoint  number of the checkpoint that the run goes on from; 0 where it begins
@@ -153,7 +153,7 @@ std::unique_ptr<Session> Session::copy(const std::vector<std::string>& changes,
   StateCopy state;
   state.take([this](StateVisitor& visitor) { visit_state(visitor); });
   state.put([&](StateVisitor& visitor) { copied->visit_state(visitor); });
-  for (const std::string& why : departures_) copied->depart(why);
+  for (const Departure& departure : departures_) copied->depart(departure);
   if (!output) return copied;
   std::optional<Parent> parent;
   if (!folder_.empty()) parent = {folder_, run_.last_begun_stage(), changes};
@@ -214,14 +214,14 @@ void Session::change_materials(const std::vector<std::string>& changes) {
   simulation_->set_materials(std::move(materials));
   take_over(std::move(deck), std::move(setup));
   for (const std::string& change : changes)
-    depart(fmt::format("{} from step {} on", change, simulation_->mechanics().steps()));
+    depart({fmt::format("{} from step {} on", change, simulation_->mechanics().steps())});
 }
 
-void Session::depart(const std::string& why) {
-  if (std::ranges::find(departures_, why) != departures_.end()) return;
-  departures_.push_back(why);
-  recorder_.warn("not reproducible from the deck: " + why);
-  if (checkpoints_) RunFolder::note_departure(folder_, why);
+void Session::depart(const Departure& departure) {
+  if (std::ranges::find(departures_, departure) != departures_.end()) return;
+  departures_.push_back(departure);
+  recorder_.warn("not reproducible from the deck: " + departure.why);
+  if (checkpoints_) RunFolder::note_departure(folder_, departure);
 }
 
 }  // namespace pyroclast

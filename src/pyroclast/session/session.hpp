@@ -81,8 +81,8 @@ class Session {
   /// Other keys of materials and contacts from now on, as if the temperature had changed. Throws Error for
   /// what cannot change in a run. The run departs from its deck.
   void change_materials(const std::vector<std::string>& changes);
-  /// Notes that from now on the run is not the one that its deck describes, and why: in summary and manifest.
-  void depart(const std::string& why);
+  /// Notes that from now on the run is not the one that its deck describes: in summary and manifest.
+  void depart(const Departure& departure);
 
   Run& run() { return run_; }
   const Run& run() const { return run_; }
@@ -120,7 +120,7 @@ class Session {
   std::optional<CheckpointInfo> goes_on_from_;
   std::filesystem::path last_checkpoint_;
   std::vector<std::filesystem::path> foreign_;
-  std::vector<std::string> departures_;
+  std::vector<Departure> departures_;
   bool checkpoint_is_due_ = false;  ///< of a fork: its first
   std::function<bool()> stop_asked_ = [] { return false; };
   std::function<void()> between_batches_ = [] {};
