@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from .functions import Function as Function
     from .laws import Law as Law
     from .session import History as History
+    from .session import Recorder as Recorder
     from .session import Run as Run
     from .session import State as State
     from .stages import Key as Key
@@ -59,7 +60,7 @@ else:
         "errors": ("DeckError", "Diagnostic", "Error"),
         "functions": ("Function",),
         "laws": ("Law",),
-        "session": ("History", "Run", "State"),
+        "session": ("History", "Recorder", "Run", "State"),
         "stages": ("Key", "Stage", "Verdict"),
         "units": ("GPa", "K", "MPa", "N", "Pa", "Quantity", "degC", "hour", "kN", "m", "minute", "mm", "s"),
     }

@@ -209,12 +209,12 @@ class Deck:
 
     def check(self) -> list[Diagnostic]:
         """Reads all of the deck. Returns what it warns of; raises DeckError with every error."""
-        with functions.scratch() as folder:
-            return _core.check(self._resolved(folder))
+        tables = functions.Scratch()
+        return _core.check(self._resolved(tables))
 
     def save(self, file: str | Path) -> None:
         """Writes the deck; tables of its functions beside it."""
-        deck = self._resolved(str(Path(file).resolve().parent))
+        deck = self._resolved(Path(file).resolve().parent)
         Path(file).write_text(_core.written(deck), encoding="utf-8")
 
     def _raw(self, more: Sequence[tuple[str, str]] = ()) -> _core.DeckText:
@@ -243,7 +243,7 @@ class Deck:
             numbers.append((path, toml(f"{number!r} {unit}") if unit else repr(number)))
         return numbers
 
-    def _resolved(self, folder: str) -> _core.DeckText:
+    def _resolved(self, place: Path | functions.Scratch) -> _core.DeckText:
         """With tables, which are written into a folder, in place of the functions."""
         written: list[tuple[str, str]] = []
         for axis in (functions.TIME, functions.TEMPERATURE):  # the times say how hot the run becomes
@@ -255,6 +255,7 @@ class Deck:
                 interval = function.interval or ((begin, end) if axis is functions.TIME else (low, high))
                 points = functions.tabulate(path, function, *interval)
                 unit = function.unit or self._needed_unit(path, points[0][1])
+                folder = place.folder if isinstance(place, functions.Scratch) else place
                 table = functions.write_table(folder, path, unit, points)
                 written.append((path, f"{{ csv = {toml(str(table.resolve()))} }}"))
         return self._raw(written)

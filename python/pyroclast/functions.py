@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+import shutil
 import tempfile
+import weakref
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
@@ -106,6 +109,11 @@ def write_table(folder: str | Path, key: str, unit: str, points: Sequence[tuple[
     return path
 
 
-def scratch() -> tempfile.TemporaryDirectory[str]:
-    """A folder for tables until a run has them in its own."""
-    return tempfile.TemporaryDirectory(prefix="pyroclast-")
+class Scratch:
+    """A folder for the tables of functions, as long as this is there; made when it is first asked for."""
+
+    @cached_property
+    def folder(self) -> str:
+        folder = tempfile.mkdtemp(prefix="pyroclast-")
+        weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        return folder

@@ -184,6 +184,21 @@ def _quantity(value: float | str | Quantity, unit: str) -> float:
     return in_si(value, unit)
 
 
+class Recorder:
+    """Keeps what a run gives, as the recorder of the program does in its folder. A run calls `begin` once, `record` at
+    every look after its row is written, and `finish` when it is over or stopped.
+    """
+
+    def begin(self, run: Run) -> None:
+        """Before the next look."""
+
+    def record(self, run: Run, state: State) -> None:
+        """After a look."""
+
+    def finish(self, run: Run) -> None:
+        """At the end; again, where a run that was stopped goes on."""
+
+
 class Run:
     """A run in this process, from look to look:
 
@@ -209,17 +224,20 @@ class Run:
         Raises DeckError for what is wrong with the deck, Error for what cannot be made.
         """
         of = as_deck(deck)
-        with functions.scratch() as folder:
-            core = _core.Session.begin(
-                of._resolved(folder), seed, threads, instructions,
-                None if checkpoint is None else _quantity(checkpoint, "s"), None if out is None else str(out), overwrite)
+        tables = functions.Scratch()
+        core = _core.Session.begin(
+            of._resolved(tables), seed, threads, instructions,
+            None if checkpoint is None else _quantity(checkpoint, "s"), None if out is None else str(out), overwrite)
         self._hold(core)
+        self._tables = tables
         self._note_stages(of._stages)
 
     def _hold(self, core: _core.Session) -> None:
         self._core = core
+        self._tables: object = None  # those of functions, as long as the deck may be read again
         self._look = 0
         self._at_looks: list[Callable[[Run], object]] = []
+        self._recorders: list[Recorder] = []
         self._columns = Columns(core.columns)
         self._finished = False
 
@@ -292,6 +310,8 @@ class Run:
             return None
         self._finished = False
         state = State(self, self._columns, self._core.row(), self._look)
+        for recorder in self._recorders:
+            recorder.record(self, state)
         for call in self._at_looks:
             call(self)
         if self._core.is_over:
@@ -299,9 +319,12 @@ class Run:
         return state
 
     def _finish(self) -> None:
-        if not self._finished:
-            self._core.finish()
+        if self._finished:
+            return
         self._finished = True
+        self._core.finish()
+        for recorder in self._recorders:
+            recorder.finish(self)
 
     def finish(self) -> Run:
         """Goes on to the end of the run; returns it."""
@@ -368,6 +391,11 @@ class Run:
         """Calls back at every look, after its row is written."""
         self._at_looks.append(call)
 
+    def record_with(self, recorder: Recorder) -> None:
+        """Lets a recorder take part from now on."""
+        recorder.begin(self)
+        self._recorders.append(recorder)
+
     def call_at(self, step: int, call: Callable[[Run], object]) -> None:
         """Calls back once, when the mechanics has done so many steps since its beginning; a batch ends there.
 
@@ -399,6 +427,7 @@ class Run:
         Raises Error for a change that would act on what is done already.
         """
         copied = Run._of(self._core.copy(_changes(changes), None if out is None else str(out), overwrite))
+        copied._tables = self._tables
         return copied
 
     def then(self, kind: str, /, **keys: Any) -> Run:

@@ -106,6 +106,13 @@ class Functions(Case):
         self.assertEqual((out / "history.csv").read_bytes(), (out.with_name("again") / "history.csv").read_bytes())
         self.assertEqual(again.outcome, run.outcome)
 
+    def test_a_run_that_is_copied_or_changed_still_has_its_functions(self):
+        run = pyroclast.Run(self.wall(pyroclast.Function(lambda t: 20.0 + t, "degC", (0.0, 3600.0))), threads=1)
+        run.next()
+        copied = run.copy()
+        run.then("conduct", duration="2 min", interval="1 min").finish()
+        self.assertGreater(run.history["temperature"][-1], copied.finish().history["temperature"][-1])
+
     def test_a_function_that_fails_is_told_before_any_step(self):
         with self.assertRaisesRegex(pyroclast.Error, r"gas_temperature: the function, at time 0 s, raises ZeroDiv"):
             self.wall(lambda t: 1 / 0)

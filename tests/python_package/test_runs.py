@@ -127,6 +127,26 @@ class Going(Case):
         self.assertEqual(looks, list(range(1, run.history.rows + 1)))
         self.assertEqual(steps, list(range(700, run.step + 1, 700)))
 
+    def test_a_recorder_is_begun_told_of_every_look_and_finished(self):
+        class Keeps(pyroclast.Recorder):
+            def __init__(self):
+                self.seen = []
+
+            def begin(self, run):
+                self.seen.append("begin")
+
+            def record(self, run, state):
+                self.seen.append(state.strain)
+
+            def finish(self, run):
+                self.seen.append(run.outcome)
+
+        run, recorder = pyroclast.Run(deck(), threads=1), Keeps()
+        run.record_with(recorder)
+        run.finish()
+        self.assertEqual((recorder.seen[0], recorder.seen[-1]), ("begin", "completed"))
+        np.testing.assert_array_equal(recorder.seen[1:-1], run.history["strain"])
+
     def test_an_exception_of_a_call_back_is_raised_and_the_run_goes_on(self):
         run = pyroclast.Run(deck(), threads=1)
 
@@ -381,6 +401,21 @@ class Arrays(Case):
         self.assertGreater(file.stat().st_size, 1000)
         self.assertTrue(run._repr_png_().startswith(b"\x89PNG"))
         self.assertIn("data:image/png;base64,", run._repr_html_())
+
+    def test_a_run_of_heat_alone_is_shown_too(self):
+        wall = pyroclast.Deck(CASES / "thermal_wall.toml")
+        wall.update(blocks={"count": 60}, output={"fields": False})
+        wall["stages[0].duration"] = "5 min"
+        run = pyroclast.Run(wall, threads=1)
+        self.assertTrue(run._repr_png_().startswith(b"\x89PNG"))
+        run.finish()
+        self.assertGreater(run.temperature.max(), 100.0)
+        self.assertIn("temperature", run.to_meshio().point_data)
+        self.assertIn("data:image/png", run._repr_html_())
+        with self.assertRaisesRegex(pyroclast.Error, "nothing moves"):
+            run.displacement
+        with self.assertRaisesRegex(pyroclast.Error, "nothing moves"):
+            run.call_at(10, print)
 
 
 class Processes(Case):
