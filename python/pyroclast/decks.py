@@ -44,11 +44,20 @@ def table_text(name: str, table: Mapping[str, Any], is_listed: bool = False) -> 
     for key, value in table.items():
         if isinstance(value, Mapping):
             below.append(table_text(f"{name}.{_key(key)}", value))
-        elif isinstance(value, list) and value and all(isinstance(entry, Mapping) for entry in value):
+        elif _is_list_of_tables(value):
             below += [table_text(f"{name}.{_key(key)}", entry, True) for entry in value]
         else:
             lines.append(f"{_key(key)} = {toml(value)}")
     return "\n".join([*lines, "", *below])
+
+
+def _parts(path: str) -> list[str | int]:
+    """Of "stages[1].to": "stages", 1, "to"."""
+    return [int(part[1:-1]) if part.startswith("[") else part for part in re.findall(r"[^.\[\]]+|\[\d+\]", path)]
+
+
+def _is_list_of_tables(value: object) -> bool:
+    return isinstance(value, (list, tuple)) and bool(value) and all(isinstance(entry, Mapping) for entry in value)
 
 
 def _key(name: str) -> str:
@@ -102,7 +111,7 @@ class Deck:
         for name, value in tables.items():
             if isinstance(value, Mapping):
                 headed.append((name, [value], False))
-            elif isinstance(value, (list, tuple)) and value and all(isinstance(entry, Mapping) for entry in value):
+            elif _is_list_of_tables(value):
                 headed.append((name, list(value), True))
             else:
                 plain.append(f"{_key(name)} = {toml(value)}")
@@ -129,9 +138,9 @@ class Deck:
         if path in self._functions:
             return self._functions[path]
         node: Any = tomllib.loads(self.text)
-        for part in re.findall(r"[^.\[\]]+|\[\d+\]", path):
+        for part in _parts(path):
             try:
-                node = node[int(part[1:-1])] if part.startswith("[") else node[part]
+                node = node[part]
             except (KeyError, IndexError, TypeError):
                 raise KeyError(path) from None
         if isinstance(node, str) and (match := _QUANTITY.fullmatch(node)):
@@ -160,6 +169,9 @@ class Deck:
             for name, entry in value.items():
                 self[f"{path}.{_key(name)}"] = entry
             return
+        if _is_list_of_tables(value):
+            self._rebuild(lambda tables: tables.update({path: value}), path)
+            return
         self._functions.pop(path, None)
         self._changes.append((path, toml(value)))
         try:
@@ -170,12 +182,37 @@ class Deck:
             self._changes.pop()
             raise
 
+    def __delitem__(self, path: str) -> None:
+        """Takes a key, a table, or one of a list of tables out. Raises KeyError where there is none.
+
+        The deck is then written anew, without comments: places in messages are those of `text`.
+        """
+        self[path]
+        *above, last = _parts(path)
+
+        def take_out(tables: dict[str, Any]) -> None:
+            node: Any = tables
+            for part in above:
+                node = node[part]
+            del node[last]
+
+        self._rebuild(take_out, path)
+
+    def _rebuild(self, change: Callable[[dict[str, Any]], object], path: str) -> None:
+        """Writes the deck anew; functions at the path and below it are dropped."""
+        kept = {key: function for key, function in self._functions.items() if not key.startswith(path)}
+        tables = tomllib.loads(self.text)
+        change(tables)
+        self._changes, self._functions = [], {}
+        self._set_tables(tables)
+        self._functions |= kept
+
     def update(self, **tables: Any) -> Deck:
         """Sets keys of several tables: `deck.update(specimen={"seed": 2}, blocks={"count": 200})`. Lists of tables
         are appended. Returns the deck.
         """
         for name, value in tables.items():
-            if isinstance(value, (list, tuple)) and value and all(isinstance(entry, Mapping) for entry in value):
+            if _is_list_of_tables(value):
                 for entry in value:
                     self.append(name, **entry)
             elif isinstance(value, Mapping):
@@ -255,7 +292,7 @@ class Deck:
                 interval = function.interval or ((begin, end) if axis is functions.TIME else (low, high))
                 points = functions.tabulate(path, function, *interval)
                 unit = function.unit or self._needed_unit(path, points[0][1])
-                folder = place.folder if isinstance(place, functions.Scratch) else place
+                folder = Path(place.folder) if isinstance(place, functions.Scratch) else place
                 table = functions.write_table(folder, path, unit, points)
                 written.append((path, f"{{ csv = {toml(str(table.resolve()))} }}"))
         return self._raw(written)
@@ -273,7 +310,7 @@ def _without_functions(table: Mapping[str, Any], path: str, found: dict[str, fun
             found[here] = value if isinstance(value, functions.Function) else functions.Function(value)
         elif isinstance(value, Mapping):
             plain[name] = _without_functions(value, here, found)
-        elif isinstance(value, (list, tuple)) and value and all(isinstance(entry, Mapping) for entry in value):
+        elif _is_list_of_tables(value):
             plain[name] = [_without_functions(entry, f"{here}[{i}]", found) for i, entry in enumerate(value)]
         else:
             plain[name] = value

@@ -228,13 +228,12 @@ class Run:
         core = _core.Session.begin(
             of._resolved(tables), seed, threads, instructions,
             None if checkpoint is None else _quantity(checkpoint, "s"), None if out is None else str(out), overwrite)
-        self._hold(core)
-        self._tables = tables
+        self._hold(core, tables)
         self._note_stages(of._stages)
 
-    def _hold(self, core: _core.Session) -> None:
+    def _hold(self, core: _core.Session, tables: functions.Scratch | None = None) -> None:
         self._core = core
-        self._tables: object = None  # those of functions, as long as the deck may be read again
+        self._tables = tables  # those of functions, as long as the deck may be read again
         self._look = 0
         self._at_looks: list[Callable[[Run], object]] = []
         self._recorders: list[Recorder] = []

@@ -69,6 +69,24 @@ class Decks(Case):
         self.assertEqual(len(made["stages"]), 3)
         made.check()
 
+    def test_keys_are_taken_out_and_lists_of_tables_replaced(self):
+        made = deck()
+        del made["stages[1].stop_fraction_of_peak"]
+        self.assertNotIn("stages[1].stop_fraction_of_peak", made)
+        self.assertEqual(made["blocks.count"], 120)
+        made.check()
+        with self.assertRaises(KeyError):
+            del made["stages[1].stop_fraction_of_peak"]
+        made["stages"] = [made["stages[0]"]]
+        self.assertEqual(len(made["stages"]), 1)
+        made.check()
+        wall = pyroclast.Deck(CASES / "thermal_wall.toml")
+        wall["heat.boundaries[0].gas_temperature"] = lambda t: 20.0 + t
+        del wall["title"]
+        self.assertIn("heat.boundaries[0].gas_temperature", wall)
+        with self.assertRaisesRegex(pyroclast.DeckError, "title"):
+            wall.check()
+
     def test_a_copy_goes_its_own_way(self):
         made = deck()
         other = made.copy()
