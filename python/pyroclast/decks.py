@@ -98,9 +98,10 @@ class Deck:
             self._set_tables(tables)
 
     @classmethod
-    def from_text(cls, text: str, name: str = "deck", folder: str | Path = "", **options: Any) -> Deck:
+    def from_text(cls, text: str, name: str = "deck", folder: str | Path = "", *,
+                  stages_in_python: Sequence[type[Stage]] = (), laws: Sequence[str | Path] = ()) -> Deck:
         """A deck from TOML. name: takes the file's place in messages. folder: that its file names are taken from."""
-        deck = cls(**options)
+        deck = cls(stages_in_python=stages_in_python, laws=laws)
         deck._text, deck._name, deck._folder = text, name, str(folder)
         deck._written()
         return deck
@@ -143,7 +144,7 @@ class Deck:
                 node = node[part]
             except (KeyError, IndexError, TypeError):
                 raise KeyError(path) from None
-        if isinstance(node, str) and (match := _QUANTITY.fullmatch(node)):
+        if isinstance(node, str) and (match := _QUANTITY.fullmatch(node)) and _core.is_quantity(node):
             return Quantity(float(match[1]), match[2])
         return node
 
@@ -250,7 +251,7 @@ class Deck:
         return _core.check(self._resolved(tables))
 
     def save(self, file: str | Path) -> None:
-        """Writes the deck; tables of its functions beside it."""
+        """Writes the deck; tables of its functions beside it. Files that it names keep their names."""
         deck = self._resolved(Path(file).resolve().parent)
         Path(file).write_text(_core.written(deck), encoding="utf-8")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import shutil
 import tempfile
 import weakref
@@ -109,11 +110,16 @@ def write_table(folder: str | Path, key: str, unit: str, points: Sequence[tuple[
     return path
 
 
+def _remove(folder: str, maker: int) -> None:
+    if os.getpid() == maker:  # and not a child of fork
+        shutil.rmtree(folder, ignore_errors=True)
+
+
 class Scratch:
     """A folder for the tables of functions, as long as this is there; made when it is first asked for."""
 
     @cached_property
     def folder(self) -> str:
         folder = tempfile.mkdtemp(prefix="pyroclast-")
-        weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        weakref.finalize(self, _remove, folder, os.getpid())
         return folder

@@ -180,10 +180,6 @@ class Views:
         return self._core.view("history")
 
 
-def _quantity(value: float | str | Quantity, unit: str) -> float:
-    return in_si(value, unit)
-
-
 class Recorder:
     """Keeps what a run gives, as the recorder of the program does in its folder. A run calls `begin` once, `record` at
     every look after its row is written, and `finish` when it is over or stopped.
@@ -227,7 +223,7 @@ class Run:
         tables = functions.Scratch()
         core = _core.Session.begin(
             of._resolved(tables), seed, threads, instructions,
-            None if checkpoint is None else _quantity(checkpoint, "s"), None if out is None else str(out), overwrite)
+            None if checkpoint is None else in_si(checkpoint, "s"), None if out is None else str(out), overwrite)
         self._hold(core, tables)
         self._note_stages(of._stages)
 
@@ -348,21 +344,30 @@ class Run:
         if strain is not None:
             passed["strain"] = strain
         if stress is not None:
-            passed["stress"] = _quantity(stress, "Pa")
+            passed["stress"] = in_si(stress, "Pa")
         if temperature is not None:
-            passed["temperature"] = _quantity(temperature, "degC")
+            passed["temperature"] = in_si(temperature, "degC")
         for name in passed:
             if name not in self._columns.bare and name not in self._columns.units:
                 raise Error(f"the history has no {name!r}; it has {', '.join(self._columns.bare)}")
         if condition is None and not passed and steps is None and equilibrium is None:
             raise Error("until what? say a condition, strain, stress, temperature, quantity, steps or equilibrium")
         now = self.measure()
+        stops = [True]  # taken back where another condition comes first
         rising = {name: not now[name] > value for name, value in passed.items()}  # NaN: comes from below
         if steps is not None:
             if steps < 1:
                 raise Error(f"steps: {steps} is not at least 1")
-            self._core.call_at(self._core.step + steps, self._core.stop)
+            self._core.call_at(self._core.step + steps, lambda: self._core.stop() if stops[0] else None)
         goal = self._core.step + steps if steps is not None else None
+        try:
+            return self._go_until(condition, passed, rising, equilibrium, goal)
+        finally:
+            stops[0] = False
+            self._core.stop(False)  # where the last step was that of a look
+
+    def _go_until(self, condition: Callable[[State], bool] | None, passed: Mapping[str, float],
+                  rising: Mapping[str, bool], equilibrium: float | None, goal: int | None) -> State:
         while True:
             state = self.next()
             if state is None:
@@ -383,7 +388,7 @@ class Run:
         return State(self, self._columns, self._core.measure(), self._look)
 
     def stop(self) -> None:
-        """From a call-back: stops the run at the end of the batch. The loop over it ends; another one goes on."""
+        """Stops the run before its next batch of steps. The loop over it ends; another one goes on."""
         self._core.stop()
 
     def at_looks(self, call: Callable[[Run], object]) -> None:
@@ -413,6 +418,18 @@ class Run:
             call(self)
 
         self._core.call_at(self._core.step + steps, again)
+
+    def close(self) -> None:
+        """Writes the summary of the rows so far and gives the folder back. The run can be read, and goes on no more. At the
+        end of `with Run(...) as run:` too.
+        """
+        self._core.close()
+
+    def __enter__(self) -> Run:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     # Other ways to go on
 
@@ -465,7 +482,7 @@ class Run:
 
         Raises Error where the temperatures are a computed field, or properties are not known at this one.
         """
-        self._core.set_temperature(_quantity(temperature, "degC"))
+        self._core.set_temperature(in_si(temperature, "degC"))
         return self
 
     def checkpoint(self) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import overload
-
 from . import _core
 
 
@@ -61,12 +59,6 @@ class Quantity:
         for name, n in other.powers.items():
             powers[name] = powers.get(name, 0) + sign * n
         return Quantity(self.value * other.value**sign, powers)
-
-
-@overload
-def in_si(value: Quantity | str, unit: str) -> float: ...
-@overload
-def in_si(value: float, unit: str) -> float: ...
 
 
 def in_si(value: Quantity | str | float, unit: str) -> float:

@@ -25,6 +25,8 @@ class Decks(Case):
         self.assertEqual(starter["specimen.width"], 150 * mm)
         self.assertEqual(starter["stages[1].kind"], "compress")
         self.assertEqual(starter["aggregates.sieves"][0], "8 mm")
+        starter["title"] = "2 fires"
+        self.assertEqual(starter["title"], "2 fires")
         self.assertIn("contacts.mortar_mortar.f_t", starter)
         self.assertNotIn("contacts.mortar_mortar.f_x", starter)
         with self.assertRaises(KeyError):

@@ -114,6 +114,13 @@ class Going(Case):
         broken.finish()
         np.testing.assert_array_equal(broken.history.to_pandas(), straight.history.to_pandas())
 
+    def test_steps_that_were_not_reached_stop_nothing_later(self):
+        run = pyroclast.Run(deck(), threads=1)
+        before = run.until(strain=2e-5, steps=6000).step
+        self.assertLess(before, 6000)
+        run.finish()
+        self.assertEqual(run.outcome, "completed")
+
     def test_until_equilibrium(self):
         run = pyroclast.Run(deck(), threads=1)
         self.assertLess(run.until(equilibrium=1e-2).unbalanced_ratio, 1e-2)
@@ -175,6 +182,14 @@ class Going(Case):
         run.call_at(3000, lambda r: r.stop())
         run.finish()
         self.assertEqual((run.step, run.outcome), (3000, "stopped"))
+        run.finish()
+        self.assertEqual(run.outcome, "completed")
+
+    def test_a_stop_at_a_look_is_heard_too(self):
+        run = pyroclast.Run(deck(), threads=1)
+        run.at_looks(lambda r: r.stop() if r.history.rows == 20 else None)
+        self.assertEqual(sum(1 for _ in run), 20)
+        self.assertEqual(run.outcome, "stopped")
         run.finish()
         self.assertEqual(run.outcome, "completed")
 
@@ -320,6 +335,17 @@ class Changing(Case):
         self.assertEqual((before, run.measure().temperature), (20.0, 30.0))
         self.assertAlmostEqual(float(run.temperature.max()), 30.0)
         run.next()
+
+    def test_a_run_that_is_closed_leaves_its_folder(self):
+        out = self.folder() / "run"
+        with pyroclast.Run(deck(), out=out, threads=1) as run:
+            run.until(strain=1e-4)
+            view = run.views.displacement
+        self.assertEqual(json.loads((out / "summary.json").read_text())["outcome"], "running")
+        with self.assertRaisesRegex(pyroclast.Error, "closed"):
+            run.next()
+        np.testing.assert_array_equal(view[run.slot], run.displacement)
+        pyroclast.Run.resume(out, threads=1).finish()
 
     def test_checkpoints_resume_and_fork(self):
         folder = self.folder()

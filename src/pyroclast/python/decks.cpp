@@ -26,6 +26,18 @@ std::string needed_unit(const DeckText& text, const std::string& key) {
   return "";
 }
 
+/// Whether a text is a number with a unit of any quantity that decks hold.
+bool is_quantity(const std::string& text) {
+  return std::ranges::any_of(unit::all, [&](const Unit* kind) {
+    try {
+      parse_quantity(text, *kind);
+      return true;
+    } catch (const QuantityError&) {
+      return false;
+    }
+  });
+}
+
 /// What one of a unit is in SI, of the units that columns of results have; those that no deck holds are SI.
 double si_factor(const std::string& unit) {
   for (const Unit* kind : unit::all) {
@@ -92,6 +104,8 @@ void bind_decks(py::module_& m) {
         return parse_quantity(text, Unit{unit.c_str(), "such quantity", ("1 " + unit).c_str()});
       },
       py::arg("text"), py::arg("unit"), "The value of a quantity in a unit.");
+  m.def("is_quantity", &is_quantity, py::arg("text"),
+        "Whether a text is a number with a unit that decks know.");
   m.def("si_factor", &si_factor, py::arg("unit"), "What one of a unit of the results is in SI.");
 }
 

@@ -50,10 +50,10 @@ class Held {
 
   bool next() {
     Session& session = resting();
+    if (closed_) throw Error("this run was closed");
     if (broken_)
       throw Error("this run was ended by an error and cannot go on; copy an earlier state, or resume");
     const Stepping stepping(stepping_);
-    stop_ = false;
     bool is_there = false;
     broken_ = true;
     {
@@ -61,8 +61,10 @@ class Held {
       is_there = session.next();
     }
     broken_ = false;
-    if (raised_) std::exchange(raised_, nullptr)->restore(), throw py::error_already_set();
-    return is_there;
+    if (!is_there || raised_) stop_ = false;  // it was heard
+    if (!raised_) return is_there;
+    std::exchange(raised_, nullptr)->restore();
+    throw py::error_already_set();
   }
 
   void call_at(std::int64_t step, const py::function& call) {
@@ -76,7 +78,15 @@ class Held {
       }
     });
   }
-  void stop() { stop_ = true; }
+  void stop(bool wanted) { stop_ = wanted; }
+  /// Writes what came of the run, and gives its folder back.
+  void close() {
+    if (closed_) return;
+    Session& session = resting();
+    session.finish();
+    session.leave_folder();
+    closed_ = true;
+  }
 
  private:
   /// In a child of fork the threads of a run are not there, and its end would wait for them.
@@ -121,7 +131,7 @@ class Held {
   std::unique_ptr<Session, Leave> session_;
   std::atomic<std::thread::id> stepping_{std::thread::id()};
   std::atomic<bool> stop_{false};
-  bool broken_ = false;
+  bool broken_ = false, closed_ = false;
   std::unique_ptr<py::error_already_set> raised_;
   std::chrono::steady_clock::time_point asked_at_;
 };
@@ -201,7 +211,9 @@ void bind_sessions(py::module_& m) {
           arg("folder"), arg("from_stage"), arg("more"), arg("changes"), arg("out"), arg("overwrite"),
           arg("threads"), arg("laws"), arg("stages"))
       .def("next", &Held::next, "Goes on to the next look; False when the run is over or was stopped.")
-      .def("stop", &Held::stop, "Stops the run at the next end of a batch of steps.")
+      .def("close", &Held::close, "Writes what came of the run, and gives its folder back.")
+      .def("stop", &Held::stop, arg("wanted") = true,
+           "Stops the run at the next end of a batch of steps, or takes that back.")
       .def("call_at", &Held::call_at, arg("step"), arg("call"),
            "Calls back once, at a step of the mechanics.")
       .def(

@@ -164,6 +164,11 @@ std::unique_ptr<Session> Session::copy(const std::vector<std::string>& changes,
   return copied;
 }
 
+void Session::leave_folder() {
+  checkpoints_.reset();
+  lock_.reset();
+}
+
 void Session::write_checkpoint() {
   if (!checkpoints_) throw Error("this run has no folder, so a checkpoint has no place: say out=");
   checkpoints_->between_batches(run_, true);

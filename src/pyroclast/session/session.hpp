@@ -71,6 +71,8 @@ class Session {
   /// \param changes  "key=value", of what acts later; see `fork`
   std::unique_ptr<Session> copy(const std::vector<std::string>& changes,
                                 const std::optional<RunOutput>& output);
+  /// Gives the folder back, so that another process may write there; the run writes no more.
+  void leave_folder();
   /// Writes a checkpoint now. Throws Error without a folder.
   void write_checkpoint();
 
