@@ -18,4 +18,7 @@ open_ones["steepness"] = 90.0 - np.abs(along - 90.0)  # 90 degrees: along the lo
 print(open_ones[["opening", "steepness", "area"]].describe())
 mean = np.average(open_ones["steepness"], weights=open_ones["area"] * open_ones["opening"])
 print(f"{len(open_ones)} open contact points, {mean:.0f} degrees from the platens on the mean of their openings")
+torn = contacts["lost_tension"].max()
+print(f"a contact that is torn apart took {torn:.1f} J/m2, the fracture energy of mortar")
 assert mean > 60.0, "concrete under compression splits along the load"
+assert abs(torn / 60.0 - 1.0) < 0.01

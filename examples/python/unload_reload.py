@@ -20,5 +20,6 @@ left = run.then("compress", to_stress="1 MPa", **platen).finish().measure().stra
 reached = run.then("compress", to_stress="10 MPa", **platen).finish().measure()
 softer = (reached.stress - 1e6) / (reached.strain - left)
 print(f"E {E / 1e9:.1f} GPa; unloaded: strain {left:.5f}; loaded again {softer / 1e9:.1f} GPa")
+assert 18e9 < E < 26e9
 assert left > 1e-4, "a permanent strain is left"
 assert 0.1 < softer / E < 0.95, "cracks have taken stiffness"

@@ -20,7 +20,7 @@ deck.update(blocks={"count": 60}, output={"fields": False})
 deck["stages[0].duration"] = "1 min"
 run = pyroclast.Run(deck).finish()
 assert run.history["temperature"][-1] > 20.0
-print(pathlib.Path(pyroclast.__file__).resolve().parent)
+print(pathlib.Path(pyroclast.__file__).parent)
 """
 
 
