@@ -58,16 +58,14 @@ def _draw_section(axes: Axes, run: Run) -> None:
 
 
 def _cracks(run: Run) -> np.ndarray:
-    """(cracks, 2, 2), m: contact points whose law says that they are damaged by half or more, as lines along their
-    faces.
+    """(cracks, 2, 2), m: contact points whose law says that they are damaged by half or more, as lines to the middle of
+    their face.
     """
     contacts = run.contacts()
     damage = contacts[[name for name in contacts if "damage" in name]].max(axis=1)
-    of = contacts[damage >= _OPEN]
-    at = of[["x", "y"]].to_numpy()
-    along = np.column_stack([-of["normal_y"], of["normal_x"]])
-    half = 0.5 * (of["area"] / run.thickness).to_numpy()[:, None]
-    return np.stack([at - half * along, at + half * along], axis=1)
+    ends = contacts[["x", "y"]]
+    middles = ends.groupby(contacts["face"]).transform("mean")
+    return np.stack([ends, middles], axis=1)[damage >= _OPEN]
 
 
 def png_of(run: Run) -> bytes:

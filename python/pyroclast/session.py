@@ -639,11 +639,11 @@ class Run:
         return self._core.copied("temperature")
 
     def contacts(self) -> pandas.DataFrame:
-        """State of all contact points, a row each, SI, as copies: interface, law, place, area, normal, opening, slip,
-        tractions (tension positive), stored energy, what their laws remember and what they lost.
+        """State of all contact points, a row each, SI, as copies: interface, law, place, face, area, normal, opening,
+        slip, tractions (tension positive), stored energy, what their laws remember and what they lost.
         """
         import pandas
-        return pandas.DataFrame(self._core.contacts())
+        return pandas.DataFrame(self._core.contacts()).astype({"face": int})
 
     def to_pandas(self) -> pandas.DataFrame:
         """The history as a DataFrame."""

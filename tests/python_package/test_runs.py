@@ -309,6 +309,26 @@ class Changing(Case):
         with self.assertRaisesRegex(pyroclast.Error, "only the script"):
             pyroclast.Run.resume(out)
 
+    def test_later_stages_change_and_take_their_columns_along(self):
+        run = pyroclast.Run(heated(), threads=1)
+        run.until(strain=1e-5)
+        self.assertIn("exchange", run.history)
+        run.change({"stages[2].to": "30 degC"}).finish()
+        self.assertAlmostEqual(run.history["temperature"].max(), 30.0)
+        whole = heated()
+        whole["stages[2].to"] = "30 degC"
+        np.testing.assert_array_equal(run.history.to_pandas(), pyroclast.Run(whole, threads=1).finish().history.to_pandas())
+        with self.assertRaisesRegex(pyroclast.Error, "this stage is done"):
+            run.change({"stages[2].to": "50 degC"})
+
+    def test_a_stage_can_be_ended_where_it_was_stopped(self):
+        run = pyroclast.Run(deck(), threads=1)
+        run.until(strain=1e-4)
+        run.until(steps=17)
+        run.end_stage().then("compress", velocity="0.8 mm/s", ramp_time="20 ms", to_stress="0.5 MPa").finish()
+        self.assertEqual(run.outcome, "completed")
+        self.assertLess(run.history["stress"][-1], 0.6e6)
+
     def test_materials_change_and_energy_is_accounted(self):
         run = pyroclast.Run(deck(), threads=1)
         run.until(strain=1.5e-4)

@@ -144,6 +144,7 @@ py::dict contacts(const Simulation& simulation) {
   };
   add("x", [&](std::size_t i) { return model.position[model.contacts[i].a][0]; });
   add("y", [&](std::size_t i) { return model.position[model.contacts[i].a][1]; });
+  add("face", [&](std::size_t i) { return static_cast<double>(model.contacts[i].face); });
   add("area", [&](std::size_t i) { return model.contacts[i].area; });
   add("normal_x", [&](std::size_t i) { return model.contacts[i].normal[0]; });
   add("normal_y", [&](std::size_t i) { return model.contacts[i].normal[1]; });

@@ -31,11 +31,12 @@ void History::add_row(std::vector<std::optional<double>> cells) {
 }
 
 void History::take_rows(const History& other) {
-  std::vector<std::size_t> to;
-  for (const Column& column : other.columns_) to.push_back(index(column.name));
+  std::vector<std::optional<std::size_t>> to;
+  for (const Column& column : other.columns_) to.push_back(find(column.name));
   for (const auto& row : other.cells_) {
     add_row();
-    for (std::size_t i = 0; i < row.size(); ++i) cells_.back()[to[i]] = row[i];
+    for (std::size_t i = 0; i < row.size(); ++i)
+      if (to[i]) cells_.back()[*to[i]] = row[i];
   }
 }
 

@@ -35,7 +35,7 @@ class History {
   void add_row();
   /// A row with all its cells, in the order of the columns.
   void add_row(std::vector<std::optional<double>> cells);
-  /// Adds the rows of a history whose columns are all here.
+  /// Adds the rows of another history; its columns that are not here are left out.
   void take_rows(const History& other);
   /// Sets a cell of the last row. Throws Error when there is no such column.
   void set(std::string_view column, double value);

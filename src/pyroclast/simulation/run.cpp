@@ -99,12 +99,13 @@ void Run::change_later_stages(std::vector<std::unique_ptr<Stage>> stages) {
   records_.resize(stages_.size());
   const History old = std::exchange(history_, {});
   name_columns();
-  history_.take_rows(old);
+  history_.take_rows(old);  // a column that only a stage had which is no more is empty
   const bool has_more = kept < stages_.size();
   if (stage_is_over_ && !stage_ends_run_ && has_more) outcome_ = Outcome::running;
 }
 
 void Run::end_stage() {
+  go_on();
   if (!stage_is_begun_ || stage_is_over_ || outcome_ != Outcome::running)
     throw Error("no stage is under way that could be ended");
   if (records_[stage_].rows.empty())

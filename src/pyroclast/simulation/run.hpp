@@ -70,7 +70,8 @@ class Run {
   /// unless its verdict ended the run. Columns of theirs are added to the history, empty so far.
   /// \param stages  all of the run; those up to the last begun are not taken
   void change_later_stages(std::vector<std::unique_ptr<Stage>> stages);
-  /// Ends the stage that is under way at the last look. Throws Error where none is.
+  /// Ends the stage that is under way, at the last look or where it was stopped since. Throws Error where
+  /// none is.
   void end_stage();
 
   Outcome outcome() const { return outcome_; }
