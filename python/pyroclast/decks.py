@@ -224,7 +224,7 @@ class Deck:
         return self
 
     def append(self, table: str, /, **keys: Any) -> Deck:
-        """Appends a table to a list of tables: `deck.append("stages", kind="heat", to="300 degC")`. Returns the deck."""
+        """Appends a table to a list of tables: `deck.append("stages", kind="settle", ...)`. Returns the deck."""
         before = (self._text, dict(self._functions))
         number = len(self[table]) if table in self else 0
         found: dict[str, functions.Function] = {}

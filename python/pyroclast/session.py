@@ -420,8 +420,8 @@ class Run:
         self._core.call_at(self._core.step + steps, again)
 
     def close(self) -> None:
-        """Writes the summary of the rows so far and gives the folder back. The run can be read, and goes on no more. At the
-        end of `with Run(...) as run:` too.
+        """Writes the summary of the rows so far and gives the folder back. The run can be read, and goes on no more.
+        The end of `with Run(...) as run:` does the same.
         """
         self._core.close()
 
@@ -447,8 +447,8 @@ class Run:
         return copied
 
     def then(self, kind: str, /, **keys: Any) -> Run:
-        """Appends a stage to the run: `run.then("compress", velocity="0.8 mm/s", ...)`. The run is then that of its deck
-        with this stage behind the others. Returns the run.
+        """Appends a stage to the run: `run.then("compress", velocity="0.8 mm/s", ...)`. The run is then that of its
+        deck with this stage behind the others. Returns the run.
         """
         self._core.change_stages([], table_text("stages", {"kind": kind, **keys}, True))
         return self._renewed()
@@ -650,17 +650,17 @@ class Run:
         return self.history.to_pandas()
 
     def to_meshio(self) -> meshio.Mesh:
-        """The body now as a mesh of triangles: displacement, velocity and temperature of gridpoints, stress, block and
-        material of zones.
+        """The body now as a mesh of triangles in space, z = 0: displacement, velocity and temperature of gridpoints,
+        stress, block and material of zones.
         """
         import meshio
         block = self.zone_block
         points = {"temperature": self.temperature}
         cells: dict[str, list[Any]] = {"block": [block], "material": [self.block_material[block]]}
         if self._core.moves:
-            points |= {"displacement": self.displacement, "velocity": self.velocity}
+            points |= {"displacement": _in_space(self.displacement), "velocity": _in_space(self.velocity)}
             cells["stress"] = [self.stress]
-        return meshio.Mesh(self.position, [("triangle", self.zones)], point_data=points, cell_data=cells)
+        return meshio.Mesh(_in_space(self.position), [("triangle", self.zones)], point_data=points, cell_data=cells)
 
     # In a notebook
 
@@ -674,6 +674,11 @@ class Run:
 
     def __repr__(self) -> str:
         return f"<Run {self.title!r}: {self.outcome}, {self._core.rows} rows>"
+
+
+def _in_space(vectors: Array) -> Array:
+    """(n, 3), as most formats of meshes want them."""
+    return np.column_stack([vectors, np.zeros(len(vectors))])
 
 
 def _changes(changes: Mapping[str, Value] | None) -> list[str]:

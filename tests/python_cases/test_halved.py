@@ -36,7 +36,8 @@ class Halved(unittest.TestCase):
                 text = (EXAMPLES / f"{name}.py").read_text()
                 self.assertEqual(text.count(stands), 1)
                 halved = pathlib.Path(folder) / f"{name}.py"
-                halved.write_text(text.replace(stands, instead).replace("Path(__file__)", f"Path({str(EXAMPLES / name)!r})"))
+                place = f"Path({str(EXAMPLES / name)!r})"
+                halved.write_text(text.replace(stands, instead).replace("Path(__file__)", place))
                 done = subprocess.run([sys.executable, halved, BLOCKS], capture_output=True, text=True, check=False,
                                       timeout=300)
                 self.assertEqual(done.returncode, 1, done.stdout)

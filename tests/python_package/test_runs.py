@@ -317,7 +317,8 @@ class Changing(Case):
         self.assertAlmostEqual(run.history["temperature"].max(), 30.0)
         whole = heated()
         whole["stages[2].to"] = "30 degC"
-        np.testing.assert_array_equal(run.history.to_pandas(), pyroclast.Run(whole, threads=1).finish().history.to_pandas())
+        straight = pyroclast.Run(whole, threads=1).finish()
+        np.testing.assert_array_equal(run.history.to_pandas(), straight.history.to_pandas())
         with self.assertRaisesRegex(pyroclast.Error, "this stage is done"):
             run.change({"stages[2].to": "50 degC"})
 
