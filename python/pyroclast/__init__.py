@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from . import parallel as parallel
     from . import units as units
     from ._core import Body as Body
+    from ._core import commit as commit
+    from ._core import version as version
     from .decks import Deck as Deck
     from .errors import DeckError as DeckError
     from .errors import Diagnostic as Diagnostic
@@ -55,7 +57,7 @@ if TYPE_CHECKING:
 else:
     # Imported when first asked for: figures must not need the compiled part.
     _PLACES = {
-        "_core": ("Body",),
+        "_core": ("Body", "commit", "version"),
         "decks": ("Deck",),
         "errors": ("DeckError", "Diagnostic", "Error"),
         "functions": ("Function",),

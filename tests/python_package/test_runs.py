@@ -45,6 +45,8 @@ class Results(Case):
         for name in ("history.csv", "deck.toml", "fields/frames.csv", "specimen/aggregates.csv"):
             self.assertEqual((folder / "program" / name).read_bytes(), (folder / "script" / name).read_bytes(), name)
         self.assertEqual(looks, history(folder / "script").count(b"\n") - 1)
+        manifest = json.loads((folder / "script" / "manifest.json").read_text())
+        self.assertEqual((manifest["version"], manifest["commit"]), (pyroclast.version, pyroclast.commit))
         summaries = [json.loads((folder / name / "summary.json").read_text()) for name in ("program", "script")]
         for summary in summaries:
             del summary["wall_time_s"]
