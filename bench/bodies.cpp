@@ -52,14 +52,14 @@ void start_compression(Body& body, const Specimen& specimen, double rate) {
     body.prescribe_velocity(g, 0, platen ? 0.0 : kPoisson * rate * (x[g][0] - 0.5 * specimen.width));
     body.prescribe_velocity(g, 1, -rate * std::clamp(x[g][1], 0.0, specimen.height));
   }
-  for (int g : model.set("bottom_face")) body.prescribe_velocity(g, 0, 0.0);
-  for (int g : model.set("top_face")) body.prescribe_velocity(g, 0, 0.0);
+  for (int g : model.set("bottom_platen_face")) body.prescribe_velocity(g, 0, 0.0);
+  for (int g : model.set("top_platen_face")) body.prescribe_velocity(g, 0, 0.0);
   body.advance(1);
   for (int g = 0; g < gridpoints; ++g)
     for (int i : {0, 1}) body.release(g, i);
-  for (int g : model.set("bottom_support"))
+  for (int g : model.set("bottom_platen_support"))
     for (int i : {0, 1}) body.prescribe_velocity(g, i, 0.0);
-  for (int g : model.set("top_support")) {
+  for (int g : model.set("top_platen_support")) {
     body.prescribe_velocity(g, 0, 0.0);
     body.prescribe_velocity(g, 1, -rate * specimen.height);
   }
@@ -87,10 +87,10 @@ const char* name(Loading loading) {
 
 Specimen::Specimen(const Setup& setup, int blocks)
     : made(make(setup.specimen, blocks)),
-      model(pyroclast::make_concrete_model(made, setup.motion->platen_thickness, setup.thickness,
-                                           setup.motion->contacts.interfaces)),
-      width(made.width),
-      height(made.height),
+      model(pyroclast::make_concrete_model(made, setup.thickness, setup.motion->contacts.interfaces,
+                                           setup.motion->bearings)),
+      width(made.region.box().width()),
+      height(made.region.box().height()),
       parameters(setup.motion->mechanics) {
   const auto materials =
       pyroclast::make_concrete(setup.solids, setup.motion->contacts, made.metrics.mean_size);

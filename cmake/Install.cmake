@@ -3,7 +3,8 @@ include(CMakePackageConfigHelpers)
 install(TARGETS pyroclast EXPORT pyroclastTargets)
 install(TARGETS pyroclast_laws EXPORT pyroclastLawsTargets)
 install(TARGETS pyroclast_app)
-install(DIRECTORY src/pyroclast DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp" PATTERN "app" EXCLUDE)
+install(DIRECTORY src/pyroclast DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp" PATTERN "app" EXCLUDE
+        PATTERN "python" EXCLUDE)
 install(FILES ${PROJECT_BINARY_DIR}/generated/pyroclast/version.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pyroclast)
 install(DIRECTORY cases DESTINATION ${CMAKE_INSTALL_DATADIR}/pyroclast)
 

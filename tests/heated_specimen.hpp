@@ -15,7 +15,7 @@ namespace pyroclast {
 inline constexpr double kSpecimenWidth = 0.05, kSpecimenHeight = 0.1, kSpecimenThickness = 0.5;  // m
 
 inline Model<2> small_body(int blocks = 300) {
-  return make_concrete_model(small_specimen(blocks), 0.01, kSpecimenThickness);
+  return between_platens(small_specimen(blocks), 0.01, kSpecimenThickness);
 }
 
 struct HeatConstants {
@@ -28,6 +28,7 @@ struct HeatConstants {
 /// Aggregate and mortar conduct alike.
 inline std::vector<SolidMaterial> alike_solids(const HeatConstants& constants = {}) {
   std::vector<SolidMaterial> solids(3);
+  solids.back().is_of_bearing = true;
   solids[aggregate_material].name = "aggregate";
   solids[mortar_material].name = "mortar";
   for (const int m : {aggregate_material, mortar_material}) {
@@ -35,6 +36,13 @@ inline std::vector<SolidMaterial> alike_solids(const HeatConstants& constants = 
     solids[m].specific_heat = Curve::constant(constants.specific_heat);
     solids[m].density = Curve::constant(constants.density);
   }
+  return solids;
+}
+
+/// The same of a specimen without platens.
+inline std::vector<SolidMaterial> alike_phases() {
+  std::vector<SolidMaterial> solids = alike_solids();
+  solids.pop_back();
   return solids;
 }
 
@@ -48,7 +56,7 @@ inline HeatConditions heat_conditions(std::vector<HeatBoundaryCondition> boundar
   return heat;
 }
 
-inline HeatBoundaryCondition on(OutlinePart part, HeatCondition condition) {
+inline HeatBoundaryCondition on(const std::string& part, HeatCondition condition) {
   return {{.part = part}, std::move(condition), "deck.toml:1: heat.boundaries[0]"};
 }
 

@@ -8,7 +8,8 @@
 
 A run that was heated gets total_strain.png (thrust.png when its platens were fixed), heating_cracks.png,
 heating_energy.png, convergence.png and heating_fracture.png;
-a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png and fracture.png; one of
+a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png and fracture.png; one without platens
+gets records.png, energy.png and fracture.png; one of
 heat conduction alone gets neither. A run that computes its temperatures gets temperature_history.png,
 temperature.png, temperature_profile.png and, if it comes to 500 °C, isotherm.png.
 
@@ -33,6 +34,7 @@ from .heating import convergence, temperature_history, thrust, total_strain
 from .profiles import isotherm, read_profile, temperature_profile, write_profile
 from .progress import cracks, energy, heating_course, heating_cracks, loading_course
 from .properties import properties, read_properties
+from .records import record_course, record_fracture, records, records_of
 from .run import Run, RunError, Specimen
 from .sections import fracture, gradation, morphology, select_frames
 from .style import save
@@ -43,6 +45,9 @@ _FORMATS = ("png", "svg", "pdf")
 def figures_of(run: Run, magnification: float | None = None,
                temperatures: Sequence[float] | None = None) -> Iterator[tuple[str, Callable[[], Figure]]]:
     """Name of each figure that a run has, and what makes it; the arguments are those of `draw_run`."""
+    if not run.only_conducts and not run.has_platens:
+        yield from _of_records(run, magnification)
+        return
     if run.exchanged.any():
         yield from _of_heating(run, magnification, temperatures)
     elif temperatures is not None:
@@ -65,6 +70,17 @@ def _of_heating(run: Run, magnification: float | None,
     if not run.uniform:
         yield from _of_conduction(run)
     yield "heating_fracture", lambda: heating_fracture(run, temperatures, magnification)
+
+
+def _of_records(run: Run, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+    if records_of(run):
+        yield "records", lambda: records(run)
+        yield "energy", lambda: energy(record_course(run))
+    if run.exchanged.any():
+        yield "convergence", lambda: convergence(run)
+    if not run.uniform:
+        yield from _of_conduction(run)
+    yield "fracture", lambda: record_fracture(run, magnification)
 
 
 def _of_conduction(run: Run) -> Iterator[tuple[str, Callable[[], Figure]]]:

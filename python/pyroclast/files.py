@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import csv
+import fcntl
 import json
+import os
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from enum import Enum
 from pathlib import Path
 
 import h5py
@@ -41,8 +44,7 @@ class Table:
         Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
         self.path = path
         try:
-            with open(path, newline="", encoding="utf-8") as file:
-                text = file.read()
+            text = self._text()
             written = text.splitlines()
             first = next((i for i, line in enumerate(written) if not _skipped(line)), 0) if comments else 0
             lines = list(csv.reader("" if comments and _skipped(line) else line for line in written[first:]))
@@ -53,15 +55,23 @@ class Table:
         if not text.endswith("\n") and len(lines[-1]) != len(lines[0]):
             lines.pop()  # the row that a run was killed in
         self.names = [name.strip() for name in lines[0]]
-        self._gaps: list[tuple[int, str, str]] = []
-        rows = [self._numbers(number, cells) for number, cells in enumerate(lines[1:], start=first + 2) if cells]
-        if not rows and not may_be_empty:
+        self._columns = self._parsed(lines[1:], first + 2)
+        if not len(self) and not may_be_empty:
             raise RunError(f"{path}: has a header but no rows")
-        self._columns = dict(zip(self.names, np.array(rows).reshape(-1, len(self.names)).T))
+
+    def _text(self) -> str:
+        with open(self.path, newline="", encoding="utf-8") as file:
+            return file.read()
+
+    def _parsed(self, lines: list[list[str]], first: int) -> dict[str, np.ndarray]:
+        """Columns of rows that are cut into cells. first: number of their first line."""
+        self._gaps: list[tuple[int, str, str]] = []
+        rows = [self._numbers(number, cells) for number, cells in enumerate(lines, start=first) if cells]
         if self._gaps:
             line, name, cell = self._gaps[0]
-            warnings.warn(f"{path}, line {line}: column {_shown(name)} holds {_shown(cell)}; cells that are not "
-                          f"finite, {len(self._gaps)} in all, are drawn as gaps", GapWarning, stacklevel=2)
+            warnings.warn(f"{self.path}, line {line}: column {_shown(name)} holds {_shown(cell)}; cells that are not "
+                          f"finite, {len(self._gaps)} in all, are drawn as gaps", GapWarning, stacklevel=3)
+        return dict(zip(self.names, np.array(rows).reshape(-1, len(self.names)).T))
 
     def _numbers(self, line: int, cells: list[str]) -> list[float]:
         if len(cells) != len(self.names):
@@ -111,6 +121,82 @@ class Table:
 
     def __len__(self) -> int:
         return len(self._columns[self.names[0]])
+
+
+class GrowingTable(Table):
+    """A table that another process still writes: the rows that are whole, as far as they have come."""
+
+    def __init__(self, path: Path, may_be_empty: bool = True):
+        self.path = path
+        self._taken = 0  # bytes
+        self._inode = path.stat().st_ino if path.exists() else None
+        super().__init__(path, may_be_empty)
+        self._next_line = len(self) + 2
+
+    def _text(self) -> str:
+        with open(self.path, "rb") as file:
+            file.seek(self._taken)
+            added = file.read()
+        added = added[:added.rfind(b"\n") + 1]
+        self._taken += len(added)
+        return added.decode("utf-8")
+
+    @property
+    def is_replaced(self) -> bool:
+        """Whether the file is another one by now, or was cut off, as where a run was resumed or overwritten."""
+        try:
+            now = self.path.stat()
+        except OSError:
+            return True
+        return now.st_ino != self._inode or now.st_size < self._taken
+
+    def grow(self) -> bool:
+        """Takes in the rows that came since; returns whether there were any. Throws RunError as at first."""
+        try:
+            lines = list(csv.reader(self._text().splitlines()))
+        except (OSError, UnicodeDecodeError, csv.Error) as error:
+            raise RunError(f"{self.path}: cannot be read: {_reason(error)}") from error
+        added = self._parsed(lines, self._next_line)
+        self._next_line += len(lines)
+        self._columns = {name: np.concatenate([values, added[name]]) for name, values in self._columns.items()}
+        return bool(lines)
+
+
+class Writer(Enum):
+    """Whether a process writes into a folder."""
+
+    THERE = "there"
+    DIED = "died"  #: without leaving its lock
+    NONE = "none"
+
+
+class Lock:
+    """The file `lock` of a folder, which whoever writes there holds locked. To look at it disturbs nobody."""
+
+    def __init__(self, folder: Path):
+        self._path = folder / "lock"
+        self._left: tuple[int, int] | None = None  # which file nobody holds any more
+
+    @property
+    def writer(self) -> Writer:
+        """The lock is tried only on a file that says whose it is, and no more after it was found free: so nobody who is
+        about to take it meets this look.
+        """
+        try:
+            with open(self._path, "rb") as file:
+                about = os.fstat(file.fileno())
+                this = (about.st_ino, about.st_mtime_ns)
+                if this == self._left:
+                    return Writer.DIED
+                if not about.st_size:
+                    return Writer.THERE
+                fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+                self._left = this
+                return Writer.DIED if self._path.exists() else Writer.NONE
+        except BlockingIOError:
+            return Writer.THERE
+        except OSError:
+            return Writer.NONE
 
 
 @contextmanager

@@ -159,6 +159,16 @@ def temperature_field(run: Run) -> Figure:
     return figure
 
 
+def draw_temperature(axes: Axes, run: Run, frame: Frame) -> TriMesh:
+    """The temperature of the specimen, alone in its axes, coloured over its own range. Returns what has the colours."""
+    blocks = run.mesh.blocks
+    field = run.gridpoint_temperature(frame)
+    within = field[np.unique(blocks.triangles[~blocks.of_platen])]
+    colours = _draw_temperature(axes, run, field, Normalize(within.min(), within.max()))
+    draw_scale_bar(axes, blocks)
+    return colours
+
+
 def _after(frame: Frame) -> str:
     if frame.heating_time is None or np.isnan(frame.heating_time):
         return ""

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .files import LARGEST, RunError, Table, dataset, open_hdf, read_json
+from .files import LARGEST, GrowingTable, RunError, Table, dataset, open_hdf, read_json
 from .mesh import Mesh, read_mesh
 from .reference import NONE, Reference
 
@@ -38,6 +38,8 @@ class Frame:
 class Run:
     """One run folder. Files are read when first asked for; what is missing or malformed throws RunError."""
 
+    _table = Table
+
     def __init__(self, folder: str | Path):
         self.folder = Path(folder)
         if not self.folder.is_dir():
@@ -46,7 +48,7 @@ class Run:
     @cached_property
     def history(self) -> Table:
         """history.csv, all stages."""
-        table = Table(self.folder / "history.csv")
+        table = self._table(self.folder / "history.csv")
         table.whole("stage")
         return table
 
@@ -78,24 +80,35 @@ class Run:
         return Run(folder) if (Path(folder) / "history.csv").exists() else None
 
     @cached_property
-    def reference(self) -> Reference:
-        """What the deck that the run keeps asks figures to draw beside the results."""
+    def deck(self) -> dict:
+        """The deck that the run keeps, as it stands there; empty without one."""
         path = self.folder / "deck.toml"
         if not path.exists():
-            return Reference(self.folder, NONE)
+            return {}
         try:
-            output = tomllib.loads(path.read_text(encoding="utf-8")).get("output", {})
+            return tomllib.loads(path.read_text(encoding="utf-8"))
         except (OSError, ValueError, RecursionError) as error:
             raise RunError(f"{path}: cannot be read: {' '.join(str(error).split())}") from error
+
+    @property
+    def deck_stages(self) -> list[dict]:
+        """What the deck says of each stage; empty without a deck."""
+        stages = self.deck.get("stages")
+        return [s if isinstance(s, dict) else {} for s in stages] if isinstance(stages, list) else []
+
+    @cached_property
+    def reference(self) -> Reference:
+        """What the deck that the run keeps asks figures to draw beside the results."""
+        output = self.deck.get("output", {})
         name = output.get("reference", NONE) if isinstance(output, dict) else None
         if not isinstance(name, str):
-            raise RunError(f"{path}: output.reference is not a text")
+            raise RunError(f"{self.folder / 'deck.toml'}: output.reference is not a text")
         return Reference(self.folder, name)
 
     @property
     def title(self) -> str:
-        """As the summary has it, else the folder's name."""
-        return str(self.summary.get("title") or self.folder.resolve().name)
+        """As the summary has it, else the deck, else the folder's name."""
+        return str(self.summary.get("title") or self.deck.get("title") or self.folder.resolve().name)
 
     @cached_property
     def stage_results(self) -> list[dict]:
@@ -171,8 +184,12 @@ class Run:
 
     @property
     def restrained(self) -> bool:
-        """Whether the platens were held in place while the specimen was heated."""
-        return self.heating.get("platen") == "fixed"
+        """Whether the platens were held in place while the specimen was heated. Without a summary the deck tells it."""
+        if self.heating:
+            return self.heating.get("platen") == "fixed"
+        heated = self.history["stage"][self.exchanged].astype(int)
+        stages = self.deck_stages[heated[0]:] if len(heated) else []
+        return bool(stages) and stages[0].get("platen") == "fixed"
 
     @property
     def quasi_static(self) -> bool | None:
@@ -204,7 +221,12 @@ class Run:
     @property
     def only_conducts(self) -> bool:
         """Whether the run is of heat conduction alone: nothing moves."""
-        return "strain" not in self.history
+        return "unbalanced_ratio" not in self.history
+
+    @property
+    def has_platens(self) -> bool:
+        """Whether the body stood between platens, so that the test has a stress and a strain."""
+        return "strain" in self.history
 
     @property
     def probes(self) -> dict[str, np.ndarray]:
@@ -307,14 +329,15 @@ class Run:
         path = self.folder / "fields" / "frames.csv"
         if not path.exists():
             return []
-        t = Table(path, may_be_empty=True)
+        t = self._table(path, may_be_empty=True)
         if self.only_conducts:
             return [Frame(number, stage, 0, time, np.nan, np.nan, temperature, time)
                     for number, stage, time, temperature in zip(t.whole("frame").tolist(), t.whole("stage").tolist(),
                                                                 t["heating_time_s"], t["temperature_degC"])]
         heat = [t[name] if name in t else [None] * len(t) for name in ("temperature_degC", "heating_time_s")]
         whole = [t.whole(name, none=0).tolist() for name in ("frame", "stage", "step")]
-        return [Frame(*values) for values in zip(*whole, t["time_s"], t["strain"], t["stress_MPa"], *heat)]
+        pressed = [t[name] if name in t else [np.nan] * len(t) for name in ("strain", "stress_MPa")]
+        return [Frame(*values) for values in zip(*whole, t["time_s"], *pressed, *heat)]
 
     @property
     def loaded_frames(self) -> list[Frame]:
@@ -371,6 +394,22 @@ class Run:
         if values.shape != shape:
             raise RunError(f"{path}: /VTKHDF/{name} has shape {values.shape}, but the mesh asks for {shape}")
         return values
+
+
+class GrowingRun(Run):
+    """A run that another process still writes: what is there by now, rows that are whole. `refresh` takes in more."""
+
+    _table = GrowingTable
+    _LASTING = frozenset({"folder", "history", "mesh", "deck", "reference", "parent"})
+
+    def refresh(self) -> bool:
+        """Takes in what was written since; returns whether the rows that were there are others or have become more."""
+        history = self.__dict__.get("history")
+        begun_anew = history is not None and history.is_replaced
+        lasting = {"folder"} if begun_anew else self._LASTING
+        for name in self.__dict__.keys() - lasting:
+            del self.__dict__[name]
+        return begun_anew or (history is not None and history.grow())
 
 
 class Specimen:

@@ -130,12 +130,23 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
         if row == 0:
             draw_scale_bar(all_axes[0], panels[0].run.mesh.blocks)
     figure.suptitle(heading, fontsize=9.0)
-    handles = _fracture_legend(rows[0][1][0].run)
+    handles = fracture_legend(rows[0][1][0].run)
     below = figure.add_subplot(grid[-1, :])
     style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center", ncols=4,
                        title_fontsize=7.0, title=note)
     below.get_legend().set_in_layout(False)  # it is as wide as the page, and would make the panels narrower
     return figure
+
+
+def draw_specimen(axes: Axes, run: Run, frame: Frame) -> float:
+    """The deformed specimen with its cracks, alone in its axes. Returns the magnification of its displacements."""
+    magnification = _visible_magnification(run, frame)
+    panel = Panel(run, frame, "", "")
+    points = _moved(panel, magnification)
+    _draw_fractured(axes, run, frame, points, magnification, columns=1)
+    frame_section(axes, run.mesh.blocks, _margin([(run.mesh.blocks, points)]))
+    draw_scale_bar(axes, run.mesh.blocks)
+    return magnification
 
 
 def _moved(panel: Panel, magnification: float) -> np.ndarray:
@@ -220,7 +231,7 @@ def height_over_width(blocks: BlockMesh, margin: np.ndarray = _MARGIN) -> float:
 def _draw_fractured(axes: Axes, run: Run, frame: Frame, points: np.ndarray, magnification: float,
                     columns: int) -> None:
     blocks, contacts = run.mesh.blocks, run.mesh.contacts
-    _draw_blocks(axes, blocks, points)
+    draw_blocks(axes, blocks, points)
     lines = (contacts.points + magnification * run.contact_displacement(frame))[contacts.lines]
     thinning = _thinning(blocks, contacts, max(columns, _PANELS))
     for crack in _cracks_of(run):
@@ -237,7 +248,7 @@ def _thinning(blocks: BlockMesh, contacts: ContactMesh, columns: int) -> float:
     return float(np.clip(edge / _EDGE_OF_FULL_WIDTH, _LEAST_THINNING, 1.0))
 
 
-def _draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None) -> None:
+def draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None) -> None:
     """Fills the blocks, one collection a material; without an edge colour their seams are closed."""
     outlines, material = blocks.outlines
     for kind, colour in enumerate(style.phase_colours(blocks.materials)):
@@ -283,7 +294,8 @@ def draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
     axes.text(x + length + 0.03 * width, y, f"{length} mm", va="center", fontsize=7.0)
 
 
-def _fracture_legend(run: Run) -> list:
+def fracture_legend(run: Run) -> list:
+    """Handles of the cracks and materials that `fracture` and `draw_specimen` draw."""
     lines = [Line2D([], [], color=crack.colour, linewidth=crack.width, label=crack.label)
              for crack in _cracks_of(run)]
     return lines + _material_legend(run.mesh.blocks)
@@ -302,7 +314,7 @@ def morphology(specimen: Specimen) -> Figure:
     low, high = _panel_box(blocks)
     figure = style.new_figure(height=1.0 + 4.0 * (high - low)[1] / (high - low)[0], width=6.0)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.32])
-    _draw_blocks(axes, blocks, blocks.points, edge="#7d7d7d")
+    draw_blocks(axes, blocks, blocks.points, edge="#7d7d7d")
     diameters = style.MILLI * circles["diameter_m"]
     axes.add_collection(EllipseCollection(
         diameters, diameters, np.zeros(len(circles)), units="xy", facecolors="none", edgecolors=style.BLUE,

@@ -111,7 +111,7 @@ def facts_of(run) -> list[str]:
 def warnings_of(run) -> list[str]:
     """That a run is not quasi-static or does not say, and how many exchanges did not converge."""
     warnings = []
-    if run.quasi_static is None and not (run.only_conducts or run.ends_heated):
+    if run.quasi_static is None and run.has_platens and not run.ends_heated:
         warnings.append("not stated whether quasi-static")
     elif run.quasi_static is False:
         warnings.append("NOT QUASI-STATIC")

@@ -66,7 +66,7 @@ class CommandLine(unittest.TestCase):
 
     def test_manual_and_completion_have_every_command_and_option(self):
         manual, completion = self.pyroclast("manual").stdout, self.pyroclast("completion").stdout
-        for word in ("run", "resume", "plot-properties", "--law-path", "--from-stage", "--no-fields"):
+        for word in ("run", "resume", "plot-properties", "--law-path", "--from-stage", "--no-fields", "--watch"):
             self.assertIn(word.replace("-", "\\-"), manual)
             self.assertIn(word, completion)
         for code in (0, 1, 2, 130):

@@ -23,7 +23,9 @@ MODULES = [
     "stages",
     "setup",
     "results",
+    "session",
     "app",
+    "python",
 ]
 
 # Exceptions: what a module must not include all the same, and the files of it that may.
@@ -36,6 +38,7 @@ NEVER = {
     "mechanics": {"units": [], "deck": []},
     "plugin": {"units": [], "deck": []},
     "simulation": {"units": [], "deck": []},
+    "python": {"app": []},
 }
 
 # Written by the build.

@@ -22,7 +22,7 @@ run(${WORK}/prefix/bin/pyroclast --version)
 # A contact law of one's own: built from the headers alone, in a build without optimization, loaded and driven by the
 # installed program; from the header, which the program compiles, it gives the same numbers.
 set(without)
-foreach(package HDF5 muparser fmt spdlog CLI11 tomlplusplus nlohmann_json Threads)
+foreach(package muparser fmt spdlog CLI11 tomlplusplus nlohmann_json Threads)
   list(APPEND without -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
 set(own_law ${SOURCE}/examples/own_law)

@@ -25,8 +25,7 @@ inline Vec<2> turned(const Vec<2>& x, double angle) {
 /// The blocks of a random tessellation without platens, one material, one interface, turned by `angle`.
 inline Model<2> tessellated(int blocks, double width, double height, std::uint64_t seed, double angle = 0.0) {
   specimen::SpecimenParameters p;
-  p.width = width;
-  p.height = height;
+  p.region = specimen::Region::rectangle(width, height);
   p.seed = seed;
   p.aggregates = {.fraction = 0.0,
                   .d_min = 0.1 * width,

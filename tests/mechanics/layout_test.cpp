@@ -15,7 +15,7 @@ namespace pyroclast {
 namespace {
 
 Model<2> small_concrete() {
-  return make_concrete_model(small_specimen(800), 0.01, 0.5);
+  return between_platens(small_specimen(800), 0.01, 0.5);
 }
 
 /// That `each` tells of every array of a list, once: they fill it.

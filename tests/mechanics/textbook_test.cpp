@@ -309,7 +309,7 @@ TEST_P(DriveBesideTextbook, AsNearAsChaosAllowsWithLocalDamping) {
 
 /// Concrete between platens, of Tables 1 and 2, and the forces that hold its lower platen.
 struct Compression {
-  Model<2> model = make_concrete_model(small_specimen(), 0.01, 1.0);
+  Model<2> model = between_platens(small_specimen(), 0.01, 1.0);
 
   Pair pair() const {
     const std::array<ZoneProperties, 3> solids{zone_properties<2>(70e9, 0.2), zone_properties<2>(29.4e9, 0.2),
@@ -327,9 +327,9 @@ struct Compression {
     parameters.gravity = {{0.0, -9.81}};
     Pair p(model, {2650.0, 2200.0, 7850.0},
            by_interface(model, zones, {elastic_contact(), weaker, mortar_contact(), platen}), parameters);
-    for (int g : model.set("bottom_support"))
+    for (int g : model.set("bottom_platen_support"))
       for (int i : {0, 1}) p.prescribe_velocity(g, i, 0.0);
-    for (int g : model.set("top_support")) {
+    for (int g : model.set("top_platen_support")) {
       p.prescribe_velocity(g, 0, 0.0);
       p.prescribe_velocity(g, 1, -2e-3);
     }
@@ -338,12 +338,12 @@ struct Compression {
 
   double held_by_mechanics(const Pair& p) const {
     double sum = 0.0;
-    for (int g : model.set("bottom_support")) sum -= p.mechanics().force(g)[1];
+    for (int g : model.set("bottom_platen_support")) sum -= p.mechanics().force(g)[1];
     return sum;
   }
   double held_by_textbook(const Pair& p) const {
     double sum = 0.0;
-    for (int g : model.set("bottom_support")) sum -= p.textbook().gridpoints()[g].force[1];
+    for (int g : model.set("bottom_platen_support")) sum -= p.textbook().gridpoints()[g].force[1];
     return sum;
   }
 };

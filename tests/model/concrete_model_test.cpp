@@ -1,7 +1,9 @@
 #include "pyroclast/model/concrete_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -14,10 +16,10 @@ namespace {
 
 TEST(ConcreteModel, PlatensMeetTheSpecimenAlongItsWholeWidth) {
   const auto specimen = small_specimen();
-  const auto body = make_concrete_model(specimen, 0.01, 0.5);
+  const auto body = between_platens(specimen, 0.01, 0.5);
   double bottom = 0.0, top = 0.0;
   for (const auto& contact : body.contacts) {
-    if (contact.interface != platen_interface(body)) continue;
+    if (!body.is_of_bearing(contact)) continue;
     EXPECT_EQ(body.position[contact.a], body.position[contact.b]);
     EXPECT_NEAR(std::abs(contact.normal[1]), 1.0, 1e-12);
     (contact.normal[1] < 0.0 ? bottom : top) += contact.area;
@@ -28,18 +30,18 @@ TEST(ConcreteModel, PlatensMeetTheSpecimenAlongItsWholeWidth) {
 
 TEST(ConcreteModel, WithoutPlatensTheSpecimenIsTheSame) {
   const auto specimen = small_specimen();
-  const auto with = make_concrete_model(specimen, 0.01, 1.0);
-  const auto without = make_concrete_model(specimen, std::nullopt, 1.0);
+  const auto with = between_platens(specimen, 0.01, 1.0);
+  const auto without = make_concrete_model(specimen, 1.0);
   EXPECT_EQ(without.block_count(), with.block_count() - 2);
   const auto at_platens = std::count_if(with.contacts.begin(), with.contacts.end(),
-                                        [&](const auto& c) { return c.interface == platen_interface(with); });
+                                        [&](const auto& c) { return with.is_of_bearing(c); });
   EXPECT_EQ(without.contacts.size(), with.contacts.size() - at_platens);
   for (const auto* side : {"bottom", "top", "left", "right"})
     EXPECT_EQ(without.set(side).size(), with.set(side).size());
   EXPECT_EQ(without.set("specimen").size(), with.set("specimen").size());
-  for (const auto* set :
-       {"bottom_support", "top_support", "bottom_face", "top_face", "bottom_platen", "top_platen"})
-    EXPECT_TRUE(without.set(set).empty());
+  for (const auto* set : {"bottom_platen_support", "top_platen_support", "bottom_platen_face",
+                          "top_platen_face", "bottom_platen", "top_platen"})
+    EXPECT_FALSE(without.sets.contains(set));
   double area = 0.0;
   for (double v : zone_geometry(without).volume) area += v;
   EXPECT_NEAR(area, 0.05 * 0.1, 1e-12);  // rounding
@@ -47,7 +49,7 @@ TEST(ConcreteModel, WithoutPlatensTheSpecimenIsTheSame) {
 
 TEST(ConcreteModel, ZonesFillSpecimenAndPlatensAndContactsJoinCoincidentGridpoints) {
   const auto specimen = small_specimen();
-  const auto body = make_concrete_model(specimen, 0.01, 1.0);
+  const auto body = between_platens(specimen, 0.01, 1.0);
   const auto geometry = zone_geometry(body);
   double volume = 0.0;
   for (double v : geometry.volume) volume += v;
@@ -61,7 +63,7 @@ TEST(ConcreteModel, ZonesFillSpecimenAndPlatensAndContactsJoinCoincidentGridpoin
 
 TEST(ConcreteModel, InterfacesFollowFromTheMaterialsOfTheirTwoBlocks) {
   const auto specimen = small_specimen();
-  const auto body = make_concrete_model(specimen, 0.01, 1.0);
+  const auto body = between_platens(specimen, 0.01, 1.0);
   const auto& m = body;
   const auto block_of = [&](int g) {
     int block = 0;
@@ -72,8 +74,8 @@ TEST(ConcreteModel, InterfacesFollowFromTheMaterialsOfTheirTwoBlocks) {
   for (const auto& c : m.contacts) {
     const int a = m.block_material[block_of(c.a)], b = m.block_material[block_of(c.b)];
     ++found[c.interface];
-    if (a == platen_material(body) || b == platen_material(body))
-      EXPECT_EQ(c.interface, platen_interface(body));
+    if (body.is_of_bearing(body.block_of(c.a)) || body.is_of_bearing(body.block_of(c.b)))
+      EXPECT_TRUE(body.is_of_bearing(c));
     else if (a != b)
       EXPECT_EQ(c.interface, aggregate_mortar);
     else
@@ -85,7 +87,7 @@ TEST(ConcreteModel, InterfacesFollowFromTheMaterialsOfTheirTwoBlocks) {
 // Normals point from a to b: side a's block lies behind its face.
 TEST(ConcreteModel, NormalsPointOutOfTheBlockOfSideA) {
   const auto specimen = small_specimen();
-  const auto body = make_concrete_model(specimen, 0.01, 1.0);
+  const auto body = between_platens(specimen, 0.01, 1.0);
   const auto& m = body;
   std::vector<Vec<2>> centre;
   std::vector<int> block(m.position.size());
@@ -104,23 +106,23 @@ TEST(ConcreteModel, NormalsPointOutOfTheBlockOfSideA) {
 }
 
 TEST(ConcreteModel, SetsHoldTheGridpointsThatTheyAreNamedAfter) {
-  const auto body = make_concrete_model(small_specimen(), 0.01, 1.0);
+  const auto body = between_platens(small_specimen(), 0.01, 1.0);
   const auto lie_at = [&](const char* set, int component, double place) {
     EXPECT_FALSE(body.set(set).empty());
     for (int g : body.set(set)) EXPECT_NEAR(body.position[g][component], place, 1e-15) << set;
   };
-  lie_at("bottom_support", 1, -0.01);
-  lie_at("bottom_face", 1, 0.0);
+  lie_at("bottom_platen_support", 1, -0.01);
+  lie_at("bottom_platen_face", 1, 0.0);
   lie_at("bottom", 1, 0.0);
   lie_at("top", 1, 0.1);
-  lie_at("top_face", 1, 0.1);
-  lie_at("top_support", 1, 0.11);
+  lie_at("top_platen_face", 1, 0.1);
+  lie_at("top_platen_support", 1, 0.11);
   lie_at("left", 0, 0.0);
   lie_at("right", 0, 0.05);
   for (int b = 0; b < body.block_count(); ++b)
     for (int g = body.block_gridpoints[b]; g < body.block_gridpoints[b + 1]; ++g) {
       const auto is_in = [&](const char* set) { return std::ranges::count(body.set(set), g) == 1; };
-      const bool platen = body.block_material[b] == platen_material(body);
+      const bool platen = body.is_of_bearing(b);
       EXPECT_EQ(is_in("specimen"), !platen);
       EXPECT_EQ(is_in("top_platen"), platen && body.position[g][1] > 0.05);
       EXPECT_EQ(is_in("bottom_platen"), platen && body.position[g][1] < 0.05);
@@ -147,6 +149,42 @@ TEST(Model, RefusesAZoneWithoutVolume) {
   Model<2> model;
   model.add_block({{{0, 0}}, {{1, 0}}, {{2, 0}}}, {{0, 1, 2}}, 0);
   EXPECT_THROW(zone_geometry(model), Error);
+}
+
+/// A disc on a strip.
+TEST(ConcreteModel, BearingsCoverTheirSeatsAndNoMore) {
+  specimen::SpecimenParameters p;
+  const double half = std::asin(0.1), radius = 0.05;
+  const auto corners = specimen::circle_corners(
+      {}, 2.0 * radius, 0.004, {1.5 * std::numbers::pi - half, 1.5 * std::numbers::pi + half});
+  const auto second = std::ranges::find_if(corners, [&](const Vec<2>& c) {
+    return std::abs(std::atan2(c[1], c[0]) - (half - 0.5 * std::numbers::pi)) < 1e-9;
+  });
+  p.region = specimen::Region::polygon(corners, {"outline"}, true)
+                 .with_patches(std::array{specimen::Patch{"strip_seat", corners[0], *second}});
+  p.seed = 1;
+  p.blocks.count = 400;
+  p.blocks.shortest_edge = 0.2;
+  const auto specimen = specimen::make_specimen(p);
+  const Model<2> body =
+      make_concrete_model(specimen, 0.5, {}, {{"strip", "strip_seat", 0.006, "steel", "glue", true}});
+  double seat = 0.0;
+  for (const auto& c : body.contacts) {
+    if (!body.is_of_bearing(c)) continue;
+    EXPECT_EQ(body.position[c.a], body.position[c.b]);
+    EXPECT_EQ(body.interface_names[c.interface], "glue");
+    EXPECT_LT(body.position[c.a][1], -0.049);
+    seat += c.area;
+  }
+  double chords = 0.0;
+  for (const auto& piece : p.region.pieces())
+    if (p.region.sides()[piece.side].name == "strip_seat") chords += norm(piece.to - piece.from);
+  EXPECT_NEAR(seat, 0.5 * chords, 1e-9);
+  EXPECT_NEAR(chords, 2.0 * radius * half, 2e-3 * chords);
+  const Vec<2> pivot = body.position[body.set("strip_pivot").front()];
+  EXPECT_NEAR(pivot[0], 0.0, 1e-12);
+  for (int g : body.set("strip_support")) EXPECT_NEAR(body.position[g][1], pivot[1], 1e-12);
+  EXPECT_NO_THROW(zone_geometry(body));
 }
 
 }  // namespace

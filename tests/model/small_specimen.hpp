@@ -1,14 +1,13 @@
 #pragma once
 
-#include "pyroclast/specimen/specimen.hpp"
+#include "pyroclast/model/concrete_model.hpp"
 
 namespace pyroclast {
 
 /// A specimen of 50 mm x 100 mm that is made in no time.
 inline specimen::Specimen small_specimen(int blocks = 300) {
   specimen::SpecimenParameters p;
-  p.width = 0.05;
-  p.height = 0.1;
+  p.region = specimen::Region::rectangle(0.05, 0.1);
   p.seed = 2;
   p.aggregates = {.fraction = 0.3,
                   .d_min = 5e-3,
@@ -20,6 +19,11 @@ inline specimen::Specimen small_specimen(int blocks = 300) {
   p.blocks.count = blocks;
   p.blocks.shortest_edge = 0.2;
   return specimen::make_specimen(p);
+}
+
+/// A specimen between two platens; thicknesses in m.
+inline Model<2> between_platens(const specimen::Specimen& specimen, double of_platens, double thickness) {
+  return make_concrete_model(specimen, thickness, {}, platens(of_platens));
 }
 
 }  // namespace pyroclast

@@ -30,9 +30,11 @@ from pyroclast.comparisons import compare_runs  # noqa: E402
 from pyroclast.files import GapWarning, RunError  # noqa: E402
 from pyroclast.heated_sections import levels  # noqa: E402
 from pyroclast.run import Run  # noqa: E402
+from pyroclast.watch import Watch  # noqa: E402
 
 DAMAGED = int(os.environ.get("PYROCLAST_DAMAGED", "200"))  # 500 in a longer try
 RENDERED_EVERY = int(os.environ.get("PYROCLAST_RENDERED_EVERY", "25"))  # also rendered, not only made; this is slow
+WATCHED_EVERY = 10
 FIGURES = 1  # of a damaged folder, drawn by lot
 DRAWN = ("strain", "stress_MPa", "temperature_degC", "heating_time_s", "specimen_strain", "lateral_strain",
          "energy_loading_J", "exchange", "stage", "converged")
@@ -211,6 +213,23 @@ class Damaged(unittest.TestCase):
         self.assertGreater(told, 0.2 * DAMAGED)
         self.assertGreater(drawn, 0.2 * DAMAGED)
         self.assertGreater(gaps, 0.02 * DAMAGED)
+
+    def test_a_damaged_run_is_watched_as_far_as_it_can_be_read(self):
+        names = ("compressed", "failed", "cooled", "restrained", "wall")
+        shown = 0
+        for seed in range(0, DAMAGED, WATCHED_EVERY):
+            random = np.random.default_rng(seed)
+            folder = self.root / names[seed // WATCHED_EVERY % len(names)]
+            what, paths = self.damage(folder, random)
+            with self.subTest(seed=seed, what=what, of=[path.name for path in paths]), warnings.catch_warnings():
+                warnings.simplefilter("ignore", GapWarning)
+                watch = Watch(folder)
+                curve, *_ = watch.draw().axes
+                shown += bool(curve.lines)
+                self.assertGreaterEqual(len(watch.text(79, 20)), 3)
+            for path in paths:
+                path.write_bytes(self.content[path])
+        self.assertGreater(shown, 0.2 * DAMAGED / WATCHED_EVERY)
 
 
 class CommandLine(unittest.TestCase):

@@ -224,8 +224,7 @@ TEST(Phases, InAnyNumberNeedADeckAndNoCode) {
   const InterfaceTable table(phases_of(setup.solids), setup.motion->contacts.interfaces);
   for (const auto& c : model.contacts) {
     const int a = model.block_material[model.block_of(c.a)], b = model.block_material[model.block_of(c.b)];
-    const bool platen = std::max(a, b) == platen_material(model);
-    EXPECT_EQ(c.interface, platen ? table.platen() : table.between(a, b));
+    EXPECT_EQ(c.interface, model.is_of_bearing(c) ? table.count() : table.between(a, b));
   }
   // "like" hands on law, numbers and stiffness, times the factors of each
   const auto of = [&](const char* name) {
@@ -259,7 +258,7 @@ TEST(Phases, WhatAnInterfaceCannotBeIsSaid) {
        "is neither part of the program (cohesive, elastic");
   says("between = [\"light\", \"mortar\", \"aggregate\", \"light\"]", "between = [\"light\"]",
        "must name two phases");
-  says("phase = \"pore\"", "phase = \"platen\"", "\"platen\" is the solid of the platens");
+  says("phase = \"pore\"", "phase = \"platen\"", "\"platen\" is the solid of a bearing");
   says("friction = 0.4", "friction = 0.4\nstrength_factor = 0.5", "strength_factor = 0.5: has no effect");
 }
 

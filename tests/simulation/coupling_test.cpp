@@ -14,8 +14,7 @@ namespace {
 // was checked may not be in between.
 TEST(PropertiesOfAComputedField, AreRefusedWhereTheyMakeNoLaw) {
   const Model<2> body = small_body();
-  auto field = conduct(
-      body, heat_conditions({on(OutlinePart::left, convection(25.0, Curve::constant(600.0)))}), 600.0);
+  auto field = conduct(body, heat_conditions({on("left", convection(25.0, Curve::constant(600.0)))}), 600.0);
   field.advance(100.0, 600.0);
   ConcreteMaterials materials;
   materials.solids.resize(3);

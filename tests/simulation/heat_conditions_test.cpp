@@ -100,7 +100,7 @@ TEST(ReadHeat, EveryKindOfBoundaryIsReadInSi) {
   EXPECT_EQ(radiated.emissivity(0.0), 0.7);
   EXPECT_NEAR(radiated.gas_temperature(600.0), 70.0, 1e-9);
   EXPECT_TRUE(std::holds_alternative<Adiabatic>(heat.boundaries[4].condition));
-  EXPECT_EQ(heat.boundaries[4].faces.part, OutlinePart::box);
+  EXPECT_EQ(heat.boundaries[4].faces.part, HeatedFaces::kBox);
   EXPECT_EQ(heat.boundaries[4].faces.box_high, (Vec<2>{{0.075, 0.0}}));
 }
 
@@ -178,9 +178,8 @@ TEST(ReadHeat, ConductionNeedsTheHeatPropertiesOfAggregateAndMortar) {
 // ---- Range and constancy ---------------------------------------------------------------------------------
 
 TEST(HeatConditions, TemperatureRangeSpansInitialGasAndPrescribedTemperatures) {
-  HeatConditions heat =
-      heat_conditions({on(OutlinePart::left, convection(25.0, fire_curves().at("iso834").curve)),
-                       on(OutlinePart::right, PrescribedTemperature{Curve::constant(-10.0)})});
+  HeatConditions heat = heat_conditions({on("left", convection(25.0, fire_curves().at("iso834").curve)),
+                                         on("right", PrescribedTemperature{Curve::constant(-10.0)})});
   const Interval range = temperature_range(heat, kDuration);
   EXPECT_EQ(range.lower, -10.0);
   EXPECT_DOUBLE_EQ(range.upper, 20.0 + 345.0 * std::log10(8.0 * 60.0 + 1.0));  // ISO 834 after an hour
@@ -189,7 +188,7 @@ TEST(HeatConditions, TemperatureRangeSpansInitialGasAndPrescribedTemperatures) {
 }
 
 TEST(HeatConditions, TemperatureRangeWithAFluxIsRefusedUnlessStated) {
-  HeatConditions heat = heat_conditions({on(OutlinePart::left, HeatFlux{Curve::constant(1e4)})});
+  HeatConditions heat = heat_conditions({on("left", HeatFlux{Curve::constant(1e4)})});
   EXPECT_THROW(temperature_range(heat, kDuration), Error);
   heat.temperature_range = Interval{20.0, 900.0};
   EXPECT_EQ(temperature_range(heat, kDuration), (Interval{20.0, 900.0}));
@@ -198,7 +197,7 @@ TEST(HeatConditions, TemperatureRangeWithAFluxIsRefusedUnlessStated) {
 TEST(HeatConditions, BoundaryValuesAreConstantFromTheEndOfARamp) {
   const Curve ramp = Curve::table({0.0, 600.0, 1e9}, {20.0, 70.0, 70.0}, time_axis());
   const auto from = [](const Curve& gas) {
-    return constant_from(heat_conditions({on(OutlinePart::left, convection(25.0, gas))}), kDuration);
+    return constant_from(heat_conditions({on("left", convection(25.0, gas))}), kDuration);
   };
   EXPECT_EQ(from(Curve::constant(100.0)), 0.0);
   EXPECT_NEAR(from(ramp), 600.0, 1e-6 * kDuration);  // accuracy of the search
@@ -233,22 +232,24 @@ double heated_area(const Model<2>& body, const HeatedFaces& faces) {
 TEST(MakeConduction, EachPartOfTheOutlineIsHeatedOverItsArea) {
   const auto body = small_body();
   const double wide = kSpecimenWidth * kSpecimenThickness, high = kSpecimenHeight * kSpecimenThickness;
-  for (const auto& [part, area] : {std::pair{OutlinePart::left, high},
-                                   {OutlinePart::right, high},
-                                   {OutlinePart::bottom, wide},
-                                   {OutlinePart::top, wide},
-                                   {OutlinePart::whole, 2.0 * (wide + high)}})
-    EXPECT_NEAR(heated_area(body, {.part = part}), area, 1e-9 * area) << static_cast<int>(part);
+  for (const auto& [part, area] : {std::pair<const char*, double>{"left", high},
+                                   {"right", high},
+                                   {"bottom", wide},
+                                   {"top", wide},
+                                   {HeatedFaces::kOutline, 2.0 * (wide + high)}})
+    EXPECT_NEAR(heated_area(body, {.part = part}), area, 1e-9 * area) << part;
   // A box takes whole faces: those with their centres in it. They are at most some 5 mm long.
-  EXPECT_NEAR(heated_area(body, {OutlinePart::box, {{0.0, 0.0}}, {{0.0, 0.05}}}), 0.5 * high,
+  EXPECT_NEAR(heated_area(body, {HeatedFaces::kBox, {{0.0, 0.0}}, {{0.0, 0.05}}}), 0.5 * high,
               0.0025 * kSpecimenThickness);
 }
 
 TEST(MakeConduction, ABoxThatMeetsNoFaceIsAnErrorThatNamesIt) {
   const auto body = small_body();
-  HeatConditions heat = heat_conditions({{{OutlinePart::box, {{0.01, 0.01}}, {{0.02, 0.02}}},
-                                          HeatFlux{Curve::constant(1.0)},
-                                          "deck.toml:7: heat.boundaries[0]"}});
+  const HeatedFaces inside{HeatedFaces::kBox, {{0.01, 0.01}}, {{0.02, 0.02}}};
+  HeatBoundaryCondition boundary = on(HeatedFaces::kBox, convection(25.0, Curve::constant(100.0)));
+  boundary.faces = inside;
+  boundary.place = "deck.toml:7: heat.boundaries[0]";
+  const HeatConditions heat = heat_conditions({boundary});
   const auto message = message_of(body, heat);
   EXPECT_TRUE(mentions(message, "deck.toml:7")) << message;
   EXPECT_TRUE(mentions(message, "no face")) << message;
@@ -256,16 +257,14 @@ TEST(MakeConduction, ABoxThatMeetsNoFaceIsAnErrorThatNamesIt) {
 
 TEST(MakeConduction, ConditionsThatContradictEachOtherOnOneFaceAreAnError) {
   const auto body = small_body();
-  const HeatedFaces lower_left{OutlinePart::box, {{0.0, 0.0}}, {{0.0, 0.05}}};
+  const HeatedFaces lower_left{HeatedFaces::kBox, {{0.0, 0.0}}, {{0.0, 0.05}}};
   const PrescribedTemperature held{Curve::constant(50.0)};
   EXPECT_TRUE(mentions(
-      message_of(body, heat_conditions({on(OutlinePart::left, held), {lower_left, held, "deck.toml:9"}})),
-      "already"));
-  EXPECT_TRUE(mentions(
-      message_of(body, heat_conditions({on(OutlinePart::left, convection(25.0, Curve::constant(100.0))),
-                                        {lower_left, Adiabatic{}, "deck.toml:9"}})),
-      "already"));
-  EXPECT_EQ(message_of(body, heat_conditions({on(OutlinePart::right, held), {lower_left, held, ""}})), "");
+      message_of(body, heat_conditions({on("left", held), {lower_left, held, "deck.toml:9"}})), "already"));
+  EXPECT_TRUE(mentions(message_of(body, heat_conditions({on("left", convection(25.0, Curve::constant(100.0))),
+                                                         {lower_left, Adiabatic{}, "deck.toml:9"}})),
+                       "already"));
+  EXPECT_EQ(message_of(body, heat_conditions({on("right", held), {lower_left, held, ""}})), "");
 }
 
 TEST(MakeConduction, AMaterialWithoutConductivityIsNamed) {

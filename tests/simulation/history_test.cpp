@@ -50,5 +50,16 @@ TEST(History, SaysWhichColumnOrValueIsMissing) {
   EXPECT_NE(message([&] { history.values("stress_MPa", {0, 1}); }).find("row 0"), std::string::npos);
 }
 
+TEST(History, TakesRowsIntoOtherColumns) {
+  History old;
+  for (const char* name : {"a", "b"}) old.add_column({name, "1"});
+  old.add_row();
+  old.set("b", 2.0);
+  History history;
+  for (const char* name : {"c", "b"}) history.add_column({name, "1"});
+  history.take_rows(old);
+  EXPECT_EQ(history.row(0), (std::vector<std::optional<double>>{std::nullopt, 2.0}));
+}
+
 }  // namespace
 }  // namespace pyroclast

@@ -27,9 +27,10 @@ std::vector<int> at(const Model<Dim>& model, int component, double place) {
 template <int Dim>
 Model<Dim> gripped(Model<Dim> model, double width) {
   const int axis = Dim == 2 ? 1 : 2;
-  for (const char* name : {"bottom", "bottom_face", "bottom_support"})
+  for (const char* name : {"bottom", "bottom_platen_face", "bottom_platen_support"})
     model.sets[name] = at(model, axis, 0.0);
-  for (const char* name : {"top", "top_face", "top_support"}) model.sets[name] = at(model, axis, 1.0);
+  for (const char* name : {"top", "top_platen_face", "top_platen_support"})
+    model.sets[name] = at(model, axis, 1.0);
   model.sets["left"] = at(model, 0, 0.0);
   model.sets["right"] = at(model, 0, width);
   if (Dim == 3) {
@@ -176,13 +177,13 @@ TEST(Press, RefusesAnAxisThatIsNone) {
 
 TEST(Press, NamesASetThatTheModelDoesNotHave) {
   auto model = square();
-  model.sets.erase("top_support");
+  model.sets.erase("top_platen_support");
   auto mechanics = elastic(model);
   try {
     Press<2>(mechanics, 1, 1.0, {0.5});
     FAIL() << "a press without an upper support";
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("\"top_support\""), std::string::npos);
+    EXPECT_NE(std::string(e.what()).find("\"top_platen_support\""), std::string::npos);
   }
 }
 

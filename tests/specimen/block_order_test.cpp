@@ -44,12 +44,12 @@ Tessellation random_cells(int count) {
     seeds.position.push_back({{x, 2.0 * random.uniform()}});
     seeds.radius.push_back(1.0);
   }
-  return laguerre_tessellation(seeds, 1.0, 2.0).tessellation;
+  return laguerre_tessellation(seeds, Region::rectangle(1.0, 2.0)).tessellation;
 }
 
 TEST(BlockOrder, GoesFromSquareToSquareAcrossAnEdge) {
   Tessellation t = squares(16);
-  number_along_curve(t, 16.0, 16.0);
+  number_along_curve(t, {{}, {{16.0, 16.0}}});
   std::vector<int> steps(t.cells.size(), 0);  // joined to the next one by an edge
   for (const Edge& e : edges(t)) {
     if (e.right >= 0 && std::abs(e.right - e.left) == 1) ++steps[static_cast<std::size_t>(e.left)];
@@ -60,18 +60,18 @@ TEST(BlockOrder, GoesFromSquareToSquareAcrossAnEdge) {
 TEST(BlockOrder, ChangesNumbersAndNothingElse) {
   const Tessellation before = random_cells(500);
   Tessellation after = before;
-  number_along_curve(after, 1.0, 2.0);
+  number_along_curve(after, {{}, {{1.0, 2.0}}});
   EXPECT_NE(after.cells, before.cells);
   EXPECT_EQ(sorted_polygons(after), sorted_polygons(before));
-  EXPECT_TRUE(mismatched_cells(after, 1.0, 2.0).empty());
+  EXPECT_TRUE(mismatched_cells(after, Region::rectangle(1.0, 2.0)).empty());
 }
 
 TEST(BlockOrder, DoesNotDependOnTheOrderBefore) {
   Tessellation t = random_cells(500);
   Tessellation other = t;
   std::reverse(other.cells.begin(), other.cells.end());
-  number_along_curve(t, 1.0, 2.0);
-  number_along_curve(other, 1.0, 2.0);
+  number_along_curve(t, {{}, {{1.0, 2.0}}});
+  number_along_curve(other, {{}, {{1.0, 2.0}}});
   EXPECT_EQ(other.cells, t.cells);
   EXPECT_EQ(other.vertices, t.vertices);
 }

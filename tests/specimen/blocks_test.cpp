@@ -18,6 +18,7 @@ namespace {
 
 constexpr double width = 0.15;
 constexpr double height = 0.3;
+const Region region = Region::rectangle(width, height);
 
 BlockParameters block_parameters(int count, double shortest_edge, double radius_spread) {
   BlockParameters p;
@@ -42,7 +43,7 @@ void expect_exact_tiling(const Tessellation& t) {
   for (const Edge& e : edges(t)) {
     const Vec<2>& a = t.vertices[static_cast<std::size_t>(e.v0)];
     const Vec<2>& b = t.vertices[static_cast<std::size_t>(e.v1)];
-    const bool on_outline = (sides(a, width, height) & sides(b, width, height)) != 0;
+    const bool on_outline = region.side_of(a, b).has_value();
     EXPECT_EQ(e.right < 0, on_outline);
     if (e.right < 0) outline += norm(b - a);
   }
@@ -75,8 +76,7 @@ TEST_P(AnyBlocks, TileExactlyAndAreFit) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed);
-    const Blocks blocks =
-        make_blocks(block_parameters(count, shortest_edge, radius_spread), width, height, random);
+    const Blocks blocks = make_blocks(block_parameters(count, shortest_edge, radius_spread), region, random);
     EXPECT_EQ(blocks.tessellation.cells.size(), static_cast<std::size_t>(count));
     EXPECT_EQ(blocks.edges_left_short, 0);
     expect_exact_tiling(blocks.tessellation);
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Specimen, AnyBlocks,
 
 TEST(Blocks, AHundredThousandTileExactlyAndAreFit) {
   Random random(1);
-  const Blocks blocks = make_blocks(block_parameters(100000, 0.2, 0.0), width, height, random);
+  const Blocks blocks = make_blocks(block_parameters(100000, 0.2, 0.0), region, random);
   EXPECT_EQ(blocks.edges_left_short, 0);
   expect_exact_tiling(blocks.tessellation);
   expect_fit_blocks(blocks.tessellation, 0.2);
@@ -99,14 +99,14 @@ TEST(Blocks, AHundredThousandTileExactlyAndAreFit) {
 TEST(Blocks, VeryFewBlocksWork) {
   for (int count = 1; count <= 12; ++count) {
     Random random(static_cast<std::uint64_t>(count));
-    expect_exact_tiling(make_blocks(block_parameters(count, 0.2, 0.0), width, height, random).tessellation);
+    expect_exact_tiling(make_blocks(block_parameters(count, 0.2, 0.0), region, random).tessellation);
   }
 }
 
 TEST(Blocks, RedrawingTouchesFewSeeds) {
   Random random(1);
   // Redrawn seeds make the tessellation less random than asked for; the promise is that they stay few.
-  EXPECT_LT(make_blocks(block_parameters(5000, 0.2, 0.0), width, height, random).seeds_redrawn, 50);
+  EXPECT_LT(make_blocks(block_parameters(5000, 0.2, 0.0), region, random).seeds_redrawn, 50);
 }
 
 TEST(Blocks, RelaxationEvensOutTheAreas) {
@@ -114,7 +114,7 @@ TEST(Blocks, RelaxationEvensOutTheAreas) {
     BlockParameters p = block_parameters(1000, 0.1, 0.0);
     p.relaxation = relaxation;
     Random random(1);
-    const Tessellation t = make_blocks(p, width, height, random).tessellation;
+    const Tessellation t = make_blocks(p, region, random).tessellation;
     double sum = 0;
     const double mean = width * height / 1000;
     for (std::size_t c = 0; c < t.cells.size(); ++c) sum += std::pow(area(polygon_of(t, c)) / mean - 1, 2);
@@ -140,7 +140,7 @@ Seeds random_seeds(std::uint64_t seed, int count, double spread) {
 
 TEST(Laguerre, EveryPointOfACellBelongsToItsSeed) {
   const Seeds seeds = random_seeds(5, 300, 0.5);
-  const LaguerreResult result = laguerre_tessellation(seeds, width, height);
+  const LaguerreResult result = laguerre_tessellation(seeds, region);
   const auto power = [&](const Vec<2>& p, std::size_t i) {
     const Vec<2> d = p - seeds.position[i];
     return dot(d, d) - seeds.radius[i] * seeds.radius[i];
@@ -164,8 +164,8 @@ TEST(Laguerre, EveryPointOfACellBelongsToItsSeed) {
 std::pair<Seeds, Tessellation> relaxed_cells(int threads) {
   Seeds seeds = random_seeds(7, 2000, 0.3);
   Team team(threads);
-  for (int i = 0; i < 3; ++i) relax(seeds, width, height, &team);
-  Tessellation cells = laguerre_tessellation(seeds, width, height, &team).tessellation;
+  for (int i = 0; i < 3; ++i) relax(seeds, region, 0, &team);
+  Tessellation cells = laguerre_tessellation(seeds, region, &team).tessellation;
   return {seeds, cells};
 }
 
@@ -182,7 +182,7 @@ TEST(Laguerre, IsBitwiseTheSameForAnyNumberOfThreads) {
 
 TEST(Laguerre, LargerRadiiGiveLargerCells) {
   Seeds seeds{{{{0.05, 0.15}}, {{0.1, 0.15}}}, {0.04, 0.02}};
-  const LaguerreResult result = laguerre_tessellation(seeds, width, height);
+  const LaguerreResult result = laguerre_tessellation(seeds, region);
   ASSERT_TRUE(result.broken.empty());
   // Power line: (x - 0.05)^2 - 0.04^2 = (x - 0.1)^2 - 0.02^2.
   const double line = 0.075 + (0.04 * 0.04 - 0.02 * 0.02) / (2 * 0.05);
@@ -191,7 +191,7 @@ TEST(Laguerre, LargerRadiiGiveLargerCells) {
 
 TEST(Laguerre, NamesTheSeedsOfEmptyCells) {
   Seeds seeds{{{{0.05, 0.15}}, {{0.051, 0.15}}, {{0.1, 0.1}}}, {0.03, 0.001, 0.03}};
-  EXPECT_EQ(laguerre_tessellation(seeds, width, height).broken, std::vector<int>{1});
+  EXPECT_EQ(laguerre_tessellation(seeds, region).broken, std::vector<int>{1});
 }
 
 }  // namespace

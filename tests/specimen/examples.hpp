@@ -27,8 +27,7 @@ inline AggregateParameters paper_aggregates() {
 
 inline SpecimenParameters paper_specimen(std::uint64_t seed) {
   SpecimenParameters p;
-  p.width = 150 * millimetre;
-  p.height = 300 * millimetre;
+  p.region = Region::rectangle(150 * millimetre, 300 * millimetre);
   p.seed = seed;
   p.aggregates = paper_aggregates();
   p.blocks.count = 5000;

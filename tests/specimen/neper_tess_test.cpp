@@ -109,7 +109,7 @@ TEST(NeperTess, ReadsAndScalesToTheSpecimen) {
   const Tessellation t = read_neper_tess(file.path(), 0.2, 0.1);
   ASSERT_EQ(t.cells.size(), 2U);
   EXPECT_EQ(t.vertices.size(), 6U);
-  EXPECT_TRUE(mismatched_cells(t, 0.2, 0.1).empty());
+  EXPECT_TRUE(mismatched_cells(t, Region::rectangle(0.2, 0.1)).empty());
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < 2; ++c) {
     corners(t, c, polygon);
@@ -160,7 +160,7 @@ TEST(NeperTess, ReadsBackWhatWeWrite) {
   p.count = 500;
   p.shortest_edge = 0.1;
   Random random(1);
-  const Tessellation ours = make_blocks(p, 0.15, 0.3, random).tessellation;
+  const Tessellation ours = make_blocks(p, Region::rectangle(0.15, 0.3), random).tessellation;
   const TessFile file(as_tess(ours, 0.15, 0.3));
   const Tessellation read = read_neper_tess(file.path(), 0.15, 0.3);
   ASSERT_EQ(read.cells.size(), ours.cells.size());
@@ -180,7 +180,7 @@ Specimen from_tess(double shortest_edge) {
   BlockParameters p;
   p.count = 500;
   Random random(1);
-  const TessFile file(as_tess(make_blocks(p, 0.15, 0.3, random).tessellation, 0.15, 0.3));
+  const TessFile file(as_tess(make_blocks(p, Region::rectangle(0.15, 0.3), random).tessellation, 0.15, 0.3));
   SpecimenParameters parameters = paper_specimen(1);
   parameters.blocks.file = file.path();
   parameters.blocks.shortest_edge = shortest_edge;

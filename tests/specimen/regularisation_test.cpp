@@ -56,7 +56,7 @@ TEST(Edges, RefusesCellsThatOverlap) {
 
 TEST(Regularisation, MergesTheEndsOfAShortEdgeInTheMiddle) {
   Tessellation t = four_cells(0.1);
-  const Regularisation done = regularise(t, 2, 2, 0.2);
+  const Regularisation done = regularise(t, Region::rectangle(2, 2), 0.2);
   EXPECT_EQ(done.edges_removed, 1);
   EXPECT_EQ(done.edges_left_short, 0);
   EXPECT_TRUE(done.unfit.empty());
@@ -67,16 +67,16 @@ TEST(Regularisation, MergesTheEndsOfAShortEdgeInTheMiddle) {
 
 TEST(Regularisation, LeavesLongerEdgesAlone) {
   Tessellation t = four_cells(0.4);
-  EXPECT_EQ(regularise(t, 2, 2, 0.2).edges_removed, 0);
+  EXPECT_EQ(regularise(t, Region::rectangle(2, 2), 0.2).edges_removed, 0);
   EXPECT_EQ(t.vertices, four_cells(0.4).vertices);
 }
 
 TEST(Regularisation, KeepsOutlineVerticesOnTheirSide) {
   Tessellation t = four_cells(0.6);
   t.vertices[1] = {{0.05, 0}};  // a short edge from the corner along the bottom
-  const Regularisation done = regularise(t, 2, 2, 0.2);
+  const Regularisation done = regularise(t, Region::rectangle(2, 2), 0.2);
   // The corner stays in place, the other end moves into it.
-  EXPECT_TRUE(mismatched_cells(t, 2, 2).empty());
+  EXPECT_TRUE(mismatched_cells(t, Region::rectangle(2, 2)).empty());
   EXPECT_EQ(done.edges_removed, 1);
   EXPECT_EQ(std::count(t.vertices.begin(), t.vertices.end(), Vec<2>{{0, 0}}), 1);
 }
@@ -85,7 +85,7 @@ TEST(Regularisation, DoesNotRemoveATriangleButNamesIt) {
   // The corner (0, 0) is cut off by a small triangle: its edges are short, and none can go.
   Tessellation t{{{{0, 0}}, {{0.1, 0}}, {{2, 0}}, {{2, 2}}, {{0, 2}}, {{0, 0.1}}},
                  {{0, 1, 5}, {1, 2, 3, 4, 5}}};
-  const Regularisation done = regularise(t, 2, 2, 0.14);  // shorter than 0.16 is short
+  const Regularisation done = regularise(t, Region::rectangle(2, 2), 0.14);  // shorter than 0.16 is short
   EXPECT_EQ(done.edges_removed, 0);
   EXPECT_EQ(done.edges_left_short, 3);
   EXPECT_EQ(done.unfit, std::vector<int>{0});
@@ -96,7 +96,7 @@ TEST(Regularisation, NamesTheSmallerNeighbourOfAFlatCorner) {
   // Cell 0 has a corner of nearly 180 degrees where cells 1 and 2 meet.
   Tessellation t{{{{0, 0}}, {{2, 0}}, {{2, 1}}, {{0, 1}}, {{2, 2}}, {{0.8, 2}}, {{0, 2}}, {{0.8, 1.001}}},
                  {{0, 1, 2, 7, 3}, {2, 4, 5, 7}, {3, 7, 5, 6}}};
-  EXPECT_EQ(regularise(t, 2, 2, 0.1).unfit, std::vector<int>{2});
+  EXPECT_EQ(regularise(t, Region::rectangle(2, 2), 0.1).unfit, std::vector<int>{2});
 }
 
 TEST(Regularisation, NeverMakesAFlatCornerOrASliverThatWasNotThere) {
@@ -107,9 +107,9 @@ TEST(Regularisation, NeverMakesAFlatCornerOrASliverThatWasNotThere) {
     seeds.position.push_back({{x, random.uniform()}});
     seeds.radius.push_back(0.01);
   }
-  const Tessellation before = laguerre_tessellation(seeds, 1, 1).tessellation;
+  const Tessellation before = laguerre_tessellation(seeds, Region::rectangle(1, 1)).tessellation;
   Tessellation after = before;
-  EXPECT_GT(regularise(after, 1, 1, 0.3).edges_removed, 0);
+  EXPECT_GT(regularise(after, Region::rectangle(1, 1), 0.3).edges_removed, 0);
   // The bound on slivers grows with the mean edge, so the one at the start holds throughout.
   const double thinnest = sliver_share * 0.3 * measure(before).mean_edge;
   const double flattest = largest_block_angle * std::numbers::pi / 180;

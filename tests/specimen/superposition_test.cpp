@@ -18,7 +18,7 @@ const Tessellation quarters{
 
 SpecimenParameters unit_square(Superposition rule, double covered_fraction = 0.5) {
   SpecimenParameters p;
-  p.width = p.height = 1;
+  p.region = Region::rectangle(1, 1);
   p.superposition = rule;
   p.covered_fraction = covered_fraction;
   return p;
@@ -28,21 +28,21 @@ constexpr int kMatrix = 2;
 
 TEST(Superposition, CoveredFractionIsTheShareOfACircleInEachCell) {
   const std::vector<Aggregate> circle{{{{0.5, 0.5}}, 0.5}};
-  for (const double covered : covered_fractions(quarters, 1, 1, circle)) {
+  for (const double covered : covered_fractions(quarters, Region::rectangle(1, 1).box(), circle)) {
     EXPECT_NEAR(covered, std::numbers::pi / 16, 1e-14);
   }
 }
 
 TEST(Superposition, SeveralCirclesAddUpInACell) {
   const std::vector<Aggregate> circles{{{{0.1, 0.1}}, 0.1}, {{{0.3, 0.3}}, 0.2}};
-  const std::vector<double> covered = covered_fractions(quarters, 1, 1, circles);
+  const std::vector<double> covered = covered_fractions(quarters, Region::rectangle(1, 1).box(), circles);
   EXPECT_NEAR(covered[0], std::numbers::pi * (0.05 * 0.05 + 0.1 * 0.1) / 0.25, 1e-14);
   EXPECT_EQ(covered[3], 0);
 }
 
 TEST(Superposition, AreaRuleTurnsACellAtTheStatedFraction) {
   const std::vector<Aggregate> circle{{{{0.25, 0.25}}, 0.4}};  // covers 0.50 of cell 0
-  const double covered = covered_fractions(quarters, 1, 1, circle)[0];
+  const double covered = covered_fractions(quarters, Region::rectangle(1, 1).box(), circle)[0];
   EXPECT_EQ(superpose(quarters, circle, unit_square(Superposition::area, covered - 1e-9), kMatrix)[0], 0);
   EXPECT_EQ(superpose(quarters, circle, unit_square(Superposition::area, covered + 1e-9), kMatrix)[0],
             kMatrix);
@@ -52,13 +52,15 @@ TEST(Superposition, AreaRuleTurnsACellAtTheStatedFraction) {
 // the circles.
 TEST(Superposition, TheFittingFractionKeepsTheArea) {
   const std::vector<Aggregate> circles{{{{0.25, 0.25}}, 0.5}, {{{0.75, 0.3}}, 0.3}, {{{0.6, 0.75}}, 0.1}};
-  const std::vector<double> covered = covered_fractions(quarters, 1, 1, circles);  // 0.79, 0.28, 0.02, 0.01
-  const double area = 0.25 * std::numbers::pi * (0.25 + 0.09 + 0.01);              // 0.275: one cell of 0.25
+  const std::vector<double> covered =
+      covered_fractions(quarters, Region::rectangle(1, 1).box(), circles);  // 0.79, 0.28, 0.02, 0.01
+  const double area = 0.25 * std::numbers::pi * (0.25 + 0.09 + 0.01);       // 0.275: one cell of 0.25
   ASSERT_NEAR(area, 0.275, 1e-3);
-  const double bound = fitting_fraction(quarters, 1, 1, circles);
+  const double bound = fitting_fraction(quarters, Region::rectangle(1, 1).box(), circles);
   EXPECT_LT(bound, covered[0]);
   EXPECT_GT(bound, *std::max_element(covered.begin() + 1, covered.end()));
-  EXPECT_EQ(fitting_fraction(quarters, 1, 1, std::vector<Aggregate>{{{{0.25, 0.25}}, 0.1}}),
+  EXPECT_EQ(fitting_fraction(quarters, Region::rectangle(1, 1).box(),
+                             std::vector<Aggregate>{{{{0.25, 0.25}}, 0.1}}),
             std::nextafter(1.0, 0.0));  // nothing fits better than no cell
 }
 
@@ -76,7 +78,7 @@ TEST(Superposition, WithoutAggregatesAllIsMortar) {
 
 TEST(Superposition, ACellIsOfThePhaseThatCoversMostOfIt) {
   const std::vector<Aggregate> circles{{{{0.15, 0.15}}, 0.2, 0}, {{{0.3, 0.35}}, 0.26, 1}};
-  const double covered = covered_fractions(quarters, 1, 1, circles)[0];
+  const double covered = covered_fractions(quarters, Region::rectangle(1, 1).box(), circles)[0];
   EXPECT_EQ(superpose(quarters, circles, unit_square(Superposition::area, covered - 1e-9), kMatrix)[0], 1);
   EXPECT_EQ(superpose(quarters, circles, unit_square(Superposition::area, covered + 1e-9), kMatrix)[0],
             kMatrix);
@@ -96,7 +98,7 @@ TEST(Superposition, AFibreTakesTheCellsThatItRunsThrough) {
 
 TEST(Superposition, CellsShareOutTheCirclesExactly) {
   const Specimen s = make_specimen(paper_specimen(2));
-  const std::vector<double> covered = covered_fractions(s.tessellation, s.width, s.height, s.aggregates);
+  const std::vector<double> covered = covered_fractions(s.tessellation, s.region.box(), s.aggregates);
   double sum = 0;
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < covered.size(); ++c) {

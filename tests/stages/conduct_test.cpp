@@ -17,15 +17,14 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 HeatConditions fire_from_the_left() {
-  return heat_conditions(
-      {on(OutlinePart::left, convection(25.0, fire_curves().at("iso834").curve)),
-       on(OutlinePart::left, Radiation{Curve::constant(0.7), fire_curves().at("iso834").curve})});
+  return heat_conditions({on("left", convection(25.0, fire_curves().at("iso834").curve)),
+                          on("left", Radiation{Curve::constant(0.7), fire_curves().at("iso834").curve})});
 }
 
 /// Heat alone in a small specimen.
 struct Conducted {
   Conducted(const HeatConditions& heat, const Conduct::Keys& keys, int blocks = 100)
-      : simulation(small_specimen(blocks), kSpecimenThickness, alike_solids(), heat, {}, std::nullopt,
+      : simulation(small_specimen(blocks), kSpecimenThickness, alike_phases(), {}, heat, {}, std::nullopt,
                    std::make_shared<Team>()),
         run(simulation, stages_of(keys)) {}
 
@@ -77,8 +76,8 @@ TEST(Conduct, StopsAfterALookWhenAskedTo) {
 TEST(ConductVerification, ReachesTheSteadyStateBetweenTwoFaces) {
   const Curve ramp = Curve::table({0.0, 600.0, 1e9}, {20.0, 120.0, 120.0}, time_axis());
   constexpr double tolerance = 1e-6;
-  Conducted c(heat_conditions({on(OutlinePart::left, PrescribedTemperature{ramp}),
-                               on(OutlinePart::right, PrescribedTemperature{Curve::constant(20.0)})}),
+  Conducted c(heat_conditions({on("left", PrescribedTemperature{ramp}),
+                               on("right", PrescribedTemperature{Curve::constant(20.0)})}),
               {.duration = 1e6, .steady_rate = tolerance}, 300);
   c.go_on();
   EXPECT_EQ(c.run.outcome(), Outcome::steady);

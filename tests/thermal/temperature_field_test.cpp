@@ -23,14 +23,13 @@ std::vector<bool> in_platen(const Model<2>& model) {
   std::vector<bool> result(model.position.size());
   for (int b = 0; b < model.block_count(); ++b)
     for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g)
-      result[g] = model.block_material[b] == platen_material(model);
+      result[g] = model.is_of_bearing(b);
   return result;
 }
 
 HeatConditions fire_from_the_left() {
-  return heat_conditions(
-      {on(OutlinePart::left, convection(25.0, fire_curves().at("iso834").curve)),
-       on(OutlinePart::left, Radiation{Curve::constant(0.7), fire_curves().at("iso834").curve})});
+  return heat_conditions({on("left", convection(25.0, fire_curves().at("iso834").curve)),
+                          on("left", Radiation{Curve::constant(0.7), fire_curves().at("iso834").curve})});
 }
 
 double largest_change(const std::vector<double>& a, const std::vector<double>& b) {
@@ -89,7 +88,7 @@ TEST(TemperatureField, ZonesTakeTheMeanOfTheirGridpointsAndContactsTheSpecimensS
   for (int c = 0; c < model.contact_count(); ++c) {
     const auto& contact = model.contacts[c];
     EXPECT_EQ(field.contacts()[c], t[platen[contact.a] ? contact.b : contact.a]);
-    if (contact.interface != platen_interface(body)) {
+    if (!body.is_of_bearing(contact)) {
       EXPECT_EQ(t[contact.a], t[contact.b]);
     }
   }
@@ -107,8 +106,7 @@ TEST(TemperatureFieldVerification, ASpecimenThatConvectsOnTheLeftFollowsTheClose
   constexpr double h = 25.0, gas = 500.0, initial = 20.0;
   const HeatConstants constants;
   const auto body = small_body(1000);
-  auto field =
-      conduct(body, heat_conditions({on(OutlinePart::left, convection(h, Curve::constant(gas)))}), 1800.0);
+  auto field = conduct(body, heat_conditions({on("left", convection(h, Curve::constant(gas)))}), 1800.0);
   const auto platen = in_platen(body);
   for (double time : {300.0, 900.0, 1800.0}) {
     while (field.time() < time) field.advance(10.0, time);
@@ -147,8 +145,8 @@ TEST(TemperatureField, WhatComesInIsStored) {
 TEST(TemperatureField, AnAdvanceInBatchesIsBitwiseTheSame) {
   const auto body = small_body(100);
   HeatConditions heat =
-      heat_conditions({on(OutlinePart::left, convection(25.0, fire_curves().at("iso834").curve)),
-                       on(OutlinePart::right,  // jumps at the start
+      heat_conditions({on("left", convection(25.0, fire_curves().at("iso834").curve)),
+                       on("right",  // jumps at the start
                           PrescribedTemperature{Curve::table({0.0, 600.0}, {60.0, 80.0}, time_axis())})});
   for (const auto scheme : {HeatScheme::euler, HeatScheme::super_time_stepping}) {
     heat.scheme = scheme;

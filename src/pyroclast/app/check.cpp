@@ -113,9 +113,10 @@ void print_mechanics(const Simulation& simulation, MassChoice mass) {
 }  // namespace
 
 int check(const RunOptions& options) {
-  Loaded loaded(options);
+  Loaded loaded = load(options);
   Setup& setup = loaded.setup;
-  const auto simulation = make_simulation_aloud(loaded, Speech::usual);
+  loaded.choices.before_making(loaded);
+  const auto simulation = make_simulation(setup, loaded.team);
   const Model<2>& model = simulation->model();
   fmt::print("deck            {} is valid: {}\n", loaded.deck.name(), setup.title);
   fmt::print("{}{}{}", describe_warnings(loaded.warnings), describe_own_laws(),

@@ -25,6 +25,7 @@ struct RunOptions {
   std::filesystem::path out;  ///< empty: runs/<name of the deck>
   bool overwrite = false;
   bool figures = true;
+  bool watch = false;
   int threads = 0;                   ///< 0: as many as the machine has
   std::string instructions;          ///< instruction set of the step; empty: the best that there is
   std::optional<std::int64_t> seed;  ///< instead of the deck's

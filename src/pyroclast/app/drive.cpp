@@ -2,12 +2,13 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "pyroclast/app/interrupt.hpp"
 #include "pyroclast/app/progress.hpp"
-#include "pyroclast/base/error.hpp"
+#include "pyroclast/app/watcher.hpp"
 
 namespace pyroclast::app {
 
@@ -22,7 +23,8 @@ std::int64_t broken(const History& history) {
 }
 
 /// What a row of the history says, in short.
-std::string describe_row(const History& history) {
+std::string describe_row(const Run& run) {
+  const History& history = run.history();
   const auto last = [&](const char* column) { return history.last(column); };
   std::string text;
   if (last("rate_K_s") || last("exchange"))
@@ -32,8 +34,14 @@ std::string describe_row(const History& history) {
   if (last("exchange"))
     text +=
         fmt::format("  {:.0f} cycles{}", *last("cycles"), *last("converged") > 0.0 ? "" : " (not at rest)");
-  if (last("strain")) {
+  if (last("strain"))
     text += fmt::format("  strain {:.5f}  stress {:6.2f} MPa", *last("strain"), *last("stress_MPa"));
+  if (last("unbalanced_ratio")) {
+    for (const Record& record : run.simulation().records()) {
+      const Column column = column_of(record.parameters());
+      text +=
+          fmt::format("  {} {:.4g} {}", record.parameters().name, *last(column.name.c_str()), column.unit);
+    }
     text += fmt::format("  broken: {}", broken(history));
     text += fmt::format("  unbalanced {:.1e}", *last("unbalanced_ratio"));
   }
@@ -43,7 +51,7 @@ std::string describe_row(const History& history) {
 std::string progress_line(const Run& run, const Progress& progress) {
   const double done = run.progress();
   return fmt::format("stage {} of {} ({}) {:3.0f} %, {:>14}{}", run.stage_number() + 1, run.stages().size(),
-                     run.stage().kind(), 100.0 * done, progress.left(done), describe_row(run.history()));
+                     run.stage().kind(), 100.0 * done, progress.left(done), describe_row(run));
 }
 
 /// Where nothing was looked at for a while.
@@ -88,14 +96,9 @@ int exit_code(const Summary& summary) {
 
 }  // namespace
 
-StateVisit state_of(Run& run, Recorder& recorder) {
-  return [&](StateVisitor& visitor) {
-    run.visit_state(visitor);
-    recorder.visit_state(visitor);
-  };
-}
-
-std::string describe_start(const Simulation& simulation, const Loaded& loaded) {
+std::string describe_start(Session& session) {
+  const Simulation& simulation = session.simulation();
+  const Loaded& loaded = session.loaded();
   std::string text =
       describe_warnings(loaded.warnings) + describe_own_laws() + describe(simulation.specimen());
   const Model<2>& model = simulation.model();
@@ -109,65 +112,44 @@ std::string describe_start(const Simulation& simulation, const Loaded& loaded) {
                             name(loaded.instructions));
 }
 
-int drive(Run& run, Recorder& recorder, Checkpoints& checkpoints, RunLog& log,
-          const std::filesystem::path& folder, bool figures) {
+int drive(Session& session, RunLog& log, const RunOptions& options) {
   const Interrupt interrupt;
-  run.stop_when([&] { return interrupt.asked(); });
+  const Run& run = session.run();
+  const std::filesystem::path& folder = session.folder();
+  std::optional<Watcher> watcher;
+  if (options.watch) watcher.emplace(folder, log);
+  session.log_bytes_by([&] { return log.bytes(); });
+  session.stop_when([&] { return interrupt.asked(); });
   Progress progress;
-  run.between_batches([&](Run& r) {
-    checkpoints.between_batches(r, interrupt.asked());
-    if (progress.is_long_silent()) log.say_now(doing_line(r));
+  session.between_batches([&] {
+    if (watcher) watcher->look_after();
+    if (progress.is_long_silent()) log.say_now(doing_line(run));
   });
   int stage = run.stage_number();
-  Summary summary;
-  try {
-    while (run.next()) {
-      recorder.record(run);
-      if (run.stage_is_over()) checkpoints.end_stage(run);
-      if (run.stage_number() != stage) progress.begin_stage();
-      stage = run.stage_number();
-      if (progress.line_is_due() || log.speech() == Speech::verbose)
-        log.say_now(progress_line(run, progress));
-    }
-    summary = recorder.finish(run);
-  } catch (const Error& error) {
-    if (checkpoints.last().empty()) throw;
-    throw Error(
-        fmt::format("{}\nthe run is broken off; to go on from {}, its last checkpoint: pyroclast resume {}",
-                    error.what(), checkpoints.last().string(), folder.string()));
+  while (session.next()) {
+    if (run.stage_number() != stage) progress.begin_stage();
+    stage = run.stage_number();
+    if (progress.line_is_due() || log.speech() == Speech::verbose) log.say_now(progress_line(run, progress));
   }
+  const Summary summary = session.finish();
+  if (watcher) watcher->see_out([&] { return interrupt.asked_twice(); });
   log.say(describe(summary, folder));
-  if (run.outcome() == Outcome::stopped)
+  if (summary.outcome == Outcome::stopped)
     log.say(fmt::format("to go on        pyroclast resume {}", folder.string()));
-  if (figures) {
+  if (options.figures) {
     log.say(fmt::format("figures         drawn in {} ...", (folder / "figures").string()));
     draw_figures("run", folder, log.speech(), [&] { return interrupt.asked_twice(); });
   }
   return exit_code(summary);
 }
 
-Checkpoints::Sources checkpoint_sources(Run& run, Recorder& recorder, const RunLog& log, std::string inputs) {
-  return {std::move(inputs), body_hash(run.simulation()), state_of(run, recorder),
-          [&] { return recorder.wall_time(); }, [&] { return log.bytes(); }};
-}
-
 int run(const RunOptions& options) {
-  Loaded loaded(options);
   const std::filesystem::path folder = output_folder(options);
-  const FolderLock lock(folder);
-  RunFolder::check(folder, options.overwrite);
-  const Inputs inputs = inputs_of(loaded.deck, loaded.setup);
-  const auto simulation = make_simulation_aloud(loaded, options.speech);
-
-  make_run_folder(loaded, options, inputs);
+  const auto session = Session::begin(load(options), RunOutput{folder, options.overwrite, options.command});
+  print_kept(folder, session->foreign());
   RunLog log(folder / "run.log", options.speech);
-  log.say(describe_start(*simulation, loaded));
-  Recorder recorder(folder, loaded.setup);
-  Run run(*simulation, std::move(loaded.setup.stages));
-  Checkpoints checkpoints(folder, loaded.setup.checkpoints,
-                          checkpoint_sources(run, recorder, log, inputs.hash()), 0);
-  recorder.begin(run);
-  return drive(run, recorder, checkpoints, log, folder, options.figures);
+  log.say(describe_start(*session));
+  return drive(*session, log, options);
 }
 
 }  // namespace pyroclast::app

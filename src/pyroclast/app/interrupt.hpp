@@ -1,7 +1,8 @@
 #pragma once
 
+#include <array>
 #include <csignal>
-#include <initializer_list>
+#include <cstddef>
 
 namespace pyroclast::app {
 
@@ -11,10 +12,10 @@ class Interrupt {
  public:
   Interrupt() {
     count_ = 0;
-    for (int signal : kSignals) std::signal(signal, on_signal);
+    for (std::size_t i = 0; i < kSignals.size(); ++i) before_[i] = std::signal(kSignals[i], on_signal);
   }
   ~Interrupt() {
-    for (int signal : kSignals) std::signal(signal, SIG_DFL);
+    for (std::size_t i = 0; i < kSignals.size(); ++i) std::signal(kSignals[i], before_[i]);
   }
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
@@ -23,7 +24,7 @@ class Interrupt {
   bool asked_twice() const { return count_ >= 2; }
 
  private:
-  static constexpr std::initializer_list<int> kSignals{SIGINT, SIGTERM, SIGHUP};
+  static constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
 
   static void on_signal(int) {
     count_ = count_ + 1;
@@ -32,6 +33,8 @@ class Interrupt {
   }
 
   static inline volatile std::sig_atomic_t count_ = 0;
+
+  std::array<void (*)(int), kSignals.size()> before_{};
 };
 
 }  // namespace pyroclast::app

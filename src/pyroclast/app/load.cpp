@@ -16,37 +16,26 @@ constexpr double kMilli = 1e3;
 /// So many take some seconds to be made.
 constexpr int kManyBlocks = 20'000;
 
-std::shared_ptr<Team> make_team(int asked) {
-  return asked > 0 ? std::make_shared<Team>(asked)
-                   : std::make_shared<Team>(available_threads(), WhenCrowded::give_way);
-}
-
 }  // namespace
 
-Loaded::Loaded(const RunOptions& options, const std::string& more)
-    : deck(Deck::load(options.deck, options.changes, more)),
-      setup(read_setup(deck, options.deck.parent_path(), {}, sources_of(options.laws))),
-      instructions(options.instructions.empty() ? usable_instruction_sets().back()
-                                                : instruction_set(options.instructions)),
-      team(make_team(options.threads)) {
-  for (const Diagnostic& warning : setup.warnings) warnings.push_back(to_string(warning));
-  if (options.threads > available_threads())
-    warnings.push_back(
-        fmt::format("--threads {}: only {} processors are free for this process, and more "
-                    "threads than those slow it down",
-                    options.threads, available_threads()));
-  if (options.seed) setup.specimen.seed = static_cast<std::uint64_t>(*options.seed);
-  if (options.checkpoint) setup.checkpoints.interval = *options.checkpoint;
-  if (setup.motion) setup.motion->mechanics.instructions = instructions;
+Loaded load(const RunOptions& options) {
+  return {Deck::load(options.deck, options.changes), options.deck.parent_path(), choices_of(options)};
 }
 
-std::unique_ptr<Simulation> make_simulation_aloud(const Loaded& loaded, Speech speech) {
-  const int blocks = loaded.setup.specimen.blocks.count;
-  if (blocks >= kManyBlocks && speech != Speech::quiet) {
+RunChoices choices_of(const RunOptions& options) {
+  RunChoices choices;
+  if (options.seed) choices.seed = static_cast<std::uint64_t>(*options.seed);
+  choices.threads = options.threads;
+  choices.instructions = options.instructions;
+  choices.checkpoint = options.checkpoint;
+  choices.laws = sources_of(options.laws);
+  choices.before_making = [speech = options.speech](const Loaded& loaded) {
+    const int blocks = loaded.setup.specimen.blocks.count;
+    if (blocks < kManyBlocks || speech == Speech::quiet) return;
     fmt::print("making the specimen of {} blocks ...\n", blocks);
     std::fflush(stdout);
-  }
-  return make_simulation(loaded.setup, loaded.team);
+  };
+  return choices;
 }
 
 double time_option(const std::string& name, const std::string& text) {
@@ -63,17 +52,6 @@ double time_option(const std::string& name, const std::string& text) {
 std::filesystem::path output_folder(const RunOptions& options) {
   return options.out.empty() ? std::filesystem::path("runs") / options.deck.stem() : options.out;
 }
-
-namespace {
-
-std::vector<OwnLaw> own_laws() {
-  std::vector<OwnLaw> laws;
-  for (const LoadedLaw* law : loaded_laws())
-    laws.push_back({law->table.name, law->shared_object, law->header.file, law->compiler});
-  return laws;
-}
-
-}  // namespace
 
 LawSources sources_of(const OwnLawOptions& options) {
   auto sources = LawSources::of_environment();
@@ -95,14 +73,9 @@ std::string describe_own_laws() {
   return text;
 }
 
-RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options, const Inputs& inputs,
-                          std::optional<Parent> parent) {
-  RunFolder folder(output_folder(options), options.overwrite,
-                   {loaded.deck.name(), inputs, loaded.setup.specimen.seed, loaded.team->size(),
-                    name(loaded.instructions), options.command, own_laws(), std::move(parent)});
-  for (const auto& file : folder.foreign())
-    fmt::print("kept            {}, which no run writes\n", (folder.path() / file).string());
-  return folder;
+void print_kept(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& foreign) {
+  for (const auto& file : foreign)
+    fmt::print("kept            {}, which no run writes\n", (folder / file).string());
 }
 
 std::string describe(const specimen::Specimen& s) {

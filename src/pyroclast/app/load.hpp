@@ -3,31 +3,20 @@
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/results/inputs.hpp"
 #include "pyroclast/results/run_folder.hpp"
-#include "pyroclast/setup/setup.hpp"
+#include "pyroclast/session/load.hpp"
 
 namespace pyroclast::app {
 
-/// A deck of the options, and what it says, with what the command line says in place and the threads set.
-struct Loaded {
-  /// \param more  text that is appended to the deck
-  explicit Loaded(const RunOptions& options, const std::string& more = "");
-
-  Deck deck;
-  Setup setup;
-  InstructionSet instructions;
-  std::shared_ptr<Team> team;
-  std::vector<std::string> warnings;  ///< of deck and command line, a line each
-};
-
-/// make_simulation; of many blocks it says first that this takes a while.
-std::unique_ptr<Simulation> make_simulation_aloud(const Loaded& loaded, Speech speech);
+/// The deck of the options, and what it says, with what the command line says in place and the threads set.
+Loaded load(const RunOptions& options);
+/// Of a run; of many blocks it says first that making them takes a while.
+RunChoices choices_of(const RunOptions& options);
 
 /// Where the results shall be.
 std::filesystem::path output_folder(const RunOptions& options);
 
-/// Puts deck and manifest into the folder for the results, which this process has locked.
-RunFolder make_run_folder(const Loaded& loaded, const RunOptions& options, const Inputs& inputs,
-                          std::optional<Parent> parent = std::nullopt);
+/// Names what was in a folder and stays there.
+void print_kept(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& foreign);
 
 /// Where laws come from as environment and command line say; the command that compiles one is printed.
 LawSources sources_of(const OwnLawOptions& options);

@@ -6,6 +6,7 @@
 
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/app/manual.hpp"
+#include "pyroclast/app/watcher.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/specimen/specimen.hpp"
@@ -40,6 +41,12 @@ void add_speech(CLI::App* command, app::RunOptions& options) {
       ->add_flag_callback(
           "--verbose", [&options] { options.speech = app::Speech::verbose; }, "Print a line for each look")
       ->excludes(quiet);
+}
+
+void add_watch(CLI::App* command, app::RunOptions& options) {
+  command->add_flag("--watch", options.watch,
+                    "Show curve and specimen as they grow: in a window, or without a display in the terminal "
+                    "and in figures/watch.png of the folder");
 }
 
 void add_threads(CLI::App* command, int& threads) {
@@ -104,6 +111,7 @@ int command_line(int argc, char** argv) {
 
   add_checkpoint(run, options);
   add_speech(run, options);
+  add_watch(run, options);
   run->add_flag_callback(
       "--no-fields", [&options] { options.changes.emplace_back("output.fields=false"); },
       "Write no fields, as [output] fields = false");
@@ -124,6 +132,7 @@ int command_line(int argc, char** argv) {
   add_own_laws(resume, resume_options.as.laws);
   add_checkpoint(resume, resume_options.as);
   add_speech(resume, resume_options.as);
+  add_watch(resume, resume_options.as);
 
   app::LawOptions law_options;
   auto* law = cli.add_subcommand("law",
@@ -180,6 +189,10 @@ int command_line(int argc, char** argv) {
   figures->prefix_command();
   figures->set_help_flag();
 
+  auto* watch = cli.add_subcommand("watch", "Show a run that another process computes: watch RUN [--once]");
+  watch->prefix_command();
+  watch->set_help_flag();
+
   std::string name, from = "starter";
   auto* starter = cli.add_subcommand("new", "Write a commented deck to begin with");
   starter->add_option("NAME", name, "The deck will be NAME.toml")->required();
@@ -209,6 +222,7 @@ int command_line(int argc, char** argv) {
   if (*law) return *verify ? app::verify_laws(verify_options) : app::law(law_options);
   if (*properties) return app::plot_properties(properties_options);
   if (*figures) return app::figures(figures->remaining());
+  if (*watch) app::watch(watch->remaining());
   if (*keys) return app::print_keys();
   if (*laws) return app::print_laws();
   if (*list) return app::print_list(list_of);

@@ -52,8 +52,8 @@ std::vector<ReadCurve> properties_of(const Setup& setup) {
     const ContactParameters& contacts = setup.motion->contacts;
     const auto concrete =
         make_concrete(setup.solids, contacts, expected_block_size(setup.specimen, contacts));
-    const InterfaceTable table(phases_of(setup.solids), contacts.interfaces);
-    for (int i = 0; i < table.platen(); ++i) add_contact(concrete.contacts[i], table.names()[i], list);
+    for (std::size_t i = 0; i + contacts.bearings.size() < concrete.contacts.size(); ++i)
+      add_contact(concrete.contacts[i], concrete.interfaces[i], list);
   }
   for (const ReadCurve& read : setup.curves) {
     const bool listed =

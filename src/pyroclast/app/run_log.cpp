@@ -13,16 +13,24 @@
 
 namespace pyroclast::app {
 
+namespace {
+
+/// What is said of the moment, below all else.
+constexpr auto kProgress = spdlog::level::debug;
+
+}  // namespace
+
 RunLog::RunLog(std::filesystem::path file, Speech speech, std::uint64_t kept)
     : file_(std::move(file)), speech_(speech) {
   std::error_code none;
   if (std::filesystem::exists(file_) && std::filesystem::file_size(file_) > kept)
     std::filesystem::resize_file(file_, kept, none);
   std::vector<spdlog::sink_ptr> sinks{std::make_shared<spdlog::sinks::basic_file_sink_st>(file_.string())};
-  if (speech != Speech::quiet) sinks.push_back(std::make_shared<spdlog::sinks::stdout_sink_st>());
+  if (speech != Speech::quiet) sinks.push_back(screen_ = std::make_shared<spdlog::sinks::stdout_sink_st>());
   logger_ = std::make_unique<spdlog::logger>("run", sinks.begin(), sinks.end());
   logger_->set_pattern("%v");
-  logger_->flush_on(spdlog::level::info);
+  logger_->set_level(kProgress);
+  logger_->flush_on(kProgress);
   // the terminal may be gone, or the disk full: what a run says is not worth its end
   logger_->set_error_handler([](const std::string&) {});
 }
@@ -32,7 +40,11 @@ void RunLog::say(const std::string& text) {
 }
 
 void RunLog::say_now(const std::string& text) {
-  say(fmt::format("{:%H:%M:%S} {}", fmt::localtime(std::time(nullptr)), text));
+  logger_->log(kProgress, "{:%H:%M:%S} {}", fmt::localtime(std::time(nullptr)), text);
+}
+
+void RunLog::keep_progress_off_screen(bool kept) {
+  if (screen_) screen_->set_level(kept ? spdlog::level::info : kProgress);
 }
 
 std::uint64_t RunLog::bytes() const {

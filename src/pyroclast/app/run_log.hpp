@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include <spdlog/common.h>
 #include <spdlog/logger.h>
 
 #include "pyroclast/app/commands.hpp"
@@ -23,12 +24,15 @@ class RunLog {
   void say(const std::string& text);
   /// A line with the time of day before it.
   void say_now(const std::string& text);
+  /// Whether lines with the time of day go to the file alone.
+  void keep_progress_off_screen(bool kept);
   /// Of the file.
   std::uint64_t bytes() const;
 
  private:
   std::filesystem::path file_;
   Speech speech_;
+  spdlog::sink_ptr screen_;  ///< none where nothing is said
   std::unique_ptr<spdlog::logger> logger_;
 };
 

@@ -10,16 +10,25 @@ namespace pyroclast::app {
 int make_specimen(const RunOptions& asked) {
   RunOptions options = asked;
   if (options.out.empty()) options.out = output_folder(asked).string() + "-specimen";
-  const Loaded loaded(options);
+  const Loaded loaded = load(options);
   const Setup& setup = loaded.setup;
   const FolderLock lock(output_folder(options));
   RunFolder::check(output_folder(options), options.overwrite);
   const specimen::Specimen specimen = make_checked_specimen(setup.specimen, loaded.team.get());
   const Model<2> model = setup.motion
-                             ? make_concrete_model(specimen, setup.motion->platen_thickness, setup.thickness,
-                                                   setup.motion->contacts.interfaces)
-                             : make_concrete_model(specimen, std::nullopt, setup.thickness);
-  const RunFolder folder = make_run_folder(loaded, options, inputs_of(loaded.deck, setup));
+                             ? make_concrete_model(specimen, setup.thickness,
+                                                   setup.motion->contacts.interfaces, setup.motion->bearings)
+                             : make_concrete_model(specimen, setup.thickness);
+  const RunFolder folder(output_folder(options), options.overwrite,
+                         {loaded.deck.name(),
+                          inputs_of(loaded.deck, setup),
+                          setup.specimen.seed,
+                          loaded.team->size(),
+                          name(loaded.instructions),
+                          options.command,
+                          own_laws(),
+                          {}});
+  print_kept(folder.path(), folder.foreign());
   std::filesystem::create_directories(folder.path() / "fields");
   write_mesh(folder.path() / "fields", model);
   write_specimen_files(folder.path() / "specimen", specimen, setup.specimen);

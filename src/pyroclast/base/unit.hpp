@@ -27,6 +27,7 @@ inline constexpr Unit acceleration{"m/s2", "acceleration", "9.81 m/s2"};
 inline constexpr Unit density{"kg/m3", "density", "2650 kg/m3"};
 inline constexpr Unit force{"N", "force", "120 kN"};
 inline constexpr Unit stress{"Pa", "stress", "30 MPa"};
+inline constexpr Unit stiffness{"N/m", "stiffness", "2 GN/m"};
 /// Stiffness of a contact per unit of its area.
 inline constexpr Unit stiffness_per_area{"Pa/m", "contact stiffness", "18400 GPa/m"};
 inline constexpr Unit fracture_energy{"J/m2", "fracture energy", "40 N/m"};

@@ -111,6 +111,12 @@ class Section {
   std::vector<std::pair<double, double>> points(std::string_view key, const Unit& x_unit, const Unit& y_unit,
                                                 Meaning meaning) const;
 
+  /// A place `[x, y]`, or a list of at least so many places; empty after an error, which names the element.
+  std::optional<std::pair<double, double>> place(std::string_view key, const Unit& unit,
+                                                 Meaning meaning) const;
+  std::vector<std::pair<double, double>> places(std::string_view key, const Unit& unit, std::size_t least,
+                                                Meaning meaning) const;
+
   long long integer(std::string_view key, const Range& range, Meaning meaning) const;
   long long integer(std::string_view key, const Range& range, long long fallback, Meaning meaning) const;
   bool flag(std::string_view key, Meaning meaning) const;

@@ -176,6 +176,19 @@ std::vector<Point> read_points(const Entry& entry, const Unit& x_unit, const Uni
   return complete ? points : std::vector<Point>{};
 }
 
+std::vector<Point> read_places(const Entry& entry, const Unit& unit, std::size_t least,
+                               const std::string& needed) {
+  const toml::array* list = entry.node.as_array();
+  if (!list || list->size() < least) {
+    list ? entry.error(needed + " is needed") : wrong_type(entry, needed);
+    return {};
+  }
+  std::vector<Point> places;
+  for (std::size_t i = 0; i < list->size(); ++i)
+    if (const auto place = read_point(element_of(entry, i), unit, unit)) places.push_back(*place);
+  return places.size() == list->size() ? places : std::vector<Point>{};
+}
+
 std::optional<long long> read_integer(const Entry& entry, const Range& range) {
   const auto* integer = entry.node.as_integer();
   if (!integer) {
@@ -396,6 +409,23 @@ std::vector<std::pair<double, double>> Section::points(std::string_view key, con
       *deck_, table_, key,
       fmt::format("a list of points, [[\"{}\", \"{}\"], ...], is needed", x_unit.example, y_unit.example));
   return entry ? read_points(*entry, x_unit, y_unit) : std::vector<Point>{};
+}
+
+std::optional<std::pair<double, double>> Section::place(std::string_view key, const Unit& unit,
+                                                        Meaning meaning) const {
+  note(key_of(key, fmt::format("place [x, y], {}", unit.name)), meaning);
+  const auto entry = require(*deck_, table_, key,
+                             fmt::format("a place [\"{}\", \"{}\"] is needed", unit.example, unit.example));
+  return entry ? read_point(*entry, unit, unit) : std::nullopt;
+}
+
+std::vector<std::pair<double, double>> Section::places(std::string_view key, const Unit& unit,
+                                                       std::size_t least, Meaning meaning) const {
+  note(key_of(key, fmt::format("list of places [x, y], {}", unit.name)), meaning);
+  const std::string needed =
+      fmt::format("a list of {} or more places, [[\"{}\", \"{}\"], ...],", least, unit.example, unit.example);
+  const auto entry = require(*deck_, table_, key, needed + " is needed");
+  return entry ? read_places(*entry, unit, least, needed) : std::vector<Point>{};
 }
 
 long long Section::integer(std::string_view key, const Range& range, Meaning meaning) const {

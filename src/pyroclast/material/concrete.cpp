@@ -140,20 +140,19 @@ InterfaceTable::InterfaceTable(const std::vector<std::string>& phases,
       const int index = static_cast<int>(known - names_.begin());
       of_pair_[a * phases_ + b] = of_pair_[b * phases_ + a] = index;
     }
-  names_.emplace_back("platen");
 }
 
-std::optional<std::array<int, 2>> InterfaceTable::pair_of(int interface) const {
+std::array<int, 2> InterfaceTable::pair_of(int interface) const {
   for (int a = 0; a < phases_; ++a)
     for (int b = a; b < phases_; ++b)
-      if (between(a, b) == interface) return {{a, b}};
-  return std::nullopt;
+      if (between(a, b) == interface) return {a, b};
+  throw Error(fmt::format("no pair of phases has interface {}; there are {}", interface, count()));
 }
 
 std::vector<std::string> phases_of(const std::vector<SolidMaterial>& solids) {
   std::vector<std::string> names;
-  for (const SolidMaterial& solid : solids) names.push_back(solid.name);
-  names.pop_back();
+  for (const SolidMaterial& solid : solids)
+    if (!solid.is_of_bearing) names.push_back(solid.name);
   return names;
 }
 
@@ -162,13 +161,14 @@ ConcreteMaterials make_concrete(const std::vector<SolidMaterial>& solids, const 
   const InterfaceTable table(phases_of(solids), p.interfaces);
   ConcreteMaterials concrete;
   concrete.solids = solids;
+  concrete.interfaces = table.names();
   concrete.fracture_zone =
       p.fracture_zone_size ? p.fracture_zone * block_size / *p.fracture_zone_size : p.fracture_zone;
   const double scale = p.fracture_zone_size ? *p.fracture_zone_size / foreseen.value_or(block_size) : 1.0;
   const StiffnessOfInterfaces stiffness(solids, p, concrete.fracture_zone, scale);
   std::optional<Stiffness> of_matrix;
-  for (int i = 0; i < table.platen(); ++i) {
-    const auto [a, b] = *table.pair_of(i);
+  for (int i = 0; i < table.count(); ++i) {
+    const auto [a, b] = table.pair_of(i);
     if (const InterfaceParameters* stated = find(p.interfaces, table.names()[i])) {
       concrete.contacts.push_back(stated->contact);
       const Stiffness k = stiffness.of(*stated);
@@ -185,9 +185,18 @@ ConcreteMaterials make_concrete(const std::vector<SolidMaterial>& solids, const 
   if (!of_matrix)
     throw Error(fmt::format("contacts: no interface is between two blocks of the matrix, {}", p.matrix));
 
-  ContactMaterial& platen = concrete.contacts.emplace_back(table_of<Frictional>());
-  of_matrix->put_into(platen);
-  platen["friction"] = Curve::constant(p.platen_friction);
+  for (const BearingInterface& bearing : p.bearings) {
+    const bool is_glued = bearing.contact == BearingContact::glued;
+    ContactMaterial& contact =
+        concrete.contacts.emplace_back(is_glued ? table_of<Elastic>() : table_of<Frictional>());
+    concrete.interfaces.push_back(bearing.name);
+    of_matrix->put_into(contact);
+    if (bearing.stiffness) {
+      contact.set(Role::normal_stiffness, Curve::constant((*bearing.stiffness)[0]));
+      contact.set(Role::shear_stiffness, Curve::constant((*bearing.stiffness)[1]));
+    }
+    if (!is_glued) contact["friction"] = Curve::constant(bearing.friction);
+  }
   return concrete;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +23,7 @@ struct SolidMaterial {
   Curve thermal_strain = Curve::constant(0.0);  ///< free strain since the reference temperature
   std::optional<Curve> conductivity;            ///< gamma, W/(m K); only for heat conduction
   std::optional<Curve> specific_heat;           ///< c, J/(kg K); likewise
+  bool is_of_bearing = false;                   ///< not of the specimen: at 20 °C in every run
 };
 
 /// A contact's parameters as functions of temperature (paper, Table 2 and §4.1), of any law.
@@ -60,17 +62,32 @@ struct InterfaceParameters {
   double stiffness_factor = 1.0;
 };
 
+/// How a bearing and the specimen meet.
+enum class BearingContact : std::uint8_t {
+  frictional,  ///< no tension; slips by Coulomb's law
+  glued        ///< elastic, and never parts
+};
+
+/// What is between a bearing and the specimen.
+struct BearingInterface {
+  std::string name;
+  BearingContact contact = BearingContact::frictional;
+  double friction = 0.0;  ///< tan(phi), of one that is frictional
+  /// K_n and K_s, Pa/m: of a layer between them; without one those of the matrix's own contacts.
+  std::optional<std::array<double, 2>> stiffness = {};
+};
+
 /// The contacts of a concrete.
 struct ContactParameters {
   std::vector<InterfaceParameters> interfaces;
   double fracture_zone = 0.0;  ///< t_b, m, Eq. (17)
   /// Block size at which t_b and the stated stiffnesses hold, m; they scale with the size; else fixed.
   std::optional<double> fracture_zone_size;
-  double platen_friction = 0.0;  ///< tan(phi) between platen and concrete
-  std::string matrix;            ///< phase whose own contacts' stiffness those of the platens have
+  std::vector<BearingInterface> bearings;
+  std::string matrix;  ///< phase whose own contacts' stiffness those of the bearings have
 };
 
-/// Which interface blocks of two phases have. The last one is that of the platens.
+/// Which interface blocks of two phases have.
 class InterfaceTable {
  public:
   InterfaceTable() = default;
@@ -83,9 +100,9 @@ class InterfaceTable {
 
   const std::vector<std::string>& names() const { return names_; }
   int between(int phase, int other) const { return of_pair_.at(phase * phases_ + other); }
-  int platen() const { return static_cast<int>(names_.size()) - 1; }
-  /// A pair of phases that has the interface, the first one; nothing for that of the platens.
-  std::optional<std::array<int, 2>> pair_of(int interface) const;
+  int count() const { return static_cast<int>(names_.size()); }
+  /// A pair of phases that has the interface, the first one.
+  std::array<int, 2> pair_of(int interface) const;
 
  private:
   int phases_ = 0;
@@ -95,15 +112,16 @@ class InterfaceTable {
 
 /// Everything a concrete specimen is made of.
 struct ConcreteMaterials {
-  std::vector<SolidMaterial> solids;      ///< by phase, and last the platens'
-  std::vector<ContactMaterial> contacts;  ///< by interface, see InterfaceTable
+  std::vector<SolidMaterial> solids;      ///< by phase, then those of bearings
+  std::vector<std::string> interfaces;    ///< see InterfaceTable, then those of bearings
+  std::vector<ContactMaterial> contacts;  ///< likewise
   double fracture_zone = 0.0;             ///< t_b as it came out, m
 };
 
-/// Names of solids but the last, the platens'.
+/// Names of the solids that are not of bearings.
 std::vector<std::string> phases_of(const std::vector<SolidMaterial>& solids);
 
-/// \param solids      by phase, and last the platens'
+/// \param solids      by phase, then those of bearings
 /// \param block_size  square root of the mean block area, m: t_b scales with it
 /// \param foreseen    that size as a deck foresees it, sqrt(area / count); else the same. Stated stiffnesses
 ///                    scale with it: they are as printed, to the last bit, where it is fracture_zone_size.

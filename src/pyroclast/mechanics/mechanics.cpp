@@ -458,6 +458,15 @@ void Mechanics<Dim>::prescribe_velocity(int gridpoint, int component, double vel
 }
 
 template <int Dim>
+bool Mechanics<Dim>::is_prescribed(int gridpoint, int component) const {
+  const int index = made_constraints_[bundle_of(gridpoint)];
+  if (index < 0) return false;
+  const int slot = slot_in_bundle(gridpoint);
+  const auto& row = state_.constraint_rows[state_.constraints[index].first_row + slot / kLanes];
+  return (row.prescribed[component] >> (slot % kLanes) & 1U) != 0;
+}
+
+template <int Dim>
 void Mechanics<Dim>::release(int gridpoint, int component) {
   if (made_constraints_[bundle_of(gridpoint)] < 0) return;
   auto& row = constraint_row(constraints_of(gridpoint), gridpoint);
@@ -865,6 +874,15 @@ Vec<Dim> Mechanics<Dim>::mean_displacement(const GridpointSet& set) const {
 }
 
 template <int Dim>
+Vec<Dim> Mechanics<Dim>::net_force() const {
+  return chunked_sum<Vec<Dim>>(layout_->chunks.gridpoints, [&](int g, Vec<Dim>& total) {
+    const Vec<Dim> on_all = force(g);
+    for (int i = 0; i < Dim; ++i)
+      if (!is_prescribed(g, i)) total[i] += on_all[i];
+  });
+}
+
+template <int Dim>
 Vec<Dim> Mechanics<Dim>::total_force(const GridpointSet& set) const {
   return chunked_sum<Vec<Dim>>(set.chunks,
                                [&](int i, Vec<Dim>& total) { total += force(set.gridpoints[i]); });
@@ -961,6 +979,12 @@ EnergyLedger Mechanics<Dim>::energy() const {
       return gravity_mass_[g] * dot(parameters_.gravity, displacement_of_force(g));
     });
   return e;
+}
+
+template <int Dim>
+double Mechanics<Dim>::mean_unbalanced_force() const {
+  return chunked_sum(layout_->chunks.bundles, [&](int b) { return state_.bundle_sums[b].unbalanced; }) /
+         model_.gridpoint_count();
 }
 
 template <int Dim>

@@ -153,6 +153,7 @@ class Mechanics {
   void prescribe_velocity(int gridpoint, int component, double velocity);
   /// Lets it move freely again.
   void release(int gridpoint, int component);
+  bool is_prescribed(int gridpoint, int component) const;
   /// Makes free gridpoints of one block share one component of their motion, as under a rigid plate; the
   /// velocity they start with is their mean, so tie them at rest.
   void tie(std::vector<int> gridpoints, int component);
@@ -222,7 +223,10 @@ class Mechanics {
   Vec<Dim> total_force(const GridpointSet& set) const;          ///< N, as of `force`
   Vec<Dim> total_applied_force(const GridpointSet& set) const;  ///< N
   Vec<Dim> total_weight(const GridpointSet& set) const;         ///< N, of the real mass
-  double total_moving_mass(const GridpointSet& set) const;      ///< kg
+  /// Sum of the forces on all free components: weight, loads and reactions together. Zero when the body as a
+  /// whole is in equilibrium, N.
+  Vec<Dim> net_force() const;
+  double total_moving_mass(const GridpointSet& set) const;  ///< kg
 
   /// Energies at the displacements that the last step started from. With kinetic energy as half m v(t - dt/2)
   /// v(t + dt/2), central differences conserve their sum exactly in a linear body, so the ledger's error is
@@ -230,6 +234,7 @@ class Mechanics {
   EnergyLedger energy() const;
   /// Mean unbalanced force over mean force applied to the gridpoints by zones, contacts and gravity.
   double unbalanced_ratio() const;
+  double mean_unbalanced_force() const;  ///< of the gridpoints, N
   Kinematics kinematics() const { return parameters_.kinematics; }
   /// Largest jump over the length of the face it stands on. Small-displacement contacts are exact while it is
   /// small.

@@ -2,97 +2,203 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
 
 namespace pyroclast {
 
 namespace {
 
+using specimen::Edge;
+using specimen::Region;
 using specimen::Specimen;
 
-/// Zones of a platen stand about this many times as high as they are wide: contact forces vary along the face
-/// much faster than into the depth.
+/// Zones of a bearing stand about this many times as high as they are wide: contact forces vary along the
+/// face much faster than into the depth.
 constexpr double kZoneHeightOverWidth = 2.0;
 
-struct Platen {
-  std::vector<int> inner, outer;  ///< gridpoints of its faces, left to right
+/// Whether an edge of the outline lies on a side, or on a patch of it.
+bool lies_on(const Region& region, int side, const std::string& name) {
+  const auto& [own, is_round, is_cut, part_of] = region.sides()[side];
+  return own == name || (part_of >= 0 && region.sides()[part_of].name == name);
+}
+
+/// Where a bearing covers the outline.
+struct Seat {
+  std::vector<int> vertices;  ///< from left to right, or upwards
+  bool is_reversed = false;   ///< against the sense of the outline, which has the body on its left
+  Vec<2> outward{};           ///< unit
 };
 
-/// A structured block over the columns `x` (ascending), from `inner_y` to `outer_y`.
-Platen add_platen(Model<2>& model, const std::vector<double>& x, double inner_y, double outer_y) {
-  const int columns = static_cast<int>(x.size());
-  const double width = (x.back() - x.front()) / (columns - 1);
-  const int rows = std::max(
-      2, static_cast<int>(std::lround(std::abs(outer_y - inner_y) / (kZoneHeightOverWidth * width))));
+/// \param outline  edges on the outline, with their sides
+Seat find_seat(const Specimen& specimen, const std::vector<std::pair<Edge, int>>& outline,
+               const std::string& name, const std::string& side) {
+  std::vector<int> next(specimen.tessellation.vertices.size(), -1);
+  std::vector<int> before(next.size(), -1);
+  for (const auto& [edge, on] : outline)
+    if (lies_on(specimen.region, on, side)) {
+      next[edge.v0] = edge.v1;
+      before[edge.v1] = edge.v0;
+    }
+  Seat seat;
+  for (std::size_t v = 0; v < next.size(); ++v)
+    if (next[v] >= 0 && before[v] < 0) {
+      if (!seat.vertices.empty())
+        throw Error(fmt::format("bearing \"{}\": \"{}\" is in several pieces", name, side));
+      for (int at = static_cast<int>(v); at >= 0; at = next[at]) seat.vertices.push_back(at);
+    }
+  if (seat.vertices.empty())
+    throw Error(fmt::format("bearing \"{}\": \"{}\" is no side with two ends", name, side));
+  const auto& at = specimen.tessellation.vertices;
+  const Vec<2> along = at[seat.vertices.back()] - at[seat.vertices.front()];
+  const double length = norm(along);
+  seat.outward = {{along[1] / length, -along[0] / length}};
+  seat.is_reversed = along[0] < 0.0 || (along[0] == 0.0 && along[1] < 0.0);
+  if (seat.is_reversed) std::ranges::reverse(seat.vertices);
+  return seat;
+}
+
+struct BearingBlock {
+  Seat seat;
+  std::vector<int> inner, outer;  ///< gridpoints of its faces, in the order of the seat
+  int first = 0, last = 0;        ///< all of its gridpoints
+  int pivot = 0;
+  int interface = 0;
+};
+
+/// A structured block over a seat.
+BearingBlock add_bearing(Model<2>& model, const Specimen& specimen, const Seat& seat, const Bearing& bearing,
+                         int material) {
+  std::vector<Vec<2>> inner, outer;
+  for (int v : seat.vertices) {
+    inner.push_back(specimen.tessellation.vertices[v]);
+    outer.push_back(inner.back() + bearing.thickness * seat.outward);
+  }
+  const Vec<2> along = outer.back() - outer.front();
+  const Vec<2> end = outer.front();
+  const auto off_line = [&](const Vec<2>& p) { return dot(p - end, seat.outward); };
+  double highest = 0.0;
+  for (const Vec<2>& p : outer) highest = std::max(highest, off_line(p));
+  for (Vec<2>& p : outer) p += (highest - off_line(p)) * seat.outward;  // flat, whatever the seat
+  const int columns = static_cast<int>(inner.size());
+  const Vec<2> middle = 0.5 * (outer.front() + outer.back());
+  const auto nearest = std::ranges::min_element(outer, {}, [&](const Vec<2>& p) { return norm(p - middle); });
+  const auto pivot = static_cast<int>(nearest - outer.begin());
+  if (bearing.has_pivot) {
+    if (pivot == 0 || pivot + 1 == columns)
+      throw Error(
+          fmt::format("bearing \"{}\": it is as narrow as a block; it needs two or more", bearing.name));
+    *nearest = middle;
+  }
+  const double width = norm(along) / (columns - 1);
+  const int rows =
+      std::max(2, static_cast<int>(std::lround(bearing.thickness / (kZoneHeightOverWidth * width))));
   std::vector<Vec<2>> gridpoints;
   for (int r = 0; r <= rows; ++r)
-    for (double column : x) gridpoints.push_back({{column, inner_y + (outer_y - inner_y) * r / rows}});
+    for (int i = 0; i < columns; ++i) {
+      Vec<2> p = outer[i] - inner[i];
+      for (int c = 0; c < 2; ++c) p[c] = inner[i][c] + p[c] * r / rows;
+      gridpoints.push_back(p);
+    }
   std::vector<std::array<int, 3>> zones;
-  const bool upward = outer_y > inner_y;
   for (int r = 0; r < rows; ++r)
     for (int i = 0; i + 1 < columns; ++i) {
       const int p = r * columns + i, q = p + 1, s = p + columns, t = s + 1;
-      // diagonals alternate, so that the platen has no preferred direction
+      // diagonals alternate, so that the block has no preferred direction
       std::array<std::array<int, 3>, 2> pair;
       if ((r + i) % 2 == 0)
         pair = {{{p, q, t}, {p, t, s}}};
       else
         pair = {{{p, q, s}, {q, t, s}}};
       for (auto zone : pair) {
-        if (!upward) std::swap(zone[1], zone[2]);
+        if (!seat.is_reversed) std::swap(zone[1], zone[2]);
         zones.push_back(zone);
       }
     }
   const int first = model.gridpoint_count();
-  model.add_block(gridpoints, zones, platen_material(model));
-  Platen platen;
+  model.add_block(gridpoints, zones, material);
+  BearingBlock block;
+  block.seat = seat;
+  block.first = first;
+  block.last = model.gridpoint_count();
+  block.pivot = first + rows * columns + pivot;
   for (int i = 0; i < columns; ++i) {
-    platen.inner.push_back(first + i);
-    platen.outer.push_back(first + rows * columns + i);
+    block.inner.push_back(first + i);
+    block.outer.push_back(first + rows * columns + i);
   }
-  return platen;
+  return block;
 }
 
-/// Vertices on a horizontal wall, left to right.
-std::vector<int> wall_vertices(const Specimen& specimen, double y) {
-  std::vector<int> wall;
-  const auto& vertices = specimen.tessellation.vertices;
-  for (int v = 0; v < static_cast<int>(vertices.size()); ++v)
-    if (vertices[v][1] == y) wall.push_back(v);
-  std::sort(wall.begin(), wall.end(), [&](int a, int b) { return vertices[a][0] < vertices[b][0]; });
-  return wall;
+/// Position in a list that must hold it.
+int place_in(const std::vector<std::string>& names, const std::string& name) {
+  return static_cast<int>(std::ranges::find(names, name) - names.begin());
 }
 
-std::size_t place_on_wall(const Specimen& specimen, const std::vector<int>& wall, int vertex) {
-  const auto& vertices = specimen.tessellation.vertices;
-  const auto found = std::lower_bound(wall.begin(), wall.end(), vertex,
-                                      [&](int a, int b) { return vertices[a][0] < vertices[b][0]; });
-  return static_cast<std::size_t>(found - wall.begin());
+int place_in(const std::vector<int>& list, int item) {
+  return static_cast<int>(std::ranges::find(list, item) - list.begin());
+}
+
+std::vector<int> all_from(int first, int last) {
+  std::vector<int> result(last - first);
+  std::iota(result.begin(), result.end(), first);
+  return result;
 }
 
 }  // namespace
 
-Model<2> make_concrete_model(const Specimen& specimen, std::optional<double> platen_thickness,
-                             double thickness, const std::vector<InterfaceParameters>& stated) {
-  const InterfaceTable interfaces(specimen.phases, stated);
+std::vector<Bearing> platens(double thickness) {
+  return {{"bottom_platen", "bottom", thickness, "platen", "platen", false},
+          {"top_platen", "top", thickness, "platen", "platen", false}};
+}
+
+Model<2> make_concrete_model(const Specimen& specimen, double thickness,
+                             const std::vector<InterfaceParameters>& interfaces,
+                             const std::vector<Bearing>& bearings) {
+  const Region& region = specimen.region;
+  const auto& tessellation = specimen.tessellation;
+  const InterfaceTable table(specimen.phases, interfaces);
   Model<2> model;
   model.thickness = thickness;
   model.material_names = specimen.phases;
-  model.material_names.emplace_back("platen");
-  model.interface_names = interfaces.names();
-  const auto& tessellation = specimen.tessellation;
-
-  const auto bottom_wall = wall_vertices(specimen, 0.0);
-  const auto top_wall = wall_vertices(specimen, specimen.height);
-  const auto columns = [&](const std::vector<int>& wall) {
-    std::vector<double> x;
-    x.reserve(wall.size());
-    for (int v : wall) x.push_back(tessellation.vertices[v][0]);
-    return x;
+  model.interface_names = table.names();
+  const auto add_name = [](std::vector<std::string>& names, const std::string& name, int& count) {
+    if (std::ranges::find(names, name) != names.end()) return;
+    names.push_back(name);
+    ++count;
   };
+  for (const Bearing& bearing : bearings) {
+    add_name(model.material_names, bearing.material, model.bearing_materials);
+    add_name(model.interface_names, bearing.interface, model.bearing_interfaces);
+  }
 
-  Platen bottom, top;
-  if (platen_thickness) bottom = add_platen(model, columns(bottom_wall), 0.0, -*platen_thickness);
+  const auto edges = specimen::edges(tessellation);
+  std::vector<std::pair<Edge, int>> outline;
+  for (const Edge& e : edges)
+    if (e.right < 0)
+      outline.emplace_back(e,
+                           region.side_of(tessellation.vertices[e.v0], tessellation.vertices[e.v1]).value());
+
+  std::vector<BearingBlock> blocks(bearings.size());
+  // those below the specimen stand before it
+  const auto add_bearings = [&](bool below) {
+    for (std::size_t i = 0; i < bearings.size(); ++i) {
+      const Bearing& bearing = bearings[i];
+      const Seat seat = find_seat(specimen, outline, bearing.name, bearing.side);
+      if ((seat.outward[1] < -0.5) != below) continue;
+      blocks[i] =
+          add_bearing(model, specimen, seat, bearing, place_in(model.material_names, bearing.material));
+      blocks[i].interface = place_in(model.interface_names, bearing.interface);
+      model.sets[bearing.name] = all_from(blocks[i].first, blocks[i].last);
+      model.sets[bearing.name + "_face"] = blocks[i].inner;
+      model.sets[bearing.name + "_support"] = blocks[i].outer;
+      model.sets[bearing.name + "_pivot"] = {blocks[i].pivot};
+    }
+  };
+  add_bearings(true);
   const int first_cell = model.block_count(), first_gridpoint = model.gridpoint_count();
   for (std::size_t cell = 0; cell < tessellation.cells.size(); ++cell) {
     std::vector<Vec<2>> corners;
@@ -100,59 +206,49 @@ Model<2> make_concrete_model(const Specimen& specimen, std::optional<double> pla
     const auto zoned = specimen::zone_block(corners);
     model.add_block(zoned.gridpoints, zoned.zones, specimen.phase[cell]);
   }
-  const int first_platen_above = model.gridpoint_count();
-  if (platen_thickness)
-    top = add_platen(model, columns(top_wall), specimen.height, specimen.height + *platen_thickness);
+  model.sets["specimen"] = all_from(first_gridpoint, model.gridpoint_count());
+  for (int block = first_cell; block < model.block_count(); ++block)
+    for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g)
+      model.sets[specimen.phases[model.block_material[block]]].push_back(g);
+  add_bearings(false);
 
   const auto gridpoint = [&](int cell, int vertex) {
-    const auto& corners = tessellation.cells[cell];
-    const auto at = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
-    return model.block_gridpoints[first_cell + cell] + static_cast<int>(at);
+    return model.block_gridpoints[first_cell + cell] + place_in(tessellation.cells[cell], vertex);
   };
-  const auto add_to = [&](const char* name, const std::vector<int>& gridpoints) {
-    auto& set = model.sets[name];
-    set.insert(set.end(), gridpoints.begin(), gridpoints.end());
-  };
-  const auto join_platen = [&](const std::vector<int>& face, const specimen::Edge& e,
-                               const std::vector<int>& wall, const Platen& platen) {
-    if (!platen_thickness) return;
-    const auto opposite = [&](int vertex) { return platen.inner[place_on_wall(specimen, wall, vertex)]; };
-    model.join_faces(face, {opposite(e.v0), opposite(e.v1)}, interfaces.platen());
-  };
-
-  for (const auto& e : specimen::edges(tessellation)) {
+  for (const specimen::Side& side : region.sides()) model.sets[side.name];
+  std::size_t on_outline = 0;
+  for (const Edge& e : edges) {
     const std::vector<int> a{gridpoint(e.left, e.v0), gridpoint(e.left, e.v1)};
     if (e.right >= 0) {
+      if (const auto slit = region.slit_of(tessellation.vertices[e.v0], tessellation.vertices[e.v1])) {
+        const specimen::Notch& notch = region.notches()[*slit];
+        auto& set = model.contact_sets[notch.name];
+        for (int contact : {0, 1}) set.push_back(model.contact_count() + contact);
+        // an edge has its left cell on its left
+        const Vec<2> along = tessellation.vertices[e.v1] - tessellation.vertices[e.v0];
+        const bool is_left = dot(along, notch.tip - notch.mouth) > 0.0;
+        for (const int cell : {e.left, e.right}) {
+          auto& wall = model.sets[notch.name + ((cell == e.left) == is_left ? "_left" : "_right")];
+          for (const int v : {e.v0, e.v1}) wall.push_back(gridpoint(cell, v));
+        }
+      }
       model.join_faces(a, {gridpoint(e.right, e.v0), gridpoint(e.right, e.v1)},
-                       interfaces.between(specimen.phase[e.left], specimen.phase[e.right]));
+                       table.between(specimen.phase[e.left], specimen.phase[e.right]));
       continue;
     }
-    const Vec<2>& x0 = tessellation.vertices[e.v0];
-    const Vec<2>& x1 = tessellation.vertices[e.v1];
-    if (x0[1] == 0.0 && x1[1] == 0.0) {
-      join_platen(a, e, bottom_wall, bottom);
-      add_to("bottom", a);
-    } else if (x0[1] == specimen.height && x1[1] == specimen.height) {
-      join_platen(a, e, top_wall, top);
-      add_to("top", a);
-    } else {
-      add_to(x0[0] == 0.0 ? "left" : "right", a);
+    const int side = outline[on_outline++].second;
+    for (std::size_t i = 0; i < bearings.size(); ++i) {
+      if (!lies_on(region, side, bearings[i].side)) continue;
+      const auto opposite = [&](int vertex) {
+        return blocks[i].inner[place_in(blocks[i].seat.vertices, vertex)];
+      };
+      model.join_faces(a, {opposite(e.v0), opposite(e.v1)}, blocks[i].interface);
+    }
+    for (int on = side; on >= 0; on = region.sides()[on].part_of) {
+      auto& set = model.sets[region.sides()[on].name];
+      set.insert(set.end(), a.begin(), a.end());
     }
   }
-
-  auto& specimen_set = model.sets["specimen"];
-  specimen_set.resize(first_platen_above - first_gridpoint);
-  std::iota(specimen_set.begin(), specimen_set.end(), first_gridpoint);
-  auto& bottom_platen = model.sets["bottom_platen"];
-  bottom_platen.resize(first_gridpoint);
-  std::iota(bottom_platen.begin(), bottom_platen.end(), 0);
-  auto& top_platen = model.sets["top_platen"];
-  top_platen.resize(model.gridpoint_count() - first_platen_above);
-  std::iota(top_platen.begin(), top_platen.end(), first_platen_above);
-  model.sets["bottom_support"] = bottom.outer;
-  model.sets["bottom_face"] = bottom.inner;
-  model.sets["top_support"] = top.outer;
-  model.sets["top_face"] = top.inner;
   return model;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <string>
 #include <string_view>
@@ -41,11 +42,23 @@ struct Model {
 
   std::vector<std::string> material_names;
   std::vector<std::string> interface_names;
+  int bearing_materials =
+      0;  ///< so many of the materials, the last ones, are of bearings, not of the specimen
+  int bearing_interfaces = 0;  ///< likewise of the interfaces: between bearings and specimen
 
-  std::map<std::string, std::vector<int>, std::less<>> sets;  ///< of gridpoints, by name
+  std::map<std::string, std::vector<int>, std::less<>> sets;          ///< of gridpoints, by name
+  std::map<std::string, std::vector<int>, std::less<>> contact_sets;  ///< likewise
 
   /// A set by its name. Throws Error naming it when the model has none.
   const std::vector<int>& set(std::string_view name) const;
+
+  bool is_of_bearing(int block) const {
+    return block_material[block] >= std::ssize(material_names) - bearing_materials;
+  }
+  /// Whether a contact is between a bearing and the specimen.
+  bool is_of_bearing(const Contact<Dim>& contact) const {
+    return contact.interface >= std::ssize(interface_names) - bearing_interfaces;
+  }
 
   int block_count() const { return static_cast<int>(block_material.size()); }
   int block_of(int gridpoint) const;

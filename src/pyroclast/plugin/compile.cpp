@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -149,14 +150,26 @@ std::string essence(const std::string& messages, const fs::path& header) {
   return kept;
 }
 
+/// The file of this code, where it is a module of another program; empty elsewhere.
+fs::path own_module() {
+  Dl_info info{};
+  static const char here = 0;
+  if (dladdr(&here, &info) == 0 || !info.dli_fname) return {};
+  std::error_code ignored;
+  return fs::canonical(info.dli_fname, ignored);
+}
+
 /// Folders that hold the headers of this program: beside an installed one, in the source tree of a built one.
 std::vector<std::string> include_flags() {
   std::error_code ignored;
   const auto program = fs::read_symlink("/proc/self/exe", ignored);
   const fs::path installed = program.parent_path().parent_path() / PYROCLAST_INSTALLED_INCLUDE;
-  for (const std::vector<fs::path>& folders : {std::vector<fs::path>{installed},
-                                               {PYROCLAST_SOURCE_INCLUDE, PYROCLAST_GENERATED_INCLUDE},
-                                               {PYROCLAST_FULL_INCLUDE}}) {
+  std::vector<std::vector<fs::path>> places{{installed}};
+  for (fs::path above = own_module().parent_path(); above.has_relative_path(); above = above.parent_path())
+    places.push_back({above / PYROCLAST_INSTALLED_INCLUDE});
+  places.push_back({PYROCLAST_SOURCE_INCLUDE, PYROCLAST_GENERATED_INCLUDE});
+  places.push_back({PYROCLAST_FULL_INCLUDE});
+  for (const std::vector<fs::path>& folders : places) {
     if (!fs::exists(folders.front() / "pyroclast" / "plugin" / "stamp.hpp")) continue;
     std::vector<std::string> flags;
     for (const auto& folder : folders) flags.push_back("-I" + folder.string());

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pyroclast/results/checkpoint_file.hpp"
@@ -46,6 +47,9 @@ class Checkpoints {
   void between_batches(const Run& run, bool stops);
   /// To be called after a look that ended a stage.
   void end_stage(const Run& run);
+
+  /// Another hash of the inputs, from the next one on.
+  void set_inputs(std::string hash) { sources_.inputs = std::move(hash); }
 
   /// The last that was written, empty without any.
   const std::filesystem::path& last() const { return last_; }

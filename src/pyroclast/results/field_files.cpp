@@ -100,9 +100,10 @@ void append_stress(std::vector<float>& values, const ContactState<2>& state, con
           0.0, normal * n[0] * n[1] + shear * (n[0] * t[1] + n[1] * t[0]), 0.0, 0.0});
 }
 
-/// The most that a contact between blocks is damaged by any mode, 1: it is a crack. The platens' are none.
+/// The most that a contact between blocks is damaged by any mode, 1: it is a crack. Those of bearings are
+/// none.
 double crack(const Mechanics<2>& mechanics, int contact) {
-  if (mechanics.model().contacts[contact].interface == platen_interface(mechanics.model())) return 0.0;
+  if (mechanics.model().is_of_bearing(mechanics.model().contacts[contact])) return 0.0;
   double most = 0.0;
   for (const auto mode : kCrackModes) most = std::max(most, mechanics.remembered(contact, mode));
   return most;

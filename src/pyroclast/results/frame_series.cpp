@@ -99,7 +99,7 @@ void write_contacts(Hdf5File& file, const Model<2>& model) {
     connectivity.insert(connectivity.end(),
                         {static_cast<std::int64_t>(2 * i), static_cast<std::int64_t>(2 * i + 1)});
     interface.push_back(static_cast<std::uint8_t>(c.interface));
-    platen.push_back(c.interface + 1 == std::ssize(model.interface_names) ? 1 : 0);
+    platen.push_back(model.is_of_bearing(c) ? 1 : 0);
     length.push_back(c.area / model.thickness);
   }
   write_grid(file, "/contacts", points, connectivity, 2, kVtkLine);

@@ -28,6 +28,12 @@ void Recorder::record(const Run& run) {
 }
 
 Summary Recorder::finish(const Run& run) {
+  Summary made = summary(run);
+  write_summary(folder_ / "summary.json", made, run);
+  return made;
+}
+
+Summary Recorder::summary(const Run& run) const {
   Summary summary = summarize(run);
   summary.title = title_;
   std::vector<std::string> warnings = warnings_;
@@ -36,7 +42,6 @@ Summary Recorder::finish(const Run& run) {
   summary.warnings = std::move(warnings);
   summary.expansion_reading = expansion_reading_;
   summary.wall_time = wall_time();
-  write_summary(folder_ / "summary.json", summary, run);
   return summary;
 }
 

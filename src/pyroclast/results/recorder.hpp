@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "pyroclast/results/field_files.hpp"
 #include "pyroclast/results/history_file.hpp"
@@ -32,6 +33,10 @@ class Recorder {
   void record(const Run& run);
   /// Writes the summary of the rows so far.
   Summary finish(const Run& run);
+  /// The same, not written.
+  Summary summary(const Run& run) const;
+  /// Adds a line to the warnings of the summary.
+  void warn(std::string line) { warnings_.push_back(std::move(line)); }
 
   /// Of the run, with those parts of it that other processes did, s.
   double wall_time() const;
@@ -43,7 +48,7 @@ class Recorder {
   std::string title_;
   std::string expansion_reading_;
   specimen::SpecimenParameters specimen_;
-  std::vector<std::string> warnings_;  ///< of the deck
+  std::vector<std::string> warnings_;  ///< of the deck, and of what was done to the run
   bool has_fields_;                    ///< whether they are written
   std::optional<HistoryFile> history_;
   std::optional<FieldFiles> fields_;

@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 constexpr const char* kManifest = "manifest.json";
 constexpr const char* kProgram = "pyroclast";
 
-/// All that a run, `specimen` and `figures` write into the folder of a run, as patterns of fnmatch(3),
-/// besides the manifest. What is not here outlives `--overwrite`.
+/// All that a run, `specimen`, `figures` and `watch` write into the folder of a run, as patterns of
+/// fnmatch(3), besides the manifest. What is not here outlives `--overwrite`.
 constexpr auto kWritten = std::to_array<const char*>({
     "deck.toml",
     "history.csv",
@@ -68,6 +68,7 @@ constexpr auto kFigures = std::to_array<const char*>({
     "temperature_profile",
     "thrust",
     "total_strain",
+    "watch",
 });
 constexpr auto kFigureFormats = std::to_array<const char*>({"png", "svg", "pdf"});
 
@@ -86,11 +87,33 @@ bool is_own(const fs::path& file) {
   });
 }
 
+/// Key of the manifest.
+constexpr const char* kDepartures = "not_reproducible_from_the_deck";
+
+/// The manifest of a folder; no object where there is none.
+nlohmann::ordered_json manifest_of(const fs::path& folder) {
+  std::ifstream file(folder / kManifest);
+  return nlohmann::ordered_json::parse(file, nullptr, /*allow_exceptions=*/false);
+}
+
+nlohmann::ordered_json json_of(const std::vector<InputFile>& inputs) {
+  auto json = nlohmann::ordered_json::array();
+  for (const InputFile& input : inputs)
+    json.push_back(
+        {{"name", input.name}, {"sha256", sha256(input.contents)}, {"source", input.source.string()}});
+  return json;
+}
+
+void write_inputs(const fs::path& folder, const Inputs& inputs) {
+  if (!inputs.files.empty()) fs::create_directory(folder / "inputs");
+  for (const InputFile& input : inputs.files) write_text_file(folder / input.name, input.contents);
+  write_text_file(folder / "deck.toml", inputs.deck_text);
+}
+
 /// Whether a folder holds the manifest of a run, and not another program's.
 bool holds_a_run(const fs::path& folder) {
-  std::ifstream file(folder / kManifest);
-  const auto manifest = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
-  return manifest.is_object() && manifest.value("program", nlohmann::json()) == kProgram;
+  const auto manifest = manifest_of(folder);
+  return manifest.is_object() && manifest.value("program", nlohmann::ordered_json()) == kProgram;
 }
 
 /// Removes what an earlier run wrote, except for its manifest: while that stands, the folder is known as a
@@ -135,6 +158,31 @@ void RunFolder::require(const fs::path& path) {
                             kManifest));
 }
 
+std::vector<Departure> RunFolder::departures(const fs::path& path) {
+  const auto manifest = manifest_of(path);
+  if (!manifest.is_object()) return {};
+  std::vector<Departure> all;
+  for (const auto& one : manifest.value(kDepartures, nlohmann::ordered_json::array()))
+    if (one.is_object()) all.push_back({one.value("why", ""), one.value("changed_by_script", true)});
+  return all;
+}
+
+void RunFolder::note_departure(const fs::path& path, const Departure& departure) {
+  const auto known = departures(path);
+  if (std::ranges::find(known, departure) != known.end()) return;
+  auto manifest = manifest_of(path);
+  manifest[kDepartures].push_back({{"why", departure.why}, {"changed_by_script", departure.is_change}});
+  write_text_file(path / kManifest, manifest.dump(2) + "\n");
+}
+
+void RunFolder::replace_inputs(const fs::path& path, const Inputs& inputs) {
+  auto manifest = manifest_of(path);
+  manifest["deck_sha256"] = sha256(inputs.deck_text);
+  if (!inputs.files.empty()) manifest["inputs"] = json_of(inputs.files);
+  write_inputs(path, inputs);
+  write_text_file(path / kManifest, manifest.dump(2) + "\n");
+}
+
 RunFolder::RunFolder(fs::path path, bool overwrite, const Manifest& manifest) : path_(std::move(path)) {
   check(path_, overwrite);
   try {
@@ -150,9 +198,7 @@ RunFolder::RunFolder(fs::path path, bool overwrite, const Manifest& manifest) : 
   json["command"] = manifest.command;
   json["deck"] = manifest.deck_name;
   json["deck_sha256"] = sha256(manifest.inputs.deck_text);
-  for (const InputFile& input : manifest.inputs.files)
-    json["inputs"].push_back(
-        {{"name", input.name}, {"sha256", sha256(input.contents)}, {"source", input.source.string()}});
+  if (!manifest.inputs.files.empty()) json["inputs"] = json_of(manifest.inputs.files);
   json["seed"] = manifest.seed;
   json["threads"] = manifest.threads;
   json["instructions"] = manifest.instructions;
@@ -167,9 +213,7 @@ RunFolder::RunFolder(fs::path path, bool overwrite, const Manifest& manifest) : 
                       {"from_stage", manifest.parent->stage},
                       {"changes", manifest.parent->changes}};
   write_text_file(path_ / kManifest, json.dump(2) + "\n");
-  if (!manifest.inputs.files.empty()) fs::create_directory(path_ / "inputs");
-  for (const InputFile& input : manifest.inputs.files) write_text_file(path_ / input.name, input.contents);
-  write_text_file(path_ / "deck.toml", manifest.inputs.deck_text);
+  write_inputs(path_, manifest.inputs);
 }
 
 }  // namespace pyroclast

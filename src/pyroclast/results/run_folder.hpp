@@ -25,6 +25,16 @@ struct Parent {
   std::vector<std::string> changes;  ///< "key=value", and files of more stages
 };
 
+/// Why a run is not the one that its deck describes.
+struct Departure {
+  std::string why;
+  /// A script did something to the run that its checkpoints do not hold: nothing but the script goes on with
+  /// it.
+  bool is_change = true;
+
+  bool operator==(const Departure&) const = default;
+};
+
 /// What a run was made from.
 struct Manifest {
   std::string deck_name;
@@ -46,6 +56,13 @@ class RunFolder {
   static void check(const std::filesystem::path& path, bool overwrite);
   /// Throws Error when it is not the folder of a run.
   static void require(const std::filesystem::path& path);
+
+  /// Those that the manifest has.
+  static std::vector<Departure> departures(const std::filesystem::path& path);
+  /// Adds one to the manifest, unless it is there.
+  static void note_departure(const std::filesystem::path& path, const Departure& departure);
+  /// The deck of a run that goes on with other stages, and what it names.
+  static void replace_inputs(const std::filesystem::path& path, const Inputs& inputs);
 
   /// Puts `deck.toml`, `manifest.json` and `inputs/` into the folder, which this process has locked.
   RunFolder(std::filesystem::path path, bool overwrite, const Manifest& manifest);

@@ -61,8 +61,8 @@ void write_specimen_files(const std::filesystem::path& folder, const specimen::S
                           const specimen::SpecimenParameters& asked) {
   std::filesystem::create_directories(folder);
   nlohmann::ordered_json json;
-  json["width_m"] = s.width;
-  json["height_m"] = s.height;
+  json["width_m"] = s.region.box().width();
+  json["height_m"] = s.region.box().height();
   json["blocks"] = s.tessellation.cells.size();
   json["aggregates"] = s.aggregates.size();
   json["fraction_asked"] = s.fraction_asked;

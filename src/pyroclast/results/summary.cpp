@@ -209,14 +209,15 @@ Summary summarize(const Run& run) {
   const bool is_small = simulation.moves() && simulation.mechanics().kinematics() == Kinematics::small;
   if (const auto row = is_small ? large_jump(run, s) : std::nullopt)
     s.warnings.push_back(fmt::format(
-        "jumps exceed an edge from {:.0f} degC and strain {:.5f} on, before the results were decided: with "
+        "jumps exceed an edge from {:.0f} degC{} on, before the results were decided: with "
         "mechanics.kinematics = \"finite\", f_c was up to 2 % lower there, and critical temperatures 8 to "
         "28 K (validation/jumps.md)",
-        *history.cell(*row, "temperature_degC"), *history.cell(*row, "strain")));
+        *history.cell(*row, "temperature_degC"),
+        simulation.has_press() ? fmt::format(" and strain {:.5f}", *history.cell(*row, "strain")) : ""));
   return s;
 }
 
-void write_summary(const std::filesystem::path& path, const Summary& s, const Run& run) {
+std::string summary_text(const Summary& s, const Run& run) {
   const Simulation& simulation = run.simulation();
   const specimen::Specimen& specimen = simulation.specimen();
   Json json;
@@ -236,7 +237,11 @@ void write_summary(const std::filesystem::path& path, const Summary& s, const Ru
     json["specimen"]["fraction"][specimen.phases[i]] = specimen.fraction[i];
   json["wall_time_s"] = s.wall_time;
   json["warnings"] = s.warnings;
-  write_text_file(path, json.dump(2) + "\n");
+  return json.dump(2) + "\n";
+}
+
+void write_summary(const std::filesystem::path& path, const Summary& summary, const Run& run) {
+  write_text_file(path, summary_text(summary, run));
 }
 
 }  // namespace pyroclast

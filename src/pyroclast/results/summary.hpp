@@ -34,7 +34,9 @@ struct Summary {
 /// face value.
 Summary summarize(const Run& run);
 
-/// `summary.json`.
+/// `summary.json`, as a text.
+std::string summary_text(const Summary& summary, const Run& run);
+/// The file.
 void write_summary(const std::filesystem::path& path, const Summary& summary, const Run& run);
 
 }  // namespace pyroclast

@@ -30,16 +30,15 @@ std::optional<Vec<2>> read_point(const Section& s, std::string_view key, Meaning
 HeatedFaces read_faces(const Section& s) {
   s.know({"box_low", "box_high"});
   HeatedFaces faces;
+  if (!s.has("faces")) s.error("faces", "is needed: where the boundary acts, such as faces = \"left\"");
   faces.part =
-      s.choice<OutlinePart>("faces",
-                            {{"left", OutlinePart::left, "all of that side"},
-                             {"right", OutlinePart::right, "likewise"},
-                             {"bottom", OutlinePart::bottom, "likewise, under a platen too"},
-                             {"top", OutlinePart::top, "likewise, under a platen too"},
-                             {"outline", OutlinePart::whole, "all four sides"},
-                             {"box", OutlinePart::box, "faces of the outline whose centres lie in a box"}},
-                            "where the boundary acts");
-  if (faces.part != OutlinePart::box) return faces;
+      s.word_or_text("faces",
+                     {{HeatedFaces::kOutline, 0, "all sides, those of holes and notches too"},
+                      {HeatedFaces::kBox, 1, "faces of the outline whose centres lie in a box"}},
+                     "the name of a side of the specimen, such as left, or of the patch under a bearing; "
+                     "also under a platen",
+                     "where the boundary acts");
+  if (faces.part != HeatedFaces::kBox) return faces;
   const auto low = read_point(s, "box_low",
                               "lower left corner: x and y from the lower left corner of the specimen"),
              high = read_point(s, "box_high", "upper right corner, likewise");
@@ -86,9 +85,9 @@ HeatCondition read_condition(const Section& s, CurveReader& curves) {
 
 /// Whether two choices of faces meet whatever the specimen. Boxes are looked at when there is one.
 bool overlap(const HeatedFaces& a, const HeatedFaces& b) {
-  if (a.part == OutlinePart::box || b.part == OutlinePart::box)
-    return a.part == OutlinePart::whole || b.part == OutlinePart::whole;
-  return a.part == b.part || a.part == OutlinePart::whole || b.part == OutlinePart::whole;
+  if (a.part == HeatedFaces::kBox || b.part == HeatedFaces::kBox)
+    return a.part == HeatedFaces::kOutline || b.part == HeatedFaces::kOutline;
+  return a.part == b.part || a.part == HeatedFaces::kOutline || b.part == HeatedFaces::kOutline;
 }
 
 std::vector<HeatBoundaryCondition> read_boundaries(const Section& heat, CurveReader& curves) {

@@ -29,6 +29,7 @@ constexpr Interval kStandardRange{20.0, 1200.0};
 /// 2e-7.
 constexpr double kNoStrain = 1e-6;
 
+constexpr Meaning kBearingSolid = "the solid of platens or other bearings, at 20 °C in every run";
 constexpr Meaning kSolid = "a phase of the specimen; each phase has such a table";
 
 /// Records an error unless the curve, where it is defined there, has this value at the reference temperature.
@@ -350,12 +351,16 @@ ExpansionReading read_expansion_reading(const Section& root) {
 }
 
 std::vector<SolidMaterial> read_solids(const Section& root, const std::vector<std::string>& phases,
-                                       ExpansionReading reading, CurveReader& curves) {
+                                       const std::vector<std::string>& of_bearings, ExpansionReading reading,
+                                       CurveReader& curves) {
   const Section s = root.section("materials");
   std::vector<SolidMaterial> solids;
   for (const auto& phase : phases) solids.push_back(read_solid(s.section(phase, kSolid), reading, curves));
-  solids.push_back(
-      read_solid(s.section("platen", "the platens' solid, at 20 °C in every run"), reading, curves));
+  for (const auto& name : of_bearings) {
+    solids.push_back(read_solid(s.section(name, kBearingSolid), reading, curves));
+    solids.back().is_of_bearing = true;
+  }
+  s.know({"platen"});
   return solids;
 }
 
@@ -365,12 +370,12 @@ std::vector<SolidMaterial> read_conducting_solids(const Section& root, const std
   s.know({"expansion_reading", "platen"});
   std::vector<SolidMaterial> solids;
   for (const auto& phase : phases) solids.push_back(read_conducting_solid(s.section(phase, kSolid), curves));
-  solids.emplace_back();
   return solids;
 }
 
 ContactParameters read_contacts(const Section& root, const std::vector<std::string>& phases,
-                                const std::string& matrix, const LawFinder& find_law, CurveReader& curves) {
+                                const std::string& matrix, bool has_platens, const LawFinder& find_law,
+                                CurveReader& curves) {
   const Section s =
       root.section("contacts", "what all contacts share: K_n = E / t_b, K_s = G / t_b, Eq. (17)");
   ContactParameters c;
@@ -386,8 +391,12 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
   if (scales)
     c.fracture_zone_size = s.quantity("t_b_block_size", unit::length, Range::positive(),
                                       "block size √(area / count) at which t_b and stated stiffnesses hold");
-  c.platen_friction = s.number("platen_friction", Range::non_negative().usually(0.0, 1.0),
-                               "coefficient of friction between platen and specimen");
+  if (has_platens)
+    c.bearings.push_back({.name = "platen",
+                          .friction = s.number("platen_friction", Range::non_negative().usually(0.0, 1.0),
+                                               "coefficient of friction between platen and specimen")});
+  else
+    s.know({"platen_friction"});
   InterfaceReader reader(s, phases, find_law, curves);
   c.interfaces = reader.read();
   check_pairs(reader.sections(), c.interfaces);

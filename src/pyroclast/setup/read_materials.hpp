@@ -14,10 +14,11 @@ namespace pyroclast {
 /// Reads how [materials] means its `expansion`.
 ExpansionReading read_expansion_reading(const Section& root);
 
-/// Reads [materials]: a table for each phase, and `platen`, which comes last. `curves` must be of the
+/// Reads [materials]: a table for each phase, then one for each solid of bearings. `curves` must be of the
 /// temperature. Errors are recorded in the deck.
 std::vector<SolidMaterial> read_solids(const Section& root, const std::vector<std::string>& phases,
-                                       ExpansionReading reading, CurveReader& curves);
+                                       const std::vector<std::string>& of_bearings, ExpansionReading reading,
+                                       CurveReader& curves);
 
 /// The same for heat conduction alone: of the phases only density, conductivity and specific heat; other
 /// properties have no effect.
@@ -28,8 +29,10 @@ std::vector<SolidMaterial> read_conducting_solids(const Section& root, const std
 using LawFinder = std::function<const LawTable&(const std::string& name)>;
 
 /// Reads [contacts]. A property that is a plain constant follows the `temperature_ratio` of its interface.
-/// \param matrix  phase whose own interface there must be
+/// \param matrix       phase whose own interface there must be
+/// \param has_platens  whether there is a contact with platens, which then comes first of those of bearings
 ContactParameters read_contacts(const Section& root, const std::vector<std::string>& phases,
-                                const std::string& matrix, const LawFinder& find_law, CurveReader& curves);
+                                const std::string& matrix, bool has_platens, const LawFinder& find_law,
+                                CurveReader& curves);
 
 }  // namespace pyroclast

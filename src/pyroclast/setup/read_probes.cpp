@@ -4,9 +4,14 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace pyroclast {
 
 namespace {
+
+/// A probe on the outline may be off by rounding, m.
+constexpr double kOnOutline = 1e-9;
 
 /// A name is part of a column's name in history.csv.
 bool is_name(const std::string& text) {
@@ -17,11 +22,13 @@ bool is_name(const std::string& text) {
 
 }  // namespace
 
-std::vector<ProbePosition> read_probes(const Section& root, double width, double height) {
+std::vector<ProbePosition> read_probes(const Section& root, const specimen::Region& region) {
   std::vector<ProbePosition> probes;
   // What stands in for an error in the width refuses no probe.
   const bool known = root.section("specimen").ok();
-  const auto within = [&](double length) { return known ? Range::between(0.0, length) : Range::any(); };
+  const auto within = [&](int axis) {
+    return known ? Range::between(region.box().low[axis], region.box().high[axis]) : Range::any();
+  };
   for (const Section& s :
        root.optional_sections("probes", "places whose temperature is recorded, any number")) {
     ProbePosition probe;
@@ -29,9 +36,12 @@ std::vector<ProbePosition> read_probes(const Section& root, double width, double
     if (!is_name(probe.name)) s.error("name", "may hold letters, digits and _ only");
     if (std::any_of(probes.begin(), probes.end(), [&](const auto& p) { return p.name == probe.name; }))
       s.error("name", "is the name of another probe already");
-    probe.position = {
-        {s.quantity("x", unit::length, within(width), "from the lower left corner of the specimen"),
-         s.quantity("y", unit::length, within(height), "from the lower left corner of the specimen")}};
+    probe.position = {{s.quantity("x", unit::length, within(0),
+                                  "from the lower left corner of a rectangle, the middle of a disc"),
+                       s.quantity("y", unit::length, within(1), "likewise")}};
+    if (known && s.ok() && region.distance(probe.position) > kOnOutline)
+      s.error("x", fmt::format("with y is a point outside of the specimen, {:.4g} mm from it",
+                               1e3 * region.distance(probe.position)));
     probes.push_back(std::move(probe));
   }
   return probes;

@@ -4,11 +4,12 @@
 
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/simulation/probe.hpp"
+#include "pyroclast/specimen/region.hpp"
 
 namespace pyroclast {
 
 /// Reads [[probes]], which may be absent. What is wrong is recorded in the deck.
-/// \param width, height  of the specimen, m; no probe may lie outside
-std::vector<ProbePosition> read_probes(const Section& root, double width, double height);
+/// \param region  the specimen; no probe may lie outside
+std::vector<ProbePosition> read_probes(const Section& root, const specimen::Region& region);
 
 }  // namespace pyroclast

@@ -1,9 +1,16 @@
 #include "pyroclast/setup/read_specimen.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/specimen/outline_seeds.hpp"
 
 namespace pyroclast {
 
@@ -66,7 +73,8 @@ specimen::FibreParameters read_fibres(const Section& s) {
 
 /// The largest aggregate must have a place, and the specimen should be some of them wide.
 void check_size(const Section& s, const specimen::SpecimenParameters& p) {
-  const double narrowest = std::min(p.width, p.height), largest = p.aggregates.d_max;
+  const specimen::Box& box = p.region.box();
+  const double narrowest = std::min(box.width(), box.height()), largest = p.aggregates.d_max;
   if (p.aggregates.fraction == 0.0) return;
   if (largest + 2.0 * p.aggregates.minimum_gap > narrowest)
     s.error("d_max", fmt::format("with minimum_gap on both sides must be less than the specimen, {:.6g} m",
@@ -76,17 +84,241 @@ void check_size(const Section& s, const specimen::SpecimenParameters& p) {
                                 narrowest / largest, kFewestAggregatesAcross));
 }
 
+enum class Shape { rectangle, disc, ring, polygon };
+
+/// What a deck says of the outline, before the size of the blocks is known.
+struct Outline {
+  Shape shape;
+  double width = 0.0, height = 0.0, diameter = 0.0, inner_diameter = 0.0;  ///< m
+  std::vector<Vec<2>> corners;                                             ///< m
+  struct Hole {
+    std::string name;
+    Vec<2> centre{};
+    double diameter = 0.0;
+    std::vector<Vec<2>> corners;
+  };
+  std::vector<Hole> holes;
+  std::vector<specimen::Notch> notches;
+};
+
+Vec<2> vec(const std::pair<double, double>& place) {
+  return {{place.first, place.second}};
+}
+
+std::vector<Vec<2>> vecs(const std::vector<std::pair<double, double>>& places) {
+  std::vector<Vec<2>> result;
+  for (const auto& place : places) result.push_back(vec(place));
+  return result;
+}
+
+Vec<2> read_place(const Section& s, std::string_view key, Meaning meaning) {
+  return vec(s.place(key, unit::length, meaning).value_or(std::pair{0.0, 0.0}));
+}
+
+Outline read_outline(const Section& s) {
+  const Range size = Range::positive().usually(0.01, 10.0);
+  Outline o;
+  o.shape = s.choice<Shape, Shape>(
+      "shape",
+      {{"rectangle", Shape::rectangle,
+        "with its lower left corner at [0, 0]; sides bottom, right, top, left"},
+       {"disc", Shape::disc, "around [0, 0]; its one side is called outline"},
+       {"ring", Shape::ring, "the same with a hole in the middle, called bore"},
+       {"polygon", Shape::polygon, "of any corners; its sides are called side_1 from the first corner on"}},
+      Shape::rectangle, "outline of the specimen");
+  if (o.shape == Shape::rectangle) {
+    o.width = s.quantity("width", unit::length, size, "of the specimen");
+    o.height = s.quantity("height", unit::length, size, "of the specimen");
+  } else if (o.shape == Shape::polygon) {
+    o.corners = vecs(s.places("corners", unit::length, 3, "of the specimen, in either sense"));
+  } else {
+    o.diameter = s.quantity("diameter", unit::length, size, "of the specimen");
+    if (o.shape == Shape::ring) {
+      o.inner_diameter = s.quantity("inner_diameter", unit::length, size, "of the bore");
+      if (s.ok() && o.inner_diameter >= o.diameter) s.error("inner_diameter", "must be less than diameter");
+    }
+  }
+  s.know({"width", "height", "corners", "diameter", "inner_diameter"});
+  int number = 0;
+  for (const Section& h : s.optional_sections("holes", "holes in the specimen, any number")) {
+    Outline::Hole hole;
+    hole.name = h.text("name", fmt::format("hole_{}", ++number), "of its side");
+    if (h.has("corners")) {
+      hole.corners =
+          vecs(h.places("corners", unit::length, 3, "of a hole that is not round, in either sense"));
+      h.know({"centre", "diameter"});
+    } else {
+      hole.centre = read_place(h, "centre", "of a round hole");
+      hole.diameter = h.quantity("diameter", unit::length, Range::positive(), "of a round hole");
+    }
+    o.holes.push_back(std::move(hole));
+  }
+  number = 0;
+  for (const Section& n : s.optional_sections("notches", "straight cuts from the outline, any number")) {
+    specimen::Notch notch;
+    notch.name = n.text("name", fmt::format("notch_{}", ++number), "of its side");
+    notch.mouth = read_place(n, "mouth", "where it begins, on the outline");
+    notch.tip = read_place(n, "tip", "where it ends, in the specimen; a corner of blocks");
+    notch.width =
+        n.quantity("width", unit::length, Range::non_negative(), 0.0,
+                   "of a slot, which ends in a point at the tip; 0: the blocks on both sides touch, and "
+                   "nothing holds them together");
+    o.notches.push_back(std::move(notch));
+  }
+  return o;
+}
+
+/// A circle of the outline.
+struct Circle {
+  Vec<2> centre{};
+  double diameter = 0.0;
+};
+
+/// A seat this near to a circle, in diameters, is on it.
+constexpr double kOnCircle = 1e-3;
+
+/// Half of the angle that a bearing covers on a circle; none where it lies elsewhere.
+std::optional<double> half_angle(const ReadBearing& b, const Circle& circle) {
+  if (!b.at || std::abs(norm(*b.at - circle.centre) - 0.5 * circle.diameter) > kOnCircle * circle.diameter)
+    return std::nullopt;
+  return std::asin(std::min(1.0, b.width / circle.diameter));
+}
+
+double angle_on(const ReadBearing& b, const Circle& circle) {
+  const Vec<2> from_centre = *b.at - circle.centre;
+  return std::atan2(from_centre[1], from_centre[0]);
+}
+
+/// Corners of a circle, with those that the ends of bearings are.
+std::vector<Vec<2>> corners_of(const Circle& circle, double size, std::span<const ReadBearing> bearings) {
+  std::vector<double> angles;
+  for (const ReadBearing& b : bearings)
+    if (const auto half = half_angle(b, circle))
+      for (const double angle : {angle_on(b, circle) - *half, angle_on(b, circle) + *half})
+        angles.push_back(angle < 0.0 ? angle + 2.0 * std::numbers::pi : angle);
+  if (angles.empty()) angles.push_back(0.0);
+  return specimen::circle_corners(circle.centre, circle.diameter, size, angles);
+}
+
+/// Where a bearing lies on a straight side: its ends with the body on the left.
+std::array<Vec<2>, 2> ends_on_side(const specimen::Region& region, const ReadBearing& b) {
+  const auto& box = region.box();
+  const double near = kOnCircle * std::max(box.width(), box.height());
+  for (const specimen::Piece& piece : region.pieces()) {
+    if (region.sides()[piece.side].is_round ||
+        specimen::distance_from_segment(*b.at, piece.from, piece.to) > near)
+      continue;
+    const Vec<2> along = (piece.to - piece.from) * (1.0 / norm(piece.to - piece.from));
+    const Vec<2> middle = piece.from + dot(*b.at - piece.from, along) * along;
+    return {middle - 0.5 * b.width * along, middle + 0.5 * b.width * along};
+  }
+  throw Error(fmt::format("its middle ({:.6g}, {:.6g}) m is not on the outline", (*b.at)[0], (*b.at)[1]));
+}
+
+/// The same on a circle: two of its corners.
+std::array<Vec<2>, 2> ends_on_circle(const specimen::Region& region, const Circle& circle,
+                                     const ReadBearing& b, double half) {
+  std::array<Vec<2>, 2> ends;
+  const double middle = angle_on(b, circle);
+  const bool is_hole = region.distance(circle.centre) > 0.0;
+  for (const int end : {0, 1}) {
+    const double angle = middle + (end == 0 ? -half : half) * (is_hole ? -1.0 : 1.0);
+    const Vec<2> at = circle.centre + 0.5 * circle.diameter * Vec<2>{{std::cos(angle), std::sin(angle)}};
+    ends[end] = std::ranges::min_element(region.pieces(), {}, [&](const specimen::Piece& piece) {
+                  return norm(piece.from - at);
+                })->from;
+  }
+  return ends;
+}
+
+/// With the seats of bearings named.
+specimen::Region with_seats(const specimen::Region& region, std::span<const Circle> circles,
+                            std::span<const ReadBearing> bearings) {
+  std::vector<specimen::Patch> patches;
+  for (const ReadBearing& b : bearings) {
+    if (!b.at) continue;
+    try {
+      const auto circle =
+          std::ranges::find_if(circles, [&](const Circle& c) { return half_angle(b, c).has_value(); });
+      const auto [from, to] = circle == circles.end()
+                                  ? ends_on_side(region, b)
+                                  : ends_on_circle(region, *circle, b, *half_angle(b, *circle));
+      std::vector<specimen::Patch> more = patches;
+      more.push_back({b.bearing.side, from, to});
+      region.with_patches(more);
+      patches = std::move(more);
+    } catch (const Error& error) {
+      b.section.error("at", error.what());
+    }
+  }
+  return region.with_patches(patches);
+}
+
+/// \param blocks  number of blocks; 0 where they are read from a file
+specimen::Region make_region(const Section& s, const Outline& o, int blocks,
+                             std::span<const ReadBearing> bearings) {
+  if (!s.ok()) return specimen::Region::rectangle(1.0, 1.0);
+  try {
+    std::vector<Circle> circles;
+    const auto round = [&](const Circle& circle, double size) {
+      circles.push_back(circle);
+      return corners_of(circle, size, bearings);
+    };
+    const double area =
+        std::numbers::pi / 4.0 * (o.diameter * o.diameter - o.inner_diameter * o.inner_diameter);
+    double size = std::sqrt(area / std::max(1, blocks));
+    specimen::Region region;
+    if (o.shape == Shape::rectangle) {
+      region = specimen::Region::rectangle(o.width, o.height);
+    } else if (o.shape == Shape::polygon) {
+      std::vector<std::string> names;
+      for (std::size_t i = 0; i < o.corners.size(); ++i) names.push_back(fmt::format("side_{}", i + 1));
+      region = specimen::Region::polygon(o.corners, names);
+    } else {
+      region = specimen::Region::polygon(round({{}, o.diameter}, size), {"outline"}, true);
+      if (o.shape == Shape::ring)
+        region =
+            region.with_holes(std::array{specimen::Hole{"bore", round({{}, o.inner_diameter}, size), true}});
+    }
+    size = std::sqrt(region.area() / std::max(1, blocks));
+    std::vector<specimen::Hole> holes;
+    for (const auto& hole : o.holes)
+      holes.push_back(hole.corners.empty()
+                          ? specimen::Hole{hole.name, round({hole.centre, hole.diameter}, size), true}
+                          : specimen::Hole{hole.name, hole.corners, false});
+    std::vector<specimen::Notch> notches = o.notches;
+    for (specimen::Notch& n : notches) n.point = specimen::slot_point(n.length(), n.width, size);
+    region = with_seats(region.with_holes(holes).with_notches(notches), circles, bearings);
+    if (blocks == 0 && !region.is_rectangle())
+      s.error("shape", "blocks are read from a file, which must be a rectangle");
+    return region;
+  } catch (const Error& error) {
+    s.error(error.what());
+    return specimen::Region::rectangle(1.0, 1.0);
+  }
+}
+
+/// That bearings cover sides that there are.
+void check_bearings(const specimen::Region& region, std::span<const ReadBearing> bearings) {
+  std::vector<std::string> names;
+  for (const specimen::Side& side : region.sides()) names.push_back(side.name);
+  for (const ReadBearing& b : bearings)
+    if (!b.at && b.section.ok() && std::ranges::find(names, b.bearing.side) == names.end())
+      b.section.error("side", fmt::format("must be a side of the specimen, one of {}; got \"{}\"",
+                                          fmt::join(names, ", "), b.bearing.side));
+}
+
 std::vector<specimen::Inclusions> read_inclusions(const Section& root) {
   std::vector<specimen::Inclusions> list;
   for (const Section& s : root.optional_sections(
            "inclusions", "what stands in the matrix beside [aggregates]; placed after these, in turn")) {
-    enum class Shape { circle, fibre };
-    const auto shape = s.choice<Shape>(
+    enum class Kind { circle, fibre };
+    const auto kind = s.choice<Kind>(
         "shape",
-        {{"circle", Shape::circle, "circles with a gradation of their own: another aggregate, or pores"},
-         {"fibre", Shape::fibre, "straight fibres: the blocks that one crosses are of its phase"}},
+        {{"circle", Kind::circle, "circles with a gradation of their own: another aggregate, or pores"},
+         {"fibre", Kind::fibre, "straight fibres: the blocks that one crosses are of its phase"}},
         "shape of the inclusions");
-    if (shape == Shape::circle)
+    if (kind == Kind::circle)
       list.emplace_back(read_aggregates(s));
     else
       list.emplace_back(read_fibres(s));
@@ -119,11 +351,11 @@ specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::p
 
 }  // namespace
 
-specimen::SpecimenParameters read_specimen(const Section& root, const std::filesystem::path& folder) {
+specimen::SpecimenParameters read_specimen(const Section& root, const std::filesystem::path& folder,
+                                           std::span<const ReadBearing> bearings) {
   specimen::SpecimenParameters p;
   const Section s = root.section("specimen", "size of the specimen, and its seed");
-  p.width = s.quantity("width", unit::length, Range::positive().usually(0.01, 10.0), "of the specimen");
-  p.height = s.quantity("height", unit::length, Range::positive().usually(0.01, 10.0), "of the specimen");
+  const Outline outline = read_outline(s);
   p.seed = static_cast<std::uint64_t>(
       s.integer("seed", Range::between(0, static_cast<double>(specimen::kLargestSeed)),
                 "of the random numbers; the same seed gives the same specimen"));
@@ -132,14 +364,18 @@ specimen::SpecimenParameters read_specimen(const Section& root, const std::files
                    "coarse aggregates, placed as circles with diameters after Fuller's curve "
                    "P(d) = (d / d_max)^fuller_exponent, Eq. (16)");
   p.aggregates = read_aggregates(aggregates);
-  if (s.ok() && aggregates.ok()) check_size(aggregates, p);
   p.inclusions = read_inclusions(root);
-  p.blocks = read_blocks(root.section("blocks", "the tessellation into blocks"), folder);
+  const Section blocks = root.section("blocks", "the tessellation into blocks");
+  p.blocks = read_blocks(blocks, folder);
+  p.region = make_region(s, outline, p.blocks.count, bearings);
+  if (s.ok()) check_bearings(p.region, bearings);
+  if (s.ok() && aggregates.ok()) check_size(aggregates, p);
   const Section superposition = root.section("superposition", "which blocks are of which phase");
   p.matrix = superposition.text("matrix", "mortar", "phase of the blocks that nothing else covers");
   for (const auto& phase : specimen::phases(p))
-    if (phase == "platen")
-      superposition.error("\"platen\" is the solid of the platens; a phase needs another name");
+    if (phase == "platen" ||
+        std::ranges::any_of(bearings, [&](const ReadBearing& b) { return b.bearing.material == phase; }))
+      superposition.error(fmt::format("\"{}\" is the solid of a bearing; a phase needs another name", phase));
   p.superposition = superposition.choice<specimen::Superposition>(
       "rule",
       {{"area", specimen::Superposition::area, "circles cover more than covered_fraction of the block"},

@@ -12,14 +12,16 @@ namespace {
 /// Between two frames while the temperature changes, K, where the deck does not say.
 constexpr double kFrameTemperature = 50.0;
 
-OutputIntervals read_output(const Section& s, bool moves, FramesInTime frames_in_time) {
+OutputIntervals read_output(const Section& s, bool moves, bool has_platens, FramesInTime frames_in_time) {
   OutputIntervals output;
   s.know({"history_strain", "frame_strain", "frame_temperature", "frame_interval"});
-  if (moves) {
+  if (moves && has_platens) {
     output.history_strain = s.number("history_strain", Range::positive(),
                                      "strain between two rows of history.csv while compressing");
     output.frame_strain = s.number("frame_strain", Range::positive(),
                                    "strain between two frames of the fields while compressing");
+  }
+  if (moves) {
     output.frame_temperature = s.quantity(
         "frame_temperature", unit::temperature_difference, Range::positive(), kFrameTemperature,
         "while temperatures change: frames of the fields at its multiples, of the mean temperature");
@@ -35,7 +37,8 @@ OutputIntervals read_output(const Section& s, bool moves, FramesInTime frames_in
 
 }  // namespace
 
-ReadStages read_stages(const Section& root, const StageRegistry& kinds) {
+ReadStages read_stages(const Section& root, const StageRegistry& kinds,
+                       const std::vector<RecordParameters>& records, const std::filesystem::path& folder) {
   std::vector<Choice<const StageKind*>> options;
   for (const StageKind& kind : kinds.kinds()) options.push_back({kind.name, &kind, Meaning(kind.meaning)});
   const auto sections =
@@ -50,10 +53,13 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds) {
   FramesInTime frames_in_time = FramesInTime::none;
   for (const StageKind* kind : chosen) frames_in_time = std::max(frames_in_time, kind->needs.frames_in_time);
   StageTables tables;
+  tables.has_platens = root.has("platens");
+  tables.records = records;
+  tables.folder = folder;
   tables.output = read_output(
       root.section("output",
                    "how often rows and frames are written; both are written at the end of each stage too"),
-      moves, frames_in_time);
+      moves, root.has("platens"), frames_in_time);
   if (moves)
     tables.coupling_table =
         root.optional_section("coupling",

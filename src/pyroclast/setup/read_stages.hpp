@@ -16,6 +16,9 @@ struct ReadStages {
 
 /// Reads [[stages]], and [output] and [coupling] as far as their kinds need them. What is wrong is recorded
 /// in the deck.
-ReadStages read_stages(const Section& root, const StageRegistry& kinds);
+/// \param records  that stages may name
+/// \param folder   of the deck
+ReadStages read_stages(const Section& root, const StageRegistry& kinds,
+                       const std::vector<RecordParameters>& records, const std::filesystem::path& folder);
 
 }  // namespace pyroclast

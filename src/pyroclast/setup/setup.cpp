@@ -5,13 +5,16 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
+#include "pyroclast/setup/read_bearings.hpp"
 #include "pyroclast/setup/read_heat.hpp"
 #include "pyroclast/setup/read_materials.hpp"
 #include "pyroclast/setup/read_probes.hpp"
 #include "pyroclast/setup/read_reference.hpp"
+#include "pyroclast/setup/read_sets.hpp"
 #include "pyroclast/setup/read_specimen.hpp"
 #include "pyroclast/setup/read_stages.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
@@ -92,12 +95,28 @@ void check_heat(const Section& root, const HeatConditions& conditions,
   }
 }
 
+/// That boundaries act on sides that there are.
+void check_heated_sides(const Section& root, const Setup& setup) {
+  std::vector<std::string> names{HeatedFaces::kOutline, HeatedFaces::kBox};
+  for (const specimen::Side& side : setup.specimen.region.sides()) names.push_back(side.name);
+  for (const auto& set : setup.sets)
+    if (!set.of_contacts) names.push_back(set.name);
+  const auto heat = root.optional_section("heat");
+  if (!heat || setup.heat.boundaries.empty()) return;
+  const auto sections = heat->optional_sections("boundaries");
+  for (std::size_t i = 0; i < std::min(sections.size(), setup.heat.boundaries.size()); ++i) {
+    const std::string& part = setup.heat.boundaries[i].faces.part;
+    if (std::ranges::find(names, part) == names.end())
+      sections[i].error("faces", fmt::format("must be one of {}; got \"{}\"", fmt::join(names, ", "), part));
+  }
+}
+
 /// Blocks that are coarser than what was studied, and fewer than a heated test needs
 /// (validation/block_size.md).
 void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
   const specimen::SpecimenParameters& s = setup.specimen;
   if (s.blocks.count == 0 || s.aggregates.fraction == 0.0 || !setup.motion) return;
-  const double size = std::sqrt(s.width * s.height / s.blocks.count), share = size / s.aggregates.d_max;
+  const double size = std::sqrt(s.region.area() / s.blocks.count), share = size / s.aggregates.d_max;
   const auto any = [&](auto is) { return std::ranges::any_of(setup.stages, is); };
   const bool is_heated_under_load =
       any([](const auto& stage) { return stage->kind() == std::string_view("load"); }) &&
@@ -169,7 +188,6 @@ void check_contacts(const Section& root, const Setup& setup) {
   if (!root.ok()) return;
   const auto concrete = make_concrete(setup.solids, setup.motion->contacts,
                                       expected_block_size(setup.specimen, setup.motion->contacts));
-  const InterfaceTable table(phases_of(setup.solids), setup.motion->contacts.interfaces);
   const auto check = [&](const ContactMaterial& contact, const std::string& key) {
     const auto [lower, upper] = setup.temperatures;
     double T = kReferenceTemperature;
@@ -183,19 +201,54 @@ void check_contacts(const Section& root, const Setup& setup) {
       contacts.error(key, fmt::format("at {:.6g} degC: {}", T, e.what()));
     }
   };
-  for (int i = 0; i < table.platen(); ++i) check(concrete.contacts[i], table.names()[i]);
+  const std::size_t bearings = setup.motion->contacts.bearings.size();
+  for (std::size_t i = 0; i + bearings < concrete.contacts.size(); ++i)
+    check(concrete.contacts[i], concrete.interfaces[i]);
+}
+
+/// Adds the platens. False where the deck has none.
+bool read_platens(const Section& root, const Setup& setup, std::vector<Bearing>& bearings) {
+  const auto s =
+      root.optional_section("platens", "two elastic blocks as wide as the specimen, under and above it");
+  if (!s) {
+    for (const auto& stage : setup.stages)
+      if (stage->needs().press)
+        root.error(fmt::format("a stage of kind \"{}\" needs the table [platens]", stage->kind()));
+    return false;
+  }
+  const double thickness = s->quantity("thickness", unit::length, Range::positive(), "of each platen");
+  const auto& sides = setup.specimen.region.sides();
+  for (const char* name : {"bottom", "top", "left", "right"})
+    if (std::ranges::find(sides, name, &specimen::Side::name) == sides.end()) {
+      s->error(
+          fmt::format("platens need a specimen with the sides bottom, top, left, right, such as a rectangle; "
+                      "it has no side \"{}\"",
+                      name));
+      break;
+    }
+  bearings = platens(thickness);
+  return true;
+}
+
+std::vector<std::string> materials_of(const std::vector<Bearing>& bearings) {
+  std::vector<std::string> names;
+  for (const Bearing& bearing : bearings)
+    if (std::ranges::find(names, bearing.material) == names.end()) names.push_back(bearing.material);
+  return names;
 }
 
 /// Materials, and what moves, where a stage moves the body.
-void read_moving(const Section& root, CurveReader& curves, const LawFinder& find_law, Setup& setup) {
+void read_moving(const Section& root, const std::vector<ReadBearing>& bearings, CurveReader& curves,
+                 const LawFinder& find_law, Setup& setup) {
   setup.expansion_reading = read_expansion_reading(root);
   const auto phases = specimen::phases(setup.specimen);
-  setup.solids = read_solids(root, phases, setup.expansion_reading, curves);
   setup.motion.emplace();
-  setup.motion->platen_thickness =
-      root.section("platens", "two elastic blocks as wide as the specimen, under and above it")
-          .quantity("thickness", unit::length, Range::positive(), "of each platen");
-  setup.motion->contacts = read_contacts(root, phases, setup.specimen.matrix, find_law, curves);
+  MotionParameters& motion = *setup.motion;
+  const bool has_platens = read_platens(root, setup, motion.bearings);
+  for (const ReadBearing& read : bearings) motion.bearings.push_back(read.bearing);
+  setup.solids = read_solids(root, phases, materials_of(motion.bearings), setup.expansion_reading, curves);
+  motion.contacts = read_contacts(root, phases, setup.specimen.matrix, has_platens, find_law, curves);
+  for (const ReadBearing& read : bearings) motion.contacts.bearings.push_back(read.interface);
   setup.motion->mechanics =
       read_mechanics(root.section("mechanics", "how the body moves; see [method.md](method.md#motion)"));
   check_contacts(root, setup);
@@ -204,7 +257,7 @@ void read_moving(const Section& root, CurveReader& curves, const LawFinder& find
 /// The same where only heat moves.
 void read_resting(const Section& root, CurveReader& curves, Setup& setup) {
   setup.solids = read_conducting_solids(root, specimen::phases(setup.specimen), curves);
-  root.know({"platens", "contacts", "mechanics"});
+  root.know({"platens", "bearings", "contacts", "mechanics"});
 }
 
 }  // namespace
@@ -214,28 +267,34 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   const Section root = deck.root();
   Setup setup;
   setup.title = root.text("title", "name of the run, for figures and summary");
-  auto read = read_stages(root, kinds);
+  const std::vector<RecordParameters> records = read_records(root);
+  auto read = read_stages(root, kinds, records, folder);
   setup.stages = std::move(read.stages);
   setup.stage_names = std::move(read.names);
-  CurveReader time_curves(folder, time_axis(), {0.0, exposure(setup.stages)}, fire_curves());
+  setup.exposure = exposure(setup.stages);
+  CurveReader time_curves(folder, time_axis(), {0.0, setup.exposure}, fire_curves());
   if (auto heat = read_heat(root, time_curves)) setup.heat = std::move(*heat);
   check_heat(root, setup.heat, setup.stages);
   setup.temperatures = run_temperatures(root, setup.heat, setup.stages);
-  setup.specimen = read_specimen(root, folder);
+  const auto bearings = read.any_moves ? read_bearings(root) : std::vector<ReadBearing>();
+  setup.specimen = read_specimen(root, folder, bearings);
+  setup.sets = read_sets(root);
+  if (root.ok()) check_heated_sides(root, setup);
   setup.thickness = root.section("specimen")
                         .quantity("thickness", unit::length, Range::positive(), 1.0,
                                   "out of plane; forces, energies and heats are those of this thickness");
   if (setup.heat.uniform)
     root.know({"probes"});
   else
-    setup.probes = read_probes(root, setup.specimen.width, setup.specimen.height);
+    setup.probes = read_probes(root, setup.specimen.region);
   CurveReader curves(folder, temperature_axis(), setup.temperatures, builtin_curves());
   if (read.any_moves)
     read_moving(
-        root, curves,
+        root, bearings, curves,
         [&](const std::string& name) -> const LawTable& { return find_law(name, folder, laws); }, setup);
   else
     read_resting(root, curves, setup);
+  if (setup.motion) setup.motion->records = records;
   setup.curves = curves.curves();
   warn_of_healing(root, setup);
   if (root.ok()) warn_of_coarse_blocks(root, setup);
@@ -262,13 +321,23 @@ DeckSchema deck_schema(const StageRegistry& kinds) {
 std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team) {
   if (!team) team = std::make_shared<Team>();
   specimen::Specimen specimen = make_checked_specimen(setup.specimen, team.get());
-  return std::make_unique<Simulation>(std::move(specimen), setup.thickness, setup.solids, setup.heat,
-                                      setup.probes, setup.motion, std::move(team));
+  return make_simulation(setup, std::move(specimen), std::move(team));
+}
+
+std::unique_ptr<Simulation> make_simulation(const Setup& setup, specimen::Specimen specimen,
+                                            std::shared_ptr<Team> team) {
+  if (!team) team = std::make_shared<Team>();
+  if (specimen.phases != specimen::phases(setup.specimen))
+    throw Error(fmt::format("the specimen's phases are {}, but those of the deck {}",
+                            fmt::join(specimen.phases, ", "),
+                            fmt::join(specimen::phases(setup.specimen), ", ")));
+  return std::make_unique<Simulation>(std::move(specimen), setup.thickness, setup.solids, setup.sets,
+                                      setup.heat, setup.probes, setup.motion, std::move(team));
 }
 
 double expected_block_size(const specimen::SpecimenParameters& specimen, const ContactParameters& contacts) {
   if (specimen.blocks.count == 0) return contacts.fracture_zone_size.value_or(1.0);
-  return std::sqrt(specimen.width * specimen.height / specimen.blocks.count);
+  return std::sqrt(specimen.region.area() / specimen.blocks.count);
 }
 
 }  // namespace pyroclast

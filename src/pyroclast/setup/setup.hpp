@@ -27,11 +27,13 @@ struct Setup {
   std::string title;
   specimen::SpecimenParameters specimen;
   double thickness = 0.0;             ///< out of plane, m
-  std::vector<SolidMaterial> solids;  ///< by phase of the specimen, and last the platens'
+  std::vector<SolidMaterial> solids;  ///< by phase of the specimen, then those of bearings
   ExpansionReading expansion_reading = ExpansionReading::secant;
   std::vector<ReadCurve> curves;  ///< properties over the temperature, as the deck gave them
   Interval temperatures;          ///< that the run may come to, °C; its curves are checked for these
+  double exposure = 0.0;          ///< time for which boundaries act, s
   std::optional<MotionParameters> motion;  ///< empty where no stage moves the body
+  std::vector<SetParameters<2>> sets;      ///< beside those that every model has
   HeatConditions heat;                     ///< uniform at the reference temperature without [heat]
   std::vector<ProbePosition> probes;
   std::vector<std::unique_ptr<Stage>> stages;
@@ -55,6 +57,14 @@ DeckSchema deck_schema(const StageRegistry& kinds = {});
 /// make_checked_specimen.
 /// \param team  the threads of the run; one alone where there is none
 std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<Team> team = nullptr);
+/// The same of a specimen that is made already. It has the phases of the deck, and the sides that the deck
+/// names.
+std::unique_ptr<Simulation> make_simulation(const Setup& setup, specimen::Specimen specimen,
+                                            std::shared_ptr<Team> team = nullptr);
+
+/// The same of a specimen that was made before.
+std::unique_ptr<Simulation> make_simulation(const Setup& setup, specimen::Specimen specimen,
+                                            std::shared_ptr<Team> team);
 
 /// Block size that a deck foresees, m; where the tessellation is read from a file, the one at which t_b
 /// holds.

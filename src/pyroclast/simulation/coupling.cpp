@@ -8,13 +8,12 @@ ZoneProperties zone_at(const SolidMaterial& solid, double temperature) {
   return zone_properties<2>(solid.young(temperature), solid.poisson, solid.thermal_strain(temperature));
 }
 
-/// One set of parameters a material and an interface; platens keep the reference temperature.
+/// One set of parameters a material and an interface; bearings keep the reference temperature.
 BodyProperties properties_at_one_temperature(const Model<2>& model, const ConcreteMaterials& materials,
                                              double temperature) {
   std::vector<ZoneProperties> solids;
-  for (int i = 0; i < static_cast<int>(materials.solids.size()); ++i)
-    solids.push_back(
-        zone_at(materials.solids[i], i == platen_material(model) ? kReferenceTemperature : temperature));
+  for (const SolidMaterial& solid : materials.solids)
+    solids.push_back(zone_at(solid, solid.is_of_bearing ? kReferenceTemperature : temperature));
   std::vector<ZoneProperties> zones;
   zones.reserve(model.zones.size());
   for (int block : zone_blocks(model)) zones.push_back(solids[model.block_material[block]]);

@@ -15,6 +15,9 @@ constexpr std::int64_t kCyclesPerCheck = 50;
 /// A platen that sinks by less than this share of the failure strain within the stated cycles is not running
 /// away.
 constexpr double kSlowSinking = 0.1;
+/// Without platens forces out of balance are none below this share of `platen_difference`, on the face of a
+/// block.
+constexpr double kAsGoodAsNone = 0.1;
 /// What is nearer to a platen than this share of the height touches it.
 constexpr double kTouches = 1e-7;
 /// Steps of moving evenly: there, and halt.
@@ -23,6 +26,21 @@ constexpr std::int64_t kEvenSteps = 2;
 /// (validation/transient_heating.csv).
 constexpr double kCyclesOverLeast = 1.3;
 
+/// How much the body has given way to its loads: as a strain.
+double shortening(const Simulation& simulation) {
+  return simulation.has_press() ? simulation.press().specimen_strain() : simulation.loads().give();
+}
+
+/// What the body as a whole is out of equilibrium by, as a stress on its section, Pa.
+double imbalance(const Simulation& simulation) {
+  if (!simulation.has_press()) {
+    const double size = std::sqrt(simulation.specimen().region.area());
+    return norm(simulation.mechanics().net_force()) / (size * simulation.model().thickness);
+  }
+  const Press<2>& press = simulation.press();
+  return std::abs(press.stress_top() - press.stress_bottom());
+}
+
 }  // namespace
 
 const char* name(PlatenControl control) {
@@ -30,6 +48,7 @@ const char* name(PlatenControl control) {
 }
 
 void Exchange::begin(Simulation& simulation) const {
+  if (!simulation.has_press()) return;
   Press<2>& press = simulation.press();
   if (coupling_.platen == PlatenControl::fixed) {
     press.control_by_motion(0.0);
@@ -72,7 +91,10 @@ void Exchange::set_down(const Press<2>& press) {
 bool Exchange::advance(Simulation& simulation, int most_steps) {
   if (!move_evenly(simulation)) return false;
   const bool may_fail = platen_follows();
-  if (is_handed_over_) strain_before_ = last_ = simulation.press().specimen_strain();
+  if (is_handed_over_) {
+    simulation.loads().mark();
+    strain_before_ = last_ = shortening(simulation);
+  }
   is_handed_over_ = false;
   const std::int64_t done = cycles_ % coupling_.most_cycles;
   const std::int64_t to_check =
@@ -81,11 +103,11 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
   simulation.mechanics().advance(static_cast<int>(steps));
   cycles_ += steps;
   if (steps < to_check) return false;
-  const double now = simulation.press().specimen_strain();
+  const double now = shortening(simulation);
   ran_away_ = may_fail && now - strain_before_ > coupling_.failure_strain;
   if (ran_away_) return true;
   if (cycles_ >= coupling_.least_cycles) {
-    const bool is_supported = simulation.press().is_supported();
+    const bool is_supported = !simulation.has_press() || simulation.press().is_supported();
     converged_ = is_supported && is_still(simulation);
     if (converged_) return true;
     if (!is_supported && platen_follows()) set_down(simulation.press());
@@ -97,9 +119,13 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
 }
 
 bool Exchange::is_still(const Simulation& simulation) const {
-  const Press<2>& press = simulation.press();
-  return std::abs(press.stress_top() - press.stress_bottom()) < coupling_.platen_difference &&
-         simulation.mechanics().unbalanced_ratio() < coupling_.unbalanced_ratio;
+  const Mechanics<2>& mechanics = simulation.mechanics();
+  if (imbalance(simulation) >= coupling_.platen_difference) return false;
+  if (mechanics.unbalanced_ratio() < coupling_.unbalanced_ratio) return true;
+  // a body that expands freely bears nothing to compare with
+  const double face = specimen::block_size(simulation.specimen()) * simulation.model().thickness;
+  return !simulation.has_press() &&
+         mechanics.mean_unbalanced_force() < kAsGoodAsNone * coupling_.platen_difference * face;
 }
 
 std::vector<Column> Exchange::columns() {

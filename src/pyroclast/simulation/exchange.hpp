@@ -23,7 +23,9 @@ struct Coupling {
   // The mechanics is at rest when both are below these. The ratio does not see a small force that acts on all
   // gridpoints alike, such as the inertia of a specimen that expands; the platens do.
   double unbalanced_ratio = 0.0;
-  double platen_difference = 0.0;  ///< between the stresses on the platens, Pa
+  /// Between the stresses on the platens; without platens the sum of weight, loads and reactions over the
+  /// section of a square body of the same area, Pa.
+  double platen_difference = 0.0;
   // Both do not see weight, which is small beside loads: the lower platen must carry what rests on it.
   /// Steps for one exchange at least: a force out of balance needs time to move a body of that size.
   std::int64_t least_cycles = 0;
@@ -31,7 +33,8 @@ struct Coupling {
   std::int64_t most_cycles = 0;
   bool predictor = false;  ///< moves the body to where its last exchange foretells it to rest; uniform fields
   PlatenControl platen = PlatenControl::force;
-  /// The specimen has failed when the platen sinks by this share of the height at one temperature.
+  /// The specimen has failed when the platen sinks by this share of the height at one temperature; without
+  /// platens when what is loaded gives way by this share of the body's size, the square root of its area.
   double failure_strain = 0.0;
 };
 

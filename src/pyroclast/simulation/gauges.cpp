@@ -158,6 +158,20 @@ Gauge crack_gauge(const Mechanics<2>& mechanics) {
   return gauge;
 }
 
+/// With a column for each record.
+Gauge record_gauge(const Simulation& simulation) {
+  Gauge gauge;
+  for (const Record& record : simulation.records()) gauge.columns.push_back(column_of(record.parameters()));
+  gauge.read = [](const Simulation& s) {
+    std::vector<double> values;
+    for (const Record& record : s.records())
+      values.push_back(column_over_si(record.parameters().kind) * record.read(s));
+    return values;
+  };
+  gauge.of_motion = true;
+  return gauge;
+}
+
 const Mechanics<2>& mechanics_of(const Simulation& simulation) {
   return simulation.mechanics();
 }
@@ -176,12 +190,14 @@ std::vector<Gauge> temperature_gauges() {
 
 std::vector<Gauge> motion_gauges(const Simulation& simulation) {
   if (!simulation.moves()) return {};
-  return {
-      make_gauge(
-          kPress, [](const Simulation& s) -> const Press<2>& { return s.press(); }, true),
-      motion_gauge(simulation.mechanics()),
-      crack_gauge(simulation.mechanics()),
-  };
+  std::vector<Gauge> gauges;
+  if (simulation.has_press())
+    gauges.push_back(make_gauge(
+        kPress, [](const Simulation& s) -> const Press<2>& { return s.press(); }, true));
+  gauges.push_back(motion_gauge(simulation.mechanics()));
+  gauges.push_back(crack_gauge(simulation.mechanics()));
+  gauges.push_back(record_gauge(simulation));
+  return gauges;
 }
 
 std::vector<Gauge> transport_gauges(const Simulation& simulation) {

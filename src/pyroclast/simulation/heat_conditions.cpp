@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/overloaded.hpp"
 
 namespace pyroclast {
 
@@ -13,13 +14,6 @@ namespace {
 
 /// Accuracy to which the time of the last change is found, as a fraction of the duration.
 constexpr double kTimeAccuracy = 1e-6;
-
-template <class... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>;  // Clang before 17 does not deduce it by itself
 
 /// Curves of a condition, in the order: temperature (if it has one), others.
 struct ConditionCurves {
@@ -66,10 +60,11 @@ HeatMaterial heat_material(const SolidMaterial& solid) {
           solid.density * require(solid.specific_heat, "specific_heat")};
 }
 
-/// None of the platens, which stand last.
+/// None of bearings.
 std::vector<std::optional<HeatMaterial>> heat_materials(const std::vector<SolidMaterial>& solids) {
   std::vector<std::optional<HeatMaterial>> materials(solids.size());
-  for (std::size_t m = 0; m + 1 < solids.size(); ++m) materials[m] = heat_material(solids[m]);
+  for (std::size_t m = 0; m < solids.size(); ++m)
+    if (!solids[m].is_of_bearing) materials[m] = heat_material(solids[m]);
   return materials;
 }
 
@@ -89,23 +84,18 @@ Box bounding_box(const std::vector<OutlineFace<2>>& outline, const Model<2>& mod
   return box;
 }
 
-std::vector<int> choose_faces(const Conduction<2>& conduction, const HeatedFaces& faces,
-                              const Box& specimen) {
+std::vector<int> choose_faces(const Model<2>& model, const Conduction<2>& conduction,
+                              const HeatedFaces& faces, const Box& specimen) {
   const double tolerance = 1e-9 * norm(specimen.high - specimen.low);  // rounding
   const Vec<2> slack{{tolerance, tolerance}};
-  switch (faces.part) {
-    case OutlinePart::left:
-      return conduction.faces(on_plane<2>(0, specimen.low[0], tolerance));
-    case OutlinePart::right:
-      return conduction.faces(on_plane<2>(0, specimen.high[0], tolerance));
-    case OutlinePart::bottom:
-      return conduction.faces(on_plane<2>(1, specimen.low[1], tolerance));
-    case OutlinePart::top:
-      return conduction.faces(on_plane<2>(1, specimen.high[1], tolerance));
-    case OutlinePart::whole:
-      return conduction.faces([](const OutlineFace<2>&) { return true; });
-    case OutlinePart::box:
-      break;
+  if (faces.part == HeatedFaces::kOutline)
+    return conduction.faces([](const OutlineFace<2>&) { return true; });
+  if (faces.part != HeatedFaces::kBox) {
+    std::vector<int> side = model.set(faces.part);
+    std::ranges::sort(side);
+    return conduction.faces([&](const OutlineFace<2>& face) {
+      return std::ranges::all_of(face.gridpoints, [&](int g) { return std::ranges::binary_search(side, g); });
+    });
   }
   auto chosen = conduction.faces(in_box<2>(faces.box_low - slack, faces.box_high + slack));
   if (chosen.empty())
@@ -207,7 +197,7 @@ std::unique_ptr<Conduction<2>> make_conduction(const Model<2>& model,
   FaceUse use(conduction->outline().size());
   for (const auto& boundary : heat.boundaries) {
     try {
-      const auto faces = choose_faces(*conduction, boundary.faces, specimen);
+      const auto faces = choose_faces(model, *conduction, boundary.faces, specimen);
       use.add(faces, boundary);
       apply(*conduction, faces, boundary.condition);
     } catch (const Error& e) {

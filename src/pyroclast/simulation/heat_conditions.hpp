@@ -14,12 +14,12 @@
 
 namespace pyroclast {
 
-enum class OutlinePart : std::uint8_t { left, right, bottom, top, whole, box };
-
-/// Faces of the specimen's outline, those under the platens included.
+/// Faces of the specimen's outline, those under bearings included.
 struct HeatedFaces {
-  OutlinePart part = OutlinePart::whole;
-  Vec<2> box_low{}, box_high{};  ///< OutlinePart::box: faces whose centres lie in it, bounds included, m
+  static constexpr const char *kOutline = "outline", *kBox = "box";
+
+  std::string part = kOutline;   ///< all of it, those in a box, or else the name of a side or patch
+  Vec<2> box_low{}, box_high{};  ///< faces whose centres lie in it, bounds included, m
 };
 
 /// Holds the temperature of faces.

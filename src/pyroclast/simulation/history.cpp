@@ -1,6 +1,7 @@
 #include "pyroclast/simulation/history.hpp"
 
 #include <cstdint>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,6 +23,21 @@ void History::add_column(const Column& column) {
 
 void History::add_row() {
   cells_.emplace_back(columns_.size());
+}
+
+void History::add_row(std::vector<std::optional<double>> cells) {
+  cells.resize(columns_.size());
+  cells_.push_back(std::move(cells));
+}
+
+void History::take_rows(const History& other) {
+  std::vector<std::optional<std::size_t>> to;
+  for (const Column& column : other.columns_) to.push_back(find(column.name));
+  for (const auto& row : other.cells_) {
+    add_row();
+    for (std::size_t i = 0; i < row.size(); ++i)
+      if (to[i]) cells_.back()[*to[i]] = row[i];
+  }
 }
 
 void History::set(std::string_view column, double value) {

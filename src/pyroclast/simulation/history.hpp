@@ -33,11 +33,17 @@ class History {
   /// first row. Throws Error when a column of this name has another unit.
   void add_column(const Column& column);
   void add_row();
+  /// A row with all its cells, in the order of the columns.
+  void add_row(std::vector<std::optional<double>> cells);
+  /// Adds the rows of another history; its columns that are not here are left out.
+  void take_rows(const History& other);
   /// Sets a cell of the last row. Throws Error when there is no such column.
   void set(std::string_view column, double value);
 
   const std::vector<Column>& columns() const { return columns_; }
   bool has(std::string_view column) const;
+  /// Throws Error when there is no such column.
+  std::size_t index(std::string_view column) const;
   std::size_t row_count() const { return cells_.size(); }
   /// By column, in their order.
   const std::vector<std::optional<double>>& row(std::size_t row) const { return cells_.at(row); }
@@ -54,7 +60,6 @@ class History {
 
  private:
   std::optional<std::size_t> find(std::string_view column) const;
-  std::size_t index(std::string_view column) const;
 
   std::vector<Column> columns_;
   std::vector<std::vector<std::optional<double>>> cells_;  ///< by row

@@ -40,20 +40,20 @@ Press<Dim>::Press(Mechanics<Dim>& mechanics, int axis, double height,
       height_(height),
       widths_(widths),
       across_(components_across<Dim>(axis)) {
-  for (const char* name : {"bottom_support", "top_support", "bottom_face", "top_face", "bottom", "top",
-                           "specimen", "bottom_platen"})
+  for (const char* name : {"bottom_platen_support", "top_platen_support", "bottom_platen_face",
+                           "top_platen_face", "bottom", "top", "specimen", "bottom_platen"})
     summed_.emplace(name, mechanics_.set_of(set(name)));
   for (int d = 0; d < Dim - 1; ++d)
     for (const auto side : kSides[d]) summed_.emplace(side, mechanics_.set_of(set(side)));
-  for (int g : set("bottom_support"))
+  for (int g : set("bottom_platen_support"))
     for (int i = 0; i < Dim; ++i) mechanics_.prescribe_velocity(g, i, 0.0);
-  for (int g : set("top_support"))
+  for (int g : set("top_platen_support"))
     for (int i : across_) mechanics_.prescribe_velocity(g, i, 0.0);
 }
 
 template <int Dim>
 void Press<Dim>::let_go() {
-  for (int g : set("top_support")) mechanics_.release(g, axis_);
+  for (int g : set("top_platen_support")) mechanics_.release(g, axis_);
   is_driven_ = false;
 }
 
@@ -62,7 +62,7 @@ void Press<Dim>::control_by_force() {
   const double borne = is_driven_ ? std::max(0.0, stress_top()) : stress_held_;
   mechanics_.untie();
   let_go();
-  mechanics_.tie(set("top_support"), axis_);
+  mechanics_.tie(set("top_platen_support"), axis_);
   hold(borne);
 }
 
@@ -76,7 +76,7 @@ void Press<Dim>::control_by_motion(double velocity) {
 
 template <int Dim>
 void Press<Dim>::drive(double velocity) {
-  for (int g : set("top_support")) mechanics_.prescribe_velocity(g, axis_, -velocity);
+  for (int g : set("top_platen_support")) mechanics_.prescribe_velocity(g, axis_, -velocity);
 }
 
 template <int Dim>
@@ -84,7 +84,7 @@ void Press<Dim>::hold(double stress) {
   double force = stress;
   for (double width : widths_) force *= width;
   force *= mechanics_.model().thickness;
-  const auto& support = set("top_support");
+  const auto& support = set("top_platen_support");
   Vec<Dim> share{};
   share[axis_] = -force / static_cast<double>(support.size());
   for (int g : support) mechanics_.apply_force(g, share);
@@ -135,8 +135,8 @@ template <class Up>
 typename Press<Dim>::Clearances Press<Dim>::clearances(const Up& up) const {
   const double lowest = up(*std::ranges::min_element(set("bottom"), {}, up));
   const double highest = up(*std::ranges::max_element(set("top"), {}, up));
-  return {lowest - mechanics_.mean_displacement(summed("bottom_face"))[axis_],
-          mechanics_.mean_displacement(summed("top_face"))[axis_] - highest};
+  return {lowest - mechanics_.mean_displacement(summed("bottom_platen_face"))[axis_],
+          mechanics_.mean_displacement(summed("top_platen_face"))[axis_] - highest};
 }
 
 template <int Dim>
@@ -197,7 +197,7 @@ void Press<Dim>::begin_stage() {
 
 template <int Dim>
 double Press<Dim>::strain() const {
-  return (shortening("top_face", "bottom_face") - shortening_at_zero_) / height_;
+  return (shortening("top_platen_face", "bottom_platen_face") - shortening_at_zero_) / height_;
 }
 
 template <int Dim>
@@ -214,13 +214,13 @@ double Press<Dim>::lateral_strain() const {
 
 template <int Dim>
 double Press<Dim>::stress_top() const {
-  const GridpointSet& support = summed("top_support");
+  const GridpointSet& support = summed("top_platen_support");
   return (mechanics_.total_force(support)[axis_] - mechanics_.total_applied_force(support)[axis_]) / area();
 }
 
 template <int Dim>
 double Press<Dim>::stress_bottom() const {
-  return -mechanics_.total_force(summed("bottom_support"))[axis_] / area();
+  return -mechanics_.total_force(summed("bottom_platen_support"))[axis_] / area();
 }
 
 template <int Dim>

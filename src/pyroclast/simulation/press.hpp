@@ -14,10 +14,10 @@ namespace pyroclast {
 
 /// A press with a fixed lower and a movable upper platen, and the specimen between them.
 ///
-/// It holds, drives and watches named sets of the model's gridpoints (Model::sets): `bottom_support` and
-/// `top_support`, the outer faces of the platens; `bottom_face` and `top_face`, their inner faces; `bottom`,
-/// `top`, `left`, `right` and in 3D `front`, `back`, the sides of the specimen; `specimen`, `bottom_platen`
-/// and `top_platen`, all gridpoints of those.
+/// It holds, drives and watches named sets of the model's gridpoints (Model::sets): `bottom_platen_support`
+/// and `top_platen_support`, the outer faces of the platens; `bottom_platen_face` and `top_platen_face`,
+/// their inner faces; `bottom`, `top`, `left`, `right` and in 3D `front`, `back`, the sides of the specimen;
+/// `specimen`, `bottom_platen` and `top_platen`, all gridpoints of those.
 ///
 /// Stress and strain are positive in compression, lateral strain in expansion.
 template <int Dim>

@@ -34,7 +34,7 @@ Probe::Probe(const Model<2>& model, const ProbePosition& at) : name_(at.name) {
   // The deepest zone, so that rounding on an edge loses no point.
   double deepest = -std::numeric_limits<double>::infinity();
   for (std::size_t z = 0; z < model.zones.size(); ++z) {
-    if (model.block_material[blocks[z]] == platen_material(model)) continue;
+    if (model.is_of_bearing(blocks[z])) continue;
     const auto weights = shape_functions(model, geometry, z, at.position);
     const double depth = *std::min_element(weights.begin(), weights.end());
     if (depth <= deepest) continue;

@@ -37,21 +37,46 @@ Run::Run(Simulation& simulation, std::vector<std::unique_ptr<Stage>> stages)
       records_(stages_.size()),
       most_steps_(most_steps(simulation)) {
   if (stages_.empty()) throw Error("a run needs at least one stage");
-  // The stated order of the columns: number of the stage, clocks, temperatures, the stages' own, motion,
-  // transport, probes.
-  for (const Column& column : row_columns()) history_.add_column(column);
-  const auto add = [&](std::vector<Gauge> gauges) {
-    for (const Gauge& gauge : gauges)
-      for (const Column& column : gauge.columns) history_.add_column(column);
-    append(gauges_, std::move(gauges));
-  };
+  if (simulation.moves()) check_supports();
+  const auto add = [&](std::vector<Gauge> gauges) { append(gauges_, std::move(gauges)); };
   add(clock_gauges(simulation));
   add(temperature_gauges());
-  for (const auto& stage : stages_)
-    for (const Column& column : stage->columns()) history_.add_column(column);
+  stages_columns_ = gauges_.size();
   add(motion_gauges(simulation));
   add(transport_gauges(simulation));
   add(probe_gauges(simulation));
+  name_columns();
+}
+
+/// In the stated order: number of the stage, clocks, temperatures, the stages' own, motion, transport,
+/// probes.
+void Run::name_columns() {
+  for (const Column& column : row_columns()) history_.add_column(column);
+  for (std::size_t i = 0; i <= gauges_.size(); ++i) {
+    if (i == stages_columns_)
+      for (const auto& stage : stages_)
+        for (const Column& column : stage->columns()) history_.add_column(column);
+    if (i == gauges_.size()) break;
+    for (const Column& column : gauges_[i].columns) history_.add_column(column);
+  }
+}
+
+/// Where platens hold the body, they do.
+void Run::check_supports() const {
+  Supports<2> supports(simulation_.model());
+  const Vec<2> gravity = simulation_.mechanics().state().gravity;
+  bool is_loaded = gravity[0] != 0.0 || gravity[1] != 0.0;
+  for (std::size_t i = 0; i < stages_.size(); ++i) {
+    const Stage& stage = *stages_[i];
+    stage.check(simulation_, supports);
+    is_loaded = is_loaded || stage.loads();
+    if (simulation_.has_press() || !stage.needs().mechanics || !is_loaded) continue;
+    if (const auto motion = supports.free_motion())
+      throw Error(fmt::format(
+          "stage {} ({}): nothing holds the body against moving {}, but it has weight or a load: hold "
+          "a set of it in a stage of kind \"drive\", or set gravity to 0",
+          i + 1, stage.kind(), *motion));
+  }
 }
 
 bool Run::next() {
@@ -78,6 +103,35 @@ bool Run::next() {
   return true;
 }
 
+void Run::go_on() {
+  if (outcome_ != Outcome::stopped) return;
+  outcome_ = Outcome::running;
+  records_[stage_].outcome = Outcome::running;
+}
+
+void Run::change_later_stages(std::vector<std::unique_ptr<Stage>> stages) {
+  const auto kept = static_cast<std::size_t>(last_begun_stage() + 1);
+  if (stages.size() < std::max<std::size_t>(kept, 1))
+    throw Error(fmt::format("the run has begun {} stages, but {} are given", kept, stages.size()));
+  for (std::size_t i = 0; i < kept; ++i) stages[i] = std::move(stages_[i]);
+  stages_ = std::move(stages);
+  records_.resize(stages_.size());
+  const History old = std::exchange(history_, {});
+  name_columns();
+  history_.take_rows(old);  // a column that only a stage had which is no more is empty
+  const bool has_more = kept < stages_.size();
+  if (stage_is_over_ && !stage_ends_run_ && has_more) outcome_ = Outcome::running;
+}
+
+void Run::end_stage() {
+  go_on();
+  if (!stage_is_begun_ || stage_is_over_ || outcome_ != Outcome::running)
+    throw Error("no stage is under way that could be ended");
+  if (records_[stage_].rows.empty())
+    throw Error("the stage has not come to a look yet, so it cannot be ended");
+  end_stage(Verdict{.over = true});
+}
+
 Outcome Run::run() {
   while (next()) continue;
   return outcome_;
@@ -87,7 +141,7 @@ void Run::begin_stage() {
   stage_is_begun_ = true;
   stage_is_over_ = false;
   records_[stage_] = {Outcome::running, {history_.row_count(), history_.row_count()}};
-  if (simulation_.moves()) simulation_.press().begin_stage();
+  if (simulation_.moves() && simulation_.has_press()) simulation_.press().begin_stage();
   stages_[stage_]->begin(simulation_);
 }
 
@@ -133,19 +187,25 @@ void Run::limit_batch(int most_steps) {
   most_steps_ = std::min(most_steps_, most_steps);
 }
 
-void Run::add_row() {
-  history_.add_row();
-  history_.set("stage", static_cast<double>(stage_));
+std::vector<std::optional<double>> Run::measure() const {
+  std::vector<std::optional<double>> row(history_.columns().size());
+  const auto set = [&](const Column& column, double value) { row[history_.index(column.name)] = value; };
+  set(row_columns().front(), static_cast<double>(stage_));
   const Stage* stage = stage_is_begun_ ? stages_[stage_].get() : nullptr;  // none at the start of the run
   for (const Gauge& gauge : gauges_) {
     if (gauge.of_motion && stage && !stage->needs().mechanics) continue;
     const std::vector<double> values = gauge.read(simulation_);
-    for (std::size_t i = 0; i < values.size(); ++i) history_.set(gauge.columns[i].name, values[i]);
+    for (std::size_t i = 0; i < values.size(); ++i) set(gauge.columns[i], values[i]);
   }
-  if (!stage) return;
+  if (!stage) return row;
   const auto columns = stage->columns();
   const auto values = stage->values();
-  for (std::size_t i = 0; i < values.size(); ++i) history_.set(columns[i].name, values[i]);
+  for (std::size_t i = 0; i < values.size(); ++i) set(columns[i], values[i]);
+  return row;
+}
+
+void Run::add_row() {
+  history_.add_row(measure());
 }
 
 void Run::end_stage(const Verdict& verdict) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -35,6 +36,8 @@ class Run {
   /// Goes on to the next look and adds a row to the history. False when the run is over, or was stopped: then
   /// there is no new look, and what was broken off has left no row.
   bool next();
+  /// Takes back a stop, so that `next` goes on where the run was stopped.
+  void go_on();
   /// All the rest of it.
   Outcome run();
 
@@ -58,6 +61,19 @@ class Run {
   /// Share of that stage that is done, 0 to 1, as far as it can be foreseen.
   double progress() const { return stage().progress(simulation_); }
 
+  /// Number of the last stage that has begun, from 0; -1 before any.
+  std::int64_t last_begun_stage() const { return stage_is_begun_ ? stage_ : stage_ - 1; }
+  /// What a look would measure now, by the columns of the history; adds no row.
+  std::vector<std::optional<double>> measure() const;
+
+  /// Puts other stages behind the last one that has begun. A run whose last stage was over goes on with them,
+  /// unless its verdict ended the run. Columns of theirs are added to the history, empty so far.
+  /// \param stages  all of the run; those up to the last begun are not taken
+  void change_later_stages(std::vector<std::unique_ptr<Stage>> stages);
+  /// Ends the stage that is under way, at the last look or where it was stopped since. Throws Error where
+  /// none is.
+  void end_stage();
+
   Outcome outcome() const { return outcome_; }
   const std::vector<std::unique_ptr<Stage>>& stages() const { return stages_; }
   const std::vector<StageRecord>& records() const { return records_; }
@@ -70,6 +86,7 @@ class Run {
   void visit_state(StateVisitor& visitor);
 
  private:
+  void check_supports() const;
   void begin_stage();
   bool move_to_look();
   int batch() const;
@@ -77,11 +94,13 @@ class Run {
   void visit_records(StateVisitor& visitor);
   void add_row();
   void end_stage(const Verdict& verdict);
+  void name_columns();
 
   Simulation& simulation_;
   std::vector<std::unique_ptr<Stage>> stages_;
   std::vector<StageRecord> records_;
   std::vector<Gauge> gauges_;
+  std::size_t stages_columns_ = 0;  ///< the stages' own columns stand before those of this gauge
   History history_;
   std::function<bool()> stop_asked_ = [] { return false; };
   std::function<void(Run&)> between_batches_ = [](Run&) {};

@@ -57,20 +57,30 @@ std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const Concre
                                         team);
 }
 
+Model<2> make_model(const specimen::Specimen& specimen, double thickness,
+                    const std::vector<SetParameters<2>>& sets,
+                    const std::optional<MotionParameters>& motion) {
+  Model<2> model =
+      motion ? make_concrete_model(specimen, thickness, motion->contacts.interfaces, motion->bearings)
+             : make_concrete_model(specimen, thickness);
+  add_sets(model, sets);
+  return model;
+}
+
+constexpr const char* kUpperPlaten = "top_platen";
+
 /// Component of a position along which the press stands.
 constexpr int kVertical = 1;
 
 }  // namespace
 
 Simulation::Simulation(specimen::Specimen specimen, double thickness,
-                       const std::vector<SolidMaterial>& solids, const HeatConditions& heat,
-                       const std::vector<ProbePosition>& probes,
+                       const std::vector<SolidMaterial>& solids, const std::vector<SetParameters<2>>& sets,
+                       const HeatConditions& heat, const std::vector<ProbePosition>& probes,
                        const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team)
     : team_(std::move(team)),
       specimen_(std::move(specimen)),
-      model_(motion ? make_concrete_model(specimen_, motion->platen_thickness, thickness,
-                                          motion->contacts.interfaces)
-                    : make_concrete_model(specimen_, std::nullopt, thickness)),
+      model_(make_model(specimen_, thickness, sets, motion)),
       heat_(heat),
       field_(make_field(model_, solids, heat, team_)) {
   for (const auto& probe : probes) probes_.emplace_back(model_, probe);
@@ -78,7 +88,30 @@ Simulation::Simulation(specimen::Specimen specimen, double thickness,
   materials_ =
       make_concrete(solids, motion->contacts, specimen_.metrics.mean_size, specimen::block_size(specimen_));
   mechanics_ = make_mechanics(model_, materials_, field_, motion->mechanics, team_);
-  press_ = std::make_unique<Press<2>>(*mechanics_, kVertical, specimen_.height, std::array{specimen_.width});
+  for (const specimen::Notch& notch : specimen_.region.notches())
+    if (const auto parted = model_.contact_sets.find(notch.name); parted != model_.contact_sets.end())
+      for (int contact : parted->second) mechanics_->break_contact(contact);
+  loads_ = std::make_unique<Loads<2>>(*mechanics_, std::sqrt(specimen_.region.area()));
+  for (const RecordParameters& record : motion->records) records_.emplace_back(*mechanics_, record);
+  if (std::ranges::find(motion->bearings, kUpperPlaten, &Bearing::name) == motion->bearings.end()) return;
+  const specimen::Box& box = specimen_.region.box();
+  press_ = std::make_unique<Press<2>>(*mechanics_, kVertical, box.height(), std::array{box.width()});
+}
+
+const Record& Simulation::record(std::string_view name) const {
+  for (const Record& record : records_)
+    if (record.parameters().name == name) return record;
+  throw Error(fmt::format("there is no record \"{}\"", name));
+}
+
+void Simulation::set_zero() {
+  if (press_) press_->set_zero();
+  for (Record& record : records_) record.set_zero(*this);
+}
+
+void Simulation::set_materials(ConcreteMaterials materials) {
+  mechanics_->set_properties(properties_at(model_, materials, field_));
+  materials_ = std::move(materials);
 }
 
 void Simulation::visit_state(StateVisitor& visitor) {
@@ -93,6 +126,15 @@ void Simulation::visit_state(StateVisitor& visitor) {
     const StateVisitor::Scope scope(visitor, "mechanics");
     mechanics_->visit_state(visitor);
   }
+  {
+    const StateVisitor::Scope scope(visitor, "loads");
+    loads_->visit_state(visitor);
+  }
+  {
+    const StateVisitor::Scope scope(visitor, "records");
+    for (Record& record : records_) record.visit_state(visitor);
+  }
+  if (!press_) return;
   const StateVisitor::Scope scope(visitor, "press");
   press_->visit_state(visitor);
 }
@@ -115,13 +157,12 @@ double estimate_modulus(const Model<2>& model, const ConcreteMaterials& material
   const auto blocks = zone_blocks(model);
   double volume = 0.0, compliance = 0.0;
   for (int z = 0; z < model.zone_count(); ++z) {
-    const int material = model.block_material[blocks[z]];
-    if (material == platen_material(model)) continue;
+    if (model.is_of_bearing(blocks[z])) continue;
     volume += geometry.volume[z];
-    compliance += geometry.volume[z] / materials.solids[material].young(temperature);
+    compliance += geometry.volume[z] / materials.solids[model.block_material[blocks[z]]].young(temperature);
   }
   for (const auto& c : model.contacts) {
-    if (c.interface == platen_interface(model)) continue;
+    if (model.is_of_bearing(c)) continue;
     const auto k = materials.contacts[c.interface].at(temperature).stiffness();
     const double normal = c.normal[1] * c.normal[1];           // traction over stress, along the normal
     const double tangential = c.normal[1] * c.tangents[0][1];  // and along the face

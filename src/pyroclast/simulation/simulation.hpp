@@ -4,15 +4,19 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/material/concrete.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
 #include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/model/sets.hpp"
 #include "pyroclast/simulation/heat_conditions.hpp"
+#include "pyroclast/simulation/loads.hpp"
 #include "pyroclast/simulation/press.hpp"
 #include "pyroclast/simulation/probe.hpp"
+#include "pyroclast/simulation/records.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 
@@ -20,17 +24,19 @@ namespace pyroclast {
 
 /// What a simulation that moves the body is made from, beside what every one is made from.
 struct MotionParameters {
-  double platen_thickness = 0.0;  ///< m
+  std::vector<Bearing> bearings;
+  std::vector<RecordParameters> records;
   ContactParameters contacts;
   MechanicsParameters<2> mechanics;
 };
 
-/// A specimen as a model, its temperatures, and, where a stage moves it, its mechanics and the press around
-/// it. Not movable: the solvers refer to the model beside them.
+/// A specimen as a model, its temperatures, and, where a stage moves it, its mechanics, what loads it, and
+/// the press around it where there are platens. Not movable: the solvers refer to the model beside them.
 class Simulation {
  public:
   /// \param thickness     of the specimen, out of plane, m
-  /// \param solids        by phase of the specimen, and last the platens'
+  /// \param solids        by phase of the specimen, then those of bearings
+  /// \param sets          beside those that every model has
   /// \param probes        of temperature
   /// \param motion        empty where nothing moves: then there are no platens and no mechanics
   /// \param team          the threads of the run
@@ -38,8 +44,9 @@ class Simulation {
   /// Throws Error when the model or a solver cannot be made, see make_conduction and properties_at, or a
   /// probe lies outside.
   Simulation(specimen::Specimen specimen, double thickness, const std::vector<SolidMaterial>& solids,
-             const HeatConditions& heat, const std::vector<ProbePosition>& probes,
-             const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team);
+             const std::vector<SetParameters<2>>& sets, const HeatConditions& heat,
+             const std::vector<ProbePosition>& probes, const std::optional<MotionParameters>& motion,
+             std::shared_ptr<Team> team);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
@@ -48,15 +55,27 @@ class Simulation {
   const specimen::Specimen& specimen() const { return specimen_; }
   const Model<2>& model() const { return model_; }
   const ConcreteMaterials& materials() const { return materials_; }
+  /// Other properties from now on, at the temperatures that there are: as an exchange of temperatures, see
+  /// Mechanics::set_properties. Densities and laws are those of before.
+  void set_materials(ConcreteMaterials materials);
   const HeatConditions& heat() const { return heat_; }
   TemperatureField& field() { return field_; }
   const TemperatureField& field() const { return field_; }
   const std::vector<Probe>& probes() const { return probes_; }
 
-  /// Whether there are mechanics and a press.
+  /// Whether there are mechanics.
   bool moves() const { return mechanics_ != nullptr; }
   Mechanics<2>& mechanics() { return *mechanics_; }
   const Mechanics<2>& mechanics() const { return *mechanics_; }
+  Loads<2>& loads() { return *loads_; }
+  const Loads<2>& loads() const { return *loads_; }
+  const std::vector<Record>& records() const { return records_; }
+  /// Throws Error when there is none of that name.
+  const Record& record(std::string_view name) const;
+  /// Strains, displacements and openings count from now.
+  void set_zero();
+
+  bool has_press() const { return press_ != nullptr; }
   Press<2>& press() { return *press_; }
   const Press<2>& press() const { return *press_; }
 
@@ -78,6 +97,8 @@ class Simulation {
   TemperatureField field_;
   std::vector<Probe> probes_;
   std::unique_ptr<Mechanics<2>> mechanics_;
+  std::unique_ptr<Loads<2>> loads_;
+  std::vector<Record> records_;
   std::unique_ptr<Press<2>> press_;
   double heating_time_ = 0.0;
   std::int64_t exchanges_ = 0;
@@ -98,8 +119,8 @@ specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& par
 double estimate_modulus(const Model<2>& model, const ConcreteMaterials& materials,
                         double temperature = kReferenceTemperature);
 
-/// Time in which a stress wave runs through the uncracked specimen once, at its mean temperature and with the
-/// mass that moves, s.
+/// Time in which a stress wave runs through the uncracked specimen from platen to platen once, at its mean
+/// temperature and with the mass that moves, s.
 double wave_time(const Simulation& simulation);
 
 }  // namespace pyroclast

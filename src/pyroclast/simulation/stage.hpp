@@ -9,6 +9,7 @@
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/material/curve.hpp"
 #include "pyroclast/simulation/history.hpp"
+#include "pyroclast/simulation/supports.hpp"
 
 namespace pyroclast {
 
@@ -49,6 +50,7 @@ enum class FramesInTime : std::uint8_t { none, optional, needed };
 /// What stages of a kind need of a simulation.
 struct StageNeeds {
   bool mechanics = true;                 ///< moves the body
+  bool press = false;                    ///< by platens
   FieldChoice field = FieldChoice::any;  ///< of temperatures
   FramesInTime frames_in_time = FramesInTime::none;
 };
@@ -108,6 +110,11 @@ class Stage {
   virtual std::string doing() const { return {}; }
   virtual HeatingPlan heating() const { return {}; }
 
+  /// Throws Error where the stage cannot be done, before any stage is begun.
+  /// \param supports  before the stage; it changes them to what it leaves
+  virtual void check(const Simulation&, Supports<2>&) const {}
+  /// Whether it loads the body from outside.
+  virtual bool loads() const { return false; }
   /// Prepares what acts on the body; moves nothing.
   virtual void begin(Simulation& simulation) = 0;
   /// Moves on by one batch: at most so many steps of the mechanics, or evaluations of the heat solver. True

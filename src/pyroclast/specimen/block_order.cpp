@@ -37,13 +37,13 @@ std::uint32_t square(double x, double length) {
   return static_cast<std::uint32_t>(std::clamp(x / length * curve_side, 0.0, curve_side - 1.0));
 }
 
-void number_cells(Tessellation& tessellation, double width, double height) {
+void number_cells(Tessellation& tessellation, const Box& box) {
   std::vector<std::pair<std::uint64_t, std::size_t>> order;
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
     corners(tessellation, c, polygon);
-    const Vec<2> centre = centroid(polygon);
-    order.emplace_back(place_on_curve(square(centre[0], width), square(centre[1], height)), c);
+    const Vec<2> centre = centroid(polygon) - box.low;
+    order.emplace_back(place_on_curve(square(centre[0], box.width()), square(centre[1], box.height())), c);
   }
   std::sort(order.begin(), order.end());
   std::vector<std::vector<int>> cells;
@@ -71,8 +71,8 @@ void number_vertices(Tessellation& tessellation) {
 
 }  // namespace
 
-void number_along_curve(Tessellation& tessellation, double width, double height) {
-  number_cells(tessellation, width, height);
+void number_along_curve(Tessellation& tessellation, const Box& box) {
+  number_cells(tessellation, box);
   number_vertices(tessellation);
 }
 

@@ -4,9 +4,9 @@
 
 namespace pyroclast::specimen {
 
-/// Numbers cells along a Hilbert curve over [0, width] x [0, height] (m), and vertices in the order in which
+/// Numbers cells along a Hilbert curve over a box, and vertices in the order in which
 /// the cells meet them. Geometry and each cell's own order stay. Blocks that lie together then stand together
 /// in memory, which is what the time of a step depends on once a specimen has outgrown the caches.
-void number_along_curve(Tessellation& tessellation, double width, double height);
+void number_along_curve(Tessellation& tessellation, const Box& box);
 
 }  // namespace pyroclast::specimen

@@ -1,6 +1,8 @@
 #include "pyroclast/specimen/blocks.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,6 +11,7 @@
 #include "pyroclast/specimen/block_order.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
 #include "pyroclast/specimen/neper_tess.hpp"
+#include "pyroclast/specimen/outline_seeds.hpp"
 #include "pyroclast/specimen/regularisation.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
@@ -18,39 +21,89 @@ namespace {
 /// Two to five rounds do for plain Voronoi seeds and edges up to 0.3 of the mean, a few dozen for widely
 /// spread radii; this many mean that the parameters allow no tessellation without a short edge.
 constexpr int most_rounds = 60;
+/// Places tried for a seed that is free, before it is said that there is none.
+constexpr int kAttempts = 100'000;
 
-Vec<2> draw_position(double width, double height, Random& random) {
-  const double x = random.uniform(0.0, width);
-  return {{x, random.uniform(0.0, height)}};
-}
-
-Seeds draw_seeds(const BlockParameters& parameters, double width, double height, Random& random) {
-  const double half_spacing = 0.5 * std::sqrt(width * height / parameters.count);
-  Seeds seeds;
-  for (int i = 0; i < parameters.count; ++i) {
-    seeds.position.push_back(draw_position(width, height, random));
-    seeds.radius.push_back(half_spacing *
-                           random.uniform(1.0 - parameters.radius_spread, 1.0 + parameters.radius_spread));
+/// Seeds of a region: first those that its outline asks for, then the ones that are free.
+class SeedDraw {
+ public:
+  SeedDraw(const BlockParameters& parameters, const Region& region, Random& random)
+      : region_(region),
+        random_(random),
+        spacing_(std::sqrt(region.area() / parameters.count)),
+        outline_(region, spacing_) {
+    const auto needed = static_cast<int>(outline_.positions().size());
+    if (needed > parameters.count)
+      throw Error(fmt::format("{} blocks are too few for this outline: it takes {} by itself",
+                              parameters.count, needed));
+    seeds.position = outline_.positions();
+    seeds.radius = outline_.radii();
+    const double spread = parameters.radius_spread;
+    for (int i = needed; i < parameters.count; ++i) {
+      seeds.position.push_back(free_position());
+      seeds.radius.push_back(0.5 * spacing_ * random_.uniform(1.0 - spread, 1.0 + spread));
+    }
   }
-  return seeds;
+
+  /// Draws the seed of an unfit block anew; where it is one of the outline's, the free one nearest to it. A
+  /// radius stays with its seed, or the cells of small radii would die out.
+  void redraw(std::size_t unfit) {
+    const std::size_t first = kept();
+    if (first == seeds.position.size()) return;
+    if (unfit < first) {
+      const Vec<2> at = seeds.position[unfit];
+      const auto nearest =
+          std::min_element(seeds.position.begin() + static_cast<std::ptrdiff_t>(first), seeds.position.end(),
+                           [&](const Vec<2>& a, const Vec<2>& b) { return norm(a - at) < norm(b - at); });
+      unfit = static_cast<std::size_t>(nearest - seeds.position.begin());
+    }
+    seeds.position[unfit] = free_position();
+  }
+
+  std::size_t kept() const { return outline_.positions().size(); }
+
+  Seeds seeds;
+
+ private:
+  Vec<2> free_position() {
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      const Box& box = region_.box();
+      const double x = random_.uniform(box.low[0], box.high[0]);
+      const Vec<2> position{{x, random_.uniform(box.low[1], box.high[1])}};
+      if (region_.is_rectangle() || outline_.leave_room_at(position)) return position;
+    }
+    throw Error(
+        fmt::format("no place for a seed was found in {} attempts: blocks of {:.3g} mm are too large for "
+                    "this outline",
+                    kAttempts, 1e3 * spacing_));
+  }
+
+  const Region& region_;
+  Random& random_;
+  double spacing_;
+  OutlineSeeds outline_;
+};
+
+/// Of the outline, near a cell, in words.
+std::string side_near(const Region& region, const Vec<2>& point) {
+  const auto nearest = std::ranges::min_element(region.pieces(), {}, [&](const Piece& piece) {
+    return distance_from_segment(point, piece.from, piece.to);
+  });
+  return region.sides()[nearest->side].name;
 }
 
-LaguerreResult tessellate(Seeds seeds, const BlockParameters& parameters, double width, double height,
-                          Team* team) {
-  for (int i = 0; i < parameters.relaxation; ++i) relax(seeds, width, height, team);
-  return laguerre_tessellation(seeds, width, height, team);
-}
-
-Blocks tessellate_until_fit(const BlockParameters& parameters, double width, double height, Random& random,
+Blocks tessellate_until_fit(const BlockParameters& parameters, const Region& region, Random& random,
                             Team* team) {
-  Seeds seeds = draw_seeds(parameters, width, height, random);
+  SeedDraw draw(parameters, region, random);
   Blocks blocks{};
   while (true) {
     ++blocks.rounds;
-    LaguerreResult result = tessellate(seeds, parameters, width, height, team);
+    Seeds seeds = draw.seeds;
+    for (int i = 0; i < parameters.relaxation; ++i) relax(seeds, region, draw.kept(), team);
+    LaguerreResult result = laguerre_tessellation(seeds, region, team);
     std::vector<int> unfit = std::move(result.broken);
     if (unfit.empty()) {
-      Regularisation done = regularise(result.tessellation, width, height, parameters.shortest_edge);
+      Regularisation done = regularise(result.tessellation, region, parameters.shortest_edge);
       blocks.tessellation = std::move(result.tessellation);
       blocks.edges_removed = done.edges_removed;
       blocks.edges_left_short = done.edges_left_short;
@@ -59,34 +112,35 @@ Blocks tessellate_until_fit(const BlockParameters& parameters, double width, dou
     if (unfit.empty()) return blocks;
     if (blocks.rounds == most_rounds) {
       if (!blocks.tessellation.cells.empty()) return blocks;
-      throw Error(fmt::format(
-          "No tessellation of {} blocks came about in {} rounds, {} cells stay empty; allowed is a "
-          "radius spread below {:.4g}.",
-          parameters.count, most_rounds, unfit.size(), parameters.radius_spread));
+      const Vec<2> at = seeds.position[static_cast<std::size_t>(unfit.front())];
+      throw Error(
+          fmt::format("No tessellation of {} blocks came about in {} rounds, {} cells stay empty or unfit, "
+                      "the first near "
+                      "({:.6g}, {:.6g}) m at the side \"{}\"; allowed is a radius spread below {:.4g}, and "
+                      "nothing of the "
+                      "outline finer than three blocks.",
+                      parameters.count, most_rounds, unfit.size(), at[0], at[1], side_near(region, at),
+                      parameters.radius_spread));
     }
-    // A radius stays with its seed, or the cells of small radii would die out.
-    for (const int i : unfit)
-      seeds.position[static_cast<std::size_t>(i)] = draw_position(width, height, random);
+    for (const int i : unfit) draw.redraw(static_cast<std::size_t>(i));
     blocks.seeds_redrawn += static_cast<int>(unfit.size());
   }
 }
 
 }  // namespace
 
-Blocks make_blocks(const BlockParameters& parameters, double width, double height, Random& random,
-                   Team* team) {
+Blocks make_blocks(const BlockParameters& parameters, const Region& region, Random& random, Team* team) {
   Blocks blocks{};
   if (parameters.file.empty()) {
-    blocks = tessellate_until_fit(parameters, width, height, random, team);
-    require_valid(blocks.tessellation, width, height,
-                  fmt::format("Tessellation of {} blocks", parameters.count));
+    blocks = tessellate_until_fit(parameters, region, random, team);
+    require_valid(blocks.tessellation, region, fmt::format("Tessellation of {} blocks", parameters.count));
   } else {
-    blocks.tessellation = read_neper_tess(parameters.file, width, height);
-    const Regularisation done = regularise(blocks.tessellation, width, height, parameters.shortest_edge);
+    blocks.tessellation = read_neper_tess(parameters.file, region.box().width(), region.box().height());
+    const Regularisation done = regularise(blocks.tessellation, region, parameters.shortest_edge);
     blocks.edges_removed = done.edges_removed;
     blocks.edges_left_short = done.edges_left_short;
   }
-  number_along_curve(blocks.tessellation, width, height);
+  number_along_curve(blocks.tessellation, region.box());
   return blocks;
 }
 

@@ -15,12 +15,13 @@ struct Blocks {
   int rounds;  ///< tessellations made
 };
 
-/// Draws seeds and tessellates [0, width] x [0, height] (m), or reads `parameters.file`, and regularises.
+/// Draws seeds and tessellates the region, or reads `parameters.file`, and regularises.
 /// Seeds whose block cannot be made fit are drawn anew and the tessellation is made again, until all are.
 /// The blocks are numbered by place (number_along_curve), not in the order of the seeds or the file.
 /// \param team  as for make_specimen
-/// Throws Error when the blocks are not valid at the end.
-Blocks make_blocks(const BlockParameters& parameters, double width, double height, Random& random,
+/// Throws Error when the blocks are not valid at the end; it names the side of the outline where they are
+/// not.
+Blocks make_blocks(const BlockParameters& parameters, const Region& region, Random& random,
                    Team* team = nullptr);
 
 }  // namespace pyroclast::specimen

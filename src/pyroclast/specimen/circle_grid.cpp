@@ -5,18 +5,19 @@
 
 namespace pyroclast::specimen {
 
-CircleGrid::CircleGrid(double width, double height, double bin)
-    : bin_(bin),
-      columns_(std::max(1, static_cast<int>(std::ceil(width / bin)))),
-      rows_(std::max(1, static_cast<int>(std::ceil(height / bin)))),
+CircleGrid::CircleGrid(const Box& box, double bin)
+    : low_(box.low),
+      bin_(bin),
+      columns_(std::max(1, static_cast<int>(std::ceil(box.width() / bin)))),
+      rows_(std::max(1, static_cast<int>(std::ceil(box.height() / bin)))),
       bins_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
 
 CircleGrid::BinRange CircleGrid::bins(const Vec<2>& lower, const Vec<2>& upper) const {
-  const auto index = [&](double x, int count) {
-    return static_cast<int>(std::clamp(std::floor(x / bin_), 0.0, count - 1.0));
+  const auto index = [&](double x, int axis, int count) {
+    return static_cast<int>(std::clamp(std::floor((x - low_[axis]) / bin_), 0.0, count - 1.0));
   };
-  return {index(lower[0], columns_), index(upper[0], columns_), index(lower[1], rows_),
-          index(upper[1], rows_)};
+  return {index(lower[0], 0, columns_), index(upper[0], 0, columns_), index(lower[1], 1, rows_),
+          index(upper[1], 1, rows_)};
 }
 
 void CircleGrid::insert(const Aggregate& circle) {

@@ -6,11 +6,11 @@
 
 namespace pyroclast::specimen {
 
-/// Circles in a rectangle, found by place: each is listed in every bin that its bounding box touches.
+/// Circles in a box, found by place: each is listed in every bin that its bounding box touches.
 class CircleGrid {
  public:
-  /// A grid over [0, width] x [0, height] with square bins of about `bin` (m).
-  CircleGrid(double width, double height, double bin);
+  /// A grid over the box with square bins of about `bin` (m).
+  CircleGrid(const Box& box, double bin);
 
   void insert(const Aggregate& circle);
 
@@ -32,6 +32,7 @@ class CircleGrid {
            static_cast<std::size_t>(column);
   }
 
+  Vec<2> low_;
   double bin_;
   int columns_, rows_;
   std::vector<std::vector<int>> bins_;

@@ -8,6 +8,7 @@
 
 #include <voro++/voro++.hh>
 
+#include "pyroclast/specimen/clip.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
@@ -25,13 +26,17 @@ constexpr double seeds_per_block = 5.0;
 /// Number that Voro++ gives to the upper wall of the slab.
 constexpr int upper_wall = -6;
 
-/// Mean spacing of the seeds, m, and the rectangle in spacings.
+/// Mean spacing of the seeds, m, and the region's box in spacings.
 struct SlabSize {
-  SlabSize(const Seeds& seeds, double width_m, double height_m)
-      : spacing(std::sqrt(width_m * height_m / static_cast<double>(seeds.position.size()))),
-        width(width_m / spacing),
-        height(height_m / spacing) {}
+  SlabSize(const Seeds& seeds, const Region& region)
+      : low(region.box().low),
+        spacing(std::sqrt(region.area() / static_cast<double>(seeds.position.size()))),
+        width(region.box().width() / spacing),
+        height(region.box().height() / spacing) {}
 
+  Vec<2> in_spacings(const Vec<2>& point) const { return (point - low) * (1.0 / spacing); }
+
+  Vec<2> low;
   double spacing, width, height;
 };
 
@@ -41,7 +46,7 @@ class Slab {
       : container_(0.0, size.width, 0.0, size.height, -0.5 * slab_thickness, 0.5 * slab_thickness,
                    blocks(size.width), blocks(size.height), 1, false, false, false, 8) {
     for (std::size_t i = 0; i < seeds.position.size(); ++i) {
-      const Vec<2> p = seeds.position[i] * (1.0 / size.spacing);
+      const Vec<2> p = size.in_spacings(seeds.position[i]);
       container_.put(static_cast<int>(i), p[0], p[1], 0.0, seeds.radius[i] / size.spacing);
     }
   }
@@ -175,35 +180,62 @@ Tessellation join(const std::vector<std::vector<Vec<2>>>& polygons) {
   return result;
 }
 
+/// Corners of the outline and tips of notches have the numbers that they were given.
+void snap_to_corners(Tessellation& tessellation, const Region& region, double tolerance) {
+  std::vector<Vec<2>> corners;
+  for (const Piece& piece : region.pieces()) corners.push_back(piece.from);
+  for (const Notch& notch : region.notches()) {
+    corners.push_back(notch.mouth);
+    corners.push_back(notch.tip);
+  }
+  std::ranges::sort(corners, {}, &Vec<2>::c);
+  for (Vec<2>& p : tessellation.vertices) {
+    const Vec<2> lowest{{p[0] - tolerance, 0.0}};
+    for (auto at = std::ranges::lower_bound(corners, lowest[0], {}, [](const Vec<2>& c) { return c[0]; });
+         at != corners.end() && (*at)[0] <= p[0] + tolerance; ++at)
+      if (std::abs((*at)[1] - p[1]) <= tolerance) p = *at;
+  }
+}
+
 }  // namespace
 
-LaguerreResult laguerre_tessellation(const Seeds& seeds, double width, double height, Team* team) {
-  const SlabSize size(seeds, width, height);
+LaguerreResult laguerre_tessellation(const Seeds& seeds, const Region& region, Team* team) {
+  const SlabSize size(seeds, region);
+  std::vector<Piece> pieces;  // that Voro++ does not clip by itself
+  if (!region.is_rectangle())
+    for (const auto& [from, to, side] : region.pieces())
+      pieces.push_back({size.in_spacings(from), size.in_spacings(to), side});
   std::vector<std::vector<Vec<2>>> polygons(seeds.position.size());
   for_each_cell<voro::voronoicell_neighbor>(seeds, size, team,
                                             [&](std::size_t seed, auto& prism, const Vec<2>& position) {
                                               polygons[seed] = upper_face(prism, position);
+                                              if (!clip(polygons[seed], position, pieces, merge_distance))
+                                                polygons[seed].clear();
                                               for (Vec<2>& p : polygons[seed])
                                                 p = {{snapped(p[0], size.width), snapped(p[1], size.height)}};
                                             });
 
   LaguerreResult result{join(polygons), {}};
-  for (Vec<2>& p : result.tessellation.vertices) {
-    p = {{p[0] == size.width ? width : p[0] * size.spacing,
-          p[1] == size.height ? height : p[1] * size.spacing}};
-  }
-  result.broken = mismatched_cells(result.tessellation, width, height);
+  const Box& box = region.box();
+  for (Vec<2>& p : result.tessellation.vertices)
+    p = {{p[0] == size.width ? box.high[0] : size.low[0] + p[0] * size.spacing,
+          p[1] == size.height ? box.high[1] : size.low[1] + p[1] * size.spacing}};
+  if (!region.is_rectangle()) snap_to_corners(result.tessellation, region, merge_distance * size.spacing);
+  result.broken = mismatched_cells(result.tessellation, region);
   return result;
 }
 
-void relax(Seeds& seeds, double width, double height, Team* team) {
-  const SlabSize size(seeds, width, height);
+void relax(Seeds& seeds, const Region& region, std::size_t kept, Team* team) {
+  const SlabSize size(seeds, region);
   std::vector<Vec<2>> relaxed = seeds.position;
   for_each_cell<voro::voronoicell>(seeds, size, team,
                                    [&](std::size_t seed, auto& prism, const Vec<2>& position) {
                                      double x, y, z;
+                                     if (seed < kept) return;
                                      prism.centroid(x, y, z);
-                                     relaxed[seed] = (position + Vec<2>{{x, y}}) * size.spacing;
+                                     const Vec<2> to = size.low + (position + Vec<2>{{x, y}}) * size.spacing;
+                                     if (region.is_rectangle() || region.distance(to) < 0.0)
+                                       relaxed[seed] = to;
                                    });
   seeds.position = std::move(relaxed);
 }

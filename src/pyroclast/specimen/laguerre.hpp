@@ -19,14 +19,14 @@ struct LaguerreResult {
   std::vector<int> broken;  ///< ascending: seeds with an empty cell or one that does not match its neighbours
 };
 
-/// The Laguerre tessellation of [0, width] x [0, height] (m), by Voro++ (Rycroft, Chaos 19, 041111, 2009).
-/// Vertices are shared: those closer than 1e-8 mean spacings are one. Outline vertices lie exactly on the
-/// outline. The result is bitwise the same for any number of threads.
+/// The Laguerre tessellation of a region, by Voro++ (Rycroft, Chaos 19, 041111, 2009). Vertices are shared:
+/// those closer than 1e-8 mean spacings are one. Those on the outline of a rectangle, and on corners of any
+/// region, lie exactly there. The result is bitwise the same for any number of threads.
 /// \param team  shares the cells out; one thread alone where there is none
-LaguerreResult laguerre_tessellation(const Seeds& seeds, double width, double height, Team* team = nullptr);
+LaguerreResult laguerre_tessellation(const Seeds& seeds, const Region& region, Team* team = nullptr);
 
-/// Lloyd's step: every seed moves to the centroid of its cell; a seed with an empty cell stays. Threads
-/// as above.
-void relax(Seeds& seeds, double width, double height, Team* team = nullptr);
+/// Lloyd's step: every seed but the first `kept` moves to the centroid of its cell in the region's box, where
+/// that lies in the region; a seed with an empty cell stays. Threads as above.
+void relax(Seeds& seeds, const Region& region, std::size_t kept = 0, Team* team = nullptr);
 
 }  // namespace pyroclast::specimen

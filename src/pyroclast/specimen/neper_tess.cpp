@@ -17,6 +17,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/region.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
@@ -298,7 +299,7 @@ Tessellation read_neper_tess(std::istream& stream, const std::string& name, doub
     corners(result, result.cells.size() - 1, polygon);
     if (area(polygon) < 0.0) std::reverse(result.cells.back().begin(), result.cells.back().end());
   }
-  require_valid(result, width, height, name);
+  require_valid(result, Region::rectangle(width, height), name);
   return result;
 }
 

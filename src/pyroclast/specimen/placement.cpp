@@ -19,24 +19,19 @@ namespace {
 constexpr double kDensestPlacement = 0.8;
 
 /// A free place for a circle of this diameter; none when `attempts` centres are all taken.
-std::optional<Aggregate> find_place(double diameter, double width, double height, const CircleGrid& grid,
+std::optional<Aggregate> find_place(double diameter, const Region& region, const CircleGrid& grid,
                                     const AggregateParameters& parameters, Random& random) {
+  const Box& box = region.box();
   const double margin = 0.5 * diameter + parameters.minimum_gap;
-  if (2.0 * margin > std::min(width, height)) return std::nullopt;
+  if (2.0 * margin > std::min(box.width(), box.height())) return std::nullopt;
   for (int attempt = 0; attempt < parameters.attempts; ++attempt) {
-    const double x = random.uniform(margin, width - margin);
-    const double y = random.uniform(margin, height - margin);
+    const double x = random.uniform(box.low[0] + margin, box.high[0] - margin);
+    const double y = random.uniform(box.low[1] + margin, box.high[1] - margin);
     const Aggregate circle{{{x, y}}, diameter};
+    if (!region.is_rectangle() && region.distance_before_cuts(circle.centre) > -margin) continue;
     if (!grid.overlaps(circle, parameters.minimum_gap)) return circle;
   }
   return std::nullopt;
-}
-
-/// Of a point from a fibre, m.
-double distance(const Vec<2>& point, const Fibre& fibre) {
-  const Vec<2> along = fibre.to - fibre.from;
-  const double share = std::clamp(dot(point - fibre.from, along) / dot(along, along), 0.0, 1.0);
-  return norm(point - (fibre.from + along * share));
 }
 
 double circle_area(double diameter) {
@@ -73,35 +68,36 @@ void require_feasible(std::span<const double> diameters, double specimen_area,
 
 }  // namespace
 
-std::vector<Aggregate> place(std::span<const double> diameters, double width, double height,
+std::vector<Aggregate> place(std::span<const double> diameters, const Region& region,
                              const AggregateParameters& parameters, std::span<const Aggregate> standing,
                              Random& random) {
-  require_feasible(diameters, width * height, parameters);
+  require_feasible(diameters, region.area(), parameters);
   // Bins twice the smallest diameter: a small circle looks at few neighbours, a large one lists in few bins.
-  CircleGrid grid(width, height, 2.0 * parameters.d_min);
+  CircleGrid grid(region.box(), 2.0 * parameters.d_min);
   for (const Aggregate& circle : standing) grid.insert(circle);
   for (std::size_t i = 0; i < diameters.size(); ++i) {
-    const auto circle = find_place(diameters[i], width, height, grid, parameters, random);
-    if (!circle) throw_no_place(diameters, i, width * height, parameters);
+    const auto circle = find_place(diameters[i], region, grid, parameters, random);
+    if (!circle) throw_no_place(diameters, i, region.area(), parameters);
     grid.insert(*circle);
   }
   return {grid.circles().begin() + static_cast<std::ptrdiff_t>(standing.size()), grid.circles().end()};
 }
 
-std::vector<Fibre> place_fibres(const FibreParameters& p, double width, double height,
+std::vector<Fibre> place_fibres(const FibreParameters& p, const Region& region,
                                 std::span<const Aggregate> standing, Random& random) {
   const auto fits = [&](const Fibre& fibre) {
     for (const Vec<2>& end : {fibre.from, fibre.to})
-      if (std::min({end[0], width - end[0], end[1], height - end[1]}) < p.minimum_gap) return false;
+      if (region.distance_before_cuts(end) > -p.minimum_gap) return false;
     return std::ranges::none_of(standing, [&](const Aggregate& a) {
-      return distance(a.centre, fibre) < 0.5 * a.diameter + p.minimum_gap;
+      return distance_from_segment(a.centre, fibre.from, fibre.to) < 0.5 * a.diameter + p.minimum_gap;
     });
   };
   std::vector<Fibre> fibres;
   for (int i = 0; i < p.count; ++i) {
     int attempt = 0;
     for (; attempt < p.attempts; ++attempt) {
-      const Vec<2> centre{{random.uniform(0.0, width), random.uniform(0.0, height)}};
+      const Box& box = region.box();
+      const Vec<2> centre{{random.uniform(box.low[0], box.high[0]), random.uniform(box.low[1], box.high[1])}};
       const double angle = random.uniform(0.0, std::numbers::pi);
       const Vec<2> half = Vec<2>{{std::cos(angle), std::sin(angle)}} * (0.5 * p.length);
       const Fibre fibre{centre - half, centre + half};

@@ -8,17 +8,17 @@
 
 namespace pyroclast::specimen {
 
-/// Take-and-place: puts a circle of each diameter (m, largest first) at a random centre in
-/// [0, width] x [0, height] where it keeps `minimum_gap` to the others, to those that stand there already,
-/// and to the outline. Throws Error, and says how much is missing, when one finds no place within `attempts`
-/// centres.
-std::vector<Aggregate> place(std::span<const double> diameters, double width, double height,
+/// Take-and-place: puts a circle of each diameter (m, largest first) at a random centre in the region where
+/// it keeps `minimum_gap` to the others, to those that stand there already, and to the outline as it was
+/// before notches were cut: a saw goes through aggregate. Throws Error, and says how much is missing, when
+/// one finds no place within `attempts` centres.
+std::vector<Aggregate> place(std::span<const double> diameters, const Region& region,
                              const AggregateParameters& parameters, std::span<const Aggregate> standing,
                              Random& random);
 
 /// Puts each fibre at a random place, in a random direction, where it keeps `minimum_gap` to the aggregates
 /// and to the outline; fibres may cross each other. Throws Error when one finds no place.
-std::vector<Fibre> place_fibres(const FibreParameters& parameters, double width, double height,
+std::vector<Fibre> place_fibres(const FibreParameters& parameters, const Region& region,
                                 std::span<const Aggregate> standing, Random& random);
 
 }  // namespace pyroclast::specimen

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <numbers>
 #include <numeric>
 #include <span>
@@ -32,14 +31,14 @@ Shape shape_of(Corners polygon) {
 
 class Regulariser {
  public:
-  Regulariser(Tessellation& tessellation, double width, double height, double shortest_edge)
+  Regulariser(Tessellation& tessellation, const Region& region, double shortest_edge)
       : tessellation_(tessellation),
         share_(shortest_edge),
         edges_(edges(tessellation)),
         kept_(tessellation.vertices.size()),
         around_(tessellation.vertices.size()) {
     std::iota(kept_.begin(), kept_.end(), 0);
-    for (const Vec<2>& p : tessellation_.vertices) sides_.push_back(sides(p, width, height));
+    for (const Vec<2>& p : tessellation_.vertices) lines_.push_back(region.lines_at(p));
     for (std::size_t c = 0; c < tessellation_.cells.size(); ++c) {
       for (const int v : tessellation_.cells[c]) cells_around(v).push_back(static_cast<int>(c));
     }
@@ -67,7 +66,7 @@ class Regulariser {
 
  private:
   Vec<2>& at(int v) { return tessellation_.vertices[static_cast<std::size_t>(v)]; }
-  std::uint8_t sides_of(int v) const { return sides_[static_cast<std::size_t>(v)]; }
+  const LineSet& lines_of(int v) const { return lines_[static_cast<std::size_t>(v)]; }
   std::vector<int>& cells_around(int v) { return around_[static_cast<std::size_t>(v)]; }
   std::vector<int>& cell(int c) { return tessellation_.cells[static_cast<std::size_t>(c)]; }
   bool merged_away(int v) { return cells_around(v).empty(); }
@@ -114,12 +113,12 @@ class Regulariser {
   bool merge(int a, int b) {
     if (merged_away(a) || merged_away(b) || norm(at(b) - at(a)) >= shortest_) return false;
     std::span<const double> positions = merge_positions;
-    if (sides_of(a) != sides_of(b)) {
-      // The end on more sides stays in place; with sides of its own at each end there is no place for both.
-      const auto both = static_cast<std::uint8_t>(sides_of(a) | sides_of(b));
-      if (both == sides_of(a)) {
+    if (!(lines_of(a) == lines_of(b))) {
+      // The end on more lines stays in place; with lines of its own at each end there is no place for both.
+      const auto lines = both(lines_of(a), lines_of(b));
+      if (lines == lines_of(a)) {
         positions = positions.subspan(merge_positions.size() - 2, 1);
-      } else if (both == sides_of(b)) {
+      } else if (lines == lines_of(b)) {
         positions = positions.last(1);
       } else {
         return false;
@@ -173,7 +172,7 @@ class Regulariser {
 
   void carry_out(int a, int b, const Vec<2>& place) {
     at(a) = place;
-    sides_[static_cast<std::size_t>(a)] = static_cast<std::uint8_t>(sides_of(a) | sides_of(b));
+    lines_[static_cast<std::size_t>(a)] = *both(lines_of(a), lines_of(b));
     for (const int c : cells_around(b)) {
       auto& vertices = cell(c);
       if (std::find(vertices.begin(), vertices.end(), a) != vertices.end()) {
@@ -249,8 +248,8 @@ class Regulariser {
   double share_;
   double shortest_ = 0.0, thinnest_ = 0.0;  ///< m
   std::vector<Edge> edges_;
-  std::vector<int> kept_;  ///< of each vertex the one it was merged into, or itself
-  std::vector<std::uint8_t> sides_;
+  std::vector<int> kept_;                 ///< of each vertex the one it was merged into, or itself
+  std::vector<LineSet> lines_;            ///< of each vertex
   std::vector<std::vector<int>> around_;  ///< cells around each vertex, ascending; empty: merged away
   std::vector<int> touched_;
   std::vector<Shape> before_;
@@ -260,8 +259,8 @@ class Regulariser {
 
 }  // namespace
 
-Regularisation regularise(Tessellation& tessellation, double width, double height, double shortest_edge) {
-  return Regulariser(tessellation, width, height, shortest_edge).run();
+Regularisation regularise(Tessellation& tessellation, const Region& region, double shortest_edge) {
+  return Regulariser(tessellation, region, shortest_edge).run();
 }
 
 }  // namespace pyroclast::specimen

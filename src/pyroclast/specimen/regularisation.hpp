@@ -25,8 +25,8 @@ struct Regularisation {
 /// Removes edges shorter than `shortest_edge` times the mean edge (mean of what is left) by merging their
 /// two ends, shortest first. A merge is made only when every block that it touches keeps at least three
 /// corners and gets neither a corner above `largest_block_angle` nor a sliver zone that it had not before.
-/// Outline vertices stay on their side, corners of the rectangle stay. The tessellation must be valid and
-/// remains so.
-Regularisation regularise(Tessellation& tessellation, double width, double height, double shortest_edge);
+/// Vertices on the outline or a slit stay on it, its corners and tips stay. The tessellation must be valid
+/// and remains so.
+Regularisation regularise(Tessellation& tessellation, const Region& region, double shortest_edge);
 
 }  // namespace pyroclast::specimen

@@ -66,8 +66,7 @@ void require_valid(const BlockParameters& p) {
 }
 
 void require_valid(const SpecimenParameters& p) {
-  require(p.width > 0.0, "The specimen width", p.width, "a positive length");
-  require(p.height > 0.0, "The specimen height", p.height, "a positive length");
+  require(p.region.area() > 0.0, "The area of the specimen", p.region.area(), "a positive area");
   require(p.covered_fraction >= 0.0 && p.covered_fraction < 1.0, "The covered fraction", p.covered_fraction,
           "0 to below 1");
   require_valid(p.aggregates);
@@ -84,8 +83,8 @@ void add_aggregates(const SpecimenParameters& p, const AggregateParameters& aske
                     Specimen& specimen) {
   specimen.fraction_asked += asked.fraction;
   if (asked.fraction == 0.0) return;
-  const auto diameters = draw_diameters(asked, p.width * p.height, random);
-  for (Aggregate& circle : place(diameters, p.width, p.height, asked, specimen.aggregates, random)) {
+  const auto diameters = draw_diameters(asked, p.region.area(), random);
+  for (Aggregate& circle : place(diameters, p.region, asked, specimen.aggregates, random)) {
     circle.phase = index_of(specimen.phases, asked.phase);
     circle.kind = kind;
     specimen.aggregates.push_back(circle);
@@ -94,7 +93,7 @@ void add_aggregates(const SpecimenParameters& p, const AggregateParameters& aske
 
 void add_fibres(const SpecimenParameters& p, const FibreParameters& kind, Random& random,
                 Specimen& specimen) {
-  for (Fibre& fibre : place_fibres(kind, p.width, p.height, specimen.aggregates, random)) {
+  for (Fibre& fibre : place_fibres(kind, p.region, specimen.aggregates, random)) {
     fibre.phase = index_of(specimen.phases, kind.phase);
     specimen.fibres.push_back(fibre);
   }
@@ -116,14 +115,13 @@ double fraction_of(const Specimen& specimen, Counts counts) {
     corners(specimen.tessellation, c, polygon);
     sum += area(polygon);
   }
-  return sum / (specimen.width * specimen.height);
+  return sum / specimen.region.area();
 }
 
 }  // namespace
 
 double block_size(const Specimen& specimen) {
-  return std::sqrt(specimen.width * specimen.height /
-                   static_cast<double>(specimen.tessellation.cells.size()));
+  return std::sqrt(specimen.region.area() / static_cast<double>(specimen.tessellation.cells.size()));
 }
 
 std::vector<std::string> phases(const SpecimenParameters& parameters) {
@@ -155,11 +153,10 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
   // Streams of their own: another number of blocks leaves the aggregates where they are.
   Random aggregate_random(2 * parameters.seed);
   Random block_random(2 * parameters.seed + 1);
-  const double specimen_area = parameters.width * parameters.height;
+  const double specimen_area = parameters.region.area();
 
   Specimen specimen{};
-  specimen.width = parameters.width;
-  specimen.height = parameters.height;
+  specimen.region = parameters.region;
   specimen.phases = phases(parameters);
   int kind = 0;
   add_aggregates(parameters, parameters.aggregates, kind, aggregate_random, specimen);
@@ -176,13 +173,13 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
         specimen.fraction_placed, specimen.fraction_asked, parameters.aggregates.d_min));
   }
 
-  Blocks blocks = make_blocks(parameters.blocks, parameters.width, parameters.height, block_random, team);
+  Blocks blocks = make_blocks(parameters.blocks, parameters.region, block_random, team);
   specimen.tessellation = std::move(blocks.tessellation);
   const int matrix = index_of(specimen.phases, parameters.matrix);
   SpecimenParameters rule = parameters;
   if (rule.superposition == Superposition::fit)
     rule.covered_fraction =
-        fitting_fraction(specimen.tessellation, parameters.width, parameters.height, specimen.aggregates);
+        fitting_fraction(specimen.tessellation, parameters.region.box(), specimen.aggregates);
   specimen.covered_fraction = rule.covered_fraction;
   specimen.phase = superpose(specimen.tessellation, specimen.aggregates, rule, matrix);
   specimen.fraction_of_circles = fraction_of(specimen, [&](int phase) { return phase != matrix; });

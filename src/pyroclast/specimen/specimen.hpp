@@ -9,6 +9,7 @@
 
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/base/vec.hpp"
+#include "pyroclast/specimen/region.hpp"
 
 namespace pyroclast::specimen {
 
@@ -73,8 +74,7 @@ struct BlockParameters {
 };
 
 struct SpecimenParameters {
-  double width = 0.0;   ///< m
-  double height = 0.0;  ///< m
+  Region region;
   std::uint64_t seed = 0;
   std::string matrix = "mortar";  ///< phase of the blocks that nothing else covers
   AggregateParameters aggregates;
@@ -87,7 +87,7 @@ struct SpecimenParameters {
 /// Names of what the blocks can be made of: aggregates, inclusions, matrix; each once.
 std::vector<std::string> phases(const SpecimenParameters& parameters);
 
-/// Convex cells that tile the rectangle [0, width] x [0, height] exactly; neighbours share vertices.
+/// Convex cells that tile a region exactly; neighbours share vertices.
 struct Tessellation {
   std::vector<Vec<2>> vertices;         ///< m
   std::vector<std::vector<int>> cells;  ///< vertex indices of each cell, counter-clockwise
@@ -119,7 +119,7 @@ struct BlockMetrics {
 
 /// A meso-scale specimen: blocks, what each is made of, and what came of the request.
 struct Specimen {
-  double width, height;  ///< m
+  Region region;
   Tessellation tessellation;
   std::vector<std::string> phases;    ///< what blocks can be made of
   std::vector<int> phase;             ///< per cell, index into `phases`

@@ -15,11 +15,11 @@ namespace {
 
 /// Calls f(corners, circles nearby) for each cell; the value it returns is that cell's.
 template <class F>
-auto for_each_cell(const Tessellation& tessellation, double width, double height,
-                   std::span<const Aggregate> aggregates, F&& f) {
-  double bin = std::max(width, height);
+auto for_each_cell(const Tessellation& tessellation, const Box& box, std::span<const Aggregate> aggregates,
+                   F&& f) {
+  double bin = std::max(box.width(), box.height());
   for (const Aggregate& a : aggregates) bin = std::min(bin, 2.0 * a.diameter);
-  CircleGrid grid(width, height, bin);
+  CircleGrid grid(box, bin);
   for (const Aggregate& a : aggregates) grid.insert(a);
 
   std::vector<decltype(f(Corners{}, grid.circles()))> result;
@@ -88,22 +88,22 @@ bool crosses(const std::vector<Vec<2>>& polygon, const Fibre& fibre) {
 
 }  // namespace
 
-std::vector<double> covered_fractions(const Tessellation& tessellation, double width, double height,
+std::vector<double> covered_fractions(const Tessellation& tessellation, const Box& box,
                                       std::span<const Aggregate> aggregates) {
   return for_each_cell(
-      tessellation, width, height, aggregates,
+      tessellation, box, aggregates,
       [](Corners polygon, const std::vector<Aggregate>& nearby) { return cover_of(polygon, nearby).share; });
 }
 
-double fitting_fraction(const Tessellation& tessellation, double width, double height,
+double fitting_fraction(const Tessellation& tessellation, const Box& box,
                         std::span<const Aggregate> aggregates) {
   struct Cell {
     double covered, area;
   };
-  std::vector<Cell> cells = for_each_cell(tessellation, width, height, aggregates,
-                                          [](Corners polygon, const std::vector<Aggregate>& nearby) {
-                                            return Cell{cover_of(polygon, nearby).share, area(polygon)};
-                                          });
+  std::vector<Cell> cells =
+      for_each_cell(tessellation, box, aggregates, [](Corners polygon, const std::vector<Aggregate>& nearby) {
+        return Cell{cover_of(polygon, nearby).share, area(polygon)};
+      });
   std::ranges::sort(cells, std::greater<>(), &Cell::covered);
   double missing = 0.0;
   for (const Aggregate& a : aggregates) missing += 0.25 * std::numbers::pi * a.diameter * a.diameter;
@@ -128,7 +128,7 @@ std::vector<int> superpose(const Tessellation& tessellation, std::span<const Agg
         nearby, [&](const Aggregate& a) { return norm(centre - a.centre) <= 0.5 * a.diameter; });
     return around == nearby.end() ? matrix : around->phase;
   };
-  return for_each_cell(tessellation, parameters.width, parameters.height, aggregates, phase_of);
+  return for_each_cell(tessellation, parameters.region.box(), aggregates, phase_of);
 }
 
 void superpose(const Tessellation& tessellation, std::span<const Fibre> fibres, std::vector<int>& phase) {

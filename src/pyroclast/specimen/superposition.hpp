@@ -8,12 +8,12 @@
 namespace pyroclast::specimen {
 
 /// Area fraction of each cell that the circles cover, in [0, 1]. Exact for circles that do not overlap.
-std::vector<double> covered_fractions(const Tessellation& tessellation, double width, double height,
+std::vector<double> covered_fractions(const Tessellation& tessellation, const Box& box,
                                       std::span<const Aggregate> aggregates);
 
 /// The covered fraction above which cells are aggregate so that their area comes as near as it can to that of
 /// the circles, see Superposition::fit.
-double fitting_fraction(const Tessellation& tessellation, double width, double height,
+double fitting_fraction(const Tessellation& tessellation, const Box& box,
                         std::span<const Aggregate> aggregates);
 
 /// What each cell is made of, by `parameters.superposition` and, but for the rule of the centroid,

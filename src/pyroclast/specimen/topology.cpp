@@ -56,11 +56,6 @@ class DirectedEdges {
 
 }  // namespace
 
-std::uint8_t sides(const Vec<2>& point, double width, double height) {
-  return static_cast<std::uint8_t>((point[0] == 0.0 ? 1 : 0) | (point[0] == width ? 2 : 0) |
-                                   (point[1] == 0.0 ? 4 : 0) | (point[1] == height ? 8 : 0));
-}
-
 void corners(const Tessellation& tessellation, std::size_t cell, std::vector<Vec<2>>& result) {
   result.clear();
   for (const int v : tessellation.cells[cell])
@@ -89,10 +84,10 @@ std::vector<Edge> edges(const Tessellation& tessellation) {
   return result;
 }
 
-std::vector<int> mismatched_cells(const Tessellation& tessellation, double width, double height) {
+std::vector<int> mismatched_cells(const Tessellation& tessellation, const Region& region) {
   const DirectedEdges directed(tessellation);
-  std::vector<std::uint8_t> on;
-  for (const Vec<2>& p : tessellation.vertices) on.push_back(sides(p, width, height));
+  std::vector<LineSet> on;
+  for (const Vec<2>& p : tessellation.vertices) on.push_back(region.lines_at(p));
   std::vector<int> result;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
     const auto& cell = tessellation.cells[c];
@@ -100,7 +95,8 @@ std::vector<int> mismatched_cells(const Tessellation& tessellation, double width
     for (std::size_t i = 0; matched && i < cell.size(); ++i) {
       const int v0 = cell[i];
       const int v1 = cell[i + 1 < cell.size() ? i + 1 : 0];
-      const bool on_outline = (on[static_cast<std::size_t>(v0)] & on[static_cast<std::size_t>(v1)]) != 0;
+      const bool on_outline =
+          region.is_outline(on[static_cast<std::size_t>(v0)], on[static_cast<std::size_t>(v1)]);
       matched = directed.find(v0, v1).first == 1 && directed.find(v1, v0).first == (on_outline ? 0 : 1);
     }
     if (!matched) result.push_back(static_cast<int>(c));
@@ -108,8 +104,8 @@ std::vector<int> mismatched_cells(const Tessellation& tessellation, double width
   return result;
 }
 
-void require_valid(const Tessellation& tessellation, double width, double height, const std::string& origin) {
-  const std::vector<int> mismatched = mismatched_cells(tessellation, width, height);
+void require_valid(const Tessellation& tessellation, const Region& region, const std::string& origin) {
+  const std::vector<int> mismatched = mismatched_cells(tessellation, region);
   if (!mismatched.empty()) {
     throw Error(
         fmt::format("{}: {} of {} cells do not fit together with their neighbours, the first is cell {}.",
@@ -130,11 +126,9 @@ void require_valid(const Tessellation& tessellation, double width, double height
                               c + 1, polygon.front()[0], polygon.front()[1]));
     }
   }
-  if (std::abs(total - width * height) > 1e-10 * width * height) {
-    throw Error(
-        fmt::format("{}: the cells cover {:.12g} m^2, the rectangle {:.6g} m x {:.6g} m has {:.12g} m^2.",
-                    origin, total, width, height, width * height));
-  }
+  if (std::abs(total - region.area()) > 1e-10 * region.area())
+    throw Error(fmt::format("{}: the cells cover {:.12g} m^2, the body has {:.12g} m^2.", origin, total,
+                            region.area()));
 }
 
 }  // namespace pyroclast::specimen

@@ -43,7 +43,7 @@ class Compress : public Stage {
   explicit Compress(const Keys& keys) : keys_(keys) {}
 
   const char* kind() const override { return "compress"; }
-  StageNeeds needs() const override { return {}; }
+  StageNeeds needs() const override { return {.press = true}; }
   std::string doing() const override { return is_loading_ ? "" : "moving the platen to the specimen"; }
   void begin(Simulation& simulation) override;
   bool advance(Simulation& simulation, int most_steps) override;

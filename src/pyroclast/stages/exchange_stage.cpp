@@ -31,7 +31,8 @@ ExchangeResponse exchange_response(const History& history, RowRange rows, Outcom
   const auto column = [&](const char* name) { return history.values(name, rows); };
   const auto mean = column("temperature_degC"), hottest = column("temperature_max_degC"),
              time = column("heating_time_s"), cycles = column("cycles"), converged = column("converged"),
-             ratio = column("unbalanced_ratio"), stress = column("stress_MPa");
+             ratio = column("unbalanced_ratio"),
+             stress = history.has("stress_MPa") ? column("stress_MPa") : std::vector<double>(mean.size());
   ExchangeResponse r;
   for (std::size_t i = 0; i < mean.size(); ++i) {
     ++r.exchanges;
@@ -111,12 +112,18 @@ ExchangeStage::Keys read_exchange(const Section& own, const StageTables& tables)
                         : read_coupling(*other);
   else if (!tables.coupling_table)
     own.error("kind", "a stage that changes temperatures needs the table [coupling]");
-  keys.coupling.platen = read_platen(own);
+  if (tables.has_platens)
+    keys.coupling.platen = read_platen(own);
+  else
+    own.know({"platen"});
+  if (keys.coupling.predictor && !tables.has_platens)
+    own.error("kind", "coupling.predictor needs the table [platens]: it moves a body between platens");
   return keys;
 }
 
 void ExchangeStage::begin(Simulation& simulation) {
-  load_stress_ = simulation.press().stress_held();
+  has_press_ = simulation.has_press();
+  load_stress_ = has_press_ ? simulation.press().stress_held() : 0.0;
   first_temperature_ = simulation.field().mean();
   begin_change(simulation);
   exchange_.begin(simulation);
@@ -158,8 +165,8 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
   const bool failed = r.critical_temperature.has_value();
   report.results = {
       {"field", needs().field == FieldChoice::uniform ? "uniform" : "conduction"},
-      {"platen", name(coupling().platen)},
-      {"load_stress_MPa", load_stress_ * 1e-6},
+      {"platen", has_press_ ? Result::Value(name(coupling().platen)) : Result::Value()},
+      {"load_stress_MPa", or_none(has_press_, load_stress_ * 1e-6)},
       {"critical_temperature_degC", or_none(failed, r.critical_temperature.value_or(0.0))},
       {"critical_time_s", or_none(failed, r.critical_time)},
       {"highest_temperature_degC", r.highest},
@@ -168,7 +175,7 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
       {"exchanges_not_converged", r.not_converged},
       {"worst_unbalanced_ratio", r.worst_ratio},
       {"cycles", static_cast<std::int64_t>(r.cycles)},
-      {"largest_thrust_MPa", r.largest_thrust},
+      {"largest_thrust_MPa", or_none(has_press_, r.largest_thrust)},
   };
   report.lines.push_back(fmt::format(
       "{:.0f} to {:.0f} degC{} in {} exchanges of up to {:g} K, {:.0f} cycles; {} did not come to rest",
@@ -177,12 +184,14 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
           ? fmt::format(" in the mean, {:.0f} degC where it is hottest,", r.highest)
           : "",
       r.exchanges, coupling().increment, r.cycles, r.not_converged));
-  if (coupling().platen == PlatenControl::fixed)
+  const std::string how =
+      failed ? fmt::format("critical temperature {:.0f} degC", *r.critical_temperature) : "no failure";
+  if (!has_press_)
+    report.lines.push_back(how);
+  else if (coupling().platen == PlatenControl::fixed)
     report.lines.push_back(fmt::format("thrust up to {:.2f} MPa", r.largest_thrust));
   else
-    report.lines.push_back(fmt::format(
-        "load {:.2f} MPa: {}", load_stress_ * 1e-6,
-        failed ? fmt::format("critical temperature {:.0f} degC", *r.critical_temperature) : "no failure"));
+    report.lines.push_back(fmt::format("load {:.2f} MPa: {}", load_stress_ * 1e-6, how));
   if (r.not_converged > 0)
     report.warnings.push_back(
         fmt::format("{} of {} exchanges of temperature did not come to rest within the stated cycles "
@@ -205,6 +214,7 @@ Forecast ExchangeStage::forecast(const Simulation&, Foreseen& foreseen) const {
 
 void ExchangeStage::visit_state(StateVisitor& visitor) {
   visitor.visit("rests", rests_);
+  visitor.visit("has_press", has_press_);
   visitor.visit("load_stress", load_stress_);
   visitor.visit("first_temperature", first_temperature_);
   visitor.visit("last_interval", last_interval_);

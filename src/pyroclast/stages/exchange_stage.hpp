@@ -45,7 +45,8 @@ class ExchangeStage : public Stage {
 
   Keys keys_;
   Exchange exchange_;
-  bool rests_ = false;        ///< the temperatures are handed over, and the body comes to rest
+  bool rests_ = false;  ///< the temperatures are handed over, and the body comes to rest
+  bool has_press_ = false;
   double load_stress_ = 0.0;  ///< held at the beginning, Pa
   double first_temperature_ = 0.0;
   double last_interval_ = 0.0;  ///< of temperature, in which the last row lay

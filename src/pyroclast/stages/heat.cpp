@@ -26,10 +26,10 @@ std::unique_ptr<Stage> read_heat_stage(const Section& s, const StageTables& tabl
 /// solids, or none.
 Interval free_strain_change(const ConcreteMaterials& materials, double from, double to) {
   Interval change{0.0, 0.0};
-  for (std::size_t phase = 0; phase + 1 < materials.solids.size(); ++phase) {
-    const Curve& strain = materials.solids[phase].thermal_strain;
-    const double solid = strain(to) - strain(from);
-    change = {std::min(change.lower, solid), std::max(change.upper, solid)};
+  for (const SolidMaterial& solid : materials.solids) {
+    if (solid.is_of_bearing) continue;
+    const double strain = solid.thermal_strain(to) - solid.thermal_strain(from);
+    change = {std::min(change.lower, strain), std::max(change.upper, strain)};
   }
   return change;
 }
@@ -57,10 +57,10 @@ bool Heat::change(Simulation& simulation, Exchange& exchange, int) {
   const bool last = left <= coupling().increment + kSameTemperature;
   field.set_uniform(last ? keys_.to : now + std::copysign(change, keys_.to - now));
   simulation.set_heating_time(simulation.heating_time() + change / keys_.rate);
-  const Press<2>::EvenMotion strain{.axial = -simulation.press().specimen_strain(),
-                                    .lateral = simulation.press().lateral_strain()};
   exchange.hand_over(simulation);
   if (coupling().predictor) {
+    const Press<2>::EvenMotion strain{.axial = -simulation.press().specimen_strain(),
+                                      .lateral = simulation.press().lateral_strain()};
     if (last_change_ > 0.0) {
       const Interval free = free_strain_change(simulation.materials(), now, field.mean());
       const auto foreseen = [&](double after, double before) {

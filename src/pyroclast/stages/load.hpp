@@ -24,7 +24,7 @@ class Load : public Stage {
   explicit Load(const Keys& keys) : keys_(keys) {}
 
   const char* kind() const override { return "load"; }
-  StageNeeds needs() const override { return {}; }
+  StageNeeds needs() const override { return {.press = true}; }
   void begin(Simulation& simulation) override;
   bool advance(Simulation& simulation, int most_steps) override;
   Verdict judge(Simulation& simulation) override;

@@ -8,6 +8,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/stages/compress.hpp"
 #include "pyroclast/stages/conduct.hpp"
+#include "pyroclast/stages/drive.hpp"
 #include "pyroclast/stages/expose.hpp"
 #include "pyroclast/stages/heat.hpp"
 #include "pyroclast/stages/load.hpp"
@@ -16,7 +17,8 @@
 namespace pyroclast {
 
 StageRegistry::StageRegistry() {
-  for (StageKind (*kind)() : {settle_kind, load_kind, compress_kind, heat_kind, expose_kind, conduct_kind})
+  for (StageKind (*kind)() :
+       {settle_kind, load_kind, compress_kind, drive_kind, heat_kind, expose_kind, conduct_kind})
     add(kind());
 }
 

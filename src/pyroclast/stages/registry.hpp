@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -9,6 +11,7 @@
 
 #include "pyroclast/deck/deck.hpp"
 #include "pyroclast/simulation/exchange.hpp"
+#include "pyroclast/simulation/records.hpp"
 #include "pyroclast/simulation/stage.hpp"
 
 namespace pyroclast {
@@ -27,6 +30,9 @@ struct StageTables {
   OutputIntervals output;
   std::optional<Section> coupling_table;
   Coupling coupling;  ///< as the table has it
+  bool has_platens = false;
+  std::vector<RecordParameters> records;
+  std::filesystem::path folder;  ///< of the deck
 };
 
 /// A kind of stage.
@@ -36,7 +42,7 @@ struct StageKind {
   StageNeeds needs;
   /// Reads a stage of this kind. What is wrong is recorded in the deck.
   /// \param own  its table of [[stages]]
-  std::unique_ptr<Stage> (*read)(const Section& own, const StageTables& tables);
+  std::function<std::unique_ptr<Stage>(const Section& own, const StageTables& tables)> read;
 };
 
 /// The kinds of stages that a deck may ask for, by name.

@@ -28,13 +28,14 @@ std::unique_ptr<Stage> read_settle(const Section& s, const StageTables&) {
 StageKind settle_kind() {
   return {
       "settle",
-      "lets the body come to rest under its weight, the upper platen lying on it; strain counts from there",
+      "lets the body come to rest under its weight, an upper platen lying on it; strains, displacements and "
+      "openings count from there",
       {},
       read_settle};
 }
 
 void Settle::begin(Simulation& simulation) {
-  simulation.press().let_go();
+  if (simulation.has_press()) simulation.press().let_go();
 }
 
 bool Settle::advance(Simulation& simulation, int most_steps) {
@@ -49,7 +50,7 @@ bool Settle::advance(Simulation& simulation, int most_steps) {
 
 Verdict Settle::judge(Simulation& simulation) {
   if (simulation.mechanics().unbalanced_ratio() < keys_.unbalanced_ratio) {
-    simulation.press().set_zero();
+    simulation.set_zero();
     return {.over = true};
   }
   if (steps_ >= keys_.most_steps) return {.over = true, .last = true, .outcome = Outcome::not_settled};

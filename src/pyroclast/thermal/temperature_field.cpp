@@ -36,7 +36,7 @@ TemperatureField::TemperatureField(const Model<2>& model)
   specimen_volume_ = zone_geometry(model_).volume;
   std::vector<bool> in_specimen(model_.position.size());
   for (int b = 0; b < model_.block_count(); ++b) {
-    if (model_.block_material[b] == platen_material(model_)) {
+    if (model_.is_of_bearing(b)) {
       std::fill(specimen_volume_.begin() + model_.block_zones[b],
                 specimen_volume_.begin() + model_.block_zones[b + 1], 0.0);
       continue;

@@ -33,16 +33,6 @@ class DisjointSets {
   std::vector<int> parent_;
 };
 
-/// Whether each gridpoint belongs to a block that conducts.
-template <int Dim>
-std::vector<bool> conducting_gridpoints(const Model<Dim>& model, const std::vector<bool>& conducts) {
-  std::vector<bool> result(model.position.size());
-  for (int b = 0; b < model.block_count(); ++b)
-    for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g)
-      result[g] = conducts[model.block_material[b]];
-  return result;
-}
-
 /// Contacts are made of coinciding faces, so anything beyond rounding is an error in the model.
 template <int Dim>
 double coincidence_tolerance(const Model<Dim>& model) {
@@ -51,55 +41,11 @@ double coincidence_tolerance(const Model<Dim>& model) {
   return 1e-9 * size;
 }
 
-/// Corners of the face of a zone that lies opposite to each corner, seen counter-clockwise from outside.
-constexpr std::array<std::array<int, 2>, 3> faces_of(const std::array<int, 3>& zone) {
-  return {{{zone[1], zone[2]}, {zone[2], zone[0]}, {zone[0], zone[1]}}};
-}
-constexpr std::array<std::array<int, 3>, 4> faces_of(const std::array<int, 4>& zone) {
-  return {{{zone[1], zone[2], zone[3]},
-           {zone[0], zone[3], zone[2]},
-           {zone[0], zone[1], zone[3]},
-           {zone[0], zone[2], zone[1]}}};
-}
-
-template <std::size_t N>
-std::array<int, N> sorted(std::array<int, N> corners) {
-  std::sort(corners.begin(), corners.end());
-  return corners;
-}
-
-/// Faces, with sorted corners and themselves sorted, that contacts join to another conducting block.
-template <int Dim>
-std::vector<std::array<int, Dim>> joined_faces(const Model<Dim>& model, const std::vector<bool>& conducting) {
-  std::vector<std::array<int, Dim>> faces;
-  for (int first = 0; first < model.contact_count(); first += Dim) {
-    std::array<int, Dim> a, b;
-    for (int i = 0; i < Dim; ++i) {
-      a[i] = model.contacts[first + i].a;
-      b[i] = model.contacts[first + i].b;
-    }
-    if (!conducting[a[0]] || !conducting[b[0]]) continue;
-    faces.push_back(sorted(a));
-    faces.push_back(sorted(b));
-  }
-  std::sort(faces.begin(), faces.end());
-  return faces;
-}
-
-/// Outward normal times the area over the distance to the opposite corner: minus the gradient there.
-template <int Dim>
-Vec<Dim> opposite_gradient(const ZoneGeometry<Dim>& geometry, int zone, int corner) {
-  if (corner < Dim) return geometry.gradient[zone][corner];
-  Vec<Dim> last{};
-  for (const auto& g : geometry.gradient[zone]) last -= g;
-  return last;
-}
-
 }  // namespace
 
 template <int Dim>
 ThermalNodes join_through_contacts(const Model<Dim>& model, const std::vector<bool>& conducts) {
-  const auto conducting = conducting_gridpoints(model, conducts);
+  const auto conducting = gridpoints_of(model, conducts);
   const double tolerance = coincidence_tolerance(model);
   DisjointSets sets(model.gridpoint_count());
   for (const auto& c : model.contacts) {
@@ -132,53 +78,7 @@ ThermalNodes join_through_contacts(const Model<Dim>& model, const std::vector<bo
   return nodes;
 }
 
-template <int Dim>
-std::vector<OutlineFace<Dim>> outline(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry,
-                                      const std::vector<bool>& conducts) {
-  struct Candidate {
-    std::array<int, Dim> corners;  // sorted
-    int zone, opposite;
-  };
-  std::vector<Candidate> candidates;
-  for (int b = 0; b < model.block_count(); ++b) {
-    if (!conducts[model.block_material[b]]) continue;
-    for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
-      const auto faces = faces_of(model.zones[z]);
-      for (int i = 0; i <= Dim; ++i) candidates.push_back({sorted(faces[i]), z, i});
-    }
-  }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.corners < b.corners; });
-  const auto joined = joined_faces(model, conducting_gridpoints(model, conducts));
-
-  std::vector<OutlineFace<Dim>> result;
-  for (std::size_t i = 0; i < candidates.size();) {
-    const auto& [corners, zone, opposite] = candidates[i];
-    std::size_t next = i + 1;
-    while (next < candidates.size() && candidates[next].corners == corners) ++next;
-    const bool alone = next == i + 1;
-    i = next;
-    if (!alone || std::binary_search(joined.begin(), joined.end(), corners)) continue;
-    const Vec<Dim> gradient = opposite_gradient(geometry, zone, opposite);
-    const double steepness = norm(gradient);
-    OutlineFace<Dim> face{faces_of(model.zones[zone])[opposite],
-                          zone,
-                          {},
-                          gradient * (-1.0 / steepness),
-                          Dim * geometry.volume[zone] * steepness};
-    for (int g : face.gridpoints) face.centre += model.position[g] * (1.0 / Dim);
-    result.push_back(face);
-  }
-  std::stable_sort(result.begin(), result.end(),
-                   [](const auto& a, const auto& b) { return a.zone < b.zone; });
-  return result;
-}
-
 template ThermalNodes join_through_contacts(const Model<2>&, const std::vector<bool>&);
 template ThermalNodes join_through_contacts(const Model<3>&, const std::vector<bool>&);
-template std::vector<OutlineFace<2>> outline(const Model<2>&, const ZoneGeometry<2>&,
-                                             const std::vector<bool>&);
-template std::vector<OutlineFace<3>> outline(const Model<3>&, const ZoneGeometry<3>&,
-                                             const std::vector<bool>&);
 
 }  // namespace pyroclast

@@ -1,0 +1,327 @@
+"""Decks as objects that know units."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Union
+
+from . import _core, functions
+from .errors import DeckError, Diagnostic
+from .stages import Stage
+from .units import Quantity
+
+Value = Union[str, bool, int, float, Quantity, Sequence[Any], Mapping[str, Any]]
+"""What a key can hold; a function only where a curve can stand."""
+
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s+(\S.*?)\s*")
+_DOTS_OF_A_KEY = 2  # so many in a path: a table there is a value, such as a curve, and no table of keys
+_PLAIN_KEY = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def toml(value: Value) -> str:
+    """As a deck writes it."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, (str, Quantity)):
+        text = str(value).replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\t", "\\t")
+        return f'"{text}"'
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{_key(name)} = {toml(entry)}" for name, entry in value.items()) + " }"
+    if isinstance(value, Sequence):
+        return "[" + ", ".join(toml(entry) for entry in value) + "]"
+    raise TypeError(f"a deck cannot hold {value!r}")
+
+
+def table_text(name: str, table: Mapping[str, Any], is_listed: bool = False) -> str:
+    """A table with its header, tables below it with headers of their own."""
+    lines = [f"[[{name}]]" if is_listed else f"[{name}]"]
+    below = []
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            below.append(table_text(f"{name}.{_key(key)}", value))
+        elif _is_list_of_tables(value):
+            below += [table_text(f"{name}.{_key(key)}", entry, True) for entry in value]
+        else:
+            lines.append(f"{_key(key)} = {toml(value)}")
+    return "\n".join([*lines, "", *below])
+
+
+def _parts(path: str) -> list[str | int]:
+    """Of "stages[1].to": "stages", 1, "to"."""
+    return [int(part[1:-1]) if part.startswith("[") else part for part in re.findall(r"[^.\[\]]+|\[\d+\]", path)]
+
+
+def _is_list_of_tables(value: object) -> bool:
+    return isinstance(value, (list, tuple)) and bool(value) and all(isinstance(entry, Mapping) for entry in value)
+
+
+def _key(name: str) -> str:
+    return name if _PLAIN_KEY.fullmatch(name) else toml(name)
+
+
+class Deck:
+    """What a run is made from: a TOML file in which every value with a dimension carries its unit.
+
+    Keys are named by their paths, as in `--set` of the program: "specimen.width", "stages[1].to". A value with a
+    dimension is a text with its unit ("150 mm") or a Quantity (`150 * pyroclast.mm`); a bare number is refused. Where
+    a curve can stand, so can a function: of the temperature [degC], or of the heating time [s] in `[heat]`; what it
+    returns is SI, of a temperature degC, or in the unit of a `pyroclast.Function`.
+
+    Raises DeckError for a file that is no deck, or holds no TOML.
+    """
+
+    def __init__(self, file: str | Path | None = None, *, stages_in_python: Sequence[type[Stage]] = (),
+                 laws: Sequence[str | Path] = (), **tables: Any):
+        """
+        file: a deck; without one, `tables` are all of it.
+        stages_in_python: classes of stages that the deck may ask for beside the program's.
+        laws: folders of contact laws that are not part of the program.
+        tables: the deck's tables, `specimen={"width": "150 mm"}`, and lists of tables, `stages=[{"kind": "settle"}]`.
+            They add to a file, or change it.
+        """
+        self._stages = list(stages_in_python)
+        self._laws = [str(folder) for folder in laws]
+        self._changes: list[tuple[str, str]] = []
+        self._functions: dict[str, functions.Function] = {}
+        self._name, self._folder, self._text = "deck", "", ""
+        if file is not None:
+            self._name, self._folder = str(file), str(Path(file).parent)
+            self._text = _read(file)
+            self._written()
+            self.update(**tables)
+        else:
+            self._set_tables(tables)
+
+    @classmethod
+    def from_text(cls, text: str, name: str = "deck", folder: str | Path = "", *,
+                  stages_in_python: Sequence[type[Stage]] = (), laws: Sequence[str | Path] = ()) -> Deck:
+        """A deck from TOML. name: takes the file's place in messages. folder: that its file names are taken from."""
+        deck = cls(stages_in_python=stages_in_python, laws=laws)
+        deck._text, deck._name, deck._folder = text, name, str(folder)
+        deck._written()
+        return deck
+
+    def _set_tables(self, tables: Mapping[str, Any]) -> None:
+        """All of a deck that has no file."""
+        plain, headed = [], []
+        for name, value in tables.items():
+            if isinstance(value, Mapping):
+                headed.append((name, [value], False))
+            elif _is_list_of_tables(value):
+                headed.append((name, list(value), True))
+            else:
+                plain.append(f"{_key(name)} = {toml(value)}")
+        found: dict[str, functions.Function] = {}
+        blocks = [table_text(_key(name), _without_functions(table, name + (f"[{i}]" if is_listed else ""), found),
+                             is_listed)
+                  for name, entries, is_listed in headed for i, table in enumerate(entries)]
+        self._text = "\n".join([*plain, "", *blocks])
+        self._functions |= found
+
+    @property
+    def text(self) -> str:
+        """The deck with all changes in place, as TOML; a function is the number that it has at 20 degC or 0 s."""
+        return self._written()
+
+    def _written(self) -> str:
+        return _core.written(self._raw(self._placeholders()))
+
+    def __getitem__(self, path: str) -> Any:
+        """The value at a path: a Quantity for a text that is one, a dict for a table, a function as it was given.
+
+        Raises KeyError where there is none.
+        """
+        if path in self._functions:
+            return self._functions[path]
+        node: Any = tomllib.loads(self.text)
+        for part in _parts(path):
+            try:
+                node = node[part]
+            except (KeyError, IndexError, TypeError):
+                raise KeyError(path) from None
+        if isinstance(node, str) and (match := _QUANTITY.fullmatch(node)) and _core.is_quantity(node):
+            return Quantity(float(match[1]), match[2])
+        return node
+
+    def __contains__(self, path: str) -> bool:
+        try:
+            self[path]
+        except KeyError:
+            return False
+        return True
+
+    def __setitem__(self, path: str, value: Value | Callable[[float], float] | functions.Function) -> None:
+        """Sets a value; a key or table that is missing is added.
+
+        Raises DeckError for a bare number where a unit is needed, and Error where the deck has no place for the key.
+        """
+        if callable(value) or isinstance(value, functions.Function):
+            function = value if isinstance(value, functions.Function) else functions.Function(value)
+            functions.value_at(path, function, functions.first(functions.axis_of(path)))
+            self._functions[path] = function
+            self._written()
+            return
+        if isinstance(value, Mapping) and path.count(".") < _DOTS_OF_A_KEY:
+            for name, entry in value.items():
+                self[f"{path}.{_key(name)}"] = entry
+            return
+        if _is_list_of_tables(value):
+            self._rebuild(lambda tables: tables.update({path: value}), path)
+            return
+        self._functions.pop(path, None)
+        self._changes.append((path, toml(value)))
+        try:
+            self._written()
+            if isinstance(value, (int, float)) and not isinstance(value, bool) and self._needed_unit(path):
+                raise DeckError([d for d in self._diagnostics() if d.key == path])
+        except Exception:
+            self._changes.pop()
+            raise
+
+    def __delitem__(self, path: str) -> None:
+        """Takes a key, a table, or one of a list of tables out. Raises KeyError where there is none.
+
+        The deck is then written anew, without comments: places in messages are those of `text`.
+        """
+        self[path]
+        *above, last = _parts(path)
+
+        def take_out(tables: dict[str, Any]) -> None:
+            node: Any = tables
+            for part in above:
+                node = node[part]
+            del node[last]
+
+        self._rebuild(take_out, path)
+
+    def _rebuild(self, change: Callable[[dict[str, Any]], object], path: str) -> None:
+        """Writes the deck anew; functions at the path and below it are dropped."""
+        kept = {key: function for key, function in self._functions.items() if not key.startswith(path)}
+        tables = tomllib.loads(self.text)
+        change(tables)
+        self._changes, self._functions = [], {}
+        self._set_tables(tables)
+        self._functions |= kept
+
+    def update(self, **tables: Any) -> Deck:
+        """Sets keys of several tables: `deck.update(specimen={"seed": 2}, blocks={"count": 200})`. Lists of tables
+        are appended. Returns the deck.
+        """
+        for name, value in tables.items():
+            if _is_list_of_tables(value):
+                for entry in value:
+                    self.append(name, **entry)
+            elif isinstance(value, Mapping):
+                for key, entry in value.items():
+                    self[f"{name}.{_key(key)}"] = entry
+            else:
+                self[name] = value
+        return self
+
+    def append(self, table: str, /, **keys: Any) -> Deck:
+        """Appends a table to a list of tables: `deck.append("stages", kind="settle", ...)`. Returns the deck."""
+        before = (self._text, dict(self._functions))
+        number = len(self[table]) if table in self else 0
+        found: dict[str, functions.Function] = {}
+        plain = _without_functions(keys, f"{table}[{number}]", found)
+        self._text += "\n" + table_text(table, plain, True)
+        self._functions |= found
+        try:
+            self._written()
+        except Exception:
+            self._text, self._functions = before
+            raise
+        return self
+
+    def copy(self) -> Deck:
+        """Another deck with the same contents."""
+        other = Deck(stages_in_python=self._stages, laws=self._laws)
+        other._text, other._name, other._folder = self._text, self._name, self._folder
+        other._changes, other._functions = list(self._changes), dict(self._functions)
+        return other
+
+    def check(self) -> list[Diagnostic]:
+        """Reads all of the deck. Returns what it warns of; raises DeckError with every error."""
+        tables = functions.Scratch()
+        return _core.check(self._resolved(tables))
+
+    def save(self, file: str | Path) -> None:
+        """Writes the deck; tables of its functions beside it. Files that it names keep their names."""
+        deck = self._resolved(Path(file).resolve().parent)
+        Path(file).write_text(_core.written(deck), encoding="utf-8")
+
+    def _raw(self, more: Sequence[tuple[str, str]] = ()) -> _core.DeckText:
+        changes = [f"{path}={value}" for path, value in (*self._changes, *more)]
+        return _core.DeckText(self._text, self._name, self._folder, changes, self._laws, self._stages)
+
+    def _diagnostics(self) -> list[Diagnostic]:
+        try:
+            _core.check(self._raw(self._placeholders()))
+        except DeckError as error:
+            return error.diagnostics
+        return []
+
+    def _needed_unit(self, path: str, value: float | None = None) -> str:
+        more = self._placeholders(skip=path) if value is None else [*self._placeholders(skip=path), (path, repr(value))]
+        return _core.needed_unit(self._raw(more), path)
+
+    def _placeholders(self, skip: str = "") -> list[tuple[str, str]]:
+        """Numbers in place of the functions."""
+        numbers = []
+        for path, function in self._functions.items():
+            if path == skip:
+                continue
+            number = functions.value_at(path, function, functions.first(functions.axis_of(path)))
+            unit = function.unit or _core.needed_unit(self._raw([(path, repr(number))]), path)
+            numbers.append((path, toml(f"{number!r} {unit}") if unit else repr(number)))
+        return numbers
+
+    def _resolved(self, place: Path | functions.Scratch) -> _core.DeckText:
+        """With tables, which are written into a folder, in place of the functions."""
+        written: list[tuple[str, str]] = []
+        for axis in (functions.TIME, functions.TEMPERATURE):  # the times say how hot the run becomes
+            stand_in = [change for change in self._placeholders() if change[0] not in dict(written)]
+            for path, function in self._functions.items():
+                if functions.axis_of(path) is not axis:
+                    continue
+                low, high, begin, end = _core.ranges(self._raw([*stand_in, *written]))
+                interval = function.interval or ((begin, end) if axis is functions.TIME else (low, high))
+                points = functions.tabulate(path, function, *interval)
+                unit = function.unit or self._needed_unit(path, points[0][1])
+                folder = Path(place.folder) if isinstance(place, functions.Scratch) else place
+                table = functions.write_table(folder, path, unit, points)
+                written.append((path, f"{{ csv = {toml(str(table.resolve()))} }}"))
+        return self._raw(written)
+
+    def __repr__(self) -> str:
+        return f"<Deck {self._name}>"
+
+
+def _without_functions(table: Mapping[str, Any], path: str, found: dict[str, functions.Function]) -> dict[str, Any]:
+    """A table whose functions stand in `found`, by their paths."""
+    plain: dict[str, Any] = {}
+    for name, value in table.items():
+        here = f"{path}.{name}"
+        if isinstance(value, functions.Function) or callable(value):
+            found[here] = value if isinstance(value, functions.Function) else functions.Function(value)
+        elif isinstance(value, Mapping):
+            plain[name] = _without_functions(value, here, found)
+        elif _is_list_of_tables(value):
+            plain[name] = [_without_functions(entry, f"{here}[{i}]", found) for i, entry in enumerate(value)]
+        else:
+            plain[name] = value
+    return plain
+
+
+def _read(file: str | Path) -> str:
+    return _core.read(str(file))
+
+
+def as_deck(deck: Deck | str | Path) -> Deck:
+    """A deck, or that of a file."""
+    return deck if isinstance(deck, Deck) else Deck(deck)

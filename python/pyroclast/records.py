@@ -1,0 +1,122 @@
+"""What a deck's [[record]] tables recorded: curves, and the specimen at their peak and end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from . import style
+from .progress import Course
+from .run import Frame, Run, RunError
+from .sections import Panel, count_cracks, fracture_panels
+
+_SHOWN = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "MPa": ("MPa", 1.0), "degC": ("°C", 1.0)}
+"""Unit of a column, how it is drawn, and what a value is multiplied by for that."""
+_KINDS = {"displacement": "Displacement", "opening": "Opening", "force": "Force", "stress": "Stress",
+          "temperature": "Temperature", "crack_length": "Length of cracks", "crack_opening": "Opening of cracks"}
+_TIME_LABEL = "Time [s]"
+
+
+@dataclass(frozen=True)
+class Record:
+    """A column of the history that a deck asked for."""
+
+    name: str
+    kind: str
+    column: str
+
+    @property
+    def unit(self) -> str:
+        return _SHOWN[self.column.rsplit("_", 1)[1]][0]
+
+    def of(self, run: Run) -> np.ndarray:
+        """(rows,) in `unit`."""
+        return _SHOWN[self.column.rsplit("_", 1)[1]][1] * run.history[self.column]
+
+    @property
+    def label(self) -> str:
+        return f"{_KINDS.get(self.kind, self.kind)} [{self.unit}]"
+
+
+def records_of(run: Run) -> list[Record]:
+    """The records of the deck that the run keeps, in its order."""
+    asked = run.deck.get("record", [])
+    records = []
+    for record in asked if isinstance(asked, list) else []:
+        name, kind = (record.get(key) for key in ("name", "kind")) if isinstance(record, dict) else (None, None)
+        columns = [f"{name}_{unit}" for unit in _SHOWN if f"{name}_{unit}" in run.history]
+        if columns:
+            records.append(Record(str(name), str(kind), columns[0]))
+    return records
+
+
+def _abscissa(run: Run, records: list[Record]) -> tuple[Record | None, np.ndarray, str]:
+    """What the others are drawn over: the first opening, else the first displacement, else time."""
+    for kind in ("opening", "displacement"):
+        for record in records:
+            if record.kind == kind:
+                return record, record.of(run), f"{record.name}: {record.label}"
+    return None, run.history["time_s"], _TIME_LABEL
+
+
+def record_course(run: Run) -> Course:
+    """All rows in which the body moved, over what records are drawn over."""
+    _, over, label = _abscissa(run, records_of(run))
+    rows = np.isfinite(over)
+    return Course(run, rows, over[rows], label, start=float(min(0.0, over[rows].min())), ordered=False)
+
+
+@matplotlib.rc_context(style.STYLE)
+def records(run: Run) -> Figure:
+    """Each kind of record in a panel of its own, over the first opening or displacement that there is."""
+    found = records_of(run)
+    over_record, over, label = _abscissa(run, found)
+    drawn = [record for record in found if record is not over_record]
+    kinds = list(dict.fromkeys(record.kind for record in drawn))
+    if not kinds:
+        raise RunError(f"{run.folder / 'deck.toml'}: has no [[record]] to draw")
+    figure = style.new_figure(0.9 + 2.2 * len(kinds))
+    panels = figure.subplots(len(kinds), 1, sharex=True, squeeze=False)[:, 0]
+    figure.suptitle(style.title_of(run), fontsize=9.0)
+    for axes, kind in zip(panels, kinds):
+        for record, colour in zip((r for r in drawn if r.kind == kind), _colours()):
+            axes.plot(over, record.of(run), color=colour, linewidth=1.5, label=record.name)
+        axes.set_ylabel(next(record.label for record in drawn if record.kind == kind))
+        axes.axhline(0.0, color=style.BLACK, linewidth=0.5)
+        axes.legend(loc="best")
+    panels[-1].set_xlabel(label)
+    return figure
+
+
+def _colours() -> Iterator[str]:
+    while True:
+        yield from (style.BLUE, style.VERMILLION, style.ORANGE, style.PURPLE, style.BLACK)
+
+
+def record_fracture(run: Run, magnification: float | None = None) -> Figure:
+    """The specimen where the first force, else the first stress, was largest, and at the end."""
+    if not run.frames:
+        raise RunError(f"{run.folder / 'fields' / 'frames.csv'}: no frame; fracture cannot be drawn")
+    found = records_of(run)
+    leading = next((r for kind in ("force", "stress") for r in found if r.kind == kind), None)
+    marks = {"end": run.frames[-1]}
+    if leading is not None:
+        values = np.abs(np.nan_to_num(leading.of(run)))
+        step = run.history["step"][int(values.argmax())]
+        marks = {f"largest {leading.kind}": min(run.frames, key=lambda frame: abs(frame.step - step)), **marks}
+    panels = [Panel(run, frame, letter, f"{what}\n{_caption(run, frame, found)}")
+              for letter, (what, frame) in zip("ABC", marks.items())]
+    return fracture_panels([("", panels)], style.title_of(run), magnification,
+                           "Counts are contact points (two an edge) of A–M and M–M contacts.")
+
+
+def _caption(run: Run, frame: Frame, found: list[Record]) -> str:
+    row = int(np.searchsorted(run.history["step"], frame.step))
+    told = [f"{record.name} {record.of(run)[row]:.3g} {record.unit}" for record in found if row < len(run.history)]
+    counts = count_cracks(run, frame)
+    broken = ", ".join(f"{count} {mode}" for (mode, is_broken), count in counts.items() if is_broken)
+    return "\n".join([*told[:4], f"broken: {broken}"])

@@ -1,0 +1,685 @@
+"""Runs in this process."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core, functions
+from .decks import Deck, Value, as_deck, table_text, toml
+from .errors import Error
+from .stages import Stage
+from .units import Quantity, in_si
+
+if TYPE_CHECKING:
+    import meshio
+    import pandas
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int32]
+
+
+class Columns:
+    """The columns of a history, by the program's names ("stress_MPa") and without their units ("stress", in SI)."""
+
+    def __init__(self, columns: Sequence[tuple[str, str]]):
+        self.names = [name for name, _ in columns]
+        self.units = dict(columns)
+        self._places: dict[str, tuple[int, float]] = {}
+        for i, (name, unit) in enumerate(columns):
+            ending = "_" + unit.replace("/", "_")
+            if unit != "1" and name.endswith(ending):
+                self._places.setdefault(name.removesuffix(ending), (i, _core.si_factor(unit)))
+        for i, name in enumerate(self.names):
+            self._places[name] = (i, 1.0)
+
+    def place(self, name: str) -> tuple[int, float]:
+        """Number of a column, and by what its values are to be multiplied. Raises KeyError where there is none."""
+        return self._places[name]
+
+    @property
+    def bare(self) -> list[str]:
+        """The names under which values are SI."""
+        return [name for name in self._places if name not in self.units or self.units[name] == "1"]
+
+
+class History(Mapping[str, Array]):
+    """All rows of a history so far, an array (rows,) for each column; NaN where a cell is empty.
+
+    Under the program's name ("stress_MPa") a column is in the unit of its name; without it ("stress") in SI,
+    temperatures in degC. A snapshot: later rows are not in it.
+    """
+
+    def __init__(self, columns: Columns, cells: Array):
+        self._columns, self._cells = columns, cells
+        self._cells.setflags(write=False)
+
+    def __getitem__(self, name: str) -> Array:
+        i, factor = self._columns.place(name)
+        column: Array = self._cells[:, i]
+        if factor == 1.0:
+            return column
+        scaled = column * factor
+        scaled.setflags(write=False)
+        return scaled
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns.names)
+
+    def __len__(self) -> int:
+        return len(self._columns.names)
+
+    @property
+    def rows(self) -> int:
+        """Looks so far, with that at the start."""
+        return len(self._cells)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each column; "1" for a number."""
+        return dict(self._columns.units)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """As a DataFrame, the columns by the program's names."""
+        import pandas
+        return pandas.DataFrame(self._cells, columns=self._columns.names)
+
+    def __repr__(self) -> str:
+        return f"<History of {self.rows} rows, {len(self)} columns>"
+
+
+class State:
+    """What was measured at a look: any column of the history by its name without unit, in SI, temperatures in degC
+    (`state.strain`, `state.stress`, `state.temperature`), or as `state["stress_MPa"]`. NaN where the stage does not
+    have the quantity. Stress and strain are positive in compression.
+
+    A light handle: once the run has gone on, it raises Error. `copy()` lasts.
+    """
+
+    __slots__ = ("_columns", "_lasts", "_look", "_run", "_values")
+
+    def __init__(self, run: Run, columns: Columns, values: Array, look: int):
+        self._run, self._columns, self._values, self._look, self._lasts = run, columns, values, look, False
+
+    def __getitem__(self, name: str) -> float:
+        """A column; raises KeyError where there is none."""
+        if not self._lasts and self._look != self._run._look:
+            raise Error("this state is of an earlier look: the run has gone on; keep state.copy() instead")
+        i, factor = self._columns.place(name)
+        return float(self._values[i]) * factor
+
+    def __getattr__(self, name: str) -> float:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"the history has no {name!r}; it has {', '.join(self._columns.bare)}") from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._columns.bare]
+
+    @property
+    def step(self) -> int:
+        """Steps of the mechanics so far; 0 where nothing moves."""
+        return int(self["step"]) if "step" in self._columns.units else 0
+
+    @property
+    def stage(self) -> int:
+        """Number of the stage, from 0."""
+        return int(self["stage"])
+
+    def copy(self) -> State:
+        """The same numbers, for good."""
+        self["stage"]
+        lasting = State(self._run, self._columns, self._values, self._look)
+        lasting._lasts = True
+        return lasting
+
+    def __repr__(self) -> str:
+        shown = [f"{name}={self[name]:.6g}" for name in ("stage", "step", "strain", "stress", "temperature")
+                 if name in self._columns.bare]
+        return f"<State {', '.join(shown)}>"
+
+
+class Views:
+    """Arrays of the mechanics as they lie in memory: no copies, read-only, SI.
+
+    They change as the run steps, so read them at looks. Each keeps the memory of its run alive, also after
+    `del run`. They stand by slot, or by rows of eight lanes: `run.slot` says where a gridpoint of the model is.
+    """
+
+    def __init__(self, core: _core.Session):
+        self._core = core
+
+    @property
+    def displacement(self) -> Array:
+        """(slots, 2), m: at the end of the last step."""
+        return self._core.view("displacement")
+
+    @property
+    def velocity(self) -> Array:
+        """(rows, 2, 8), m/s: half a step before the displacements. Slot i is [i // 8, :, i % 8]."""
+        return self._core.view("velocity")
+
+    @property
+    def force(self) -> Array:
+        """(rows, 2, 8), N: sums of all forces, at the displacements before the last step. Slots as for velocities."""
+        return self._core.view("force")
+
+    @property
+    def history(self) -> Array:
+        """(lines, 8): what contact points remember, a line for each number of eight of them, in the order of the
+        layout. `run.contacts()` has it by name and contact.
+        """
+        return self._core.view("history")
+
+
+class Recorder:
+    """Keeps what a run gives, as the recorder of the program does in its folder. A run calls `begin` once, `record` at
+    every look after its row is written, and `finish` when it is over or stopped.
+    """
+
+    def begin(self, run: Run) -> None:
+        """Before the next look."""
+
+    def record(self, run: Run, state: State) -> None:
+        """After a look."""
+
+    def finish(self, run: Run) -> None:
+        """At the end; again, where a run that was stopped goes on."""
+
+
+class Run:
+    """A run in this process, from look to look:
+
+        run = pyroclast.Run("compression.toml")
+        for state in run:
+            print(state.strain, state.stress)
+        print(run.results["f_c_MPa"])
+
+    It is the run of the program: the same steps and, with `out`, the same files. Stepping belongs to one thread at a
+    time. Arrays and results are SI, temperatures degC.
+    """
+
+    def __init__(self, deck: Deck | str | Path, *, seed: int | None = None, out: str | Path | None = None,
+                 overwrite: bool = False, threads: int = 0, instructions: str = "",
+                 checkpoint: float | str | Quantity | None = None):
+        """Makes the specimen and all that the run needs; nothing moves yet.
+
+        seed: of the specimen, instead of the deck's. out: folder of the results; None: nothing is written. overwrite:
+        the results of an earlier run there. threads: 0: as many as are free; results do not depend on them.
+        instructions: "portable", "avx2" or "avx512"; empty: the best that there is. checkpoint: wall time between two
+        checkpoints [s] instead of the deck's.
+
+        Raises DeckError for what is wrong with the deck, Error for what cannot be made.
+        """
+        of = as_deck(deck)
+        tables = functions.Scratch()
+        core = _core.Session.begin(
+            of._resolved(tables), seed, threads, instructions,
+            None if checkpoint is None else in_si(checkpoint, "s"), None if out is None else str(out), overwrite)
+        self._hold(core, tables)
+        self._note_stages(of._stages)
+
+    def _hold(self, core: _core.Session, tables: functions.Scratch | None = None) -> None:
+        self._core = core
+        self._tables = tables  # those of functions, as long as the deck may be read again
+        self._look = 0
+        self._at_looks: list[Callable[[Run], object]] = []
+        self._recorders: list[Recorder] = []
+        self._columns = Columns(core.columns)
+        self._finished = False
+
+    def _note_stages(self, classes: Sequence[type[Stage]]) -> None:
+        known = {stage.kind for stage in classes}
+        for kind, *_ in self._core.stages:
+            if kind in known:
+                self._core.depart(f'stage "{kind}" is written in Python')
+
+    @classmethod
+    def _of(cls, core: _core.Session, classes: Sequence[type[Stage]] = ()) -> Run:
+        run = cls.__new__(cls)
+        run._hold(core)
+        run._note_stages(classes)
+        return run
+
+    @classmethod
+    def resume(cls, folder: str | Path, *, checkpoint: str | Path | None = None, threads: int = 0,
+               laws: Sequence[str | Path] = (), stages_in_python: Sequence[type[Stage]] = ()) -> Run:
+        """A run that was broken off goes on in its folder, from its newest checkpoint or a stated one.
+
+        Raises Error where it is over, where another process holds it, or the checkpoint is not one of this program and
+        these inputs.
+        """
+        core = _core.Session.resume(str(folder), str(checkpoint or ""), threads, [str(law) for law in laws],
+                                    list(stages_in_python))
+        return cls._of(core, stages_in_python)
+
+    @classmethod
+    def fork(cls, folder: str | Path, *, out: str | Path, from_stage: int | str | None = None,
+             more: str | Path | None = None, changes: Mapping[str, Value] | None = None, overwrite: bool = False,
+             threads: int = 0, laws: Sequence[str | Path] = (),
+             stages_in_python: Sequence[type[Stage]] = ()) -> Run:
+        """A new run that has its first stages in common with that of a folder, which is only read.
+
+        from_stage: number or name of the last stage in common; None: the last of all. more: a file with stages to
+        append. changes: of keys of later stages, by their paths.
+        """
+        core = _core.Session.fork(str(folder), "" if from_stage is None else str(from_stage), str(more or ""),
+                                  _changes(changes), str(out), overwrite, threads, [str(law) for law in laws],
+                                  list(stages_in_python))
+        return cls._of(core, stages_in_python)
+
+    # From look to look
+
+    def __iter__(self) -> Run:
+        return self
+
+    def __next__(self) -> State:
+        state = self.next()
+        if state is None:
+            raise StopIteration
+        return state
+
+    def next(self) -> State | None:
+        """Goes on to the next look: what it measured; None when the run is over, or was stopped on the way.
+
+        Other Python threads go on meanwhile. Ctrl-C stops it between two batches of steps, raises KeyboardInterrupt,
+        and leaves a run that can go on.
+        """
+        self._look += 1
+        try:
+            is_there = self._core.next()
+        except KeyboardInterrupt:
+            if self.folder is not None:
+                self._core.finish()
+            raise
+        if not is_there:
+            self._finish()
+            return None
+        self._finished = False
+        state = State(self, self._columns, self._core.row(), self._look)
+        for recorder in self._recorders:
+            recorder.record(self, state)
+        for call in self._at_looks:
+            call(self)
+        if self._core.is_over:
+            self._finish()
+        return state
+
+    def _finish(self) -> None:
+        if self._finished:
+            return
+        self._finished = True
+        self._core.finish()
+        for recorder in self._recorders:
+            recorder.finish(self)
+
+    def finish(self) -> Run:
+        """Goes on to the end of the run; returns it."""
+        while self.next() is not None:
+            continue
+        return self
+
+    def until(self, condition: Callable[[State], bool] | None = None, /, *, strain: float | None = None,
+              stress: float | str | Quantity | None = None, temperature: float | str | Quantity | None = None,
+              quantity: Mapping[str, float] | None = None, steps: int | None = None,
+              equilibrium: float | None = None) -> State:
+        """Goes on until the first of these holds at a look, and returns what was measured there.
+
+        condition: of the state. strain, stress [Pa], temperature [degC] of the specimen: passed, up or down, from where
+        they are now. quantity: the same for any column by its name, in the unit of the name, or SI without it.
+        equilibrium: the unbalanced ratio is below this. steps: so many steps of the mechanics from now on, to the step;
+        the state is then measured there, and is no row of the history.
+
+        Raises Error when the run ends before.
+        """
+        passed: dict[str, float] = dict(quantity or {})
+        if strain is not None:
+            passed["strain"] = strain
+        if stress is not None:
+            passed["stress"] = in_si(stress, "Pa")
+        if temperature is not None:
+            passed["temperature"] = in_si(temperature, "degC")
+        for name in passed:
+            if name not in self._columns.bare and name not in self._columns.units:
+                raise Error(f"the history has no {name!r}; it has {', '.join(self._columns.bare)}")
+        if condition is None and not passed and steps is None and equilibrium is None:
+            raise Error("until what? say a condition, strain, stress, temperature, quantity, steps or equilibrium")
+        now = self.measure()
+        stops = [True]  # taken back where another condition comes first
+        rising = {name: not now[name] > value for name, value in passed.items()}  # NaN: comes from below
+        if steps is not None:
+            if steps < 1:
+                raise Error(f"steps: {steps} is not at least 1")
+            self._core.call_at(self._core.step + steps, lambda: self._core.stop() if stops[0] else None)
+        goal = self._core.step + steps if steps is not None else None
+        try:
+            return self._go_until(condition, passed, rising, equilibrium, goal)
+        finally:
+            stops[0] = False
+            self._core.stop(False)  # where the last step was that of a look
+
+    def _go_until(self, condition: Callable[[State], bool] | None, passed: Mapping[str, float],
+                  rising: Mapping[str, bool], equilibrium: float | None, goal: int | None) -> State:
+        while True:
+            state = self.next()
+            if state is None:
+                if goal is not None and self._core.step >= goal and not self._core.is_over:
+                    return self.measure()
+                raise Error(f"the run ended ({self.outcome}) before it came to what was asked")
+            if any(state[name] >= value if rising[name] else state[name] <= value for name, value in passed.items()):
+                return state
+            if condition is not None and condition(state):
+                return state
+            if equilibrium is not None and state["unbalanced_ratio"] < equilibrium:
+                return state
+            if goal is not None and self._core.step >= goal:
+                return state
+
+    def measure(self) -> State:
+        """What a look would measure now. It is no row of the history."""
+        return State(self, self._columns, self._core.measure(), self._look)
+
+    def stop(self) -> None:
+        """Stops the run before its next batch of steps. The loop over it ends; another one goes on."""
+        self._core.stop()
+
+    def at_looks(self, call: Callable[[Run], object]) -> None:
+        """Calls back at every look, after its row is written."""
+        self._at_looks.append(call)
+
+    def record_with(self, recorder: Recorder) -> None:
+        """Lets a recorder take part from now on."""
+        recorder.begin(self)
+        self._recorders.append(recorder)
+
+    def call_at(self, step: int, call: Callable[[Run], object]) -> None:
+        """Calls back once, when the mechanics has done so many steps since its beginning; a batch ends there.
+
+        Raises Error when that step is past, or nothing moves. An exception of the call stops the run there and is
+        raised by `next`; the run can go on.
+        """
+        self._core.call_at(step, lambda: call(self))
+
+    def every(self, steps: int, call: Callable[[Run], object]) -> None:
+        """Calls back every so many steps of the mechanics from now on; see `call_at`."""
+        if steps < 1:
+            raise Error(f"every: {steps} steps are not at least 1")
+
+        def again() -> None:
+            self._core.call_at(self._core.step + steps, again)
+            call(self)
+
+        self._core.call_at(self._core.step + steps, again)
+
+    def close(self) -> None:
+        """Writes the summary of the rows so far and gives the folder back. The run can be read, and goes on no more.
+        The end of `with Run(...) as run:` does the same.
+        """
+        self._core.close()
+
+    def __enter__(self) -> Run:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    # Other ways to go on
+
+    def copy(self, changes: Mapping[str, Value] | None = None, *, out: str | Path | None = None,
+             overwrite: bool = False) -> Run:
+        """A run that stands where this one does and goes its own way: one loaded specimen, three fires.
+
+        changes: of keys of stages that have not begun, by their paths. Call-backs are not copied. With `out` it writes
+        all rows there, and frames as far as this one has them.
+
+        Raises Error for a change that would act on what is done already.
+        """
+        copied = Run._of(self._core.copy(_changes(changes), None if out is None else str(out), overwrite))
+        copied._tables = self._tables
+        return copied
+
+    def then(self, kind: str, /, **keys: Any) -> Run:
+        """Appends a stage to the run: `run.then("compress", velocity="0.8 mm/s", ...)`. The run is then that of its
+        deck with this stage behind the others. Returns the run.
+        """
+        self._core.change_stages([], table_text("stages", {"kind": kind, **keys}, True))
+        return self._renewed()
+
+    def change(self, changes: Mapping[str, Value]) -> Run:
+        """Other values from now on, by the paths of the deck: of stages that have not begun, or of [materials] and
+        [contacts], which act as a change of temperature does. Returns the run.
+
+        With materials or contacts the run is no longer that of its deck: summary and manifest say so, and only the
+        script can make it again. Raises DeckError or Error for what cannot be or cannot change.
+        """
+        of_materials = {key: value for key, value in changes.items() if key.split(".")[0] in ("materials", "contacts")}
+        later = {key: value for key, value in changes.items() if key not in of_materials}
+        if later:
+            self._core.change_stages(_changes(later), "")
+        if of_materials:
+            self._core.change_materials(_changes(of_materials))
+        return self._renewed()
+
+    def end_stage(self) -> Run:
+        """Ends the stage that is under way at the last look; the next one begins there. Returns the run.
+
+        The run is then no longer that of its deck, as with `change`.
+        """
+        self._core.end_stage()
+        return self
+
+    def set_temperature(self, temperature: float | str | Quantity) -> Run:
+        """Another temperature [degC] of the whole specimen at once; the body comes to rest in what follows. Returns the
+        run, which is then no longer that of its deck, as with `change`.
+
+        Raises Error where the temperatures are a computed field, or properties are not known at this one.
+        """
+        self._core.set_temperature(in_si(temperature, "degC"))
+        return self
+
+    def checkpoint(self) -> None:
+        """Writes a checkpoint into the folder now. Raises Error without a folder."""
+        self._core.write_checkpoint()
+
+    def _renewed(self) -> Run:
+        self._columns = Columns(self._core.columns)
+        return self
+
+    # What came of it
+
+    @property
+    def history(self) -> History:
+        """All rows so far."""
+        return History(self._columns, self._core.history())
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """What summary.json says of the rows so far."""
+        summary: dict[str, Any] = json.loads(self._core.summary())
+        return summary
+
+    @property
+    def results(self) -> dict[str, Any]:
+        """Results of all stages so far by their names, whose ends are units; where two have one, that of the later."""
+        results: dict[str, Any] = {}
+        for stage in self.summary["stages"]:
+            results |= stage["results"]
+        return results
+
+    @property
+    def outcome(self) -> str:
+        """How the run ended, or that it is running."""
+        return self._core.outcome
+
+    @property
+    def is_over(self) -> bool:
+        return self._core.is_over
+
+    @property
+    def stage(self) -> int:
+        """Number of the stage of the last look, from 0."""
+        return self._core.stage
+
+    @property
+    def step(self) -> int:
+        """Steps of the mechanics so far; 0 where nothing moves."""
+        return self._core.step
+
+    @property
+    def title(self) -> str:
+        return self._core.title
+
+    @property
+    def seed(self) -> int:
+        return self._core.seed
+
+    @property
+    def deck_text(self) -> str:
+        """The deck as it stands, with what was changed since."""
+        return self._core.deck_text
+
+    @property
+    def warnings(self) -> list[str]:
+        """Of deck and choices, a line each."""
+        return self._core.warnings
+
+    @property
+    def moves(self) -> bool:
+        """Whether there are mechanics; else the run is of heat conduction alone."""
+        return self._core.moves
+
+    @property
+    def thickness(self) -> float:
+        """Out of plane, m."""
+        return self._core.thickness
+
+    @property
+    def folder(self) -> Path | None:
+        """Of the results; None where nothing is written."""
+        return Path(self._core.folder) if self._core.folder else None
+
+    @property
+    def threads(self) -> int:
+        return self._core.threads
+
+    @threads.setter
+    def threads(self, threads: int) -> None:
+        self._core.threads = threads
+
+    # Arrays
+
+    @property
+    def views(self) -> Views:
+        """Arrays without a copy."""
+        return Views(self._core)
+
+    @property
+    def slot(self) -> Indices:
+        """(gridpoints,): where each gridpoint stands in `views`. A copy."""
+        return self._core.copied("slot")
+
+    @property
+    def position(self) -> Array:
+        """(gridpoints, 2), m: where gridpoints were when the body was made. A copy."""
+        return self._core.copied("position")
+
+    @property
+    def zones(self) -> Indices:
+        """(zones, 3): gridpoints of each zone, counter-clockwise. A copy."""
+        return self._core.copied("zones")
+
+    @property
+    def zone_block(self) -> Indices:
+        """(zones,): block of each zone. A copy."""
+        return self._core.copied("zone_block")
+
+    @property
+    def block_material(self) -> Indices:
+        """(blocks,): indices into `material_names`. A copy."""
+        return self._core.copied("block_material")
+
+    @property
+    def material_names(self) -> list[str]:
+        """Names of the phases, and last of the platens' solid where there are platens."""
+        return self._core.material_names
+
+    @property
+    def displacement(self) -> Array:
+        """(gridpoints, 2), m: at the end of the last step. A copy in the order of the model."""
+        return self._core.copied("displacement")
+
+    @property
+    def velocity(self) -> Array:
+        """(gridpoints, 2), m/s: half a step before the displacements. A copy in the order of the model."""
+        return self._core.copied("velocity")
+
+    @property
+    def force(self) -> Array:
+        """(gridpoints, 2), N: sums of all forces at the displacements before the last step. A copy in the order of the
+        model.
+        """
+        return self._core.copied("force")
+
+    @property
+    def stress(self) -> Array:
+        """(zones, 3), Pa: xx, yy, xy, tension positive, at the displacements of the last forces. A copy."""
+        return self._core.copied("stress")
+
+    @property
+    def temperature(self) -> Array:
+        """(gridpoints,), degC. A copy in the order of the model."""
+        return self._core.copied("temperature")
+
+    def contacts(self) -> pandas.DataFrame:
+        """State of all contact points, a row each, SI, as copies: interface, law, place, face, area, normal, opening,
+        slip, tractions (tension positive), stored energy, what their laws remember and what they lost.
+        """
+        import pandas
+        return pandas.DataFrame(self._core.contacts()).astype({"face": int})
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The history as a DataFrame."""
+        return self.history.to_pandas()
+
+    def to_meshio(self) -> meshio.Mesh:
+        """The body now as a mesh of triangles in space, z = 0: displacement, velocity and temperature of gridpoints,
+        stress, block and material of zones.
+        """
+        import meshio
+        block = self.zone_block
+        points = {"temperature": self.temperature}
+        cells: dict[str, list[Any]] = {"block": [block], "material": [self.block_material[block]]}
+        if self._core.moves:
+            points |= {"displacement": _in_space(self.displacement), "velocity": _in_space(self.velocity)}
+            cells["stress"] = [self.stress]
+        return meshio.Mesh(_in_space(self.position), [("triangle", self.zones)], point_data=points, cell_data=cells)
+
+    # In a notebook
+
+    def _repr_png_(self) -> bytes:
+        from .notebook import png_of
+        return png_of(self)
+
+    def _repr_html_(self) -> str:
+        from .notebook import html_of
+        return html_of(self)
+
+    def __repr__(self) -> str:
+        return f"<Run {self.title!r}: {self.outcome}, {self._core.rows} rows>"
+
+
+def _in_space(vectors: Array) -> Array:
+    """(n, 3), as most formats of meshes want them."""
+    return np.column_stack([vectors, np.zeros(len(vectors))])
+
+
+def _changes(changes: Mapping[str, Value] | None) -> list[str]:
+    return [f"{key}={toml(value)}" for key, value in (changes or {}).items()]

@@ -1,0 +1,480 @@
+"""Shows a run while another process writes it: its curve and its specimen with the cracks, as they grow.
+
+    python3 -m pyroclast.watch RUN_DIR          until the run is over
+    python3 -m pyroclast.watch RUN_DIR --once   what there is by now
+
+With a display it opens a window. Without one it prints the curve in plain characters, and keeps a picture up to date,
+RUN_DIR/figures/watch.png. It only reads what the run writes: however it ends, the run goes on. Ends with 1 and one line
+on stderr when there is no run.
+
+In a notebook:
+
+    from pyroclast.watch import Watch
+    watch = Watch("runs/mine")
+    shown = display(watch, display_id=True)
+    while watch.is_running:
+        time.sleep(2.0)
+        if watch.update():
+            shown.update(watch)
+"""
+
+from __future__ import annotations
+
+import argparse
+import base64
+import html
+import io
+import os
+import re
+import shutil
+import signal
+import sys
+import textwrap
+import time
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from . import style
+from .files import GapWarning, Lock, RunError, Writer, read_json
+from .heated_sections import draw_temperature
+from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL
+from .progress import MINUTES_LABEL, Course, heating_course, loading_course
+from .run import Frame, GrowingRun
+from .sections import draw_specimen, fracture_legend
+from .style import save
+from .textplot import curve, plain_label
+
+PICTURE = Path("figures") / "watch.png"
+"""Within the run's folder."""
+
+_SIZE, _DPI = (9.0, 5.0), 110  # inches; dots per inch
+_LOOK = 0.2  # s between two looks whether the run is over
+_REFRESH = 1.0  # s between two drawings, at least
+_SHARE = 0.2  # of a processor's time that goes into drawing, at most
+_PICTURE_EVERY = 5.0  # s, at least, where the picture is not what is looked at
+_FIRST_CURVE, _CURVE_AFTER = 10.0, 0.5  # s; of the time watched until the last curve, where curves follow one another
+_CURVE_HEIGHT, _TERMINAL = 20, (80, 24)
+_LEFT_OPEN = 24 * 3600.0  # s: a window that nobody closes goes at last
+_END_OF_LOG = 8192  # bytes
+_NICENESS = 5
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """What of a run is drawn over what: as its figures do."""
+
+    course: Course
+    values: np.ndarray  #: (n,) in `unit`
+    label: str
+    name: str
+    unit: str  #: as it follows a number
+
+
+def _curve_of(run: GrowingRun) -> _Curve:
+    if run.only_conducts:
+        rows = np.ones(len(run.history), dtype=bool)
+        course = Course(run, rows, run.history["heating_time_s"] / 60.0, MINUTES_LABEL, start=0.0)
+        return _Curve(course, course["temperature_degC"], "Mean temperature [°C]", "mean temperature", " °C")
+    if not run.ends_heated:
+        course = loading_course(run)
+        return _Curve(course, course["stress_MPa"], style.STRESS_LABEL, "stress", " MPa")
+    course = heating_course(run)
+    if run.restrained:
+        return _Curve(course, course["stress_MPa"], THRUST_LABEL, "stress", " MPa")
+    return _Curve(course, style.PER_MILLE * run.total_strain, TOTAL_STRAIN_LABEL, "total strain", "·10⁻³")
+
+
+class Watch:
+    """A run as far as it has come; `update` reads on. Shows itself in a notebook.
+
+    Throws RunError when the folder holds no run.
+    """
+
+    def __init__(self, folder: str | Path):
+        self.run = GrowingRun(folder)
+        self._lock = Lock(self.run.folder)
+        self._seen: tuple | None = None
+        if not self.is_running and not any((self.folder / name).exists() for name in ("history.csv", "manifest.json")):
+            raise RunError(f"{self.folder}: holds no run")
+        self.update()
+
+    @property
+    def folder(self) -> Path:
+        return self.run.folder
+
+    @property
+    def is_running(self) -> bool:
+        """Whether a process is at work on the run."""
+        return not self._is_over and self._lock.writer is Writer.THERE
+
+    @property
+    def _is_over(self) -> bool:
+        """Whether the run came to an end of its own, or was stopped."""
+        return (self.folder / "summary.json").exists()
+
+    def update(self) -> bool:
+        """Reads what the run wrote since; returns whether there is anything new to show. What cannot be read is taken
+        as not yet written.
+        """
+        try:
+            is_new = self.run.refresh()
+            rows, frames = len(self.run.history), len(self.run.frames)
+        except RunError:
+            is_new, rows, frames = False, 0, 0
+        seen = (self._state(), rows, frames)
+        is_new = is_new or seen != self._seen
+        self._seen = seen
+        return is_new
+
+    def headlines(self) -> list[str]:
+        """What the run is, how far it has come, and the latest numbers; a line each."""
+        try:
+            title = " ".join(self.run.title.split())
+        except RunError:
+            title = self.folder.resolve().name
+        try:
+            numbers = ", ".join(self._numbers())
+        except (RunError, ValueError):
+            numbers = ""
+        return [line for line in (title, self._state(), numbers) if line]
+
+    def _state(self) -> str:
+        if self._is_over:
+            try:
+                outcome = str(read_json(self.folder / "summary.json").get("outcome", "over"))
+            except RunError:
+                outcome = "over"
+            return f"run ended: {outcome}"
+        stage = self._stage()
+        writer = self._lock.writer
+        if writer is Writer.THERE:
+            return stage or "begins"
+        how = "run was killed" if writer is Writer.DIED else "run broke off"
+        return f"{how}{f' in {stage}' if stage else ''}; to go on: pyroclast resume {self.folder}"
+
+    def _stage(self) -> str:
+        """Number and kind of the stage, and what the log says of how far it is."""
+        said = re.findall(r"^\d\d:\d\d:\d\d stage (\d+) of \d+ \((\w+)\) +(?:(\d+ %), +(\S[^,]*? left)?)?",
+                          self._end_of_log(), re.MULTILINE)
+        number, kind, share, left = said[-1] if said else ("", "", "", "")
+        try:
+            stages = self.run.deck_stages
+            now = int(self.run.history["stage"][-1])
+        except (RunError, IndexError):
+            return f"stage {number} ({kind})" if said else ""
+        if str(now + 1) != number:
+            share = left = ""
+        kind = str(stages[now].get("kind", "")) if now < len(stages) else ""
+        text = f"stage {now + 1}" + (f" of {len(stages)}" if stages else "") + (f" ({kind})" if kind else "")
+        return ", ".join(filter(None, [text, share, left if self._lock.writer is Writer.THERE else ""]))
+
+    def _end_of_log(self) -> str:
+        try:
+            with open(self.folder / "run.log", "rb") as file:
+                file.seek(max(0, os.fstat(file.fileno()).st_size - _END_OF_LOG))
+                return file.read().decode("utf-8", errors="replace")
+        except OSError:
+            return ""
+
+    def _numbers(self) -> list[str]:
+        drawn = _curve_of(self.run)
+        parts = []
+        known = drawn.values[np.isfinite(drawn.values)]
+        if len(known) and not self.run.only_conducts:
+            parts.append(f"{drawn.name} {known[-1]:.3g}{drawn.unit}")
+            if drawn.name == "stress":
+                parts[-1] += f" (largest {known.max():.3g})"
+        history = self.run.history
+        if "temperature_degC" in history and np.isfinite(history["temperature_degC"]).any():
+            row = int(np.flatnonzero(np.isfinite(history["temperature_degC"]))[-1])
+            mean, low, high = (history[f"temperature_{name}degC"][row] for name in ("", "min_", "max_"))
+            parts.append(f"{mean:.0f} °C" if self.run.uniform else f"mean {mean:.0f} °C, {low:.0f} to {high:.0f} °C")
+        broken = sum(history[f"{mode}_{interface}_broken"][-1] for mode, interfaces in self.run.crack_modes.items()
+                     for interface in interfaces)
+        if np.isfinite(broken) and self.run.crack_modes:
+            parts.append(f"{broken:.0f} contact points broken")
+        return parts
+
+    @matplotlib.rc_context(style.STYLE)
+    def draw(self, figure: Figure | None = None) -> Figure:
+        """Draws curve and specimen, in place of what the figure held. Without one, makes it."""
+        figure = figure or Figure(figsize=_SIZE, dpi=_DPI)
+        figure.clear()
+        title, *rest = map(style.plain, self.headlines())
+        figure.suptitle("\n".join([title, *rest]), fontsize=9.0)
+        grid = figure.add_gridspec(2, 2, width_ratios=[1.5, 1.0], height_ratios=[1.0, 0.13])
+        axes, section, below = (figure.add_subplot(place) for place in (grid[0, 0], grid[0, 1], grid[1, :]))
+        below.axis("off")
+        try:
+            frame = self.run.frames[-1] if self.run.frames else None
+            self._draw_curve(axes, frame)
+        except (RunError, ValueError):
+            _say_in(axes, "nothing to draw yet")
+            frame = None
+        try:
+            self._draw_section(section, below, frame)
+        except RunError:
+            _say_in(section, "the newest frame cannot be read")
+        return figure
+
+    def _draw_curve(self, axes: Axes, frame: Frame | None) -> None:
+        drawn = _curve_of(self.run)
+        over, values = drawn.course.over, drawn.values
+        axes.plot(over, values, color=style.BLUE, linewidth=1.8)
+        known = np.isfinite(over) & np.isfinite(values)
+        axes.plot(over[known][-1:], values[known][-1:], "o", color=style.BLUE, markersize=5.0, label="now")
+        if frame and frame.step:
+            at = np.flatnonzero(known & (drawn.course["step"] == frame.step))[-1:]
+            axes.plot(over[at], values[at], "o", color=style.VERMILLION, markerfacecolor="none", markersize=9.0,
+                      linestyle="none", label="frame shown" if len(at) else None)
+        if known.any() and over[known].max() > drawn.course.start:
+            axes.set_xlim(left=drawn.course.start)
+        axes.set_xlabel(drawn.course.label)
+        axes.set_ylabel(drawn.label)
+        if known.any() and values[known].min() >= 0.0 and values[known].max() > 0.0:
+            axes.set_ylim(bottom=0.0)
+        axes.legend(loc="best")
+
+    def _draw_section(self, axes: Axes, below: Axes, frame: Frame | None) -> None:
+        if frame is None:
+            _say_in(axes, "no frame of the fields yet")
+        elif self.run.only_conducts:
+            colours = draw_temperature(axes, self.run, frame)
+            axes.figure.colorbar(colours, ax=axes, label="Temperature [°C]", shrink=0.8)
+            axes.set_title(f"mean {frame.temperature:.0f} °C")
+        else:
+            magnification = draw_specimen(axes, self.run, frame)
+            axes.set_title(f"{self._place_of(frame)}displacements ×{magnification:g}", fontsize=8.0)
+            handles = fracture_legend(self.run)
+            style.legend_alone(below, handles, [handle.get_label() for handle in handles], loc="center", ncols=4)
+
+    def _place_of(self, frame: Frame) -> str:
+        """At what state a frame was saved."""
+        if frame.temperature is not None and np.isfinite(frame.temperature) and frame.heating_time:
+            return f"{'' if self.run.uniform else 'mean '}{frame.temperature:.0f} °C, "
+        if not np.isfinite(frame.strain):
+            return ""
+        return f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$, "
+
+    def text(self, columns: int, rows: int) -> list[str]:
+        """Headlines and curve in plain characters, in at most so many columns and rows."""
+        lines = [part for line in self.headlines() for part in textwrap.wrap(plain_label(line), columns)]
+        try:
+            drawn = _curve_of(self.run)
+            size = (columns, max(rows - len(lines), 0))
+            lines += curve(drawn.course.over, drawn.values, drawn.course.label, drawn.label, size)
+        except (RunError, ValueError):
+            lines.append("nothing to draw yet")
+        return [line[:columns] for line in lines[:rows]]
+
+    def png(self) -> bytes:
+        """The picture."""
+        into = io.BytesIO()
+        self.draw().savefig(into, format="png")
+        return into.getvalue()
+
+    def save(self) -> Path:
+        """Writes PICTURE, whole or not at all. Returns its path."""
+        return save(self.draw(), self.folder / PICTURE)
+
+    def _repr_png_(self) -> bytes:
+        return self.png()
+
+    def _repr_html_(self) -> str:
+        picture = base64.b64encode(self.png()).decode()
+        told = html.escape("; ".join(self.headlines()), quote=True)
+        return f'<img alt="{told}" src="data:image/png;base64,{picture}"/>'
+
+
+def _say_in(axes: Axes, text: str) -> None:
+    axes.axis("off")
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color="#6a6a6a")
+
+
+class _Nothing:
+    """Shows nothing, but keeps the picture."""
+
+    is_open = True
+
+    def __init__(self) -> None:
+        self._due, self._told = 0.0, False
+
+    def show(self, watch: Watch, is_last: bool) -> None:
+        """Shows the run as it is."""
+        if time.monotonic() < self._due and not is_last:
+            return
+        begun = time.process_time()
+        try:
+            watch.save()
+        except OSError as problem:
+            if not self._told:
+                _tell(f"no picture: {problem}")
+            self._told = True
+        self._due = time.monotonic() + max(_PICTURE_EVERY, (time.process_time() - begun) / _SHARE)
+
+    def wait(self, seconds: float) -> None:
+        time.sleep(seconds)
+
+    def leave(self) -> None:
+        """The run is over."""
+
+
+class _Lines(_Nothing):
+    """Prints a curve now and then, each below the last and in one piece: others may print between two."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._begun = time.monotonic()
+        self._curve_due = self._begun + _FIRST_CURVE
+
+    def show(self, watch: Watch, is_last: bool) -> None:
+        now = time.monotonic()
+        if now >= self._curve_due or is_last:
+            _print(["", *watch.text(shutil.get_terminal_size(_TERMINAL).columns - 1, _CURVE_HEIGHT), ""])
+            self._curve_due = now + max(_FIRST_CURVE, _CURVE_AFTER * (now - self._begun))
+        super().show(watch, is_last)
+
+
+class _Terminal(_Nothing):
+    """Draws the curve anew where the last one stands. Nobody else may print there."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lines = 0
+        signal.signal(signal.SIGTTOU, signal.SIG_IGN)  # beside a run it is in the background
+
+    def show(self, watch: Watch, is_last: bool) -> None:
+        size = shutil.get_terminal_size(_TERMINAL)
+        lines = watch.text(size.columns - 1, min(_CURVE_HEIGHT, size.lines - 1))
+        back = f"\x1b[{self._lines}F\x1b[J" if self._lines else ""
+        _print(lines, back)
+        self._lines = len(lines)
+        super().show(watch, is_last)
+
+
+class _Window:
+    """A window; closing it ends the watching."""
+
+    def __init__(self, name: str):
+        """Throws ImportError when there can be none."""
+        matplotlib.use("TkAgg")
+        from matplotlib import pyplot  # only now: it needs the display
+
+        with matplotlib.rc_context(style.STYLE | {"figure.raise_window": False}):
+            self._figure = pyplot.figure(name, figsize=_SIZE, dpi=_DPI)
+            self._figure.canvas.mpl_connect("close_event", self._close)
+            self._figure.show()
+        self.is_open = True
+
+    def _close(self, _event: object) -> None:
+        self.is_open = False
+
+    def show(self, watch: Watch, is_last: bool) -> None:
+        watch.draw(self._figure)
+        self._figure.canvas.draw_idle()
+        self.wait(_LOOK)
+        if is_last:
+            _Nothing().show(watch, is_last)
+
+    def wait(self, seconds: float) -> None:
+        if self.is_open:
+            self._figure.canvas.start_event_loop(seconds)
+
+    def leave(self) -> None:
+        """Stays until it is closed, and keeps nobody waiting who reads what is printed."""
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for stream in (sys.stdout, sys.stderr):
+            os.dup2(nowhere, stream.fileno())
+        end = time.monotonic() + _LEFT_OPEN
+        while self.is_open and time.monotonic() < end:
+            self.wait(1.0)
+
+
+SCREENS = ("window", "terminal", "lines", "nothing")
+
+
+def _screen(asked: str | None, folder: Path) -> _Nothing | _Window:
+    """asked: one of SCREENS; without it, what there is."""
+    has_terminal = sys.stdout.isatty() and os.environ.get("TERM", "dumb") != "dumb"
+    if asked == "window" or asked is None and os.environ.get("DISPLAY"):
+        try:
+            return _Window(str(folder))
+        except ImportError as problem:
+            _tell(f"no window ({' '.join(str(problem).split())}); the picture is {folder / PICTURE}")
+    elif asked == "nothing":
+        return _Nothing()
+    return _Terminal() if has_terminal and asked in (None, "terminal") else _Lines()
+
+
+def follow(watch: Watch, screen: _Nothing | _Window) -> None:
+    """Shows the run until it is over or the screen is closed."""
+    is_new, is_last = True, False
+    while screen.is_open:
+        begun = time.process_time()
+        is_last = not watch.is_running
+        is_new = watch.update() or is_new
+        if is_new or is_last:
+            screen.show(watch, is_last)
+        if is_last:
+            screen.leave()
+            return
+        is_new = False
+        due = time.monotonic() + max(_REFRESH, (time.process_time() - begun) / _SHARE)
+        while screen.is_open and watch.is_running and time.monotonic() < due:
+            screen.wait(_LOOK)
+
+
+def _once(watch: Watch) -> None:
+    _print(watch.text(shutil.get_terminal_size(_TERMINAL).columns - 1, _CURVE_HEIGHT))
+    print(watch.save())
+
+
+def _print(lines: Sequence[str], before: str = "") -> None:
+    """In one piece, in the characters that the terminal has."""
+    text = before + "".join(f"{line}\n" for line in lines)
+    sys.stdout.flush()
+    os.write(sys.stdout.fileno(), text.encode(sys.stdout.encoding or "ascii", errors="replace"))
+
+
+def _tell(what: object) -> None:
+    print(f"pyroclast watch: {what}", file=sys.stderr)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Returns the exit code."""
+    parser = argparse.ArgumentParser(prog="pyroclast watch", description="Shows a run while it is computed.")
+    parser.add_argument("folder", type=Path, metavar="RUN", help="folder of a run")
+    parser.add_argument("--once", action="store_true", help="show what there is by now, and stop")
+    parser.add_argument("--on", choices=SCREENS,
+                        help="a window; the terminal, drawn anew in place; lines, a curve below the other; or nothing "
+                             f"but {PICTURE} in the folder (default: what there is)")
+    asked = parser.parse_args(arguments)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", GapWarning)  # the figures tell of them
+            watch = Watch(asked.folder)
+            if asked.once:
+                _once(watch)
+            else:
+                os.nice(_NICENESS)
+                follow(watch, _screen(asked.on, asked.folder))
+    except KeyboardInterrupt:
+        return 128 + signal.SIGINT
+    except BrokenPipeError:  # who read it has gone
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except (RunError, OSError) as problem:
+        _tell(problem)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,102 @@
+#include "pyroclast/app/python_package.hpp"
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <thread>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "pyroclast/base/error.hpp"
+
+extern char** environ;
+
+namespace pyroclast::app {
+
+namespace {
+
+/// The Python package: beside an installed program, in the environment that pip put both into, or in the
+/// source tree of a built one.
+std::filesystem::path package_folder() {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path prefix = fs::read_symlink("/proc/self/exe", ignored).parent_path().parent_path();
+  if (fs::exists(prefix / PYROCLAST_INSTALLED_PYTHON)) return prefix / PYROCLAST_INSTALLED_PYTHON;
+  for (const auto& python : fs::directory_iterator(prefix / "lib", ignored))
+    if (fs::exists(python.path() / "site-packages" / "pyroclast")) return python.path() / "site-packages";
+  return PYROCLAST_SOURCE_PYTHON;
+}
+
+/// Texts as the system takes them.
+class Strings {
+ public:
+  explicit Strings(std::vector<std::string> texts) : texts_(std::move(texts)) {
+    for (auto& text : texts_) pointers_.push_back(text.data());
+    pointers_.push_back(nullptr);
+  }
+  char* const* data() { return pointers_.data(); }
+
+ private:
+  std::vector<std::string> texts_;
+  std::vector<char*> pointers_;
+};
+
+Strings arguments_of(const std::string& module, const std::vector<std::string>& words) {
+  std::vector<std::string> arguments{PYROCLAST_PYTHON, "-m", module};
+  arguments.insert(arguments.end(), words.begin(), words.end());
+  return Strings(std::move(arguments));
+}
+
+Strings environment() {
+  std::vector<std::string> variables;
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    if (!std::string(*variable).starts_with("PYTHONPATH=")) variables.emplace_back(*variable);
+  variables.push_back("PYTHONPATH=" + package_folder().string());
+  return Strings(std::move(variables));
+}
+
+/// While a program runs, it is asked this often whether to end it.
+constexpr std::chrono::milliseconds kPatience{50};
+
+}  // namespace
+
+std::optional<pid_t> start_package(const std::string& module, const std::vector<std::string>& words,
+                                   const Companion& companion) {
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  if (!companion.prints) posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  // Ctrl-C goes to the processes of the group that has the terminal
+  if (!companion.hears_ctrl_c) posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  std::fflush(stdout);
+  pid_t child = 0;
+  const int error = posix_spawn(&child, PYROCLAST_PYTHON, &files, &attributes,
+                                arguments_of(module, words).data(), environment().data());
+  posix_spawn_file_actions_destroy(&files);
+  posix_spawnattr_destroy(&attributes);
+  return error == 0 ? std::optional(child) : std::nullopt;
+}
+
+void become_package(const std::string& module, const std::vector<std::string>& words) {
+  std::fflush(stdout);
+  execve(PYROCLAST_PYTHON, arguments_of(module, words).data(), environment().data());
+  throw Error(fmt::format("{}: cannot be run ({})", PYROCLAST_PYTHON, std::strerror(errno)));
+}
+
+int wait_for(pid_t child, const std::function<bool()>& skip) {
+  int status = -1;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    if (skip()) kill(child, SIGTERM);
+    std::this_thread::sleep_for(kPatience);
+  }
+  return status;
+}
+
+}  // namespace pyroclast::app

@@ -1,0 +1,80 @@
+#include "pyroclast/app/watcher.hpp"
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "pyroclast/app/progress.hpp"
+#include "pyroclast/app/python_package.hpp"
+
+namespace pyroclast::app {
+
+namespace {
+
+constexpr const char* kModule = "pyroclast.watch";
+/// For the last picture, s.
+constexpr double kLongestFarewell = 60.0;
+
+bool there_is_a_display() {
+  const char* display = std::getenv("DISPLAY");
+  return display != nullptr && *display != '\0';
+}
+
+}  // namespace
+
+Watcher::Watcher(std::filesystem::path folder, RunLog& log)
+    : folder_(std::move(folder)), log_(log), has_window_(there_is_a_display()) {
+  // where every look is told on the terminal, curves can only follow one another
+  const bool has_terminal = isatty(STDOUT_FILENO) != 0 && log_.speech() == Speech::usual;
+  const char* on = has_window_                      ? "window"
+                   : log_.speech() == Speech::quiet ? "nothing"
+                   : has_terminal                   ? "terminal"
+                                                    : "lines";
+  process_ = start_package(kModule, {folder_.string(), "--on", on},
+                           {.hears_ctrl_c = false, .prints = log_.speech() != Speech::quiet});
+  if (!process_)
+    fmt::print(stderr, "warning: {} cannot be run, so nobody watches; the run goes on\n", PYROCLAST_PYTHON);
+  else if (!has_window_ && has_terminal)
+    log_.keep_progress_off_screen(true);
+}
+
+Watcher::~Watcher() {
+  if (process_ && !has_window_) wait_for(*process_, [] { return true; });
+}
+
+void Watcher::look_after() {
+  int status = 0;
+  if (process_ && waitpid(*process_, &status, WNOHANG) != 0) tell_end(status);
+}
+
+void Watcher::see_out(const std::function<bool()>& skip) {
+  if (!process_ || has_window_) return;
+  const auto begun = Clock::now();
+  bool was_long = false;
+  const int status = wait_for(
+      *process_, [&] { return was_long = was_long || skip() || seconds_since(begun) > kLongestFarewell; });
+  tell_end(was_long ? 0 : status);
+}
+
+void Watcher::tell_end(int status) {
+  process_.reset();
+  log_.keep_progress_off_screen(false);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  fmt::print(stderr,
+             "warning: the watcher ended ({}); the run does not. To watch it again: pyroclast watch {}\n",
+             WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status))
+                               : fmt::format("signal {}", WTERMSIG(status)),
+             folder_.string());
+}
+
+void watch(const std::vector<std::string>& words) {
+  become_package(kModule, words);
+}
+
+}  // namespace pyroclast::app

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "pyroclast/model/model.hpp"
+
+namespace pyroclast {
+
+/// Face on the outline of a body: neither shared by two zones nor joined by contacts to another block of it.
+template <int Dim>
+struct OutlineFace {
+  std::array<int, Dim> gridpoints;  ///< in the order that makes the normal right-handed
+  int zone;
+  Vec<Dim> centre;  ///< m
+  Vec<Dim> normal;  ///< unit, outward
+  double area;      ///< m² (2D: length times thickness)
+};
+
+/// All such faces, in the order of their zones.
+/// \param takes_part  whether blocks of a material belong to the body, by material of the model
+template <int Dim>
+std::vector<OutlineFace<Dim>> outline(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry,
+                                      const std::vector<bool>& takes_part);
+
+/// Whether each gridpoint belongs to a block of a material that takes part.
+template <int Dim>
+std::vector<bool> gridpoints_of(const Model<Dim>& model, const std::vector<bool>& takes_part);
+
+/// Choice of outline faces whose centres lie in a plane (2D: on a line) perpendicular to an axis.
+/// \param axis        0, 1 or 2 for x, y, z
+/// \param coordinate  of the plane, m
+/// \param tolerance   m
+template <int Dim>
+auto on_plane(int axis, double coordinate, double tolerance) {
+  return [=](const OutlineFace<Dim>& face) { return std::abs(face.centre[axis] - coordinate) <= tolerance; };
+}
+
+/// Choice of outline faces whose centres lie in a box, bounds included.
+template <int Dim>
+auto in_box(const Vec<Dim>& low, const Vec<Dim>& high) {
+  return [=](const OutlineFace<Dim>& face) {
+    for (int i = 0; i < Dim; ++i)
+      if (!(low[i] <= face.centre[i] && face.centre[i] <= high[i])) return false;
+    return true;
+  };
+}
+
+}  // namespace pyroclast

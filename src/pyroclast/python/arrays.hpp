@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include <pybind11/numpy.h>
+
+#include "pyroclast/simulation/run.hpp"
+
+namespace pyroclast::python {
+
+namespace py = pybind11;
+
+/// An array of the mechanics as it lies in memory, read-only.
+/// \param what  displacement, velocity, force or history
+/// \param owner  that the array keeps alive
+py::array view(const Simulation& simulation, const std::string& what, const py::object& owner);
+
+/// Model and state in the order of the model, as copies.
+py::array copied(const Simulation& simulation, const std::string& what);
+
+/// State of every contact, by name: law, opening, slip, tractions, stored energy, and what any law remembers
+/// and loses.
+py::dict contacts(const Simulation& simulation);
+
+/// All cells of a history, (rows, columns); NaN where there is none.
+py::array_t<double> table(const History& history);
+py::array_t<double> row(const std::vector<std::optional<double>>& cells);
+
+}  // namespace pyroclast::python

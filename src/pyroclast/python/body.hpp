@@ -1,0 +1,16 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "pyroclast/simulation/simulation.hpp"
+
+namespace pyroclast::python {
+
+/// The body and its press, lent to a stage that is written in Python for the time of one call.
+struct Body {
+  Simulation* simulation = nullptr;  ///< null when the call is over
+
+  Simulation& get() const;
+};
+
+}  // namespace pyroclast::python

@@ -1,0 +1,112 @@
+#include "pyroclast/python/decks.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include <pybind11/stl.h>
+
+#include "pyroclast/base/unit.hpp"
+#include "pyroclast/python/bindings.hpp"
+#include "pyroclast/python/errors.hpp"
+
+namespace pyroclast::python {
+
+namespace {
+
+/// The SI unit that a value lacks, at a key where a deck was refused for that; empty elsewhere.
+std::string needed_unit(const DeckText& text, const std::string& key) {
+  try {
+    const Deck deck = parse(text);
+    read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text.laws));
+  } catch (const DeckError& error) {
+    for (const Diagnostic& d : error.diagnostics())
+      for (const Unit* unit : unit::all)
+        if (d.key == key && d.message.find(requirement(*unit)) != std::string::npos) return unit->si;
+  }
+  return "";
+}
+
+/// Whether a text is a number with a unit of any quantity that decks hold.
+bool is_quantity(const std::string& text) {
+  return std::ranges::any_of(unit::all, [&](const Unit* kind) {
+    try {
+      parse_quantity(text, *kind);
+      return true;
+    } catch (const QuantityError&) {
+      return false;
+    }
+  });
+}
+
+/// What one of a unit is in SI, of the units that columns of results have; those that no deck holds are SI.
+double si_factor(const std::string& unit) {
+  for (const Unit* kind : unit::all) {
+    if (unit == kind->si) return 1.0;
+    try {
+      return parse_quantity("1 " + unit, *kind);
+    } catch (const QuantityError&) {
+      continue;
+    }
+  }
+  return 1.0;
+}
+
+}  // namespace
+
+Deck parse(const DeckText& text) {
+  return Deck::parse(text.text, text.name, text.changes);
+}
+
+LawSources law_sources(const std::vector<std::string>& folders) {
+  auto sources = LawSources::of_environment();
+  sources.folders.insert(sources.folders.begin(), folders.begin(), folders.end());
+  return sources;
+}
+
+void bind_decks(py::module_& m) {
+  py::class_<DeckText>(m, "DeckText", "A deck as it is written, and what belongs to reading it.")
+      .def(py::init([](std::string text, std::string name, std::string folder,
+                       std::vector<std::string> changes, std::vector<std::string> laws, py::list stages) {
+             return DeckText{std::move(text),    std::move(name), std::move(folder),
+                             std::move(changes), std::move(laws), std::move(stages)};
+           }),
+           py::arg("text"), py::arg("name"), py::arg("folder"), py::arg("changes"), py::arg("laws"),
+           py::arg("stages"));
+  m.def(
+      "written", [](const DeckText& text) { return parse(text).text(); }, py::arg("deck"),
+      "The text of a deck with its changes in place.");
+  m.def(
+      "check",
+      [](const DeckText& text) {
+        const Deck deck = parse(text);
+        return diagnostics(
+            read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text.laws)).warnings);
+      },
+      py::arg("deck"), "Reads a deck; returns what it warns of.");
+  m.def(
+      "read", [](const std::string& file) { return Deck::load(file).text(); }, py::arg("file"),
+      "The text of a file that is a deck.");
+  m.def("needed_unit", &needed_unit, py::arg("deck"), py::arg("key"),
+        "The SI unit that the value at a key lacks; empty where it lacks none.");
+  m.def(
+      "ranges",
+      [](const DeckText& text) {
+        const Deck deck = parse(text);
+        const Setup setup = read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text.laws));
+        return py::make_tuple(setup.temperatures.lower, setup.temperatures.upper, 0.0, setup.exposure);
+      },
+      py::arg("deck"), "Temperatures [degC] and heating times [s] that the run of a deck may come to.");
+  m.def(
+      "convert",
+      [](const std::string& text, const std::string& unit) {
+        for (const Unit* kind : unit::all)
+          if (unit == kind->si) return parse_quantity(text, *kind);
+        return parse_quantity(text, Unit{unit.c_str(), "such quantity", ("1 " + unit).c_str()});
+      },
+      py::arg("text"), py::arg("unit"), "The value of a quantity in a unit.");
+  m.def("is_quantity", &is_quantity, py::arg("text"),
+        "Whether a text is a number with a unit that decks know.");
+  m.def("si_factor", &si_factor, py::arg("unit"), "What one of a unit of the results is in SI.");
+}
+
+}  // namespace pyroclast::python

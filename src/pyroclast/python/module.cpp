@@ -1,0 +1,14 @@
+#include "pyroclast/python/bindings.hpp"
+#include "pyroclast/version.hpp"
+
+PYBIND11_MODULE(_core, m) {
+  using namespace pyroclast::python;
+  m.doc() = "The library of pyroclast, as its package for Python needs it. Use the package.";
+  m.attr("version") = pyroclast::kVersion;
+  m.attr("commit") = pyroclast::kCommit;
+  bind_errors(m);
+  bind_decks(m);
+  bind_laws(m);
+  bind_stages(m);
+  bind_sessions(m);
+}

@@ -1,0 +1,340 @@
+#include <atomic>
+#include <chrono>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <pybind11/functional.h>
+#include <pybind11/stl.h>
+#include <unistd.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/python/arrays.hpp"
+#include "pyroclast/python/bindings.hpp"
+#include "pyroclast/python/decks.hpp"
+#include "pyroclast/simulation/coupling.hpp"
+
+namespace pyroclast::python {
+
+namespace {
+
+/// The interpreter is asked for signals this often, not at every batch: to get its lock may take milliseconds
+/// while another thread computes.
+constexpr std::chrono::milliseconds kBetweenSignals{50};
+
+/// A session as Python holds it: for one thread at a time, in the process that made it.
+class Held {
+ public:
+  explicit Held(std::unique_ptr<Session> session) : session_(session.release(), Leave{getpid()}) {
+    session_->stop_when([this] { return is_to_stop(); });
+  }
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+
+  /// To be read. Throws Error in another process, and while another thread is in `next`.
+  Session& get() const {
+    require_own_process();
+    if (const auto thread = stepping_.load();
+        thread != std::thread::id() && thread != std::this_thread::get_id())
+      throw Error("this run is stepping in another thread; stepping belongs to one at a time");
+    return *session_;
+  }
+  /// To be changed: nor from a call-back of `next`.
+  Session& resting() const {
+    Session& session = get();
+    if (stepping_.load() != std::thread::id())
+      throw Error("a call-back between steps may look, and stop the run; stop it, and change it then");
+    return session;
+  }
+
+  bool next() {
+    Session& session = resting();
+    if (closed_) throw Error("this run was closed");
+    if (broken_)
+      throw Error("this run was ended by an error and cannot go on; copy an earlier state, or resume");
+    const Stepping stepping(stepping_);
+    bool is_there = false;
+    broken_ = true;
+    {
+      const py::gil_scoped_release no_gil;
+      is_there = session.next();
+    }
+    broken_ = false;
+    if (!is_there || raised_) stop_ = false;  // it was heard
+    if (!raised_) return is_there;
+    std::exchange(raised_, nullptr)->restore();
+    throw py::error_already_set();
+  }
+
+  void call_at(std::int64_t step, const py::function& call) {
+    get().run().call_at(step, [this, held = shared(call)](Run&) {
+      const py::gil_scoped_acquire gil;
+      if (raised_) return;
+      try {
+        (*held)();
+      } catch (py::error_already_set& error) {
+        raise(error);
+      }
+    });
+  }
+  void stop(bool wanted) { stop_ = wanted; }
+  /// Writes what came of the run, and gives its folder back.
+  void close() {
+    if (closed_) return;
+    Session& session = resting();
+    session.finish();
+    session.leave_folder();
+    closed_ = true;
+  }
+
+ private:
+  /// In a child of fork the threads of a run are not there, and its end would wait for them.
+  struct Leave {
+    pid_t maker;
+    void operator()(Session* session) const {
+      if (getpid() == maker) delete session;
+    }
+  };
+  struct Stepping {
+    explicit Stepping(std::atomic<std::thread::id>& thread) : thread_(thread) {
+      thread_ = std::this_thread::get_id();
+    }
+    ~Stepping() { thread_ = std::thread::id(); }
+    std::atomic<std::thread::id>& thread_;
+  };
+
+  void require_own_process() const {
+    if (getpid() != session_.get_deleter().maker)
+      throw Error(
+          "this run belongs to the process that made it, and its threads did not come along into this child "
+          "of fork: make runs in processes that are started by spawn, as pyroclast.parallel.map_runs and "
+          "multiprocessing.get_context(\"spawn\") do");
+  }
+
+  bool is_to_stop() {
+    if (stop_ || raised_) return true;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - asked_at_ < kBetweenSignals) return false;
+    asked_at_ = now;
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() == 0) return false;
+    py::error_already_set error;
+    raise(error);
+    return true;
+  }
+  void raise(py::error_already_set& error) {
+    raised_ = std::make_unique<py::error_already_set>(error);
+    stop_ = true;
+  }
+
+  std::unique_ptr<Session, Leave> session_;
+  std::atomic<std::thread::id> stepping_{std::thread::id()};
+  std::atomic<bool> stop_{false};
+  bool broken_ = false, closed_ = false;
+  std::unique_ptr<py::error_already_set> raised_;
+  std::chrono::steady_clock::time_point asked_at_;
+};
+
+std::optional<RunOutput> output(const std::optional<std::string>& folder, bool overwrite) {
+  if (!folder) return std::nullopt;
+  return RunOutput{*folder, overwrite, "a script, by the package for Python"};
+}
+
+RunChoices choices(const std::optional<std::uint64_t>& seed, int threads, const std::string& instructions,
+                   const std::optional<double>& checkpoint, const std::vector<std::string>& laws,
+                   const py::list& stages) {
+  RunChoices c;
+  c.seed = seed;
+  c.threads = threads;
+  c.instructions = instructions;
+  c.checkpoint = checkpoint;
+  c.kinds = kinds_with(stages);
+  c.laws = law_sources(laws);
+  return c;
+}
+
+/// What takes long is done without the interpreter's lock; stages of Python take it themselves.
+template <class Make>
+std::unique_ptr<Held> held(Make make) {
+  std::unique_ptr<Session> session;
+  {
+    const py::gil_scoped_release no_gil;
+    session = make();
+  }
+  return std::make_unique<Held>(std::move(session));
+}
+
+/// A stage of a run.
+py::tuple stage_info(const Run& run, std::size_t i) {
+  const StageRecord& record = run.records()[i];
+  return py::make_tuple(run.stages()[i]->kind(), describe(record.outcome), record.rows.first,
+                        record.rows.last);
+}
+
+}  // namespace
+
+void bind_sessions(py::module_& m) {
+  using py::arg;
+  const auto read = [](auto f) { return [f](const Held& h) { return f(h.get()); }; };
+  py::class_<Held>(m, "Session", "A run with its deck, its simulation and, where it has one, its folder.")
+      .def_static(
+          "begin",
+          [](const DeckText& deck, std::optional<std::uint64_t> seed, int threads,
+             const std::string& instructions, std::optional<double> checkpoint,
+             const std::optional<std::string>& out, bool overwrite) {
+            const auto chosen = choices(seed, threads, instructions, checkpoint, deck.laws, deck.stages);
+            return held([&] {
+              return Session::begin({parse(deck), deck.folder, chosen}, output(out, overwrite));
+            });
+          },
+          arg("deck"), arg("seed"), arg("threads"), arg("instructions"), arg("checkpoint"), arg("out"),
+          arg("overwrite"))
+      .def_static(
+          "resume",
+          [](const std::string& folder, const std::string& checkpoint, int threads,
+             const std::vector<std::string>& laws, const py::list& stages) {
+            const auto chosen = choices({}, threads, "", {}, laws, stages);
+            return held([&] { return Session::resume(folder, checkpoint, chosen); });
+          },
+          arg("folder"), arg("checkpoint"), arg("threads"), arg("laws"), arg("stages"))
+      .def_static(
+          "fork",
+          [](const std::string& folder, const std::string& from_stage, const std::string& more,
+             const std::vector<std::string>& changes, const std::string& out, bool overwrite, int threads,
+             const std::vector<std::string>& laws, const py::list& stages) {
+            const auto chosen = choices({}, threads, "", {}, laws, stages);
+            return held([&] {
+              return Session::fork({folder, from_stage, more, changes}, *output(out, overwrite), chosen);
+            });
+          },
+          arg("folder"), arg("from_stage"), arg("more"), arg("changes"), arg("out"), arg("overwrite"),
+          arg("threads"), arg("laws"), arg("stages"))
+      .def("next", &Held::next, "Goes on to the next look; False when the run is over or was stopped.")
+      .def("close", &Held::close, "Writes what came of the run, and gives its folder back.")
+      .def("stop", &Held::stop, arg("wanted") = true,
+           "Stops the run at the next end of a batch of steps, or takes that back.")
+      .def("call_at", &Held::call_at, arg("step"), arg("call"),
+           "Calls back once, at a step of the mechanics.")
+      .def(
+          "finish",
+          [](const Held& h) {
+            Session& session = h.resting();
+            return summary_text(session.finish(), session.run());
+          },
+          "summary.json of the rows so far, written where there is a folder.")
+      .def(
+          "summary",
+          [](const Held& h) {
+            const Session& session = h.get();
+            return summary_text(session.summary(), session.run());
+          },
+          "The same, not written.")
+      .def(
+          "copy",
+          [](const Held& h, const std::vector<std::string>& changes, const std::optional<std::string>& out,
+             bool overwrite) {
+            Session& session = h.resting();
+            return held([&] { return session.copy(changes, output(out, overwrite)); });
+          },
+          arg("changes"), arg("out"), arg("overwrite"))
+      .def("write_checkpoint", [](const Held& h) { h.resting().write_checkpoint(); })
+      .def(
+          "change_stages",
+          [](const Held& h, const std::vector<std::string>& changes, const std::string& more) {
+            h.resting().change_stages(changes, more);
+          },
+          arg("changes"), arg("more"))
+      .def(
+          "change_materials",
+          [](const Held& h, const std::vector<std::string>& changes) {
+            h.resting().change_materials(changes);
+          },
+          arg("changes"))
+      .def("end_stage",
+           [](const Held& h) {
+             Run& run = h.resting().run();
+             run.end_stage();
+             h.resting().depart({fmt::format("stage {} was ended at row {}", run.stage_number(),
+                                             run.history().row_count() - 1)});
+           })
+      .def(
+          "set_temperature",
+          [](const Held& h, double temperature) {
+            Session& session = h.resting();
+            Simulation& simulation = session.simulation();
+            simulation.field().set_uniform(temperature);
+            if (simulation.moves()) simulation.set_materials(simulation.materials());
+            session.depart({fmt::format("the temperature was set to {:g} degC at row {}", temperature,
+                                        session.run().history().row_count() - 1)});
+          },
+          arg("temperature"))
+      .def(
+          "depart",
+          [](const Held& h, const std::string& why) {
+            h.resting().depart({why, false});
+          },
+          arg("why"), "Notes that the run needs more than its deck.")
+      .def_property_readonly("outcome", read([](const Session& s) { return describe(s.run().outcome()); }))
+      .def_property_readonly("is_over", read([](const Session& s) {
+                               return s.run().outcome() != Outcome::running &&
+                                      s.run().outcome() != Outcome::stopped;
+                             }))
+      .def_property_readonly("stage", read([](const Session& s) { return s.run().stage_number(); }))
+      .def_property_readonly("stages", read([](const Session& s) {
+                               py::list all;
+                               for (std::size_t i = 0; i < s.run().stages().size(); ++i)
+                                 all.append(stage_info(s.run(), i));
+                               return all;
+                             }),
+                             "Kind, outcome, first and last row of each.")
+      .def_property_readonly("rows", read([](const Session& s) { return s.run().history().row_count(); }))
+      .def_property_readonly("columns", read([](const Session& s) {
+                               py::list all;
+                               for (const Column& c : s.run().history().columns())
+                                 all.append(py::make_tuple(c.name, c.unit));
+                               return all;
+                             }),
+                             "Name and unit of each.")
+      .def("history", read([](const Session& s) { return table(s.run().history()); }),
+           "(rows, columns), in the units of the columns; NaN where a cell is empty.")
+      .def("row", read([](const Session& s) {
+             const History& history = s.run().history();
+             if (history.row_count() == 0) throw Error("the run has come to no look yet");
+             return row(history.row(history.row_count() - 1));
+           }),
+           "The last row, (columns,).")
+      .def(
+          "measure", [](const Held& h) { return row(h.get().run().measure()); },
+          "What a look would measure now, (columns,).")
+      .def_property_readonly("step",
+                             [](const Held& h) -> std::int64_t {
+                               const Simulation& s = h.get().simulation();
+                               return s.moves() ? s.mechanics().steps() : 0;
+                             })
+      .def_property_readonly("moves", [](const Held& h) { return h.get().simulation().moves(); })
+      .def_property_readonly("thickness",
+                             [](const Held& h) { return h.get().simulation().model().thickness; })
+      .def_property_readonly("title", read([](const Session& s) { return s.loaded().setup.title; }))
+      .def_property_readonly("seed", read([](const Session& s) { return s.loaded().setup.specimen.seed; }))
+      .def_property_readonly("deck_text", read([](const Session& s) { return s.loaded().deck.text(); }))
+      .def_property_readonly("warnings", read([](const Session& s) { return s.loaded().warnings; }))
+      .def_property_readonly("folder", read([](const Session& s) { return s.folder().string(); }))
+      .def_property(
+          "threads", [](const Held& h) { return h.get().simulation().team().size(); },
+          [](const Held& h, int threads) { h.resting().simulation().team().resize(threads); })
+      .def_property_readonly("material_names",
+                             [](const Held& h) { return h.get().simulation().model().material_names; })
+      .def(
+          "view",
+          [](const py::object& self, const std::string& what) {
+            return view(self.cast<const Held&>().get().simulation(), what, self);
+          },
+          arg("what"), "An array as it lies in memory, read-only; keeps the run alive.")
+      .def(
+          "copied", [](const Held& h, const std::string& what) { return copied(h.get().simulation(), what); },
+          arg("what"), "An array in the order of the model, as a copy.")
+      .def("contacts", [](const Held& h) { return contacts(h.get().simulation()); });
+}
+
+}  // namespace pyroclast::python

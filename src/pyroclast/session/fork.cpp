@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/physics_version.hpp"
+#include "pyroclast/base/read_file.hpp"
+#include "pyroclast/results/frame_series.hpp"
+#include "pyroclast/session/later.hpp"
+#include "pyroclast/session/session.hpp"
+#include "pyroclast/version.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kDeck = "deck.toml";
+
+/// Throws Error where a checkpoint is not one of this program, these inputs and this body.
+void require_same(const CheckpointFile& checkpoint, const std::string& inputs, const Simulation& simulation) {
+  const CheckpointInfo& info = checkpoint.info();
+  const auto refuse = [&](const std::string& what) {
+    throw Error(fmt::format("{}: {}", checkpoint.path().string(), what));
+  };
+  if (info.version != kVersion)
+    refuse(fmt::format("was written by pyroclast {}; this is {}, whose steps may give other bits",
+                       info.version, kVersion));
+  if (info.physics_version != kPhysicsVersion)
+    refuse(fmt::format("belongs to physics version {}; this program has {}", info.physics_version,
+                       kPhysicsVersion));
+  if (info.inputs != inputs)
+    refuse("belongs to other inputs: deck.toml or a file of inputs/ was changed since the run began");
+  if (info.body != body_hash(simulation))
+    refuse("belongs to another body: specimen or laws of this program differ from those that the run had");
+}
+
+Loaded load_from(const fs::path& run, const std::vector<std::string>& changes, const std::string& more,
+                 RunChoices choices) {
+  choices.seed.reset();  // the folder's deck has it
+  return {Deck::load(run / kDeck, changes, more), run, std::move(choices)};
+}
+
+/// The stage with this number or name.
+std::int64_t stage_of(const std::string& stated, const Setup& setup) {
+  std::int64_t number = 0;
+  const auto count = static_cast<std::int64_t>(setup.stages.size());
+  const auto [end, error] = std::from_chars(stated.data(), stated.data() + stated.size(), number);
+  if (error == std::errc{} && end == stated.data() + stated.size()) {
+    if (number >= 0 && number < count) return number;
+    throw Error(fmt::format("--from-stage {}: the run has stages 0 to {}", stated, count - 1));
+  }
+  const auto& names = setup.stage_names;
+  const auto found = std::ranges::count(names, stated);
+  if (found == 1) return std::ranges::find(names, stated) - names.begin();
+  throw Error(fmt::format("--from-stage {}: {} of the stages have this name; they are, from 0 on: {}", stated,
+                          found, fmt::join(names, ", ")));
+}
+
+/// Throws Error for a run that a script changed: its checkpoints do not hold what the script does.
+void require_deck_alone(const fs::path& run) {
+  for (const Departure& departure : RunFolder::departures(run))
+    if (departure.is_change)
+      throw Error(
+          fmt::format("{}: only the script that made this run can make it again, for it changed the run: {}",
+                      run.string(), departure.why));
+}
+
+}  // namespace
+
+void require_later(const std::string& change, std::int64_t stage) {
+  const std::string key = change.substr(0, change.find('='));
+  if (key.starts_with("output.")) return;
+  constexpr std::string_view kStages = "stages[";
+  if (key.starts_with(kStages)) {
+    std::int64_t of = 0;
+    const auto [end, error] = std::from_chars(key.data() + kStages.size(), key.data() + key.size(), of);
+    if (error == std::errc{} && *end == ']' && of > stage) return;
+    throw Error(
+        fmt::format("--set {}: this stage is done in what is forked; only stages[{}] and later may change",
+                    change, stage + 1));
+  }
+  if (key.starts_with("coupling"))
+    throw Error(
+        fmt::format("--set {}: [coupling] acts in earlier stages too; say stages[{}].{} for that stage alone",
+                    change, stage + 1, key));
+  throw Error(fmt::format(
+      "--set {}: acts before the end of stage {}; in a fork only stages[{}] and later, their coupling "
+      "(stages[{}].coupling.KEY) and output may change",
+      change, stage, stage + 1, stage + 1));
+}
+
+void copy_frames(const fs::path& from, const fs::path& to, int count) {
+  fs::create_directories(to / "fields");
+  for (const MeshPart part : {MeshPart::blocks, MeshPart::contacts})
+    for (int i = 0; i < count; ++i)
+      if (const auto name = fs::path("fields") / FrameSeries::file_name(part, i); fs::exists(from / name))
+        fs::copy_file(from / name, to / name);
+}
+
+std::unique_ptr<Session> Session::resume(const fs::path& folder, const fs::path& stated,
+                                         const RunChoices& choices) {
+  RunFolder::require(folder);
+  auto lock = std::make_unique<FolderLock>(folder);
+  require_deck_alone(folder);
+  const CheckpointFile checkpoint = stated.empty() ? newest_checkpoint(folder) : CheckpointFile(stated);
+  std::unique_ptr<Session> session(new Session(load_from(folder, {}, "", choices), std::move(lock), folder));
+  require_same(checkpoint, session->inputs_.hash(), *session->simulation_);
+  session->restore(checkpoint);
+  const Run& run = session->run_;
+  // where the disk was full at the end, the summary is still to be written
+  if (run.outcome() != Outcome::running && fs::exists(folder / "summary.json"))
+    throw Error(fmt::format(
+        "{}: the run is over ({}); to add stages: pyroclast resume {} --stages MORE.toml --out NEW",
+        folder.string(), describe(run.outcome()), folder.string()));
+  session->last_checkpoint_ = checkpoint.path();
+  session->open(checkpoint.info().number);
+  return session;
+}
+
+std::unique_ptr<Session> Session::fork(const ForkOf& of, const RunOutput& output, const RunChoices& choices) {
+  // the parent is only read: it may still run
+  RunFolder::require(of.run);
+  require_deck_alone(of.run);
+  Loaded parent = load_from(of.run, {}, "", choices);
+  const std::int64_t stage = of.from_stage.empty() ? static_cast<std::int64_t>(parent.setup.stages.size()) - 1
+                                                   : stage_of(of.from_stage, parent.setup);
+  for (const std::string& change : of.changes) require_later(change, stage);
+  const CheckpointFile checkpoint(stage_checkpoint(of.run, stage));
+
+  const std::string more = of.more.empty() ? "" : read_file(of.more);
+  Loaded loaded = load_from(of.run, of.changes, more, choices);
+  auto lock = std::make_unique<FolderLock>(output.folder);
+  RunFolder::check(output.folder, output.overwrite);
+  std::unique_ptr<Session> session(new Session(std::move(loaded), std::move(lock), output.folder));
+  require_same(checkpoint, inputs_of(parent.deck, parent.setup).hash(), *session->simulation_);
+  session->restore(checkpoint);
+  if (session->run_.outcome() != Outcome::running)
+    throw Error(fmt::format("{}: no stage can follow stage {}, which ended the run ({})", of.run.string(),
+                            stage, describe(session->run_.outcome())));
+  std::vector<std::string> changes = of.changes;
+  if (!more.empty()) changes.push_back(of.more.string());
+  session->make_folder(output, Parent{of.run, stage, changes});
+  copy_frames(of.run, output.folder, static_cast<int>(session->recorder_.frames().rows.size()));
+  session->open(checkpoint.info().number);
+  session->checkpoint_is_due_ = true;
+  return session;
+}
+
+}  // namespace pyroclast

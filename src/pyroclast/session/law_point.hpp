@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pyroclast/material/concrete.hpp"
+#include "pyroclast/material/jump_path.hpp"
+#include "pyroclast/plugin/find_law.hpp"
+#include "pyroclast/simulation/history.hpp"
+
+namespace pyroclast {
+
+/// A contact law with all its properties, as "key=value" states them. Throws Error for one that is missing or
+/// cannot be.
+ContactMaterial stated_material(const LawTable& law, const std::vector<std::string>& values);
+
+/// One contact point on its way along a path of jumps, with its energies added up.
+class LawPoint {
+ public:
+  explicit LawPoint(ContactMaterial material);
+
+  void go(const JumpPathPoint& to);
+  /// In `steps` equal parts; after each of them `look` is called.
+  template <class Look>
+  void go(const JumpPathPoint& to, int steps, Look look) {
+    const JumpPathPoint from = at_;
+    for (int i = 1; i <= steps; ++i) {
+      const double share = static_cast<double>(i) / steps;
+      const auto between = [&](double a, double b) { return i == steps ? b : a + share * (b - a); };
+      go({between(from.opening, to.opening), between(from.slip, to.slip),
+          between(from.temperature, to.temperature)});
+      look();
+    }
+  }
+
+  /// What `values` are: names with their units at the end, all SI and degC.
+  std::vector<Column> columns() const;
+  std::vector<double> values() const;
+
+ private:
+  void warm_to(double temperature) { constants_ = material_.at(temperature).constants(); }
+  void update(const JumpPathPoint& point);
+  double dissipated() const;
+
+  ContactMaterial material_;
+  const LawTable& law_;
+  std::vector<std::byte> constants_;
+  std::vector<double> history_, losses_;
+  PointResponse response_;
+  JumpPathPoint at_;
+  double property_change_ = 0.0;
+};
+
+}  // namespace pyroclast

@@ -1,0 +1,46 @@
+#include "pyroclast/session/load.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/plugin/load.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+std::shared_ptr<Team> make_team(int asked) {
+  return asked > 0 ? std::make_shared<Team>(asked)
+                   : std::make_shared<Team>(available_threads(), WhenCrowded::give_way);
+}
+
+}  // namespace
+
+Loaded::Loaded(Deck read, std::filesystem::path folder_of_deck, RunChoices chosen)
+    : choices(std::move(chosen)),
+      folder(std::move(folder_of_deck)),
+      deck(std::move(read)),
+      setup(read_setup(deck, folder, choices.kinds, choices.laws)),
+      instructions(choices.instructions.empty() ? usable_instruction_sets().back()
+                                                : instruction_set(choices.instructions)),
+      team(make_team(choices.threads)) {
+  for (const Diagnostic& warning : setup.warnings) warnings.push_back(to_string(warning));
+  if (choices.threads > available_threads())
+    warnings.push_back(
+        fmt::format("--threads {}: only {} processors are free for this process, and more "
+                    "threads than those slow it down",
+                    choices.threads, available_threads()));
+  if (choices.seed) setup.specimen.seed = *choices.seed;
+  if (choices.checkpoint) setup.checkpoints.interval = *choices.checkpoint;
+  if (setup.motion) setup.motion->mechanics.instructions = instructions;
+}
+
+std::vector<OwnLaw> own_laws() {
+  std::vector<OwnLaw> laws;
+  for (const LoadedLaw* law : loaded_laws())
+    laws.push_back({law->table.name, law->shared_object, law->header.file, law->compiler});
+  return laws;
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,232 @@
+#include "pyroclast/session/session.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/state_copy.hpp"
+#include "pyroclast/results/text_file.hpp"
+#include "pyroclast/session/later.hpp"
+#include "pyroclast/simulation/coupling.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+std::unique_ptr<Simulation> make_simulation_of(const Loaded& loaded,
+                                               std::optional<specimen::Specimen> specimen) {
+  if (specimen) return make_simulation(loaded.setup, *std::move(specimen), loaded.team);
+  loaded.choices.before_making(loaded);
+  return make_simulation(loaded.setup, loaded.team);
+}
+
+std::string key_of(const std::string& change) {
+  return change.substr(0, change.find('='));
+}
+
+/// Throws Error where materials differ in what a run takes only at its beginning.
+void require_same_body(const ConcreteMaterials& old, const ConcreteMaterials& changed) {
+  for (std::size_t i = 0; i < old.solids.size(); ++i)
+    if (old.solids[i].density(kReferenceTemperature) != changed.solids[i].density(kReferenceTemperature))
+      throw Error("a density cannot change in a run: mass would come or go");
+  for (std::size_t i = 0; i < old.contacts.size(); ++i)
+    if (old.contacts[i].law != changed.contacts[i].law)
+      throw Error("a contact law cannot change in a run: contacts remember what the old one kept");
+}
+
+}  // namespace
+
+Session::Session(Loaded loaded, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
+                 std::optional<specimen::Specimen> specimen)
+    : lock_(std::move(lock)),
+      folder_(std::move(folder)),
+      loaded_(std::move(loaded)),
+      inputs_(inputs_of(loaded_.deck, loaded_.setup)),
+      simulation_(make_simulation_of(loaded_, std::move(specimen))),
+      recorder_(folder_, loaded_.setup),
+      run_(*simulation_, std::move(loaded_.setup.stages)) {
+  run_.stop_when([this] { return stop_asked_(); });
+  run_.between_batches([this](Run& run) {
+    if (checkpoints_) {
+      checkpoints_->between_batches(run, std::exchange(checkpoint_is_due_, false) || stop_asked_());
+      last_checkpoint_ = checkpoints_->last();
+    }
+    between_batches_();
+  });
+}
+
+std::unique_ptr<Session> Session::begin(Loaded loaded, const std::optional<RunOutput>& output) {
+  std::unique_ptr<FolderLock> lock;
+  if (output) {
+    lock = std::make_unique<FolderLock>(output->folder);
+    RunFolder::check(output->folder, output->overwrite);
+  }
+  std::unique_ptr<Session> session(
+      new Session(std::move(loaded), std::move(lock), output ? output->folder : std::filesystem::path()));
+  if (!output) return session;
+  session->make_folder(*output, std::nullopt);
+  session->open(0);
+  return session;
+}
+
+void Session::make_folder(const RunOutput& output, std::optional<Parent> parent) {
+  const RunFolder made(folder_, output.overwrite,
+                       {loaded_.deck.name(), inputs_, loaded_.setup.specimen.seed, loaded_.team->size(),
+                        name(loaded_.instructions), output.command, own_laws(), std::move(parent)});
+  foreign_ = made.foreign();
+  for (const Departure& departure : departures_) RunFolder::note_departure(folder_, departure);
+}
+
+/// \param last_checkpoint  number of the checkpoint that the run goes on from; 0 where it begins
+void Session::open(std::int64_t last_checkpoint) {
+  checkpoints_.emplace(
+      folder_, loaded_.setup.checkpoints,
+      Checkpoints::Sources{inputs_.hash(), body_hash(*simulation_),
+                           [this](StateVisitor& visitor) { visit_state(visitor); },
+                           [this] { return recorder_.wall_time(); }, [this] { return log_bytes_(); }},
+      last_checkpoint);
+  recorder_.begin(run_);
+}
+
+void Session::visit_state(StateVisitor& visitor) {
+  run_.visit_state(visitor);
+  recorder_.visit_state(visitor);
+}
+
+void Session::restore(const CheckpointFile& checkpoint) {
+  checkpoint.restore([this](StateVisitor& visitor) { visit_state(visitor); });
+  goes_on_from_ = checkpoint.info();
+}
+
+void Session::stop_when(const std::function<bool()>& asked) {
+  stop_asked_ = asked;
+}
+
+/// What `act` returns; an error then says where the run can go on from.
+template <class Act>
+auto Session::telling_where_to_go_on(Act act) {
+  try {
+    return act();
+  } catch (const Error& error) {
+    if (last_checkpoint_.empty()) throw;
+    throw Error(
+        fmt::format("{}\nthe run is broken off; to go on from {}, its last checkpoint: pyroclast resume {}",
+                    error.what(), last_checkpoint_.string(), folder_.string()));
+  }
+}
+
+bool Session::next() {
+  return telling_where_to_go_on([&] {
+    run_.go_on();
+    if (!run_.next()) return false;
+    if (!checkpoints_) return true;
+    recorder_.record(run_);
+    if (run_.stage_is_over()) {
+      checkpoints_->end_stage(run_);
+      last_checkpoint_ = checkpoints_->last();
+    }
+    return true;
+  });
+}
+
+Summary Session::finish() {
+  return telling_where_to_go_on(
+      [&] { return checkpoints_ ? recorder_.finish(run_) : recorder_.summary(run_); });
+}
+
+std::unique_ptr<Session> Session::copy(const std::vector<std::string>& changes,
+                                       const std::optional<RunOutput>& output) {
+  for (const std::string& change : changes) require_later(change, run_.last_begun_stage());
+  std::unique_ptr<FolderLock> lock;
+  if (output) {
+    lock = std::make_unique<FolderLock>(output->folder);
+    RunFolder::check(output->folder, output->overwrite);
+  }
+  Loaded loaded(Deck::parse(loaded_.deck.text(), loaded_.deck.name(), changes), loaded_.folder,
+                loaded_.choices);
+  loaded.team->resize(loaded_.team->size());
+  std::unique_ptr<Session> copied(new Session(std::move(loaded), std::move(lock),
+                                              output ? output->folder : std::filesystem::path(),
+                                              simulation_->specimen()));
+  StateCopy state;
+  state.take([this](StateVisitor& visitor) { visit_state(visitor); });
+  state.put([&](StateVisitor& visitor) { copied->visit_state(visitor); });
+  for (const Departure& departure : departures_) copied->depart(departure);
+  if (!output) return copied;
+  std::optional<Parent> parent;
+  if (!folder_.empty()) parent = {folder_, run_.last_begun_stage(), changes};
+  copied->make_folder(*output, std::move(parent));
+  if (!folder_.empty())
+    copy_frames(folder_, copied->folder_, static_cast<int>(copied->recorder_.frames().rows.size()));
+  copied->open(0);
+  return copied;
+}
+
+void Session::leave_folder() {
+  checkpoints_.reset();
+  lock_.reset();
+}
+
+void Session::write_checkpoint() {
+  if (!checkpoints_) throw Error("this run has no folder, so a checkpoint has no place: say out=");
+  checkpoints_->between_batches(run_, true);
+  last_checkpoint_ = checkpoints_->last();
+}
+
+Setup Session::read(const Deck& deck) const {
+  Setup setup = read_setup(deck, loaded_.folder, loaded_.choices.kinds, loaded_.choices.laws);
+  setup.specimen.seed = loaded_.setup.specimen.seed;
+  setup.checkpoints = loaded_.setup.checkpoints;
+  return setup;
+}
+
+/// The deck of what is to come; what the folder says of it follows.
+void Session::take_over(Deck deck, Setup setup) {
+  loaded_.deck = std::move(deck);
+  loaded_.setup = std::move(setup);
+  if (!checkpoints_) return;
+  inputs_ = inputs_of(loaded_.deck, loaded_.setup);
+  checkpoints_->set_inputs(inputs_.hash());
+  RunFolder::replace_inputs(folder_, inputs_);
+  recorder_.begin(run_);
+}
+
+void Session::change_stages(const std::vector<std::string>& changes, const std::string& more) {
+  for (const std::string& change : changes) require_later(change, run_.last_begun_stage());
+  Deck deck = Deck::parse(more.empty() ? loaded_.deck.text() : loaded_.deck.text() + "\n" + more,
+                          loaded_.deck.name(), changes);
+  Setup setup = read(deck);
+  run_.change_later_stages(std::move(setup.stages));
+  take_over(std::move(deck), std::move(setup));
+}
+
+void Session::change_materials(const std::vector<std::string>& changes) {
+  for (const std::string& change : changes)
+    if (!change.starts_with("materials.") && !change.starts_with("contacts."))
+      throw Error(
+          fmt::format("{}: in a run only keys of [materials] and [contacts] change, and those of later "
+                      "stages",
+                      key_of(change)));
+  if (!simulation_->moves()) throw Error("nothing moves in this run, so its materials have no properties");
+  Deck deck = Deck::parse(loaded_.deck.text(), loaded_.deck.name(), changes);
+  Setup setup = read(deck);
+  const specimen::Specimen& specimen = simulation_->specimen();
+  auto materials = make_concrete(setup.solids, setup.motion->contacts, specimen.metrics.mean_size,
+                                 specimen::block_size(specimen));
+  require_same_body(simulation_->materials(), materials);
+  simulation_->set_materials(std::move(materials));
+  take_over(std::move(deck), std::move(setup));
+  for (const std::string& change : changes)
+    depart({fmt::format("{} from step {} on", change, simulation_->mechanics().steps())});
+}
+
+void Session::depart(const Departure& departure) {
+  if (std::ranges::find(departures_, departure) != departures_.end()) return;
+  departures_.push_back(departure);
+  recorder_.warn("not reproducible from the deck: " + departure.why);
+  if (checkpoints_) RunFolder::note_departure(folder_, departure);
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pyroclast/results/checkpoints.hpp"
+#include "pyroclast/results/folder_lock.hpp"
+#include "pyroclast/results/inputs.hpp"
+#include "pyroclast/results/recorder.hpp"
+#include "pyroclast/session/load.hpp"
+#include "pyroclast/simulation/run.hpp"
+
+namespace pyroclast {
+
+/// Where a run writes, and what its manifest says of it.
+struct RunOutput {
+  std::filesystem::path folder;
+  bool overwrite = false;
+  std::string command;
+};
+
+/// What a run is forked from.
+struct ForkOf {
+  std::filesystem::path run;         ///< folder of a run
+  std::string from_stage;            ///< number or name of the last stage in common; empty: the last of all
+  std::filesystem::path more;        ///< a file with stages to append; may be empty
+  std::vector<std::string> changes;  ///< "key=value", of later stages
+};
+
+/// A run with all that belongs to it: its deck, its simulation, and, where it has a folder, the files of
+/// that.
+///
+///     while (session.next()) look_at(session.run());
+///     session.finish();
+class Session {
+ public:
+  /// A run from its beginning. Throws Error where it cannot be made, or its folder may not be written.
+  /// \param output  empty: nothing is written
+  static std::unique_ptr<Session> begin(Loaded loaded, const std::optional<RunOutput>& output);
+  /// A run that was broken off goes on in its folder. Throws Error where it is over, or the checkpoint is not
+  /// of this program, these inputs and this body.
+  /// \param checkpoint  to go on from; empty: the newest
+  static std::unique_ptr<Session> resume(const std::filesystem::path& folder,
+                                         const std::filesystem::path& checkpoint, const RunChoices& choices);
+  /// A new run that has its first stages in common with another one, which is only read. Throws Error as
+  /// `resume`, and for a change that would act earlier.
+  static std::unique_ptr<Session> fork(const ForkOf& of, const RunOutput& output, const RunChoices& choices);
+
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Goes on to the next look and writes what is due. False when the run is over, or was stopped.
+  bool next();
+  /// What came of the rows so far; written, where there is a folder.
+  Summary finish();
+  /// The same, not written.
+  Summary summary() const { return recorder_.summary(run_); }
+
+  /// Asked before every batch; true stops the run, after a checkpoint where there is a folder.
+  void stop_when(const std::function<bool()>& asked);
+  /// Called between batches, after what was to be written.
+  void between_batches(std::function<void()> call) { between_batches_ = std::move(call); }
+  /// Says how long the log of the run is, for checkpoints.
+  void log_bytes_by(std::function<std::uint64_t()> bytes) { log_bytes_ = std::move(bytes); }
+
+  /// A new run that stands where this one does, between two batches or after a look.
+  /// \param changes  "key=value", of what acts later; see `fork`
+  std::unique_ptr<Session> copy(const std::vector<std::string>& changes,
+                                const std::optional<RunOutput>& output);
+  /// Gives the folder back, so that another process may write there; the run writes no more.
+  void leave_folder();
+  /// Writes a checkpoint now. Throws Error without a folder.
+  void write_checkpoint();
+
+  /// Other keys for stages that have not begun, and stages behind the last one. The run is then that of the
+  /// changed deck. Throws Error for a change that would act earlier.
+  /// \param more  text that is appended to the deck
+  void change_stages(const std::vector<std::string>& changes, const std::string& more);
+  /// Other keys of materials and contacts from now on, as if the temperature had changed. Throws Error for
+  /// what cannot change in a run. The run departs from its deck.
+  void change_materials(const std::vector<std::string>& changes);
+  /// Notes that from now on the run is not the one that its deck describes: in summary and manifest.
+  void depart(const Departure& departure);
+
+  Run& run() { return run_; }
+  const Run& run() const { return run_; }
+  Simulation& simulation() { return *simulation_; }
+  const Loaded& loaded() const { return loaded_; }
+  /// Empty where nothing is written.
+  const std::filesystem::path& folder() const { return folder_; }
+  /// What was in the folder and no run writes.
+  const std::vector<std::filesystem::path>& foreign() const { return foreign_; }
+  /// That a run goes on from which was broken off, or forked.
+  const std::optional<CheckpointInfo>& goes_on_from() const { return goes_on_from_; }
+  const std::filesystem::path& last_checkpoint() const { return last_checkpoint_; }
+
+ private:
+  Session(Loaded loaded, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
+          std::optional<specimen::Specimen> specimen = std::nullopt);
+
+  void make_folder(const RunOutput& output, std::optional<Parent> parent);
+  void open(std::int64_t last_checkpoint);
+  void visit_state(StateVisitor& visitor);
+  void restore(const CheckpointFile& checkpoint);
+  void take_over(Deck deck, Setup setup);
+  Setup read(const Deck& deck) const;
+  template <class Act>
+  auto telling_where_to_go_on(Act act);
+
+  std::unique_ptr<FolderLock> lock_;
+  std::filesystem::path folder_;
+  Loaded loaded_;
+  Inputs inputs_;
+  std::unique_ptr<Simulation> simulation_;
+  Recorder recorder_;
+  Run run_;
+  std::optional<Checkpoints> checkpoints_;
+  std::optional<CheckpointInfo> goes_on_from_;
+  std::filesystem::path last_checkpoint_;
+  std::vector<std::filesystem::path> foreign_;
+  std::vector<Departure> departures_;
+  bool checkpoint_is_due_ = false;  ///< of a fork: its first
+  std::function<bool()> stop_asked_ = [] { return false; };
+  std::function<void()> between_batches_ = [] {};
+  std::function<std::uint64_t()> log_bytes_ = [] { return std::uint64_t{0}; };
+};
+
+}  // namespace pyroclast

@@ -1,0 +1,69 @@
+#include "pyroclast/setup/read_bearings.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace pyroclast {
+
+namespace {
+
+ReadBearing read_bearing(const Section& s) {
+  ReadBearing read{s, {}, {}, {}, 0.0};
+  Bearing& bearing = read.bearing;
+  bearing.name = s.text("name", "of the bearing, and of the sets that come with it");
+  if (s.has("side")) {
+    bearing.side = s.text("side", "side of the specimen that it covers from end to end");
+    for (const char* key : {"at", "width"})
+      if (s.has(key)) s.error(key, "either side, or at and width; not both");
+  } else {
+    bearing.side = bearing.name + "_seat";
+    const auto at = s.place("at", unit::length, "middle of its seat, on the outline");
+    read.at = at ? Vec<2>{{at->first, at->second}} : Vec<2>{};
+    read.width =
+        s.quantity("width", unit::length, Range::positive(), "of its seat, straight from end to end");
+  }
+  bearing.thickness = s.quantity("thickness", unit::length, Range::positive(), "away from the specimen");
+  bearing.material =
+      s.text("material", "platen", "what it is made of: a table of [materials], at 20 °C in every run");
+  bearing.interface = read.interface.name = bearing.name;
+  BearingInterface& interface = read.interface;
+  interface.contact = s.choice<BearingContact>(
+      "contact",
+      {{"frictional", BearingContact::frictional, "bears no tension, and slips by Coulomb's law"},
+       {"glued", BearingContact::glued, "stays elastic and never parts"}},
+      "how it meets the specimen");
+  if (interface.contact == BearingContact::frictional)
+    interface.friction = s.number("friction", Range::non_negative().usually(0.0, 1.0),
+                                  "coefficient of friction between bearing and specimen");
+  else
+    s.know({"friction"});
+  if (s.has("K_n"))
+    interface.stiffness = {
+        s.quantity("K_n", unit::stiffness_per_area, Range::positive(),
+                   "normal stiffness of a layer between bearing and specimen; without one that "
+                   "of the matrix's own contacts"),
+        s.quantity("K_s", unit::stiffness_per_area, Range::positive(), "shear stiffness likewise")};
+  else
+    s.know({"K_s"});
+  return read;
+}
+
+}  // namespace
+
+std::vector<ReadBearing> read_bearings(const Section& root) {
+  std::vector<ReadBearing> bearings;
+  for (const Section& s :
+       root.optional_sections("bearings",
+                              "blocks beside the specimen by which it is loaded or held, any number; see "
+                              "[bodies.md](bodies.md#bearings)")) {
+    ReadBearing read = read_bearing(s);
+    const auto same = [&](const ReadBearing& other) { return other.bearing.name == read.bearing.name; };
+    if (s.ok() && std::ranges::any_of(bearings, same))
+      s.error("name", fmt::format("\"{}\" is the name of another bearing", read.bearing.name));
+    bearings.push_back(std::move(read));
+  }
+  return bearings;
+}
+
+}  // namespace pyroclast

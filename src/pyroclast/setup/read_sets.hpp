@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "pyroclast/deck/deck.hpp"
+#include "pyroclast/model/sets.hpp"
+#include "pyroclast/simulation/records.hpp"
+
+namespace pyroclast {
+
+/// Reads [[sets]], which every run may have.
+std::vector<SetParameters<2>> read_sets(const Section& root);
+
+/// Reads [[record]], likewise.
+std::vector<RecordParameters> read_records(const Section& root);
+
+}  // namespace pyroclast

@@ -1,0 +1,156 @@
+#include "pyroclast/simulation/loads.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/chunked_sum.hpp"
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/model/outline.hpp"
+#include "pyroclast/model/sets.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Normal of a face times its area over its number of corners: what one corner gets of a unit pressure, m².
+Vec<2> share_of_corner(const std::array<Vec<2>, 2>& x, double thickness) {
+  const Vec<2> along = x[1] - x[0];
+  return 0.5 * thickness * Vec<2>{{along[1], -along[0]}};
+}
+Vec<3> share_of_corner(const std::array<Vec<3>, 3>& x, double /*thickness*/) {
+  return (1.0 / 6.0) * cross(x[1] - x[0], x[2] - x[0]);
+}
+
+}  // namespace
+
+template <int Dim>
+typename Loads<Dim>::Entry& Loads<Dim>::entry(const std::string& set) {
+  const auto found = entries_.find(set);
+  if (found != entries_.end()) return found->second;
+  const Model<Dim>& model = mechanics_.model();
+  std::vector<int> gridpoints = model.set(set);
+  std::ranges::sort(gridpoints);
+  const auto repeated = std::ranges::unique(gridpoints);
+  gridpoints.erase(repeated.begin(), repeated.end());
+  Entry entry;
+  entry.set = mechanics_.set_of(gridpoints);
+  entry.shares = tributary_areas(model, gridpoints);
+  const double whole = chunked_sum(entry.set.chunks, [&](int i) { return entry.shares[i]; });
+  for (double& share : entry.shares)
+    share = whole > 0.0 ? share / whole : 1.0 / static_cast<double>(gridpoints.size());
+  const auto in_set = [&](int g) { return std::ranges::binary_search(gridpoints, g); };
+  for (const auto& face :
+       outline(model, zone_geometry(model), std::vector<bool>(model.material_names.size(), true)))
+    if (std::ranges::all_of(face.gridpoints, in_set)) entry.faces.push_back(face.gridpoints);
+  return entries_.emplace(set, std::move(entry)).first->second;
+}
+
+template <int Dim>
+SetLoad<Dim> Loads<Dim>::on(const std::string& set) const {
+  const auto found = entries_.find(set);
+  return found == entries_.end() ? SetLoad<Dim>{} : found->second.load;
+}
+
+template <int Dim>
+void Loads<Dim>::set(const std::string& set, const SetLoad<Dim>& load) {
+  Entry& changed = entry(set);
+  for (int g : changed.set.gridpoints)
+    for (int i = 0; i < Dim; ++i)
+      if (load.force[i] != 0.0 && mechanics_.is_prescribed(g, i))
+        throw Error(
+            fmt::format("a force along {} on set \"{}\" acts on gridpoints that are held or driven along {}",
+                        "xyz"[i], set, "xyz"[i]));
+  if (load.pressure != 0.0 && changed.faces.empty())
+    throw Error(fmt::format("a pressure acts on set \"{}\", which has no face of the outline", set));
+  changed.load = load;
+  apply();
+}
+
+template <int Dim>
+void Loads<Dim>::follow() {
+  const auto follows = [](const auto& e) {
+    return e.second.load.is_follower && e.second.load.pressure != 0.0;
+  };
+  if (std::ranges::any_of(entries_, follows)) apply();
+}
+
+/// On each gridpoint of the set.
+template <int Dim>
+std::vector<Vec<Dim>> Loads<Dim>::forces(const Entry& entry) const {
+  const auto& gridpoints = entry.set.gridpoints;
+  std::vector<Vec<Dim>> result;
+  for (double share : entry.shares) result.push_back(share * entry.load.force);
+  if (entry.load.pressure == 0.0) return result;
+  const Model<Dim>& model = mechanics_.model();
+  for (const auto& face : entry.faces) {
+    std::array<Vec<Dim>, Dim> x;
+    for (int i = 0; i < Dim; ++i) {
+      x[i] = model.position[face[i]];
+      if (entry.load.is_follower) x[i] += mechanics_.displacement(face[i]);
+    }
+    const Vec<Dim> share = -entry.load.pressure * share_of_corner(x, model.thickness);
+    for (int g : face) result[std::ranges::lower_bound(gridpoints, g) - gridpoints.begin()] += share;
+  }
+  return result;
+}
+
+template <int Dim>
+void Loads<Dim>::apply() {
+  std::map<int, Vec<Dim>> on;
+  for (const auto& [name, entry] : entries_) {
+    const auto of_entry = forces(entry);
+    for (std::size_t i = 0; i < of_entry.size(); ++i) on[entry.set.gridpoints[i]] += of_entry[i];
+  }
+  for (const auto& [gridpoint, force] : on) mechanics_.apply_force(gridpoint, force);
+}
+
+/// Of the set along its force; under a pressure against its faces.
+template <int Dim>
+double Loads<Dim>::way(const Entry& entry) const {
+  const auto on = forces(entry);
+  const auto along = chunked_sum<Vec<Dim>>(entry.set.chunks, [&](int i, Vec<Dim>& total) { total += on[i]; });
+  const double size = norm(along);
+  return size > 0.0 ? dot(mechanics_.mean_displacement(entry.set), along) / size : 0.0;
+}
+
+template <int Dim>
+void Loads<Dim>::mark() {
+  for (auto& [name, entry] : entries_) entry.marked = way(entry);
+}
+
+template <int Dim>
+double Loads<Dim>::give() const {
+  double most = 0.0;
+  for (const auto& [name, entry] : entries_) most = std::max(most, way(entry) - entry.marked);
+  return most / size_;
+}
+
+template <int Dim>
+void Loads<Dim>::visit_state(StateVisitor& visitor) {
+  std::string names;
+  for (const auto& [name, entry] : entries_) names += name + '\n';
+  visitor.visit("sets", names);
+  if (visitor.replaces()) {
+    entries_.clear();
+    for (std::size_t begin = 0; begin < names.size();) {
+      const auto end = names.find('\n', begin);
+      entry(names.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
+  for (auto& [name, entry] : entries_) {
+    const StateVisitor::Scope scope(visitor, name);
+    visitor.visit("force", entry.load.force);
+    visitor.visit("pressure", entry.load.pressure);
+    visitor.visit("is_follower", entry.load.is_follower);
+    visitor.visit("marked", entry.marked);
+  }
+}
+
+template class Loads<2>;
+template class Loads<3>;
+
+}  // namespace pyroclast

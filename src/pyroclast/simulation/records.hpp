@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pyroclast/base/state_visitor.hpp"
+#include "pyroclast/base/unit.hpp"
+#include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/simulation/history.hpp"
+
+namespace pyroclast {
+
+class Simulation;
+
+/// What a record measures.
+enum class RecordKind : std::uint8_t {
+  displacement,   ///< mean of a set along a direction, m
+  opening,        ///< the same of a second set minus that of the first, m
+  force,          ///< on the body at a set, along a direction: what loads, holds or drives it there, N
+  stress,         ///< mean over the zones of a set, normal to planes across a direction, tension positive, Pa
+  temperature,    ///< mean of a set, °C
+  crack_length,   ///< of the damaged contact points of a set, m
+  crack_opening,  ///< mean over the contact points of a set, by length, m
+};
+
+struct RecordParameters {
+  std::string name;
+  RecordKind kind{};
+  std::string set;         ///< of contacts where it is of cracks, else of gridpoints
+  std::string other = "";  ///< the second set of an opening
+  Vec<2> direction{};      ///< unit
+  std::string place = "";  ///< where it is asked for, for messages
+};
+
+/// Column of a record in the history: its name and unit.
+Column column_of(const RecordParameters& record);
+/// In which decks state it.
+const Unit& unit_of(RecordKind kind);
+/// A value of the column over the same in SI: 1e-6 where it is in MPa.
+double column_over_si(RecordKind kind);
+
+/// A quantity that a run records. Displacements and openings count from the last zero.
+class Record {
+ public:
+  /// Throws Error, with the record's place, when a set is missing or the set of a stress holds no zone.
+  Record(const Mechanics<2>& mechanics, RecordParameters parameters);
+
+  const RecordParameters& parameters() const { return parameters_; }
+  /// Now, in SI; temperatures in °C.
+  double read(const Simulation& simulation) const;
+  void set_zero(const Simulation& simulation) {
+    if (counts_from_zero()) zero_ += read(simulation);
+  }
+  /// Sets of an opening, which a control pulls apart; the first alone of others.
+  const GridpointSet& set() const { return set_; }
+  const GridpointSet& other() const { return other_; }
+
+  void visit_state(StateVisitor& visitor) { visitor.visit(parameters_.name, zero_); }
+
+ private:
+  bool counts_from_zero() const {
+    return parameters_.kind == RecordKind::displacement || parameters_.kind == RecordKind::opening;
+  }
+  double measure(const Simulation& simulation) const;
+
+  RecordParameters parameters_;
+  GridpointSet set_, other_;
+  std::vector<int> items_;    ///< zones or contacts, ascending
+  std::vector<int> chunks_;   ///< where those of each chunk begin
+  std::vector<double> size_;  ///< of each, m³ or m
+  double whole_ = 0.0;        ///< of all
+  double zero_ = 0.0;
+};
+
+}  // namespace pyroclast

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pyroclast/model/model.hpp"
+
+namespace pyroclast {
+
+/// What of a body is held or driven, as far as it can be foreseen, so that decks are checked before they run.
+template <int Dim>
+class Supports {
+ public:
+  explicit Supports(const Model<Dim>& model) : model_(model), held_(model.position.size()) {}
+
+  void hold(int gridpoint, int component) { held_[gridpoint][component] = true; }
+  void release(int gridpoint, int component) { held_[gridpoint][component] = false; }
+  bool holds(int gridpoint, int component) const { return held_[gridpoint][component]; }
+
+  /// A motion of the body as a whole that nothing hinders, in words: "along x"; empty where there is none.
+  std::optional<std::string> free_motion() const;
+
+ private:
+  const Model<Dim>& model_;
+  std::vector<std::array<bool, Dim>> held_;  ///< by gridpoint and component
+};
+
+template <>
+std::optional<std::string> Supports<2>::free_motion() const;
+
+}  // namespace pyroclast

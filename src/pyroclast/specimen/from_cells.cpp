@@ -1,0 +1,118 @@
+#include "pyroclast/specimen/from_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/specimen/metrics.hpp"
+#include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/topology.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+/// Sides that turn by less than this, radians, are one.
+constexpr double kStraight = 1e-6;
+
+/// Vertices along each loop of the outline, the cells on the left.
+std::vector<std::vector<int>> loops_of(const Tessellation& tessellation) {
+  std::vector<int> next(tessellation.vertices.size(), -1);
+  for (const Edge& e : edges(tessellation)) {
+    if (e.right >= 0) continue;
+    if (next[e.v0] >= 0)
+      throw Error(fmt::format("parts of the outline meet in one point, ({:.6g}, {:.6g}) m",
+                              tessellation.vertices[e.v0][0], tessellation.vertices[e.v0][1]));
+    next[e.v0] = e.v1;
+  }
+  std::vector<std::vector<int>> loops;
+  for (int first = 0; first < static_cast<int>(next.size()); ++first) {
+    if (next[first] < 0) continue;
+    auto& loop = loops.emplace_back();
+    for (int at = first; next[at] >= 0;) {
+      loop.push_back(at);
+      at = std::exchange(next[at], -1);
+    }
+  }
+  return loops;
+}
+
+/// Where a loop turns.
+std::vector<Vec<2>> corners_of(const std::vector<int>& loop, const std::vector<Vec<2>>& vertices) {
+  std::vector<Vec<2>> corners;
+  const std::size_t n = loop.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec<2>& here = vertices[loop[i]];
+    const Vec<2> before = here - vertices[loop[(i + n - 1) % n]], after = vertices[loop[(i + 1) % n]] - here;
+    if (std::abs(std::atan2(cross(before, after), dot(before, after))) > kStraight) corners.push_back(here);
+  }
+  return corners;
+}
+
+void require_cells(const Tessellation& t, const std::vector<std::string>& phases,
+                   const std::vector<int>& phase) {
+  if (t.cells.empty()) throw Error("there are no cells");
+  if (phase.size() != t.cells.size())
+    throw Error(fmt::format("there are {} cells, but the phases of {}", t.cells.size(), phase.size()));
+  for (std::size_t c = 0; c < t.cells.size(); ++c) {
+    if (phase[c] < 0 || phase[c] >= std::ssize(phases))
+      throw Error(fmt::format("cell {} is of phase {}, but there are {}", c, phase[c], phases.size()));
+    if (t.cells[c].size() < 3)
+      throw Error(fmt::format("cell {} has {} corners, but needs 3", c, t.cells[c].size()));
+    for (int v : t.cells[c])
+      if (v < 0 || v >= std::ssize(t.vertices))
+        throw Error(fmt::format("cell {} names vertex {}, but there are {}", c, v, t.vertices.size()));
+  }
+  for (std::size_t v = 0; v < t.vertices.size(); ++v)
+    if (!std::isfinite(t.vertices[v][0]) || !std::isfinite(t.vertices[v][1]))
+      throw Error(fmt::format("vertex {} is not finite", v));
+}
+
+}  // namespace
+
+Region outline_of(const Tessellation& tessellation) {
+  std::vector<Vec<2>> outer;
+  std::vector<Hole> holes;
+  for (const auto& loop : loops_of(tessellation)) {
+    std::vector<Vec<2>> corners = corners_of(loop, tessellation.vertices);
+    if (area(corners) < 0.0)
+      holes.push_back({fmt::format("hole_{}", holes.size() + 1), std::move(corners)});
+    else if (outer.empty())
+      outer = std::move(corners);
+    else
+      throw Error("the cells are not one piece");
+  }
+  const auto lowest =
+      std::ranges::min_element(outer, {}, [](const Vec<2>& p) { return std::pair(p[1], p[0]); });
+  std::ranges::rotate(outer, lowest);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < outer.size(); ++i) names.push_back(fmt::format("side_{}", i + 1));
+  return Region::polygon(std::move(outer), names).with_holes(holes);
+}
+
+Specimen specimen_from(Tessellation tessellation, std::vector<std::string> phases, std::vector<int> phase) {
+  require_cells(tessellation, phases, phase);
+  std::vector<Vec<2>> polygon;
+  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
+    corners(tessellation, c, polygon);
+    if (area(polygon) < 0.0) std::ranges::reverse(tessellation.cells[c]);
+  }
+  Specimen specimen{};
+  specimen.region = outline_of(tessellation);
+  require_valid(tessellation, specimen.region, "The cells");
+  specimen.fraction.assign(phases.size(), 0.0);
+  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
+    corners(tessellation, c, polygon);
+    specimen.fraction[phase[c]] += area(polygon) / specimen.region.area();
+  }
+  specimen.metrics = measure(tessellation);
+  specimen.tessellation = std::move(tessellation);
+  specimen.phases = std::move(phases);
+  specimen.phase = std::move(phase);
+  return specimen;
+}
+
+}  // namespace pyroclast::specimen

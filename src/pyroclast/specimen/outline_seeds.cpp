@@ -1,0 +1,162 @@
+#include "pyroclast/specimen/outline_seeds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+// In spacings.
+constexpr double kOffset = 0.4;       ///< of a seed from the outline
+constexpr double kFromCorner = 0.45;  ///< of its foot from a corner
+constexpr double kAlong = 0.95;       ///< from seed to seed along the outline
+/// Of other seeds from a line with seeds of its own: more than these seeds are from any of its points, which
+/// is sqrt(kOffset^2 + (kAlong / 2)^2) = 0.62.
+constexpr double kClear = 0.75;
+constexpr double kApart = 0.6;  ///< of other seeds from these
+
+constexpr double kNarrowestPatch = 0.9;
+
+/// Up to this angle, radians, one cell may hold a corner: it is convex there, and not almost flat.
+constexpr double kOfOneCell = std::numbers::pi * 170.0 / 180.0;
+/// From this angle on, two cells around a corner would have corners of more than 145 degrees there.
+constexpr double kNeedsThree = std::numbers::pi * 290.0 / 180.0;
+
+Vec<2> turned_left(const Vec<2>& v) {
+  return {{-v[1], v[0]}};
+}
+
+Vec<2> unit(const Vec<2>& v) {
+  return v * (1.0 / norm(v));
+}
+
+/// Interior angle at a corner of an outline that is walked with the body on its left.
+double angle_at(const Vec<2>& before, const Vec<2>& corner, const Vec<2>& after) {
+  const Vec<2> back = before - corner, on = after - corner;
+  double angle = std::atan2(back[1], back[0]) - std::atan2(on[1], on[0]);
+  if (angle <= 0.0) angle += 2.0 * std::numbers::pi;
+  return angle;
+}
+
+/// The side that a patch is a stretch of, or the side itself.
+int whole(const Region& region, int side) {
+  const int of = region.sides()[side].part_of;
+  return of >= 0 ? of : side;
+}
+
+/// Of the seeds at the ends of a straight patch, from these ends: within a narrow one they share its width.
+double foot_in_patch(const std::string& name, double width, double spacing) {
+  if (width < kNarrowestPatch * spacing)
+    throw Error(fmt::format("{}: it is {:.4g} mm wide, narrower than the blocks, {:.4g} mm", name,
+                            1e3 * width, 1e3 * spacing));
+  return 0.25 * width;
+}
+
+}  // namespace
+
+double slot_point(double length, double width, double spacing) {
+  const double point = std::max(2.0 * kFromCorner * spacing, 0.5 * width);
+  return length - point < spacing ? length : point;
+}
+
+OutlineSeeds::OutlineSeeds(const Region& region, double spacing) : region_(region), spacing_(spacing) {
+  const auto& sides = region.sides();
+  for (const Loop& loop : region.loops()) {
+    const std::size_t n = loop.corners.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t previous = (i + n - 1) % n, next = (i + 1) % n;
+      const Side &to_here = sides[loop.side[previous]], &from_here = sides[loop.side[i]];
+      if (from_here.is_round) add_at_arc({loop.corners[i], loop.corners[next], loop.side[i]});
+      const bool within_one = whole(region, loop.side[previous]) == whole(region, loop.side[i]);
+      if (within_one && (to_here.is_round || to_here.is_cut)) continue;
+      double foot = kFromCorner * spacing;
+      for (const std::size_t piece : {previous, i})
+        if (sides[loop.side[piece]].part_of >= 0)
+          foot = std::min(foot,
+                          foot_in_patch(sides[loop.side[piece]].name,
+                                        norm(loop.corners[(piece + 1) % n] - loop.corners[piece]), spacing));
+      add_at_corner(loop.corners[i], loop.corners[previous], loop.corners[next], foot);
+    }
+  }
+  for (const Notch& notch : region.notches()) add_along_notch(notch);
+}
+
+void OutlineSeeds::add(const Vec<2>& point, double radius) {
+  positions_.push_back(point);
+  radii_.push_back(radius);
+}
+
+/// The middle of an arc's piece. With half of the piece as its radius the corner between two pieces is on the
+/// line between their cells, however long each of them is.
+void OutlineSeeds::add_at_arc(const Piece& piece) {
+  const Vec<2> inward = turned_left(unit(piece.to - piece.from));
+  add(0.5 * (piece.from + piece.to) + kOffset * spacing_ * inward, 0.5 * norm(piece.to - piece.from));
+  guarded_.push_back({piece.from, piece.to});
+}
+
+void OutlineSeeds::add_at_corner(const Vec<2>& corner, const Vec<2>& before, const Vec<2>& after,
+                                 double foot) {
+  const double angle = angle_at(before, corner, after), offset = kOffset * spacing_;
+  if (angle < kOfOneCell) return;
+  const double reach = std::hypot(foot, offset);
+  const Vec<2> on = unit(after - corner), back = unit(before - corner);
+  add(corner + foot * on + offset * turned_left(on));
+  add(corner + foot * back - offset * turned_left(back));
+  if (angle > kNeedsThree) {
+    const double middle = std::atan2(on[1], on[0]) + 0.5 * angle;
+    add(corner + Vec<2>{{reach * std::cos(middle), reach * std::sin(middle)}});
+  }
+  guarded_.push_back({corner, corner + std::min(foot, norm(after - corner)) * on});
+  guarded_.push_back({corner, corner + std::min(foot, norm(before - corner)) * back});
+}
+
+/// Pairs that are mirrored at the notch's axis, from the tip to the mouth, and one seed ahead of the tip.
+void OutlineSeeds::add_along_notch(const Notch& notch) {
+  const double length = notch.length(), point = std::min(notch.point, length);
+  const Vec<2> back = (notch.mouth - notch.tip) * (1.0 / length), left = turned_left(back);
+  const double first = kFromCorner * spacing_;
+  const auto add_wall = [&](const Vec<2>& from, const Vec<2>& to, double foot, bool to_mouth) {
+    const double wall = norm(to - from);
+    const Vec<2> along = unit(to - from);
+    const double end = wall - first;
+    const int more = std::max(0, static_cast<int>(std::lround((end - foot) / (kAlong * spacing_))));
+    const double step = more == 0 ? 0.0 : (end - foot) / more;
+    for (int i = 0; i <= more; ++i) {
+      const Vec<2> seed = from + (foot + i * step) * along + kOffset * spacing_ * turned_left(along);
+      const double down = dot(seed - notch.tip, back), aside = dot(seed - notch.tip, left);
+      add(notch.tip + down * back + aside * left);
+      add(notch.tip + down * back - aside * left);
+    }
+    const double aside = dot(from - notch.tip, left), aside_to = dot(to - notch.tip, left);
+    for (const double sign : {1.0, -1.0})
+      guarded_.push_back({from + (sign - 1.0) * aside * left, to + (sign - 1.0) * aside_to * left});
+    return to_mouth ? 0.0 : wall - (foot + more * step);
+  };
+  const Vec<2> half = 0.5 * notch.width * left;
+  if (notch.width == 0.0 || point == length) {
+    add_wall(notch.tip, notch.mouth + half, first, true);
+  } else {
+    const Vec<2> shoulder = notch.tip + point * back + half;
+    const double from_shoulder = add_wall(notch.tip, shoulder, first, false);
+    add_wall(shoulder, notch.mouth + half, from_shoulder, true);
+  }
+  add(notch.tip - spacing_ * std::hypot(kFromCorner, kOffset) * back);
+  guarded_.push_back({notch.mouth, notch.tip});
+}
+
+bool OutlineSeeds::leave_room_at(const Vec<2>& point) const {
+  const double clear = kClear * spacing_, apart = kApart * spacing_;
+  for (const auto& [from, to] : guarded_)
+    if (distance_from_segment(point, from, to) < clear) return false;
+  for (const Vec<2>& seed : positions_)
+    if (std::abs(point[0] - seed[0]) < apart && norm(point - seed) < apart) return false;
+  return region_.distance(point) < 0.0;
+}
+
+}  // namespace pyroclast::specimen

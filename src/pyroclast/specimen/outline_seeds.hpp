@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "pyroclast/specimen/region.hpp"
+
+namespace pyroclast::specimen {
+
+/// How long the point of a slot must be (Notch::point) for blocks of a size; all of its length where it is
+/// short, m.
+double slot_point(double length, double width, double spacing);
+
+/// Where seeds of a tessellation must stand so that its edges follow an outline.
+///
+/// Cells are clipped at the outline. That alone leaves a corner that juts into the body (above 180 degrees)
+/// within a cell, which would not be convex; a cell would reach through a hole or a notch; and nothing would
+/// part the body at a slit. So seeds stand at the same distance from such a corner, so that an edge runs into
+/// it, and in mirrored pairs along the walls of notches and slits; an arc has one at each of its pieces. All
+/// other seeds keep away from these.
+class OutlineSeeds {
+ public:
+  /// \param spacing  mean distance of seeds: the block size, m
+  /// Throws Error, naming the side, where the outline is too fine for blocks of that size.
+  OutlineSeeds(const Region& region, double spacing);
+
+  const std::vector<Vec<2>>& positions() const { return positions_; }
+  const std::vector<double>& radii() const { return radii_; }  ///< Laguerre radii, m
+  /// Whether another seed may stand there: in the body, and not so near to these that it would take their
+  /// place.
+  bool leave_room_at(const Vec<2>& point) const;
+
+ private:
+  void add(const Vec<2>& point) { add(point, 0.5 * spacing_); }
+  void add(const Vec<2>& point, double radius);
+  void add_at_corner(const Vec<2>& corner, const Vec<2>& before, const Vec<2>& after, double foot);
+  void add_along_notch(const Notch& notch);
+  void add_at_arc(const Piece& piece);
+
+  const Region& region_;
+  double spacing_;
+  std::vector<Vec<2>> positions_;
+  std::vector<double> radii_;
+  struct Guarded {
+    Vec<2> from, to;
+  };
+  std::vector<Guarded> guarded_;  ///< lines that other seeds keep away from
+};
+
+}  // namespace pyroclast::specimen

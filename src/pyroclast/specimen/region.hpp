@@ -1,0 +1,163 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pyroclast/base/vec.hpp"
+
+namespace pyroclast::specimen {
+
+/// Lines of a region on which a point lies, ascending: pieces of the outline, then notches without a width,
+/// then tips of these.
+struct LineSet {
+  static constexpr int kMost = 4;
+  std::array<int, kMost> line;
+  int count = 0;
+
+  void insert(int number);
+  friend bool operator==(const LineSet& a, const LineSet& b) {
+    return std::equal(a.line.begin(), a.line.begin() + a.count, b.line.begin(), b.line.begin() + b.count);
+  }
+};
+
+/// The first line from `begin` to before `end` that both have; -1: none.
+int shared_line(const LineSet& a, const LineSet& b, int begin, int end);
+
+/// All lines of both; empty where they are more than a set holds.
+std::optional<LineSet> both(const LineSet& a, const LineSet& b);
+
+/// Smallest box along the axes around something, m.
+struct Box {
+  Vec<2> low, high;
+
+  double width() const { return high[0] - low[0]; }
+  double height() const { return high[1] - low[1]; }
+  bool touches(const Box& other) const {
+    return low[0] <= other.high[0] && other.low[0] <= high[0] && low[1] <= other.high[1] &&
+           other.low[1] <= high[1];
+  }
+};
+
+Box box_of(std::span<const Vec<2>> points);
+
+/// Part of an outline that has a name: a straight side, all of a circle, the walls of a notch.
+struct Side {
+  std::string name;
+  bool is_round = false;  ///< its pieces stand for an arc
+  bool is_cut = false;    ///< of a notch
+  int part_of = -1;       ///< the side that it is a stretch of, see Patch
+};
+
+/// Straight piece of an outline, walked with the body on its left.
+struct Piece {
+  Vec<2> from, to;  ///< m
+  int side;         ///< index into Region::sides
+};
+
+/// A closed line without crossings, walked with the body on its left: counter-clockwise around a body,
+/// clockwise around a hole.
+struct Loop {
+  std::vector<Vec<2>> corners;  ///< m
+  std::vector<int> side;        ///< of the piece from each corner to the next
+};
+
+/// A notch. Where it has no width it is a slit: the blocks on both of its sides are parted from the start.
+struct Notch {
+  std::string name;
+  Vec<2> mouth;        ///< on the outline, m
+  Vec<2> tip;          ///< in the body, m
+  double width = 0.0;  ///< m; 0: a slit; else a slot that ends in a point
+  double point = 0.0;  ///< length over which the walls of a slot run together, m; all of it: a wedge
+
+  double length() const { return norm(tip - mouth); }
+};
+
+/// Stretch of a side with a name of its own, on which something may lie. Its ends are corners of blocks.
+struct Patch {
+  std::string name;
+  Vec<2> from,
+      to;  ///< on the outline, walked with the body on the left; of a round side two of its corners, m
+};
+
+/// A hole asked for.
+struct Hole {
+  std::string name;
+  std::vector<Vec<2>> corners;  ///< in either sense, m
+  bool is_round = false;        ///< the corners stand for a circle
+};
+
+/// A body in the plane: its outline, the holes in it, and the notches cut into it.
+class Region {
+ public:
+  Region() = default;
+  /// [0, width] x [0, height] (m), with the sides `bottom`, `right`, `top`, `left`.
+  static Region rectangle(double width, double height);
+  /// A polygon (corners in either sense, m).
+  /// \param names  of the sides, from each corner to the next; one name for all where the corners are round
+  /// Throws Error when corners are too few, sides cross or meet, or have no length.
+  static Region polygon(std::vector<Vec<2>> corners, const std::vector<std::string>& names,
+                        bool is_round = false);
+
+  /// Takes holes out. Throws Error, naming it, when one does not lie within the body, or they meet.
+  Region with_holes(std::span<const Hole> holes) const;
+  /// Cuts notches. Throws Error, naming it, when one does not begin on the outline, its tip is not in the
+  /// body, or it parts the body.
+  Region with_notches(std::span<const Notch> notches) const;
+  /// Names stretches of sides; the last of all, for notches and holes move no patch. Throws Error, naming it,
+  /// when an end is not on the outline, it goes over more than one side, or meets another.
+  Region with_patches(std::span<const Patch> patches) const;
+
+  const std::vector<Side>& sides() const { return sides_; }
+  const std::vector<Loop>& loops() const { return loops_; }
+  const std::vector<Piece>& pieces() const { return pieces_; }
+  const std::vector<Notch>& notches() const { return notches_; }
+  const Box& box() const { return box_; }
+  double area() const { return area_; }  ///< m²
+  /// Whether it is a rectangle along the axes without holes or notches, with its lower left corner at 0.
+  bool is_rectangle() const { return is_rectangle_; }
+
+  /// The lines on which a point lies.
+  LineSet lines_at(const Vec<2>& point) const;
+  /// Whether an edge between two points lies on the outline.
+  bool is_outline(const LineSet& from, const LineSet& to) const {
+    return shared_line(from, to, 0, static_cast<int>(pieces_.size())) >= 0;
+  }
+  /// The side or patch on which an edge lies, index into `sides`; empty inside of the body.
+  std::optional<int> side_of(const Vec<2>& from, const Vec<2>& to) const;
+  /// The notch without a width on which an edge lies, index into `notches`.
+  std::optional<int> slit_of(const Vec<2>& from, const Vec<2>& to) const;
+
+  /// Distance from the outline, m: negative inside of the body, positive outside. Slits do not count.
+  double distance(const Vec<2>& point) const;
+  /// The same as if no notch had been cut: where aggregates may be, which a saw goes through.
+  double distance_before_cuts(const Vec<2>& point) const;
+
+ private:
+  void list_pieces();
+  std::pair<std::size_t, std::size_t> corner_at(const Patch& patch, const Vec<2>& point);
+
+  std::vector<Side> sides_;
+  std::vector<Loop> loops_;
+  std::vector<Piece> pieces_;  ///< of all loops, in turn
+  std::vector<Notch> notches_;
+  std::vector<Piece> before_cuts_;  ///< empty: as they are
+  Box box_{};
+  double area_ = 0.0;
+  bool is_rectangle_ = false;
+};
+
+/// Corners of a polygon that has the area of a circle, counter-clockwise.
+/// \param side    of about this length, m; 12 sides at least
+/// \param angles  at which it must have corners, radians
+std::vector<Vec<2>> circle_corners(const Vec<2>& centre, double diameter, double side,
+                                   std::vector<double> angles = {0.0});
+
+/// Of a point from the segment between two others, m.
+double distance_from_segment(const Vec<2>& point, const Vec<2>& from, const Vec<2>& to);
+
+}  // namespace pyroclast::specimen

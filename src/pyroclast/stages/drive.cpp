@@ -1,0 +1,449 @@
+#include "pyroclast/stages/drive.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/material/curve_reader.hpp"
+#include "pyroclast/simulation/simulation.hpp"
+#include "pyroclast/thermal/fire_curves.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+/// Loads and velocities are adjusted this often.
+constexpr std::int64_t kStepsPerAdjustment = 20;
+/// More often where they are controlled: the pair is a spring.
+constexpr std::int64_t kStepsPerControl = 5;
+/// What the pair may bear of the largest load without a warning.
+constexpr double kLeftToPair = 0.05;
+/// Rows and frames of a stage where the deck does not say.
+constexpr double kLooks = 200.0, kFrames = 10.0;
+
+const std::vector<Choice<int>> kComponents{{"x", 0, "to the right"}, {"y", 1, "upwards"}};
+
+std::vector<int> read_components(const Section& s, const char* key, Meaning meaning) {
+  std::vector<int> components;
+  for (const std::string& word : s.texts(key, meaning)) {
+    if (word != "x" && word != "y")
+      s.error(key, fmt::format("must be a list of \"x\" and \"y\"; got \"{}\"", word));
+    components.push_back(word == "y" ? 1 : 0);
+  }
+  return components;
+}
+
+/// Exactly one of them says what is done.
+std::optional<ActionKind> kind_of(const Section& s) {
+  const std::pair<const char*, ActionKind> kinds[] = {{"hold", ActionKind::hold},
+                                                      {"release", ActionKind::release},
+                                                      {"velocity", ActionKind::velocity},
+                                                      {"force", ActionKind::force},
+                                                      {"pressure", ActionKind::pressure}};
+  std::optional<ActionKind> chosen;
+  for (const auto& [key, kind] : kinds) {
+    if (!s.has(key)) continue;
+    if (chosen) s.error(key, "one of hold, release, velocity, force and pressure; not two in one table");
+    chosen = kind;
+  }
+  if (!chosen) s.error("one of hold, release, velocity, force and pressure is needed");
+  return chosen;
+}
+
+Drive::Action read_action(const Section& s, CurveReader& curves) {
+  Drive::Action a;
+  a.set = s.text("set", "set of gridpoints that it acts on; see [bodies.md](bodies.md#sets)");
+  a.place = fmt::format("{}: {}", s.where("set"), s.path());
+  const auto kind = kind_of(s);
+  s.know(
+      {"hold", "release", "velocity", "force", "pressure", "direction", "follower", "ramp_time", "factor"});
+  const auto read_hold = [&] {
+    return read_components(s, "hold", "components of the motion that are held from now on");
+  };
+  const auto read_release = [&] {
+    return read_components(s, "release", "components that move freely from now on");
+  };
+  const auto read_along = [&](Meaning meaning) { return s.choice("direction", kComponents, meaning); };
+  const auto read_change = [&] {
+    a.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative(), 0.0,
+                             "in which it comes evenly from what it was to its value");
+    if (s.has("factor"))
+      a.factor = curves.read(s, "factor", unit::dimensionless, Range::any(),
+                             "of the value, over the time since the stage began");
+  };
+  if (!kind) return a;
+  a.kind = *kind;
+  switch (*kind) {
+    case ActionKind::hold:
+      a.components = read_hold();
+      break;
+    case ActionKind::release:
+      a.components = read_release();
+      break;
+    case ActionKind::velocity:
+      a.amount = s.quantity("velocity", unit::velocity, Range::any().usually(-0.1, 0.1),
+                            "of that component; at the end of the stage it is held where it is");
+      a.components = {read_along("component of the motion that is given")};
+      read_change();
+      break;
+    case ActionKind::force: {
+      a.amount =
+          s.quantity("force", unit::force, Range::any(),
+                     "in all, shared out by the faces that belong to each gridpoint; in what thickness the "
+                     "specimen has");
+      const auto components = s.numbers("direction", Range::any(), "of the force, as [x, y]");
+      if (components.size() == 2) {
+        const Vec<2> d{{components[0], components[1]}};
+        if (norm(d) > 0.0)
+          a.direction = d * (1.0 / norm(d));
+        else
+          s.error("direction", "has no length");
+      } else if (!components.empty()) {
+        s.error("direction", "must be two numbers, [x, y]");
+      }
+      read_change();
+      break;
+    }
+    case ActionKind::pressure:
+      a.amount = s.quantity("pressure", unit::stress, Range::any(),
+                            "on the faces of the set that meet no other block; positive against the body");
+      a.is_follower =
+          s.flag("follower", false,
+                 "whether it stays normal to the faces as they turn; else it keeps its direction");
+      read_change();
+      break;
+  }
+  return a;
+}
+
+Drive::Until read_until(const Section& s, const std::vector<RecordParameters>& records) {
+  Drive::Until u;
+  u.record = s.text("record", "name of a [[record]]");
+  u.place = fmt::format("{}: {}", s.where("record"), s.path());
+  s.know({"above", "below", "share_of_peak"});
+  const auto found = std::ranges::find(records, u.record, &RecordParameters::name);
+  if (found == records.end()) {
+    std::vector<std::string> names;
+    for (const auto& record : records) names.push_back(record.name);
+    if (s.ok())
+      s.error("record", fmt::format("is no [[record]]; there are {}",
+                                    names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+    return u;
+  }
+  const Unit& unit = unit_of(found->kind);
+  const int stated = (s.has("above") ? 1 : 0) + (s.has("below") ? 1 : 0) + (s.has("share_of_peak") ? 1 : 0);
+  if (stated != 1) s.error("one of above, below and share_of_peak is needed, and one alone");
+  if (s.has("above")) {
+    u.kind = Drive::Until::Kind::above;
+    u.value = s.quantity("above", unit, Range::any(), "the stage ends when the record is greater");
+  } else if (s.has("below")) {
+    u.kind = Drive::Until::Kind::below;
+    u.value = s.quantity("below", unit, Range::any(), "the stage ends when the record is less");
+  } else if (s.has("share_of_peak")) {
+    u.kind = Drive::Until::Kind::share_of_peak;
+    u.value = s.number("share_of_peak", Range::inside(0.0, 1.0),
+                       "the stage ends when the record's size has fallen below this share of its greatest");
+  }
+  return u;
+}
+
+Drive::Control read_control(const Section& s, const std::vector<RecordParameters>& records) {
+  Drive::Control c;
+  c.record = s.text("record", "a [[record]] of kind opening: what is controlled");
+  c.place = fmt::format("{}: {}", s.where("record"), s.path());
+  const auto found = std::ranges::find(records, c.record, &RecordParameters::name);
+  if (s.ok() && (found == records.end() || found->kind != RecordKind::opening))
+    s.error("record", "must be the name of a [[record]] of kind opening");
+  c.rate = s.quantity("rate", unit::velocity, Range::any(), "at which it opens");
+  c.stiffness =
+      s.quantity("stiffness", unit::stiffness, Range::positive(),
+                 "of the pair of forces that holds it: some four times the steepest softening that it holds");
+  c.response_time =
+      s.quantity("response_time", unit::time, Range::positive(),
+                 "in which the loads take over what the pair bears: longer than waves need through the body");
+  return c;
+}
+
+std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
+  Drive::Keys keys;
+  keys.duration =
+      s.quantity("duration", unit::time, Range::positive(), "after which the stage ends at the latest");
+  CurveReader curves(tables.folder, time_axis(), {0.0, keys.duration}, fire_curves());
+  for (const Section& own : s.sections("drives", "what is held, moved or loaded, any number"))
+    keys.actions.push_back(read_action(own, curves));
+  for (const Section& own :
+       s.optional_sections("until", "conditions of which the first that is met ends the stage"))
+    keys.until.push_back(read_until(own, tables.records));
+  if (const auto own = s.optional_section("control",
+                                          "an opening whose growth is given: the forces of the stage become "
+                                          "what it takes; see [bodies.md](bodies.md#control)")) {
+    keys.control = read_control(*own, tables.records);
+    const auto is_force = [](const Drive::Action& a) { return a.kind == ActionKind::force; };
+    if (s.ok() && std::ranges::none_of(keys.actions, is_force))
+      own->error("needs a force among the drives of the stage, which it multiplies");
+  }
+  if (s.has("unbalanced_ratio"))
+    keys.unbalanced_ratio =
+        s.number("unbalanced_ratio", Range::positive().usually(1e-8, 0.01),
+                 "the stage ends when all ramps have ended and the body rests: unbalanced over "
+                 "applied forces are below this");
+  keys.look_interval =
+      s.quantity("look_interval", unit::time, Range::positive(), keys.duration / kLooks,
+                 "between two rows of history.csv; where it is not stated, 1/200 of the duration");
+  keys.frame_interval =
+      s.quantity("frame_interval", unit::time, Range::positive(), keys.duration / kFrames,
+                 "between two frames of the fields; where it is not stated, 1/10 of the duration");
+  return std::make_unique<Drive>(std::move(keys));
+}
+
+}  // namespace
+
+StageKind drive_kind() {
+  return {"drive", "holds, moves or loads sets of the specimen or of bearings", {}, read_drive};
+}
+
+void Drive::check(const Simulation& simulation, Supports<2>& supports) const {
+  const Model<2>& model = simulation.model();
+  std::map<std::pair<int, int>, const Action*> taken;  // by gridpoint and component
+  for (const Action& action : keys_.actions) {
+    const auto found = model.sets.find(action.set);
+    if (found == model.sets.end() || found->second.empty()) {
+      std::vector<std::string> names;
+      for (const auto& [name, members] : model.sets)
+        if (!members.empty()) names.push_back(name);
+      throw Error(fmt::format("{}: there is no set \"{}\"; there are {}", action.place, action.set,
+                              fmt::join(names, ", ")));
+    }
+    for (int g : found->second)
+      for (int c : action.components) {
+        if (action.kind == ActionKind::release) {
+          supports.release(g, c);
+          continue;
+        }
+        const auto [known, is_new] = taken.emplace(std::pair{g, c}, &action);
+        if (!is_new && known->second != &action)
+          throw Error(fmt::format(
+              "{}: set \"{}\" shares gridpoint {} with set \"{}\" ({}), and both are held or driven "
+              "along {}",
+              action.place, action.set, g, known->second->set, known->second->place, "xy"[c]));
+        supports.hold(g, c);
+      }
+  }
+  for (const Action& action : keys_.actions) {
+    if (action.kind != ActionKind::force) continue;
+    for (int g : model.set(action.set))
+      for (const int c : {0, 1})
+        if (action.direction[c] != 0.0 && supports.holds(g, c))
+          throw Error(fmt::format(
+              "{}: the force acts along {} on gridpoints of set \"{}\" that are held or driven along "
+              "{}",
+              action.place, "xy"[c], action.set, "xy"[c]));
+  }
+}
+
+bool Drive::loads() const {
+  return std::ranges::any_of(keys_.actions, [](const Action& a) {
+    return a.kind == ActionKind::velocity || a.kind == ActionKind::force || a.kind == ActionKind::pressure;
+  });
+}
+
+double Drive::time(const Simulation& simulation) const {
+  return static_cast<double>(steps_) * simulation.mechanics().time_step();
+}
+
+std::int64_t Drive::steps_in(const Simulation& simulation, double interval) const {
+  const double steps = interval / simulation.mechanics().time_step() / kStepsPerAdjustment;
+  return kStepsPerAdjustment * std::max<std::int64_t>(1, std::llround(steps));
+}
+
+void Drive::begin(Simulation& simulation) {
+  Mechanics<2>& mechanics = simulation.mechanics();
+  first_.assign(keys_.actions.size(), 0.0);
+  if (keys_.control) first_opening_ = simulation.record(keys_.control->record).read(simulation);
+  peaks_.assign(keys_.until.size(), 0.0);
+  for (std::size_t i = 0; i < keys_.actions.size(); ++i) {
+    const Action& action = keys_.actions[i];
+    const SetLoad<2> load = simulation.loads().on(action.set);
+    if (action.kind == ActionKind::force) first_[i] = dot(load.force, action.direction);
+    if (action.kind == ActionKind::pressure) first_[i] = load.pressure;
+    for (int g : simulation.model().set(action.set))
+      for (int c : action.components) {
+        if (action.kind == ActionKind::hold) mechanics.prescribe_velocity(g, c, 0.0);
+        if (action.kind == ActionKind::release) mechanics.release(g, c);
+      }
+  }
+}
+
+/// What an action does now: on the way from what was there to its amount, or what was there and a controlled
+/// load.
+double Drive::amount(std::size_t i, double time) const {
+  const Action& action = keys_.actions[i];
+  if (keys_.control && action.kind == ActionKind::force) return first_[i] + load_factor_ * action.amount;
+  const double share = action.ramp_time > 0.0 ? std::min(1.0, time / action.ramp_time) : 1.0;
+  const double factor = action.factor ? (*action.factor)(std::min(time, keys_.duration)) : 1.0;
+  return first_[i] + share * (factor * action.amount - first_[i]);
+}
+
+/// Where it goes as asked by itself, the pair has nothing to do; else the loads change in its stead.
+void Drive::steer(Simulation& simulation, double time) {
+  const Control& control = *keys_.control;
+  const Record& record = simulation.record(control.record);
+  pair_force_ = control.stiffness * (first_opening_ + control.rate * time - record.read(simulation));
+  const double step = static_cast<double>(kStepsPerControl) * simulation.mechanics().time_step();
+  load_factor_ += pair_force_ / unit_force() * step / control.response_time;
+  const auto& [name, kind, set, other, direction, place] = record.parameters();
+  simulation.loads().set(other, {.force = pair_force_ * direction});
+  simulation.loads().set(set, {.force = -pair_force_ * direction});
+}
+
+/// All forces of the stage at a factor of 1, N.
+double Drive::unit_force() const {
+  double sum = 0.0;
+  for (const Action& action : keys_.actions)
+    if (action.kind == ActionKind::force) sum += std::abs(action.amount);
+  return sum;
+}
+
+std::int64_t Drive::steps_per_adjustment() const {
+  return keys_.control ? kStepsPerControl : kStepsPerAdjustment;
+}
+
+void Drive::act(Simulation& simulation, double time) {
+  for (std::size_t i = 0; i < keys_.actions.size(); ++i) {
+    const Action& action = keys_.actions[i];
+    const double now = amount(i, time);
+    if (action.kind == ActionKind::velocity)
+      for (int g : simulation.model().set(action.set))
+        simulation.mechanics().prescribe_velocity(g, action.components.front(), now);
+    if (action.kind != ActionKind::force && action.kind != ActionKind::pressure) continue;
+    SetLoad<2> load = simulation.loads().on(action.set);
+    if (action.kind == ActionKind::force) {
+      load.force += (now - dot(load.force, action.direction)) * action.direction;
+    } else {
+      load.pressure = now;
+      load.is_follower = action.is_follower;
+    }
+    simulation.loads().set(action.set, load);
+  }
+  simulation.loads().follow();
+}
+
+bool Drive::advance(Simulation& simulation, int most_steps) {
+  const double time_step = simulation.mechanics().time_step();
+  const std::int64_t interval = steps_per_adjustment();
+  if (steps_ % interval == 0) {
+    // in the middle of the steps to come
+    const double middle = time(simulation) + 0.5 * static_cast<double>(interval) * time_step;
+    if (keys_.control) steer(simulation, middle);
+    act(simulation, middle);
+  }
+  const auto steps = std::min<std::int64_t>(interval - steps_ % interval, most_steps);
+  simulation.mechanics().advance(static_cast<int>(steps));
+  steps_ += steps;
+  return steps_ % steps_in(simulation, keys_.look_interval) == 0 ||
+         (steps_ % interval == 0 && time(simulation) >= keys_.duration);
+}
+
+bool Drive::is_met(const Until& until, std::size_t i, const Simulation& simulation) {
+  const double value = simulation.record(until.record).read(simulation);
+  if (until.kind == Until::Kind::above) return value > until.value;
+  if (until.kind == Until::Kind::below) return value < until.value;
+  peaks_[i] = std::max(peaks_[i], std::abs(value));
+  return std::abs(value) < until.value * peaks_[i];
+}
+
+/// What was moved stays where it is, and no pair is left.
+void Drive::halt(Simulation& simulation) {
+  if (keys_.control) {
+    const RecordParameters& record = simulation.record(keys_.control->record).parameters();
+    for (const std::string& set : {record.set, record.other}) simulation.loads().set(set, {});
+  }
+  for (const Action& action : keys_.actions)
+    if (action.kind == ActionKind::velocity)
+      for (int g : simulation.model().set(action.set))
+        simulation.mechanics().prescribe_velocity(g, action.components.front(), 0.0);
+}
+
+Verdict Drive::judge(Simulation& simulation) {
+  Verdict verdict;
+  largest_pair_ = std::max(largest_pair_, std::abs(pair_force_));
+  largest_factor_ = std::max(largest_factor_, std::abs(load_factor_));
+  const double now = time(simulation);
+  for (std::size_t i = 0; i < keys_.until.size(); ++i)
+    if (is_met(keys_.until[i], i, simulation)) verdict.over = true;
+  const bool ramps_are_over =
+      std::ranges::all_of(keys_.actions, [&](const Action& a) { return now >= a.ramp_time; });
+  if (keys_.unbalanced_ratio && ramps_are_over &&
+      simulation.mechanics().unbalanced_ratio() < *keys_.unbalanced_ratio)
+    verdict.over = true;
+  if (!verdict.over && now >= keys_.duration) {
+    verdict.over = true;
+    if (keys_.unbalanced_ratio) {
+      verdict.last = true;
+      verdict.outcome = Outcome::not_settled;
+    } else if (!keys_.until.empty()) {
+      verdict.outcome = Outcome::not_reached;
+    }
+  }
+  if (verdict.over) halt(simulation);
+  const auto frames = static_cast<std::int64_t>(now / keys_.frame_interval);
+  verdict.frame = frames > frames_;
+  frames_ = std::max(frames_, frames);
+  return verdict;
+}
+
+double Drive::progress(const Simulation& simulation) const {
+  return std::min(1.0, time(simulation) / keys_.duration);
+}
+
+StageReport Drive::report(const History& history, RowRange rows, Outcome) const {
+  StageReport report;
+  report.results = {{"steps", steps_}};
+  if (rows.empty()) return report;
+  report.results.push_back({"unbalanced_ratio", history.values("unbalanced_ratio", rows).back()});
+  if (!keys_.control) return report;
+  const double left = largest_factor_ > 0.0 ? largest_pair_ / (largest_factor_ * unit_force()) : 0.0;
+  report.results.push_back({"largest_load_factor", largest_factor_});
+  report.results.push_back({"control_force_over_peak", left});
+  report.lines.push_back(fmt::format("control of {}: the pair bore up to {:.2g} % of the largest load",
+                                     keys_.control->record, 100.0 * left));
+  if (left > kLeftToPair) report.warnings.push_back(report.lines.back() + ": a slower rate leaves it less");
+  return report;
+}
+
+Forecast Drive::forecast(const Simulation& simulation, Foreseen&) const {
+  const double steps = keys_.duration / simulation.mechanics().time_step();
+  return {.steps = steps,
+          .looks = keys_.duration / keys_.look_interval,
+          .frames = keys_.duration / keys_.frame_interval};
+}
+
+std::vector<Column> Drive::columns() const {
+  if (!keys_.control) return {};
+  return {{"load_factor", "1"}, {"control_force_N", "N"}};
+}
+
+std::vector<double> Drive::values() const {
+  if (!keys_.control) return {};
+  return {load_factor_, pair_force_};
+}
+
+void Drive::visit_state(StateVisitor& visitor) {
+  visitor.visit("first_opening", first_opening_);
+  visitor.visit("load_factor", load_factor_);
+  visitor.visit("pair_force", pair_force_);
+  visitor.visit("largest_pair", largest_pair_);
+  visitor.visit("largest_factor", largest_factor_);
+  visitor.visit("steps", steps_);
+  visitor.visit("frames", frames_);
+  visitor.visit("first", first_);
+  visitor.visit("peaks", peaks_);
+}
+
+}  // namespace pyroclast

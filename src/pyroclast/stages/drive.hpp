@@ -1,0 +1,99 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pyroclast/material/curve.hpp"
+#include "pyroclast/simulation/loads.hpp"
+#include "pyroclast/stages/registry.hpp"
+
+namespace pyroclast {
+
+/// What a drive does to a set of gridpoints.
+enum class ActionKind : std::uint8_t { hold, release, velocity, force, pressure };
+
+/// Holds, moves or loads sets of gridpoints. What it holds or loads stays so after it, until another drive
+/// changes it; what it moved is held where it came to.
+class Drive : public Stage {
+ public:
+  struct Action {
+    std::string set;
+    ActionKind kind = ActionKind::hold;
+    std::vector<int> components = {};  ///< held, released or moved
+    double amount = 0.0;               ///< m/s, N or Pa
+    Vec<2> direction{};                ///< of a force, unit
+    bool is_follower = false;          ///< of a pressure
+    double ramp_time = 0.0;            ///< in which the amount comes to its value, evenly, s
+    std::optional<Curve> factor = {};  ///< of the amount, over the time since the stage began, s
+    std::string place = "";            ///< in the deck, for messages
+  };
+  /// A condition on a record that ends the stage.
+  struct Until {
+    enum class Kind : std::uint8_t { above, below, share_of_peak };
+    std::string record;
+    Kind kind = Kind::above;
+    double value = 0.0;  ///< in SI, or a share
+    std::string place = "";
+  };
+  /// Makes an opening grow at a rate, whatever the load must do for that: also where the load must go back,
+  /// and what it drives with it. A pair of forces across the opening, stiffer than the body softens there,
+  /// holds it to its course, and the loads of the stage follow so that the pair has nothing left to do.
+  struct Control {
+    std::string record;          ///< an opening
+    double rate = 0.0;           ///< m/s
+    double stiffness = 0.0;      ///< of the pair, N/m
+    double response_time = 0.0;  ///< in which the loads take over what the pair does, s
+    std::string place = "";
+  };
+  struct Keys {
+    double duration = 0.0;  ///< s, at the latest
+    std::vector<Action> actions;
+    std::vector<Until> until;
+    std::optional<Control> control = {};
+    /// The stage ends when the body rests at this ratio, once all ramps have ended.
+    std::optional<double> unbalanced_ratio;
+    double look_interval = 0.0, frame_interval = 0.0;  ///< s
+  };
+
+  explicit Drive(Keys keys) : keys_(std::move(keys)) {}
+
+  const char* kind() const override { return "drive"; }
+  StageNeeds needs() const override { return {}; }
+  void check(const Simulation& simulation, Supports<2>& supports) const override;
+  bool loads() const override;
+  void begin(Simulation& simulation) override;
+  bool advance(Simulation& simulation, int most_steps) override;
+  Verdict judge(Simulation& simulation) override;
+  double progress(const Simulation& simulation) const override;
+  StageReport report(const History& history, RowRange rows, Outcome outcome) const override;
+  Forecast forecast(const Simulation& simulation, Foreseen& foreseen) const override;
+  std::vector<Column> columns() const override;
+  std::vector<double> values() const override;
+  void visit_state(StateVisitor& visitor) override;
+
+ private:
+  void steer(Simulation& simulation, double time);
+  double unit_force() const;
+  std::int64_t steps_per_adjustment() const;
+  void act(Simulation& simulation, double time);
+  double amount(std::size_t action, double time) const;
+  bool is_met(const Until& until, std::size_t i, const Simulation& simulation);
+  double time(const Simulation& simulation) const;
+  std::int64_t steps_in(const Simulation& simulation, double interval) const;
+  void halt(Simulation& simulation);
+
+  Keys keys_;
+  std::int64_t steps_ = 0;
+  std::int64_t frames_ = 0;
+  std::vector<double>
+      first_;  ///< force along its direction, or pressure, of each action when the stage began
+  std::vector<double> peaks_;                         ///< of the records of `until`
+  double first_opening_ = 0.0;                        ///< controlled, when the stage began, m
+  double load_factor_ = 0.0, pair_force_ = 0.0;       ///< of the control; N, opening it
+  double largest_pair_ = 0.0, largest_factor_ = 0.0;  ///< at looks
+};
+
+StageKind drive_kind();
+
+}  // namespace pyroclast

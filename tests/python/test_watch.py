@@ -1,0 +1,385 @@
+"""What is shown of a run while another process writes it; that process is played by this one.
+
+    python3 -m unittest discover -s tests/python -p test_watch.py
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import pty
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+PACKAGE = HERE.parents[1] / "python"
+sys.path[:0] = [str(HERE), str(PACKAGE)]
+
+import synthetic_run  # noqa: E402
+from synthetic_run import Heating  # noqa: E402
+from test_figures import png_size  # noqa: E402
+from pyroclast.files import GrowingTable, Lock, RunError, Writer  # noqa: E402
+from pyroclast.run import Run  # noqa: E402
+from pyroclast.textplot import curve  # noqa: E402
+from pyroclast.watch import PICTURE, Watch  # noqa: E402
+
+DECK = """title = "Watched"
+[[stages]]
+kind = "settle"
+[[stages]]
+kind = "compress"
+"""
+
+
+def environment(**changes: str) -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(PACKAGE), "DISPLAY": "", **changes}
+
+
+class WatchTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.whole = Path(temporary.name) / "whole"
+        synthetic_run.write_run(cls.whole)
+        (cls.whole / "deck.toml").write_text(DECK)
+        (cls.whole / "manifest.json").write_text('{"program": "pyroclast"}')
+        cls.rows = (cls.whole / "history.csv").read_text().splitlines(keepends=True)
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.root = Path(temporary.name)
+        self.folder = self.root / "run"
+
+    def begin(self, rows: int) -> None:
+        """A run that has come to so many rows, and is not over."""
+        shutil.copytree(self.whole, self.folder)
+        (self.folder / "summary.json").unlink()
+        (self.folder / "history.csv").write_text("".join(self.rows[:rows + 1]))
+
+    def add(self, text: str) -> None:
+        with open(self.folder / "history.csv", "a", encoding="utf-8") as file:
+            file.write(text)
+
+    def end(self) -> None:
+        """Whole or not at all, as the program writes it."""
+        shutil.copy(self.whole / "summary.json", self.folder / "aside")
+        (self.folder / "aside").rename(self.folder / "summary.json")
+
+    @contextmanager
+    def writer(self):
+        """Holds the folder as the program does."""
+        self.folder.mkdir(exist_ok=True)
+        with open(self.folder / "lock", "w", encoding="utf-8") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            file.write(f"{os.getpid()}\n")
+            file.flush()
+            yield
+
+    def command(self, *words, **changes) -> subprocess.CompletedProcess:
+        return subprocess.run([sys.executable, "-m", "pyroclast.watch", *map(str, words)], env=environment(**changes),
+                              capture_output=True, text=True, timeout=60, check=False)
+
+    def refused(self, *words) -> str:
+        """The one line that it ends with."""
+        done = self.command(*words)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        return done.stderr
+
+
+class Reading(WatchTest):
+    def test_rows_come_as_they_are_whole(self):
+        self.begin(rows=100)
+        table = GrowingTable(self.folder / "history.csv")
+        self.assertEqual(len(table), 100)
+        self.assertFalse(table.grow())
+        half = self.rows[101][:-5]  # all cells, but the last number is not all there
+        self.add(half)
+        self.assertFalse(table.grow())
+        self.add(self.rows[101][len(half):] + self.rows[102])
+        self.assertTrue(table.grow())
+        self.assertEqual(len(table), 102)
+        whole = Run(self.whole).history
+        for name in table.names:
+            np.testing.assert_array_equal(table[name], whole[name][:102])
+
+    def test_a_history_that_is_cut_off_or_begun_anew_is_read_anew(self):
+        self.begin(rows=100)
+        with self.writer():
+            watch = Watch(self.folder)
+            (self.folder / "history.csv").write_text("".join(self.rows[:41]))
+            self.assertTrue(watch.update())
+            self.assertEqual(len(watch.run.history), 40)
+            (self.folder / "aside").write_text("".join(self.rows[:201]))
+            (self.folder / "aside").rename(self.folder / "history.csv")
+            self.assertTrue(watch.update())
+            self.assertEqual(len(watch.run.history), 200)
+
+    def test_update_tells_whether_there_is_anything_new(self):
+        self.begin(rows=100)
+        with self.writer():
+            watch = Watch(self.folder)
+            self.assertFalse(watch.update())
+            self.add(self.rows[101][:20])
+            self.assertFalse(watch.update())
+            self.add(self.rows[101][20:])
+            self.assertTrue(watch.update())
+            self.assertTrue(watch.is_running)
+            self.end()
+            self.assertTrue(watch.update())
+            self.assertFalse(watch.is_running)
+            self.assertFalse(watch.update())
+
+    def test_a_run_without_fields_is_new_only_when_it_grows(self):
+        self.begin(rows=100)
+        shutil.rmtree(self.folder / "fields")
+        with self.writer():
+            watch = Watch(self.folder)
+            self.assertFalse(watch.update())
+            self.add(self.rows[101])
+            self.assertTrue(watch.update())
+            self.assertEqual(watch.draw().axes[1].texts[0].get_text(), "no frame of the fields yet")
+
+    def test_looking_at_a_lock_keeps_nobody_from_taking_it(self):
+        self.folder.mkdir()
+        lock = Lock(self.folder)
+        self.assertIs(lock.writer, Writer.NONE)
+        (self.folder / "lock").touch()  # about to be taken
+        self.assertIs(lock.writer, Writer.THERE)
+        with self.writer():
+            self.assertIs(lock.writer, Writer.THERE)
+        self.assertIs(lock.writer, Writer.DIED)
+        with open(self.folder / "lock", "rb") as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)  # raises when the look still holds it
+            self.assertIs(lock.writer, Writer.DIED, "a file that was free is not tried again before it changes")
+
+    def test_the_deck_tells_what_a_run_without_summary_does_not(self):
+        synthetic_run.write_heated_run(self.folder, Heating(restrained=True))
+        self.assertTrue(Run(self.folder).restrained)
+        (self.folder / "summary.json").unlink()
+        stages = '[[stages]]\nkind = "settle"\n[[stages]]\nkind = "load"\n[[stages]]\nkind = "heat"\nplaten = '
+        (self.folder / "deck.toml").write_text(f'title = "Of the deck"\n{stages}"fixed"\n')
+        self.assertTrue(Run(self.folder).restrained)
+        self.assertEqual(Run(self.folder).title, "Of the deck")
+        (self.folder / "deck.toml").write_text(f'{stages}"force"\n')
+        self.assertFalse(Run(self.folder).restrained)
+
+
+class Told(WatchTest):
+    """Headlines."""
+
+    def test_stage_and_progress(self):
+        self.begin(rows=100)
+        (self.folder / "run.log").write_text(
+            "model           100 zones\n"
+            "10:00:00 stage 1 of 2 (settle)   3 %,                 strain 0.0\n"
+            "10:00:05 stage 2 of 2 (compress)  38 %,      1 min 2 s left  strain 0.00123  stress  20.00 MPa\n")
+        with self.writer():
+            title, stage, numbers = Watch(self.folder).headlines()
+        self.assertEqual(title, "Watched")
+        self.assertEqual(stage, "stage 2 of 2 (compress), 38 %, 1 min 2 s left")
+        last = Run(self.whole).history["stress_MPa"][99]
+        self.assertIn(f"stress {last:.3g} MPa", numbers)
+
+    def test_what_the_log_said_of_an_earlier_stage_is_not_said_of_this_one(self):
+        self.begin(rows=100)
+        (self.folder / "run.log").write_text("10:00:00 stage 1 of 2 (settle)  97 %,       2 s left  strain 0.0\n")
+        with self.writer():
+            self.assertEqual(Watch(self.folder).headlines()[1], "stage 2 of 2 (compress)")
+
+    def test_before_the_first_row(self):
+        with self.writer():
+            watch = Watch(self.folder)
+            self.assertTrue(watch.is_running)
+            self.assertIn("nothing to draw yet", "\n".join(watch.text(79, 20)))
+            self.assertGreater(len(watch.png()), 1000)
+            self.begin_in_place()
+            self.assertTrue(watch.update())
+            self.assertNotIn("nothing to draw yet", "\n".join(watch.text(79, 20)))
+
+    def begin_in_place(self) -> None:
+        shutil.copytree(self.whole, self.folder, ignore=shutil.ignore_patterns("summary.json"), dirs_exist_ok=True)
+
+    def test_ends(self):
+        self.begin(rows=100)
+        with self.writer():
+            watch = Watch(self.folder)
+        self.assertIn("run was killed in stage 2 of 2 (compress); to go on: pyroclast resume", watch.headlines()[1])
+        (self.folder / "lock").unlink()
+        self.assertIn("run broke off in stage 2", watch.headlines()[1])
+        (self.folder / "summary.json").write_text(json.dumps({"outcome": "stopped by the user", "stages": []}))
+        self.assertEqual(watch.headlines()[1], "run ended: stopped by the user")
+
+
+class Drawn(WatchTest):
+    def test_each_kind_of_run_is_drawn_over_what_its_figures_are(self):
+        for write, over, values in (
+            (synthetic_run.write_run, "Axial strain", "Axial stress"),
+            (lambda to: synthetic_run.write_heated_run(to, Heating()), "Temperature", "Total axial strain"),
+            (lambda to: synthetic_run.write_heated_run(to, Heating(spread=100.0)),
+             "Time of heating", "Total axial strain"),
+            (lambda to: synthetic_run.write_heated_run(to, Heating(restrained=True)), "Temperature", "Axial stress"),
+            (lambda to: synthetic_run.write_heated_run(to, Heating(hottest=300.0, cooled=True, compressed=True)),
+             "Axial strain", "Axial stress"),
+            (synthetic_run.write_conduction, "Time of heating", "Mean temperature"),
+        ):
+            with self.subTest(over + values):
+                shutil.rmtree(self.folder, ignore_errors=True)
+                write(self.folder)
+                watch = Watch(self.folder)
+                axes, section, *_ = watch.draw().axes
+                self.assertTrue(axes.get_xlabel().startswith(over), axes.get_xlabel())
+                self.assertTrue(axes.get_ylabel().startswith(values), axes.get_ylabel())
+                self.assertGreater(len(axes.lines[0].get_xdata()), 10)
+                self.assertGreater(len(section.collections), 1)
+                text = watch.text(79, 20)
+                self.assertTrue(all(line.isascii() and len(line) <= 79 for line in text), text)
+                self.assertLessEqual(len(text), 20)
+                self.assertIn("o", "".join(text[4:-3]))
+
+    def test_the_specimen_is_that_of_the_newest_frame_that_is_there(self):
+        self.begin(rows=100)
+        frames = (self.folder / "fields" / "frames.csv").read_text().splitlines(keepends=True)
+        (self.folder / "fields" / "frames.csv").write_text("".join(frames[:6]) + frames[6][:-4])
+        with self.writer():
+            watch = Watch(self.folder)
+            strain = 1e3 * Run(self.whole).frames[4].strain
+            self.assertIn(f"{strain:.2f}", watch.draw().axes[1].get_title())
+            (self.folder / "fields" / "frames.csv").write_text("".join(frames[:7]))
+            self.assertTrue(watch.update())
+            self.assertIn(f"{1e3 * Run(self.whole).frames[5].strain:.2f}", watch.draw().axes[1].get_title())
+            (self.folder / "fields" / "contacts_0005.hdf").write_bytes(b"half a file")
+            self.assertEqual(watch.draw().axes[1].texts[0].get_text(), "the newest frame cannot be read")
+
+    def test_a_notebook_gets_picture_and_words(self):
+        watch = Watch(self.whole)
+        self.assertTrue(watch._repr_png_().startswith(b"\x89PNG"))
+        begin = r'^<img alt="Synthetic run; run ended: [^"]*" src="data:image/png;base64,'
+        self.assertRegex(watch._repr_html_(), begin)
+
+    def test_watching_needs_no_compiled_module(self):
+        self.assertNotIn("pyroclast._core", sys.modules)
+
+
+class Text(unittest.TestCase):
+    def places(self, lines: list[str], character: str) -> list[tuple[int, int]]:
+        """Columns and rows from below, of the picture alone."""
+        rows = [re.split("[|+]", line, maxsplit=1)[1] for line in lines[1:-3]]
+        return [(column, row) for row, line in enumerate(reversed(rows)) for column, mark in enumerate(line)
+                if mark == character]
+
+    def test_a_curve_goes_through_its_points_and_ends_with_the_last(self):
+        lines = curve(np.array([0.0, 1.0, 2.0]), np.array([0.0, 40.0, 10.0]), "x [mm]", "y [MPa]", (70, 20))
+        self.assertEqual(len(lines), 20)
+        rows = 16
+        last, = self.places(lines, "o")
+        self.assertLessEqual(abs(last[1] - 0.25 * (rows - 1)), 1)
+        self.assertEqual(max(row for mark in ".-':" for _, row in self.places(lines, mark)), rows - 1)
+        self.assertEqual(lines[0], "y [MPa]")
+        self.assertTrue(lines[-1].endswith("x [mm]"))
+        ticks = [word for line in lines for word in re.findall(r"^ *(\d+) \+", line)]
+        self.assertEqual(ticks, ["40", "30", "20", "10", "0"])
+
+    def test_what_has_no_extent_is_drawn_too(self):
+        for x, y in (([], []), ([1.0], [5.0]), ([0.0, 0.0], [0.0, 0.0]), ([1.0, 2.0], [np.nan, np.nan]),
+                     ([0.0, 1e-9], [-3e9, 2e-12]), ([1.0, np.nan, 3.0], [1.0, 2.0, -1.0])):
+            with self.subTest(x=x, y=y):
+                lines = curve(np.array(x), np.array(y), "x", "y", (50, 12))
+                self.assertEqual(len(lines), 12)
+                self.assertTrue(all(len(line) <= 50 for line in lines))
+
+    def test_a_gap_stays_one(self):
+        x = np.arange(9.0)
+        y = np.where((x > 2.0) & (x < 6.0), np.nan, 1.0 + x)
+        columns = {column for mark in ".-':" for column, _ in self.places(curve(x, y, "x", "y", (60, 14)), mark)}
+        self.assertFalse(columns & set(range(16, 40)))
+
+
+class Command(WatchTest):
+    def test_once(self):
+        self.begin(rows=100)
+        with self.writer():
+            done = self.command(self.folder, "--once", COLUMNS="60")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("stage 2 of 2 (compress)", done.stdout)
+        self.assertIn("Axial stress, compression positive [MPa]", done.stdout)
+        self.assertTrue(all(len(line) < 60 for line in done.stdout.splitlines()[:-1]))
+        width, height = png_size(self.folder / PICTURE)
+        self.assertGreater(min(width, height), 400)
+        self.assertEqual([path.name for path in (self.folder / "figures").iterdir()], ["watch.png"])
+
+    def test_what_is_no_run_is_refused_in_a_line(self):
+        self.assertIn("is not a folder", self.refused(self.root / "nowhere"))
+        self.folder.mkdir()
+        with self.assertRaisesRegex(RunError, "holds no run"):
+            Watch(self.folder)
+        (self.folder / "notes.txt").write_text("mine")
+        self.assertIn("holds no run", self.refused(self.folder))
+
+    def test_a_killed_run_is_shown_and_said_to_be(self):
+        self.begin(rows=100)
+        with self.writer():
+            pass
+        done = self.command(self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("run was killed in stage 2", done.stdout)
+        png_size(self.folder / PICTURE)
+
+    def test_it_follows_a_run_to_its_end_and_no_picture_is_ever_half_there(self):
+        self.begin(rows=60)
+        reading, writing = pty.openpty()
+        words = [sys.executable, "-m", "pyroclast.watch", str(self.folder)]
+        shell = environment(TERM="xterm", COLUMNS="70", LINES="24")
+        with self.writer(), subprocess.Popen(words, stdout=writing, env=shell) as process:
+            os.close(writing)
+            pictures = set()
+            for row in range(61, len(self.rows)):
+                self.add(self.rows[row])
+                time.sleep(0.02)
+                if (self.folder / PICTURE).exists():
+                    picture = (self.folder / PICTURE).read_bytes()
+                    self.assertEqual(picture[-8:-4], b"IEND")
+                    pictures.add(picture)
+            self.end()
+            shown = b""
+            while chunk := self.read(reading):
+                shown += chunk
+            self.assertEqual(process.wait(timeout=30), 0)
+        os.close(reading)
+        text = shown.decode()
+        self.assertGreaterEqual(text.count("Axial stress"), 2)
+        self.assertRegex(text, r"\x1b\[20F\x1b\[J")  # back to where the last one began
+        self.assertIn("run ended: over", text.split("\x1b[J")[-1])
+        self.assertTrue(pictures)
+        self.assertNotIn((self.folder / PICTURE).read_bytes(), pictures)  # the last one is of the whole run
+
+    @staticmethod
+    def read(descriptor: int) -> bytes:
+        try:
+            return os.read(descriptor, 1 << 16)
+        except OSError:  # the other end is closed
+            return b""
+
+    def test_without_a_window_it_says_so_and_prints(self):
+        done = self.command(self.whole, "--on", "window", DISPLAY="nowhere:99")
+        self.addCleanup((self.whole / PICTURE).unlink, missing_ok=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1)
+        self.assertIn("no window", done.stderr)
+        self.assertIn("run ended", done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

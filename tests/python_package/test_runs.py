@@ -1,0 +1,495 @@
+"""Runs in this process: the program's run, looked at, stopped, changed, copied and gone on with."""
+
+import gc
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import threading
+import time
+
+import numpy as np
+
+import pyroclast
+from pyroclast import MPa
+from small import CASES, Case, deck
+
+PROGRAM = os.environ["PYROCLAST"]
+COOLED = {"blocks.count": 100, "stages[1].ramp_time": "20 ms", "stages[2].to": "40 degC",
+          "coupling.least_cycles": 200, "coupling.most_cycles": 400, "output.fields": False}
+
+
+def heated() -> pyroclast.Deck:
+    made = pyroclast.Deck(CASES / "transient_heating.toml")
+    for key, value in COOLED.items():
+        made[key] = value
+    return made
+
+
+def history(folder: pathlib.Path) -> bytes:
+    return (folder / "history.csv").read_bytes()
+
+
+class Results(Case):
+    def test_a_run_writes_what_the_program_writes(self):
+        folder = self.folder()
+        deck(output__fields=True).save(folder / "deck.toml")
+        subprocess.run([PROGRAM, "run", "deck.toml", "--out", "program", "--no-figures", "--quiet", "--threads", "1"],
+                       cwd=folder, check=True)
+        run = pyroclast.Run(folder / "deck.toml", out=folder / "script", threads=1)
+        looks = sum(1 for _ in run)
+        written = {path.relative_to(folder / "program") for path in (folder / "program").rglob("*") if path.is_file()}
+        mine = {path.relative_to(folder / "script") for path in (folder / "script").rglob("*") if path.is_file()}
+        self.assertEqual(written - mine, {pathlib.Path("run.log")})
+        for name in ("history.csv", "deck.toml", "fields/frames.csv", "specimen/aggregates.csv"):
+            self.assertEqual((folder / "program" / name).read_bytes(), (folder / "script" / name).read_bytes(), name)
+        self.assertEqual(looks, history(folder / "script").count(b"\n") - 1)
+        manifest = json.loads((folder / "script" / "manifest.json").read_text())
+        self.assertEqual((manifest["version"], manifest["commit"]), (pyroclast.version, pyroclast.commit))
+        summaries = [json.loads((folder / name / "summary.json").read_text()) for name in ("program", "script")]
+        for summary in summaries:
+            del summary["wall_time_s"]
+        self.assertEqual(*summaries)
+
+    def test_history_and_state_have_the_columns_of_the_program(self):
+        run = pyroclast.Run(deck(), threads=1)
+        state = run.until(strain=1e-4)
+        table = run.history
+        self.assertEqual(table.units["stress_MPa"], "MPa")
+        self.assertAlmostEqual(state.stress, 1e6 * state["stress_MPa"])
+        self.assertEqual(table["stress_MPa"][-1], state["stress_MPa"])
+        self.assertAlmostEqual(table["stress"][-1], state.stress)
+        self.assertEqual(len(table["step"]), table.rows)
+        self.assertEqual(table["step"][-1], state.step)
+        self.assertIn("no 'colour'", self.message(lambda: state.colour, AttributeError))
+        frame = run.to_pandas()
+        self.assertEqual(list(frame.columns), list(table))
+        self.assertEqual(frame["strain"].iloc[-1], state.strain)
+
+    def message(self, call, kind) -> str:
+        with self.assertRaises(kind) as caught:
+            call()
+        return str(caught.exception)
+
+    def test_a_state_that_is_past_raises_and_a_copy_lasts(self):
+        run = pyroclast.Run(deck(), threads=1)
+        first = run.next()
+        kept = first.copy()
+        strain = first.strain
+        run.next()
+        with self.assertRaisesRegex(pyroclast.Error, "earlier look"):
+            first.strain
+        self.assertEqual(kept.strain, strain)
+
+    def test_results_tell_of_the_stages(self):
+        run = pyroclast.Run(deck(), threads=1).finish()
+        self.assertEqual(run.outcome, "completed")
+        self.assertAlmostEqual(run.results["f_c_MPa"], run.history["stress_MPa"].max(), places=6)
+        self.assertEqual([stage["kind"] for stage in run.summary["stages"]], ["settle", "compress"])
+
+
+class Going(Case):
+    def test_until_stops_at_the_first_look_behind(self):
+        run = pyroclast.Run(deck(), threads=1)
+        state = run.until(strain=1e-4)
+        strains = run.history["strain"]
+        self.assertGreaterEqual(strains[-1], 1e-4)
+        self.assertLess(strains[-2], 1e-4)
+        self.assertGreaterEqual(run.until(stress=4 * MPa).stress, 4e6)
+        self.assertGreaterEqual(run.until(quantity={"stress_MPa": 5.0})["stress_MPa"], 5.0)
+        with self.assertRaisesRegex(pyroclast.Error, "ended .completed. before"):
+            run.until(strain=0.5)
+        with self.assertRaisesRegex(pyroclast.Error, "until what"):
+            run.until()
+        with self.assertRaisesRegex(pyroclast.Error, "no 'streß'"):
+            run.until(quantity={"streß": 1.0})
+        self.assertTrue(run.is_over)
+
+    def test_until_a_number_of_steps_comes_to_the_step_and_changes_nothing(self):
+        straight = pyroclast.Run(deck(), threads=1).finish()
+        broken = pyroclast.Run(deck(), threads=1)
+        broken.next()
+        for steps in (1, 7, 433, 2000):
+            before = broken.step
+            self.assertEqual(broken.until(steps=steps).step, before + steps)
+        broken.finish()
+        np.testing.assert_array_equal(broken.history.to_pandas(), straight.history.to_pandas())
+
+    def test_steps_that_were_not_reached_stop_nothing_later(self):
+        run = pyroclast.Run(deck(), threads=1)
+        before = run.until(strain=2e-5, steps=6000).step
+        self.assertLess(before, 6000)
+        run.finish()
+        self.assertEqual(run.outcome, "completed")
+
+    def test_until_equilibrium(self):
+        run = pyroclast.Run(deck(), threads=1)
+        self.assertLess(run.until(equilibrium=1e-2).unbalanced_ratio, 1e-2)
+
+    def test_call_backs_come_at_looks_and_every_so_many_steps(self):
+        run = pyroclast.Run(deck(), threads=1)
+        looks, steps = [], []
+        run.at_looks(lambda r: looks.append(r.history.rows))
+        run.every(700, lambda r: steps.append(r.step) or r.measure().strain + r.history["strain"][-1])
+        run.finish()
+        self.assertEqual(looks, list(range(1, run.history.rows + 1)))
+        self.assertEqual(steps, list(range(700, run.step + 1, 700)))
+
+    def test_a_recorder_is_begun_told_of_every_look_and_finished(self):
+        class Keeps(pyroclast.Recorder):
+            def __init__(self):
+                self.seen = []
+
+            def begin(self, run):
+                self.seen.append("begin")
+
+            def record(self, run, state):
+                self.seen.append(state.strain)
+
+            def finish(self, run):
+                self.seen.append(run.outcome)
+
+        run, recorder = pyroclast.Run(deck(), threads=1), Keeps()
+        run.record_with(recorder)
+        run.finish()
+        self.assertEqual((recorder.seen[0], recorder.seen[-1]), ("begin", "completed"))
+        np.testing.assert_array_equal(recorder.seen[1:-1], run.history["strain"])
+
+    def test_an_exception_of_a_call_back_is_raised_and_the_run_goes_on(self):
+        run = pyroclast.Run(deck(), threads=1)
+
+        def fails(_):
+            raise ValueError("mine")
+
+        run.call_at(2500, fails)
+        with self.assertRaisesRegex(ValueError, "mine"):
+            run.finish()
+        self.assertEqual(run.step, 2500)
+        run.finish()
+        self.assertEqual(run.outcome, "completed")
+        np.testing.assert_array_equal(run.history["stress_MPa"],
+                                      pyroclast.Run(deck(), threads=1).finish().history["stress_MPa"])
+
+    def test_a_call_back_between_steps_changes_nothing(self):
+        run = pyroclast.Run(deck(), threads=1)
+        run.call_at(2500, lambda r: r.change({"stages[1].stop_strain": 2e-4}))
+        with self.assertRaisesRegex(pyroclast.Error, "stop it, and change it then"):
+            run.finish()
+        run.finish()
+        self.assertEqual(run.outcome, "completed")
+
+    def test_a_call_back_can_stop_the_run(self):
+        run = pyroclast.Run(deck(), threads=1)
+        run.call_at(3000, lambda r: r.stop())
+        run.finish()
+        self.assertEqual((run.step, run.outcome), (3000, "stopped"))
+        run.finish()
+        self.assertEqual(run.outcome, "completed")
+
+    def test_a_stop_at_a_look_is_heard_too(self):
+        run = pyroclast.Run(deck(), threads=1)
+        run.at_looks(lambda r: r.stop() if r.history.rows == 20 else None)
+        self.assertEqual(sum(1 for _ in run), 20)
+        self.assertEqual(run.outcome, "stopped")
+        run.finish()
+        self.assertEqual(run.outcome, "completed")
+
+    def test_ctrl_c_stops_between_batches(self):
+        out = self.folder() / "run"
+        run = pyroclast.Run(deck(), out=out, threads=1)
+        run.next()
+        run.call_at(3000, lambda r: os.kill(os.getpid(), signal.SIGINT))
+        with self.assertRaises(KeyboardInterrupt):
+            run.finish()
+        self.assertGreaterEqual(run.step, 3000)
+        self.assertEqual(json.loads((out / "summary.json").read_text())["outcome"], "stopped")
+        self.assertTrue(list((out / "checkpoints").glob("*.state")))
+        run.finish()
+        self.assertEqual(run.outcome, "completed")
+        self.assertEqual(signal.getsignal(signal.SIGINT), signal.default_int_handler)
+
+    def test_another_thread_counts_on_while_a_run_advances(self):
+        run = pyroclast.Run(deck(blocks__count=600), threads=1)
+        run.next()
+        counted, ends = [0], threading.Event()
+
+        def count():
+            while not ends.is_set():
+                counted[0] += 1
+                time.sleep(0.0005)
+
+        counter = threading.Thread(target=count)
+        counter.start()
+        before = counted[0]
+        began = time.monotonic()
+        run.until(steps=4000)
+        took = time.monotonic() - began
+        gained = counted[0] - before
+        ends.set()
+        counter.join()
+        self.assertGreater(gained, took / 0.0005 * 0.05)
+
+    def test_stepping_belongs_to_one_thread(self):
+        run = pyroclast.Run(deck(), threads=1)
+        said = []
+
+        def also(_):
+            other = threading.Thread(target=lambda: said.append(_error(run.next)))
+            other.start()
+            other.join()
+
+        run.call_at(1000, also)
+        run.until(steps=2000)
+        self.assertIn("another thread", said[0])
+
+    def test_several_runs_take_turns(self):
+        runs = [pyroclast.Run(deck(), seed=seed, threads=1) for seed in (1, 2)]
+        stresses = [[], []]
+        for states in zip(*runs):
+            for stress, state in zip(stresses, states):
+                stress.append(state.stress)
+        self.assertNotEqual(*stresses)
+        alone = pyroclast.Run(deck(), seed=2, threads=1).finish().history["stress"]
+        np.testing.assert_array_equal(stresses[1], alone[:len(stresses[1])])
+
+
+def _error(call) -> str:
+    try:
+        call()
+    except pyroclast.Error as error:
+        return str(error)
+    return ""
+
+
+class Changing(Case):
+    def test_a_copy_in_the_middle_of_a_stage_goes_the_same_way(self):
+        run = pyroclast.Run(heated(), threads=1)
+        run.until(lambda state: state.stage == 2 and state.temperature > 25.0)
+        copied = run.copy()
+        np.testing.assert_array_equal(copied.finish().history.to_pandas(), run.finish().history.to_pandas())
+
+    def test_a_copy_with_another_fire_is_the_run_of_that_deck(self):
+        parent = pyroclast.Run(heated(), threads=1)
+        while parent.summary["stages"][1]["outcome"] != "completed":
+            parent.next()
+        folder = self.folder()
+        for to in ("30 degC", "36 degC"):
+            other = heated()
+            other["stages[2].to"] = to
+            whole = pyroclast.Run(other, out=folder / f"whole {to}", threads=1).finish()
+            copied = parent.copy({"stages[2].to": to}, out=folder / f"copy {to}").finish()
+            self.assertEqual(history(folder / f"whole {to}"), history(folder / f"copy {to}"))
+            self.assertEqual(copied.history["temperature"].max(), whole.history["temperature"].max())
+        with self.assertRaisesRegex(pyroclast.Error, "this stage is done"):
+            parent.copy({"stages[0].most_steps": 10})
+
+    def test_a_stage_that_is_appended_gives_the_run_of_the_whole_deck(self):
+        unload = dict(velocity="0.8 mm/s", ramp_time="20 ms", to_stress="1 MPa")
+        folder = self.folder()
+        whole = deck()
+        whole.append("stages", kind="compress", **unload)
+        pyroclast.Run(whole, out=folder / "whole", threads=1).finish()
+        run = pyroclast.Run(deck(), out=folder / "script", threads=1).finish()
+        run.then("compress", **unload).finish()
+        self.assertEqual(history(folder / "whole"), history(folder / "script"))
+        self.assertLess(run.measure().stress, 1.1e6)
+        again = pyroclast.Run(folder / "script" / "deck.toml", threads=1).finish()
+        np.testing.assert_array_equal(again.history["stress"], run.history["stress"])
+
+    def test_a_stage_can_be_ended_and_the_summary_says_so(self):
+        out = self.folder() / "run"
+        run = pyroclast.Run(deck(), out=out, threads=1)
+        run.until(stress=3 * MPa)
+        run.end_stage()
+        run.then("compress", velocity="0.8 mm/s", ramp_time="20 ms", to_stress="0.5 MPa").finish()
+        self.assertLess(run.history["stress"][-1], 0.6e6)
+        self.assertTrue(any("not reproducible from the deck" in line for line in run.summary["warnings"]))
+        self.assertIn("not_reproducible_from_the_deck", json.loads((out / "manifest.json").read_text()))
+        del run
+        gc.collect()
+        with self.assertRaisesRegex(pyroclast.Error, "only the script"):
+            pyroclast.Run.resume(out)
+
+    def test_later_stages_change_and_take_their_columns_along(self):
+        run = pyroclast.Run(heated(), threads=1)
+        run.until(strain=1e-5)
+        self.assertIn("exchange", run.history)
+        run.change({"stages[2].to": "30 degC"}).finish()
+        self.assertAlmostEqual(run.history["temperature"].max(), 30.0)
+        whole = heated()
+        whole["stages[2].to"] = "30 degC"
+        straight = pyroclast.Run(whole, threads=1).finish()
+        np.testing.assert_array_equal(run.history.to_pandas(), straight.history.to_pandas())
+        with self.assertRaisesRegex(pyroclast.Error, "this stage is done"):
+            run.change({"stages[2].to": "50 degC"})
+
+    def test_a_stage_can_be_ended_where_it_was_stopped(self):
+        run = pyroclast.Run(deck(), threads=1)
+        run.until(strain=1e-4)
+        run.until(steps=17)
+        run.end_stage().then("compress", velocity="0.8 mm/s", ramp_time="20 ms", to_stress="0.5 MPa").finish()
+        self.assertEqual(run.outcome, "completed")
+        self.assertLess(run.history["stress"][-1], 0.6e6)
+
+    def test_materials_change_and_energy_is_accounted(self):
+        run = pyroclast.Run(deck(), threads=1)
+        run.until(strain=1.5e-4)
+        stiff = np.polyfit(run.history["strain"][-6:], run.history["stress"][-6:], 1)[0]
+        run.change({"materials.mortar.E": "15 GPa"})
+        run.until(strain=2.5e-4)
+        soft = np.polyfit(run.history["strain"][-6:], run.history["stress"][-6:], 1)[0]
+        self.assertLess(soft, 0.9 * stiff)
+        self.assertLess(run.history["energy_property_change_J"][-1], 0.0)
+        self.assertLess(abs(run.summary["energy_J"]["error_over_turnover"]), 0.005)
+        for change, told in (({"materials.mortar.density": "2000 kg/m3"}, "density"),
+                             ({"specimen.width": "1 m"}, "before the end of stage")):
+            with self.assertRaisesRegex(pyroclast.Error, told):
+                run.change(change)
+        with self.assertRaises(pyroclast.DeckError):
+            run.change({"materials.mortar.E": "15 mm"})
+        run.finish()
+
+    def test_the_temperature_can_be_set(self):
+        run = pyroclast.Run(heated(), threads=1)
+        run.until(strain=1e-5)
+        before = run.history["temperature"][-1]
+        run.set_temperature("30 degC")
+        self.assertEqual((before, run.measure().temperature), (20.0, 30.0))
+        self.assertAlmostEqual(float(run.temperature.max()), 30.0)
+        run.next()
+
+    def test_a_run_that_is_closed_leaves_its_folder(self):
+        out = self.folder() / "run"
+        with pyroclast.Run(deck(), out=out, threads=1) as run:
+            run.until(strain=1e-4)
+            view = run.views.displacement
+        self.assertEqual(json.loads((out / "summary.json").read_text())["outcome"], "running")
+        with self.assertRaisesRegex(pyroclast.Error, "closed"):
+            run.next()
+        np.testing.assert_array_equal(view[run.slot], run.displacement)
+        pyroclast.Run.resume(out, threads=1).finish()
+
+    def test_checkpoints_resume_and_fork(self):
+        folder = self.folder()
+        whole = pyroclast.Run(deck(), out=folder / "whole", threads=1).finish()
+        run = pyroclast.Run(deck(), out=folder / "run", threads=1)
+        run.until(strain=1e-4)
+        run.checkpoint()
+        with self.assertRaisesRegex(pyroclast.Error, "another"):
+            pyroclast.Run.resume(folder / "run")
+        del run
+        gc.collect()
+        resumed = pyroclast.Run.resume(folder / "run", threads=1).finish()
+        self.assertEqual(history(folder / "whole"), history(folder / "run"))
+        self.assertEqual(resumed.outcome, whole.outcome)
+        forked = pyroclast.Run.fork(folder / "run", out=folder / "fork", from_stage=0, threads=1,
+                                    changes={"stages[1].stop_strain": 0.0002}).finish()
+        self.assertLess(forked.history["strain"][-1], 0.00025)
+        with self.assertRaisesRegex(pyroclast.Error, "no folder"):
+            pyroclast.Run(deck(), threads=1).checkpoint()
+
+
+class Arrays(Case):
+    def test_views_share_the_memory_of_the_run(self):
+        run = pyroclast.Run(deck(), threads=1)
+        run.until(strain=1e-4)
+        slot = run.slot
+        for name, in_order in (("displacement", lambda v: v[slot]),
+                               ("velocity", lambda v: v[slot // 8, :, slot % 8]),
+                               ("force", lambda v: v[slot // 8, :, slot % 8])):
+            view = getattr(run.views, name)
+            self.assertTrue(np.shares_memory(view, getattr(run.views, name)), name)
+            np.testing.assert_array_equal(in_order(view), getattr(run, name), name)
+            self.assertFalse(np.shares_memory(view, getattr(run, name)))
+            with self.assertRaises(ValueError):
+                view[0] = 1.0
+            self.assertGreater(np.abs(view).max(), 0.0, name)
+        self.assertTrue(np.shares_memory(run.views.history, run.views.history))
+        self.assertEqual(run.views.history.shape[1], 8)
+
+    def test_a_view_follows_the_run_and_outlives_its_name(self):
+        run = pyroclast.Run(deck(), threads=1)
+        run.until(strain=5e-5)
+        view = run.views.displacement
+        before = view.copy()
+        run.until(strain=1e-4)
+        self.assertFalse(np.array_equal(view, before))
+        now = view.copy()
+        del run
+        gc.collect()
+        np.testing.assert_array_equal(view, now)
+
+    def test_the_model_is_whole(self):
+        run = pyroclast.Run(deck(), threads=1)
+        corners = run.position[run.zones]
+        a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        area = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+        of_specimen = run.block_material[run.zone_block] < len(run.material_names) - 1
+        self.assertAlmostEqual(area[of_specimen].sum(), 0.15 * 0.3, places=9)
+        self.assertEqual(run.stress.shape, (len(run.zones), 3))
+
+    def test_zone_stresses_and_contacts_carry_the_load(self):
+        run = pyroclast.Run(deck(), threads=1)
+        state = run.until(strain=2e-4)
+        corners = run.position[run.zones]
+        a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        area = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+        of_specimen = run.block_material[run.zone_block] < len(run.material_names) - 1
+        mean = (run.stress[of_specimen, 1] * area[of_specimen]).sum() / area[of_specimen].sum()
+        self.assertAlmostEqual(-mean / state.stress, 1.0, delta=0.02)
+        contacts = run.contacts()
+        self.assertEqual(set(contacts["law"]), {"cohesive", "elastic", "frictional"})
+        self.assertLess(contacts["normal_traction"].mean(), 0.0)
+
+    def test_meshio_and_a_notebook_show_the_run(self):
+        run = pyroclast.Run(deck(), threads=1)
+        run.until(strain=1e-4)
+        file = self.folder() / "body.vtk"
+        run.to_meshio().write(file)
+        self.assertGreater(file.stat().st_size, 1000)
+        self.assertTrue(run._repr_png_().startswith(b"\x89PNG"))
+        self.assertIn("data:image/png;base64,", run._repr_html_())
+
+    def test_a_run_of_heat_alone_is_shown_too(self):
+        wall = pyroclast.Deck(CASES / "thermal_wall.toml")
+        wall.update(blocks={"count": 60}, output={"fields": False})
+        wall["stages[0].duration"] = "5 min"
+        run = pyroclast.Run(wall, threads=1)
+        self.assertTrue(run._repr_png_().startswith(b"\x89PNG"))
+        run.finish()
+        self.assertGreater(run.temperature.max(), 100.0)
+        self.assertIn("temperature", run.to_meshio().point_data)
+        self.assertIn("data:image/png", run._repr_html_())
+        with self.assertRaisesRegex(pyroclast.Error, "nothing moves"):
+            run.displacement
+        with self.assertRaisesRegex(pyroclast.Error, "nothing moves"):
+            run.call_at(10, print)
+
+
+class Processes(Case):
+    def test_after_fork_a_run_in_the_child_raises_at_once(self):
+        run = pyroclast.Run(deck(), threads=2)
+        run.until(strain=5e-5)
+        read, write = os.pipe()
+        child = os.fork()
+        if child == 0:  # leaves without the tests' own end
+            os.write(write, _error(run.next).encode())
+            del run
+            os._exit(0)
+        os.close(write)
+        with os.fdopen(read) as pipe:
+            said = pipe.read()
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+        self.assertIn("spawn", said)
+        run.finish()
+        self.assertEqual(run.outcome, "completed")
+
+    def test_a_pool_runs_seeds_in_parallel(self):
+        import pool
+        runs = pyroclast.parallel.map_runs(pool.stress_at, [1, 2, 3], processes=2)
+        alone = pool.stress_at(2)
+        self.assertEqual(runs[1], alone)
+        self.assertEqual(len(set(runs)), 3)
+        with self.assertRaisesRegex(pyroclast.DeckError, "specimen.width"):
+            pyroclast.parallel.map_runs(pool.wrong, [1])

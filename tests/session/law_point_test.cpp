@@ -1,0 +1,44 @@
+#include "pyroclast/session/law_point.hpp"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/laws/registry.hpp"
+
+namespace pyroclast {
+namespace {
+
+const std::vector<std::string> kElastic{"K_n=10 GPa/m", "K_s=4 GPa/m"};
+
+const LawTable& elastic() {
+  return find_law("elastic", {}, LawSources::of_environment());
+}
+
+std::size_t place(const LawPoint& point, const std::string& column) {
+  const auto columns = point.columns();
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    if (columns[i].name == column) return i;
+  ADD_FAILURE() << "no column " << column;
+  return 0;
+}
+
+TEST(LawPoint, ALegIsCutIntoStepsAndEndsAtItsPoint) {
+  LawPoint point(stated_material(elastic(), kElastic));
+  const std::size_t opening = place(point, "u_n_m"), stress = place(point, "sigma_Pa");
+  std::vector<double> openings;
+  point.go({2e-6, 0.0}, 4, [&] { openings.push_back(point.values()[opening]); });
+  EXPECT_EQ(openings, (std::vector<double>{0.5e-6, 1e-6, 1.5e-6, 2e-6}));
+  EXPECT_DOUBLE_EQ(point.values()[stress], 10e9 * 2e-6);
+  EXPECT_EQ(point.columns().size(), point.values().size());
+}
+
+TEST(LawPoint, EveryPropertyMustBeStatedAndNoOther) {
+  EXPECT_THROW(stated_material(elastic(), {kElastic.front()}), Error);
+  EXPECT_THROW(stated_material(elastic(), {"K_n=10 GPa/m", "K_s=4 GPa"}), Error);
+  EXPECT_THROW(stated_material(elastic(), {"K_n=10 GPa/m", "K_s=4 GPa/m", "f_t=1 MPa"}), Error);
+}
+
+}  // namespace
+}  // namespace pyroclast

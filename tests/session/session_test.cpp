@@ -1,0 +1,177 @@
+#include "pyroclast/session/session.hpp"
+
+#include <string>
+#include <vector>
+
+#include "pyroclast/base/error.hpp"
+#include "results/folder.hpp"
+#include "stages/small_runs.hpp"
+
+namespace pyroclast {
+namespace {
+
+const std::string kUnload =
+    "[[stages]]\nkind = \"compress\"\nvelocity = \"0.5 mm/s\"\nramp_time = \"20 ms\"\nto_stress = \"1 "
+    "MPa\"\n";
+
+Loaded loaded(const std::string& stages) {
+  RunChoices choices;
+  choices.threads = 1;
+  return {Deck::parse(deck(kUniform + kSettle + stages), "deck.toml"), ".", choices};
+}
+
+std::unique_ptr<Session> session(const std::string& stages) {
+  return Session::begin(loaded(stages), std::nullopt);
+}
+
+void finish(Session& session) {
+  while (session.next()) continue;
+  session.finish();
+}
+
+/// All cells, an empty one as a text that no number has.
+std::vector<std::string> cells(const Session& session) {
+  std::vector<std::string> all;
+  const History& history = session.run().history();
+  for (std::size_t row = 0; row < history.row_count(); ++row)
+    for (const auto& cell : history.row(row)) all.push_back(printed(cell));
+  return all;
+}
+
+std::string message(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(Results, ASessionWritesWhatItsHistoryHas) {
+  const auto written = Session::begin(loaded(kCompress), RunOutput{folder_ / "run", false, "test"});
+  finish(*written);
+  const std::string csv = content(folder_ / "run" / "history.csv");
+  EXPECT_EQ(std::ranges::count(csv, '\n'),
+            static_cast<std::ptrdiff_t>(written->run().history().row_count()) + 1);
+  EXPECT_TRUE(fs::exists(folder_ / "run" / "summary.json"));
+  EXPECT_TRUE(fs::exists(stage_checkpoint(folder_ / "run", 1)));
+  const auto silent = session(kCompress);
+  finish(*silent);
+  EXPECT_EQ(cells(*silent), cells(*written));
+  EXPECT_TRUE(silent->folder().empty());
+}
+
+TEST(Session, AStopIsTakenBackByGoingOn) {
+  const auto straight = session(kCompress), stopped = session(kCompress);
+  finish(*straight);
+  int asked = 0;
+  stopped->stop_when([&] { return ++asked % 5 == 0; });
+  int stops = 0;
+  while (stopped->next() || stopped->run().outcome() == Outcome::stopped)
+    if (stopped->run().outcome() == Outcome::stopped) ++stops;
+  EXPECT_GT(stops, 5);
+  EXPECT_EQ(stopped->run().outcome(), Outcome::completed);
+  EXPECT_EQ(cells(*stopped), cells(*straight));
+}
+
+TEST(Session, ACopyInTheMiddleGoesTheSameWay) {
+  const auto run = session(kCompress);
+  while (run->run().stage_number() < 1) run->next();
+  run->next();
+  const auto copied = run->copy({}, std::nullopt);
+  finish(*copied);
+  finish(*run);
+  EXPECT_EQ(cells(*copied), cells(*run));
+  EXPECT_NE(copied->run().simulation().mechanics().storage().displacement.data(),
+            run->run().simulation().mechanics().storage().displacement.data());
+}
+
+TEST(Session, ACopyWithOtherLaterStagesIsTheRunOfThatDeck) {
+  const std::string changed = with(kCompress, "0.0002", "0.0001");
+  const auto run = session(kCompress), whole = session(changed);
+  while (!run->run().stage_is_over()) run->next();
+  const auto copied = run->copy({"stages[1].stop_strain=0.0001"}, std::nullopt);
+  finish(*copied);
+  finish(*whole);
+  EXPECT_EQ(cells(*copied), cells(*whole));
+  EXPECT_NE(message([&] { run->copy({"stages[0].most_steps=5"}, std::nullopt); }).find("this stage is done"),
+            std::string::npos);
+}
+
+TEST_F(Results, AnAppendedStageGivesTheRunOfTheWholeDeck) {
+  const auto run = Session::begin(loaded(kCompress), RunOutput{folder_ / "run", false, "test"});
+  const auto whole = Session::begin(loaded(kCompress + kUnload), RunOutput{folder_ / "whole", false, "test"});
+  finish(*run);
+  run->change_stages({}, kUnload);
+  EXPECT_EQ(run->run().outcome(), Outcome::running);
+  finish(*run);
+  finish(*whole);
+  for (const char* file : {"history.csv", "deck.toml"}) {
+    const auto lines = [](std::string text) {
+      std::erase(text, '\n');  // the appended text begins with one
+      return text;
+    };
+    EXPECT_EQ(lines(content(folder_ / "run" / file)), lines(content(folder_ / "whole" / file))) << file;
+  }
+}
+
+TEST_F(Results, WhatAScriptDidIsSaidAndKeepsARunFromBeingResumed) {
+  const auto run = Session::begin(loaded(kCompress), RunOutput{folder_ / "run", false, "test"});
+  while (run->run().stage_number() < 1) run->next();
+  run->change_materials({"materials.mortar.E=15 GPa"});
+  run->next();
+  const Summary summary = run->finish();
+  EXPECT_TRUE(std::ranges::any_of(summary.warnings, [](const std::string& line) {
+    return line.find("not reproducible from the deck: materials.mortar.E=15 GPa") != std::string::npos;
+  }));
+  ASSERT_EQ(RunFolder::departures(folder_ / "run").size(), 1u);
+  EXPECT_TRUE(RunFolder::departures(folder_ / "run").front().is_change);
+  EXPECT_LT(run->run().simulation().mechanics().energy().property_change, 0.0);
+}
+
+TEST_F(Results, ARunThatAScriptChangedIsNotResumed) {
+  {
+    const auto run = Session::begin(loaded(kCompress), RunOutput{folder_ / "run", false, "test"});
+    run->next();
+    run->depart({"mine"});
+    run->depart({"mine"});
+    run->write_checkpoint();
+  }
+  EXPECT_EQ(RunFolder::departures(folder_ / "run").size(), 1u);
+  EXPECT_NE(message([&] { Session::resume(folder_ / "run", {}, {}); }).find("only the script"),
+            std::string::npos);
+}
+
+TEST(Session, WhatCannotChangeInARunIsRefused) {
+  const auto run = session(kCompress);
+  run->next();
+  EXPECT_NE(message([&] { run->change_materials({"materials.mortar.density=2000 kg/m3"}); }).find("density"),
+            std::string::npos);
+  EXPECT_NE(message([&] { run->change_materials({"specimen.width=1 m"}); }).find("specimen.width"),
+            std::string::npos);
+  EXPECT_NE(message([&] { run->write_checkpoint(); }).find("no folder"), std::string::npos);
+  EXPECT_NE(message([&] { run->run().end_stage(); }).find("no stage is under way"), std::string::npos);
+}
+
+TEST(Session, AStageCanBeEndedAtALook) {
+  const auto run = session(kCompress + kUnload);
+  while (run->run().stage_number() < 1) run->next();
+  for (int look = 0; look < 4; ++look) run->next();
+  run->run().end_stage();
+  finish(*run);
+  EXPECT_EQ(run->run().records()[1].outcome, Outcome::completed);
+  EXPECT_EQ(run->run().records()[1].rows.last - run->run().records()[1].rows.first, 5u);
+  EXPECT_EQ(run->run().outcome(), Outcome::completed);
+}
+
+TEST(Session, MeasuringAddsNoRowAndIsWhatALookHas) {
+  const auto run = session(kCompress);
+  while (run->run().stage_number() < 1) run->next();
+  const History& history = run->run().history();
+  const std::size_t rows = history.row_count();
+  EXPECT_EQ(run->run().measure(), history.row(rows - 1));
+  EXPECT_EQ(history.row_count(), rows);
+}
+
+}  // namespace
+}  // namespace pyroclast

@@ -1,0 +1,80 @@
+#include "pyroclast/specimen/from_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "examples.hpp"
+#include "pyroclast/specimen/blocks.hpp"
+#include "pyroclast/specimen/topology.hpp"
+
+namespace pyroclast::specimen {
+namespace {
+
+/// Three by three squares of 1 m without the middle one, the first of them clockwise.
+Tessellation ring_of_squares() {
+  Tessellation t;
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 4; ++x) t.vertices.push_back({{1.0 * x, 1.0 * y}});
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 3; ++x)
+      if (x != 1 || y != 1) t.cells.push_back({4 * y + x, 4 * y + x + 1, 4 * y + x + 5, 4 * y + x + 4});
+  std::ranges::reverse(t.cells.front());
+  return t;
+}
+
+TEST(SpecimenFromCells, FindsTheOutlineAndItsHoles) {
+  std::vector<int> phase(8, 0);
+  phase[3] = 1;
+  const Specimen specimen = specimen_from(ring_of_squares(), {"mortar", "stone"}, phase);
+  EXPECT_DOUBLE_EQ(specimen.region.area(), 8.0);
+  ASSERT_EQ(specimen.region.sides().size(), 5U);
+  EXPECT_EQ(specimen.region.sides()[specimen.region.side_of({{1.0, 0.0}}, {{2.0, 0.0}}).value()].name,
+            "side_1");
+  EXPECT_EQ(specimen.region.sides()[specimen.region.side_of({{3.0, 1.0}}, {{3.0, 2.0}}).value()].name,
+            "side_2");
+  EXPECT_EQ(specimen.region.sides()[specimen.region.side_of({{1.0, 1.0}}, {{2.0, 1.0}}).value()].name,
+            "hole_1");
+  EXPECT_DOUBLE_EQ(specimen.fraction[0], 7.0 / 8.0);
+  EXPECT_DOUBLE_EQ(specimen.fraction[1], 1.0 / 8.0);
+  EXPECT_NO_THROW(require_valid(specimen.tessellation, specimen.region, "cells"));
+}
+
+TEST(SpecimenFromCells, GivesBackWhatWasTessellated) {
+  SpecimenParameters p = paper_specimen(1);
+  p.blocks.count = 200;
+  p.region = Region::polygon({{{0.0, 0.0}}, {{0.3, 0.0}}, {{0.3, 0.2}}, {{0.15, 0.3}}, {{0.0, 0.2}}},
+                             {"side_1", "side_2", "side_3", "side_4", "side_5"});
+  const Specimen made = make_specimen(p);
+  const Specimen again = specimen_from(made.tessellation, made.phases, made.phase);
+  EXPECT_EQ(again.tessellation.cells, made.tessellation.cells);
+  EXPECT_NEAR(again.region.area(), p.region.area(), 1e-12);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(again.region.pieces()[i].from, p.region.pieces()[i].from);
+  EXPECT_NEAR(again.fraction[0], made.fraction[0], 1e-12);
+  EXPECT_EQ(again.metrics.mean_edge, made.metrics.mean_edge);
+}
+
+TEST(SpecimenFromCells, WhatDoesNotFitIsToldByCell) {
+  const auto refused = [](auto change) {
+    Tessellation t = ring_of_squares();
+    std::vector<int> phase(8, 0);
+    change(t, phase);
+    return error_of([&] { specimen_from(t, {"mortar"}, phase); });
+  };
+  EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[2][1] = 99; }), "cell 2 names vertex 99"));
+  EXPECT_TRUE(says(refused([](auto&, auto& phase) { phase[5] = 1; }), "cell 5 is of phase 1"));
+  EXPECT_TRUE(says(refused([](auto&, auto& phase) { phase.pop_back(); }), "8 cells, but the phases of 7"));
+  EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[1].resize(2); }), "cell 1 has 2 corners"));
+  EXPECT_TRUE(says(refused([](auto& t, auto&) { t.vertices[3] = {{NAN, 0.0}}; }), "vertex 3 is not finite"));
+  EXPECT_TRUE(says(refused([](auto& t, auto& phase) {
+                     t.cells.erase(t.cells.begin() + 1);
+                     t.cells.erase(t.cells.begin() + 2);
+                     phase.resize(6);
+                   }),
+                   "meet in one point|not one piece"));
+  EXPECT_TRUE(says(refused([](auto& t, auto&) { t.vertices[5] = {{2.5, 2.5}}; }), "not one piece"));
+}
+
+}  // namespace
+}  // namespace pyroclast::specimen

@@ -1,0 +1,241 @@
+#include "pyroclast/stages/drive.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "known.hpp"
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/state_copy.hpp"
+#include "stages/small_runs.hpp"
+
+namespace pyroclast {
+namespace {
+
+constexpr double kWidth = 0.06, kHeight = 0.12;  // m, thickness 1 m
+
+/// The small prism without platens, and without weight.
+std::string free_deck(const std::string& rest) {
+  std::string text = deck(rest);
+  for (const char* gone : {"[platens]\nthickness = \"10 mm\"\n", "platen_friction = 0.0\n",
+                           "[materials.platen]\nE = \"200 GPa\"\nnu = 0.3\ndensity = \"7850 kg/m3\"\n",
+                           "history_strain = 1e-5\nframe_strain = 1e-3\n"})
+    text = with(text, gone, "");
+  return with(text, "mass = \"scaled\"\n", "mass = \"scaled\"\ngravity = \"0 m/s2\"\n");
+}
+
+std::string drive(const std::string& keys, const std::string& drives) {
+  return "[[stages]]\nkind = \"drive\"\n" + keys + "\n" + drives;
+}
+
+std::string does(const std::string& set, const std::string& what) {
+  return "[[stages.drives]]\nset = \"" + set + "\"\n" + what + "\n";
+}
+
+/// Left side held along x, one corner along y.
+const std::string kHeld = does("left", "hold = [\"x\"]") + does("corner", "hold = [\"y\"]");
+const std::string kCorner =
+    "[[sets]]\nname = \"corner\"\nwithin = \"left\"\nnearest = [\"0 mm\", \"0 mm\"]\n";
+const std::string kToRest = "duration = \"2 s\"\nunbalanced_ratio = 1e-8";
+
+std::string record(const std::string& name, const std::string& kind, const std::string& rest) {
+  return "[[record]]\nname = \"" + name + "\"\nkind = \"" + kind + "\"\n" + rest + "\n";
+}
+
+const std::string kRecords =
+    record("stress", "stress", "set = \"specimen\"\ndirection = \"x\"") +
+    record("across", "stress", "set = \"specimen\"\ndirection = \"y\"") +
+    record("grip", "force", "set = \"left\"\ndirection = \"x\"") +
+    record("end", "displacement", "set = \"right\"\ndirection = \"x\"") +
+    record("stretch", "opening", "set = \"left\"\nother = \"right\"\ndirection = \"x\"");
+
+std::string message(const std::string& text) {
+  try {
+    const Trial trial(text);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+// Whatever a body is made of, its mean stress is that of the tractions on its outline.
+TEST(DriveVerification, APressureOnOneSideIsTheMeanStressAndTheReactionOfTheOther) {
+  const Finished run(
+      free_deck(kUniform + kCorner + kRecords +
+                drive(kToRest, kHeld + does("right", "pressure = \"-1 MPa\"\nramp_time = \"5 ms\""))));
+  EXPECT_EQ(run.run.outcome(), Outcome::completed);
+  expect_known({"mean stress of a body of blocks under a tension of 1 MPa on one side", "equilibrium", "MPa"},
+               run.last("stress_MPa"), 1.0, 1e-5);
+  expect_known({"its mean stress across", "equilibrium", "MPa"}, run.last("across_MPa"), 0.0, 1e-5);
+  expect_known({"the reaction of the side that is held", "equilibrium", "N"}, run.last("grip_N"),
+               -1e6 * kHeight, 1e-5 * 1e6 * kHeight);
+  EXPECT_NEAR(run.last("end_m"), run.last("stretch_m"), 1e-15);
+  // 29.4 GPa, and contacts that give way
+  EXPECT_GT(run.last("stretch_m"), 1e6 / 29.4e9 * kWidth);
+  EXPECT_LT(run.last("stretch_m"), 2.0 * 1e6 / 29.4e9 * kWidth);
+}
+
+TEST(Drive, AForceOnASideIsSharedOutLikeAPressure) {
+  const auto stretch = [](const std::string& how) {
+    return Finished(free_deck(kUniform + kCorner + kRecords +
+                              drive(kToRest, kHeld + does("right", how + "\nramp_time = \"5 ms\""))))
+        .last("stretch_m");
+  };
+  const double of_pressure = stretch("pressure = \"-1 MPa\"");
+  EXPECT_NEAR(stretch("force = \"120 kN\"\ndirection = [1, 0]"), of_pressure, 1e-8 * of_pressure);
+}
+
+TEST(Drive, WhatIsMovedGoesItsWayAndIsHeldThere) {
+  const Finished run(free_deck(
+      kUniform + kCorner + kRecords +
+      drive("duration = \"30 ms\"",
+            kHeld + does("right", "velocity = \"1 mm/s\"\ndirection = \"x\"\nramp_time = \"10 ms\"")) +
+      drive("duration = \"10 ms\"", does("corner", "hold = [\"y\"]"))));
+  // half of the ramp, then 20 ms
+  EXPECT_NEAR(run.end_of(0, "end_m"), 1e-3 * (0.5 * 0.01 + 0.02), 1e-12);
+  EXPECT_EQ(run.end_of(1, "end_m"), run.end_of(0, "end_m"));
+}
+
+TEST(Drive, AFactorOverTimeActsOnTheAmount) {
+  const Finished run(
+      free_deck(kUniform + kCorner + kRecords +
+                drive("duration = \"20 ms\"",
+                      kHeld + does("right",
+                                   "velocity = \"1 mm/s\"\ndirection = \"x\"\n"
+                                   "factor = { table = [[\"0 s\", 0], [\"10 ms\", 1], [\"20 ms\", 0]] }"))));
+  EXPECT_NEAR(run.last("end_m"), 1e-3 * 0.01, 1e-9);
+}
+
+TEST(Drive, LoadsStayUntilTheyAreChanged) {
+  const Finished run(free_deck(
+      kUniform + kCorner + kRecords +
+      drive(kToRest, kHeld + does("right", "force = \"60 kN\"\ndirection = [1, 0]\nramp_time = \"5 ms\"")) +
+      drive(kToRest, does("corner", "hold = [\"y\"]")) +
+      drive(kToRest, does("right", "force = \"-30 kN\"\ndirection = [1, 0]\nramp_time = \"5 ms\""))));
+  EXPECT_NEAR(run.end_of(0, "grip_N"), -60e3, 1.0);
+  EXPECT_NEAR(run.end_of(1, "grip_N"), -60e3, 1.0);
+  EXPECT_NEAR(run.end_of(2, "grip_N"), 30e3, 1.0);
+}
+
+TEST(Drive, EndsByARecord) {
+  const std::string moved =
+      kHeld + does("right", "velocity = \"2 mm/s\"\ndirection = \"x\"\nramp_time = \"1 ms\"");
+  const auto run = [&](const std::string& until) {
+    return Finished(free_deck(
+        kUniform + kCorner + kRecords +
+        drive("duration = \"50 ms\"\nlook_interval = \"0.2 ms\"", moved + "[[stages.until]]\n" + until)));
+  };
+  const Finished above = run("record = \"end\"\nabove = \"5 um\"\n");
+  EXPECT_EQ(above.run.outcome(), Outcome::completed);
+  EXPECT_GT(above.last("end_m"), 5e-6);
+  EXPECT_LT(above.last("end_m"), 6e-6);
+  // it cracks
+  const Finished past_peak = run("record = \"grip\"\nshare_of_peak = 0.5\n");
+  EXPECT_EQ(past_peak.run.outcome(), Outcome::completed);
+  EXPECT_LT(past_peak.last("end_m"), 1e-4);
+  EXPECT_EQ(run("record = \"end\"\nabove = \"1 m\"\n").run.outcome(), Outcome::not_reached);
+}
+
+TEST(Drive, WhatCannotBeDoneIsRefusedBeforeTheRun) {
+  const auto refused = [](const std::string& drives, const std::string& more = "") {
+    return message(free_deck(kUniform + kCorner + more + drive("duration = \"1 ms\"", drives)));
+  };
+  const auto says = [](const std::string& told, const std::string& part) {
+    EXPECT_NE(told.find(part), std::string::npos) << told;
+  };
+  says(refused(kHeld + does("rigth", "hold = [\"x\"]")),
+       "there is no set \"rigth\"; there are aggregate, bottom, corner, left");
+  says(refused(kHeld + does("bottom", "velocity = \"1 mm/s\"\ndirection = \"x\"")),
+       "both are held or driven along x");
+  says(refused(kHeld + does("left", "force = \"1 kN\"\ndirection = [1, 0]")), "held or driven along x");
+  says(refused(does("right", "force = \"1 kN\"\ndirection = [1, 0]")), "moving along x and y, and turning");
+  says(refused(does("left", "hold = [\"x\"]") + does("right", "pressure = \"1 MPa\"")), "moving along y");
+  says(refused(does("corner", "hold = [\"x\", \"y\"]") + does("right", "pressure = \"1 MPa\"")),
+       "moving turning about one point");
+  says(refused(kHeld, "[[sets]]\nname = \"nothing\"\nnearest = [\"0 mm\", \"0 mm\"]\nwithin = \"no\"\n"),
+       "there is no such set of gridpoints");
+  says(refused(kHeld, "[[sets]]\nname = \"far\"\ncentre = [\"1 m\", \"1 m\"]\nradius = \"1 mm\"\n"),
+       "\"far\" is empty");
+  says(refused(kHeld, "[[sets]]\nname = \"left\"\nnearest = [\"0 mm\", \"0 mm\"]\n"),
+       "the name of one that there is");
+  says(refused(kHeld, record("r", "stress", "set = \"corner\"\ndirection = \"x\"")), "which holds no zone");
+  says(message(free_deck(kUniform + kSettle + kCompress)), "\"compress\" needs the table [platens]");
+}
+
+// A body that is held as it may expand stays without stress.
+TEST(DriveVerification, AHeldBodyExpandsWithoutStress) {
+  const Finished run(free_deck(kUniform + kCorner + kRecords + drive("duration = \"1 ms\"", kHeld) +
+                               with(heat("70 degC"), "platen = \"force\"\n", "")));
+  EXPECT_EQ(run.run.outcome(), Outcome::completed);
+  EXPECT_EQ(run.result(1, "exchanges_not_converged"), 0.0);
+  expect_known(
+      {"stretch of a body of one expansion that is held on one side, 20 to 70 degC", "alpha dT l", "m"},
+      run.last("stretch_m"), 1e-5 * 50.0 * kWidth, 1e-3 * 1e-5 * 50.0 * kWidth);
+  EXPECT_NEAR(run.last("stress_MPa"), 0.0, 0.02);
+}
+
+TEST(Drive, AFollowerTurnsWithTheBodyAndADeadLoadDoesNot) {
+  for (const bool follows : {true, false}) {
+    const std::string text =
+        with(free_deck(kUniform + kCorner +
+                       drive("duration = \"20 ms\"", does("specimen", "hold = [\"x\", \"y\"]"))),
+             "mass = \"scaled\"\n", "mass = \"scaled\"\nkinematics = \"finite\"\n");
+    Trial trial(text);
+    Simulation& simulation = *trial.simulation;
+    Mechanics<2>& mechanics = simulation.mechanics();
+    const auto& right = simulation.model().set("right");
+    simulation.loads().set("right", {.pressure = 1e6, .is_follower = follows});
+    Vec<2> before{};
+    std::vector<int> once = right;
+    std::ranges::sort(once);
+    once.erase(std::ranges::unique(once).begin(), once.end());
+    for (int g : once) before += mechanics.applied_force(g);
+    EXPECT_NEAR(before[0], -1e6 * kHeight, 1e-3);
+    EXPECT_NEAR(before[1], 0.0, 1e-3);
+    // a quarter turn about the origin, in one step
+    const double step = mechanics.time_step();
+    for (int g = 0; g < simulation.model().gridpoint_count(); ++g) {
+      const Vec<2> x = simulation.model().position[g];
+      mechanics.prescribe_velocity(g, 0, (-x[1] - x[0]) / step);
+      mechanics.prescribe_velocity(g, 1, (x[0] - x[1]) / step);
+    }
+    mechanics.advance(1);
+    simulation.loads().follow();
+    Vec<2> after{};
+    for (int g : once) after += mechanics.applied_force(g);
+    EXPECT_NEAR(after[follows ? 1 : 0], -1e6 * kHeight, 1e-3);
+    EXPECT_NEAR(after[follows ? 0 : 1], 0.0, 1e-3);
+  }
+}
+
+const std::string kMiddle =
+    "[[sets]]\nname = \"one\"\nbox = [[\"10 mm\", \"0 mm\"], [\"20 mm\", \"120 mm\"]]\n"
+    "[[sets]]\nname = \"other\"\nbox = [[\"40 mm\", \"0 mm\"], [\"50 mm\", \"120 mm\"]]\n" +
+    record("middle", "opening", "set = \"one\"\nother = \"other\"\ndirection = \"x\"");
+
+TEST(Drive, GoesOnToTheBitFromAStateOnItsWay) {
+  const std::string text = free_deck(
+      kUniform + kCorner + kMiddle + kRecords +
+      drive(kToRest, kHeld + does("right", "force = \"60 kN\"\ndirection = [1, 0]\nramp_time = \"5 ms\"")) +
+      drive("duration = \"20 ms\"\n[stages.control]\nrecord = \"middle\"\nrate = \"1 mm/s\"\n"
+            "stiffness = \"2 GN/m\"\nresponse_time = \"2 ms\"",
+            does("right", "force = \"60 kN\"\ndirection = [1, 0]") + "[[stages.until]]\nrecord = \"grip\"\n" +
+                "share_of_peak = 0.5\n"));
+  Trial whole(text);
+  const Outcome outcome = whole.run.run();
+  const std::size_t looks = whole.run.history().row_count();
+  for (const std::size_t stop : {std::size_t{3}, looks / 2, looks - 3}) {
+    Trial first(text), second(text);
+    while (first.run.history().row_count() < stop) first.run.next();
+    StateCopy copy;
+    copy.take([&](StateVisitor& visitor) { first.run.visit_state(visitor); });
+    copy.put([&](StateVisitor& visitor) { second.run.visit_state(visitor); });
+    EXPECT_EQ(second.run.run(), outcome);
+    ASSERT_EQ(second.run.history().row_count(), looks);
+    for (std::size_t row = 0; row < looks; ++row)
+      EXPECT_EQ(second.run.history().row(row), whole.run.history().row(row)) << "stopped at " << stop;
+  }
+}
+
+}  // namespace
+}  // namespace pyroclast
