@@ -38,7 +38,10 @@ if TYPE_CHECKING:
     from .session import History as History
     from .session import Recorder as Recorder
     from .session import Run as Run
+    from .session import Sets as Sets
     from .session import State as State
+    from .session import Views as Views
+    from .specimen import Specimen as Specimen
     from .stages import Key as Key
     from .stages import Stage as Stage
     from .stages import Verdict as Verdict
@@ -63,7 +66,8 @@ else:
         "errors": ("DeckError", "Diagnostic", "Error"),
         "functions": ("Function",),
         "laws": ("Law",),
-        "session": ("History", "Recorder", "Run", "State"),
+        "session": ("History", "Recorder", "Run", "Sets", "State", "Views"),
+        "specimen": ("Specimen",),
         "stages": ("Key", "Stage", "Verdict"),
         "units": ("GPa", "K", "MPa", "N", "Pa", "Quantity", "degC", "hour", "kN", "m", "minute", "mm", "s"),
     }

@@ -8,21 +8,28 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Union
 
+import numpy as np
+
 from . import _core, functions
-from .errors import DeckError, Diagnostic
+from .errors import DeckError, Diagnostic, Error
+from .specimen import Specimen
 from .stages import Stage
-from .units import Quantity
+from .units import Quantity, in_si
 
 Value = Union[str, bool, int, float, Quantity, Sequence[Any], Mapping[str, Any]]
 """What a key can hold; a function only where a curve can stand."""
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s+(\S.*?)\s*")
 _DOTS_OF_A_KEY = 2  # so many in a path: a table there is a value, such as a curve, and no table of keys
+_CELLS = "cells.json"  # what the blocks of a specimen are kept in
+_MADE_OTHERWISE = ("aggregates", "inclusions", "blocks", "superposition")  # tables that have no effect beside it
 _PLAIN_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def toml(value: Value) -> str:
     """As a deck writes it."""
+    if isinstance(value, (np.ndarray, np.generic)):
+        return toml(value.tolist())
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (int, float)):
@@ -56,6 +63,29 @@ def _parts(path: str) -> list[str | int]:
     return [int(part[1:-1]) if part.startswith("[") else part for part in re.findall(r"[^.\[\]]+|\[\d+\]", path)]
 
 
+def _renumbered(key: str, above: Sequence[str | int], gone: str | int) -> str:
+    """The path of a key when an entry of a list is taken out."""
+    parts = _parts(key)
+    n = len(above)
+    if isinstance(gone, str) or len(parts) <= n or parts[:n] != list(above):
+        return key
+    number = parts[n]
+    if not isinstance(number, int) or number < gone:
+        return key
+    parts[n] = number - 1
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in parts).removeprefix(".")
+
+
+def _list_at(tables: dict[str, Any], path: str) -> list[Any]:
+    """The list at a path, which is added where it is missing."""
+    *above, last = _parts(path)
+    node: Any = tables
+    for part in above:
+        node = node.setdefault(part, {}) if isinstance(node, dict) else node[part]
+    found: list[Any] = node.setdefault(last, [])
+    return found
+
+
 def _is_list_of_tables(value: object) -> bool:
     return isinstance(value, (list, tuple)) and bool(value) and all(isinstance(entry, Mapping) for entry in value)
 
@@ -70,7 +100,8 @@ class Deck:
     Keys are named by their paths, as in `--set` of the program: "specimen.width", "stages[1].to". A value with a
     dimension is a text with its unit ("150 mm") or a Quantity (`150 * pyroclast.mm`); a bare number is refused. Where
     a curve can stand, so can a function: of the temperature [degC], or of the heating time [s] in `[heat]`; what it
-    returns is SI, of a temperature degC, or in the unit of a `pyroclast.Function`.
+    returns is SI, of a temperature degC, or in the unit of a `pyroclast.Function`. The `factor` of a drive is a
+    function of the time since its stage began [s]. "specimen" takes a `pyroclast.Specimen` too.
 
     Raises DeckError for a file that is no deck, or holds no TOML.
     """
@@ -88,6 +119,7 @@ class Deck:
         self._laws = [str(folder) for folder in laws]
         self._changes: list[tuple[str, str]] = []
         self._functions: dict[str, functions.Function] = {}
+        self._specimen: tuple[Specimen, functions.Scratch] | None = None
         self._name, self._folder, self._text = "deck", "", ""
         if file is not None:
             self._name, self._folder = str(file), str(Path(file).parent)
@@ -108,16 +140,20 @@ class Deck:
 
     def _set_tables(self, tables: Mapping[str, Any]) -> None:
         """All of a deck that has no file."""
-        plain, headed = [], []
+        plain: list[str] = []
+        headed: list[tuple[str, list[Mapping[str, Any]], bool]] = []
         for name, value in tables.items():
-            if isinstance(value, Mapping):
+            if isinstance(value, Specimen):
+                self._take(value)
+                headed.append((name, [{"shape": "cells", "file": _CELLS}], False))
+            elif isinstance(value, Mapping):
                 headed.append((name, [value], False))
             elif _is_list_of_tables(value):
                 headed.append((name, list(value), True))
             else:
                 plain.append(f"{_key(name)} = {toml(value)}")
         found: dict[str, functions.Function] = {}
-        blocks = [table_text(_key(name), _without_functions(table, name + (f"[{i}]" if is_listed else ""), found),
+        blocks = [table_text(_key(name), without_functions(table, name + (f"[{i}]" if is_listed else ""), found),
                              is_listed)
                   for name, entries, is_listed in headed for i, table in enumerate(entries)]
         self._text = "\n".join([*plain, "", *blocks])
@@ -129,7 +165,7 @@ class Deck:
         return self._written()
 
     def _written(self) -> str:
-        return _core.written(self._raw(self._placeholders()))
+        return _core.written(self._raw(self._placeholders(), with_files=False))
 
     def __getitem__(self, path: str) -> Any:
         """The value at a path: a Quantity for a text that is one, a dict for a table, a function as it was given.
@@ -155,11 +191,15 @@ class Deck:
             return False
         return True
 
-    def __setitem__(self, path: str, value: Value | Callable[[float], float] | functions.Function) -> None:
-        """Sets a value; a key or table that is missing is added.
+    def __setitem__(self, path: str, value: Value | Callable[[float], float] | functions.Function | Specimen) -> None:
+        """Sets a value; a key or table that is missing is added. A specimen takes the place of all that the deck says
+        of it but for the thickness and the matrix.
 
         Raises DeckError for a bare number where a unit is needed, and Error where the deck has no place for the key.
         """
+        if isinstance(value, Specimen):
+            self._set_specimen(path, value)
+            return
         if callable(value) or isinstance(value, functions.Function):
             function = value if isinstance(value, functions.Function) else functions.Function(value)
             functions.value_at(path, function, functions.first(functions.axis_of(path)))
@@ -171,7 +211,8 @@ class Deck:
                 self[f"{path}.{_key(name)}"] = entry
             return
         if _is_list_of_tables(value):
-            self._rebuild(lambda tables: tables.update({path: value}), path)
+            entries: Any = value
+            self._rebuild(lambda tables: _list_at(tables, path).__setitem__(slice(None), entries), path)
             return
         self._functions.pop(path, None)
         self._changes.append((path, toml(value)))
@@ -197,7 +238,31 @@ class Deck:
                 node = node[part]
             del node[last]
 
+        moved = {_renumbered(key, above, last): function for key, function in self._functions.items()
+                 if key != path and not key.startswith((f"{path}.", f"{path}["))}
         self._rebuild(take_out, path)
+        self._functions = moved
+
+    def _set_specimen(self, path: str, specimen: Specimen) -> None:
+        if path != "specimen":
+            raise Error(f'{path}: a specimen belongs to "specimen"')
+
+        def replace(tables: dict[str, Any]) -> None:
+            kept = {key: value for key, value in tables.get("specimen", {}).items() if key == "thickness"}
+            matrix = tables.get("superposition", {}).get("matrix")
+            for name in _MADE_OTHERWISE:
+                tables.pop(name, None)
+            tables["specimen"] = {"shape": "cells", "file": _CELLS, **kept}
+            if matrix is not None:
+                tables["superposition"] = {"matrix": matrix}
+
+        self._rebuild(replace, path)
+        self._take(specimen)
+
+    def _take(self, specimen: Specimen) -> None:
+        scratch = functions.Scratch()
+        specimen.save(Path(scratch.folder) / _CELLS)
+        self._specimen = (specimen, scratch)
 
     def _rebuild(self, change: Callable[[dict[str, Any]], object], path: str) -> None:
         """Writes the deck anew; functions at the path and below it are dropped."""
@@ -213,7 +278,9 @@ class Deck:
         are appended. Returns the deck.
         """
         for name, value in tables.items():
-            if _is_list_of_tables(value):
+            if isinstance(value, Specimen):
+                self[name] = value
+            elif _is_list_of_tables(value):
                 for entry in value:
                     self.append(name, **entry)
             elif isinstance(value, Mapping):
@@ -224,11 +291,16 @@ class Deck:
         return self
 
     def append(self, table: str, /, **keys: Any) -> Deck:
-        """Appends a table to a list of tables: `deck.append("stages", kind="settle", ...)`. Returns the deck."""
+        """Appends a table to a list of tables: `deck.append("stages", kind="settle", ...)`, or to one in another:
+        `deck.append("stages[1].drives", set="left", hold=["x"])`. Returns the deck.
+        """
         before = (self._text, dict(self._functions))
         number = len(self[table]) if table in self else 0
+        if "[" in table:
+            self._rebuild(lambda tables: _list_at(tables, table).append(keys), f"{table}[{number}]")
+            return self
         found: dict[str, functions.Function] = {}
-        plain = _without_functions(keys, f"{table}[{number}]", found)
+        plain = without_functions(keys, f"{table}[{number}]", found)
         self._text += "\n" + table_text(table, plain, True)
         self._functions |= found
         try:
@@ -243,6 +315,7 @@ class Deck:
         other = Deck(stages_in_python=self._stages, laws=self._laws)
         other._text, other._name, other._folder = self._text, self._name, self._folder
         other._changes, other._functions = list(self._changes), dict(self._functions)
+        other._specimen = self._specimen
         return other
 
     def check(self) -> list[Diagnostic]:
@@ -251,12 +324,19 @@ class Deck:
         return _core.check(self._resolved(tables))
 
     def save(self, file: str | Path) -> None:
-        """Writes the deck; tables of its functions beside it. Files that it names keep their names."""
-        deck = self._resolved(Path(file).resolve().parent)
-        Path(file).write_text(_core.written(deck), encoding="utf-8")
+        """Writes the deck; tables of its functions and the blocks of its specimen beside it. Files that it names keep
+        their names.
+        """
+        folder = Path(file).resolve().parent
+        if self._specimen:
+            self._specimen[0].save(folder / _CELLS)
+        named = [(path, f"{{ csv = {toml(table.name)} }}") for path, table in self._tables(folder)]
+        Path(file).write_text(_core.written(self._raw(named, with_files=False)), encoding="utf-8")
 
-    def _raw(self, more: Sequence[tuple[str, str]] = ()) -> _core.DeckText:
-        changes = [f"{path}={value}" for path, value in (*self._changes, *more)]
+    def _raw(self, more: Sequence[tuple[str, str]] = (), with_files: bool = True) -> _core.DeckText:
+        files = [("specimen.file", toml(str(Path(self._specimen[1].folder) / _CELLS)))] if (
+            with_files and self._specimen) else []
+        changes = [f"{path}={value}" for path, value in (*self._changes, *files, *more)]
         return _core.DeckText(self._text, self._name, self._folder, changes, self._laws, self._stages)
 
     def _diagnostics(self) -> list[Diagnostic]:
@@ -281,41 +361,57 @@ class Deck:
             numbers.append((path, toml(f"{number!r} {unit}") if unit else repr(number)))
         return numbers
 
-    def _resolved(self, place: Path | functions.Scratch) -> _core.DeckText:
-        """With tables, which are written into a folder, in place of the functions."""
-        written: list[tuple[str, str]] = []
+    def _resolved(self, place: functions.Scratch) -> _core.DeckText:
+        """With tables, which are written into a folder, in place of the functions; blocks in a file there too."""
+        tables = [(path, _csv(table)) for path, table in self._tables(Path(place.folder))]
+        if self._specimen:
+            self._specimen[0].save(Path(place.folder) / _CELLS)
+            tables.append(("specimen.file", toml(str(Path(place.folder) / _CELLS))))
+        return self._raw(tables, with_files=False)
+
+    def _tables(self, folder: Path) -> list[tuple[str, Path]]:
+        """Writes the tables of the functions."""
+        tables: list[tuple[str, Path]] = []
         for axis in (functions.TIME, functions.TEMPERATURE):  # the times say how hot the run becomes
-            stand_in = [change for change in self._placeholders() if change[0] not in dict(written)]
+            stand_in = [change for change in self._placeholders() if change[0] not in dict(tables)]
             for path, function in self._functions.items():
                 if functions.axis_of(path) is not axis:
                     continue
-                low, high, begin, end = _core.ranges(self._raw([*stand_in, *written]))
-                interval = function.interval or ((begin, end) if axis is functions.TIME else (low, high))
+                interval = function.interval or self._interval(path, [*stand_in, *((p, _csv(t)) for p, t in tables)])
                 points = functions.tabulate(path, function, *interval)
                 unit = function.unit or self._needed_unit(path, points[0][1])
-                folder = Path(place.folder) if isinstance(place, functions.Scratch) else place
-                table = functions.write_table(folder, path, unit, points)
-                written.append((path, f"{{ csv = {toml(str(table.resolve()))} }}"))
-        return self._raw(written)
+                tables.append((path, functions.write_table(folder, path, unit, points)))
+        return tables
+
+    def _interval(self, path: str, stand_in: Sequence[tuple[str, str]]) -> tuple[float, float]:
+        """All that a function is asked for."""
+        if functions.is_of_drive(path):
+            return 0.0, in_si(self[path.split(".")[0] + ".duration"], "s")
+        low, high, begin, end = _core.ranges(self._raw(stand_in))
+        return (begin, end) if functions.axis_of(path) is functions.TIME else (low, high)
 
     def __repr__(self) -> str:
         return f"<Deck {self._name}>"
 
 
-def _without_functions(table: Mapping[str, Any], path: str, found: dict[str, functions.Function]) -> dict[str, Any]:
+def without_functions(table: Mapping[str, Any], path: str, found: dict[str, functions.Function]) -> dict[str, Any]:
     """A table whose functions stand in `found`, by their paths."""
     plain: dict[str, Any] = {}
     for name, value in table.items():
-        here = f"{path}.{name}"
+        here = f"{path}.{name}" if path else name
         if isinstance(value, functions.Function) or callable(value):
             found[here] = value if isinstance(value, functions.Function) else functions.Function(value)
         elif isinstance(value, Mapping):
-            plain[name] = _without_functions(value, here, found)
+            plain[name] = without_functions(value, here, found)
         elif _is_list_of_tables(value):
-            plain[name] = [_without_functions(entry, f"{here}[{i}]", found) for i, entry in enumerate(value)]
+            plain[name] = [without_functions(entry, f"{here}[{i}]", found) for i, entry in enumerate(value)]
         else:
             plain[name] = value
     return plain
+
+
+def _csv(table: Path) -> str:
+    return f"{{ csv = {toml(str(table.resolve()))} }}"
 
 
 def _read(file: str | Path) -> str:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 class Diagnostic:
     """One thing that is wrong with a deck, or that it is warned of."""
 
-    file: str
+    file: str  #: as it was named; "--set" where it was a change
     line: int  #: from 1; 0 if it is the file's as a whole
     column: int  #: from 1, in characters
     key: str  #: full path, such as "contacts.mortar_mortar.f_t"; may be empty

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import shutil
 import tempfile
 import weakref
@@ -20,12 +21,14 @@ _NARROWEST = 1e-9  # interval over the whole one: there a jump becomes a ramp
 _MOST_POINTS = 50_000
 _INSIDE = (0.21, 0.5, 0.83)  # of an interval, where a table is held against its function
 _REFERENCE = 20.0  # degC
+_FACTOR = re.compile(r"stages\[\d+\]\.drives\[\d+\]\.factor")
 
 
 class Function(NamedTuple):
     """A curve as a function, and how it is meant.
 
-    call: of the temperature [degC], or of the heating time [s] in `[heat]`.
+    call: of the temperature [degC]; of the heating time [s] in `[heat]`; of the time since the stage began [s] where it
+        is the factor of a drive.
     unit: of what it returns; empty: the SI unit of its key, of a temperature degC.
     interval: that the table covers; None: all that the run of the deck comes to. A run whose stages are changed
         later may come further.
@@ -46,8 +49,15 @@ TIME = Axis("time", "s")
 
 
 def axis_of(key: str) -> Axis:
-    """What a key's curve goes over: what happens at boundaries over the time, all else over the temperature."""
-    return TIME if key.startswith("heat.") else TEMPERATURE
+    """What a key's curve goes over: what happens at boundaries, and drives, over the time, all else over the
+    temperature.
+    """
+    return TIME if key.startswith("heat.") or is_of_drive(key) else TEMPERATURE
+
+
+def is_of_drive(key: str) -> bool:
+    """Whether it is the factor of a drive."""
+    return _FACTOR.fullmatch(key) is not None
 
 
 def first(axis: Axis) -> float:

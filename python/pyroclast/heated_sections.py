@@ -142,7 +142,7 @@ def temperature_field(run: Run) -> Figure:
     frames = _spread(run.heated_frames)
     fields = [run.gridpoint_temperature(frame) for frame in frames]
     blocks = run.mesh.blocks
-    specimen = blocks.triangles[~blocks.of_platen]
+    specimen = blocks.triangles[~blocks.of_bearing]
     within = [field[np.unique(specimen)] for field in fields]
     scale = Normalize(min(field.min() for field in within), max(field.max() for field in within))
     panel_height = (style.WIDTH / (_FIELDS + 0.4) - 0.12) * height_over_width(blocks)
@@ -163,7 +163,7 @@ def draw_temperature(axes: Axes, run: Run, frame: Frame) -> TriMesh:
     """The temperature of the specimen, alone in its axes, coloured over its own range. Returns what has the colours."""
     blocks = run.mesh.blocks
     field = run.gridpoint_temperature(frame)
-    within = field[np.unique(blocks.triangles[~blocks.of_platen])]
+    within = field[np.unique(blocks.triangles[~blocks.of_bearing])]
     colours = _draw_temperature(axes, run, field, Normalize(within.min(), within.max()))
     draw_scale_bar(axes, blocks)
     return colours
@@ -186,9 +186,9 @@ def _spread(frames: Sequence[Frame]) -> list[Frame]:
 def _draw_temperature(axes: Axes, run: Run, field: np.ndarray, scale: Normalize) -> TriMesh:
     blocks = run.mesh.blocks
     x, y = style.MILLI * blocks.points.T
-    platens = style.MILLI * blocks.points[blocks.triangles[blocks.of_platen]]
+    platens = style.MILLI * blocks.points[blocks.triangles[blocks.of_bearing]]
     axes.add_collection(PolyCollection(platens, color=style.PLATEN_COLOUR, linewidths=0.15, rasterized=True))
-    specimen = Triangulation(x, y, blocks.triangles[~blocks.of_platen])
+    specimen = Triangulation(x, y, blocks.triangles[~blocks.of_bearing])
     colours = axes.tripcolor(specimen, field, norm=scale, cmap="inferno", shading="gouraud", rasterized=True)
     frame_section(axes, blocks)
     return colours

@@ -18,7 +18,9 @@ class Law:
     """A contact law with its properties, to be driven at one contact point.
 
     law: "cohesive" or another one that is part of the program, a shared object, or a header ("mine.hpp"), which is
-        compiled first. properties: by the keys of a deck, with units (`G_n="60 N/m"` or `60 * N / m`).
+        compiled first.
+    folders: of laws that are not part of the program.
+    properties: by the keys of a deck, with units (`G_n="60 N/m"` or `60 * N / m`).
 
     Raises Error where there is no such law, it does not compile, or a property is missing or cannot be.
     """
@@ -40,8 +42,11 @@ class Law:
               steps: int = 1) -> dict[str, NDArray[np.float64]]:
         """Takes a new point along a path and returns what it answers, by column, (points * steps,) each.
 
-        opening, slip: of the path's points, m; temperature: degC; one number stands for all points. steps: into which
-        each leg of the path is cut. The columns are those of `pyroclast law`, in SI: u_n_m, u_s_m, T_degC, sigma_Pa
+        opening, slip: of the path's points, m; one number stands for all points.
+        temperature: likewise, degC.
+        steps: into which each leg of the path is cut.
+
+        The columns are those of `pyroclast law`, in SI: u_n_m, u_s_m, T_degC, sigma_Pa
         (tension positive), tau_Pa, stored_J_m2, what the law remembers, and what it lost.
         """
         path = np.column_stack(np.broadcast_arrays(np.atleast_1d(np.asarray(opening, float)),

@@ -23,12 +23,13 @@ class BlockMesh:
     triangles: np.ndarray  #: (Z, 3) gridpoints of each zone, counter-clockwise
     block: np.ndarray  #: (Z,) block of each zone
     material: np.ndarray  #: (Z,) indices into `materials`
-    materials: tuple[str, ...]  #: names of the phases, and last of the platens' solid
+    materials: tuple[str, ...]  #: names of the phases, and last of the solids of bearings
+    of_bearing: np.ndarray  #: (Z,) bool: zones of platens and other bearings
 
     @property
-    def of_platen(self) -> np.ndarray:
-        """(Z,) bool: zones of the platens."""
-        return self.material == len(self.materials) - 1
+    def bearing_materials(self) -> list[int]:
+        """Indices into `materials`."""
+        return np.unique(self.material[self.of_bearing]).tolist()
 
     @cached_property
     def outlines(self) -> tuple[list[np.ndarray], np.ndarray]:
@@ -46,7 +47,7 @@ class ContactMesh:
     points: np.ndarray  #: (2C, 2), m
     lines: np.ndarray  #: (C, 2) indices into points
     interface: np.ndarray  #: (C,) indices into `interfaces`
-    interfaces: tuple[str, ...]  #: names, and last that of the platens
+    interfaces: tuple[str, ...]  #: names, and last those of bearings
     length: np.ndarray  #: (C,) tributary length, m
 
 
@@ -66,6 +67,7 @@ def read_mesh(path: Path) -> Mesh:
             _counter_clockwise(points, triangles),
             _cell_values(file, "blocks/block", len(triangles)),
             *_kinds(file, "blocks/material", len(triangles)),
+            _cell_values(file, "blocks/bearing", len(triangles)) == 1,
         )
         points, lines = _cells(file, "contacts", _VTK_LINE, "lines of two points")
         contacts = ContactMesh(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import io
+import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ from matplotlib.figure import Figure
 
 from . import style
 from .mesh import BlockMesh
+from .records import abscissa, leading, records_in
 from .sections import draw_blocks, frame_section
 
 if TYPE_CHECKING:
@@ -27,7 +29,9 @@ _OPEN = 0.5  # damage from which a crack is drawn
 
 @matplotlib.rc_context(style.STYLE)
 def figure_of(run: Run) -> Figure:
-    """Stress over strain, or temperature over time where nothing moves, beside the blocks and their open cracks."""
+    """Stress over strain, the first records of a body without platens, or temperature over time where nothing moves,
+    beside the blocks and their open cracks.
+    """
     figure = style.new_figure(3.6, dpi=_DPI)
     curve, section = figure.subplots(1, 2, width_ratios=[1.5, 1.0])
     _draw_curve(curve, run)
@@ -42,6 +46,11 @@ def _draw_curve(axes: Axes, run: Run) -> None:
         axes.plot(style.PER_MILLE * history["strain"], history["stress_MPa"], color=style.BLUE)
         axes.set_xlabel(style.STRAIN_LABEL)
         axes.set_ylabel(style.STRESS_LABEL)
+    elif record := leading(records := records_in(tomllib.loads(run.deck_text), history)):
+        _, over, label = abscissa(run, records)
+        axes.plot(over, record.of(run), color=style.BLUE)
+        axes.set_xlabel(label)
+        axes.set_ylabel(record.title)
     else:
         axes.plot(history["heating_time_s"] / 60.0, history["temperature_degC"], color=style.BLUE)
         axes.set_xlabel("Heating time [min]")
@@ -50,7 +59,9 @@ def _draw_curve(axes: Axes, run: Run) -> None:
 
 def _draw_section(axes: Axes, run: Run) -> None:
     material = run.block_material[run.zone_block]
-    blocks = BlockMesh(Path(run.title), run.position, run.zones, run.zone_block, material, tuple(run.material_names))
+    of_bearing = ~np.isin(run.zones[:, 0], run.sets["specimen"])
+    blocks = BlockMesh(Path(run.title), run.position, run.zones, run.zone_block, material, tuple(run.material_names),
+                       of_bearing)
     draw_blocks(axes, blocks, blocks.points)
     if run.moves:
         axes.add_collection(LineCollection(style.MILLI * _cracks(run), colors=style.VERMILLION, linewidths=0.9))

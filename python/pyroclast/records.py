@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import matplotlib
 import numpy as np
@@ -21,6 +22,11 @@ _KINDS = {"displacement": "Displacement", "opening": "Opening", "force": "Force"
 _TIME_LABEL = "Time [s]"
 
 
+class HasHistory(Protocol):
+    @property
+    def history(self) -> Any: ...
+
+
 @dataclass(frozen=True)
 class Record:
     """A column of the history that a deck asked for."""
@@ -33,7 +39,7 @@ class Record:
     def unit(self) -> str:
         return _SHOWN[self.column.rsplit("_", 1)[1]][0]
 
-    def of(self, run: Run) -> np.ndarray:
+    def of(self, run: HasHistory) -> np.ndarray:
         """(rows,) in `unit`."""
         return _SHOWN[self.column.rsplit("_", 1)[1]][1] * run.history[self.column]
 
@@ -41,31 +47,49 @@ class Record:
     def label(self) -> str:
         return f"{_KINDS.get(self.kind, self.kind)} [{self.unit}]"
 
+    @property
+    def title(self) -> str:
+        return f"{self.name}: {self.label}"
+
 
 def records_of(run: Run) -> list[Record]:
     """The records of the deck that the run keeps, in its order."""
-    asked = run.deck.get("record", [])
+    return records_in(run.deck, run.history)
+
+
+def records_in(deck: Mapping[str, Any], columns: Container[str]) -> list[Record]:
+    """The records of a deck that are among these columns, in its order."""
+    asked = deck.get("record", [])
     records = []
     for record in asked if isinstance(asked, list) else []:
         name, kind = (record.get(key) for key in ("name", "kind")) if isinstance(record, dict) else (None, None)
-        columns = [f"{name}_{unit}" for unit in _SHOWN if f"{name}_{unit}" in run.history]
-        if columns:
-            records.append(Record(str(name), str(kind), columns[0]))
+        found = [f"{name}_{unit}" for unit in _SHOWN if f"{name}_{unit}" in columns]
+        if found:
+            records.append(Record(str(name), str(kind), found[0]))
     return records
 
 
-def _abscissa(run: Run, records: list[Record]) -> tuple[Record | None, np.ndarray, str]:
+def leading(records: list[Record]) -> Record | None:
+    """What a test is about: the first force, else the first stress, else the first that others are not drawn over."""
+    over = _first(records, ("opening", "displacement"))
+    return _first(records, ("force", "stress")) or next((record for record in records if record is not over), over)
+
+
+def _first(records: list[Record], kinds: tuple[str, ...]) -> Record | None:
+    return next((record for kind in kinds for record in records if record.kind == kind), None)
+
+
+def abscissa(run: HasHistory, records: list[Record]) -> tuple[Record | None, np.ndarray, str]:
     """What the others are drawn over: the first opening, else the first displacement, else time."""
-    for kind in ("opening", "displacement"):
-        for record in records:
-            if record.kind == kind:
-                return record, record.of(run), f"{record.name}: {record.label}"
-    return None, run.history["time_s"], _TIME_LABEL
+    record = _first(records, ("opening", "displacement"))
+    if record is None:
+        return None, run.history["time_s"], _TIME_LABEL
+    return record, record.of(run), record.title
 
 
 def record_course(run: Run) -> Course:
     """All rows in which the body moved, over what records are drawn over."""
-    _, over, label = _abscissa(run, records_of(run))
+    _, over, label = abscissa(run, records_of(run))
     rows = np.isfinite(over)
     return Course(run, rows, over[rows], label, start=float(min(0.0, over[rows].min())), ordered=False)
 
@@ -74,7 +98,7 @@ def record_course(run: Run) -> Course:
 def records(run: Run) -> Figure:
     """Each kind of record in a panel of its own, over the first opening or displacement that there is."""
     found = records_of(run)
-    over_record, over, label = _abscissa(run, found)
+    over_record, over, label = abscissa(run, found)
     drawn = [record for record in found if record is not over_record]
     kinds = list(dict.fromkeys(record.kind for record in drawn))
     if not kinds:
@@ -102,12 +126,12 @@ def record_fracture(run: Run, magnification: float | None = None) -> Figure:
     if not run.frames:
         raise RunError(f"{run.folder / 'fields' / 'frames.csv'}: no frame; fracture cannot be drawn")
     found = records_of(run)
-    leading = next((r for kind in ("force", "stress") for r in found if r.kind == kind), None)
+    loaded = _first(found, ("force", "stress"))
     marks = {"end": run.frames[-1]}
-    if leading is not None:
-        values = np.abs(np.nan_to_num(leading.of(run)))
+    if loaded is not None:
+        values = np.abs(np.nan_to_num(loaded.of(run)))
         step = run.history["step"][int(values.argmax())]
-        marks = {f"largest {leading.kind}": min(run.frames, key=lambda frame: abs(frame.step - step)), **marks}
+        marks = {f"nearest to the largest {loaded.kind}": min(run.frames, key=lambda frame: abs(frame.step - step)), **marks}
     panels = [Panel(run, frame, letter, f"{what}\n{_caption(run, frame, found)}")
               for letter, (what, frame) in zip("ABC", marks.items())]
     return fracture_panels([("", panels)], style.title_of(run), magnification,

@@ -166,10 +166,10 @@ def _draw_panel(axes: Axes, panel: Panel, points: np.ndarray, magnification: flo
 
 
 def specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Lower left and upper right corner of the specimen without platens, m."""
-    points = blocks.points[blocks.triangles[~blocks.of_platen].ravel()]
+    """Lower left and upper right corner of the specimen without bearings, m."""
+    points = blocks.points[blocks.triangles[~blocks.of_bearing].ravel()]
     if not len(points):
-        raise RunError(f"{blocks.path}: /blocks/material has platens only")
+        raise RunError(f"{blocks.path}: /blocks/material has bearings only")
     return points.min(axis=0), points.max(axis=0)
 
 
@@ -181,7 +181,7 @@ def _panel_box(blocks: BlockMesh, margin: np.ndarray = _MARGIN) -> tuple[np.ndar
 
 
 def _block_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Lower left and upper right corner of all blocks, platens too, where they were at first, m."""
+    """Lower left and upper right corner of all blocks, bearings too, where they were at first, m."""
     return blocks.points.min(axis=0), blocks.points.max(axis=0)
 
 
@@ -251,7 +251,7 @@ def _thinning(blocks: BlockMesh, contacts: ContactMesh, columns: int) -> float:
 def draw_blocks(axes: Axes, blocks: BlockMesh, points: np.ndarray, edge: str | None = None) -> None:
     """Fills the blocks, one collection a material; without an edge colour their seams are closed."""
     outlines, material = blocks.outlines
-    for kind, colour in enumerate(style.phase_colours(blocks.materials)):
+    for kind, colour in enumerate(style.phase_colours(blocks.materials, blocks.bearing_materials)):
         polygons = [style.MILLI * points[outlines[i]] for i in np.flatnonzero(material == kind)]
         axes.add_collection(PolyCollection(polygons, facecolors=colour, edgecolors=edge or colour,
                                            linewidths=0.15, rasterized=True))
@@ -302,7 +302,7 @@ def fracture_legend(run: Run) -> list:
 
 
 def _material_legend(blocks: BlockMesh) -> list[Patch]:
-    colours = style.phase_colours(blocks.materials)
+    colours = style.phase_colours(blocks.materials, blocks.bearing_materials)
     return [Patch(facecolor=colour, edgecolor=style.FAINT, linewidth=0.4, label=name)
             for kind, (name, colour) in enumerate(zip(blocks.materials, colours)) if (blocks.material == kind).any()]
 

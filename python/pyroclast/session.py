@@ -1,4 +1,12 @@
-"""Runs in this process."""
+"""Runs in this process.
+
+This holds for all of it. Arrays, results, and columns without a unit in their names are SI, temperatures degC. Stress
+and strain of a test are positive in compression; stresses of zones and tractions of contacts in tension. An array is a
+copy, in the order of the model, but for `Run.views`. Of the mechanics, displacements are those at the end of the last
+step, velocities those half a step before, and forces and stresses those at the displacements before that step. Where
+nothing moves, what is of the mechanics raises Error. Error says what cannot be done; DeckError, which is one, what is
+wrong with a deck.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, functions
-from .decks import Deck, Value, as_deck, table_text, toml
+from .decks import Deck, Value, as_deck, table_text, toml, without_functions
 from .errors import Error
+from .specimen import Specimen
 from .stages import Stage
 from .units import Quantity, in_si
 
@@ -49,10 +58,10 @@ class Columns:
 
 
 class History(Mapping[str, Array]):
-    """All rows of a history so far, an array (rows,) for each column; NaN where a cell is empty.
+    """All rows of a history so far, a read-only array (rows,) for each column; NaN where a cell is empty.
 
-    Under the program's name ("stress_MPa") a column is in the unit of its name; without it ("stress") in SI,
-    temperatures in degC. A snapshot: later rows are not in it.
+    Under the program's name ("stress_MPa") a column is in the unit of its name; without it ("stress") in SI. A
+    snapshot: later rows are not in it. A name that there is not raises KeyError.
     """
 
     def __init__(self, columns: Columns, cells: Array):
@@ -94,9 +103,9 @@ class History(Mapping[str, Array]):
 
 
 class State:
-    """What was measured at a look: any column of the history by its name without unit, in SI, temperatures in degC
-    (`state.strain`, `state.stress`, `state.temperature`), or as `state["stress_MPa"]`. NaN where the stage does not
-    have the quantity. Stress and strain are positive in compression.
+    """What was measured at a look: any column of the history by its name without unit (`state.strain`, `state.stress`,
+    `state.temperature`, a record's), or as `state["stress_MPa"]`. NaN where the stage does not have the quantity; a
+    name that there is not raises AttributeError, or KeyError.
 
     A light handle: once the run has gone on, it raises Error. `copy()` lasts.
     """
@@ -148,10 +157,11 @@ class State:
 
 
 class Views:
-    """Arrays of the mechanics as they lie in memory: no copies, read-only, SI.
+    """Arrays of the mechanics as they lie in memory: no copies, and read-only.
 
-    They change as the run steps, so read them at looks. Each keeps the memory of its run alive, also after
-    `del run`. They stand by slot, or by rows of eight lanes: `run.slot` says where a gridpoint of the model is.
+    They change as the run steps, so read them at looks. Each keeps the memory of its run alive, also after `del run`.
+    They stand by slot, or in rows of eight slots: slot i is [i // 8, :, i % 8]. `run.slot` says where a gridpoint of
+    the model stands.
     """
 
     def __init__(self, core: _core.Session):
@@ -159,17 +169,17 @@ class Views:
 
     @property
     def displacement(self) -> Array:
-        """(slots, 2), m: at the end of the last step."""
+        """(slots, 2), m."""
         return self._core.view("displacement")
 
     @property
     def velocity(self) -> Array:
-        """(rows, 2, 8), m/s: half a step before the displacements. Slot i is [i // 8, :, i % 8]."""
+        """(rows, 2, 8), m/s."""
         return self._core.view("velocity")
 
     @property
     def force(self) -> Array:
-        """(rows, 2, 8), N: sums of all forces, at the displacements before the last step. Slots as for velocities."""
+        """(rows, 2, 8), N: sums of all forces."""
         return self._core.view("force")
 
     @property
@@ -178,6 +188,30 @@ class Views:
         layout. `run.contacts()` has it by name and contact.
         """
         return self._core.view("history")
+
+
+class Sets(Mapping[str, Indices]):
+    """Named parts of the body, fixed when it was made: (members,) each, ascending. They are indices:
+    `run.displacement[run.sets["left"]]`. A name that there is not raises KeyError.
+    """
+
+    def __init__(self, core: _core.Session, of_contacts: bool):
+        self._core, self._of_contacts = core, of_contacts
+        self._names = core.set_names(of_contacts)
+
+    def __getitem__(self, name: str) -> Indices:
+        if name not in self._names:
+            raise KeyError(name)
+        return self._core.members(name, self._of_contacts)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __repr__(self) -> str:
+        return f"<Sets {', '.join(self._names)}>"
 
 
 class Recorder:
@@ -204,7 +238,7 @@ class Run:
         print(run.results["f_c_MPa"])
 
     It is the run of the program: the same steps and, with `out`, the same files. Stepping belongs to one thread at a
-    time. Arrays and results are SI, temperatures degC.
+    time, and to the process that made the run; elsewhere it raises Error.
     """
 
     def __init__(self, deck: Deck | str | Path, *, seed: int | None = None, out: str | Path | None = None,
@@ -212,10 +246,13 @@ class Run:
                  checkpoint: float | str | Quantity | None = None):
         """Makes the specimen and all that the run needs; nothing moves yet.
 
-        seed: of the specimen, instead of the deck's. out: folder of the results; None: nothing is written. overwrite:
-        the results of an earlier run there. threads: 0: as many as are free; results do not depend on them.
-        instructions: "portable", "avx2" or "avx512"; empty: the best that there is. checkpoint: wall time between two
-        checkpoints [s] instead of the deck's.
+        deck: or its file.
+        seed: of the specimen, instead of the deck's.
+        out: folder of the results; None: nothing is written.
+        overwrite: the results of an earlier run there.
+        threads: 0: as many as are free; results do not depend on them.
+        instructions: "portable", "avx2" or "avx512"; empty: the best that there is.
+        checkpoint: wall time between two checkpoints ("5 min"; a number: s) instead of the deck's.
 
         Raises DeckError for what is wrong with the deck, Error for what cannot be made.
         """
@@ -224,29 +261,28 @@ class Run:
         core = _core.Session.begin(
             of._resolved(tables), seed, threads, instructions,
             None if checkpoint is None else in_si(checkpoint, "s"), None if out is None else str(out), overwrite)
-        self._hold(core, tables)
-        self._note_stages(of._stages)
+        self._hold(core, of._stages, of._laws, [tables])
 
-    def _hold(self, core: _core.Session, tables: functions.Scratch | None = None) -> None:
+    def _hold(self, core: _core.Session, classes: Sequence[type[Stage]], laws: Sequence[str],
+              kept: Sequence[functions.Scratch] = ()) -> None:
         self._core = core
-        self._tables = tables  # those of functions, as long as the deck may be read again
+        self._classes, self._laws = list(classes), list(laws)
+        self._kept = list(kept)  # files of functions and blocks, as long as the deck may be read again
         self._look = 0
         self._at_looks: list[Callable[[Run], object]] = []
         self._recorders: list[Recorder] = []
         self._columns = Columns(core.columns)
         self._finished = False
-
-    def _note_stages(self, classes: Sequence[type[Stage]]) -> None:
         known = {stage.kind for stage in classes}
-        for kind, *_ in self._core.stages:
+        for kind, *_ in core.stages:
             if kind in known:
-                self._core.depart(f'stage "{kind}" is written in Python')
+                core.depart(f'stage "{kind}" is written in Python')
 
     @classmethod
-    def _of(cls, core: _core.Session, classes: Sequence[type[Stage]] = ()) -> Run:
+    def _of(cls, core: _core.Session, classes: Sequence[type[Stage]], laws: Sequence[str],
+            kept: Sequence[functions.Scratch] = ()) -> Run:
         run = cls.__new__(cls)
-        run._hold(core)
-        run._note_stages(classes)
+        run._hold(core, classes, laws, kept)
         return run
 
     @classmethod
@@ -254,12 +290,14 @@ class Run:
                laws: Sequence[str | Path] = (), stages_in_python: Sequence[type[Stage]] = ()) -> Run:
         """A run that was broken off goes on in its folder, from its newest checkpoint or a stated one.
 
+        laws, stages_in_python: as a Deck has them.
+
         Raises Error where it is over, where another process holds it, or the checkpoint is not one of this program and
         these inputs.
         """
-        core = _core.Session.resume(str(folder), str(checkpoint or ""), threads, [str(law) for law in laws],
-                                    list(stages_in_python))
-        return cls._of(core, stages_in_python)
+        places = [str(law) for law in laws]
+        core = _core.Session.resume(str(folder), str(checkpoint or ""), threads, places, list(stages_in_python))
+        return cls._of(core, stages_in_python, places)
 
     @classmethod
     def fork(cls, folder: str | Path, *, out: str | Path, from_stage: int | str | None = None,
@@ -268,13 +306,17 @@ class Run:
              stages_in_python: Sequence[type[Stage]] = ()) -> Run:
         """A new run that has its first stages in common with that of a folder, which is only read.
 
-        from_stage: number or name of the last stage in common; None: the last of all. more: a file with stages to
-        append. changes: of keys of later stages, by their paths.
+        from_stage: number or name of the last stage in common; None: the last of all.
+        more: a file with stages to append.
+        changes: of keys of later stages, by their paths.
+        laws, stages_in_python: as a Deck has them.
+
+        Raises Error where that stage has no checkpoint, or a change would act earlier.
         """
+        places = [str(law) for law in laws]
         core = _core.Session.fork(str(folder), "" if from_stage is None else str(from_stage), str(more or ""),
-                                  _changes(changes), str(out), overwrite, threads, [str(law) for law in laws],
-                                  list(stages_in_python))
-        return cls._of(core, stages_in_python)
+                                  _changes(changes), str(out), overwrite, threads, places, list(stages_in_python))
+        return cls._of(core, stages_in_python, places)
 
     # From look to look
 
@@ -333,10 +375,12 @@ class Run:
               equilibrium: float | None = None) -> State:
         """Goes on until the first of these holds at a look, and returns what was measured there.
 
-        condition: of the state. strain, stress [Pa], temperature [degC] of the specimen: passed, up or down, from where
-        they are now. quantity: the same for any column by its name, in the unit of the name, or SI without it.
-        equilibrium: the unbalanced ratio is below this. steps: so many steps of the mechanics from now on, to the step;
-        the state is then measured there, and is no row of the history.
+        condition: of the state.
+        strain, stress, temperature: of the specimen, passed up or down from where it is now; numbers are Pa and degC.
+        quantity: the same for any columns by their names, in the unit of the name, or SI without it.
+        equilibrium: the unbalanced ratio is below this.
+        steps: so many steps of the mechanics from now on, to the step; the state is then measured there, and is no row
+            of the history.
 
         Raises Error when the run ends before.
         """
@@ -392,7 +436,9 @@ class Run:
         self._core.stop()
 
     def at_looks(self, call: Callable[[Run], object]) -> None:
-        """Calls back at every look, after its row is written."""
+        """Calls back at every look, after its row is written. The call may change the run. What it raises, `next`
+        raises; the run can go on.
+        """
         self._at_looks.append(call)
 
     def record_with(self, recorder: Recorder) -> None:
@@ -437,29 +483,51 @@ class Run:
              overwrite: bool = False) -> Run:
         """A run that stands where this one does and goes its own way: one loaded specimen, three fires.
 
-        changes: of keys of stages that have not begun, by their paths. Call-backs are not copied. With `out` it writes
-        all rows there, and frames as far as this one has them.
+        changes: of keys of stages that have not begun, by their paths.
+        out: a folder, into which it writes all rows, and frames as far as this one has them.
+
+        Call-backs are not copied.
 
         Raises Error for a change that would act on what is done already.
         """
-        copied = Run._of(self._core.copy(_changes(changes), None if out is None else str(out), overwrite))
-        copied._tables = self._tables
-        return copied
+        core = self._core.copy(_changes(changes), None if out is None else str(out), overwrite)
+        return Run._of(core, self._classes, self._laws, self._kept)
 
     def then(self, kind: str, /, **keys: Any) -> Run:
         """Appends a stage to the run: `run.then("compress", velocity="0.8 mm/s", ...)`. The run is then that of its
-        deck with this stage behind the others. Returns the run.
+        deck with this stage behind the others. The `factor` of a drive may be a function. Returns the run.
+
+        Raises DeckError for what is wrong with the stage; Error where it contradicts a support, or would let the body
+        fly away. The run is then as it was.
         """
-        self._core.change_stages([], table_text("stages", {"kind": kind, **keys}, True))
+        found: dict[str, functions.Function] = {}
+        plain = without_functions({"kind": kind, **keys}, f"stages[{len(self._core.stages)}]", found)
+        text = table_text("stages", plain, True)
+        self._core.change_stages(_changes(self._tabulated(found, text)), text)
         return self._renewed()
 
-    def change(self, changes: Mapping[str, Value]) -> Run:
+    def _tabulated(self, found: Mapping[str, functions.Function], more: str = "") -> dict[str, Value]:
+        """Tables of functions, by the paths of their keys in the deck and text that is appended to it."""
+        if not found:
+            return {}
+        deck = Deck.from_text(self.deck_text + "\n" + more, folder=self._core.deck_folder, laws=self._laws,
+                              stages_in_python=self._classes)
+        deck._functions.update(found)
+        self._kept.append(functions.Scratch())
+        return {path: {"csv": str(table)} for path, table in deck._tables(Path(self._kept[-1].folder))}
+
+    def change(self, changes: Mapping[str, Value | Callable[[float], float] | functions.Function]) -> Run:
         """Other values from now on, by the paths of the deck: of stages that have not begun, or of [materials] and
-        [contacts], which act as a change of temperature does. Returns the run.
+        [contacts], which act as a change of temperature does. Functions stand where they can in a deck. Returns the
+        run.
 
         With materials or contacts the run is no longer that of its deck: summary and manifest say so, and only the
-        script can make it again. Raises DeckError or Error for what cannot be or cannot change.
+        script can make it again. Raises DeckError or Error for what cannot be or cannot change; the run is then as it
+        was.
         """
+        found: dict[str, functions.Function] = {}
+        changes = without_functions(changes, "", found)
+        changes |= self._tabulated(found)
         of_materials = {key: value for key, value in changes.items() if key.split(".")[0] in ("materials", "contacts")}
         later = {key: value for key, value in changes.items() if key not in of_materials}
         if later:
@@ -467,6 +535,30 @@ class Run:
         if of_materials:
             self._core.change_materials(_changes(of_materials))
         return self._renewed()
+
+    def drive(self, to: str, /, *, hold: Sequence[str] | None = None, release: Sequence[str] | None = None,
+              velocity: str | Quantity | None = None, force: str | Quantity | None = None,
+              pressure: str | Quantity | None = None, direction: str | Sequence[float] | None = None,
+              follower: bool | None = None) -> Run:
+        """Holds, moves or loads a set of gridpoints from now on, by the keys of a drive in a deck:
+
+            run.drive("left", hold=["x", "y"])          # where they are
+            run.drive("left", release=["x"])
+            run.drive("load_pivot", velocity="-0.3 mm/s", direction="y")
+            run.drive("right", force="10 kN", direction=[1, 0])
+            run.drive("right", pressure="2 MPa", follower=True)
+
+        It lasts until another drive changes it. Returns the run, which is then no longer that of its deck, as with
+        `change`; `then("drive", ...)` does the same as a stage, with ramps, and leaves it that of its deck.
+
+        Raises DeckError for what is wrong with the keys; Error for a set that is not there, where the run has not
+        begun, the press works the set, the drive contradicts a support or the stage under way, or the body could fly
+        away. The run is then as it was.
+        """
+        keys = {"set": to, "hold": hold, "release": release, "velocity": velocity, "force": force,
+                "pressure": pressure, "direction": direction, "follower": follower}
+        self._core.drive(table_text("drives", {key: value for key, value in keys.items() if value is not None}, True))
+        return self
 
     def end_stage(self) -> Run:
         """Ends the stage that is under way at the last look; the next one begins there. Returns the run.
@@ -477,8 +569,8 @@ class Run:
         return self
 
     def set_temperature(self, temperature: float | str | Quantity) -> Run:
-        """Another temperature [degC] of the whole specimen at once; the body comes to rest in what follows. Returns the
-        run, which is then no longer that of its deck, as with `change`.
+        """Another temperature of the whole specimen at once ("300 degC"; a number: degC); the body comes to rest in
+        what follows. Returns the run, which is then no longer that of its deck, as with `change`.
 
         Raises Error where the temperatures are a computed field, or properties are not known at this one.
         """
@@ -502,13 +594,14 @@ class Run:
 
     @property
     def summary(self) -> dict[str, Any]:
-        """What summary.json says of the rows so far."""
+        """What summary.json says of the rows so far, in the units of the names."""
         summary: dict[str, Any] = json.loads(self._core.summary())
         return summary
 
     @property
     def results(self) -> dict[str, Any]:
-        """Results of all stages so far by their names, whose ends are units; where two have one, that of the later."""
+        """Results of all stages so far, in the units of their names ("f_c_MPa"); where two have one, that of the later.
+        """
         results: dict[str, Any] = {}
         for stage in self.summary["stages"]:
             results |= stage["results"]
@@ -521,6 +614,7 @@ class Run:
 
     @property
     def is_over(self) -> bool:
+        """Whether all stages are done, or one ended the run; not where it was stopped."""
         return self._core.is_over
 
     @property
@@ -535,10 +629,12 @@ class Run:
 
     @property
     def title(self) -> str:
+        """Of the deck."""
         return self._core.title
 
     @property
     def seed(self) -> int:
+        """Of the specimen; 0 where its blocks come from a file."""
         return self._core.seed
 
     @property
@@ -568,6 +664,7 @@ class Run:
 
     @property
     def threads(self) -> int:
+        """That the run takes its steps with; may be set at a look."""
         return self._core.threads
 
     @threads.setter
@@ -577,70 +674,84 @@ class Run:
     # Arrays
 
     @property
+    def specimen(self) -> Specimen:
+        """Its blocks, without bearings."""
+        return Specimen(self._core.specimen)
+
+    @property
+    def sets(self) -> Sets:
+        """Of gridpoints: `specimen`, phases, sides, those of bearings and slits, and the deck's own."""
+        return Sets(self._core, False)
+
+    @property
+    def contact_sets(self) -> Sets:
+        """Of contact points, as rows of `contacts()`: slits, and the deck's own."""
+        return Sets(self._core, True)
+
+    @property
     def views(self) -> Views:
         """Arrays without a copy."""
         return Views(self._core)
 
     @property
     def slot(self) -> Indices:
-        """(gridpoints,): where each gridpoint stands in `views`. A copy."""
+        """(gridpoints,): where each stands in `views`."""
         return self._core.copied("slot")
 
     @property
     def position(self) -> Array:
-        """(gridpoints, 2), m: where gridpoints were when the body was made. A copy."""
+        """(gridpoints, 2), m: when the body was made."""
         return self._core.copied("position")
 
     @property
     def zones(self) -> Indices:
-        """(zones, 3): gridpoints of each zone, counter-clockwise. A copy."""
+        """(zones, 3): gridpoints of each, counter-clockwise."""
         return self._core.copied("zones")
 
     @property
     def zone_block(self) -> Indices:
-        """(zones,): block of each zone. A copy."""
+        """(zones,): block of each."""
         return self._core.copied("zone_block")
 
     @property
     def block_material(self) -> Indices:
-        """(blocks,): indices into `material_names`. A copy."""
+        """(blocks,): indices into `material_names`."""
         return self._core.copied("block_material")
 
     @property
     def material_names(self) -> list[str]:
-        """Names of the phases, and last of the platens' solid where there are platens."""
+        """Names of the phases, and behind them of the solids of platens and other bearings."""
         return self._core.material_names
 
     @property
     def displacement(self) -> Array:
-        """(gridpoints, 2), m: at the end of the last step. A copy in the order of the model."""
+        """(gridpoints, 2), m."""
         return self._core.copied("displacement")
 
     @property
     def velocity(self) -> Array:
-        """(gridpoints, 2), m/s: half a step before the displacements. A copy in the order of the model."""
+        """(gridpoints, 2), m/s."""
         return self._core.copied("velocity")
 
     @property
     def force(self) -> Array:
-        """(gridpoints, 2), N: sums of all forces at the displacements before the last step. A copy in the order of the
-        model.
-        """
+        """(gridpoints, 2), N: sums of all forces."""
         return self._core.copied("force")
 
     @property
     def stress(self) -> Array:
-        """(zones, 3), Pa: xx, yy, xy, tension positive, at the displacements of the last forces. A copy."""
+        """(zones, 3), Pa: xx, yy, xy."""
         return self._core.copied("stress")
 
     @property
     def temperature(self) -> Array:
-        """(gridpoints,), degC. A copy in the order of the model."""
+        """(gridpoints,), degC."""
         return self._core.copied("temperature")
 
     def contacts(self) -> pandas.DataFrame:
-        """State of all contact points, a row each, SI, as copies: interface, law, place, face, area, normal, opening,
-        slip, tractions (tension positive), stored energy, what their laws remember and what they lost.
+        """State of all contact points, a row each: `interface` and `law` (names), `x` and `y` [m], the number of the
+        `face`, `area` [m²], `normal_x` and `normal_y`, `opening` and `slip` [m], `normal_traction` and `shear_traction`
+        [Pa], `stored` energy [J/m²], what their laws remember, and what they lost (`lost_...`) [J/m²].
         """
         import pandas
         return pandas.DataFrame(self._core.contacts()).astype({"face": int})
@@ -650,8 +761,8 @@ class Run:
         return self.history.to_pandas()
 
     def to_meshio(self) -> meshio.Mesh:
-        """The body now as a mesh of triangles in space, z = 0: displacement, velocity and temperature of gridpoints,
-        stress, block and material of zones.
+        """The body now as a mesh of triangles in space, z = 0, in m: the data `displacement`, `velocity` and
+        `temperature` of gridpoints, `stress`, `block` and `material` of zones.
         """
         import meshio
         block = self.zone_block

@@ -79,7 +79,7 @@ class Stage:
         return []
 
     def results(self) -> dict[str, float]:
-        """For the summary, by names with their units at the end."""
+        """For the summary, by names with their units at the end: {"loss_J": 3.0}."""
         return {}
 
     def state(self) -> dict[str, Any] | None:

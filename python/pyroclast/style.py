@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from itertools import cycle
 from pathlib import Path
 
@@ -40,13 +40,6 @@ BLACK, ORANGE, SKY, GREEN = "#000000", "#e69f00", "#56b4e9", "#009e73"
 YELLOW, BLUE, VERMILLION, PURPLE = "#f0e442", "#0072b2", "#d55e00", "#cc79a7"
 AGGREGATE_COLOUR, MORTAR_COLOUR, PLATEN_COLOUR = "#b4b4b4", "#f4f0e6", "#5a5a5a"
 _MORE_PHASE_COLOURS = ("#8fa9c4", "#c9b48c", "#9dbf9e", "#b79bb8")
-
-
-def phase_colours(names: Sequence[str]) -> list[str]:
-    """A fill for each material of a mesh: aggregate and mortar as ever, the platens last, others in turn."""
-    known = {"aggregate": AGGREGATE_COLOUR, "mortar": MORTAR_COLOUR}
-    more = cycle(_MORE_PHASE_COLOURS)
-    return [known.get(name) or next(more) for name in names[:-1]] + [PLATEN_COLOUR]
 TENSION_COLOUR, SHEAR_COLOUR = VERMILLION, "#10245e"
 TENSION_TINT, SHEAR_TINT = "#f2a566", "#7787bd"
 MIXED_COLOUR, MIXED_TINT = PURPLE, "#e3bdd2"
@@ -62,9 +55,17 @@ PER_MILLE = 1e3
 MILLI = 1e3  # metres to millimetres
 
 
-def new_figure(height: float, width: float = WIDTH, dpi: int = DPI) -> Figure:
-    """Empty figure; inches."""
-    return Figure(figsize=(width, height), dpi=dpi)
+def phase_colours(names: Sequence[str], bearings: Container[int]) -> list[str]:
+    """A fill for each material of a mesh: aggregate and mortar as ever, bearings (by their places) dark, others in
+    turn."""
+    known = {"aggregate": AGGREGATE_COLOUR, "mortar": MORTAR_COLOUR}
+    more = cycle(_MORE_PHASE_COLOURS)
+    return [PLATEN_COLOUR if i in bearings else known.get(name) or next(more) for i, name in enumerate(names)]
+
+
+def new_figure(height: float, width: float = WIDTH, dpi: int | None = None) -> Figure:
+    """Empty figure; inches, dots per inch (DPI where it is not stated)."""
+    return Figure(figsize=(width, height), dpi=dpi or DPI)
 
 
 def legend_alone(axes: Axes, handles: list, labels: list[str], **options) -> None:

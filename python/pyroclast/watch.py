@@ -46,6 +46,7 @@ from .files import GapWarning, Lock, RunError, Writer, read_json
 from .heated_sections import draw_temperature
 from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL
 from .progress import MINUTES_LABEL, Course, heating_course, loading_course
+from .records import leading, record_course, records_of
 from .run import Frame, GrowingRun
 from .sections import draw_specimen, fracture_legend
 from .style import save
@@ -75,6 +76,16 @@ class _Curve:
     label: str
     name: str
     unit: str  #: as it follows a number
+    has_peak: bool = False  #: the largest value says something
+
+
+def _record_curve(run: GrowingRun) -> _Curve:
+    """Of a body without platens."""
+    course = heating_course(run) if run.ends_heated else record_course(run)
+    record = leading(records_of(run))
+    if record is None:
+        return _Curve(course, course["unbalanced_ratio"], "Unbalanced ratio", "unbalanced ratio", "")
+    return _Curve(course, record.of(run)[course.rows], record.title, record.name, f" {record.unit}", has_peak=True)
 
 
 def _curve_of(run: GrowingRun) -> _Curve:
@@ -82,12 +93,14 @@ def _curve_of(run: GrowingRun) -> _Curve:
         rows = np.ones(len(run.history), dtype=bool)
         course = Course(run, rows, run.history["heating_time_s"] / 60.0, MINUTES_LABEL, start=0.0)
         return _Curve(course, course["temperature_degC"], "Mean temperature [°C]", "mean temperature", " °C")
+    if not run.has_platens:
+        return _record_curve(run)
     if not run.ends_heated:
         course = loading_course(run)
-        return _Curve(course, course["stress_MPa"], style.STRESS_LABEL, "stress", " MPa")
+        return _Curve(course, course["stress_MPa"], style.STRESS_LABEL, "stress", " MPa", has_peak=True)
     course = heating_course(run)
     if run.restrained:
-        return _Curve(course, course["stress_MPa"], THRUST_LABEL, "stress", " MPa")
+        return _Curve(course, course["stress_MPa"], THRUST_LABEL, "stress", " MPa", has_peak=True)
     return _Curve(course, style.PER_MILLE * run.total_strain, TOTAL_STRAIN_LABEL, "total strain", "·10⁻³")
 
 
@@ -189,7 +202,7 @@ class Watch:
         known = drawn.values[np.isfinite(drawn.values)]
         if len(known) and not self.run.only_conducts:
             parts.append(f"{drawn.name} {known[-1]:.3g}{drawn.unit}")
-            if drawn.name == "stress":
+            if drawn.has_peak:
                 parts[-1] += f" (largest {known.max():.3g})"
         history = self.run.history
         if "temperature_degC" in history and np.isfinite(history["temperature_degC"]).any():

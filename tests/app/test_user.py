@@ -186,11 +186,11 @@ class FireUnderLoad(UserTest):
     def test_platens_are_not_among_the_cracks(self):
         contacts = self.read("contacts_0007.hdf")
         data = contacts.GetCellData()
-        crack, platen = data.GetArray("crack [1]"), data.GetArray("platen")
+        crack, bearing = data.GetArray("crack [1]"), data.GetArray("bearing")
         count = contacts.GetNumberOfCells()
-        self.assertGreater(sum(platen.GetTuple1(i) for i in range(count)), 0)
+        self.assertGreater(sum(bearing.GetTuple1(i) for i in range(count)), 0)
         self.assertGreater(max(crack.GetTuple1(i) for i in range(count)), 0.0)
-        self.assertTrue(all(crack.GetTuple1(i) == 0.0 for i in range(count) if platen.GetTuple1(i)))
+        self.assertTrue(all(crack.GetTuple1(i) == 0.0 for i in range(count) if bearing.GetTuple1(i)))
 
     def test_every_array_is_documented_and_the_script_names_those_that_are_there(self):
         page = (CASES.parent / "docs" / "fields.md").read_text()
@@ -419,7 +419,7 @@ class Running(UserTest):
         # 4e-4 of 100 mm, and a little more through the platens
         self.assertAlmostEqual(points.GetArray("displacement [m]").GetTuple(top)[1], -4e-5, delta=1e-5)
         contacts = read(series[-1]["name"].replace("blocks", "contacts"))
-        for name in ("interface", "platen", "length [m]", "tension_damage [1]", "shear_damage [1]", "crack [1]",
+        for name in ("interface", "bearing", "length [m]", "tension_damage [1]", "shear_damage [1]", "crack [1]",
                      "opening [m]", "tangential_jump [m]", "normal_traction [Pa]", "shear_traction [Pa]",
                      "closure [m]"):
             self.assertEqual(contacts.GetCellData().GetArray(name).GetNumberOfTuples(), contacts.GetNumberOfCells())
@@ -796,6 +796,13 @@ class DecksGoneWrong(UserTest):
         deck = small_deck(velocity='velocity = "4 mm"', count="count = 2", safety='safety = 2')
         text = self.refuse(deck, "velocity", "count", "safety")
         self.assertEqual(len([t for t in text.splitlines() if "deck.toml:" in t]), 3)
+
+    def test_an_outline_from_a_tessellation_needs_its_file(self):
+        shape = {"width": 'shape = "tessellation"\nwidth = "50 mm"', "height": ""}
+        self.refuse(small_deck(**shape), "blocks", 'file: is needed where specimen.shape is "tessellation"')
+        self.refuse(small_deck(**shape, count='file = "none.tess"'), "blocks.file", "none.tess", "Cannot open")
+        ring = {"width": 'shape = "disc"\ndiameter = "50 mm"', "height": "", "count": 'file = "none.tess"'}
+        self.refuse(small_deck(**ring), 'with blocks.file must be "rectangle" or "tessellation"')
 
     def test_aggregates_that_do_not_fit(self):
         self.refuse(small_deck(fraction="fraction = 0.95"), "aggregate", "0.95")

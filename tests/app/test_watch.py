@@ -15,7 +15,8 @@ import unittest
 
 PROGRAM = os.environ["PYROCLAST"]
 CASE = str(pathlib.Path(__file__).parents[2] / "cases/compression.toml")
-SMALL, LARGE = (["run", CASE, "--no-figures", "--set", f"blocks.count={count}"] for count in (200, 1500))
+SMALL = ["run", CASE, "--no-figures", "--set", "blocks.count=200", "--set", "stages[1].velocity=0.3 mm/s"]  # seconds
+LONG = ["run", CASE, "--no-figures", "--set", "blocks.count=800", "--set", "stages[1].velocity=0.05 mm/s"]  # minutes
 PICTURE = "figures/watch.png"
 BACK = re.compile(r"\x1b\[\d+F\x1b\[J")  # to where the last curve began
 
@@ -113,17 +114,18 @@ class Watched(unittest.TestCase):
         self.assertRegex((self.folder / "terminal/run.log").read_text(), progress)
 
     def test_who_watches_may_die(self):
-        terminal = Terminal([*LARGE, "--set", "stages[1].stop_strain=1.5e-3", "--out", "left", "--watch"], self.folder)
+        terminal = Terminal([*LONG, "--out", "left", "--watch"], self.folder)
         terminal.wait_for("Axial stress")
         watcher, = children(terminal.process.pid)
         os.kill(watcher, signal.SIGKILL)
         terminal.wait_for("the watcher ended (signal 9)")
         os.kill(terminal.process.pid, 0)
         terminal.wait_for("(compress)  ")  # progress is told on the terminal again
-        self.assertEqual(terminal.end(), 0)
+        os.killpg(terminal.process.pid, signal.SIGINT)
+        self.assertEqual(terminal.end(), 130)
 
     def test_ctrl_c_stops_the_run_which_is_shown_a_last_time_and_resumed(self):
-        terminal = Terminal([*LARGE, "--out", "stopped", "--watch"], self.folder)
+        terminal = Terminal([*LONG, "--out", "stopped", "--watch"], self.folder)
         terminal.wait_for("Axial stress")
         os.killpg(terminal.process.pid, signal.SIGINT)
         self.assertEqual(terminal.end(), 130)

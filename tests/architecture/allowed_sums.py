@@ -23,6 +23,7 @@ ALLOWED = [
     Allowed("results/field_files.cpp", "frame_times()", "over the frames of a run"),
     Allowed("results/summary.cpp", "energy_error()", "over the columns of energies in one row of a history"),
     Allowed("simulation/press.cpp", "Press::lateral_strain()", "over the directions across the press"),
+    Allowed("stages/record_results.cpp", "work()", "over the rows of a history"),
     Allowed("stages/exchange_stage.cpp", "exchange_response()", "over the rows of a history"),
     Allowed("stages/expose.cpp", "Expose::foreseen_change()", "over the stages of a deck"),
     Allowed("thermal/time_stages.cpp", "set_weights()", "over the stages of one time step"),
@@ -34,8 +35,10 @@ ALLOWED = [
     Allowed("mechanics/layout.cpp", "order_blocks()", "centre of one block"),
     Allowed("model/outline.cpp", "outline()", "centre of one face"),
     Allowed("model/sets.cpp", "tributary_areas()", _GRIDPOINT),
+    Allowed("model/sets.cpp", "centroids()", "over the zones of one block"),
     Allowed("simulation/loads.cpp", "Loads::forces()", _GRIDPOINT),
     Allowed("simulation/loads.cpp", "Loads::apply()", "at one gridpoint, over the sets that are loaded, by their names"),
+    Allowed("stages/drive.cpp", "Drive::act()", "on one set, over the drives of a stage"),
     Allowed("stages/drive.cpp", "Drive::unit_force()", "over the drives of a stage"),
     Allowed("model/model.cpp", "face_frame()", "corners of one face"),
     # Inside one item

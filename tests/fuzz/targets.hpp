@@ -25,6 +25,8 @@ bool formula(std::string_view text);
 bool table(std::string_view text);
 /// A Neper tessellation of a domain of 2 x 1.
 bool tessellation(std::string_view text);
+/// A file with blocks that are made elsewhere.
+bool cells(std::string_view text);
 /// A number with its unit.
 bool quantity(std::string_view text);
 /// A CSV file with a path of jumps.
@@ -37,11 +39,12 @@ struct Target {
 inline void PrintTo(const Target& target, std::ostream* stream) {
   *stream << target.name;
 }
-inline constexpr std::array<Target, 7> kTargets{{{"deck", deck},
+inline constexpr std::array<Target, 8> kTargets{{{"deck", deck},
                                                  {"changes", changes},
                                                  {"formula", formula},
                                                  {"table", table},
                                                  {"tessellation", tessellation},
+                                                 {"cells", cells},
                                                  {"quantity", quantity},
                                                  {"jump_path", jump_path}}};
 

@@ -7,6 +7,10 @@
 namespace pyroclast::fuzz {
 
 bool tessellation(std::string_view text) {
+  takes([&] {
+    std::istringstream stream{std::string(text)};
+    specimen::read_neper_tess(stream, "cells.tess", 0.2);  // of any outline
+  });
   return takes([&] {
     std::istringstream stream{std::string(text)};
     const auto tessellation = specimen::read_neper_tess(stream, "cells.tess", 0.2, 0.1);

@@ -160,7 +160,7 @@ TEST(ConcreteModel, BearingsCoverTheirSeatsAndNoMore) {
   const auto second = std::ranges::find_if(corners, [&](const Vec<2>& c) {
     return std::abs(std::atan2(c[1], c[0]) - (half - 0.5 * std::numbers::pi)) < 1e-9;
   });
-  p.region = specimen::Region::polygon(corners, {"outline"}, true)
+  p.region = specimen::Region::polygon(corners, {"rim"}, true)
                  .with_patches(std::array{specimen::Patch{"strip_seat", corners[0], *second}});
   p.seed = 1;
   p.blocks.count = 400;

@@ -37,8 +37,8 @@ TEST(Sets, HoldWhatLiesInTheirPlaceBoundsIncluded) {
 }
 
 TEST(Sets, OfContactsHoldThoseOnALine) {
-  const Model<2> model =
-      with_sets({{.name = "section", .of_contacts = true, .place = InBox<2>{{{0.02, 0.0}}, {{0.03, 0.1}}}}});
+  const Model<2> model = with_sets(
+      {{.name = "section", .of = SetOf::contacts, .place = InBox<2>{{{0.02, 0.0}}, {{0.03, 0.1}}}}});
   const auto& section = model.contact_sets.at("section");
   EXPECT_GT(section.size(), 20U);
   for (int c = 0; c < model.contact_count(); ++c) {
@@ -47,13 +47,74 @@ TEST(Sets, OfContactsHoldThoseOnALine) {
   }
 }
 
+TEST(Sets, OfBlocksHoldAllOfThoseWhoseCentroidsLieThere) {
+  const Model<2> model =
+      with_sets({{.name = "lower",
+                  .of = SetOf::blocks,
+                  .within = "specimen",
+                  .place = InBox<2>{{{0.0, 0.0}}, {{0.05, 0.05}}}},
+                 {.name = "middle", .of = SetOf::blocks, .place = NearestTo<2>{{{0.025, 0.05}}}}});
+  const auto& lower = model.set("lower");
+  const auto zones = zone_geometry(model).volume;
+  double area = 0.0;
+  for (int block = 0; block < model.block_count(); ++block) {
+    const auto count = std::ranges::count_if(lower, [&](int g) { return model.block_of(g) == block; });
+    ASSERT_TRUE(count == 0 || count == model.block_gridpoints[block + 1] - model.block_gridpoints[block]);
+    if (count == 0) continue;
+    EXPECT_FALSE(model.is_of_bearing(block));
+    for (int z = model.block_zones[block]; z < model.block_zones[block + 1]; ++z)
+      area += zones[z] / model.thickness;
+  }
+  EXPECT_NEAR(area, 0.05 * 0.05, 0.05 * 0.003);  // but for halves of blocks along its upper bound
+  const auto& middle = model.set("middle");
+  EXPECT_EQ(
+      std::ranges::count_if(middle, [&](int g) { return model.block_of(g) == model.block_of(middle[0]); }),
+      std::ssize(middle));
+}
+
+TEST(Sets, OfFacesHoldThoseOfTheOutlineAlone) {
+  const Model<2> model = with_sets(
+      {{.name = "patch",
+        .of = SetOf::faces,
+        .within = "left",
+        .place = InBox<2>{{{0.0, 0.03}}, {{0.01, 0.07}}}},
+       {.name = "one", .of = SetOf::faces, .within = "left", .place = NearestTo<2>{{{0.0, 0.05}}}}});
+  double low = 1.0, high = 0.0;
+  for (int g : model.set("patch")) {
+    EXPECT_EQ(model.position[g][0], 0.0);
+    low = std::min(low, model.position[g][1]);
+    high = std::max(high, model.position[g][1]);
+  }
+  EXPECT_GE(low, 0.03);
+  EXPECT_LE(high, 0.07);
+  const auto& patch = model.set("patch");
+  const auto areas = tributary_areas(patch, faces_in(model, patch));
+  EXPECT_NEAR(std::accumulate(areas.begin(), areas.end(), 0.0), (high - low) * model.thickness, 1e-12);
+  EXPECT_GT(*std::ranges::min_element(areas), 0.0);
+  EXPECT_EQ(model.set("one").size(), 2U);
+}
+
+TEST(Sets, ThereAreThoseOfTheOutlineAndOfTheContacts) {
+  const Model<2> model = with_sets({});
+  const auto& contacts = model.contact_sets;
+  std::size_t of_platens = 0, of_interfaces = 0;
+  for (const Contact<2>& contact : model.contacts) of_platens += model.is_of_bearing(contact) ? 1 : 0;
+  for (const std::string& name : model.interface_names)
+    if (contacts.contains(name)) of_interfaces += contacts.at(name).size();
+  EXPECT_EQ(of_interfaces, model.contacts.size());
+  EXPECT_EQ(contacts.at("specimen").size(), model.contacts.size() - of_platens);
+  EXPECT_EQ(contacts.at("bottom_platen").size() + contacts.at("top_platen").size(), of_platens);
+  EXPECT_EQ(model.set("outline").size(), model.set("left").size() + model.set("right").size() +
+                                             model.set("bottom").size() + model.set("top").size());
+}
+
 TEST(Sets, TributaryAreasAreThoseOfTheFacesThatMeetNoBlock) {
   const Model<2> model = with_sets({});
   const auto total = [&](const char* name) {
     std::vector<int> set = model.set(name);  // lists the gridpoints of both ends of each edge
     std::ranges::sort(set);
     set.erase(std::ranges::unique(set).begin(), set.end());
-    const auto areas = tributary_areas(model, set);
+    const auto areas = tributary_areas(set, faces_in(model, set));
     return std::accumulate(areas.begin(), areas.end(), 0.0);
   };
   EXPECT_NEAR(total("left"), 0.1 * 0.5, 1e-12);

@@ -331,6 +331,7 @@ def write_mesh(path: Path, section: Section) -> None:
         _write_cells(file.create_group("blocks"), section.points, section.triangles, 5)
         file["blocks/block"] = section.block.astype(np.int32)
         file["blocks/material"] = section.material.astype(np.uint8)
+        file["blocks/bearing"] = (section.material == 2).astype(np.uint8)
         file["blocks/material"].attrs["names"] = "aggregate\nmortar\nplaten"
         lines = np.arange(len(section.line_points)).reshape(-1, 2)
         _write_cells(file.create_group("contacts"), section.line_points, lines, 3)

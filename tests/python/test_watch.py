@@ -223,6 +223,20 @@ class Told(WatchTest):
         self.assertEqual(watch.headlines()[1], "run ended: stopped by the user")
 
 
+def bent(folder: Path, recorded: str = "") -> None:
+    """A run without platens, whose records stand in the place of stress and strain. recorded: of these, one alone."""
+    synthetic_run.write_run(folder)
+    for name in ("history.csv", "fields/frames.csv"):
+        header, *rows = (folder / name).read_text().splitlines(keepends=True)
+        instead = ("cmod_m", "load_N") if name == "history.csv" else ("x", "y")
+        places = dict(zip(("strain", "stress_MPa"), instead))
+        words = [places.get(word, word) for word in header.strip().split(",")]
+        (folder / name).write_text(",".join(words) + "\n" + "".join(rows))
+    records = {"cmod": "opening", "load": "force"}
+    (folder / "deck.toml").write_text(DECK + "".join(
+        f'[[record]]\nname = "{name}"\nkind = "{kind}"\n' for name, kind in records.items() if recorded in ("", name)))
+
+
 class Drawn(WatchTest):
     def test_each_kind_of_run_is_drawn_over_what_its_figures_are(self):
         for write, over, values in (
@@ -234,6 +248,9 @@ class Drawn(WatchTest):
             (lambda to: synthetic_run.write_heated_run(to, Heating(hottest=300.0, cooled=True, compressed=True)),
              "Axial strain", "Axial stress"),
             (synthetic_run.write_conduction, "Time of heating", "Mean temperature"),
+            (bent, "cmod: Opening [mm]", "load: Force [kN]"),
+            (lambda to: bent(to, "cmod"), "cmod: Opening [mm]", "cmod: Opening [mm]"),
+            (lambda to: bent(to, "none"), "Time [s]", "Unbalanced ratio"),
         ):
             with self.subTest(over + values):
                 shutil.rmtree(self.folder, ignore_errors=True)

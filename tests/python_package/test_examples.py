@@ -10,7 +10,7 @@ import unittest
 EXAMPLES = pathlib.Path(__file__).parents[2] / "examples" / "python"
 PACKAGE = pathlib.Path(os.environ["PYTHONPATH"].split(":")[0])
 CONFIGURATION = EXAMPLES.parents[1] / "pyproject.toml"
-BOUND = ("Body", "DeckText", "Session")
+BOUND = ("Body", "DeckText", "Session", "Specimen")
 BLOCKS = "120"
 COMPILES = ("own_law",)  # takes a minute where nothing is cached
 
@@ -20,9 +20,9 @@ class Examples(unittest.TestCase):
         for script in sorted(EXAMPLES.glob("*.py")):
             if script.stem in COMPILES:
                 continue
-            with self.subTest(script.stem):
+            with self.subTest(script.stem), tempfile.TemporaryDirectory() as folder:
                 done = subprocess.run([sys.executable, script, BLOCKS], capture_output=True, text=True, check=False,
-                                      timeout=300)
+                                      timeout=300, cwd=folder)
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
                 self.assertTrue(done.stdout)
 

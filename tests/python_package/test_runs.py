@@ -13,9 +13,8 @@ import numpy as np
 
 import pyroclast
 from pyroclast import MPa
-from small import CASES, Case, deck
+from small import CASES, PROGRAM, Case, deck
 
-PROGRAM = os.environ["PYROCLAST"]
 COOLED = {"blocks.count": 100, "stages[1].ramp_time": "20 ms", "stages[2].to": "40 degC",
           "coupling.least_cycles": 200, "coupling.most_cycles": 400, "output.fields": False}
 
@@ -405,8 +404,35 @@ class Arrays(Case):
             with self.assertRaises(ValueError):
                 view[0] = 1.0
             self.assertGreater(np.abs(view).max(), 0.0, name)
-        self.assertTrue(np.shares_memory(run.views.history, run.views.history))
         self.assertEqual(run.views.history.shape[1], 8)
+
+    def test_no_view_is_a_copy_or_can_be_written(self):
+        run = pyroclast.Run(deck(), threads=1)
+        run.until(strain=1e-4)
+        names = [name for name in dir(pyroclast.Views) if not name.startswith("_")]
+        self.assertEqual(names, ["displacement", "force", "history", "velocity"])
+        for name in names:
+            view = getattr(run.views, name)
+            self.assertTrue(np.shares_memory(view, getattr(run.views, name)), name)
+            before = view.copy()
+            for write in (lambda v: v.__setitem__(0, 1.0), lambda v: v.fill(0.0), lambda v: v.sort(),
+                          lambda v: np.add(v, 1.0, out=v), lambda v: v.setflags(write=True)):
+                with self.assertRaises(ValueError, msg=name):
+                    write(view)
+            np.testing.assert_array_equal(view, before)
+
+    def test_views_can_be_read_when_nothing_else_of_the_run_is_left(self):
+        run = pyroclast.Run(deck(), threads=1)
+        run.until(strain=1e-4)
+        views = [run.views.displacement, run.views.velocity, run.views.force, run.views.history]
+        sums = [float(view.sum()) for view in views]
+        del run
+        gc.collect()
+        for other in range(3):  # takes what memory was given back
+            pyroclast.Run(deck(), seed=2 + other, threads=1).next()
+        while views:
+            self.assertEqual(float(views.pop(0).sum()), sums.pop(0))
+            gc.collect()
 
     def test_a_view_follows_the_run_and_outlives_its_name(self):
         run = pyroclast.Run(deck(), threads=1)

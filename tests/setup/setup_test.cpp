@@ -114,14 +114,17 @@ TEST(Warnings, WhatIsAlmostCertainlyASlipIsSaid) {
            Slip{"compression", "count = 5000", "count = 200", "blocks.count"},
            Slip{"transient_heating", "count = 5000", "count = 1000", "blocks.count"},
            Slip{"transient_heating", "level = 0.445", "level = 1.5", "stages[1].level"},
+           Slip{"transient_heating", "field = \"uniform\"", "field = \"uniform\"\ninitial = \"150 degC\"",
+                "heat.initial"},
            Slip{"transient_heating", "rate = \"5 K/min\"", "rate = \"5000 K/s\"", "stages[2].rate"},
        }) {
     const auto said = warned(slip.name, slip.value, slip.other);
     ASSERT_FALSE(said.empty()) << slip.other;
     EXPECT_NE(said.front().find(slip.said), std::string::npos) << said.front();
   }
-  for (const char* name : {"compression", "cyclic", "fire_one_side", "hot_compression", "restrained_heating",
-                           "starter", "thermal_wall", "transient_heating"})
+  for (const char* name : {"biaxial", "brazilian", "compression", "cyclic", "direct_tension", "fire_one_side",
+                           "hot_compression", "notched_beam", "restrained_heating", "ring_cooling", "starter",
+                           "thermal_wall", "transient_heating", "wall_bent"})
     for (const auto& said : warned(shipped_case(name))) ADD_FAILURE() << name << ": " << said;
   EXPECT_EQ(warned(shipped_case("residual_capacity")).size(), 1u);  // properties come back on cooling
 }

@@ -27,13 +27,13 @@ Tessellation ring_of_squares() {
 TEST(SpecimenFromCells, FindsTheOutlineAndItsHoles) {
   std::vector<int> phase(8, 0);
   phase[3] = 1;
-  const Specimen specimen = specimen_from(ring_of_squares(), {"mortar", "stone"}, phase);
+  const Specimen specimen = specimen_from({ring_of_squares(), {"mortar", "stone"}, phase});
   EXPECT_DOUBLE_EQ(specimen.region.area(), 8.0);
   ASSERT_EQ(specimen.region.sides().size(), 5U);
   EXPECT_EQ(specimen.region.sides()[specimen.region.side_of({{1.0, 0.0}}, {{2.0, 0.0}}).value()].name,
-            "side_1");
+            "bottom");
   EXPECT_EQ(specimen.region.sides()[specimen.region.side_of({{3.0, 1.0}}, {{3.0, 2.0}}).value()].name,
-            "side_2");
+            "right");
   EXPECT_EQ(specimen.region.sides()[specimen.region.side_of({{1.0, 1.0}}, {{2.0, 1.0}}).value()].name,
             "hole_1");
   EXPECT_DOUBLE_EQ(specimen.fraction[0], 7.0 / 8.0);
@@ -47,7 +47,7 @@ TEST(SpecimenFromCells, GivesBackWhatWasTessellated) {
   p.region = Region::polygon({{{0.0, 0.0}}, {{0.3, 0.0}}, {{0.3, 0.2}}, {{0.15, 0.3}}, {{0.0, 0.2}}},
                              {"side_1", "side_2", "side_3", "side_4", "side_5"});
   const Specimen made = make_specimen(p);
-  const Specimen again = specimen_from(made.tessellation, made.phases, made.phase);
+  const Specimen again = specimen_from({made.tessellation, made.phases, made.phase});
   EXPECT_EQ(again.tessellation.cells, made.tessellation.cells);
   EXPECT_NEAR(again.region.area(), p.region.area(), 1e-12);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(again.region.pieces()[i].from, p.region.pieces()[i].from);
@@ -60,7 +60,7 @@ TEST(SpecimenFromCells, WhatDoesNotFitIsToldByCell) {
     Tessellation t = ring_of_squares();
     std::vector<int> phase(8, 0);
     change(t, phase);
-    return error_of([&] { specimen_from(t, {"mortar"}, phase); });
+    return error_of([&] { specimen_from({t, {"mortar"}, phase}); });
   };
   EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[2][1] = 99; }), "cell 2 names vertex 99"));
   EXPECT_TRUE(says(refused([](auto&, auto& phase) { phase[5] = 1; }), "cell 5 is of phase 1"));

@@ -8,6 +8,7 @@
 
 #include "examples.hpp"
 #include "pyroclast/specimen/blocks.hpp"
+#include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
@@ -131,7 +132,7 @@ TEST(NeperTess, AVertexThatRegularisationRepeatsOrDropsIsNoTrouble) {
 }
 
 /// Writes a tessellation the way Neper does: twelve decimals, here in millimetres and off the origin.
-std::string as_tess(const Tessellation& t, double width, double height) {
+std::string as_tess(const Tessellation& t, const std::vector<Vec<2>>& domain) {
   const auto point = [](double x, double y) {
     return fmt::format("{:.12f} {:.12f} 0.000000000000", 1e3 * x - 20, 1e3 * y + 7);
   };
@@ -149,10 +150,14 @@ std::string as_tess(const Tessellation& t, double width, double height) {
     for (std::size_t i = 0; i < t.cells[c].size(); ++i) text += " 1";  // edges are not read
     text += "\n 0 0 0 1\n 0 -1 0 0 0\n";
   }
-  text += fmt::format(" **domain\n *general\n square\n *vertex\n 4\n 1 {} x0y0\n 1 1\n 2 {} x1y0\n 1 1\n",
-                      point(0, 0), point(width, 0));
-  return text +
-         fmt::format(" 3 {} x1y1\n 1 1\n 4 {} x0y1\n 1 1\n***end\n", point(width, height), point(0, height));
+  text += fmt::format(" **domain\n *general\n square\n *vertex\n {}\n", domain.size());
+  for (std::size_t i = 0; i < domain.size(); ++i)
+    text += fmt::format(" {} {} x{}\n 1 1\n", i + 1, point(domain[i][0], domain[i][1]), i);
+  return text + "***end\n";
+}
+
+std::string as_tess(const Tessellation& t, double width, double height) {
+  return as_tess(t, {{{0.0, 0.0}}, {{width, 0.0}}, {{width, height}}, {{0.0, height}}});
 }
 
 TEST(NeperTess, ReadsBackWhatWeWrite) {
@@ -172,6 +177,37 @@ TEST(NeperTess, ReadsBackWhatWeWrite) {
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t i = 0; i < a.size(); ++i)
       EXPECT_LT(norm(a[i] - b[i]), 2e-15);  // 12 decimals of a millimetre
+  }
+}
+
+// Promise: the outline of the file is that of the specimen, corners, round sides and holes.
+TEST(NeperTess, OfAnyOutlineItIsThatOfTheSpecimen) {
+  const std::vector<Vec<2>> corners{{{0.0, 0.0}},   {{0.2, 0.0}},  {{0.2, 0.08}},
+                                    {{0.08, 0.08}}, {{0.08, 0.3}}, {{0.0, 0.3}}};
+  const Region angle = Region::polygon(corners, {"a", "b", "c", "d", "e", "f"});
+  const Hole hole{"bore", circle_corners({{0.0, 0.0}}, 0.06, 0.01), true};
+  const auto rim = circle_corners({{0.0, 0.0}}, 0.2, 0.01);
+  const Region ring = Region::polygon(rim, {"rim"}, true).with_holes(std::array{hole});
+  for (const auto& [region, domain] : {std::pair{angle, corners}, std::pair{ring, rim}}) {
+    BlockParameters p;
+    p.count = 400;
+    p.shortest_edge = 0.1;
+    Random random(1);
+    const TessFile file(as_tess(make_blocks(p, region, random).tessellation, domain));
+    const Tessellation read = read_neper_tess(file.path(), 0.2);
+    EXPECT_EQ(read.cells.size(), 400U);
+    const Region found = outline_of(read);
+    EXPECT_NEAR(found.area(), region.area(), 1e-9 * region.area());
+    EXPECT_EQ(found.loops().size(), region.loops().size());
+    EXPECT_NEAR(norm(found.box().low), 0.0, 1e-12);
+    EXPECT_NEAR(found.box().width(), 0.2, 1e-12);
+    SpecimenParameters whole = paper_specimen(1);
+    whole.region = found;
+    whole.blocks = p;
+    whole.blocks.file = file.path();
+    const Specimen specimen = make_specimen(whole);
+    EXPECT_EQ(specimen.tessellation.cells.size(), 400U);
+    EXPECT_GT(specimen.fraction.at(1), 0.1);
   }
 }
 

@@ -13,22 +13,28 @@ namespace {
 constexpr double kLength = 1.0, kDepth = 0.05;  // m, thickness 1 m
 constexpr double kYoung = 29.4e9, kStrength = 2.5e6, kEnergy = 60.0;
 
-/// A row of blocks, the left half of one phase and the right half of another.
-specimen::Specimen bar() {
-  constexpr int kBlocks = 20;
+/// Columns and rows of blocks, the left half of one phase and the right half of another. Rows grow thinner
+/// upwards: the point about which the halves of a beam turn is the last, and its face parts only in part.
+specimen::Specimen grid(double length, double depth, int columns, int rows) {
   specimen::Tessellation t;
   std::vector<int> phase;
-  for (int i = 0; i <= kBlocks; ++i)
-    for (const double y : {0.0, kDepth}) t.vertices.push_back({{kLength * i / kBlocks, y}});
-  for (int i = 0; i < kBlocks; ++i) {
-    t.cells.push_back({2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1});
-    phase.push_back(2 * i < kBlocks ? 0 : 1);
-  }
-  return specimen::specimen_from(std::move(t), {"aggregate", "mortar"}, std::move(phase));
+  for (int i = 0; i <= columns; ++i)
+    for (int j = 0; j <= rows; ++j) {
+      const double left = 1.0 - static_cast<double>(j) / rows;
+      t.vertices.push_back({{length * i / columns, depth * (1.0 - left * left)}});
+    }
+  for (int i = 0; i < columns; ++i)
+    for (int j = 0; j < rows; ++j) {
+      const int corner = i * (rows + 1) + j;
+      t.cells.push_back({corner, corner + rows + 1, corner + rows + 2, corner + 1});
+      phase.push_back(2 * i < columns ? 0 : 1);
+    }
+  return specimen::specimen_from({std::move(t), {"aggregate", "mortar"}, std::move(phase)});
 }
 
-/// It can crack where its halves meet, and nowhere else.
-std::string bar_deck(const std::string& rest) {
+/// A body of two halves that can crack where they meet, and nowhere else. The specimen of the deck is
+/// another.
+std::string halves_deck(const std::string& rest) {
   return R"DECK(title = "bar"
 [specimen]
 width = "1 m"
@@ -68,16 +74,8 @@ K_s = "1e4 GPa/m"
 [contacts.aggregate_mortar]
 K_n = "1e4 GPa/m"
 K_s = "1e4 GPa/m"
-f_t = "2.5 MPa"
-G_f1 = "60 N/m"
-f_cm = "31 MPa"
-beta = 0.05
-c_o = "3.8 MPa"
-c_res = "0.038 MPa"
-phi = "34 deg"
-phi_res = "34 deg"
-G_f2 = "240 N/m"
-[mechanics]
+)DECK" + kMortarBond +
+         R"DECK([mechanics]
 mass = "scaled"
 time_step = "10 us"
 safety = 0.9
@@ -87,6 +85,14 @@ gravity = "0 m/s2"
 [output]
 [heat]
 field = "uniform"
+)DECK" + rest;
+}
+
+/// Bar of one crack, which its own shortening would tear: f_t l / E is more than the crack opens by.
+TEST(ControlVerification, ABarSnapsBackAlongItsClosedForm) {
+  constexpr double kLastOpening = 2.0 * kEnergy / kStrength;
+  ASSERT_GT(kStrength * kLength / kYoung, kLastOpening);
+  pyroclast::Setup setup = pyroclast::read(halves_deck(R"DECK(
 [[sets]]
 name = "before"
 line = [["400 mm", "0 mm"], ["400 mm", "50 mm"]]
@@ -109,14 +115,6 @@ name = "grip"
 kind = "displacement"
 set = "right"
 direction = "x"
-)DECK" + rest;
-}
-
-/// Bar of one crack, which its own shortening would tear: f_t l / E is more than the crack opens by.
-TEST(ControlVerification, ABarSnapsBackAlongItsClosedForm) {
-  constexpr double kLastOpening = 2.0 * kEnergy / kStrength;
-  ASSERT_GT(kStrength * kLength / kYoung, kLastOpening);
-  pyroclast::Setup setup = pyroclast::read(bar_deck(R"DECK(
 [[stages]]
 kind = "drive"
 duration = "1.5 s"
@@ -139,14 +137,8 @@ direction = [1, 0]
 [[stages.until]]
 record = "stretch"
 above = "50 um"
-[[sets]]
-name = "left"
-line = [["0 mm", "0 mm"], ["0 mm", "50 mm"]]
-[[sets]]
-name = "right"
-line = [["1 m", "0 mm"], ["1 m", "50 mm"]]
 )DECK"));
-  const auto simulation = make_simulation(setup, bar());
+  const auto simulation = make_simulation(setup, grid(kLength, kDepth, 20, 1));
   pyroclast::Run run(*simulation, std::move(setup.stages));
   EXPECT_EQ(run.run(), Outcome::completed);
   const History& history = run.history();
@@ -171,6 +163,78 @@ line = [["1 m", "0 mm"], ["1 m", "50 mm"]]
   }
   const StageReport report = run.stages()[0]->report(history, rows, Outcome::completed);
   EXPECT_TRUE(report.warnings.empty());
+}
+
+/// Bent until almost nothing of its crack is left: the mouth opens by a hundred times what parts a face.
+TEST(ControlVerification, TheWorkThatBreaksABeamIsTheFractureEnergyOfItsSection) {
+  constexpr double kSpan = 0.4, kHeight = 0.1;
+  pyroclast::Setup setup = pyroclast::read(halves_deck(R"DECK(
+[[sets]]
+name = "left_foot"
+nearest = ["0 mm", "0 mm"]
+[[sets]]
+name = "right_foot"
+nearest = ["400 mm", "0 mm"]
+[[sets]]
+name = "middle"
+nearest = ["200 mm", "100 mm"]
+[[sets]]
+name = "left_lip"
+within = "aggregate"
+nearest = ["200 mm", "0 mm"]
+[[sets]]
+name = "right_lip"
+within = "mortar"
+nearest = ["200 mm", "0 mm"]
+[[record]]
+name = "mouth"
+kind = "opening"
+set = "left_lip"
+other = "right_lip"
+direction = "x"
+[[record]]
+name = "load"
+kind = "force"
+set = "middle"
+direction = "-y"
+[[record]]
+name = "deflection"
+kind = "displacement"
+set = "middle"
+direction = "-y"
+[[stages]]
+kind = "drive"
+duration = "12 s"
+look_interval = "4 ms"
+[[stages.drives]]
+set = "left_foot"
+hold = ["x", "y"]
+[[stages.drives]]
+set = "right_foot"
+hold = ["y"]
+[[stages.drives]]
+set = "middle"
+velocity = "-1 mm/s"
+direction = "y"
+factor = { table = [["0 s", 0.05], ["3 s", 0.05], ["6 s", 1], ["12 s", 1]] }
+[[stages.until]]
+record = "mouth"
+above = "4.8 mm"
+)DECK"));
+  const auto simulation = make_simulation(setup, grid(kSpan, kHeight, 8, 10));
+  pyroclast::Run run(*simulation, std::move(setup.stages));
+  EXPECT_EQ(run.run(), Outcome::completed);
+  const History& history = run.history();
+  const RowRange rows = run.records()[0].rows;
+  const auto load = history.values("load_N", rows), deflection = history.values("deflection_m", rows),
+             ledger = history.values("energy_loading_J", rows);
+  double work = 0.0;
+  for (std::size_t i = 1; i < load.size(); ++i)
+    work += 0.5 * (load[i] + load[i - 1]) * (deflection[i] - deflection[i - 1]);
+  expect_known({"work of the load that breaks a beam through a straight column of faces", "G_f A", "J"}, work,
+               kEnergy * kHeight, 0.01 * kEnergy * kHeight);
+  expect_known({"the same by the ledger", "G_f A", "J"}, ledger.back(), kEnergy * kHeight,
+               0.01 * kEnergy * kHeight);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ std::string free_deck(const std::string& rest) {
   std::string text = deck(rest);
   for (const char* gone : {"[platens]\nthickness = \"10 mm\"\n", "platen_friction = 0.0\n",
                            "[materials.platen]\nE = \"200 GPa\"\nnu = 0.3\ndensity = \"7850 kg/m3\"\n",
-                           "history_strain = 1e-5\nframe_strain = 1e-3\n"})
+                           "[output]\nhistory_strain = 1e-5\nframe_strain = 1e-3\n"})
     text = with(text, gone, "");
   return with(text, "mass = \"scaled\"\n", "mass = \"scaled\"\ngravity = \"0 m/s2\"\n");
 }
@@ -75,6 +75,30 @@ TEST(DriveVerification, APressureOnOneSideIsTheMeanStressAndTheReactionOfTheOthe
   EXPECT_LT(run.last("stretch_m"), 2.0 * 1e6 / 29.4e9 * kWidth);
 }
 
+// Pulled apart along faces of random blocks: each face takes its share of G_f1, wherever the crack goes.
+TEST(DriveVerification, WhatTensionDissipatesIsTheFractureEnergyOfWhatCrackedOfEachFace) {
+  constexpr double kEnergy = 60.0;  // kMortarBond, J/m²
+  const Finished run(free_deck(
+      kUniform + kCorner + kRecords +
+      drive("duration = \"0.2 s\"", kHeld +
+                                        does("right",
+                                             "velocity = \"0.6 mm/s\"\ndirection = \"x\"\n"
+                                             "ramp_time = \"10 ms\"") +
+                                        "[[stages.until]]\nrecord = \"end\"\nabove = \"60 um\"\n")));
+  const Mechanics<2>& mechanics = run.simulation->mechanics();
+  double lost = 0.0, most = 0.0;
+  for (int c = 0; c < mechanics.model().contact_count(); ++c) {
+    const double share = mechanics.remembered(c, Remembers::tension_damage);
+    lost += kEnergy * mechanics.model().contacts[c].area * share;
+    most = std::max(most, share);
+  }
+  EXPECT_EQ(most, 1.0);
+  EXPECT_GT(lost, 0.5 * kEnergy * kHeight);
+  expect_known(
+      {"energy dissipated in tension by a body of random blocks", "sum of G_f1 A D_t over its contacts", "J"},
+      run.last("dissipated_tension_J"), lost, 1e-9 * lost);
+}
+
 TEST(Drive, AForceOnASideIsSharedOutLikeAPressure) {
   const auto stretch = [](const std::string& how) {
     return Finished(free_deck(kUniform + kCorner + kRecords +
@@ -94,6 +118,25 @@ TEST(Drive, WhatIsMovedGoesItsWayAndIsHeldThere) {
   // half of the ramp, then 20 ms
   EXPECT_NEAR(run.end_of(0, "end_m"), 1e-3 * (0.5 * 0.01 + 0.02), 1e-12);
   EXPECT_EQ(run.end_of(1, "end_m"), run.end_of(0, "end_m"));
+}
+
+// The right side moves ever faster: at 1 m/s² it has 2 mm/s after 2 ms.
+TEST(Drive, ARateEndsAStage) {
+  const auto time = [](const std::string& until) {
+    return Finished(
+               free_deck(kUniform + kCorner + kRecords +
+                         drive("duration = \"10 ms\"\nlook_interval = \"0.2 ms\"",
+                               kHeld + does("right", "velocity = \"10 mm/s\"\ndirection = \"x\"\n" + until))))
+        .last("time_s");
+  };
+  const std::string faster = "factor = { table = [[\"0 s\", 0], [\"10 ms\", 1]] }\n";
+  const std::string slower = "factor = { table = [[\"0 s\", 1], [\"10 ms\", 0]] }\n";
+  const double begin = time(faster) - 10e-3;
+  const auto at = [&](const std::string& factor, const std::string& rate) {
+    return time(factor + "[[stages.until]]\nrecord = \"end\"\n" + rate + "\n") - begin;
+  };
+  EXPECT_NEAR(at(faster, "rate_above = \"2 mm/s\""), 2e-3, 0.4e-3);
+  EXPECT_NEAR(at(slower, "rate_below = \"4 mm/s\""), 6e-3, 0.4e-3);
 }
 
 TEST(Drive, AFactorOverTimeActsOnTheAmount) {
@@ -134,6 +177,55 @@ TEST(Drive, EndsByARecord) {
   EXPECT_EQ(past_peak.run.outcome(), Outcome::completed);
   EXPECT_LT(past_peak.last("end_m"), 1e-4);
   EXPECT_EQ(run("record = \"end\"\nabove = \"1 m\"\n").run.outcome(), Outcome::not_reached);
+}
+
+std::string result(const std::string& name, const std::string& rest) {
+  return "[[stages.results]]\nname = \"" + name + "\"\n" + rest + "\n";
+}
+
+const std::string kPull = does("right", "force = \"120 kN\"\ndirection = [1, 0]\nramp_time = \"50 ms\"");
+
+// Load and stretch rise together from nothing: the area under their curve is half of their product.
+TEST(Drive, MakesNumbersOfItsRecords) {
+  const Finished run(
+      free_deck(kUniform + kCorner + kRecords +
+                drive("duration = \"60 ms\"\nlook_interval = \"0.2 ms\"",
+                      kHeld + kPull + result("height", "kind = \"given\"\nvalue = \"12 cm\"") +
+                          result("pull", "kind = \"peak\"\nrecord = \"grip\"") +
+                          result("last_stretch", "kind = \"last\"\nrecord = \"stretch\"") +
+                          result("stretch_then", "kind = \"at_peak\"\nrecord = \"stretch\"\nof = \"grip\"") +
+                          result("W", "kind = \"work\"\nrecord = \"grip\"\nover = \"stretch\"") +
+                          result("f_t",
+                                 "kind = \"formula\"\nformula = \"-pull / (height * thickness)\"\n"
+                                 "unit = \"MPa\"") +
+                          result("none", "kind = \"formula\"\nformula = \"1 / weight\"\nunit = \"mm\""))));
+  const auto value = [&](const char* name) { return run.result(0, name).value(); };
+  EXPECT_NEAR(value("height_cm"), 12.0, 1e-12);
+  EXPECT_EQ(value("pull_N"), value("peak_grip_N"));
+  EXPECT_NEAR(value("pull_N"), -120e3, 3e3);
+  EXPECT_NEAR(value("f_t_MPa"), 1.0, 0.025);
+  EXPECT_EQ(value("last_stretch_m"), run.last("stretch_m"));
+  EXPECT_NEAR(value("stretch_then_m"), value("last_stretch_m"), 0.02 * value("last_stretch_m"));
+  EXPECT_NEAR(value("W_J"), -0.5 * 120e3 * value("last_stretch_m"), 0.02 * -value("W_J"));
+  EXPECT_NEAR(value("loading_work_J"), -value("W_J"), 0.02 * value("loading_work_J"));
+  EXPECT_FALSE(run.result(0, "none_mm").has_value());  // without weight
+  EXPECT_GT(value("peak_grip_time_s"), 0.049);
+}
+
+TEST(Drive, ResultsThatCannotBeMadeAreRefused) {
+  const auto refused = [](const std::string& results) {
+    return message(free_deck(kUniform + kCorner + kRecords + drive("duration = \"1 ms\"", kHeld + results)));
+  };
+  const auto says = [](const std::string& told, const std::string& part) {
+    EXPECT_NE(told.find(part), std::string::npos) << told;
+  };
+  says(refused(result("p", "kind = \"peak\"\nrecord = \"gripp\"")), "is no [[record]]; there are stress");
+  says(refused(result("w", "kind = \"work\"\nrecord = \"end\"\nover = \"end\"")), "must be of kind force");
+  says(refused(result("f", "kind = \"formula\"\nformula = \"2 * pp\"")),
+       "\"pp\" is not known; names are thickness, weight");
+  says(refused(result("q", "kind = \"given\"\nvalue = \"3 mol\"")), "of none of the kinds");
+  says(refused(result("weight", "kind = \"given\"\nvalue = \"3 kN\"")), "is known to formulas already");
+  says(refused(result("2a", "kind = \"given\"\nvalue = \"3 kN\"")), "must begin with a letter");
 }
 
 TEST(Drive, WhatCannotBeDoneIsRefusedBeforeTheRun) {
@@ -184,7 +276,7 @@ TEST(Drive, AFollowerTurnsWithTheBodyAndADeadLoadDoesNot) {
     Simulation& simulation = *trial.simulation;
     Mechanics<2>& mechanics = simulation.mechanics();
     const auto& right = simulation.model().set("right");
-    simulation.loads().set("right", {.pressure = 1e6, .is_follower = follows});
+    simulation.loads().set({{"right", {.pressure = 1e6, .is_follower = follows}}});
     Vec<2> before{};
     std::vector<int> once = right;
     std::ranges::sort(once);
@@ -200,7 +292,7 @@ TEST(Drive, AFollowerTurnsWithTheBodyAndADeadLoadDoesNot) {
       mechanics.prescribe_velocity(g, 1, (x[0] - x[1]) / step);
     }
     mechanics.advance(1);
-    simulation.loads().follow();
+    simulation.loads().set({});
     Vec<2> after{};
     for (int g : once) after += mechanics.applied_force(g);
     EXPECT_NEAR(after[follows ? 1 : 0], -1e6 * kHeight, 1e-3);

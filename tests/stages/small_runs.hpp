@@ -12,6 +12,18 @@
 /// Runs of a small prism, and what they give, for tests.
 namespace pyroclast {
 
+/// Strengths and fracture energies of a contact of mortar.
+inline const std::string kMortarBond = R"(f_t = "2.5 MPa"
+G_f1 = "60 N/m"
+f_cm = "31 MPa"
+beta = 0.05
+c_o = "3.8 MPa"
+c_res = "0.038 MPa"
+phi = "34 deg"
+phi_res = "34 deg"
+G_f2 = "240 N/m"
+)";
+
 /// Sixty blocks of a prism, 60 mm x 120 mm, whose parts differ in their expansion at most.
 inline std::string deck(const std::string& stages, const std::string& expansion = "\"1e-5 1/K\"") {
   return R"DECK(title = "small"
@@ -58,16 +70,8 @@ t_b_scaling = "fixed"
 platen_friction = 0.0
 [contacts.mortar_mortar]
 temperature_ratio = { table = [["20 degC", 1], ["820 degC", 0.1]] }
-f_t = "2.5 MPa"
-G_f1 = "60 N/m"
-f_cm = "31 MPa"
-beta = 0.05
-c_o = "3.8 MPa"
-c_res = "0.038 MPa"
-phi = "34 deg"
-phi_res = "34 deg"
-G_f2 = "240 N/m"
-[contacts.aggregate_mortar]
+)DECK" + kMortarBond +
+         R"DECK([contacts.aggregate_mortar]
 like = "mortar_mortar"
 stiffness_factor = 1.0
 strength_factor = 1.0

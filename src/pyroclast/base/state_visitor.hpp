@@ -29,6 +29,7 @@ class StateVisitor {
     visit_row(scope_ + std::string(name), {sizeof(T), 1, reinterpret_cast<std::byte*>(&value), {}});
   }
   template <class T>
+  requires std::is_trivially_copyable_v<T>
   void visit(std::string_view name, std::vector<T>& values) {
     visit_array<T>(name, values);
   }
@@ -37,6 +38,19 @@ class StateVisitor {
     visit_array<T>(name, values);
   }
   void visit(std::string_view name, std::string& text) { visit_array<char>(name, text); }
+  /// A list of words, none of which may hold a line's end.
+  void visit(std::string_view name, std::vector<std::string>& words) {
+    std::string lines;
+    for (const std::string& word : words) lines += word + '\n';
+    visit(name, lines);
+    if (!replaces()) return;
+    words.clear();
+    for (std::size_t begin = 0; begin < lines.size();) {
+      const auto end = lines.find('\n', begin);
+      words.push_back(lines.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
 
   /// Puts "name." before all names while it is there.
   class Scope {

@@ -26,7 +26,10 @@ inline constexpr Unit velocity{"m/s", "velocity", "0.8 mm/s"};
 inline constexpr Unit acceleration{"m/s2", "acceleration", "9.81 m/s2"};
 inline constexpr Unit density{"kg/m3", "density", "2650 kg/m3"};
 inline constexpr Unit force{"N", "force", "120 kN"};
+inline constexpr Unit force_rate{"N/s", "rate of a force", "2 kN/s"};
 inline constexpr Unit stress{"Pa", "stress", "30 MPa"};
+inline constexpr Unit stress_rate{"Pa/s", "rate of a stress", "0.5 MPa/s"};
+inline constexpr Unit energy{"J", "energy", "5 J"};
 inline constexpr Unit stiffness{"N/m", "stiffness", "2 GN/m"};
 /// Stiffness of a contact per unit of its area.
 inline constexpr Unit stiffness_per_area{"Pa/m", "contact stiffness", "18400 GPa/m"};
@@ -42,13 +45,31 @@ inline constexpr Unit heat_transfer{"W/m2/K", "heat transfer coefficient", "25 W
 inline constexpr Unit heat_flux{"W/m2", "heat flux", "15 kW/m2"};
 inline constexpr Unit expansion{"1/K", "thermal expansion coefficient", "1e-5 1/K"};
 
-inline constexpr const Unit* all[] = {&dimensionless,   &length,       &area,
-                                      &angle,           &time,         &frequency,
-                                      &velocity,        &acceleration, &density,
-                                      &force,           &stress,       &stiffness_per_area,
-                                      &fracture_energy, &temperature,  &temperature_difference,
-                                      &heating_rate,    &conductivity, &specific_heat,
-                                      &heat_transfer,   &heat_flux,    &expansion};
+inline constexpr const Unit* all[] = {&dimensionless,
+                                      &length,
+                                      &area,
+                                      &angle,
+                                      &time,
+                                      &frequency,
+                                      &velocity,
+                                      &acceleration,
+                                      &density,
+                                      &force,
+                                      &force_rate,
+                                      &stress,
+                                      &stress_rate,
+                                      &energy,
+                                      &stiffness,
+                                      &stiffness_per_area,
+                                      &fracture_energy,
+                                      &temperature,
+                                      &temperature_difference,
+                                      &heating_rate,
+                                      &conductivity,
+                                      &specific_heat,
+                                      &heat_transfer,
+                                      &heat_flux,
+                                      &expansion};
 }  // namespace unit
 
 }  // namespace pyroclast

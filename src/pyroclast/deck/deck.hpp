@@ -79,6 +79,8 @@ class Section {
   Section section(std::string_view key, Meaning meaning = "") const;
   /// A table that may be there; empty also if the key is not a table, which is recorded.
   std::optional<Section> optional_section(std::string_view key, Meaning meaning = "") const;
+  /// The same where what is read from a table that is absent is its fallbacks.
+  Section section_or_none(std::string_view key, Meaning meaning = "") const;
   /// An array of tables ([[key]]) of at least one; empty also after an error.
   std::vector<Section> sections(std::string_view key, Meaning meaning = "") const;
   /// An array of tables that may be absent.

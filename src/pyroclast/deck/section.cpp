@@ -342,6 +342,13 @@ std::vector<Section> Section::sections(std::string_view key, Meaning meaning) co
   return optional_sections(key);
 }
 
+Section Section::section_or_none(std::string_view key, Meaning meaning) const {
+  if (auto* survey = deck_->survey())
+    return {*deck_, &survey->table(table_->path_of(key), true, meaning.text())};
+  const auto entry = read(*deck_, table_, key);
+  return {*deck_, entry ? read_table(*entry) : nullptr};
+}
+
 std::vector<Section> Section::optional_sections(std::string_view key, Meaning meaning) const {
   if (auto* survey = deck_->survey()) {
     if (!survey->is_present(table_->path, key)) return {};

@@ -8,8 +8,10 @@
 #include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <muParser.h>
 
 #include "pyroclast/base/error.hpp"
@@ -18,7 +20,8 @@ namespace pyroclast {
 namespace {
 
 /// muParser's error in the words of this project; the position is counted from 1.
-Error formula_error(const std::string& formula, const std::string& variable,
+/// \param known  what names a formula may use
+Error formula_error(const std::string& formula, const std::string& known,
                     const mu::Parser::exception_type& error) {
   static const std::map<mu::EErrorCodes, const char*> explanations = {
       {mu::ecUNEXPECTED_OPERATOR, "an operator does not belong here"},
@@ -35,8 +38,8 @@ Error formula_error(const std::string& formula, const std::string& variable,
   if (error.GetCode() == mu::ecEMPTY_EXPRESSION) return Error("the formula is empty");
   std::string what = error.GetMsg();
   if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN) {
-    what = fmt::format("\"{}\" is not known; the variable is {}, functions are e.g. exp, ln, sqrt, min, max",
-                       error.GetToken(), variable);
+    what = fmt::format("\"{}\" is not known; {}, functions are e.g. exp, ln, sqrt, min, max",
+                       error.GetToken(), known);
   } else if (const auto it = explanations.find(error.GetCode()); it != explanations.end()) {
     what = it->second;
   }
@@ -60,16 +63,27 @@ void refuse_statements(const std::string& formula) {
   }
 }
 
+void set_formula(mu::Parser& parser, const std::string& formula) {
+  // Where && and || stand between constants, muParser's optimizer casts them to int: 0.5 && 1 is false to
+  // it, and what does not fit into an int is undefined.
+  if (formula.find("&&") != std::string::npos || formula.find("||") != std::string::npos)
+    parser.EnableOptimizer(false);
+  parser.SetExpr(formula);
+}
+
+void require_one_value(const std::string& formula, int count) {
+  if (count != 1)
+    throw Error(fmt::format(
+        "formula \"{}\" has {} values separated by commas, one is wanted; the decimal sign is a point",
+        formula, count));
+}
+
 /// One parser with the variable it reads.
 class Evaluator {
  public:
   Evaluator(const std::string& formula, const std::string& variable) {
     parser_.DefineVar(variable, &x_);
-    // Where && and || stand between constants, muParser's optimizer casts them to int: 0.5 && 1 is false to
-    // it, and what does not fit into an int is undefined.
-    if (formula.find("&&") != std::string::npos || formula.find("||") != std::string::npos)
-      parser_.EnableOptimizer(false);
-    parser_.SetExpr(formula);
+    set_formula(parser_, formula);
   }
   Evaluator(const Evaluator&) = delete;
   Evaluator& operator=(const Evaluator&) = delete;
@@ -130,13 +144,9 @@ Expression::Expression(std::string formula, std::string variable)
   try {
     Evaluator trial(evaluators_->formula, evaluators_->variable);
     trial.evaluate(1.0);
-    if (trial.result_count() != 1) {
-      throw Error(fmt::format(
-          "formula \"{}\" has {} values separated by commas, one is wanted; the decimal sign is a point",
-          evaluators_->formula, trial.result_count()));
-    }
+    require_one_value(evaluators_->formula, trial.result_count());
   } catch (const mu::Parser::exception_type& error) {
-    throw formula_error(evaluators_->formula, evaluators_->variable, error);
+    throw formula_error(evaluators_->formula, "the variable is " + evaluators_->variable, error);
   }
 }
 
@@ -150,6 +160,33 @@ double Expression::operator()(double x) const {
   if (!slot.evaluator)
     slot.evaluator = std::make_unique<Evaluator>(evaluators_->formula, evaluators_->variable);
   return slot.evaluator->evaluate(x);
+}
+
+double evaluate(const std::string& formula, const std::map<std::string, double>& values) {
+  refuse_statements(formula);
+  try {
+    mu::Parser parser;
+    for (const auto& [name, value] : values) parser.DefineConst(name, value);
+    set_formula(parser, formula);
+    const double result = parser.Eval();
+    require_one_value(formula, parser.GetNumResults());
+    return result;
+  } catch (const mu::Parser::exception_type& error) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : values) names.push_back(name);
+    throw formula_error(formula, fmt::format("names are {}", fmt::join(names, ", ")), error);
+  }
+}
+
+bool is_name_in_formulas(const std::string& text) {
+  try {
+    mu::Parser parser;
+    parser.DefineConst(text, 1.0);
+    parser.SetExpr(text);
+    return parser.Eval() == 1.0;
+  } catch (const mu::Parser::exception_type&) {
+    return false;
+  }
 }
 
 }  // namespace pyroclast

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -29,5 +30,11 @@ class Expression {
   struct Evaluators;
   std::unique_ptr<Evaluators> evaluators_;
 };
+
+/// Value of a formula in the same syntax that may use several names. Throws Error as Expression does.
+double evaluate(const std::string& formula, const std::map<std::string, double>& values);
+
+/// Whether a text can be such a name: a letter first, then letters, digits and _.
+bool is_name_in_formulas(const std::string& text);
 
 }  // namespace pyroclast

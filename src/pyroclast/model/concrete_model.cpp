@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -215,15 +216,25 @@ Model<2> make_concrete_model(const Specimen& specimen, double thickness,
   const auto gridpoint = [&](int cell, int vertex) {
     return model.block_gridpoints[first_cell + cell] + place_in(tessellation.cells[cell], vertex);
   };
+  auto& whole_outline = model.sets["outline"];
   for (const specimen::Side& side : region.sides()) model.sets[side.name];
+  // slits are parted from the start: they are no cracks
+  const auto add_contacts = [&](const std::string& body, int interface, int first) {
+    for (const std::string& name : std::set{body, model.interface_names[interface]})
+      for (int contact = first; contact < model.contact_count(); ++contact)
+        model.contact_sets[name].push_back(contact);
+  };
   std::size_t on_outline = 0;
   for (const Edge& e : edges) {
     const std::vector<int> a{gridpoint(e.left, e.v0), gridpoint(e.left, e.v1)};
     if (e.right >= 0) {
+      const int first_contact = model.contact_count();
+      const int interface = table.between(specimen.phase[e.left], specimen.phase[e.right]);
+      model.join_faces(a, {gridpoint(e.right, e.v0), gridpoint(e.right, e.v1)}, interface);
       if (const auto slit = region.slit_of(tessellation.vertices[e.v0], tessellation.vertices[e.v1])) {
         const specimen::Notch& notch = region.notches()[*slit];
         auto& set = model.contact_sets[notch.name];
-        for (int contact : {0, 1}) set.push_back(model.contact_count() + contact);
+        for (int contact = first_contact; contact < model.contact_count(); ++contact) set.push_back(contact);
         // an edge has its left cell on its left
         const Vec<2> along = tessellation.vertices[e.v1] - tessellation.vertices[e.v0];
         const bool is_left = dot(along, notch.tip - notch.mouth) > 0.0;
@@ -231,9 +242,9 @@ Model<2> make_concrete_model(const Specimen& specimen, double thickness,
           auto& wall = model.sets[notch.name + ((cell == e.left) == is_left ? "_left" : "_right")];
           for (const int v : {e.v0, e.v1}) wall.push_back(gridpoint(cell, v));
         }
+      } else {
+        add_contacts("specimen", interface, first_contact);
       }
-      model.join_faces(a, {gridpoint(e.right, e.v0), gridpoint(e.right, e.v1)},
-                       table.between(specimen.phase[e.left], specimen.phase[e.right]));
       continue;
     }
     const int side = outline[on_outline++].second;
@@ -242,8 +253,11 @@ Model<2> make_concrete_model(const Specimen& specimen, double thickness,
       const auto opposite = [&](int vertex) {
         return blocks[i].inner[place_in(blocks[i].seat.vertices, vertex)];
       };
+      const int first_contact = model.contact_count();
       model.join_faces(a, {opposite(e.v0), opposite(e.v1)}, blocks[i].interface);
+      add_contacts(bearings[i].name, blocks[i].interface, first_contact);
     }
+    whole_outline.insert(whole_outline.end(), a.begin(), a.end());
     for (int on = side; on >= 0; on = region.sides()[on].part_of) {
       auto& set = model.sets[region.sides()[on].name];
       set.insert(set.end(), a.begin(), a.end());

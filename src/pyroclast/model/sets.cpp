@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
+#include <unordered_map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/overloaded.hpp"
-#include "pyroclast/model/outline.hpp"
+#include "pyroclast/base/sort_unique.hpp"
 
 namespace pyroclast {
 
@@ -48,21 +51,101 @@ bool holds(const Place<Dim>& place, const Vec<Dim>& x, double slack) {
                     place);
 }
 
-/// \param at  where each candidate is
-template <int Dim, class At>
-std::vector<int> chosen(const std::vector<int>& candidates, const Place<Dim>& place, double slack,
-                        const At& at) {
-  std::vector<int> result;
-  if (const auto* nearest = std::get_if<NearestTo<Dim>>(&place)) {
-    const auto from = [&](int i) { return norm(at(i) - nearest->point); };
-    double least = std::numeric_limits<double>::infinity();
-    for (int i : candidates) least = std::min(least, from(i));
-    for (int i : candidates)
-      if (from(i) <= least + slack) result.push_back(i);
-    return result;
+/// What a set may be made of: the gridpoints or the contact of each item, the points that must lie in the
+/// place, and its middle.
+template <int Dim>
+struct Items {
+  std::vector<std::vector<int>> members;
+  std::vector<std::vector<Vec<Dim>>> points;
+  std::vector<Vec<Dim>> middle;
+
+  void add(std::vector<int> of, std::vector<Vec<Dim>> at, const Vec<Dim>& in_the_middle) {
+    members.push_back(std::move(of));
+    points.push_back(std::move(at));
+    middle.push_back(in_the_middle);
   }
-  for (int i : candidates)
-    if (holds(place, at(i), slack)) result.push_back(i);
+};
+
+/// Of each block.
+template <int Dim>
+std::vector<Vec<Dim>> centroids(const Model<Dim>& model) {
+  const auto volume = zone_geometry(model).volume;
+  std::vector<Vec<Dim>> moment(model.block_count());
+  std::vector<double> whole(model.block_count());
+  for (int block = 0; block < model.block_count(); ++block) {
+    for (int z = model.block_zones[block]; z < model.block_zones[block + 1]; ++z) {
+      whole[block] += volume[z];
+      for (int g : model.zones[z]) moment[block] += volume[z] / (Dim + 1) * model.position[g];
+    }
+    moment[block] = (1.0 / whole[block]) * moment[block];
+  }
+  return moment;
+}
+
+template <int Dim>
+std::vector<OutlineFace<Dim>> outline_of(const Model<Dim>& model) {
+  return outline(model, zone_geometry(model), std::vector<bool>(model.material_names.size(), true));
+}
+
+template <int Dim>
+Items<Dim> items_of(const Model<Dim>& model, SetOf of) {
+  Items<Dim> items;
+  const auto add_point = [&](int member, int g) {
+    items.add({member}, {model.position[g]}, model.position[g]);
+  };
+  switch (of) {
+    case SetOf::gridpoints:
+      for (int g = 0; g < model.gridpoint_count(); ++g) add_point(g, g);
+      break;
+    case SetOf::faces:
+      for (const auto& face : outline_of(model)) {
+        std::vector<Vec<Dim>> corners;
+        for (int g : face.gridpoints) corners.push_back(model.position[g]);
+        items.add({face.gridpoints.begin(), face.gridpoints.end()}, corners, face.centre);
+      }
+      break;
+    case SetOf::blocks: {
+      const auto middle = centroids(model);
+      for (int block = 0; block < model.block_count(); ++block) {
+        std::vector<int> members(model.block_gridpoints[block + 1] - model.block_gridpoints[block]);
+        std::iota(members.begin(), members.end(), model.block_gridpoints[block]);
+        items.add(std::move(members), {middle[block]}, middle[block]);
+      }
+      break;
+    }
+    case SetOf::contacts:
+      for (int c = 0; c < model.contact_count(); ++c) add_point(c, model.contacts[c].a);
+      break;
+  }
+  return items;
+}
+
+/// Members of the items that lie in the place and within another set, ascending.
+template <int Dim>
+std::vector<int> chosen(const Items<Dim>& items, const std::vector<int>* within, const Place<Dim>& place,
+                        double slack) {
+  std::vector<bool> allowed;
+  if (within != nullptr) {
+    allowed.resize(1 + *std::ranges::max_element(*within));
+    for (int i : *within) allowed[i] = true;
+  }
+  const auto is_allowed = [&](int i) { return within == nullptr || (i < std::ssize(allowed) && allowed[i]); };
+  std::vector<std::size_t> candidates;
+  for (std::size_t i = 0; i < items.members.size(); ++i)
+    if (std::ranges::all_of(items.members[i], is_allowed)) candidates.push_back(i);
+  double reach = std::numeric_limits<double>::infinity();
+  const auto* nearest = std::get_if<NearestTo<Dim>>(&place);
+  if (nearest != nullptr)
+    for (const auto i : candidates) reach = std::min(reach, norm(items.middle[i] - nearest->point) + slack);
+  std::vector<int> result;
+  for (const auto i : candidates) {
+    const bool is_in =
+        nearest != nullptr
+            ? norm(items.middle[i] - nearest->point) <= reach
+            : std::ranges::all_of(items.points[i], [&](const Vec<Dim>& x) { return holds(place, x, slack); });
+    if (is_in) result.insert(result.end(), items.members[i].begin(), items.members[i].end());
+  }
+  sort_unique(result);
   return result;
 }
 
@@ -75,41 +158,44 @@ void add_sets(Model<Dim>& model, const std::vector<SetParameters<Dim>>& sets) {
     const auto fail = [&](const std::string& why) {
       throw Error(fmt::format("{}: set \"{}\" {}", asked.deck_place, asked.name, why));
     };
-    auto& all = asked.of_contacts ? model.contact_sets : model.sets;
+    const bool is_of_contacts = asked.of == SetOf::contacts;
+    auto& all = is_of_contacts ? model.contact_sets : model.sets;
     if (all.contains(asked.name)) fail("has the name of one that there is already");
-    std::vector<int> candidates;
-    if (asked.within.empty()) {
-      const int count = asked.of_contacts ? model.contact_count() : model.gridpoint_count();
-      for (int i = 0; i < count; ++i) candidates.push_back(i);
-    } else if (const auto found = all.find(asked.within); found != all.end()) {
-      candidates = found->second;
-      std::ranges::sort(candidates);
-      const auto repeated = std::ranges::unique(candidates);
-      candidates.erase(repeated.begin(), repeated.end());
-    } else {
-      std::string names;
-      for (const auto& [name, members] : all) names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
-      fail(fmt::format("lies within \"{}\", but there is no such set of {}; there are {}", asked.within,
-                       asked.of_contacts ? "contacts" : "gridpoints", names.empty() ? "none" : names));
+    const std::vector<int>* within = nullptr;
+    if (!asked.within.empty()) {
+      const auto found = all.find(asked.within);
+      if (found == all.end() || found->second.empty()) {
+        std::vector<std::string> names;
+        for (const auto& [name, members] : all)
+          if (!members.empty()) names.push_back(name);
+        fail(fmt::format("lies within \"{}\", but there is no such set of {}; there are {}", asked.within,
+                         is_of_contacts ? "contacts" : "gridpoints",
+                         names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+      }
+      within = &found->second;
     }
-    const auto at = [&](int i) -> const Vec<Dim>& {
-      return model.position[asked.of_contacts ? model.contacts[i].a : i];
-    };
-    auto members = chosen(candidates, asked.place, slack, at);
+    auto members = chosen(items_of(model, asked.of), within, asked.place, slack);
     if (members.empty()) fail("is empty: nothing lies there");
     all[asked.name] = std::move(members);
   }
 }
 
 template <int Dim>
-std::vector<double> tributary_areas(const Model<Dim>& model, const std::vector<int>& set) {
-  std::vector<double> of_gridpoint(model.position.size(), -1.0);
-  for (int g : set) of_gridpoint[g] = 0.0;
-  for (const auto& face :
-       outline(model, zone_geometry(model), std::vector<bool>(model.material_names.size(), true))) {
-    if (std::ranges::any_of(face.gridpoints, [&](int g) { return of_gridpoint[g] < 0.0; })) continue;
+std::vector<OutlineFace<Dim>> faces_in(const Model<Dim>& model, const std::vector<int>& set) {
+  std::vector<bool> is_in(model.position.size());
+  for (int g : set) is_in[g] = true;
+  auto faces = outline_of(model);
+  std::erase_if(faces, [&](const OutlineFace<Dim>& face) {
+    return std::ranges::any_of(face.gridpoints, [&](int g) { return !is_in[g]; });
+  });
+  return faces;
+}
+
+template <int Dim>
+std::vector<double> tributary_areas(const std::vector<int>& set, const std::vector<OutlineFace<Dim>>& faces) {
+  std::unordered_map<int, double> of_gridpoint;
+  for (const auto& face : faces)
     for (int g : face.gridpoints) of_gridpoint[g] += face.area / Dim;
-  }
   std::vector<double> areas;
   for (int g : set) areas.push_back(of_gridpoint[g]);
   return areas;
@@ -117,7 +203,9 @@ std::vector<double> tributary_areas(const Model<Dim>& model, const std::vector<i
 
 template void add_sets(Model<2>&, const std::vector<SetParameters<2>>&);
 template void add_sets(Model<3>&, const std::vector<SetParameters<3>>&);
-template std::vector<double> tributary_areas(const Model<2>&, const std::vector<int>&);
-template std::vector<double> tributary_areas(const Model<3>&, const std::vector<int>&);
+template std::vector<OutlineFace<2>> faces_in(const Model<2>&, const std::vector<int>&);
+template std::vector<OutlineFace<3>> faces_in(const Model<3>&, const std::vector<int>&);
+template std::vector<double> tributary_areas(const std::vector<int>&, const std::vector<OutlineFace<2>>&);
+template std::vector<double> tributary_areas(const std::vector<int>&, const std::vector<OutlineFace<3>>&);
 
 }  // namespace pyroclast

@@ -1,5 +1,6 @@
 #include "pyroclast/python/arrays.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -7,7 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/sort_unique.hpp"
 
 namespace pyroclast::python {
 
@@ -18,6 +22,13 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 const Mechanics<2>& mechanics_of(const Simulation& simulation) {
   if (!simulation.moves()) throw Error("nothing moves in this run, so there is no such array");
   return simulation.mechanics();
+}
+
+template <class Map>
+const auto& of(const Map& all, const std::string& what) {
+  const auto found = all.find(what);
+  if (found == all.end()) throw Error(fmt::format("there is no \"{}\"", what));
+  return found->second;
 }
 
 template <class T>
@@ -62,9 +73,6 @@ py::array filled(const List& list, py::ssize_t columns, Number number) {
   return array;
 }
 
-py::array vectors(const std::vector<Vec<2>>& list) {
-  return filled<double>(list, 2, [](const Vec<2>& v, py::ssize_t i) { return v[static_cast<int>(i)]; });
-}
 py::array numbers(const std::vector<double>& list) {
   return filled<double>(list, 0, [](double v, py::ssize_t) { return v; });
 }
@@ -106,14 +114,18 @@ const std::map<std::string, CopyOf>& copies() {
   return all;
 }
 
-template <class F>
-const F& of(const std::map<std::string, F>& all, const std::string& what) {
-  const auto found = all.find(what);
-  if (found == all.end()) throw Error("there is no array \"" + what + "\"");
-  return found->second;
+}  // namespace
+
+py::array vectors(const std::vector<Vec<2>>& list) {
+  return filled<double>(list, 2, [](const Vec<2>& v, py::ssize_t i) { return v[static_cast<int>(i)]; });
 }
 
-}  // namespace
+py::array members(const Simulation& simulation, const std::string& set, bool of_contacts) {
+  const auto& sets = of_contacts ? simulation.model().contact_sets : simulation.model().sets;
+  auto all = of(sets, set);
+  sort_unique(all);
+  return filled<int>(all, 0, [](int member, py::ssize_t) { return member; });
+}
 
 py::array view(const Simulation& simulation, const std::string& what, const py::object& owner) {
   const ViewOf make = of(views(), what);

@@ -15,8 +15,15 @@ namespace py = pybind11;
 /// \param owner  that the array keeps alive
 py::array view(const Simulation& simulation, const std::string& what, const py::object& owner);
 
+/// (n, 2)
+py::array vectors(const std::vector<Vec<2>>& list);
+
 /// Model and state in the order of the model, as copies.
 py::array copied(const Simulation& simulation, const std::string& what);
+
+/// Members of a set, ascending, each once: gridpoints, or rows of `contacts`. Throws Error naming what sets
+/// there are.
+py::array members(const Simulation& simulation, const std::string& set, bool of_contacts);
 
 /// State of every contact, by name: law, opening, slip, tractions, stored energy, and what any law remembers
 /// and loses.

@@ -10,5 +10,6 @@ PYBIND11_MODULE(_core, m) {
   bind_decks(m);
   bind_laws(m);
   bind_stages(m);
+  bind_specimens(m);
   bind_sessions(m);
 }

@@ -270,6 +270,9 @@ void bind_sessions(py::module_& m) {
           },
           arg("temperature"))
       .def(
+          "drive", [](const Held& h, const std::string& drives) { h.resting().drive(drives); }, arg("drives"),
+          "Tables [[drives]] that act from now on.")
+      .def(
           "depart",
           [](const Held& h, const std::string& why) {
             h.resting().depart({why, false});
@@ -334,6 +337,26 @@ void bind_sessions(py::module_& m) {
       .def(
           "copied", [](const Held& h, const std::string& what) { return copied(h.get().simulation(), what); },
           arg("what"), "An array in the order of the model, as a copy.")
+      .def(
+          "set_names",
+          [](const Held& h, bool of_contacts) {
+            const Model<2>& model = h.get().simulation().model();
+            std::vector<std::string> names;
+            for (const auto& [name, all] : of_contacts ? model.contact_sets : model.sets)
+              names.push_back(name);
+            return names;
+          },
+          arg("of_contacts"))
+      .def(
+          "members",
+          [](const Held& h, const std::string& set, bool of_contacts) {
+            return members(h.get().simulation(), set, of_contacts);
+          },
+          arg("set"), arg("of_contacts"))
+      .def_property_readonly(
+          "specimen",
+          [](const Held& h) { return std::make_shared<specimen::Specimen>(h.get().simulation().specimen()); })
+      .def_property_readonly("deck_folder", read([](const Session& s) { return s.loaded().folder.string(); }))
       .def("contacts", [](const Held& h) { return contacts(h.get().simulation()); });
 }
 

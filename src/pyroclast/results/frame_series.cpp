@@ -29,8 +29,8 @@ struct CellField {
 };
 
 std::vector<CellField> cell_fields(MeshPart part) {
-  if (part == MeshPart::blocks) return {{"block", "block"}, {"material", "material"}};
-  return {{"interface", "interface"}, {"platen", "platen"}, {"length", "length [m]"}};
+  if (part == MeshPart::blocks) return {{"block", "block"}, {"material", "material"}, {"bearing", "bearing"}};
+  return {{"interface", "interface"}, {"bearing", "bearing"}, {"length", "length [m]"}};
 }
 
 void write_grid(Hdf5File& file, const std::string& group, const std::vector<double>& points,
@@ -74,22 +74,24 @@ void write_blocks(Hdf5File& file, const Model<2>& model) {
   for (const auto& x : model.position) append(points, x);
   std::vector<std::int64_t> connectivity;
   std::vector<std::int32_t> block;
-  std::vector<std::uint8_t> material;
+  std::vector<std::uint8_t> material, bearing;
   for (const auto& zone : model.zones) connectivity.insert(connectivity.end(), zone.begin(), zone.end());
   for (int b : zone_blocks(model)) {
     block.push_back(b);
     material.push_back(static_cast<std::uint8_t>(model.block_material[b]));
+    bearing.push_back(model.is_of_bearing(b) ? 1 : 0);
   }
   write_grid(file, "/blocks", points, connectivity, 3, kVtkTriangle);
   file.dataset("/blocks/block", block);
   file.dataset("/blocks/material", material);
+  file.dataset("/blocks/bearing", bearing);
   file.attribute("/blocks/material", "names", fmt::format("{}", fmt::join(model.material_names, "\n")));
 }
 
 void write_contacts(Hdf5File& file, const Model<2>& model) {
   std::vector<double> points;
   std::vector<std::int64_t> connectivity;
-  std::vector<std::uint8_t> interface, platen;
+  std::vector<std::uint8_t> interface, bearing;
   std::vector<double> length;
   for (std::size_t i = 0; i < model.contacts.size(); ++i) {
     const auto& c = model.contacts[i];
@@ -99,13 +101,13 @@ void write_contacts(Hdf5File& file, const Model<2>& model) {
     connectivity.insert(connectivity.end(),
                         {static_cast<std::int64_t>(2 * i), static_cast<std::int64_t>(2 * i + 1)});
     interface.push_back(static_cast<std::uint8_t>(c.interface));
-    platen.push_back(model.is_of_bearing(c) ? 1 : 0);
+    bearing.push_back(model.is_of_bearing(c) ? 1 : 0);
     length.push_back(c.area / model.thickness);
   }
   write_grid(file, "/contacts", points, connectivity, 2, kVtkLine);
   file.dataset("/contacts/interface", interface);
   file.attribute("/contacts/interface", "names", fmt::format("{}", fmt::join(model.interface_names, "\n")));
-  file.dataset("/contacts/platen", platen);
+  file.dataset("/contacts/bearing", bearing);
   file.dataset("/contacts/length", length);
 }
 

@@ -31,9 +31,11 @@ Inputs inputs_of(const Deck& deck, const Setup& setup) {
     }
     values.emplace_back(named.key, fmt::format("\"{}{}\"", file->name, named.rest));
   }
-  const auto seed = deck.root().section("specimen").integer("seed", Range::any(), "");
-  if (std::cmp_not_equal(seed, setup.specimen.seed))
-    values.emplace_back("specimen.seed", std::to_string(setup.specimen.seed));
+  if (!setup.specimen.cells) {
+    const auto seed = deck.root().section("specimen").integer("seed", Range::any(), "");
+    if (std::cmp_not_equal(seed, setup.specimen.seed))
+      values.emplace_back("specimen.seed", std::to_string(setup.specimen.seed));
+  }
   inputs.deck_text = deck.with(values);
   return inputs;
 }

@@ -134,9 +134,7 @@ std::unique_ptr<Session> Session::fork(const ForkOf& of, const RunOutput& output
 
   const std::string more = of.more.empty() ? "" : read_file(of.more);
   Loaded loaded = load_from(of.run, of.changes, more, choices);
-  auto lock = std::make_unique<FolderLock>(output.folder);
-  RunFolder::check(output.folder, output.overwrite);
-  std::unique_ptr<Session> session(new Session(std::move(loaded), std::move(lock), output.folder));
+  std::unique_ptr<Session> session(new Session(std::move(loaded), lock(output), output.folder));
   require_same(checkpoint, inputs_of(parent.deck, parent.setup).hash(), *session->simulation_);
   session->restore(checkpoint);
   if (session->run_.outcome() != Outcome::running)

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/error.hpp"
 #include "pyroclast/plugin/load.hpp"
 
 namespace pyroclast {
@@ -31,6 +32,8 @@ Loaded::Loaded(Deck read, std::filesystem::path folder_of_deck, RunChoices chose
         fmt::format("--threads {}: only {} processors are free for this process, and more "
                     "threads than those slow it down",
                     choices.threads, available_threads()));
+  if (choices.seed && setup.specimen.cells)
+    throw Error("a seed has no meaning for a specimen whose blocks come from a file");
   if (choices.seed) setup.specimen.seed = *choices.seed;
   if (choices.checkpoint) setup.checkpoints.interval = *choices.checkpoint;
   if (setup.motion) setup.motion->mechanics.instructions = instructions;

@@ -10,6 +10,7 @@
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/session/later.hpp"
 #include "pyroclast/simulation/coupling.hpp"
+#include "pyroclast/stages/drive.hpp"
 
 namespace pyroclast {
 
@@ -24,6 +25,23 @@ std::unique_ptr<Simulation> make_simulation_of(const Loaded& loaded,
 
 std::string key_of(const std::string& change) {
   return change.substr(0, change.find('='));
+}
+
+/// A text in one line.
+std::string told(std::string text) {
+  std::ranges::replace(text, '\n', ' ');
+  return text.substr(0, text.find_last_not_of(' ') + 1);
+}
+
+/// Throws Error where a set has gridpoints of platens, which the press works.
+void require_off_press(const Simulation& simulation, const std::string& set) {
+  if (!simulation.has_press()) return;
+  const Model<2>& model = simulation.model();
+  for (const char* platen : {"bottom_platen", "top_platen"})
+    for (int g : model.set(set))
+      if (std::ranges::find(model.set(platen), g) != model.set(platen).end())
+        throw Error(
+            fmt::format("drive: set \"{}\" has gridpoints of {}, which the press works", set, platen));
 }
 
 /// Throws Error where materials differ in what a run takes only at its beginning.
@@ -57,14 +75,17 @@ Session::Session(Loaded loaded, std::unique_ptr<FolderLock> lock, std::filesyste
   });
 }
 
+/// Throws Error where the folder may not be written.
+std::unique_ptr<FolderLock> Session::lock(const RunOutput& output) {
+  auto held = std::make_unique<FolderLock>(output.folder);
+  RunFolder::check(output.folder, output.overwrite);
+  return held;
+}
+
 std::unique_ptr<Session> Session::begin(Loaded loaded, const std::optional<RunOutput>& output) {
-  std::unique_ptr<FolderLock> lock;
-  if (output) {
-    lock = std::make_unique<FolderLock>(output->folder);
-    RunFolder::check(output->folder, output->overwrite);
-  }
+  auto held = output ? lock(*output) : nullptr;
   std::unique_ptr<Session> session(
-      new Session(std::move(loaded), std::move(lock), output ? output->folder : std::filesystem::path()));
+      new Session(std::move(loaded), std::move(held), output ? output->folder : std::filesystem::path()));
   if (!output) return session;
   session->make_folder(*output, std::nullopt);
   session->open(0);
@@ -139,15 +160,11 @@ Summary Session::finish() {
 std::unique_ptr<Session> Session::copy(const std::vector<std::string>& changes,
                                        const std::optional<RunOutput>& output) {
   for (const std::string& change : changes) require_later(change, run_.last_begun_stage());
-  std::unique_ptr<FolderLock> lock;
-  if (output) {
-    lock = std::make_unique<FolderLock>(output->folder);
-    RunFolder::check(output->folder, output->overwrite);
-  }
+  auto held = output ? lock(*output) : nullptr;
   Loaded loaded(Deck::parse(loaded_.deck.text(), loaded_.deck.name(), changes), loaded_.folder,
                 loaded_.choices);
   loaded.team->resize(loaded_.team->size());
-  std::unique_ptr<Session> copied(new Session(std::move(loaded), std::move(lock),
+  std::unique_ptr<Session> copied(new Session(std::move(loaded), std::move(held),
                                               output ? output->folder : std::filesystem::path(),
                                               simulation_->specimen()));
   StateCopy state;
@@ -220,6 +237,31 @@ void Session::change_materials(const std::vector<std::string>& changes) {
   take_over(std::move(deck), std::move(setup));
   for (const std::string& change : changes)
     depart({fmt::format("{} from step {} on", change, simulation_->mechanics().steps())});
+}
+
+void Session::drive(const std::string& drives) {
+  if (!simulation_->moves()) throw Error("nothing moves in this run, so there is nothing to hold or load");
+  if (run_.history().row_count() == 0) throw Error("the run has not begun: go on to its first look");
+  Deck deck = Deck::parse("duration = \"1 s\"\n" + drives, "drive");
+  StageTables tables;
+  tables.folder = loaded_.folder;
+  const auto stage = drive_kind().read(deck.root(), tables);
+  deck.finish();
+  const auto& drive = dynamic_cast<const Drive&>(*stage);
+  Supports<2> supports = supports_of(*simulation_);
+  drive.check(*simulation_, supports);
+  for (const std::string& set : drive.sets()) require_off_press(*simulation_, set);
+  if (run_.stage_is_under_way()) {
+    if (const auto* under_way = dynamic_cast<const Drive*>(&run_.stage()))
+      drive.check_beside(*under_way, *simulation_);
+    const auto load = [](const auto& one) { return one->loads(); };
+    if (has_weight(*simulation_) || drive.loads() || std::ranges::any_of(run_.stages(), load))
+      require_held(*simulation_, supports, "drive");
+  }
+  run_.check_later_stages(supports);
+  stage->begin(*simulation_);
+  stage->advance(*simulation_, 0);
+  depart({fmt::format("{} from step {} on", told(drives), simulation_->mechanics().steps())});
 }
 
 void Session::depart(const Departure& departure) {

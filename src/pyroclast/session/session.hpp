@@ -83,6 +83,11 @@ class Session {
   /// Other keys of materials and contacts from now on, as if the temperature had changed. Throws Error for
   /// what cannot change in a run. The run departs from its deck.
   void change_materials(const std::vector<std::string>& changes);
+  /// Holds, moves or loads sets from now on, as a stage of kind "drive" without ramps does at its beginning.
+  /// The run departs from its deck. Throws DeckError for what is wrong with the drives, Error for what
+  /// contradicts a support or the stage under way, or would let the body fly away; then nothing is changed.
+  /// \param drives  tables [[drives]] of such a stage
+  void drive(const std::string& drives);
   /// Notes that from now on the run is not the one that its deck describes: in summary and manifest.
   void depart(const Departure& departure);
 
@@ -102,6 +107,7 @@ class Session {
   Session(Loaded loaded, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
           std::optional<specimen::Specimen> specimen = std::nullopt);
 
+  static std::unique_ptr<FolderLock> lock(const RunOutput& output);
   void make_folder(const RunOutput& output, std::optional<Parent> parent);
   void open(std::int64_t last_checkpoint);
   void visit_state(StateVisitor& visitor);

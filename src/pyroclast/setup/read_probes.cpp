@@ -6,19 +6,14 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/setup/read_name.hpp"
+
 namespace pyroclast {
 
 namespace {
 
 /// A probe on the outline may be off by rounding, m.
 constexpr double kOnOutline = 1e-9;
-
-/// A name is part of a column's name in history.csv.
-bool is_name(const std::string& text) {
-  return std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-  });
-}
 
 }  // namespace
 
@@ -32,8 +27,7 @@ std::vector<ProbePosition> read_probes(const Section& root, const specimen::Regi
   for (const Section& s :
        root.optional_sections("probes", "places whose temperature is recorded, any number")) {
     ProbePosition probe;
-    probe.name = s.text("name", "letters, digits and _; the column in history.csv is probe_<name>_degC");
-    if (!is_name(probe.name)) s.error("name", "may hold letters, digits and _ only");
+    probe.name = read_name(s, "letters, digits and _; the column in history.csv is probe_<name>_degC");
     if (std::any_of(probes.begin(), probes.end(), [&](const auto& p) { return p.name == probe.name; }))
       s.error("name", "is the name of another probe already");
     probe.position = {{s.quantity("x", unit::length, within(0),

@@ -6,16 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/setup/read_name.hpp"
+
 namespace pyroclast {
 
 namespace {
-
-/// A name is part of a column's name in history.csv.
-bool is_name(std::string_view text) {
-  return std::ranges::all_of(text, [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-  });
-}
 
 Vec<2> vec(const std::pair<double, double>& place) {
   return {{place.first, place.second}};
@@ -69,8 +64,7 @@ Vec<2> read_direction(const Section& s) {
 
 RecordParameters read_record(const Section& s) {
   RecordParameters r;
-  r.name = s.text("name", "letters, digits and _; the column in history.csv is this and the unit");
-  if (!is_name(r.name)) s.error("name", "may hold letters, digits and _ only");
+  r.name = read_name(s, "letters, digits and _; the column in history.csv is this and the unit");
   r.place = fmt::format("{}: {}", s.where("name"), s.path());
   r.kind = s.choice<RecordKind>(
       "kind",
@@ -112,9 +106,13 @@ std::vector<SetParameters<2>> read_sets(const Section& root) {
     SetParameters<2> set;
     set.name = s.text("name", "another than those of the sets that there are anyhow");
     set.deck_place = fmt::format("{}: {}", s.where("name"), s.path());
-    set.of_contacts = s.choice<bool, bool>(
-        "of", {{"gridpoints", false, "to hold, move, load or watch"}, {"contacts", true, "to watch cracks"}},
-        false, "what it is a set of");
+    set.of = s.choice<SetOf, SetOf>(
+        "of",
+        {{"gridpoints", SetOf::gridpoints, "to hold, move, load or watch"},
+         {"faces", SetOf::faces, "those of faces that lie wholly there and meet no other block"},
+         {"blocks", SetOf::blocks, "those of blocks whose centroids lie there"},
+         {"contacts", SetOf::contacts, "to watch cracks"}},
+        SetOf::gridpoints, "what it is a set of");
     set.within = s.text("within", "", "a set that it is a part of; without one, all of the body");
     set.place = read_place_of_set(s);
     if (s.ok() && std::ranges::find(sets, set.name, &SetParameters<2>::name) != sets.end())

@@ -4,12 +4,18 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/specimen/cells_file.hpp"
+#include "pyroclast/specimen/from_cells.hpp"
+#include "pyroclast/specimen/neper_tess.hpp"
 #include "pyroclast/specimen/outline_seeds.hpp"
 
 namespace pyroclast {
@@ -23,6 +29,9 @@ constexpr int kPlacementAttempts = 100'000;
 constexpr double kFewestAggregatesAcross = 3.0;
 
 constexpr Meaning kPhase = "what they are made of: a table of [materials]";
+constexpr Meaning kSuperposition =
+    "which blocks are of which phase; needed where there is more than the matrix";
+constexpr Meaning kMatrix = "phase of the blocks that nothing else covers";
 
 int read_attempts(const Section& s) {
   return static_cast<int>(
@@ -84,7 +93,7 @@ void check_size(const Section& s, const specimen::SpecimenParameters& p) {
                                 narrowest / largest, kFewestAggregatesAcross));
 }
 
-enum class Shape { rectangle, disc, ring, polygon };
+enum class Shape { rectangle, disc, ring, polygon, tessellation, cells };
 
 /// What a deck says of the outline, before the size of the blocks is known.
 struct Outline {
@@ -99,6 +108,8 @@ struct Outline {
   };
   std::vector<Hole> holes;
   std::vector<specimen::Notch> notches;
+  std::optional<specimen::Cells> cells;
+  std::optional<specimen::Tessellation> tessellation;
 };
 
 Vec<2> vec(const std::pair<double, double>& place) {
@@ -115,22 +126,47 @@ Vec<2> read_place(const Section& s, std::string_view key, Meaning meaning) {
   return vec(s.place(key, unit::length, meaning).value_or(std::pair{0.0, 0.0}));
 }
 
-Outline read_outline(const Section& s) {
+/// All of a specimen from a file; nothing after an error.
+std::optional<specimen::Cells> read_cells(const Section& s, const std::filesystem::path& folder) {
+  const std::string name = s.text("file",
+                                  "of shape \"cells\": JSON with the blocks, see "
+                                  "[bodies.md](bodies.md#blocks-made-elsewhere)");
+  if (!s.has("file")) return std::nullopt;
+  s.names_file("file", folder / name);
+  try {
+    return specimen::read_cells(folder / name);
+  } catch (const Error& error) {
+    s.error("file", error.what());
+    return std::nullopt;
+  }
+}
+
+Outline read_outline(const Section& s, const std::filesystem::path& folder) {
   const Range size = Range::positive().usually(0.01, 10.0);
   Outline o;
   o.shape = s.choice<Shape, Shape>(
       "shape",
       {{"rectangle", Shape::rectangle,
         "with its lower left corner at [0, 0]; sides bottom, right, top, left"},
-       {"disc", Shape::disc, "around [0, 0]; its one side is called outline"},
+       {"disc", Shape::disc, "around [0, 0]; its one side is called rim"},
        {"ring", Shape::ring, "the same with a hole in the middle, called bore"},
-       {"polygon", Shape::polygon, "of any corners; its sides are called side_1 from the first corner on"}},
+       {"polygon", Shape::polygon, "of any corners; its sides are called side_1 from the first corner on"},
+       {"tessellation", Shape::tessellation,
+        "that of the blocks in `blocks.file`; its sides are called side_1 from its lowest corner on, holes "
+        "hole_1"},
+       {"cells", Shape::cells, "of blocks that are made elsewhere, as the specimen is in all"}},
       Shape::rectangle, "outline of the specimen");
   if (o.shape == Shape::rectangle) {
     o.width = s.quantity("width", unit::length, size, "of the specimen");
     o.height = s.quantity("height", unit::length, size, "of the specimen");
   } else if (o.shape == Shape::polygon) {
     o.corners = vecs(s.places("corners", unit::length, 3, "of the specimen, in either sense"));
+  } else if (o.shape == Shape::tessellation) {
+    o.width = s.quantity("width", unit::length, size, "of the specimen; the height follows from the file");
+    s.know({"holes", "notches"});
+  } else if (o.shape == Shape::cells) {
+    o.cells = read_cells(s, folder);
+    s.know({"seed", "holes", "notches"});
   } else {
     o.diameter = s.quantity("diameter", unit::length, size, "of the specimen");
     if (o.shape == Shape::ring) {
@@ -138,7 +174,8 @@ Outline read_outline(const Section& s) {
       if (s.ok() && o.inner_diameter >= o.diameter) s.error("inner_diameter", "must be less than diameter");
     }
   }
-  s.know({"width", "height", "corners", "diameter", "inner_diameter"});
+  s.know({"width", "height", "corners", "diameter", "inner_diameter", "file"});
+  if (o.shape == Shape::cells || o.shape == Shape::tessellation) return o;
   int number = 0;
   for (const Section& h : s.optional_sections("holes", "holes in the specimen, any number")) {
     Outline::Hole hole;
@@ -176,6 +213,8 @@ struct Circle {
 
 /// A seat this near to a circle, in diameters, is on it.
 constexpr double kOnCircle = 1e-3;
+/// The same of a corner of blocks and a side, over what is near to a seat.
+constexpr double kOnSide = 1e-6;
 
 /// Half of the angle that a bearing covers on a circle; none where it lies elsewhere.
 std::optional<double> half_angle(const ReadBearing& b, const Circle& circle) {
@@ -201,7 +240,9 @@ std::vector<Vec<2>> corners_of(const Circle& circle, double size, std::span<cons
 }
 
 /// Where a bearing lies on a straight side: its ends with the body on the left.
-std::array<Vec<2>, 2> ends_on_side(const specimen::Region& region, const ReadBearing& b) {
+/// \param corners  of blocks that are there already, of which the ends are the nearest; empty: anywhere
+std::array<Vec<2>, 2> ends_on_side(const specimen::Region& region, const ReadBearing& b,
+                                   std::span<const Vec<2>> corners) {
   const auto& box = region.box();
   const double near = kOnCircle * std::max(box.width(), box.height());
   for (const specimen::Piece& piece : region.pieces()) {
@@ -210,7 +251,14 @@ std::array<Vec<2>, 2> ends_on_side(const specimen::Region& region, const ReadBea
       continue;
     const Vec<2> along = (piece.to - piece.from) * (1.0 / norm(piece.to - piece.from));
     const Vec<2> middle = piece.from + dot(*b.at - piece.from, along) * along;
-    return {middle - 0.5 * b.width * along, middle + 0.5 * b.width * along};
+    std::array<Vec<2>, 2> ends{middle - 0.5 * b.width * along, middle + 0.5 * b.width * along};
+    if (!corners.empty())
+      for (Vec<2>& end : ends)
+        end = *std::ranges::min_element(corners, {}, [&](const Vec<2>& corner) {
+          const bool is_on = specimen::distance_from_segment(corner, piece.from, piece.to) <= kOnSide * near;
+          return is_on ? norm(corner - end) : std::numeric_limits<double>::infinity();
+        });
+    return ends;
   }
   throw Error(fmt::format("its middle ({:.6g}, {:.6g}) m is not on the outline", (*b.at)[0], (*b.at)[1]));
 }
@@ -233,7 +281,7 @@ std::array<Vec<2>, 2> ends_on_circle(const specimen::Region& region, const Circl
 
 /// With the seats of bearings named.
 specimen::Region with_seats(const specimen::Region& region, std::span<const Circle> circles,
-                            std::span<const ReadBearing> bearings) {
+                            std::span<const ReadBearing> bearings, std::span<const Vec<2>> corners = {}) {
   std::vector<specimen::Patch> patches;
   for (const ReadBearing& b : bearings) {
     if (!b.at) continue;
@@ -241,7 +289,7 @@ specimen::Region with_seats(const specimen::Region& region, std::span<const Circ
       const auto circle =
           std::ranges::find_if(circles, [&](const Circle& c) { return half_angle(b, c).has_value(); });
       const auto [from, to] = circle == circles.end()
-                                  ? ends_on_side(region, b)
+                                  ? ends_on_side(region, b, corners)
                                   : ends_on_circle(region, *circle, b, *half_angle(b, *circle));
       std::vector<specimen::Patch> more = patches;
       more.push_back({b.bearing.side, from, to});
@@ -257,8 +305,14 @@ specimen::Region with_seats(const specimen::Region& region, std::span<const Circ
 /// \param blocks  number of blocks; 0 where they are read from a file
 specimen::Region make_region(const Section& s, const Outline& o, int blocks,
                              std::span<const ReadBearing> bearings) {
-  if (!s.ok()) return specimen::Region::rectangle(1.0, 1.0);
+  const bool is_missing = o.shape == Shape::tessellation && !o.tessellation;  // an error that is told
+  if (!s.ok() || is_missing) return specimen::Region::rectangle(1.0, 1.0);
   try {
+    if (o.cells)
+      return with_seats(specimen::outline_of(o.cells->tessellation), {}, bearings,
+                        o.cells->tessellation.vertices);
+    if (o.tessellation)
+      return with_seats(specimen::outline_of(*o.tessellation), {}, bearings, o.tessellation->vertices);
     std::vector<Circle> circles;
     const auto round = [&](const Circle& circle, double size) {
       circles.push_back(circle);
@@ -275,7 +329,7 @@ specimen::Region make_region(const Section& s, const Outline& o, int blocks,
       for (std::size_t i = 0; i < o.corners.size(); ++i) names.push_back(fmt::format("side_{}", i + 1));
       region = specimen::Region::polygon(o.corners, names);
     } else {
-      region = specimen::Region::polygon(round({{}, o.diameter}, size), {"outline"}, true);
+      region = specimen::Region::polygon(round({{}, o.diameter}, size), {"rim"}, true);
       if (o.shape == Shape::ring)
         region =
             region.with_holes(std::array{specimen::Hole{"bore", round({{}, o.inner_diameter}, size), true}});
@@ -290,7 +344,8 @@ specimen::Region make_region(const Section& s, const Outline& o, int blocks,
     for (specimen::Notch& n : notches) n.point = specimen::slot_point(n.length(), n.width, size);
     region = with_seats(region.with_holes(holes).with_notches(notches), circles, bearings);
     if (blocks == 0 && !region.is_rectangle())
-      s.error("shape", "blocks are read from a file, which must be a rectangle");
+      s.error("shape",
+              "with blocks.file must be \"rectangle\" or \"tessellation\", which is the outline of the file");
     return region;
   } catch (const Error& error) {
     s.error(error.what());
@@ -349,33 +404,92 @@ specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::p
   return b;
 }
 
+/// Blocks whose outline is that of the specimen; nothing after an error.
+std::optional<specimen::Tessellation> read_tessellation(const Section& blocks,
+                                                        const specimen::BlockParameters& b, double width) {
+  if (b.file.empty()) blocks.error("file", "is needed where specimen.shape is \"tessellation\"");
+  if (b.file.empty() || !(width > 0.0)) return std::nullopt;
+  try {
+    return specimen::read_neper_tess(b.file, width);
+  } catch (const Error& error) {
+    blocks.error("file", error.what());
+    return std::nullopt;
+  }
+}
+
+/// Of [superposition] where nothing is superposed. Whether there is the table.
+bool read_matrix_alone(const Section& root, specimen::SpecimenParameters& p) {
+  const auto superposition = root.optional_section("superposition", kSuperposition);
+  if (!superposition) return false;
+  superposition->know({"rule", "covered_fraction"});
+  p.matrix = superposition->text("matrix", p.matrix, kMatrix);
+  return true;
+}
+
+/// What counts beside cells. The tables of what is made otherwise have no effect.
+void read_beside_cells(const Section& root, const Section& s, std::span<const ReadBearing> bearings,
+                       Outline outline, specimen::SpecimenParameters& p) {
+  root.know({"aggregates", "inclusions", "blocks"});
+  p.region = make_region(s, outline, 0, bearings);
+  const bool has_matrix = read_matrix_alone(root, p);
+  if (!outline.cells || !s.ok()) return;
+  p.blocks.count = static_cast<int>(outline.cells->tessellation.cells.size());
+  if (outline.cells->phases.size() == 1 && !has_matrix) p.matrix = outline.cells->phases.front();
+  if (std::ranges::find(outline.cells->phases, p.matrix) == outline.cells->phases.end())
+    s.error("file", fmt::format("its phases are {}, and none is the matrix, \"{}\": [superposition] matrix "
+                                "says which is",
+                                fmt::join(outline.cells->phases, ", "), p.matrix));
+  p.cells = std::move(outline.cells);
+}
+
+/// Phases are not called as the solids of bearings.
+void check_phases(const Section& s, const specimen::SpecimenParameters& p,
+                  std::span<const ReadBearing> bearings) {
+  for (const auto& phase : specimen::phases(p))
+    if (phase == "platen" ||
+        std::ranges::any_of(bearings, [&](const ReadBearing& b) { return b.bearing.material == phase; }))
+      s.error(fmt::format("\"{}\" is the solid of a bearing; a phase needs another name", phase));
+}
+
 }  // namespace
 
 specimen::SpecimenParameters read_specimen(const Section& root, const std::filesystem::path& folder,
                                            std::span<const ReadBearing> bearings) {
   specimen::SpecimenParameters p;
   const Section s = root.section("specimen", "size of the specimen, and its seed");
-  const Outline outline = read_outline(s);
+  Outline outline = read_outline(s, folder);
+  if (outline.shape == Shape::cells) {
+    read_beside_cells(root, s, bearings, std::move(outline), p);
+    if (s.ok()) check_bearings(p.region, bearings);
+    check_phases(s, p, bearings);
+    return p;
+  }
   p.seed = static_cast<std::uint64_t>(
       s.integer("seed", Range::between(0, static_cast<double>(specimen::kLargestSeed)),
                 "of the random numbers; the same seed gives the same specimen"));
-  const Section aggregates =
-      root.section("aggregates",
-                   "coarse aggregates, placed as circles with diameters after Fuller's curve "
-                   "P(d) = (d / d_max)^fuller_exponent, Eq. (16)");
-  p.aggregates = read_aggregates(aggregates);
+  const auto aggregates =
+      root.optional_section("aggregates",
+                            "coarse aggregates, placed as circles with diameters after Fuller's curve "
+                            "P(d) = (d / d_max)^fuller_exponent, Eq. (16); without it there are none");
+  if (aggregates) p.aggregates = read_aggregates(*aggregates);
   p.inclusions = read_inclusions(root);
   const Section blocks = root.section("blocks", "the tessellation into blocks");
   p.blocks = read_blocks(blocks, folder);
+  if (outline.shape == Shape::tessellation)
+    outline.tessellation = read_tessellation(blocks, p.blocks, outline.width);
   p.region = make_region(s, outline, p.blocks.count, bearings);
   if (s.ok()) check_bearings(p.region, bearings);
-  if (s.ok() && aggregates.ok()) check_size(aggregates, p);
-  const Section superposition = root.section("superposition", "which blocks are of which phase");
-  p.matrix = superposition.text("matrix", "mortar", "phase of the blocks that nothing else covers");
-  for (const auto& phase : specimen::phases(p))
-    if (phase == "platen" ||
-        std::ranges::any_of(bearings, [&](const ReadBearing& b) { return b.bearing.material == phase; }))
-      superposition.error(fmt::format("\"{}\" is the solid of a bearing; a phase needs another name", phase));
+  if (s.ok() && aggregates && aggregates->ok()) check_size(*aggregates, p);
+  if (!aggregates && p.inclusions.empty()) {
+    read_matrix_alone(root, p);
+    p.aggregates.phase = p.matrix;
+    check_phases(s, p, bearings);
+    return p;
+  }
+  const Section superposition = root.section("superposition", kSuperposition);
+  if (!aggregates) p.aggregates.phase = specimen::phases(p).at(1);  // that of the first inclusions
+  p.matrix = superposition.text("matrix", p.matrix, kMatrix);
+  check_phases(superposition, p, bearings);
   p.superposition = superposition.choice<specimen::Superposition>(
       "rule",
       {{"area", specimen::Superposition::area, "circles cover more than covered_fraction of the block"},

@@ -56,10 +56,13 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
   tables.has_platens = root.has("platens");
   tables.records = records;
   tables.folder = folder;
-  tables.output = read_output(
-      root.section("output",
-                   "how often rows and frames are written; both are written at the end of each stage too"),
-      moves, root.has("platens"), frames_in_time);
+  constexpr Meaning kOutput =
+      "how often rows and frames are written, both at the end of each stage too; may be left out where no "
+      "key of it is needed";
+  const bool needs_output = (moves && tables.has_platens) || frames_in_time == FramesInTime::needed;
+  tables.output =
+      read_output(needs_output ? root.section("output", kOutput) : root.section_or_none("output", kOutput),
+                  moves, tables.has_platens, frames_in_time);
   if (moves)
     tables.coupling_table =
         root.optional_section("coupling",

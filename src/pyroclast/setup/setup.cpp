@@ -100,7 +100,7 @@ void check_heated_sides(const Section& root, const Setup& setup) {
   std::vector<std::string> names{HeatedFaces::kOutline, HeatedFaces::kBox};
   for (const specimen::Side& side : setup.specimen.region.sides()) names.push_back(side.name);
   for (const auto& set : setup.sets)
-    if (!set.of_contacts) names.push_back(set.name);
+    if (set.of != SetOf::contacts) names.push_back(set.name);
   const auto heat = root.optional_section("heat");
   if (!heat || setup.heat.boundaries.empty()) return;
   const auto sections = heat->optional_sections("boundaries");
@@ -157,6 +157,16 @@ void warn_of_healing(const Section& root, const Setup& setup) {
     }
     temperature = *to;
   }
+}
+
+/// A body that is not at the temperature at which nothing is strained.
+void warn_of_first_strain(const Section& root, const Setup& setup) {
+  if (!setup.motion || setup.heat.initial == kReferenceTemperature) return;
+  root.section("heat").warn(
+      "initial",
+      fmt::format("the body is unstrained at {:.6g} degC, and its expansion from there on acts at once "
+                  "at the first step, which can crack it: a stage that heats it does so gradually",
+                  kReferenceTemperature));
 }
 
 /// All temperatures that a run may come to, and the reference temperature, at which masses and stated
@@ -297,8 +307,9 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   if (setup.motion) setup.motion->records = records;
   setup.curves = curves.curves();
   warn_of_healing(root, setup);
+  warn_of_first_strain(root, setup);
   if (root.ok()) warn_of_coarse_blocks(root, setup);
-  const Section output = root.section("output");
+  const Section output = root.section_or_none("output");
   setup.has_fields =
       output.flag("fields", true, "whether frames of the fields are written, for figures and ParaView");
   setup.checkpoints.interval =

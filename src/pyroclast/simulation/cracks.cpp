@@ -72,11 +72,12 @@ Cracks count_cracks(const Mechanics<2>& mechanics, const std::vector<CrackKind>&
     const auto& contact = model.contacts[c];
     const double length = contact.area / model.thickness;
     bool apart = false;
-    sum.of_kind.resize(kinds.size());
     for (const std::size_t k : of_interface[contact.interface]) {
       const double damage = mechanics.remembered(c, kinds[k].damage);
+      if (damage <= 0.0) continue;
+      sum.of_kind.resize(kinds.size());
       sum.of_kind[k].add(damage, length);
-      apart = apart || (damage > 0.0 && kinds[k].damage != Remembers::shear_damage);
+      apart = apart || kinds[k].damage != Remembers::shear_damage;
     }
     if (!apart) return;
     sum.opening += std::max(0.0, mechanics.opening(c) + mechanics.remembered(c, Remembers::closure)) * length;

@@ -69,8 +69,8 @@ std::vector<double> History::values(std::string_view column, RowRange rows) cons
 }
 
 void History::visit_state(StateVisitor& visitor) {
-  std::string names;
-  for (const Column& column : columns_) names += column.name + '\n';
+  std::vector<std::string> of_values;
+  for (const Column& column : columns_) of_values.push_back(column.name);
   std::vector<double> values;
   std::vector<std::uint8_t> is_there;
   for (const auto& row : cells_)
@@ -78,17 +78,11 @@ void History::visit_state(StateVisitor& visitor) {
       values.push_back(cell.value_or(0.0));
       is_there.push_back(cell ? 1 : 0);
     }
-  visitor.visit("columns", names);
+  visitor.visit("columns", of_values);
   visitor.visit("values", values);
   visitor.visit("is_there", is_there);
   if (!visitor.replaces()) return;
 
-  std::vector<std::string> of_values;
-  for (std::size_t begin = 0; begin < names.size();) {
-    const auto end = names.find('\n', begin);
-    of_values.push_back(names.substr(begin, end - begin));
-    begin = end + 1;
-  }
   cells_.clear();
   for (std::size_t first = 0; first < values.size(); first += of_values.size()) {
     add_row();

@@ -8,7 +8,7 @@
 
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/model/outline.hpp"
+#include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/model/sets.hpp"
 
 namespace pyroclast {
@@ -32,20 +32,31 @@ typename Loads<Dim>::Entry& Loads<Dim>::entry(const std::string& set) {
   if (found != entries_.end()) return found->second;
   const Model<Dim>& model = mechanics_.model();
   std::vector<int> gridpoints = model.set(set);
-  std::ranges::sort(gridpoints);
-  const auto repeated = std::ranges::unique(gridpoints);
-  gridpoints.erase(repeated.begin(), repeated.end());
+  sort_unique(gridpoints);
   Entry entry;
   entry.set = mechanics_.set_of(gridpoints);
-  entry.shares = tributary_areas(model, gridpoints);
+  const auto faces = faces_in(model, gridpoints);
+  for (const auto& face : faces) entry.faces.push_back(face.gridpoints);
+  entry.shares = tributary_areas(gridpoints, faces);
   const double whole = chunked_sum(entry.set.chunks, [&](int i) { return entry.shares[i]; });
   for (double& share : entry.shares)
     share = whole > 0.0 ? share / whole : 1.0 / static_cast<double>(gridpoints.size());
-  const auto in_set = [&](int g) { return std::ranges::binary_search(gridpoints, g); };
-  for (const auto& face :
-       outline(model, zone_geometry(model), std::vector<bool>(model.material_names.size(), true)))
-    if (std::ranges::all_of(face.gridpoints, in_set)) entry.faces.push_back(face.gridpoints);
-  return entries_.emplace(set, std::move(entry)).first->second;
+  Entry& added = entries_.emplace(set, std::move(entry)).first->second;
+  list_loaded();
+  return added;
+}
+
+template <int Dim>
+void Loads<Dim>::list_loaded() {
+  loaded_.clear();
+  for (const auto& [name, entry] : entries_)
+    loaded_.insert(loaded_.end(), entry.set.gridpoints.begin(), entry.set.gridpoints.end());
+  sort_unique(loaded_);
+  for (auto& [name, entry] : entries_) {
+    entry.places.clear();
+    for (int g : entry.set.gridpoints)
+      entry.places.push_back(static_cast<int>(std::ranges::lower_bound(loaded_, g) - loaded_.begin()));
+  }
 }
 
 template <int Dim>
@@ -55,26 +66,20 @@ SetLoad<Dim> Loads<Dim>::on(const std::string& set) const {
 }
 
 template <int Dim>
-void Loads<Dim>::set(const std::string& set, const SetLoad<Dim>& load) {
-  Entry& changed = entry(set);
-  for (int g : changed.set.gridpoints)
-    for (int i = 0; i < Dim; ++i)
-      if (load.force[i] != 0.0 && mechanics_.is_prescribed(g, i))
-        throw Error(
-            fmt::format("a force along {} on set \"{}\" acts on gridpoints that are held or driven along {}",
-                        "xyz"[i], set, "xyz"[i]));
-  if (load.pressure != 0.0 && changed.faces.empty())
-    throw Error(fmt::format("a pressure acts on set \"{}\", which has no face of the outline", set));
-  changed.load = load;
+void Loads<Dim>::set(const std::map<std::string, SetLoad<Dim>>& loads) {
+  for (const auto& [set, load] : loads) {
+    const Entry& changed = entry(set);
+    for (int g : changed.set.gridpoints)
+      for (int i = 0; i < Dim; ++i)
+        if (load.force[i] != 0.0 && mechanics_.is_prescribed(g, i))
+          throw Error(fmt::format(
+              "a force along {} on set \"{}\" acts on gridpoints that are held or driven along {}", "xyz"[i],
+              set, "xyz"[i]));
+    if (load.pressure != 0.0 && changed.faces.empty())
+      throw Error(fmt::format("a pressure acts on set \"{}\", which has no face of the outline", set));
+  }
+  for (const auto& [set, load] : loads) entry(set).load = load;
   apply();
-}
-
-template <int Dim>
-void Loads<Dim>::follow() {
-  const auto follows = [](const auto& e) {
-    return e.second.load.is_follower && e.second.load.pressure != 0.0;
-  };
-  if (std::ranges::any_of(entries_, follows)) apply();
 }
 
 /// On each gridpoint of the set.
@@ -99,12 +104,12 @@ std::vector<Vec<Dim>> Loads<Dim>::forces(const Entry& entry) const {
 
 template <int Dim>
 void Loads<Dim>::apply() {
-  std::map<int, Vec<Dim>> on;
+  std::vector<Vec<Dim>> on(loaded_.size());
   for (const auto& [name, entry] : entries_) {
     const auto of_entry = forces(entry);
-    for (std::size_t i = 0; i < of_entry.size(); ++i) on[entry.set.gridpoints[i]] += of_entry[i];
+    for (std::size_t i = 0; i < of_entry.size(); ++i) on[entry.places[i]] += of_entry[i];
   }
-  for (const auto& [gridpoint, force] : on) mechanics_.apply_force(gridpoint, force);
+  for (std::size_t i = 0; i < on.size(); ++i) mechanics_.apply_force(loaded_[i], on[i]);
 }
 
 /// Of the set along its force; under a pressure against its faces.
@@ -130,16 +135,12 @@ double Loads<Dim>::give() const {
 
 template <int Dim>
 void Loads<Dim>::visit_state(StateVisitor& visitor) {
-  std::string names;
-  for (const auto& [name, entry] : entries_) names += name + '\n';
-  visitor.visit("sets", names);
+  std::vector<std::string> sets;
+  for (const auto& [name, entry] : entries_) sets.push_back(name);
+  visitor.visit("sets", sets);
   if (visitor.replaces()) {
     entries_.clear();
-    for (std::size_t begin = 0; begin < names.size();) {
-      const auto end = names.find('\n', begin);
-      entry(names.substr(begin, end - begin));
-      begin = end + 1;
-    }
+    for (const std::string& set : sets) entry(set);
   }
   for (auto& [name, entry] : entries_) {
     const StateVisitor::Scope scope(visitor, name);

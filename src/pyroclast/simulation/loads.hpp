@@ -29,11 +29,10 @@ class Loads {
   bool empty() const { return entries_.empty(); }
   /// None where the set was never loaded.
   SetLoad<Dim> on(const std::string& set) const;
-  /// From the next step on. Throws Error when there is no such set, a force is to act on a component that is
-  /// held or driven, or a pressure on a set without faces.
-  void set(const std::string& set, const SetLoad<Dim>& load);
-  /// Turns pressures that follow the body to where it is now.
-  void follow();
+  /// By set, from the next step on; other sets stay as they are, but that pressures which follow the body
+  /// turn to where it is now. Throws Error, and changes nothing, when there is no such set, a force is to act
+  /// on a component that is held or driven, or a pressure on a set without faces.
+  void set(const std::map<std::string, SetLoad<Dim>>& loads);
 
   /// Takes the present place of the loaded sets for that from which `give` counts.
   void mark();
@@ -46,12 +45,14 @@ class Loads {
   struct Entry {
     SetLoad<Dim> load;
     GridpointSet set;
+    std::vector<int> places;                  ///< of its gridpoints in loaded_
     std::vector<double> shares;               ///< of the force, by gridpoint of the set
     std::vector<std::array<int, Dim>> faces;  ///< right-handed, the normal outwards
     double marked = 0.0;                      ///< way along the load at the mark, m
   };
 
   Entry& entry(const std::string& set);
+  void list_loaded();
   double way(const Entry& entry) const;
   std::vector<Vec<Dim>> forces(const Entry& entry) const;
   void apply();
@@ -59,6 +60,7 @@ class Loads {
   Mechanics<Dim>& mechanics_;
   double size_;
   std::map<std::string, Entry> entries_;  ///< by set
+  std::vector<int> loaded_;               ///< gridpoints of all, ascending
 };
 
 extern template class Loads<2>;

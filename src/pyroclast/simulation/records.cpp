@@ -48,6 +48,19 @@ const Unit& unit_of(RecordKind kind) {
   }
 }
 
+const Unit& rate_unit_of(RecordKind kind) {
+  switch (kind) {
+    case RecordKind::force:
+      return unit::force_rate;
+    case RecordKind::stress:
+      return unit::stress_rate;
+    case RecordKind::temperature:
+      return unit::heating_rate;
+    default:
+      return unit::velocity;
+  }
+}
+
 Column column_of(const RecordParameters& record) {
   const std::string unit = record.kind == RecordKind::stress ? "MPa" : unit_of(record.kind).si;
   return {fmt::format("{}_{}", record.name, unit), unit};

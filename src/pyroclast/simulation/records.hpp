@@ -37,6 +37,8 @@ struct RecordParameters {
 Column column_of(const RecordParameters& record);
 /// In which decks state it.
 const Unit& unit_of(RecordKind kind);
+/// Of its change over time.
+const Unit& rate_unit_of(RecordKind kind);
 /// A value of the column over the same in SI: 1e-6 where it is in MPa.
 double column_over_si(RecordKind kind);
 

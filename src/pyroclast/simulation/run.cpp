@@ -37,7 +37,7 @@ Run::Run(Simulation& simulation, std::vector<std::unique_ptr<Stage>> stages)
       records_(stages_.size()),
       most_steps_(most_steps(simulation)) {
   if (stages_.empty()) throw Error("a run needs at least one stage");
-  if (simulation.moves()) check_supports();
+  if (simulation.moves()) check(stages_, 0, supports_of(simulation));
   const auto add = [&](std::vector<Gauge> gauges) { append(gauges_, std::move(gauges)); };
   add(clock_gauges(simulation));
   add(temperature_gauges());
@@ -61,21 +61,17 @@ void Run::name_columns() {
   }
 }
 
-/// Where platens hold the body, they do.
-void Run::check_supports() const {
-  Supports<2> supports(simulation_.model());
-  const Vec<2> gravity = simulation_.mechanics().state().gravity;
-  bool is_loaded = gravity[0] != 0.0 || gravity[1] != 0.0;
-  for (std::size_t i = 0; i < stages_.size(); ++i) {
-    const Stage& stage = *stages_[i];
-    stage.check(simulation_, supports);
+/// Of the stages from this one on. Where platens hold the body, they do.
+void Run::check(const std::vector<std::unique_ptr<Stage>>& stages, std::size_t first,
+                Supports<2> supports) const {
+  bool is_loaded = has_weight(simulation_);
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    const Stage& stage = *stages[i];
     is_loaded = is_loaded || stage.loads();
-    if (simulation_.has_press() || !stage.needs().mechanics || !is_loaded) continue;
-    if (const auto motion = supports.free_motion())
-      throw Error(fmt::format(
-          "stage {} ({}): nothing holds the body against moving {}, but it has weight or a load: hold "
-          "a set of it in a stage of kind \"drive\", or set gravity to 0",
-          i + 1, stage.kind(), *motion));
+    if (i < first) continue;
+    stage.check(simulation_, supports);
+    if (is_loaded && stage.needs().mechanics)
+      require_held(simulation_, supports, fmt::format("stage {} ({})", i + 1, stage.kind()));
   }
 }
 
@@ -113,6 +109,7 @@ void Run::change_later_stages(std::vector<std::unique_ptr<Stage>> stages) {
   const auto kept = static_cast<std::size_t>(last_begun_stage() + 1);
   if (stages.size() < std::max<std::size_t>(kept, 1))
     throw Error(fmt::format("the run has begun {} stages, but {} are given", kept, stages.size()));
+  if (simulation_.moves()) check(stages, kept, supports_of(simulation_));
   for (std::size_t i = 0; i < kept; ++i) stages[i] = std::move(stages_[i]);
   stages_ = std::move(stages);
   records_.resize(stages_.size());
@@ -123,9 +120,13 @@ void Run::change_later_stages(std::vector<std::unique_ptr<Stage>> stages) {
   if (stage_is_over_ && !stage_ends_run_ && has_more) outcome_ = Outcome::running;
 }
 
+void Run::check_later_stages(Supports<2> supports) const {
+  check(stages_, static_cast<std::size_t>(last_begun_stage() + 1), std::move(supports));
+}
+
 void Run::end_stage() {
   go_on();
-  if (!stage_is_begun_ || stage_is_over_ || outcome_ != Outcome::running)
+  if (!stage_is_under_way() || outcome_ != Outcome::running)
     throw Error("no stage is under way that could be ended");
   if (records_[stage_].rows.empty())
     throw Error("the stage has not come to a look yet, so it cannot be ended");

@@ -67,9 +67,16 @@ class Run {
   std::vector<std::optional<double>> measure() const;
 
   /// Puts other stages behind the last one that has begun. A run whose last stage was over goes on with them,
-  /// unless its verdict ended the run. Columns of theirs are added to the history, empty so far.
+  /// unless its verdict ended the run. Columns of theirs are added to the history, empty so far. Throws
+  /// Error, and changes nothing, where one of them cannot be done, see Stage::check.
+  ///
   /// \param stages  all of the run; those up to the last begun are not taken
   void change_later_stages(std::vector<std::unique_ptr<Stage>> stages);
+  /// Throws Error where stages that have not begun cannot be done, see Stage::check.
+  /// \param supports  now, or as they are about to be
+  void check_later_stages(Supports<2> supports) const;
+  /// Whether a stage has begun and is not over.
+  bool stage_is_under_way() const { return stage_is_begun_ && !stage_is_over_; }
   /// Ends the stage that is under way, at the last look or where it was stopped since. Throws Error where
   /// none is.
   void end_stage();
@@ -86,7 +93,8 @@ class Run {
   void visit_state(StateVisitor& visitor);
 
  private:
-  void check_supports() const;
+  void check(const std::vector<std::unique_ptr<Stage>>& stages, std::size_t first,
+             Supports<2> supports) const;
   void begin_stage();
   bool move_to_look();
   int batch() const;

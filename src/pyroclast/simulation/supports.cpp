@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/simulation/simulation.hpp"
+
 namespace pyroclast {
 
 namespace {
@@ -37,6 +42,28 @@ std::optional<std::string> Supports<2>::free_motion() const {
   const double tolerance = kSameLine * size_of();
   if (most[0] - least[0] <= tolerance && most[1] - least[1] <= tolerance) return "turning about one point";
   return std::nullopt;
+}
+
+Supports<2> supports_of(const Simulation& simulation) {
+  Supports<2> supports(simulation.model());
+  for (int g = 0; g < simulation.model().gridpoint_count(); ++g)
+    for (const int c : {0, 1})
+      if (simulation.mechanics().is_prescribed(g, c)) supports.hold(g, c);
+  return supports;
+}
+
+bool has_weight(const Simulation& simulation) {
+  const Vec<2> gravity = simulation.mechanics().state().gravity;
+  return gravity[0] != 0.0 || gravity[1] != 0.0;
+}
+
+void require_held(const Simulation& simulation, const Supports<2>& supports, const std::string& what) {
+  if (simulation.has_press()) return;
+  if (const auto motion = supports.free_motion())
+    throw Error(
+        fmt::format("{}: nothing holds the body against moving {}, but it has weight or a load: hold "
+                    "a set of it by a drive, or set gravity to 0",
+                    what, *motion));
 }
 
 }  // namespace pyroclast

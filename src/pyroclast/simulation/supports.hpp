@@ -9,6 +9,8 @@
 
 namespace pyroclast {
 
+class Simulation;
+
 /// What of a body is held or driven, as far as it can be foreseen, so that decks are checked before they run.
 template <int Dim>
 class Supports {
@@ -29,5 +31,14 @@ class Supports {
 
 template <>
 std::optional<std::string> Supports<2>::free_motion() const;
+
+/// What is held or driven now.
+Supports<2> supports_of(const Simulation& simulation);
+
+bool has_weight(const Simulation& simulation);
+
+/// Throws Error where nothing hinders the body from moving as a whole, and no press holds it.
+/// \param what  is about to be done to it, for the message
+void require_held(const Simulation& simulation, const Supports<2>& supports, const std::string& what);
 
 }  // namespace pyroclast

@@ -135,7 +135,9 @@ Blocks make_blocks(const BlockParameters& parameters, const Region& region, Rand
     blocks = tessellate_until_fit(parameters, region, random, team);
     require_valid(blocks.tessellation, region, fmt::format("Tessellation of {} blocks", parameters.count));
   } else {
-    blocks.tessellation = read_neper_tess(parameters.file, region.box().width(), region.box().height());
+    const Box& box = region.box();
+    blocks.tessellation = region.is_rectangle() ? read_neper_tess(parameters.file, box.width(), box.height())
+                                                : read_neper_tess(parameters.file, box.width());
     const Regularisation done = regularise(blocks.tessellation, region, parameters.shortest_edge);
     blocks.edges_removed = done.edges_removed;
     blocks.edges_left_short = done.edges_left_short;

@@ -17,6 +17,8 @@ namespace {
 
 /// Sides that turn by less than this, radians, are one.
 constexpr double kStraight = 1e-6;
+/// Corners whose levels differ by less than this share of the body's size are level.
+constexpr double kSameLevel = 1e-9;
 
 /// Vertices along each loop of the outline, the cells on the left.
 std::vector<std::vector<int>> loops_of(const Tessellation& tessellation) {
@@ -52,8 +54,22 @@ std::vector<Vec<2>> corners_of(const std::vector<int>& loop, const std::vector<V
   return corners;
 }
 
-void require_cells(const Tessellation& t, const std::vector<std::string>& phases,
-                   const std::vector<int>& phase) {
+/// Names of the sides from corner to corner. The first corner is the lowest, of several the leftmost.
+std::vector<std::string> names_of(const std::vector<Vec<2>>& corners, double tolerance) {
+  const auto are_level = [&](int i, int j, int component) {
+    return std::abs(corners[i][component] - corners[j][component]) <= tolerance;
+  };
+  if (corners.size() == 4 && are_level(0, 1, 1) && are_level(1, 2, 0) && are_level(2, 3, 1) &&
+      are_level(3, 0, 0))
+    return {"bottom", "right", "top", "left"};
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < corners.size(); ++i) names.push_back(fmt::format("side_{}", i + 1));
+  return names;
+}
+
+void require_cells(const Cells& cells) {
+  const Tessellation& t = cells.tessellation;
+  const auto& [tessellation, phases, phase] = cells;
   if (t.cells.empty()) throw Error("there are no cells");
   if (phase.size() != t.cells.size())
     throw Error(fmt::format("there are {} cells, but the phases of {}", t.cells.size(), phase.size()));
@@ -85,25 +101,41 @@ Region outline_of(const Tessellation& tessellation) {
     else
       throw Error("the cells are not one piece");
   }
-  const auto lowest =
-      std::ranges::min_element(outer, {}, [](const Vec<2>& p) { return std::pair(p[1], p[0]); });
+  const Box box = box_of(outer);
+  const double tolerance = kSameLevel * std::max(box.width(), box.height());
+  const auto lowest = std::ranges::min_element(
+      outer, {}, [&](const Vec<2>& p) { return std::pair(std::round(p[1] / tolerance), p[0]); });
   std::ranges::rotate(outer, lowest);
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < outer.size(); ++i) names.push_back(fmt::format("side_{}", i + 1));
+  const std::vector<std::string> names = names_of(outer, tolerance);
+  const Vec<2> origin = outer.front(), opposite = outer[2];
+  if (names.front() == "bottom" && origin == Vec<2>{})
+    return Region::rectangle(opposite[0], opposite[1]).with_holes(holes);
   return Region::polygon(std::move(outer), names).with_holes(holes);
 }
 
-Specimen specimen_from(Tessellation tessellation, std::vector<std::string> phases, std::vector<int> phase) {
-  require_cells(tessellation, phases, phase);
+Cells checked(Cells cells) {
+  require_cells(cells);
   std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
-    corners(tessellation, c, polygon);
-    if (area(polygon) < 0.0) std::ranges::reverse(tessellation.cells[c]);
+  for (std::size_t c = 0; c < cells.tessellation.cells.size(); ++c) {
+    corners(cells.tessellation, c, polygon);
+    if (area(polygon) < 0.0) std::ranges::reverse(cells.tessellation.cells[c]);
   }
+  return cells;
+}
+
+Specimen specimen_from(Cells cells) {
+  cells = checked(std::move(cells));
+  Region region = outline_of(cells.tessellation);
+  return specimen_from(std::move(cells), std::move(region));
+}
+
+Specimen specimen_from(Cells cells, Region region) {
+  auto [tessellation, phases, phase] = checked(std::move(cells));
+  require_valid(tessellation, region, "The cells");
   Specimen specimen{};
-  specimen.region = outline_of(tessellation);
-  require_valid(tessellation, specimen.region, "The cells");
+  specimen.region = std::move(region);
   specimen.fraction.assign(phases.size(), 0.0);
+  std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
     corners(tessellation, c, polygon);
     specimen.fraction[phase[c]] += area(polygon) / specimen.region.area();

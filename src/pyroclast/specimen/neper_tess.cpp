@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/region.hpp"
 #include "pyroclast/specimen/topology.hpp"
@@ -179,12 +180,14 @@ std::vector<std::vector<int>> read_faces(Words& words, int vertex_count) {
   return faces;
 }
 
-Box read_domain(Words& words) {
+/// \param is_rectangle  it must be an upright one
+Box read_domain(Words& words, bool is_rectangle) {
   words.expect("*general");
   words.next();  // The type says "cube" for a rectangle as well; the corners tell.
   words.expect("*vertex");
-  const int count = words.count("the number of domain vertices", 1);
-  if (count != 4) words.fail(std::to_string(count), "4 domain vertices, those of a rectangle");
+  const int count = words.count("the number of domain vertices", 3);
+  if (is_rectangle && count != 4)
+    words.fail(std::to_string(count), "4 domain vertices, those of a rectangle");
   std::vector<Vec<2>> points;
   for (int i = 1; i <= count; ++i) {
     words.identifier("domain vertex", i);
@@ -200,6 +203,7 @@ Box read_domain(Words& words) {
       box.upper[i] = std::max(box.upper[i], p[i]);
     }
   }
+  if (!is_rectangle) return box;
   const Vec<2> size = box.upper - box.lower;
   const double slack = 1e-6 * std::max(size[0], size[1]);
   int found = 0;  // one bit per corner of the box
@@ -218,7 +222,7 @@ Box read_domain(Words& words) {
   return box;
 }
 
-File read(Words& words) {
+File read(Words& words, bool is_rectangle) {
   File file;
   std::set<std::string, std::less<>> seen;
   words.expect("***tess");
@@ -232,7 +236,7 @@ File read(Words& words) {
     if (section == "**cell") file.cell_count = words.count("the number of cells", 1);
     if (section == "**vertex") file.vertices = read_vertices(words);
     if (section == "**face") file.faces = read_faces(words, static_cast<int>(file.vertices.size()));
-    if (section == "**domain") file.domain = read_domain(words);
+    if (section == "**domain") file.domain = read_domain(words, is_rectangle);
     words.skip_to_section();
   }
   if (!file.cell_count) words.fail("***end", "a section '**cell' before it");
@@ -268,19 +272,8 @@ void require_aspect_ratio(const Box& domain, double width, double height, const 
   }
 }
 
-}  // namespace
-
-Tessellation read_neper_tess(const std::filesystem::path& file, double width, double height) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(fmt::format("Cannot open the tessellation file {}.", file.string()));
-  return read_neper_tess(stream, file.string(), width, height);
-}
-
-Tessellation read_neper_tess(std::istream& stream, const std::string& name, double width, double height) {
-  Words words(stream, name);
-  const File file = read(words);
-  require_aspect_ratio(*file.domain, width, height, name);
-
+/// Cells of a file whose domain takes this size, m.
+Tessellation cells_of(const File& file, const Vec<2>& size) {
   Tessellation result;
   std::vector<int> number(file.vertices.size(), -1);
   std::vector<Vec<2>> polygon;
@@ -290,8 +283,7 @@ Tessellation read_neper_tess(std::istream& stream, const std::string& name, doub
       int& n = number[static_cast<std::size_t>(v)];
       if (n < 0) {
         n = static_cast<int>(result.vertices.size());
-        result.vertices.push_back(
-            scaled(file.vertices[static_cast<std::size_t>(v)], *file.domain, {{width, height}}));
+        result.vertices.push_back(scaled(file.vertices[static_cast<std::size_t>(v)], *file.domain, size));
       }
       cell.push_back(n);
     }
@@ -299,7 +291,44 @@ Tessellation read_neper_tess(std::istream& stream, const std::string& name, doub
     corners(result, result.cells.size() - 1, polygon);
     if (area(polygon) < 0.0) std::reverse(result.cells.back().begin(), result.cells.back().end());
   }
+  return result;
+}
+
+std::ifstream opened(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Error(fmt::format("Cannot open the tessellation file {}.", file.string()));
+  return stream;
+}
+
+}  // namespace
+
+Tessellation read_neper_tess(const std::filesystem::path& file, double width, double height) {
+  std::ifstream stream = opened(file);
+  return read_neper_tess(stream, file.string(), width, height);
+}
+
+Tessellation read_neper_tess(std::istream& stream, const std::string& name, double width, double height) {
+  Words words(stream, name);
+  const File file = read(words, true);
+  require_aspect_ratio(*file.domain, width, height, name);
+  Tessellation result = cells_of(file, {{width, height}});
   require_valid(result, Region::rectangle(width, height), name);
+  return result;
+}
+
+Tessellation read_neper_tess(const std::filesystem::path& file, double width) {
+  std::ifstream stream = opened(file);
+  return read_neper_tess(stream, file.string(), width);
+}
+
+Tessellation read_neper_tess(std::istream& stream, const std::string& name, double width) {
+  Words words(stream, name);
+  const File file = read(words, false);
+  const Vec<2> size = file.domain->upper - file.domain->lower;
+  if (!(size[0] > 0.0 && size[1] > 0.0))
+    throw Error(fmt::format("{}: the domain is {:.8g} x {:.8g}.", name, size[0], size[1]));
+  Tessellation result = cells_of(file, (width / size[0]) * size);
+  require_valid(result, outline_of(result), name);
   return result;
 }
 

@@ -16,5 +16,9 @@ namespace pyroclast::specimen {
 Tessellation read_neper_tess(const std::filesystem::path& file, double width, double height);
 /// The same from a stream; `name` takes the file's place in messages.
 Tessellation read_neper_tess(std::istream& stream, const std::string& name, double width, double height);
+/// The same for a domain of any outline, which becomes that of the specimen (`outline_of`). It is scaled to a
+/// width (m), and the box around it begins at [0, 0].
+Tessellation read_neper_tess(const std::filesystem::path& file, double width);
+Tessellation read_neper_tess(std::istream& stream, const std::string& name, double width);
 
 }  // namespace pyroclast::specimen

@@ -13,6 +13,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/random.hpp"
 #include "pyroclast/specimen/blocks.hpp"
+#include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/gradation.hpp"
 #include "pyroclast/specimen/metrics.hpp"
 #include "pyroclast/specimen/placement.hpp"
@@ -125,6 +126,7 @@ double block_size(const Specimen& specimen) {
 }
 
 std::vector<std::string> phases(const SpecimenParameters& parameters) {
+  if (parameters.cells) return parameters.cells->phases;
   std::vector<std::string> names;
   const auto add = [&](const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
@@ -149,6 +151,7 @@ std::vector<std::string> warnings(const Specimen& s) {
 }
 
 Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
+  if (parameters.cells) return specimen_from(*parameters.cells, parameters.region);
   require_valid(parameters);
   // Streams of their own: another number of blocks leaves the aggregates where they are.
   Random aggregate_random(2 * parameters.seed);

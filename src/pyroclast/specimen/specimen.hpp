@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -73,8 +74,23 @@ struct BlockParameters {
   std::filesystem::path file;  ///< Neper .tess file to read instead of tessellating; empty: tessellate
 };
 
+/// Convex cells that tile a region exactly; neighbours share vertices.
+struct Tessellation {
+  std::vector<Vec<2>> vertices;         ///< m
+  std::vector<std::vector<int>> cells;  ///< vertex indices of each cell, counter-clockwise
+};
+
+/// Blocks that are made elsewhere.
+struct Cells {
+  Tessellation tessellation;
+  std::vector<std::string> phases;  ///< what they can be made of
+  std::vector<int> phase;           ///< of each, index into `phases`
+};
+
 struct SpecimenParameters {
   Region region;
+  /// All of the specimen, whose outline is the region; then nothing below counts but the matrix.
+  std::optional<Cells> cells;
   std::uint64_t seed = 0;
   std::string matrix = "mortar";  ///< phase of the blocks that nothing else covers
   AggregateParameters aggregates;
@@ -84,14 +100,8 @@ struct SpecimenParameters {
   double covered_fraction = 0.5;  ///< of a block above which it is aggregate, for Superposition::area
 };
 
-/// Names of what the blocks can be made of: aggregates, inclusions, matrix; each once.
+/// Names of what the blocks can be made of: those of cells, or aggregates, inclusions, matrix; each once.
 std::vector<std::string> phases(const SpecimenParameters& parameters);
-
-/// Convex cells that tile a region exactly; neighbours share vertices.
-struct Tessellation {
-  std::vector<Vec<2>> vertices;         ///< m
-  std::vector<std::vector<int>> cells;  ///< vertex indices of each cell, counter-clockwise
-};
 
 /// Edge of a tessellation. `left` is the cell that sees it counter-clockwise from `v0` to `v1`.
 struct Edge {
@@ -133,7 +143,8 @@ struct Specimen {
   BlockMetrics metrics;
 };
 
-/// Gradation, placement, tessellation, regularisation and superposition, in this order. The same parameters
+/// Of cells as they are, or by gradation, placement, tessellation, regularisation and superposition, in this
+/// order. The same parameters
 /// give the same specimen; aggregates and blocks draw from streams of their own, so neither depends on the
 /// other's parameters. Throws Error when a parameter is out of range, the aggregates do not fit, the placed
 /// fraction is off by more than 0.01, or no valid tessellation comes about.

@@ -124,31 +124,46 @@ Drive::Action read_action(const Section& s, CurveReader& curves) {
 
 Drive::Until read_until(const Section& s, const std::vector<RecordParameters>& records) {
   Drive::Until u;
-  u.record = s.text("record", "name of a [[record]]");
+  const auto found = find_record(s, "record", "name of a [[record]]", records);
   u.place = fmt::format("{}: {}", s.where("record"), s.path());
-  s.know({"above", "below", "share_of_peak"});
-  const auto found = std::ranges::find(records, u.record, &RecordParameters::name);
-  if (found == records.end()) {
-    std::vector<std::string> names;
-    for (const auto& record : records) names.push_back(record.name);
-    if (s.ok())
-      s.error("record", fmt::format("is no [[record]]; there are {}",
-                                    names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
-    return u;
+  const std::pair<const char*, Drive::Until::Kind> kinds[] = {
+      {"above", Drive::Until::Kind::above},
+      {"below", Drive::Until::Kind::below},
+      {"share_of_peak", Drive::Until::Kind::share_of_peak},
+      {"rate_above", Drive::Until::Kind::rate_above},
+      {"rate_below", Drive::Until::Kind::rate_below}};
+  s.know({"above", "below", "share_of_peak", "rate_above", "rate_below"});
+  if (!found) return u;
+  u.record = found->name;
+  int stated = 0;
+  for (const auto& [key, kind] : kinds) {
+    if (!s.has(key)) continue;
+    ++stated;
+    u.kind = kind;
   }
+  if (stated != 1)
+    s.error("one of above, below, share_of_peak, rate_above and rate_below is needed, and one alone");
   const Unit& unit = unit_of(found->kind);
-  const int stated = (s.has("above") ? 1 : 0) + (s.has("below") ? 1 : 0) + (s.has("share_of_peak") ? 1 : 0);
-  if (stated != 1) s.error("one of above, below and share_of_peak is needed, and one alone");
-  if (s.has("above")) {
-    u.kind = Drive::Until::Kind::above;
-    u.value = s.quantity("above", unit, Range::any(), "the stage ends when the record is greater");
-  } else if (s.has("below")) {
-    u.kind = Drive::Until::Kind::below;
-    u.value = s.quantity("below", unit, Range::any(), "the stage ends when the record is less");
-  } else if (s.has("share_of_peak")) {
-    u.kind = Drive::Until::Kind::share_of_peak;
-    u.value = s.number("share_of_peak", Range::inside(0.0, 1.0),
-                       "the stage ends when the record's size has fallen below this share of its greatest");
+  const Unit& rate = rate_unit_of(found->kind);
+  switch (u.kind) {
+    case Drive::Until::Kind::above:
+      u.value = s.quantity("above", unit, Range::any(), "the stage ends when the record is greater");
+      break;
+    case Drive::Until::Kind::below:
+      u.value = s.quantity("below", unit, Range::any(), "the stage ends when the record is less");
+      break;
+    case Drive::Until::Kind::share_of_peak:
+      u.value = s.number("share_of_peak", Range::inside(0.0, 1.0),
+                         "the stage ends when the record's size has fallen below this share of its greatest");
+      break;
+    case Drive::Until::Kind::rate_above:
+      u.value = s.quantity("rate_above", rate, Range::positive(),
+                           "the stage ends when the record has changed faster between two looks");
+      break;
+    case Drive::Until::Kind::rate_below:
+      u.value = s.quantity("rate_below", rate, Range::positive(),
+                           "the stage ends when the record has changed more slowly between two looks");
+      break;
   }
   return u;
 }
@@ -199,6 +214,8 @@ std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
   keys.frame_interval =
       s.quantity("frame_interval", unit::time, Range::positive(), keys.duration / kFrames,
                  "between two frames of the fields; where it is not stated, 1/10 of the duration");
+  keys.records = tables.records;
+  keys.results = read_record_results(s, tables.records);
   return std::make_unique<Drive>(std::move(keys));
 }
 
@@ -247,6 +264,36 @@ void Drive::check(const Simulation& simulation, Supports<2>& supports) const {
   }
 }
 
+std::vector<std::string> Drive::sets() const {
+  std::vector<std::string> names;
+  for (const Action& action : keys_.actions) names.push_back(action.set);
+  return names;
+}
+
+void Drive::check_beside(const Drive& under_way, const Simulation& simulation) const {
+  const auto steers = [](const Action& a) {
+    return a.kind != ActionKind::hold && a.kind != ActionKind::release;
+  };
+  const auto is_motion = [](const Action& a) { return !a.components.empty(); };
+  const Model<2>& model = simulation.model();
+  for (const Action& other : under_way.keys_.actions) {
+    if (!steers(other)) continue;
+    for (const Action& own : keys_.actions) {
+      if (is_motion(own) != is_motion(other)) continue;
+      const auto meets = [&](int g) {
+        return std::ranges::find(model.set(own.set), g) != model.set(own.set).end();
+      };
+      const bool shares = is_motion(own) ? std::ranges::find(own.components, other.components.front()) !=
+                                                   own.components.end() &&
+                                               std::ranges::any_of(model.set(other.set), meets)
+                                         : own.set == other.set;
+      if (shares)
+        throw Error(fmt::format("{}: the stage under way moves or loads set \"{}\" itself ({}): end it first",
+                                own.place, other.set, other.place));
+    }
+  }
+}
+
 bool Drive::loads() const {
   return std::ranges::any_of(keys_.actions, [](const Action& a) {
     return a.kind == ActionKind::velocity || a.kind == ActionKind::force || a.kind == ActionKind::pressure;
@@ -267,6 +314,11 @@ void Drive::begin(Simulation& simulation) {
   first_.assign(keys_.actions.size(), 0.0);
   if (keys_.control) first_opening_ = simulation.record(keys_.control->record).read(simulation);
   peaks_.assign(keys_.until.size(), 0.0);
+  last_.clear();
+  for (const Until& until : keys_.until) last_.push_back(simulation.record(until.record).read(simulation));
+  first_work_ = mechanics.energy().loading;
+  const Vec<2> weight = mechanics.total_weight(mechanics.set_of(simulation.model().set("specimen")));
+  body_ = {simulation.model().thickness, norm(weight)};
   for (std::size_t i = 0; i < keys_.actions.size(); ++i) {
     const Action& action = keys_.actions[i];
     const SetLoad<2> load = simulation.loads().on(action.set);
@@ -291,15 +343,15 @@ double Drive::amount(std::size_t i, double time) const {
 }
 
 /// Where it goes as asked by itself, the pair has nothing to do; else the loads change in its stead.
-void Drive::steer(Simulation& simulation, double time) {
+void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads) {
   const Control& control = *keys_.control;
   const Record& record = simulation.record(control.record);
   pair_force_ = control.stiffness * (first_opening_ + control.rate * time - record.read(simulation));
   const double step = static_cast<double>(kStepsPerControl) * simulation.mechanics().time_step();
   load_factor_ += pair_force_ / unit_force() * step / control.response_time;
   const auto& [name, kind, set, other, direction, place] = record.parameters();
-  simulation.loads().set(other, {.force = pair_force_ * direction});
-  simulation.loads().set(set, {.force = -pair_force_ * direction});
+  loads[other] = {.force = pair_force_ * direction};
+  loads[set] = {.force = -pair_force_ * direction};
 }
 
 /// All forces of the stage at a factor of 1, N.
@@ -315,6 +367,8 @@ std::int64_t Drive::steps_per_adjustment() const {
 }
 
 void Drive::act(Simulation& simulation, double time) {
+  ChangedLoads loads;
+  if (keys_.control) steer(simulation, time, loads);
   for (std::size_t i = 0; i < keys_.actions.size(); ++i) {
     const Action& action = keys_.actions[i];
     const double now = amount(i, time);
@@ -322,16 +376,15 @@ void Drive::act(Simulation& simulation, double time) {
       for (int g : simulation.model().set(action.set))
         simulation.mechanics().prescribe_velocity(g, action.components.front(), now);
     if (action.kind != ActionKind::force && action.kind != ActionKind::pressure) continue;
-    SetLoad<2> load = simulation.loads().on(action.set);
+    SetLoad<2>& load = loads.try_emplace(action.set, simulation.loads().on(action.set)).first->second;
     if (action.kind == ActionKind::force) {
       load.force += (now - dot(load.force, action.direction)) * action.direction;
     } else {
       load.pressure = now;
       load.is_follower = action.is_follower;
     }
-    simulation.loads().set(action.set, load);
   }
-  simulation.loads().follow();
+  simulation.loads().set(loads);
 }
 
 bool Drive::advance(Simulation& simulation, int most_steps) {
@@ -339,9 +392,7 @@ bool Drive::advance(Simulation& simulation, int most_steps) {
   const std::int64_t interval = steps_per_adjustment();
   if (steps_ % interval == 0) {
     // in the middle of the steps to come
-    const double middle = time(simulation) + 0.5 * static_cast<double>(interval) * time_step;
-    if (keys_.control) steer(simulation, middle);
-    act(simulation, middle);
+    act(simulation, time(simulation) + 0.5 * static_cast<double>(interval) * time_step);
   }
   const auto steps = std::min<std::int64_t>(interval - steps_ % interval, most_steps);
   simulation.mechanics().advance(static_cast<int>(steps));
@@ -350,19 +401,34 @@ bool Drive::advance(Simulation& simulation, int most_steps) {
          (steps_ % interval == 0 && time(simulation) >= keys_.duration);
 }
 
-bool Drive::is_met(const Until& until, std::size_t i, const Simulation& simulation) {
+bool Drive::is_met(std::size_t condition, const Simulation& simulation) {
+  const Until& until = keys_.until[condition];
+  double& peak = peaks_[condition];
+  double& last = last_[condition];
   const double value = simulation.record(until.record).read(simulation);
-  if (until.kind == Until::Kind::above) return value > until.value;
-  if (until.kind == Until::Kind::below) return value < until.value;
-  peaks_[i] = std::max(peaks_[i], std::abs(value));
-  return std::abs(value) < until.value * peaks_[i];
+  const double rate = std::abs(value - last) / (time(simulation) - last_look_);
+  peak = std::max(peak, std::abs(value));
+  last = value;
+  switch (until.kind) {
+    case Until::Kind::above:
+      return value > until.value;
+    case Until::Kind::below:
+      return value < until.value;
+    case Until::Kind::share_of_peak:
+      return std::abs(value) < until.value * peak;
+    case Until::Kind::rate_above:
+      return rate > until.value;
+    case Until::Kind::rate_below:
+      return rate < until.value;
+  }
+  return false;
 }
 
 /// What was moved stays where it is, and no pair is left.
 void Drive::halt(Simulation& simulation) {
   if (keys_.control) {
     const RecordParameters& record = simulation.record(keys_.control->record).parameters();
-    for (const std::string& set : {record.set, record.other}) simulation.loads().set(set, {});
+    simulation.loads().set({{record.set, {}}, {record.other, {}}});
   }
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::velocity)
@@ -376,7 +442,8 @@ Verdict Drive::judge(Simulation& simulation) {
   largest_factor_ = std::max(largest_factor_, std::abs(load_factor_));
   const double now = time(simulation);
   for (std::size_t i = 0; i < keys_.until.size(); ++i)
-    if (is_met(keys_.until[i], i, simulation)) verdict.over = true;
+    if (is_met(i, simulation)) verdict.over = true;
+  last_look_ = now;
   const bool ramps_are_over =
       std::ranges::all_of(keys_.actions, [&](const Action& a) { return now >= a.ramp_time; });
   if (keys_.unbalanced_ratio && ramps_are_over &&
@@ -407,6 +474,10 @@ StageReport Drive::report(const History& history, RowRange rows, Outcome) const 
   report.results = {{"steps", steps_}};
   if (rows.empty()) return report;
   report.results.push_back({"unbalanced_ratio", history.values("unbalanced_ratio", rows).back()});
+  report.results.push_back({"loading_work_J", history.values("energy_loading_J", rows).back() - first_work_});
+  const auto of_records = record_results(keys_.records, keys_.results, body_, history, rows);
+  report.results.insert(report.results.end(), of_records.begin(), of_records.end());
+  report.lines = lines_of(keys_.results, of_records);
   if (!keys_.control) return report;
   const double left = largest_factor_ > 0.0 ? largest_pair_ / (largest_factor_ * unit_force()) : 0.0;
   report.results.push_back({"largest_load_factor", largest_factor_});
@@ -444,6 +515,10 @@ void Drive::visit_state(StateVisitor& visitor) {
   visitor.visit("frames", frames_);
   visitor.visit("first", first_);
   visitor.visit("peaks", peaks_);
+  visitor.visit("last", last_);
+  visitor.visit("last_look", last_look_);
+  visitor.visit("first_work", first_work_);
+  body_.visit_state(visitor);
 }
 
 }  // namespace pyroclast

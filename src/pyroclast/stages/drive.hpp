@@ -1,11 +1,13 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "pyroclast/material/curve.hpp"
 #include "pyroclast/simulation/loads.hpp"
+#include "pyroclast/stages/record_results.hpp"
 #include "pyroclast/stages/registry.hpp"
 
 namespace pyroclast {
@@ -30,7 +32,8 @@ class Drive : public Stage {
   };
   /// A condition on a record that ends the stage.
   struct Until {
-    enum class Kind : std::uint8_t { above, below, share_of_peak };
+    /// Rates are sizes of the mean change since the look before.
+    enum class Kind : std::uint8_t { above, below, share_of_peak, rate_above, rate_below };
     std::string record;
     Kind kind = Kind::above;
     double value = 0.0;  ///< in SI, or a share
@@ -54,6 +57,8 @@ class Drive : public Stage {
     /// The stage ends when the body rests at this ratio, once all ramps have ended.
     std::optional<double> unbalanced_ratio;
     double look_interval = 0.0, frame_interval = 0.0;  ///< s
+    std::vector<RecordParameters> records = {};        ///< of the run
+    std::vector<RecordResult> results = {};
   };
 
   explicit Drive(Keys keys) : keys_(std::move(keys)) {}
@@ -62,6 +67,10 @@ class Drive : public Stage {
   StageNeeds needs() const override { return {}; }
   void check(const Simulation& simulation, Supports<2>& supports) const override;
   bool loads() const override;
+  /// Names of the sets that it acts on.
+  std::vector<std::string> sets() const;
+  /// Throws Error where it would act on what another one, which is under way, moves or loads again and again.
+  void check_beside(const Drive& under_way, const Simulation& simulation) const;
   void begin(Simulation& simulation) override;
   bool advance(Simulation& simulation, int most_steps) override;
   Verdict judge(Simulation& simulation) override;
@@ -73,12 +82,13 @@ class Drive : public Stage {
   void visit_state(StateVisitor& visitor) override;
 
  private:
-  void steer(Simulation& simulation, double time);
+  using ChangedLoads = std::map<std::string, SetLoad<2>>;  ///< by set
+  void steer(const Simulation& simulation, double time, ChangedLoads& loads);
   double unit_force() const;
   std::int64_t steps_per_adjustment() const;
   void act(Simulation& simulation, double time);
   double amount(std::size_t action, double time) const;
-  bool is_met(const Until& until, std::size_t i, const Simulation& simulation);
+  bool is_met(std::size_t condition, const Simulation& simulation);
   double time(const Simulation& simulation) const;
   std::int64_t steps_in(const Simulation& simulation, double interval) const;
   void halt(Simulation& simulation);
@@ -86,12 +96,15 @@ class Drive : public Stage {
   Keys keys_;
   std::int64_t steps_ = 0;
   std::int64_t frames_ = 0;
-  std::vector<double>
-      first_;  ///< force along its direction, or pressure, of each action when the stage began
-  std::vector<double> peaks_;                         ///< of the records of `until`
-  double first_opening_ = 0.0;                        ///< controlled, when the stage began, m
+  /// Force along its direction, or pressure, of each action when the stage began.
+  std::vector<double> first_;
+  std::vector<double> peaks_, last_;  ///< of the records of `until`: greatest size; at the last look
+  double last_look_ = 0.0;            ///< s
+  double first_opening_ = 0.0;        ///< controlled, when the stage began, m
   double load_factor_ = 0.0, pair_force_ = 0.0;       ///< of the control; N, opening it
   double largest_pair_ = 0.0, largest_factor_ = 0.0;  ///< at looks
+  double first_work_ = 0.0;                           ///< of loads, when the stage began, J
+  BodyFigures body_;
 };
 
 StageKind drive_kind();

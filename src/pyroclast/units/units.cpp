@@ -382,6 +382,25 @@ double parse_quantity(std::string_view text, const Unit& unit) {
   throw QuantityError(QuantityError::Kind::no_unit, text, "no unit; " + requirement(unit));
 }
 
+double parse_any_quantity(std::string_view text) {
+  for (const Unit* kind : unit::all) {
+    try {
+      return parse_quantity(text, *kind);
+    } catch (const QuantityError& error) {
+      if (error.kind() != QuantityError::Kind::wrong_dimension &&
+          error.kind() != QuantityError::Kind::no_unit)
+        throw;
+    }
+  }
+  throw QuantityError(QuantityError::Kind::wrong_dimension, text,
+                      "its unit is of none of the kinds that decks hold (`pyroclast list units`)");
+}
+
+std::string unit_of_quantity(std::string_view text) {
+  const std::string_view given = split(text, unit::dimensionless).unit;
+  return given.empty() ? "1" : std::string(given);
+}
+
 std::string requirement(const Unit& unit) {
   if (unit == unit::dimensionless)
     return fmt::format("a number without unit is needed, or e.g. \"{}\"", unit.example);

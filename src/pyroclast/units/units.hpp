@@ -39,6 +39,14 @@ class QuantityError : public Error {
 /// @throws Error if the unit database cannot be read.
 double parse_quantity(std::string_view text, const Unit& unit);
 
+/// The value of a quantity of any kind that decks hold, in the unit of its kind.
+///
+/// @throws QuantityError as above; wrong_dimension if it is of none.
+double parse_any_quantity(std::string_view text);
+
+/// The unit of a quantity, as it is written behind the number; "1" where there is none.
+std::string unit_of_quantity(std::string_view text);
+
 /// What a quantity of this kind must look like, for messages: 'a unit of length (m) is needed, e.g. "150
 /// mm"'.
 std::string requirement(const Unit& unit);

@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/python/arrays.hpp"
+#include "pyroclast/python/bindings.hpp"
+#include "pyroclast/python/decks.hpp"
+#include "pyroclast/specimen/cells_file.hpp"
+#include "pyroclast/specimen/from_cells.hpp"
+
+namespace pyroclast::python {
+
+namespace {
+
+using specimen::Specimen;
+using Reals = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Integers = py::array_t<int, py::array::c_style | py::array::forcecast>;
+
+/// \param corners  of all cells in turn
+/// \param first    of each cell, and behind the last
+Specimen from_cells(const Reals& vertices, const Integers& corners, const Integers& first,
+                    std::vector<std::string> phases, const Integers& phase) {
+  specimen::Cells cells;
+  const auto at = vertices.unchecked<2>();
+  for (py::ssize_t v = 0; v < at.shape(0); ++v) cells.tessellation.vertices.push_back({{at(v, 0), at(v, 1)}});
+  for (py::ssize_t c = 0; c + 1 < first.size(); ++c)
+    cells.tessellation.cells.emplace_back(corners.data() + first.data()[c],
+                                          corners.data() + first.data()[c + 1]);
+  cells.phases = std::move(phases);
+  cells.phase.assign(phase.data(), phase.data() + phase.size());
+  const py::gil_scoped_release no_gil;
+  return specimen::specimen_from(std::move(cells));
+}
+
+/// A rectangle of blocks, all of one phase.
+Specimen rectangle(double width, double height, int count, double shortest_edge, int relaxation,
+                   double radius_spread, std::uint64_t seed) {
+  specimen::SpecimenParameters p;
+  p.region = specimen::Region::rectangle(width, height);
+  p.seed = seed;
+  p.aggregates.phase = p.matrix;
+  p.blocks = {.count = count,
+              .radius_spread = radius_spread,
+              .relaxation = relaxation,
+              .shortest_edge = shortest_edge,
+              .file = {}};
+  const py::gil_scoped_release no_gil;
+  return make_checked_specimen(p);
+}
+
+Specimen of_deck(const DeckText& text, const std::optional<std::uint64_t>& seed) {
+  const Deck deck = parse(text);
+  Setup setup = read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text.laws));
+  if (seed) setup.specimen.seed = *seed;
+  const py::gil_scoped_release no_gil;
+  return make_checked_specimen(setup.specimen);
+}
+
+std::vector<std::string> side_names(const Specimen& s) {
+  std::vector<std::string> names;
+  for (const specimen::Side& side : s.region.sides()) names.push_back(side.name);
+  return names;
+}
+
+}  // namespace
+
+void bind_specimens(py::module_& m) {
+  using py::arg;
+  py::class_<Specimen, std::shared_ptr<Specimen>>(m, "Specimen", "Blocks, and what each is made of.")
+      .def_static("from_cells", &from_cells, arg("vertices"), arg("corners"), arg("first"), arg("phases"),
+                  arg("phase"))
+      .def_static("rectangle", &rectangle, arg("width"), arg("height"), arg("count"), arg("shortest_edge"),
+                  arg("relaxation"), arg("radius_spread"), arg("seed"))
+      .def_static("of_deck", &of_deck, arg("deck"), arg("seed"))
+      .def_static(
+          "read", [](const std::string& file) { return specimen::specimen_from(specimen::read_cells(file)); },
+          arg("file"))
+      .def(
+          "text",
+          [](const Specimen& s) {
+            return specimen::cells_text({s.tessellation, s.phases, s.phase});
+          },
+          "As a file holds it.")
+      .def_property_readonly("vertices", [](const Specimen& s) { return vectors(s.tessellation.vertices); })
+      .def_property_readonly(
+          "cells",
+          [](const Specimen& s) {
+            py::list cells;
+            for (const auto& cell : s.tessellation.cells)
+              cells.append(py::array_t<int>(static_cast<py::ssize_t>(cell.size()), cell.data()));
+            return cells;
+          })
+      .def_property_readonly("phase",
+                             [](const Specimen& s) {
+                               return py::array_t<int>(static_cast<py::ssize_t>(s.phase.size()),
+                                                       s.phase.data());
+                             })
+      .def_property_readonly("phases", [](const Specimen& s) { return s.phases; })
+      .def_property_readonly("shares", [](const Specimen& s) { return s.fraction; })
+      .def_property_readonly("area", [](const Specimen& s) { return s.region.area(); })
+      .def_property_readonly("sides", &side_names);
+}
+
+}  // namespace pyroclast::python

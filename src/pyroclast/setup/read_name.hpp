@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "pyroclast/deck/deck.hpp"
+
+namespace pyroclast {
+
+/// The key `name` of something that becomes a part of a column's name in history.csv: letters, digits and _.
+std::string read_name(const Section& s, Meaning meaning);
+
+}  // namespace pyroclast

@@ -1,0 +1,240 @@
+#include "pyroclast/stages/record_results.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/material/expression.hpp"
+#include "pyroclast/units/units.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+using Kind = RecordResult::Kind;
+using Values = std::map<std::string, double>;
+
+/// Of the body, by the names that formulas use.
+Values values_of(const BodyFigures& body) {
+  return {{"thickness", body.thickness}, {"weight", body.weight}};
+}
+
+bool is_length(RecordKind kind) {
+  return kind == RecordKind::displacement || kind == RecordKind::opening;
+}
+
+/// SI of any kind of quantity; 1 where there is an error, which is recorded.
+double read_any(const Section& s, const char* key, const std::string& text) {
+  try {
+    return parse_any_quantity(text);
+  } catch (const QuantityError& error) {
+    s.error(key, error.reason());
+    return 1.0;
+  }
+}
+
+/// \param known  names that formulas may use so far, each with a value to try them with
+RecordResult read_result(const Section& s, const std::vector<RecordParameters>& records,
+                         const Values& known) {
+  const auto found = [&](const char* key, Meaning meaning) {
+    return find_record(s, key, meaning, records).value_or(RecordParameters{});
+  };
+  RecordResult r;
+  r.name = s.text("name", "letters, digits and _; in summary.json its unit follows");
+  r.kind = s.choice<Kind>(
+      "kind",
+      {{"given", Kind::given, "a quantity that is stated, for formulas"},
+       {"peak", Kind::peak, "value of a record where its size is largest"},
+       {"last", Kind::last, "value of a record at the end of the stage"},
+       {"at_peak", Kind::at_peak, "value of a record where the size of another is largest"},
+       {"work", Kind::work, "of a force over a displacement or opening: the area under the curve"},
+       {"formula", Kind::formula, "of the results before it, in SI, and of thickness and weight"}},
+      "what it is");
+  s.know({"value", "record", "of", "over", "formula", "unit"});
+  switch (r.kind) {
+    case Kind::given: {
+      const std::string text = s.text("value", "any quantity, with its unit");
+      r.value = read_any(s, "value", text);
+      if (s.ok()) r.unit = unit_of_quantity(text);
+      break;
+    }
+    case Kind::peak:
+    case Kind::last:
+      r.record = found("record", "of which it is");
+      break;
+    case Kind::at_peak:
+      r.record = found("record", "of which it is");
+      r.other = found("of", "record whose peak it is");
+      break;
+    case Kind::work:
+      r.record = found("record", "the force");
+      r.other = found("over", "displacement or opening over which it works");
+      if (s.ok() && r.record.kind != RecordKind::force) s.error("record", "must be of kind force");
+      if (s.ok() && !is_length(r.other.kind)) s.error("over", "must be of kind displacement or opening");
+      r.unit = std::string(unit::energy.si);
+      break;
+    case Kind::formula:
+      r.formula = s.text("formula", "of the names of results before it, and of thickness and weight");
+      r.unit = s.text("unit", "1", "of what the formula gives, which itself is in SI");
+      try {
+        evaluate(r.formula, known);
+      } catch (const Error& error) {
+        if (s.ok()) s.error("formula", error.what());
+      }
+      break;
+  }
+  if (r.kind == Kind::peak || r.kind == Kind::last || r.kind == Kind::at_peak)
+    r.unit = column_of(r.record).unit;
+  if (s.ok() && r.unit != "1") r.unit_size = read_any(s, "unit", fmt::format("1 {}", r.unit));
+  return r;
+}
+
+/// Name in summary.json: with its unit, as columns of the history have it.
+std::string name_with_unit(const std::string& name, std::string unit) {
+  std::erase_if(unit, [](char c) { return c == '(' || c == ')'; });
+  std::ranges::replace_if(
+      unit, [](char c) { return c == '/' || c == ' ' || c == '*'; }, '_');
+  return unit == "1" ? name : fmt::format("{}_{}", name, unit);
+}
+
+/// Of a record in some rows, SI; none where a row has no value.
+class Course {
+ public:
+  Course(const History& history, RowRange rows, const RecordParameters& record) {
+    for (std::size_t row = rows.first; row < rows.last; ++row) {
+      values_.push_back(history.cell(row, column_of(record).name));
+      if (values_.back()) *values_.back() /= column_over_si(record.kind);
+    }
+  }
+
+  const std::optional<double>& operator[](std::size_t i) const { return values_[i]; }
+  std::size_t size() const { return values_.size(); }
+  std::optional<std::size_t> peak() const {
+    std::optional<std::size_t> largest;
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      if (values_[i] && (!largest || std::abs(*values_[i]) > std::abs(*values_[*largest]))) largest = i;
+    return largest;
+  }
+
+ private:
+  std::vector<std::optional<double>> values_;
+};
+
+/// Between two rows force and way change evenly.
+double work(const Course& force, const Course& way) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < force.size(); ++i)
+    if (force[i - 1] && force[i] && way[i - 1] && way[i])
+      sum += 0.5 * (*force[i - 1] + *force[i]) * (*way[i] - *way[i - 1]);
+  return sum;
+}
+
+std::optional<double> value_of(const RecordResult& asked, const Values& known, const History& history,
+                               RowRange rows) {
+  const auto course = [&](const RecordParameters& record) { return Course(history, rows, record); };
+  const auto at = [](const Course& values, std::optional<std::size_t> i) {
+    return i ? values[*i] : std::nullopt;
+  };
+  switch (asked.kind) {
+    case Kind::given:
+      return asked.value;
+    case Kind::peak:
+      return at(course(asked.record), course(asked.record).peak());
+    case Kind::last:
+      return rows.empty() ? std::nullopt : at(course(asked.record), rows.last - rows.first - 1);
+    case Kind::at_peak:
+      return at(course(asked.record), course(asked.other).peak());
+    case Kind::work:
+      return work(course(asked.record), course(asked.other));
+    case Kind::formula:
+      try {
+        const double value = evaluate(asked.formula, known);
+        return std::isfinite(value) ? std::optional(value) : std::nullopt;
+      } catch (const Error&) {
+        return std::nullopt;  // of a result that has no value
+      }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<RecordParameters> find_record(const Section& s, std::string_view key, Meaning meaning,
+                                            const std::vector<RecordParameters>& records) {
+  const std::string name = s.text(key, meaning);
+  const auto found = std::ranges::find(records, name, &RecordParameters::name);
+  if (found != records.end()) return *found;
+  std::vector<std::string> names;
+  for (const auto& record : records) names.push_back(record.name);
+  if (s.ok())
+    s.error(key, fmt::format("is no [[record]]; there are {}",
+                             names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+  return std::nullopt;
+}
+
+void BodyFigures::visit_state(StateVisitor& visitor) {
+  visitor.visit("thickness", thickness);
+  visitor.visit("weight", weight);
+}
+
+std::vector<RecordResult> read_record_results(const Section& stage,
+                                              const std::vector<RecordParameters>& records) {
+  std::vector<RecordResult> results;
+  Values known = values_of({1.0, 1.0});
+  for (const Section& s : stage.optional_sections(
+           "results",
+           "numbers that the stage makes of its records, and of results before them; any number")) {
+    RecordResult result = read_result(s, records, known);
+    if (s.ok() && !is_name_in_formulas(result.name))
+      s.error("name", "must begin with a letter, and hold letters, digits and _ only");
+    else if (s.ok() && !known.emplace(result.name, 1.0).second)
+      s.error("name", fmt::format("\"{}\" is known to formulas already", result.name));
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+std::vector<Result> record_results(const std::vector<RecordParameters>& records,
+                                   const std::vector<RecordResult>& asked, const BodyFigures& body,
+                                   const History& history, RowRange rows) {
+  std::vector<Result> results;
+  for (const RecordParameters& record : records) {
+    const Column column = column_of(record);
+    const auto peak = Course(history, rows, record).peak();
+    if (!peak) continue;
+    results.push_back({fmt::format("peak_{}", column.name), *history.cell(rows.first + *peak, column.name)});
+    results.push_back(
+        {fmt::format("peak_{}_time_s", record.name), *history.cell(rows.first + *peak, "time_s")});
+  }
+  Values known = values_of(body);
+  for (const RecordResult& each : asked) {
+    const auto value = value_of(each, known, history, rows);
+    if (value) known[each.name] = *value;
+    results.push_back({name_with_unit(each.name, each.unit),
+                       value ? Result::Value(*value / each.unit_size) : Result::Value()});
+  }
+  return results;
+}
+
+std::vector<std::string> lines_of(const std::vector<RecordResult>& asked,
+                                  const std::vector<Result>& results) {
+  std::vector<std::string> lines;
+  for (const RecordResult& each : asked) {
+    if (each.kind == Kind::given) continue;
+    const auto found = std::ranges::find(results, name_with_unit(each.name, each.unit), &Result::name);
+    if (found == results.end()) continue;
+    const auto* value = std::get_if<double>(&found->value);
+    lines.push_back(value ? fmt::format("{} {:.4g}{}", each.name, *value,
+                                        each.unit == "1" ? "" : fmt::format(" {}", each.unit))
+                          : fmt::format("{}: none", each.name));
+  }
+  return lines;
+}
+
+}  // namespace pyroclast

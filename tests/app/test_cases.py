@@ -1,0 +1,128 @@
+"""Cases of other bodies than prisms, in their small forms: what they show follows from what their decks say.
+
+PYROCLAST names the program.
+"""
+
+import csv
+import functools
+import json
+import math
+import os
+import pathlib
+import subprocess
+import tempfile
+import tomllib
+import unittest
+
+ROOT = pathlib.Path(__file__).parents[2]
+SMALL = tomllib.loads((ROOT / "validation" / "reference.toml").read_text())["small"]
+HALF_STRENGTH = "contacts.mortar_mortar.f_t=1.25 MPa"
+HALF_COHESION = "contacts.mortar_mortar.c_o=1.9 MPa"
+
+
+class Finished:
+    """A small form that was run, with more changes."""
+
+    def __init__(self, case: str, *changes: str):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name) / "run"
+            words = [word for change in (*SMALL[case], *changes) for word in ("--set", change)]
+            done = subprocess.run([os.environ["PYROCLAST"], "run", ROOT / "cases" / f"{case}.toml", "--out", folder,
+                                   "--no-figures", "--quiet", *words], capture_output=True, text=True, timeout=200,
+                                  check=False)
+            if done.returncode != 0:
+                raise AssertionError(f"{case}: {done.stdout}{done.stderr}")
+            self.summary = json.loads((folder / "summary.json").read_text())
+            with open(folder / "history.csv", newline="") as file:
+                self.rows = list(csv.DictReader(file))
+
+    def of(self, result: str) -> float:
+        """Of the last stage."""
+        return self.summary["stages"][-1]["results"][result]
+
+    def column(self, name: str, stage: int = -1) -> list[float]:
+        number = str(range(len(self.summary["stages"]))[stage])
+        return [float(row[name]) for row in self.rows if row["stage"] == number]
+
+
+@functools.cache
+def finished(case: str, *changes: str) -> Finished:
+    return Finished(case, *changes)
+
+
+class Cases(unittest.TestCase):
+    def assert_between(self, low: float, value: float, high: float):
+        self.assertGreater(value, low)
+        self.assertLess(value, high)
+
+    def test_each_completes_and_its_ledger_closes(self):
+        for case in ("biaxial", "brazilian", "direct_tension", "notched_beam", "ring_cooling", "wall_bent"):
+            with self.subTest(case):
+                summary = finished(case).summary
+                self.assertEqual([stage["outcome"] for stage in summary["stages"]],
+                                 ["completed"] * len(summary["stages"]))
+                self.assertLess(abs(summary["energy_J"]["error_over_turnover"]), 0.005)
+
+    def test_reactions_of_the_beam_bear_load_and_weight(self):
+        run = finished("notched_beam")
+        beam = (0.5 * 0.15 - 0.005 * 0.075) * (0.34 * 2650.0 + 0.66 * 2200.0)
+        weight = 9.81 * 0.15 * (beam + 3 * 0.02 * 0.01 * 7850.0)  # with its bearings
+        at_rest = [run.column(name, 1)[-1] for name in ("left_reaction_N", "right_reaction_N")]
+        self.assertAlmostEqual(sum(at_rest), weight, delta=0.03 * weight)
+        # on its way it swings up and down about that
+        load, left, right = (run.column(name) for name in ("load_N", "left_reaction_N", "right_reaction_N"))
+        borne = (sum(left) + sum(right) - sum(load)) / len(load)
+        self.assertAlmostEqual(borne, weight, delta=0.005 * run.of("peak_load_N"))
+
+    def test_the_beam_needs_less_load_and_work_with_half_of_the_strength(self):
+        whole, half = finished("notched_beam"), finished("notched_beam", HALF_STRENGTH)
+        self.assert_between(0.4, half.of("P_N") / whole.of("P_N"), 0.95)
+        net = 1.5 * whole.of("peak_load_N") * 0.45 / (0.15 * 0.075**2) * 1e-6
+        self.assertAlmostEqual(whole.of("f_net_MPa"), net, delta=1e-6 * net)
+        # the load alone moves the beam, but for its weight and what the pair of the control does
+        self.assertAlmostEqual(whole.of("W_0_J"), whole.of("loading_work_J"), delta=0.1 * whole.of("W_0_J"))
+        self.assertGreater(whole.of("G_F_N_m"), whole.of("W_0_J") / (0.15 * 0.075))
+
+    def test_the_disc_splits_at_the_stress_of_its_load_and_its_strength(self):
+        # tension alone does not split it: its blocks also slide on each other, under pressure
+        whole, half = finished("brazilian"), finished("brazilian", HALF_STRENGTH, HALF_COHESION)
+        stress = 2.0 * whole.of("peak_load_N") / (math.pi * 0.15 * 0.3) * 1e-6
+        self.assertAlmostEqual(whole.of("f_t_split_MPa"), stress, delta=1e-9 * stress)
+        self.assert_between(0.4, half.of("f_t_split_MPa") / whole.of("f_t_split_MPa"), 0.9)
+
+    def test_the_prism_parts_at_half_of_the_load_with_half_of_the_strength(self):
+        whole, half = finished("direct_tension"), finished("direct_tension", HALF_STRENGTH)
+        self.assert_between(0.4, half.of("f_t_MPa") / whole.of("f_t_MPa"), 0.75)
+        self.assert_between(1.0, whole.of("f_t_MPa"), 4.0)
+        tough = finished("direct_tension", "contacts.mortar_mortar.G_f1=120 N/m")
+        self.assertGreater(tough.of("G_F_N_m"), 1.3 * whole.of("G_F_N_m"))
+
+    def test_tension_across_takes_compressive_strength(self):
+        little = finished("biaxial", "stages[0].drives[4].force=7.5 kN")
+        more = finished("biaxial")
+        self.assertAlmostEqual(more.of("ratio"), -0.1, delta=0.02)
+        self.assertAlmostEqual(little.of("ratio"), -0.05, delta=0.015)
+        self.assertLess(more.of("f_1_MPa") / little.of("f_1_MPa"), 0.9)
+
+    def test_the_wall_is_held_against_its_pressure_and_bows_to_the_fire(self):
+        run = finished("wall_bent")
+        held = run.column("reaction_foot_N", 0)[-1] + run.column("reaction_head_N", 0)[-1]
+        self.assertAlmostEqual(held, 50e3 * 0.6, delta=100.0)
+        hot = run.column("reaction_foot_N")[-1] + run.column("reaction_head_N")[-1]
+        self.assertAlmostEqual(hot, 50e3 * 0.6, delta=1e3 * 0.3)  # platen_difference times the body's size
+        self.assertGreater(run.column("bow_m")[-1], 2.0 * run.column("bow_m", 0)[-1])
+
+    def test_the_ring_cracks_when_it_is_cooled_and_less_from_half_the_heat(self):
+        table = 'gas_temperature={ table = [["0 h", "20 degC"], ["6 h", "85 degC"]'
+        cooled = '["7 h", "85 degC"], ["7.01 h", "20 degC"], ["8 h", "20 degC"]] }'
+        cooler = finished("ring_cooling", f'heat.boundaries[0].{table}, ["8 h", "85 degC"]] }}',
+                          f"heat.boundaries[1].{table}, {cooled}")
+        whole = finished("ring_cooling")
+        time, cracks = whole.column("heating_time_s"), whole.column("cracks_m")
+        before = max(crack for at, crack in zip(time, cracks) if at <= 7 * 3600.0)
+        self.assertLess(before, 0.05 * cracks[-1])
+        self.assertLess(cooler.column("mean_opening_m")[-1], 0.5 * whole.column("mean_opening_m")[-1])
+
+
+if __name__ == "__main__":
+    unittest.main()
