@@ -191,6 +191,10 @@ void expect_heat_stored(const Model<Dim>& model, double volume) {
                m.energy().property_change, 0.5 * Dim * stress * strain * volume,
                1e-12 * stress * strain * volume);
   EXPECT_NEAR(m.energy().zones, m.energy().property_change, 1e-12 * m.energy().property_change);
+
+  const Mechanics<Dim> hot(model, {2400.0}, uniform(model, mortar_contact(), strain), quasi_static<Dim>());
+  EXPECT_NEAR(hot.energy().property_change, m.energy().property_change, 1e-12 * m.energy().property_change);
+  EXPECT_NEAR(hot.energy().error(), 0.0, 1e-12 * m.energy().property_change);
 }
 
 TEST(RestraintVerification, ABodyHeldEverywhereTakesTheFullStressAndStoresTheHeat) {

@@ -64,6 +64,7 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
   sweep(1, Pass::measure);
   // nothing has acted yet
   std::fill(storage_.force.begin(), storage_.force.end(), VectorRow<Dim>{});
+  property_change_ = energy().zones;  // of a body that begins at another temperature
 }
 
 /// Lets the state see the storage as it is now.
