@@ -86,6 +86,30 @@ TEST(Session, ACopyInTheMiddleGoesTheSameWay) {
             run->run().simulation().mechanics().storage().displacement.data());
 }
 
+TEST(Session, ACopyWhereCracksHinderHeatGoesTheSameWay) {
+  std::string stages =
+      kExpose + with(kHeatedFace, "rate = \"10 K/min\", to = \"70", "rate = \"100 K/min\", to = \"620") +
+      "[heat.cracks]\n";
+  RunChoices choices;
+  choices.threads = 1;
+  const std::string text =
+      with(with(deck(kSettle + stages, "\"6e-5 1/K\""), "conductivity = \"40 W", "conductivity = \"4 W"),
+           "exchange_increment = \"5 K\"", "exchange_increment = \"40 K\"");
+  const auto run = Session::begin({Deck::parse(text, "deck.toml"), ".", choices}, std::nullopt);
+  int asked = 0;
+  run->stop_when([&] { return ++asked == 100; });  // somewhere between two looks
+  while (run->next()) continue;
+  const double gaps = *run->run().history().last("heat_gap_length_m");
+  EXPECT_GT(gaps, 0.0);
+  const auto copied = run->copy({}, std::nullopt);
+  for (auto* session : {run.get(), copied.get()}) {
+    session->stop_when({});
+    finish(*session);
+  }
+  EXPECT_EQ(cells(*copied), cells(*run));
+  EXPECT_NE(*run->run().history().last("heat_gap_length_m"), gaps);
+}
+
 TEST(Session, ACopyWithOtherLaterStagesIsTheRunOfThatDeck) {
   const std::string changed = with(kCompress, "0.0002", "0.0001");
   const auto run = session(kCompress), whole = session(changed);
