@@ -214,7 +214,7 @@ TEST(BuiltinCurves, OnlyTheMoisturePeakJumps) {
 TEST(BuiltinCurves, NoneIsReadOutsideItsRange) {
   for (const NamedCurve& entry : builtin_curves().entries()) {
     const Interval range = entry.curve.range();
-    EXPECT_EQ(range.lower, 20.0) << entry.name;
+    EXPECT_LE(range.lower, 20.0) << entry.name;
     EXPECT_NO_THROW(entry.curve(range.lower)) << entry.name;
     EXPECT_NO_THROW(entry.curve(range.upper)) << entry.name;
     EXPECT_THROW(entry.curve(range.lower - 0.01), Error) << entry.name;
