@@ -119,7 +119,7 @@ void write_heat_of_contacts(Hdf5File& file, const Simulation& simulation) {
     const bool conducts = !simulation.model().is_of_bearing(c);
     jump.push_back(conducts ? static_cast<float>(temperature[c.b] - temperature[c.a]) : 0.0F);
   }
-  file.dataset(array("CellData", "heat_conductance", "W/(m2 K)"),
+  file.dataset(array("CellData", "heat_conductance", "W m-2 K-1"),
                std::vector<float>(conductance.begin(), conductance.end()));
   file.dataset(array("CellData", "temperature_jump", "K"), jump);
 }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/model/outline.hpp"
 #include "pyroclast/thermal/zone_conduction.hpp"
@@ -120,6 +121,7 @@ void GapConduction<Dim>::set_nodes(const ThermalNodes& nodes) {
     if (open_to_heat_[i] && a != b) crossings_.push_back({i, a, b});
   }
   heat_.assign(crossings_.size(), 0.0);
+  chunks_ = chunk_begins(static_cast<int>(crossings_.size()), [&](int i) { return crossings_[i].contact; });
   begin_.assign(static_cast<std::size_t>(nodes.count()) + 1, 0);
   for (const Crossing& x : crossings_)
     for (const int node : {x.a, x.b}) ++begin_[node + 1];
@@ -178,9 +180,7 @@ std::vector<double> GapConduction<Dim>::conductances(const std::vector<double>& 
 
 template <int Dim>
 double GapConduction<Dim>::area() const {
-  double sum = 0.0;
-  for (const Crossing& x : crossings_) sum += model_.contacts[x.contact].area;
-  return sum;
+  return chunked_sum(chunks_, [&](int i) { return model_.contacts[crossings_[i].contact].area; });
 }
 
 template <int Dim>

@@ -80,10 +80,11 @@ class GapConduction {
   std::vector<bool> open_to_heat_;   ///< of each contact: both sides conduct
   std::vector<ContactGap> gaps_;     ///< of each contact
   std::vector<std::uint8_t> parts_;  ///< likewise
-  std::vector<Crossing> crossings_;
-  std::vector<double> heat_;  ///< of each crossing, from a to b, W
-  std::vector<int> begin_;    ///< crossings at node i: [i] to [i + 1]
-  std::vector<int> sides_;    ///< twice the crossing's index, plus one on side b
+  std::vector<Crossing> crossings_;  ///< in the order of the contacts
+  std::vector<int> chunks_;          ///< of the crossings
+  std::vector<double> heat_;         ///< of each crossing, from a to b, W
+  std::vector<int> begin_;           ///< crossings at node i: [i] to [i + 1]
+  std::vector<int> sides_;           ///< twice the crossing's index, plus one on side b
 };
 
 extern template class GapConduction<2>;
