@@ -198,17 +198,22 @@ class FireUnderLoad(UserTest):
         contacts = self.read("contacts_0007.hdf")
         data = contacts.GetCellData()
         conductance, jump = data.GetArray("heat_conductance [W m-2 K-1]"), data.GetArray("temperature_jump [K]")
-        opening, bearing = data.GetArray("opening [m]"), data.GetArray("bearing")
+        opening, bearing, damage = (data.GetArray(name) for name in ("opening [m]", "bearing", "tension_damage [1]"))
         jumps = 0
         for i in range(contacts.GetNumberOfCells()):
+            h, jumped = conductance.GetTuple1(i), abs(jump.GetTuple1(i))
             if bearing.GetTuple1(i):
-                self.assertEqual((conductance.GetTuple1(i), jump.GetTuple1(i)), (0.0, 0.0))
+                self.assertEqual((h, jumped), (0.0, 0.0))
                 continue
-            jumps += abs(jump.GetTuple1(i)) > 1.0
-            if opening.GetTuple1(i) > 1e-4:  # no more than 1 mm of air has, with radiation
-                self.assertLess(conductance.GetTuple1(i), 0.09 / opening.GetTuple1(i) + 600.0)
-                self.assertGreater(conductance.GetTuple1(i), 0.025 / opening.GetTuple1(i))
-        self.assertGreater(jumps, 3)
+            jumps += jumped > 1.0
+            if jumped > 0.0:
+                self.assertLess(h, 2.1e4)  # twice split_below, and what the gas has got hotter since
+            # The heat of a frame met the cracks of the exchange before, which have grown since.
+            if damage.GetTuple1(i) == 0.0:
+                self.assertGreater(h, 5e4)
+            elif opening.GetTuple1(i) > 0.0:
+                self.assertGreater(h, (1.0 - damage.GetTuple1(i)) * 5e4)
+        self.assertGreater(jumps, 0)
 
     def test_every_array_is_documented_and_the_script_names_those_that_are_there(self):
         page = (CASES.parent / "docs" / "fields.md").read_text()
