@@ -99,9 +99,10 @@ class Deck:
 
     Keys are named by their paths, as in `--set` of the program: "specimen.width", "stages[1].to". A value with a
     dimension is a text with its unit ("150 mm") or a Quantity (`150 * pyroclast.mm`); a bare number is refused. Where
-    a curve can stand, so can a function: of the temperature [degC], or of the heating time [s] in `[heat]`; what it
-    returns is SI, of a temperature degC, or in the unit of a `pyroclast.Function`. The `factor` of a drive is a
-    function of the time since its stage began [s]. "specimen" takes a `pyroclast.Specimen` too.
+    a curve can stand, so can a function: of the temperature [degC], or of the heating time [s] in
+    `[[heat.boundaries]]`; what it returns is SI, of a temperature degC, or in the unit of a `pyroclast.Function`. The
+    `factor` of a drive is a function of the time since its stage began [s]. "specimen" takes a `pyroclast.Specimen`
+    too.
 
     Raises DeckError for a file that is no deck, or holds no TOML.
     """

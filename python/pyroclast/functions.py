@@ -27,8 +27,8 @@ _FACTOR = re.compile(r"stages\[\d+\]\.drives\[\d+\]\.factor")
 class Function(NamedTuple):
     """A curve as a function, and how it is meant.
 
-    call: of the temperature [degC]; of the heating time [s] in `[heat]`; of the time since the stage began [s] where it
-        is the factor of a drive.
+    call: of the temperature [degC]; of the heating time [s] in `[[heat.boundaries]]`; of the time since the stage began
+        [s] where it is the factor of a drive.
     unit: of what it returns; empty: the SI unit of its key, of a temperature degC.
     interval: that the table covers; None: all that the run of the deck comes to. A run whose stages are changed
         later may come further.
@@ -52,7 +52,7 @@ def axis_of(key: str) -> Axis:
     """What a key's curve goes over: what happens at boundaries, and drives, over the time, all else over the
     temperature.
     """
-    return TIME if key.startswith("heat.") or is_of_drive(key) else TEMPERATURE
+    return TIME if key.startswith("heat.boundaries") or is_of_drive(key) else TEMPERATURE
 
 
 def is_of_drive(key: str) -> bool:

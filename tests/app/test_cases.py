@@ -10,11 +10,14 @@ import math
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import tomllib
 import unittest
 
 ROOT = pathlib.Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT / "validation"))
+import wall_1d  # noqa: E402
 SMALL = tomllib.loads((ROOT / "validation" / "reference.toml").read_text())["small"]
 HALF_STRENGTH = "contacts.mortar_mortar.f_t=1.25 MPa"
 HALF_COHESION = "contacts.mortar_mortar.c_o=1.9 MPa"
@@ -122,6 +125,18 @@ class Cases(unittest.TestCase):
         before = max(crack for at, crack in zip(time, cracks) if at <= 7 * 3600.0)
         self.assertLess(before, 0.05 * cracks[-1])
         self.assertLess(cooler.column("mean_opening_m")[-1], 0.5 * whole.column("mean_opening_m")[-1])
+
+    def test_a_wall_with_cracks_along_its_hot_face_heats_as_in_one_dimension(self):
+        run = finished("delamination_heat")
+        depths = [0.005, 0.018, 0.022, 0.05]
+        whole = wall_1d.temperatures(None, 1800.0, depths)
+        for crack, width, hindrance in (("narrow", 1e-4, 8.0), ("wide", 1e-3, 40.0)):
+            expected = wall_1d.temperatures(width, 1800.0, depths)
+            found = [run.column(f"probe_{crack}_{round(1e3 * depth)}mm_degC")[-1] for depth in depths]
+            for depth, here, there in zip(depths, found, expected):
+                self.assertAlmostEqual(here, there, delta=0.015 * there, msg=f"{crack}, {depth} m")
+            self.assertGreater(found[1], whole[1] + hindrance / 2)
+            self.assertLess(found[2], whole[2] - hindrance)
 
 
 if __name__ == "__main__":

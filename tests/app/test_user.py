@@ -97,7 +97,7 @@ class FireUnderLoad(UserTest):
         cls.place = pathlib.Path(tempfile.mkdtemp())
         cls.addClassCleanup(shutil.rmtree, cls.place)
         deck = (CASES / "fire_one_side.toml").read_text()
-        deck += '\n[[probes]]\nname = "near"\nx = "5 mm"\ny = "150 mm"\n'
+        deck += '\n[[probes]]\nname = "near"\nx = "5 mm"\ny = "150 mm"\n[heat.cracks]\n'
         (cls.place / "fire.toml").write_text(deck)
         changes = ("blocks.count=200", "stages[1].ramp_time=50 ms", "stages[2].duration=14 min",
                    "coupling.exchange_increment=40 K", 'output.frame_interval="3 min"')
@@ -191,6 +191,29 @@ class FireUnderLoad(UserTest):
         self.assertGreater(sum(bearing.GetTuple1(i) for i in range(count)), 0)
         self.assertGreater(max(crack.GetTuple1(i) for i in range(count)), 0.0)
         self.assertTrue(all(crack.GetTuple1(i) == 0.0 for i in range(count) if bearing.GetTuple1(i)))
+
+    def test_cracks_hinder_heat_and_the_results_say_so(self):
+        self.assertIn("two-way", json.loads((self.out / "summary.json").read_text())["heat_solver"]["coupling"])
+        self.assertGreater(self.history[-1]["heat_gap_length_m"], 0.0)
+        contacts = self.read("contacts_0007.hdf")
+        data = contacts.GetCellData()
+        conductance, jump = data.GetArray("heat_conductance [W m-2 K-1]"), data.GetArray("temperature_jump [K]")
+        opening, bearing, damage = (data.GetArray(name) for name in ("opening [m]", "bearing", "tension_damage [1]"))
+        jumps = 0
+        for i in range(contacts.GetNumberOfCells()):
+            h, jumped = conductance.GetTuple1(i), abs(jump.GetTuple1(i))
+            if bearing.GetTuple1(i):
+                self.assertEqual((h, jumped), (0.0, 0.0))
+                continue
+            jumps += jumped > 1.0
+            if jumped > 0.0:
+                self.assertLess(h, 2.1e4)  # twice split_below, and what the gas has got hotter since
+            # The heat of a frame met the cracks of the exchange before, which have grown since.
+            if damage.GetTuple1(i) == 0.0:
+                self.assertGreater(h, 5e4)
+            elif opening.GetTuple1(i) > 0.0:
+                self.assertGreater(h, (1.0 - damage.GetTuple1(i)) * 5e4)
+        self.assertGreater(jumps, 0)
 
     def test_every_array_is_documented_and_the_script_names_those_that_are_there(self):
         page = (CASES.parent / "docs" / "fields.md").read_text()

@@ -111,6 +111,17 @@ TEST(BuiltinCurves, SecantExpansionTimesTemperatureRiseIsTheElongationSince20) {
   }
 }
 
+TEST(BuiltinCurves, AirConductsAsTablesOfAirSay) {
+  // Rounded values of common tables at 27, 127, 327, 527, 727 and 927 degC: within the 3 % of law and tables.
+  for (const auto& [T, k] : {std::pair{27.0, 0.0263},
+                             {127.0, 0.0338},
+                             {327.0, 0.0469},
+                             {527.0, 0.0573},
+                             {727.0, 0.0667},
+                             {927.0, 0.0763}})
+    EXPECT_NEAR(builtin("air_conductivity")(T), k, 0.03 * k) << T;
+}
+
 TEST(BuiltinCurves, ConductivityLimitsFollowTheirPolynomials) {
   // 2 - 0.2451 + 0.0107 and 1.36 - 0.136 + 0.0057 at 100 degC, by hand.
   EXPECT_NEAR(builtin("en1992_conductivity_upper")(100), 1.7656, 1e-14);
@@ -203,7 +214,7 @@ TEST(BuiltinCurves, OnlyTheMoisturePeakJumps) {
 TEST(BuiltinCurves, NoneIsReadOutsideItsRange) {
   for (const NamedCurve& entry : builtin_curves().entries()) {
     const Interval range = entry.curve.range();
-    EXPECT_EQ(range.lower, 20.0) << entry.name;
+    EXPECT_LE(range.lower, 20.0) << entry.name;
     EXPECT_NO_THROW(entry.curve(range.lower)) << entry.name;
     EXPECT_NO_THROW(entry.curve(range.upper)) << entry.name;
     EXPECT_THROW(entry.curve(range.lower - 0.01), Error) << entry.name;

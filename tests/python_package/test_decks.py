@@ -107,6 +107,20 @@ class Functions(Case):
         made["heat.boundaries[0].gas_temperature"] = gas
         return made
 
+    def test_the_gas_in_cracks_conducts_by_a_function_of_the_temperature(self):
+        made = self.wall("500 degC")
+        asked = []
+
+        def conductivity(T):
+            asked.append(T)
+            return 0.025 + 6e-5 * (T - 20.0)
+
+        made["heat.cracks"] = {}
+        made["heat.cracks.gas_conductivity"] = conductivity
+        made.check()
+        self.assertGreaterEqual(min(asked), 20.0)  # a time would begin at 0
+        self.assertGreater(max(asked), 499.0)
+
     def test_a_gas_temperature_is_tabulated_and_the_table_is_in_the_folder(self):
         def gas(t):
             return 20.0 + 800.0 * (1.0 - math.exp(-t / 300.0)) * (1.0 + 0.1 * math.sin(t / 50.0))

@@ -86,6 +86,33 @@ TEST(Session, ACopyInTheMiddleGoesTheSameWay) {
             run->run().simulation().mechanics().storage().displacement.data());
 }
 
+TEST(Session, ACopyWhereCracksHinderHeatGoesTheSameWay) {
+  std::string stages =
+      kExpose + with(kHeatedFace, "rate = \"10 K/min\", to = \"70", "rate = \"100 K/min\", to = \"620") +
+      "[heat.cracks]\n";
+  RunChoices choices;
+  choices.threads = 1;
+  const std::string text =
+      with(with(deck(kSettle + stages, "\"6e-5 1/K\""), "conductivity = \"40 W", "conductivity = \"4 W"),
+           "exchange_increment = \"5 K\"", "exchange_increment = \"40 K\"");
+  const auto run = Session::begin({Deck::parse(text, "deck.toml"), ".", choices}, std::nullopt);
+  const auto gaps = [](const Session& session) {
+    return session.run().simulation().field().conduction()->gaps()->area();
+  };
+  int asked = 0;
+  run->stop_when([&] { return gaps(*run) > 0.0 && ++asked == 4; });  // somewhere between two looks
+  while (run->next()) continue;
+  ASSERT_EQ(run->run().outcome(), Outcome::stopped);
+  const double then = gaps(*run);
+  const auto copied = run->copy({}, std::nullopt);
+  for (auto* session : {run.get(), copied.get()}) {
+    session->stop_when([] { return false; });
+    finish(*session);
+  }
+  EXPECT_EQ(cells(*copied), cells(*run));
+  EXPECT_GT(gaps(*run), then);
+}
+
 TEST(Session, ACopyWithOtherLaterStagesIsTheRunOfThatDeck) {
   const std::string changed = with(kCompress, "0.0002", "0.0001");
   const auto run = session(kCompress), whole = session(changed);

@@ -127,6 +127,8 @@ int check(const RunOptions& options) {
   if (simulation->moves()) print_mechanics(*simulation, setup.motion->mechanics.mass);
   if (const auto* conduction = simulation->field().conduction())
     fmt::print("{}", describe(*conduction, model, setup.temperatures));
+  if (!simulation->field().is_uniform() && simulation->moves())
+    fmt::print("                {}\n", simulation->coupling_of_heat());
 
   const Forecast expected = forecast(setup.stages, *simulation, setup.temperatures);
   Run run(*simulation, std::move(setup.stages));

@@ -108,10 +108,15 @@ std::string describe_warnings(const std::vector<std::string>& warnings) {
 std::string describe(const Conduction<2>& conduction, const Model<2>& model, const Interval& temperatures) {
   const HeatStepLimit limit = conduction.step_limit();
   const Vec<2>& at = model.position[conduction.nodes().gridpoint[limit.node]];
-  return fmt::format("heat            {} nodes, {:.0f} to {:.0f} degC\n", conduction.nodes().count(),
-                     temperatures.lower, temperatures.upper) +
-         fmt::format("                stable step {:.3g} s at first, set at ({:.2f}, {:.2f}) mm\n",
-                     limit.step, kMilli * at[0], kMilli * at[1]);
+  std::string text =
+      fmt::format("heat            {} nodes, {:.0f} to {:.0f} degC\n", conduction.nodes().count(),
+                  temperatures.lower, temperatures.upper) +
+      fmt::format("                stable step {:.3g} s at first, set at ({:.2f}, {:.2f}) mm\n", limit.step,
+                  kMilli * at[0], kMilli * at[1]);
+  if (const auto* gaps = conduction.gaps())
+    text += fmt::format("                cracks hinder heat: it meets {:.3g} mm of gaps at first\n",
+                        kMilli * gaps->area() / model.thickness);
+  return text;
 }
 
 std::string duration(double seconds) {

@@ -194,6 +194,13 @@ double asce_heat_capacity(double T) {  // MJ/(m3 K)
   return 2.7;
 }
 
+/// Sutherland's law for the conductivity of air with White's constants, W/(m K).
+double air_conductivity(double T) {
+  constexpr double k_0 = 0.0241, T_0 = 273.0, S = 194.0;  // W/(m K), K, K
+  const double absolute = T + 273.15;
+  return k_0 * std::pow(absolute / T_0, 1.5) * (T_0 + S) / (absolute + S);
+}
+
 std::vector<NamedCurve> published_curves() {
   // Read in the SIFEL code, not in the publications.
   const std::string glasgow = "Glasgow group: Pearce, Nielsen and Bicanic, second-hand";
@@ -224,6 +231,9 @@ std::vector<NamedCurve> published_curves() {
        "aggregate",
        "ASCE Manual 78 (1992)", "J/(m3 K)",
        function([](double T) { return 1e6 * asce_heat_capacity(T); }, eurocode_range, {200, 400, 500, 600})},
+      {"air_conductivity", "thermal conductivity of air at the pressure of the atmosphere, within 2 %",
+       "White, Viscous Fluid Flow, Sutherland's law", "W/(m K)",
+       function(air_conductivity, {-100.0, 1700.0})},
       {"paper_aggregate_expansion",
        "secant thermal expansion coefficient of aggregate from 20 degC, fitted to the unloaded heating test",
        "paper Eq. (18), 9e-6 + 7e-8 T", "1/K",

@@ -109,6 +109,21 @@ double crack(const Mechanics<2>& mechanics, int contact) {
   return most;
 }
 
+/// What contacts are to heat, where cracks hinder it.
+void write_heat_of_contacts(Hdf5File& file, const Simulation& simulation) {
+  const auto& temperature = simulation.field().gridpoints();
+  const auto conductance = simulation.field().conduction()->gaps()->conductances(temperature);
+  std::vector<float> jump;
+  for (std::size_t i = 0; i < conductance.size(); ++i) {
+    const auto& c = simulation.model().contacts[i];
+    const bool conducts = !simulation.model().is_of_bearing(c);
+    jump.push_back(conducts ? static_cast<float>(temperature[c.b] - temperature[c.a]) : 0.0F);
+  }
+  file.dataset(array("CellData", "heat_conductance", "W m-2 K-1"),
+               std::vector<float>(conductance.begin(), conductance.end()));
+  file.dataset(array("CellData", "temperature_jump", "K"), jump);
+}
+
 void write_contacts(Hdf5File& file, const Mechanics<2>& mechanics) {
   const auto& model = mechanics.model();
   const auto infos = remembered_by(mechanics);
@@ -214,7 +229,10 @@ void FieldFiles::write(const Simulation& simulation, const History& history, Fra
     write_temperatures(file, simulation.field());
   });
   if (contacts_)
-    contacts_->write(times, [&](Hdf5File& file) { write_contacts(file, simulation.mechanics()); });
+    contacts_->write(times, [&](Hdf5File& file) {
+      write_contacts(file, simulation.mechanics());
+      if (simulation.cracks_hinder_heat()) write_heat_of_contacts(file, simulation);
+    });
   frames_.line(frame_line(history, columns_, frames.rows.size(), row));
   frames.rows.push_back(row);
 }

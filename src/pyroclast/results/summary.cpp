@@ -174,6 +174,10 @@ void add_heat(Json& json, const Summary& summary, const Run& run) {
                          {"steps_taken_back", conduction.retries()},
                          {"evaluations", conduction.stages()},
                          {"largest_overshoot_K", conduction.largest_overshoot()}};
+  const Simulation& simulation = run.simulation();
+  if (simulation.moves()) json["heat_solver"]["coupling"] = simulation.coupling_of_heat();
+  if (simulation.cracks_hinder_heat())
+    json["heat_solver"]["gap_length_m"] = *last_of(run.history(), "heat_gap_length_m");
 }
 
 }  // namespace

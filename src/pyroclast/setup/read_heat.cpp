@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/material/builtin_curves.hpp"
+
 namespace pyroclast {
 
 namespace {
@@ -17,6 +19,13 @@ namespace {
 constexpr double kSafety = 0.9;
 constexpr double kLargestChange = 2.0;  // K
 constexpr double kLargestStep = 60.0;   // s
+
+// Of cracks, see docs/heat.md.
+constexpr double kBridges = 5e4;        // W/(m2 K)
+constexpr double kJumpDistance = 2e-7;  // m
+constexpr double kEmissivity = 0.9;
+constexpr double kSplitBelow = 1e4;  // W/(m2 K)
+constexpr const char* kAir = "air_conductivity";
 
 constexpr Range kTemperature = Range::at_least(absolute_zero);
 
@@ -161,13 +170,57 @@ void read_conduction(const Section& s, CurveReader& time_curves, HeatConditions&
   if (!s.ok()) heat.temperature_range = Interval{heat.initial, heat.initial + 1.0};
 }
 
+GapHeat read_gap_heat(const Section& s, CurveReader& curves) {
+  GapHeat law{
+      .bridges = s.quantity("bridges", unit::heat_transfer, Range::non_negative().usually(1e3, 1e6), kBridges,
+                            "conductance of the solid bridges of an intact contact; damage in tension "
+                            "leaves 1 − D_t of it"),
+      .gas_conductivity = builtin_curves().at(kAir).curve,
+      .jump_distance =
+          s.quantity("jump_distance", unit::length, Range::positive().usually(1e-8, 1e-5), kJumpDistance,
+                     "by which the gas seems wider than the opening, for the jumps of "
+                     "temperature at the faces"),
+      .emissivity = s.quantity("emissivity", unit::dimensionless, Range::fraction(), kEmissivity,
+                               "ε of each face; 1 / (2/ε − 1) acts between the two"),
+      .split_below =
+          s.quantity("split_below", unit::heat_transfer, Range::positive().usually(1e3, 1e5), kSplitBelow,
+                     "conductance below which a contact parts the temperatures of its sides; above "
+                     "twice that it joins them; see [heat.md](heat.md#cracks)")};
+  if (s.has("gas_conductivity"))
+    law.gas_conductivity =
+        curves.read(s, "gas_conductivity", unit::conductivity, Range::positive(),
+                    "of the gas in cracks; without it that of air, the builtin air_conductivity");
+  return law;
+}
+
 }  // namespace
+
+std::optional<CrackHeat> read_crack_heat(const Section& root, CurveReader& curves) {
+  const auto heat = root.optional_section("heat");
+  const auto s =
+      heat ? heat->optional_section("cracks",
+                                    "lets cracks hinder heat; without it heat crosses them as if they "
+                                    "were not there; see [heat.md](heat.md#cracks)")
+           : std::nullopt;
+  if (!s) return std::nullopt;
+  CrackHeat cracks{read_gap_heat(*s, curves), {}};
+  for (const Section& gap :
+       s->optional_sections("gaps", "contacts that stand apart from the start, for heat; any number"))
+    cracks.gaps.push_back({gap.text("contacts",
+                                    "a set of contacts: the name of a notch without width, or of a set; see "
+                                    "[bodies.md](bodies.md#sets)"),
+                           gap.quantity("width", unit::length, Range::positive().usually(1e-6, 0.02),
+                                        "between the faces; what the motion opens comes to it"),
+                           fmt::format("{}: {}", gap.where("contacts"), gap.path())});
+  return cracks;
+}
 
 std::optional<HeatConditions> read_heat(const Section& root, CurveReader& time_curves) {
   const auto s =
       root.optional_section("heat", "how the specimen is heated; without it the specimen stays at 20 °C");
   if (!s) return std::nullopt;
-  s->know({"scheme", "safety", "largest_change", "largest_step", "temperature_range", "boundaries"});
+  s->know(
+      {"scheme", "safety", "largest_change", "largest_step", "temperature_range", "boundaries", "cracks"});
   HeatConditions heat;
   heat.uniform = s->choice<bool>(
       "field",

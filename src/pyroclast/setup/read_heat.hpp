@@ -12,4 +12,8 @@ namespace pyroclast {
 /// \param time_curves  reader of curves of the time from the start of heating
 std::optional<HeatConditions> read_heat(const Section& root, CurveReader& time_curves);
 
+/// Reads [heat.cracks]; empty if the deck has none. What is wrong is recorded in the deck.
+/// \param curves  reader of curves of the temperature
+std::optional<CrackHeat> read_crack_heat(const Section& root, CurveReader& curves);
+
 }  // namespace pyroclast

@@ -298,6 +298,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   else
     setup.probes = read_probes(root, setup.specimen.region);
   CurveReader curves(folder, temperature_axis(), setup.temperatures, builtin_curves());
+  if (!setup.heat.uniform) setup.heat.cracks = read_crack_heat(root, curves);
   if (read.any_moves)
     read_moving(
         root, bearings, curves,

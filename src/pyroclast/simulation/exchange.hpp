@@ -16,8 +16,9 @@ enum class PlatenControl : std::uint8_t {
 
 const char* name(PlatenControl control);
 
-/// Staggered one-way coupling (paper, Fig. 2): heat to the next exchange, then mechanics at that temperature
-/// field, stepped until it rests.
+/// Staggered coupling (paper, Fig. 2): heat to the next exchange, then mechanics at that temperature field,
+/// stepped until it rests. Where cracks hinder heat, it is two-way: the heat of the next exchange meets the
+/// cracks that this one left.
 struct Coupling {
   double increment = 0.0;  ///< change of temperature between two exchanges, K
   // The mechanics is at rest when both are below these. The ratio does not see a small force that acts on all

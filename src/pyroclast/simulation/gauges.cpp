@@ -115,6 +115,12 @@ constexpr auto kTransport = std::to_array<ColumnOf<T>>({
     {"heat_error_J", "J", [](const T& t) { return t.heat.error(); }},
 });
 
+/// Of contacts whose sides have temperatures of their own.
+constexpr auto kGaps = std::to_array<ColumnOf<S>>({
+    {"heat_gap_length_m", "m",
+     [](const S& s) { return s.field().conduction()->gaps()->area() / s.model().thickness; }},
+});
+
 /// With a column for each energy that the contact laws of the body lose.
 Gauge motion_gauge(const Mechanics<2>& mechanics) {
   Gauge gauge;
@@ -202,8 +208,12 @@ std::vector<Gauge> motion_gauges(const Simulation& simulation) {
 
 std::vector<Gauge> transport_gauges(const Simulation& simulation) {
   if (simulation.field().is_uniform()) return {};
-  return {make_gauge(
+  std::vector<Gauge> gauges{make_gauge(
       kTransport, [](const Simulation& s) { return measure_transport(*s.field().conduction()); }, false)};
+  if (simulation.cracks_hinder_heat())
+    gauges.push_back(make_gauge(
+        kGaps, [](const Simulation& s) -> const Simulation& { return s; }, false));
+  return gauges;
 }
 
 std::vector<Gauge> probe_gauges(const Simulation& simulation) {

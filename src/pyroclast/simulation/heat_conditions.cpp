@@ -68,6 +68,11 @@ std::vector<std::optional<HeatMaterial>> heat_materials(const std::vector<SolidM
   return materials;
 }
 
+std::optional<GapHeat> gap_heat(const HeatConditions& heat) {
+  if (!heat.cracks) return std::nullopt;
+  return heat.cracks->law;
+}
+
 struct Box {
   Vec<2> low, high;
 };
@@ -191,7 +196,8 @@ std::unique_ptr<Conduction<2>> make_conduction(const Model<2>& model,
                                                                    .scheme = heat.scheme,
                                                                    .safety = heat.safety,
                                                                    .largest_change = heat.largest_change,
-                                                                   .largest_step = heat.largest_step},
+                                                                   .largest_step = heat.largest_step,
+                                                                   .gaps = gap_heat(heat)},
                                                     std::move(team));
   const Box specimen = bounding_box(conduction->outline(), model);
   FaceUse use(conduction->outline().size());

@@ -10,6 +10,7 @@
 
 #include "pyroclast/material/concrete.hpp"
 #include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/simulation/contact_gaps.hpp"
 #include "pyroclast/thermal/conduction.hpp"
 
 namespace pyroclast {
@@ -39,6 +40,12 @@ struct HeatBoundaryCondition {
   std::string place;  ///< file, line and key, for messages
 };
 
+/// How cracks hinder heat.
+struct CrackHeat {
+  GapHeat law;
+  std::vector<StatedGap> gaps;  ///< that are there from the start
+};
+
 /// What a deck says of heat. Times run from the start of heating.
 struct HeatConditions {
   bool uniform = true;                     ///< the whole specimen has one temperature (paper, section 4)
@@ -50,6 +57,7 @@ struct HeatConditions {
   double largest_step = 0.0;                  ///< s
   std::optional<Interval> temperature_range;  ///< that the user states, °C
   std::vector<HeatBoundaryCondition> boundaries;
+  std::optional<CrackHeat> cracks;  ///< empty: they do not hinder heat
 };
 
 /// Whether two conditions on one face contradict each other: a prescribed temperature and an adiabatic face

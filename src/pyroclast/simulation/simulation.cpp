@@ -84,13 +84,17 @@ Simulation::Simulation(specimen::Specimen specimen, double thickness,
       heat_(heat),
       field_(make_field(model_, solids, heat, team_)) {
   for (const auto& probe : probes) probes_.emplace_back(model_, probe);
-  if (!motion) return;
+  if (!motion) {
+    show_cracks_to_heat();
+    return;
+  }
   materials_ =
       make_concrete(solids, motion->contacts, specimen_.metrics.mean_size, specimen::block_size(specimen_));
   mechanics_ = make_mechanics(model_, materials_, field_, motion->mechanics, team_);
   for (const specimen::Notch& notch : specimen_.region.notches())
     if (const auto parted = model_.contact_sets.find(notch.name); parted != model_.contact_sets.end())
       for (int contact : parted->second) mechanics_->break_contact(contact);
+  show_cracks_to_heat();
   loads_ = std::make_unique<Loads<2>>(*mechanics_, std::sqrt(specimen_.region.area()));
   for (const RecordParameters& record : motion->records) records_.emplace_back(*mechanics_, record);
   if (std::ranges::find(motion->bearings, kUpperPlaten, &Bearing::name) == motion->bearings.end()) return;
@@ -107,6 +111,15 @@ const Record& Simulation::record(std::string_view name) const {
 void Simulation::set_zero() {
   if (press_) press_->set_zero();
   for (Record& record : records_) record.set_zero(*this);
+}
+
+const char* Simulation::coupling_of_heat() const {
+  return cracks_hinder_heat() ? "two-way, staggered: heat meets the cracks that the last exchange left"
+                              : "one-way: the body follows its temperatures, and cracks do not hinder heat";
+}
+
+void Simulation::show_cracks_to_heat() {
+  if (cracks_hinder_heat()) field_.set_gaps(contact_gaps(model_, heat_.cracks->gaps, mechanics_.get()));
 }
 
 void Simulation::set_materials(ConcreteMaterials materials) {

@@ -63,6 +63,14 @@ class Simulation {
   const TemperatureField& field() const { return field_; }
   const std::vector<Probe>& probes() const { return probes_; }
 
+  /// Whether cracks hinder heat.
+  bool cracks_hinder_heat() const { return heat_.cracks.has_value(); }
+  /// How heat and motion act on each other, in words.
+  const char* coupling_of_heat() const;
+  /// Shows the heat solver what is left of each contact now, where cracks hinder heat: before heat flows, at
+  /// each exchange of temperatures.
+  void show_cracks_to_heat();
+
   /// Whether there are mechanics.
   bool moves() const { return mechanics_ != nullptr; }
   Mechanics<2>& mechanics() { return *mechanics_; }

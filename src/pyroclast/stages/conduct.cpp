@@ -43,6 +43,7 @@ StageNeeds Conduct::needs() const {
 
 void Conduct::begin(Simulation& simulation) {
   began_ = simulation.field().time();
+  simulation.show_cracks_to_heat();
   simulation.field().begin_exposure(temperature_range(simulation.heat(), end()));
   steady_from_ = keys_.steady_rate ? constant_from(simulation.heat(), end()) : kNever;
   next_frame_ = next_multiple(keys_.frame_interval, began_);

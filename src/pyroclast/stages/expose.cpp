@@ -45,7 +45,10 @@ void Expose::begin_change(Simulation& simulation) {
 }
 
 bool Expose::change(Simulation& simulation, Exchange& exchange, int) {
-  if (!flow_.flows()) flow_.begin(coupling().increment, std::min(began_ + keys_.duration, next_frame_));
+  if (!flow_.flows()) {
+    simulation.show_cracks_to_heat();
+    flow_.begin(coupling().increment, std::min(began_ + keys_.duration, next_frame_));
+  }
   if (!flow_.advance(simulation.field())) return false;
   simulation.set_heating_time(simulation.field().time());
   exchange.hand_over(simulation);

@@ -116,23 +116,121 @@ Conduction<Dim>::Conduction(const Model<Dim>& model,
       conducts_(conducting(model.material_names, materials)),
       table_of_material_(table_indices(conducts_)),
       tables_(make_tables(model.material_names, materials, grid_, parameters.largest_change)),
-      nodes_(join_through_contacts(model, conducts_)),
       geometry_(zone_geometry(model)),
       outline_(pyroclast::outline(model, geometry_, conducts_)),
-      zones_(model, geometry_, nodes_, table_of_material_, tables_, *team_),
-      shares_(zones_.shares()),
-      store_(grid_, tables_, shares_),
-      volume_(total_volumes(shares_)),
-      node_chunks_(chunk_begins(nodes_.count())),
-      total_volume_(chunked_sum(node_chunks_, [&](int node) { return volume_[node]; })) {
-  const auto count = static_cast<std::size_t>(nodes_.count());
-  if (count == 0) throw Error("heat conduction: no block is of a material that conducts heat");
-  prescription_.assign(count, -1);
-  for (auto* field : {&state_.enthalpy, &trial_.increment, &trial_.before, &trial_.first_rate,
-                      &boundary_heat_, &source_heat_})
-    field->assign(count, 0.0);
+      zones_(model, geometry_, table_of_material_, tables_, *team_),
+      store_(grid_, tables_, {}),
+      prescription_of_gridpoint_(model.position.size(), -1) {
+  if (parameters_.gaps) gaps_.emplace(model, conducts_, *parameters_.gaps, grid_, *team_);
+  set_nodes(join_through_contacts(model, conducts_));
+  if (nodes_.count() == 0) throw Error("heat conduction: no block is of a material that conducts heat");
   state_.temperature_range = parameters.temperature_range;
   set_uniform_temperature(parameters.initial_temperature);
+}
+
+// ---- Nodes -----------------------------------------------------------------------------------------------
+
+/// Sets up all that follows from which gridpoints share a node, but for their heat.
+template <int Dim>
+void Conduction<Dim>::set_nodes(ThermalNodes nodes) {
+  nodes_ = std::move(nodes);
+  zones_.set_nodes(nodes_);
+  if (gaps_) gaps_->set_nodes(nodes_);
+  const auto shares = zones_.shares();
+  store_ = NodeEnthalpy(grid_, tables_, shares);
+  volume_ = total_volumes(shares);
+  node_chunks_ = chunk_begins(nodes_.count());
+  total_volume_ = chunked_sum(node_chunks_, [&](int node) { return volume_[node]; });
+  for (auto* field : {&trial_.increment, &trial_.before, &trial_.first_rate, &boundary_heat_, &source_heat_})
+    field->assign(volume_.size(), 0.0);
+  boundary_.clear();
+  for (const Applied& applied : applied_) add_to_boundary(applied);
+  place_prescriptions();
+}
+
+template <int Dim>
+void Conduction<Dim>::set_gaps(std::vector<ContactGap> gaps) {
+  if (!gaps_) throw Error("heat conduction: nothing says how heat crosses gaps");
+  drop_trial();
+  if (!gaps_->set_gaps(std::move(gaps), gridpoint_temperatures(grid_.range().lower))) return;
+  auto nodes = join_through_contacts(model_, conducts_, gaps_->parts());
+  if (nodes.of_gridpoint != nodes_.of_gridpoint) move_heat_to(std::move(nodes));
+}
+
+/// Each gridpoint takes its share of its node's heat along. What waits at an end of the temperature range is
+/// shared out by volume, with what rounding leaves.
+template <int Dim>
+void Conduction<Dim>::move_heat_to(ThermalNodes nodes) {
+  constexpr int kNone = -1, kSeveral = -2;
+  const ThermalNodes before = nodes_;
+  const HeatState was = state_;
+  const auto shares = gridpoint_shares();
+  const NodeEnthalpy store(grid_, tables_, shares);
+  std::vector<double> heat(shares.size()), left = was.enthalpy;
+  std::vector<int> size_before(was.enthalpy.size()), size(static_cast<std::size_t>(nodes.count()));
+  std::vector<int> from(size.size(), kNone);  // node before, of all that a node is made of
+  for (int g = 0; g < model_.gridpoint_count(); ++g) {
+    const int old = before.of_gridpoint[g], now = nodes.of_gridpoint[g];
+    if (old < 0) continue;
+    heat[g] = store.enthalpy(g, was.temperature[old]);
+    left[old] -= heat[g];
+    ++size_before[old];
+    ++size[now];
+    from[now] = from[now] == kNone || from[now] == old ? old : kSeveral;
+  }
+  std::vector<double> enthalpy(size.size());
+  for (int g = 0; g < model_.gridpoint_count(); ++g)
+    if (const int old = before.of_gridpoint[g]; old >= 0)
+      enthalpy[nodes.of_gridpoint[g]] += heat[g] + left[old] * shares[g].front().volume / volume_[old];
+  set_nodes(std::move(nodes));
+  state_.enthalpy = std::move(enthalpy);
+  state_.temperature.resize(size.size());
+  for (int node = 0; node < nodes_.count(); ++node) {
+    const int old = from[node];
+    if (old == kSeveral) {
+      const double near = was.temperature[before.of_gridpoint[nodes_.gridpoint[node]]];
+      state_.temperature[node] = store_.temperature(node, state_.enthalpy[node], near);
+      continue;
+    }
+    state_.temperature[node] = was.temperature[old];
+    if (size[node] == size_before[old]) state_.enthalpy[node] = was.enthalpy[old];
+  }
+}
+
+/// Of each gridpoint: an equal share of every zone, all of the material of its block.
+template <int Dim>
+std::vector<std::vector<NodeShare>> Conduction<Dim>::gridpoint_shares() const {
+  std::vector<std::vector<NodeShare>> shares(model_.position.size());
+  for (int b = 0; b < model_.block_count(); ++b) {
+    const int table = table_of_material_[model_.block_material[b]];
+    if (table < 0) continue;
+    for (int z = model_.block_zones[b]; z < model_.block_zones[b + 1]; ++z)
+      for (int g : model_.zones[z]) {
+        if (shares[g].empty()) shares[g].push_back({table, 0.0});
+        shares[g].front().volume += geometry_.volume[z] / (Dim + 1);
+      }
+  }
+  return shares;
+}
+
+template <int Dim>
+void Conduction<Dim>::add_to_boundary(const Applied& applied) {
+  std::vector<double> area(volume_.size());
+  for (int face : applied.faces)
+    for (int g : outline_.at(face).gridpoints) area[nodes_.of_gridpoint[g]] += outline_[face].area / Dim;
+  std::vector<BoundaryPatch> patches;
+  for (int node = 0; node < nodes_.count(); ++node)
+    if (area[node] > 0.0) patches.push_back({node, area[node]});
+  boundary_.add(applied.condition, std::move(patches));
+}
+
+/// Where several hold the gridpoints of a node, the latest holds it.
+template <int Dim>
+void Conduction<Dim>::place_prescriptions() {
+  prescription_.assign(volume_.size(), -1);
+  for (int g = 0; g < model_.gridpoint_count(); ++g)
+    if (const int node = nodes_.of_gridpoint[g]; node >= 0)
+      prescription_[node] = std::max(prescription_[node], prescription_of_gridpoint_[g]);
 }
 
 // ---- What acts on the body -------------------------------------------------------------------------------
@@ -140,13 +238,9 @@ Conduction<Dim>::Conduction(const Model<Dim>& model,
 template <int Dim>
 void Conduction<Dim>::apply(const std::vector<int>& faces, const BoundaryCondition& condition) {
   drop_trial();
-  std::vector<double> area(volume_.size());
-  for (int face : faces)
-    for (int g : outline_.at(face).gridpoints) area[nodes_.of_gridpoint[g]] += outline_[face].area / Dim;
-  std::vector<BoundaryPatch> patches;
-  for (int node = 0; node < nodes_.count(); ++node)
-    if (area[node] > 0.0) patches.push_back({node, area[node]});
-  boundary_.add(condition, std::move(patches));
+  const Applied applied{faces, condition};
+  add_to_boundary(applied);
+  applied_.push_back(applied);
 }
 
 template <int Dim>
@@ -155,16 +249,20 @@ void Conduction<Dim>::prescribe_temperature(const std::vector<int>& faces, const
   require_curve_of_time(temperature, "prescribed temperature");
   const int prescription = static_cast<int>(prescriptions_.size());
   for (int face : faces)
-    for (int g : outline_.at(face).gridpoints) prescription_[nodes_.of_gridpoint[g]] = prescription;
+    for (int g : outline_.at(face).gridpoints) prescription_of_gridpoint_[g] = prescription;
   prescriptions_.push_back(temperature);
+  place_prescriptions();
 }
 
 template <int Dim>
 void Conduction<Dim>::prescribe_node(int node, const Curve& temperature) {
   drop_trial();
   require_curve_of_time(temperature, "prescribed temperature");
-  prescription_.at(node) = static_cast<int>(prescriptions_.size());
+  const int prescription = static_cast<int>(prescriptions_.size());
+  for (int g = 0; g < model_.gridpoint_count(); ++g)
+    if (nodes_.of_gridpoint[g] == node) prescription_of_gridpoint_[g] = prescription;
   prescriptions_.push_back(temperature);
+  prescription_.at(node) = prescription;
 }
 
 template <int Dim>
@@ -180,6 +278,7 @@ void Conduction<Dim>::widen_temperature_range(const Interval& range) {
   grid_ = TemperatureGrid(wider);
   for (auto& table : tables_) table.extend(grid_);
   store_.set_grid(grid_);
+  if (gaps_) gaps_->set_grid(grid_);
   state_.temperature_range = wider;
   for (int node : waiting)
     state_.temperature[node] = store_.temperature(node, state_.enthalpy[node], state_.temperature[node]);
@@ -194,6 +293,7 @@ void Conduction<Dim>::set_temperature(const std::vector<double>& temperature) {
   for (double t : temperature)
     require(grid_.range().contains(t), "a node's temperature", t, "within the temperature range");
   state_.temperature = temperature;
+  state_.enthalpy.resize(temperature.size());
   for (int node = 0; node < nodes_.count(); ++node)
     state_.enthalpy[node] = store_.enthalpy(node, temperature[node]);
   state_.stored_at_start = total_enthalpy();
@@ -339,6 +439,7 @@ template <int Dim>
 typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
   Inflow sum;
   zones_.update(trial_.temperature);
+  if (gaps_) gaps_->update(trial_.temperature);
   sum.boundary = boundary_.inflow(time, trial_.temperature, boundary_heat_);
   if (source_) {
     team_->share(nodes_.count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -483,6 +584,10 @@ HeatStepLimit Conduction<Dim>::present_limit(double step) const {
   auto hottest = state_.temperature;
   for (double& t : hottest) t = std::min(t + parameters_.largest_change, grid_.range().upper);
   boundary_.add_slope(time(), time() + step, hottest, rows);
+  if (gaps_) {
+    const double coldest = *std::ranges::min_element(state_.temperature) - parameters_.largest_change;
+    gaps_->add_row_bound(std::max(coldest, grid_.range().lower), hottest, rows);
+  }
   return strictest(rows, parameters_.safety,
                    [&](int node) { return store_.least_capacity(node, state_.temperature[node]); });
 }
@@ -491,7 +596,9 @@ HeatStepLimit Conduction<Dim>::present_limit(double step) const {
 template <int Dim>
 HeatStepLimit Conduction<Dim>::range_limit(double end) const {
   auto rows = zones_.row_bound();
-  boundary_.add_slope(time(), end, std::vector<double>(rows.size(), grid_.range().upper), rows);
+  const std::vector<double> hottest(rows.size(), grid_.range().upper);
+  boundary_.add_slope(time(), end, hottest, rows);
+  if (gaps_) gaps_->add_row_bound(grid_.range().lower, hottest, rows);
   return strictest(rows, parameters_.safety, [&](int node) { return store_.least_capacity(node); });
 }
 
@@ -548,6 +655,7 @@ template <int Dim>
 void Conduction<Dim>::visit_state(StateVisitor& visitor) {
   HeatState s = state();
   const StateVisitor::Scope scope(visitor, "heat");
+  if (gaps_) gaps_->visit_state(visitor);
   visitor.visit("temperature_range", s.temperature_range);
   visitor.visit("time", s.time);
   visitor.visit("next_step", s.next_step);
@@ -563,6 +671,7 @@ void Conduction<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit("enthalpy", s.enthalpy);
   if (!visitor.replaces()) return;
   widen_temperature_range(s.temperature_range);
+  if (gaps_) set_nodes(join_through_contacts(model_, conducts_, gaps_->parts()));
   state_ = std::move(s);
   trial_.under_way = false;
   before_run_.holds = false;

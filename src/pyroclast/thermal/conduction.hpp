@@ -8,6 +8,7 @@
 
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/base/team.hpp"
+#include "pyroclast/thermal/gap_conduction.hpp"
 #include "pyroclast/thermal/heat_boundary.hpp"
 #include "pyroclast/thermal/heat_material.hpp"
 #include "pyroclast/thermal/thermal_mesh.hpp"
@@ -20,9 +21,10 @@ struct HeatParameters {
   Interval temperature_range;        ///< that the run stays within until it is widened, °C
   double initial_temperature = 0.0;  ///< °C
   HeatScheme scheme = HeatScheme::super_time_stepping;
-  double safety = 0.0;          ///< fraction of the stable step that is taken, in (0, 1]
-  double largest_change = 0.0;  ///< of any temperature in one step, K
-  double largest_step = 0.0;    ///< s
+  double safety = 0.0;            ///< fraction of the stable step that is taken, in (0, 1]
+  double largest_change = 0.0;    ///< of any temperature in one step, K
+  double largest_step = 0.0;      ///< s
+  std::optional<GapHeat> gaps{};  ///< empty: heat crosses all contacts without resistance
 };
 
 /// Where the heat of a body came from since the start, J. What came in is what is stored; the rest is the
@@ -69,7 +71,8 @@ struct HeatState {
 
 /// Transient conduction of heat in a body of blocks, paper Eqs. (1) and (2).
 ///
-/// Linear zones with lumped capacity; gridpoints that contacts join are one node. The enthalpy of the nodes
+/// Linear zones with lumped capacity; gridpoints that contacts join are one node. Contacts that conduct badly
+/// may part them, see GapConduction. The enthalpy of the nodes
 /// is what is advanced, and temperatures follow from it, so heat is conserved to rounding whatever the
 /// curves. A step is explicit: as many stages as the step needs to be stable, with bounds of the properties
 /// that hold while no temperature changes by more than `largest_change`; a step in which one does is taken
@@ -125,6 +128,13 @@ class Conduction {
   /// Lets temperatures from now on come to the given range, °C, as well as to the present one. What was
   /// computed before does not depend on it. Throws Error when a material's curve does not cover it.
   void widen_temperature_range(const Interval& range);
+
+  /// Takes what is left of each contact for heat; needs HeatParameters::gaps. Where contacts come to part or
+  /// to join gridpoints, nodes are numbered anew, and no heat is lost: a part takes its share along, and what
+  /// joins has one temperature, the mean by capacity. Throws Error as GapConduction::set_gaps does.
+  void set_gaps(std::vector<ContactGap> gaps);
+  /// Null where heat crosses all contacts without resistance.
+  const GapConduction<Dim>* gaps() const { return gaps_ ? &*gaps_ : nullptr; }
 
   /// Sets the temperature of every node, °C, and starts the ledger anew.
   void set_temperature(const std::vector<double>& temperature);
@@ -203,6 +213,17 @@ class Conduction {
     std::vector<double> temperature, enthalpy;  ///< of the prescribed nodes, in the order of `prescribed_`
   };
 
+  /// A boundary condition on faces of the outline.
+  struct Applied {
+    std::vector<int> faces;
+    BoundaryCondition condition;
+  };
+
+  void set_nodes(ThermalNodes nodes);
+  void move_heat_to(ThermalNodes nodes);
+  std::vector<std::vector<NodeShare>> gridpoint_shares() const;
+  void add_to_boundary(const Applied& applied);
+  void place_prescriptions();
   void begin_run(double end);
   void complete_step(double end);
   bool continue_step(double end, std::int64_t& stages);
@@ -215,7 +236,10 @@ class Conduction {
   void update_nodes(const TimeStage& stage);
   double total_enthalpy() const;
   double excess(int node, double temperature, double enthalpy) const;
-  double inflow(int node) const { return zones_.inflow(node) + boundary_heat_[node] + source_heat_[node]; }
+  double inflow(int node) const {
+    const double heat = zones_.inflow(node) + boundary_heat_[node] + source_heat_[node];
+    return gaps_ ? heat + gaps_->inflow(node) : heat;
+  }
   void read_prescriptions(double time);
   void hold_prescribed();
   void undo_begin(HeatState& state) const;
@@ -231,21 +255,26 @@ class Conduction {
   std::vector<bool> conducts_;          ///< by material
   std::vector<int> table_of_material_;  ///< -1: does not conduct
   std::vector<HeatTable> tables_;
-  ThermalNodes nodes_;
   ZoneGeometry<Dim> geometry_;
   std::vector<OutlineFace<Dim>> outline_;
   ZoneConduction<Dim> zones_;
-  std::vector<std::vector<NodeShare>> shares_;
+  std::optional<GapConduction<Dim>> gaps_;
+
+  // These follow from which gridpoints share a node, see set_nodes.
+  ThermalNodes nodes_;
   NodeEnthalpy store_;
   std::vector<double> volume_;  ///< of each node, m³
   std::vector<int> node_chunks_;
   double total_volume_ = 0.0;  ///< m³
 
   HeatBoundary boundary_;
+  std::vector<int> prescription_;  ///< of each node, -1: free
+
+  std::vector<Applied> applied_;
   Source source_;
   std::vector<Curve> prescriptions_;
-  std::vector<int> prescription_;  ///< of each node, -1: free
-  std::vector<int> prescribed_;    ///< nodes, ascending
+  std::vector<int> prescription_of_gridpoint_;  ///< -1: free
+  std::vector<int> prescribed_;                 ///< nodes, ascending
   std::vector<int> prescribed_chunks_;
   std::vector<double> held_at_;  ///< by prescription, °C
 

@@ -36,6 +36,8 @@ class HeatBoundary {
   /// Throws Error naming the quantity when its curve is not one of time, a coefficient is negative, or an
   /// emissivity not between 0 and 1.
   void add(const BoundaryCondition& condition, std::vector<BoundaryPatch> patches);
+  /// Takes all of them away.
+  void clear() { entries_.clear(); }
 
   /// Throws Error naming the curve that is not defined from `begin` to `end`, s.
   void require_defined(double begin, double end) const;

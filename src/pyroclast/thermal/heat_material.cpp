@@ -142,7 +142,7 @@ void HeatTable::find_bounds() {
 
 NodeEnthalpy::NodeEnthalpy(const TemperatureGrid& grid, const std::vector<HeatTable>& tables,
                            const std::vector<std::vector<NodeShare>>& shares)
-    : grid_(grid), tables_(tables), begin_{0} {
+    : grid_(grid), tables_(&tables), begin_{0} {
   for (const auto& of_node : shares) {
     shares_.insert(shares_.end(), of_node.begin(), of_node.end());
     begin_.push_back(static_cast<int>(shares_.size()));
@@ -163,7 +163,7 @@ void NodeEnthalpy::set_grid(const TemperatureGrid& grid) {
 double NodeEnthalpy::at(int node, int knot) const {
   double sum = 0.0;
   for (int i = begin_[node]; i < begin_[node + 1]; ++i)
-    sum += shares_[i].volume * tables_[shares_[i].material].enthalpy(knot);
+    sum += shares_[i].volume * (*tables_)[shares_[i].material].enthalpy(knot);
   return sum;
 }
 
@@ -209,14 +209,14 @@ double NodeEnthalpy::excess(int node, double enthalpy) const {
 double NodeEnthalpy::least_capacity(int node, double temperature) const {
   double sum = 0.0;
   for (int i = begin_[node]; i < begin_[node + 1]; ++i)
-    sum += shares_[i].volume * tables_[shares_[i].material].least_capacity(temperature);
+    sum += shares_[i].volume * (*tables_)[shares_[i].material].least_capacity(temperature);
   return sum;
 }
 
 double NodeEnthalpy::least_capacity(int node) const {
   double sum = 0.0;
   for (int i = begin_[node]; i < begin_[node + 1]; ++i)
-    sum += shares_[i].volume * tables_[shares_[i].material].least_capacity();
+    sum += shares_[i].volume * (*tables_)[shares_[i].material].least_capacity();
   return sum;
 }
 

@@ -106,7 +106,7 @@ struct NodeShare {
 /// Enthalpy of thermal nodes, each of which may hold several materials, and its inverse.
 class NodeEnthalpy {
  public:
-  /// \param tables  by material; kept by reference
+  /// \param tables  by material; must outlive this
   /// \param shares  of each node
   NodeEnthalpy(const TemperatureGrid& grid, const std::vector<HeatTable>& tables,
                const std::vector<std::vector<NodeShare>>& shares);
@@ -128,7 +128,7 @@ class NodeEnthalpy {
   double at(int node, int knot) const;
 
   TemperatureGrid grid_;
-  const std::vector<HeatTable>& tables_;
+  const std::vector<HeatTable>* tables_;
   std::vector<int> begin_;  ///< shares of node i: [i] to [i + 1]
   std::vector<NodeShare> shares_;
   std::vector<double> least_, most_;  ///< of each node, at the ends of the range, J

@@ -48,7 +48,8 @@ TemperatureField::TemperatureField(const Model<2>& model)
   }
   zone_chunks_ = chunk_begins(model_.zone_count());
   volume_ = chunked_sum(zone_chunks_, [&](int z) { return specimen_volume_[z]; });
-  for (const auto& c : model_.contacts) contact_gridpoint_.push_back(in_specimen[c.a] ? c.a : c.b);
+  for (const auto& c : model_.contacts)
+    contact_gridpoints_.push_back({in_specimen[c.a] ? c.a : c.b, in_specimen[c.b] ? c.b : c.a});
 }
 
 TemperatureField::TemperatureField(const Model<2>& model, double temperature) : TemperatureField(model) {
@@ -70,6 +71,13 @@ void TemperatureField::set_uniform(double temperature) {
 void TemperatureField::begin_exposure(const Interval& temperatures) {
   if (is_uniform()) throw Error("a uniform temperature does not conduct heat; it is set");
   conduction_->widen_temperature_range(temperatures);
+}
+
+void TemperatureField::set_gaps(std::vector<ContactGap> gaps) {
+  if (is_uniform()) throw Error("a uniform temperature does not conduct heat; it meets no gaps");
+  if (advance_.under_way) throw Error("gaps cannot change while the temperatures advance");
+  conduction_->set_gaps(std::move(gaps));
+  read_conduction();
 }
 
 double TemperatureField::advance(double largest_change, double until, double steady_rate) {
@@ -149,7 +157,10 @@ void TemperatureField::update() {
     zones_[z] = (gridpoints_[a] + gridpoints_[b] + gridpoints_[c]) / 3.0;
   }
   mean_ = chunked_sum(zone_chunks_, [&](int z) { return specimen_volume_[z] * zones_[z]; }) / volume_;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) contacts_[c] = gridpoints_[contact_gridpoint_[c]];
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const auto [a, b] = contact_gridpoints_[c];
+    contacts_[c] = 0.5 * (gridpoints_[a] + gridpoints_[b]);
+  }
   minimum_ = kInfinity;
   maximum_ = -kInfinity;
   for (int g : specimen_gridpoints_) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -29,6 +30,10 @@ class TemperatureField {
   /// depends on a later, hotter exposure. Throws Error for a uniform field.
   void begin_exposure(const Interval& temperatures);
 
+  /// Takes what is left of each contact for heat, see Conduction::set_gaps. Throws Error for a uniform field
+  /// and while an advance is under way.
+  void set_gaps(std::vector<ContactGap> gaps);
+
   /// Conducts heat until some gridpoint of the specimen has changed by `largest_change`, K, since the call,
   /// or to the time `until`, s, or until the rate (Conduction::rate) is below `steady_rate`, K/s. Returns the
   /// time reached.
@@ -49,7 +54,7 @@ class TemperatureField {
   void end_advance();
 
   /// Temperatures, °C: of each gridpoint; of each zone, the mean of its gridpoints; of each contact point
-  /// that of its gridpoints, at a platen that of the specimen.
+  /// the mean of its gridpoints, at a platen that of the specimen.
   const std::vector<double>& gridpoints() const { return gridpoints_; }
   const std::vector<double>& zones() const { return zones_; }
   const std::vector<double>& contacts() const { return contacts_; }
@@ -84,8 +89,8 @@ class TemperatureField {
   const Model<2>& model_;
   std::unique_ptr<Conduction<2>> conduction_;
   std::vector<int> specimen_gridpoints_;
-  std::vector<int> contact_gridpoint_;   ///< of each contact, on the specimen's side
-  std::vector<double> specimen_volume_;  ///< of each zone, m³; 0 in the platens
+  std::vector<std::array<int, 2>> contact_gridpoints_;  ///< of each contact; at a platen twice the specimen's
+  std::vector<double> specimen_volume_;                 ///< of each zone, m³; 0 in the platens
   std::vector<int> zone_chunks_;
   double volume_ = 0.0;  ///< of the specimen, m³
 

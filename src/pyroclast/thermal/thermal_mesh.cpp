@@ -44,18 +44,20 @@ double coincidence_tolerance(const Model<Dim>& model) {
 }  // namespace
 
 template <int Dim>
-ThermalNodes join_through_contacts(const Model<Dim>& model, const std::vector<bool>& conducts) {
+ThermalNodes join_through_contacts(const Model<Dim>& model, const std::vector<bool>& conducts,
+                                   const std::vector<std::uint8_t>& parts) {
   const auto conducting = gridpoints_of(model, conducts);
   const double tolerance = coincidence_tolerance(model);
   DisjointSets sets(model.gridpoint_count());
-  for (const auto& c : model.contacts) {
+  for (std::size_t i = 0; i < model.contacts.size(); ++i) {
+    const auto& c = model.contacts[i];
     if (!conducting[c.a] || !conducting[c.b]) continue;
     if (const double gap = norm(model.position[c.a] - model.position[c.b]); !(gap <= tolerance))
       throw Error(
           fmt::format("a contact joins gridpoints {} and {}, which lie {:g} m apart; heat crosses only "
                       "contacts whose gridpoints coincide",
                       c.a, c.b, gap));
-    sets.join(c.a, c.b);
+    if (parts.empty() || parts[i] == 0) sets.join(c.a, c.b);
   }
 
   std::vector<bool> in_zone(model.position.size());
@@ -78,7 +80,9 @@ ThermalNodes join_through_contacts(const Model<Dim>& model, const std::vector<bo
   return nodes;
 }
 
-template ThermalNodes join_through_contacts(const Model<2>&, const std::vector<bool>&);
-template ThermalNodes join_through_contacts(const Model<3>&, const std::vector<bool>&);
+template ThermalNodes join_through_contacts(const Model<2>&, const std::vector<bool>&,
+                                            const std::vector<std::uint8_t>&);
+template ThermalNodes join_through_contacts(const Model<3>&, const std::vector<bool>&,
+                                            const std::vector<std::uint8_t>&);
 
 }  // namespace pyroclast

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "pyroclast/model/outline.hpp"
@@ -16,13 +17,14 @@ struct ThermalNodes {
 };
 
 /// Nodes for heat that crosses contacts without resistance (paper, 2.1): gridpoints that contacts join are
-/// one. A contact with a resistance would leave its gridpoints apart and pass heat between their nodes
-/// instead.
+/// one.
 ///
 /// \param conducts  whether a material takes part, by material of the model
+/// \param parts     whether each contact has a resistance, see GapConduction, and joins nothing; empty: none
 ///
 /// Throws Error when a contact joins gridpoints that do not coincide, or a gridpoint belongs to no zone.
 template <int Dim>
-ThermalNodes join_through_contacts(const Model<Dim>& model, const std::vector<bool>& conducts);
+ThermalNodes join_through_contacts(const Model<Dim>& model, const std::vector<bool>& conducts,
+                                   const std::vector<std::uint8_t>& parts = {});
 
 }  // namespace pyroclast

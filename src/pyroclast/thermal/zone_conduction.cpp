@@ -8,19 +8,15 @@ namespace pyroclast {
 
 template <int Dim>
 ZoneConduction<Dim>::ZoneConduction(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry,
-                                    const ThermalNodes& nodes, const std::vector<int>& table_of_material,
+                                    const std::vector<int>& table_of_material,
                                     const std::vector<HeatTable>& tables, Team& team)
-    : tables_(tables),
-      team_(team),
-      node_count_(nodes.count()),
-      begin_(static_cast<std::size_t>(nodes.count()) + 1) {
+    : tables_(tables), team_(team) {
   for (int b = 0; b < model.block_count(); ++b) {
     const int table = table_of_material[model.block_material[b]];
     if (table < 0) continue;
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
       Zone zone{{}, table, geometry.volume[z], geometry.gradient[z]};
       std::array<Vec<Dim>, Dim + 1> gradient{};
-      for (int i = 0; i <= Dim; ++i) zone.node[i] = nodes.of_gridpoint[model.zones[z][i]];
       for (int i = 0; i < Dim; ++i) {
         gradient[i] = zone.gradient[i];
         gradient[Dim] -= zone.gradient[i];
@@ -29,13 +25,22 @@ ZoneConduction<Dim>::ZoneConduction(const Model<Dim>& model, const ZoneGeometry<
       for (int i = 0; i <= Dim; ++i)
         for (int j = 0; j <= Dim; ++j) row[i] += std::abs(dot(gradient[i], gradient[j])) * zone.volume;
       zones_.push_back(zone);
+      gridpoints_.push_back(model.zones[z]);
       row_.push_back(row);
     }
   }
   heat_.resize(zones_.size());
+}
 
-  for (const auto& zone : zones_)
-    for (int node : zone.node) ++begin_[node + 1];
+template <int Dim>
+void ZoneConduction<Dim>::set_nodes(const ThermalNodes& nodes) {
+  node_count_ = nodes.count();
+  begin_.assign(static_cast<std::size_t>(node_count_) + 1, 0);
+  for (std::size_t z = 0; z < zones_.size(); ++z)
+    for (int i = 0; i <= Dim; ++i) {
+      zones_[z].node[i] = nodes.of_gridpoint[gridpoints_[z][i]];
+      ++begin_[zones_[z].node[i] + 1];
+    }
   for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   corners_.resize(static_cast<std::size_t>(begin_.back()));
   auto next = begin_;

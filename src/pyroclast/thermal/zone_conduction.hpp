@@ -21,8 +21,11 @@ class ZoneConduction {
   /// \param table_of_material  index into the tables of each material of the model, -1 where none conducts
   /// \param tables             kept by reference
   /// \param team               shares zones and nodes; kept by reference
-  ZoneConduction(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry, const ThermalNodes& nodes,
+  ZoneConduction(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry,
                  const std::vector<int>& table_of_material, const std::vector<HeatTable>& tables, Team& team);
+
+  /// Says which node stands at each gridpoint; needed before all that follows.
+  void set_nodes(const ThermalNodes& nodes);
 
   std::int64_t zone_count() const { return static_cast<std::int64_t>(zones_.size()); }
 
@@ -54,12 +57,13 @@ class ZoneConduction {
 
   const std::vector<HeatTable>& tables_;
   Team& team_;
-  int node_count_;
+  int node_count_ = 0;
   std::vector<Zone> zones_;
-  std::vector<std::array<double, Dim + 1>> row_;   ///< sums of |conductance| at unit conductivity, m
-  std::vector<std::array<double, Dim + 1>> heat_;  ///< into each corner, W
-  std::vector<int> begin_;                         ///< corners at node i: [i] to [i + 1]
-  std::vector<std::array<int, 2>> corners_;        ///< zone and its corner
+  std::vector<std::array<int, Dim + 1>> gridpoints_;  ///< of each zone
+  std::vector<std::array<double, Dim + 1>> row_;      ///< sums of |conductance| at unit conductivity, m
+  std::vector<std::array<double, Dim + 1>> heat_;     ///< into each corner, W
+  std::vector<int> begin_;                            ///< corners at node i: [i] to [i + 1]
+  std::vector<std::array<int, 2>> corners_;           ///< zone and its corner
 };
 
 extern template class ZoneConduction<2>;

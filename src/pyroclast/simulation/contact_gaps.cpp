@@ -1,0 +1,53 @@
+#include "pyroclast/simulation/contact_gaps.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+template <int Dim>
+const std::vector<int>& contacts_of(const Model<Dim>& model, const StatedGap& gap) {
+  if (const auto set = model.contact_sets.find(gap.contacts); set != model.contact_sets.end())
+    return set->second;
+  std::vector<std::string> names;
+  for (const auto& [name, contacts] : model.contact_sets) names.push_back(name);
+  throw Error(fmt::format("{}: contacts = \"{}\" is no set of contacts; those of this body are {}", gap.place,
+                          gap.contacts, fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+template <int Dim>
+std::vector<ContactGap> contact_gaps(const Model<Dim>& model, const std::vector<StatedGap>& stated,
+                                     const Mechanics<Dim>* mechanics) {
+  std::vector<ContactGap> gaps(model.contacts.size());
+  std::vector<const StatedGap*> gap_of(model.contacts.size());
+  for (const StatedGap& gap : stated)
+    for (const int contact : contacts_of(model, gap)) {
+      if (gap_of[contact] != nullptr)
+        throw Error(fmt::format("{}: contacts of \"{}\" have a gap already ({})", gap.place, gap.contacts,
+                                gap_of[contact]->place));
+      gap_of[contact] = &gap;
+      gaps[contact] = {1.0, gap.width};
+    }
+  if (mechanics == nullptr) return gaps;
+  for (int i = 0; i < model.contact_count(); ++i) {
+    gaps[i].opening += std::max(mechanics->opening(i), 0.0);
+    for (const auto damage : {Remembers::tension_damage, Remembers::mixed_damage})
+      gaps[i].damage = std::max(gaps[i].damage, mechanics->remembered(i, damage));
+  }
+  return gaps;
+}
+
+template std::vector<ContactGap> contact_gaps(const Model<2>&, const std::vector<StatedGap>&,
+                                              const Mechanics<2>*);
+template std::vector<ContactGap> contact_gaps(const Model<3>&, const std::vector<StatedGap>&,
+                                              const Mechanics<3>*);
+
+}  // namespace pyroclast
