@@ -179,6 +179,31 @@ TEST(Drive, EndsByARecord) {
   EXPECT_EQ(run("record = \"end\"\nabove = \"1 m\"\n").run.outcome(), Outcome::not_reached);
 }
 
+// A body that still swings when it is pulled: the peaks of its first noise are no peaks of the test.
+TEST(Drive, APeakOfNoiseIsNoPeak) {
+  const auto run = [&](const std::string& least) {
+    const std::string text =
+        free_deck(kUniform + kCorner + kRecords +
+                  drive("duration = \"2 ms\"", kHeld + does("right",
+                                                            "velocity = \"0.4 mm/s\"\ndirection = \"x\"\n"
+                                                            "factor = { table = [[\"0 s\", 1], [\"1 ms\", "
+                                                            "1], [\"1.01 ms\", -1], [\"2 ms\", -1]] }")) +
+                  drive("duration = \"50 ms\"\nlook_interval = \"0.2 ms\"",
+                        does("right", "velocity = \"2 mm/s\"\ndirection = \"x\"\nramp_time = \"10 ms\"") +
+                            "[[stages.until]]\nrecord = \"grip\"\nshare_of_peak = 0.9\n" + least));
+    return Finished(with(with(text, "local_damping = 0.8", "local_damping = 0.05"), "500 1/s", "10 1/s"));
+  };
+  const Finished by_itself = run("");
+  EXPECT_EQ(by_itself.run.outcome(), Outcome::completed);
+  const double peak = std::abs(by_itself.result(1, "peak_grip_N").value());
+  EXPECT_GT(peak, 2e6 * kHeight);
+  const Finished stated = run("least_peak = \"100 kN\"\n");
+  EXPECT_EQ(stated.last("time_s"), by_itself.last("time_s"));
+  // who says that any peak counts has the stage end at the first
+  const Finished any = run("least_peak = \"1 N\"\n");
+  EXPECT_LT(std::abs(any.result(1, "peak_grip_N").value()), 0.2 * peak);
+}
+
 std::string result(const std::string& name, const std::string& rest) {
   return "[[stages.results]]\nname = \"" + name + "\"\n" + rest + "\n";
 }

@@ -24,6 +24,8 @@ constexpr std::int64_t kStepsPerAdjustment = 20;
 constexpr std::int64_t kStepsPerControl = 5;
 /// What the pair may bear of the largest load without a warning.
 constexpr double kLeftToPair = 0.05;
+/// A peak counts once noise is below this share of what is recorded, and below what is to fall from the peak.
+constexpr double kMostNoise = 0.1;
 /// Rows and frames of a stage where the deck does not say.
 constexpr double kLooks = 200.0, kFrames = 10.0;
 
@@ -133,7 +135,10 @@ Drive::Until read_until(const Section& s, const std::vector<RecordParameters>& r
       {"rate_above", Drive::Until::Kind::rate_above},
       {"rate_below", Drive::Until::Kind::rate_below}};
   s.know({"above", "below", "share_of_peak", "rate_above", "rate_below"});
-  if (!found) return u;
+  if (!found) {
+    s.know({"least_peak"});
+    return u;
+  }
   u.record = found->name;
   int stated = 0;
   for (const auto& [key, kind] : kinds) {
@@ -155,6 +160,11 @@ Drive::Until read_until(const Section& s, const std::vector<RecordParameters>& r
     case Drive::Until::Kind::share_of_peak:
       u.value = s.number("share_of_peak", Range::inside(0.0, 1.0),
                          "the stage ends when the record's size has fallen below this share of its greatest");
+      if (s.has("least_peak"))
+        u.least_peak = s.quantity(
+            "least_peak", unit, Range::positive(),
+            "a peak counts when it is greater; where it is not stated, from when what is recorded is "
+            "[beyond noise](bodies.md#drives)");
       break;
     case Drive::Until::Kind::rate_above:
       u.value = s.quantity("rate_above", rate, Range::positive(),
@@ -316,7 +326,9 @@ void Drive::begin(Simulation& simulation) {
   peaks_.assign(keys_.until.size(), 0.0);
   last_.clear();
   for (const Until& until : keys_.until) last_.push_back(simulation.record(until.record).read(simulation));
-  first_work_ = mechanics.energy().loading;
+  const EnergyLedger energy = mechanics.energy();
+  first_work_ = energy.loading;
+  most_kinetic_ = std::abs(energy.kinetic);
   const Vec<2> weight = mechanics.total_weight(mechanics.set_of(simulation.model().set("specimen")));
   body_ = {simulation.model().thickness, norm(weight)};
   for (std::size_t i = 0; i < keys_.actions.size(); ++i) {
@@ -401,21 +413,35 @@ bool Drive::advance(Simulation& simulation, int most_steps) {
          (steps_ % interval == 0 && time(simulation) >= keys_.duration);
 }
 
+/// Whether noise is below this share of what records show of the stage. Forces go with the root of an energy;
+/// so the energy of the motion, at any look that asked so far, must be below the square of that share of what
+/// the loads did. Who loads nothing shakes nothing.
+bool Drive::is_beyond_noise(double share, const Simulation& simulation) {
+  const EnergyLedger energy = simulation.mechanics().energy();
+  most_kinetic_ = std::max(most_kinetic_, std::abs(energy.kinetic));
+  return !loads() || most_kinetic_ <= share * share * std::abs(energy.loading - first_work_);
+}
+
 bool Drive::is_met(std::size_t condition, const Simulation& simulation) {
   const Until& until = keys_.until[condition];
   double& peak = peaks_[condition];
   double& last = last_[condition];
   const double value = simulation.record(until.record).read(simulation);
   const double rate = std::abs(value - last) / (time(simulation) - last_look_);
-  peak = std::max(peak, std::abs(value));
   last = value;
   switch (until.kind) {
     case Until::Kind::above:
       return value > until.value;
     case Until::Kind::below:
       return value < until.value;
-    case Until::Kind::share_of_peak:
-      return std::abs(value) < until.value * peak;
+    case Until::Kind::share_of_peak: {
+      const double size = std::abs(value);
+      const double most_noise = std::min(kMostNoise, 1.0 - until.value);
+      const bool counts = peak > 0.0 || (until.least_peak ? size > *until.least_peak
+                                                          : is_beyond_noise(most_noise, simulation));
+      if (counts) peak = std::max(peak, size);
+      return size < until.value * peak;
+    }
     case Until::Kind::rate_above:
       return rate > until.value;
     case Until::Kind::rate_below:
@@ -518,6 +544,7 @@ void Drive::visit_state(StateVisitor& visitor) {
   visitor.visit("last", last_);
   visitor.visit("last_look", last_look_);
   visitor.visit("first_work", first_work_);
+  visitor.visit("most_kinetic", most_kinetic_);
   body_.visit_state(visitor);
 }
 
