@@ -179,6 +179,25 @@ TEST(Drive, EndsByARecord) {
   EXPECT_EQ(run("record = \"end\"\nabove = \"1 m\"\n").run.outcome(), Outcome::not_reached);
 }
 
+// Promise: one of the frames is that of the peak, however few there are.
+TEST(Drive, AFrameStandsBehindThePeakOfTheFirstForce) {
+  Trial trial(free_deck(
+      kUniform + kCorner + kRecords +
+      drive("duration = \"40 ms\"\nlook_interval = \"0.2 ms\"\nframe_interval = \"30 ms\"",
+            kHeld + does("right", "velocity = \"2 mm/s\"\ndirection = \"x\"\nramp_time = \"1 ms\""))));
+  std::vector<double> grip;
+  std::vector<std::size_t> frames;
+  while (trial.run.next()) {
+    grip.push_back(std::abs(trial.run.history().last("grip_N").value_or(0.0)));
+    if (trial.run.frame_is_due()) frames.push_back(grip.size() - 1);
+  }
+  const auto peak = static_cast<std::size_t>(std::ranges::max_element(grip) - grip.begin());
+  EXPECT_EQ(std::ranges::count_if(
+                frames, [&](std::size_t row) { return row > peak && grip[row] > 0.95 * grip[peak]; }),
+            1);
+  EXPECT_LE(frames.size(), 5U);  // beside those at the start, at 30 ms and at the end
+}
+
 // A body that still swings when it is pulled: the peaks of its first noise are no peaks of the test.
 TEST(Drive, APeakOfNoiseIsNoPeak) {
   const auto run = [&](const std::string& least) {

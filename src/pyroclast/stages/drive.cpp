@@ -26,6 +26,8 @@ constexpr std::int64_t kStepsPerControl = 5;
 constexpr double kLeftToPair = 0.05;
 /// A peak counts once noise is below this share of what is recorded, and below what is to fall from the peak.
 constexpr double kMostNoise = 0.1;
+/// Behind a peak is where its record has fallen below this share of it; the next peak is greater by as much.
+constexpr double kBehindPeak = 0.98;
 /// Rows and frames of a stage where the deck does not say.
 constexpr double kLooks = 200.0, kFrames = 10.0;
 
@@ -221,9 +223,10 @@ std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
   keys.look_interval =
       s.quantity("look_interval", unit::time, Range::positive(), keys.duration / kLooks,
                  "between two rows of history.csv; where it is not stated, 1/200 of the duration");
-  keys.frame_interval =
-      s.quantity("frame_interval", unit::time, Range::positive(), keys.duration / kFrames,
-                 "between two frames of the fields; where it is not stated, 1/10 of the duration");
+  keys.frame_interval = s.quantity(
+      "frame_interval", unit::time, Range::positive(), keys.duration / kFrames,
+      "between two frames of the fields; where it is not stated, 1/10 of the duration; there is one behind "
+      "each peak of the first force, or stress, too");
   keys.records = tables.records;
   keys.results = read_record_results(s, tables.records);
   return std::make_unique<Drive>(std::move(keys));
@@ -233,6 +236,13 @@ std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
 
 StageKind drive_kind() {
   return {"drive", "holds, moves or loads sets of the specimen or of bearings", {}, read_drive};
+}
+
+Drive::Drive(Keys keys) : keys_(std::move(keys)) {
+  for (const RecordKind kind : {RecordKind::force, RecordKind::stress})
+    if (const auto first = std::ranges::find(keys_.records, kind, &RecordParameters::kind);
+        !leading_ && first != keys_.records.end())
+      leading_ = first->name;
 }
 
 void Drive::check(const Simulation& simulation, Supports<2>& supports) const {
@@ -450,6 +460,17 @@ bool Drive::is_met(std::size_t condition, const Simulation& simulation) {
   return false;
 }
 
+/// Whether the leading record has just come down from a peak that has no frame yet.
+bool Drive::has_fallen(const Simulation& simulation) {
+  if (!leading_) return false;
+  const double size = std::abs(simulation.record(*leading_).read(simulation));
+  if (leading_peak_ == 0.0 && !is_beyond_noise(kMostNoise, simulation)) return false;
+  leading_peak_ = std::max(leading_peak_, size);
+  if (size >= kBehindPeak * leading_peak_ || framed_peak_ >= kBehindPeak * leading_peak_) return false;
+  framed_peak_ = leading_peak_;
+  return true;
+}
+
 /// What was moved stays where it is, and no pair is left.
 void Drive::halt(Simulation& simulation) {
   if (keys_.control) {
@@ -486,7 +507,7 @@ Verdict Drive::judge(Simulation& simulation) {
   }
   if (verdict.over) halt(simulation);
   const auto frames = static_cast<std::int64_t>(now / keys_.frame_interval);
-  verdict.frame = frames > frames_;
+  verdict.frame = has_fallen(simulation) || frames > frames_;
   frames_ = std::max(frames_, frames);
   return verdict;
 }
@@ -518,7 +539,7 @@ Forecast Drive::forecast(const Simulation& simulation, Foreseen&) const {
   const double steps = keys_.duration / simulation.mechanics().time_step();
   return {.steps = steps,
           .looks = keys_.duration / keys_.look_interval,
-          .frames = keys_.duration / keys_.frame_interval};
+          .frames = keys_.duration / keys_.frame_interval + (leading_ ? 1.0 : 0.0)};
 }
 
 std::vector<Column> Drive::columns() const {
@@ -542,6 +563,8 @@ void Drive::visit_state(StateVisitor& visitor) {
   visitor.visit("first", first_);
   visitor.visit("peaks", peaks_);
   visitor.visit("last", last_);
+  visitor.visit("leading_peak", leading_peak_);
+  visitor.visit("framed_peak", framed_peak_);
   visitor.visit("last_look", last_look_);
   visitor.visit("first_work", first_work_);
   visitor.visit("most_kinetic", most_kinetic_);
