@@ -22,7 +22,8 @@ namespace {
 constexpr std::int64_t kStepsPerAdjustment = 20;
 /// More often where they are controlled: the pair is a spring.
 constexpr std::int64_t kStepsPerControl = 5;
-/// What the pair may bear of the largest load without a warning.
+/// What the pair may bear of the largest load when that acts, and do of the work of the loads, without a
+/// warning.
 constexpr double kLeftToPair = 0.05;
 /// A peak counts once noise is below this share of what is recorded, and below what is to fall from the peak.
 constexpr double kMostNoise = 0.1;
@@ -332,7 +333,8 @@ std::int64_t Drive::steps_in(const Simulation& simulation, double interval) cons
 void Drive::begin(Simulation& simulation) {
   Mechanics<2>& mechanics = simulation.mechanics();
   first_.assign(keys_.actions.size(), 0.0);
-  if (keys_.control) first_opening_ = simulation.record(keys_.control->record).read(simulation);
+  if (keys_.control)
+    first_opening_ = last_opening_ = simulation.record(keys_.control->record).read(simulation);
   peaks_.assign(keys_.until.size(), 0.0);
   last_.clear();
   for (const Until& until : keys_.until) last_.push_back(simulation.record(until.record).read(simulation));
@@ -368,7 +370,10 @@ double Drive::amount(std::size_t i, double time) const {
 void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads) {
   const Control& control = *keys_.control;
   const Record& record = simulation.record(control.record);
-  pair_force_ = control.stiffness * (first_opening_ + control.rate * time - record.read(simulation));
+  const double opening = record.read(simulation);
+  pair_work_ += pair_force_ * (opening - last_opening_);
+  last_opening_ = opening;
+  pair_force_ = control.stiffness * (first_opening_ + control.rate * time - opening);
   const double step = static_cast<double>(kStepsPerControl) * simulation.mechanics().time_step();
   load_factor_ += pair_force_ / unit_force() * step / control.response_time;
   const auto& [name, kind, set, other, direction, place] = record.parameters();
@@ -486,7 +491,10 @@ void Drive::halt(Simulation& simulation) {
 Verdict Drive::judge(Simulation& simulation) {
   Verdict verdict;
   largest_pair_ = std::max(largest_pair_, std::abs(pair_force_));
-  largest_factor_ = std::max(largest_factor_, std::abs(load_factor_));
+  if (std::abs(load_factor_) > largest_factor_) {
+    largest_factor_ = std::abs(load_factor_);
+    pair_at_peak_ = std::abs(pair_force_);
+  }
   const double now = time(simulation);
   for (std::size_t i = 0; i < keys_.until.size(); ++i)
     if (is_met(i, simulation)) verdict.over = true;
@@ -521,18 +529,32 @@ StageReport Drive::report(const History& history, RowRange rows, Outcome) const 
   report.results = {{"steps", steps_}};
   if (rows.empty()) return report;
   report.results.push_back({"unbalanced_ratio", history.values("unbalanced_ratio", rows).back()});
-  report.results.push_back({"loading_work_J", history.values("energy_loading_J", rows).back() - first_work_});
+  const double work = history.values("energy_loading_J", rows).back() - first_work_;
+  report.results.push_back({"loading_work_J", work});
   const auto of_records = record_results(keys_.records, keys_.results, body_, history, rows);
   report.results.insert(report.results.end(), of_records.begin(), of_records.end());
   report.lines = lines_of(keys_.results, of_records);
-  if (!keys_.control) return report;
-  const double left = largest_factor_ > 0.0 ? largest_pair_ / (largest_factor_ * unit_force()) : 0.0;
-  report.results.push_back({"largest_load_factor", largest_factor_});
-  report.results.push_back({"control_force_over_peak", left});
-  report.lines.push_back(fmt::format("control of {}: the pair bore up to {:.2g} % of the largest load",
-                                     keys_.control->record, 100.0 * left));
-  if (left > kLeftToPair) report.warnings.push_back(report.lines.back() + ": a slower rate leaves it less");
+  if (keys_.control) add_control(report, work);
   return report;
+}
+
+/// How much of the test was the pair's: of the strength what it bore when the load was largest, of the
+/// energies what it did. Where single contacts give way at once it catches the body, for moments. \param work
+/// of the stage's loads, J
+void Drive::add_control(StageReport& report, double work) const {
+  const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
+  const double peak = largest_factor_ * unit_force();
+  const double at_peak = share(pair_at_peak_, peak), of_work = share(std::abs(pair_work_), std::abs(work));
+  report.results.push_back({"largest_load_factor", largest_factor_});
+  report.results.push_back({"control_force_over_peak", share(largest_pair_, peak)});
+  report.results.push_back({"control_force_at_peak_over_peak", at_peak});
+  report.results.push_back({"control_work_over_loading_work", of_work});
+  report.lines.push_back(fmt::format(
+      "control of {}: the pair bore {:.2g} % of the largest load when that acted, up to {:.2g} % at "
+      "other times, and did {:.2g} % of the work",
+      keys_.control->record, 100.0 * at_peak, 100.0 * share(largest_pair_, peak), 100.0 * of_work));
+  if (std::max(at_peak, of_work) > kLeftToPair)
+    report.warnings.push_back(report.lines.back() + ": a slower rate leaves it less");
 }
 
 Forecast Drive::forecast(const Simulation& simulation, Foreseen&) const {
@@ -558,6 +580,9 @@ void Drive::visit_state(StateVisitor& visitor) {
   visitor.visit("pair_force", pair_force_);
   visitor.visit("largest_pair", largest_pair_);
   visitor.visit("largest_factor", largest_factor_);
+  visitor.visit("pair_at_peak", pair_at_peak_);
+  visitor.visit("pair_work", pair_work_);
+  visitor.visit("last_opening", last_opening_);
   visitor.visit("steps", steps_);
   visitor.visit("frames", frames_);
   visitor.visit("first", first_);

@@ -92,6 +92,7 @@ class Drive : public Stage {
   bool is_met(std::size_t condition, const Simulation& simulation);
   bool is_beyond_noise(double share, const Simulation& simulation);
   bool has_fallen(const Simulation& simulation);
+  void add_control(StageReport& report, double work) const;
   double time(const Simulation& simulation) const;
   std::int64_t steps_in(const Simulation& simulation, double interval) const;
   void halt(Simulation& simulation);
@@ -106,9 +107,11 @@ class Drive : public Stage {
   std::vector<double> peaks_, last_;
   double leading_peak_ = 0.0, framed_peak_ = 0.0;  ///< of the leading record: greatest size; with a frame, SI
   double last_look_ = 0.0;                         ///< s
-  double first_opening_ = 0.0;                     ///< controlled, when the stage began, m
-  double load_factor_ = 0.0, pair_force_ = 0.0;    ///< of the control; N, opening it
+  double first_opening_ = 0.0, last_opening_ = 0.0;   ///< controlled, when the stage began, m
+  double load_factor_ = 0.0, pair_force_ = 0.0;       ///< of the control; N, opening it
   double largest_pair_ = 0.0, largest_factor_ = 0.0;  ///< at looks
+  double pair_at_peak_ = 0.0;                         ///< when the factor was largest, N
+  double pair_work_ = 0.0;                            ///< J
   double first_work_ = 0.0;                           ///< of loads, when the stage began, J
   double most_kinetic_ = 0.0;                         ///< energy, while peaks do not count yet, J
   BodyFigures body_;
