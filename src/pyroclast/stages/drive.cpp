@@ -7,10 +7,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/material/curve_reader.hpp"
+#include "pyroclast/model/sets.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 
@@ -251,13 +251,9 @@ void Drive::check(const Simulation& simulation, Supports<2>& supports) const {
   std::map<std::pair<int, int>, const Action*> taken;  // by gridpoint and component
   for (const Action& action : keys_.actions) {
     const auto found = model.sets.find(action.set);
-    if (found == model.sets.end() || found->second.empty()) {
-      std::vector<std::string> names;
-      for (const auto& [name, members] : model.sets)
-        if (!members.empty()) names.push_back(name);
+    if (found == model.sets.end() || found->second.empty())
       throw Error(fmt::format("{}: there is no set \"{}\"; there are {}", action.place, action.set,
-                              fmt::join(names, ", ")));
-    }
+                              names_of(model.sets)));
     for (int g : found->second)
       for (int c : action.components) {
         if (action.kind == ActionKind::release) {
