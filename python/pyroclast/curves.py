@@ -50,6 +50,10 @@ def stress_strain(run: Run, marks: Mapping[str, Frame]) -> Figure:
 
 
 def _draw_run(axes: Axes, run: Run) -> None:
+    if (before := run.loaded_before).any():
+        axes.plot(style.PER_MILLE * (run.history["strain"][before] - run.strain_before),
+                  run.history["stress_MPa"][before], color=style.BLUE, linewidth=0.9, zorder=2.5,
+                  label="its stages before the last")
     strain = style.PER_MILLE * run.loaded_strain
     top, bottom = run.loaded_history("stress_top_MPa"), run.loaded_history("stress_bottom_MPa")
     axes.plot(strain, run.loaded_history("stress_MPa"), color=style.BLUE, linewidth=1.8, zorder=3,

@@ -20,6 +20,8 @@ _SHOWN = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "MPa": ("MPa", 1.0), "degC": ("°
 _KINDS = {"displacement": "Displacement", "opening": "Opening", "force": "Force", "stress": "Stress",
           "temperature": "Temperature", "crack_length": "Length of cracks", "crack_opening": "Opening of cracks"}
 _TIME_LABEL = "Time [s]"
+_AT_PEAK = 0.95
+"""Where a record has this share of its largest value, it is at its peak."""
 
 
 class HasHistory(Protocol):
@@ -131,7 +133,10 @@ def record_fracture(run: Run, magnification: float | None = None) -> Figure:
     if loaded is not None:
         values = np.abs(np.nan_to_num(loaded.of(run)))
         step = run.history["step"][int(values.argmax())]
-        marks = {f"nearest to the largest {loaded.kind}": min(run.frames, key=lambda frame: abs(frame.step - step)), **marks}
+        frame = min(run.frames, key=lambda frame: abs(frame.step - step))
+        then = values[np.searchsorted(run.history["step"], frame.step)]
+        is_peak = then >= _AT_PEAK * values.max()
+        marks = {f"{'at' if is_peak else 'nearest to'} the largest {loaded.kind}": frame, **marks}
     panels = [Panel(run, frame, letter, f"{what}\n{_caption(run, frame, found)}")
               for letter, (what, frame) in zip("ABC", marks.items())]
     return fracture_panels([("", panels)], style.title_of(run), magnification,

@@ -285,6 +285,15 @@ class Run:
         self.history.known("stress_MPa")
         return (stage == stage[is_there].max()) & is_there
 
+    @property
+    def loaded_before(self) -> np.ndarray:
+        """(rows,) bool: rows of the stages that moved the platen before `loaded`, since heat last changed the body."""
+        stages = [number for number, stage in enumerate(self.deck_stages) if stage.get("kind") == "compress"]
+        row = np.arange(len(self.loaded))
+        heated = row[self.exchanged]
+        since = heated[-1] + 1 if heated.size else 0
+        return np.isin(self.history["stage"], stages) & (since <= row) & (row < int(self.loaded.argmax()))
+
     def loaded_history(self, name: str) -> np.ndarray:
         """A column of the history, rows of `loaded` only."""
         return self.history[name][self.loaded]

@@ -27,7 +27,7 @@ import synthetic_run  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
 from pyroclast import figures, reference, style  # noqa: E402
 from pyroclast.comparisons import compare_cracks, compare_thrust, compare_total_strain  # noqa: E402
-from pyroclast.curves import compare, mean_curve, mean_of, names_apart  # noqa: E402
+from pyroclast.curves import compare, mean_curve, mean_of, names_apart, stress_strain  # noqa: E402
 from pyroclast.heated_sections import frame_near, levels, select_heated_frames  # noqa: E402
 from pyroclast.heating import strain_limits, total_strain  # noqa: E402
 from pyroclast.profiles import read_profile  # noqa: E402
@@ -875,6 +875,17 @@ class Reader(FolderTest):
         self.assertEqual(run.loaded.sum(), 240)
         self.assertEqual([frame.stage for frame in run.frames[:2]], [0, 1])
         self.assertEqual(len(run.loaded_frames), len(run.frames) - 1)
+
+    def test_stages_that_moved_the_platen_before_the_last_are_drawn_too(self):
+        path = self.run_folder / "history.csv"
+        lines = path.read_text().splitlines()
+        path.write_text("\n".join(lines[:121] + [f"2{line[line.index(','):]}" for line in lines[121:]]) + "\n")
+        stages = ("settle", "compress", "compress")
+        (self.run_folder / "deck.toml").write_text("".join(f'[[stages]]\nkind = "{kind}"\n' for kind in stages))
+        run = Run(self.run_folder)
+        np.testing.assert_array_equal(np.flatnonzero(run.loaded_before), np.arange(1, 120))
+        curve = stress_strain(run, {}).axes[0].lines[0]
+        np.testing.assert_allclose(curve.get_ydata(), run.history["stress_MPa"][1:120])
 
     def test_peak(self):
         strain, stress = Run(self.run_folder).peak

@@ -1,8 +1,12 @@
 #include "pyroclast/setup/setup.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "decks.hpp"
 #include "phases.hpp"
@@ -150,6 +154,40 @@ TEST(Setup, TellsOfKeysThatContradictEachOther) {
 }
 
 // Promise: the estimate printed before a run is a lower bound near what the run gives.
+/// A Neper tessellation of unit squares.
+std::string squares(int columns, int rows) {
+  std::string text =
+      fmt::format("***tess\n **format\n 2.0\n **general\n 2 standard\n **cell\n {}\n **vertex\n {}\n",
+                  columns * rows, (columns + 1) * (rows + 1));
+  const auto vertex = [&](int x, int y) { return 1 + y * (columns + 1) + x; };
+  for (int y = 0; y <= rows; ++y)
+    for (int x = 0; x <= columns; ++x) text += fmt::format(" {} {} {} 0 0\n", vertex(x, y), x, y);
+  text += fmt::format(" **face\n {}\n", columns * rows);
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x)
+      text += fmt::format(" {} 4 {} {} {} {}\n 4 1 1 1 1\n 0 0 0 1\n 0 -1 0 0 0\n", 1 + y * columns + x,
+                          vertex(x, y), vertex(x + 1, y), vertex(x + 1, y + 1), vertex(x, y + 1));
+  return text + fmt::format(
+                    " **domain\n *general\n square\n *vertex\n 4\n 1 0 0 0 a\n 1 1\n 2 {0} 0 0 b\n 1 1\n"
+                    " 3 {0} {1} 0 c\n 1 1\n 4 0 {1} 0 d\n 1 1\n***end\n",
+                    columns, rows);
+}
+
+// Promise: a file of blocks is read once, with the deck; the specimen is made of what was read then.
+TEST(Setup, ATessellationIsReadWithTheDeckAndNotAgain) {
+  const auto file = std::filesystem::temp_directory_path() / fmt::format("squares-{}.tess", ::getpid());
+  const std::string deck =
+      with(with(paper_deck(), "count = 5000", fmt::format("file = \"{}\"", file.filename().string())),
+           "relaxation = 0 ", "");
+  for (const std::string& text : {deck, with(with(deck, "height = \"300 mm\"", ""), "[specimen]",
+                                             "[specimen]\nshape = \"tessellation\"")}) {
+    std::ofstream(file) << squares(20, 40);
+    const pyroclast::Setup setup = read_setup(Deck::parse(text, "deck.toml"), file.parent_path());
+    std::filesystem::remove(file);
+    EXPECT_EQ(make_simulation(setup)->model().block_count(), 20 * 40 + 2) << "with two platens";
+  }
+}
+
 // Promise: a simulation takes the threads that it is given, and has one of its own where there are none.
 TEST(Simulation, TakesTheThreadsThatItIsGiven) {
   const pyroclast::Setup setup = read(with(paper_deck(), "count = 5000", "count = 60"));

@@ -205,7 +205,7 @@ TEST(NeperTess, OfAnyOutlineItIsThatOfTheSpecimen) {
     SpecimenParameters whole = paper_specimen(1);
     whole.region = found;
     whole.blocks = p;
-    whole.blocks.file = file.path();
+    whole.blocks.tessellation = read;
     const Specimen specimen = make_specimen(whole);
     EXPECT_EQ(specimen.tessellation.cells.size(), 400U);
     EXPECT_GT(specimen.fraction.at(1), 0.1);
@@ -219,7 +219,7 @@ Specimen from_tess(double shortest_edge) {
   Random random(1);
   const TessFile file(as_tess(make_blocks(p, Region::rectangle(0.15, 0.3), random).tessellation, 0.15, 0.3));
   SpecimenParameters parameters = paper_specimen(1);
-  parameters.blocks.file = file.path();
+  parameters.blocks.tessellation = read_neper_tess(file.path(), 0.15, 0.3);
   parameters.blocks.shortest_edge = shortest_edge;
   return make_specimen(parameters);
 }

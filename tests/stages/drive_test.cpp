@@ -179,6 +179,50 @@ TEST(Drive, EndsByARecord) {
   EXPECT_EQ(run("record = \"end\"\nabove = \"1 m\"\n").run.outcome(), Outcome::not_reached);
 }
 
+// Promise: one of the frames is that of the peak, however few there are.
+TEST(Drive, AFrameStandsBehindThePeakOfTheFirstForce) {
+  Trial trial(free_deck(
+      kUniform + kCorner + kRecords +
+      drive("duration = \"40 ms\"\nlook_interval = \"0.2 ms\"\nframe_interval = \"30 ms\"",
+            kHeld + does("right", "velocity = \"2 mm/s\"\ndirection = \"x\"\nramp_time = \"1 ms\""))));
+  std::vector<double> grip;
+  std::vector<std::size_t> frames;
+  while (trial.run.next()) {
+    grip.push_back(std::abs(trial.run.history().last("grip_N").value_or(0.0)));
+    if (trial.run.frame_is_due()) frames.push_back(grip.size() - 1);
+  }
+  const auto peak = static_cast<std::size_t>(std::ranges::max_element(grip) - grip.begin());
+  EXPECT_EQ(std::ranges::count_if(
+                frames, [&](std::size_t row) { return row > peak && grip[row] > 0.95 * grip[peak]; }),
+            1);
+  EXPECT_LE(frames.size(), 5U);  // beside those at the start, at 30 ms and at the end
+}
+
+// A body that still swings when it is pulled: the peaks of its first noise are no peaks of the test.
+TEST(Drive, APeakOfNoiseIsNoPeak) {
+  const auto run = [&](const std::string& least) {
+    const std::string text =
+        free_deck(kUniform + kCorner + kRecords +
+                  drive("duration = \"2 ms\"", kHeld + does("right",
+                                                            "velocity = \"0.4 mm/s\"\ndirection = \"x\"\n"
+                                                            "factor = { table = [[\"0 s\", 1], [\"1 ms\", "
+                                                            "1], [\"1.01 ms\", -1], [\"2 ms\", -1]] }")) +
+                  drive("duration = \"50 ms\"\nlook_interval = \"0.2 ms\"",
+                        does("right", "velocity = \"2 mm/s\"\ndirection = \"x\"\nramp_time = \"10 ms\"") +
+                            "[[stages.until]]\nrecord = \"grip\"\nshare_of_peak = 0.9\n" + least));
+    return Finished(with(with(text, "local_damping = 0.8", "local_damping = 0.05"), "500 1/s", "10 1/s"));
+  };
+  const Finished by_itself = run("");
+  EXPECT_EQ(by_itself.run.outcome(), Outcome::completed);
+  const double peak = std::abs(by_itself.result(1, "peak_grip_N").value());
+  EXPECT_GT(peak, 2e6 * kHeight);
+  const Finished stated = run("least_peak = \"100 kN\"\n");
+  EXPECT_EQ(stated.last("time_s"), by_itself.last("time_s"));
+  // who says that any peak counts has the stage end at the first
+  const Finished any = run("least_peak = \"1 N\"\n");
+  EXPECT_LT(std::abs(any.result(1, "peak_grip_N").value()), 0.2 * peak);
+}
+
 std::string result(const std::string& name, const std::string& rest) {
   return "[[stages.results]]\nname = \"" + name + "\"\n" + rest + "\n";
 }

@@ -164,20 +164,22 @@ void add_sets(Model<Dim>& model, const std::vector<SetParameters<Dim>>& sets) {
     const std::vector<int>* within = nullptr;
     if (!asked.within.empty()) {
       const auto found = all.find(asked.within);
-      if (found == all.end() || found->second.empty()) {
-        std::vector<std::string> names;
-        for (const auto& [name, members] : all)
-          if (!members.empty()) names.push_back(name);
+      if (found == all.end() || found->second.empty())
         fail(fmt::format("lies within \"{}\", but there is no such set of {}; there are {}", asked.within,
-                         is_of_contacts ? "contacts" : "gridpoints",
-                         names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
-      }
+                         is_of_contacts ? "contacts" : "gridpoints", names_of(all)));
       within = &found->second;
     }
     auto members = chosen(items_of(model, asked.of), within, asked.place, slack);
     if (members.empty()) fail("is empty: nothing lies there");
     all[asked.name] = std::move(members);
   }
+}
+
+std::string names_of(const NamedSets& sets) {
+  std::vector<std::string> names;
+  for (const auto& [name, members] : sets)
+    if (!members.empty()) names.push_back(name);
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
 template <int Dim>

@@ -55,6 +55,11 @@ struct SetParameters {
 template <int Dim>
 void add_sets(Model<Dim>& model, const std::vector<SetParameters<Dim>>& sets);
 
+using NamedSets = decltype(Model<2>::sets);
+
+/// For messages: the names of those that are not empty, "outline, specimen"; "none" where all are.
+std::string names_of(const NamedSets& sets);
+
 /// Faces that meet no other block and lie wholly in a set.
 template <int Dim>
 std::vector<OutlineFace<Dim>> faces_in(const Model<Dim>& model, const std::vector<int>& set);

@@ -48,7 +48,7 @@ Specimen rectangle(double width, double height, int count, double shortest_edge,
               .radius_spread = radius_spread,
               .relaxation = relaxation,
               .shortest_edge = shortest_edge,
-              .file = {}};
+              .tessellation = {}};
   const py::gil_scoped_release no_gil;
   return make_checked_specimen(p);
 }

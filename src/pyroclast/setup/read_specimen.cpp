@@ -109,7 +109,6 @@ struct Outline {
   std::vector<Hole> holes;
   std::vector<specimen::Notch> notches;
   std::optional<specimen::Cells> cells;
-  std::optional<specimen::Tessellation> tessellation;
 };
 
 Vec<2> vec(const std::pair<double, double>& place) {
@@ -302,17 +301,17 @@ specimen::Region with_seats(const specimen::Region& region, std::span<const Circ
   return region.with_patches(patches);
 }
 
-/// \param blocks  number of blocks; 0 where they are read from a file
-specimen::Region make_region(const Section& s, const Outline& o, int blocks,
+specimen::Region make_region(const Section& s, const Outline& o, const specimen::BlockParameters& blocks,
                              std::span<const ReadBearing> bearings) {
-  const bool is_missing = o.shape == Shape::tessellation && !o.tessellation;  // an error that is told
+  const bool is_missing = o.shape == Shape::tessellation && !blocks.tessellation;  // an error that is told
   if (!s.ok() || is_missing) return specimen::Region::rectangle(1.0, 1.0);
   try {
     if (o.cells)
       return with_seats(specimen::outline_of(o.cells->tessellation), {}, bearings,
                         o.cells->tessellation.vertices);
-    if (o.tessellation)
-      return with_seats(specimen::outline_of(*o.tessellation), {}, bearings, o.tessellation->vertices);
+    if (o.shape == Shape::tessellation)
+      return with_seats(specimen::outline_of(*blocks.tessellation), {}, bearings,
+                        blocks.tessellation->vertices);
     std::vector<Circle> circles;
     const auto round = [&](const Circle& circle, double size) {
       circles.push_back(circle);
@@ -320,7 +319,7 @@ specimen::Region make_region(const Section& s, const Outline& o, int blocks,
     };
     const double area =
         std::numbers::pi / 4.0 * (o.diameter * o.diameter - o.inner_diameter * o.inner_diameter);
-    double size = std::sqrt(area / std::max(1, blocks));
+    double size = std::sqrt(area / std::max(1, blocks.count));
     specimen::Region region;
     if (o.shape == Shape::rectangle) {
       region = specimen::Region::rectangle(o.width, o.height);
@@ -334,7 +333,7 @@ specimen::Region make_region(const Section& s, const Outline& o, int blocks,
         region =
             region.with_holes(std::array{specimen::Hole{"bore", round({{}, o.inner_diameter}, size), true}});
     }
-    size = std::sqrt(region.area() / std::max(1, blocks));
+    size = std::sqrt(region.area() / std::max(1, blocks.count));
     std::vector<specimen::Hole> holes;
     for (const auto& hole : o.holes)
       holes.push_back(hole.corners.empty()
@@ -343,7 +342,7 @@ specimen::Region make_region(const Section& s, const Outline& o, int blocks,
     std::vector<specimen::Notch> notches = o.notches;
     for (specimen::Notch& n : notches) n.point = specimen::slot_point(n.length(), n.width, size);
     region = with_seats(region.with_holes(holes).with_notches(notches), circles, bearings);
-    if (blocks == 0 && !region.is_rectangle())
+    if (blocks.count == 0 && !region.is_rectangle())
       s.error("shape",
               "with blocks.file must be \"rectangle\" or \"tessellation\", which is the outline of the file");
     return region;
@@ -381,19 +380,38 @@ std::vector<specimen::Inclusions> read_inclusions(const Section& root) {
   return list;
 }
 
-specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::path& folder) {
+/// The blocks of a Neper file; nothing after an error, or where it cannot be for this outline.
+std::optional<specimen::Tessellation> read_tessellation(const Section& blocks,
+                                                        const std::filesystem::path& file,
+                                                        const Outline& outline) {
+  try {
+    if (outline.shape == Shape::rectangle && outline.width > 0.0 && outline.height > 0.0)
+      return specimen::read_neper_tess(file, outline.width, outline.height);
+    if (outline.shape == Shape::tessellation && outline.width > 0.0)
+      return specimen::read_neper_tess(file, outline.width);
+  } catch (const Error& error) {
+    blocks.error("file", error.what());
+  }
+  return std::nullopt;
+}
+
+specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::path& folder,
+                                      const Outline& outline) {
   specimen::BlockParameters b;
   b.shortest_edge =
       s.number("shortest_edge", Range::between(0.0, 0.5),
                "shorter edges are removed where the blocks allow it; as a fraction of the mean edge");
   if (s.has("file")) {
-    b.file =
+    const std::filesystem::path file =
         folder /
         s.text("file", "Neper tessellation (.tess), beside the deck, that is read instead of making one");
-    s.names_file("file", b.file);
+    s.names_file("file", file);
     if (s.has("count")) s.error("count", "has no meaning beside file: the tessellation is read, not made");
+    b.tessellation = read_tessellation(s, file, outline);
     return b;
   }
+  if (outline.shape == Shape::tessellation)
+    s.error("file", "is needed where specimen.shape is \"tessellation\"");
   b.count = static_cast<int>(s.integer("count", Range::between(4, 100e6), "number of blocks"));
   b.relaxation =
       static_cast<int>(s.integer("relaxation", Range::between(0, 1000), 0,
@@ -402,19 +420,6 @@ specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::p
                              "Laguerre radii are uniform within 1 ± radius_spread times half the mean "
                              "spacing; 0 makes a Voronoi tessellation");
   return b;
-}
-
-/// Blocks whose outline is that of the specimen; nothing after an error.
-std::optional<specimen::Tessellation> read_tessellation(const Section& blocks,
-                                                        const specimen::BlockParameters& b, double width) {
-  if (b.file.empty()) blocks.error("file", "is needed where specimen.shape is \"tessellation\"");
-  if (b.file.empty() || !(width > 0.0)) return std::nullopt;
-  try {
-    return specimen::read_neper_tess(b.file, width);
-  } catch (const Error& error) {
-    blocks.error("file", error.what());
-    return std::nullopt;
-  }
 }
 
 /// Of [superposition] where nothing is superposed. Whether there is the table.
@@ -430,7 +435,7 @@ bool read_matrix_alone(const Section& root, specimen::SpecimenParameters& p) {
 void read_beside_cells(const Section& root, const Section& s, std::span<const ReadBearing> bearings,
                        Outline outline, specimen::SpecimenParameters& p) {
   root.know({"aggregates", "inclusions", "blocks"});
-  p.region = make_region(s, outline, 0, bearings);
+  p.region = make_region(s, outline, {}, bearings);
   const bool has_matrix = read_matrix_alone(root, p);
   if (!outline.cells || !s.ok()) return;
   p.blocks.count = static_cast<int>(outline.cells->tessellation.cells.size());
@@ -474,10 +479,8 @@ specimen::SpecimenParameters read_specimen(const Section& root, const std::files
   if (aggregates) p.aggregates = read_aggregates(*aggregates);
   p.inclusions = read_inclusions(root);
   const Section blocks = root.section("blocks", "the tessellation into blocks");
-  p.blocks = read_blocks(blocks, folder);
-  if (outline.shape == Shape::tessellation)
-    outline.tessellation = read_tessellation(blocks, p.blocks, outline.width);
-  p.region = make_region(s, outline, p.blocks.count, bearings);
+  p.blocks = read_blocks(blocks, folder, outline);
+  p.region = make_region(s, outline, p.blocks, bearings);
   if (s.ok()) check_bearings(p.region, bearings);
   if (s.ok() && aggregates && aggregates->ok()) check_size(*aggregates, p);
   if (!aggregates && p.inclusions.empty()) {

@@ -23,6 +23,33 @@ const LawTable* law_of_interface(const Mechanics<2>& mechanics, int interface) {
   return first == contacts.end() ? nullptr : &mechanics.law_of(static_cast<int>(first - contacts.begin()));
 }
 
+/// Whether the contact point of each slot has any damage. It goes over the histories as they stand: most
+/// points have none, and to ask one by one costs more than all else of a look.
+std::vector<std::uint8_t> damaged_slots(const Mechanics<2>& mechanics) {
+  const auto& layout = mechanics.layout();
+  const auto& state = mechanics.state();
+  std::vector<std::vector<std::size_t>> places;  // of each law, where a point's history has its damages
+  for (const LawTable* law : mechanics.laws())
+    for (auto& of_law = places.emplace_back(); const HistoryInfo& info : law->history(2))
+      if (std::ranges::find(kCrackModes, info.what) != std::end(kCrackModes))
+        of_law.push_back(static_cast<std::size_t>(&info - law->history(2).data()));
+  std::vector<std::uint8_t> damaged(static_cast<std::size_t>(layout.first_point_of(layout.face_rows())) *
+                                    kLanes);
+  for (int row = 0; row < layout.face_rows(); ++row) {
+    const std::uint8_t law = state.law_of_faces[row];
+    const std::size_t lines_of_point = mechanics.laws()[law]->history(2).size();
+    const Line* const lines = state.history.data() + state.first_history[row];
+    const int first = layout.first_point_of(row);
+    for (int point = first; point < layout.first_point_of(row + 1); ++point) {
+      const Line* const line = lines + static_cast<std::size_t>(point - first) * lines_of_point;
+      std::uint8_t* const of_point = damaged.data() + static_cast<std::size_t>(point) * kLanes;
+      for (const std::size_t place : places[law])
+        for (int lane = 0; lane < kLanes; ++lane) of_point[lane] |= line[place].number[lane] > 0.0;
+    }
+  }
+  return damaged;
+}
+
 struct CrackSums {
   std::vector<CrackCount> of_kind;
   double opening = 0.0, length = 0.0;  ///< of contacts that have come apart, m², m
@@ -67,8 +94,10 @@ Cracks count_cracks(const Mechanics<2>& mechanics, const std::vector<CrackKind>&
   const auto& layout = mechanics.layout();
   std::vector<std::vector<std::size_t>> of_interface(model.interface_names.size());
   for (std::size_t k = 0; k < kinds.size(); ++k) of_interface[kinds[k].interface].push_back(k);
+  const std::vector<std::uint8_t> damaged = damaged_slots(mechanics);
   auto sums = chunked_sum<CrackSums>(layout.chunks.contacts, [&](int i, CrackSums& sum) {
     const int c = layout.contacts_by_chunk[i];
+    if (!damaged[layout.contact_slot[c]]) return;
     const auto& contact = model.contacts[c];
     const double length = contact.area / model.thickness;
     bool apart = false;

@@ -79,8 +79,8 @@ Record::Record(const Mechanics<2>& mechanics, RecordParameters parameters)
   const auto find = [&](const auto& sets, const std::string& name) -> const std::vector<int>& {
     const auto found = sets.find(name);
     if (found == sets.end() || found->second.empty())
-      fail(fmt::format("is of the set \"{}\", but there is no such set{}", name,
-                       is_of_cracks(parameters_.kind) ? " of contacts" : ""));
+      fail(fmt::format("is of the set \"{}\", but there is no such set of {}; there are {}", name,
+                       is_of_cracks(parameters_.kind) ? "contacts" : "gridpoints", names_of(sets)));
     return found->second;
   };
   if (is_of_cracks(parameters_.kind)) {

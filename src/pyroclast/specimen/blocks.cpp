@@ -10,7 +10,6 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/block_order.hpp"
 #include "pyroclast/specimen/laguerre.hpp"
-#include "pyroclast/specimen/neper_tess.hpp"
 #include "pyroclast/specimen/outline_seeds.hpp"
 #include "pyroclast/specimen/regularisation.hpp"
 #include "pyroclast/specimen/topology.hpp"
@@ -131,13 +130,11 @@ Blocks tessellate_until_fit(const BlockParameters& parameters, const Region& reg
 
 Blocks make_blocks(const BlockParameters& parameters, const Region& region, Random& random, Team* team) {
   Blocks blocks{};
-  if (parameters.file.empty()) {
+  if (!parameters.tessellation) {
     blocks = tessellate_until_fit(parameters, region, random, team);
     require_valid(blocks.tessellation, region, fmt::format("Tessellation of {} blocks", parameters.count));
   } else {
-    const Box& box = region.box();
-    blocks.tessellation = region.is_rectangle() ? read_neper_tess(parameters.file, box.width(), box.height())
-                                                : read_neper_tess(parameters.file, box.width());
+    blocks.tessellation = *parameters.tessellation;
     const Regularisation done = regularise(blocks.tessellation, region, parameters.shortest_edge);
     blocks.edges_removed = done.edges_removed;
     blocks.edges_left_short = done.edges_left_short;

@@ -15,9 +15,9 @@ struct Blocks {
   int rounds;  ///< tessellations made
 };
 
-/// Draws seeds and tessellates the region, or reads `parameters.file`, and regularises.
+/// Draws seeds and tessellates the region, or takes `parameters.tessellation`, and regularises.
 /// Seeds whose block cannot be made fit are drawn anew and the tessellation is made again, until all are.
-/// The blocks are numbered by place (number_along_curve), not in the order of the seeds or the file.
+/// The blocks are numbered by place (number_along_curve), not in the order of the seeds or of what it takes.
 /// \param team  as for make_specimen
 /// Throws Error when the blocks are not valid at the end; it names the side of the outline where they are
 /// not.

@@ -59,7 +59,7 @@ void require_valid(const FibreParameters& p) {
 void require_valid(const BlockParameters& p) {
   require(p.shortest_edge >= 0.0 && p.shortest_edge <= 0.5, "The shortest edge", p.shortest_edge,
           "0 to 0.5 of the mean edge");
-  if (!p.file.empty()) return;
+  if (p.tessellation) return;
   require(p.count >= 1, "The number of blocks", p.count, "1 or more");
   require(p.radius_spread >= 0.0 && p.radius_spread < 1.0, "The radius spread", p.radius_spread,
           "0 to below 1");

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
@@ -64,6 +63,12 @@ enum class Superposition : std::uint8_t {
   centroid  ///< a block is of the aggregate whose circle its centroid lies in
 };
 
+/// Convex cells that tile a region exactly; neighbours share vertices.
+struct Tessellation {
+  std::vector<Vec<2>> vertices;         ///< m
+  std::vector<std::vector<int>> cells;  ///< vertex indices of each cell, counter-clockwise
+};
+
 /// Tessellation asked for.
 struct BlockParameters {
   int count = 0;  ///< number of blocks
@@ -71,13 +76,8 @@ struct BlockParameters {
   double radius_spread = 0.0;
   int relaxation = 0;          ///< Lloyd iterations; 0 leaves the seeds at random
   double shortest_edge = 0.0;  ///< edges below this fraction of the mean edge are removed, in [0, 0.5]
-  std::filesystem::path file;  ///< Neper .tess file to read instead of tessellating; empty: tessellate
-};
-
-/// Convex cells that tile a region exactly; neighbours share vertices.
-struct Tessellation {
-  std::vector<Vec<2>> vertices;         ///< m
-  std::vector<std::vector<int>> cells;  ///< vertex indices of each cell, counter-clockwise
+  /// Of the region, made elsewhere and still to be regularised; then only `shortest_edge` counts.
+  std::optional<Tessellation> tessellation;
 };
 
 /// Blocks that are made elsewhere.

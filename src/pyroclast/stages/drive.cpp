@@ -7,10 +7,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/material/curve_reader.hpp"
+#include "pyroclast/model/sets.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 
@@ -22,8 +22,13 @@ namespace {
 constexpr std::int64_t kStepsPerAdjustment = 20;
 /// More often where they are controlled: the pair is a spring.
 constexpr std::int64_t kStepsPerControl = 5;
-/// What the pair may bear of the largest load without a warning.
+/// What the pair may bear of the largest load when that acts, and do of the work of the loads, without a
+/// warning.
 constexpr double kLeftToPair = 0.05;
+/// A peak counts once noise is below this share of what is recorded, and below what is to fall from the peak.
+constexpr double kMostNoise = 0.1;
+/// Behind a peak is where its record has fallen below this share of it; the next peak is greater by as much.
+constexpr double kBehindPeak = 0.98;
 /// Rows and frames of a stage where the deck does not say.
 constexpr double kLooks = 200.0, kFrames = 10.0;
 
@@ -133,7 +138,10 @@ Drive::Until read_until(const Section& s, const std::vector<RecordParameters>& r
       {"rate_above", Drive::Until::Kind::rate_above},
       {"rate_below", Drive::Until::Kind::rate_below}};
   s.know({"above", "below", "share_of_peak", "rate_above", "rate_below"});
-  if (!found) return u;
+  if (!found) {
+    s.know({"least_peak"});
+    return u;
+  }
   u.record = found->name;
   int stated = 0;
   for (const auto& [key, kind] : kinds) {
@@ -155,6 +163,11 @@ Drive::Until read_until(const Section& s, const std::vector<RecordParameters>& r
     case Drive::Until::Kind::share_of_peak:
       u.value = s.number("share_of_peak", Range::inside(0.0, 1.0),
                          "the stage ends when the record's size has fallen below this share of its greatest");
+      if (s.has("least_peak"))
+        u.least_peak = s.quantity(
+            "least_peak", unit, Range::positive(),
+            "a peak counts when it is greater; where it is not stated, from when what is recorded is "
+            "[beyond noise](bodies.md#drives)");
       break;
     case Drive::Until::Kind::rate_above:
       u.value = s.quantity("rate_above", rate, Range::positive(),
@@ -211,9 +224,10 @@ std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
   keys.look_interval =
       s.quantity("look_interval", unit::time, Range::positive(), keys.duration / kLooks,
                  "between two rows of history.csv; where it is not stated, 1/200 of the duration");
-  keys.frame_interval =
-      s.quantity("frame_interval", unit::time, Range::positive(), keys.duration / kFrames,
-                 "between two frames of the fields; where it is not stated, 1/10 of the duration");
+  keys.frame_interval = s.quantity(
+      "frame_interval", unit::time, Range::positive(), keys.duration / kFrames,
+      "between two frames of the fields; where it is not stated, 1/10 of the duration; there is one behind "
+      "each peak of the first force, or stress, too");
   keys.records = tables.records;
   keys.results = read_record_results(s, tables.records);
   return std::make_unique<Drive>(std::move(keys));
@@ -225,18 +239,21 @@ StageKind drive_kind() {
   return {"drive", "holds, moves or loads sets of the specimen or of bearings", {}, read_drive};
 }
 
+Drive::Drive(Keys keys) : keys_(std::move(keys)) {
+  for (const RecordKind kind : {RecordKind::force, RecordKind::stress})
+    if (const auto first = std::ranges::find(keys_.records, kind, &RecordParameters::kind);
+        !leading_ && first != keys_.records.end())
+      leading_ = first->name;
+}
+
 void Drive::check(const Simulation& simulation, Supports<2>& supports) const {
   const Model<2>& model = simulation.model();
   std::map<std::pair<int, int>, const Action*> taken;  // by gridpoint and component
   for (const Action& action : keys_.actions) {
     const auto found = model.sets.find(action.set);
-    if (found == model.sets.end() || found->second.empty()) {
-      std::vector<std::string> names;
-      for (const auto& [name, members] : model.sets)
-        if (!members.empty()) names.push_back(name);
+    if (found == model.sets.end() || found->second.empty())
       throw Error(fmt::format("{}: there is no set \"{}\"; there are {}", action.place, action.set,
-                              fmt::join(names, ", ")));
-    }
+                              names_of(model.sets)));
     for (int g : found->second)
       for (int c : action.components) {
         if (action.kind == ActionKind::release) {
@@ -312,11 +329,14 @@ std::int64_t Drive::steps_in(const Simulation& simulation, double interval) cons
 void Drive::begin(Simulation& simulation) {
   Mechanics<2>& mechanics = simulation.mechanics();
   first_.assign(keys_.actions.size(), 0.0);
-  if (keys_.control) first_opening_ = simulation.record(keys_.control->record).read(simulation);
+  if (keys_.control)
+    first_opening_ = last_opening_ = simulation.record(keys_.control->record).read(simulation);
   peaks_.assign(keys_.until.size(), 0.0);
   last_.clear();
   for (const Until& until : keys_.until) last_.push_back(simulation.record(until.record).read(simulation));
-  first_work_ = mechanics.energy().loading;
+  const EnergyLedger energy = mechanics.energy();
+  first_work_ = energy.loading;
+  most_kinetic_ = std::abs(energy.kinetic);
   const Vec<2> weight = mechanics.total_weight(mechanics.set_of(simulation.model().set("specimen")));
   body_ = {simulation.model().thickness, norm(weight)};
   for (std::size_t i = 0; i < keys_.actions.size(); ++i) {
@@ -346,7 +366,10 @@ double Drive::amount(std::size_t i, double time) const {
 void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads) {
   const Control& control = *keys_.control;
   const Record& record = simulation.record(control.record);
-  pair_force_ = control.stiffness * (first_opening_ + control.rate * time - record.read(simulation));
+  const double opening = record.read(simulation);
+  pair_work_ += pair_force_ * (opening - last_opening_);
+  last_opening_ = opening;
+  pair_force_ = control.stiffness * (first_opening_ + control.rate * time - opening);
   const double step = static_cast<double>(kStepsPerControl) * simulation.mechanics().time_step();
   load_factor_ += pair_force_ / unit_force() * step / control.response_time;
   const auto& [name, kind, set, other, direction, place] = record.parameters();
@@ -401,27 +424,52 @@ bool Drive::advance(Simulation& simulation, int most_steps) {
          (steps_ % interval == 0 && time(simulation) >= keys_.duration);
 }
 
+/// Whether noise is below this share of what records show of the stage. Forces go with the root of an energy;
+/// so the energy of the motion, at any look that asked so far, must be below the square of that share of what
+/// the loads did. Who loads nothing shakes nothing.
+bool Drive::is_beyond_noise(double share, const Simulation& simulation) {
+  const EnergyLedger energy = simulation.mechanics().energy();
+  most_kinetic_ = std::max(most_kinetic_, std::abs(energy.kinetic));
+  return !loads() || most_kinetic_ <= share * share * std::abs(energy.loading - first_work_);
+}
+
 bool Drive::is_met(std::size_t condition, const Simulation& simulation) {
   const Until& until = keys_.until[condition];
   double& peak = peaks_[condition];
   double& last = last_[condition];
   const double value = simulation.record(until.record).read(simulation);
   const double rate = std::abs(value - last) / (time(simulation) - last_look_);
-  peak = std::max(peak, std::abs(value));
   last = value;
   switch (until.kind) {
     case Until::Kind::above:
       return value > until.value;
     case Until::Kind::below:
       return value < until.value;
-    case Until::Kind::share_of_peak:
-      return std::abs(value) < until.value * peak;
+    case Until::Kind::share_of_peak: {
+      const double size = std::abs(value);
+      const double most_noise = std::min(kMostNoise, 1.0 - until.value);
+      const bool counts = peak > 0.0 || (until.least_peak ? size > *until.least_peak
+                                                          : is_beyond_noise(most_noise, simulation));
+      if (counts) peak = std::max(peak, size);
+      return size < until.value * peak;
+    }
     case Until::Kind::rate_above:
       return rate > until.value;
     case Until::Kind::rate_below:
       return rate < until.value;
   }
   return false;
+}
+
+/// Whether the leading record has just come down from a peak that has no frame yet.
+bool Drive::has_fallen(const Simulation& simulation) {
+  if (!leading_) return false;
+  const double size = std::abs(simulation.record(*leading_).read(simulation));
+  if (leading_peak_ == 0.0 && !is_beyond_noise(kMostNoise, simulation)) return false;
+  leading_peak_ = std::max(leading_peak_, size);
+  if (size >= kBehindPeak * leading_peak_ || framed_peak_ >= kBehindPeak * leading_peak_) return false;
+  framed_peak_ = leading_peak_;
+  return true;
 }
 
 /// What was moved stays where it is, and no pair is left.
@@ -439,7 +487,10 @@ void Drive::halt(Simulation& simulation) {
 Verdict Drive::judge(Simulation& simulation) {
   Verdict verdict;
   largest_pair_ = std::max(largest_pair_, std::abs(pair_force_));
-  largest_factor_ = std::max(largest_factor_, std::abs(load_factor_));
+  if (std::abs(load_factor_) > largest_factor_) {
+    largest_factor_ = std::abs(load_factor_);
+    pair_at_peak_ = std::abs(pair_force_);
+  }
   const double now = time(simulation);
   for (std::size_t i = 0; i < keys_.until.size(); ++i)
     if (is_met(i, simulation)) verdict.over = true;
@@ -460,7 +511,7 @@ Verdict Drive::judge(Simulation& simulation) {
   }
   if (verdict.over) halt(simulation);
   const auto frames = static_cast<std::int64_t>(now / keys_.frame_interval);
-  verdict.frame = frames > frames_;
+  verdict.frame = has_fallen(simulation) || frames > frames_;
   frames_ = std::max(frames_, frames);
   return verdict;
 }
@@ -474,25 +525,39 @@ StageReport Drive::report(const History& history, RowRange rows, Outcome) const 
   report.results = {{"steps", steps_}};
   if (rows.empty()) return report;
   report.results.push_back({"unbalanced_ratio", history.values("unbalanced_ratio", rows).back()});
-  report.results.push_back({"loading_work_J", history.values("energy_loading_J", rows).back() - first_work_});
+  const double work = history.values("energy_loading_J", rows).back() - first_work_;
+  report.results.push_back({"loading_work_J", work});
   const auto of_records = record_results(keys_.records, keys_.results, body_, history, rows);
   report.results.insert(report.results.end(), of_records.begin(), of_records.end());
   report.lines = lines_of(keys_.results, of_records);
-  if (!keys_.control) return report;
-  const double left = largest_factor_ > 0.0 ? largest_pair_ / (largest_factor_ * unit_force()) : 0.0;
-  report.results.push_back({"largest_load_factor", largest_factor_});
-  report.results.push_back({"control_force_over_peak", left});
-  report.lines.push_back(fmt::format("control of {}: the pair bore up to {:.2g} % of the largest load",
-                                     keys_.control->record, 100.0 * left));
-  if (left > kLeftToPair) report.warnings.push_back(report.lines.back() + ": a slower rate leaves it less");
+  if (keys_.control) add_control(report, work);
   return report;
+}
+
+/// How much of the test was the pair's: of the strength what it bore when the load was largest, of the
+/// energies what it did. Where single contacts give way at once it catches the body, for moments. \param work
+/// of the stage's loads, J
+void Drive::add_control(StageReport& report, double work) const {
+  const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
+  const double peak = largest_factor_ * unit_force();
+  const double at_peak = share(pair_at_peak_, peak), of_work = share(std::abs(pair_work_), std::abs(work));
+  report.results.push_back({"largest_load_factor", largest_factor_});
+  report.results.push_back({"control_force_over_peak", share(largest_pair_, peak)});
+  report.results.push_back({"control_force_at_peak_over_peak", at_peak});
+  report.results.push_back({"control_work_over_loading_work", of_work});
+  report.lines.push_back(fmt::format(
+      "control of {}: the pair bore {:.2g} % of the largest load when that acted, up to {:.2g} % at "
+      "other times, and did {:.2g} % of the work",
+      keys_.control->record, 100.0 * at_peak, 100.0 * share(largest_pair_, peak), 100.0 * of_work));
+  if (std::max(at_peak, of_work) > kLeftToPair)
+    report.warnings.push_back(report.lines.back() + ": a slower rate leaves it less");
 }
 
 Forecast Drive::forecast(const Simulation& simulation, Foreseen&) const {
   const double steps = keys_.duration / simulation.mechanics().time_step();
   return {.steps = steps,
           .looks = keys_.duration / keys_.look_interval,
-          .frames = keys_.duration / keys_.frame_interval};
+          .frames = keys_.duration / keys_.frame_interval + (leading_ ? 1.0 : 0.0)};
 }
 
 std::vector<Column> Drive::columns() const {
@@ -511,13 +576,19 @@ void Drive::visit_state(StateVisitor& visitor) {
   visitor.visit("pair_force", pair_force_);
   visitor.visit("largest_pair", largest_pair_);
   visitor.visit("largest_factor", largest_factor_);
+  visitor.visit("pair_at_peak", pair_at_peak_);
+  visitor.visit("pair_work", pair_work_);
+  visitor.visit("last_opening", last_opening_);
   visitor.visit("steps", steps_);
   visitor.visit("frames", frames_);
   visitor.visit("first", first_);
   visitor.visit("peaks", peaks_);
   visitor.visit("last", last_);
+  visitor.visit("leading_peak", leading_peak_);
+  visitor.visit("framed_peak", framed_peak_);
   visitor.visit("last_look", last_look_);
   visitor.visit("first_work", first_work_);
+  visitor.visit("most_kinetic", most_kinetic_);
   body_.visit_state(visitor);
 }
 

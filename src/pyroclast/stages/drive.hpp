@@ -36,7 +36,8 @@ class Drive : public Stage {
     enum class Kind : std::uint8_t { above, below, share_of_peak, rate_above, rate_below };
     std::string record;
     Kind kind = Kind::above;
-    double value = 0.0;  ///< in SI, or a share
+    double value = 0.0;                     ///< in SI, or a share
+    std::optional<double> least_peak = {};  ///< of share_of_peak, above which a peak counts, SI
     std::string place = "";
   };
   /// Makes an opening grow at a rate, whatever the load must do for that: also where the load must go back,
@@ -61,7 +62,7 @@ class Drive : public Stage {
     std::vector<RecordResult> results = {};
   };
 
-  explicit Drive(Keys keys) : keys_(std::move(keys)) {}
+  explicit Drive(Keys keys);
 
   const char* kind() const override { return "drive"; }
   StageNeeds needs() const override { return {}; }
@@ -89,21 +90,30 @@ class Drive : public Stage {
   void act(Simulation& simulation, double time);
   double amount(std::size_t action, double time) const;
   bool is_met(std::size_t condition, const Simulation& simulation);
+  bool is_beyond_noise(double share, const Simulation& simulation);
+  bool has_fallen(const Simulation& simulation);
+  void add_control(StageReport& report, double work) const;
   double time(const Simulation& simulation) const;
   std::int64_t steps_in(const Simulation& simulation, double interval) const;
   void halt(Simulation& simulation);
 
   Keys keys_;
+  std::optional<std::string> leading_;  ///< record that the test is about: the first force, else stress
   std::int64_t steps_ = 0;
   std::int64_t frames_ = 0;
   /// Force along its direction, or pressure, of each action when the stage began.
   std::vector<double> first_;
-  std::vector<double> peaks_, last_;  ///< of the records of `until`: greatest size; at the last look
-  double last_look_ = 0.0;            ///< s
-  double first_opening_ = 0.0;        ///< controlled, when the stage began, m
+  /// Of the records of `until`: greatest size, 0 until a peak counts; value at the last look.
+  std::vector<double> peaks_, last_;
+  double leading_peak_ = 0.0, framed_peak_ = 0.0;  ///< of the leading record: greatest size; with a frame, SI
+  double last_look_ = 0.0;                         ///< s
+  double first_opening_ = 0.0, last_opening_ = 0.0;   ///< controlled, when the stage began, m
   double load_factor_ = 0.0, pair_force_ = 0.0;       ///< of the control; N, opening it
   double largest_pair_ = 0.0, largest_factor_ = 0.0;  ///< at looks
+  double pair_at_peak_ = 0.0;                         ///< when the factor was largest, N
+  double pair_work_ = 0.0;                            ///< J
   double first_work_ = 0.0;                           ///< of loads, when the stage began, J
+  double most_kinetic_ = 0.0;                         ///< energy, while peaks do not count yet, J
   BodyFigures body_;
 };
 
