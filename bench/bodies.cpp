@@ -94,8 +94,8 @@ Specimen::Specimen(const Setup& setup, int blocks)
       parameters(setup.motion->mechanics) {
   const auto materials =
       pyroclast::make_concrete(setup.solids, setup.motion->contacts, made.metrics.mean_size);
-  properties = pyroclast::properties_at(model, materials,
-                                        pyroclast::TemperatureField(model, pyroclast::kReferenceTemperature));
+  const pyroclast::TemperatureField field(model, pyroclast::kReferenceTemperature);
+  properties = pyroclast::properties_at(model, materials, field, {materials, field});
   for (const auto& solid : materials.solids)
     densities.push_back(solid.density(pyroclast::kReferenceTemperature));
 }

@@ -52,7 +52,7 @@ void contacts(State<2>& s, double*) {
     const Bundle& bundle = s.layout.bundles[b];
     const auto scratch = NativeStep::R::scratch_of(bundle, memory);
     NativeStep::take_displacements(s, bundle, scratch);
-    NativeStep::Z::add_forces<kSmall, false>(s, b, scratch, sums);
+    NativeStep::Z::add_forces<kSmall, false, false>(s, b, scratch, sums);
   }
 }
 

@@ -15,6 +15,8 @@ ALLOWED = [
     Allowed("app/check.cpp", "", "over the stages of a deck"),
     Allowed("base/chunked_sum.hpp", "total += sum;", "chunked_sum itself"),
     Allowed("base/vec.hpp", "", "components of one vector"),
+    Allowed("material/creep.cpp", "", "components of one tensor"),
+    Allowed("material/mixture.cpp", "", "over the phases of a composite"),
     Allowed("base/team.cpp", "", "times that threads waited, in whole nanoseconds"),
     Allowed("session/law_point.cpp", "LawPoint::dissipated()", "over the losses of one contact point"),
     Allowed("mechanics/mechanics.cpp", "Dissipation::total()", "over the energies of one ledger, each a chunked sum"),

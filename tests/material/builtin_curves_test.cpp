@@ -179,6 +179,9 @@ TEST(BuiltinCurves, TheReportedTransientDataOfOtherGroupsFollowTheirFormulas) {
   // theta = 5 at 520 degC, by hand.
   EXPECT_DOUBLE_EQ(builtin("glasgow_tensile_strength")(520), 0.6);
   EXPECT_DOUBLE_EQ(builtin("glasgow_fracture_energy")(520), 1.2);
+  EXPECT_DOUBLE_EQ(builtin("glasgow_fracture_energy")(700), 0.4152);
+  EXPECT_NEAR(builtin("glasgow_fracture_energy")(720), 0.4152 - 0.2 * 0.562, 1e-12);
+  EXPECT_DOUBLE_EQ(builtin("glasgow_fracture_energy")(800), 0.2);
   EXPECT_DOUBLE_EQ(builtin("glasgow_free_thermal_strain")(520), 0.006 * std::log(3.5));
   EXPECT_DOUBLE_EQ(builtin("glasgow_free_thermal_strain")(800), 0.006 * std::log(7.0));
   EXPECT_NEAR(builtin("li_purkiss_strength")(500), 1.002 + 0.125 - 0.75 + 0.20625, 1e-15);
@@ -187,6 +190,27 @@ TEST(BuiltinCurves, TheReportedTransientDataOfOtherGroupsFollowTheirFormulas) {
        Points{{100, 2.2e6}, {300, 2.7e6}, {450, 3.35e6}, {550, 3.35e6}, {700, 2.7e6}}) {
     EXPECT_NEAR(builtin("asce_siliceous_heat_capacity")(T), value, 1e-8) << T;
   }
+}
+
+// Per mille at 100, 200, ... degC, as worked out apart from the published formulas.
+TEST(BuiltinCurves, OfCreepAreWhatTheirFormulasGive) {
+  const auto expect = [](const char* name, std::vector<double> per_mille, double tolerance) {
+    const Curve curve = builtin(name);
+    EXPECT_EQ(curve(20), 0.0) << name;
+    EXPECT_FALSE(curve.first_fall(20, 800)) << name;
+    for (std::size_t i = 0; i < per_mille.size(); ++i)
+      EXPECT_NEAR(1e3 * curve(100.0 * (static_cast<double>(i) + 1.0)), per_mille[i], tolerance) << name << i;
+  };
+  expect("glasgow_creep", {1.32, 3.87, 7.42, 11.97, 18.24, 37.59}, 0.0051);
+  // above the published integral from 20 degC by what its polynomial falls to 32.3 degC, 0.054
+  expect("torelli_creep", {1.016 + 0.054, 3.655 + 0.054, 5.324 + 0.054, 7.338 + 0.054, 13.611 + 0.054},
+         0.001);
+  expect("etc_creep", {1.0, 1.75, 2.35, 4.89, 10.56, 26.67, 42.78, 58.89}, 1e-9);
+  const auto slope = [](const char* name, double T) { return (builtin(name)(T + 1) - builtin(name)(T)); };
+  EXPECT_NEAR(slope("torelli_creep", 501), 1.00257e-4, 1e-9);
+  EXPECT_NEAR(slope("torelli_creep", 780), 1.00257e-4, 1e-9);
+  EXPECT_NEAR(slope("glasgow_creep", 469), 5.745e-5, 1e-10);  // no jump of the slope
+  EXPECT_NEAR(slope("glasgow_creep", 470), 5.835e-5, 1e-10);
 }
 
 TEST(BuiltinCurves, TheExpansionOfThePaperIsAsPrinted) {

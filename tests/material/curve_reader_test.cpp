@@ -86,6 +86,15 @@ TEST(CurveReader, MultipliesAValueWithACurveOfAnyForm) {
       35e9);
 }
 
+TEST(CurveReader, TakesAShareOfWhatARatioLoses) {
+  const Curve curve =
+      read_good("{ value = \"70 GPa\", times = \"glasgow_modulus\", share = 0.5 }", unit::stress);
+  EXPECT_DOUBLE_EQ(curve(20.0), 70e9);
+  EXPECT_DOUBLE_EQ(curve(520.0), 70e9 * (1.0 - 0.5 * 0.75));
+  EXPECT_DOUBLE_EQ(
+      read_good("{ value = \"70 GPa\", times = \"glasgow_modulus\", share = 0 }", unit::stress)(520.0), 70e9);
+}
+
 TEST(CurveReader, TakesTheNamedCurveInItsOwnUnit) {
   const double T = 400.0;
   const Curve conductivity = read_good("{ builtin = \"en1992_conductivity_upper\" }", unit::conductivity);

@@ -52,7 +52,7 @@ Materials read(const Deck& deck, Interval needed = kFire) {
   CurveReader curves(".", temperature_axis(), needed, builtin_curves());
   Materials m;
   const std::vector<std::string> phases{"aggregate", "mortar"};
-  m.solids = read_solids(deck.root(), phases, {"platen"}, read_expansion_reading(deck.root()), curves);
+  m.solids = read_solids(deck.root(), phases, {"platen"}, read_expansion_reading(deck.root()), {}, curves);
   m.contacts = read_contacts(
       deck.root(), phases, "mortar", true,
       [](const auto&) -> const LawTable& { return table_of<Cohesive>(); }, curves);

@@ -43,6 +43,8 @@ count = 60
 shortest_edge = 0.2
 [superposition]
 rule = "centroid"
+[materials]
+on_cooling = "reversible"
 [materials.aggregate]
 E = { value = "29.4 GPa", times = { table = [["20 degC", 1], ["820 degC", 0.2]] } }
 nu = 0.2

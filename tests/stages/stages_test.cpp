@@ -112,6 +112,26 @@ TEST(HeatStage, HealingIsSaid) {
   EXPECT_EQ(healing(heat("320 degC") + heat("20 degC")), 1);
 }
 
+// Promise: E stays that of the hottest, in zones and contacts, and the thermal strain goes back.
+TEST(HeatStage, WhatHeatTookStaysGoneOnCooling) {
+  const std::string text =
+      with(deck(kUniform + kSettle + load("stress = \"3 MPa\"") + heat("320 degC") + heat("20 degC")),
+           "reversible", "irreversible");
+  for (const Diagnostic& warning : pyroclast::read(text).warnings)
+    EXPECT_EQ(warning.message.find("does not heal"), std::string::npos);
+  const Finished r(text);
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  const double softening = 1.0 - 0.8 * 300.0 / 800.0;  // E(320) / E(20)
+  EXPECT_NEAR(r.last("strain"), r.end_of(1, "strain") / softening, 0.02 * r.end_of(1, "strain"));
+  EXPECT_NEAR(r.end_of(2, "strain") + 3e-3, r.last("strain"), 0.01 * r.last("strain"));
+  const auto blocks = zone_blocks(r.simulation->model());
+  for (std::size_t z = 0; z < blocks.size(); ++z)
+    if (!r.simulation->model().is_of_bearing(blocks[z])) {
+      const double mu = r.simulation->mechanics().properties_of_zone(static_cast<int>(z)).mu;
+      EXPECT_DOUBLE_EQ(mu, 0.5 * softening * 29.4e9 / 1.2);
+    }
+}
+
 // Promise: an even body of one expansion expands by alpha dT in both directions and stays sound; the energy
 // ledger closes.
 TEST(HeatStageVerification, AnEvenBodyExpandsFreely) {

@@ -7,7 +7,6 @@
 
 #include "pyroclast/app/load.hpp"
 #include "pyroclast/app/progress.hpp"
-#include "pyroclast/simulation/coupling.hpp"
 #include "pyroclast/simulation/run.hpp"
 #include "pyroclast/thermal/time_stages.hpp"
 
@@ -37,10 +36,7 @@ double seconds_per_step(Mechanics<2>& mechanics) {
 }
 
 double seconds_per_exchange(Simulation& simulation) {
-  return seconds_of([&] {
-    simulation.mechanics().set_properties(
-        properties_at(simulation.model(), simulation.materials(), simulation.field()));
-  });
+  return seconds_of([&] { simulation.hand_over(); });
 }
 
 /// Evaluations of the heat solver: while temperatures change fast they bound its steps, later the longest
@@ -92,6 +88,16 @@ double peak_memory() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
+void print_composition(const Composition& whole) {
+  fmt::print("composition     {:.3f} inclusions, with Mori and Tanaka:\n", whole.inclusions);
+  if (whole.creep_share)
+    fmt::print("                creep of the concrete over that of its matrix, R = {:.4f}\n",
+               *whole.creep_share);
+  if (whole.strain_weight)
+    fmt::print("                weight of the inclusions in the free strain, w = {:.4f}\n",
+               *whole.strain_weight);
+}
+
 void print_mechanics(const Simulation& simulation, MassChoice mass) {
   const Mechanics<2>& mechanics = simulation.mechanics();
   const Model<2>& model = simulation.model();
@@ -108,6 +114,8 @@ void print_mechanics(const Simulation& simulation, MassChoice mass) {
   fmt::print("materials       E about {:.2f} GPa (uniform stress estimate, a lower bound), t_b {:.3f} mm\n",
              estimate_modulus(model, simulation.materials()) * 1e-9,
              1e3 * simulation.materials().fracture_zone);
+  const auto& whole = simulation.materials().composition;
+  if (whole && (whole->creep_share || whole->strain_weight)) print_composition(*whole);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "pyroclast/app/load.hpp"
 #include "pyroclast/results/text_file.hpp"
+#include "pyroclast/simulation/simulation.hpp"
 
 namespace pyroclast::app {
 
@@ -18,6 +19,16 @@ constexpr Interval kDrawn{20.0, 800.0};
 /// Greatest distance of two rows, K: small enough to show the jump of the standards' specific heat at 100 °C.
 constexpr double kTemperatureStep = 1.0;
 
+/// Phases as a run has them: of the specimen, where they follow its composition.
+std::vector<SolidMaterial> solids_of(const Setup& setup) {
+  if (!setup.motion) return setup.solids;
+  const bool follow =
+      setup.motion->strain_of_concrete ||
+      std::ranges::any_of(setup.solids, [](const SolidMaterial& solid) { return solid.creep.has_value(); });
+  if (!follow) return setup.solids;
+  return make_materials(setup.solids, *setup.motion, make_checked_specimen(setup.specimen)).solids;
+}
+
 /// \param moves  whether the mechanical properties were read too
 void add_solid(const SolidMaterial& solid, bool moves, std::vector<ReadCurve>& list) {
   const auto add = [&](const char* key, const Unit& unit, const Curve& curve) {
@@ -26,6 +37,7 @@ void add_solid(const SolidMaterial& solid, bool moves, std::vector<ReadCurve>& l
   if (moves) add("E", unit::stress, solid.young);
   add("density", unit::density, solid.density);
   if (moves) add("thermal_strain", unit::dimensionless, solid.thermal_strain);
+  if (moves && solid.creep) add("creep.strain", unit::dimensionless, solid.creep->strain);
   if (solid.conductivity) add("conductivity", unit::conductivity, *solid.conductivity);
   if (!solid.specific_heat) return;
   add("specific_heat", unit::specific_heat, *solid.specific_heat);
@@ -46,7 +58,7 @@ void add_contact(const ContactMaterial& contact, const std::string& name, std::v
 std::vector<ReadCurve> properties_of(const Setup& setup) {
   std::vector<ReadCurve> list;
   const bool moves = setup.motion.has_value();
-  for (const SolidMaterial& solid : setup.solids)
+  for (const SolidMaterial& solid : solids_of(setup))
     if (moves || !solid.name.empty()) add_solid(solid, moves, list);
   if (moves) {
     const ContactParameters& contacts = setup.motion->contacts;

@@ -1,6 +1,7 @@
 #include "pyroclast/material/builtin_curves.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -177,8 +178,45 @@ double theta(double T) {
   return (T - kReferenceTemperature) / 100.0;
 }
 
+double glasgow_fracture_energy(double T) {
+  constexpr double kEnd = 6.8, kLeast = 0.2;  // theta where the formula ends
+  const double t = std::min(theta(T), kEnd), beyond = std::max(theta(T) - kEnd, 0.0);
+  return std::max(1.0 + (0.39 - 0.07 * t) * t + (0.39 - 0.14 * kEnd) * beyond, kLeast);
+}
+
 double glasgow_free_thermal_strain(double T) {
   return 0.006 * std::log(7.0 / (7.0 - std::min(theta(T), 6.0)));
+}
+
+// Strains of load-induced thermal strain for each unit of stress over strength, both in compression.
+
+double glasgow_creep(double T) {
+  constexpr double A = 0.0005, B = 0.00125, C = 0.0085, kink = 4.5;
+  const double t = theta(T), below = std::min(t, kink), above = std::max(t - kink, 0.0);
+  return (A * below + B) * below + (C * above + 2.0 * A * kink + B) * above;
+}
+
+/// The published polynomial ends here, and goes on with its last slope, degC.
+constexpr double kTorelliEnd = 500.0;
+/// Its polynomial has the wrong sign below, degC.
+constexpr double kTorelliBegin = 32.333513018427276;
+
+double torelli_creep(double T) {
+  constexpr std::array<double, 5> b = {-2.7031065533e-5, 1.0209170592e-6, -6.1200423753e-9, 1.2632648735e-11,
+                                       -6.9158539621e-15};
+  const auto slope = [&](double x) {
+    double sum = 0.0;
+    for (std::size_t i = b.size(); i-- > 0;) sum = sum * x + b[i];
+    return sum;
+  };
+  const auto integral = [&](double x) {
+    double sum = 0.0;
+    for (std::size_t i = b.size(); i-- > 0;) sum = sum * x + b[i] / static_cast<double>(i + 1);
+    return sum * x;
+  };
+  const double x = std::clamp(T, kTorelliBegin, kTorelliEnd);
+  return integral(x) - integral(kTorelliBegin) +
+         slope(kTorelliEnd) * (std::max(T, kTorelliEnd) - kTorelliEnd);
 }
 
 double li_purkiss_strength(double T) {
@@ -212,12 +250,33 @@ std::vector<NamedCurve> published_curves() {
        "tensile strength ratio 1 - 0.016 theta^2, theta = (T - 20)/100, up to theta = 7.9 where it is near 0",
        glasgow, "1", function([](double T) { return 1.0 - 0.016 * theta(T) * theta(T); }, {20.0, 810.0})},
       {"glasgow_fracture_energy",
-       "fracture energy ratio 1 + 0.39 theta - 0.07 theta^2, theta = (T - 20)/100; greatest near 300 degC",
-       glasgow, "1",
-       function([](double T) { return 1.0 + (0.39 - 0.07 * theta(T)) * theta(T); }, {20.0, 700.0})},
+       "fracture energy ratio 1 + 0.39 theta - 0.07 theta^2, theta = (T - 20)/100; greatest near 300 degC; "
+       "the "
+       "last slope beyond 700 degC, and not below 0.2",
+       glasgow, "1", function(glasgow_fracture_energy, {20.0, 800.0}, {700.0, 738.3})},
       {"glasgow_free_thermal_strain",
        "free thermal strain 0.006 ln(7/(7 - theta)), theta = (T - 20)/100, constant from theta = 6", glasgow,
        "1", function(glasgow_free_thermal_strain, {20.0, 800.0}, {620.0})},
+      {"glasgow_creep",
+       "load-induced thermal strain for each unit of stress over strength, 0.0005 theta^2 + 0.00125 theta, "
+       "theta = (T - 20)/100, with the slope growing by 0.017 from theta = 4.5",
+       glasgow, "1", function(glasgow_creep, {20.0, 800.0}, {470.0})},
+      {"torelli_creep",
+       "load-induced thermal strain for each unit of stress over strength, the integral of a polynomial from "
+       "32.3 degC, where it becomes positive, to 500 degC; the last slope beyond",
+       "Torelli, Gillie, Mandal and Tran 2018, coefficients second-hand (TFEL)", "1",
+       function(torelli_creep, {20.0, 800.0}, {kTorelliBegin, kTorelliEnd})},
+      {"etc_creep",
+       "load-induced thermal strain for each unit of stress over strength; the last slope beyond 600 degC",
+       "ETC model of Gernay and Franssen, second-hand", "1",
+       table({{20, 0},
+              {100, 0.001},
+              {200, 0.00175},
+              {300, 0.00235},
+              {400, 0.00489},
+              {500, 0.01056},
+              {600, 0.02667},
+              {800, 0.05889}})},
       {"li_purkiss_strength",
        "compressive strength ratio 1.002 + 0.025 x - 0.03 x^2 + 0.00165 x^3, x = T/100; 1.0058 at 20 degC",
        li_purkiss, "1", function(li_purkiss_strength, {20.0, 800.0})},

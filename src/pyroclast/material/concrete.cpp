@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/material/mixture.hpp"
 
 namespace pyroclast {
 
@@ -115,11 +116,22 @@ ContactMaterial ContactMaterial::times(Role role, double factor) const {
   return scaled;
 }
 
-ContactProperties ContactMaterial::at(double temperature) const {
+ContactProperties ContactMaterial::at(double temperature, double marked) const {
   std::vector<double> values;
   values.reserve(numbers.size());
-  for (const Curve& curve : numbers) values.push_back(curve(temperature));
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    values.push_back(numbers[i](law->properties[i].role == Role::plain ? temperature : marked));
   return {*law, std::move(values), choices};
+}
+
+CreepIncrement CreepMaterial::between(double from, double to) const {
+  CreepIncrement increment = choices;
+  if (to > from) increment.compliance = (strain(to) - strain(from)) / strength;
+  return increment;
+}
+
+bool ConcreteMaterials::creeps() const {
+  return std::ranges::any_of(solids, [](const SolidMaterial& solid) { return solid.creep.has_value(); });
 }
 
 InterfaceTable::InterfaceTable(const std::vector<std::string>& phases,
@@ -198,6 +210,69 @@ ConcreteMaterials make_concrete(const std::vector<SolidMaterial>& solids, const 
     if (!is_glued) contact["friction"] = Curve::constant(bearing.friction);
   }
   return concrete;
+}
+
+namespace {
+
+/// At the reference temperature, with the contacts between blocks of it, which lie in series with them.
+MixedPhase with_contacts(const SolidMaterial& solid, double fraction, const ContactMaterial& contact,
+                         double block_size) {
+  const double young = solid.young(kReferenceTemperature);
+  const double layer = contact.at(kReferenceTemperature).stiffness().normal * block_size;
+  return {fraction, 1.0 / (1.0 / young + 1.0 / layer), solid.poisson};
+}
+
+/// The creep of the concrete as that of the phase which makes it.
+/// \param share  R
+void take_to_phase(CreepMaterial& creep, double share) {
+  creep.strain = creep.strain * (1.0 / share);
+  creep.level = CreepLevel::phase;
+}
+
+}  // namespace
+
+void follow_composition(ConcreteMaterials& concrete, const ContactParameters& parameters,
+                        const std::optional<StrainOfConcrete>& strain, const std::vector<double>& fraction,
+                        double block_size) {
+  const auto phases = phases_of(concrete.solids);
+  const InterfaceTable table(phases, parameters.interfaces);
+  const auto of_matrix =
+      static_cast<std::size_t>(std::ranges::find(phases, parameters.matrix) - phases.begin());
+  std::vector<MixedPhase> mixed, inclusions;
+  for (std::size_t i = 0; i < phases.size(); ++i) {
+    const int phase = static_cast<int>(i);
+    mixed.push_back(with_contacts(concrete.solids[i], fraction[i],
+                                  concrete.contacts[table.between(phase, phase)], block_size));
+    if (i != of_matrix && fraction[i] > 0.0) inclusions.push_back(mixed.back());
+  }
+  const Mixture<2> mixture(mixed[of_matrix], inclusions);
+  Composition& whole = concrete.composition.emplace();
+  whole.inclusions = 1.0 - fraction[of_matrix];
+
+  for (std::size_t i = 0; i < phases.size(); ++i) {
+    auto& creep = concrete.solids[i].creep;
+    if (!creep || creep->level == CreepLevel::phase) continue;
+    if (i != of_matrix)
+      throw Error(
+          fmt::format("materials.{}.creep: only the creep of the matrix, {}, follows from the "
+                      "concrete's; state that of the phase itself with of = \"phase\"",
+                      phases[i], parameters.matrix));
+    whole.creep_share = creep->share.value_or(mixture.creep_share(creep->choices.poisson));
+    take_to_phase(*creep, *whole.creep_share);
+  }
+  if (!strain) return;
+  if (phases.size() > 2)
+    throw Error(
+        fmt::format("concrete.inclusion_ratio: the strains of {} phases do not follow from it, only "
+                    "those of a matrix and one kind of inclusions",
+                    phases.size()));
+  const double weight = inclusions.empty() ? 0.0 : strain->weight.value_or(mixture.inclusion_weight());
+  whole.strain_weight = weight;
+  for (std::size_t i = 0; i < phases.size(); ++i) {
+    const double ratio = i == of_matrix ? (1.0 - weight * strain->ratio) / (1.0 - weight) : strain->ratio;
+    concrete.solids[i].thermal_strain =
+        (strain->strain * ratio).named(fmt::format("materials.{}.thermal_strain", phases[i]));
+  }
 }
 
 }  // namespace pyroclast

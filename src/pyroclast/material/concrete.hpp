@@ -9,10 +9,29 @@
 
 #include "pyroclast/laws/built_in.hpp"
 #include "pyroclast/laws/contact_properties.hpp"
+#include "pyroclast/material/creep.hpp"
 #include "pyroclast/material/curve.hpp"
 #include "pyroclast/material/zone_law.hpp"
 
 namespace pyroclast {
+
+/// What a strain for each unit of stress is one of.
+enum class CreepLevel : std::uint8_t {
+  concrete,  ///< of the whole, of which its one phase that creeps gives way more
+  phase      ///< of the phase itself
+};
+
+/// How a phase creeps when it is heated under stress, see material/creep.hpp.
+struct CreepMaterial {
+  Curve strain = Curve::constant(0.0);  ///< B since the reference temperature: strain at a stress of f_c
+  CreepLevel level = CreepLevel::concrete;
+  std::optional<double> share;  ///< R of the concrete's strain in that of the phase; else of the specimen
+  double strength = 0.0;        ///< f_c, Pa: what B's stresses are counted by
+  CreepIncrement choices;       ///< but for its compliance
+
+  /// Of being heated for the first time from one temperature to another, °C; none where it is not hotter.
+  CreepIncrement between(double from, double to) const;
+};
 
 /// What a block is made of: the zones' parameters as functions of temperature.
 struct SolidMaterial {
@@ -21,6 +40,7 @@ struct SolidMaterial {
   double poisson = 0.0;                         ///< nu
   Curve density = Curve::constant(0.0);         ///< kg/m³; mass is that at the reference temperature
   Curve thermal_strain = Curve::constant(0.0);  ///< free strain since the reference temperature
+  std::optional<CreepMaterial> creep;           ///< of a phase alone
   std::optional<Curve> conductivity;            ///< gamma, W/(m K); only for heat conduction
   std::optional<Curve> specific_heat;           ///< c, J/(kg K); likewise
   bool is_of_bearing = false;                   ///< not of the specimen: at 20 °C in every run
@@ -47,7 +67,9 @@ struct ContactMaterial {
   ContactMaterial times(Role role, double factor) const;
 
   /// Parameters at a temperature, °C. Throws Error when a curve is not defined there.
-  ContactProperties at(double temperature) const;
+  ContactProperties at(double temperature) const { return at(temperature, temperature); }
+  /// \param marked  that strengths, energies and stiffnesses are those of, see OnCooling
+  ContactProperties at(double temperature, double marked) const;
 };
 
 /// What holds the blocks of two phases together, as a deck says it.
@@ -60,6 +82,14 @@ struct InterfaceParameters {
   std::optional<std::string> like;         ///< interface whose stiffness it has, times the factor;
                                            ///< without one E / t_b of the phase, Eq. (17)
   double stiffness_factor = 1.0;
+};
+
+/// Free thermal strain of the concrete as a whole, which those of its two phases make together:
+/// inclusions kappa eps_c, matrix (1 - w kappa) / (1 - w) eps_c.
+struct StrainOfConcrete {
+  Curve strain = Curve::constant(0.0);  ///< eps_c since the reference temperature
+  double ratio = 1.0;                   ///< kappa: strain of the inclusions over that of the concrete
+  std::optional<double> weight;         ///< w of the inclusions; else of the specimen
 };
 
 /// How a bearing and the specimen meet.
@@ -87,6 +117,13 @@ struct ContactParameters {
   std::string matrix;  ///< phase whose own contacts' stiffness those of the bearings have
 };
 
+/// What the phases of a specimen are as a whole.
+struct Composition {
+  double inclusions = 0.0;              ///< share of the volume that is not matrix
+  std::optional<double> creep_share;    ///< R that its creeping phase got
+  std::optional<double> strain_weight;  ///< w that its strains got
+};
+
 /// Which interface blocks of two phases have.
 class InterfaceTable {
  public:
@@ -110,12 +147,23 @@ class InterfaceTable {
   std::vector<int> of_pair_;
 };
 
+/// What a body that cools does with E of its phases, and strengths, fracture energies and stiffnesses of its
+/// contacts. Free thermal strains go back along their curves in any case.
+enum class OnCooling : std::uint8_t {
+  irreversible,  ///< they stay those of the highest temperature that was there
+  reversible     ///< they come back along their curves
+};
+
 /// Everything a concrete specimen is made of.
 struct ConcreteMaterials {
   std::vector<SolidMaterial> solids;      ///< by phase, then those of bearings
   std::vector<std::string> interfaces;    ///< see InterfaceTable, then those of bearings
   std::vector<ContactMaterial> contacts;  ///< likewise
   double fracture_zone = 0.0;             ///< t_b as it came out, m
+  OnCooling on_cooling = OnCooling::irreversible;
+  std::optional<Composition> composition;  ///< where `follow_composition` was asked
+
+  bool creeps() const;  ///< whether any phase does
 };
 
 /// Names of the solids that are not of bearings.
@@ -128,5 +176,16 @@ std::vector<std::string> phases_of(const std::vector<SolidMaterial>& solids);
 /// Throws Error when blocks of two phases would have no interface.
 ConcreteMaterials make_concrete(const std::vector<SolidMaterial>& solids, const ContactParameters& parameters,
                                 double block_size, std::optional<double> foreseen = std::nullopt);
+
+/// Gives the phases of this specimen what follows from its share of inclusions: the creep that makes the
+/// concrete's (see CreepLevel), and the thermal strains that make the concrete's. Both by Mixture<2>, with
+/// phases as soft as their blocks are with the contacts between them: 1 / E + 1 / (K_n block size).
+/// \param contacts    that `concrete` was made with
+/// \param fraction    of each phase, of the volume
+/// \param block_size  square root of the mean block area, m
+/// Throws Error when inclusions creep too, or strains of phases are asked for and not two phases are there.
+void follow_composition(ConcreteMaterials& concrete, const ContactParameters& contacts,
+                        const std::optional<StrainOfConcrete>& strain, const std::vector<double>& fraction,
+                        double block_size);
 
 }  // namespace pyroclast

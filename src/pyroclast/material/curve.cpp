@@ -200,6 +200,14 @@ double Curve::minimum(double a, double b) const {
   return least;
 }
 
+std::optional<Interval> Curve::first_fall(double a, double b) const {
+  std::vector<double> points = candidates(a, b);
+  std::ranges::sort(points);
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if ((*this)(points[i]) < (*this)(points[i - 1])) return Interval{points[i - 1], points[i]};
+  return std::nullopt;
+}
+
 const CurveAxis& Curve::axis() const {
   return label_->axis;
 }

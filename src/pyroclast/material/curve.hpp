@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -75,6 +76,8 @@ class Curve {
   /// their multiples; otherwise the extreme of a thousand even steps and the breaks of the function.
   double maximum(double a, double b) const;
   double minimum(double a, double b) const;
+  /// Where it first falls on [a, b], in the sense of minimum: two abscissae, the later with the lower value.
+  std::optional<Interval> first_fall(double a, double b) const;
 
   /// What the curve is a function of; empty strings for a constant.
   const CurveAxis& axis() const;

@@ -73,6 +73,13 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
+/// A ratio of which only a share of the loss is there.
+Curve lost_in_part(const Curve& ratio, double share) {
+  return Curve::function(
+      fmt::format("1 - {} (1 - r), r {}", share, ratio.description()),
+      [ratio, share](double x) { return 1.0 - share * (1.0 - ratio(x)); }, ratio.range(), ratio.axis());
+}
+
 }  // namespace
 
 CurveReader::CurveReader(std::filesystem::path folder, CurveAxis axis, Interval needed,
@@ -147,6 +154,11 @@ std::optional<Curve> CurveReader::read_product(const Section& forms, const Unit&
   const std::optional<Curve> ratio =
       forms.is_table("times") ? read_forms(*forms.optional_section("times"), unit::dimensionless, false)
                               : read_builtin(forms, "times", unit::dimensionless);
+  double share = 1.0;
+  if (axis_ == temperature_axis())
+    share =
+        forms.number("share", Range::between(0.0, 1.0), 1.0,
+                     "of what the ratio `times` loses: the value is multiplied with 1 - share (1 - ratio)");
   if (!ratio || !forms.ok()) return std::nullopt;
   return try_at(forms, "times", [&] {
     if (axis_ == temperature_axis() && ratio->range().contains(kReferenceTemperature)) {
@@ -155,7 +167,7 @@ std::optional<Curve> CurveReader::read_product(const Section& forms, const Unit&
         throw Error(fmt::format("must be 1 at {} degC, where the value holds, but is {:.6g} there",
                                 kReferenceTemperature, at_reference));
     }
-    return value * *ratio;
+    return value * (share == 1.0 ? *ratio : lost_in_part(*ratio, share));
   });
 }
 

@@ -36,7 +36,7 @@ int place_of(const LawTable& law, Remembers what, int dim) {
 template <int Dim>
 BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
                             const std::vector<ContactProperties>& interfaces) {
-  BodyProperties p{std::move(zones), ContactSets(interfaces), {}};
+  BodyProperties p{std::move(zones), ContactSets(interfaces), {}, {}};
   p.of_contact.reserve(model.contacts.size());
   for (const auto& c : model.contacts) p.of_contact.push_back(c.interface);
   return p;
@@ -55,6 +55,7 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
       step_(step_functions<Dim>(parameters.instructions)) {
   if (Dim != 2 && parameters.kinematics == Kinematics::finite)
     throw Error("kinematics = finite: contact frames that turn are made for 2D only; use small");
+  if (!properties_.creep.empty()) creep_strain_.resize(model_.zones.size());
   list_laws();
   place_model();
   place_histories();
@@ -168,7 +169,7 @@ void Mechanics<Dim>::place_histories() {
   refresh_views();
 }
 
-/// Energies that the laws of the body lose, each name once.
+/// Energies that the laws of the body lose, and creep where it does; each name once.
 template <int Dim>
 void Mechanics<Dim>::name_dissipations() {
   for (int set = 0; set < properties_.contacts.size(); ++set)
@@ -176,23 +177,29 @@ void Mechanics<Dim>::name_dissipations() {
       if (loss.is_energy() &&
           std::ranges::find(dissipations_, std::string_view(loss.name)) == dissipations_.end())
         dissipations_.emplace_back(loss.name);
+  if (creeps() && std::ranges::find(dissipations_, kCreep) == dissipations_.end())
+    dissipations_.push_back(kCreep);
   if (dissipations_.size() > kMostDissipations)
-    throw Error(fmt::format(
-        "the contact laws of this body name {} kinds of dissipated energy; at most {} are counted",
-        dissipations_.size(), kMostDissipations));
+    throw Error(
+        fmt::format("the laws of this body name {} kinds of dissipated energy; at most {} are counted",
+                    dissipations_.size(), kMostDissipations));
 }
 
 /// Puts zone and contact parameters in their places.
 template <int Dim>
 void Mechanics<Dim>::place_properties() {
   auto& rows = storage_.zone_properties;
+  std::vector<ZoneProperties> softened;
+  if (!creep_under_way_.empty())
+    for (int z = 0; z < model_.zone_count(); ++z) softened.push_back(properties_of_zone(z));
+  const std::vector<ZoneProperties>& zones = creep_under_way_.empty() ? properties_.zones : softened;
   const auto same = [](const ZoneProperties& a, const ZoneProperties& b) {
     return a.lambda == b.lambda && a.mu == b.mu && a.thermal_strain == b.thermal_strain;
   };
   bool by_bundle = true;
   for (int b = 0; b < model_.block_count() && by_bundle; ++b)
     for (int z = model_.block_zones[b]; z < model_.block_zones[b + 1]; ++z)
-      by_bundle = by_bundle && same(properties_.zones[z], properties_.zones[model_.block_zones[b]]);
+      by_bundle = by_bundle && same(zones[z], zones[model_.block_zones[b]]);
   state_.by_bundle = by_bundle;
   const std::size_t count =
       by_bundle ? layout_->bundles.size() : static_cast<std::size_t>(layout_->zone_rows);
@@ -206,12 +213,25 @@ void Mechanics<Dim>::place_properties() {
     for (std::size_t b = 0; b < count; ++b)
       for (int lane = 0; lane < kLanes; ++lane)
         if (const int block = layout_->block_in(static_cast<int>(b), lane); block >= 0)
-          place(b, lane, properties_.zones[model_.block_zones[block]]);
+          place(b, lane, zones[model_.block_zones[block]]);
   } else {
     for (int z = 0; z < model_.zone_count(); ++z)
-      place(layout_->zone_slot[z] / kLanes, layout_->zone_slot[z] % kLanes, properties_.zones[z]);
+      place(layout_->zone_slot[z] / kLanes, layout_->zone_slot[z] % kLanes, zones[z]);
   }
+  place_creep_strain();
   place_contact_properties();
+}
+
+template <int Dim>
+void Mechanics<Dim>::place_creep_strain() {
+  auto& rows = storage_.creep_strain;
+  const std::size_t count = creeps() ? static_cast<std::size_t>(layout_->zone_rows) : 0;
+  if (rows.size() != count) rows = made<TensorRow<Dim>>(count);
+  for (std::size_t z = 0; z < creep_strain_.size(); ++z) {
+    const int slot = layout_->zone_slot[z];
+    for (std::size_t i = 0; i < creep_strain_[z].size(); ++i)
+      rows[slot / kLanes].component[i][slot % kLanes] = creep_strain_[z][i];
+  }
 }
 
 template <int Dim>
@@ -351,11 +371,72 @@ void Mechanics<Dim>::set_step_over_mass() {
 
 template <int Dim>
 void Mechanics<Dim>::set_properties(BodyProperties properties) {
+  commit_creep();
+  if (!properties.creep.empty() && !creeps())
+    throw Error("a body that was made of what does not creep cannot begin to");
+  change_properties([&] {
+    begin_creep(properties.creep);
+    properties_ = std::move(properties);
+  });
+}
+
+template <int Dim>
+void Mechanics<Dim>::commit_creep() {
+  if (!creep_under_way_.empty()) change_properties([&] { end_creep(); });
+}
+
+/// With the stress that zones have by the properties that there are.
+template <int Dim>
+void Mechanics<Dim>::begin_creep(const std::vector<CreepIncrement>& creep) {
+  if (std::ranges::none_of(creep, [](const CreepIncrement& i) { return i.compliance != 0.0; })) return;
+  creep_under_way_.resize(creep.size());
+  for (int z = 0; z < model_.zone_count(); ++z) {
+    CreepUnderWay& zone = creep_under_way_[z];
+    Rotation<double> rotation;
+    zone.poisson = creep[z].poisson;
+    zone.stress = stress_in_own_frame(z, rotation);
+    zone.split = creep_split<Dim>(creep[z], zone.stress);
+  }
+  // those above are still of what was before
+  for (int z = 0; z < model_.zone_count(); ++z)
+    for (std::size_t i = 0; i < creep_strain_[z].size(); ++i)
+      creep_strain_[z][i] += creep_under_way_[z].split.known[i];
+}
+
+template <int Dim>
+void Mechanics<Dim>::end_creep() {
+  const auto crept = [&](const CreepUnderWay& zone, const SymmetricTensor<Dim>& stress) {
+    auto strain = creep_direction<Dim>(stress, zone.poisson);
+    for (double& component : strain) component *= zone.split.compliance;
+    return strain;
+  };
+  std::vector<SymmetricTensor<Dim>> last(creep_under_way_.size());
+  creep_work_ += chunked_sum(layout_->chunks.zones, [&](int z) {
+    const CreepUnderWay& zone = creep_under_way_[z];
+    Rotation<double> rotation;
+    const auto stress = stress_in_own_frame(z, rotation);
+    last[z] = crept(zone, stress);
+    SymmetricTensor<Dim> all, twice_mean;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      all[i] = zone.split.known[i] + last[z][i];
+      twice_mean[i] = zone.stress[i] + stress[i];
+    }
+    return energy_density<Dim>(twice_mean, all) * geometry_.volume[z];
+  });
+  for (int z = 0; z < model_.zone_count(); ++z)
+    for (std::size_t i = 0; i < last[z].size(); ++i) creep_strain_[z][i] += last[z][i];
+  creep_under_way_.clear();
+}
+
+/// \param change  of properties or creep
+template <int Dim>
+template <class Change>
+void Mechanics<Dim>::change_properties(Change change) {
   // The ledger counts the work of forces by the trapezoidal rule. So the change is made at the displacements
   // of the last step's forces, and the half step already begun with the old ones is made good.
   const EnergyLedger before = energy();
   const double held_before = before.zones + before.contacts + before.dissipated.total();
-  properties_ = std::move(properties);
+  change();
   place_properties();
   auto& displacement = storage_.displacement;
   const auto next = displacement;
@@ -580,6 +661,9 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit("mass_scaling", mass_scaling_);
   visitor.visit("begun_property_change", begun_property_change_);
   visitor.visit("begun_mass_scaling", begun_mass_scaling_);
+  visitor.visit("creep_work", creep_work_);
+  visitor.visit("creep_strains", creep_strain_);
+  visitor.visit("creep_under_way", creep_under_way_);
   visitor.visit("made_constraints", made_constraints_);
   for_each_array(
       [&](const ArrayInfo& info, auto& array) {
@@ -720,15 +804,40 @@ Vec<Dim> Mechanics<Dim>::displacement_of_force(int gridpoint) const {
   return displacement(gridpoint) - velocity(gridpoint) * (steps_ > 0 ? time_step() : 0.0);
 }
 
+/// \param rotation  of the frame, out
 template <int Dim>
-SymmetricTensor<Dim> Mechanics<Dim>::stress(int zone) const {
+SymmetricTensor<Dim> Mechanics<Dim>::stress_in_own_frame(int zone, Rotation<double>& rotation) const {
   std::array<Vec<Dim>, Dim + 1> u;
   for (int n = 0; n <= Dim; ++n) u[n] = displacement_of_force(model_.zones[zone][n]);
-  const auto& p = properties_.zones[zone];
+  const ZoneProperties p = properties_of_zone(zone);
+  auto strain = mechanical_strain<Dim>(geometry_.gradient[zone], 1.0, u, p.thermal_strain,
+                                       parameters_.kinematics, rotation);
+  if (creeps())
+    for (std::size_t i = 0; i < strain.size(); ++i) strain[i] -= creep_strain_[zone][i];
+  return zone_stress<Dim>(p, strain);
+}
+
+template <int Dim>
+SymmetricTensor<Dim> Mechanics<Dim>::stress(int zone) const {
   Rotation<double> rotation;
-  const auto strain = mechanical_strain<Dim>(geometry_.gradient[zone], 1.0, u, p.thermal_strain,
-                                             parameters_.kinematics, rotation);
-  return rotated<Dim>(rotation, zone_stress<Dim>(p, strain));
+  const auto stress = stress_in_own_frame(zone, rotation);
+  return rotated<Dim>(rotation, stress);
+}
+
+template <int Dim>
+ZoneProperties Mechanics<Dim>::properties_of_zone(int zone) const {
+  const ZoneProperties& p = properties_.zones[zone];
+  if (creep_under_way_.empty()) return p;
+  const CreepUnderWay& creep = creep_under_way_[zone];
+  return with_compliance<Dim>(p, creep.split.compliance, creep.poisson);
+}
+
+template <int Dim>
+SymmetricTensor<Dim> Mechanics<Dim>::creep_strain(int zone) const {
+  if (!creeps()) return {};
+  Rotation<double> rotation;
+  stress_in_own_frame(zone, rotation);
+  return rotated<Dim>(rotation, creep_strain_[zone]);
 }
 
 template <int Dim>
@@ -932,8 +1041,13 @@ Dissipation Mechanics<Dim>::dissipated() const {
       }
     }
   });
-  return {dissipations_,
-          {sums.energy.begin(), sums.energy.begin() + static_cast<std::ptrdiff_t>(dissipations_.size())}};
+  Dissipation all{
+      dissipations_,
+      {sums.energy.begin(), sums.energy.begin() + static_cast<std::ptrdiff_t>(dissipations_.size())}};
+  if (creeps())
+    all.energies[static_cast<std::size_t>(std::ranges::find(all.names, kCreep) - all.names.begin())] +=
+        creep_work_;
+  return all;
 }
 
 double Dissipation::of(std::string_view name) const {

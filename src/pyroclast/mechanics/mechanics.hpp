@@ -9,6 +9,7 @@
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/laws/contact_properties.hpp"
+#include "pyroclast/material/creep.hpp"
 #include "pyroclast/mechanics/instruction_set.hpp"
 #include "pyroclast/mechanics/state.hpp"
 #include "pyroclast/mechanics/sweep.hpp"
@@ -39,7 +40,10 @@ struct MechanicsParameters {
   int zones_for_a_thread = 500;  ///< with fewer a thread waits longer at barriers than it saves
 };
 
-/// Energies lost for good at contacts, J, by what their laws call them.
+/// What the energy that zones lose by creep is called.
+inline constexpr std::string_view kCreep = "creep";
+
+/// Energies lost for good, J: at contacts, by what their laws call them, and by creep of zones.
 struct Dissipation {
   std::vector<std::string_view> names;
   std::vector<double> energies;  ///< likewise
@@ -115,6 +119,8 @@ struct BodyProperties {
   std::vector<ZoneProperties> zones;  ///< of each zone
   ContactSets contacts;               ///< each set that occurs, validated
   std::vector<int> of_contact;        ///< index into `contacts` of each contact
+  /// Of each zone, from these temperatures on; empty where none ever creeps.
+  std::vector<CreepIncrement> creep;
 };
 
 /// Contacts that differ by interface alone.
@@ -146,8 +152,19 @@ class Mechanics {
   /// Takes the body to other temperatures: displacements, jumps and damage stay, stresses follow the new
   /// parameters and come back to the new envelopes (staggered coupling, paper Fig. 2). The energy that this
   /// adds or takes is `EnergyLedger::property_change`. Scaled masses follow the stiffness.
-  /// Throws Error when the body would get too stiff for the time step of its real mass.
+  ///
+  /// Where `properties.creep` says so, zones creep from now on until `commit_creep`: by half with the stress
+  /// that they have now, by half with the one to which they come (see CreepSplit). Until then they are softer
+  /// by the second half. What was still creeping is committed before.
+  ///
+  /// Throws Error when the body would get too stiff for the time step of its real mass, or begins to creep
+  /// and was made of what does not.
   void set_properties(BodyProperties properties);
+
+  /// Ends the creep of the last `set_properties` with the stress of now, which stays as it is: the strain
+  /// that was elastic until now is one that has crept. Its work is `dissipated` as "creep"; what closes the
+  /// ledger is `property_change`. Nothing to do where nothing creeps.
+  void commit_creep();
 
   /// Prescribes one component of a gridpoint's velocity, m/s, from the next step on.
   void prescribe_velocity(int gridpoint, int component, double velocity);
@@ -209,7 +226,13 @@ class Mechanics {
   double opening(int contact) const;  ///< u_n at the displacements of the last forces, m
   /// Directions of a contact at the displacements of the last forces.
   ContactFrame<Dim> frame_of_forces(int contact) const;
-  const ZoneProperties& properties_of_zone(int zone) const { return properties_.zones[zone]; }
+  /// With what creep makes it softer by until it is committed.
+  ZoneProperties properties_of_zone(int zone) const;
+  /// Whether zones of this body can creep.
+  bool creeps() const { return !creep_strain_.empty(); }
+  /// What a zone has crept, in the frame of the model, at the displacements of the last forces; while it
+  /// creeps, the part that is known.
+  SymmetricTensor<Dim> creep_strain(int zone) const;
   // of all, in the order of the model
   std::vector<Vec<Dim>> displacements() const;
   std::vector<Vec<Dim>> velocities() const;
@@ -249,6 +272,12 @@ class Mechanics {
     Share share;
     FlatArray<double> scratch;
   };
+  /// Of a zone, between `set_properties` and `commit_creep`.
+  struct CreepUnderWay {
+    CreepSplit<Dim> split;
+    double poisson = 0.0;           ///< nu_L
+    SymmetricTensor<Dim> stress{};  ///< at the beginning, in the zone's own frame, Pa
+  };
   /// A tie before its slots stand one after the other in the state.
   struct TieOfBundle {
     int bundle, component;
@@ -259,6 +288,7 @@ class Mechanics {
   void place_model();
   void place_histories();
   void place_properties();
+  void place_creep_strain();
   void name_dissipations();
   void place_contact_properties();
   void place_own_constants();
@@ -276,6 +306,11 @@ class Mechanics {
   void set_moving_mass();
   void set_step_over_mass();
   void forget();
+  template <class Change>
+  void change_properties(Change change);
+  void begin_creep(const std::vector<CreepIncrement>& creep);
+  void end_creep();
+  SymmetricTensor<Dim> stress_in_own_frame(int zone, Rotation<double>& rotation) const;
   void visit_properties(StateVisitor& visitor);
   void visit_ties(StateVisitor& visitor);
   int constraints_of(int gridpoint);
@@ -292,7 +327,10 @@ class Mechanics {
   const Model<Dim>& model_;
   MechanicsParameters<Dim> parameters_;
   std::shared_ptr<Team> team_;
-  BodyProperties properties_;
+  BodyProperties properties_;                       ///< of zones that do not creep just now
+  std::vector<SymmetricTensor<Dim>> creep_strain_;  ///< of each zone, in its own frame; see State
+  std::vector<CreepUnderWay> creep_under_way_;      ///< of each zone; empty where none creeps just now
+  double creep_work_ = 0.0;                         ///< J
   ZoneGeometry<Dim> geometry_;
   std::unique_ptr<const Layout<Dim>> layout_;
   StateArrays<Dim, FlatArray> storage_;

@@ -39,6 +39,12 @@ struct alignas(64) ZonePropertyRow {
   double lambda[kLanes], mu[kLanes], thermal_strain[kLanes];
 };
 
+/// Symmetric tensors of eight zones, component by component.
+template <int Dim>
+struct alignas(64) TensorRow {
+  double component[std::tuple_size_v<SymmetricTensor<Dim>>][kLanes];
+};
+
 /// One number of each of eight contact points: a cache line.
 struct alignas(64) Line {
   double number[kLanes];
@@ -93,6 +99,8 @@ struct StateArrays {
   Array<double> step_over_mass;            ///< by slot, s/kg; where idle any finite number
   Array<double> real_mass;                 ///< by slot, which gravity acts on, kg; empty where there is none
   Array<ZonePropertyRow> zone_properties;  ///< by row of zones, or by bundle
+  /// By row of zones, in the zones' own frames: free strain beside the thermal one. Empty where none creeps.
+  Array<TensorRow<Dim>> creep_strain;
 
   // Contact points. Those of a row of faces have one law; each list holds what that law has, a line for eight
   // points, and nothing for a law that has none. A step touches losses only where something is lost.
@@ -130,6 +138,7 @@ struct StateArrays {
     f(ArrayInfo{"step_over_mass", Touched::all}, s.step_over_mass...);
     f(ArrayInfo{"real_mass", Touched::all}, s.real_mass...);
     f(ArrayInfo{"zone_properties", Touched::all}, s.zone_properties...);
+    f(ArrayInfo{"creep_strain", Touched::all}, s.creep_strain...);
     f(ArrayInfo{"law_of_faces", Touched::all}, s.law_of_faces...);
     f(ArrayInfo{"history", Touched::all, Touched::held, Lasts::kept}, s.history...);
     f(ArrayInfo{"loss", Touched::none, Touched::none, Lasts::kept}, s.loss...);

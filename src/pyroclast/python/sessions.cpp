@@ -264,7 +264,7 @@ void bind_sessions(py::module_& m) {
             Session& session = h.resting();
             Simulation& simulation = session.simulation();
             simulation.field().set_uniform(temperature);
-            if (simulation.moves()) simulation.set_materials(simulation.materials());
+            if (simulation.moves()) simulation.hand_over();
             session.depart({fmt::format("the temperature was set to {:g} degC at row {}", temperature,
                                         session.run().history().row_count() - 1)});
           },

@@ -194,7 +194,7 @@ void bind_stages(py::module_& m) {
           [](const Body& body, double temperature) {
             Simulation& simulation = body.get();
             simulation.field().set_uniform(temperature);
-            simulation.set_materials(simulation.materials());
+            simulation.hand_over();
           },
           py::arg("temperature"),
           "Another temperature [degC] of the whole specimen, handed to the mechanics.")

@@ -47,29 +47,48 @@ void write_temperatures(Hdf5File& file, const TemperatureField& field) {
 /// Components of a symmetric tensor, in the order of VTK: XX, YY, ZZ, XY, YZ, XZ.
 constexpr int kTensor = 6;
 
-/// Of a zone in plane stress: that of its displacements, and across the plane that which leaves it free of
-/// stress there.
-void append_strain(std::vector<float>& values, const SymmetricTensor<2>& stress, const ZoneProperties& zone) {
-  const double in_plane = (stress[0] + stress[1]) / (2.0 * (zone.lambda + zone.mu));
-  const auto direct = [&](double s) { return (s - zone.lambda * in_plane) / (2.0 * zone.mu); };
-  append(values, {direct(stress[0]) + zone.thermal_strain, direct(stress[1]) + zone.thermal_strain,
-                  direct(0.0) + zone.thermal_strain, 0.5 * stress[2] / zone.mu, 0.0, 0.0});
+/// What a zone has crept: XX, YY, ZZ, XY. Across the plane it acts on nothing.
+std::array<double, 4> creep_of(const Simulation& simulation, int zone) {
+  const Mechanics<2>& mechanics = simulation.mechanics();
+  if (!mechanics.creeps()) return {};
+  const Model<2>& model = simulation.model();
+  const auto& creep =
+      simulation.materials().solids[model.block_material[model.block_of(model.zones[zone][0])]].creep;
+  const auto strain = mechanics.creep_strain(zone);
+  return {strain[0], strain[1], creep ? creep_across(strain, creep->choices.poisson) : 0.0, strain[2]};
 }
 
-void write_motion(Hdf5File& file, const Mechanics<2>& mechanics) {
+/// Of a zone in plane stress: that of its displacements, and across the plane that which leaves it free of
+/// stress there.
+/// \param creep  as of append_creep
+void append_strain(std::vector<float>& values, const SymmetricTensor<2>& stress, const ZoneProperties& zone,
+                   const std::array<double, 4>& creep) {
+  const double in_plane = (stress[0] + stress[1]) / (2.0 * (zone.lambda + zone.mu));
+  const auto direct = [&](double s) { return (s - zone.lambda * in_plane) / (2.0 * zone.mu); };
+  append(
+      values,
+      {direct(stress[0]) + zone.thermal_strain + creep[0], direct(stress[1]) + zone.thermal_strain + creep[1],
+       direct(0.0) + zone.thermal_strain + creep[2], 0.5 * stress[2] / zone.mu + creep[3], 0.0, 0.0});
+}
+
+void write_motion(Hdf5File& file, const Simulation& simulation) {
+  const Mechanics<2>& mechanics = simulation.mechanics();
   const int zones = mechanics.model().zone_count();
-  std::vector<float> displacement, stress, strain;
+  std::vector<float> displacement, stress, strain, crept;
   displacement.reserve(3 * mechanics.model().position.size());
   for (auto* values : {&stress, &strain}) values->reserve(kTensor * static_cast<std::size_t>(zones));
   for (const auto& u : mechanics.displacements()) append(displacement, u);
   for (int zone = 0; zone < zones; ++zone) {
     const auto s = mechanics.stress(zone);
     append(stress, {s[0], s[1], 0.0, s[2], 0.0, 0.0});
-    append_strain(strain, s, mechanics.properties_of_zone(zone));
+    const auto creep = creep_of(simulation, zone);
+    append_strain(strain, s, mechanics.properties_of_zone(zone), creep);
+    if (mechanics.creeps()) append(crept, {creep[0], creep[1], creep[2], creep[3], 0.0, 0.0});
   }
   file.dataset(array("PointData", "displacement", "m"), displacement, 3);
   file.dataset(array("CellData", "stress", "Pa"), stress, kTensor);
   file.dataset(array("CellData", "strain", "1"), strain, kTensor);
+  if (mechanics.creeps()) file.dataset(array("CellData", "creep_strain", "1"), crept, kTensor);
 }
 
 std::string_view name_of(const HistoryInfo& info) {
@@ -225,7 +244,7 @@ void FieldFiles::write(const Simulation& simulation, const History& history, Fra
   with_this.rows.push_back(row);
   const auto times = frame_times(history, with_this);
   blocks_.write(times, [&](Hdf5File& file) {
-    if (simulation.moves()) write_motion(file, simulation.mechanics());
+    if (simulation.moves()) write_motion(file, simulation);
     write_temperatures(file, simulation.field());
   });
   if (contacts_)

@@ -52,6 +52,11 @@ void require_same_body(const ConcreteMaterials& old, const ConcreteMaterials& ch
   for (std::size_t i = 0; i < old.contacts.size(); ++i)
     if (old.contacts[i].law != changed.contacts[i].law)
       throw Error("a contact law cannot change in a run: contacts remember what the old one kept");
+  if (old.on_cooling != changed.on_cooling)
+    throw Error("materials.on_cooling cannot change in a run: what was the hottest is kept from the start");
+  if (old.creeps() != changed.creeps())
+    throw Error(
+        "whether phases creep cannot change in a run: [materials.NAME.creep] is there from the start");
 }
 
 }  // namespace
@@ -230,8 +235,7 @@ void Session::change_materials(const std::vector<std::string>& changes) {
   Deck deck = Deck::parse(loaded_.deck.text(), loaded_.deck.name(), changes);
   Setup setup = read(deck);
   const specimen::Specimen& specimen = simulation_->specimen();
-  auto materials = make_concrete(setup.solids, setup.motion->contacts, specimen.metrics.mean_size,
-                                 specimen::block_size(specimen));
+  auto materials = make_materials(setup.solids, *setup.motion, specimen);
   require_same_body(simulation_->materials(), materials);
   simulation_->set_materials(std::move(materials));
   take_over(std::move(deck), std::move(setup));

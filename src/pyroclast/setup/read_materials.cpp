@@ -85,16 +85,96 @@ SolidMaterial read_heat_properties(const Section& s, CurveReader& curves) {
   return m;
 }
 
-SolidMaterial read_solid(const Section& s, ExpansionReading reading, CurveReader& curves) {
+SolidMaterial read_solid(const Section& s, CurveReader& curves) {
   SolidMaterial m = read_heat_properties(s, curves);
   m.young = curves.read(s, "E", unit::stress, Range::positive().usually(1e9, 500e9), "Young's modulus");
   m.poisson = s.number("nu", Range::inside(-1.0, 0.5).usually(0.0, 0.45), "Poisson's ratio");
+  return m;
+}
+
+/// B of Anderberg and Thelandersson 1976: so many times the free strain of the concrete, and beyond the end
+/// of that law by a strain per kelvin.
+Curve anderberg_thelandersson(double k2, const Curve& free_strain) {
+  constexpr double kEnd = 550.0, kSlopeBeyond = 1e-4;
+  return Curve::function(
+      fmt::format("{} times the free strain of the concrete to {} degC, then {} 1/K", k2, kEnd, kSlopeBeyond),
+      [=](double T) { return k2 * free_strain(std::min(T, kEnd)) + kSlopeBeyond * std::max(T - kEnd, 0.0); },
+      free_strain.range(), temperature_axis(), {kEnd});
+}
+
+/// B, as a curve or by k2.
+Curve read_creep_strain(const Section& s, const ReadConcrete& concrete, CurveReader& curves) {
+  constexpr Meaning kStrain = "B: strain since 20 °C for each unit of stress over f_c, both in compression";
+  if (!s.has("k2")) return curves.read(s, "strain", unit::dimensionless, Range::non_negative(), kStrain);
+  const double k2 = s.number("k2", Range::positive().usually(1.5, 2.5),
+                             "instead of strain: B is this times the thermal strain of [concrete] to 550 °C, "
+                             "and grows by 1e-4 1/K beyond (Anderberg and Thelandersson 1976)");
+  if (s.has("strain")) s.error("strain", "has no meaning beside \"k2\": give one of the two");
+  if (!concrete.thermal_strain || concrete.thermal_strain->is_constant()) {
+    s.error("k2", "needs the thermal strain of the concrete: thermal_strain or expansion in [concrete]");
+    return Curve::constant(0.0);
+  }
+  return anderberg_thelandersson(k2, *concrete.thermal_strain);
+}
+
+std::optional<CreepMaterial> read_creep(const Section& phase, const ReadConcrete& concrete,
+                                        CurveReader& curves) {
+  const auto s = phase.optional_section(
+      "creep",
+      "load-induced thermal strain (transient creep): what the phase under stress is shorter by when "
+      "it is heated for the first time; see [deck.md](deck.md#creep-under-load)");
+  if (!s) return std::nullopt;
+  CreepMaterial m;
+  m.strain = read_creep_strain(*s, concrete, curves);
+  const char* const key = s->has("k2") ? "k2" : "strain";
+  if (s->ok()) {
+    require_at_reference(*s, key, m.strain, 0.0, kNoStrain);
+    const auto [lower, upper] = curves.needed();
+    if (const auto fall = m.strain.first_fall(lower, upper))
+      s->error(key, fmt::format("falls from {:.6g} at {:.6g} degC to {:.6g} at {:.6g} degC: creep never goes "
+                                "back, so B may stay or rise, but not fall",
+                                m.strain(fall->lower), fall->lower, m.strain(fall->upper), fall->upper));
+  }
+  m.level =
+      s->choice<CreepLevel>("of",
+                            {{"concrete", CreepLevel::concrete,
+                              "of the concrete as a whole; the phase, its matrix, creeps more by 1 / R"},
+                             {"phase", CreepLevel::phase, "of this phase"}},
+                            CreepLevel::concrete, "what B is of");
+  if (m.level == CreepLevel::phase)
+    s->know({"share"});
+  else if (s->has("share"))
+    m.share =
+        s->number("share", Range{.lower = 0.0, .upper = 1.0, .lower_inclusive = false},
+                  "R: creep of the concrete over that of its matrix; without it from the specimen's share "
+                  "of inclusions, by Mori and Tanaka");
+  m.strength = s->quantity("f_c", unit::stress, Range::positive().usually(1e6, 200e6), 35e6,
+                           "strength of the concrete at 20 °C that B counts stresses by");
+  m.choices.poisson = s->number("nu", Range{.lower = -1.0, .upper = 0.5, .lower_inclusive = false}, 0.3,
+                                "Poisson's ratio of the creep, ν_L");
+  m.choices.tension = s->number("tension", Range::between(0.0, 1.0), 1.0,
+                                "χ_t: creep under tension over that under as much compression");
+  m.choices.confinement =
+      s->number("confinement", Range::non_negative().usually(0.0, 2.0), 0.0,
+                "γ: creep is 1 + (C − 1) γ times as much, C = 1 with one compressive stress, "
+                "√2 with two and √3 with three equal ones (Torelli and others 2018)");
+  return m;
+}
+
+/// Of the specimen, not of bearings.
+SolidMaterial read_phase(const Section& s, ExpansionReading reading, const ReadConcrete& concrete,
+                         CurveReader& curves) {
+  SolidMaterial m = read_solid(s, curves);
   m.thermal_strain = read_thermal_strain(s, reading, curves);
+  for (const char* key : {"expansion", "thermal_strain"})
+    if (concrete.of_phases && s.has(key))
+      s.error(key, "has no meaning beside concrete.inclusion_ratio, from which it follows");
+  m.creep = read_creep(s, concrete, curves);
   return m;
 }
 
 SolidMaterial read_conducting_solid(const Section& s, CurveReader& curves) {
-  s.know({"E", "nu", "expansion", "thermal_strain"});
+  s.know({"E", "nu", "expansion", "thermal_strain", "creep"});
   return read_heat_properties(s, curves);
 }
 
@@ -350,14 +430,58 @@ ExpansionReading read_expansion_reading(const Section& root) {
           ExpansionReading::secant, "how the coefficients of thermal expansion α are read");
 }
 
+OnCooling read_on_cooling(const Section& root) {
+  return root.section("materials")
+      .choice<OnCooling>(
+          "on_cooling",
+          {{"irreversible", OnCooling::irreversible,
+            "they stay those of the highest temperature that was there: concrete does not heal"},
+           {"reversible", OnCooling::reversible, "they come back along their curves"}},
+          OnCooling::irreversible,
+          "what E of the phases, and strengths, fracture energies and stiffnesses of contacts do where it "
+          "cools");
+}
+
+ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& phases,
+                           ExpansionReading reading, CurveReader& curves) {
+  ReadConcrete concrete;
+  const auto s = root.optional_section(
+      "concrete", "what is known of the concrete as a whole; see [deck.md](deck.md#creep-under-load)");
+  if (!s) return concrete;
+  concrete.thermal_strain = read_thermal_strain(*s, reading, curves);
+  if (!s->has("inclusion_ratio")) {
+    s->know({"inclusion_weight"});
+    return concrete;
+  }
+  StrainOfConcrete& strain = concrete.of_phases.emplace();
+  strain.strain = *concrete.thermal_strain;
+  strain.ratio =
+      s->number("inclusion_ratio", Range::positive().usually(1.0, 1.6),
+                "κ: thermal strain of the inclusions over that of the concrete; that of the matrix is "
+                "what makes the concrete's, and neither is stated in [materials]");
+  if (s->has("inclusion_weight"))
+    strain.weight = s->number(
+        "inclusion_weight", Range::inside(0.0, 1.0),
+        "weight w of the inclusions in the strain of the concrete; without it from the specimen's share of "
+        "inclusions, by Mori and Tanaka, and Levin");
+  if (phases.size() > 2)
+    s->error(
+        "inclusion_ratio",
+        fmt::format("is for a matrix and one kind of inclusions, but the phases are {}", list_of(phases)));
+  return concrete;
+}
+
 std::vector<SolidMaterial> read_solids(const Section& root, const std::vector<std::string>& phases,
                                        const std::vector<std::string>& of_bearings, ExpansionReading reading,
-                                       CurveReader& curves) {
+                                       const ReadConcrete& concrete, CurveReader& curves) {
   const Section s = root.section("materials");
   std::vector<SolidMaterial> solids;
-  for (const auto& phase : phases) solids.push_back(read_solid(s.section(phase, kSolid), reading, curves));
+  for (const auto& phase : phases)
+    solids.push_back(read_phase(s.section(phase, kSolid), reading, concrete, curves));
   for (const auto& name : of_bearings) {
-    solids.push_back(read_solid(s.section(name, kBearingSolid), reading, curves));
+    const Section own = s.section(name, kBearingSolid);
+    solids.push_back(read_solid(own, curves));
+    solids.back().thermal_strain = read_thermal_strain(own, reading, curves);
     solids.back().is_of_bearing = true;
   }
   s.know({"platen"});
@@ -367,7 +491,7 @@ std::vector<SolidMaterial> read_solids(const Section& root, const std::vector<st
 std::vector<SolidMaterial> read_conducting_solids(const Section& root, const std::vector<std::string>& phases,
                                                   CurveReader& curves) {
   const Section s = root.section("materials");
-  s.know({"expansion_reading", "platen"});
+  s.know({"expansion_reading", "on_cooling", "platen"});
   std::vector<SolidMaterial> solids;
   for (const auto& phase : phases) solids.push_back(read_conducting_solid(s.section(phase, kSolid), curves));
   return solids;

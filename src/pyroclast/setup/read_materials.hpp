@@ -14,11 +14,24 @@ namespace pyroclast {
 /// Reads how [materials] means its `expansion`.
 ExpansionReading read_expansion_reading(const Section& root);
 
+/// Reads what [materials] says of cooling.
+OnCooling read_on_cooling(const Section& root);
+
+/// What [concrete] says of the concrete as a whole.
+struct ReadConcrete {
+  std::optional<Curve> thermal_strain;        ///< eps_c
+  std::optional<StrainOfConcrete> of_phases;  ///< where those of the phases follow from it
+};
+
+/// Reads [concrete], which may be absent. Errors are recorded in the deck.
+ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& phases,
+                           ExpansionReading reading, CurveReader& curves);
+
 /// Reads [materials]: a table for each phase, then one for each solid of bearings. `curves` must be of the
 /// temperature. Errors are recorded in the deck.
 std::vector<SolidMaterial> read_solids(const Section& root, const std::vector<std::string>& phases,
                                        const std::vector<std::string>& of_bearings, ExpansionReading reading,
-                                       CurveReader& curves);
+                                       const ReadConcrete& concrete, CurveReader& curves);
 
 /// The same for heat conduction alone: of the phases only density, conductivity and specific heat; other
 /// properties have no effect.

@@ -135,14 +135,15 @@ void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
                     1e3 * size, share, kCoarsestHeated));
 }
 
-/// Whether anything but the expansion follows the temperature.
+/// Whether anything but expansion and creep follows the temperature.
 bool follows_temperature(const ReadCurve& read) {
   return !read.curve.is_constant() && !read.path.ends_with("expansion") &&
-         !read.path.ends_with("thermal_strain");
+         !read.path.ends_with("thermal_strain") && !read.path.ends_with("creep.strain");
 }
 
 /// Properties that come back on cooling.
 void warn_of_healing(const Section& root, const Setup& setup) {
+  if (!setup.motion || setup.motion->on_cooling == OnCooling::irreversible) return;
   if (std::ranges::none_of(setup.curves, follows_temperature)) return;
   double temperature = setup.heat.initial;
   for (std::size_t i = 0; i < setup.stages.size(); ++i) {
@@ -256,7 +257,11 @@ void read_moving(const Section& root, const std::vector<ReadBearing>& bearings, 
   MotionParameters& motion = *setup.motion;
   const bool has_platens = read_platens(root, setup, motion.bearings);
   for (const ReadBearing& read : bearings) motion.bearings.push_back(read.bearing);
-  setup.solids = read_solids(root, phases, materials_of(motion.bearings), setup.expansion_reading, curves);
+  motion.on_cooling = read_on_cooling(root);
+  const ReadConcrete concrete = read_concrete(root, phases, setup.expansion_reading, curves);
+  motion.strain_of_concrete = concrete.of_phases;
+  setup.solids =
+      read_solids(root, phases, materials_of(motion.bearings), setup.expansion_reading, concrete, curves);
   motion.contacts = read_contacts(root, phases, setup.specimen.matrix, has_platens, find_law, curves);
   for (const ReadBearing& read : bearings) motion.contacts.bearings.push_back(read.interface);
   setup.motion->mechanics =
@@ -267,7 +272,7 @@ void read_moving(const Section& root, const std::vector<ReadBearing>& bearings, 
 /// The same where only heat moves.
 void read_resting(const Section& root, CurveReader& curves, Setup& setup) {
   setup.solids = read_conducting_solids(root, specimen::phases(setup.specimen), curves);
-  root.know({"platens", "bearings", "contacts", "mechanics"});
+  root.know({"platens", "bearings", "contacts", "mechanics", "concrete"});
 }
 
 }  // namespace

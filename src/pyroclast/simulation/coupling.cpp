@@ -1,25 +1,45 @@
 #include "pyroclast/simulation/coupling.hpp"
 
+#include <algorithm>
+
 namespace pyroclast {
 
 namespace {
 
-ZoneProperties zone_at(const SolidMaterial& solid, double temperature) {
-  return zone_properties<2>(solid.young(temperature), solid.poisson, solid.thermal_strain(temperature));
+/// \param marked  that E is that of, see OnCooling, °C
+ZoneProperties zone_at(const SolidMaterial& solid, double temperature, double marked) {
+  return zone_properties<2>(solid.young(marked), solid.poisson, solid.thermal_strain(temperature));
+}
+
+/// Of each zone; none where nothing creeps.
+std::vector<CreepIncrement> creep_increments(const Model<2>& model, const ConcreteMaterials& materials,
+                                             const TemperatureField& field,
+                                             const HottestTemperatures& before) {
+  std::vector<CreepIncrement> increments;
+  if (!materials.creeps()) return increments;
+  const auto blocks = zone_blocks(model);
+  for (int z = 0; z < model.zone_count(); ++z) {
+    const SolidMaterial& solid = materials.solids[model.block_material[blocks[z]]];
+    const double now = field.zones()[z];
+    increments.push_back(solid.creep ? solid.creep->between(before.of_zone(z, kReferenceTemperature), now)
+                                     : CreepIncrement{});
+  }
+  return increments;
 }
 
 /// One set of parameters a material and an interface; bearings keep the reference temperature.
 BodyProperties properties_at_one_temperature(const Model<2>& model, const ConcreteMaterials& materials,
-                                             double temperature) {
+                                             double temperature, double marked) {
   std::vector<ZoneProperties> solids;
   for (const SolidMaterial& solid : materials.solids)
-    solids.push_back(zone_at(solid, solid.is_of_bearing ? kReferenceTemperature : temperature));
+    solids.push_back(solid.is_of_bearing ? zone_at(solid, kReferenceTemperature, kReferenceTemperature)
+                                         : zone_at(solid, temperature, marked));
   std::vector<ZoneProperties> zones;
   zones.reserve(model.zones.size());
   for (int block : zone_blocks(model)) zones.push_back(solids[model.block_material[block]]);
   std::vector<ContactProperties> interfaces;
   for (std::size_t i = 0; i < materials.contacts.size(); ++i) {
-    interfaces.push_back(materials.contacts[i].at(temperature));
+    interfaces.push_back(materials.contacts[i].at(temperature, marked));
     validate(interfaces.back(), model.interface_names[i]);
   }
   return by_interface(model, std::move(zones), interfaces);
@@ -27,19 +47,51 @@ BodyProperties properties_at_one_temperature(const Model<2>& model, const Concre
 
 }  // namespace
 
+HottestTemperatures::HottestTemperatures(const ConcreteMaterials& materials, const TemperatureField& field) {
+  const bool marks = materials.on_cooling == OnCooling::irreversible;
+  if (materials.creeps() || marks) zones_ = field.zones();
+  if (marks) contacts_ = field.contacts();
+  of_all_ = field.mean();
+}
+
+void HottestTemperatures::take(const TemperatureField& field) {
+  for (std::size_t z = 0; z < zones_.size(); ++z) zones_[z] = std::max(zones_[z], field.zones()[z]);
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    contacts_[c] = std::max(contacts_[c], field.contacts()[c]);
+  of_all_ = std::max(of_all_, field.mean());
+}
+
+void HottestTemperatures::visit_state(StateVisitor& visitor) {
+  visitor.visit("zones", zones_);
+  visitor.visit("contacts", contacts_);
+  visitor.visit("of_all", of_all_);
+}
+
 BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& materials,
-                             const TemperatureField& field) {
-  if (field.is_uniform()) return properties_at_one_temperature(model, materials, field.mean());
+                             const TemperatureField& field, const HottestTemperatures& before) {
   BodyProperties p;
+  const auto marked = [&](double now, double hottest) {
+    return materials.on_cooling == OnCooling::irreversible ? hottest : now;
+  };
+  if (field.is_uniform()) {
+    p = properties_at_one_temperature(model, materials, field.mean(),
+                                      marked(field.mean(), before.of_all(field.mean())));
+    p.creep = creep_increments(model, materials, field, before);
+    return p;
+  }
+  p.creep = creep_increments(model, materials, field, before);
   p.zones.reserve(model.zones.size());
   const auto blocks = zone_blocks(model);
   for (int z = 0; z < model.zone_count(); ++z)
-    p.zones.push_back(zone_at(materials.solids[model.block_material[blocks[z]]], field.zones()[z]));
+    p.zones.push_back(zone_at(materials.solids[model.block_material[blocks[z]]], field.zones()[z],
+                              marked(field.zones()[z], before.of_zone(z, field.zones()[z]))));
   p.of_contact.reserve(model.contacts.size());
   for (int c = 0; c < model.contact_count(); ++c) {
     const int interface = model.contacts[c].interface;
     p.of_contact.push_back(c);
-    const ContactProperties properties = materials.contacts[interface].at(field.contacts()[c]);
+    const double now = field.contacts()[c];
+    const ContactProperties properties =
+        materials.contacts[interface].at(now, marked(now, before.of_contact(c, now)));
     validate(properties, model.interface_names[interface]);
     p.contacts.add(properties);
   }

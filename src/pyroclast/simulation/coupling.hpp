@@ -1,5 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
+#include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/material/concrete.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
 #include "pyroclast/model/concrete_model.hpp"
@@ -7,9 +11,36 @@
 
 namespace pyroclast {
 
-/// Parameters of every zone and contact at the field's temperatures. Throws Error when a property is not
-/// defined at one of them.
+/// The hottest that each zone and contact was so far at an exchange of temperatures, °C: what creeps does so
+/// when it is heated for the first time, and what heat took does not come back on cooling.
+class HottestTemperatures {
+ public:
+  HottestTemperatures() = default;
+  /// As if the body had come to the temperatures that the field has now without stress.
+  /// \param materials  empty where none of them asks
+  HottestTemperatures(const ConcreteMaterials& materials, const TemperatureField& field);
+
+  /// An exchange of the field's temperatures was made.
+  void take(const TemperatureField& field);
+  // at an exchange to the temperature now, °C; this itself where nothing asks
+  double of_zone(int zone, double now) const { return zones_.empty() ? now : std::max(now, zones_[zone]); }
+  double of_contact(int contact, double now) const {
+    return contacts_.empty() ? now : std::max(now, contacts_[contact]);
+  }
+  /// Of all of the specimen, in a uniform field.
+  double of_all(double now) const { return zones_.empty() ? now : std::max(now, of_all_); }
+
+  void visit_state(StateVisitor& visitor);
+
+ private:
+  std::vector<double> zones_, contacts_;
+  double of_all_ = 0.0;
+};
+
+/// Parameters of every zone and contact at the field's temperatures, and what zones creep on their way there.
+/// Throws Error when a property is not defined at one of them.
+/// \param before  of the exchanges so far
 BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& materials,
-                             const TemperatureField& field);
+                             const TemperatureField& field, const HottestTemperatures& before);
 
 }  // namespace pyroclast

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pyroclast/simulation/coupling.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 
 namespace pyroclast {
@@ -62,8 +61,7 @@ void Exchange::hand_over(Simulation& simulation) {
   cycles_ = 0;
   converged_ = false;
   is_handed_over_ = true;
-  simulation.mechanics().set_properties(
-      properties_at(simulation.model(), simulation.materials(), simulation.field()));
+  simulation.hand_over();
 }
 
 void Exchange::move_evenly_first(const Press<2>::EvenMotion& motion) {

@@ -87,6 +87,7 @@ bool Run::next() {
   if (stage_is_over_) ++stage_;
   if (stage_is_over_ || !stage_is_begun_) begin_stage();
   if (!move_to_look()) return false;
+  if (simulation_.moves()) simulation_.mechanics().commit_creep();  // what is looked at has crept
   add_row();
   records_[stage_].rows.last = history_.row_count();
   const auto& row = history_.row(history_.row_count() - 1);

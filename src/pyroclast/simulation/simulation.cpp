@@ -10,7 +10,6 @@
 #include <sys/resource.h>
 
 #include "pyroclast/base/error.hpp"
-#include "pyroclast/simulation/coupling.hpp"
 
 namespace pyroclast {
 
@@ -49,12 +48,13 @@ TemperatureField make_field(const Model<2>& model, const std::vector<SolidMateri
 
 std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const ConcreteMaterials& materials,
                                              const TemperatureField& field,
+                                             const HottestTemperatures& hottest,
                                              const MechanicsParameters<2>& parameters,
                                              const std::shared_ptr<Team>& team) {
   std::vector<double> densities;
   for (const auto& solid : materials.solids) densities.push_back(solid.density(kReferenceTemperature));
-  return std::make_unique<Mechanics<2>>(model, densities, properties_at(model, materials, field), parameters,
-                                        team);
+  return std::make_unique<Mechanics<2>>(model, densities, properties_at(model, materials, field, hottest),
+                                        parameters, team);
 }
 
 Model<2> make_model(const specimen::Specimen& specimen, double thickness,
@@ -74,6 +74,17 @@ constexpr int kVertical = 1;
 
 }  // namespace
 
+ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const MotionParameters& motion,
+                                 const specimen::Specimen& specimen) {
+  auto materials =
+      make_concrete(solids, motion.contacts, specimen.metrics.mean_size, specimen::block_size(specimen));
+  materials.on_cooling = motion.on_cooling;
+  if (materials.creeps() || motion.strain_of_concrete)
+    follow_composition(materials, motion.contacts, motion.strain_of_concrete, specimen.fraction,
+                       specimen.metrics.mean_size);
+  return materials;
+}
+
 Simulation::Simulation(specimen::Specimen specimen, double thickness,
                        const std::vector<SolidMaterial>& solids, const std::vector<SetParameters<2>>& sets,
                        const HeatConditions& heat, const std::vector<ProbePosition>& probes,
@@ -88,9 +99,9 @@ Simulation::Simulation(specimen::Specimen specimen, double thickness,
     show_cracks_to_heat();
     return;
   }
-  materials_ =
-      make_concrete(solids, motion->contacts, specimen_.metrics.mean_size, specimen::block_size(specimen_));
-  mechanics_ = make_mechanics(model_, materials_, field_, motion->mechanics, team_);
+  materials_ = make_materials(solids, *motion, specimen_);
+  hottest_ = HottestTemperatures(materials_, field_);
+  mechanics_ = make_mechanics(model_, materials_, field_, hottest_, motion->mechanics, team_);
   for (const specimen::Notch& notch : specimen_.region.notches())
     if (const auto parted = model_.contact_sets.find(notch.name); parted != model_.contact_sets.end())
       for (int contact : parted->second) mechanics_->break_contact(contact);
@@ -123,8 +134,14 @@ void Simulation::show_cracks_to_heat() {
 }
 
 void Simulation::set_materials(ConcreteMaterials materials) {
-  mechanics_->set_properties(properties_at(model_, materials, field_));
+  mechanics_->set_properties(properties_at(model_, materials, field_, hottest_));
   materials_ = std::move(materials);
+  hottest_.take(field_);
+}
+
+void Simulation::hand_over() {
+  mechanics_->set_properties(properties_at(model_, materials_, field_, hottest_));
+  hottest_.take(field_);
 }
 
 void Simulation::visit_state(StateVisitor& visitor) {
@@ -135,6 +152,10 @@ void Simulation::visit_state(StateVisitor& visitor) {
     field_.visit_state(visitor);
   }
   if (!moves()) return;
+  {
+    const StateVisitor::Scope scope(visitor, "hottest");
+    hottest_.visit_state(visitor);
+  }
   {
     const StateVisitor::Scope scope(visitor, "mechanics");
     mechanics_->visit_state(visitor);

@@ -12,6 +12,7 @@
 #include "pyroclast/mechanics/mechanics.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/model/sets.hpp"
+#include "pyroclast/simulation/coupling.hpp"
 #include "pyroclast/simulation/heat_conditions.hpp"
 #include "pyroclast/simulation/loads.hpp"
 #include "pyroclast/simulation/press.hpp"
@@ -27,8 +28,14 @@ struct MotionParameters {
   std::vector<Bearing> bearings;
   std::vector<RecordParameters> records;
   ContactParameters contacts;
+  std::optional<StrainOfConcrete> strain_of_concrete;  ///< where phases follow it
+  OnCooling on_cooling = OnCooling::irreversible;
   MechanicsParameters<2> mechanics;
 };
+
+/// What this specimen is made of. Throws Error, see make_concrete and follow_composition.
+ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const MotionParameters& motion,
+                                 const specimen::Specimen& specimen);
 
 /// A specimen as a model, its temperatures, and, where a stage moves it, its mechanics, what loads it, and
 /// the press around it where there are platens. Not movable: the solvers refer to the model beside them.
@@ -56,7 +63,7 @@ class Simulation {
   const Model<2>& model() const { return model_; }
   const ConcreteMaterials& materials() const { return materials_; }
   /// Other properties from now on, at the temperatures that there are: as an exchange of temperatures, see
-  /// Mechanics::set_properties. Densities and laws are those of before.
+  /// `hand_over`. Densities, laws and whether anything creeps are those of before.
   void set_materials(ConcreteMaterials materials);
   const HeatConditions& heat() const { return heat_; }
   TemperatureField& field() { return field_; }
@@ -90,6 +97,11 @@ class Simulation {
   /// Since heating began, s: at the temperatures that the last exchange or conduction came to.
   double heating_time() const { return heating_time_; }
   void set_heating_time(double time) { heating_time_ = time; }
+  /// An exchange: hands the field's temperatures over to the mechanics, see Mechanics::set_properties. What
+  /// creeps does so from now until the next look of the run.
+  void hand_over();
+  /// The hottest that the mechanics was so far, °C.
+  const HottestTemperatures& hottest() const { return hottest_; }
   /// Number of a new exchange of temperatures, from 1.
   std::int64_t count_exchange() { return ++exchanges_; }
 
@@ -103,6 +115,7 @@ class Simulation {
   ConcreteMaterials materials_;
   HeatConditions heat_;
   TemperatureField field_;
+  HottestTemperatures hottest_;
   std::vector<Probe> probes_;
   std::unique_ptr<Mechanics<2>> mechanics_;
   std::unique_ptr<Loads<2>> loads_;

@@ -22,14 +22,28 @@ std::unique_ptr<Stage> read_heat_stage(const Section& s, const StageTables& tabl
   return std::make_unique<Heat>(keys);
 }
 
-/// Change of the specimen's free thermal strain between two temperatures: the least and the greatest of its
-/// solids, or none.
-Interval free_strain_change(const ConcreteMaterials& materials, double from, double to) {
-  Interval change{0.0, 0.0};
-  for (const SolidMaterial& solid : materials.solids) {
-    if (solid.is_of_bearing) continue;
-    const double strain = solid.thermal_strain(to) - solid.thermal_strain(from);
+/// Change of the specimen's strain between two temperatures, along the load and across it.
+struct StrainChange {
+  Interval axial{0.0, 0.0}, lateral{0.0, 0.0};
+};
+
+/// The least and the greatest of its solids, or none: of their free thermal strain, and of what they creep
+/// under the stress on the platens.
+StrainChange strain_change(const Simulation& simulation, double from, double to) {
+  const auto widen = [](Interval& change, double strain) {
     change = {std::min(change.lower, strain), std::max(change.upper, strain)};
+  };
+  const double stress = -simulation.press().stress();  // tension positive
+  StrainChange change;
+  for (const SolidMaterial& solid : simulation.materials().solids) {
+    if (solid.is_of_bearing) continue;
+    const double thermal = solid.thermal_strain(to) - solid.thermal_strain(from);
+    for (Interval* direction : {&change.axial, &change.lateral}) widen(*direction, thermal);
+    if (!solid.creep) continue;
+    const CreepIncrement creep = solid.creep->between(simulation.hottest().of_all(kReferenceTemperature), to);
+    const double along = creep.compliance * stress;
+    widen(change.axial, thermal + along);
+    widen(change.lateral, thermal - creep.poisson * along);
   }
   return change;
 }
@@ -57,17 +71,19 @@ bool Heat::change(Simulation& simulation, Exchange& exchange, int) {
   const bool last = left <= coupling().increment + kSameTemperature;
   field.set_uniform(last ? keys_.to : now + std::copysign(change, keys_.to - now));
   simulation.set_heating_time(simulation.heating_time() + change / keys_.rate);
+  const StrainChange possible =
+      coupling().predictor ? strain_change(simulation, now, field.mean()) : StrainChange();
   exchange.hand_over(simulation);
   if (coupling().predictor) {
     const Press<2>::EvenMotion strain{.axial = -simulation.press().specimen_strain(),
                                       .lateral = simulation.press().lateral_strain()};
     if (last_change_ > 0.0) {
-      const Interval free = free_strain_change(simulation.materials(), now, field.mean());
-      const auto foreseen = [&](double after, double before) {
-        return std::clamp((after - before) * change / last_change_, free.lower, free.upper);
+      const auto foreseen = [&](double after, double before, const Interval& bounds) {
+        return std::clamp((after - before) * change / last_change_, bounds.lower, bounds.upper);
       };
-      exchange.move_evenly_first({.axial = foreseen(strain.axial, last_strain_.axial),
-                                  .lateral = foreseen(strain.lateral, last_strain_.lateral)});
+      exchange.move_evenly_first(
+          {.axial = foreseen(strain.axial, last_strain_.axial, possible.axial),
+           .lateral = foreseen(strain.lateral, last_strain_.lateral, possible.lateral)});
     }
     last_strain_ = strain;
     last_change_ = change;

@@ -14,6 +14,13 @@ void with_kinematics(const State<Dim>& s, F f) {
   f(std::integral_constant<Kinematics, Kinematics::small>());
 }
 
+/// Calls `f` with whether zones of the body have crept as a constant.
+template <int Dim, class F>
+void with_creep(const State<Dim>& s, F f) {
+  if (s.creep_strain.empty()) return f(std::false_type());
+  f(std::true_type());
+}
+
 /// \tparam Set  an instruction set of base/lanes.hpp
 template <int Dim, class Set>
 struct Rows {
@@ -125,7 +132,8 @@ struct Rows {
         fetch(s.loss[s.first_loss[row] + point * losses + i]);
   }
   /// What a row of faces needs, and the displacements that none before it reads.
-  /// \tparam kHistory, kLosses  lines of a point of the row in hand; in runs of one law those ahead have as many
+  /// \tparam kHistory, kLosses  lines of a point of the row in hand; in runs of one law those ahead have as
+  /// many
   template <int kHistory, int kLosses>
   static void fetch_faces_ahead(const State<Dim>& s, int row) {
     const auto& layout = s.layout;

@@ -34,15 +34,17 @@ class Step {
   /// Second half: bundles whose faces are all done.
   static void move_bundles(State<Dim>& s, int first, int last, Pass pass, double* memory) {
     with_kinematics(s, [&](auto kinematics) {
-      for (int b = first; b < last; ++b) {
-        if (pass == Pass::move) {
-          bundle<kinematics(), Pass::move>(s, b, memory);
-        } else if (pass == Pass::move_and_measure) {
-          bundle<kinematics(), Pass::move_and_measure>(s, b, memory);
-        } else {
-          bundle<kinematics(), Pass::measure>(s, b, memory);
+      with_creep(s, [&](auto creeps) {
+        for (int b = first; b < last; ++b) {
+          if (pass == Pass::move) {
+            bundle<kinematics(), Pass::move, creeps()>(s, b, memory);
+          } else if (pass == Pass::move_and_measure) {
+            bundle<kinematics(), Pass::move_and_measure, creeps()>(s, b, memory);
+          } else {
+            bundle<kinematics(), Pass::measure, creeps()>(s, b, memory);
+          }
         }
-      }
+      });
     });
   }
 
@@ -60,7 +62,7 @@ class Step {
   }
 
   // flatten: lanes that cross a call go through memory
-  template <Kinematics kKinematics, Pass kPass>
+  template <Kinematics kKinematics, Pass kPass, bool kCreeps>
   [[gnu::flatten]] static void bundle(State<Dim>& s, int index, double* memory) {
     const Bundle& bundle = s.layout.bundles[index];
     const Scratch scratch = R::scratch_of(bundle, memory);
@@ -68,7 +70,7 @@ class Step {
     Sums sums;
     take_displacements(s, bundle, scratch);
     sum_weights_and_contacts<kKinematics, kMeasure>(s, bundle, scratch, sums);
-    Z::template add_forces<kKinematics, kMeasure>(s, index, scratch, sums);
+    Z::template add_forces<kKinematics, kMeasure, kCreeps>(s, index, scratch, sums);
     if (const int c = s.constraints_of_bundle[index]; c >= 0)
       M::template hold_and_load<kMeasure>(s, bundle, s.constraints[c], scratch, sums);
     M::template move_rows<kPass>(s, index, scratch, sums);

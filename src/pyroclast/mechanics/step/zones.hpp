@@ -16,19 +16,23 @@ struct Zones {
   using Corners = std::array<Vector, Dim + 1>;
 
   /// Adds the forces of a bundle's zones.
-  template <Kinematics kKinematics, bool kMeasure>
+  /// \tparam kCreeps  whether zones of the body have crept
+  template <Kinematics kKinematics, bool kMeasure, bool kCreeps>
   static void add_forces(const State<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
     const double thickness = s.thickness;
-    add_over_zones(s, index, scratch,
-                   [&](const Corners& x, const Corners& u, const auto& properties, const auto& used) {
-                     return forces<kKinematics, kMeasure>(thickness, x, u, properties, used, sums);
-                   });
+    const TensorRow<Dim>* const creep_strain = s.creep_strain.data();
+    add_over_zones(
+        s, index, scratch, [&](const Corners& x, const Corners& u, int zone_row, const auto& used) {
+          return forces<kKinematics, kMeasure, kCreeps>(thickness, x, u, properties(s, index, zone_row),
+                                                        kCreeps ? creep_strain + zone_row : nullptr, used,
+                                                        sums);
+        });
   }
 
   /// Adds the sums of |stiffness| over the rows of the zones' matrices, N/m.
   static void add_stiffness(const State<Dim>& s, int index, const Scratch& scratch) {
-    add_over_zones(s, index, scratch, [&](const Corners& x, const Corners&, const auto& p, const auto&) {
-      return stiffness(s, x, p);
+    add_over_zones(s, index, scratch, [&](const Corners& x, const Corners&, int zone_row, const auto&) {
+      return stiffness(s, x, properties(s, index, zone_row));
     });
   }
 
@@ -39,10 +43,11 @@ struct Zones {
   }
 
   /// Forces of eight zones on their gridpoints.
-  /// \param used  lanes that are not idle
-  template <Kinematics kKinematics, bool kMeasure>
-  static Corners forces(double thickness, const Corners& x, const Corners& u,
-                        const ZonePropertiesOf<Real>& properties, const typename Real::Truth& used,
+  /// \param creep_strain  read where kCreeps
+  /// \param used          lanes that are not idle
+  template <Kinematics kKinematics, bool kMeasure, bool kCreeps>
+  static Corners forces(double thickness, const Corners& x, const Corners& u, const ZonePropertiesOf<Real>& p,
+                        [[maybe_unused]] const TensorRow<Dim>* creep_strain, const typename Real::Truth& used,
                         Sums& sums) {
     // Shape gradients times the determinant; the volume is a constant share of the determinant, which leaves
     // the division by it out of the way of the forces.
@@ -50,11 +55,12 @@ struct Zones {
     const Real determinant = shape_vectors(x, vectors);
     const double share = volume_over_determinant<Dim> * thickness;
     Rotation<Real> rotation;
-    const auto strain = mechanical_strain<Dim>(vectors, 1.0 / determinant, u, properties.thermal_strain,
-                                               kKinematics, rotation);
+    auto strain =
+        mechanical_strain<Dim>(vectors, 1.0 / determinant, u, p.thermal_strain, kKinematics, rotation);
+    if constexpr (kCreeps)
+      for (std::size_t i = 0; i < strain.size(); ++i) strain[i] -= Real::load(creep_strain->component[i]);
     const auto stress =  // times minus the share
-        zone_stress<Dim>({properties.lambda * -share, properties.mu * -share, properties.thermal_strain},
-                         strain);
+        zone_stress<Dim>({p.lambda * -share, p.mu * -share, p.thermal_strain}, strain);
     Corners force;
     for (int n = 0; n < Dim; ++n) {
       force[n] = apply<Dim>(stress, vectors[n]);
@@ -97,20 +103,19 @@ struct Zones {
 
   // Forces are added zone by zone in every kind of bundle, so that none depends on how blocks are bundled.
 
-  /// Adds what `zone(x, u, properties, used)` gives for the corners of zones, for all of a bundle.
+  /// Adds what `zone(x, u, zone_row, used)` gives for the corners of zones, for all of a bundle.
   template <class Zone>
   static void add_over_zones(const State<Dim>& s, int index, const Scratch& scratch, Zone zone) {
     const Bundle& bundle = s.layout.bundles[index];
-    if (bundle.kind == BundleKind::spread) return add_over_spread(s, index, bundle, scratch, zone);
+    if (bundle.kind == BundleKind::spread) return add_over_spread(s, bundle, scratch, zone);
     if constexpr (Dim == 2)
-      if (bundle.fan) return add_over_fan(s, index, bundle, scratch, zone);
-    add_over_alike(s, index, bundle, scratch, zone);
+      if (bundle.fan) return add_over_fan(s, bundle, scratch, zone);
+    add_over_alike(s, bundle, scratch, zone);
   }
 
   /// Each zone shares an edge with the one before, so that its corners and the sum at one are at hand.
   template <class Zone>
-  static void add_over_fan(const State<Dim>& s, int index, const Bundle& bundle, const Scratch& scratch,
-                           Zone zone) {
+  static void add_over_fan(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch, Zone zone) {
     Corners x, u;
     const auto take = [&](int n, int gridpoint) {
       x[n] = R::load(s.position[bundle.first_row + gridpoint].c);
@@ -125,8 +130,7 @@ struct Zones {
       const int next = z + 1 < zones ? z + 1 : 0;
       R::fetch_ahead(s.position, bundle.first_row + z);
       take(1, next);
-      const Corners more =
-          zone(x, u, properties(s, index, bundle.first_zone_row + z), Real::Truth::from_bits(0xFF));
+      const Corners more = zone(x, u, bundle.first_zone_row + z, Real::Truth::from_bits(0xFF));
       R::store(total + more[0], scratch.sum[z].c);
       total = R::load(scratch.sum[next].c) + more[1];
       middle += more[2];
@@ -138,8 +142,7 @@ struct Zones {
   }
 
   template <class Zone>
-  static void add_over_alike(const State<Dim>& s, int index, const Bundle& bundle, const Scratch& scratch,
-                             Zone zone) {
+  static void add_over_alike(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch, Zone zone) {
     const auto* const zones = &s.layout.shape_zones[bundle.first_corners];
     for (int z = 0; z < bundle.zones; ++z) {
       if (z < bundle.rows) R::fetch_ahead(s.position, bundle.first_row + z);
@@ -149,8 +152,7 @@ struct Zones {
         x[n] = R::load(s.position[bundle.first_row + corner[n]].c);
         u[n] = R::load(scratch.displacement[corner[n]].c);
       }
-      const Corners more =
-          zone(x, u, properties(s, index, bundle.first_zone_row + z), Real::Truth::from_bits(0xFF));
+      const Corners more = zone(x, u, bundle.first_zone_row + z, Real::Truth::from_bits(0xFF));
       for (int n = 0; n <= Dim; ++n) {
         auto& total = scratch.sum[corner[n]].c;
         R::store(R::load(total) + more[n], total);
@@ -159,8 +161,7 @@ struct Zones {
   }
 
   template <class Zone>
-  static void add_over_spread(const State<Dim>& s, int index, const Bundle& bundle, const Scratch& scratch,
-                              Zone zone) {
+  static void add_over_spread(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch, Zone zone) {
     for (int z = 0; z < bundle.zone_rows(); ++z) {
       const int used = bundle.zones - kLanes * z < kLanes ? bundle.zones - kLanes * z : kLanes;
       const auto& corner = s.layout.spread_zones[bundle.first_corners + z].offset;
@@ -169,8 +170,7 @@ struct Zones {
         x[n] = R::gather(s.gathered_position, corner[n]);
         u[n] = R::gather(s.displacement, corner[n]);
       }
-      const Corners more = zone(x, u, properties(s, index, bundle.first_zone_row + z),
-                                Real::Truth::from_bits((1U << used) - 1U));
+      const Corners more = zone(x, u, bundle.first_zone_row + z, Real::Truth::from_bits((1U << used) - 1U));
       // one lane after the other: zones of a row may share gridpoints
       alignas(64) double c[Dim + 1][Dim][kLanes];
       for (int n = 0; n <= Dim; ++n) R::store(more[n], c[n]);
