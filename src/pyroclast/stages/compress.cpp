@@ -95,7 +95,7 @@ std::unique_ptr<Stage> read_compress(const Section& s, const StageTables& tables
   read_end(s, keys);
   keys.stop_fraction =
       s.number("stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0,
-               "the run ends when the stress has fallen below this share of its largest value");
+               "the run ends when the stress has fallen below this share of its largest value; 0: never");
   keys.history_strain = tables.output.history_strain;
   keys.frame_strain = tables.output.frame_strain;
   return std::make_unique<Compress>(keys);
@@ -247,7 +247,7 @@ Verdict Compress::judge(Simulation& simulation) {
   const double time = static_cast<double>(steps_) * simulation.mechanics().time_step();
   if (time > kPassages * wave_time_) {
     peak_stress_ = std::max(peak_stress_, stress);
-    if (strain > first_touch() && stress < keys_.stop_fraction * peak_stress_)
+    if (keys_.stop_fraction > 0.0 && strain > first_touch() && stress < keys_.stop_fraction * peak_stress_)
       return {.over = true, .last = true, .outcome = Outcome::stress_fallen};
   }
   if (std::abs(strain) < next_frame_) return {};
