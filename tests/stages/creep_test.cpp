@@ -47,6 +47,14 @@ TEST(CreepInARunVerification, AnEvenBodyShortensByBOfTheTemperature) {
   }
 }
 
+// Promise: the predictor foretells creep, which no free expansion bounds.
+TEST(CreepInARun, IsForetoldByThePredictor) {
+  const std::string text = even_body(load("stress = \"2 MPa\"") + heat("220 degC"), kB);
+  const Finished plain(text);
+  const Finished predicted(with(text, "least_cycles = 50", "least_cycles = 50\npredictor = true"));
+  EXPECT_LT(predicted.result(2, "cycles").value(), 0.8 * plain.result(2, "cycles").value());
+}
+
 // Promise: cooling and heating again up to where the body was brings no creep; beyond, what B rises there.
 TEST(CreepInARun, IsThatOfTheFirstHeatingAlone) {
   const Finished r(even_body(

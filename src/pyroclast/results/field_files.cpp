@@ -60,7 +60,7 @@ std::array<double, 4> creep_of(const Simulation& simulation, int zone) {
 
 /// Of a zone in plane stress: that of its displacements, and across the plane that which leaves it free of
 /// stress there.
-/// \param creep  as of append_creep
+/// \param creep  as of creep_of
 void append_strain(std::vector<float>& values, const SymmetricTensor<2>& stress, const ZoneProperties& zone,
                    const std::array<double, 4>& creep) {
   const double in_plane = (stress[0] + stress[1]) / (2.0 * (zone.lambda + zone.mu));
