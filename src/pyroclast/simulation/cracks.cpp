@@ -1,6 +1,7 @@
 #include "pyroclast/simulation/cracks.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,18 +24,41 @@ const LawTable* law_of_interface(const Mechanics<2>& mechanics, int interface) {
   return first == contacts.end() ? nullptr : &mechanics.law_of(static_cast<int>(first - contacts.begin()));
 }
 
-/// Whether the contact point of each slot has any damage. It goes over the histories as they stand: most
-/// points have none, and to ask one by one costs more than all else of a look.
-std::vector<std::uint8_t> damaged_slots(const Mechanics<2>& mechanics) {
+/// Bits of a contact point by mode: has damage, is broken.
+constexpr std::uint8_t damaged_by(std::size_t mode) {
+  return static_cast<std::uint8_t>(1U << (2 * mode));
+}
+constexpr std::uint8_t broken_by(std::size_t mode) {
+  return static_cast<std::uint8_t>(2U << (2 * mode));
+}
+static_assert(std::size(kCrackModes) <= 4, "a byte has the bits of four modes");
+
+std::size_t mode_of(Remembers damage) {
+  return static_cast<std::size_t>(std::ranges::find(kCrackModes, damage) - std::begin(kCrackModes));
+}
+
+/// By their bits, which a compiler takes together.
+bool all_zero(const double* lanes) {
+  std::uint64_t bits = 0;
+  for (int lane = 0; lane < kLanes; ++lane) bits |= std::bit_cast<std::uint64_t>(lanes[lane]);
+  return bits == 0;
+}
+
+/// The bits of the contact point of each slot. It goes over the histories as they stand: most points have no
+/// damage, and to ask one by one costs more than all else of a look.
+std::vector<std::uint8_t> damages(const Mechanics<2>& mechanics) {
   const auto& layout = mechanics.layout();
   const auto& state = mechanics.state();
-  std::vector<std::vector<std::size_t>> places;  // of each law, where a point's history has its damages
+  struct Place {
+    std::size_t line, mode;
+  };
+  std::vector<std::vector<Place>> places;  // of each law, where a point's history has its damages
   for (const LawTable* law : mechanics.laws())
     for (auto& of_law = places.emplace_back(); const HistoryInfo& info : law->history(2))
-      if (std::ranges::find(kCrackModes, info.what) != std::end(kCrackModes))
-        of_law.push_back(static_cast<std::size_t>(&info - law->history(2).data()));
-  std::vector<std::uint8_t> damaged(static_cast<std::size_t>(layout.first_point_of(layout.face_rows())) *
-                                    kLanes);
+      if (const std::size_t mode = mode_of(info.what); mode < std::size(kCrackModes))
+        of_law.push_back({static_cast<std::size_t>(&info - law->history(2).data()), mode});
+  std::vector<std::uint8_t> bits(static_cast<std::size_t>(layout.first_point_of(layout.face_rows())) *
+                                 kLanes);
   for (int row = 0; row < layout.face_rows(); ++row) {
     const std::uint8_t law = state.law_of_faces[row];
     const std::size_t lines_of_point = mechanics.laws()[law]->history(2).size();
@@ -42,12 +66,17 @@ std::vector<std::uint8_t> damaged_slots(const Mechanics<2>& mechanics) {
     const int first = layout.first_point_of(row);
     for (int point = first; point < layout.first_point_of(row + 1); ++point) {
       const Line* const line = lines + static_cast<std::size_t>(point - first) * lines_of_point;
-      std::uint8_t* const of_point = damaged.data() + static_cast<std::size_t>(point) * kLanes;
-      for (const std::size_t place : places[law])
-        for (int lane = 0; lane < kLanes; ++lane) of_point[lane] |= line[place].number[lane] > 0.0;
+      std::uint8_t* const of_point = bits.data() + static_cast<std::size_t>(point) * kLanes;
+      for (const auto [place, mode] : places[law]) {
+        const double* const damage = line[place].number;
+        if (all_zero(damage)) continue;
+        for (int lane = 0; lane < kLanes; ++lane)
+          of_point[lane] |= static_cast<std::uint8_t>((damage[lane] > 0.0 ? damaged_by(mode) : 0) |
+                                                      (damage[lane] >= 1.0 ? broken_by(mode) : 0));
+      }
     }
   }
-  return damaged;
+  return bits;
 }
 
 struct CrackSums {
@@ -64,10 +93,9 @@ struct CrackSums {
 
 }  // namespace
 
-void CrackCount::add(double damage, double of_length) {
-  if (damage <= 0.0) return;
+void CrackCount::add(bool is_broken, double of_length) {
   ++damaged;
-  if (damage >= 1.0) ++broken;
+  if (is_broken) ++broken;
   length += of_length;
 }
 
@@ -92,21 +120,25 @@ std::vector<CrackKind> crack_kinds(const Mechanics<2>& mechanics) {
 Cracks count_cracks(const Mechanics<2>& mechanics, const std::vector<CrackKind>& kinds) {
   const auto& model = mechanics.model();
   const auto& layout = mechanics.layout();
-  std::vector<std::vector<std::size_t>> of_interface(model.interface_names.size());
-  for (std::size_t k = 0; k < kinds.size(); ++k) of_interface[kinds[k].interface].push_back(k);
-  const std::vector<std::uint8_t> damaged = damaged_slots(mechanics);
+  struct Counted {
+    std::size_t kind, mode;
+  };
+  std::vector<std::vector<Counted>> of_interface(model.interface_names.size());
+  for (std::size_t k = 0; k < kinds.size(); ++k)
+    of_interface[kinds[k].interface].push_back({k, mode_of(kinds[k].damage)});
+  const std::vector<std::uint8_t> bits_of_slots = damages(mechanics);
   auto sums = chunked_sum<CrackSums>(layout.chunks.contacts, [&](int i, CrackSums& sum) {
     const int c = layout.contacts_by_chunk[i];
-    if (!damaged[layout.contact_slot[c]]) return;
+    const std::uint8_t bits = bits_of_slots[layout.contact_slot[c]];
+    if (bits == 0) return;
     const auto& contact = model.contacts[c];
     const double length = contact.area / model.thickness;
     bool apart = false;
-    for (const std::size_t k : of_interface[contact.interface]) {
-      const double damage = mechanics.remembered(c, kinds[k].damage);
-      if (damage <= 0.0) continue;
+    for (const auto [kind, mode] : of_interface[contact.interface]) {
+      if ((bits & damaged_by(mode)) == 0) continue;
       sum.of_kind.resize(kinds.size());
-      sum.of_kind[k].add(damage, length);
-      apart = apart || kinds[k].damage != Remembers::shear_damage;
+      sum.of_kind[kind].add((bits & broken_by(mode)) != 0, length);
+      apart = apart || kinds[kind].damage != Remembers::shear_damage;
     }
     if (!apart) return;
     sum.opening += std::max(0.0, mechanics.opening(c) + mechanics.remembered(c, Remembers::closure)) * length;

@@ -14,8 +14,8 @@ struct CrackCount {
   std::int64_t broken = 0;   ///< D = 1: nothing left
   double length = 0.0;       ///< of all damaged contact points, tributary, m
 
-  /// Counts a contact point.
-  void add(double damage, double of_length);
+  /// Counts a contact point that has damage.
+  void add(bool is_broken, double of_length);
   void operator+=(const CrackCount& other);
 };
 
