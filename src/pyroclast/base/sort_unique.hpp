@@ -9,8 +9,7 @@ namespace pyroclast {
 template <class T>
 void sort_unique(std::vector<T>& values) {
   std::ranges::sort(values);
-  const auto repeated = std::ranges::unique(values);
-  values.erase(repeated.begin(), repeated.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());  // Clang 14 cannot do ranges::unique
 }
 
 }  // namespace pyroclast

@@ -105,7 +105,7 @@ Region outline_of(const Tessellation& tessellation) {
   const double tolerance = kSameLevel * std::max(box.width(), box.height());
   const auto lowest = std::ranges::min_element(
       outer, {}, [&](const Vec<2>& p) { return std::pair(std::round(p[1] / tolerance), p[0]); });
-  std::ranges::rotate(outer, lowest);
+  std::rotate(outer.begin(), lowest, outer.end());  // Clang 14 cannot do ranges::rotate
   const std::vector<std::string> names = names_of(outer, tolerance);
   const Vec<2> origin = outer.front(), opposite = outer[2];
   if (names.front() == "bottom" && origin == Vec<2>{})

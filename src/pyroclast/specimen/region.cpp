@@ -72,7 +72,7 @@ Loop turned(std::vector<Vec<2>> corners, std::vector<int> side, bool counter_clo
   if ((area(corners) > 0.0) != counter_clockwise) {
     std::ranges::reverse(corners);
     std::ranges::reverse(side);  // the piece from corner i to i + 1 is now that from n - 2 - i
-    std::ranges::rotate(side, side.begin() + 1);
+    std::rotate(side.begin(), side.begin() + 1, side.end());  // Clang 14 cannot do ranges::rotate
   }
   return {std::move(corners), std::move(side)};
 }
