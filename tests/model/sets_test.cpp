@@ -7,6 +7,7 @@
 
 #include "model/small_specimen.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/sort_unique.hpp"
 
 namespace pyroclast {
 namespace {
@@ -112,8 +113,7 @@ TEST(Sets, TributaryAreasAreThoseOfTheFacesThatMeetNoBlock) {
   const Model<2> model = with_sets({});
   const auto total = [&](const char* name) {
     std::vector<int> set = model.set(name);  // lists the gridpoints of both ends of each edge
-    std::ranges::sort(set);
-    set.erase(std::ranges::unique(set).begin(), set.end());
+    sort_unique(set);
     const auto areas = tributary_areas(set, faces_in(model, set));
     return std::accumulate(areas.begin(), areas.end(), 0.0);
   };

@@ -6,6 +6,7 @@
 
 #include "known.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/base/state_copy.hpp"
 #include "stages/small_runs.hpp"
 
@@ -323,8 +324,7 @@ TEST(Drive, AFollowerTurnsWithTheBodyAndADeadLoadDoesNot) {
     simulation.loads().set({{"right", {.pressure = 1e6, .is_follower = follows}}});
     Vec<2> before{};
     std::vector<int> once = right;
-    std::ranges::sort(once);
-    once.erase(std::ranges::unique(once).begin(), once.end());
+    sort_unique(once);
     for (int g : once) before += mechanics.applied_force(g);
     EXPECT_NEAR(before[0], -1e6 * kHeight, 1e-3);
     EXPECT_NEAR(before[1], 0.0, 1e-3);
