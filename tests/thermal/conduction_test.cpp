@@ -15,6 +15,7 @@
 
 #include "bodies.hpp"
 #include "known.hpp"
+#include "messages.hpp"
 #include "model/small_specimen.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
@@ -47,19 +48,6 @@ void expose_to_fire(Conduction<2>& heat, const std::vector<int>& faces) {
   const Curve fire = fire_curves().at("iso834").curve;
   heat.apply(faces, Convection{Curve::constant(25.0), fire});
   heat.apply(faces, Radiation{Curve::constant(0.7), fire});
-}
-
-std::string message(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no Error was thrown";
-}
-
-void expect_in(const std::string& part, const std::string& text) {
-  EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 
 // ---- Accuracy --------------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@
 
 #include "bodies.hpp"
 #include "known.hpp"
+#include "messages.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/state_copy.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
@@ -97,19 +98,6 @@ template <int Dim>
 void hold_ends(Conduction<Dim>& heat, double length, double left, double right) {
   heat.prescribe_temperature(heat.faces(on_plane<Dim>(0, 0.0, 1e-9)), Curve::constant(left));
   heat.prescribe_temperature(heat.faces(on_plane<Dim>(0, length, 1e-9)), Curve::constant(right));
-}
-
-std::string message(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no Error was thrown";
-}
-
-void expect_in(const std::string& part, const std::string& text) {
-  EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 
 // ---- Closed forms ----------------------------------------------------------------------------------------

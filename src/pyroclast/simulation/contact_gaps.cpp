@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/model/sets.hpp"
 
 namespace pyroclast {
 
@@ -15,10 +15,8 @@ template <int Dim>
 const std::vector<int>& contacts_of(const Model<Dim>& model, const StatedGap& gap) {
   if (const auto set = model.contact_sets.find(gap.contacts); set != model.contact_sets.end())
     return set->second;
-  std::vector<std::string> names;
-  for (const auto& [name, contacts] : model.contact_sets) names.push_back(name);
   throw Error(fmt::format("{}: contacts = \"{}\" is no set of contacts; those of this body are {}", gap.place,
-                          gap.contacts, fmt::join(names, ", ")));
+                          gap.contacts, names_of(model.contact_sets)));
 }
 
 }  // namespace
