@@ -1,0 +1,61 @@
+"""Runs of the program that a study needs: what is done is not run again, what was broken off goes on."""
+
+import functools
+import hashlib
+import json
+import os
+import pathlib
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PROGRAM = os.environ.get("PYROCLAST", str(ROOT / "build/release/bin/pyroclast"))
+
+
+@functools.cache
+def physics_version(program: str = PROGRAM) -> str:
+    """Of the program: results of the same deck are the same with the same version."""
+    version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
+    return version.split("physics version ")[1].strip()
+
+
+def _same_run(folder: pathlib.Path, command: list[str]) -> bool:
+    """Whether the folder holds a run of the same command, whatever the program's path."""
+    manifest = folder / "manifest.json"
+    if not manifest.exists():
+        return False
+    begun = json.loads(manifest.read_text())["command"]
+    return begun.split(" ", 1)[1] == " ".join(command).split(" ", 1)[1]
+
+
+def broken_off(folder: pathlib.Path, command: list[str]) -> bool:
+    """Whether the folder holds a run of the same command that has not come to its end but has a checkpoint."""
+    return (_same_run(folder, command) and not (folder / "summary.json").exists()
+            and any(folder.glob("checkpoints/*.state")))
+
+
+def finished(folder: pathlib.Path, command: list[str], deck: pathlib.Path) -> bool:
+    """Whether the folder holds the results of this command with this text of the deck and this physics version."""
+    if not _same_run(folder, command) or not (folder / "summary.json").exists():
+        return False
+    manifest = json.loads((folder / "manifest.json").read_text())
+    text = hashlib.sha256(deck.read_bytes()).hexdigest()
+    return manifest["deck_sha256"] == text and str(manifest["physics_version"]) == physics_version(PROGRAM)
+
+
+def run(deck: pathlib.Path, folder: pathlib.Path, seed: int, changes: list[str], again: bool = True) -> None:
+    """Runs the deck with the changes in one thread, or goes on where such a run was broken off.
+
+    again: also when the folder holds its results. SystemExit with what the program said when it fails; a specimen that
+    fails is a result.
+    """
+    command = [PROGRAM, "run", str(deck), "--seed", str(seed), "--out", str(folder), "--overwrite", "--no-figures",
+               "--threads", "1"]
+    for change in changes:
+        command += ["--set", change]
+    if not again and finished(folder, command, deck):
+        return
+    if broken_off(folder, command):
+        command = [PROGRAM, "resume", str(folder), "--no-figures", "--threads", "1"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode not in (0, 2):
+        raise SystemExit(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
