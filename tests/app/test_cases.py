@@ -1,4 +1,4 @@
-"""Cases of other bodies than prisms, in their small forms: what they show follows from what their decks say.
+"""Cases beyond the paper's, in their small forms: what they show follows from what their decks say.
 
 PYROCLAST names the program.
 """
@@ -65,6 +65,30 @@ class Cases(unittest.TestCase):
                 self.assertEqual([stage["outcome"] for stage in summary["stages"]],
                                  ["completed"] * len(summary["stages"]))
                 self.assertLess(abs(summary["energy_J"]["error_over_turnover"]), 0.005)
+
+    def test_creep_shortens_what_is_heated_under_load(self):
+        def strain(*changes: str) -> float:
+            return -finished("anderberg_thelandersson", *changes).column("specimen_strain")[-1]
+
+        deck = tomllib.loads((ROOT / "cases" / "anderberg_thelandersson.toml").read_text())
+        creep = deck["materials"]["mortar"]["creep"]
+        free = 0.006 * math.log(7.0 / 3.2)  # glasgow_free_thermal_strain at 400 degC
+        stress = finished("anderberg_thelandersson").of("load_stress_MPa")
+        expected = creep["k2"] * free * stress / float(creep["f_c"].split()[0])
+        less = strain("materials.mortar.creep.k2=1e-9") - strain()
+        # aggregates of so few blocks lean on one another, and bear what the mortar sheds
+        self.assert_between(0.5 * expected, less, expected)
+        self.assert_between(0.9 * free, strain("stages[1].level=0"), 1.1 * free)
+
+    def test_hot_concrete_is_weaker_by_its_curves(self):
+        as_it_stands = finished("hot_strength")
+        self.assertEqual([stage["kind"] for stage in as_it_stands.summary["stages"]],
+                         ["settle", "load", "heat", "heat", "compress"])
+        self.assertGreater(as_it_stands.summary["energy_J"]["dissipated_creep"], 0.0)
+        self.assertGreater(finished("hot_strength", "contacts.mortar_mortar.temperature_ratio=1").of("f_c_MPa"),
+                           1.02 * as_it_stands.of("f_c_MPa"))
+        self.assertGreater(finished("hot_strength", "materials.mortar.E=29.4 GPa").of("E_GPa"),
+                           1.05 * as_it_stands.of("E_GPa"))
 
     def test_reactions_of_the_beam_bear_load_and_weight(self):
         run = finished("notched_beam")

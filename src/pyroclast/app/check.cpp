@@ -89,10 +89,17 @@ double peak_memory() {
 }
 
 void print_composition(const Composition& whole) {
-  fmt::print("composition     {:.3f} inclusions, with Mori and Tanaka:\n", whole.inclusions);
-  if (whole.creep_share)
-    fmt::print("                creep of the concrete over that of its matrix, R = {:.4f}\n",
-               *whole.creep_share);
+  fmt::print("composition     {:.3f} inclusions\n", whole.inclusions);
+  if (whole.creep_share) {
+    const auto [at_once, far] = *whole.creep_share;
+    fmt::print("                creep of the concrete over that of its matrix, R = {:.4f}", at_once);
+    if (far == at_once)
+      fmt::print(", as the deck states it\n");
+    else
+      fmt::print(
+          " when the matrix has crept\n                by its elastic strain, {:.4f} by ten times as much\n",
+          far);
+  }
   if (whole.strain_weight)
     fmt::print("                weight of the inclusions in the free strain, w = {:.4f}\n",
                *whole.strain_weight);

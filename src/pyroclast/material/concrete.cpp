@@ -222,11 +222,52 @@ MixedPhase with_contacts(const SolidMaterial& solid, double fraction, const Cont
   return {fraction, 1.0 / (1.0 / young + 1.0 / layer), solid.poisson};
 }
 
-/// The creep of the concrete as that of the phase which makes it.
-/// \param share  R
-void take_to_phase(CreepMaterial& creep, double share) {
-  creep.strain = creep.strain * (1.0 / share);
+/// What the matrix creeps by when the whole creeps by so much, both 1/Pa: the inverse of Mixture::creep,
+/// linear between points that stand close enough for five digits.
+class CreepOfMatrix {
+ public:
+  CreepOfMatrix(const Mixture<2>& mixture, double elastic, double poisson) {
+    constexpr double kFirst = 1e-3, kGrowth = 1.02, kLast = 1e4;  // of the elastic compliance of the matrix
+    for (double ratio = kFirst; ratio < kLast; ratio *= kGrowth) {
+      const double of_whole = mixture.creep(ratio * elastic, poisson);
+      if (!(of_whole > of_whole_.back())) break;  // inclusions bear all that is left
+      of_whole_.push_back(of_whole);
+      of_matrix_.push_back(ratio * elastic);
+    }
+  }
+
+  /// Throws Error when the matrix cannot make the whole creep so much.
+  double operator()(double of_whole) const {
+    if (of_whole > of_whole_.back())
+      throw Error(
+          "so many inclusions bear on one another that their matrix cannot make the concrete creep by so "
+          "much; "
+          "state share, or the creep of the phase itself with of = \"phase\"");
+    const auto above = std::ranges::lower_bound(of_whole_, of_whole);
+    if (above == of_whole_.begin()) return 0.0;
+    const auto i = static_cast<std::size_t>(above - of_whole_.begin());
+    const double t = (of_whole - of_whole_[i - 1]) / (of_whole_[i] - of_whole_[i - 1]);
+    return of_matrix_[i - 1] + t * (of_matrix_[i] - of_matrix_[i - 1]);
+  }
+
+ private:
+  std::vector<double> of_whole_{0.0}, of_matrix_{0.0};
+};
+
+/// The creep of the concrete as that of its matrix.
+void take_to_matrix(CreepMaterial& creep, const Mixture<2>& mixture, const MixedPhase& matrix) {
   creep.level = CreepLevel::phase;
+  if (creep.share) {
+    creep.strain = creep.strain * (1.0 / *creep.share);
+    return;
+  }
+  const CreepOfMatrix of_matrix(mixture, 1.0 / matrix.young, creep.choices.poisson);
+  const auto strain = [of_whole = creep.strain, of_matrix, f_c = creep.strength](double temperature) {
+    return f_c * of_matrix(of_whole(temperature) / f_c);
+  };
+  strain(creep.strain.range().upper);  // which may be too much
+  creep.strain = Curve::function("creep of the matrix, from " + creep.strain.description(), strain,
+                                 creep.strain.range(), creep.strain.axis());
 }
 
 }  // namespace
@@ -257,8 +298,11 @@ void follow_composition(ConcreteMaterials& concrete, const ContactParameters& pa
           fmt::format("materials.{}.creep: only the creep of the matrix, {}, follows from the "
                       "concrete's; state that of the phase itself with of = \"phase\"",
                       phases[i], parameters.matrix));
-    whole.creep_share = creep->share.value_or(mixture.creep_share(creep->choices.poisson));
-    take_to_phase(*creep, *whole.creep_share);
+    const auto share = [&](double ratio) {
+      return creep->share.value_or(mixture.creep_share(ratio, creep->choices.poisson));
+    };
+    whole.creep_share = {share(1.0), share(10.0)};
+    take_to_matrix(*creep, mixture, mixed[of_matrix]);
   }
   if (!strain) return;
   if (phases.size() > 2)

@@ -119,8 +119,10 @@ struct ContactParameters {
 
 /// What the phases of a specimen are as a whole.
 struct Composition {
-  double inclusions = 0.0;              ///< share of the volume that is not matrix
-  std::optional<double> creep_share;    ///< R that its creeping phase got
+  double inclusions = 0.0;  ///< share of the volume that is not matrix
+  /// R, creep of the whole over that of its matrix, when the matrix has crept as much as it gives way
+  /// elastically, and ten times as much; the same where a deck states it.
+  std::optional<std::array<double, 2>> creep_share;
   std::optional<double> strain_weight;  ///< w that its strains got
 };
 

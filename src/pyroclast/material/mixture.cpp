@@ -1,5 +1,6 @@
 #include "pyroclast/material/mixture.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,16 +23,17 @@ auto Mixture<Dim>::moduli_of(const MixedPhase& phase) -> Moduli {
   return {phase.young / (Dim * (1.0 - (Dim - 1) * phase.poisson)), 0.5 * phase.young / (1.0 + phase.poisson)};
 }
 
-/// The inclusions in a matrix of other moduli.
+/// The inclusions and a matrix of other moduli, each as if alone in a medium.
 template <int Dim>
-auto Mixture<Dim>::mixed(const Moduli& matrix) const -> Moduli {
-  const auto [bulk, shear] = matrix;
-  // of the medium around an inclusion, against a change of its size and of its shape
+auto Mixture<Dim>::mixed(const Moduli& matrix, const Moduli& medium) const -> Moduli {
+  const auto [bulk, shear] = medium;
+  // of the medium around a phase, against a change of its size and of its shape
   const double of_size = 2.0 * (Dim - 1) / Dim * shear;
   const double of_shape = shear *
                           (0.5 * Dim * bulk + (Dim + 1) * (Dim - 2) / static_cast<double>(Dim) * shear) /
                           (bulk + 2.0 * shear);
-  double size = matrix_.fraction / (bulk + of_size), shape = matrix_.fraction / (shear + of_shape);
+  double size = matrix_.fraction / (matrix.bulk + of_size),
+         shape = matrix_.fraction / (matrix.shear + of_shape);
   for (const MixedPhase& inclusion : inclusions_) {
     const Moduli m = moduli_of(inclusion);
     size += inclusion.fraction / (m.bulk + of_size);
@@ -40,9 +42,26 @@ auto Mixture<Dim>::mixed(const Moduli& matrix) const -> Moduli {
   return {1.0 / size - of_size, 1.0 / shape - of_shape};
 }
 
+/// The medium is the whole itself.
+template <int Dim>
+auto Mixture<Dim>::self_consistent(const Moduli& matrix) const -> Moduli {
+  constexpr double kNear = 1e-14;
+  constexpr int kMost = 10000;
+  Moduli whole = mixed(matrix, matrix);
+  for (int i = 0; i < kMost; ++i) {
+    const Moduli next = mixed(matrix, whole);
+    const bool is_there = std::abs(next.bulk - whole.bulk) <= kNear * whole.bulk &&
+                          std::abs(next.shear - whole.shear) <= kNear * whole.shear;
+    whole = next;
+    if (is_there) break;
+  }
+  return whole;
+}
+
 template <int Dim>
 double Mixture<Dim>::young() const {
-  return mixed(moduli_of(matrix_)).young();
+  const Moduli matrix = moduli_of(matrix_);
+  return mixed(matrix, matrix).young();
 }
 
 template <int Dim>
@@ -52,17 +71,22 @@ double Mixture<Dim>::inclusion_weight() const {
         fmt::format("a mixture of {} kinds of inclusions has no one weight of them", inclusions_.size()));
   const double matrix = moduli_of(matrix_).bulk, inclusion = moduli_of(inclusions_.front()).bulk;
   if (matrix == inclusion) return inclusions_.front().fraction;
-  const double whole = mixed(moduli_of(matrix_)).bulk;
+  const double whole = mixed(moduli_of(matrix_), moduli_of(matrix_)).bulk;
   return (1.0 / whole - 1.0 / matrix) / (1.0 / inclusion - 1.0 / matrix);
 }
 
 template <int Dim>
-double Mixture<Dim>::creep_share(double poisson) const {
+double Mixture<Dim>::creep(double of_matrix, double poisson) const {
   const Moduli elastic = moduli_of(matrix_);
-  const double creep = 1.0 / matrix_.young;
-  const Moduli crept{1.0 / (1.0 / elastic.bulk + Dim * creep * (1.0 - (Dim - 1) * poisson)),
-                     1.0 / (1.0 / elastic.shear + 2.0 * creep * (1.0 + poisson))};
-  return (1.0 / mixed(crept).young() - 1.0 / mixed(elastic).young()) / creep;
+  const Moduli crept{1.0 / (1.0 / elastic.bulk + Dim * of_matrix * (1.0 - (Dim - 1) * poisson)),
+                     1.0 / (1.0 / elastic.shear + 2.0 * of_matrix * (1.0 + poisson))};
+  return 1.0 / self_consistent(crept).young() - 1.0 / self_consistent(elastic).young();
+}
+
+template <int Dim>
+double Mixture<Dim>::creep_share(double ratio, double poisson) const {
+  const double of_matrix = ratio / matrix_.young;
+  return creep(of_matrix, poisson) / of_matrix;
 }
 
 template class Mixture<2>;

@@ -11,8 +11,11 @@ struct MixedPhase {
   double poisson = 0.0;   ///< nu
 };
 
-/// What a matrix with round inclusions is as a whole, by Mori and Tanaka 1973 in the form of Benveniste 1987:
-/// discs in plane stress (2D), spheres (3D).
+/// What a matrix with round inclusions is as a whole: discs in plane stress (2D), spheres (3D).
+///
+/// Elasticity and free strain by Mori and Tanaka 1973 in the form of Benveniste 1987. Creep by the
+/// self-consistent scheme (Hill 1965, Budiansky 1965): inclusions that hardly give way, in a matrix that
+/// creeps to many times its elastic strain, bear on one another, which the former does not see.
 template <int Dim>
 class Mixture {
  public:
@@ -24,11 +27,13 @@ class Mixture {
   /// with one kind of inclusions. Throws Error with several.
   double inclusion_weight() const;
 
-  /// R: what the whole gives way by over what the matrix does, both under the same stress along one axis,
-  /// when the matrix alone creeps by as much as it gives way elastically. By the correspondence principle;
-  /// from a tenth to thirty times as much R differs by less than 3 %.
-  /// \param poisson  of the creep, nu_L
-  double creep_share(double poisson) const;
+  /// What the whole creeps by under a stress along one axis, 1/Pa, when its matrix creeps by `of_matrix`,
+  /// 1/Pa, after loading. By the correspondence principle. \param poisson  of the creep, nu_L
+  double creep(double of_matrix, double poisson) const;
+
+  /// R: the creep of the whole over that of its matrix, when the latter is `ratio` times what the matrix
+  /// gives way by elastically.
+  double creep_share(double ratio, double poisson) const;
 
  private:
   /// Moduli of area (2D) or volume, and of shear, Pa.
@@ -37,7 +42,8 @@ class Mixture {
     double young() const;
   };
   static Moduli moduli_of(const MixedPhase& phase);
-  Moduli mixed(const Moduli& matrix) const;
+  Moduli mixed(const Moduli& matrix, const Moduli& medium) const;
+  Moduli self_consistent(const Moduli& matrix) const;
 
   MixedPhase matrix_;
   std::vector<MixedPhase> inclusions_;

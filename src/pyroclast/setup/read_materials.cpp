@@ -147,7 +147,7 @@ std::optional<CreepMaterial> read_creep(const Section& phase, const ReadConcrete
     m.share =
         s->number("share", Range{.lower = 0.0, .upper = 1.0, .lower_inclusive = false},
                   "R: creep of the concrete over that of its matrix; without it from the specimen's share "
-                  "of inclusions, by Mori and Tanaka");
+                  "of inclusions, by the self-consistent scheme");
   m.strength = s->quantity("f_c", unit::stress, Range::positive().usually(1e6, 200e6), 35e6,
                            "strength of the concrete at 20 °C that B counts stresses by");
   m.choices.poisson = s->number("nu", Range{.lower = -1.0, .upper = 0.5, .lower_inclusive = false}, 0.3,

@@ -1,0 +1,118 @@
+"""Tests of concrete whose paste creeps, as validation/calibrate_paste and validation/hot_concrete need them: heated under
+load (cases/anderberg_thelandersson.toml), and heated then crushed (cases/hot_strength.toml). Each specimen is loaded to
+a share of its own strength at 20 degC, which the second case finds without heating."""
+
+import dataclasses
+import math
+import pathlib
+import sys
+import threading
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "validation")]
+
+import runs  # noqa: E402
+from pyroclast.run import Run  # noqa: E402
+
+RUNS = ROOT / "runs/hot_concrete"
+HEATED = ROOT / "cases/anderberg_thelandersson.toml"
+CRUSHED = ROOT / "cases/hot_strength.toml"
+AT = 5000  # blocks for which the time step and the cycles of the cases are
+
+
+@dataclasses.dataclass(frozen=True)
+class Specimen:
+    """A specimen and its concrete."""
+
+    seed: int
+    blocks: int
+    changes: tuple[str, ...] = ()  # of both decks
+    concrete: str = "as it stands"  # name of the changes
+
+    @property
+    def name(self) -> str:
+        return f"{self.concrete.replace(' ', '-')}-{self.blocks}-{self.seed}"
+
+    def settings(self, most_cycles: int) -> list[str]:
+        """Time step and cycles go with the block size, as in validation/block_size."""
+        ratio = math.sqrt(AT / self.blocks)
+        least, most = round(1000 / ratio), round(most_cycles / ratio)
+        stated = {change.split("=")[0] for change in self.changes}
+        own = {"blocks.count": self.blocks, "mechanics.time_step": f"{10e-6 * ratio:.6g} s",
+               "coupling.least_cycles": least, "coupling.most_cycles": most}
+        return [f"{key}={value}" for key, value in own.items() if key not in stated] + list(self.changes)
+
+
+@dataclasses.dataclass(frozen=True)
+class Crushed:
+    """What crushing gave; zeros where the specimen failed before."""
+
+    f_c: float  # MPa
+    E: float | None  # GPa; None where the curve has none
+    strain_at_peak: float | None
+    failed_at: float | None  # degC, while it was heated or cooled
+    quasi_static: bool | None
+    run: Run
+
+
+def heated(specimen: Specimen, level: float, to: float = 800.0, platen: str = "force") -> Run:
+    """Heated under a share of its strength, which is held, or with the platens fixed after it was brought up."""
+    changes = specimen.settings(3000) + [f"stages[1].level={level:g}", f"stages[2].to={to:g} degC"]
+    if platen != "force":
+        changes.append(f"stages[2].platen={platen}")
+    if level > 0.0:
+        changes.append(f"stages[1].f_c={strength(specimen):.6g} MPa")
+    kind = "heated" if platen == "force" else "restrained"
+    return _run(HEATED, f"{kind}-{level:g}-{to:g}-{specimen.name}", specimen, changes)
+
+
+def crushed(specimen: Specimen, temperature: float, level: float = 0.0, residual: bool = False) -> Crushed:
+    """Crushed at a temperature, or at 20 degC after it, heated under a share of its strength."""
+    at = 20.0 if residual else temperature
+    changes = specimen.settings(9000) + [f"stages[1].level={level:g}", f"stages[2].to={temperature:g} degC",
+                                         f"stages[3].to={at:g} degC"]
+    if level > 0.0:
+        changes.append(f"stages[1].f_c={strength(specimen):.6g} MPa")
+    kind = "residual" if residual else "hot"
+    run = _run(CRUSHED, f"{kind}-{level:g}-{temperature:g}-{specimen.name}", specimen, changes)
+    stages = run.summary["stages"]
+    failed = next((s["results"].get("critical_temperature_degC") for s in stages
+                   if s["results"].get("critical_temperature_degC") is not None), None)
+    if stages[-1]["kind"] != "compress":
+        return Crushed(0.0, None, None, failed, None, run)
+    found = stages[-1]["results"]
+    return Crushed(found["f_c_MPa"] or 0.0, found["E_GPa"], found["strain_at_peak"], failed, found["quasi_static"], run)
+
+
+def cold(specimen: Specimen) -> Crushed:
+    """Crushed at 20 degC. What only heat brings out does not matter, so all concretes share the test."""
+    return crushed(dataclasses.replace(specimen, changes=(), concrete="as it stands"), 20.0)
+
+
+def strength(specimen: Specimen) -> float:
+    """At 20 degC, MPa."""
+    return cold(specimen).f_c
+
+
+def strains(run: Run, temperatures) -> np.ndarray:
+    """Total strain, positive in tension; not a number where the run did not stand at a temperature."""
+    reached, strain = run.history["temperature_degC"][run.standing], run.history["specimen_strain"][run.standing]
+    temperatures = np.asarray(temperatures, dtype=float)
+    if not len(reached):
+        return np.full(temperatures.shape, np.nan)
+    return np.where(temperatures > reached.max() + 1e-6, np.nan, -np.interp(temperatures, reached, strain))
+
+
+_locks: dict[str, threading.Lock] = {}
+_lock = threading.Lock()
+
+
+def _run(deck: pathlib.Path, name: str, specimen: Specimen, changes: list[str]) -> Run:
+    folder = RUNS / name
+    with _lock:
+        own = _locks.setdefault(name, threading.Lock())
+    with own:  # two tests may ask for the same strength at once
+        runs.run(deck, folder, specimen.seed, changes, again=False)
+    return Run(folder)
