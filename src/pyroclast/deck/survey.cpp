@@ -55,15 +55,20 @@ class Numbers {
 
 constexpr std::size_t kNotAsked = -1;
 
-/// What one run told. Questions and keys have the numbers of the surveyor.
+/// What one run told, of thousands. Questions and keys have the numbers of the surveyor, which keeps their
+/// texts once.
 struct Told {
+  struct Answered {
+    int question = 0;
+    std::size_t answer = 0;
+    const std::vector<std::string>* possible = nullptr;
+  };
   struct Read {
-    SurveyRun::Read what;
     int key = 0;
+    std::size_t after = 0;  ///< so many answers
   };
 
-  std::vector<SurveyRun::Answered> answered;
-  std::vector<int> questions;  ///< of `answered`
+  std::vector<Answered> answered;
   std::vector<Read> read;
   std::vector<std::size_t> answers;  ///< by question, kNotAsked or beyond the end where it was not asked
   std::vector<bool> keys;            ///< by key, whether it was read
@@ -76,7 +81,8 @@ struct Told {
 
 /// A key as one run read it.
 struct Found {
-  Told::Read read;
+  SurveyRun::Read what;
+  int key = 0;
   SurveyAnswers given;  ///< in that run
   const Told* run = nullptr;
   bool in_form = false;
@@ -102,7 +108,7 @@ class Surveyor {
     DeckSchema schema{.tables = tables_, .never_read = {}};
     put_parts_together(schema.tables);
     for (const Found& f : found_) {
-      std::vector<DeckKey>& keys = find_table(schema.tables, f.read.what.table)->keys;
+      std::vector<DeckKey>& keys = find_table(schema.tables, f.what.table)->keys;
       DeckKey key = described(f);
       if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(std::move(key));
     }
@@ -118,9 +124,8 @@ class Surveyor {
 
  private:
   bool is_read(const std::string& table, const std::string& key) const {
-    return std::any_of(found_.begin(), found_.end(), [&](const Found& f) {
-      return f.read.what.table == table && f.read.what.key.key == key;
-    });
+    return std::any_of(found_.begin(), found_.end(),
+                       [&](const Found& f) { return f.what.table == table && f.what.key.key == key; });
   }
   bool is_table(const std::string& path) const { return find_table(tables_, path) != tables_.end(); }
   bool is_form(const std::string& path) const { return find_table(tables_, path)->is_form; }
@@ -150,27 +155,28 @@ class Surveyor {
     read_(run);
     Told& told = told_[given];
     visited_.push_back(given);
-    told.answered = run.answered();
     for (const DeckTable& t : run.tables()) merge(t);
     for (const auto& k : run.known())
       if (std::find(known_.begin(), known_.end(), k) == known_.end()) known_.push_back(k);
     bool is_new = false;
-    for (const auto& a : told.answered) {
+    for (const auto& a : run.answered()) {
       const auto [question, is_new_question] = questions_.of(a.question);
       is_new = is_new || is_new_question;
-      told.questions.push_back(question);
+      if (is_new_question) asked_.push_back(a.question);
+      told.answered.push_back({question, a.answer, &*possible_.insert(a.possible).first});
       told.answers.resize(std::max<std::size_t>(told.answers.size(), question + 1), kNotAsked);
       told.answers[question] = a.answer;
     }
     for (const auto& r : run.keys_read()) {
       const auto [key, is_new_key] = keys_.of(content(r));
       is_new = is_new || is_new_key;
-      told.read.push_back({r, key});
+      if (is_new_key) key_texts_.push_back(r);
+      told.read.push_back({key, r.after});
       told.keys.resize(std::max<std::size_t>(told.keys.size(), key + 1));
       told.keys[key] = true;
     }
     if (!is_new) return;
-    for (const auto& a : told.answered)
+    for (const auto& a : run.answered())
       for (std::size_t other = 0; other < a.possible.size(); ++other)
         if (other != a.answer) plan(changed(given, a.question, other));
   }
@@ -199,7 +205,7 @@ class Surveyor {
       const SurveyAnswers given = visited_[run];
       const Told& told = told_.at(given);
       for (Found& f : found_)
-        if (!f.in_form && !told.reads(f.read.key) && is_explained(f, told))
+        if (!f.in_form && !told.reads(f.key) && is_explained(f, told))
           is_changed = narrow(f, told) || is_changed;
       for (const auto& r : told.read) {
         if (is_explained(r.key, told)) continue;
@@ -212,18 +218,20 @@ class Surveyor {
 
   /// Whether a question counts for a finding: a form is the same wherever it stands.
   static bool counts(const Found& f, const SurveyQuestion& question) {
-    return !f.in_form || question.table == f.read.what.table;
+    return !f.in_form || question.table == f.what.table;
   }
 
   /// Changes the answers before the key one by one; what another finding explains is left to that.
   Found find(const Told::Read& read, const SurveyAnswers& given) {
-    Found f{read, given, &told_.at(given), is_form(read.what.table), {}};
-    for (std::size_t i = 0; i < read.what.after; ++i) {
+    const SurveyRun::Read& what = key_texts_[read.key];
+    Found f{what, read.key, given, &told_.at(given), is_form(what.table), {}};
+    for (std::size_t i = 0; i < read.after; ++i) {
       const auto& a = f.run->answered[i];
       f.with.push_back({a.answer});
-      if (!counts(f, a.question)) continue;
-      for (std::size_t answer = 0; answer < a.possible.size(); ++answer) {
-        const Told& other = told(changed(given, a.question, answer));
+      const SurveyQuestion question = asked_[a.question];
+      if (!counts(f, question)) continue;
+      for (std::size_t answer = 0; answer < a.possible->size(); ++answer) {
+        const Told& other = told(changed(given, question, answer));
         if (other.reads(read.key) && !is_explained(read.key, other)) f.with[i].insert(answer);
       }
     }
@@ -232,17 +240,16 @@ class Surveyor {
 
   /// Whether a finding tells that a run reads a key; one finding tells all of a form.
   bool is_explained(int key, const Told& run) const {
-    return std::any_of(found_.begin(), found_.end(), [&](const Found& f) {
-      return f.read.key == key && (f.in_form || is_explained(f, run));
-    });
+    return std::any_of(found_.begin(), found_.end(),
+                       [&](const Found& f) { return f.key == key && (f.in_form || is_explained(f, run)); });
   }
 
   /// Whether a run's answers are those with which the key is read.
   bool is_explained(const Found& f, const Told& run) const {
     for (std::size_t i = 0; i < f.with.size(); ++i) {
       const auto& a = f.run->answered[i];
-      if (f.with[i].size() == a.possible.size() || !counts(f, a.question)) continue;
-      if (!f.with[i].contains(run.answer(f.run->questions[i]))) return false;
+      if (f.with[i].size() == a.possible->size() || !counts(f, asked_[a.question])) continue;
+      if (!f.with[i].contains(run.answer(a.question))) return false;
     }
     return true;
   }
@@ -251,14 +258,13 @@ class Surveyor {
   /// otherwise than in a run that does not read the key. False if there is none.
   bool narrow(Found& f, const Told& run) {
     SurveyAnswers as_in_run = f.given;
-    for (std::size_t i = 0; i < run.answered.size(); ++i)
-      if (f.run->answer(run.questions[i]) == kNotAsked)
-        as_in_run[run.answered[i].question] = run.answered[i].answer;
+    for (const auto& a : run.answered)
+      if (f.run->answer(a.question) == kNotAsked) as_in_run[asked_[a.question]] = a.answer;
     for (std::size_t i = 0; i < f.with.size(); ++i) {
       const auto& a = f.run->answered[i];
-      const std::size_t answer = run.answer(f.run->questions[i]);
+      const std::size_t answer = run.answer(a.question);
       if (answer == a.answer || !f.with[i].contains(answer)) continue;
-      if (told(changed(as_in_run, a.question, answer)).reads(f.read.key)) continue;
+      if (told(changed(as_in_run, asked_[a.question], answer)).reads(f.key)) continue;
       f.with[i].erase(answer);
       return true;
     }
@@ -266,14 +272,15 @@ class Surveyor {
   }
 
   DeckKey described(const Found& f) const {
-    DeckKey key = f.read.what.key;
+    DeckKey key = f.what.key;
     for (std::size_t i = 0; i < f.with.size(); ++i) {
       const auto& a = f.run->answered[i];
-      if (!counts(f, a.question) || f.with[i].size() == a.possible.size()) continue;
+      const SurveyQuestion& question = asked_[a.question];
+      if (!counts(f, question) || f.with[i].size() == a.possible->size()) continue;
       std::vector<std::string> with, without;
-      for (std::size_t answer = 0; answer < a.possible.size(); ++answer)
-        (f.with[i].contains(answer) ? with : without).push_back(a.possible[answer]);
-      add_condition(key, f, a.question, with, without);
+      for (std::size_t answer = 0; answer < a.possible->size(); ++answer)
+        (f.with[i].contains(answer) ? with : without).push_back((*a.possible)[answer]);
+      add_condition(key, f, question, with, without);
     }
     return key;
   }
@@ -288,13 +295,13 @@ class Surveyor {
     } else {
       const bool present = with.front() == "true";
       if (!present && f.in_form) return;  // forms exclude each other
-      if (present && question.table == f.read.what.table && question.key == key.key) {
+      if (present && question.table == f.what.table && question.key == key.key) {
         key.optional = key.fallback.empty();
         return;
       }
       // That a key's own table is there goes without saying.
       const std::string path = joined(question.table, question.key);
-      if (present && is_at_or_below(f.read.what.table, path)) return;
+      if (present && is_at_or_below(f.what.table, path)) return;
       condition.kind = present ? KeyCondition::Kind::present : KeyCondition::Kind::absent;
     }
     key.conditions.push_back(std::move(condition));
@@ -334,7 +341,10 @@ class Surveyor {
   std::map<SurveyAnswers, Told> told_;
   std::vector<SurveyAnswers> visited_;  ///< about from the fewest changed answers to the most
   Numbers<SurveyQuestion> questions_;
+  std::vector<SurveyQuestion> asked_;  ///< by number
   Numbers<Content> keys_;
+  std::vector<SurveyRun::Read> key_texts_;       ///< by number
+  std::set<std::vector<std::string>> possible_;  ///< answers
   std::vector<Found> found_;
   std::vector<DeckTable> tables_;
   std::vector<std::pair<std::string, std::string>> known_;
