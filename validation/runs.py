@@ -27,19 +27,29 @@ def _same_run(folder: pathlib.Path, command: list[str]) -> bool:
     return begun.split(" ", 1)[1] == " ".join(command).split(" ", 1)[1]
 
 
+def _has_ended(folder: pathlib.Path) -> bool:
+    """Whether a run came to its own end; one that a signal stopped has a summary too."""
+    summary = folder / "summary.json"
+    return summary.exists() and json.loads(summary.read_text())["outcome"] != "stopped"
+
+
 def broken_off(folder: pathlib.Path, command: list[str]) -> bool:
     """Whether the folder holds a run of the same command that has not come to its end but has a checkpoint."""
-    return (_same_run(folder, command) and not (folder / "summary.json").exists()
-            and any(folder.glob("checkpoints/*.state")))
+    return _same_run(folder, command) and not _has_ended(folder) and any(folder.glob("checkpoints/*.state"))
+
+
+def _source(folder: pathlib.Path) -> pathlib.Path:
+    """File beside a run that holds the hash of the deck that it was made from; the run has the deck with its changes."""
+    return folder.parent / f"{folder.name}.source"
 
 
 def finished(folder: pathlib.Path, command: list[str], deck: pathlib.Path) -> bool:
     """Whether the folder holds the results of this command with this text of the deck and this physics version."""
-    if not _same_run(folder, command) or not (folder / "summary.json").exists():
+    if not _same_run(folder, command) or not _has_ended(folder) or not _source(folder).exists():
         return False
     manifest = json.loads((folder / "manifest.json").read_text())
-    text = hashlib.sha256(deck.read_bytes()).hexdigest()
-    return manifest["deck_sha256"] == text and str(manifest["physics_version"]) == physics_version(PROGRAM)
+    same_deck = _source(folder).read_text() == hashlib.sha256(deck.read_bytes()).hexdigest()
+    return same_deck and str(manifest["physics_version"]) == physics_version(PROGRAM)
 
 
 def run(deck: pathlib.Path, folder: pathlib.Path, seed: int, changes: list[str], again: bool = True) -> None:
@@ -56,6 +66,8 @@ def run(deck: pathlib.Path, folder: pathlib.Path, seed: int, changes: list[str],
         return
     if broken_off(folder, command):
         command = [PROGRAM, "resume", str(folder), "--no-figures", "--threads", "1"]
+    text = hashlib.sha256(deck.read_bytes()).hexdigest()
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode not in (0, 2):
         raise SystemExit(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
+    _source(folder).write_text(text)
