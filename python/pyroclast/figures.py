@@ -11,7 +11,8 @@ heating_energy.png, convergence.png and heating_fracture.png;
 a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png and fracture.png; one without platens
 gets records.png, energy.png and fracture.png; one of
 heat conduction alone gets neither. A run that computes its temperatures gets temperature_history.png,
-temperature.png, temperature_profile.png and, if it comes to 500 °C, isotherm.png.
+temperature.png, temperature_profile.png and, if it comes to 500 °C, isotherm.png. A run that keeps no fields gets
+those of them that are drawn from its history.
 
 Prints the path of each figure. Ends with 1 and one line on stderr when something is missing or malformed.
 """
@@ -45,6 +46,8 @@ _FORMATS = ("png", "svg", "pdf")
 def figures_of(run: Run, magnification: float | None = None,
                temperatures: Sequence[float] | None = None) -> Iterator[tuple[str, Callable[[], Figure]]]:
     """Name of each figure that a run has, and what makes it; the arguments are those of `draw_run`."""
+    if temperatures is not None and not run.has_fields:
+        raise RunError(f"{run.folder}: keeps no fields, so --temperatures asks for nothing")
     if not run.only_conducts and not run.has_platens:
         yield from _of_records(run, magnification)
         return
@@ -69,7 +72,8 @@ def _of_heating(run: Run, magnification: float | None,
     yield "convergence", lambda: convergence(run)
     if not run.uniform:
         yield from _of_conduction(run)
-    yield "heating_fracture", lambda: heating_fracture(run, temperatures, magnification)
+    if run.has_fields:
+        yield "heating_fracture", lambda: heating_fracture(run, temperatures, magnification)
 
 
 def _of_records(run: Run, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
@@ -80,11 +84,14 @@ def _of_records(run: Run, magnification: float | None) -> Iterator[tuple[str, Ca
         yield "convergence", lambda: convergence(run)
     if not run.uniform:
         yield from _of_conduction(run)
-    yield "fracture", lambda: record_fracture(run, magnification)
+    if run.has_fields:
+        yield "fracture", lambda: record_fracture(run, magnification)
 
 
 def _of_conduction(run: Run) -> Iterator[tuple[str, Callable[[], Figure]]]:
     yield "temperature_history", lambda: temperature_history(run)
+    if not run.has_fields:
+        return
     yield "temperature", lambda: temperature_field(run)
     profile = read_profile(run)
     yield "temperature_profile", lambda: temperature_profile(run, profile)
@@ -97,6 +104,8 @@ def _of_compression(run: Run, magnification: float | None) -> Iterator[tuple[str
     yield "stress_strain", lambda: stress_strain(run, marks)
     yield "cracks", lambda: cracks(run)
     yield "energy", lambda: energy(loading_course(run))
+    if not run.has_fields:
+        return
     if not marks:
         path = run.folder / "fields" / "frames.csv"
         raise RunError(f"{path}: no frame of the loading stage; fracture cannot be drawn")

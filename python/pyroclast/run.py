@@ -332,6 +332,11 @@ class Run:
             return None
         return self.peak[1] * self.load_level / self.load_stress
 
+    @property
+    def has_fields(self) -> bool:
+        """Whether the run keeps fields; its deck may say that it keeps none."""
+        return (self.folder / "fields").exists()
+
     @cached_property
     def frames(self) -> list[Frame]:
         """Saved states of all stages, in order; none when the run saved no fields."""

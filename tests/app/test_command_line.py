@@ -79,11 +79,13 @@ class CommandLine(unittest.TestCase):
     def test_exit_codes_speech_and_fields(self):
         self.pyroclast("new", "mine")
         small = ["run", "mine.toml", "--no-figures", "--set", "blocks.count=60", "--set", "stages[1].stop_strain=2e-4"]
-        quiet = self.pyroclast(*small, "--out", "quiet", "--quiet", "--no-fields")
-        self.assertEqual(quiet.stdout, "")
+        drawing = [word for word in small if word != "--no-figures"]
+        quiet = self.pyroclast(*drawing, "--out", "quiet", "--quiet", "--no-fields")
+        self.assertEqual((quiet.stdout, quiet.stderr), ("", ""))
         self.assertIn("ended           completed", (self.folder / "quiet/run.log").read_text())
         self.assertFalse((self.folder / "quiet/fields").exists())
-        drawn = self.pyroclast(*[word for word in small if word != "--no-figures"], "--out", "drawn", "--quiet")
+        self.assertTrue((self.folder / "quiet/figures/stress_strain.png").exists())
+        drawn = self.pyroclast(*drawing, "--out", "drawn", "--quiet")
         self.assertEqual(drawn.stdout, "")
         self.assertTrue((self.folder / "drawn/figures/stress_strain.png").exists())
         verbose = self.pyroclast(*small, "--out", "verbose", "--verbose")

@@ -138,6 +138,12 @@ class OtherBodies(FolderTest):
         np.testing.assert_array_equal(low, run.mesh.blocks.points.min(axis=0))
         np.testing.assert_array_equal(high, run.mesh.blocks.points.max(axis=0))
 
+    def test_records_are_drawn_without_fields(self):
+        shutil.rmtree(self.run_folder / "fields")
+        code, printed, err = self.command("run", self.run_folder)
+        self.assertEqual((code, err), (0, ""))
+        self.assertEqual([Path(line).name for line in printed], ["records.png", "energy.png"])
+
 
 class CommandsMakePictures(FolderTest):
     def test_run_prints_and_writes_every_figure(self):
@@ -150,6 +156,12 @@ class CommandsMakePictures(FolderTest):
             self.assertEqual(png_size(self.run_folder / "figures" / name), (page, round(4.8 * style.DPI)))
         # Fine cracks need twice the resolution; the height follows the specimen.
         self.assertEqual(png_size(self.run_folder / "figures" / "fracture.png")[0], 2 * page)
+
+    def test_a_run_without_fields_gets_its_curves(self):
+        shutil.rmtree(self.run_folder / "fields")
+        code, printed, err = self.command("run", self.run_folder)
+        self.assertEqual((code, err), (0, ""))
+        self.assertEqual([Path(path).stem for path in printed], ["stress_strain", "cracks", "energy"])
 
     def test_blocks_that_have_moved_out_are_not_cut_off(self):
         run = Run(self.run_folder)
@@ -373,6 +385,18 @@ class HeatedRunsMakePictures(HeatedTest):
         self.assertEqual(self.names_drawn(folder),
                          ["total_strain", "heating_cracks", "heating_energy", "convergence",
                           "heating_fracture", "stress_strain", "cracks", "energy", "fracture"])
+
+    def test_what_the_history_holds_where_no_fields_are_kept(self):
+        fields = {"fracture", "heating_fracture", "temperature", "temperature_profile", "isotherm"}
+        folders = [self.heated("hot", Heating(critical=505.0)), self.heated("spread", Heating(spread=100.0)),
+                   self.heated("cooled", Heating(level=0.3, hottest=300.0, cooled=True, compressed=True)),
+                   self.root / "conduction"]
+        synthetic_run.write_conduction(folders[-1])
+        for folder in folders:
+            with_fields = self.names_drawn(folder)
+            shutil.rmtree(folder / "fields")
+            self.assertEqual(self.names_drawn(folder), [name for name in with_fields if name not in fields])
+            self.assert_fails(["run", folder, "--temperatures", "300"], "keeps no fields, so --temperatures")
 
     def test_conduction_without_mechanics(self):
         folder = self.root / "run"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "examples.hpp"
 #include "pyroclast/specimen/polygon.hpp"
@@ -26,25 +27,28 @@ SpecimenParameters unit_square(Superposition rule, double covered_fraction = 0.5
 
 constexpr int kMatrix = 2;
 
+std::vector<Cover> covers_of(const std::vector<Aggregate>& circles) {
+  return covers_of(quarters, Region::rectangle(1, 1).box(), circles);
+}
+
 TEST(Superposition, CoveredFractionIsTheShareOfACircleInEachCell) {
   const std::vector<Aggregate> circle{{{{0.5, 0.5}}, 0.5}};
-  for (const double covered : covered_fractions(quarters, Region::rectangle(1, 1).box(), circle)) {
-    EXPECT_NEAR(covered, std::numbers::pi / 16, 1e-14);
-  }
+  for (const Cover& cover : covers_of(circle)) EXPECT_NEAR(cover.share, std::numbers::pi / 16, 1e-14);
 }
 
 TEST(Superposition, SeveralCirclesAddUpInACell) {
   const std::vector<Aggregate> circles{{{{0.1, 0.1}}, 0.1}, {{{0.3, 0.3}}, 0.2}};
-  const std::vector<double> covered = covered_fractions(quarters, Region::rectangle(1, 1).box(), circles);
-  EXPECT_NEAR(covered[0], std::numbers::pi * (0.05 * 0.05 + 0.1 * 0.1) / 0.25, 1e-14);
-  EXPECT_EQ(covered[3], 0);
+  const std::vector<Cover> covers = covers_of(circles);
+  EXPECT_NEAR(covers[0].share, std::numbers::pi * (0.05 * 0.05 + 0.1 * 0.1) / 0.25, 1e-14);
+  EXPECT_EQ(covers[3].share, 0);
 }
 
 TEST(Superposition, AreaRuleTurnsACellAtTheStatedFraction) {
   const std::vector<Aggregate> circle{{{{0.25, 0.25}}, 0.4}};  // covers 0.50 of cell 0
-  const double covered = covered_fractions(quarters, Region::rectangle(1, 1).box(), circle)[0];
-  EXPECT_EQ(superpose(quarters, circle, unit_square(Superposition::area, covered - 1e-9), kMatrix)[0], 0);
-  EXPECT_EQ(superpose(quarters, circle, unit_square(Superposition::area, covered + 1e-9), kMatrix)[0],
+  const double covered = covers_of(circle)[0].share;
+  EXPECT_EQ(superpose(quarters, circle, unit_square(Superposition::area, covered - 1e-9), kMatrix).phase[0],
+            0);
+  EXPECT_EQ(superpose(quarters, circle, unit_square(Superposition::area, covered + 1e-9), kMatrix).phase[0],
             kMatrix);
 }
 
@@ -52,35 +56,39 @@ TEST(Superposition, AreaRuleTurnsACellAtTheStatedFraction) {
 // the circles.
 TEST(Superposition, TheFittingFractionKeepsTheArea) {
   const std::vector<Aggregate> circles{{{{0.25, 0.25}}, 0.5}, {{{0.75, 0.3}}, 0.3}, {{{0.6, 0.75}}, 0.1}};
-  const std::vector<double> covered =
-      covered_fractions(quarters, Region::rectangle(1, 1).box(), circles);  // 0.79, 0.28, 0.02, 0.01
-  const double area = 0.25 * std::numbers::pi * (0.25 + 0.09 + 0.01);       // 0.275: one cell of 0.25
+  const std::vector<Cover> covers = covers_of(circles);                // 0.79, 0.28, 0.02, 0.01
+  const double area = 0.25 * std::numbers::pi * (0.25 + 0.09 + 0.01);  // 0.275: one cell of 0.25
   ASSERT_NEAR(area, 0.275, 1e-3);
-  const double bound = fitting_fraction(quarters, Region::rectangle(1, 1).box(), circles);
-  EXPECT_LT(bound, covered[0]);
-  EXPECT_GT(bound, *std::max_element(covered.begin() + 1, covered.end()));
-  EXPECT_EQ(fitting_fraction(quarters, Region::rectangle(1, 1).box(),
-                             std::vector<Aggregate>{{{{0.25, 0.25}}, 0.1}}),
+  const double bound = fitting_fraction(quarters, covers, circles);
+  EXPECT_LT(bound, covers[0].share);
+  EXPECT_GT(bound, std::ranges::max(std::span(covers).subspan(1), {}, &Cover::share).share);
+  const Superposed fitted = superpose(quarters, circles, unit_square(Superposition::fit, 0.99),
+                                      kMatrix);  // what is stated is not asked
+  EXPECT_EQ(fitted.covered_fraction, bound);
+  EXPECT_EQ(fitted.phase, (std::vector<int>{0, kMatrix, kMatrix, kMatrix}));
+  const std::vector<Aggregate> small{{{{0.25, 0.25}}, 0.1}};
+  EXPECT_EQ(fitting_fraction(quarters, covers_of(small), small),
             std::nextafter(1.0, 0.0));  // nothing fits better than no cell
 }
 
 TEST(Superposition, CentroidRuleLooksAtTheCentroidOnly) {
   const std::vector<Aggregate> small{{{{0.25, 0.25}}, 0.02}};
   const std::vector<Aggregate> beside{{{{0.6, 0.6}}, 0.2}};
-  EXPECT_EQ(superpose(quarters, small, unit_square(Superposition::centroid), kMatrix)[0], 0);
-  EXPECT_EQ(superpose(quarters, beside, unit_square(Superposition::centroid), kMatrix)[3], kMatrix);
+  EXPECT_EQ(superpose(quarters, small, unit_square(Superposition::centroid), kMatrix).phase[0], 0);
+  EXPECT_EQ(superpose(quarters, beside, unit_square(Superposition::centroid), kMatrix).phase[3], kMatrix);
 }
 
 TEST(Superposition, WithoutAggregatesAllIsMortar) {
-  for (const int phase : superpose(quarters, {}, unit_square(Superposition::area, 0.0), kMatrix))
+  for (const int phase : superpose(quarters, {}, unit_square(Superposition::area, 0.0), kMatrix).phase)
     EXPECT_EQ(phase, kMatrix);
 }
 
 TEST(Superposition, ACellIsOfThePhaseThatCoversMostOfIt) {
   const std::vector<Aggregate> circles{{{{0.15, 0.15}}, 0.2, 0}, {{{0.3, 0.35}}, 0.26, 1}};
-  const double covered = covered_fractions(quarters, Region::rectangle(1, 1).box(), circles)[0];
-  EXPECT_EQ(superpose(quarters, circles, unit_square(Superposition::area, covered - 1e-9), kMatrix)[0], 1);
-  EXPECT_EQ(superpose(quarters, circles, unit_square(Superposition::area, covered + 1e-9), kMatrix)[0],
+  const double covered = covers_of(circles)[0].share;
+  EXPECT_EQ(superpose(quarters, circles, unit_square(Superposition::area, covered - 1e-9), kMatrix).phase[0],
+            1);
+  EXPECT_EQ(superpose(quarters, circles, unit_square(Superposition::area, covered + 1e-9), kMatrix).phase[0],
             kMatrix);
 }
 
@@ -98,12 +106,12 @@ TEST(Superposition, AFibreTakesTheCellsThatItRunsThrough) {
 
 TEST(Superposition, CellsShareOutTheCirclesExactly) {
   const Specimen s = make_specimen(paper_specimen(2));
-  const std::vector<double> covered = covered_fractions(s.tessellation, s.region.box(), s.aggregates);
+  const std::vector<Cover> covers = covers_of(s.tessellation, s.region.box(), s.aggregates);
   double sum = 0;
   std::vector<Vec<2>> polygon;
-  for (std::size_t c = 0; c < covered.size(); ++c) {
+  for (std::size_t c = 0; c < covers.size(); ++c) {
     corners(s.tessellation, c, polygon);
-    sum += covered[c] * area(polygon);
+    sum += covers[c].share * area(polygon);
   }
   double circles = 0;
   for (const Aggregate& a : s.aggregates) circles += 0.25 * std::numbers::pi * a.diameter * a.diameter;

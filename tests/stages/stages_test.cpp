@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "known.hpp"
+#include "pyroclast/stages/compress.hpp"
 #include "stages/small_runs.hpp"
 
 namespace pyroclast {
@@ -77,6 +78,23 @@ TEST(CompressStage, UnloadsAndReloads) {
 }
 
 // Promise: a stress that the specimen cannot bear ends the run, which says so.
+// Where the platen meets the specimen, noise takes the stress below 0: that is no failure, and without a
+// share of the peak nothing is.
+TEST(CompressStage, EndsByAFallOfTheStressAlone) {
+  const std::vector<double> met{-2e3, -5.0, 20e6, 30e6, 16e6, -1e3};
+  const auto ended = [&](double share) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < met.size(); ++i) {
+      largest = std::max(largest, met[i]);
+      if (has_fallen(met[i], largest, share)) return i;
+    }
+    return met.size();
+  };
+  EXPECT_EQ(ended(0.0), met.size());
+  EXPECT_EQ(ended(0.5), 5u);
+  EXPECT_EQ(ended(0.6), 4u);
+}
+
 TEST(CompressStage, SaysWhenAStressIsNotReached) {
   const Finished r(
       deck(kUniform + kSettle + compress("to_stress = \"90 MPa\"\nstop_strain = 0.004") + kCompress));

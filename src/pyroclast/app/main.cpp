@@ -114,7 +114,7 @@ int command_line(int argc, char** argv) {
   add_watch(run, options);
   run->add_flag_callback(
       "--no-fields", [&options] { options.changes.emplace_back("output.fields=false"); },
-      "Write no fields, as [output] fields = false");
+      "Write no fields, as [output] fields = false; figures are those of the history");
 
   app::ResumeOptions resume_options;
   resume_options.as.command = options.command;

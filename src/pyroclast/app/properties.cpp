@@ -21,11 +21,7 @@ constexpr double kTemperatureStep = 1.0;
 
 /// Phases as a run has them: of the specimen, where they follow its composition.
 std::vector<SolidMaterial> solids_of(const Setup& setup) {
-  if (!setup.motion) return setup.solids;
-  const bool follow =
-      setup.motion->strain_of_concrete ||
-      std::ranges::any_of(setup.solids, [](const SolidMaterial& solid) { return solid.creep.has_value(); });
-  if (!follow) return setup.solids;
+  if (!setup.motion || !follows_composition(setup.solids, *setup.motion)) return setup.solids;
   return make_materials(setup.solids, *setup.motion, make_checked_specimen(setup.specimen)).solids;
 }
 

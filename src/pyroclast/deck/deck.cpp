@@ -39,10 +39,17 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-/// Tells of a change that a deck is no longer TOML with.
-void require_toml(const std::string& text, const std::string& name, const std::string& change) {
+/// A deck with one more of its values changed, as `--set` has it.
+/// \param changed  keys whose values are changed already; takes in the key of this one
+std::unique_ptr<DeckRecord> with_change(const DeckRecord& deck, const std::string& change,
+                                        std::vector<std::string>& changed) {
+  const auto equals = change.find('=');
+  if (equals == std::string::npos)
+    throw Error("--set " + change + ": write it as key=value, e.g. specimen.seed=2");
+  changed.push_back(trimmed(change.substr(0, equals)));
+  std::string text = deck.with_value(changed.back(), trimmed(change.substr(equals + 1)));
   try {
-    DeckRecord{text, name};
+    return std::make_unique<DeckRecord>(std::move(text), deck.name(), changed);
   } catch (const DeckError& error) {
     throw Error(fmt::format("--set {}: {}", printable(change), error.diagnostics().front().message));
   }
@@ -58,17 +65,10 @@ Deck Deck::load(const std::filesystem::path& file, const std::vector<std::string
 }
 
 Deck Deck::parse(std::string text, std::string name, const std::vector<std::string>& changes) {
-  std::vector<std::string> keys;
-  for (const std::string& change : changes) {
-    const auto equals = change.find('=');
-    if (equals == std::string::npos)
-      throw Error("--set " + change + ": write it as key=value, e.g. specimen.seed=2");
-    const std::string key = trimmed(change.substr(0, equals));
-    text = DeckRecord(std::move(text), name).with_value(key, trimmed(change.substr(equals + 1)));
-    require_toml(text, name, change);
-    keys.push_back(key);
-  }
-  return Deck(std::make_unique<DeckRecord>(std::move(text), std::move(name), std::move(keys)));
+  std::vector<std::string> changed;
+  auto record = std::make_unique<DeckRecord>(std::move(text), std::move(name));
+  for (const std::string& change : changes) record = with_change(*record, change, changed);
+  return Deck(std::move(record));
 }
 
 Deck::Deck(std::unique_ptr<DeckRecord> record) : record_(std::move(record)) {}

@@ -251,8 +251,7 @@ std::vector<NamedCurve> published_curves() {
        glasgow, "1", function([](double T) { return 1.0 - 0.016 * theta(T) * theta(T); }, {20.0, 810.0})},
       {"glasgow_fracture_energy",
        "fracture energy ratio 1 + 0.39 theta - 0.07 theta^2, theta = (T - 20)/100; greatest near 300 degC; "
-       "the "
-       "last slope beyond 700 degC, and not below 0.2",
+       "the last slope beyond 700 degC, and not below 0.2",
        glasgow, "1", function(glasgow_fracture_energy, {20.0, 800.0}, {700.0, 738.3})},
       {"glasgow_free_thermal_strain",
        "free thermal strain 0.006 ln(7/(7 - theta)), theta = (T - 20)/100, constant from theta = 6", glasgow,

@@ -130,7 +130,7 @@ CreepIncrement CreepMaterial::between(double from, double to) const {
   return increment;
 }
 
-bool ConcreteMaterials::creeps() const {
+bool any_creeps(const std::vector<SolidMaterial>& solids) {
   return std::ranges::any_of(solids, [](const SolidMaterial& solid) { return solid.creep.has_value(); });
 }
 

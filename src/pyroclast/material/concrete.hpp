@@ -156,6 +156,9 @@ enum class OnCooling : std::uint8_t {
   reversible     ///< they come back along their curves
 };
 
+/// Whether any of them does.
+bool any_creeps(const std::vector<SolidMaterial>& solids);
+
 /// Everything a concrete specimen is made of.
 struct ConcreteMaterials {
   std::vector<SolidMaterial> solids;      ///< by phase, then those of bearings
@@ -165,7 +168,7 @@ struct ConcreteMaterials {
   OnCooling on_cooling = OnCooling::irreversible;
   std::optional<Composition> composition;  ///< where `follow_composition` was asked
 
-  bool creeps() const;  ///< whether any phase does
+  bool creeps() const { return any_creeps(solids); }
 };
 
 /// Names of the solids that are not of bearings.

@@ -104,8 +104,7 @@ class Loader {
     if (probe.difference(kLarge, 1.0) != 0.0 || probe.is_number(nan))
       refuse(
           "its {} are compiled with -ffast-math or one of its parts (sums are taken in another order, or NaN "
-          "is "
-          "not foreseen); leave it out, or {}",
+          "is not foreseen); leave it out, or {}",
           where, kRemedy);
     constexpr double kLeast = std::numeric_limits<double>::min();
     if (probe.half(kLeast) == 0.0)

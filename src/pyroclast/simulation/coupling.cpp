@@ -6,20 +6,28 @@ namespace pyroclast {
 
 namespace {
 
+/// What each zone is of, by place in the solids.
+std::vector<int> solids_of_zones(const Model<2>& model) {
+  std::vector<int> solids = zone_blocks(model);
+  for (int& entry : solids) entry = model.block_material[entry];
+  return solids;
+}
+
 /// \param marked  that E is that of, see OnCooling, °C
 ZoneProperties zone_at(const SolidMaterial& solid, double temperature, double marked) {
   return zone_properties<2>(solid.young(marked), solid.poisson, solid.thermal_strain(temperature));
 }
 
 /// Of each zone; none where nothing creeps.
-std::vector<CreepIncrement> creep_increments(const Model<2>& model, const ConcreteMaterials& materials,
+/// \param zone_solids  what each zone is of, by place in the solids
+std::vector<CreepIncrement> creep_increments(const std::vector<int>& zone_solids,
+                                             const ConcreteMaterials& materials,
                                              const TemperatureField& field,
                                              const HottestTemperatures& before) {
   std::vector<CreepIncrement> increments;
   if (!materials.creeps()) return increments;
-  const auto blocks = zone_blocks(model);
-  for (int z = 0; z < model.zone_count(); ++z) {
-    const SolidMaterial& solid = materials.solids[model.block_material[blocks[z]]];
+  for (int z = 0; z < static_cast<int>(zone_solids.size()); ++z) {
+    const SolidMaterial& solid = materials.solids[zone_solids[z]];
     const double now = field.zones()[z];
     increments.push_back(solid.creep ? solid.creep->between(before.of_zone(z, kReferenceTemperature), now)
                                      : CreepIncrement{});
@@ -28,15 +36,16 @@ std::vector<CreepIncrement> creep_increments(const Model<2>& model, const Concre
 }
 
 /// One set of parameters a material and an interface; bearings keep the reference temperature.
-BodyProperties properties_at_one_temperature(const Model<2>& model, const ConcreteMaterials& materials,
-                                             double temperature, double marked) {
+BodyProperties properties_at_one_temperature(const Model<2>& model, const std::vector<int>& zone_solids,
+                                             const ConcreteMaterials& materials, double temperature,
+                                             double marked) {
   std::vector<ZoneProperties> solids;
   for (const SolidMaterial& solid : materials.solids)
     solids.push_back(solid.is_of_bearing ? zone_at(solid, kReferenceTemperature, kReferenceTemperature)
                                          : zone_at(solid, temperature, marked));
   std::vector<ZoneProperties> zones;
-  zones.reserve(model.zones.size());
-  for (int block : zone_blocks(model)) zones.push_back(solids[model.block_material[block]]);
+  zones.reserve(zone_solids.size());
+  for (int solid : zone_solids) zones.push_back(solids[solid]);
   std::vector<ContactProperties> interfaces;
   for (std::size_t i = 0; i < materials.contacts.size(); ++i) {
     interfaces.push_back(materials.contacts[i].at(temperature, marked));
@@ -69,21 +78,21 @@ void HottestTemperatures::visit_state(StateVisitor& visitor) {
 
 BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& materials,
                              const TemperatureField& field, const HottestTemperatures& before) {
+  const std::vector<int> zone_solids = solids_of_zones(model);
   BodyProperties p;
   const auto marked = [&](double now, double hottest) {
     return materials.on_cooling == OnCooling::irreversible ? hottest : now;
   };
   if (field.is_uniform()) {
-    p = properties_at_one_temperature(model, materials, field.mean(),
+    p = properties_at_one_temperature(model, zone_solids, materials, field.mean(),
                                       marked(field.mean(), before.of_all(field.mean())));
-    p.creep = creep_increments(model, materials, field, before);
+    p.creep = creep_increments(zone_solids, materials, field, before);
     return p;
   }
-  p.creep = creep_increments(model, materials, field, before);
-  p.zones.reserve(model.zones.size());
-  const auto blocks = zone_blocks(model);
+  p.creep = creep_increments(zone_solids, materials, field, before);
+  p.zones.reserve(zone_solids.size());
   for (int z = 0; z < model.zone_count(); ++z)
-    p.zones.push_back(zone_at(materials.solids[model.block_material[blocks[z]]], field.zones()[z],
+    p.zones.push_back(zone_at(materials.solids[zone_solids[z]], field.zones()[z],
                               marked(field.zones()[z], before.of_zone(z, field.zones()[z]))));
   p.of_contact.reserve(model.contacts.size());
   for (int c = 0; c < model.contact_count(); ++c) {

@@ -74,12 +74,16 @@ constexpr int kVertical = 1;
 
 }  // namespace
 
+bool follows_composition(const std::vector<SolidMaterial>& solids, const MotionParameters& motion) {
+  return motion.strain_of_concrete || any_creeps(solids);
+}
+
 ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const MotionParameters& motion,
                                  const specimen::Specimen& specimen) {
   auto materials =
       make_concrete(solids, motion.contacts, specimen.metrics.mean_size, specimen::block_size(specimen));
   materials.on_cooling = motion.on_cooling;
-  if (materials.creeps() || motion.strain_of_concrete)
+  if (follows_composition(solids, motion))
     follow_composition(materials, motion.contacts, motion.strain_of_concrete, specimen.fraction,
                        specimen.metrics.mean_size);
   return materials;

@@ -33,6 +33,9 @@ struct MotionParameters {
   MechanicsParameters<2> mechanics;
 };
 
+/// Whether phases follow the composition of their specimen, see follow_composition.
+bool follows_composition(const std::vector<SolidMaterial>& solids, const MotionParameters& motion);
+
 /// What this specimen is made of. Throws Error, see make_concrete and follow_composition.
 ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const MotionParameters& motion,
                                  const specimen::Specimen& specimen);

@@ -59,9 +59,8 @@ void require_feasible(std::span<const double> diameters, double specimen_area,
   for (std::size_t i = 0; i < placed; ++i) area += circle_area(diameters[i]);
   throw Error(fmt::format(
       "{}: the aggregates do not fit: after {} of {}, an area fraction of {:.3f} of the {:.3f} asked for, "
-      "one "
-      "of {:.4g} mm found no place in {} attempts; allow a lower fraction, a smaller minimum_gap than {:.4g} "
-      "mm, or more attempts",
+      "one of {:.4g} mm found no place in {} attempts; allow a lower fraction, "
+      "a smaller minimum_gap than {:.4g} mm, or more attempts",
       parameters.place, placed, diameters.size(), area / specimen_area, parameters.fraction,
       1e3 * diameters[placed], parameters.attempts, 1e3 * parameters.minimum_gap));
 }

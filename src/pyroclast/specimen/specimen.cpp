@@ -179,12 +179,9 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
   Blocks blocks = make_blocks(parameters.blocks, parameters.region, block_random, team);
   specimen.tessellation = std::move(blocks.tessellation);
   const int matrix = index_of(specimen.phases, parameters.matrix);
-  SpecimenParameters rule = parameters;
-  if (rule.superposition == Superposition::fit)
-    rule.covered_fraction =
-        fitting_fraction(specimen.tessellation, parameters.region.box(), specimen.aggregates);
-  specimen.covered_fraction = rule.covered_fraction;
-  specimen.phase = superpose(specimen.tessellation, specimen.aggregates, rule, matrix);
+  Superposed superposed = superpose(specimen.tessellation, specimen.aggregates, parameters, matrix);
+  specimen.covered_fraction = superposed.covered_fraction;
+  specimen.phase = std::move(superposed.phase);
   specimen.fraction_of_circles = fraction_of(specimen, [&](int phase) { return phase != matrix; });
   superpose(specimen.tessellation, specimen.fibres, specimen.phase);
   specimen.fraction_superposed = fraction_of(specimen, [&](int phase) { return phase != matrix; });

@@ -41,12 +41,6 @@ auto for_each_cell(const Tessellation& tessellation, const Box& box, std::span<c
   return result;
 }
 
-/// What covers a cell.
-struct Cover {
-  double share = 0.0;  ///< of its area, by all circles together
-  int phase = -1;      ///< of the circles that cover most of it
-};
-
 Cover cover_of(Corners polygon, const std::vector<Aggregate>& nearby) {
   constexpr double rounding = 1e-12;  // left by circles that do not touch the cell
   double covered = 0.0;
@@ -66,6 +60,17 @@ Cover cover_of(Corners polygon, const std::vector<Aggregate>& nearby) {
   const double share = covered / area(polygon);
   cover.share = share < rounding ? 0.0 : std::min(share, 1.0);
   return cover;
+}
+
+std::vector<int> phases_at_centroids(const Tessellation& tessellation, const Box& box,
+                                     std::span<const Aggregate> aggregates, int matrix) {
+  const auto phase_of = [&](Corners polygon, const std::vector<Aggregate>& nearby) {
+    const Vec<2> centre = centroid(polygon);
+    const auto around = std::ranges::find_if(
+        nearby, [&](const Aggregate& a) { return norm(centre - a.centre) <= 0.5 * a.diameter; });
+    return around == nearby.end() ? matrix : around->phase;
+  };
+  return for_each_cell(tessellation, box, aggregates, phase_of);
 }
 
 /// Whether a fibre runs through the inside of a convex cell: clips it by the half planes of the edges.
@@ -88,22 +93,22 @@ bool crosses(const std::vector<Vec<2>>& polygon, const Fibre& fibre) {
 
 }  // namespace
 
-std::vector<double> covered_fractions(const Tessellation& tessellation, const Box& box,
-                                      std::span<const Aggregate> aggregates) {
-  return for_each_cell(
-      tessellation, box, aggregates,
-      [](Corners polygon, const std::vector<Aggregate>& nearby) { return cover_of(polygon, nearby).share; });
+std::vector<Cover> covers_of(const Tessellation& tessellation, const Box& box,
+                             std::span<const Aggregate> aggregates) {
+  return for_each_cell(tessellation, box, aggregates, cover_of);
 }
 
-double fitting_fraction(const Tessellation& tessellation, const Box& box,
+double fitting_fraction(const Tessellation& tessellation, std::span<const Cover> covers,
                         std::span<const Aggregate> aggregates) {
   struct Cell {
     double covered, area;
   };
-  std::vector<Cell> cells =
-      for_each_cell(tessellation, box, aggregates, [](Corners polygon, const std::vector<Aggregate>& nearby) {
-        return Cell{cover_of(polygon, nearby).share, area(polygon)};
-      });
+  std::vector<Cell> cells;
+  std::vector<Vec<2>> polygon;
+  for (std::size_t c = 0; c < covers.size(); ++c) {
+    corners(tessellation, c, polygon);
+    cells.push_back({covers[c].share, area(polygon)});
+  }
   std::ranges::sort(cells, std::greater<>(), &Cell::covered);
   double missing = 0.0;
   for (const Aggregate& a : aggregates) missing += 0.25 * std::numbers::pi * a.diameter * a.diameter;
@@ -116,19 +121,20 @@ double fitting_fraction(const Tessellation& tessellation, const Box& box,
   return 0.5 * (cells[taken - 1].covered + cells[taken].covered);
 }
 
-std::vector<int> superpose(const Tessellation& tessellation, std::span<const Aggregate> aggregates,
-                           const SpecimenParameters& parameters, int matrix) {
-  const auto phase_of = [&](Corners polygon, const std::vector<Aggregate>& nearby) {
-    if (parameters.superposition != Superposition::centroid) {
-      const Cover cover = cover_of(polygon, nearby);
-      return cover.share > parameters.covered_fraction ? cover.phase : matrix;
-    }
-    const Vec<2> centre = centroid(polygon);
-    const auto around = std::ranges::find_if(
-        nearby, [&](const Aggregate& a) { return norm(centre - a.centre) <= 0.5 * a.diameter; });
-    return around == nearby.end() ? matrix : around->phase;
-  };
-  return for_each_cell(tessellation, parameters.region.box(), aggregates, phase_of);
+Superposed superpose(const Tessellation& tessellation, std::span<const Aggregate> aggregates,
+                     const SpecimenParameters& parameters, int matrix) {
+  const Box& box = parameters.region.box();
+  Superposed result{.covered_fraction = parameters.covered_fraction};
+  if (parameters.superposition == Superposition::centroid) {
+    result.phase = phases_at_centroids(tessellation, box, aggregates, matrix);
+    return result;
+  }
+  const std::vector<Cover> covers = covers_of(tessellation, box, aggregates);
+  if (parameters.superposition == Superposition::fit)
+    result.covered_fraction = fitting_fraction(tessellation, covers, aggregates);
+  for (const Cover& cover : covers)
+    result.phase.push_back(cover.share > result.covered_fraction ? cover.phase : matrix);
+  return result;
 }
 
 void superpose(const Tessellation& tessellation, std::span<const Fibre> fibres, std::vector<int>& phase) {

@@ -107,6 +107,10 @@ StageKind compress_kind() {
   return {"compress", "drives the upper platen down, or up to unload", {}, read_compress};
 }
 
+bool has_fallen(double stress, double largest, double share) {
+  return share > 0.0 && largest > 0.0 && stress < share * largest;
+}
+
 void Compress::begin(Simulation& simulation) {
   Press<2>& press = simulation.press();
   first_left_ = left(simulation);
@@ -247,7 +251,7 @@ Verdict Compress::judge(Simulation& simulation) {
   const double time = static_cast<double>(steps_) * simulation.mechanics().time_step();
   if (time > kPassages * wave_time_) {
     peak_stress_ = std::max(peak_stress_, stress);
-    if (keys_.stop_fraction > 0.0 && strain > first_touch() && stress < keys_.stop_fraction * peak_stress_)
+    if (strain > first_touch() && has_fallen(stress, peak_stress_, keys_.stop_fraction))
       return {.over = true, .last = true, .outcome = Outcome::stress_fallen};
   }
   if (std::abs(strain) < next_frame_) return {};

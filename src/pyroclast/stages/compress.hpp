@@ -21,6 +21,11 @@ enum class CompressUntil : std::uint8_t {
   stress        ///< at a stress on the upper platen, up or down
 };
 
+/// Whether a stress has fallen below a share of the largest so far, as that of a specimen that fails. Noise
+/// around no stress is no failure: a largest stress that is not above 0 has no share to fall below.
+/// \param share  0: it never falls
+bool has_fallen(double stress, double largest, double share);
+
 /// Drives the upper platen, the lower one fixed: down, or up to unload. First brings it back to ends that it
 /// left, or that left it, while the temperature changed.
 class Compress : public Stage {
