@@ -60,7 +60,7 @@ TEST(SpecimenFromCells, WhatDoesNotFitIsToldByCell) {
     Tessellation t = ring_of_squares();
     std::vector<int> phase(8, 0);
     change(t, phase);
-    return error_of([&] { specimen_from({t, {"mortar"}, phase}); });
+    return message([&] { specimen_from({t, {"mortar"}, phase}); });
   };
   EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[2][1] = 99; }), "cell 2 names vertex 99"));
   EXPECT_TRUE(says(refused([](auto&, auto& phase) { phase[5] = 1; }), "cell 5 is of phase 1"));
