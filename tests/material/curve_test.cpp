@@ -13,24 +13,13 @@
 
 #include <gtest/gtest.h>
 
+#include "messages.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/material/curve_file.hpp"
 #include "pyroclast/material/expression.hpp"
 
 namespace pyroclast {
 namespace {
-
-/// Message of the Error that `action` throws.
-template <class Action>
-std::string error_of(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no Error was thrown";
-  return {};
-}
 
 void expect_contains(const std::string& text, const std::vector<std::string>& parts) {
   for (const std::string& part : parts) {
@@ -77,10 +66,10 @@ TEST(Curve, ACopyReadsTheSameValues) {
 TEST(Curve, ReadingOutsideTheRangeNamesTheCurveTheAbscissaAndTheRange) {
   const Curve curve = triangle().named("material mortar: modulus");
   for (const double outside : {19.9, 500.1, -1e300}) {
-    expect_contains(error_of([&] { curve(outside); }),
+    expect_contains(message([&] { curve(outside); }),
                     {"material mortar: modulus", "table of 3 points", "20 to 500 degC", "T = "});
   }
-  expect_contains(error_of([&] { curve(500.5); }), {"T = 500.5 degC"});
+  expect_contains(message([&] { curve(500.5); }), {"T = 500.5 degC"});
   EXPECT_THROW(curve(std::numeric_limits<double>::quiet_NaN()), Error);
   EXPECT_THROW(Curve::constant(1.0)(std::numeric_limits<double>::quiet_NaN()), Error);
 }
@@ -95,7 +84,7 @@ TEST(Curve, RoundingAtTheEndsOfTheRangeIsNotAnError) {
 
 TEST(Curve, WrongTablesAreRefusedWithTheirPoint) {
   const auto table = [](std::vector<double> x, std::vector<double> y) {
-    return error_of([&] { Curve::table(x, y, temperature_axis()); });
+    return message([&] { Curve::table(x, y, temperature_axis()); });
   };
   expect_contains(table({20}, {1}), {"at least 2 points", "has 1"});
   expect_contains(table({20, 30}, {1}), {"2 abscissae", "1 values"});
@@ -130,7 +119,7 @@ TEST(Curve, AMultipleScalesTheValuesAndKeepsRangeAndName) {
   EXPECT_DOUBLE_EQ(curve(60), 60e9);
   EXPECT_EQ(curve.range(), (Interval{20, 500}));
   EXPECT_EQ(curve.axis(), temperature_axis());
-  expect_contains(error_of([&] { curve(600); }), {"mortar modulus", "20 to 500 degC"});
+  expect_contains(message([&] { curve(600); }), {"mortar modulus", "20 to 500 degC"});
   EXPECT_TRUE((2.0 * Curve::constant(3.0)).is_constant());
 }
 
@@ -141,11 +130,11 @@ TEST(Curve, AProductIsDefinedWhereBothFactorsAre) {
   EXPECT_DOUBLE_EQ(product(60), 4.0);
   EXPECT_THROW(product(40), Error);
   EXPECT_THROW(product(600), Error);
-  expect_contains(error_of([&] {
+  expect_contains(message([&] {
                     triangle() * Curve::table({600, 800}, {1, 1}, temperature_axis());
                   }),
                   {"20 to 500", "600 to 800", "nothing in common"});
-  expect_contains(error_of([&] {
+  expect_contains(message([&] {
                     triangle() * Curve::table({0, 60}, {1, 1}, time_axis());
                   }),
                   {"T [degC]", "t [s]"});
@@ -183,15 +172,15 @@ TEST(Curve, AnExpressionKnowsAndAndOr) {
 TEST(Curve, AnExpressionOfTimeUsesItsOwnVariable) {
   const Curve ramp = Curve::expression("20 + 5 * t / 60", {0, 9360}, time_axis());
   EXPECT_DOUBLE_EQ(ramp(60), 25.0);
-  expect_contains(error_of([&] { ramp(9361); }), {"t = 9361 s", "0 to 9360 s"});
-  expect_contains(error_of([&] {
+  expect_contains(message([&] { ramp(9361); }), {"t = 9361 s", "0 to 9360 s"});
+  expect_contains(message([&] {
                     Curve::expression("20 + T", {0, 1}, time_axis());
                   }),
                   {"\"T\" is not known", "variable is t"});
 }
 
 TEST(Curve, WrongExpressionsAreRefusedWithPositionAndReason) {
-  const auto refusal = [](const std::string& text) { return error_of([&] { formula(text); }); };
+  const auto refusal = [](const std::string& text) { return message([&] { formula(text); }); };
   expect_contains(refusal("2 * foo(3)"), {"\"2 * foo(3)\"", "character 5", "\"foo\" is not known"});
   expect_contains(refusal("1 + "), {"character 5", "ends too early"});
   expect_contains(refusal("sin(T"), {"parenthesis is missing"});
@@ -203,7 +192,7 @@ TEST(Curve, WrongExpressionsAreRefusedWithPositionAndReason) {
 
 TEST(Curve, AnExpressionNeedsAFiniteRange) {
   for (const Interval range : {Interval{}, Interval{20, 20}, Interval{800, 20}, Interval{20, INFINITY}}) {
-    expect_contains(error_of([&] { Curve::expression("T", range, temperature_axis()); }),
+    expect_contains(message([&] { Curve::expression("T", range, temperature_axis()); }),
                     {"formula \"T\"", "finite interval"});
   }
 }
@@ -211,7 +200,7 @@ TEST(Curve, AnExpressionNeedsAFiniteRange) {
 TEST(Curve, AValueThatIsNotFiniteIsAnError) {
   const Curve curve = formula("1 / (T - 100)");
   EXPECT_DOUBLE_EQ(curve(101), 1.0);
-  expect_contains(error_of([&] { curve(100); }), {"1 / (T - 100)", "no finite value", "T = 100 degC"});
+  expect_contains(message([&] { curve(100); }), {"1 / (T - 100)", "no finite value", "T = 100 degC"});
 }
 
 TEST(Curve, ThreadsMayReadOneExpressionAtTheSameTime) {
@@ -274,7 +263,7 @@ TEST_F(CurveFile, ValuesAreConvertedFromTheUnitsOfTheHeader) {
 }
 
 TEST_F(CurveFile, ErrorsNameFileAndLine) {
-  const auto refusal = [this](const std::string& content) { return error_of([&] { read(content); }); };
+  const auto refusal = [this](const std::string& content) { return message([&] { read(content); }); };
   const std::string file = path_.filename().string();
   const std::string header = "T [degC], f [MPa]\n";
   expect_contains(refusal("20, 1\n30, 2\n"), {file + ":1:", "name [unit]", "\"20\""});
@@ -289,7 +278,7 @@ TEST_F(CurveFile, ErrorsNameFileAndLine) {
 
 TEST_F(CurveFile, AMissingFileIsNamed) {
   const auto same = [](double value, const std::string&) { return value; };
-  expect_contains(error_of([&] { read_curve_csv("no_such_table.csv", temperature_axis(), same, same); }),
+  expect_contains(message([&] { read_curve_csv("no_such_table.csv", temperature_axis(), same, same); }),
                   {"no_such_table.csv"});
 }
 

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "messages.hpp"
 #include "model/small_specimen.hpp"
-#include "pyroclast/base/error.hpp"
 #include "pyroclast/base/sort_unique.hpp"
 
 namespace pyroclast {
@@ -123,21 +123,14 @@ TEST(Sets, TributaryAreasAreThoseOfTheFacesThatMeetNoBlock) {
 }
 
 TEST(Sets, WhatIsWrongIsToldWithItsPlace) {
-  const auto message = [](const SetParameters<2>& set) -> std::string {
-    try {
-      with_sets({set});
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
-  };
+  const auto refusal = [](const SetParameters<2>& set) { return message([&] { with_sets({set}); }); };
   const auto says = [](const std::string& told, const std::string& part) {
     EXPECT_NE(told.find(part), std::string::npos) << told;
   };
-  says(message({.name = "far", .place = InBall<2>{{{1.0, 1.0}}, 0.1}, .deck_place = "mine.toml:7"}),
+  says(refusal({.name = "far", .place = InBall<2>{{{1.0, 1.0}}, 0.1}, .deck_place = "mine.toml:7"}),
        "mine.toml:7: set \"far\" is empty");
-  says(message({.name = "left", .place = Everywhere{}}), "has the name of one");
-  says(message({.name = "a", .within = "b", .place = Everywhere{}}),
+  says(refusal({.name = "left", .place = Everywhere{}}), "has the name of one");
+  says(refusal({.name = "a", .within = "b", .place = Everywhere{}}),
        "no such set of gridpoints; there are aggregate, bottom");
 }
 

@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 
 #include "mechanics/bodies.hpp"
-#include "pyroclast/base/error.hpp"
+#include "messages.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/plugin/find_law.hpp"
 #include "pyroclast/plugin/load.hpp"
@@ -21,15 +21,6 @@ namespace pyroclast {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string refusal(const std::function<void()>& what) {
-  try {
-    what();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "nothing was refused";
-}
 
 /// Whether a text holds all the words.
 testing::AssertionResult says(const std::string& text, const std::vector<std::string>& words) {
@@ -44,13 +35,13 @@ fs::path law_file(const std::string& name) {
 }
 
 std::string refusal_of(const std::string& name) {
-  return refusal([&] { load_law(law_file("refused_" + name)); });
+  return message([&] { load_law(law_file("refused_" + name)); });
 }
 
 TEST(Plugin, ASharedObjectThatIsNoLawIsRefused) {
   EXPECT_TRUE(says(refusal_of("symbol"), {"refused_symbol.so", "no symbol pyroclast_law_v1"}));
   EXPECT_TRUE(says(refusal_of("magic"), {"does not give a contact law"}));
-  EXPECT_TRUE(says(refusal([] { load_law(fs::path(HEADERS) / "small.hpp"); }),
+  EXPECT_TRUE(says(message([] { load_law(fs::path(HEADERS) / "small.hpp"); }),
                    {"small.hpp", "cannot be loaded as a contact law"}));
 }
 
@@ -62,7 +53,7 @@ TEST(Plugin, ALawForAnotherVersionOrLayoutIsRefusedWithBothValues) {
 
 TEST(Plugin, ALawThatBearsTheNameOfOneOfTheProgramIsRefused) {
   EXPECT_TRUE(
-      says(refusal([] { find_law("refused_name", LAWS, {}); }), {"refused_name.so", "called \"cohesive\""}));
+      says(message([] { find_law("refused_name", LAWS, {}); }), {"refused_name.so", "called \"cohesive\""}));
 }
 
 TEST(Plugin, FastMathIsRefused) {
@@ -131,7 +122,7 @@ TEST(Plugin, ALoadedLawIsATableLikeAnyOther) {
   ContactProperties p(law.table, numbers, std::vector<int>(law.table.choices.size()));
   EXPECT_NO_THROW(validate(p, "contact"));
   p.numbers[own] = -1.0;
-  EXPECT_TRUE(says(refusal([&] { validate(p, "contact"); }), {"u_mark (m) = -1"}));
+  EXPECT_TRUE(says(message([&] { validate(p, "contact"); }), {"u_mark (m) = -1"}));
   const auto constants = p.constants();
   std::vector<double> history(law.table.history(2).size()), losses(law.table.losses.size());
   const std::array jump{1e-4, 0.0};
@@ -146,7 +137,7 @@ TEST(Plugin, ALawForPlaneBodiesIsRefusedInSpace) {
   sources.folders = {LAWS};
   EXPECT_STREQ(find_law("small", "", sources).name, "small");
   sources.compiler.dimension = 3;
-  EXPECT_TRUE(says(refusal([&] { find_law("small", "", sources); }), {"made for bodies in 2D, not in 3D"}));
+  EXPECT_TRUE(says(message([&] { find_law("small", "", sources); }), {"made for bodies in 2D, not in 3D"}));
 
   const auto model = bodies::five_tetrahedra();
   const LawTable& law = load_law(law_file("small")).table;
@@ -156,7 +147,7 @@ TEST(Plugin, ALawForPlaneBodiesIsRefusedInSpace) {
   properties.of_contact.assign(static_cast<std::size_t>(model.contact_count()), 0);
   MechanicsParameters<3> parameters;
   parameters.safety = 0.5;
-  EXPECT_TRUE(says(refusal([&] { Mechanics<3>(model, {2300.0}, properties, parameters); }),
+  EXPECT_TRUE(says(message([&] { Mechanics<3>(model, {2300.0}, properties, parameters); }),
                    {"\"small\" is made for bodies in 2D, not in 3D"}));
 }
 
@@ -165,12 +156,12 @@ TEST(Plugin, ANameIsSearchedInTheProgramBesideTheDeckAndInTheFolders) {
   EXPECT_EQ(&find_law("cohesive", "", sources), &table_of<Cohesive>());
   EXPECT_STREQ(find_law("renamed", LAWS, sources).name, "renamed");
   EXPECT_STREQ(find_law("renamed.so", LAWS, sources).name, "renamed");
-  EXPECT_TRUE(says(refusal([&] { find_law("absent", "some/deck", sources); }),
+  EXPECT_TRUE(says(message([&] { find_law("absent", "some/deck", sources); }),
                    {"\"absent\"", "cohesive", "absent.so in some/deck"}));
   sources.folders = {"here", LAWS};
   EXPECT_STREQ(find_law("renamed", "some/deck", sources).name, "renamed");
-  EXPECT_TRUE(says(refusal([&] { find_law("absent.so", "some/deck", sources); }), {"some/deck/absent.so"}));
-  EXPECT_TRUE(says(refusal([&] { find_law("absent.hpp", "some/deck", sources); }), {"some/deck/absent.hpp"}));
+  EXPECT_TRUE(says(message([&] { find_law("absent.so", "some/deck", sources); }), {"some/deck/absent.so"}));
+  EXPECT_TRUE(says(message([&] { find_law("absent.hpp", "some/deck", sources); }), {"some/deck/absent.hpp"}));
 }
 
 TEST(Plugin, TheEnvironmentNamesFoldersAndForbidsCompiling) {
@@ -205,7 +196,7 @@ class LawInAHeader : public testing::Test {
   }
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
   std::string refusal_of(const std::string& stated) {
-    return refusal([&] { find_law(stated, folder_, sources_); });
+    return message([&] { find_law(stated, folder_, sources_); });
   }
 
   fs::path folder_;
@@ -248,7 +239,7 @@ TEST_F(LawInAHeader, AHeaderIsCompiledOnceForEachText) {
   EXPECT_NE(body.contact(0).normal_traction, 0.0);
   if (usable_instruction_sets().size() > 1) {
     parameters.instructions = usable_instruction_sets().back();
-    EXPECT_TRUE(says(refusal([&] { Mechanics<2>(model, {2300.0}, properties, parameters); }),
+    EXPECT_TRUE(says(message([&] { Mechanics<2>(model, {2300.0}, properties, parameters); }),
                      {"\"small\" is not compiled for the instruction set"}));
   }
 }
@@ -303,7 +294,7 @@ struct Base {}; /* struct Nor { */ struct Law final : Base { static constexpr co
                "struct Options;\nextern \"C++\" { struct Law { static constexpr auto name = \"d\"; }; }\n"
                "inline void show(const struct Options&) { static constexpr auto name = \"no law\"; }\n"),
       "Law");
-  const auto refused = [](const std::string& text) { return refusal([&] { law_type("c.hpp", text); }); };
+  const auto refused = [](const std::string& text) { return message([&] { law_type("c.hpp", text); }); };
   EXPECT_TRUE(
       says(refused("namespace a { struct B { static constexpr auto name = 1; }; struct C { static constexpr "
                    "auto name = 2; }; }"),

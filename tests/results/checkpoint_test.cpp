@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
-#include <functional>
 #include <numeric>
 #include <random>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "messages.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/results/checkpoints.hpp"
 #include "pyroclast/results/recorder.hpp"
@@ -55,15 +55,6 @@ void write(const fs::path& path, Thing thing, std::int64_t number = 1) {
   write_checkpoint(path, info, [&](StateVisitor& visitor) { thing.visit_state(visitor); });
 }
 
-std::string message_of(const std::function<void()>& what) {
-  try {
-    what();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
-
 TEST_F(Results, ACheckpointGivesBackWhatItWasGiven) {
   const Thing thing = made_thing();
   write(folder_ / "a.state", thing, 3);
@@ -87,7 +78,7 @@ TEST_F(Results, ACheckpointOfSomethingElseIsRefusedByName) {
   const CheckpointFile file(folder_ / "a.state");
   double number = 0.0;
   const auto restore = [&](const char* name) {
-    return message_of([&] { file.restore([&](StateVisitor& visitor) { visitor.visit(name, number); }); });
+    return message([&] { file.restore([&](StateVisitor& visitor) { visitor.visit(name, number); }); });
   };
   EXPECT_NE(restore("other").find("does not hold \"other\""), std::string::npos);
   EXPECT_NE(restore("more.flag").find("holds 1 x 1 bytes of \"more.flag\""), std::string::npos);
@@ -128,8 +119,8 @@ std::string damaged(std::string bytes, std::mt19937_64& random) {
 // Promise: a file that is there but empty, as a full disk may leave it, is no unreadable one.
 TEST_F(Results, AnEmptyFileIsNoCheckpoint) {
   { std::ofstream(folder_ / "a.state"); }
-  const std::string message = message_of([&] { CheckpointFile(folder_ / "a.state"); });
-  EXPECT_NE(message.find("is no checkpoint of pyroclast"), std::string::npos) << message;
+  const std::string said = message([&] { CheckpointFile(folder_ / "a.state"); });
+  EXPECT_NE(said.find("is no checkpoint of pyroclast"), std::string::npos) << said;
 }
 
 TEST_F(Results, AThousandDamagedCheckpointsAreAThousandErrors) {
@@ -138,15 +129,15 @@ TEST_F(Results, AThousandDamagedCheckpointsAreAThousandErrors) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 1000; ++i) {
     { std::ofstream(folder_ / "b.state", std::ios::binary) << damaged(whole, random); }
-    const std::string message = message_of([&] { CheckpointFile(folder_ / "b.state").verify(); });
-    ASSERT_NE(message.find("b.state"), std::string::npos) << i << ": " << message;
+    const std::string said = message([&] { CheckpointFile(folder_ / "b.state").verify(); });
+    ASSERT_NE(said.find("b.state"), std::string::npos) << i << ": " << said;
   }
 }
 
 TEST_F(Results, TheNewestCheckpointIsTakenAndAnOlderOneOfferedWhereItIsDamaged) {
   const fs::path run = folder_ / "run";
   fs::create_directories(checkpoint_folder(run));
-  EXPECT_NE(message_of([&] { newest_checkpoint(run); }).find("holds no checkpoint"), std::string::npos);
+  EXPECT_NE(message([&] { newest_checkpoint(run); }).find("holds no checkpoint"), std::string::npos);
   const auto file = [&](const char* name) { return checkpoint_folder(run) / name; };
   write(file("000004.state"), made_thing(), 4);
   write(stage_checkpoint(run, 0), made_thing(), 5);
@@ -155,11 +146,11 @@ TEST_F(Results, TheNewestCheckpointIsTakenAndAnOlderOneOfferedWhereItIsDamaged) 
   write_text_file(file("000004.state"), "damaged, but not the newest");
   EXPECT_EQ(newest_checkpoint(run).info().number, 6);
   write_text_file(file("000006.state"), content(file("000006.state")).substr(0, 100));
-  const std::string message = message_of([&] { newest_checkpoint(run); });
-  EXPECT_NE(message.find("000006.state: is cut short"), std::string::npos) << message;
-  EXPECT_NE(message.find("of step 500, say --checkpoint-file " + stage_checkpoint(run, 0).string()),
+  const std::string said = message([&] { newest_checkpoint(run); });
+  EXPECT_NE(said.find("000006.state: is cut short"), std::string::npos) << said;
+  EXPECT_NE(said.find("of step 500, say --checkpoint-file " + stage_checkpoint(run, 0).string()),
             std::string::npos)
-      << message;
+      << said;
 }
 
 // The two latest of the clock, and one for each stage that is done.

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "pyroclast/base/error.hpp"
+#include "messages.hpp"
 #include "results/folder.hpp"
 #include "stages/small_runs.hpp"
 
@@ -36,15 +36,6 @@ std::vector<std::string> cells(const Session& session) {
   for (std::size_t row = 0; row < history.row_count(); ++row)
     for (const auto& cell : history.row(row)) all.push_back(printed(cell));
   return all;
-}
-
-std::string message(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST_F(Results, ASessionWritesWhatItsHistoryHas) {

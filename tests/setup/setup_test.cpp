@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "decks.hpp"
+#include "messages.hpp"
 #include "phases.hpp"
 #include "pyroclast/simulation/run.hpp"
 
@@ -25,12 +26,7 @@ Setup read(const std::string& deck) {
 
 /// What a deck is refused with.
 std::string message(const std::string& text) {
-  try {
-    read(text);
-  } catch (const Error& e) {
-    return std::string(e.what());
-  }
-  return std::string();
+  return pyroclast::message([&] { read(text); });
 }
 
 // Promise: the shipped case holds the paper's Tables 1 and 2 as printed, with the readings of the open

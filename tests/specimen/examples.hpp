@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pyroclast/base/error.hpp"
+#include "messages.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast::specimen {
@@ -39,18 +39,6 @@ inline SpecimenParameters paper_specimen(std::uint64_t seed) {
 inline testing::AssertionResult says(const std::string& message, const std::string& pattern) {
   if (std::regex_search(message, std::regex(pattern))) return testing::AssertionSuccess();
   return testing::AssertionFailure() << "'" << message << "' does not say '" << pattern << "'";
-}
-
-/// The message of the Error that f throws; fails the test when it throws none.
-template <class F>
-std::string error_of(F&& f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no Error was thrown";
-  return {};
 }
 
 }  // namespace pyroclast::specimen

@@ -7,6 +7,7 @@
 
 #include "examples.hpp"
 #include "pyroclast/specimen/blocks.hpp"
+#include "pyroclast/specimen/cells_file.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
@@ -60,9 +61,11 @@ TEST(SpecimenFromCells, WhatDoesNotFitIsToldByCell) {
     Tessellation t = ring_of_squares();
     std::vector<int> phase(8, 0);
     change(t, phase);
-    return error_of([&] { specimen_from({t, {"mortar"}, phase}); });
+    return message([&] { specimen_from({t, {"mortar"}, phase}); });
   };
   EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[2][1] = 99; }), "cell 2 names vertex 99"));
+  EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[2][2] = t.cells[2][0]; }),
+                   "cell 2 names vertex [0-9]+ twice"));
   EXPECT_TRUE(says(refused([](auto&, auto& phase) { phase[5] = 1; }), "cell 5 is of phase 1"));
   EXPECT_TRUE(says(refused([](auto&, auto& phase) { phase.pop_back(); }), "8 cells, but the phases of 7"));
   EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[1].resize(2); }), "cell 1 has 2 corners"));
@@ -74,6 +77,13 @@ TEST(SpecimenFromCells, WhatDoesNotFitIsToldByCell) {
                    }),
                    "meet in one point|not one piece"));
   EXPECT_TRUE(says(refused([](auto& t, auto&) { t.vertices[5] = {{2.5, 2.5}}; }), "not one piece"));
+  const Tessellation flat{{{{0, 0}}, {{1, 0}}, {{2, 0}}}, {{0, 1, 2}}};
+  EXPECT_TRUE(says(message([&] { specimen_from({flat, {"mortar"}, {0}}); }), "enclose no area"));
+}
+
+TEST(SpecimenFromCells, ANumberTooLargeIsToldWithItsFile) {
+  EXPECT_TRUE(says(message([] { cells_from(R"({"phase": [1e999]})", "mine.json"); }),
+                   "^mine.json: number overflow parsing '1e999'$"));
 }
 
 }  // namespace

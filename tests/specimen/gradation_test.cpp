@@ -84,7 +84,7 @@ TEST(Gradation, FollowsTheCurveWithinTheIntervalsToo) {
 }
 
 TEST(Gradation, NoAggregatesHaveNoCurve) {
-  EXPECT_TRUE(says(error_of([] { gradation(paper_aggregates(), {}, {}); }), "no aggregates"));
+  EXPECT_TRUE(says(message([] { gradation(paper_aggregates(), {}, {}); }), "no aggregates"));
 }
 
 }  // namespace

@@ -251,9 +251,9 @@ class Malformed : public testing::TestWithParam<Fault> {};
 TEST_P(Malformed, IsNamedWithFileAndLine) {
   const Fault& fault = GetParam();
   const TessFile file(replaced(two_cells, fault.from, fault.to));
-  const std::string message = error_of([&] { read_neper_tess(file.path(), 0.2, 0.1); });
-  EXPECT_EQ(message.find(file.path().string()), 0U) << message;
-  EXPECT_TRUE(says(message, fault.message));
+  const std::string said = message([&] { read_neper_tess(file.path(), 0.2, 0.1); });
+  EXPECT_EQ(said.find(file.path().string()), 0U) << said;
+  EXPECT_TRUE(says(said, fault.message));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -287,11 +287,11 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(NeperTess, AnotherAspectRatioIsAnError) {
   const TessFile file(two_cells);
-  EXPECT_TRUE(says(error_of([&] { read_neper_tess(file.path(), 0.2, 0.11); }), "aspect ratio"));
+  EXPECT_TRUE(says(message([&] { read_neper_tess(file.path(), 0.2, 0.11); }), "aspect ratio"));
 }
 
 TEST(NeperTess, AMissingFileIsAnError) {
-  EXPECT_TRUE(says(error_of([] { read_neper_tess("no/such.tess", 1, 1); }), "Cannot open"));
+  EXPECT_TRUE(says(message([] { read_neper_tess("no/such.tess", 1, 1); }), "Cannot open"));
 }
 
 }  // namespace

@@ -49,10 +49,10 @@ TEST(Placement, SaysHowMuchIsMissing) {
   p.fraction = 0.7;
   p.attempts = 100;
   p.place = "mine.toml:12: aggregates";
-  const std::string message = error_of([&] { place_paper_aggregates(p, 1); });
-  EXPECT_TRUE(says(message, "^mine.toml:12: aggregates: the aggregates do not fit: after [0-9]+ of [0-9]+"));
-  EXPECT_TRUE(says(message, "an area fraction of 0\\.[0-9]+ of the 0\\.700 asked for"));
-  EXPECT_TRUE(says(message, "one of [0-9.]+ mm found no place in 100 attempts"));
+  const std::string said = message([&] { place_paper_aggregates(p, 1); });
+  EXPECT_TRUE(says(said, "^mine.toml:12: aggregates: the aggregates do not fit: after [0-9]+ of [0-9]+"));
+  EXPECT_TRUE(says(said, "an area fraction of 0\\.[0-9]+ of the 0\\.700 asked for"));
+  EXPECT_TRUE(says(said, "one of [0-9.]+ mm found no place in 100 attempts"));
 }
 
 TEST(Placement, SaysWhatThoseThatFoundAPlaceTake) {
@@ -61,7 +61,7 @@ TEST(Placement, SaysWhatThoseThatFoundAPlaceTake) {
   Random random(1);
   const std::vector<double> diameters{20e-3, 10e-3, 50e-3};  // the last is wider than the specimen
   // pi/4 (20^2 + 10^2) / (40 x 300) = 0.0327
-  EXPECT_TRUE(says(error_of([&] { place(diameters, Region::rectangle(0.04, 0.3), p, {}, random); }),
+  EXPECT_TRUE(says(message([&] { place(diameters, Region::rectangle(0.04, 0.3), p, {}, random); }),
                    "after 2 of 3, an area fraction of 0\\.033 of"));
 }
 
@@ -70,7 +70,7 @@ TEST(Placement, AnAggregateWiderThanTheSpecimenIsMissing) {
   Random random(1);
   const std::vector<double> diameters{30e-3};
   EXPECT_TRUE(
-      says(error_of([&] { place(diameters, Region::rectangle(0.02, 0.3), p, {}, random); }), "after 0 of 1"));
+      says(message([&] { place(diameters, Region::rectangle(0.02, 0.3), p, {}, random); }), "after 0 of 1"));
 }
 
 }  // namespace

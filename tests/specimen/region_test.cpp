@@ -93,31 +93,30 @@ TEST(Region, ANotchWithAWidthIsCutOutAndOneWithoutIsNot) {
 }
 
 TEST(Region, WhatIsNoBodyIsRefusedByName) {
-  const auto refused = [](auto&& make) { return error_of(make); };
-  EXPECT_TRUE(says(refused([] { polygon({at(0, 0), at(1, 0)}); }), "2 corners"));
-  EXPECT_TRUE(says(refused([] { polygon({at(0, 0), at(1, 1), at(1, 0), at(0, 1)}); }), "cross or touch"));
-  EXPECT_TRUE(says(refused([] {
+  EXPECT_TRUE(says(message([] { polygon({at(0, 0), at(1, 0)}); }), "2 corners"));
+  EXPECT_TRUE(says(message([] { polygon({at(0, 0), at(1, 1), at(1, 0), at(0, 1)}); }), "cross or touch"));
+  EXPECT_TRUE(says(message([] {
                      polygon({at(0, 0), at(1, 0), at(1, 0), at(0, 1)});
                    }),
                    "corner 2 and the next"));
-  EXPECT_TRUE(says(refused([] {
+  EXPECT_TRUE(says(message([] {
                      with_hole(square, {at(0.5, 0.5), at(1.5, 0.5), at(1, 1)});
                    }),
                    "hole: .*not within"));
-  EXPECT_TRUE(says(refused([] {
+  EXPECT_TRUE(says(message([] {
                      with_hole(with_hole(square, {at(0.4, 0.4), at(0.6, 0.4), at(0.5, 0.6)}),
                                {at(0.1, 0.1), at(0.9, 0.1), at(0.5, 0.9)});
                    }),
                    "it holds hole"));
-  EXPECT_TRUE(says(refused([] { with_notch(square, at(0.5, 0.1), at(0.5, 0.5)); }),
+  EXPECT_TRUE(says(message([] { with_notch(square, at(0.5, 0.1), at(0.5, 0.5)); }),
                    "notch: .*100 mm from the outline"));
-  EXPECT_TRUE(says(refused([] { with_notch(square, at(0.5, 0.0), at(0.5, 1.5)); }), "not within the body"));
+  EXPECT_TRUE(says(message([] { with_notch(square, at(0.5, 0.0), at(0.5, 1.5)); }), "not within the body"));
   EXPECT_TRUE(says(
-      refused([] {
+      message([] {
         with_notch(with_hole(square, {at(0.4, 0.4), at(0.6, 0.4), at(0.5, 0.6)}), at(0.5, 0.0), at(0.5, 0.8));
       }),
       "it crosses hole"));
-  EXPECT_TRUE(says(refused([] { with_notch(square, at(0.5, 0.0), at(0.5, 0.1), 0.2); }), "longer than wide"));
+  EXPECT_TRUE(says(message([] { with_notch(square, at(0.5, 0.0), at(0.5, 0.1), 0.2); }), "longer than wide"));
 }
 
 /// Around the origin, with some corners that jut into the body; sides longer than `shortest` (m).
@@ -225,7 +224,7 @@ TEST(Region, ATooFineOutlineIsNamed) {
   const Region region =
       square.with_holes(std::array{Hole{"bolt", circle_corners(at(0.5, 0.5), 0.1, 0.1), true}});
   Random random(1);
-  EXPECT_TRUE(says(error_of([&] { make_blocks(of_count(10), region, random); }), "10 blocks are too few"));
+  EXPECT_TRUE(says(message([&] { make_blocks(of_count(10), region, random); }), "10 blocks are too few"));
 }
 
 TEST(Region, AggregatesKeepAwayFromTheOutlineButNotFromCuts) {

@@ -51,7 +51,7 @@ TEST(Edges, EachOnceWithBothItsCells) {
 TEST(Edges, RefusesCellsThatOverlap) {
   Tessellation t = four_cells(0.1);
   t.cells.push_back({1, 2, 3, 9});
-  EXPECT_TRUE(says(error_of([&] { edges(t); }), "overlaps"));
+  EXPECT_TRUE(says(message([&] { edges(t); }), "overlaps"));
 }
 
 TEST(Regularisation, MergesTheEndsOfAShortEdgeInTheMiddle) {

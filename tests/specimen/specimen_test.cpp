@@ -62,29 +62,29 @@ TEST(Specimen, RefusesAFractionThatTheGradationCannotMeet) {
   SpecimenParameters p = paper_specimen(1);
   p.region = Region::rectangle(10e-3, 10e-3);  // 0.34 of it is less than two of the smallest
   p.blocks.count = 10;
-  EXPECT_TRUE(says(error_of([&] { make_specimen(p); }), "too large for the specimen"));
+  EXPECT_TRUE(says(message([&] { make_specimen(p); }), "too large for the specimen"));
 }
 
 TEST(Specimen, NamesAParameterOutOfRangeAndItsValue) {
-  const auto message = [](const std::function<void(SpecimenParameters&)>& spoil) {
+  const auto refusal = [](const std::function<void(SpecimenParameters&)>& spoil) {
     SpecimenParameters p = paper_specimen(1);
     spoil(p);
-    return error_of([&] { make_specimen(p); });
+    return message([&] { make_specimen(p); });
   };
-  EXPECT_TRUE(says(message([](auto& p) { p.region = {}; }), "area of the specimen is 0"));
-  EXPECT_TRUE(says(message([](auto& p) { p.aggregates.fraction = 1; }), "aggregate fraction is 1"));
-  EXPECT_TRUE(says(message([](auto& p) { p.aggregates.d_min = 0; }), "smallest aggregate diameter is 0"));
+  EXPECT_TRUE(says(refusal([](auto& p) { p.region = {}; }), "area of the specimen is 0"));
+  EXPECT_TRUE(says(refusal([](auto& p) { p.aggregates.fraction = 1; }), "aggregate fraction is 1"));
+  EXPECT_TRUE(says(refusal([](auto& p) { p.aggregates.d_min = 0; }), "smallest aggregate diameter is 0"));
   EXPECT_TRUE(
-      says(message([](auto& p) { p.aggregates.d_max = 1e-3; }), "largest aggregate diameter is 0.001"));
-  EXPECT_TRUE(says(message([](auto& p) { p.aggregates.fuller_exponent = 0; }), "Fuller exponent is 0"));
-  EXPECT_TRUE(says(message([](auto& p) { p.aggregates.sieves.pop_back(); }), "sieves are"));
-  EXPECT_TRUE(says(message([](auto& p) { p.aggregates.minimum_gap = -1; }), "minimum gap"));
-  EXPECT_TRUE(says(message([](auto& p) { p.aggregates.attempts = 0; }), "attempts"));
-  EXPECT_TRUE(says(message([](auto& p) { p.blocks.count = 0; }), "number of blocks is 0"));
-  EXPECT_TRUE(says(message([](auto& p) { p.blocks.radius_spread = 1; }), "radius spread is 1"));
-  EXPECT_TRUE(says(message([](auto& p) { p.blocks.relaxation = -1; }), "relaxation"));
-  EXPECT_TRUE(says(message([](auto& p) { p.blocks.shortest_edge = 0.9; }), "shortest edge is 0.9"));
-  EXPECT_TRUE(says(message([](auto& p) { p.covered_fraction = 1; }), "covered fraction is 1"));
+      says(refusal([](auto& p) { p.aggregates.d_max = 1e-3; }), "largest aggregate diameter is 0.001"));
+  EXPECT_TRUE(says(refusal([](auto& p) { p.aggregates.fuller_exponent = 0; }), "Fuller exponent is 0"));
+  EXPECT_TRUE(says(refusal([](auto& p) { p.aggregates.sieves.pop_back(); }), "sieves are"));
+  EXPECT_TRUE(says(refusal([](auto& p) { p.aggregates.minimum_gap = -1; }), "minimum gap"));
+  EXPECT_TRUE(says(refusal([](auto& p) { p.aggregates.attempts = 0; }), "attempts"));
+  EXPECT_TRUE(says(refusal([](auto& p) { p.blocks.count = 0; }), "number of blocks is 0"));
+  EXPECT_TRUE(says(refusal([](auto& p) { p.blocks.radius_spread = 1; }), "radius spread is 1"));
+  EXPECT_TRUE(says(refusal([](auto& p) { p.blocks.relaxation = -1; }), "relaxation"));
+  EXPECT_TRUE(says(refusal([](auto& p) { p.blocks.shortest_edge = 0.9; }), "shortest edge is 0.9"));
+  EXPECT_TRUE(says(refusal([](auto& p) { p.covered_fraction = 1; }), "covered fraction is 1"));
 }
 
 // Promise: coarse blocks change the area of the aggregates, which is told; the rule that fits keeps it.
@@ -112,7 +112,7 @@ TEST(Specimen, RefusesAtOnceWhatCannotFit) {
   p.aggregates.minimum_gap = 2e-3;  // with it the small ones take more than there is
   p.aggregates.place = "mine.toml:12: aggregates";
   p.aggregates.attempts = 1'000'000'000;  // trying would take hours
-  const std::string error = error_of([&] { make_specimen(p); });
+  const std::string error = message([&] { make_specimen(p); });
   EXPECT_TRUE(says(error, "cannot fit")) << error;
 }
 

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "messages.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/simulation/contact_gaps.hpp"
 #include "small_runs.hpp"
@@ -113,13 +114,8 @@ TEST(CrackHeat, AGapIsWhatIsStatedAndWhatTheMotionOpens) {
 
 TEST(CrackHeat, GapsNameSetsOfContactsAndDoNotMeet) {
   const auto simulation = make_simulation(read(deck(kSettle + kExpose + kHeatedFace)));
-  const auto told = [&](const std::vector<StatedGap>& gaps) -> std::string {
-    try {
-      contact_gaps<2>(simulation->model(), gaps, nullptr);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+  const auto told = [&](const std::vector<StatedGap>& gaps) {
+    return message([&] { contact_gaps<2>(simulation->model(), gaps, nullptr); });
   };
   const std::string missing = told({{"scab", 1e-3, "deck.toml:9: heat.cracks.gaps[0]"}});
   EXPECT_NE(missing.find("deck.toml:9: heat.cracks.gaps[0]: contacts = \"scab\" is no set of contacts"),

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "known.hpp"
-#include "pyroclast/base/error.hpp"
+#include "messages.hpp"
 #include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/base/state_copy.hpp"
 #include "stages/small_runs.hpp"
@@ -51,12 +51,7 @@ const std::string kRecords =
     record("stretch", "opening", "set = \"left\"\nother = \"right\"\ndirection = \"x\"");
 
 std::string message(const std::string& text) {
-  try {
-    const Trial trial(text);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "";
+  return pyroclast::message([&] { const Trial trial(text); });
 }
 
 // Whatever a body is made of, its mean stress is that of the tractions on its outline.

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "known.hpp"
-#include "pyroclast/base/error.hpp"
+#include "messages.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 
 namespace pyroclast {
@@ -16,12 +16,7 @@ constexpr Interval range{20.0, 1200.0};
 constexpr double window = 5.0;
 
 std::string message(const HeatMaterial& material) {
-  try {
-    HeatTable(material, "mortar", TemperatureGrid(range), window);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return pyroclast::message([&] { HeatTable(material, "mortar", TemperatureGrid(range), window); });
 }
 
 HeatMaterial concrete() {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -82,6 +83,9 @@ Cells cells_from(const std::string& text, const std::string& name) {
     return checked(std::move(cells));
   } catch (const Json::parse_error& error) {
     throw Error(fmt::format("{}: is not JSON, at byte {}", name, error.byte));
+  } catch (const Json::out_of_range& error) {  // by its text, "[...] number overflow parsing '1e999'"
+    const std::string_view what = error.what();
+    throw Error(fmt::format("{}: {}", name, what.substr(what.find(']') + 2)));
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", name, error.what()));
   }

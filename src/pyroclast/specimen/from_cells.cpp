@@ -81,6 +81,10 @@ void require_cells(const Cells& cells) {
     for (int v : t.cells[c])
       if (v < 0 || v >= std::ssize(t.vertices))
         throw Error(fmt::format("cell {} names vertex {}, but there are {}", c, v, t.vertices.size()));
+    std::vector<int> sorted = t.cells[c];
+    std::ranges::sort(sorted);
+    if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
+      throw Error(fmt::format("cell {} names vertex {} twice", c, *twice));
   }
   for (std::size_t v = 0; v < t.vertices.size(); ++v)
     if (!std::isfinite(t.vertices[v][0]) || !std::isfinite(t.vertices[v][1]))
@@ -101,6 +105,7 @@ Region outline_of(const Tessellation& tessellation) {
     else
       throw Error("the cells are not one piece");
   }
+  if (outer.size() < 3 || !(area(outer) > 0.0)) throw Error("the cells enclose no area");
   const Box box = box_of(outer);
   const double tolerance = kSameLevel * std::max(box.width(), box.height());
   const auto lowest = std::ranges::min_element(
