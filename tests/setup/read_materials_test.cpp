@@ -115,6 +115,31 @@ TEST(ReadMaterials, ThermalStrainMayBeGivenItself) {
   EXPECT_DOUBLE_EQ(read_good(p).mortar().thermal_strain(700.0), 14e-3);
 }
 
+TEST(ReadMaterials, AQuartzStepComesToTheStrainOfThePhase) {
+  Properties p;
+  p.mortar += "expansion = \"1e-5 1/K\"\nquartz_step = 0.0035\n";
+  const Materials m = read_good(p);
+  EXPECT_NEAR(m.mortar().thermal_strain(540.0), 5.2e-3, 1e-15);
+  EXPECT_NEAR(m.mortar().thermal_strain(620.0), 6e-3 + 3.5e-3, 1e-15);
+  p.mortar += "quartz_range = [\"560 degC\", \"590 degC\"]\n";
+  EXPECT_NEAR(read_good(p).mortar().thermal_strain(560.0), 5.4e-3, 1e-15);
+  EXPECT_NEAR(read_good(p).mortar().thermal_strain(590.0), 5.7e-3 + 3.5e-3, 1e-15);
+}
+
+TEST(ReadMaterials, RefusesAQuartzStepThatMakesNoSense) {
+  const auto told = [](const std::string& lines, const std::string& key, const std::string& what) {
+    Properties p;
+    p.mortar += lines;
+    expect_error(p, "materials.mortar." + key, what);
+  };
+  told("quartz_step = 0.0035\n", "quartz_step", "give its expansion or thermal_strain too");
+  told("expansion = \"1e-5 1/K\"\nquartz_step = 0.35\n", "quartz_step", "between 0 and 0.02");
+  told("expansion = \"1e-5 1/K\"\nquartz_step = 0.0035\nquartz_range = [\"600 degC\", \"550 degC\"]\n",
+       "quartz_range", "the first below the second");
+  told("expansion = \"1e-5 1/K\"\nquartz_range = [\"550 degC\", \"600 degC\"]\n", "quartz_range",
+       "has no effect");
+}
+
 // A run at room temperature alone needs the curves only there.
 TEST(ReadMaterials, ExpansionIsReadForARunAtOneTemperature) {
   Properties p;

@@ -1,7 +1,10 @@
+#include <algorithm>
+#include <array>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "known.hpp"
 #include "stages/small_runs.hpp"
 
 /// Runs of what the constituents of a concrete do on their own.
@@ -22,14 +25,18 @@ phi_res = "34 deg"
 G_f2 = "400 N/m"
 )";
 
+/// The deck whose contacts of mortar never part.
+std::string unbreakable(const std::string& text) {
+  return with(text, "temperature_ratio = { table = [[\"20 degC\", 1], [\"820 degC\", 0.1]] }\n" + kMortarBond,
+              "law = \"elastic\"\n");
+}
+
 /// A prism whose mortar grows away from its aggregate; only contacts within aggregate can crack.
 std::string strong_mortar(const std::string& aggregate_contact) {
   std::string text = deck(kUniform + kSettle + heat("120 degC"), "\"0 1/K\"");
   text = with(with(text, "fraction = 0.1", "fraction = 0.4"), "count = 60", "count = 150");
   text = with(text, "expansion = \"1e-5 1/K\"", "expansion = \"5e-5 1/K\"");
-  text = with(text, "temperature_ratio = { table = [[\"20 degC\", 1], [\"820 degC\", 0.1]] }\n" + kMortarBond,
-              "law = \"elastic\"\n");
-  return text + aggregate_contact;
+  return unbreakable(text) + aggregate_contact;
 }
 
 // Promise: contacts within aggregate take any law, as other interfaces do. Without one they never part.
@@ -47,6 +54,89 @@ TEST(AggregateThatCracks, NeedsADeckAndNoCode) {
   const auto& materials = cracked.simulation->materials();
   EXPECT_DOUBLE_EQ(materials.contacts[0]["f_t"](200.0), 9e6);
   EXPECT_DOUBLE_EQ(materials.contacts[0]["K_n"](20.0), 29.4e9 / 1.6e-3);  // of aggregate, Eq. (17)
+}
+
+// ---- Quartz
+
+/// Aggregate and mortar alike, with quartz in both or in the aggregate alone.
+std::string with_quartz(std::string text, bool in_both) {
+  const std::string step = "\nquartz_step = 0.004\nspecific_heat";
+  for (const char* phase : {"aggregate", "mortar"}) {
+    const auto at = text.find("\nspecific_heat", text.find(std::string("[materials.") + phase));
+    if (in_both || phase == std::string("aggregate")) text.replace(at, 14, step);
+  }
+  return text;
+}
+
+// Promise: a free body grows by the step on its way through 573 °C, and shrinks by it on its way back.
+TEST(QuartzStepVerification, AFreeBodyGrowsByIt) {
+  const std::string text = deck(kUniform + kSettle + heat("540 degC") + heat("610 degC") + heat("540 degC"));
+  const Finished r(with_quartz(
+      with(unbreakable(text), "exchange_increment = \"5 K\"", "exchange_increment = \"10 K\""), true));
+  ASSERT_EQ(r.run.outcome(), Outcome::completed);
+  const auto strain = [&](int stage) { return -r.end_of(stage, "specimen_strain"); };
+  const double expected = 70.0 * 1e-5 + 0.004;
+  expect_known({"Growth of a free body with quartz, 540 to 610 degC", "alpha dT + step", "1"},
+               strain(2) - strain(1), expected, 0.01 * expected);
+  EXPECT_NEAR(strain(3), strain(1), 0.01 * expected);
+  EXPECT_LT(r.energy_error_over_turnover(), 1e-3);
+}
+
+// Promise: quartz in the aggregate alone tears the mortar.
+TEST(QuartzStep, OfTheAggregateTearsTheMortar) {
+  const std::string text = with(with(deck(kUniform + kSettle + heat("540 degC") + heat("610 degC")),
+                                     "fraction = 0.1", "fraction = 0.3"),
+                                "exchange_increment = \"5 K\"", "exchange_increment = \"10 K\"");
+  const Finished without(text), quartz(with_quartz(text, false));
+  for (const char* column : {"tension_mortar_mortar_damaged", "energy_contacts_J"})
+    EXPECT_EQ(quartz.end_of(1, column), without.end_of(1, column)) << column;
+  EXPECT_GT(quartz.last("tension_mortar_mortar_broken"), without.last("tension_mortar_mortar_damaged"));
+}
+
+// Promise: in a computed field each zone has the step by its own temperature.
+TEST(QuartzStep, FollowsTheComputedField) {
+  std::string text = with(deck(kSettle + kExpose + kHeatedFace), "rate = \"10 K/min\", to = \"70",
+                          "rate = \"200 K/min\", to = \"720");
+  for (int material = 0; material < 2; ++material)
+    text = with(text, "conductivity = \"40 W/(m K)\"", "conductivity = \"4 W/(m K)\"");
+  text = with(with(text, "exchange_increment = \"5 K\"", "exchange_increment = \"50 K\""),
+              "most_cycles = 5000", "most_cycles = 100");
+  const Finished r(with_quartz(text, false));
+  ASSERT_EQ(r.run.outcome(), Outcome::completed);
+  const auto& model = r.simulation->model();
+  const auto& zones = r.simulation->field().zones();
+  const auto blocks = zone_blocks(model);
+  std::array<int, 3> below_within_above{};
+  for (int z = 0; z < model.zone_count(); ++z) {
+    if (model.is_of_bearing(blocks[z])) continue;
+    const double T = zones[z], way = std::clamp((T - 550.0) / 50.0, 0.0, 1.0);
+    const bool quartz = model.material_names[model.block_material[blocks[z]]] == "aggregate";
+    const double step = quartz ? 0.004 * way * way * (3.0 - 2.0 * way) : 0.0;
+    EXPECT_NEAR(r.simulation->mechanics().properties_of_zone(z).thermal_strain, 1e-5 * (T - 20.0) + step,
+                1e-14);
+    if (quartz) ++below_within_above[T < 550.0 ? 0 : T < 600.0 ? 1 : 2];
+  }
+  for (const int count : below_within_above) EXPECT_GT(count, 0);
+}
+
+// Promise: where the strains of phases follow from that of the concrete, no step comes to it, and the place
+// of the concrete's is named.
+TEST(QuartzStep, IsRefusedBesideTheMixtureRule) {
+  const auto error_of = [](const std::string& concrete) -> std::string {
+    std::string text = with(deck(kUniform + kSettle + heat("420 degC"), ""), "expansion = \n", "");
+    text = with(text, "expansion = \"1e-5 1/K\"\n", "quartz_step = 0.0035\n");
+    try {
+      pyroclast::read(text + concrete);
+      return {};
+    } catch (const DeckError& error) {
+      return error.what();
+    }
+  };
+  const std::string error = error_of(
+      "[concrete]\nthermal_strain = { builtin = \"glasgow_free_thermal_strain\" }\ninclusion_ratio = 1.25\n");
+  EXPECT_NE(error.find("materials.mortar.quartz_step"), std::string::npos) << error;
+  EXPECT_NE(error.find("which holds the step already (deck.toml:"), std::string::npos) << error;
+  EXPECT_NE(error.find("concrete.thermal_strain)"), std::string::npos) << error;
 }
 
 }  // namespace

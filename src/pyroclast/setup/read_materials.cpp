@@ -67,6 +67,35 @@ Curve read_thermal_strain(const Section& s, ExpansionReading reading, CurveReade
   return strain;
 }
 
+/// None where the deck has none.
+std::optional<QuartzStep> read_quartz_step(const Section& s, const ReadConcrete& concrete) {
+  if (!s.has("quartz_step")) {
+    s.know({"quartz_range"});
+    return std::nullopt;
+  }
+  QuartzStep step;
+  step.strain = s.number("quartz_step", Range::between(0.0, 0.02).usually(0.003, 0.0045),
+                         "linear strain that quartz in the phase adds to its own expansion or thermal_strain "
+                         "where it turns into its other form, near 573 °C");
+  if (s.has("quartz_range")) {
+    const auto ends = s.quantities("quartz_range", unit::temperature, Range::at_least(kReferenceTemperature),
+                                   "where it begins and where it ends; 550 and 600 °C unless stated");
+    if (ends.size() == 2 && ends[0] < ends[1])
+      step.over = {ends[0], ends[1]};
+    else if (!ends.empty())
+      s.error("quartz_range", "must be two temperatures, the first below the second");
+  }
+  if (concrete.of_phases)
+    s.error(
+        "quartz_step",
+        fmt::format("has no meaning beside concrete.inclusion_ratio: the strain of the phase follows from "
+                    "that of the concrete, which holds the step already ({})",
+                    concrete.place));
+  else if (!s.has("expansion") && !s.has("thermal_strain"))
+    s.error("quartz_step", "comes to the strain of the phase: give its expansion or thermal_strain too");
+  return s.ok() ? std::optional(step) : std::nullopt;
+}
+
 /// Density, and what conduction needs where it is given.
 SolidMaterial read_heat_properties(const Section& s, CurveReader& curves) {
   const auto optional = [&](std::string_view key, const Unit& unit, const Range& range,
@@ -166,6 +195,9 @@ SolidMaterial read_phase(const Section& s, ExpansionReading reading, const ReadC
                          CurveReader& curves) {
   SolidMaterial m = read_solid(s, curves);
   m.thermal_strain = read_thermal_strain(s, reading, curves);
+  if (const auto step = read_quartz_step(s, concrete))
+    m.thermal_strain = with_quartz_step(m.thermal_strain, *step, strain_range(curves.needed()))
+                           .named(s.path() + ".thermal_strain");
   for (const char* key : {"expansion", "thermal_strain"})
     if (concrete.of_phases && s.has(key))
       s.error(key, "has no meaning beside concrete.inclusion_ratio, from which it follows");
@@ -174,7 +206,7 @@ SolidMaterial read_phase(const Section& s, ExpansionReading reading, const ReadC
 }
 
 SolidMaterial read_conducting_solid(const Section& s, CurveReader& curves) {
-  s.know({"E", "nu", "expansion", "thermal_strain", "creep"});
+  s.know({"E", "nu", "expansion", "thermal_strain", "quartz_step", "quartz_range", "creep"});
   return read_heat_properties(s, curves);
 }
 
@@ -449,6 +481,8 @@ ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& 
       "concrete", "what is known of the concrete as a whole; see [deck.md](deck.md#creep-under-load)");
   if (!s) return concrete;
   concrete.thermal_strain = read_thermal_strain(*s, reading, curves);
+  const char* const key = s->has("expansion") ? "expansion" : "thermal_strain";
+  concrete.place = fmt::format("{}: concrete.{}", s->where(key), key);
   if (!s->has("inclusion_ratio")) {
     s->know({"inclusion_weight"});
     return concrete;

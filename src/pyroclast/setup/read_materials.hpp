@@ -20,6 +20,7 @@ OnCooling read_on_cooling(const Section& root);
 /// What [concrete] says of the concrete as a whole.
 struct ReadConcrete {
   std::optional<Curve> thermal_strain;        ///< eps_c
+  std::string place;                          ///< where it stands, for messages
   std::optional<StrainOfConcrete> of_phases;  ///< where those of the phases follow from it
 };
 
