@@ -139,5 +139,78 @@ TEST(QuartzStep, IsRefusedBesideTheMixtureRule) {
   EXPECT_NE(error.find("concrete.thermal_strain)"), std::string::npos) << error;
 }
 
+// ---- Cooling
+
+/// Aggregate and mortar alike, with further lines for both, in a body that loses what heat takes.
+std::string cooled(std::string text, const std::string& lines) {
+  text = with(text, "on_cooling = \"reversible\"", "on_cooling = \"irreversible\"");
+  for (const char* phase : {"[materials.aggregate]\n", "[materials.mortar]\n"})
+    text = with(text, phase, phase + lines);
+  return text;
+}
+
+// Promise: a free body comes back by its slope, and goes the same way up again to where it was, then on along
+// its curve; with small and finite kinematics, with and without predictor.
+TEST(CoolingInARunVerification, AFreeBodyShrinksByItsOwnSlope) {
+  const std::string text = cooled(unbreakable(deck(kUniform + kSettle + heat("220 degC") + heat("20 degC") +
+                                                   heat("120 degC") + heat("270 degC"))),
+                                  "contraction = \"6e-6 1/K\"\n");
+  const std::string predicted = with(text, "least_cycles = 50", "least_cycles = 50\npredictor = true");
+  const std::string finite =
+      with(predicted, "mass = \"scaled\"", "mass = \"scaled\"\nkinematics = \"finite\"");
+  for (const std::string& way : {text, predicted, finite}) {
+    const Finished r(way);
+    ASSERT_EQ(r.run.outcome(), Outcome::completed);
+    const double expected[] = {0.0, 2e-3, 0.8e-3, 1.4e-3, 2.5e-3};
+    for (int stage = 1; stage < 5; ++stage)
+      expect_known({"Growth of a free body on the way 20, 220, 20, 120, 270 degC",
+                    "strain(T_max) - contraction (T_max - T)", "1"},
+                   -r.end_of(stage, "specimen_strain"), expected[stage], 0.01 * 2e-3);
+    EXPECT_LT(r.energy_error_over_turnover(), 1e-3);
+  }
+}
+
+// Promise: the predictor is not held back by the curve that the body does not follow.
+TEST(CoolingInARun, IsForetoldByThePredictor) {
+  const std::string text =
+      cooled(deck(kUniform + kSettle + heat("120 degC") + heat("20 degC")), "contraction = \"4e-5 1/K\"\n");
+  const Finished plain(text);
+  const Finished predicted(with(text, "least_cycles = 50", "least_cycles = 50\npredictor = true"));
+  EXPECT_LT(predicted.result(2, "cycles").value(), 0.7 * plain.result(2, "cycles").value());
+}
+
+// Promise: where E of all phases loses half on cooling, a load shortens the body by twice as much.
+TEST(CoolingInARunVerification, ResidualEIsTheSlopeOfALoad) {
+  const std::string text = unbreakable(
+      deck(kUniform + kSettle + heat("220 degC") + heat("20 degC") + load("stress = \"0.5 MPa\"")));
+  const std::string half = "residual_ratio = { table = [[\"20 degC\", 1], [\"220 degC\", 0.5]] }\n";
+  const auto shortening = [](const Finished& r) {
+    EXPECT_EQ(r.run.outcome(), Outcome::completed);
+    EXPECT_LT(r.energy_error_over_turnover(), 1e-3);
+    return r.last("specimen_strain") - r.end_of(2, "specimen_strain");
+  };
+  const double kept = shortening(Finished(cooled(text, ""))), lost = shortening(Finished(cooled(text, half)));
+  EXPECT_GT(kept, 1e-5);
+  expect_known(
+      {"Strain of a load after cooling, E of all phases halved, over that of E kept", "1 / phi", "1"},
+      lost / kept, 2.0, 0.02);
+}
+
+// Promise: strengths that are lost on cooling break what would have held, and nothing is lost on heating.
+TEST(CoolingInARun, ResidualStrengthBreaksWhatHeld) {
+  const std::string text =
+      with(cooled(with(deck(kUniform + kSettle + heat("220 degC") + heat("20 degC")), "fraction = 0.1",
+                       "fraction = 0.3"),
+                  ""),
+           "[materials.mortar]\n", "[materials.mortar]\ncontraction = \"1.06e-5 1/K\"\n");
+  const Finished kept(text);
+  const Finished lost(with(text, "temperature_ratio = ",
+                           "residual_ratio = { table = [[\"20 degC\", 1], [\"220 degC\", 0.2]] }\n"
+                           "temperature_ratio = "));
+  ASSERT_EQ(lost.run.outcome(), Outcome::completed);
+  EXPECT_EQ(lost.end_of(1, "energy_contacts_J"), kept.end_of(1, "energy_contacts_J"));
+  EXPECT_GT(lost.last("tension_mortar_mortar_damaged"), kept.last("tension_mortar_mortar_damaged"));
+}
+
 }  // namespace
 }  // namespace pyroclast

@@ -6,9 +6,11 @@ namespace pyroclast {
 
 namespace {
 
-/// \param marked  that E is that of, see OnCooling, °C
-ZoneProperties zone_at(const SolidMaterial& solid, double temperature, double marked) {
-  return zone_properties<2>(solid.young(marked), solid.poisson, solid.thermal_strain(temperature));
+/// \param hottest  that it was so far, °C
+ZoneProperties zone_at(const ConcreteMaterials& materials, const SolidMaterial& solid, double temperature,
+                       double hottest) {
+  return zone_properties<2>(solid.young_at(temperature, materials.marked(temperature, hottest)),
+                            solid.poisson, solid.free_strain(temperature, hottest));
 }
 
 /// Of each zone; none where nothing creeps.
@@ -29,17 +31,18 @@ std::vector<CreepIncrement> creep_increments(const Model<2>& model, const Concre
 
 /// One set of parameters a material and an interface; bearings keep the reference temperature.
 BodyProperties properties_at_one_temperature(const Model<2>& model, const ConcreteMaterials& materials,
-                                             double temperature, double marked) {
+                                             double temperature, double hottest) {
   std::vector<ZoneProperties> solids;
   for (const SolidMaterial& solid : materials.solids)
-    solids.push_back(solid.is_of_bearing ? zone_at(solid, kReferenceTemperature, kReferenceTemperature)
-                                         : zone_at(solid, temperature, marked));
+    solids.push_back(solid.is_of_bearing
+                         ? zone_at(materials, solid, kReferenceTemperature, kReferenceTemperature)
+                         : zone_at(materials, solid, temperature, hottest));
   std::vector<ZoneProperties> zones;
   zones.reserve(model.zones.size());
   for (int block : zone_blocks(model)) zones.push_back(solids[model.block_material[block]]);
   std::vector<ContactProperties> interfaces;
   for (std::size_t i = 0; i < materials.contacts.size(); ++i) {
-    interfaces.push_back(materials.contacts[i].at(temperature, marked));
+    interfaces.push_back(materials.contacts[i].at(temperature, materials.marked(temperature, hottest)));
     validate(interfaces.back(), model.interface_names[i]);
   }
   return by_interface(model, std::move(zones), interfaces);
@@ -48,9 +51,8 @@ BodyProperties properties_at_one_temperature(const Model<2>& model, const Concre
 }  // namespace
 
 HottestTemperatures::HottestTemperatures(const ConcreteMaterials& materials, const TemperatureField& field) {
-  const bool marks = materials.on_cooling == OnCooling::irreversible;
-  if (materials.creeps() || marks) zones_ = field.zones();
-  if (marks) contacts_ = field.contacts();
+  if (materials.asks_for_hottest()) zones_ = field.zones();
+  if (materials.on_cooling == OnCooling::irreversible) contacts_ = field.contacts();
   of_all_ = field.mean();
 }
 
@@ -70,28 +72,26 @@ void HottestTemperatures::visit_state(StateVisitor& visitor) {
 BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& materials,
                              const TemperatureField& field, const HottestTemperatures& before) {
   BodyProperties p;
-  const auto marked = [&](double now, double hottest) {
-    return materials.on_cooling == OnCooling::irreversible ? hottest : now;
-  };
   if (field.is_uniform()) {
-    p = properties_at_one_temperature(model, materials, field.mean(),
-                                      marked(field.mean(), before.of_all(field.mean())));
+    p = properties_at_one_temperature(model, materials, field.mean(), before.of_all(field.mean()));
     p.creep = creep_increments(model, materials, field, before);
     return p;
   }
   p.creep = creep_increments(model, materials, field, before);
   p.zones.reserve(model.zones.size());
   const auto blocks = zone_blocks(model);
-  for (int z = 0; z < model.zone_count(); ++z)
-    p.zones.push_back(zone_at(materials.solids[model.block_material[blocks[z]]], field.zones()[z],
-                              marked(field.zones()[z], before.of_zone(z, field.zones()[z]))));
+  for (int z = 0; z < model.zone_count(); ++z) {
+    const double now = field.zones()[z];
+    p.zones.push_back(
+        zone_at(materials, materials.solids[model.block_material[blocks[z]]], now, before.of_zone(z, now)));
+  }
   p.of_contact.reserve(model.contacts.size());
   for (int c = 0; c < model.contact_count(); ++c) {
     const int interface = model.contacts[c].interface;
     p.of_contact.push_back(c);
     const double now = field.contacts()[c];
     const ContactProperties properties =
-        materials.contacts[interface].at(now, marked(now, before.of_contact(c, now)));
+        materials.contacts[interface].at(now, materials.marked(now, before.of_contact(c, now)));
     validate(properties, model.interface_names[interface]);
     p.contacts.add(properties);
   }
