@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "known.hpp"
+#include "phases.hpp"
+#include "pyroclast/base/state_copy.hpp"
 #include "stages/small_runs.hpp"
 
 /// Runs of what the constituents of a concrete do on their own.
@@ -210,6 +213,92 @@ TEST(CoolingInARun, ResidualStrengthBreaksWhatHeld) {
   ASSERT_EQ(lost.run.outcome(), Outcome::completed);
   EXPECT_EQ(lost.end_of(1, "energy_contacts_J"), kept.end_of(1, "energy_contacts_J"));
   EXPECT_GT(lost.last("tension_mortar_mortar_damaged"), kept.last("tension_mortar_mortar_damaged"));
+}
+
+// ---- One damage for tension and shear, beside all the rest
+
+/// The shipped hot test with few blocks, its mortar creeping and the strains of its phases those of the
+/// concrete.
+std::string hot_concrete() {
+  std::string text = shipped_case("hot_compression");
+  for (const auto& [from, to] : {
+           std::pair{"width = \"150 mm\"", "width = \"60 mm\""},
+           std::pair{"height = \"300 mm\"", "height = \"120 mm\""},
+           std::pair{"d_max = \"32 mm\"", "d_max = \"16 mm\""},
+           std::pair{"sieves = [\"8 mm\", \"12.5 mm\", \"16 mm\", \"20 mm\", \"25 mm\"]",
+                     "sieves = [\"8 mm\"]"},
+           std::pair{"count = 1000", "count = 250"},
+           std::pair{"safety = 0.9", "safety = 0.6"},
+           std::pair{"to = \"400 degC\"", "to = \"220 degC\""},
+           std::pair{"exchange_increment = \"4 K\"", "exchange_increment = \"20 K\""},
+           std::pair{"least_cycles = 1000", "least_cycles = 300"},
+           std::pair{"velocity = \"0.3 mm/s\"", "velocity = \"2 mm/s\""},
+           std::pair{"ramp_time = \"20 ms\"", "ramp_time = \"5 ms\""},
+           std::pair{"stop_strain = 0.01", "stop_strain = 0.005"},
+           std::pair{"expansion = { builtin = \"paper_aggregate_expansion\" }  # Eq. (18)\n", ""},
+           std::pair{"expansion = { builtin = \"paper_mortar_expansion\" }\n", ""},
+           std::pair{"G_f1 = \"60 N/m\"",
+                     "G_f1 = { value = \"60 N/m\", times = \"glasgow_fracture_energy\" }"},
+       })
+    text = with(text, from, to);
+  return text +
+         "[concrete]\nthermal_strain = { builtin = \"glasgow_free_thermal_strain\" }\ninclusion_ratio = "
+         "1.25\n"
+         "[materials.mortar.creep]\nk2 = 2.35\n";
+}
+
+/// The same with the other law, as docs/deck.md says.
+std::string with_mixed_mode(std::string text) {
+  text = with(text, "[contacts.mortar_mortar]", "[contacts.mortar_mortar]\nlaw = \"mixed_mode\"");
+  for (const char* line : {"c_res = \"0.038 MPa\"          # residual cohesion\n",
+                           "phi_res = \"34 deg\"           # residual friction angle\n"})
+    text = with(text, line, "");
+  return with(text, "phi = \"34 deg\"", "psi = \"20 deg\"\nu_r = \"0.1 mm\"\nphi = \"34 deg\"");
+}
+
+// Promise: a deck of a concrete comes to it by one word and two numbers, beside creep, curves, the mixture
+// rule and the predictor; the ledger closes, and nothing is infinite; a run that goes on from within an
+// exchange, with creep under way, ends with the same bits.
+TEST(MixedModeInARun, GoesThroughAHotTestOfConcrete) {
+  Trial trial(with_mixed_mode(hot_concrete()));
+  StateCopy copy;
+  trial.run.limit_batch(70);
+  trial.run.stop_when(
+      [&] { return trial.run.stage_number() == 1 && trial.simulation->field().mean() > 100.0; });
+  while (trial.run.next()) {
+  }
+  ASSERT_EQ(trial.run.outcome(), Outcome::stopped);
+  copy.take([&](StateVisitor& visitor) { trial.run.visit_state(visitor); });
+  trial.run.stop_when([] { return false; });
+  trial.run.go_on();
+  trial.run.run();
+  ASSERT_EQ(trial.run.outcome(), Outcome::completed);
+  const History& history = trial.run.history();
+  const auto last = [&](const char* column) { return history.last(column).value(); };
+  const auto& contacts = trial.simulation->materials().contacts;
+  EXPECT_STREQ(contacts[aggregate_mortar].law->name, "mixed_mode");
+  EXPECT_STREQ(contacts[mortar_mortar].law->name, "mixed_mode");
+  EXPECT_GT(last("dissipated_creep_J"), 0.0);
+  EXPECT_GT(last("mixed_mortar_mortar_broken"), 0.0);
+  double turnover = 0.0;
+  for (const char* put_in :
+       {"energy_loading_J", "energy_gravity_J", "energy_property_change_J", "energy_mass_scaling_J"})
+    turnover += std::abs(last(put_in));
+  EXPECT_LT(std::abs(last("energy_error_J")), 1e-3 * turnover);
+  double largest = 0.0;
+  for (std::size_t row = 0; row < history.row_count(); ++row) {
+    for (const auto& cell : history.row(row)) EXPECT_TRUE(!cell || std::isfinite(*cell)) << row;
+    largest = std::max(largest, history.cell(row, "stress_MPa").value_or(0.0));
+  }
+  EXPECT_GT(largest, 5.0);
+  EXPECT_LT(largest, 60.0);
+
+  Trial resumed(with_mixed_mode(hot_concrete()));
+  copy.put([&](StateVisitor& visitor) { resumed.run.visit_state(visitor); });
+  resumed.run.go_on();
+  resumed.run.run();
+  EXPECT_EQ(resumed.simulation->mechanics().displacements(), trial.simulation->mechanics().displacements());
+  EXPECT_EQ(resumed.run.history().last("dissipated_creep_J"), history.last("dissipated_creep_J"));
 }
 
 }  // namespace
