@@ -744,6 +744,11 @@ class Run:
         return self._core.copied("stress")
 
     @property
+    def creep_strain(self) -> Array:
+        """(zones, 3): xx, yy, xy of what each zone has crept under load while it was heated; 0 where nothing creeps."""
+        return self._core.copied("creep_strain")
+
+    @property
     def temperature(self) -> Array:
         """(gridpoints,), degC."""
         return self._core.copied("temperature")

@@ -17,6 +17,7 @@ ALLOWED = [
     Allowed("base/vec.hpp", "", "components of one vector"),
     Allowed("material/creep.cpp", "", "components of one tensor"),
     Allowed("material/mixture.cpp", "", "over the phases of a composite"),
+    Allowed("simulation/heat_conditions.cpp", "with_specimen()", "over the phases of a specimen"),
     Allowed("base/team.cpp", "", "times that threads waited, in whole nanoseconds"),
     Allowed("session/law_point.cpp", "LawPoint::dissipated()", "over the losses of one contact point"),
     Allowed("mechanics/mechanics.cpp", "Dissipation::total()", "over the energies of one ledger, each a chunked sum"),

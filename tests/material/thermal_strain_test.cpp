@@ -48,6 +48,23 @@ TEST(ThermalStrainVerification, TangentIsTheIntegralOfEquation18) {
   }
 }
 
+// Promise: below its range the step changes no bit, above it is all there, and in between it comes without
+// kinks.
+TEST(QuartzStep, ComesSmoothlyInItsRange) {
+  const Curve plain = strain("paper_aggregate_expansion", ExpansionReading::tangent);
+  const Curve stepped = with_quartz_step(plain, {.strain = 3.5e-3}, kFire);
+  for (const double T : {20.0, 300.0, 549.9, 550.0}) EXPECT_EQ(stepped(T), plain(T)) << T;
+  for (const double T : {600.0, 600.1, 800.0}) EXPECT_EQ(stepped(T), plain(T) + 3.5e-3) << T;
+  const auto added = [&](double T) { return stepped(T) - plain(T); };
+  EXPECT_NEAR(added(575.0), 0.5 * 3.5e-3, 1e-15);
+  EXPECT_NEAR(added(562.5), 3.5e-3 * (3.0 / 16.0 - 2.0 / 64.0), 1e-15);
+  for (const double T : {550.0, 600.0}) EXPECT_NEAR((added(T + 0.01) - added(T - 0.01)) / 0.02, 0.0, 1e-7);
+  const Curve elsewhere = with_quartz_step(Curve::constant(0.0), {2e-3, {500.0, 520.0}}, kFire);
+  EXPECT_EQ(elsewhere(510.0), 1e-3);
+  EXPECT_EQ(elsewhere.range(), kFire);
+  EXPECT_EQ(elsewhere.maximum(20.0, 800.0), 2e-3);
+}
+
 TEST(ThermalStrain, OfAConstantIsTheSameInBothReadings) {
   const Curve expansion = Curve::constant(-1e-5);
   for (const ExpansionReading reading : {ExpansionReading::secant, ExpansionReading::tangent}) {

@@ -3,6 +3,7 @@
 #include "bodies.hpp"
 #include "known.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/material/concrete.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
 
 /// Bodies whose temperature changes: stresses, contacts and the energy ledger.
@@ -99,8 +100,9 @@ TEST(FreeExpansionVerification, IsWhatAnIrregularBodySettlesAt) {
   m.set_properties(uniform(model, elastic_contact(), strain));
   m.advance(2000);
   // at rest to round-off: what is left is that of the field above
-  expect_known_field({"Stress of a body that expands freely, over E alpha dT", "no restraint, no stress", "1"},
-                     largest_stress(m) / (young * strain), 1.0, 1e-12);
+  expect_known_field(
+      {"Stress of a body that expands freely, over E alpha dT", "no restraint, no stress", "1"},
+      largest_stress(m) / (young * strain), 1.0, 1e-12);
   EXPECT_LT(largest_traction(m), 1e-12 * young * strain);
 }
 
@@ -200,6 +202,45 @@ void expect_heat_stored(const Model<Dim>& model, double volume) {
 TEST(RestraintVerification, ABodyHeldEverywhereTakesTheFullStressAndStoresTheHeat) {
   expect_heat_stored(tessellated(40, 0.1, 0.1, 4), 0.1 * 0.1);
   expect_heat_stored(five_tetrahedra(), 1.0);
+}
+
+// ---- Cooling
+
+/// A solid whose free strain has a slope of its own on cooling.
+SolidMaterial contracting_solid() {
+  SolidMaterial solid;
+  solid.thermal_strain = Curve::table({20.0, 820.0}, {0.0, 8e-3}, temperature_axis());
+  solid.contraction = 6e-6;
+  return solid;
+}
+
+/// A body that is held everywhere, heated, cooled and heated again.
+template <int Dim>
+void expect_stress_of_its_own_slope(const Model<Dim>& model, Kinematics kinematics) {
+  const SolidMaterial solid = contracting_solid();
+  auto parameters = quasi_static<Dim>();
+  parameters.kinematics = kinematics;
+  auto m = mechanics(model, elastic_contact(), parameters);
+  for (int g = 0; g < model.gridpoint_count(); ++g)
+    for (int i = 0; i < Dim; ++i) m.prescribe_velocity(g, i, 0.0);
+  const double over_strain = Dim == 2 ? young / (1.0 - poisson) : young / (1.0 - 2.0 * poisson);
+  double hottest = 20.0;
+  for (const auto& [T, strain] : {std::pair{420.0, 4e-3}, {20.0, 1.6e-3}, {320.0, 3.4e-3}, {520.0, 5e-3}}) {
+    hottest = std::max(hottest, T);
+    m.set_properties(uniform(model, elastic_contact(), solid.free_strain(T, hottest)));
+    m.advance(1);
+    for (const auto& stress : m.stresses())
+      expect_known({std::string("Stress of a held body after heating and on cooling, ") +
+                        (Dim == 2 ? "plane stress" : "tetrahedra"),
+                    "-E / (1 - (Dim - 1) nu) [strain(T_max) - contraction (T_max - T)]", "Pa"},
+                   stress[0], -over_strain * strain, 1e-9 * over_strain * strain);
+  }
+}
+
+TEST(CoolingVerification, AHeldBodyTakesTheStressOfItsOwnSlope) {
+  expect_stress_of_its_own_slope<2>(column(1, 0.01), Kinematics::small);
+  expect_stress_of_its_own_slope<2>(column(1, 0.01), Kinematics::finite);
+  expect_stress_of_its_own_slope<3>(cubes(1, 0.01), Kinematics::small);
 }
 
 // ---- Thick cylinder

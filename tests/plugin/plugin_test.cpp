@@ -16,6 +16,7 @@
 #include "pyroclast/plugin/find_law.hpp"
 #include "pyroclast/plugin/load.hpp"
 #include "pyroclast/plugin/stamp.hpp"
+#include "stages/small_runs.hpp"
 
 namespace pyroclast {
 namespace {
@@ -130,6 +131,39 @@ TEST(Plugin, ALoadedLawIsATableLikeAnyOther) {
   EXPECT_DOUBLE_EQ(losses[1], paper.mode_1_energy);
   EXPECT_EQ(history.back(), 1e-4);
   EXPECT_EQ(losses.back(), 1.0);
+}
+
+/// A small body whose mortar creeps under load, with contacts of a law.
+std::unique_ptr<Simulation> creeping_body(const std::string& law, const LawSources& sources) {
+  std::string text = with(deck(kUniform + kSettle + load("stress = \"1 MPa\"") + heat("60 degC") + kCompress),
+                          "[contacts.mortar_mortar]\n", "[contacts.mortar_mortar]\nlaw = \"" + law + "\"\n");
+  if (law == "renamed") text = with(text, "f_t = ", "u_mark = \"1 um\"\nf_t = ");
+  text += "[materials.mortar.creep]\nstrain = { table = [[\"20 degC\", 0], [\"820 degC\", 0.4]] }\n";
+  pyroclast::Setup setup = read_setup(Deck::parse(text, "deck.toml"), ".", {}, sources);
+  auto simulation = make_simulation(setup);
+  Run run(*simulation, std::move(setup.stages));
+  run.run();
+  EXPECT_EQ(run.outcome(), Outcome::completed);
+  EXPECT_GT(run.history().last("dissipated_creep_J").value(), 0.0);
+  EXPECT_LT(std::abs(run.history().last("energy_error_J").value()),
+            1e-3 * run.history().last("energy_loading_J").value());
+  return simulation;
+}
+
+// Promise: zones creep beside the contacts of a law from a shared object as beside those of the program, to
+// the bit.
+TEST(Plugin, ALoadedLawStandsBesideAPhaseThatCreeps) {
+  LawSources sources;
+  sources.folders = {LAWS};
+  const auto own = creeping_body("renamed", sources), built_in = creeping_body("cohesive", sources);
+  EXPECT_STREQ(own->materials().contacts[2].law->name, "renamed");
+  EXPECT_EQ(own->mechanics().displacements(), built_in->mechanics().displacements());
+  double crept = 0.0;
+  for (int z = 0; z < own->model().zone_count(); ++z) {
+    EXPECT_EQ(own->mechanics().creep_strain(z), built_in->mechanics().creep_strain(z));
+    crept = std::min(crept, own->mechanics().creep_strain(z)[1]);
+  }
+  EXPECT_LT(crept, -1e-5);
 }
 
 TEST(Plugin, ALawForPlaneBodiesIsRefusedInSpace) {

@@ -9,6 +9,7 @@ import subprocess
 import threading
 import time
 
+import h5py
 import numpy as np
 
 import pyroclast
@@ -491,6 +492,61 @@ class Arrays(Case):
             run.displacement
         with self.assertRaisesRegex(pyroclast.Error, "nothing moves"):
             run.call_at(10, print)
+
+
+class Creep(Case):
+    """A specimen of one solid that creeps under a held load while it is heated to 60 degC."""
+
+    STRAIN = 6e-3  # B at 60 degC
+    F_C, NU = 35e6, 0.3
+
+    def creeping(self) -> pyroclast.Deck:
+        made = heated()
+        for phase in ("aggregate", "mortar"):
+            solid = made[f"materials.{phase}"]
+            solid.pop("expansion")
+            made[f"materials.{phase}"] = solid | {"E": "30 GPa", "creep": {
+                "of": "phase", "strain": {"table": [["20 degC", 0], ["60 degC", self.STRAIN]]}}}
+        for key, value in {"stages[1].level": 0.1, "stages[2].to": "60 degC", "coupling.platen_difference": "5 kPa",
+                           "coupling.most_cycles": 3000, "output.fields": True}.items():
+            made[key] = value
+        return made
+
+    def mean(self, run: pyroclast.Run, field: np.ndarray) -> np.ndarray:
+        corners = run.position[run.zones]
+        a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+        area[run.block_material[run.zone_block] == len(run.material_names) - 1] = 0.0
+        return (field * area[:, None]).sum(axis=0) / area.sum()
+
+    def test_what_crept_is_the_strain_of_the_load_in_arrays_and_fields_and_after_a_resume(self):
+        folder = self.folder()
+        whole = pyroclast.Run(self.creeping(), out=folder / "whole", threads=1)
+        whole.finish()
+        run = pyroclast.Run(self.creeping(), out=folder / "run", threads=1)
+        run.until(temperature=40.0)
+        half = run.creep_strain
+        run.checkpoint()
+        run.close()
+        run = pyroclast.Run.resume(folder / "run", threads=1)
+        np.testing.assert_array_equal(run.creep_strain, half)
+        run.finish()
+        np.testing.assert_array_equal(run.creep_strain, whole.creep_strain)
+        # each stress creeps by the same law, so the mean creeps by the mean stress
+        along = -0.1 * 33.9e6 / self.F_C * self.STRAIN
+        np.testing.assert_allclose(self.mean(whole, whole.creep_strain), [-self.NU * along, along, 0.0],
+                                   atol=0.02 * abs(along))
+        self.assertEqual(np.abs(whole.creep_strain[whole.block_material[whole.zone_block] == 2]).max(), 0.0)
+        for name in ("whole", "run"):
+            last = sorted((folder / name / "fields").glob("blocks_*.hdf"))[-1]
+            with h5py.File(last) as file:
+                field = file["VTKHDF/CellData/creep_strain [1]"][:]
+            np.testing.assert_allclose(field[:, [0, 1, 3]], whole.creep_strain, rtol=1e-6)
+            np.testing.assert_allclose(self.mean(whole, field)[[2, 4, 5]], [-self.NU * along, 0.0, 0.0],
+                                       atol=0.02 * abs(along))
+
+    def test_where_nothing_creeps_it_is_zero(self):
+        self.assertFalse(pyroclast.Run(deck(), threads=1).creep_strain.any())
 
 
 class Processes(Case):

@@ -52,9 +52,10 @@ Materials read(const Deck& deck, Interval needed = kFire) {
   CurveReader curves(".", temperature_axis(), needed, builtin_curves());
   Materials m;
   const std::vector<std::string> phases{"aggregate", "mortar"};
-  m.solids = read_solids(deck.root(), phases, {"platen"}, read_expansion_reading(deck.root()), {}, curves);
+  const MaterialRules rules = read_material_rules(deck.root());
+  m.solids = read_solids(deck.root(), phases, {"platen"}, rules, {}, curves);
   m.contacts = read_contacts(
-      deck.root(), phases, "mortar", true,
+      deck.root(), phases, "mortar", true, rules.on_cooling,
       [](const auto&) -> const LawTable& { return table_of<Cohesive>(); }, curves);
   m.curves = curves.curves();
   return m;
@@ -113,6 +114,31 @@ TEST(ReadMaterials, ThermalStrainMayBeGivenItself) {
   Properties p;
   p.mortar += "thermal_strain = { builtin = \"en1992_siliceous_elongation\" }\n";
   EXPECT_DOUBLE_EQ(read_good(p).mortar().thermal_strain(700.0), 14e-3);
+}
+
+TEST(ReadMaterials, AQuartzStepComesToTheStrainOfThePhase) {
+  Properties p;
+  p.mortar += "expansion = \"1e-5 1/K\"\nquartz_step = 0.0035\n";
+  const Materials m = read_good(p);
+  EXPECT_NEAR(m.mortar().thermal_strain(540.0), 5.2e-3, 1e-15);
+  EXPECT_NEAR(m.mortar().thermal_strain(620.0), 6e-3 + 3.5e-3, 1e-15);
+  p.mortar += "quartz_range = [\"560 degC\", \"590 degC\"]\n";
+  EXPECT_NEAR(read_good(p).mortar().thermal_strain(560.0), 5.4e-3, 1e-15);
+  EXPECT_NEAR(read_good(p).mortar().thermal_strain(590.0), 5.7e-3 + 3.5e-3, 1e-15);
+}
+
+TEST(ReadMaterials, RefusesAQuartzStepThatMakesNoSense) {
+  const auto told = [](const std::string& lines, const std::string& key, const std::string& what) {
+    Properties p;
+    p.mortar += lines;
+    expect_error(p, "materials.mortar." + key, what);
+  };
+  told("quartz_step = 0.0035\n", "quartz_step", "give its expansion or thermal_strain too");
+  told("expansion = \"1e-5 1/K\"\nquartz_step = 0.35\n", "quartz_step", "between 0 and 0.02");
+  told("expansion = \"1e-5 1/K\"\nquartz_step = 0.0035\nquartz_range = [\"600 degC\", \"550 degC\"]\n",
+       "quartz_range", "the first below the second");
+  told("expansion = \"1e-5 1/K\"\nquartz_range = [\"550 degC\", \"600 degC\"]\n", "quartz_range",
+       "has no effect");
 }
 
 // A run at room temperature alone needs the curves only there.
@@ -204,6 +230,58 @@ TEST(ReadMaterials, KeepsEveryCurveOfTheDeck) {
         "contacts.mortar_mortar.temperature_ratio ", "contacts.mortar_mortar.G_f2 "}) {
     EXPECT_NE(paths.find(path), std::string::npos) << path << "in " << paths;
   }
+}
+
+// ---- Cooling
+
+constexpr const char* kHalf = "residual_ratio = { table = [[\"20 degC\", 1], [\"800 degC\", 0.5]] }\n";
+
+// Promise: what E of a phase loses, the stiffnesses of its contacts lose; strengths and fracture energies
+// lose what their interface says, whether they are constants or curves, and so do those of what is like it.
+TEST(ReadContacts, ResidualRatiosGoToWhatTheyAreOf) {
+  Properties p;
+  p.mortar += kHalf;
+  p.contact =
+      "f_t = { value = \"2.5 MPa\", times = \"glasgow_tensile_strength\" }\nG_f1 = \"60 N/m\"\nf_cm = \"31 "
+      "MPa\"\n"
+      "c_o = \"3.8 MPa\"\nc_res = \"0.038 MPa\"\nG_f2 = \"240 N/m\"\n"
+      "residual_ratio = { table = [[\"20 degC\", 1], [\"420 degC\", 0.6], [\"800 degC\", 0.6]] }\n";
+  const Materials m = read_good(p);
+  const auto concrete = make_concrete(m.solids, m.contacts, 3e-3);
+  EXPECT_DOUBLE_EQ(m.mortar().young_at(20.0, 800.0), 0.5 * 29.4e9);
+  for (const int interface : {mortar_mortar, aggregate_mortar}) {
+    const ContactMaterial& contact = concrete.contacts[interface];
+    const auto hot = contact.at(420.0).as<Cohesive>(), cooled = contact.at(20.0, 420.0).as<Cohesive>();
+    const double of_young = 1.0 - 0.5 * 400.0 / 780.0;
+    EXPECT_NEAR(cooled.normal_stiffness / hot.normal_stiffness, of_young, 1e-12);
+    EXPECT_NEAR(cooled.shear_stiffness / hot.shear_stiffness, of_young, 1e-12);
+    for (const auto number :
+         {&Cohesive::Properties<double>::tensile_strength, &Cohesive::Properties<double>::cohesion,
+          &Cohesive::Properties<double>::mode_1_energy, &Cohesive::Properties<double>::mode_2_energy,
+          &Cohesive::Properties<double>::compressive_limit})
+      EXPECT_NEAR(cooled.*number / (hot.*number), 0.6, 1e-12);
+    EXPECT_EQ(cooled.friction_angle, hot.friction_angle);
+  }
+  EXPECT_DOUBLE_EQ(concrete.contacts[aggregate_aggregate].at(20.0, 420.0).as<Elastic>().normal_stiffness,
+                   70e9 / 1.6e-3);
+}
+
+TEST(ReadMaterials, RefusesAResidualRatioThatMakesNoSense) {
+  Properties p;
+  p.mortar += "residual_ratio = 0.9\n";
+  expect_error(p, "materials.mortar.residual_ratio", "is 0.9 at 20 degC, but must be 1 there");
+  p = {};
+  p.mortar += "residual_ratio = { table = [[\"20 degC\", 1], [\"800 degC\", 1.1]] }\n";
+  expect_error(p, "materials.mortar.residual_ratio", "greater than 0 and at most 1");
+  p = {};
+  p.expansion_reading = "on_cooling = \"reversible\"\n";
+  p.mortar += kHalf;
+  expect_error(p, "materials.mortar.residual_ratio",
+               "has no meaning with materials.on_cooling = \"reversible\"");
+  p = {};
+  p.expansion_reading = "on_cooling = \"reversible\"\n";
+  p.contact += kHalf;
+  expect_error(p, "contacts.mortar_mortar.residual_ratio", "has no meaning with materials.on_cooling");
 }
 
 }  // namespace

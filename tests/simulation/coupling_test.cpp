@@ -142,5 +142,121 @@ TEST(PropertiesOnCooling, StayThoseOfTheHottestOrComeBack) {
   }
 }
 
+/// A field that was heated from its left, and is not even.
+TemperatureField heated_field(const Model<2>& body) {
+  auto field = conduct(body, heat_conditions({on("left", convection(25.0, Curve::constant(600.0)))}), 600.0);
+  field.advance(100.0, 600.0);
+  return field;
+}
+
+/// The same before it was heated.
+TemperatureField cold_field(const Model<2>& body) {
+  return conduct(body, heat_conditions({on("left", convection(25.0, Curve::constant(600.0)))}), 600.0);
+}
+
+// Promise: below the highest temperature that it was at, the free strain of a phase goes back by the slope of
+// the phase, and to its curve beyond; zone by zone, in a uniform field and in a computed one, whatever
+// becomes of E.
+TEST(FreeStrainOnCooling, HasTheSlopeOfItsPhase) {
+  const Model<2> body = small_body();
+  const auto blocks = zone_blocks(body);
+  for (const OnCooling on_cooling : {OnCooling::irreversible, OnCooling::reversible}) {
+    auto materials = creeping_materials(on_cooling);
+    materials.solids[mortar_material].creep.reset();
+    materials.solids[mortar_material].contraction = 6e-6;
+    for (auto& solid : materials.solids)
+      solid.thermal_strain = Curve::table({-100.0, 900.0}, {-1.2e-3, 8.8e-3}, temperature_axis());
+    const auto expect = [&](const std::vector<double>& now, const std::vector<double>& hottest,
+                            const BodyProperties& p) {
+      for (int z = 0; z < body.zone_count(); ++z) {
+        const bool of_mortar = body.block_material[blocks[z]] == mortar_material;
+        const double way_back = of_mortar ? 6e-6 : 1e-5;
+        const double expected = 1e-5 * (hottest[z] - 20.0) - way_back * (hottest[z] - now[z]);
+        if (body.is_of_bearing(blocks[z]))
+          EXPECT_EQ(p.zones[z].thermal_strain, 0.0);
+        else
+          EXPECT_NEAR(p.zones[z].thermal_strain, expected, 1e-15) << z;
+      }
+    };
+    TemperatureField field(body, 20.0);
+    HottestTemperatures hottest(materials, field);
+    double hottest_so_far = 20.0;
+    for (const double to : {400.0, 20.0, 300.0, 400.0, 450.0, 60.0}) {
+      field.set_uniform(to);
+      hottest_so_far = std::max(hottest_so_far, to);
+      expect(field.zones(), std::vector<double>(field.zones().size(), hottest_so_far),
+             properties_at(body, materials, field, hottest));
+      hottest.take(field);
+    }
+    const auto hot = heated_field(body);
+    const auto cold = cold_field(body);
+    expect(cold.zones(), hot.zones(),
+           properties_at(body, materials, cold, HottestTemperatures(materials, hot)));
+    expect(hot.zones(), hot.zones(),
+           properties_at(body, materials, hot, HottestTemperatures(materials, cold)));
+  }
+}
+
+// Promise: on the way down from the highest temperature, E, stiffnesses and strengths lose evenly what the
+// deck says, each by its own curve; numbers that are plain follow the temperature; on heating nothing is
+// lost.
+TEST(PropertiesOnCooling, LoseTheirResidualShareEvenly) {
+  const Model<2> body = small_body();
+  const auto blocks = zone_blocks(body);
+  auto materials = creeping_materials(OnCooling::irreversible);
+  const Curve of_young = Curve::table({20.0, 420.0, 900.0}, {1.0, 0.8, 0.8}, temperature_axis());
+  const Curve of_strength = Curve::table({20.0, 420.0, 900.0}, {1.0, 0.6, 0.6}, temperature_axis());
+  for (auto& solid : materials.solids)
+    if (!solid.is_of_bearing) solid.residual_ratio = of_young;
+  materials.contacts.assign(4, ContactMaterial(table_of<Cohesive>()));
+  for (auto& contact : materials.contacts) {
+    for (const auto& [key, value] :
+         {std::pair{"G_f1", 100.0}, {"G_f2", 100.0}, {"f_cm", 30e6}, {"beta", 0.05}})
+      contact[key] = Curve::constant(value);
+    contact["phi"] = Curve::table({-100.0, 900.0}, {0.5, 0.4}, temperature_axis());
+    for (const Role role : {Role::normal_stiffness, Role::shear_stiffness})
+      contact.set(role, Curve::constant(1e13), of_young);
+    contact["f_t"] = Curve::table({-100.0, 900.0}, {2.5e6, 1.5e6}, temperature_axis());
+    contact["c_o"] = Curve::constant(3e6);
+    for (std::size_t i = 0; i < contact.numbers.size(); ++i)
+      if (contact.law->properties[i].role == Role::strength) contact.residual_ratios[i] = of_strength;
+  }
+  const auto left = [](double ratio, double now, double hottest) {
+    return now < hottest ? 1.0 - (1.0 - ratio) * (hottest - now) / (hottest - 20.0) : 1.0;
+  };
+  const auto expect = [&](const TemperatureField& field, const TemperatureField& hot,
+                          const BodyProperties& p) {
+    for (int z = 0; z < body.zone_count(); ++z) {
+      if (body.is_of_bearing(blocks[z])) continue;
+      const double young = 30e9 * (1.1 - 1e-3 * (hot.zones()[z] + 100.0));
+      const double share = left(of_young(hot.zones()[z]), field.zones()[z], hot.zones()[z]);
+      EXPECT_NEAR(p.zones[z].mu, 0.5 * young * share, 1.0) << z;
+    }
+    for (int c = 0; c < body.contact_count(); ++c) {
+      const double now = field.contacts()[c], hottest = hot.contacts()[c];
+      const auto contact = p.contacts[p.of_contact[c]].as<Cohesive>();
+      EXPECT_NEAR(contact.normal_stiffness, 1e13 * left(of_young(hottest), now, hottest), 1e3);
+      EXPECT_NEAR(contact.tensile_strength,
+                  (2.5e6 - 1e3 * (hottest + 100.0)) * left(of_strength(hottest), now, hottest), 1e-3);
+      EXPECT_NEAR(contact.cohesion, 3e6 * left(of_strength(hottest), now, hottest), 1e-3);
+      EXPECT_EQ(contact.mode_1_energy, 100.0);
+      EXPECT_NEAR(contact.friction_angle, 0.5 - 1e-4 * (now + 100.0), 1e-12);
+    }
+  };
+  TemperatureField field(body, 20.0);
+  HottestTemperatures hottest(materials, field);
+  const TemperatureField hot(body, 420.0);
+  expect(hot, hot, properties_at(body, materials, hot, hottest));
+  hottest.take(hot);
+  for (const double T : {220.0, 20.0, 320.0, 420.0}) {
+    field.set_uniform(T);
+    expect(field, hot, properties_at(body, materials, field, hottest));
+  }
+  const auto uneven = heated_field(body);
+  const auto cold = cold_field(body);
+  expect(uneven, uneven, properties_at(body, materials, uneven, HottestTemperatures(materials, cold)));
+  expect(cold, uneven, properties_at(body, materials, cold, HottestTemperatures(materials, uneven)));
+}
+
 }  // namespace
 }  // namespace pyroclast

@@ -38,6 +38,17 @@ std::string creeping(const std::string& text) {
          "tension = 0.4\n";
 }
 
+/// The same of constituents that keep, lose and shrink by curves of their own where they cool.
+std::string cooling(const std::string& text) {
+  const std::string ratio = "residual_ratio = { table = [[\"20 degC\", 1], [\"820 degC\", 0.2]] }\n";
+  std::string own = with(text, "on_cooling = \"reversible\"", "on_cooling = \"irreversible\"");
+  own = with(own, "[materials.mortar]\n",
+             "[materials.mortar]\ncontraction = \"2e-5 1/K\"\nquartz_step = 0.001\n"
+             "quartz_range = [\"25 degC\", \"40 degC\"]\n" +
+                 ratio);
+  return with(own, "[contacts.mortar_mortar]\n", "[contacts.mortar_mortar]\n" + ratio);
+}
+
 /// Columns that are sums over the body or a set: where batches end may move the last digit of these alone.
 bool is_sum(const std::string& column) {
   for (const char* part : {"energy_", "dissipated_", "ratio", "kinetic", "_length_m", "opening", "stress",
@@ -74,8 +85,8 @@ StageReport report_of(const Trial& trial, std::size_t stage) {
 
 // Promise: where batches end changes no result.
 TEST(Run, BatchesOfAnyLengthGiveTheSameHistory) {
-  for (const std::string& text :
-       {every_uniform_stage(), exposed(), creeping(every_uniform_stage()), creeping(exposed())}) {
+  for (const std::string& text : {every_uniform_stage(), exposed(), creeping(every_uniform_stage()),
+                                  creeping(exposed()), cooling(every_uniform_stage())}) {
     Trial whole(text);
     whole.run.run();
     ASSERT_EQ(whole.run.outcome(), Outcome::completed);
@@ -192,8 +203,8 @@ class Copy : public StateVisitor {
 // Promise: what a run shows is all that it keeps. A new body, whose storage is filled with NaN before, goes
 // on as the old one would have done, from within a batch of any stage, to the bit.
 TEST(Run, AnotherBodyWithItsStateGoesOnAlike) {
-  for (const std::string& text :
-       {every_uniform_stage(), exposed(), creeping(every_uniform_stage()), creeping(exposed())}) {
+  for (const std::string& text : {every_uniform_stage(), exposed(), creeping(every_uniform_stage()),
+                                  creeping(exposed()), cooling(every_uniform_stage())}) {
     Trial whole(text);
     whole.run.run();
     const auto all = whole.run.history().values("step", {0, whole.run.history().row_count()});
@@ -214,6 +225,10 @@ TEST(Run, AnotherBodyWithItsStateGoesOnAlike) {
       expect_same(whole.run.history(), resumed.run.history());
       EXPECT_EQ(whole.simulation->mechanics().displacements(),
                 resumed.simulation->mechanics().displacements());
+      EXPECT_EQ(whole.simulation->mechanics().stresses(), resumed.simulation->mechanics().stresses());
+      for (int z = 0; z < whole.simulation->model().zone_count(); ++z)
+        ASSERT_EQ(whole.simulation->mechanics().creep_strain(z),
+                  resumed.simulation->mechanics().creep_strain(z));
       for (std::size_t stage = 0; stage < whole.run.records().size(); ++stage)
         EXPECT_EQ(report_of(whole, stage).lines, report_of(resumed, stage).lines);
     }

@@ -138,7 +138,7 @@ TEST(CrackHeat, IsReadFromTheDeck) {
   EXPECT_EQ(defaults->law.bridges, 5e4);
   EXPECT_EQ(defaults->law.jump_distance, 2e-7);
   EXPECT_EQ(defaults->law.emissivity, 0.9);
-  EXPECT_EQ(defaults->law.split_below, 1e4);
+  EXPECT_TRUE(defaults->splits_by_block_size);
   EXPECT_NEAR(defaults->law.gas_conductivity(20.0), 0.0257, 1e-4);
   EXPECT_TRUE(defaults->gaps.empty());
   const auto stated = cracks_of(kCracks +
@@ -149,10 +149,29 @@ TEST(CrackHeat, IsReadFromTheDeck) {
   EXPECT_EQ(stated->law.gas_conductivity(300.0), 0.03);
   EXPECT_EQ(stated->law.jump_distance, 1e-6);
   EXPECT_EQ(stated->law.emissivity, 0.5);
+  EXPECT_FALSE(stated->splits_by_block_size);
   EXPECT_EQ(stated->law.split_below, 5e3);
   ASSERT_EQ(stated->gaps.size(), 1U);
   EXPECT_EQ(stated->gaps[0].contacts, "mortar_mortar");
   EXPECT_EQ(stated->gaps[0].width, 1e-4);
+}
+
+// Promise: what is left out is 5 % of the resistance of a block of the specimen's own size and mean
+// conductivity.
+TEST(CrackHeat, ContactsPartBelowAConductanceOfTheBlockSize) {
+  const std::string text =
+      with(deck(kSettle + kExpose + kHeatedFace + kCracks), "conductivity = \"40 W/(m K)\"",
+           "conductivity = { table = [[\"20 degC\", \"4 W/(m K)\"], [\"70 degC\", \"1 W/(m K)\"]] }");
+  for (const char* count : {"count = 60", "count = 240"}) {
+    const auto simulation = make_simulation(read(with(text, "count = 60", count)));
+    const auto& specimen = simulation->specimen();
+    const double conductivity = 4.0 * specimen.fraction[0] + 40.0 * specimen.fraction[1];
+    const double size = std::sqrt(specimen.region.area() / std::stod(std::string(count).substr(8)));
+    EXPECT_NEAR(simulation->field().conduction()->gaps()->law().split_below, 20.0 * conductivity / size,
+                1e-9 * conductivity / size);
+  }
+  const auto stated = make_simulation(read(text + "split_below = \"5 kW/(m2 K)\"\n"));
+  EXPECT_EQ(stated->field().conduction()->gaps()->law().split_below, 5e3);
 }
 
 TEST(CrackHeat, ADeckIsToldWhatIsWrong) {

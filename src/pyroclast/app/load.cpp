@@ -114,8 +114,11 @@ std::string describe(const Conduction<2>& conduction, const Model<2>& model, con
       fmt::format("                stable step {:.3g} s at first, set at ({:.2f}, {:.2f}) mm\n", limit.step,
                   kMilli * at[0], kMilli * at[1]);
   if (const auto* gaps = conduction.gaps())
-    text += fmt::format("                cracks hinder heat: it meets {:.3g} mm of gaps at first\n",
-                        kMilli * gaps->area() / model.thickness);
+    text += fmt::format(
+        "                cracks hinder heat: it meets {:.3g} mm of gaps at first; contacts part "
+        "temperatures\n"
+        "                below h_m = {:.3g} W/(m2 K)\n",
+        kMilli * gaps->area() / model.thickness, gaps->law().split_below);
   return text;
 }
 

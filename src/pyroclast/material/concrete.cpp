@@ -12,19 +12,21 @@ namespace pyroclast {
 
 namespace {
 
-/// K_n and K_s as functions of temperature, Pa/m.
+/// K_n and K_s as functions of temperature, Pa/m, and what they lose on cooling: both as E of a solid.
 struct Stiffness {
   Curve normal, shear;
+  std::optional<Curve> normal_residual, shear_residual;
 
   void put_into(ContactMaterial& contact) const {
-    contact.set(Role::normal_stiffness, normal);
-    contact.set(Role::shear_stiffness, shear);
+    contact.set(Role::normal_stiffness, normal, normal_residual);
+    contact.set(Role::shear_stiffness, shear, shear_residual);
   }
 };
 
 /// E(T) / t_b and G(T) / t_b of Eq. (17).
 Stiffness stiffness_of(const SolidMaterial& solid, double fracture_zone) {
-  return {solid.young * (1.0 / fracture_zone), solid.young * (0.5 / (1.0 + solid.poisson) / fracture_zone)};
+  return {solid.young * (1.0 / fracture_zone), solid.young * (0.5 / (1.0 + solid.poisson) / fracture_zone),
+          solid.residual_ratio, solid.residual_ratio};
 }
 
 const InterfaceParameters* find(const std::vector<InterfaceParameters>& interfaces, const std::string& name) {
@@ -50,12 +52,19 @@ class StiffnessOfInterfaces {
         throw Error(
             fmt::format("contacts.{}: there is no interface \"{}\"", interface.name, *interface.like));
       k = of(*other, depth + 1);
-      k = {k.normal * interface.stiffness_factor, k.shear * interface.stiffness_factor};
+      k.normal = k.normal * interface.stiffness_factor;
+      k.shear = k.shear * interface.stiffness_factor;
     }
     // A stated stiffness follows E(T) like a computed one.
     const double young = solid.young(kReferenceTemperature);
-    if (interface.normal_stiffness) k.normal = solid.young * (*interface.normal_stiffness * scale_ / young);
-    if (interface.shear_stiffness) k.shear = solid.young * (*interface.shear_stiffness * scale_ / young);
+    if (interface.normal_stiffness) {
+      k.normal = solid.young * (*interface.normal_stiffness * scale_ / young);
+      k.normal_residual = solid.residual_ratio;
+    }
+    if (interface.shear_stiffness) {
+      k.shear = solid.young * (*interface.shear_stiffness * scale_ / young);
+      k.shear_residual = solid.residual_ratio;
+    }
     return k;
   }
 
@@ -88,7 +97,10 @@ std::size_t place_of(const LawTable& law, std::string_view key) {
 }  // namespace
 
 ContactMaterial::ContactMaterial(const LawTable& of)
-    : law(&of), numbers(of.properties.size(), Curve::constant(0.0)), choices(of.choices.size()) {}
+    : law(&of),
+      numbers(of.properties.size(), Curve::constant(0.0)),
+      residual_ratios(of.properties.size()),
+      choices(of.choices.size()) {}
 
 Curve& ContactMaterial::operator[](std::string_view key) {
   return numbers[place_of(*law, key)];
@@ -98,9 +110,12 @@ const Curve& ContactMaterial::operator[](std::string_view key) const {
   return numbers[place_of(*law, key)];
 }
 
-void ContactMaterial::set(Role role, const Curve& curve) {
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    if (law->properties[i].role == role) numbers[i] = curve;
+void ContactMaterial::set(Role role, const Curve& curve, const std::optional<Curve>& residual_ratio) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (law->properties[i].role != role) continue;
+    numbers[i] = curve;
+    residual_ratios[i] = residual_ratio;
+  }
 }
 
 const Curve& ContactMaterial::of(Role role) const {
@@ -120,8 +135,15 @@ ContactProperties ContactMaterial::at(double temperature, double marked) const {
   std::vector<double> values;
   values.reserve(numbers.size());
   for (std::size_t i = 0; i < numbers.size(); ++i)
-    values.push_back(numbers[i](law->properties[i].role == Role::plain ? temperature : marked));
+    values.push_back(law->properties[i].role == Role::plain
+                         ? numbers[i](temperature)
+                         : numbers[i](marked) * share_left(residual_ratios[i], temperature, marked));
   return {*law, std::move(values), choices};
+}
+
+double SolidMaterial::free_strain(double temperature, double hottest) const {
+  if (!contraction || temperature >= hottest) return thermal_strain(temperature);
+  return thermal_strain(hottest) - *contraction * (hottest - temperature);
 }
 
 CreepIncrement CreepMaterial::between(double from, double to) const {
@@ -132,6 +154,11 @@ CreepIncrement CreepMaterial::between(double from, double to) const {
 
 bool any_creeps(const std::vector<SolidMaterial>& solids) {
   return std::ranges::any_of(solids, [](const SolidMaterial& solid) { return solid.creep.has_value(); });
+}
+
+bool ConcreteMaterials::asks_for_hottest() const {
+  const auto contracts = [](const SolidMaterial& solid) { return solid.contraction.has_value(); };
+  return on_cooling == OnCooling::irreversible || creeps() || std::ranges::any_of(solids, contracts);
 }
 
 InterfaceTable::InterfaceTable(const std::vector<std::string>& phases,

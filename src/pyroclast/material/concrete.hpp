@@ -9,6 +9,7 @@
 
 #include "pyroclast/laws/built_in.hpp"
 #include "pyroclast/laws/contact_properties.hpp"
+#include "pyroclast/material/cooling.hpp"
 #include "pyroclast/material/creep.hpp"
 #include "pyroclast/material/curve.hpp"
 #include "pyroclast/material/zone_law.hpp"
@@ -41,16 +42,29 @@ struct SolidMaterial {
   Curve density = Curve::constant(0.0);         ///< kg/m³; mass is that at the reference temperature
   Curve thermal_strain = Curve::constant(0.0);  ///< free strain since the reference temperature
   std::optional<CreepMaterial> creep;           ///< of a phase alone
-  std::optional<Curve> conductivity;            ///< gamma, W/(m K); only for heat conduction
-  std::optional<Curve> specific_heat;           ///< c, J/(kg K); likewise
-  bool is_of_bearing = false;                   ///< not of the specimen: at 20 °C in every run
+  /// Of a phase: expansion coefficient where it is colder than it was, 1/K; else back along thermal_strain.
+  std::optional<double> contraction;
+  std::optional<Curve> residual_ratio;  ///< of E, see share_left; only where cooling is irreversible
+  std::optional<Curve> conductivity;    ///< gamma, W/(m K); only for heat conduction
+  std::optional<Curve> specific_heat;   ///< c, J/(kg K); likewise
+  bool is_of_bearing = false;           ///< not of the specimen: at 20 °C in every run
+
+  /// Free strain at a temperature of what was at the hottest one before, °C.
+  double free_strain(double temperature, double hottest) const;
+  /// E, Pa, at a temperature.
+  /// \param marked  that it is that of, see OnCooling
+  double young_at(double temperature, double marked) const {
+    return young(marked) * share_left(residual_ratio, temperature, marked);
+  }
 };
 
 /// A contact's parameters as functions of temperature (paper, Table 2 and §4.1), of any law.
 struct ContactMaterial {
   const LawTable* law = nullptr;
   std::vector<Curve> numbers;  ///< in the order of LawTable::properties
-  std::vector<int> choices;    ///< likewise
+  /// Of those that do not follow the temperature back on cooling, see share_left; likewise.
+  std::vector<std::optional<Curve>> residual_ratios;
+  std::vector<int> choices;  ///< likewise
 
   ContactMaterial() = default;
   /// All zero, with the first option of each choice.
@@ -60,7 +74,7 @@ struct ContactMaterial {
   Curve& operator[](std::string_view key);
   const Curve& operator[](std::string_view key) const;
   /// Sets every property of a role.
-  void set(Role role, const Curve& curve);
+  void set(Role role, const Curve& curve, const std::optional<Curve>& residual_ratio = std::nullopt);
   /// The property of a role, where there is one alone.
   const Curve& of(Role role) const;
   /// With every property of a role multiplied.
@@ -150,7 +164,7 @@ class InterfaceTable {
 };
 
 /// What a body that cools does with E of its phases, and strengths, fracture energies and stiffnesses of its
-/// contacts. Free thermal strains go back along their curves in any case.
+/// contacts. Free thermal strains go back along their curves in any case, or by SolidMaterial::contraction.
 enum class OnCooling : std::uint8_t {
   irreversible,  ///< they stay those of the highest temperature that was there
   reversible     ///< they come back along their curves
@@ -169,6 +183,11 @@ struct ConcreteMaterials {
   std::optional<Composition> composition;  ///< where `follow_composition` was asked
 
   bool creeps() const { return any_creeps(solids); }
+  bool asks_for_hottest() const;  ///< whether anything follows the highest temperature that was there
+  /// That E, strengths, energies and stiffnesses are those of, see OnCooling, °C.
+  double marked(double temperature, double hottest) const {
+    return on_cooling == OnCooling::irreversible ? hottest : temperature;
+  }
 };
 
 /// Names of the solids that are not of bearings.

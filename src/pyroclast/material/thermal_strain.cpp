@@ -47,6 +47,10 @@ class Integral {
   double at_reference_ = 0.0;
 };
 
+Interval common(const Interval& a, const Interval& b) {
+  return {std::max(a.lower, b.lower), std::min(a.upper, b.upper)};
+}
+
 Curve secant_strain(const Curve& expansion, Interval range) {
   const Curve rise = Curve::table({range.lower, range.upper},
                                   {range.lower - kReferenceTemperature, range.upper - kReferenceTemperature},
@@ -70,13 +74,23 @@ Curve tangent_strain(const Curve& expansion, Interval range) {
 }  // namespace
 
 Curve free_thermal_strain(const Curve& expansion, ExpansionReading reading, Interval temperatures) {
-  const Interval range{std::max(temperatures.lower, expansion.range().lower),
-                       std::min(temperatures.upper, expansion.range().upper)};
+  const Interval range = common(temperatures, expansion.range());
   if (!(range.lower < range.upper))
     throw Error(fmt::format("{}: is not defined between {} and {} degC", expansion.describe(),
                             temperatures.lower, temperatures.upper));
   return reading == ExpansionReading::secant ? secant_strain(expansion, range)
                                              : tangent_strain(expansion, range);
+}
+
+Curve with_quartz_step(const Curve& strain, const QuartzStep& step, Interval temperatures) {
+  const auto [lower, upper] = step.over;
+  return Curve::function(
+      fmt::format("{}, and {} of quartz from {} to {} degC", strain.description(), step.strain, lower, upper),
+      [=](double T) {
+        const double way = std::clamp((T - lower) / (upper - lower), 0.0, 1.0);
+        return strain(T) + step.strain * way * way * (3.0 - 2.0 * way);
+      },
+      common(strain.range(), temperatures), temperature_axis(), {lower, upper});
 }
 
 }  // namespace pyroclast

@@ -20,4 +20,14 @@ enum class ExpansionReading {
 /// Throws Error when the two have no interval in common, or the tangent reading cannot start from 20 °C.
 Curve free_thermal_strain(const Curve& expansion, ExpansionReading reading, Interval temperatures);
 
+/// What quartz adds to the free strain of rock where it turns from its alpha into its beta form, at 573 °C.
+struct QuartzStep {
+  double strain = 0.0;          ///< in every direction
+  Interval over{550.0, 600.0};  ///< on which it comes, as a cubic that begins and ends without slope, °C
+};
+
+/// A free thermal strain with the step.
+/// \param temperatures  finite interval on which it is wanted, °C
+Curve with_quartz_step(const Curve& strain, const QuartzStep& step, Interval temperatures);
+
 }  // namespace pyroclast

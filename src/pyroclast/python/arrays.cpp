@@ -77,6 +77,11 @@ py::array numbers(const std::vector<double>& list) {
   return filled<double>(list, 0, [](double v, py::ssize_t) { return v; });
 }
 
+py::array tensors(const std::vector<SymmetricTensor<2>>& list) {
+  return filled<double>(
+      list, 3, [](const SymmetricTensor<2>& t, py::ssize_t i) { return t[static_cast<std::size_t>(i)]; });
+}
+
 using CopyOf = py::array (*)(const Simulation&);
 
 const std::map<std::string, CopyOf>& copies() {
@@ -106,10 +111,12 @@ const std::map<std::string, CopyOf>& copies() {
       {"displacement", [](const Simulation& s) { return vectors(mechanics_of(s).displacements()); }},
       {"velocity", [](const Simulation& s) { return vectors(mechanics_of(s).velocities()); }},
       {"force", [](const Simulation& s) { return vectors(mechanics_of(s).forces()); }},
-      {"stress", [](const Simulation& s) {
-         return filled<double>(mechanics_of(s).stresses(), 3, [](const SymmetricTensor<2>& t, py::ssize_t i) {
-           return t[static_cast<std::size_t>(i)];
-         });
+      {"stress", [](const Simulation& s) { return tensors(mechanics_of(s).stresses()); }},
+      {"creep_strain", [](const Simulation& s) {
+         const Mechanics<2>& mechanics = mechanics_of(s);
+         std::vector<SymmetricTensor<2>> strains;
+         for (int z = 0; z < s.model().zone_count(); ++z) strains.push_back(mechanics.creep_strain(z));
+         return tensors(strains);
        }}};
   return all;
 }

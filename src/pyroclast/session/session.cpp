@@ -57,6 +57,11 @@ void require_same_body(const ConcreteMaterials& old, const ConcreteMaterials& ch
   if (old.creeps() != changed.creeps())
     throw Error(
         "whether phases creep cannot change in a run: [materials.NAME.creep] is there from the start");
+  if (!old.asks_for_hottest() && changed.asks_for_hottest())
+    throw Error(
+        "materials.NAME.contraction cannot come into a run with materials.on_cooling = \"reversible\": what "
+        "was "
+        "the hottest is kept only where it is asked for from the start");
 }
 
 }  // namespace

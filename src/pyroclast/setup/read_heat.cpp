@@ -24,7 +24,6 @@ constexpr double kLargestStep = 60.0;   // s
 constexpr double kBridges = 5e4;        // W/(m2 K)
 constexpr double kJumpDistance = 2e-7;  // m
 constexpr double kEmissivity = 0.9;
-constexpr double kSplitBelow = 1e4;  // W/(m2 K)
 constexpr const char* kAir = "air_conductivity";
 
 constexpr Range kTemperature = Range::at_least(absolute_zero);
@@ -182,10 +181,12 @@ GapHeat read_gap_heat(const Section& s, CurveReader& curves) {
                      "temperature at the faces"),
       .emissivity = s.quantity("emissivity", unit::dimensionless, Range::fraction(), kEmissivity,
                                "ε of each face; 1 / (2/ε − 1) acts between the two"),
-      .split_below =
-          s.quantity("split_below", unit::heat_transfer, Range::positive().usually(1e3, 1e5), kSplitBelow,
-                     "conductance below which a contact parts the temperatures of its sides; above "
-                     "twice that it joins them; see [heat.md](heat.md#cracks)")};
+      .split_below = 0.0};
+  if (s.has("split_below"))
+    law.split_below = s.quantity(
+        "split_below", unit::heat_transfer, Range::positive().usually(1e3, 1e5),
+        "conductance below which a contact parts the temperatures of its sides; above twice that it "
+        "joins them; without it 20 λ / ℓ of the specimen; see [heat.md](heat.md#cracks)");
   if (s.has("gas_conductivity"))
     law.gas_conductivity =
         curves.read(s, "gas_conductivity", unit::conductivity, Range::positive(),
@@ -203,7 +204,8 @@ std::optional<CrackHeat> read_crack_heat(const Section& root, CurveReader& curve
                                     "were not there; see [heat.md](heat.md#cracks)")
            : std::nullopt;
   if (!s) return std::nullopt;
-  CrackHeat cracks{read_gap_heat(*s, curves), {}};
+  CrackHeat cracks{
+      .law = read_gap_heat(*s, curves), .splits_by_block_size = !s->has("split_below"), .gaps = {}};
   for (const Section& gap :
        s->optional_sections("gaps", "contacts that stand apart from the start, for heat; any number"))
     cracks.gaps.push_back({gap.text("contacts",

@@ -67,6 +67,51 @@ Curve read_thermal_strain(const Section& s, ExpansionReading reading, CurveReade
   return strain;
 }
 
+/// What is lost on cooling; nothing where the deck says so.
+std::optional<Curve> read_residual_ratio(const Section& s, OnCooling on_cooling, Meaning meaning,
+                                         CurveReader& curves) {
+  constexpr const char* kKey = "residual_ratio";
+  if (!s.has(kKey)) return std::nullopt;
+  const Curve ratio = curves.read(s, kKey, unit::dimensionless,
+                                  Range{.lower = 0.0, .upper = 1.0, .lower_inclusive = false}, meaning);
+  require_at_reference(s, kKey, ratio, 1.0, kRatioTolerance);
+  if (on_cooling == OnCooling::reversible)
+    s.error(
+        kKey,
+        "has no meaning with materials.on_cooling = \"reversible\": properties then come back along their "
+        "curves");
+  return ratio;
+}
+
+/// None where the deck has none.
+std::optional<QuartzStep> read_quartz_step(const Section& s, const ReadConcrete& concrete) {
+  if (!s.has("quartz_step")) {
+    s.know({"quartz_range"});
+    return std::nullopt;
+  }
+  QuartzStep step;
+  step.strain = s.number("quartz_step", Range::between(0.0, 0.02).usually(0.003, 0.0045),
+                         "linear strain that quartz in the phase adds to its own expansion or thermal_strain "
+                         "where it turns into its other form, near 573 °C");
+  if (s.has("quartz_range")) {
+    const auto ends = s.quantities("quartz_range", unit::temperature, Range::at_least(kReferenceTemperature),
+                                   "where it begins and where it ends; 550 and 600 °C unless stated");
+    if (ends.size() == 2 && ends[0] < ends[1])
+      step.over = {ends[0], ends[1]};
+    else if (!ends.empty())
+      s.error("quartz_range", "must be two temperatures, the first below the second");
+  }
+  if (concrete.of_phases)
+    s.error(
+        "quartz_step",
+        fmt::format("has no meaning beside concrete.inclusion_ratio: the strain of the phase follows from "
+                    "that of the concrete, which holds the step already ({})",
+                    concrete.place));
+  else if (!s.has("expansion") && !s.has("thermal_strain"))
+    s.error("quartz_step", "comes to the strain of the phase: give its expansion or thermal_strain too");
+  return s.ok() ? std::optional(step) : std::nullopt;
+}
+
 /// Density, and what conduction needs where it is given.
 SolidMaterial read_heat_properties(const Section& s, CurveReader& curves) {
   const auto optional = [&](std::string_view key, const Unit& unit, const Range& range,
@@ -162,19 +207,34 @@ std::optional<CreepMaterial> read_creep(const Section& phase, const ReadConcrete
 }
 
 /// Of the specimen, not of bearings.
-SolidMaterial read_phase(const Section& s, ExpansionReading reading, const ReadConcrete& concrete,
+SolidMaterial read_phase(const Section& s, const MaterialRules& rules, const ReadConcrete& concrete,
                          CurveReader& curves) {
   SolidMaterial m = read_solid(s, curves);
-  m.thermal_strain = read_thermal_strain(s, reading, curves);
+  m.residual_ratio = read_residual_ratio(
+      s, rules.on_cooling,
+      "share of E at T_max, the highest temperature that was there, that is left at 20 °C: a curve of T_max, "
+      "1 at 20 °C; E falls to it evenly on cooling; see [deck.md](deck.md#cooling)",
+      curves);
+  m.thermal_strain = read_thermal_strain(s, rules.expansion_reading, curves);
+  if (const auto step = read_quartz_step(s, concrete))
+    m.thermal_strain = with_quartz_step(m.thermal_strain, *step, strain_range(curves.needed()))
+                           .named(s.path() + ".thermal_strain");
   for (const char* key : {"expansion", "thermal_strain"})
     if (concrete.of_phases && s.has(key))
       s.error(key, "has no meaning beside concrete.inclusion_ratio, from which it follows");
+  if (s.has("contraction"))
+    m.contraction =
+        s.quantity("contraction", unit::expansion, Range::any().usually(0.0, 3e-5),
+                   "expansion coefficient where the phase is colder than it was, T_max: free strain "
+                   "is then that at T_max − contraction (T_max − T); without it free strain "
+                   "goes back along its curve; see [deck.md](deck.md#cooling)");
   m.creep = read_creep(s, concrete, curves);
   return m;
 }
 
 SolidMaterial read_conducting_solid(const Section& s, CurveReader& curves) {
-  s.know({"E", "nu", "expansion", "thermal_strain", "creep"});
+  s.know({"E", "nu", "expansion", "thermal_strain", "quartz_step", "quartz_range", "contraction",
+          "residual_ratio", "creep"});
   return read_heat_properties(s, curves);
 }
 
@@ -197,6 +257,29 @@ Curve read_property(const Section& s, const PropertyInfo& info, const std::optio
   return (curve * *ratio).named(s.path() + "." + info.key);
 }
 
+/// One for all strengths and fracture energies, whether they are constants or curves.
+void read_residual_ratios(const Section& s, OnCooling on_cooling, ContactMaterial& m, CurveReader& curves) {
+  const auto ratio =
+      read_residual_ratio(s, on_cooling,
+                          "share of strengths and fracture energies at T_max, the highest temperature that "
+                          "was there, that is left "
+                          "at 20 °C: a curve of T_max, 1 at 20 °C; they fall to it evenly on cooling; see "
+                          "[deck.md](deck.md#cooling)",
+                          curves);
+  if (!ratio) return;
+  bool has_effect = false;
+  for (std::size_t i = 0; i < m.numbers.size(); ++i) {
+    const Role role = m.law->properties[i].role;
+    if (role != Role::strength && role != Role::energy) continue;
+    m.residual_ratios[i] = ratio;
+    has_effect = true;
+  }
+  if (!has_effect)
+    s.error(
+        "residual_ratio",
+        fmt::format("has no effect: the law \"{}\" has neither strength nor fracture energy", m.law->name));
+}
+
 int read_choice(const Section& s, const ChoiceInfo& info) {
   if (info.options[0].name == std::string_view("false"))
     return s.flag(info.key, false, Meaning(info.meaning)) ? 1 : 0;
@@ -213,7 +296,8 @@ bool is_stiffness(const PropertyInfo& info) {
 /// Numbers and choices of a law; those that an interface does not state are as in `like`, where it has one.
 /// \param shared  table whose choices hold where the interface says nothing
 ContactMaterial read_contact(const Section& s, const LawTable& law, const Section& shared,
-                             const std::optional<ContactMaterial>& like, CurveReader& curves) {
+                             OnCooling on_cooling, const std::optional<ContactMaterial>& like,
+                             CurveReader& curves) {
   const std::optional<Curve> ratio = read_temperature_ratio(s, curves);
   bool ratio_has_effect = false;
   ContactMaterial m = like.value_or(ContactMaterial(law));
@@ -224,6 +308,7 @@ ContactMaterial read_contact(const Section& s, const LawTable& law, const Sectio
   }
   if (ratio && !ratio_has_effect)
     s.error("temperature_ratio", "has no effect: no property of this contact is a plain constant");
+  read_residual_ratios(s, on_cooling, m, curves);
   for (std::size_t i = 0; i < law.choices.size(); ++i) {
     const char* const key = law.choices[i].key;
     if (s.has(key))
@@ -275,11 +360,12 @@ std::vector<std::array<std::string, 2>> read_between(const Section& s, const std
 /// One table of [contacts].
 class InterfaceReader {
  public:
-  InterfaceReader(const Section& shared, const std::vector<std::string>& phases, const LawFinder& find_law,
-                  CurveReader& curves)
+  InterfaceReader(const Section& shared, const std::vector<std::string>& phases, OnCooling on_cooling,
+                  const LawFinder& find_law, CurveReader& curves)
       : shared_(shared),
         sections_(shared.named_sections("NAME", "contacts between the blocks of two phases (Table 2)")),
         phases_(phases),
+        on_cooling_(on_cooling),
         find_law_(find_law),
         curves_(curves) {}
 
@@ -315,7 +401,7 @@ class InterfaceReader {
       s.know({"law"});
     else
       s.know({"stiffness_factor", "strength_factor", "scale_fracture_energy"});
-    p.contact = read_contact(s, law, shared_, base, curves_);
+    p.contact = read_contact(s, law, shared_, on_cooling_, base, curves_);
     for (const PropertyInfo& info : law.properties) {
       if (!is_stiffness(info) || !s.has(info.key)) continue;
       const double value = s.quantity(
@@ -377,6 +463,7 @@ class InterfaceReader {
   const Section& shared_;
   std::vector<std::pair<std::string, Section>> sections_;
   const std::vector<std::string>& phases_;
+  OnCooling on_cooling_;
   const LawFinder& find_law_;
   CurveReader& curves_;
   std::vector<std::string> begun_;
@@ -421,34 +508,33 @@ void check_complete(const Section& s, const std::vector<InterfaceParameters>& in
 
 }  // namespace
 
-ExpansionReading read_expansion_reading(const Section& root) {
-  return root.section("materials", "solids that the body is made of")
-      .choice<ExpansionReading>(
+MaterialRules read_material_rules(const Section& root) {
+  const Section s = root.section("materials", "solids that the body is made of");
+  return {
+      s.choice<ExpansionReading>(
           "expansion_reading",
           {{"secant", ExpansionReading::secant, "thermal strain is α(T) (T − 20 °C)"},
            {"tangent", ExpansionReading::tangent, "thermal strain is ∫ α dT from 20 °C"}},
-          ExpansionReading::secant, "how the coefficients of thermal expansion α are read");
-}
-
-OnCooling read_on_cooling(const Section& root) {
-  return root.section("materials")
-      .choice<OnCooling>(
+          ExpansionReading::secant, "how the coefficients of thermal expansion α are read"),
+      s.choice<OnCooling>(
           "on_cooling",
           {{"irreversible", OnCooling::irreversible,
             "they stay those of the highest temperature that was there: concrete does not heal"},
            {"reversible", OnCooling::reversible, "they come back along their curves"}},
           OnCooling::irreversible,
           "what E of the phases, and strengths, fracture energies and stiffnesses of contacts do where it "
-          "cools");
+          "cools")};
 }
 
 ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& phases,
-                           ExpansionReading reading, CurveReader& curves) {
+                           const MaterialRules& rules, CurveReader& curves) {
   ReadConcrete concrete;
   const auto s = root.optional_section(
       "concrete", "what is known of the concrete as a whole; see [deck.md](deck.md#creep-under-load)");
   if (!s) return concrete;
-  concrete.thermal_strain = read_thermal_strain(*s, reading, curves);
+  concrete.thermal_strain = read_thermal_strain(*s, rules.expansion_reading, curves);
+  const char* const key = s->has("expansion") ? "expansion" : "thermal_strain";
+  concrete.place = fmt::format("{}: concrete.{}", s->where(key), key);
   if (!s->has("inclusion_ratio")) {
     s->know({"inclusion_weight"});
     return concrete;
@@ -472,16 +558,17 @@ ReadConcrete read_concrete(const Section& root, const std::vector<std::string>& 
 }
 
 std::vector<SolidMaterial> read_solids(const Section& root, const std::vector<std::string>& phases,
-                                       const std::vector<std::string>& of_bearings, ExpansionReading reading,
-                                       const ReadConcrete& concrete, CurveReader& curves) {
+                                       const std::vector<std::string>& of_bearings,
+                                       const MaterialRules& rules, const ReadConcrete& concrete,
+                                       CurveReader& curves) {
   const Section s = root.section("materials");
   std::vector<SolidMaterial> solids;
   for (const auto& phase : phases)
-    solids.push_back(read_phase(s.section(phase, kSolid), reading, concrete, curves));
+    solids.push_back(read_phase(s.section(phase, kSolid), rules, concrete, curves));
   for (const auto& name : of_bearings) {
     const Section own = s.section(name, kBearingSolid);
     solids.push_back(read_solid(own, curves));
-    solids.back().thermal_strain = read_thermal_strain(own, reading, curves);
+    solids.back().thermal_strain = read_thermal_strain(own, rules.expansion_reading, curves);
     solids.back().is_of_bearing = true;
   }
   s.know({"platen"});
@@ -498,8 +585,8 @@ std::vector<SolidMaterial> read_conducting_solids(const Section& root, const std
 }
 
 ContactParameters read_contacts(const Section& root, const std::vector<std::string>& phases,
-                                const std::string& matrix, bool has_platens, const LawFinder& find_law,
-                                CurveReader& curves) {
+                                const std::string& matrix, bool has_platens, OnCooling on_cooling,
+                                const LawFinder& find_law, CurveReader& curves) {
   const Section s =
       root.section("contacts", "what all contacts share: K_n = E / t_b, K_s = G / t_b, Eq. (17)");
   ContactParameters c;
@@ -521,7 +608,7 @@ ContactParameters read_contacts(const Section& root, const std::vector<std::stri
                                                "coefficient of friction between platen and specimen")});
   else
     s.know({"platen_friction"});
-  InterfaceReader reader(s, phases, find_law, curves);
+  InterfaceReader reader(s, phases, on_cooling, find_law, curves);
   c.interfaces = reader.read();
   check_pairs(reader.sections(), c.interfaces);
   check_complete(s, c.interfaces, phases, matrix);

@@ -201,15 +201,21 @@ void check_contacts(const Section& root, const Setup& setup) {
                                       expected_block_size(setup.specimen, setup.motion->contacts));
   const auto check = [&](const ContactMaterial& contact, const std::string& key) {
     const auto [lower, upper] = setup.temperatures;
-    double T = kReferenceTemperature;
+    double T = kReferenceTemperature, marked = T;
+    const bool loses =
+        std::ranges::any_of(contact.residual_ratios, [](const auto& r) { return r.has_value(); });
     try {
       validate(contact.at(T), key);
       for (int i = 0; i < kCheckedTemperatures; ++i) {
-        T = lower + i * (upper - lower) / (kCheckedTemperatures - 1);
+        T = marked = lower + i * (upper - lower) / (kCheckedTemperatures - 1);
         validate(contact.at(T), key);
+        if (!loses || marked <= kReferenceTemperature) continue;
+        T = kReferenceTemperature;
+        validate(contact.at(T, marked), key);
       }
     } catch (const Error& e) {
-      contacts.error(key, fmt::format("at {:.6g} degC: {}", T, e.what()));
+      contacts.error(key, fmt::format("at {:.6g} degC{}: {}", T,
+                                      T < marked ? fmt::format(" after {:.6g} degC", marked) : "", e.what()));
     }
   };
   const std::size_t bearings = setup.motion->contacts.bearings.size();
@@ -251,18 +257,19 @@ std::vector<std::string> materials_of(const std::vector<Bearing>& bearings) {
 /// Materials, and what moves, where a stage moves the body.
 void read_moving(const Section& root, const std::vector<ReadBearing>& bearings, CurveReader& curves,
                  const LawFinder& find_law, Setup& setup) {
-  setup.expansion_reading = read_expansion_reading(root);
+  const MaterialRules rules = read_material_rules(root);
+  setup.expansion_reading = rules.expansion_reading;
   const auto phases = specimen::phases(setup.specimen);
   setup.motion.emplace();
   MotionParameters& motion = *setup.motion;
   const bool has_platens = read_platens(root, setup, motion.bearings);
   for (const ReadBearing& read : bearings) motion.bearings.push_back(read.bearing);
-  motion.on_cooling = read_on_cooling(root);
-  const ReadConcrete concrete = read_concrete(root, phases, setup.expansion_reading, curves);
+  motion.on_cooling = rules.on_cooling;
+  const ReadConcrete concrete = read_concrete(root, phases, rules, curves);
   motion.strain_of_concrete = concrete.of_phases;
-  setup.solids =
-      read_solids(root, phases, materials_of(motion.bearings), setup.expansion_reading, concrete, curves);
-  motion.contacts = read_contacts(root, phases, setup.specimen.matrix, has_platens, find_law, curves);
+  setup.solids = read_solids(root, phases, materials_of(motion.bearings), rules, concrete, curves);
+  motion.contacts =
+      read_contacts(root, phases, setup.specimen.matrix, has_platens, rules.on_cooling, find_law, curves);
   for (const ReadBearing& read : bearings) motion.contacts.bearings.push_back(read.interface);
   setup.motion->mechanics =
       read_mechanics(root.section("mechanics", "how the body moves; see [method.md](method.md#motion)"));

@@ -13,9 +13,11 @@ std::vector<int> solids_of_zones(const Model<2>& model) {
   return solids;
 }
 
-/// \param marked  that E is that of, see OnCooling, °C
-ZoneProperties zone_at(const SolidMaterial& solid, double temperature, double marked) {
-  return zone_properties<2>(solid.young(marked), solid.poisson, solid.thermal_strain(temperature));
+/// \param hottest  that it was so far, °C
+ZoneProperties zone_at(const ConcreteMaterials& materials, const SolidMaterial& solid, double temperature,
+                       double hottest) {
+  return zone_properties<2>(solid.young_at(temperature, materials.marked(temperature, hottest)),
+                            solid.poisson, solid.free_strain(temperature, hottest));
 }
 
 /// Of each zone; none where nothing creeps.
@@ -38,17 +40,18 @@ std::vector<CreepIncrement> creep_increments(const std::vector<int>& zone_solids
 /// One set of parameters a material and an interface; bearings keep the reference temperature.
 BodyProperties properties_at_one_temperature(const Model<2>& model, const std::vector<int>& zone_solids,
                                              const ConcreteMaterials& materials, double temperature,
-                                             double marked) {
+                                             double hottest) {
   std::vector<ZoneProperties> solids;
   for (const SolidMaterial& solid : materials.solids)
-    solids.push_back(solid.is_of_bearing ? zone_at(solid, kReferenceTemperature, kReferenceTemperature)
-                                         : zone_at(solid, temperature, marked));
+    solids.push_back(solid.is_of_bearing
+                         ? zone_at(materials, solid, kReferenceTemperature, kReferenceTemperature)
+                         : zone_at(materials, solid, temperature, hottest));
   std::vector<ZoneProperties> zones;
   zones.reserve(zone_solids.size());
   for (int solid : zone_solids) zones.push_back(solids[solid]);
   std::vector<ContactProperties> interfaces;
   for (std::size_t i = 0; i < materials.contacts.size(); ++i) {
-    interfaces.push_back(materials.contacts[i].at(temperature, marked));
+    interfaces.push_back(materials.contacts[i].at(temperature, materials.marked(temperature, hottest)));
     validate(interfaces.back(), model.interface_names[i]);
   }
   return by_interface(model, std::move(zones), interfaces);
@@ -57,9 +60,8 @@ BodyProperties properties_at_one_temperature(const Model<2>& model, const std::v
 }  // namespace
 
 HottestTemperatures::HottestTemperatures(const ConcreteMaterials& materials, const TemperatureField& field) {
-  const bool marks = materials.on_cooling == OnCooling::irreversible;
-  if (materials.creeps() || marks) zones_ = field.zones();
-  if (marks) contacts_ = field.contacts();
+  if (materials.asks_for_hottest()) zones_ = field.zones();
+  if (materials.on_cooling == OnCooling::irreversible) contacts_ = field.contacts();
   of_all_ = field.mean();
 }
 
@@ -80,27 +82,25 @@ BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& mat
                              const TemperatureField& field, const HottestTemperatures& before) {
   const std::vector<int> zone_solids = solids_of_zones(model);
   BodyProperties p;
-  const auto marked = [&](double now, double hottest) {
-    return materials.on_cooling == OnCooling::irreversible ? hottest : now;
-  };
   if (field.is_uniform()) {
     p = properties_at_one_temperature(model, zone_solids, materials, field.mean(),
-                                      marked(field.mean(), before.of_all(field.mean())));
+                                      before.of_all(field.mean()));
     p.creep = creep_increments(zone_solids, materials, field, before);
     return p;
   }
   p.creep = creep_increments(zone_solids, materials, field, before);
   p.zones.reserve(zone_solids.size());
-  for (int z = 0; z < model.zone_count(); ++z)
-    p.zones.push_back(zone_at(materials.solids[zone_solids[z]], field.zones()[z],
-                              marked(field.zones()[z], before.of_zone(z, field.zones()[z]))));
+  for (int z = 0; z < model.zone_count(); ++z) {
+    const double now = field.zones()[z];
+    p.zones.push_back(zone_at(materials, materials.solids[zone_solids[z]], now, before.of_zone(z, now)));
+  }
   p.of_contact.reserve(model.contacts.size());
   for (int c = 0; c < model.contact_count(); ++c) {
     const int interface = model.contacts[c].interface;
     p.of_contact.push_back(c);
     const double now = field.contacts()[c];
     const ContactProperties properties =
-        materials.contacts[interface].at(now, marked(now, before.of_contact(c, now)));
+        materials.contacts[interface].at(now, materials.marked(now, before.of_contact(c, now)));
     validate(properties, model.interface_names[interface]);
     p.contacts.add(properties);
   }

@@ -12,7 +12,8 @@
 namespace pyroclast {
 
 /// The hottest that each zone and contact was so far at an exchange of temperatures, °C: what creeps does so
-/// when it is heated for the first time, and what heat took does not come back on cooling.
+/// when it is heated for the first time, what heat took does not come back on cooling, and free strain may
+/// have a slope of its own on cooling.
 class HottestTemperatures {
  public:
   HottestTemperatures() = default;

@@ -15,6 +15,9 @@ namespace {
 /// Accuracy to which the time of the last change is found, as a fraction of the duration.
 constexpr double kTimeAccuracy = 1e-6;
 
+/// Resistance of a closed crack over that of a block, which is left out where cracks split by the block size.
+constexpr double kLeftOut = 0.05;
+
 /// Curves of a condition, in the order: temperature (if it has one), others.
 struct ConditionCurves {
   const Curve* temperature = nullptr;
@@ -143,6 +146,17 @@ class FaceUse {
 };
 
 }  // namespace
+
+HeatConditions with_specimen(HeatConditions heat, const std::vector<SolidMaterial>& solids,
+                             const specimen::Specimen& specimen) {
+  if (!heat.cracks || !heat.cracks->splits_by_block_size) return heat;
+  double conductivity = 0.0;
+  for (std::size_t i = 0; i < specimen.phases.size(); ++i)
+    conductivity += specimen.fraction[i] * heat_material(solids[i]).conductivity(kReferenceTemperature);
+  heat.cracks->law.split_below = conductivity / (kLeftOut * specimen.metrics.mean_size);
+  heat.cracks->splits_by_block_size = false;
+  return heat;
+}
 
 bool contradict(const HeatCondition& a, const HeatCondition& b) {
   const auto excludes_others = [](const HeatCondition& c) {

@@ -43,7 +43,8 @@ struct HeatBoundaryCondition {
 /// How cracks hinder heat.
 struct CrackHeat {
   GapHeat law;
-  std::vector<StatedGap> gaps;  ///< that are there from the start
+  bool splits_by_block_size = false;  ///< law.split_below is still to come, see with_specimen
+  std::vector<StatedGap> gaps;        ///< that are there from the start
 };
 
 /// What a deck says of heat. Times run from the start of heating.
@@ -59,6 +60,12 @@ struct HeatConditions {
   std::vector<HeatBoundaryCondition> boundaries;
   std::optional<CrackHeat> cracks;  ///< empty: they do not hinder heat
 };
+
+/// Fills in what follows from the specimen: where cracks split by the block size l, they do so below 20
+/// lambda / l, with the mean conductivity of its area at 20 °C. What that leaves out is less than 5 % of a
+/// block's resistance.
+HeatConditions with_specimen(HeatConditions heat, const std::vector<SolidMaterial>& solids,
+                             const specimen::Specimen& specimen);
 
 /// Whether two conditions on one face contradict each other: a prescribed temperature and an adiabatic face
 /// allow nothing beside them, and no kind acts twice.

@@ -96,8 +96,8 @@ Simulation::Simulation(specimen::Specimen specimen, double thickness,
     : team_(std::move(team)),
       specimen_(std::move(specimen)),
       model_(make_model(specimen_, thickness, sets, motion)),
-      heat_(heat),
-      field_(make_field(model_, solids, heat, team_)) {
+      heat_(with_specimen(heat, solids, specimen_)),
+      field_(make_field(model_, solids, heat_, team_)) {
   for (const auto& probe : probes) probes_.emplace_back(model_, probe);
   if (!motion) {
     show_cracks_to_heat();

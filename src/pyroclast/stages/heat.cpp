@@ -34,13 +34,15 @@ StrainChange strain_change(const Simulation& simulation, double from, double to)
     change = {std::min(change.lower, strain), std::max(change.upper, strain)};
   };
   const double stress = -simulation.press().stress();  // tension positive
+  const HottestTemperatures& hottest = simulation.hottest();
   StrainChange change;
   for (const SolidMaterial& solid : simulation.materials().solids) {
     if (solid.is_of_bearing) continue;
-    const double thermal = solid.thermal_strain(to) - solid.thermal_strain(from);
+    const double thermal =
+        solid.free_strain(to, hottest.of_all(to)) - solid.free_strain(from, hottest.of_all(from));
     for (Interval* direction : {&change.axial, &change.lateral}) widen(*direction, thermal);
     if (!solid.creep) continue;
-    const CreepIncrement creep = solid.creep->between(simulation.hottest().of_all(kReferenceTemperature), to);
+    const CreepIncrement creep = solid.creep->between(hottest.of_all(kReferenceTemperature), to);
     const double along = creep.compliance * stress;
     widen(change.axial, thermal + along);
     widen(change.lateral, thermal - creep.poisson * along);

@@ -27,6 +27,7 @@ class GapConduction {
   GapConduction(const Model<Dim>& model, const std::vector<bool>& conducts, const GapHeat& law,
                 const TemperatureGrid& grid, Team& team);
 
+  const GapHeat& law() const { return law_; }
   /// Changes the range of temperatures. Throws Error when the conductivity of the gas is not known or not
   /// positive at one of them.
   void set_grid(const TemperatureGrid& grid);
