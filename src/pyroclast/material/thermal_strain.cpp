@@ -83,7 +83,7 @@ Curve free_thermal_strain(const Curve& expansion, ExpansionReading reading, Inte
 }
 
 Curve with_quartz_step(const Curve& strain, const QuartzStep& step, Interval temperatures) {
-  const auto [lower, upper] = step.over;
+  const double lower = step.over.lower, upper = step.over.upper;
   return Curve::function(
       fmt::format("{}, and {} of quartz from {} to {} degC", strain.description(), step.strain, lower, upper),
       [=](double T) {
