@@ -362,6 +362,7 @@ class Command(WatchTest):
         with self.writer(), subprocess.Popen(words, stdout=writing, env=shell) as process:
             os.close(writing)
             pictures = set()
+            self.wait_for_picture()
             for row in range(61, len(self.rows)):
                 self.add(self.rows[row])
                 time.sleep(0.02)
@@ -381,6 +382,13 @@ class Command(WatchTest):
         self.assertIn("run ended: over", text.split("\x1b[J")[-1])
         self.assertTrue(pictures)
         self.assertNotIn((self.folder / PICTURE).read_bytes(), pictures)  # the last one is of the whole run
+
+    def wait_for_picture(self):
+        """A busy machine may take long to start a watcher."""
+        end = time.monotonic() + 120.0
+        while not (self.folder / PICTURE).exists():
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.05)
 
     @staticmethod
     def read(descriptor: int) -> bytes:
