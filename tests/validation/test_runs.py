@@ -1,0 +1,61 @@
+"""validation/runs: which runs of a study are done, and which go on."""
+
+import hashlib
+import json
+import pathlib
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "validation"))
+import runs  # noqa: E402
+
+COMMAND = ["/here/pyroclast", "run", "deck.toml", "--seed", "1", "--set", "blocks.count=300"]
+
+
+class Runs(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.deck = pathlib.Path(holder.name) / "deck.toml"
+        self.deck.write_text("title = \"one\"\n")
+        self.folder = pathlib.Path(holder.name) / "run"
+        (self.folder / "checkpoints").mkdir(parents=True)
+        (self.folder / "checkpoints" / "1.state").touch()
+        (self.folder / "manifest.json").write_text(json.dumps(
+            {"command": " ".join(["/there/pyroclast", *COMMAND[1:]]), "physics_version": 7}))
+        self.folder.with_name("run.source").write_text(hashlib.sha256(self.deck.read_bytes()).hexdigest())
+        version = mock.patch.object(runs, "physics_version", lambda program: "7")
+        version.start()
+        self.addCleanup(version.stop)
+
+    def end(self, outcome: str):
+        (self.folder / "summary.json").write_text(json.dumps({"outcome": outcome}))
+
+    def test_what_was_killed_or_stopped_goes_on(self):
+        for outcome in (None, "stopped"):
+            if outcome:
+                self.end(outcome)
+            self.assertTrue(runs.broken_off(self.folder, COMMAND))
+            self.assertFalse(runs.finished(self.folder, COMMAND, self.deck))
+
+    def test_what_came_to_its_end_is_done(self):
+        self.end("completed")
+        self.assertFalse(runs.broken_off(self.folder, COMMAND))
+        self.assertTrue(runs.finished(self.folder, COMMAND, self.deck))
+
+    def test_another_command_deck_or_physics_is_another_run(self):
+        self.end("completed")
+        other = [*COMMAND[:-1], "blocks.count=301"]
+        self.assertFalse(runs.finished(self.folder, other, self.deck))
+        with mock.patch.object(runs, "physics_version", lambda program: "8"):
+            self.assertFalse(runs.finished(self.folder, COMMAND, self.deck))
+        self.deck.write_text("title = \"another\"\n")
+        self.assertFalse(runs.finished(self.folder, COMMAND, self.deck))
+        (self.folder / "summary.json").unlink()
+        self.assertFalse(runs.broken_off(self.folder, other))
+
+
+if __name__ == "__main__":
+    unittest.main()
