@@ -3,7 +3,6 @@ load (cases/anderberg_thelandersson.toml), and heated then crushed (cases/hot_st
 a share of its own strength at 20 degC, which the second case finds without heating."""
 
 import dataclasses
-import math
 import pathlib
 import sys
 import threading
@@ -19,7 +18,6 @@ from pyroclast.run import Run  # noqa: E402
 RUNS = ROOT / "runs/hot_concrete"
 HEATED = ROOT / "cases/anderberg_thelandersson.toml"
 CRUSHED = ROOT / "cases/hot_strength.toml"
-AT = 5000  # blocks for which the time step and the cycles of the cases are
 
 
 @dataclasses.dataclass(frozen=True)
@@ -37,10 +35,10 @@ class Specimen:
 
     def settings(self, most_cycles: int) -> list[str]:
         """Time step and cycles go with the block size, as in validation/block_size."""
-        ratio = math.sqrt(AT / self.blocks)
+        ratio = runs.size_ratio(self.blocks)
         least, most = round(1000 / ratio), round(most_cycles / ratio)
         stated = {change.split("=")[0] for change in self.changes}
-        own = {"blocks.count": self.blocks, "mechanics.time_step": f"{10e-6 * ratio:.6g} s",
+        own = {"blocks.count": self.blocks, "mechanics.time_step": runs.time_step(self.blocks),
                "coupling.least_cycles": least, "coupling.most_cycles": most}
         return [f"{key}={value}" for key, value in own.items() if key not in stated] + list(self.changes)
 
@@ -96,13 +94,10 @@ def strength(specimen: Specimen) -> float:
     return cold(specimen).f_c
 
 
-def strains(run: Run, temperatures) -> np.ndarray:
-    """Total strain, positive in tension; not a number where the run did not stand at a temperature."""
-    reached, strain = run.history["temperature_degC"][run.standing], run.history["specimen_strain"][run.standing]
-    temperatures = np.asarray(temperatures, dtype=float)
-    if not len(reached):
-        return np.full(temperatures.shape, np.nan)
-    return np.where(temperatures > reached.max() + 1e-6, np.nan, -np.interp(temperatures, reached, strain))
+def free_strain(temperatures) -> np.ndarray:
+    """glasgow_free_thermal_strain, the concrete's in both decks."""
+    theta = (np.asarray(temperatures, dtype=float) - 20.0) / 100.0
+    return 0.006 * np.log(7.0 / (7.0 - np.minimum(theta, 6.0)))
 
 
 _locks: dict[str, threading.Lock] = {}

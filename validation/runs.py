@@ -1,14 +1,46 @@
-"""Runs of the program that a study needs: what is done is not run again, what was broken off goes on."""
+"""Runs of the program that a study needs, and its table: what is done is not run again, what was broken off goes on."""
 
+import csv
 import functools
 import hashlib
 import json
+import math
 import os
 import pathlib
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("PYROCLAST", str(ROOT / "build/release/bin/pyroclast"))
+
+_AT = 5000  # blocks of the cases, for which their time step is
+_TIME_STEP = 10e-6  # s
+
+
+def size_ratio(blocks: int) -> float:
+    """Block size over that of the cases. Steps of an exchange go with its inverse, so that they take the same time."""
+    return math.sqrt(_AT / blocks)
+
+
+def time_step(blocks: int) -> str:
+    """That goes with the block size, so that the mass that moves is the same."""
+    return f"{_TIME_STEP * size_ratio(blocks):.6g} s"
+
+
+def read_table(table: pathlib.Path) -> list[dict[str, str]]:
+    if not table.exists():
+        return []
+    with open(table, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def write_table(table: pathlib.Path, columns: tuple[str, ...], rows: list[dict]) -> None:
+    """In the place of the one that is there, which stays whole if this is broken off."""
+    aside = table.with_suffix(".new")
+    with open(aside, "w", newline="") as file:
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    aside.rename(table)
 
 
 @functools.cache

@@ -16,14 +16,6 @@ from pyroclast.run import Run  # noqa: E402
 TEMPERATURES = (100, 200, 300, 400, 500, 600, 700, 800)
 
 
-def strain_at(run: Run, temperature: float) -> float:
-    """Total strain in 1e-3 at a temperature; not a number where the run did not stand there."""
-    reached = run.history["temperature_degC"][run.standing]
-    if not len(reached) or temperature > reached.max() + 1e-6:
-        return float("nan")
-    return -1e3 * float(np.interp(temperature, reached, run.history["specimen_strain"][run.standing]))
-
-
 def band(level: float) -> list[str]:
     """The level's band at each temperature, "low..high" in 1e-3; empty where it has none."""
     limits = strain_band(level)
@@ -44,7 +36,7 @@ def main() -> None:
         print(f"band,{level:g},," + ",".join(band(level)) + ",,,,,,,")
     for run in runs:
         variant, level, seed = run.folder.name.rsplit("-", 2)
-        strains = [strain_at(run, t) for t in TEMPERATURES]
+        strains = 1e3 * run.standing_strain(TEMPERATURES)
         heating = run.heating
         critical = heating["critical_temperature_degC"]
         print(f"{variant},{level},{seed}," + ",".join("" if np.isnan(s) else f"{s:.2f}" for s in strains)

@@ -258,6 +258,14 @@ class Run:
         """
         return -self.heated_history("specimen_strain")
 
+    def standing_strain(self, temperatures) -> np.ndarray:
+        """Axial strain at temperatures [°C] while the specimen stood, as `total_strain`; nan above what it reached."""
+        reached, strain = (self.history[name][self.standing] for name in ("temperature_degC", "specimen_strain"))
+        temperatures = np.asarray(temperatures, dtype=float)
+        if not len(reached):
+            return np.full(temperatures.shape, np.nan)
+        return np.where(temperatures > reached.max() + 1e-6, np.nan, -np.interp(temperatures, reached, strain))
+
     def total_strain_at(self, frame: Frame) -> float:
         """`total_strain` when the frame was saved."""
         row = int(np.searchsorted(self.history["step"], frame.step))

@@ -614,6 +614,14 @@ class HeatedReader(HeatedTest):
         self.assertAlmostEqual(run.total_strain[0], -0.225 * 35.0 / 21.5e3, delta=1e-15)
         self.assertGreater(run.total_strain[-1], 0.0)
 
+    def test_standing_strain_is_that_between_rows_and_none_beyond(self):
+        heating = Heating()
+        run = Run(self.heated("run", heating))
+        found = run.standing_strain([20.0, 302.5, 900.0])
+        between = 0.5 * (heating.total_strain(300.0) + heating.total_strain(305.0))
+        np.testing.assert_allclose(found[:2], [heating.total_strain(20.0), between], rtol=0.0, atol=1e-15)
+        self.assertTrue(np.isnan(found[2]))
+
     def test_rows_of_the_heating(self):
         run = Run(self.heated("run"))  # settled and loaded, one row each; 20 to 700 degC in steps of 5 K
         self.assertEqual((len(run.history), run.exchanged.sum(), run.heated.sum()), (138, 136, 137))

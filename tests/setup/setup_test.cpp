@@ -283,8 +283,7 @@ TEST(Phases, InAnyNumberNeedADeckAndNoCode) {
 TEST(Phases, WhatAnInterfaceCannotBeIsSaid) {
   const std::string deck = deck_of_many_phases();
   const auto says = [&](const std::string& from, const std::string& to, const char* what) {
-    const std::string errors = message(with(deck, from, to));
-    EXPECT_NE(errors.find(what), std::string::npos) << errors;
+    expect_in(what, message(with(deck, from, to)));
   };
   says("like = \"aggregate_mortar\"", "like = \"agregate_mortar\"", "must be another interface");
   says("\"steel\", \"light\"]", "\"stel\", \"light\"]", "\"stel\" is no phase of the specimen; phases are");

@@ -186,7 +186,7 @@ TEST(CrackHeat, ADeckIsToldWhatIsWrong) {
   const auto told = [&](const std::string& line, const std::string& key, const std::string& what) {
     const std::string d = key_of(deck(kSettle + kExpose + kHeatedFace + kCracks + line));
     EXPECT_EQ(d.substr(0, key.size()), key) << d;
-    EXPECT_NE(d.find(what), std::string::npos) << d;
+    expect_in(what, d);
   };
   told("emissivity = 1.5\n", "heat.cracks.emissivity", "between 0 and 1");
   told("split_below = \"0 W/(m2 K)\"\n", "heat.cracks.split_below", "greater than 0");
@@ -198,8 +198,8 @@ TEST(CrackHeat, ADeckIsToldWhatIsWrong) {
        "greater than 0");
   told("[[heat.cracks.gaps]]\nwidth = \"1 mm\"\n", "heat.cracks.gaps[0].contacts", "missing");
   const std::string uniform = key_of(deck(kSettle + heat("60 degC") + kUniform + kCracks));
-  EXPECT_NE(uniform.find("heat.cracks"), std::string::npos) << uniform;
-  EXPECT_NE(uniform.find("no effect"), std::string::npos) << uniform;
+  expect_in("heat.cracks", uniform);
+  expect_in("no effect", uniform);
 }
 
 }  // namespace

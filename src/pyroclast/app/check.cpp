@@ -93,12 +93,11 @@ void print_composition(const Composition& whole) {
   if (whole.creep_share) {
     const auto [at_once, far] = *whole.creep_share;
     fmt::print("                creep of the concrete over that of its matrix, R = {:.4f}", at_once);
-    if (far == at_once)
-      fmt::print(", as the deck states it\n");
-    else
+    if (far != at_once)
       fmt::print(
-          " when the matrix has crept\n                by its elastic strain, {:.4f} by ten times as much\n",
+          " when the matrix has crept\n                by its elastic strain, {:.4f} by ten times as much",
           far);
+    fmt::print("\n");
   }
   if (whole.strain_weight)
     fmt::print("                weight of the inclusions in the free strain, w = {:.4f}\n",

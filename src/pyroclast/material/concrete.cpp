@@ -267,8 +267,7 @@ class CreepOfMatrix {
   double operator()(double of_whole) const {
     if (of_whole > of_whole_.back())
       throw Error(
-          "so many inclusions bear on one another that their matrix cannot make the concrete creep by so "
-          "much; "
+          "inclusions bear on one another so much that their matrix cannot make the concrete creep by that; "
           "state share, or the creep of the phase itself with of = \"phase\"");
     const auto above = std::ranges::lower_bound(of_whole_, of_whole);
     if (above == of_whole_.begin()) return 0.0;

@@ -69,10 +69,11 @@ double Mixture<Dim>::inclusion_weight() const {
   if (inclusions_.size() != 1)
     throw Error(
         fmt::format("a mixture of {} kinds of inclusions has no one weight of them", inclusions_.size()));
-  const double matrix = moduli_of(matrix_).bulk, inclusion = moduli_of(inclusions_.front()).bulk;
-  if (matrix == inclusion) return inclusions_.front().fraction;
-  const double whole = mixed(moduli_of(matrix_), moduli_of(matrix_)).bulk;
-  return (1.0 / whole - 1.0 / matrix) / (1.0 / inclusion - 1.0 / matrix);
+  const Moduli matrix = moduli_of(matrix_);
+  const double inclusion = moduli_of(inclusions_.front()).bulk;
+  if (matrix.bulk == inclusion) return inclusions_.front().fraction;
+  const double whole = mixed(matrix, matrix).bulk;
+  return (1.0 / whole - 1.0 / matrix.bulk) / (1.0 / inclusion - 1.0 / matrix.bulk);
 }
 
 template <int Dim>

@@ -262,9 +262,8 @@ void read_residual_ratios(const Section& s, OnCooling on_cooling, ContactMateria
   const auto ratio =
       read_residual_ratio(s, on_cooling,
                           "share of strengths and fracture energies at T_max, the highest temperature that "
-                          "was there, that is left "
-                          "at 20 °C: a curve of T_max, 1 at 20 °C; they fall to it evenly on cooling; see "
-                          "[deck.md](deck.md#cooling)",
+                          "was there, that is left at 20 °C: a curve of T_max, 1 at 20 °C; they fall to it "
+                          "evenly on cooling; see [deck.md](deck.md#cooling)",
                           curves);
   if (!ratio) return;
   bool has_effect = false;
