@@ -642,7 +642,8 @@ template <int Dim>
 void Mechanics<Dim>::forget() {
   for_each_array(
       [](const ArrayInfo& info, auto& array) {
-        if (info.lasts == Lasts::kept) std::memset(static_cast<void*>(array.data()), 0xff, bytes_of(array));
+        if (info.lasts == Lasts::kept && !array.empty())
+          std::memset(static_cast<void*>(array.data()), 0xff, bytes_of(array));
       },
       storage_);
   Vec<Dim> nothing;
