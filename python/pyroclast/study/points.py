@@ -1,0 +1,148 @@
+"""What a point's runs are made from, and by what they are known."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shlex
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from .. import _core
+from ..decks import toml
+from ..errors import DeckError, Error
+from .file import Study
+from .parameters import Parameter, Value, numbered
+
+_ID_LENGTH = 16  # hexadecimal digits: two of a million points are the same by chance once in 10^7 studies
+_NO_RESULT = ("fields", "reference", "checkpoint", "keep_stage_checkpoints")  # keys of [output] that change none
+
+
+@dataclass(frozen=True)
+class Point:
+    """A value for each parameter, in their order, and the runs that it asks for, one for each seed."""
+
+    values: tuple[Value, ...]
+    ids: tuple[str, ...]  #: of the runs, by seed
+    earlier: tuple[str, ...] = ()  #: the same by an earlier physics version that counts too
+    infeasible: str = ""  #: why it cannot be run; empty if it can
+
+
+class Points:
+    """Makes the points of a study. Those whose deck is refused are infeasible."""
+
+    def __init__(self, study: Study):
+        self._study = study
+        self._made: dict[tuple[Value, ...], Point] = {}
+
+    def at(self, values: Sequence[Value]) -> Point:
+        """The point of these values, made once."""
+        key = tuple(values)
+        if key not in self._made:
+            self._made[key] = self._make(key)
+        return self._made[key]
+
+    def _make(self, values: tuple[Value, ...]) -> Point:
+        runner = self._study.runner
+        if runner.kind != "pyroclast":
+            what = runner.command or f"{runner.function}\n{runner.file.read_text(encoding='utf-8')}"
+            named = dict(zip((p.name for p in self._study.parameters), values))
+            return Point(values, tuple(_hash([what, named, seed]) for seed in self._study.seeds))
+        try:
+            text, files, _ = self.resolve(values)
+        except Error as error:
+            return Point(values, (), infeasible=str(error))
+        tables = tomllib.loads(text)
+
+        def ids(version: int | None) -> tuple[str, ...]:
+            return tuple(run_id(tables, files, seed, version) for seed in self._study.seeds) if version else ()
+
+        return Point(values, ids(_core.physics_version), ids(self._study.accept_version))
+
+    def resolve(self, values: Sequence[Value]) -> tuple[str, dict[str, str], list[Any]]:
+        """The deck of a point, hashes of its files, and warnings. Raises Error, as DeckError for a deck in error."""
+        changes = [f"{path}={value}" for path, value in self.changes(values)]
+        return _core.resolve(_core.DeckText(self._text, str(self._study.runner.deck), str(self._study.runner.deck.parent),
+                                            changes, [], []))
+
+    def changes(self, values: Sequence[Value]) -> list[tuple[str, str]]:
+        """Keys of the deck and what a point writes there, as `--set` takes them."""
+        all_changes = self._common
+        for parameter, value in zip(self._study.parameters, values):
+            deck = self._tables
+            named = Parameter(parameter.name, parameter.distribution,
+                              tuple((numbered(path, deck), factor) for path, factor in parameter.keys),
+                              parameter.how, parameter.unit)
+            all_changes = all_changes + named.changes(value, deck)
+        return all_changes
+
+    def command(self, program: str, values: Sequence[Value], seed: int, folder: Path | None = None) -> list[str]:
+        """The command line of a run; a folder where its results go."""
+        runner = self._study.runner
+        if runner.kind == "command":
+            fields = {p.name: _plain(v, p) for p, v in zip(self._study.parameters, values)}
+            line = runner.command.format(**fields, seed=seed, folder=folder or "FOLDER")
+            return shlex.split(line)
+        words = [program, "run", str(runner.deck)]
+        for path, value in self.changes(values):
+            words += ["--set", f"{path}={value}"]
+        return [*words, "--seed", str(seed)] + (["--out", str(folder)] if folder else [])
+
+    @cached_property
+    def _text(self) -> str:
+        return _core.read(str(self._study.runner.deck))
+
+    @cached_property
+    def _common(self) -> list[tuple[str, str]]:
+        deck = tomllib.loads(self._text)
+        return [(numbered(path, deck), toml(value)) for path, value in self._study.runner.changes]
+
+    @cached_property
+    def _tables(self) -> Mapping[str, Any]:
+        """The deck as it stands, with the changes that all points have."""
+        changes = [f"{path}={value}" for path, value in self._common]
+        return tomllib.loads(_core.written(_core.DeckText(self._text, str(self._study.runner.deck), "", changes, [], [])))
+
+    def check_ends(self) -> list[str]:
+        """What is wrong at the middle and at the ends of each parameter's range; empty where all can be run."""
+        middle = [p.distribution.at(0.5) for p in self._study.parameters]
+        wrong: dict[str, str] = {}  # by what is said, where
+        places = [("", middle)]
+        for i, parameter in enumerate(self._study.parameters):
+            for end in parameter.distribution.ends():
+                places.append((f"{self._study.place(f'parameters.{parameter.name}')}: {parameter.name} = "
+                               f"{end}{' ' if parameter.unit else ''}{parameter.unit}: ",
+                               [*middle[:i], end, *middle[i + 1:]]))
+        for place, values in places:
+            try:
+                if self._study.runner.kind == "pyroclast":
+                    self.resolve(values)
+                elif self._study.runner.kind == "command":
+                    self.command("", values, 1)
+            except DeckError as error:
+                for d in error.diagnostics:
+                    wrong.setdefault(f"{d.key} = {d.value}: {d.message}", f"{place}{d}")
+            except (Error, KeyError, IndexError, ValueError) as error:
+                said = f"{{{error.args[0]}}} is no parameter" if isinstance(error, KeyError) else str(error)
+                wrong.setdefault(said, f"{place}{said}")
+        return list(wrong.values())
+
+
+def run_id(tables: Mapping[str, Any], files: Mapping[str, str], seed: int, version: int) -> str:
+    """Of a run: the hash of its deck with all that the deck names, its seed and the physics version."""
+    specimen = {**tables.get("specimen", {}), "seed": seed}
+    output = {key: value for key, value in tables.get("output", {}).items() if key not in _NO_RESULT}
+    deck = {key: value for key, value in tables.items() if key != "title"}
+    return _hash([{**deck, "specimen": specimen, "output": output}, files, version])
+
+
+def _hash(what: Any) -> str:
+    return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()[:_ID_LENGTH]
+
+
+def _plain(value: Value, parameter: Parameter) -> str:
+    return f"{value!r}" if isinstance(value, float) else str(value)
