@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -72,7 +72,7 @@ class Method:
 
 
 @dataclass(frozen=True)
-class Study:
+class Setup:
     """All that a study file says."""
 
     file: Path
@@ -100,12 +100,14 @@ class Study:
         return node.where(last)
 
 
-def read_study(file: str | Path) -> Study:
-    """Reads a study file. Raises DeckError with everything that is wrong with it."""
+def read_setup(file: str | Path, functions: Sequence[str] = ()) -> Setup:
+    """Reads a study file. Raises DeckError with everything that is wrong with it.
+
+    functions: names of further outputs, which a script takes of each run.
+    """
     toml = _core.TomlFile(str(file))
-    study = _read(toml, Path(file))
+    study = _read(toml, Path(file), functions)
     toml.finish()
-    assert study is not None
     return study
 
 
@@ -114,7 +116,7 @@ def reference() -> str:
     return _core.reference_of(lambda toml: _read(toml, Path("study.toml")))
 
 
-def _read(toml: _core.TomlFile, file: Path) -> Study | None:
+def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> Setup:
     root = toml.root()
     title = root.text("title", "What figures and the report are headed with.", file.stem)
     own = root.table("study", "What is run, how often, and what is kept of it.")
@@ -132,9 +134,10 @@ def _read(toml: _core.TomlFile, file: Path) -> Study | None:
     earlier = own.texts("earlier", "Tables of earlier studies (table.csv), whose runs are taken in as they are.")
 
     method = _method(root.table("method", "Which points are run, and what is made of them."))
-    outputs = _outputs(root.table("outputs", "Numbers that are taken of each run, by names of your own: a number of the "
+    outputs = [Output.of_function(name) for name in functions]
+    outputs += _outputs(root, not outputs, "Numbers that are taken of each run, by names of your own: a number of the "
                                   "summary by its name (`\"f_c_MPa\"`), or `\"history: COLUMN at COLUMN = NUMBER\"`; see "
-                                  "[studies.md](studies.md#outputs)."))
+                        "[studies.md](studies.md#outputs).")
     parameters = []
     tables = root.optional_table("parameters", "What is varied.")
     if tables is not None:
@@ -144,7 +147,7 @@ def _read(toml: _core.TomlFile, file: Path) -> Study | None:
     correlations = _correlations(root, [p.name for p in parameters], method.kind)
     slurm = _slurm(root)
     _check_together(root, own, method, parameters, outputs, targets)
-    return Study(file, title, (file.parent / folder), runner, method, tuple(range(first, first + count)),
+    return Setup(file, title, (file.parent / folder), runner, method, tuple(range(first, first + count)),
                  tuple(parameters), tuple(outputs), tuple(targets), tuple(correlations), keep,
                  wall_limit or math.inf, accepted, tuple(file.parent / e for e in earlier), slurm)
 
@@ -212,11 +215,13 @@ def _method(table: _core.Table) -> Method:
     elif kind == "calibrate":
         integer("population", "Points of a generation; 0: 4 + 3 ln of the number of parameters.", 0, 0)
         integer("generations", "At most.", 1, 50)
-        settings["tolerance"] = table.number("tolerance", "Ends when the best misfit has fallen by less than this share "
-                                             "in ten generations.", 0.0, 1.0, 0.01)
+        settings["least_step"] = table.number("least_step", "Ends when no parameter's step is longer than this share of "
+                                              "its range ...", 0.0, 1.0, 0.01)
+        settings["least_gain"] = table.number("least_gain", "... or when the best misfit, in squares of standard "
+                                              "deviations, gains no more than this ...", 0.0, None, 0.1)
+        integer("patience", "... in as many generations.", 1, 8)
     if kind == "posterior":
-        integer("walkers", "Of the ensemble sampler; at least twice the number of parameters.", 4, 32)
-        integer("steps", "Of each walker.", 100, 4000)
+        integer("steps", "Of each walker of the ensemble sampler, at most.", 100, 5000)
         integer("checks", "Draws of the posterior that are run to check the surrogate.", 0, 5)
     if kind == "sobol":
         settings["allow_missing"] = table.flag("allow_missing", "Give indices even when more than 5 % of the rows are "
@@ -235,8 +240,11 @@ def _method(table: _core.Table) -> Method:
     return Method(kind, settings, until)
 
 
-def _outputs(table: _core.Table) -> list[Output]:
-    outputs = []
+def _outputs(root: _core.Table, is_needed: bool, meaning: str) -> list[Output]:
+    outputs: list[Output] = []
+    table = root.table("outputs", meaning) if is_needed else root.optional_table("outputs", meaning)
+    if table is None:
+        return outputs
     for name in sorted(table.keys(), key=lambda key: _line(table, key)):
         what = json.loads(table.json(name, "text", ""))
         if not _NAME.fullmatch(name):
@@ -248,7 +256,7 @@ def _outputs(table: _core.Table) -> list[Output]:
                 outputs.append(Output(name, what))
             except Error as error:
                 table.error(name, str(error))
-    if table.ok() and not outputs:
+    if is_needed and table.ok() and not outputs:
         table.error("", "a study takes one number of each run at least")
     return outputs
 

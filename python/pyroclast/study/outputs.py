@@ -18,6 +18,8 @@ _HISTORY = re.compile(r"(?P<column>\S+)"
                       r"| at (?P<at>\S+) = (?P<value>[-+0-9.eE]+)"
                       r"| where (?P<of>\S+) is (?P<extreme>largest|least))?")
 
+_FUNCTION = "python: "
+
 
 @dataclass(frozen=True)
 class Output:
@@ -37,6 +39,15 @@ class Output:
             raise Error(f'{self.what!r}: a column of the history is taken "last", "largest", "least", '
                         f'"at COLUMN = NUMBER", "where COLUMN is largest" or "where COLUMN is least"')
 
+    @classmethod
+    def of_function(cls, name: str) -> Output:
+        """One that a script takes of each run."""
+        return cls(name, f"{_FUNCTION}{name}")
+
+    @property
+    def is_function(self) -> bool:
+        return self.what.startswith(_FUNCTION)
+
     @property
     def of_history(self) -> bool:
         return self.what.startswith("history:")
@@ -52,7 +63,7 @@ class Output:
         return [c for c in (found["column"], found["at"], found["of"]) if c] if found else []
 
     def of(self, folder: Path, summary: dict[str, Any]) -> tuple[float, str]:
-        """The number and, where there is none (NaN), why."""
+        """The number and, where there is none (NaN), why. Not of functions."""
         return self._of_history(folder) if self.of_history else self._of_summary(summary)
 
     def _of_summary(self, summary: dict[str, Any]) -> tuple[float, str]:

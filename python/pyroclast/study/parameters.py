@@ -73,8 +73,11 @@ class Distribution:
         return stats.truncnorm((bounds[0] - mean) / sd, (bounds[1] - mean) / sd, mean, sd)
 
     def ends(self) -> list[Value]:
-        """Least and largest values that are drawn; all choices."""
-        return list(self.choices) if self.kind == "choice" else [self.at(0.0), self.at(1.0)]
+        """Least and largest values that are drawn, of a normal distribution all but one of 1,000; all choices."""
+        if self.kind == "choice":
+            return list(self.choices)
+        tail = 1e-3 if self.kind == "normal" else 0.0
+        return [self.at(tail), self.at(1.0 - tail)]
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 import shlex
 import tomllib
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -15,27 +15,32 @@ from typing import Any
 from .. import _core
 from ..decks import toml
 from ..errors import DeckError, Error
-from .file import Study
+from .file import Setup
 from .parameters import Parameter, Value, numbered
 
 _ID_LENGTH = 16  # hexadecimal digits: two of a million points are the same by chance once in 10^7 studies
 _NO_RESULT = ("fields", "reference", "checkpoint", "keep_stage_checkpoints")  # keys of [output] that change none
 
 
-@dataclass(frozen=True)
 class Point:
-    """A value for each parameter, in their order, and the runs that it asks for, one for each seed."""
+    """A value for each parameter, in their order, and the runs that it asks for."""
 
-    values: tuple[Value, ...]
-    ids: tuple[str, ...]  #: of the runs, by seed
-    earlier: tuple[str, ...] = ()  #: the same by an earlier physics version that counts too
-    infeasible: str = ""  #: why it cannot be run; empty if it can
+    def __init__(self, values: tuple[Value, ...], hashes: Sequence[Callable[[int], str]], infeasible: str = ""):
+        """hashes: identity of the run with a seed, and that by an earlier physics version which counts too."""
+        self.values = values
+        self.infeasible = infeasible  #: why it cannot be run; empty if it can
+        self._hashes = hashes
+
+    @functools.cache  # noqa: B019 - a point lives as long as its study
+    def ids(self, seed: int) -> tuple[str, ...]:
+        """By which the run with a seed is known: the first is that of this program."""
+        return tuple(hashed(seed) for hashed in self._hashes)
 
 
 class Points:
     """Makes the points of a study. Those whose deck is refused are infeasible."""
 
-    def __init__(self, study: Study):
+    def __init__(self, study: Setup):
         self._study = study
         self._made: dict[tuple[Value, ...], Point] = {}
 
@@ -49,19 +54,20 @@ class Points:
     def _make(self, values: tuple[Value, ...]) -> Point:
         runner = self._study.runner
         if runner.kind != "pyroclast":
-            what = runner.command or f"{runner.function}\n{runner.file.read_text(encoding='utf-8')}"
             named = dict(zip((p.name for p in self._study.parameters), values))
-            return Point(values, tuple(_hash([what, named, seed]) for seed in self._study.seeds))
+            return Point(values, [lambda seed: _hash([self._model, named, seed])])
         try:
             text, files, _ = self.resolve(values)
         except Error as error:
-            return Point(values, (), infeasible=str(error))
+            return Point(values, [], str(error))
         tables = tomllib.loads(text)
+        versions = [v for v in (_core.physics_version, self._study.accept_version) if v is not None]
+        return Point(values, [functools.partial(run_id, tables, files, version=v) for v in versions])
 
-        def ids(version: int | None) -> tuple[str, ...]:
-            return tuple(run_id(tables, files, seed, version) for seed in self._study.seeds) if version else ()
-
-        return Point(values, ids(_core.physics_version), ids(self._study.accept_version))
+    @cached_property
+    def _model(self) -> str:
+        runner = self._study.runner
+        return runner.command or f"{runner.function}\n{runner.file.read_text(encoding='utf-8')}"
 
     def resolve(self, values: Sequence[Value]) -> tuple[str, dict[str, str], list[Any]]:
         """The deck of a point, hashes of its files, and warnings. Raises Error, as DeckError for a deck in error."""
@@ -83,6 +89,8 @@ class Points:
     def command(self, program: str, values: Sequence[Value], seed: int, folder: Path | None = None) -> list[str]:
         """The command line of a run; a folder where its results go."""
         runner = self._study.runner
+        if runner.kind == "function":
+            return [f"{runner.file}:{runner.function}"]
         if runner.kind == "command":
             fields = {p.name: _plain(v, p) for p, v in zip(self._study.parameters, values)}
             line = runner.command.format(**fields, seed=seed, folder=folder or "FOLDER")

@@ -6,6 +6,7 @@ import fcntl
 import json
 import math
 import sqlite3
+import urllib.parse
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
@@ -52,44 +53,68 @@ class Result:
 
 
 _COLUMNS = tuple(Result.__dataclass_fields__)
+_NAMES = ", ".join(f'"{name}"' for name in _COLUMNS)
 _AS_JSON = ("outputs", "values")
 
 
 class Store:
-    """Results by the identity of their runs. The process that has it open is the only one that writes."""
+    """Results by the identity of their runs. One process at a time writes; others may read."""
 
-    def __init__(self, folder: Path):
-        """Raises Error where another process has it open."""
-        folder.mkdir(parents=True, exist_ok=True)
+    def __init__(self, folder: Path, writes: bool = True):
+        """writes: False for a reader, which may come while another process writes; what it puts in, it alone sees.
+
+        Raises Error where another process has it open to write.
+        """
         self.folder = folder
+        self._results: dict[str, Result] = {}
+        self._base: sqlite3.Connection | None = None
+        self._lock = None
+        if not writes:
+            self._read()
+            return
+        folder.mkdir(parents=True, exist_ok=True)
         self._lock = open(folder / "lock", "w", encoding="utf-8")
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             self._lock.close()
             raise Error(f"{folder}: another process runs a study in this folder") from None
-        self._results: dict[str, Result] = {}
-        self._connect()
+        self._open()
 
-    def _connect(self) -> None:
-        file = self.folder / "study.sqlite"
+    @property
+    def _file(self) -> Path:
+        return self.folder / "study.sqlite"
+
+    def _read(self) -> None:
+        if self._file.exists():
+            base = sqlite3.connect(f"file:{urllib.parse.quote(str(self._file))}?mode=ro", uri=True)
+            self._take_from(base)
+            base.close()
+
+    def _open(self) -> None:
+        is_new = not self._file.exists()
         try:
-            self._open(file)
-        except sqlite3.DatabaseError:
-            file.rename(file.with_suffix(".damaged"))  # the records of the runs have all that it had
-            self._open(file)
-            self.put(_records(self.folder / "runs"))
-
-    def _open(self, file: Path) -> None:
-        is_new = not file.exists()
-        self._base = sqlite3.connect(file)
-        self._base.execute(f"CREATE TABLE IF NOT EXISTS runs ({', '.join(_COLUMNS)}, PRIMARY KEY (id))")
-        for row in self._base.execute(f"SELECT {', '.join(_COLUMNS)} FROM runs"):
-            named = dict(zip(_COLUMNS, row))
-            named.update({key: json.loads(named[key]) for key in _AS_JSON})
-            self._results[named["id"]] = Result(**named)
+            self._base = self._connected()
+        except sqlite3.DatabaseError as error:
+            if isinstance(error, sqlite3.OperationalError):  # a full disk, say, and nothing wrong with the file
+                raise Error(f"{self._file}: {error}") from error
+            self._file.rename(self._file.with_suffix(".damaged"))
+            self._base, is_new = self._connected(), True
         if is_new:
             self.put(_records(self.folder / "runs"))
+
+    def _connected(self) -> sqlite3.Connection:
+        base = sqlite3.connect(self._file)
+        base.execute(f"CREATE TABLE IF NOT EXISTS runs ({_NAMES}, PRIMARY KEY (id))")
+        self._take_from(base)
+        return base
+
+    def _take_from(self, base: sqlite3.Connection) -> None:
+        for row in base.execute(f"SELECT {_NAMES} FROM runs"):
+            named = dict(zip(_COLUMNS, row))
+            named.update({key: json.loads(named[key]) for key in _AS_JSON})
+            named["outputs"] = {what: (value, why) for what, (value, why) in named["outputs"].items()}
+            self._results[named["id"]] = Result(**named)
 
     def get(self, *ids: str) -> Result | None:
         """The result of the first of these runs that there is one of."""
@@ -101,6 +126,8 @@ class Store:
             self._results[result.id] = result
             named = asdict(result)
             rows.append([json.dumps(named[key]) if key in _AS_JSON else named[key] for key in _COLUMNS])
+        if self._base is None:
+            return
         with self._base:
             self._base.executemany(f"INSERT OR REPLACE INTO runs VALUES ({', '.join('?' * len(_COLUMNS))})", rows)
 
@@ -109,6 +136,7 @@ class Store:
         gone = [(i,) for i in ids]
         for (i,) in gone:
             self._results.pop(i, None)
+        assert self._base is not None
         with self._base:
             self._base.executemany("DELETE FROM runs WHERE id = ?", gone)
 
@@ -119,14 +147,15 @@ class Store:
         return len(self._results)
 
     def close(self) -> None:
-        self._base.close()
-        self._lock.close()
+        if self._base is not None and self._lock is not None:
+            self._base.close()
+            self._lock.close()
 
 
 @contextmanager
-def opened(folder: Path) -> Iterator[Store]:
+def opened(folder: Path, writes: bool = True) -> Iterator[Store]:
     """A store, closed at the end."""
-    store = Store(folder)
+    store = Store(folder, writes)
     try:
         yield store
     finally:
@@ -158,4 +187,4 @@ def read_record(runs: Path, run: str) -> Result | None:
 
 def _records(runs: Path) -> list[Result]:
     found = [read_record(runs, file.stem) for file in sorted(runs.glob("*.json"))]
-    return [record for record in found if record is not None]
+    return [record for record in found if record is not None and record.state in (DONE, *FAILED)]
