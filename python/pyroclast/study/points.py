@@ -7,7 +7,8 @@ import hashlib
 import json
 import shlex
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -77,14 +78,12 @@ class Points:
 
     def changes(self, values: Sequence[Value]) -> list[tuple[str, str]]:
         """Keys of the deck and what a point writes there, as `--set` takes them."""
-        all_changes = self._common
-        for parameter, value in zip(self._study.parameters, values):
-            deck = self._tables
-            named = Parameter(parameter.name, parameter.distribution,
-                              tuple((numbered(path, deck), factor) for path, factor in parameter.keys),
-                              parameter.how, parameter.unit)
-            all_changes = all_changes + named.changes(value, deck)
-        return all_changes
+        own = (self._changes_of(p, value) for p, value in zip(self._study.parameters, values))
+        return [*self._common, *(change for changes in own for change in changes)]
+
+    def _changes_of(self, parameter: Parameter, value: Value) -> list[tuple[str, str]]:
+        keys = tuple((numbered(path, self._tables), factor) for path, factor in parameter.keys)
+        return replace(parameter, keys=keys).changes(value, self._tables) if keys else []
 
     def command(self, program: str, values: Sequence[Value], seed: int, folder: Path | None = None) -> list[str]:
         """The command line of a run; a folder where its results go."""
@@ -107,7 +106,10 @@ class Points:
     @cached_property
     def _common(self) -> list[tuple[str, str]]:
         deck = tomllib.loads(self._text)
-        return [(numbered(path, deck), toml(value)) for path, value in self._study.runner.changes]
+        try:
+            return [(numbered(path, deck), toml(value)) for path, value in self._study.runner.changes]
+        except Error as error:
+            raise Error(f"{self._study.place('study.changes')}: {error}") from error
 
     @cached_property
     def _tables(self) -> Mapping[str, Any]:
@@ -118,26 +120,50 @@ class Points:
     def check_ends(self) -> list[str]:
         """What is wrong at the middle and at the ends of each parameter's range; empty where all can be run."""
         middle = [p.distribution.at(0.5) for p in self._study.parameters]
-        wrong: dict[str, str] = {}  # by what is said, where
-        places = [("", middle)]
-        for i, parameter in enumerate(self._study.parameters):
-            for end in parameter.distribution.ends():
-                places.append((f"{self._study.place(f'parameters.{parameter.name}')}: {parameter.name} = "
-                               f"{end}{' ' if parameter.unit else ''}{parameter.unit}: ",
-                               [*middle[:i], end, *middle[i + 1:]]))
-        for place, values in places:
+        if self._study.runner.kind == "pyroclast":
             try:
-                if self._study.runner.kind == "pyroclast":
-                    self.resolve(values)
-                elif self._study.runner.kind == "command":
-                    self.command("", values, 1)
+                self._tables
+            except Error as error:
+                return [str(error)]
+        wrong = self._wrong_keys(middle)
+        if wrong or self._study.runner.kind != "pyroclast":
+            return wrong
+        said: dict[str, str] = {}  # by what is wrong, all of it
+        for place, values in self._ends(middle):
+            try:
+                self.resolve(values)
             except DeckError as error:
                 for d in error.diagnostics:
-                    wrong.setdefault(f"{d.key} = {d.value}: {d.message}", f"{place}{d}")
-            except (Error, KeyError, IndexError, ValueError) as error:
-                said = f"{{{error.args[0]}}} is no parameter" if isinstance(error, KeyError) else str(error)
-                wrong.setdefault(said, f"{place}{said}")
-        return list(wrong.values())
+                    said.setdefault(f"{d.key} = {d.value}: {d.message}", f"{place}{d}")
+            except Error as error:
+                said.setdefault(str(error), f"{place}{error}")
+        return list(said.values())
+
+    def _wrong_keys(self, middle: Sequence[Value]) -> list[str]:
+        """Of parameters whose keys, or whose place in the command, there are not."""
+        wrong = []
+        if self._study.runner.kind == "command":
+            try:
+                self.command("", middle, 1)
+            except (KeyError, IndexError, ValueError) as error:
+                named = f"{{{error.args[0]}}} is no parameter" if isinstance(error, KeyError) else str(error)
+                wrong.append(f"{self._study.place('study.command')}: {named}")
+            unnamed = [p.name for p in self._study.parameters if f"{{{p.name}" not in self._study.runner.command]
+            wrong += [f"{self._study.place(f'parameters.{name}')}: the command has no {{{name}}}" for name in unnamed]
+        for parameter, value in zip(self._study.parameters, middle):
+            try:
+                self._changes_of(parameter, value)
+            except Error as error:
+                wrong.append(f"{self._study.place(f'parameters.{parameter.name}')}: {error}")
+        return wrong
+
+    def _ends(self, middle: Sequence[Value]) -> Iterator[tuple[str, list[Value]]]:
+        for i, parameter in enumerate(self._study.parameters):
+            for end in parameter.distribution.ends():
+                unit = f" {parameter.unit}" if parameter.unit else ""
+                yield (f"{self._study.place(f'parameters.{parameter.name}')}: {parameter.name} = {end}{unit}: ",
+                       [*middle[:i], end, *middle[i + 1:]])
+        yield f"{self._study.place('study')}: in the middle of all ranges: ", list(middle)
 
 
 def run_id(tables: Mapping[str, Any], files: Mapping[str, str], seed: int, version: int) -> str:
