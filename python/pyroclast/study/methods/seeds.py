@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+LEVEL = 0.95
+"""Of all intervals."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +28,7 @@ class Share:
 
 def over_seeds(y: Array) -> Array:
     """Mean over the seeds, NaN where a point misses one. y: (..., seeds), result: (...)."""
-    raise NotImplementedError
+    return np.asarray(y, float).mean(axis=-1)
 
 
 def share(y: Array, seed: int = 0, resamples: int = 1000) -> Share:
@@ -35,4 +37,49 @@ def share(y: Array, seed: int = 0, resamples: int = 1000) -> Share:
     Two-way analysis of variance with points and seeds crossed: y = point + seed + rest. The variance between seeds is
     that of seed and rest together, averaged over the points; the points' own variance is free of the rest's part in it.
     """
-    raise NotImplementedError
+    y = np.asarray(y, float)
+    y = y[np.isfinite(y).all(axis=1)]
+    points, count = y.shape
+    if points < 2 or count < 2:
+        return Share(*[float("nan")] * 6, points, count)
+    single, mean = _shares(y, np.full((1, count), 1.0 / count))
+    weights = np.random.default_rng(seed).multinomial(count, np.full(count, 1.0 / count), resamples) / count
+    singles, means = _shares(y, weights[weights.max(axis=1) < 1.0])
+    return Share(float(single[0]), *interval(singles), float(mean[0]), *interval(means), points, count)
+
+
+def _shares(y: Array, weights: Array) -> tuple[Array, Array]:
+    """Shares in single runs and in the mean, one for each row of weights (resamples, seeds), the sum of each being 1.
+
+    Variances are divided by what makes them free of bias for these weights: a resample has some seeds more than once.
+    """
+    points, count = y.shape
+    y = y - y.mean()
+    repeated = (weights**2).sum(axis=1)
+    means = y @ weights.T
+    between = np.maximum(y**2 @ weights.T - means**2, 0.0).mean(axis=0) / (1.0 - repeated)
+    by_seed = y.mean(axis=0)
+    shift = (weights @ by_seed**2 - (weights @ by_seed) ** 2) / (1.0 - repeated)
+    rest = np.maximum(between - shift, 0.0) * points / (points - 1.0)
+    own = np.maximum(means.var(axis=0, ddof=1) - repeated * rest, 0.0)
+    with np.errstate(invalid="ignore"):
+        return between / (between + own), between / count / (between / count + own)
+
+
+def rest_variance(y: Array) -> float:
+    """Variance of what a seed does differently at each point, of single runs. y: (points, seeds).
+
+    NaN with fewer than two complete points or seeds.
+    """
+    y = y[np.isfinite(y).all(axis=1)]
+    points, count = y.shape
+    if points < 2 or count < 2:
+        return float("nan")
+    rest = y - y.mean(axis=0) - y.mean(axis=1, keepdims=True) + y.mean()
+    return float((rest**2).sum() / ((points - 1) * (count - 1)))
+
+
+def interval(resampled: Array) -> tuple[Array, Array]:
+    """Percentile interval of the resampled values (resamples, ...), both ends of shape (...)."""
+    low, high = np.nanpercentile(resampled, [50.0 * (1.0 - LEVEL), 50.0 * (1.0 + LEVEL)], axis=0)
+    return low, high
