@@ -41,11 +41,13 @@ def share(y: Array, seed: int = 0, resamples: int = 1000) -> Share:
     y = y[np.isfinite(y).all(axis=1)]
     points, count = y.shape
     if points < 2 or count < 2:
-        return Share(*[float("nan")] * 6, points, count)
+        nan = float("nan")
+        return Share(nan, nan, nan, nan, nan, nan, points, count)
     single, mean = _shares(y, np.full((1, count), 1.0 / count))
     weights = np.random.default_rng(seed).multinomial(count, np.full(count, 1.0 / count), resamples) / count
     singles, means = _shares(y, weights[weights.max(axis=1) < 1.0])
-    return Share(float(single[0]), *interval(singles), float(mean[0]), *interval(means), points, count)
+    (single_low, mean_low), (single_high, mean_high) = interval(np.stack([singles, means], axis=1))
+    return Share(float(single[0]), single_low, single_high, float(mean[0]), mean_low, mean_high, points, count)
 
 
 def _shares(y: Array, weights: Array) -> tuple[Array, Array]:
