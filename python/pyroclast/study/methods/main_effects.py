@@ -71,8 +71,8 @@ def curve(u: Array, y: Array, most_classes: int = 10) -> Curve:
 def rank_effects(u: Array, y: Array, seed: int = 0, resamples: int = 1000) -> RankEffects:
     """Rank correlation and regression. u: (n, k), y: (n, seeds); missing points drop out.
 
-    Told from the seeds is a coefficient beyond Student's t of 95 % times its standard error: twice it for many seeds, more
-    for few. Raises `Error` with fewer than k + 2 points. (Saltelli, Sobol', Reliab. Eng. Syst. Saf. 50, 1995.)
+    Told from the seeds is a coefficient beyond Student's t of 95 % times its standard error: twice it for many seeds,
+    more for few. Raises `Error` with fewer than k + 2 points. (Saltelli, Sobol', Reliab. Eng. Syst. Saf. 50, 1995.)
     """
     from scipy.stats import t
 

@@ -8,10 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .calibration import Targets
+from . import _needs, seeds
+from .calibration import NOT_DETERMINED, UNIFORM_SD, Targets, misfit
 from .surrogate import Surrogate, Validation
 
 Array = NDArray[np.float64]
+_LEAST_WALKERS = 16
+_BLOCK = 500
+_LENGTHS = 50
+_SETTLED = 0.02
+_BURN = 5
 
 
 @dataclass(frozen=True)
@@ -45,24 +51,70 @@ def sample(surrogates: Sequence[Surrogate], validations: Sequence[Validation], t
            seed: int = 0, walkers: int | None = None, most_steps: int = 5000) -> Posterior:
     """Draws of the parameters, prior uniform in the unit cube.
 
-    surrogates: one for each target, in their order. validations: theirs; their errors are added to the covariance.
+    surrogates: one for each target, in their order. validations: theirs; the surrogates' own errors are added to the
+        covariance.
     covariance: (q, q), that of the mean over seeds and of the measurements (`misfit_covariance`).
     walkers: None: 4 k, at least 16. The chain goes on until it is 50 autocorrelation times long and that time has
-    settled to 2 %, or to most_steps.
+    settled to 2 %, or to most_steps; five times are burn-in.
 
     Raises `Error` where a surrogate's Q2 is below its least, or without emcee.
     """
-    raise NotImplementedError
+    emcee = _needs.library("emcee", "a posterior")
+    for validation in validations:
+        validation.require()
+    total = covariance + np.diag([validation.own_error**2 for validation in validations])
+    k = surrogates[0].u.shape[1]
+    walkers = walkers or max(4 * k, _LEAST_WALKERS)
+
+    def log_density(u: Array) -> Array:
+        within = ((u >= 0.0) & (u <= 1.0)).all(axis=1)
+        density = np.full(len(u), -np.inf)
+        if within.any():
+            outputs = np.column_stack([surrogate.predict(u[within]) for surrogate in surrogates])
+            density[within] = -0.5 * misfit(outputs, targets, total)
+        return density
+
+    sampler = emcee.EnsembleSampler(walkers, k, log_density, vectorize=True)
+    random = np.random.RandomState(seed)
+    state = emcee.State(random.random_sample((walkers, k)), random_state=random.get_state())
+    times = np.full(k, np.inf)
+    while sampler.iteration < most_steps:
+        state = sampler.run_mcmc(state, min(_BLOCK, most_steps - sampler.iteration))
+        before, times = times, sampler.get_autocorr_time(tol=0)
+        settled = bool((np.abs(times - before) < _SETTLED * times).all())
+        if converged := settled and bool((_LENGTHS * times < sampler.iteration).all()):
+            break
+
+    steps, longest = sampler.iteration, float(np.max(times))
+    burn = min(int(_BURN * longest), steps // 2) if np.isfinite(longest) else steps // 2
+    chain = sampler.get_chain(discard=burn, flat=True)
+    effective = len(chain) / longest
+    statement = (f"{steps} steps of {walkers} walkers, the first {burn} left out; longest autocorrelation time "
+                 f"{longest:.0f} steps, {effective:.0f} independent draws; ")
+    statement += ("converged" if converged else
+                  f"not converged: {_LENGTHS} such times, settled to {_SETTLED:.0%}, are needed")
+    sd = chain.std(axis=0, ddof=1)
+    ratio = sd / UNIFORM_SD
+    return Posterior(chain, chain.mean(axis=0), sd, ratio, ratio > NOT_DETERMINED,
+                     np.atleast_2d(np.corrcoef(chain, rowvar=False)), steps, times, effective, converged, statement)
 
 
 def check_points(posterior: Posterior, n: int, seed: int = 0) -> Array:
     """n draws from the posterior that true runs are to check, (n, k); more of them extend the fewer."""
-    raise NotImplementedError
+    rows = np.random.default_rng(seed).permutation(len(posterior.chain))[:n]
+    return posterior.chain[rows]
 
 
 def check(predicted: Array, y: Array, errors: Array) -> Check:
-    """Compares true runs with predictions. predicted: (n, q), y: (n, seeds, q), errors: (q,) of the surrogates.
+    """Compares true runs with predictions. predicted: (n, q), y: (n, seeds, q), errors: (q,), `Validation.error` of the
+    surrogates.
 
-    The surrogates' errors were measured on means over as many seeds, so that they hold the seeds' scatter.
+    These errors were measured on means over as many seeds, so that they hold the seeds' scatter.
     """
-    raise NotImplementedError
+    y = np.asarray(y, float)
+    standardised = (seeds.over_seeds(np.moveaxis(y, 1, 2)) - predicted) / np.asarray(errors, float)
+    points = np.isfinite(standardised).sum(axis=0)
+    with np.errstate(invalid="ignore"):
+        rms = np.sqrt(np.nansum(standardised**2, axis=0) / points)
+        within_two = (np.abs(standardised) <= 2.0).sum(axis=0) / points
+    return Check(standardised, rms, within_two, points)

@@ -12,6 +12,7 @@ from ...errors import Error
 
 Array = NDArray[np.float64]
 _BITS = 30
+_DESIGNS = 100
 
 
 def grid(levels: Sequence[int], ends: bool | Sequence[bool] = True) -> Array:
@@ -37,14 +38,15 @@ def inside(u: Array, levels: int) -> Array:
 
 
 def latin_hypercube(n: int, k: int, seed: int) -> Array:
-    """n points, one in each of n equal classes of every parameter; of low centred discrepancy. Shape (n, k).
+    """n points, one in each of n equal classes of every parameter, shape (n, k).
 
-    It cannot be extended: another n gives other points. (McKay, Beckman, Conover, Technometrics 21, 1979; columns
-    permuted at random as in scipy.stats.qmc.)
+    Of 100 such designs it is the one with the least centred discrepancy. It cannot be extended: another n gives other
+    points. (McKay, Beckman, Conover, Technometrics 21, 1979; Hickernell, Math. Comput. 67, 1998.)
     """
     from scipy.stats import qmc
 
-    return np.asarray(qmc.LatinHypercube(k, optimization="random-cd", seed=np.random.default_rng(seed)).random(n))
+    sampler = qmc.LatinHypercube(k, seed=np.random.default_rng(seed))
+    return min((np.asarray(sampler.random(n)) for _ in range(_DESIGNS)), key=qmc.discrepancy)
 
 
 def sobol_sequence(n: int, k: int, seed: int, first: int = 0) -> Array:
@@ -72,7 +74,7 @@ def correlated(u: Array, rank_correlation: ArrayLike, keep_columns: bool = False
         (Iman, Conover, Commun. Stat. B 11, 1982). Not for points that are to be extended.
 
     Pearson's correlation of the normal scores is 2 sin(pi rho/6). The first column is as before. Raises `Error` where
-    no joint distribution has these correlations.
+    no such copula has these correlations.
     """
     from scipy.special import ndtr, ndtri
     from scipy.stats import rankdata
@@ -85,7 +87,7 @@ def correlated(u: Array, rank_correlation: ArrayLike, keep_columns: bool = False
     try:
         factor = np.linalg.cholesky(2.0 * np.sin(np.pi / 6.0 * ranks))
     except np.linalg.LinAlgError:
-        raise Error("no joint distribution has these rank correlations: their matrix is not positive definite") from None
+        raise Error("no Gaussian copula has these rank correlations: their matrix is not positive definite") from None
     joint = np.asarray(ndtr(ndtri(u) @ factor.T))
     joint[:, 0] = u[:, 0]
     if keep_columns:

@@ -41,30 +41,35 @@ def share(y: Array, seed: int = 0, resamples: int = 1000) -> Share:
     y = y[np.isfinite(y).all(axis=1)]
     points, count = y.shape
     if points < 2 or count < 2:
-        return Share(*[float("nan")] * 6, points, count)
-    single, mean = _shares(y, np.ones((1, count)), 1.0 / count, 1.0)
-    weights = np.random.default_rng(seed).multinomial(count, np.full(count, 1.0 / count), resamples)
-    # A resample repeats seeds: its variances are (S - 1)/S of the sample's, and its means have more of the rest in them.
-    singles, means = _shares(y, weights, (2.0 * count - 1.0) / count**2, count / (count - 1.0))
-    return Share(float(single[0]), *interval(singles), float(mean[0]), *interval(means), points, count)
+        nan = float("nan")
+        return Share(nan, nan, nan, nan, nan, nan, points, count)
+    single, mean = _shares(y, np.full((1, count), 1.0 / count))
+    weights = np.random.default_rng(seed).multinomial(count, np.full(count, 1.0 / count), resamples) / count
+    singles, means = _shares(y, weights[weights.max(axis=1) < 1.0])
+    (single_low, mean_low), (single_high, mean_high) = interval(np.stack([singles, means], axis=1))
+    return Share(float(single[0]), single_low, single_high, float(mean[0]), mean_low, mean_high, points, count)
 
 
-def _shares(y: Array, weights: Array, rest_in_mean: float, scale: float) -> tuple[Array, Array]:
-    """Shares in single runs and in the mean, one for each row of weights (resamples, seeds)."""
+def _shares(y: Array, weights: Array) -> tuple[Array, Array]:
+    """Shares in single runs and in the mean, one for each row of weights (resamples, seeds), the sum of each being 1.
+
+    Variances are divided by what makes them free of bias for these weights: a resample has some seeds more than once.
+    """
     points, count = y.shape
     y = y - y.mean()
-    means = y @ weights.T / count
-    between = scale * (y**2 @ weights.T / count - means**2).mean(axis=0) * count / (count - 1.0)
+    repeated = (weights**2).sum(axis=1)
+    means = y @ weights.T
+    between = np.maximum(y**2 @ weights.T - means**2, 0.0).mean(axis=0) / (1.0 - repeated)
     by_seed = y.mean(axis=0)
-    shift = scale * (weights @ by_seed**2 / count - (weights @ by_seed / count) ** 2) * count / (count - 1.0)
+    shift = (weights @ by_seed**2 - (weights @ by_seed) ** 2) / (1.0 - repeated)
     rest = np.maximum(between - shift, 0.0) * points / (points - 1.0)
-    own = np.maximum(means.var(axis=0, ddof=1) - rest_in_mean * rest, 0.0)
+    own = np.maximum(means.var(axis=0, ddof=1) - repeated * rest, 0.0)
     with np.errstate(invalid="ignore"):
         return between / (between + own), between / count / (between / count + own)
 
 
 def rest_variance(y: Array) -> float:
-    """Variance of what a seed does differently at each point: neither the point's own nor the seed's. y: (points, seeds).
+    """Variance of what a seed does differently at each point, of single runs. y: (points, seeds).
 
     NaN with fewer than two complete points or seeds.
     """

@@ -75,8 +75,8 @@ def indices(y: Array, seed: int = 0, allow_missing: bool = False, resamples: int
         algorithm.setConfidenceLevel(seeds.LEVEL)
         algorithm.setUseAsymptoticDistribution(False)
         first, total = np.array(algorithm.getFirstOrderIndices()), np.array(algorithm.getTotalOrderIndices())
-        first_ends, total_ends = algorithm.getFirstOrderIndicesInterval(), algorithm.getTotalOrderIndicesInterval()
-        ends = [np.array(end) for ends in (first_ends, total_ends) for end in (ends.getLowerBound(), ends.getUpperBound())]
+        intervals = algorithm.getFirstOrderIndicesInterval(), algorithm.getTotalOrderIndicesInterval()
+        ends = [np.array(end) for both in intervals for end in (both.getLowerBound(), both.getUpperBound())]
 
     seed_part = np.full(blocks - 2, np.nan)
     if runs > 1:
