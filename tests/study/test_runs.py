@@ -134,7 +134,7 @@ class Again(StudyTest):
         self.assertEqual([r["again"] for r in study.rows()], [r["other"] for r in study.rows()])
 
     def test_any_function_of_a_run_is_an_output(self) -> None:
-        study = self.study(self.of_command("plain"), outputs={"twice": lambda run: 2.0 * run.summary["z"]})
+        study = self.study(self.of_command("plain"), functions={"twice": lambda run: 2.0 * run.summary["z"]})
         study.run(jobs=2)
         for row in study.rows():
             self.assertEqual(row["twice"], 2.0 * row["z"])

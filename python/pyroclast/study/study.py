@@ -44,17 +44,17 @@ class Study:
     """
 
     def __init__(self, file: str | Path, *, program: str | None = None,
-                 outputs: Mapping[str, Callable[[Any], float]] | None = None, **tables: Any):
+                 functions: Mapping[str, Callable[[Any], float]] | None = None, **tables: Any):
         """
         file: a study file. With tables, it is written from these first: `study={"deck": "starter.toml"}`, ...
         program: pyroclast itself; None: that on the PATH.
-        outputs: further numbers, by names of their own: functions of a `pyroclast.run.Run`, called once for each run. What
-            they need of the run has to be kept (`keep`).
+        functions: further outputs, by names of their own: of a `pyroclast.run.Run`, called once for each run. What they
+            need of the run has to be kept (`keep`).
         """
         if tables:
             _write(Path(file), tables)
-        self.setup: Setup = read_setup(file, list(outputs or ()))
-        self._functions = dict(outputs or {})
+        self.setup: Setup = read_setup(file, list(functions or ()))
+        self._functions = dict(functions or {})
         needs_program = self.setup.runner.kind == "pyroclast"
         self._program = program or (_program() if needs_program else "")
 
