@@ -12,6 +12,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -26,6 +27,9 @@ BEGUN = "begun"
 
 MOST_IN_VAIN = 10
 """Attempts, one after the other, that were ended from outside before they kept anything new."""
+
+PATIENCE = 30.0
+"""Time that a process gets to keep its state before it is killed, s."""
 
 _LARGE = ("history.csv", "specimen", "fields", "figures", "checkpoints", "frames.json")
 _PR_SET_PDEATHSIG = 1
@@ -97,7 +101,8 @@ class Attempt:
         with open(self._log, "ab") as log:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                             start_new_session=True, preexec_fn=die_with_parent(os.getpid()))
-        self.asked_to_stop = self.is_late = False
+        self._asked: float | None = None
+        self.is_late = False
 
     def _command(self) -> list[str]:
         job = self.job
@@ -117,14 +122,15 @@ class Attempt:
     def _wall(self) -> float:
         return (datetime.datetime.now(datetime.timezone.utc) - self._begun).total_seconds()
 
-    def stop(self, is_late: bool = False) -> None:
-        """Asks the process to keep its state and end. is_late: for its wall limit."""
-        self.is_late = self.is_late or is_late
-        self.asked_to_stop = True
-        _signal(self.process, signal.SIGTERM)
-
-    def kill(self) -> None:
-        _signal(self.process, signal.SIGKILL)
+    def look_after(self, stopped: bool) -> None:
+        """Asks the process to keep its state and end where all is to stop, or at its wall limit; kills one that does
+        not."""
+        late = self.time_left <= 0.0
+        if (stopped or late) and self._asked is None:
+            self._asked, self.is_late = time.monotonic(), late and not stopped
+            _signal(self.process, signal.SIGTERM)
+        elif self._asked is not None and time.monotonic() - self._asked > PATIENCE:
+            _signal(self.process, signal.SIGKILL)
 
     def end(self) -> Result | None:
         """What came of the process, which has ended; None where it was ended from outside and another one goes on."""
@@ -231,10 +237,7 @@ def make(job: Job, runs: Path, stopped: Callable[[], bool], wait: Callable[[Atte
     while True:
         attempt = Attempt(job, runs)
         while attempt.process.poll() is None:
-            if stopped() and not attempt.asked_to_stop:
-                attempt.stop()
-            elif attempt.time_left <= 0.0 and not attempt.is_late:
-                attempt.stop(is_late=True)
+            attempt.look_after(stopped())
             wait(attempt)
         result = attempt.end()
         if result is not None or stopped():

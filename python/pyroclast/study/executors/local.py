@@ -62,10 +62,7 @@ def _run(jobs: Sequence[Job], slots: int, runs: Path, finished: Callable[[Result
             if result is not None:
                 finished(result)
         for attempt in running.values():
-            if stopped() and not attempt.asked_to_stop:
-                attempt.stop()
-            elif attempt.time_left <= 0.0 and not attempt.is_late:
-                attempt.stop(is_late=True)
+            attempt.look_after(stopped())
 
 
 class _Server:
