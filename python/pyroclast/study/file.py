@@ -118,7 +118,7 @@ def reference() -> str:
 
 def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> Setup:
     root = toml.root()
-    title = root.text("title", "What figures and the report are headed with.", file.stem)
+    title = root.text("title", "What figures and the report are headed with; without it the file's name.", file.stem)
     own = root.table("study", "What is run, how often, and what is kept of it.")
     runner = _runner(own, file.parent)
     count = own.integer("seeds", "Realisations of the specimen that each point is run with; the same for all points. "
@@ -130,7 +130,8 @@ def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> Se
                               "that of attempts that were killed counts.", 0.0, None, 86400.0)
     accepted = own.integer("accept_version", "Physics version of earlier runs that count beside the program's own; a "
                            "column of the table tells them apart.", 0, None, 0) if own.has("accept_version") else None
-    folder = own.text("folder", "Where runs and results go, taken from the place of this file.", f"{file.stem}-study")
+    folder = own.text("folder", "Where runs and results go, taken from the place of this file; without it "
+                      "STUDY-study beside STUDY.toml.", f"{file.stem}-study")
     earlier = own.texts("earlier", "Tables of earlier studies (table.csv), whose runs are taken in as they are.")
 
     method = _method(root.table("method", "Which points are run, and what is made of them."))
