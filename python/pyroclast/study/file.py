@@ -243,9 +243,10 @@ def _method(table: _core.Table) -> Method:
 
 def _outputs(root: _core.Table, is_needed: bool, meaning: str) -> list[Output]:
     outputs: list[Output] = []
-    table = root.table("outputs", meaning) if is_needed else root.optional_table("outputs", meaning)
-    if table is None:
+    found = root.table("outputs", meaning) if is_needed else root.optional_table("outputs", meaning)
+    if found is None:
         return outputs
+    table: _core.Table = found
     for name in sorted(table.keys(), key=lambda key: _line(table, key)):
         what = json.loads(table.json(name, "text", ""))
         if not _NAME.fullmatch(name):

@@ -61,7 +61,7 @@ class Job:
 
     @classmethod
     def from_json(cls, text: str) -> Job:
-        named = json.loads(text)
+        named: dict[str, Any] = json.loads(text)
         return cls(**{**named, "command": tuple(named["command"]), "outputs": tuple(named["outputs"])})
 
     def to_json(self) -> str:
