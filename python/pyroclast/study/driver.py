@@ -48,17 +48,18 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Forecast:
-    """What is left of a study. seconds: of one core; NaN where no run has told yet how long it takes."""
+    """What a study asks for, and what is left of it."""
 
-    points: int
-    runs: int
-    known: int
-    infeasible: int
-    seconds: float
+    points: int  #: that the method asks for so far
+    runs: int  #: of these points, one for each seed
+    known: int  #: runs of which it is known what came of them
+    infeasible: int  #: points whose deck is refused
+    seconds: float  #: of one core, for what is left; NaN where no run has told yet how long it takes
     is_complete: bool  #: whether these are all points that the method will ask for
 
     @property
     def left(self) -> int:
+        """Runs that are still to be made."""
         return self.runs - self.known
 
 
@@ -279,7 +280,7 @@ class _Progress:
 
     def __init__(self, total: int, slots: int, expected: float, say: Callable[[str], None]):
         self._total, self._slots, self._expected, self._say = total, slots, expected, say
-        self._done = self._failed = 0
+        self._done = self._failed = self._said = 0
         self._begun = self._last = time.monotonic()
 
     def count(self, result: Result) -> None:
@@ -289,7 +290,10 @@ class _Progress:
             self.end()
 
     def end(self) -> None:
-        self._last = time.monotonic()
+        """Says how it stands, unless that was said already."""
+        if self._said == self._done:
+            return
+        self._last, self._said = time.monotonic(), self._done
         left = (self._total - self._done) * (self._last - self._begun) / max(self._done, 1)
         failed = f", {self._failed} without a value" if self._failed else ""
         self._say(f"{self._done} of {self._total} runs{failed}" + (f", about {duration(left)} left" if left else ""))

@@ -69,15 +69,18 @@ class Study:
             return driver.forecast()
 
     def run(self, executor: str | Executor = "local", jobs: int | None = None,
-            say: Callable[[str], None] = lambda line: None) -> bool:
+            say: Callable[[str], None] | None = None) -> bool:
         """Makes all runs that are missing; whether the study is complete.
 
-        executor: "local", "slurm", "commands", or one of your own. jobs: runs at once; None: as many as there are cores.
+        executor: "local", "slurm", "commands", or one of your own (`pyroclast.study.executors`).
+        jobs: runs at once; None: as many as there are cores.
+        say: gets lines of progress; `print` will do.
+
         Ctrl-C stops it: each run keeps its state and goes on the next time.
         """
         chosen = self.executor(executor, jobs) if isinstance(executor, str) else executor
         with self._driver(writes=True) as driver, _interrupts() as stopped:
-            return driver.run(chosen, stopped, say)
+            return driver.run(chosen, stopped, say or (lambda line: None))
 
     def executor(self, name: str, jobs: int | None = None) -> Executor:
         """By its name. Raises Error for another one."""
