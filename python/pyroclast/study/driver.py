@@ -114,15 +114,17 @@ class Driver:
             proposal = self.plan.propose(self._answers)
             missing = [w for w in self._wanted(proposal) if self._result(w) is None]
             if missing:
-                progress = _Progress(len(missing), getattr(executor, "slots", 1), self.expected, say)
+                progress = _Progress(len(missing), say)
                 results = _Batches(self.store)
 
                 def finished(result: Result, progress: _Progress = progress, results: _Batches = results) -> None:
                     results.put(result)
                     progress.count(result)
 
-                executor.run(self._jobs(missing), self.store.folder / "runs", finished, stopped)
-                results.flush()
+                try:
+                    executor.run(self._jobs(missing), self.store.folder / "runs", finished, stopped)
+                finally:
+                    results.flush()
                 progress.end()
             if stopped() or any(self._result(w) is None for w in missing):
                 self.write_table()
@@ -229,12 +231,12 @@ class Driver:
         return value, "" if math.isfinite(value) else "is not finite"
 
     def _jobs(self, wanted: Iterable[Wanted]) -> list[Job]:
-        return [self._job(w) for w in wanted]
+        expected = 0.0 if math.isnan(self.expected) else self.expected
+        return [self._job(w, expected) for w in wanted]
 
-    def _job(self, wanted: Wanted) -> Job:
+    def _job(self, wanted: Wanted, expected: float = 0.0) -> Job:
         study = self.study
         values = wanted.point.values
-        expected = 0.0 if math.isnan(self.expected) else self.expected
         return Job(wanted.ids[0], wanted.seed, study.runner.kind,
                    tuple(self.points.command(self.program, values, wanted.seed)),
                    dict(zip((p.name for p in study.parameters), values)), tuple(o.what for o in study.outputs if not o.is_function),
@@ -278,8 +280,8 @@ class _Batches:
 class _Progress:
     """Lines that say how many runs are done, how many failed, and what time is left."""
 
-    def __init__(self, total: int, slots: int, expected: float, say: Callable[[str], None]):
-        self._total, self._slots, self._expected, self._say = total, slots, expected, say
+    def __init__(self, total: int, say: Callable[[str], None]):
+        self._total, self._say = total, say
         self._done = self._failed = self._said = 0
         self._begun = self._last = time.monotonic()
 
