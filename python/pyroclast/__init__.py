@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from .stages import Key as Key
     from .stages import Stage as Stage
     from .stages import Verdict as Verdict
+    from .study.study import Study as Study
     from .units import GPa as GPa
     from .units import K as K
     from .units import MPa as MPa
@@ -69,6 +70,7 @@ else:
         "session": ("History", "Recorder", "Run", "Sets", "State", "Views"),
         "specimen": ("Specimen",),
         "stages": ("Key", "Stage", "Verdict"),
+        "study.study": ("Study",),
         "units": ("GPa", "K", "MPa", "N", "Pa", "Quantity", "degC", "hour", "kN", "m", "minute", "mm", "s"),
     }
 

@@ -95,6 +95,22 @@ TEST(CurveReader, TakesAShareOfWhatARatioLoses) {
       read_good("{ value = \"70 GPa\", times = \"glasgow_modulus\", share = 0 }", unit::stress)(520.0), 70e9);
 }
 
+TEST(CurveReader, ScalesAndShiftsACurveAsAWhole) {
+  const std::string table =
+      "table = [[\"20 degC\", \"70 GPa\"], [\"420 degC\", \"30 GPa\"], [\"800 degC\", \"11 GPa\"]]";
+  const Curve curve = read_good("{ " + table + ", scale = 1.1, shift = \"50 K\" }", unit::stress);
+  EXPECT_DOUBLE_EQ(curve(20.0), 1.1 * 70e9);  // the end's value, before the range
+  EXPECT_DOUBLE_EQ(curve(70.0), 1.1 * 70e9);
+  EXPECT_DOUBLE_EQ(curve(270.0), 1.1 * 50e9);
+  EXPECT_DOUBLE_EQ(curve(470.0), 1.1 * 30e9);
+  EXPECT_DOUBLE_EQ(curve.minimum(20.0, 800.0), curve(800.0));
+  EXPECT_DOUBLE_EQ(read_good("{ " + table + ", shift = \"-50 K\" }", unit::stress)(790.0), 11e9);
+  EXPECT_DOUBLE_EQ(
+      read_good("{ value = \"70 GPa\", times = \"glasgow_modulus\", scale = 0.5, shift = \"-20 K\" }",
+                unit::stress)(500.0),
+      35e9 * 0.25);
+}
+
 TEST(CurveReader, TakesTheNamedCurveInItsOwnUnit) {
   const double T = 400.0;
   const Curve conductivity = read_good("{ builtin = \"en1992_conductivity_upper\" }", unit::conductivity);

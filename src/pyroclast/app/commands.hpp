@@ -89,6 +89,9 @@ int print_laws();
 /// ...
 int figures(const std::vector<std::string>& words);
 
+/// Goes on as the program of studies, see the Python package. \param words  as typed
+[[noreturn]] void study(const std::vector<std::string>& words);
+
 /// Draws the figures of a folder with the Python package; warns when that is not possible.
 /// \param what  the package's command
 /// \param speech  quiet: the names of the files are not printed

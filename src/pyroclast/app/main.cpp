@@ -193,6 +193,11 @@ int command_line(int argc, char** argv) {
   watch->prefix_command();
   watch->set_help_flag();
 
+  auto* study = cli.add_subcommand(
+      "study", "Many runs: scatter, sensitivity, calibration: study run|check|status|table|report STUDY");
+  study->prefix_command();
+  study->set_help_flag();
+
   std::string name, from = "starter";
   auto* starter = cli.add_subcommand("new", "Write a commented deck to begin with");
   starter->add_option("NAME", name, "The deck will be NAME.toml")->required();
@@ -223,6 +228,7 @@ int command_line(int argc, char** argv) {
   if (*properties) return app::plot_properties(properties_options);
   if (*figures) return app::figures(figures->remaining());
   if (*watch) app::watch(watch->remaining());
+  if (*study) app::study(study->remaining());
   if (*keys) return app::print_keys();
   if (*laws) return app::print_laws();
   if (*list) return app::print_list(list_of);

@@ -22,7 +22,7 @@ namespace pyroclast::app {
 namespace {
 
 /// The Python package: beside an installed program, in the environment that pip put both into, or in the
-/// source tree of a built one.
+/// build tree of a built one; without its compiled part in the source tree.
 std::filesystem::path package_folder() {
   namespace fs = std::filesystem;
   std::error_code ignored;
@@ -30,6 +30,7 @@ std::filesystem::path package_folder() {
   if (fs::exists(prefix / PYROCLAST_INSTALLED_PYTHON)) return prefix / PYROCLAST_INSTALLED_PYTHON;
   for (const auto& python : fs::directory_iterator(prefix / "lib", ignored))
     if (fs::exists(python.path() / "site-packages" / "pyroclast")) return python.path() / "site-packages";
+  if (fs::exists(prefix / "python" / "pyroclast")) return prefix / "python";
   return PYROCLAST_SOURCE_PYTHON;
 }
 

@@ -169,6 +169,12 @@ class Section {
   /// A list of strings; empty if the key is absent.
   std::vector<std::string> texts(std::string_view key, Meaning meaning) const;
 
+  /// Whatever stands at a key that must be there, as JSON; a date is a text.
+  /// \param value  what is written, for the deck reference
+  std::string json(std::string_view key, std::string_view value, Meaning meaning) const;
+  /// The keys that are written, in the order of their names. None of them counts as read.
+  std::vector<std::string> keys() const;
+
   /// Whether the key is written. A key that is found here but never read, nor named in `error`, is reported
   /// as one that has no effect.
   bool has(std::string_view key) const;

@@ -173,7 +173,8 @@ std::string DeckRecord::with_value(std::string_view path, const std::string& val
   return source_.replaced(position(region.begin), position(region.end), written);
 }
 
-/// Below the header of the nearest table that there is; where that has no header of its own, above all.
+/// First in the nearest table that there is, within its braces or below its header; where that has no header of its
+/// own, above all.
 std::string DeckRecord::with_new_key(std::string_view path, const std::string& value) const {
   const auto fits = [&](const std::string& text) {
     const auto table = try_toml(text);
@@ -184,7 +185,14 @@ std::string DeckRecord::with_new_key(std::string_view path, const std::string& v
     const auto table = root_.at_path(above);
     if (!table.is_table()) continue;
     const std::string_view key = path.substr(above.size() + 1);
-    const int line = position(table.node()->source().begin).line;
+    const SourcePosition begin = position(table.node()->source().begin);
+    const int line = begin.line;
+    if (table.as_table()->is_inline()) {
+      const SourcePosition within{line, begin.column + 1};  // behind the brace
+      const auto* comma = table.as_table()->empty() ? "" : ",";
+      const std::string text = source_.replaced(within, within, fmt::format(" {} = {}{}", key, value, comma));
+      if (fits(text)) return text;
+    }
     const SourcePosition end{line, static_cast<int>(source_.line(line).size()) + 1};
     for (const std::string& text : {source_.replaced(end, end, fmt::format("\n{} = {}", key, value)),
                                     fmt::format("{}\n[{}]\n{} = {}\n", source_.text(), above, key, value)})

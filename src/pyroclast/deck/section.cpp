@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -536,6 +537,22 @@ std::vector<std::string> Section::texts(std::string_view key, Meaning meaning) c
     list.push_back(*text);
   }
   return list;
+}
+
+std::string Section::json(std::string_view key, std::string_view value, Meaning meaning) const {
+  note(key_of(key, std::string(value)), meaning);
+  const auto entry = require(*deck_, table_, key, fmt::format("{} is needed", value));
+  if (!entry) return "null";
+  std::ostringstream text;
+  text << toml::json_formatter(entry->node);
+  return text.str();
+}
+
+std::vector<std::string> Section::keys() const {
+  std::vector<std::string> all;
+  if (!table_ || deck_->survey()) return all;
+  for (const auto& [key, node] : table_->table) all.emplace_back(key.str());
+  return all;
 }
 
 bool Section::has(std::string_view key) const {

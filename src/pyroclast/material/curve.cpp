@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/material/expression.hpp"
 
 namespace pyroclast {
@@ -122,6 +123,30 @@ class Product final : public Curve::Function {
   std::shared_ptr<const Function> b_;
 };
 
+/// Another one, moved along its axis; beyond its ends it keeps the values there.
+class Shifted final : public Curve::Function {
+ public:
+  Shifted(std::shared_ptr<const Function> of, Interval range, double by)
+      : Function(moved(of->breaks(), range, by)), of_(std::move(of)), range_(range), by_(by) {}
+
+  double value(double x) const override {
+    return of_->value(std::clamp(x - by_, range_.lower, range_.upper));
+  }
+  bool linear_between_breaks() const override { return of_->linear_between_breaks(); }
+
+ private:
+  static std::vector<double> moved(std::vector<double> breaks, const Interval& range, double by) {
+    breaks.insert(breaks.end(), {range.lower, range.upper});
+    sort_unique(breaks);
+    for (double& x : breaks) x += by;
+    return breaks;
+  }
+
+  std::shared_ptr<const Function> of_;
+  Interval range_;
+  double by_;
+};
+
 void require_table(const std::vector<double>& abscissae, const std::vector<double>& values,
                    const CurveAxis& axis) {
   if (abscissae.size() != values.size()) {
@@ -223,6 +248,14 @@ Curve Curve::named(std::string name) const {
 Curve Curve::described_as(std::string description) const {
   return {function_, range_,
           std::make_shared<Label>(Label{label_->name, std::move(description), label_->axis})};
+}
+
+Curve Curve::shifted(double by) const {
+  if (is_constant() || by == 0.0) return *this;
+  const Interval wider{std::min(range_.lower, range_.lower + by), std::max(range_.upper, range_.upper + by)};
+  return {std::make_shared<Shifted>(function_, range_, by), wider,
+          std::make_shared<Label>(Label{
+              label_->name, fmt::format("{}, moved by {:g} K", label_->description, by), label_->axis})};
 }
 
 const std::string& Curve::description() const {

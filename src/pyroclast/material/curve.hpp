@@ -89,6 +89,10 @@ class Curve {
   /// The same curve with another text for describe(), e.g. where it comes from.
   Curve described_as(std::string description) const;
 
+  /// The same curve moved along its axis: it reads at x what this one reads at x - by. Where that lies
+  /// outside of this one's range, it keeps the value at the end, so that the range grows by |by|.
+  Curve shifted(double by) const;
+
   /// Kind and origin.
   const std::string& description() const;
   /// One line for the manifest of a run: kind, origin and range.

@@ -106,7 +106,7 @@ Curve CurveReader::read_described(const Section& section, std::string_view key, 
   } else {
     const Section forms =
         *section.optional_section(key, "a key that depends on it may hold one of these forms");
-    curve = read_forms(forms, unit, true);
+    curve = varied(forms, read_forms(forms, unit, true));
     if (!curve || !forms.ok() || !covers(section, key, *curve) || !within(section, key, *curve, unit, range))
       curve = Curve::constant(range.any_value());
     else if (axis_ == temperature_axis() && curve->range().contains(kReferenceTemperature))
@@ -115,6 +115,17 @@ Curve CurveReader::read_described(const Section& section, std::string_view key, 
   const std::string path = path_of(section, key);
   curves_.push_back({path, unit.si, curve->named(path)});
   return curves_.back().curve;
+}
+
+/// A curve over temperature times a factor, and moved along the temperature: what studies vary of it.
+std::optional<Curve> CurveReader::varied(const Section& forms, std::optional<Curve> curve) const {
+  if (axis_ != temperature_axis()) return curve;
+  const double scale = forms.number("scale", Range::non_negative(), 1.0, "factor of the whole curve");
+  const double shift = forms.quantity(
+      "shift", unit::temperature_difference, Range::any(), 0.0,
+      "by which the curve stands at higher temperatures; beyond its own range it keeps the value at the end");
+  if (curve && shift != 0.0) curve = curve->shifted(shift);
+  return curve && scale != 1.0 ? scale * *curve : curve;
 }
 
 /// \param has_value  whether "value times curve" is among the forms

@@ -35,7 +35,8 @@ struct ReadCurve {
 ///
 /// and a temperature over the time also `{ from = "20 degC", rate = "5 K/min", to = "800 degC" }`, constant
 /// once `to` is reached. `times` is a name of the catalogue or any form that is a table, without dimension;
-/// over the temperature it must be 1 at 20 °C (to 1 %), where the value holds.
+/// over the temperature it must be 1 at 20 °C (to 1 %), where the value holds. `scale` and `shift` beside any
+/// form of a curve over the temperature change it as a whole.
 ///
 /// An error is recorded in the deck, never thrown, and a constant that is allowed stands in for the curve.
 class CurveReader {
@@ -59,6 +60,7 @@ class CurveReader {
 
  private:
   Curve read_described(const Section& section, std::string_view key, const Unit& unit, const Range& range);
+  std::optional<Curve> varied(const Section& forms, std::optional<Curve> curve) const;
   std::optional<Curve> read_forms(const Section& forms, const Unit& unit, bool has_value) const;
   std::optional<Curve> read_form(const Section& forms, const std::string& form, const Unit& unit) const;
   std::optional<Curve> read_product(const Section& forms, const Unit& unit) const;

@@ -20,6 +20,7 @@ void bind_laws(py::module_& module);
 void bind_sessions(py::module_& module);
 void bind_specimens(py::module_& module);
 void bind_stages(py::module_& module);
+void bind_tables(py::module_& module);
 
 /// A Python object that threads without the interpreter's lock may hold and let go.
 std::shared_ptr<py::object> shared(py::object object);

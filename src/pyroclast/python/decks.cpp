@@ -5,9 +5,11 @@
 
 #include <pybind11/stl.h>
 
+#include "pyroclast/base/sha256.hpp"
 #include "pyroclast/base/unit.hpp"
 #include "pyroclast/python/bindings.hpp"
 #include "pyroclast/python/errors.hpp"
+#include "pyroclast/results/inputs.hpp"
 
 namespace pyroclast::python {
 
@@ -83,6 +85,20 @@ void bind_decks(py::module_& m) {
             read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text.laws)).warnings);
       },
       py::arg("deck"), "Reads a deck; returns what it warns of.");
+  m.def(
+      "resolve",
+      [](const DeckText& text) {
+        const Deck deck = parse(text);
+        const Setup setup = read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text.laws));
+        const Inputs inputs = inputs_of(deck, setup);
+        py::dict files;
+        for (const InputFile& file : inputs.files) files[py::str(file.name)] = sha256(file.contents);
+        return py::make_tuple(inputs.deck_text, files, diagnostics(setup.warnings));
+      },
+      py::arg("deck"),
+      "Reads a deck; returns its text as the folder of a run keeps it, the SHA-256 of each file that it "
+      "names, and "
+      "what it warns of.");
   m.def(
       "read", [](const std::string& file) { return Deck::load(file).text(); }, py::arg("file"),
       "The text of a file that is a deck.");

@@ -1,3 +1,4 @@
+#include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/python/bindings.hpp"
 #include "pyroclast/version.hpp"
 
@@ -5,6 +6,7 @@ PYBIND11_MODULE(_core, m) {
   using namespace pyroclast::python;
   m.doc() = "The library of pyroclast, as its package for Python needs it. Use the package.";
   m.attr("version") = pyroclast::kVersion;
+  m.attr("physics_version") = pyroclast::kPhysicsVersion;
   m.attr("commit") = pyroclast::kCommit;
   bind_errors(m);
   bind_decks(m);
@@ -12,4 +14,5 @@ PYBIND11_MODULE(_core, m) {
   bind_stages(m);
   bind_specimens(m);
   bind_sessions(m);
+  bind_tables(m);
 }

@@ -1,0 +1,1 @@
+"""Studies: from one run to a thousand, each with its place in a question."""

@@ -1,0 +1,175 @@
+"""The command line: `pyroclast study run|check|status|table|report|keys STUDY.toml`."""
+
+from __future__ import annotations
+
+import argparse
+import collections
+import math
+import os
+import shutil
+import sys
+from pathlib import Path
+
+from ..errors import Error
+from .driver import duration
+from .executors.commands import Commands
+from .file import reference
+from .study import EXECUTORS, Study
+
+_INTRODUCTION = """# Study reference
+
+Every table and key that a study file may hold. `pyroclast study keys` prints this page from the code that reads study
+files. [studies.md](studies.md) tells what they are for. A value with a dimension is written with its unit; a default of
+"–" means: the key may be left out, and nothing takes its place.
+
+"""
+_DISK = {"summary": 20e3, "history": 700e3, "all": 30e6}  # bytes of a run, of the order of what 5,000 blocks leave
+
+
+def main(words: list[str]) -> int:
+    """Exit code: 0 done, 2 runs are missing, 1 an error."""
+    options = _parser().parse_args(words)
+    try:
+        return int(options.do(options) or 0)
+    except Error as error:
+        print(f"error: {error}", file=sys.stderr)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:
+        print(f"error: {error.filename or ''}: {error.strerror or error}", file=sys.stderr)
+    except KeyboardInterrupt:
+        return 130
+    return 1
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="pyroclast study", description="From one run to a thousand: sensitivity, "
+                                     "scatter, calibration. docs/studies.md tells what a study file holds.")
+    parser.add_argument("--program", help=argparse.SUPPRESS)  # by which `pyroclast study` names itself
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    def command(name: str, do, meaning: str) -> argparse.ArgumentParser:
+        added = commands.add_parser(name, help=meaning, description=meaning)
+        added.set_defaults(do=do)
+        if name != "keys":
+            added.add_argument("study", metavar="STUDY", help="TOML file that describes the study")
+        return added
+
+    run = command("run", _run, "Make the runs of a study that are missing; what is done is never run again")
+    run.add_argument("--executor", choices=EXECUTORS, default="local", help="where the runs are made")
+    run.add_argument("-j", "--jobs", type=_positive, help="runs at once on this machine (default: its cores)")
+    run.add_argument("--dry-run", action="store_true", help="only say how many runs, how long and how much disk")
+    run.add_argument("--again", action="store_true", help="make runs that crashed or timed out once more")
+    run.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    command("check", _check, "Check a study file, the ends of its ranges, and all points that are known beforehand")
+    command("status", _status, "Say what is done, what failed and why, and what is left")
+    table = command("table", _table, "Write the table of all runs as CSV")
+    table.add_argument("-o", "--out", type=Path, help="file (default: table.csv in the folder of the study; -: here)")
+    command("report", _report, "Draw the figures of a study, and one page that gathers them")
+    command("keys", _keys, "Print every key that a study file may hold, as Markdown")
+    return parser
+
+
+def _positive(text: str) -> int:
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError("must be 1 or more")
+    return number
+
+
+def _study(options: argparse.Namespace) -> Study:
+    return Study(options.study, program=options.program)
+
+
+def _run(options: argparse.Namespace) -> int:
+    study = _study(options)
+    if options.dry_run:
+        return _foresee(study)
+    if options.again:
+        study.forget_failures()
+    say = (lambda line: None) if options.quiet else (lambda line: print(line, flush=True))
+    executor = study.executor(options.executor, options.jobs)
+    is_complete = study.run(executor, say=say)
+    table = study.setup.folder / "table.csv"
+    if isinstance(executor, Commands) and executor.written:
+        say(f"{executor.written} commands are in {executor.file}; when they are done, the same command takes them in")
+        return 0
+    if not is_complete:
+        say(f"stopped; to go on: pyroclast study run {options.study}")
+        return 130
+    say(f"table           {table}")
+    say(f"to draw it      pyroclast study report {options.study}")
+    return 0
+
+
+def _foresee(study: Study) -> int:
+    study.check()
+    seen = study.forecast()
+    setup = study.setup
+    more = "" if seen.is_complete else " of the first generation; more follow"
+    print(f"points          {seen.points}{more}")
+    print(f"runs            {seen.runs}, {seen.known} of them done: {seen.left} left")
+    seconds = seen.seconds / max(seen.left, 1) if not math.isnan(seen.seconds) else study.time_of_a_run()
+    if seconds is None:
+        print("time            not known before one run is done")
+    else:
+        print(f"time            {duration(seconds)} a run, {duration(seconds * seen.left)} of one core in all")
+    if setup.runner.kind == "pyroclast":
+        free = shutil.disk_usage(setup.folder.parent if not setup.folder.exists() else setup.folder).free
+        print(f"disk            about {seen.left * _DISK[setup.keep] / 1e6:.0f} MB to keep of each run its "
+              f"{'summary' if setup.keep == 'summary' else 'history too' if setup.keep == 'history' else 'whole folder'}; "
+              f"{free / 1e9:.0f} GB are free")
+    return 0
+
+
+def _check(options: argparse.Namespace) -> int:
+    study = _study(options)
+    study.check()
+    seen = study.forecast()
+    print(f"{options.study} is valid: {study.setup.title}; {seen.points} points, {seen.runs} runs"
+          + ("" if seen.is_complete else " to begin with"))
+    return 0
+
+
+def _status(options: argparse.Namespace) -> int:
+    study = _study(options)
+    seen = study.forecast()
+    print(f"study           {study.setup.title} ({study.setup.method.kind})")
+    print(f"runs            {seen.known} of {seen.runs} done" + ("" if seen.is_complete else "; more points will follow"))
+    if not math.isnan(seen.seconds) and seen.left:
+        print(f"left            {duration(seen.seconds)} of one core")
+    table = study.rows()
+    states = collections.Counter(row["state"] for row in table)
+    for state, count in states.most_common():
+        print(f"{state:<15} {count}")
+    reasons = collections.Counter((row["state"], row["reason"]) for row in table if row["reason"])
+    for (state, reason), count in reasons.most_common(10):
+        print(f"{count:>6} x {state}: {reason}")
+    return 0 if seen.is_complete and not seen.left else 2
+
+
+def _table(options: argparse.Namespace) -> int:
+    file = _study(options).write_table()
+    if options.out is None:
+        print(file)
+    elif str(options.out) == "-":
+        sys.stdout.write(file.read_text(encoding="utf-8"))
+    else:
+        shutil.copyfile(file, options.out)
+    return 0
+
+
+def _report(options: argparse.Namespace) -> int:
+    from .report import write_report
+
+    print(write_report(_study(options)))
+    return 0
+
+
+def _keys(options: argparse.Namespace) -> int:
+    print(f"{_INTRODUCTION}{reference()}", end="")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,324 @@
+"""The loop of a study: ask the method for points, check them, run what is missing, and ask again."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+import shlex
+import statistics
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..errors import Error
+from ..run import Run
+from .executors import Executor
+from .file import Setup
+from .outputs import Output, read_summary
+from .parameters import Value
+from .plans import Answers, Plan, Proposal, plan_of
+from .points import Point, Points
+from .store import DONE, FAILED, NO_VALUE, Result, Store
+from .work import Job
+
+_LEAST_CHECKPOINT = 1.0  # s
+_SHARE_OF_CHECKPOINTS = 0.02  # of the expected time of a run
+_PROGRESS = 1.0  # s between two lines of progress
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A run that the method asks for."""
+
+    point: Point
+    seed: int
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        return self.point.ids(self.seed)
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """What a study asks for, and what is left of it."""
+
+    points: int  #: that the method asks for so far
+    runs: int  #: of these points, one for each seed
+    known: int  #: runs of which it is known what came of them
+    infeasible: int  #: points whose deck is refused
+    seconds: float  #: of one core, for what is left; NaN where no run has told yet how long it takes
+    is_complete: bool  #: whether these are all points that the method will ask for
+
+    @property
+    def left(self) -> int:
+        """Runs that are still to be made."""
+        return self.runs - self.known
+
+
+class Driver:
+    """Brings a study to its end, from what its store knows."""
+
+    def __init__(self, study: Setup, store: Store, program: str = "pyroclast",
+                 functions: Mapping[str, Callable[[Run], float]] = MappingProxyType({})):
+        """
+        program: makes the runs, and is what the command line of each names.
+        functions: outputs by name that are taken of what is kept of a run.
+
+        Raises Error for earlier tables that cannot be read.
+        """
+        self.study, self.store, self.program, self.functions = study, store, program, functions
+        self.points = Points(study)
+        self.plan: Plan = plan_of(study)
+        self._take_in_earlier()
+
+    def check(self) -> None:
+        """Raises Error with all that is wrong at the ends of ranges and at points that are known beforehand."""
+        wrong = self.points.check_ends()
+        if not wrong and not self.plan.draws_as_it_goes:
+            for point in self._points(self.plan.propose(self._answers).points):
+                if point.infeasible:
+                    named = ", ".join(f"{p.name} = {v}{' ' if p.unit else ''}{p.unit}"
+                                      for p, v in zip(self.study.parameters, point.values))
+                    wrong.append(f"{self.study.place('method')}: at {named}: {point.infeasible}")
+        if wrong:
+            raise Error("\n".join(dict.fromkeys(wrong)))
+
+    def forecast(self) -> Forecast:
+        """Of what the method asks for now."""
+        proposal = self.plan.propose(self._answers)
+        wanted = self._wanted(proposal)
+        known = sum(self._result(w) is not None for w in wanted)
+        points = self._points(proposal.points)
+        return Forecast(len(points), len(wanted), known, sum(bool(p.infeasible) for p in points),
+                        (len(wanted) - known) * self.expected, proposal.is_complete)
+
+    @property
+    def expected(self) -> float:
+        """Wall time of a run, s: the median of those that are done; NaN without one."""
+        walls = [r.wall for r in self.store if r.state == DONE and r.wall > 0.0]
+        return statistics.median(walls) if walls else math.nan
+
+    def run(self, executor: Executor, stopped: Callable[[], bool] = lambda: False,
+            say: Callable[[str], None] = lambda line: None) -> bool:
+        """Makes all runs that the method asks for; whether it has them all. say: gets lines of progress."""
+        self.check()
+        while True:
+            proposal = self.plan.propose(self._answers)
+            missing = [w for w in self._wanted(proposal) if self._result(w) is None]
+            if missing:
+                progress = _Progress(len(missing), say)
+                results = _Batches(self.store)
+
+                def finished(result: Result, progress: _Progress = progress, results: _Batches = results) -> None:
+                    results.put(result)
+                    progress.count(result)
+
+                try:
+                    executor.run(self._jobs(missing), self.store.folder / "runs", finished, stopped)
+                finally:
+                    results.flush()
+                progress.end()
+            if stopped() or any(self._result(w) is None for w in missing):
+                self.write_table()
+                return False
+            if proposal.is_complete:
+                break
+        self.write_table()
+        return True
+
+    def rows(self) -> list[dict[str, Any]]:
+        """A line for each run that the method asked for: what it was, what came of it, and how to make it again."""
+        rows = []
+        for wanted in self._wanted(self.plan.propose(self._answers)):
+            result = self._result(wanted)
+            row: dict[str, Any] = {"run": wanted.ids[0], "seed": wanted.seed}
+            row.update({p.column: v for p, v in zip(self.study.parameters, wanted.point.values)})
+            row["state"] = result.state if result else "not run"
+            for output in self.study.outputs:
+                number = result.number(output.what) if result else math.nan
+                row[output.name] = None if math.isnan(number) else number
+            row["reason"] = result.reason if result else ""
+            row["physics_version"] = result.version if result else None
+            row["host"] = result.host if result else ""
+            row["wall_s"] = result.wall if result else None
+            row["command"] = shlex.join(self._job(wanted).line(Path("FOLDER")))
+            rows.append(row)
+        return rows
+
+    def write_table(self) -> Path:
+        """table.csv in the folder of the study, in the place of an earlier one."""
+        file = self.store.folder / "table.csv"
+        rows = self.rows()
+        aside = file.with_suffix(".new")
+        with open(aside, "w", newline="", encoding="utf-8") as text:
+            writer = csv.DictWriter(text, list(rows[0]) if rows else ["run"], lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+        aside.rename(file)
+        return file
+
+    def findings(self) -> dict[str, Any]:
+        """What the method makes of the results; numbers, texts, lists and dicts only."""
+        return self.plan.findings(self._answers)
+
+    def _points(self, cube: NDArray[np.float64]) -> list[Point]:
+        return [self.points.at(self.values(u)) for u in cube]
+
+    def values(self, u: Iterable[float]) -> list[Value]:
+        """Of the parameters at a point of the unit cube."""
+        return [p.distribution.at(float(x)) for p, x in zip(self.study.parameters, u)]
+
+    def _wanted(self, proposal: Proposal) -> list[Wanted]:
+        """Each run once."""
+        found: dict[tuple[str, ...], Wanted] = {}
+        for point in self._points(proposal.points):
+            if not point.infeasible:
+                for seed in proposal.seeds:
+                    wanted = Wanted(point, seed)
+                    found.setdefault(wanted.ids, wanted)
+        return list(found.values())
+
+    def _answers(self, cube: NDArray[np.float64], seeds: Sequence[int]) -> Answers:
+        points = self._points(cube)
+        shape = (len(points), len(seeds))
+        y = {o.name: np.full(shape, math.nan) for o in self.study.outputs}
+        is_known = np.zeros(shape, dtype=bool)
+        is_feasible = np.array([not p.infeasible for p in points], dtype=bool)
+        for i, point in enumerate(points):
+            for j, seed in enumerate(seeds):
+                result = None if point.infeasible else self._result(Wanted(point, seed))
+                if result is not None:
+                    is_known[i, j] = True
+                    for output in self.study.outputs:
+                        y[output.name][i, j] = result.number(output.what)
+        return Answers(y, is_known, is_feasible)
+
+    def _result(self, wanted: Wanted) -> Result | None:
+        """What is known of a run, with outputs that the study has only now; None where it has to be made for them."""
+        result = self.store.get(*wanted.ids)
+        if result is None or result.state != DONE:
+            return result
+        lacking = [o for o in self.study.outputs if o.what not in result.outputs]
+        return self._with(result, lacking) if lacking else result
+
+    def _with(self, result: Result, outputs: Sequence[Output]) -> Result | None:
+        folder = self.store.folder / "runs" / result.id
+        summary = read_summary(folder)
+        if summary is None or any(o.of_history for o in outputs) and not (folder / "history.csv").exists():
+            return None
+        found = dict(result.outputs)
+        for output in outputs:
+            value, why = self._call(output.name, folder) if output.is_function else output.of(folder, summary)
+            found[output.what] = (None if math.isnan(value) else value, why)
+        missing = [f"{what}: {why}" for what, (value, why) in found.items() if value is None]
+        result = replace(result, outputs=found, state=NO_VALUE if missing else DONE, reason="; ".join(missing))
+        self.store.put([result])
+        return result
+
+    def _call(self, name: str, folder: Path) -> tuple[float, str]:
+        try:
+            value = float(self.functions[name](Run(folder)))
+        except Exception as error:  # of the user's code: whatever it is, it is this run's
+            return math.nan, f"{type(error).__name__}: {error}"
+        return value, "" if math.isfinite(value) else "is not finite"
+
+    def _jobs(self, wanted: Iterable[Wanted]) -> list[Job]:
+        expected = 0.0 if math.isnan(self.expected) else self.expected
+        return [self._job(w, expected) for w in wanted]
+
+    def _job(self, wanted: Wanted, expected: float = 0.0) -> Job:
+        study = self.study
+        values = wanted.point.values
+        return Job(wanted.ids[0], wanted.seed, study.runner.kind,
+                   tuple(self.points.command(self.program, values, wanted.seed)),
+                   dict(zip((p.name for p in study.parameters), values)), tuple(o.what for o in study.outputs if not o.is_function),
+                   study.keep,
+                   study.wall_limit, max(_LEAST_CHECKPOINT, _SHARE_OF_CHECKPOINTS * expected),
+                   _core.physics_version if study.runner.kind == "pyroclast" else 0)
+
+    def _take_in_earlier(self) -> None:
+        """Runs of earlier tables, by their identity."""
+        for file in self.study.earlier:
+            try:
+                with open(file, newline="", encoding="utf-8") as text:
+                    rows = list(csv.DictReader(text))
+                self.store.put(_result_of(row, self.study.outputs) for row in rows
+                               if row["state"] in (DONE, *FAILED) and self.store.get(row["run"]) is None)
+            except (OSError, KeyError, ValueError, csv.Error) as error:
+                raise Error(f"{self.study.place('study.earlier')}: {file} is no table of a study: {error!r}") from error
+
+
+class _Batches:
+    """Results on their way into the store, some at a time: a transaction takes longer than a quick run."""
+
+    _INTERVAL = 0.5  # s
+
+    def __init__(self, store: Store):
+        self._store = store
+        self._waiting: list[Result] = []
+        self._last = 0.0
+
+    def put(self, result: Result) -> None:
+        self._waiting.append(result)
+        if time.monotonic() - self._last > self._INTERVAL:
+            self.flush()
+
+    def flush(self) -> None:
+        self._store.put(self._waiting)
+        self._waiting.clear()
+        self._last = time.monotonic()
+
+
+class _Progress:
+    """Lines that say how many runs are done, how many failed, and what time is left."""
+
+    def __init__(self, total: int, say: Callable[[str], None]):
+        self._total, self._say = total, say
+        self._done = self._failed = self._said = 0
+        self._begun = self._last = time.monotonic()
+
+    def count(self, result: Result) -> None:
+        self._done += 1
+        self._failed += result.state in FAILED
+        if time.monotonic() - self._last > _PROGRESS:
+            self.end()
+
+    def end(self) -> None:
+        """Says how it stands, unless that was said already."""
+        if self._said == self._done:
+            return
+        self._last, self._said = time.monotonic(), self._done
+        left = (self._total - self._done) * (self._last - self._begun) / max(self._done, 1)
+        failed = f", {self._failed} without a value" if self._failed else ""
+        self._say(f"{self._done} of {self._total} runs{failed}" + (f", about {duration(left)} left" if left else ""))
+
+
+def _result_of(row: dict[str, str], outputs: Sequence[Output]) -> Result:
+    found: dict[str, tuple[float | None, str]] = {}
+    for output in outputs:
+        if output.name in row:
+            found[output.what] = (float(row[output.name]), "") if row[output.name] else (None, row["reason"])
+    version = row.get("physics_version") or "0"
+    return Result(row["run"], int(row["seed"]), row["state"], row["reason"], found, {}, row["host"],
+                  wall=float(row["wall_s"] or 0.0), version=int(version))
+
+
+def duration(seconds: float) -> str:
+    """For a reader: "45 s", "3 min", "2 h 10 min"."""
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"
+
+
+def free_cores() -> int:
+    """That this process may use."""
+    return len(os.sched_getaffinity(0))

@@ -1,0 +1,35 @@
+"""A plain list of commands, for whatever engine a user has."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..outputs import read_summary
+from ..store import Result
+from ..work import Job, collected
+
+
+@dataclass
+class Commands:
+    """Takes in the runs that are done, and writes a command line for each of the others, a line each."""
+
+    file: Path
+    written: int = field(default=0, init=False)
+    name: str = field(default="commands", init=False)
+
+    def run(self, jobs: Sequence[Job], runs: Path, finished: Callable[[Result], None],
+            stopped: Callable[[], bool]) -> None:
+        """Takes in what is done and writes the rest; see executors."""
+        runs.mkdir(parents=True, exist_ok=True)
+        lines = []
+        for job in jobs:
+            folder = runs / job.id
+            if read_summary(folder) is not None:
+                finished(collected(job, runs))
+            else:
+                lines.append(shlex.join(job.line(folder)))
+        self.file.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+        self.written = len(lines)

@@ -1,0 +1,160 @@
+"""Runs in processes of this machine, one thread each."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import select
+import socket
+import subprocess
+import sys
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..store import CRASHED, DONE, NO_VALUE, TIMED_OUT, Result
+from ..work import MOST_IN_VAIN, Attempt, Job, die_with_parent
+
+_LOOK = 0.2  # s between two looks at wall limits and at what asks to stop
+
+
+@dataclass
+class Local:
+    """As many runs at once as `slots`, each in a process of its own that dies with this one."""
+
+    slots: int
+    name: str = field(default="local", init=False)
+
+    def run(self, jobs: Sequence[Job], runs: Path, finished: Callable[[Result], None],
+            stopped: Callable[[], bool]) -> None:
+        """Makes the jobs; see executors."""
+        if jobs and jobs[0].kind == "function":
+            _call(jobs, min(self.slots, len(jobs)), finished, stopped)
+        else:
+            runs.mkdir(parents=True, exist_ok=True)
+            _run(jobs, self.slots, runs, finished, stopped)
+
+
+def _run(jobs: Sequence[Job], slots: int, runs: Path, finished: Callable[[Result], None],
+         stopped: Callable[[], bool]) -> None:
+    waiting = deque(jobs)
+    in_vain: dict[str, int] = {}
+    running: dict[int, Attempt] = {}  # by the file descriptor that tells when its process has ended
+    while running or (waiting and not stopped()):
+        while waiting and len(running) < slots and not stopped():
+            attempt = Attempt(waiting.popleft(), runs)
+            running[os.pidfd_open(attempt.process.pid)] = attempt
+        ended, _, _ = select.select(list(running), [], [], _LOOK)
+        for descriptor in ended:
+            attempt = running.pop(descriptor)
+            os.close(descriptor)
+            result = attempt.end()
+            job = attempt.job
+            if result is None and not stopped():
+                in_vain[job.id] = 0 if attempt.has_kept else in_vain.get(job.id, 0) + 1
+                if in_vain[job.id] >= MOST_IN_VAIN:
+                    result = attempt.give_up()
+                else:
+                    waiting.append(job)
+            if result is not None:
+                finished(result)
+        for attempt in running.values():
+            attempt.look_after(stopped())
+
+
+class _Server:
+    """A process that calls the function of a study, point by point."""
+
+    def __init__(self, place: str):
+        self.process = subprocess.Popen([sys.executable, "-m", "pyroclast.study.call", place], text=True,
+                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True,
+                                        preexec_fn=die_with_parent(os.getpid()))
+        self.job: Job | None = None
+        self.begun = 0.0
+
+    @property
+    def descriptor(self) -> int:
+        assert self.process.stdout
+        return self.process.stdout.fileno()
+
+    def begin(self, job: Job) -> None:
+        assert self.process.stdin
+        self.job, self.begun = job, time.monotonic()
+        try:
+            self.process.stdin.write(json.dumps([job.values, job.seed]) + "\n")
+            self.process.stdin.flush()
+        except BrokenPipeError:
+            pass  # the end of its answers tells
+
+    def end(self) -> Result | None:
+        """What it answered; None where the process ended instead."""
+        assert self.process.stdout and self.job
+        line = self.process.stdout.readline()
+        job, self.job = self.job, None
+        return _result(job, json.loads(line), time.monotonic() - self.begun) if line.endswith("\n") else None
+
+    def close(self) -> None:
+        self.process.kill()
+        self.process.communicate()
+
+
+def _result(job: Job, said: dict[str, float | None] | str, wall: float) -> Result:
+    outputs: dict[str, tuple[float | None, str]] = {}
+    if isinstance(said, str):
+        state, reason = CRASHED, said
+    else:
+        for what in job.outputs:
+            value = said.get(what)
+            if value is None or not math.isfinite(value):
+                why = "is not finite" if what in said else f"the function gives no {what!r}"
+                outputs[what] = (None, why)
+            else:
+                outputs[what] = (value, "")
+        missing = [f"{what}: {why}" for what, (value, why) in outputs.items() if value is None]
+        state, reason = (NO_VALUE, "; ".join(missing)) if missing else (DONE, "")
+    return Result(job.id, job.seed, state, reason, outputs, job.values, socket.gethostname(),
+                  time.strftime("%Y-%m-%dT%H:%M:%S+00:00", time.gmtime()), round(wall, 6), 1, job.version)
+
+
+def _call(jobs: Sequence[Job], slots: int, finished: Callable[[Result], None], stopped: Callable[[], bool]) -> None:
+    waiting = deque(jobs)
+    in_vain: dict[str, int] = {}
+    servers = [_Server(jobs[0].command[0]) for _ in range(slots)]
+    try:
+        while not stopped():
+            for server in servers:
+                if server.job is None and waiting:
+                    server.begin(waiting.popleft())
+            busy = {server.descriptor: server for server in servers if server.job is not None}
+            if not busy:
+                break
+            ready, _, _ = select.select(list(busy), [], [], _LOOK)
+            for descriptor in ready:
+                server = busy[descriptor]
+                job = server.job
+                assert job is not None
+                result = server.end()
+                if result is None:
+                    server.close()
+                    servers[servers.index(server)] = _Server(job.command[0])
+                    in_vain[job.id] = in_vain.get(job.id, 0) + 1
+                    if in_vain[job.id] < MOST_IN_VAIN:
+                        waiting.append(job)
+                    else:
+                        result = _result(job, f"the process ended {MOST_IN_VAIN} times", 0.0)
+                if result is not None:
+                    finished(result)
+            for server in busy.values():
+                if server.job is not None and time.monotonic() - server.begun > server.job.wall_limit:
+                    late = server.job
+                    server.close()
+                    servers[servers.index(server)] = _Server(late.command[0])
+                    finished(Result(late.id, late.seed, TIMED_OUT, f"wall limit of {late.wall_limit:g} s",
+                                    values=late.values, host=socket.gethostname(), wall=late.wall_limit,
+                                    version=late.version))
+    finally:
+        for server in servers:
+            server.close()

@@ -1,0 +1,32 @@
+"""Libraries that only some methods need, and openturns without its global state."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from ...errors import Error
+
+
+def library(name: str, purpose: str) -> Any:
+    """The library, or an `Error` that tells what to install and what for."""
+    try:
+        return importlib.import_module(name)
+    except ImportError as missing:
+        raise Error(f"{purpose} needs {name}: install the Debian package python3-{name}") from missing
+
+
+@contextmanager
+def openturns(purpose: str, seed: int = 0) -> Iterator[Any]:
+    """openturns with its random numbers from `seed` and without warnings; both are afterwards as before."""
+    ot = library("openturns", purpose)
+    state, flags = ot.RandomGenerator.GetState(), ot.Log.Flags()
+    ot.RandomGenerator.SetSeed(seed)
+    ot.Log.Show(ot.Log.ERROR)
+    try:
+        yield ot
+    finally:
+        ot.RandomGenerator.SetState(state)
+        ot.Log.Show(flags)

@@ -1,0 +1,87 @@
+"""The seed as an effect of its own: the spread between random specimens at the same point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+LEVEL = 0.95
+"""Of all intervals."""
+
+
+@dataclass(frozen=True)
+class Share:
+    """How much of an output's variance comes from the seed. NaN with fewer than two seeds or points."""
+
+    single: float  #: of the variance of single runs
+    single_low: float  #: 95 % interval, bootstrap over the seeds
+    single_high: float
+    mean: float  #: of the variance of the mean over the seeds
+    mean_low: float
+    mean_high: float
+    points: int  #: complete points used
+    seeds: int
+
+
+def over_seeds(y: Array) -> Array:
+    """Mean over the seeds, NaN where a point misses one. y: (..., seeds), result: (...)."""
+    return np.asarray(y, float).mean(axis=-1)
+
+
+def share(y: Array, seed: int = 0, resamples: int = 1000) -> Share:
+    """The seed's share of the variance of one output. y: (points, seeds).
+
+    Two-way analysis of variance with points and seeds crossed: y = point + seed + rest. The variance between seeds is
+    that of seed and rest together, averaged over the points; the points' own variance is free of the rest's part in it.
+    """
+    y = np.asarray(y, float)
+    y = y[np.isfinite(y).all(axis=1)]
+    points, count = y.shape
+    if points < 2 or count < 2:
+        nan = float("nan")
+        return Share(nan, nan, nan, nan, nan, nan, points, count)
+    single, mean = _shares(y, np.full((1, count), 1.0 / count))
+    weights = np.random.default_rng(seed).multinomial(count, np.full(count, 1.0 / count), resamples) / count
+    singles, means = _shares(y, weights[weights.max(axis=1) < 1.0])
+    (single_low, mean_low), (single_high, mean_high) = interval(np.stack([singles, means], axis=1))
+    return Share(float(single[0]), single_low, single_high, float(mean[0]), mean_low, mean_high, points, count)
+
+
+def _shares(y: Array, weights: Array) -> tuple[Array, Array]:
+    """Shares in single runs and in the mean, one for each row of weights (resamples, seeds), the sum of each being 1.
+
+    Variances are divided by what makes them free of bias for these weights: a resample has some seeds more than once.
+    """
+    points, count = y.shape
+    y = y - y.mean()
+    repeated = (weights**2).sum(axis=1)
+    means = y @ weights.T
+    between = np.maximum(y**2 @ weights.T - means**2, 0.0).mean(axis=0) / (1.0 - repeated)
+    by_seed = y.mean(axis=0)
+    shift = (weights @ by_seed**2 - (weights @ by_seed) ** 2) / (1.0 - repeated)
+    rest = np.maximum(between - shift, 0.0) * points / (points - 1.0)
+    own = np.maximum(means.var(axis=0, ddof=1) - repeated * rest, 0.0)
+    with np.errstate(invalid="ignore"):
+        return between / (between + own), between / count / (between / count + own)
+
+
+def rest_variance(y: Array) -> float:
+    """Variance of what a seed does differently at each point, of single runs. y: (points, seeds).
+
+    NaN with fewer than two complete points or seeds.
+    """
+    y = y[np.isfinite(y).all(axis=1)]
+    points, count = y.shape
+    if points < 2 or count < 2:
+        return float("nan")
+    rest = y - y.mean(axis=0) - y.mean(axis=1, keepdims=True) + y.mean()
+    return float((rest**2).sum() / ((points - 1) * (count - 1)))
+
+
+def interval(resampled: Array) -> tuple[Array, Array]:
+    """Percentile interval of the resampled values (resamples, ...), both ends of shape (...)."""
+    low, high = np.nanpercentile(resampled, [50.0 * (1.0 - LEVEL), 50.0 * (1.0 + LEVEL)], axis=0)
+    return low, high

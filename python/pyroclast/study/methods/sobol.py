@@ -1,0 +1,86 @@
+"""Variance-based indices of independent parameters. (Sobol', Math. Comput. Simul. 55, 2001.)"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import Error
+from . import _needs, sampling, seeds
+
+Array = NDArray[np.float64]
+MOST_LOST = 0.05
+"""Share of the rows that may be lost before indices are refused."""
+
+
+@dataclass(frozen=True)
+class Indices:
+    """First-order and total indices of the mean over seeds; arrays of shape (parameters,)."""
+
+    first: Array
+    first_low: Array  #: 95 % interval, bootstrap over the rows
+    first_high: Array
+    total: Array
+    total_low: Array
+    total_high: Array
+    seed_part: Array  #: what the seeds' scatter adds to the total index; NaN: one seed
+    told_from_seeds: NDArray[np.bool_]  #: total > 4 seed_part: twice the standard error, squared; False if unknown
+    seed_share: seeds.Share  #: of the points A and B
+    rows: int  #: used
+    lost: float  #: share of the rows lost
+
+
+def design(k: int, n: int, seed: int) -> Array:
+    """Rows A, B, AB_1 ... AB_k, shape (n, k + 2, k); AB_i is A with parameter i from B.
+
+    A and B are the halves of one Sobol' sequence in 2k dimensions, so that the first n of 2n rows are the same.
+    """
+    both = sampling.sobol_sequence(n, 2 * k, seed)
+    first, second = both[:, :k], both[:, k:]
+    rows = np.repeat(first[:, None, :], k + 2, axis=1)
+    rows[:, 1] = second
+    for i in range(k):
+        rows[:, i + 2, i] = second[:, i]
+    return rows
+
+
+def indices(y: Array, seed: int = 0, allow_missing: bool = False, resamples: int = 500) -> Indices:
+    """Indices of the mean over seeds by Martinez' correlation estimators. y: (n, k + 2, seeds), as `design` has them.
+
+    A row with a missing point drops out as a whole. Raises `Error` where more than MOST_LOST of the rows are lost and
+    that is not allowed, where fewer than two rows remain, where the output does not vary, or without openturns.
+    (Baudin, Boumhaout, Delage, Iooss, Martinez, 2016; openturns MartinezSensitivityAlgorithm.)
+    """
+    y = np.asarray(y, float)
+    complete = np.isfinite(y).all(axis=(1, 2))
+    lost = 1.0 - float(complete.mean())
+    if lost > MOST_LOST and not allow_missing:
+        raise Error(f"{lost:.1%} of the rows miss a value: no indices above {MOST_LOST:.0%}, unless that is allowed")
+    if complete.sum() < 2:
+        raise Error("Sobol' indices need at least two complete rows")
+    y = y[complete]
+    rows, blocks, runs = y.shape
+    means = seeds.over_seeds(y)
+    variance = means[:, 0].var()
+    if not variance > 0.0:
+        raise Error("the output does not vary: it has no Sobol' indices")
+
+    with _needs.openturns("Sobol' indices", seed) as ot:
+        outputs = ot.Sample(np.ascontiguousarray(means.T).reshape(-1, 1))
+        # The estimator reads no inputs; it only wants their number.
+        algorithm = ot.MartinezSensitivityAlgorithm(ot.Sample(len(outputs), blocks - 2), outputs, rows)
+        algorithm.setBootstrapSize(resamples)
+        algorithm.setConfidenceLevel(seeds.LEVEL)
+        algorithm.setUseAsymptoticDistribution(False)
+        first, total = np.array(algorithm.getFirstOrderIndices()), np.array(algorithm.getTotalOrderIndices())
+        intervals = algorithm.getFirstOrderIndicesInterval(), algorithm.getTotalOrderIndicesInterval()
+        ends = [np.array(end) for both in intervals for end in (both.getLowerBound(), both.getUpperBound())]
+
+    seed_part = np.full(blocks - 2, np.nan)
+    if runs > 1:
+        # Jansen's numerator of the total index, of each seed's departure from the mean.
+        seed_part = 0.5 * (y[:, :1] - y[:, 2:]).var(axis=2, ddof=1).mean(axis=0) / runs / variance
+    return Indices(first, ends[0], ends[1], total, ends[2], ends[3], seed_part, total > 4.0 * seed_part,
+                   seeds.share(y[:, :2].reshape(-1, runs), seed), rows, lost)

@@ -1,0 +1,130 @@
+"""Numbers out of the folder of a run."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..errors import Error
+from ..files import RunError, Table
+
+_HISTORY = re.compile(r"(?P<column>\S+)"
+                      r"(?: (?P<place>last|largest|least)"
+                      r"| at (?P<at>\S+) = (?P<value>[-+0-9.eE]+)"
+                      r"| where (?P<of>\S+) is (?P<extreme>largest|least))?")
+
+_FUNCTION = "python: "
+
+
+@dataclass(frozen=True)
+class Output:
+    """A number that a study takes of each run.
+
+    what: "f_c_MPa", a number of the summary, by its name among the results of the stages (the last that has it), or by
+        its path ("energy_J.elastic_zones"); or "history: COLUMN", with a place: "last" (without one), "largest",
+        "least", "at COLUMN = NUMBER" (where that is first passed, linear between rows), or
+        "where COLUMN is largest" (or "least").
+    """
+
+    name: str
+    what: str
+
+    def __post_init__(self) -> None:
+        if self.of_history and not _HISTORY.fullmatch(self._place):
+            raise Error(f'{self.what!r}: a column of the history is taken "last", "largest", "least", '
+                        f'"at COLUMN = NUMBER", "where COLUMN is largest" or "where COLUMN is least"')
+
+    @classmethod
+    def of_function(cls, name: str) -> Output:
+        """One that a script takes of each run."""
+        return cls(name, f"{_FUNCTION}{name}")
+
+    @property
+    def is_function(self) -> bool:
+        return self.what.startswith(_FUNCTION)
+
+    @property
+    def of_history(self) -> bool:
+        return self.what.startswith("history:")
+
+    @property
+    def _place(self) -> str:
+        return " ".join(self.what.removeprefix("history:").split())
+
+    @property
+    def columns(self) -> list[str]:
+        """Of the history, that it needs."""
+        found = _HISTORY.fullmatch(self._place) if self.of_history else None
+        return [c for c in (found["column"], found["at"], found["of"]) if c] if found else []
+
+    def of(self, folder: Path, summary: dict[str, Any]) -> tuple[float, str]:
+        """The number and, where there is none (NaN), why. Not of functions."""
+        return self._of_history(folder) if self.of_history else self._of_summary(summary)
+
+    def _of_summary(self, summary: dict[str, Any]) -> tuple[float, str]:
+        name = self.what.removeprefix("summary:").strip()
+        results = [s.get("results", {}) for s in summary.get("stages", []) if isinstance(s, dict)]
+        with_it = [r for r in results if name in r]
+        node: Any = with_it[-1][name] if with_it else summary
+        if not with_it:
+            for part in name.split("."):
+                node = node.get(part) if isinstance(node, dict) else None
+        if isinstance(node, (int, float)) and math.isfinite(node):
+            return float(node), ""
+        because = with_it[-1].get(_because(name)) if with_it else None
+        return math.nan, str(because or f"the summary has no number called {name!r}")
+
+    def _of_history(self, folder: Path) -> tuple[float, str]:
+        found = _HISTORY.fullmatch(self._place)
+        assert found
+        try:
+            table = Table(folder / "history.csv", may_be_empty=False)
+        except RunError as error:
+            return math.nan, str(error)
+        for column in self.columns:
+            if column not in table.names:
+                return math.nan, f"the history has no column {column!r}"
+        return _at_place(table, found)
+
+
+def _because(name: str) -> str:
+    """Key of the summary that says why a number is missing: of "f_c_MPa" "f_c_none_because"."""
+    return f"{re.sub(r'_(?:[A-Z][A-Za-z]*|degC|percent)$', '', name)}_none_because"
+
+
+def _at_place(table: Table, found: re.Match[str]) -> tuple[float, str]:
+    column = table[found["column"]]
+    if found["at"]:
+        along, value = table[found["at"]], float(found["value"])
+        for i in range(1, len(along)):
+            a, b = along[i - 1], along[i]
+            if (a - value) * (b - value) <= 0.0 and a != b:
+                return float(column[i - 1] + (value - a) / (b - a) * (column[i] - column[i - 1])), ""
+        return math.nan, f"{found['at']} never is {found['value']}"
+    of = table[found["of"]] if found["of"] else column
+    rows = [i for i in range(len(of)) if math.isfinite(of[i]) and math.isfinite(column[i])]
+    if not rows:
+        return math.nan, f"{found['column']} has no value"
+    place = found["extreme"] or found["place"] or "last"
+    row = rows[-1] if place == "last" else (max if place == "largest" else min)(rows, key=lambda i: of[i])
+    return float(column[row]), ""
+
+
+def column_names(history: Path) -> list[str]:
+    """Of a history, from its first line."""
+    with open(history, newline="", encoding="utf-8") as file:
+        return next(csv.reader(file), [])
+
+
+def read_summary(folder: Path) -> dict[str, Any] | None:
+    """summary.json; None where there is none that is whole."""
+    try:
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return summary if isinstance(summary, dict) else None

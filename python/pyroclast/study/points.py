@@ -1,0 +1,182 @@
+"""What a point's runs are made from, and by what they are known."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+import shlex
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from .. import _core
+from ..decks import toml
+from ..errors import DeckError, Error
+from .file import Setup
+from .parameters import Parameter, Value, numbered
+
+_ID_LENGTH = 16  # hexadecimal digits: two of a million points are the same by chance once in 10^7 studies
+_NO_RESULT = ("fields", "reference", "checkpoint", "keep_stage_checkpoints")  # keys of [output] that change none
+
+
+class Point:
+    """A value for each parameter, in their order, and the runs that it asks for."""
+
+    def __init__(self, values: tuple[Value, ...], hashes: Sequence[Callable[[int], str]], infeasible: str = ""):
+        """hashes: identity of the run with a seed, and that by an earlier physics version which counts too."""
+        self.values = values
+        self.infeasible = infeasible  #: why it cannot be run; empty if it can
+        self._hashes = hashes
+
+    @functools.cache  # noqa: B019 - a point lives as long as its study
+    def ids(self, seed: int) -> tuple[str, ...]:
+        """By which the run with a seed is known: the first is that of this program."""
+        return tuple(hashed(seed) for hashed in self._hashes)
+
+
+class Points:
+    """Makes the points of a study. Those whose deck is refused are infeasible."""
+
+    def __init__(self, study: Setup):
+        self._study = study
+        self._made: dict[tuple[Value, ...], Point] = {}
+
+    def at(self, values: Sequence[Value]) -> Point:
+        """The point of these values, made once."""
+        key = tuple(values)
+        if key not in self._made:
+            self._made[key] = self._make(key)
+        return self._made[key]
+
+    def _make(self, values: tuple[Value, ...]) -> Point:
+        runner = self._study.runner
+        if runner.kind != "pyroclast":
+            named = dict(zip((p.name for p in self._study.parameters), values))
+            return Point(values, [lambda seed: _hash([self._model, named, seed])])
+        try:
+            text, files, _ = self.resolve(values)
+        except Error as error:
+            return Point(values, [], str(error))
+        tables = tomllib.loads(text)
+        versions = [v for v in (_core.physics_version, self._study.accept_version) if v is not None]
+        return Point(values, [functools.partial(run_id, tables, files, version=v) for v in versions])
+
+    @cached_property
+    def _model(self) -> str:
+        runner = self._study.runner
+        return runner.command or f"{runner.function}\n{runner.file.read_text(encoding='utf-8')}"
+
+    def resolve(self, values: Sequence[Value]) -> tuple[str, dict[str, str], list[Any]]:
+        """The deck of a point, hashes of its files, and warnings. Raises Error, as DeckError for a deck in error."""
+        changes = [f"{path}={value}" for path, value in self.changes(values)]
+        return _core.resolve(_core.DeckText(self._text, str(self._study.runner.deck), str(self._study.runner.deck.parent),
+                                            changes, [], []))
+
+    def changes(self, values: Sequence[Value]) -> list[tuple[str, str]]:
+        """Keys of the deck and what a point writes there, as `--set` takes them."""
+        own = (self._changes_of(p, value) for p, value in zip(self._study.parameters, values))
+        return [*self._common, *(change for changes in own for change in changes)]
+
+    def _changes_of(self, parameter: Parameter, value: Value) -> list[tuple[str, str]]:
+        keys = tuple((numbered(path, self._tables), factor) for path, factor in parameter.keys)
+        return replace(parameter, keys=keys).changes(value, self._tables) if keys else []
+
+    def command(self, program: str, values: Sequence[Value], seed: int, folder: Path | None = None) -> list[str]:
+        """The command line of a run; a folder where its results go."""
+        runner = self._study.runner
+        if runner.kind == "function":
+            return [f"{runner.file}:{runner.function}"]
+        if runner.kind == "command":
+            fields = {p.name: _plain(v, p) for p, v in zip(self._study.parameters, values)}
+            line = runner.command.format(**fields, seed=seed, folder=folder or "FOLDER")
+            return shlex.split(line)
+        words = [program, "run", str(runner.deck)]
+        for path, value in self.changes(values):
+            words += ["--set", f"{path}={value}"]
+        return [*words, "--seed", str(seed)] + (["--out", str(folder)] if folder else [])
+
+    @cached_property
+    def _text(self) -> str:
+        return _core.read(str(self._study.runner.deck))
+
+    @cached_property
+    def _common(self) -> list[tuple[str, str]]:
+        deck = tomllib.loads(self._text)
+        try:
+            return [(numbered(path, deck), toml(value)) for path, value in self._study.runner.changes]
+        except Error as error:
+            raise Error(f"{self._study.place('study.changes')}: {error}") from error
+
+    @cached_property
+    def _tables(self) -> Mapping[str, Any]:
+        """The deck as it stands, with the changes that all points have."""
+        changes = [f"{path}={value}" for path, value in self._common]
+        return tomllib.loads(_core.written(_core.DeckText(self._text, str(self._study.runner.deck), "", changes, [], [])))
+
+    def check_ends(self) -> list[str]:
+        """What is wrong at the middle and at the ends of each parameter's range; empty where all can be run."""
+        middle = [p.distribution.at(0.5) for p in self._study.parameters]
+        if self._study.runner.kind == "pyroclast":
+            try:
+                self._tables
+            except Error as error:
+                return [str(error)]
+        wrong = self._wrong_keys(middle)
+        if wrong or self._study.runner.kind != "pyroclast":
+            return wrong
+        said: dict[str, str] = {}  # by what is wrong, all of it
+        for place, values in self._ends(middle):
+            try:
+                self.resolve(values)
+            except DeckError as error:
+                for d in error.diagnostics:
+                    said.setdefault(f"{d.key} = {d.value}: {d.message}", f"{place}{d}")
+            except Error as error:
+                said.setdefault(str(error), f"{place}{error}")
+        return list(said.values())
+
+    def _wrong_keys(self, middle: Sequence[Value]) -> list[str]:
+        """Of parameters whose keys, or whose place in the command, there are not."""
+        wrong = []
+        if self._study.runner.kind == "command":
+            try:
+                self.command("", middle, 1)
+            except (KeyError, IndexError, ValueError) as error:
+                named = f"{{{error.args[0]}}} is no parameter" if isinstance(error, KeyError) else str(error)
+                wrong.append(f"{self._study.place('study.command')}: {named}")
+            unnamed = [p.name for p in self._study.parameters if f"{{{p.name}" not in self._study.runner.command]
+            wrong += [f"{self._study.place(f'parameters.{name}')}: the command has no {{{name}}}" for name in unnamed]
+        for parameter, value in zip(self._study.parameters, middle):
+            try:
+                self._changes_of(parameter, value)
+            except Error as error:
+                wrong.append(f"{self._study.place(f'parameters.{parameter.name}')}: {error}")
+        return wrong
+
+    def _ends(self, middle: Sequence[Value]) -> Iterator[tuple[str, list[Value]]]:
+        for i, parameter in enumerate(self._study.parameters):
+            for end in parameter.distribution.ends():
+                unit = f" {parameter.unit}" if parameter.unit else ""
+                yield (f"{self._study.place(f'parameters.{parameter.name}')}: {parameter.name} = {end}{unit}: ",
+                       [*middle[:i], end, *middle[i + 1:]])
+        yield f"{self._study.place('study')}: in the middle of all ranges: ", list(middle)
+
+
+def run_id(tables: Mapping[str, Any], files: Mapping[str, str], seed: int, version: int) -> str:
+    """Of a run: the hash of its deck with all that the deck names, its seed and the physics version."""
+    specimen = {**tables.get("specimen", {}), "seed": seed}
+    output = {key: value for key, value in tables.get("output", {}).items() if key not in _NO_RESULT}
+    deck = {key: value for key, value in tables.items() if key != "title"}
+    return _hash([{**deck, "specimen": specimen, "output": output}, files, version])
+
+
+def _hash(what: Any) -> str:
+    return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()[:_ID_LENGTH]
+
+
+def _plain(value: Value, parameter: Parameter) -> str:
+    return f"{value!r}" if isinstance(value, float) else str(value)

@@ -1,0 +1,190 @@
+"""What is known of the runs of a study folder: a SQLite database with one writer, which the folders can rebuild."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import math
+import sqlite3
+import urllib.parse
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from ..errors import Error
+
+DONE = "done"
+CRASHED = "crashed"
+TIMED_OUT = "timed out"
+NOT_SETTLED = "not settled"
+NOT_QUASI_STATIC = "not quasi-static"
+NO_VALUE = "no value"
+FAILED = (CRASHED, TIMED_OUT, NOT_SETTLED, NOT_QUASI_STATIC, NO_VALUE)
+
+
+@dataclass(frozen=True)
+class Result:
+    """What came of a run.
+
+    outputs: by what they were taken from (Output.what): the number, or None and why there is none.
+    wall: of all attempts, s. version: physics version.
+    """
+
+    id: str
+    seed: int
+    state: str
+    reason: str = ""
+    outputs: dict[str, tuple[float | None, str]] = field(default_factory=dict)
+    values: dict[str, Any] = field(default_factory=dict)
+    host: str = ""
+    begun: str = ""
+    wall: float = 0.0
+    attempts: int = 1
+    version: int = 0
+
+    def number(self, what: str) -> float:
+        """An output; NaN where there is none, and where the run failed as a whole."""
+        if self.state not in (DONE, NO_VALUE):
+            return math.nan
+        value = self.outputs.get(what, (None, ""))[0]
+        return math.nan if value is None else value
+
+
+_COLUMNS = tuple(Result.__dataclass_fields__)
+_NAMES = ", ".join(f'"{name}"' for name in _COLUMNS)
+_AS_JSON = ("outputs", "values")
+
+
+class Store:
+    """Results by the identity of their runs. One process at a time writes; others may read."""
+
+    def __init__(self, folder: Path, writes: bool = True):
+        """writes: False for a reader, which may come while another process writes; what it puts in, it alone sees.
+
+        Raises Error where another process has it open to write.
+        """
+        self.folder = folder
+        self._results: dict[str, Result] = {}
+        self._base: sqlite3.Connection | None = None
+        self._lock = None
+        if not writes:
+            self._read()
+            return
+        folder.mkdir(parents=True, exist_ok=True)
+        self._lock = open(folder / "lock", "w", encoding="utf-8")
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            self._lock.close()
+            raise Error(f"{folder}: another process runs a study in this folder") from None
+        self._open()
+
+    @property
+    def _file(self) -> Path:
+        return self.folder / "study.sqlite"
+
+    def _read(self) -> None:
+        if self._file.exists():
+            base = sqlite3.connect(f"file:{urllib.parse.quote(str(self._file))}?mode=ro", uri=True)
+            self._take_from(base)
+            base.close()
+
+    def _open(self) -> None:
+        is_new = not self._file.exists()
+        try:
+            self._base = self._connected()
+        except sqlite3.DatabaseError as error:
+            if isinstance(error, sqlite3.OperationalError):  # a full disk, say, and nothing wrong with the file
+                raise Error(f"{self._file}: {error}") from error
+            self._file.rename(self._file.with_suffix(".damaged"))
+            self._base, is_new = self._connected(), True
+        if is_new:
+            self.put(_records(self.folder / "runs"))
+
+    def _connected(self) -> sqlite3.Connection:
+        base = sqlite3.connect(self._file)
+        base.execute(f"CREATE TABLE IF NOT EXISTS runs ({_NAMES}, PRIMARY KEY (id))")
+        self._take_from(base)
+        return base
+
+    def _take_from(self, base: sqlite3.Connection) -> None:
+        for row in base.execute(f"SELECT {_NAMES} FROM runs"):
+            named = dict(zip(_COLUMNS, row))
+            named.update({key: json.loads(named[key]) for key in _AS_JSON})
+            named["outputs"] = {what: (value, why) for what, (value, why) in named["outputs"].items()}
+            self._results[named["id"]] = Result(**named)
+
+    def get(self, *ids: str) -> Result | None:
+        """The result of the first of these runs that there is one of."""
+        return next((self._results[i] for i in ids if i in self._results), None)
+
+    def put(self, results: Iterable[Result]) -> None:
+        rows = []
+        for result in results:
+            self._results[result.id] = result
+            named = asdict(result)
+            rows.append([json.dumps(named[key]) if key in _AS_JSON else named[key] for key in _COLUMNS])
+        if self._base is None:
+            return
+        with self._base:
+            self._base.executemany(f"INSERT OR REPLACE INTO runs VALUES ({', '.join('?' * len(_COLUMNS))})", rows)
+
+    def drop(self, ids: Iterable[str]) -> None:
+        """Forgets runs, which are then run again."""
+        gone = [(i,) for i in ids]
+        for (i,) in gone:
+            self._results.pop(i, None)
+        assert self._base is not None
+        with self._base:
+            self._base.executemany("DELETE FROM runs WHERE id = ?", gone)
+
+    def __iter__(self) -> Iterator[Result]:
+        return iter(self._results.values())
+
+    def __len__(self) -> int:
+        return len(self._results)
+
+    def close(self) -> None:
+        if self._base is not None and self._lock is not None:
+            self._base.close()
+            self._lock.close()
+
+
+@contextmanager
+def opened(folder: Path, writes: bool = True) -> Iterator[Store]:
+    """A store, closed at the end."""
+    store = Store(folder, writes)
+    try:
+        yield store
+    finally:
+        store.close()
+
+
+def record_file(runs: Path, run: str) -> Path:
+    """Beside the folder of a run: what came of it."""
+    return runs / f"{run}.json"
+
+
+def write_record(runs: Path, result: Result) -> None:
+    """In the place of an earlier one, which stays whole if this is broken off."""
+    file = record_file(runs, result.id)
+    aside = file.with_suffix(".new")
+    aside.write_text(json.dumps(asdict(result)), encoding="utf-8")
+    aside.rename(file)
+
+
+def read_record(runs: Path, run: str) -> Result | None:
+    """None where there is none that is whole."""
+    try:
+        named = json.loads(record_file(runs, run).read_text(encoding="utf-8"))
+        outputs = {what: (value, why) for what, (value, why) in named["outputs"].items()}
+        return replace(Result(**{key: named[key] for key in _COLUMNS}), outputs=outputs)
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _records(runs: Path) -> list[Result]:
+    found = [read_record(runs, file.stem) for file in sorted(runs.glob("*.json"))]
+    return [record for record in found if record is not None and record.state in (DONE, *FAILED)]

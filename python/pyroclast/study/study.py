@@ -1,0 +1,202 @@
+"""A study as an object."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import signal
+import subprocess
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..decks import _is_list_of_tables, table_text, toml
+from ..errors import Error
+from .driver import Driver, Forecast, free_cores
+from .executors import Executor
+from .executors.commands import Commands
+from .executors.local import Local
+from .file import Setup, read_setup
+from .store import CRASHED, TIMED_OUT, opened
+
+if TYPE_CHECKING:
+    import pandas
+
+_ABOUT = re.compile(r"steps; about ((?:\d+ (?:h|min|s) ?)+)")
+_IN_SECONDS = {"h": 3600.0, "min": 60.0, "s": 1.0}
+
+EXECUTORS = ("local", "slurm", "commands")
+
+
+class Study:
+    """Many runs, and what comes of them.
+
+        study = pyroclast.Study("strength.toml")
+        study.run(jobs=4)
+        study.table.plot.scatter("f_t [MPa]", "f_c")
+        print(study.findings["outputs"]["f_c"])
+
+    A study goes on where it stopped: runs that are done are never made again. Raises DeckError for a file that is none.
+    """
+
+    def __init__(self, file: str | Path, *, program: str | None = None,
+                 functions: Mapping[str, Callable[[Any], float]] | None = None, **tables: Any):
+        """
+        file: a study file. With tables, it is written from these first: `study={"deck": "starter.toml"}`, ...
+        program: pyroclast itself; None: that on the PATH.
+        functions: further outputs, by names of their own: of a `pyroclast.run.Run`, called once for each run. What they
+            need of the run has to be kept (`keep`).
+        """
+        if tables:
+            _write(Path(file), tables)
+        self.setup: Setup = read_setup(file, list(functions or ()))
+        self._functions = dict(functions or {})
+        needs_program = self.setup.runner.kind == "pyroclast"
+        self._program = program or (_program() if needs_program else "")
+
+    def check(self) -> None:
+        """Raises Error with all that is wrong at the ends of ranges and at points that are known beforehand."""
+        with self._driver() as driver:
+            driver.check()
+
+    def forecast(self) -> Forecast:
+        """What is left to run."""
+        with self._driver() as driver:
+            return driver.forecast()
+
+    def run(self, executor: str | Executor = "local", jobs: int | None = None,
+            say: Callable[[str], None] | None = None) -> bool:
+        """Makes all runs that are missing; whether the study is complete.
+
+        executor: "local", "slurm", "commands", or one of your own (`pyroclast.study.executors`).
+        jobs: runs at once; None: as many as there are cores.
+        say: gets lines of progress; `print` will do.
+
+        Ctrl-C stops it: each run keeps its state and goes on the next time.
+        """
+        chosen = self.executor(executor, jobs) if isinstance(executor, str) else executor
+        with self._driver(writes=True) as driver, _interrupts() as stopped:
+            return driver.run(chosen, stopped, say or (lambda line: None))
+
+    def executor(self, name: str, jobs: int | None = None) -> Executor:
+        """By its name. Raises Error for another one."""
+        if name == "local":
+            return Local(jobs or free_cores())
+        if name == "commands":
+            return Commands(self.setup.folder / "commands.txt")
+        raise Error(f"executor {name!r}: must be one of {', '.join(EXECUTORS)}")
+
+    @property
+    def table(self) -> pandas.DataFrame:
+        """A line for each run: parameters in their units, state, outputs, command."""
+        import pandas
+
+        with self._driver() as driver:
+            return pandas.DataFrame(driver.rows())
+
+    @property
+    def samples(self) -> pandas.DataFrame:
+        """The points: a line each, the parameters in their units."""
+        columns = [p.column for p in self.setup.parameters]
+        return self.table[columns].drop_duplicates(ignore_index=True)
+
+    @property
+    def results(self) -> pandas.DataFrame:
+        """Means of the outputs over the seeds, a line for each point; NaN where one seed gave no value."""
+        columns = [p.column for p in self.setup.parameters]
+        outputs = [o.name for o in self.setup.outputs]
+        table = self.table
+        if not columns:
+            return table[outputs].mean(skipna=False).to_frame().T
+        return table.groupby(columns, sort=False)[outputs].agg(lambda y: np.mean(y.to_numpy(float))).reset_index()
+
+    @property
+    def findings(self) -> dict[str, Any]:
+        """What the method makes of the results; docs/studies.md tells what stands where."""
+        with self._driver() as driver:
+            return driver.findings()
+
+    def rows(self) -> list[dict[str, Any]]:
+        """The table as it is written: None where there is no value."""
+        with self._driver() as driver:
+            return driver.rows()
+
+    def forget_failures(self) -> None:
+        """Runs that crashed or timed out are made again."""
+        with opened(self.setup.folder) as store:
+            store.drop([r.id for r in store if r.state in (CRASHED, TIMED_OUT)])
+
+    def time_of_a_run(self) -> float | None:
+        """As `pyroclast check` estimates it for the middle of all ranges on one thread, s; None where it cannot."""
+        if self.setup.runner.kind != "pyroclast":
+            return None
+        with self._driver() as driver:
+            middle = [p.distribution.at(0.5) for p in self.setup.parameters]
+            command = driver.points.command(self._program, middle, self.setup.seeds[0])
+        said = subprocess.run([command[0], "check", *command[2:], "--threads", "1"], capture_output=True, text=True)
+        found = _ABOUT.search(said.stdout)
+        return _seconds(found[1]) if found else None
+
+    def write_table(self) -> Path:
+        """table.csv in the folder of the study."""
+        with self._driver() as driver:
+            return driver.write_table()
+
+    @contextmanager
+    def _driver(self, writes: bool = False) -> Iterator[Driver]:
+        with opened(self.setup.folder, writes) as store:
+            yield Driver(self.setup, store, self._program, self._functions)
+
+    def __repr__(self) -> str:
+        return f"<Study {self.setup.file}: {self.setup.method.kind}>"
+
+
+def _write(file: Path, tables: Mapping[str, Any]) -> None:
+    plain = [f"{key} = {toml(value)}" for key, value in tables.items() if not isinstance(value, (Mapping, list))]
+    blocks = []
+    for key, value in tables.items():
+        if _is_list_of_tables(value):
+            blocks += [table_text(key, entry, True) for entry in value]
+        elif isinstance(value, Mapping):
+            blocks.append(table_text(key, value))
+    file.write_text("\n".join([*plain, "", *blocks]), encoding="utf-8")
+
+
+def _seconds(text: str) -> float:
+    """Of "2 min 20 s"."""
+    words = text.split()
+    return sum(float(number) * _IN_SECONDS[unit] for number, unit in zip(words[::2], words[1::2]))
+
+
+def _program() -> str:
+    """Beside the package where it was installed or built, else on the PATH."""
+    beside = Path(__file__).resolve().parents[3] / "bin" / "pyroclast"
+    found = str(beside) if beside.exists() else shutil.which("pyroclast")
+    if found is None:
+        raise Error("pyroclast is not on the PATH; name it: Study(..., program=...)")
+    return found
+
+
+@contextmanager
+def _interrupts() -> Iterator[Callable[[], bool]]:
+    """Ctrl-C and SIGTERM ask to stop; a second one raises KeyboardInterrupt."""
+    asked = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield asked.is_set
+        return
+
+    def ask(number: int, frame: Any) -> None:
+        if asked.is_set():
+            raise KeyboardInterrupt
+        asked.set()
+
+    before = {number: signal.signal(number, ask) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield asked.is_set
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,276 @@
+"""One run in its folder: begun or resumed, judged, and thinned."""
+
+from __future__ import annotations
+
+import ctypes
+import datetime
+import json
+import math
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from .outputs import Output, read_summary
+from .store import (CRASHED, DONE, NO_VALUE, NOT_QUASI_STATIC, NOT_SETTLED, TIMED_OUT, Result, read_record,
+                    write_record)
+
+BEGUN = "begun"
+"""State of a record whose run has not come to an end."""
+
+MOST_IN_VAIN = 10
+"""Attempts, one after the other, that were ended from outside before they kept anything new."""
+
+PATIENCE = 30.0
+"""Time that a process gets to keep its state before it is killed, s."""
+
+_LARGE = ("history.csv", "specimen", "fields", "figures", "checkpoints", "frames.json")
+_PR_SET_PDEATHSIG = 1
+_REASON_LENGTH = 300
+_libc = ctypes.CDLL(None)  # before a fork: a child may not import
+
+_STATES = {"the body did not come to rest within the stated steps": NOT_SETTLED,
+           "the motion became unstable (a result is not finite)": CRASHED}
+
+
+@dataclass(frozen=True)
+class Job:
+    """A run that is to be made.
+
+    command: as its user would type it, without the folder; of a function FILE:NAME alone.
+    checkpoint: wall time between two checkpoints, s.
+    """
+
+    id: str
+    seed: int
+    kind: str
+    command: tuple[str, ...]
+    values: dict[str, Any]
+    outputs: tuple[str, ...]
+    keep: str
+    wall_limit: float
+    checkpoint: float
+    version: int
+
+    @classmethod
+    def from_json(cls, text: str) -> Job:
+        named: dict[str, Any] = json.loads(text)
+        return cls(**{**named, "command": tuple(named["command"]), "outputs": tuple(named["outputs"])})
+
+    def to_json(self) -> str:
+        return json.dumps(asdict(self))
+
+    def line(self, folder: Path) -> list[str]:
+        """The command line of the run from its beginning, with results in a folder."""
+        if self.kind == "function":
+            return [sys.executable, "-m", "pyroclast.study.call", self.command[0], json.dumps(self.values), str(self.seed),
+                    str(folder / "summary.json")]
+        if self.kind == "command":
+            return [word.replace("FOLDER", str(folder)) for word in self.command]
+        fields = [] if self.keep == "all" else ["--no-fields"]
+        return [*self.command, "--out", str(folder), "--no-figures", "--threads", "1", "--quiet", *fields]
+
+
+class Attempt:
+    """A process that makes a run, or goes on with one that was broken off.
+
+    It dies with the thread that made it: no run is left behind when a driver is killed.
+    """
+
+    def __init__(self, job: Job, runs: Path):
+        self.job = job
+        self._runs = runs
+        self.folder = runs / job.id
+        before = read_record(runs, job.id)
+        before = before if before is not None and before.state == BEGUN else None
+        self._wall_before = before.wall if before else 0.0
+        self.attempts = before.attempts + 1 if before else 1
+        self._log = runs / f"{job.id}.log"
+        self._kept_before = _kept(self.folder)
+        self._begun = datetime.datetime.now(datetime.timezone.utc)
+        write_record(runs, self._result(BEGUN))
+        command = self._command()
+        self.folder.mkdir(exist_ok=True)
+        with open(self._log, "ab") as log:
+            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+                                            start_new_session=True, preexec_fn=die_with_parent(os.getpid()))
+        self._asked: float | None = None
+        self.is_late = False
+
+    def _command(self) -> list[str]:
+        job = self.job
+        if job.kind != "pyroclast":
+            return job.line(self.folder)
+        checkpoint = ["--checkpoint", f"{job.checkpoint:g} s"]
+        if _kept(self.folder) is not None:
+            return [job.command[0], "resume", str(self.folder), "--no-figures", "--threads", "1", "--quiet", *checkpoint]
+        shutil.rmtree(self.folder, ignore_errors=True)  # of an attempt that was ended before its first checkpoint
+        return [*job.line(self.folder), *checkpoint]
+
+    @property
+    def time_left(self) -> float:
+        """Until the wall limit, s."""
+        return self.job.wall_limit - self._wall_before - self._wall()
+
+    def _wall(self) -> float:
+        return (datetime.datetime.now(datetime.timezone.utc) - self._begun).total_seconds()
+
+    def look_after(self, stopped: bool) -> None:
+        """Asks the process to keep its state and end where all is to stop, or at its wall limit; kills one that does
+        not."""
+        late = self.time_left <= 0.0
+        if (stopped or late) and self._asked is None:
+            self._asked, self.is_late = time.monotonic(), late and not stopped
+            _signal(self.process, signal.SIGTERM)
+        elif self._asked is not None and time.monotonic() - self._asked > PATIENCE:
+            _signal(self.process, signal.SIGKILL)
+
+    def end(self) -> Result | None:
+        """What came of the process, which has ended; None where it was ended from outside and another one goes on."""
+        code = self.process.wait()
+        summary = read_summary(self.folder)
+        is_whole = summary is not None and summary.get("outcome") != "stopped"
+        if is_whole and (code in (0, 2) or (code < 0 and self.job.kind == "pyroclast")):
+            assert summary is not None
+            return self._finish(*judge(summary), summary)
+        if self.is_late:
+            return self._finish(TIMED_OUT, f"wall limit of {self.job.wall_limit:g} s", None)
+        ended_outside = code in (-signal.SIGKILL, -signal.SIGTERM, -signal.SIGHUP, -signal.SIGINT, 130)
+        if not ended_outside:
+            said = self._said()
+            how = f"signal {-code}" if code < 0 else f"exit code {code}" if code else "no summary.json was left"
+            return self._finish(CRASHED, f"{how}: {said}" if said else how, None)
+        write_record(self._runs, self._result(BEGUN))
+        return None
+
+    @property
+    def has_kept(self) -> bool:
+        """Whether it kept something that the attempt before had not."""
+        return _kept(self.folder) != self._kept_before
+
+    def give_up(self) -> Result:
+        """The result where one attempt after the other was ended from outside."""
+        return self._finish(CRASHED, f"ended from outside {MOST_IN_VAIN} times before anything new was kept; is there "
+                            "memory enough?", None)
+
+    def _finish(self, state: str, reason: str, summary: dict[str, Any] | None) -> Result:
+        self._log.unlink(missing_ok=True)
+        return _concluded(self._result(state), reason, self.job, self._runs, summary)
+
+    def _result(self, state: str) -> Result:
+        return Result(self.job.id, self.job.seed, state, values=self.job.values, host=socket.gethostname(),
+                      begun=self._begun.isoformat(timespec="seconds"), wall=round(self._wall_before + self._wall(), 3),
+                      attempts=self.attempts, version=self.job.version)
+
+    def _said(self) -> str:
+        """The last line that the process wrote."""
+        try:
+            lines = self._log.read_text(encoding="utf-8", errors="replace").split("\n")
+        except OSError:
+            return ""
+        return next((line.strip() for line in reversed(lines) if line.strip()), "")
+
+
+def collected(job: Job, runs: Path) -> Result:
+    """The result of a run that was made by its command line alone; its summary is there."""
+    folder = runs / job.id
+    summary = read_summary(folder) or {}
+    state, reason = judge(summary)
+    wall = summary.get("wall_time_s", 0.0)
+    result = Result(job.id, job.seed, state, values=job.values, wall=wall, version=job.version)
+    return _concluded(result, reason, job, runs, summary)
+
+
+def _concluded(result: Result, reason: str, job: Job, runs: Path, summary: dict[str, Any] | None) -> Result:
+    """With its outputs, its folder thinned, written down."""
+    state, outputs = result.state, {}
+    if summary is not None and state == DONE:
+        for what in job.outputs:
+            value, why = Output("", what).of(runs / job.id, summary)
+            outputs[what] = (None if math.isnan(value) else value, why)
+        missing = [f"{what}: {why}" for what, (value, why) in outputs.items() if value is None]
+        if missing:
+            state, reason = NO_VALUE, "; ".join(missing)
+    result = replace(result, state=state, reason=reason[:_REASON_LENGTH], outputs=outputs)
+    thin(runs / job.id, job.keep)
+    write_record(runs, result)
+    return result
+
+
+def judge(summary: dict[str, Any]) -> tuple[str, str]:
+    """State of a run that came to its end, and why it gives no value."""
+    outcome = str(summary.get("outcome", ""))
+    stages = [s for s in summary.get("stages", []) if isinstance(s, dict)]
+    for said in [outcome, *(str(s.get("outcome", "")) for s in stages)]:
+        if said in _STATES:
+            return _STATES[said], said
+    for number, stage in enumerate(stages, start=1):
+        if stage.get("results", {}).get("quasi_static") is False:
+            return NOT_QUASI_STATIC, f"stage {number} ({stage.get('kind')}) was not quasi-static"
+    return (CRASHED, "stopped") if outcome == "stopped" else (DONE, "")
+
+
+def thin(folder: Path, keep: str) -> None:
+    """Removes what is not to be kept of a run: "summary", "history" too, or "all"."""
+    if keep == "all":
+        return
+    for name in _LARGE:
+        if name == "history.csv" and keep == "history":
+            continue
+        path = folder / name
+        shutil.rmtree(path, ignore_errors=True) if path.is_dir() else path.unlink(missing_ok=True)
+
+
+def make(job: Job, runs: Path, stopped: Callable[[], bool], wait: Callable[[Attempt], None]) -> Result | None:
+    """Makes a run to its end, in as many attempts as it takes; None when `stopped` says so before.
+
+    wait: returns when the attempt's process has ended, or shortly after `stopped` or its wall limit holds.
+    """
+    in_vain = 0
+    while True:
+        attempt = Attempt(job, runs)
+        while attempt.process.poll() is None:
+            attempt.look_after(stopped())
+            wait(attempt)
+        result = attempt.end()
+        if result is not None or stopped():
+            return result
+        in_vain = 0 if attempt.has_kept else in_vain + 1
+        if in_vain >= MOST_IN_VAIN:
+            return attempt.give_up()
+
+
+def _kept(folder: Path) -> tuple[str, int] | None:
+    """The newest checkpoint that a run can go on from; None without one."""
+    files = [(f.stat().st_mtime_ns, f.name) for f in folder.glob("checkpoints/*.state")]
+    return (max(files)[1], max(files)[0]) if files and (folder / "manifest.json").exists() else None
+
+
+def _signal(process: subprocess.Popen[bytes], number: int) -> None:
+    try:
+        os.killpg(process.pid, number)  # a session of its own
+    except ProcessLookupError:
+        pass
+
+
+def die_with_parent(parent: int) -> Callable[[], None]:
+    """For a child, between fork and exec: it gets SIGTERM when its parent ends."""
+
+    def arrange() -> None:
+        _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+        if os.getppid() != parent:
+            os._exit(1)
+
+    return arrange
+
+
+def jobs_of(text: str) -> Sequence[Job]:
+    """Of a file with a job on each line."""
+    return [Job.from_json(line) for line in text.splitlines() if line.strip()]

@@ -1,0 +1,303 @@
+"""Runs of studies: made once, judged, taken up again after a kill, never left behind."""
+
+import json
+import math
+import os
+import random
+import signal
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+from pyroclast.errors import Error
+from pyroclast.study.executors.local import Local
+from pyroclast.study.outputs import Output
+from pyroclast.study.study import Study
+from pyroclast.study.work import judge
+from study_files import PROGRAM, StudyTest, of_deck
+
+
+def states(study: Study) -> list[str]:
+    return [row["state"] for row in study.rows()]
+
+
+def alive(word: str) -> list[str]:
+    """Processes with the word in their command line."""
+    found = subprocess.run(["pgrep", "-f", word], capture_output=True, text=True).stdout.split()
+    return [pid for pid in found if int(pid) != os.getpid()]
+
+
+class States(StudyTest):
+    def one(self, mode: str, study: str = "") -> dict:
+        made = self.study(self.of_command(mode, study=study))
+        self.assertTrue(made.run(jobs=2))
+        return made.rows()[0]
+
+    def test_done(self) -> None:
+        row = self.one("plain")
+        self.assertEqual((row["state"], row["reason"]), ("done", ""))
+        self.assertAlmostEqual(row["z"], 2.0 * row["x"] + 0.01, 12)
+
+    def test_crashed_says_why(self) -> None:
+        row = self.one("crash")
+        self.assertEqual(row["state"], "crashed")
+        self.assertIn("exit code 3: the mortar is missing", row["reason"])
+        self.assertIsNone(row["z"])
+
+    def test_timed_out(self) -> None:
+        row = self.one("slow", 'wall_limit = "0.5 s"')
+        self.assertEqual(row["state"], "timed out")
+        self.assertIn("0.5 s", row["reason"])
+
+    def test_not_settled(self) -> None:
+        self.assertEqual(self.one("restless")["state"], "not settled")
+
+    def test_not_quasi_static(self) -> None:
+        row = self.one("fast")
+        self.assertEqual((row["state"], row["z"]), ("not quasi-static", None))
+
+    def test_no_value_says_why(self) -> None:
+        row = self.one("silent")
+        self.assertEqual(row["state"], "no value")
+        self.assertIn("no number called 'z'", row["reason"])
+
+    def test_a_function_that_raises_is_its_points_affair(self) -> None:
+        self.model.write_text("def line(x, seed):\n    return {'z': 1.0 / round(x)}\n")
+        study = self.study(self.of_function('kind = "grid"'))
+        self.assertTrue(study.run(jobs=1))
+        self.assertEqual(states(study).count("done"), 2)
+        self.assertIn("ZeroDivisionError", study.rows()[0]["reason"])
+
+    def test_a_function_that_does_not_end(self) -> None:
+        self.model.write_text("import time\ndef line(x, seed):\n    time.sleep(60 * (x < 0.3))\n    return {'z': x}\n")
+        study = self.study(self.of_function('kind = "grid"', study='wall_limit = "1 s"'))
+        self.assertTrue(study.run(jobs=2))
+        self.assertEqual(sorted(states(study)), ["done"] * 3 + ["timed out"] * 2)
+
+
+class Again(StudyTest):
+    def test_a_run_is_made_once(self) -> None:
+        study = self.study(self.of_command("plain"))
+        study.run(jobs=2)
+        before = self.made(study)
+        self.assertEqual(len(before), 4)
+        study.run(jobs=2)
+        self.assertEqual(self.made(study), before)
+
+    def test_failures_are_made_again_when_asked_for(self) -> None:
+        study = self.study(self.of_command("crash"))
+        study.run(jobs=2)
+        study.forget_failures()
+        study.run(jobs=2)
+        self.assertEqual(len(self.made(study)), 8)
+
+    def test_more_seeds_extend(self) -> None:
+        text = self.of_command("plain", study='seeds = 1\nfolder = "here"')
+        self.study(text).run(jobs=2)
+        study = self.study(text.replace("seeds = 1", "seeds = 2"))
+        study.run(jobs=2)
+        self.assertEqual(len(self.made(study)), 8)
+
+    def test_another_study_shares_the_folder(self) -> None:
+        self.study(self.of_command("plain", 'kind = "grid"', 'folder = "here"')).run(jobs=2)
+        study = self.study(self.of_command("plain", 'kind = "morris"\ntrajectories = 2', 'folder = "here"'))
+        study.run(jobs=2)
+        self.assertLess(len(self.made(study)), 9)
+
+    def test_a_table_alone_is_enough(self) -> None:
+        study = self.study(self.of_command("plain"))
+        study.run(jobs=2)
+        table = study.setup.folder / "table.csv"
+        (self.folder / "old.csv").write_bytes(table.read_bytes())
+        fresh = self.study(self.of_command("plain", study='folder = "new"\nearlier = ["old.csv"]'))
+        self.assertTrue(fresh.run(jobs=2))
+        self.assertEqual(self.made(fresh), [])
+        self.assertEqual([row["z"] for row in fresh.rows()], [row["z"] for row in study.rows()])
+
+    def test_the_records_rebuild_a_damaged_base(self) -> None:
+        study = self.study(self.of_command("plain"))
+        study.run(jobs=2)
+        before = study.rows()
+        (study.setup.folder / "study.sqlite").write_bytes(b"not a database" * 100)
+        study.run(jobs=2)
+        self.assertEqual(study.rows(), before)
+        self.assertEqual(len(self.made(study)), 4)
+
+    def test_a_new_output_is_taken_of_what_is_kept(self) -> None:
+        text = self.of_command("plain", study='folder = "here"')
+        self.study(text).run(jobs=2)
+        study = self.study(text + 'again = "z"\nother = "summary: z"\n')
+        study.run(jobs=2)
+        self.assertEqual(len(self.made(study)), 4)
+        self.assertEqual([r["again"] for r in study.rows()], [r["other"] for r in study.rows()])
+
+    def test_any_function_of_a_run_is_an_output(self) -> None:
+        study = self.study(self.of_command("plain"), functions={"twice": lambda run: 2.0 * run.summary["z"]})
+        study.run(jobs=2)
+        for row in study.rows():
+            self.assertEqual(row["twice"], 2.0 * row["z"])
+        self.assertEqual(len(study.samples), 4)
+        self.assertEqual(list(study.results.columns), ["x", "twice", "z"])
+
+
+class Kills(StudyTest):
+    def test_a_killed_run_goes_on(self) -> None:
+        study = self.study(self.of_command("brief"))
+        killed: list[int] = []
+
+        def kill() -> None:
+            until = time.monotonic() + 30.0
+            while len(killed) < 5 and time.monotonic() < until:
+                for pid in alive(str(self.model))[:1]:
+                    os.kill(int(pid), signal.SIGKILL)
+                    killed.append(int(pid))
+                time.sleep(0.05)
+
+        killer = threading.Thread(target=kill)
+        killer.start()
+        self.assertTrue(study.run(jobs=2))
+        killer.join()
+        self.assertEqual(len(killed), 5)
+        self.assertEqual(states(study), ["done"] * 4)
+
+    def test_what_is_killed_all_the_time_crashed(self) -> None:
+        self.model.write_text("import os\nos.kill(os.getpid(), 9)\n")
+        study = self.study(self.of_command("plain", 'kind = "lhs"\nsamples = 2'))
+        self.assertTrue(study.run(jobs=2))
+        self.assertEqual(states(study), ["crashed"] * 2)
+        self.assertIn("memory", study.rows()[0]["reason"])
+
+    def test_a_killed_driver_leaves_no_run_behind(self) -> None:
+        text = self.file(self.of_command("slow"))
+        driver = subprocess.Popen([sys.executable, "-m", "pyroclast.study", "run", str(text), "--jobs", "2"],
+                                  stdout=subprocess.DEVNULL)
+        until = time.monotonic() + 20.0
+        while len(alive(str(self.model))) < 2 and time.monotonic() < until:
+            time.sleep(0.05)
+        self.assertEqual(len(alive(str(self.model))), 2)
+        driver.kill()
+        driver.wait()
+        until = time.monotonic() + 10.0
+        while alive(str(self.model)) and time.monotonic() < until:
+            time.sleep(0.05)
+        self.assertEqual(alive(str(self.model)), [])
+
+    def test_ctrl_c_stops_and_goes_on(self) -> None:
+        text = self.file(self.of_command("brief", 'kind = "lhs"\nsamples = 12'))
+        words = [sys.executable, "-m", "pyroclast.study", "run", str(text), "--jobs", "2"]
+        driver = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
+        study = Study(text)
+        until = time.monotonic() + 20.0
+        while len(self.made(study)) < 3 and time.monotonic() < until:
+            time.sleep(0.02)
+        driver.send_signal(signal.SIGINT)
+        said, _ = driver.communicate(timeout=20)
+        self.assertEqual(driver.returncode, 130)
+        self.assertIn("to go on", said)
+        self.assertEqual(subprocess.run(words, stdout=subprocess.DEVNULL).returncode, 0)
+        self.assertEqual(states(study), ["done"] * 12)
+        self.assertLess(len(self.made(study)), 15)
+
+    def test_two_drivers_are_one_too_many(self) -> None:
+        study = self.study(self.of_command("brief"))
+
+        class Second:
+            name = "second"
+
+            def run(self, jobs, runs, finished, stopped) -> None:
+                with outer.assertRaises(Error) as caught:
+                    Study(study.setup.file).run(jobs=1)
+                outer.assertIn("another process", str(caught.exception))
+
+        outer = self
+        self.assertFalse(study.run(Second()))
+
+
+class OfDecks(StudyTest):
+    TWO = '[parameters.f_t]\nkey = "contacts.mortar_mortar.f_t"\nuniform = ["2 MPa", "3 MPa"]\nlevels = 2\n'
+    OUTPUTS = 'f_c = "f_c_MPa"\npeak = "history: strain where stress_MPa is largest"\nwork = "energy_J.loading"'
+
+    def test_runs_are_those_of_their_command_lines_and_killed_ones_too(self) -> None:
+        study = self.study(of_deck('kind = "grid"', self.TWO, 'keep = "history"', self.OUTPUTS))
+        killed = random.Random(1)
+
+        class Killer(Local):
+            def run(self, jobs, runs, finished, stopped) -> None:
+                end = time.monotonic() + 1.5
+
+                def asked() -> bool:
+                    if time.monotonic() < end and killed.random() < 0.3:
+                        subprocess.run(["pkill", "-9", "-f", f"out {runs}"])
+                    return stopped()
+
+                super().run(jobs, runs, finished, asked)
+
+        self.assertTrue(study.run(Killer(2)))
+        rows = study.rows()
+        self.assertEqual([row["state"] for row in rows], ["done", "done"])
+        again = self.folder / "again"
+        command = rows[1]["command"].replace("FOLDER", str(again))
+        subprocess.run(command, shell=True, check=True, stdout=subprocess.DEVNULL)
+        kept = study.setup.folder / "runs" / rows[1]["run"]
+        self.assertEqual((again / "history.csv").read_bytes(), (kept / "history.csv").read_bytes())
+        self.assertFalse((kept / "checkpoints").exists())
+        summary = json.loads((again / "summary.json").read_text())
+        self.assertEqual(rows[1]["work"], summary["energy_J"]["loading"])
+        self.assertEqual(rows[1]["f_c"], summary["stages"][1]["results"]["f_c_MPa"])
+        self.assertAlmostEqual(rows[1]["peak"], summary["stages"][1]["results"]["strain_at_peak"], 5)
+
+    def test_the_command_line(self) -> None:
+        text = self.file(of_deck('kind = "grid"', self.TWO))
+
+        def said(*words: str, code: int = 0) -> str:
+            done = subprocess.run([PROGRAM, "study", *words], capture_output=True, text=True)
+            self.assertEqual(done.returncode, code, done.stderr)
+            return done.stdout
+
+        self.assertIn("2 points, 2 runs", said("check", str(text)))
+        foreseen = said("run", str(text), "--dry-run")
+        self.assertIn("2 left", foreseen)
+        self.assertRegex(foreseen, r"time +\d")
+        self.assertIn("not run", said("status", str(text), code=2))
+        said("run", str(text), "--executor", "commands")
+        lines = (self.folder / "study-study" / "commands.txt").read_text().splitlines()
+        self.assertEqual(len(lines), 2)
+        for line in lines:
+            subprocess.run(line, shell=True, check=True, stdout=subprocess.DEVNULL)
+        said("run", str(text), "--executor", "commands")
+        self.assertIn("2 of 2 done", said("status", str(text)))
+        self.assertEqual(said("table", str(text), "-o", "-").count("\n"), 3)
+
+
+class Judgements(unittest.TestCase):
+    def test_outcomes(self) -> None:
+        self.assertEqual(judge({"outcome": "completed"})[0], "done")
+        self.assertEqual(judge({"outcome": "the motion became unstable (a result is not finite)"})[0], "crashed")
+
+    def test_numbers_of_a_summary(self) -> None:
+        summary = {"steps": 5, "energy_J": {"kinetic": 2.5}, "stages": [
+            {"results": {"f_c_MPa": 30.0}}, {"results": {"f_c_MPa": None, "f_c_none_because": "it was not loaded"}}]}
+        self.assertEqual(Output("n", "steps").of(None, summary), (5.0, ""))
+        self.assertEqual(Output("k", "energy_J.kinetic").of(None, summary), (2.5, ""))
+        value, why = Output("f", "f_c_MPa").of(None, summary)
+        self.assertTrue(math.isnan(value))
+        self.assertEqual(why, "it was not loaded")
+
+
+class Histories(StudyTest):
+    def test_places(self) -> None:
+        (self.folder / "history.csv").write_text("strain,stress_MPa\n0,0\n1,10\n2,30\n3,20\n4,\n")
+        for what, value in (("stress_MPa at strain = 1.5", 20.0), ("strain at stress_MPa = 25", 1.75),
+                            ("strain where stress_MPa is largest", 2.0), ("stress_MPa largest", 30.0),
+                            ("stress_MPa least", 0.0), ("stress_MPa last", 20.0), ("strain", 4.0)):
+            self.assertEqual(Output("y", f"history: {what}").of(self.folder, {}), (value, ""), what)
+        for what, why in (("stress at strain = 1", "no column 'stress'"), ("strain at stress_MPa = 40", "never")):
+            value, said = Output("y", f"history: {what}").of(self.folder, {})
+            self.assertTrue(math.isnan(value))
+            self.assertIn(why, said)
+
+
+if __name__ == "__main__":
+    unittest.main()
