@@ -1,8 +1,8 @@
 """What a task of a Slurm array does: it makes its runs one after the other.
 
 `python3 -m pyroclast.study.worker FILE RUNS COUNT`: FILE has a job on each line, of which task i takes COUNT from line
-i COUNT on; RUNS is the folder of the runs. What came of each run is in its record. At SIGTERM the run that goes on keeps
-its state. The task then goes back into the queue, unless it was cancelled.
+i COUNT on; RUNS is the folder of the runs. What came of each run is in its record. At SIGTERM the run that goes on
+keeps its state. The task then goes back into the queue, unless it was cancelled.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ import shlex
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -66,10 +66,10 @@ class Array:
     over: list[int] = field(default_factory=list)
 
     @property
-    def open(self) -> Iterator[int]:
+    def open(self) -> list[int]:
         """Tasks that are not over."""
         gone = set(self.over)
-        return (i for i in range(math.ceil(len(self.runs) / self.count)) if i not in gone)
+        return [i for i in range(math.ceil(len(self.runs) / self.count)) if i not in gone]
 
     def of_task(self, task: int) -> list[str]:
         return self.runs[task * self.count:(task + 1) * self.count]
@@ -229,8 +229,8 @@ class _Queue:
                         array.job = job
         unknown = sorted({name for name, _ in found} - {array.name for array in self._book.arrays})
         if unknown:
-            raise Error(f"{self._book.folder}.json: does not know the jobs {', '.join(unknown)} of this study, which are "
-                        f"in the queue; to end them: scancel --name={','.join(unknown)}")
+            raise Error(f"{self._book.folder}.json: does not know the jobs {', '.join(unknown)} of this study, which "
+                        f"are in the queue; to end them: scancel --name={','.join(unknown)}")
         return found
 
     def _look(self, states: dict[tuple[str, int], str]) -> None:
@@ -238,7 +238,7 @@ class _Queue:
         now = time.monotonic()
         for array in list(self._book.arrays):
             is_changed = False
-            for task in list(array.open):
+            for task in array.open:
                 state = states.get((array.name, task))
                 if state == "PENDING":
                     self._gone.pop((array.name, task), None)
@@ -259,7 +259,7 @@ class _Queue:
                     self._book.log(array, task).unlink(missing_ok=True)
                 array.over.append(task)
                 is_changed = True
-            if not any(array.open):
+            if not array.open:
                 self._book.drop(array)
             elif is_changed:
                 self._book.write()
@@ -295,7 +295,7 @@ class _Queue:
         waiting = [job for job in self._left.values() if job.id not in queued]
         while waiting and not self._stopped() and time.monotonic() >= self._next_try:
             alone = [job for job in waiting if job.id in self._lost]  # what ended a task may end the next one
-            chosen, count = (alone, 1) if alone else (waiting, self._per_task(waiting))
+            chosen, count = (alone, 1) if alone else (waiting, runs_per_task(self._slurm.settings, waiting))
             chosen = chosen[:count * self._size]
             after = [a.job for a in self._book.arrays if a.job and any((a.name, task) in states for task in a.open)]
             array = self._book.add(chosen, count)
@@ -317,19 +317,9 @@ class _Queue:
             self._book.write()
             states |= {(array.name, task): "PENDING" for task in array.open}
             self._size = min(2 * self._size, self._largest)
-            self._slurm.say(f"job {array.job}: {len(chosen)} runs in {len(list(array.open))} tasks")
+            self._slurm.say(f"job {array.job}: {len(chosen)} runs in {len(array.open)} tasks")
             taken = set(array.runs)
             waiting = [job for job in waiting if job.id not in taken]
-
-    def _per_task(self, jobs: Sequence[Job]) -> int:
-        """Runs of a task."""
-        settings = self._slurm.settings
-        if settings.points_per_task:
-            return settings.points_per_task
-        expected = max(job.expected for job in jobs)
-        if not expected > 0.0:
-            return 1
-        return max(1, min(int(min(_TASK_TIME, _SHARE_OF_TIME * settings.time) / expected), len(jobs) // settings.slots))
 
     def _sbatch(self, array: Array, after: str) -> str:
         """The number of the job. Raises Error with the words of sbatch."""
@@ -341,7 +331,7 @@ class _Queue:
                   str(array.count)]
         script = (f"#!/bin/sh\nexport PYTHONPATH={shlex.quote(str(package))}${{PYTHONPATH:+:$PYTHONPATH}}\n"
                   f"exec {shlex.join(worker)}\n")
-        tasks = len(list(array.open))
+        tasks = len(array.open)
         log = str(self._book.log(array, "TASK")).replace("%", "%%").replace("TASK", "%a")
         words = ["sbatch", "--parsable", f"--job-name={array.name}", f"--array=0-{tasks - 1}%{settings.slots}",
                  f"--time={seconds // 60}:{seconds % 60:02d}", f"--signal=B:TERM@{warning}", "--requeue",
@@ -361,8 +351,19 @@ class _Queue:
     def _say_what_goes_on(self) -> None:
         jobs = " ".join(array.job or f"--name={array.name}" for array in self._book.arrays)
         if jobs:
-            self._slurm.say(f"{len(self._left)} runs are not done; jobs {jobs} go on in the queue, and the same command "
-                            f"takes them in (to end them: scancel {jobs})")
+            self._slurm.say(f"{len(self._left)} runs are not done; jobs {jobs} go on in the queue, and the same "
+                            f"command takes them in (to end them: scancel {jobs})")
+
+
+def runs_per_task(settings: Settings, jobs: Sequence[Job]) -> int:
+    """As the study file says, else by the time that the jobs will probably take."""
+    if settings.points_per_task:
+        return settings.points_per_task
+    expected = max(job.expected for job in jobs)
+    if not expected > 0.0:
+        return 1
+    in_time = int(min(_TASK_TIME, _SHARE_OF_TIME * settings.time) / expected)
+    return max(1, min(in_time, len(jobs) // settings.slots))
 
 
 def _ask(*words: str) -> str:
