@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import signal
 import socketserver
 import subprocess
 import threading
@@ -109,11 +110,14 @@ class FakeSlurm:
             return all(job.is_over for job in self.jobs)
 
     def cancel(self, job: Job, task: int) -> None:
-        """As scancel does: SIGTERM, and the task is completing until its processes are gone."""
+        """As scancel does: SIGTERM to all its processes; the task is completing until they are gone."""
         with self._lock:
             if job.tasks[task].state == "RUNNING":
                 job.tasks[task].state = "COMPLETING"
-                job.tasks[task].process.terminate()
+                worker = job.tasks[task].process
+                children = Path(f"/proc/{worker.pid}/task/{worker.pid}/children").read_text().split()
+                for pid in [*map(int, children), worker.pid]:
+                    os.kill(pid, signal.SIGTERM)
             elif job.tasks[task].state == "PENDING":
                 job.tasks[task].state = ""
 
