@@ -242,7 +242,7 @@ class Driver:
                    dict(zip((p.name for p in study.parameters), values)), tuple(o.what for o in study.outputs if not o.is_function),
                    study.keep,
                    study.wall_limit, max(_LEAST_CHECKPOINT, _SHARE_OF_CHECKPOINTS * expected),
-                   _core.physics_version if study.runner.kind == "pyroclast" else 0)
+                   _core.physics_version if study.runner.kind == "pyroclast" else 0, expected)
 
     def _take_in_earlier(self) -> None:
         """Runs of earlier tables, by their identity."""

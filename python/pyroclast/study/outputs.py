@@ -8,10 +8,12 @@ import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import Error
-from ..files import RunError, Table
+
+if TYPE_CHECKING:
+    from ..files import Table
 
 _HISTORY = re.compile(r"(?P<column>\S+)"
                       r"(?: (?P<place>last|largest|least)"
@@ -80,6 +82,8 @@ class Output:
         return math.nan, str(because or f"the summary has no number called {name!r}")
 
     def _of_history(self, folder: Path) -> tuple[float, str]:
+        from ..files import RunError, Table  # numpy and h5py, which a task that takes no history does without
+
         found = _HISTORY.fullmatch(self._place)
         assert found
         try:

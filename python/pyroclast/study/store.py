@@ -132,10 +132,11 @@ class Store:
             self._base.executemany(f"INSERT OR REPLACE INTO runs VALUES ({', '.join('?' * len(_COLUMNS))})", rows)
 
     def drop(self, ids: Iterable[str]) -> None:
-        """Forgets runs, which are then run again."""
+        """Forgets runs and their records; they are then run again."""
         gone = [(i,) for i in ids]
         for (i,) in gone:
             self._results.pop(i, None)
+            record_file(self.folder / "runs", i).unlink(missing_ok=True)
         assert self._base is not None
         with self._base:
             self._base.executemany("DELETE FROM runs WHERE id = ?", gone)

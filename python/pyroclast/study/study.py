@@ -9,6 +9,7 @@ import subprocess
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,7 @@ from .driver import Driver, Forecast, free_cores
 from .executors import Executor
 from .executors.commands import Commands
 from .executors.local import Local
+from .executors.slurm import Slurm
 from .file import Setup, read_setup
 from .store import CRASHED, TIMED_OUT, opened
 
@@ -88,6 +90,8 @@ class Study:
             return Local(jobs or free_cores())
         if name == "commands":
             return Commands(self.setup.folder / "commands.txt")
+        if name == "slurm":
+            return Slurm(self.setup.slurm if jobs is None else replace(self.setup.slurm, slots=jobs))
         raise Error(f"executor {name!r}: must be one of {', '.join(EXECUTORS)}")
 
     @property

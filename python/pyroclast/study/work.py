@@ -46,6 +46,7 @@ class Job:
 
     command: as its user would type it, without the folder; of a function FILE:NAME alone.
     checkpoint: wall time between two checkpoints, s.
+    expected: wall time that it will probably take, s; 0: not known.
     """
 
     id: str
@@ -58,6 +59,7 @@ class Job:
     wall_limit: float
     checkpoint: float
     version: int
+    expected: float = 0.0
 
     @classmethod
     def from_json(cls, text: str) -> Job:
@@ -93,7 +95,7 @@ class Attempt:
         self._wall_before = before.wall if before else 0.0
         self.attempts = before.attempts + 1 if before else 1
         self._log = runs / f"{job.id}.log"
-        self._kept_before = _kept(self.folder)
+        self._kept_before = kept(self.folder)
         self._begun = datetime.datetime.now(datetime.timezone.utc)
         write_record(runs, self._result(BEGUN))
         command = self._command()
@@ -102,14 +104,14 @@ class Attempt:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                             start_new_session=True, preexec_fn=die_with_parent(os.getpid()))
         self._asked: float | None = None
-        self.is_late = False
+        self.asked_to_stop = self.is_late = False
 
     def _command(self) -> list[str]:
         job = self.job
         if job.kind != "pyroclast":
             return job.line(self.folder)
         checkpoint = ["--checkpoint", f"{job.checkpoint:g} s"]
-        if _kept(self.folder) is not None:
+        if kept(self.folder) is not None:
             return [job.command[0], "resume", str(self.folder), "--no-figures", "--threads", "1", "--quiet", *checkpoint]
         shutil.rmtree(self.folder, ignore_errors=True)  # of an attempt that was ended before its first checkpoint
         return [*job.line(self.folder), *checkpoint]
@@ -128,6 +130,7 @@ class Attempt:
         late = self.time_left <= 0.0
         if (stopped or late) and self._asked is None:
             self._asked, self.is_late = time.monotonic(), late and not stopped
+            self.asked_to_stop = stopped
             _signal(self.process, signal.SIGTERM)
         elif self._asked is not None and time.monotonic() - self._asked > PATIENCE:
             _signal(self.process, signal.SIGKILL)
@@ -142,7 +145,8 @@ class Attempt:
             return self._finish(*judge(summary), summary)
         if self.is_late:
             return self._finish(TIMED_OUT, f"wall limit of {self.job.wall_limit:g} s", None)
-        ended_outside = code in (-signal.SIGKILL, -signal.SIGTERM, -signal.SIGHUP, -signal.SIGINT, 130)
+        ended_outside = self.asked_to_stop or code in (-signal.SIGKILL, -signal.SIGTERM, -signal.SIGHUP, -signal.SIGINT,
+                                                       130)
         if not ended_outside:
             said = self._said()
             how = f"signal {-code}" if code < 0 else f"exit code {code}" if code else "no summary.json was left"
@@ -153,7 +157,7 @@ class Attempt:
     @property
     def has_kept(self) -> bool:
         """Whether it kept something that the attempt before had not."""
-        return _kept(self.folder) != self._kept_before
+        return kept(self.folder) != self._kept_before
 
     def give_up(self) -> Result:
         """The result where one attempt after the other was ended from outside."""
@@ -228,26 +232,21 @@ def thin(folder: Path, keep: str) -> None:
         shutil.rmtree(path, ignore_errors=True) if path.is_dir() else path.unlink(missing_ok=True)
 
 
-def make(job: Job, runs: Path, stopped: Callable[[], bool], wait: Callable[[Attempt], None]) -> Result | None:
-    """Makes a run to its end, in as many attempts as it takes; None when `stopped` says so before.
-
-    wait: returns when the attempt's process has ended, or shortly after `stopped` or its wall limit holds.
-    """
-    in_vain = 0
-    while True:
-        attempt = Attempt(job, runs)
-        while attempt.process.poll() is None:
-            attempt.look_after(stopped())
-            wait(attempt)
-        result = attempt.end()
-        if result is not None or stopped():
-            return result
-        in_vain = 0 if attempt.has_kept else in_vain + 1
-        if in_vain >= MOST_IN_VAIN:
-            return attempt.give_up()
+def made(job: Job, runs: Path) -> Result | None:
+    """What came of a run that is over, by its record; None where it has to be made, be it for further outputs."""
+    record = read_record(runs, job.id)
+    if record is None or record.state == BEGUN:
+        return None
+    return None if record.state == DONE and not set(job.outputs) <= set(record.outputs) else record
 
 
-def _kept(folder: Path) -> tuple[str, int] | None:
+def given_up(job: Job, runs: Path, reason: str) -> Result:
+    """The result of a run that is not tried again."""
+    record = read_record(runs, job.id) or Result(job.id, job.seed, CRASHED, values=job.values, version=job.version)
+    return _concluded(replace(record, state=CRASHED), reason, job, runs, None)
+
+
+def kept(folder: Path) -> tuple[str, int] | None:
     """The newest checkpoint that a run can go on from; None without one."""
     files = [(f.stat().st_mtime_ns, f.name) for f in folder.glob("checkpoints/*.state")]
     return (max(files)[1], max(files)[0]) if files and (folder / "manifest.json").exists() else None

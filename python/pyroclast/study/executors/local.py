@@ -51,6 +51,7 @@ def _run(jobs: Sequence[Job], slots: int, runs: Path, finished: Callable[[Result
         for descriptor in ended:
             attempt = running.pop(descriptor)
             os.close(descriptor)
+            attempt.asked_to_stop |= stopped()  # what stops this process may have stopped the run too
             result = attempt.end()
             job = attempt.job
             if result is None and not stopped():

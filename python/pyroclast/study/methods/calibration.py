@@ -214,24 +214,28 @@ def uncertainty(best: Array, u: Array, y: Array, targets: Targets, covariance: A
     """Linear posterior around a best point, uniform prior in the unit cube.
 
     best: (k,). u: (n, k), y: (n, q) means over seeds; rows with NaN are left out. covariance: (q, q), of the misfit.
-    neighbours: nearest points that enter; None: half of them, at least 3 (k + 1).
+    neighbours: nearest points that enter; None: all, which steadies the derivatives where the outputs are noisy.
 
     The outputs are regressed on u, with quadratic terms where there are twice as many points as terms, and with weights
-    that fall to zero beyond the farthest neighbour. A derivative below twice its standard error counts as none, and
-    what noise adds to the information of the others is taken off: else noise would determine parameters. The truncated
-    normal distribution is then drawn from by Gibbs steps along the eigenvectors of the information.
+    that fall to zero beyond the farthest neighbour. A derivative counts as none where noise alone would give one as
+    large to any of the q outputs in 5 % of cases (Student's t, Bonferroni). What noise adds to the information of the
+    others is taken off: else noise would determine parameters. The truncated normal distribution is then drawn from by
+    Gibbs steps along the eigenvectors of the information.
 
     Raises `Error` with fewer than k + 2 points.
     """
+    from scipy.stats import t
+
     u, y = np.asarray(u, float), np.asarray(y, float)
     complete = np.isfinite(y).all(axis=1)
     u, y = u[complete], y[complete]
     k = len(best)
     if len(u) < k + 2:
         raise Error(f"{len(u)} complete points: a linear form in {k} parameters needs at least {k + 2}")
-    fit = _local_form(best, u, y, neighbours or max(len(u) // 2, 3 * (k + 1)))
+    fit = _local_form(best, u, y, neighbours or len(u))
     weight = np.linalg.inv(covariance)
-    told = np.where(np.abs(fit.jacobian) > 2.0 * fit.error, fit.jacobian, 0.0)
+    limit = t.ppf(1.0 - 0.025 / len(fit.jacobian), fit.freedom)
+    told = np.where(np.abs(fit.jacobian) > limit * fit.error, fit.jacobian, 0.0)
     kept = (told != 0.0).astype(float)
     information = told.T @ weight @ told - fit.unit * (kept.T @ (weight * fit.scatter) @ kept)
     values, vectors = np.linalg.eigh(0.5 * (information + information.T))
@@ -282,6 +286,7 @@ class _LocalForm:
     error: Array  #: (q, k), standard errors of the jacobian
     scatter: Array  #: (q, q), covariance of the residuals
     unit: Array  #: (k, k), covariance of the derivatives of an output with residuals of variance 1
+    freedom: int  #: points less terms
     points: int
 
 
@@ -301,11 +306,12 @@ def _local_form(best: Array, u: Array, y: Array, neighbours: int) -> _LocalForm:
     coefficients = inverse @ terms.T @ (weight[:, None] * y)
     residuals = y - terms @ coefficients
     unit = inverse @ terms.T @ (weight[:, None] ** 2 * terms) @ inverse
-    freedom = weight.sum() - np.trace(inverse @ terms.T @ (weight[:, None] ** 2 * terms))
-    scatter = residuals.T @ (weight[:, None] * residuals) / freedom
+    expected = weight.sum() - np.trace(inverse @ terms.T @ (weight[:, None] ** 2 * terms))
+    scatter = residuals.T @ (weight[:, None] * residuals) / expected
     unit = unit[1:k + 1, 1:k + 1]
     error = np.sqrt(np.outer(np.diag(scatter), np.diag(unit)))
-    return _LocalForm(coefficients[0], coefficients[1:k + 1].T, error, scatter, unit, len(away))
+    return _LocalForm(coefficients[0], coefficients[1:k + 1].T, error, scatter, unit,
+                      len(away) - terms.shape[1], len(away))
 
 
 def _truncated_normal(best: Array, values: Array, vectors: Array, pull: Array, draws: int,

@@ -20,7 +20,7 @@ class Dependence:
     """Arrays of shape (parameters,)."""
 
     r2: Array  #: HSIC(u_i, y) normed to 1 at most; about 0, also below it, where independent
-    r2_low: Array  #: 95 % interval, jackknife over groups of points
+    r2_low: Array  #: 95 % interval, jackknife over groups of points; too narrow about 0, where the p-value tells
     r2_high: Array
     p_value: Array  #: of independence, by permutations
     points: int

@@ -55,7 +55,7 @@ def indices(y: Array, seed: int = 0, allow_missing: bool = False, resamples: int
     """
     y = np.asarray(y, float)
     complete = np.isfinite(y).all(axis=(1, 2))
-    lost = 1.0 - float(complete.mean())
+    lost = float((~complete).mean())
     if lost > MOST_LOST and not allow_missing:
         raise Error(f"{lost:.1%} of the rows miss a value: no indices above {MOST_LOST:.0%}, unless that is allowed")
     if complete.sum() < 2:

@@ -51,8 +51,8 @@ class Validation:
     def require(self) -> None:
         """Raises `Error` where Q2 is below LEAST_Q2."""
         if not self.q2 >= LEAST_Q2:
-            raise Error(f"the surrogate's Q2 is {self.q2:.3f} on {self.points} runs kept apart, and nothing is drawn from "
-                        f"one below {LEAST_Q2}; more points or narrower ranges may help")
+            raise Error(f"the surrogate's Q2 is {self.q2:.3f} on {self.points} runs kept apart, and nothing is drawn "
+                        f"from one below {LEAST_Q2}; more points or narrower ranges may help")
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,654 @@
+"""The study's mathematics against functions whose answers are known.
+
+Run from this folder, without the compiled part of the package:
+    PYTHONPATH=../../python python3 -m unittest test_methods
+"""
+
+import sys
+import unittest
+from itertools import combinations
+from unittest import mock
+
+import numpy as np
+from scipy.stats import spearmanr, t
+
+from pyroclast.errors import Error
+from pyroclast.study.methods import (calibration, ensemble, hsic, main_effects, morris, posterior, sampling, seeds,
+                                     sobol, surrogate)
+
+
+def ishigami(u):
+    """Ishigami, Homma 1990, with a = 7 and b = 0.1."""
+    x = np.pi * (2.0 * np.asarray(u) - 1.0)
+    return np.sin(x[..., 0]) + 7.0 * np.sin(x[..., 1]) ** 2 + 0.1 * x[..., 2] ** 4 * np.sin(x[..., 0])
+
+
+def ishigami_indices():
+    a, b = 7.0, 0.1
+    first = 0.5 * (1.0 + b * np.pi**4 / 5.0) ** 2
+    second = a**2 / 8.0
+    both = b**2 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
+    variance = first + second + both
+    return np.array([first, second, 0.0]) / variance, np.array([first + both, second, both]) / variance
+
+
+G = np.array([0.0, 1.0, 4.5, 9.0])
+
+
+def g_function(u):
+    """Sobol's g-function."""
+    return np.prod((np.abs(4.0 * u - 2.0) + G) / (1.0 + G), axis=-1)
+
+
+def g_indices():
+    alone = 1.0 / (3.0 * (1.0 + G) ** 2)
+    variance = np.prod(1.0 + alone) - 1.0
+    return alone / variance, alone * np.prod(1.0 + alone) / (1.0 + alone) / variance
+
+
+def morris_function(u, coefficient_seed=1):
+    """The 20-parameter function of Morris, Technometrics 33, 1991; the coefficients left open are N(0, 1)."""
+    random = np.random.default_rng(coefficient_seed)
+    w = 2.0 * (u - 0.5)
+    for i in (2, 4, 6):
+        w[..., i] = 2.0 * (1.1 * u[..., i] / (u[..., i] + 0.1) - 0.5)
+    one = np.where(np.arange(20) < 10, 20.0, random.normal(size=20))
+    result = random.normal() + w @ one
+    for i, j in combinations(range(20), 2):
+        drawn = random.normal()
+        result = result + (-15.0 if j < 6 else drawn) * w[..., i] * w[..., j]
+    for i, j, m in combinations(range(5), 3):
+        result = result - 10.0 * w[..., i] * w[..., j] * w[..., m]
+    return result + 5.0 * w[..., 0] * w[..., 1] * w[..., 2] * w[..., 3]
+
+
+def within(low, value, high):
+    return bool(np.all((low <= value) & (value <= high)))
+
+
+class Sampling(unittest.TestCase):
+    def test_grid_has_all_combinations(self):
+        points = sampling.grid([3, 2, 1])
+        np.testing.assert_array_equal(points, [[0, 0, 0.5], [0, 1, 0.5], [0.5, 0, 0.5], [0.5, 1, 0.5], [1, 0, 0.5],
+                                               [1, 1, 0.5]])
+        np.testing.assert_allclose(sampling.grid([4, 2], ends=[False, True])[::2, 0], [0.125, 0.375, 0.625, 0.875])
+        np.testing.assert_allclose(sampling.inside(np.array([0.0, 1 / 3, 1.0]), 4), [0.125, 0.375, 0.875])
+        with self.assertRaises(Error):
+            sampling.grid([3, 0])
+
+    def test_latin_hypercube_has_one_point_in_each_class(self):
+        points = sampling.latin_hypercube(17, 3, 5)
+        np.testing.assert_array_equal(np.sort(np.floor(17 * points), axis=0), np.tile(np.arange(17.0)[:, None], 3))
+        np.testing.assert_array_equal(points, sampling.latin_hypercube(17, 3, 5))
+        self.assertFalse(np.array_equal(points, sampling.latin_hypercube(17, 3, 6)))
+
+    def test_sobol_sequence_extends(self):
+        long = sampling.sobol_sequence(64, 4, 3)
+        np.testing.assert_array_equal(long[:32], sampling.sobol_sequence(32, 4, 3))
+        np.testing.assert_array_equal(long[32:], sampling.sobol_sequence(32, 4, 3, first=32))
+        # One point in each of 64 classes: what independent random points do not give.
+        np.testing.assert_array_equal(np.sort(np.floor(64 * long[:, 2])), np.arange(64))
+        self.assertTrue(long.min() > 0.0 and long.max() < 1.0)
+
+    def test_correlated_points(self):
+        wanted = np.array([[1.0, 0.7, 0.0], [0.7, 1.0, -0.3], [0.0, -0.3, 1.0]])
+        points = sampling.correlated(sampling.sobol_sequence(4096, 3, 2), wanted)
+        np.testing.assert_allclose(spearmanr(points)[0], wanted, atol=0.005)
+        even = (np.arange(4096.0)[:, None] + 0.5) / 4096
+        np.testing.assert_allclose(np.sort(points, axis=0), np.tile(even, 3), atol=0.03)
+
+    def test_correlated_latin_hypercube_remains_one(self):
+        points = sampling.latin_hypercube(200, 2, 1)
+        moved = sampling.correlated(points, [[1.0, -0.6], [-0.6, 1.0]], keep_columns=True)
+        np.testing.assert_array_equal(np.sort(moved, axis=0), np.sort(points, axis=0))
+        self.assertAlmostEqual(spearmanr(moved)[0], -0.6, delta=0.08)
+
+    def test_impossible_correlations_are_refused(self):
+        with self.assertRaisesRegex(Error, "not positive definite"):
+            sampling.correlated(np.full((3, 3), 0.4), [[1, 0.9, -0.9], [0.9, 1, 0.9], [-0.9, 0.9, 1]])
+        with self.assertRaisesRegex(Error, "symmetric"):
+            sampling.correlated(np.full((3, 2), 0.4), [[1, 0.9], [0.1, 1]])
+
+
+class SeedShare(unittest.TestCase):
+    def test_known_variances(self):
+        random = np.random.default_rng(2)
+        point, seed, rest = 2.0, 1.0, 1.5
+        y = (random.normal(0, point, (400, 1)) + random.normal(0, seed, (1, 40)) + random.normal(0, rest, (400, 40)))
+        share = seeds.share(y)
+        between = seed**2 + rest**2
+        self.assertTrue(share.single_low <= between / (between + point**2) <= share.single_high, share)
+        self.assertTrue(share.mean_low <= between / 40 / (between / 40 + point**2) <= share.mean_high, share)
+        self.assertLess(share.single_high - share.single_low, 0.2)
+        self.assertAlmostEqual(seeds.rest_variance(y), rest**2, delta=0.1)
+
+    def test_seeds_alone_and_points_alone(self):
+        noise = np.random.default_rng(3).normal(size=(200, 3))
+        self.assertGreater(seeds.share(noise).single_low, 0.9)
+        self.assertLess(seeds.share(np.arange(200.0)[:, None] + np.zeros((1, 3))).single, 1e-12)
+        self.assertTrue(np.isnan(seeds.share(noise[:, :1]).single))
+
+
+class Morris(unittest.TestCase):
+    def test_design(self):
+        design = morris.design(5, 30, 6, 4)
+        moves = np.diff(design, axis=1)
+        np.testing.assert_allclose(np.sort(np.abs(moves).sum(axis=1)), 0.6)
+        np.testing.assert_array_equal((np.abs(moves) > 0).sum(axis=2), 1)
+        np.testing.assert_allclose(np.unique(design.round(12)), np.linspace(0, 1, 6), atol=1e-12)
+        self.assertTrue((moves > 0).any() and (moves < 0).any())
+        with self.assertRaises(Error):
+            morris.design(5, 30, 5, 4)
+
+    def test_more_trajectories_extend(self):
+        np.testing.assert_array_equal(morris.design(3, 20, 4, 1)[:10], morris.design(3, 10, 4, 1))
+
+    def test_linear_function_is_exact(self):
+        design = morris.design(3, 6, 4, 1)
+        found = morris.effects(design, (design @ [2.0, -1.0, 0.0])[..., None] + np.array([0.0, 5.0]))
+        np.testing.assert_allclose(found.mu, [2.0, -1.0, 0.0], atol=1e-12)
+        np.testing.assert_allclose(found.mu_star, [2.0, 1.0, 0.0], atol=1e-12)
+        np.testing.assert_allclose(found.sigma, 0.0, atol=1e-12)
+        self.assertEqual(found.told_from_seeds.tolist()[:2], [True, True])
+
+    def test_morris_own_function(self):
+        # Twice the four trajectories of Morris' paper would do for the ranking; 40 for the values.
+        design = morris.design(20, 40, 4, 7)
+        found = morris.effects(design, morris_function(design)[..., None])
+        self.assertGreater(found.mu_star[:10].min(), 2.0 * found.mu_star[10:].max())
+        # Exact mean effect of 8 to 10: the function is linear in each w, and all others stand at their means, which is
+        # not the middle for the three that are curved.
+        levels = np.linspace(0.0, 1.0, 4)
+        curved = (1.1 * levels / (levels + 0.1)).mean()
+        middle = np.full(20, 0.5)
+        middle[[2, 4, 6]] = 0.1 * curved / (1.1 - curved)
+        for i in (7, 8, 9):
+            ends = np.stack([middle, middle])
+            ends[:, i] = 0.0, 1.0
+            mean = np.diff(morris_function(ends))[0]
+            self.assertLess(abs(found.mu[i] - mean), 3.0 * found.sigma[i] / np.sqrt(40))
+            self.assertGreater(mean, 30.0)
+        self.assertGreater(found.sigma[:7].min(), 1.5 * found.sigma[7:].max())
+        self.assertTrue(within(found.mu_star_low, found.mu_star, found.mu_star_high))
+
+    def test_bootstrap_interval_holds_the_mean(self):
+        # The effect of u0 is 1 + u1: mu* over all levels of u1 is 1.5.
+        inside = 0
+        for repeat in range(40):
+            design = morris.design(2, 20, 4, repeat)
+            found = morris.effects(design, (design[..., 0] * (1.0 + design[..., 1]))[..., None], resamples=300)
+            inside += found.mu_star_low[0] <= 1.5 <= found.mu_star_high[0]
+        self.assertGreater(inside, 33)
+
+    def test_noise_is_no_effect(self):
+        told = 0
+        for repeat in range(20):
+            design = morris.design(6, 10, 4, repeat)
+            noise = np.random.default_rng(repeat).normal(size=(10, 7, 3))
+            told += morris.effects(design, noise, resamples=10).told_from_seeds.sum()
+        self.assertLess(told, 6, "of 120")
+
+    def test_effect_is_told_from_noise(self):
+        design = morris.design(4, 10, 4, 1)
+        noise = np.random.default_rng(1).normal(0.0, 0.3, (10, 5, 4))
+        found = morris.effects(design, (design @ [2.0, 1.0, 0.0, 0.0])[..., None] + noise)
+        self.assertEqual(found.told_from_seeds.tolist(), [True, True, False, False])
+        # Two values of standard deviation 0.3 over a step of 2/3, four seeds.
+        np.testing.assert_allclose(found.standard_error, 0.3 * np.sqrt(2.0) * 1.5 / 2.0, rtol=0.35)
+
+    def test_steps_that_touch_a_missing_point_drop_out(self):
+        design = morris.design(3, 5, 4, 1)
+        y = (design @ [1.0, 2.0, 3.0])[..., None] * np.ones(2)
+        y[2, 0, 1] = np.nan
+        y[3, 1, 0] = np.nan
+        found = morris.effects(design, y)
+        lost = np.zeros(3, int)
+        for trajectory, step in ((2, 0), (3, 0), (3, 1)):
+            lost[np.flatnonzero(np.diff(design[trajectory], axis=0)[step])] += 1
+        np.testing.assert_array_equal(found.used, 5 - lost)
+        self.assertEqual((lost.sum(), found.planned), (3, 5))
+        np.testing.assert_allclose(found.mu, [1.0, 2.0, 3.0])
+
+
+class Sobol(unittest.TestCase):
+    def test_design(self):
+        rows = sobol.design(3, 16, 2)
+        self.assertEqual(rows.shape, (16, 5, 3))
+        for i in range(3):
+            expected = rows[:, 0].copy()
+            expected[:, i] = rows[:, 1, i]
+            np.testing.assert_array_equal(rows[:, i + 2], expected)
+        np.testing.assert_array_equal(rows[:8], sobol.design(3, 8, 2))
+
+    def test_ishigami(self):
+        first, total = ishigami_indices()
+        np.testing.assert_allclose(first, [0.3139, 0.4424, 0.0], atol=5e-5)
+        np.testing.assert_allclose(total, [0.5576, 0.4424, 0.2437], atol=5e-5)
+        found = sobol.indices(ishigami(sobol.design(3, 1024, 1))[..., None], resamples=200)
+        self.assertTrue(within(found.first_low, first, found.first_high), found)
+        self.assertTrue(within(found.total_low, total, found.total_high), found)
+        np.testing.assert_allclose(found.first, first, atol=0.02)
+        np.testing.assert_allclose(found.total, total, atol=0.02)
+        self.assertFalse(found.told_from_seeds.any(), "with one seed nothing can be told")
+
+    def test_repeats_and_leaves_openturns_as_it_was(self):
+        import openturns
+        y = ishigami(sobol.design(3, 64, 1))[..., None]
+        openturns.RandomGenerator.SetSeed(9)
+        expected = openturns.RandomGenerator.Generate()
+        openturns.RandomGenerator.SetSeed(9)
+        first = sobol.indices(y, seed=4, resamples=50)
+        self.assertEqual(openturns.RandomGenerator.Generate(), expected)
+        np.testing.assert_array_equal(first.first_low, sobol.indices(y, seed=4, resamples=50).first_low)
+
+    def test_noise_is_no_effect(self):
+        random = np.random.default_rng(1)
+        found = sobol.indices(random.normal(size=(256, 5, 3)), resamples=50)
+        # The noise looks like an interaction of everything.
+        self.assertGreater(found.total.min(), 0.8)
+        np.testing.assert_allclose(found.seed_part, found.total, rtol=0.25)
+        self.assertFalse(found.told_from_seeds.any())
+        self.assertGreater(found.seed_share.single_low, 0.9)
+
+        y = ishigami(sobol.design(3, 256, 1))[..., None] + random.normal(0.0, 0.3, (256, 5, 3)) + random.normal(size=3)
+        self.assertTrue(sobol.indices(y, resamples=50).told_from_seeds.all())
+
+    def test_rows_with_missing_points(self):
+        y = ishigami(sobol.design(3, 200, 1))[..., None] * np.ones(2)
+        y[7, 3, 1] = y[7, 1, 0] = y[90, 0, 0] = np.nan
+        found = sobol.indices(y, resamples=50)
+        self.assertEqual((found.rows, found.lost), (198, 0.01))
+        kept = np.delete(y, [7, 90], axis=0)
+        np.testing.assert_allclose(found.total, sobol.indices(kept, resamples=50).total)
+        y[:11, 0] = np.nan
+        with self.assertRaisesRegex(Error, "6.0%"):
+            sobol.indices(y)
+        self.assertEqual(sobol.indices(y, allow_missing=True, resamples=50).rows, 188)
+
+    def test_a_constant_output_is_refused(self):
+        with self.assertRaisesRegex(Error, "does not vary"):
+            sobol.indices(np.ones((10, 4, 1)))
+
+    def test_without_openturns(self):
+        with mock.patch.dict(sys.modules, openturns=None), self.assertRaisesRegex(Error, "python3-openturns"):
+            sobol.indices(ishigami(sobol.design(3, 16, 1))[..., None])
+
+
+class Surrogates(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.u, cls.held = sampling.sobol_sequence(200, 3, 1), sampling.sobol_sequence(50, 3, 9)
+        cls.chaos = surrogate.fit(cls.u, ishigami(cls.u))
+        cls.validation = surrogate.validate(cls.chaos, cls.held, ishigami(cls.held))
+
+    def test_predicts_ishigami(self):
+        other = np.random.default_rng(4).random((300, 3))
+        error = self.chaos.predict(other) - ishigami(other)
+        self.assertLess(error.var() / ishigami(other).var(), 0.01)
+        self.assertGreater(self.validation.q2, 0.99)
+        direct = ((self.chaos.predict(self.held) - ishigami(self.held)) ** 2).mean()
+        self.assertAlmostEqual(self.validation.error, np.sqrt(direct))
+        self.assertAlmostEqual(self.validation.q2, 1.0 - direct / ishigami(self.held).var())
+
+    def test_indices(self):
+        first, total = ishigami_indices()
+        found = surrogate.indices(self.chaos, self.validation, resamples=200)
+        np.testing.assert_allclose(found.first, first, atol=0.01)
+        np.testing.assert_allclose(found.total, total, atol=0.01)
+        self.assertTrue(within(found.first_low, found.first, found.first_high))
+        self.assertTrue(within(found.total_low, found.total, found.total_high))
+
+    def test_intervals_hold_the_indices_of_a_noisy_polynomial(self):
+        # y = u0 + 0.5 u1 + noise: 4/5 and 1/5 of the variance.
+        inside = 0
+        for repeat in range(10):
+            random = np.random.default_rng(repeat)
+            u, held = random.random((80, 2)), random.random((40, 2))
+            y = (u @ [1.0, 0.5])[:, None] + random.normal(0.0, 0.1, (80, 2))
+            fitted = surrogate.fit(u, y, most_degree=3)
+            judged = surrogate.validate(fitted, held, held @ [1.0, 0.5])
+            found = surrogate.indices(fitted, judged, resamples=100)
+            inside += bool(found.total_low[0] <= 0.8 <= found.total_high[0])
+        self.assertGreaterEqual(inside, 7)
+
+    def test_g_function(self):
+        u, held = sampling.sobol_sequence(200, 4, 1), sampling.sobol_sequence(64, 4, 9)
+        first, total = g_indices()
+        fitted = surrogate.fit(u, g_function(u), most_degree=8)
+        judged = surrogate.validate(fitted, held, g_function(held))
+        self.assertGreater(judged.q2, 0.95)
+        found = surrogate.indices(fitted, judged, resamples=50)
+        # Its kinks are no polynomials: the indices miss by up to 0.02.
+        np.testing.assert_allclose(found.first, first, atol=0.03)
+        np.testing.assert_allclose(found.total, total, atol=0.03)
+
+    def test_kriging(self):
+        random = np.random.default_rng(5)
+
+        def function(u):
+            return 3.0 * u[:, 0] + np.sin(4.0 * u[:, 1])
+
+        y = function(self.u[:60])[:, None] + random.normal(0.0, 0.1, (60, 4))
+        fitted = surrogate.fit(self.u[:60], y, "kriging")
+        true = function(self.held)
+        judged = surrogate.validate(fitted, self.held, true)
+        self.assertGreater(judged.q2, 0.995)
+        # It smooths: nearer to the function than the noisy means that it is made from.
+        at_its_points = fitted.predict(self.u[:60]) - function(self.u[:60])
+        self.assertLess(at_its_points.std(), 0.8 * (y.mean(axis=1) - function(self.u[:60])).std())
+        with self.assertRaisesRegex(Error, "Kriging"):
+            surrogate.indices(fitted, judged)
+
+    def test_seeds_scatter_is_taken_off_the_error(self):
+        y = ishigami(self.held)[:, None] + np.random.default_rng(6).normal(0.0, 2.0, (50, 4))
+        judged = surrogate.validate(self.chaos, self.held, y)
+        rest = seeds.rest_variance(y)
+        self.assertAlmostEqual(rest, 4.0, delta=0.8)
+        self.assertAlmostEqual(judged.error**2 - judged.own_error**2, rest / 4.0)
+        without = surrogate.validate(self.chaos, self.held, y[:, 0])
+        self.assertEqual(without.error, without.own_error)
+
+    def test_refusals(self):
+        noise = np.random.default_rng(7).normal(size=(100, 1))
+        bad = surrogate.fit(sampling.sobol_sequence(100, 3, 2), noise)
+        judged = surrogate.validate(bad, self.held, noise[:50])
+        with self.assertRaisesRegex(Error, "Q2"):
+            surrogate.indices(bad, judged)
+        with self.assertRaisesRegex(Error, "at least 30"):
+            surrogate.validate(self.chaos, self.held[:29], ishigami(self.held[:29]))
+        with self.assertRaisesRegex(Error, "used to fit"):
+            surrogate.validate(self.chaos, self.u[:40], ishigami(self.u[:40]))
+        with self.assertRaisesRegex(Error, "does not vary"):
+            surrogate.fit(self.u, np.ones(200))
+
+    def test_missing_points_drop_out(self):
+        y = ishigami(self.u)[:, None] * np.ones(2)
+        y[3, 1] = np.nan
+        self.assertEqual(surrogate.fit(self.u, y, most_degree=2).lost, 1)
+
+
+class Dependence(unittest.TestCase):
+    def test_tells_what_matters_and_what_is_correlated_with_it(self):
+        u = sampling.correlated(sampling.sobol_sequence(100, 3, 1), [[1, 0.8, 0], [0.8, 1, 0], [0, 0, 1]])
+        found = hsic.dependence(u, np.cos(6.0 * u[:, 0])[:, None] * np.ones(2), permutations=200)
+        self.assertLess(found.p_value[:2].max(), 0.05)
+        self.assertGreater(found.p_value[2], 0.1)
+        self.assertGreater(found.r2[0], 2.0 * found.r2[1])
+        self.assertLess(abs(found.r2[2]), 0.05)
+
+
+class Ensemble(unittest.TestCase):
+    def test_summary(self):
+        found = ensemble.summary([4.0, 6.0, np.nan, 5.0, 9.0])
+        self.assertEqual((found.n, found.missing, found.mean), (4, 1, 6.0))
+        sd = np.sqrt((4 + 0 + 1 + 9) / 3)
+        self.assertAlmostEqual(found.sd, sd)
+        self.assertAlmostEqual(found.variation, sd / 6.0)
+        # Student's t for 3 degrees of freedom, from a table.
+        self.assertAlmostEqual(found.high - 6.0, 3.182 * sd / 2.0, places=3)
+        self.assertAlmostEqual(found.relative_width, 3.182 * sd / 2.0 / 6.0, places=3)
+        self.assertEqual(found.percentiles[50.0], 5.5)
+
+    def test_too_few(self):
+        one = ensemble.summary([3.0])
+        self.assertTrue(one.mean == 3.0 and np.isnan(one.sd) and one.relative_width == np.inf)
+        self.assertEqual(ensemble.summary([]).n, 0)
+        self.assertEqual(ensemble.widest([one, ensemble.summary([1.0, 1.1])]), np.inf)
+        self.assertEqual(ensemble.widest([]), np.inf)
+
+
+class MainEffects(unittest.TestCase):
+    def test_curve_of_a_grid(self):
+        u = sampling.grid([3, 4])
+        curve = main_effects.curve(u[:, 0], (u[:, 0] ** 2 + u[:, 1])[:, None] * np.ones(2))
+        np.testing.assert_allclose(curve.u, [0.0, 0.5, 1.0])
+        np.testing.assert_allclose(curve.mean, [0.5, 0.75, 1.5])
+        self.assertEqual(curve.count.tolist(), [4, 4, 4])
+        half = t.ppf(0.975, 3) * np.std([0, 1 / 3, 2 / 3, 1], ddof=1) / 2.0
+        np.testing.assert_allclose(curve.high - curve.mean, half)
+
+    def test_curve_of_a_hypercube(self):
+        u = sampling.latin_hypercube(62, 2, 1)
+        y = u[:, 0] ** 2
+        y[5] = np.nan
+        curve = main_effects.curve(u[:, 0], y)
+        self.assertEqual((len(curve.u), curve.count.sum(), curve.count.min()), (10, 61, 6))
+        np.testing.assert_allclose(curve.mean, curve.u**2, atol=0.004)
+
+    def test_rank_effects(self):
+        u = sampling.latin_hypercube(80, 3, 2)
+        y = (np.exp(3.0 * u[:, 0] - 1.5 * u[:, 1]))[:, None] * (1.0 + np.random.default_rng(1).normal(0, 0.1, (80, 4)))
+        found = main_effects.rank_effects(u, y, resamples=200)
+        self.assertEqual(found.told_from_seeds.tolist(), [True, True, False])
+        np.testing.assert_allclose(found.correlation, [spearmanr(u[:, i], y.mean(axis=1))[0] for i in range(3)])
+        # On ranks it is nearly linear: coefficients as 2 to -1, all explained.
+        np.testing.assert_allclose(found.coefficient, np.array([2.0, -1.0, 0.0]) / np.sqrt(5.0), atol=0.05)
+        self.assertGreater(found.r2, 0.95)
+        self.assertTrue(within(found.coefficient_low, found.coefficient, found.coefficient_high))
+        self.assertLess(found.seed_share.single, 0.1)
+
+    def test_noise_is_no_effect(self):
+        told = 0
+        for repeat in range(20):
+            noise = np.random.default_rng(repeat).normal(size=(40, 3))
+            u = sampling.sobol_sequence(40, 4, repeat)
+            told += main_effects.rank_effects(u, noise, resamples=2).told_from_seeds.sum()
+        self.assertLess(told, 12, "of 80; 4 are expected")
+
+    def test_too_few_points(self):
+        with self.assertRaises(Error):
+            main_effects.rank_effects(np.ones((4, 3)), np.ones((4, 2)))
+
+
+JACOBIAN = np.array([[1.0, 0.5], [0.3, -1.0], [1.0, 1.0]])
+SEEDS = np.random.default_rng(4).normal(0.0, 0.02, (4, 3))
+"""What each of four seeds adds to three outputs."""
+
+
+def linear_targets(truth):
+    return calibration.Targets(("a", "b", "c"), JACOBIAN @ truth + SEEDS.mean(axis=0), np.full(3, 0.02))
+
+
+def linear(u):
+    return JACOBIAN @ u + SEEDS
+
+
+class Misfit(unittest.TestCase):
+    def test_covariance_of_the_mean_over_seeds(self):
+        random = np.random.default_rng(1)
+        true = np.array([[4.0, 1.9], [1.9, 1.0]])
+        outcomes = [random.multivariate_normal([point, -point], true, 5) for point in range(200)]
+        single, freedom = calibration.seed_covariance(outcomes)
+        self.assertEqual(freedom, 800)
+        np.testing.assert_allclose(single, true, rtol=0.15)
+        targets = calibration.Targets(("a", "b"), np.zeros(2), np.array([0.5, 0.0]))
+        total = calibration.misfit_covariance(outcomes, targets, error=[0.0, 2.0])
+        np.testing.assert_allclose(total, single / 5 + np.diag([0.25, 4.0]))
+        np.testing.assert_allclose(calibration.misfit(np.array([[1.0, 1.0], [2.0, 0.0]]), targets, np.diag([4.0, 1.0])),
+                                   [1.25, 1.0])
+
+    def test_few_seeds_are_shrunk(self):
+        # Two seeds of three outputs: rank one, of no use without shrinkage.
+        single, freedom = calibration.seed_covariance([SEEDS[:2]])
+        self.assertEqual(freedom, 1)
+        self.assertLess(np.linalg.cond(single), 1e4)
+        np.testing.assert_allclose(np.diag(single), SEEDS[:2].var(axis=0, ddof=1))
+        np.testing.assert_allclose(single[0, 1], 0.25 * np.cov(SEEDS[:2].T)[0, 1])
+
+    def test_no_scatter_at_all_is_refused(self):
+        targets = calibration.Targets(("f_c",), np.zeros(1), np.zeros(1))
+        with self.assertRaisesRegex(Error, "f_c"):
+            calibration.misfit_covariance([np.ones((1, 1))], targets)
+
+
+class Calibration(unittest.TestCase):
+    def test_linear_answer(self):
+        truth = np.array([0.3, 0.7])
+        targets = linear_targets(truth)
+        found = calibration.calibrate(2, targets, calibration.Settings(), linear)
+        self.assertTrue(found.search.finished)
+        y = np.array([linear(point).mean(axis=0) for point in found.points])
+        exact = np.linalg.inv(JACOBIAN.T @ np.linalg.inv(found.covariance) @ JACOBIAN)
+        best = found.points[found.best]
+        self.assertTrue((np.abs(best - truth) < np.sqrt(np.diag(exact))).all(), best)
+        told = calibration.uncertainty(best, found.points, y, targets, found.covariance)
+        np.testing.assert_allclose(told.jacobian, JACOBIAN, atol=1e-8)
+        np.testing.assert_allclose(told.covariance, exact, atol=0.06 * exact.max())
+        self.assertFalse(told.not_determined.any() or told.direction_not_determined.any())
+
+    def test_only_a_product_matters(self):
+        # In the logarithms that a log-uniform prior makes of them, a product is a sum.
+        def outputs(u):
+            product = np.exp(u.sum())
+            return np.array([product, product**2, 1.0 / product]) + SEEDS
+
+        targets = calibration.Targets(("a", "b", "c"), outputs(np.array([0.5, 0.5])).mean(axis=0), np.full(3, 0.02))
+        found = calibration.calibrate(2, targets, calibration.Settings(), outputs)
+        best = found.points[found.best]
+        self.assertAlmostEqual(best.sum(), 1.0, delta=0.02)
+        y = np.array([outputs(point).mean(axis=0) for point in found.points])
+        told = calibration.uncertainty(best, found.points, y, targets, found.covariance)
+        self.assertTrue(told.not_determined.all(), told.sd_ratio)
+        self.assertEqual(told.direction_not_determined.tolist(), [False, True])
+        np.testing.assert_allclose(np.abs(told.directions[1] @ [1.0, -1.0]) / np.sqrt(2.0), 1.0, atol=1e-3)
+        self.assertLess(told.covariance[0, 1] / told.sd.prod(), -0.99)
+
+    def test_noise_determines_nothing(self):
+        # Only the first of three parameters has an effect; each point has its own noise.
+        for repeat in range(4):
+            random = np.random.default_rng(repeat)
+            u = np.clip(random.normal(0.5, 0.15, (100, 3)), 0.0, 1.0)
+            y = u[:, :1] * [1.0, 0.5] + random.normal(0.0, 0.05, (100, 2))
+            targets = calibration.Targets(("a", "b"), np.array([0.5, 0.25]), np.full(2, 0.01))
+            told = calibration.uncertainty(np.full(3, 0.5), u, y, targets, np.eye(2) * 0.025**2)
+            self.assertEqual(told.not_determined.tolist(), [False, True, True], told.sd_ratio)
+
+    def test_truncated_by_the_cube(self):
+        # Exact: a normal distribution of sd 0.5 about 0.9, cut to 0 ... 1.
+        u = sampling.grid([9, 3])
+        targets = calibration.Targets(("a",), np.array([0.9]), np.array([0.5]))
+        told = calibration.uncertainty(np.array([0.9, 0.2]), u, u[:, :1], targets, np.array([[0.25]]))
+        x = np.linspace(0.0, 1.0, 2001)
+        density = np.exp(-0.5 * ((x - 0.9) / 0.5) ** 2)
+        mean = (x * density).sum() / density.sum()
+        sd = np.sqrt(((x - mean) ** 2 * density).sum() / density.sum())
+        np.testing.assert_allclose(told.sd, [sd, calibration.UNIFORM_SD], rtol=0.03)
+
+    def test_replay_with_results_in_any_order(self):
+        targets = linear_targets(np.array([0.3, 0.7]))
+        settings = calibration.Settings(seed=3, most_generations=6)
+        straight = calibration.calibrate(2, targets, settings, linear)
+        random = np.random.default_rng(8)
+        table = {}
+        for _ in range(1000):
+            state = calibration.calibrate(2, targets, settings, lambda u: table.get(u.tobytes()))
+            if state.search.finished:
+                break
+            waiting = [point for point in state.points if point.tobytes() not in table]
+            np.testing.assert_array_equal(np.isnan(state.misfits), [u.tobytes() not in table for u in state.points])
+            for row in random.permutation(len(waiting))[:2]:
+                table[waiting[row].tobytes()] = linear(waiting[row])
+        np.testing.assert_array_equal(state.points, straight.points)
+        np.testing.assert_array_equal(state.misfits, straight.misfits)
+        self.assertEqual((state.best, state.search.finished), (straight.best, "6 generations"))
+        other = calibration.calibrate(2, targets, calibration.Settings(seed=4, most_generations=6), linear)
+        self.assertFalse(np.array_equal(other.points, straight.points))
+
+    def test_infeasible_and_failed_points(self):
+        truth = np.array([0.6, 0.6])
+
+        def outcome(u):
+            if u[0] > 0.5:
+                return calibration.Infeasible(u[0] - 0.5)
+            return np.full((4, 3), np.nan) if u[1] < 0.1 else linear(u)
+
+        found = calibration.calibrate(2, linear_targets(truth), calibration.Settings(), outcome)
+        outside = (found.points[:, 0] > 0.5) | (found.points[:, 1] < 0.1)
+        self.assertTrue(outside.any())
+        np.testing.assert_array_equal(np.isinf(found.misfits), outside)
+        self.assertAlmostEqual(found.points[found.best][0], 0.5, delta=0.03)
+        self.assertTrue((np.abs(found.points[-6:, 0] - 0.5) < 0.1).all(), "the search goes along the border")
+
+    def test_infeasible_points_are_ranked_by_their_distance(self):
+        # Nothing feasible in the whole first generation: the distance alone must lead on.
+        def judge(generations):
+            return np.full(len(generations[-1]), np.inf), np.abs(generations[-1] - 0.9).sum(axis=1)
+
+        found = calibration.search(2, calibration.Settings(most_generations=30), judge)
+        np.testing.assert_allclose(found.mean, 0.9, atol=0.03)
+
+    def test_one_parameter(self):
+        targets = calibration.Targets(("a",), np.array([0.2]), np.array([0.01]))
+        found = calibration.calibrate(1, targets, calibration.Settings(), lambda u: np.full((2, 1), u[0]))
+        self.assertEqual(found.points.shape[1], 1)
+        self.assertAlmostEqual(found.points[found.best, 0], 0.2, delta=0.005)
+
+    def test_points_lie_in_the_cube(self):
+        found = calibration.calibrate(2, linear_targets(np.array([0.0, 1.0])), calibration.Settings(), linear)
+        self.assertTrue(found.points.min() >= 0.0 and found.points.max() <= 1.0)
+        np.testing.assert_allclose(found.points[found.best], [0.0, 1.0], atol=0.03)
+
+
+class Posterior(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        u, held = sampling.sobol_sequence(32, 2, 5), sampling.sobol_sequence(32, 2, 6)
+        cls.y = np.array([linear(point) for point in u])
+        held_y = np.array([linear(point) for point in held])
+        cls.surrogates = [surrogate.fit(u, cls.y[:, :, i], most_degree=2) for i in range(3)]
+        cls.validations = [surrogate.validate(cls.surrogates[i], held, held_y[:, :, i]) for i in range(3)]
+        cls.targets = linear_targets(np.array([0.3, 0.7]))
+        cls.covariance = calibration.misfit_covariance(list(cls.y), cls.targets)
+        cls.found = posterior.sample(cls.surrogates, cls.validations, cls.targets, cls.covariance, 1, most_steps=2000)
+
+    def test_linear_answer(self):
+        exact = np.linalg.inv(JACOBIAN.T @ np.linalg.inv(self.covariance) @ JACOBIAN)
+        sd = np.sqrt(np.diag(exact))
+        np.testing.assert_allclose(self.found.mean, [0.3, 0.7], atol=4.0 * sd.max() / np.sqrt(self.found.effective))
+        np.testing.assert_allclose(self.found.sd, sd, rtol=0.1)
+        self.assertAlmostEqual(self.found.correlation[0, 1], exact[0, 1] / sd.prod(), delta=0.08)
+        self.assertFalse(self.found.not_determined.any())
+        self.assertGreater(self.found.effective, 300)
+
+    def test_repeats(self):
+        again = posterior.sample(self.surrogates, self.validations, self.targets, self.covariance, 1, most_steps=100)
+        same = posterior.sample(self.surrogates, self.validations, self.targets, self.covariance, 1, most_steps=100)
+        np.testing.assert_array_equal(again.chain, same.chain)
+        self.assertFalse(again.converged)
+        self.assertIn("not converged", again.statement)
+
+    def test_one_output_cannot_tell_two_parameters(self):
+        targets = calibration.Targets(("c",), np.array([1.0]), np.array([0.02]))
+        found = posterior.sample(self.surrogates[2:], self.validations[2:], targets, np.array([[0.02**2]]), 2,
+                                 most_steps=1000)
+        self.assertTrue(found.not_determined.all(), found.sd_ratio)
+        self.assertLess(found.correlation[0, 1], -0.95)
+
+    def test_check(self):
+        points = posterior.check_points(self.found, 8, 3)
+        np.testing.assert_array_equal(points[:4], posterior.check_points(self.found, 4, 3))
+        predicted = np.column_stack([entry.predict(points) for entry in self.surrogates])
+        true = np.array([linear(point) for point in points])
+        holds = posterior.check(predicted, true, np.full(3, 0.01))
+        self.assertLess(holds.rms.max(), 0.01)
+        true[:, :, 1] += 0.03
+        true[0, 2, 0] = np.nan
+        fails = posterior.check(predicted, true, np.full(3, 0.01))
+        np.testing.assert_allclose(fails.rms[1], 3.0, rtol=0.01)
+        self.assertEqual((fails.within_two.tolist(), fails.points.tolist()), ([1.0, 0.0, 1.0], [7, 8, 8]))
+
+    def test_refusals(self):
+        poor = [surrogate.Validation(0.89, 1.0, 1.0, 40)] + self.validations[1:]
+        with self.assertRaisesRegex(Error, "0.890"):
+            posterior.sample(self.surrogates, poor, self.targets, self.covariance)
+        with mock.patch.dict(sys.modules, emcee=None), self.assertRaisesRegex(Error, "python3-emcee"):
+            posterior.sample(self.surrogates, self.validations, self.targets, self.covariance)
+
+
+class WithoutTheCompiledPart(unittest.TestCase):
+    def test_is_not_imported(self):
+        self.assertNotIn("pyroclast._core", sys.modules)
+
+
+if __name__ == "__main__":
+    unittest.main()
