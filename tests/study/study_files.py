@@ -103,7 +103,7 @@ def of_deck(method: str, parameters: str, study: str = "", outputs: str = 'f_c =
     return f'''
 [study]
 deck = "{CASES / "compression.toml"}"
-changes = {{ "blocks.count" = 60, "stages[compress].velocity" = "8 mm/s", "stages[compress].stop_strain" = 0.003 }}
+changes = {{ "blocks.count" = 60, "stages[compress].velocity" = "4 mm/s", "stages[compress].stop_strain" = 0.003 }}
 {study}
 [method]
 {method}

@@ -1,6 +1,6 @@
-"""Calls a function for a study: `python3 -m pyroclast.study.call FILE.py:NAME VALUES SEED FILE`, or many times with
-`python3 -m pyroclast.study.call FILE.py:NAME`, which reads [values, seed] as JSON, a line each, and answers each with a
-line: the outputs by name, or a text that says what went wrong.
+"""Calls a function for a study: `python3 -m pyroclast.study.call FILE.py:NAME VALUES SEED FILE`, or many times:
+`python3 -m pyroclast.study.call FILE.py:NAME`. That says "ready" once it has loaded the function, reads [values, seed]
+as JSON, a line each, and answers each with a line: the outputs by name, or a text that says what went wrong.
 """
 
 from __future__ import annotations
@@ -52,6 +52,8 @@ def main(words: list[str]) -> int:
         outputs = answer(function, json.loads(words[1]), int(words[2]))
         Path(words[3]).write_text(json.dumps({"outcome": "completed", **_finite(outputs)}), encoding="utf-8")
         return 0
+    answers.write('"ready"\n')
+    answers.flush()
     for line in sys.stdin:
         values, seed = json.loads(line)
         try:

@@ -115,7 +115,8 @@ def _at_place(table: Table, found: re.Match[str]) -> tuple[float, str]:
     if not rows:
         return math.nan, f"{found['column']} has no value"
     place = found["extreme"] or found["place"] or "last"
-    row = rows[-1] if place == "last" else (max if place == "largest" else min)(rows, key=lambda i: of[i])
+    size = [float(of[i]) for i in rows]
+    row = rows[-1] if place == "last" else rows[size.index(max(size) if place == "largest" else min(size))]
     return float(column[row]), ""
 
 

@@ -324,7 +324,7 @@ class _Calibrate(_ToTargets):
             result["uncertainty"] = calibration.uncertainty(u[found.best], u, y, targets, found.covariance, self.seed)
         except Error as error:
             result["uncertainty"] = {"none_because": str(error)}
-        return plain(result)
+        return _plain(result)
 
 
 class _Posterior(_OnSurrogate, _ToTargets):
@@ -371,12 +371,16 @@ class _Posterior(_OnSurrogate, _ToTargets):
         if len(v):
             predicted = np.stack([p[0].predict(v) for p in pairs], axis=1)
             result["check"] = posterior.check(predicted, y, np.array([p[1].error for p in pairs]))
-        return plain(result)
+        return _plain(result)
 
 
 def _widest(low: Array, high: Array, scale: float) -> float:
     width = float(np.nanmax(high - low, initial=0.0))
     return width / scale if scale > 0.0 else math.inf
+
+
+def _plain(found: dict[str, Any]) -> dict[str, Any]:
+    return {key: plain(value) for key, value in found.items()}
 
 
 def plain(found: Any) -> Any:

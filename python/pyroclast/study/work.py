@@ -64,7 +64,8 @@ class Job:
     @classmethod
     def from_json(cls, text: str) -> Job:
         named: dict[str, Any] = json.loads(text)
-        return cls(**{**named, "command": tuple(named["command"]), "outputs": tuple(named["outputs"])})
+        named.update(command=tuple(named["command"]), outputs=tuple(named["outputs"]))
+        return cls(**named)
 
     def to_json(self) -> str:
         return json.dumps(asdict(self))

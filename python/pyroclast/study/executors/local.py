@@ -15,6 +15,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ...errors import Error
 from ..store import CRASHED, DONE, NO_VALUE, TIMED_OUT, Result
 from ..work import MOST_IN_VAIN, Attempt, Job, die_with_parent
 
@@ -74,7 +75,19 @@ class _Server:
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True,
                                         preexec_fn=die_with_parent(os.getpid()))
         self.job: Job | None = None
+        self.is_ready = False  # it has loaded the function; from then on time counts
         self.begun = 0.0
+
+    def begin_to_count(self) -> bool:
+        """Once it says that it is ready; False where it ended instead."""
+        assert self.process.stdout
+        self.is_ready, self.begun = bool(self.process.stdout.readline()), time.monotonic()
+        return self.is_ready
+
+    @property
+    def wall(self) -> float:
+        """Of the call that goes on, s."""
+        return time.monotonic() - self.begun if self.is_ready else 0.0
 
     @property
     def descriptor(self) -> int:
@@ -95,7 +108,7 @@ class _Server:
         assert self.process.stdout and self.job
         line = self.process.stdout.readline()
         job, self.job = self.job, None
-        return _result(job, json.loads(line), time.monotonic() - self.begun) if line.endswith("\n") else None
+        return _result(job, json.loads(line), self.wall) if line.endswith("\n") else None
 
     def close(self) -> None:
         self.process.kill()
@@ -137,6 +150,10 @@ def _call(jobs: Sequence[Job], slots: int, finished: Callable[[Result], None], s
                 server = busy[descriptor]
                 job = server.job
                 assert job is not None
+                if not server.is_ready and server.begin_to_count():
+                    continue
+                if not server.is_ready and server.process.wait() > 0:
+                    raise Error(f"{job.command[0]}: the function cannot be loaded; what Python says stands above")
                 result = server.end()
                 if result is None:
                     server.close()
@@ -149,7 +166,7 @@ def _call(jobs: Sequence[Job], slots: int, finished: Callable[[Result], None], s
                 if result is not None:
                     finished(result)
             for server in busy.values():
-                if server.job is not None and time.monotonic() - server.begun > server.job.wall_limit:
+                if server.job is not None and server.wall > server.job.wall_limit:
                     late = server.job
                     server.close()
                     servers[servers.index(server)] = _Server(late.command[0])

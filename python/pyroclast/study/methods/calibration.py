@@ -125,7 +125,7 @@ def misfit_covariance(outcomes: Sequence[Array], targets: Targets, error: ArrayL
     """
     single, _ = seed_covariance(outcomes)
     runs = len(outcomes[0])
-    covariance = single / runs + np.diag(targets.sd**2 + np.broadcast_to(error, targets.sd.shape) ** 2)
+    covariance: Array = single / runs + np.diag(targets.sd**2 + np.broadcast_to(error, targets.sd.shape) ** 2)
     for name, variance in zip(targets.names, np.diag(covariance)):
         if not variance > 0.0:
             raise Error(f"target {name}: neither seeds nor a measured standard deviation give it a scatter")
@@ -135,7 +135,8 @@ def misfit_covariance(outcomes: Sequence[Array], targets: Targets, error: ArrayL
 def misfit(outputs: Array, targets: Targets, covariance: Array) -> Array:
     """r^T C^-1 r with r = outputs - targets. outputs: (points, q), result: (points,)."""
     departure = outputs - targets.values
-    return np.einsum("pq,pq->p", departure, np.linalg.solve(covariance, departure.T).T)
+    squares: Array = np.einsum("pq,pq->p", departure, np.linalg.solve(covariance, departure.T).T)
+    return squares
 
 
 def search(k: int, settings: Settings, judge: Callable[[Sequence[Array]], tuple[Array, Array] | None]) -> Search:

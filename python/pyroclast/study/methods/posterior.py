@@ -102,7 +102,8 @@ def sample(surrogates: Sequence[Surrogate], validations: Sequence[Validation], t
 def check_points(posterior: Posterior, n: int, seed: int = 0) -> Array:
     """n draws from the posterior that true runs are to check, (n, k); more of them extend the fewer."""
     rows = np.random.default_rng(seed).permutation(len(posterior.chain))[:n]
-    return posterior.chain[rows]
+    drawn: Array = posterior.chain[rows]
+    return drawn
 
 
 def check(predicted: Array, y: Array, errors: Array) -> Check:

@@ -28,7 +28,8 @@ class Share:
 
 def over_seeds(y: Array) -> Array:
     """Mean over the seeds, NaN where a point misses one. y: (..., seeds), result: (...)."""
-    return np.asarray(y, float).mean(axis=-1)
+    mean: Array = np.asarray(y, float).mean(axis=-1)
+    return mean
 
 
 def share(y: Array, seed: int = 0, resamples: int = 1000) -> Share:
