@@ -6,6 +6,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .. import _core
 from ..decks import _is_list_of_tables, table_text, toml
 from ..errors import Error
 from .driver import Driver, Forecast, free_cores
@@ -177,9 +179,12 @@ def _seconds(text: str) -> float:
 
 
 def _program() -> str:
-    """Beside the package where it was installed or built, else on the PATH."""
-    beside = Path(__file__).resolve().parents[3] / "bin" / "pyroclast"
-    found = str(beside) if beside.exists() else shutil.which("pyroclast")
+    """Beside the package where it was built or installed, else on the PATH."""
+    package = Path(_core.__file__).parent
+    for folder in (package.parents[1], package.parents[3], Path(sys.prefix)):  # of a build, of cmake, of pip
+        if (folder / "bin" / "pyroclast").exists():
+            return str(folder / "bin" / "pyroclast")
+    found = shutil.which("pyroclast")
     if found is None:
         raise Error("pyroclast is not on the PATH; name it: Study(..., program=...)")
     return found

@@ -1,0 +1,68 @@
+"""Figures of a study, and one page that gathers them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from ...style import save
+from ..study import Study
+from . import calibration, ensemble, indices, posterior, responses
+from .page import page_of
+from .section import Section
+from .seen import Seen, seen
+
+PAGE = "report.html"
+FINDINGS = "findings.json"
+_FORMATS = ("pdf", "png")
+_SECTIONS: dict[str, Callable[[Seen], list[Section]]] = {
+    "ensemble": ensemble.sections, "grid": responses.sections, "lhs": responses.sections, "morris": indices.sections,
+    "sobol": indices.sections, "chaos": indices.sections, "calibrate": calibration.sections,
+    "posterior": posterior.sections}
+
+
+def write_report(study: Study) -> Path:
+    """Draws the figures of a study into report/ of its folder, writes its findings there, and a page with all of it.
+
+    What an earlier report left there is taken away. A study that is not complete gets a page of what there is. Returns
+    the page.
+    """
+    found = seen(study)
+    folder = study.setup.folder / "report"
+    folder.mkdir(parents=True, exist_ok=True)
+    _clear(folder)
+    if found.findings is not None:
+        (folder / FINDINGS).write_text(json.dumps(found.findings, ensure_ascii=False, allow_nan=False), encoding="utf-8")
+    sections = _SECTIONS[found.method](found) if found.findings is not None else []
+    pictures = _save(sections, folder)
+    page = folder / PAGE
+    aside = page.with_suffix(".new")
+    aside.write_text(page_of(found, sections, pictures), encoding="utf-8")
+    aside.replace(page)
+    return page
+
+
+def _clear(folder: Path) -> None:
+    """Of figures and findings, some of which the study may have no more."""
+    for file in [*folder.glob("*.pdf"), *folder.glob("*.png"), folder / FINDINGS]:
+        file.unlink(missing_ok=True)
+
+
+def _save(sections: Sequence[Section], folder: Path) -> dict[str, bytes]:
+    """PNG by the name of the figure."""
+    pictures = {}
+    for shown in (shown for section in sections for shown in section.figures):
+        _lay_out(shown.figure)
+        for ending in _FORMATS:
+            save(shown.figure, folder / f"{shown.name}.{ending}")
+        pictures[shown.name] = (folder / f"{shown.name}.png").read_bytes()
+    return pictures
+
+
+def _lay_out(figure: Figure) -> None:
+    """Once for all formats: it takes most of the time."""
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")

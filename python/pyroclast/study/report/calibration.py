@@ -1,0 +1,244 @@
+"""Report of a search for targets."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from ... import style
+from ..methods.calibration import NOT_DETERMINED
+from ..parameters import Parameter, Value
+from .drawing import (BAR, NOT_TOLD, along, legend_above, name_bars, no_value_ticks, output_label, panels, parameter_label,
+                      places, value_text)
+from .section import Section, Shown, Table, nothing
+from .seen import Array, Seen, listed, number, numbers
+
+_MISFIT = ("The misfit is the sum of squares of what is left to the targets, each in standard deviations: of the mean over "
+           "the seeds, and of the experiment. With as many targets as parameters it can go to 0; about the number of "
+           "targets is as good as the scatter allows one to tell.")
+_MISFIT_CAPTION = ("Misfit of each point, by generation of the search; line: the best so far; crosses on the upper edge: "
+                   "infeasible, or without a value for a target. Vermilion: the number of targets.")
+_SEARCH_CAPTION = ("Misfit of all points over each parameter; vermilion: the best point; crosses on the upper edge: "
+                   "infeasible, or without a value for a target.")
+_RESIDUALS_CAPTION = ("Best point minus target, in standard deviations of that difference; band: ± 2.")
+_PARAMETERS = ("The standard deviation is that of a linear form around the best point, within the ranges. A parameter is not "
+               f"determined where it is above {NOT_DETERMINED:g} of that of its range: the targets say hardly more of it "
+               "than the range did.")
+_PARAMETERS_CAPTION = ("Best value and ± one standard deviation within the range of each parameter, whose ends stand beside. "
+                       "Grey: not determined.")
+_DIRECTIONS = ("A direction is a combination of parameters, each as a share of its range, that the targets tell as a whole. "
+               "Along one that they cannot tell, parameters may be exchanged for each other.")
+_DIRECTIONS_CAPTION = ("Directions from the best told to the least, a row each: the parts of the parameters, and at the "
+                       f"right the standard deviation over that of the ranges. Grey rows: above {NOT_DETERMINED:g}, which "
+                       "the targets cannot tell.")
+_LEAST_PART = 0.3  # of a direction, that a sentence names
+
+
+def sections(seen: Seen) -> list[Section]:
+    found = seen.findings
+    if found is None:
+        return []
+    best = [p.distribution.at(u) for p, u in zip(seen.setup.parameters, found["best"]["u"])]
+    return [_of_search(seen, found, best), _of_targets(seen, found), *_of_parameters(seen, found, best)]
+
+
+def generation_size(seen: Seen) -> int:
+    """Points of a generation, as stated or as CMA-ES has it by default."""
+    stated = int(seen.setup.method.settings["population"])
+    return stated or 4 + int(3.0 * math.log(max(len(seen.setup.parameters), 2)))
+
+
+def _of_search(seen: Seen, found: dict[str, Any], best: Sequence[Value]) -> Section:
+    named = listed([f"{p.name} = {value_text(p, v)}" for p, v in zip(seen.setup.parameters, best)])
+    finished = f"The search is done: {found['finished']}." if found["finished"] else "The search goes on."
+    said = (f"{finished} The best of {found['points']} points has a misfit of {number(found['best']['misfit'], 3)} for "
+            f"{len(found['targets']['names'])} targets: {named}.")
+    figures = [Shown("misfit", misfit_figure(seen, found), _MISFIT_CAPTION),
+               Shown("search", search_figure(seen, found), _SEARCH_CAPTION)]
+    return Section("Search", [said, _MISFIT], figures)
+
+
+@matplotlib.rc_context(style.STYLE)
+def misfit_figure(seen: Seen, found: dict[str, Any]) -> Figure:
+    """Misfits by generation."""
+    misfits, size = numbers(found["misfits"]), generation_size(seen)
+    number_of = np.arange(len(misfits))
+    generation = 1 + number_of // size
+    figure = style.new_figure(2.4, 4.6)
+    axes = figure.subplots()
+    spread = 0.6 * ((number_of % size + 0.5) / size - 0.5)
+    axes.plot(generation + spread, misfits, "o", color=style.SKY, markersize=3.0, markeredgewidth=0.0)
+    no_value_ticks(axes, (generation + spread)[np.isnan(misfits)])
+    so_far = np.fmin.accumulate(misfits)
+    last = np.append(np.flatnonzero(np.diff(generation)), len(misfits) - 1)
+    axes.plot(generation[last], so_far[last], color=style.BLUE, drawstyle="steps-mid")
+    axes.axhline(len(found["targets"]["names"]), color=style.VERMILLION, linewidth=0.8)
+    if np.nanmin(misfits) > 0.0:
+        axes.set_yscale("log")
+    axes.xaxis.get_major_locator().set_params(integer=True)
+    axes.set_xlabel("Generation")
+    axes.set_ylabel("Misfit [sd²]")
+    return figure
+
+
+@matplotlib.rc_context(style.STYLE)
+def search_figure(seen: Seen, found: dict[str, Any]) -> Figure:
+    """Misfit over each parameter."""
+    misfits = numbers(found["misfits"])
+    figure, every = panels(len(seen.setup.parameters))
+    for axes, parameter, u, best in zip(every, seen.setup.parameters, seen.u.T, found["best"]["u"]):
+        x = places(parameter, u)
+        axes.plot(x, misfits, "o", color=style.SKY, markersize=3.0, markeredgewidth=0.0)
+        no_value_ticks(axes, x[np.isnan(misfits)])
+        axes.plot(places(parameter, [best]), [found["best"]["misfit"]], "o", color=style.VERMILLION, markersize=5.0)
+        if np.nanmin(misfits) > 0.0:
+            axes.set_yscale("log")
+        along(axes, parameter)
+        axes.set_xlim(*_ends(parameter))
+        if axes.get_subplotspec().is_first_col():
+            axes.set_ylabel("Misfit [sd²]")
+        else:
+            axes.tick_params(labelleft=False)
+    return figure
+
+
+def _of_targets(seen: Seen, found: dict[str, Any]) -> Section:
+    targets, best, sd = found["targets"], numbers(found["best"]["y"]), numbers(found["sd"])
+    labels = {o.name: output_label(o) for o in seen.setup.outputs}
+    residuals = (best - numbers(targets["values"])) / sd
+    rows = [[labels[name], number(value), number(stated, 3), number(at), number(of_difference, 3), number(residual, 2)]
+            for name, value, stated, at, of_difference, residual
+            in zip(targets["names"], targets["values"], targets["sd"], best, sd, residuals)]
+    table = Table(["target", "value", "sd of the experiment", "best point", "sd of the difference", "difference in sd"], rows)
+    far = [name for name, residual in zip(targets["names"], residuals) if abs(residual) > 2.0]
+    said = (f"Farther than two standard deviations from its target: {listed(far)}." if far else
+            "All targets are met within two standard deviations.")
+    figure = residuals_figure(targets["names"], residuals)
+    return Section("Targets", [said], [Shown("targets", figure, _RESIDUALS_CAPTION)], [table])
+
+
+@matplotlib.rc_context(style.STYLE)
+def residuals_figure(names: Sequence[str], residuals: Array) -> Figure:
+    """What is left to each target."""
+    figure = style.new_figure(0.8 + BAR * len(names), 4.6)
+    axes = figure.subplots()
+    axes.axvspan(-2.0, 2.0, color=style.GREEN, alpha=0.15, linewidth=0.0)
+    axes.axvline(0.0, color=style.BLACK, linewidth=0.6)
+    axes.hlines(range(len(names)), 0.0, residuals, color=style.BLUE)
+    axes.plot(residuals, range(len(names)), "o", color=style.BLUE, markersize=5.0)
+    name_bars(axes, names)
+    reach = max(3.0, 1.1 * float(np.nanmax(np.abs(residuals))))
+    axes.set_xlim(-reach, reach)
+    axes.set_xlabel("Best point minus target [standard deviations]")
+    return figure
+
+
+def _of_parameters(seen: Seen, found: dict[str, Any], best: Sequence[Value]) -> list[Section]:
+    told = found["uncertainty"]
+    parameters = seen.setup.parameters
+    if "none_because" in told:
+        return [nothing("Parameters", told["none_because"])]
+    u, sd = numbers(found["best"]["u"]), numbers(told["sd"])
+    rows = [[parameter_label(p), value_text(p, v), _interval(p, centre, width), number(ratio, 2), "no" if free else "yes"]
+            for p, v, centre, width, ratio, free
+            in zip(parameters, best, u, sd, told["sd_ratio"], told["not_determined"])]
+    faint = frozenset(i for i, free in enumerate(told["not_determined"]) if free)
+    free = [p.name for p, is_free in zip(parameters, told["not_determined"]) if is_free]
+    said = f"Not determined: {listed(free)}." if free else "The targets determine all parameters."
+    table = Table(["parameter", "best", "± one standard deviation", "sd over that of its range", "determined"], rows,
+                  faint=faint)
+    made = [Section("Parameters", [f"{said} The form comes from {told['points']} points.", _PARAMETERS],
+                    [Shown("parameters", ranges_figure(parameters, u, sd, told["not_determined"]), _PARAMETERS_CAPTION)],
+                    [table])]
+    if len(parameters) > 1:
+        figure = directions_figure(parameters, told)
+        made.append(Section("Directions", [_not_told(parameters, told), _DIRECTIONS],
+                            [Shown("directions", figure, _DIRECTIONS_CAPTION)]))
+    return made
+
+
+def _interval(parameter: Parameter, centre: float, width: float) -> str:
+    low, high = (parameter.distribution.at(float(np.clip(u, 0.0, 1.0))) for u in (centre - width, centre + width))
+    return f"{value_text(parameter, low)} to {value_text(parameter, high)}"
+
+
+def _not_told(parameters: Sequence[Parameter], told: dict[str, Any]) -> str:
+    combinations = []
+    for direction, is_free in zip(numbers(told["directions"]), told["direction_not_determined"]):
+        if is_free:
+            parts = [(part, p.name) for part, p in zip(direction, parameters) if abs(part) >= _LEAST_PART]
+            combinations.append(" ".join(f"{'+' if part > 0.0 else '−'}{abs(part):.2f} {name}" for part, name in parts))
+    if not combinations:
+        return "The targets tell all directions."
+    return f"The targets cannot tell: {'; '.join(combinations)}."
+
+
+@matplotlib.rc_context(style.STYLE)
+def ranges_figure(parameters: Sequence[Parameter], u: Array, sd: Array, free: Sequence[bool],
+                  label: str = "best ± sd") -> Figure:
+    """A place and a spread within the range of each parameter."""
+    figure = style.new_figure(0.9 + 1.3 * BAR * len(parameters), 5.4)
+    axes = figure.subplots()
+    for at, (parameter, centre, width, is_free) in enumerate(zip(parameters, u, sd, free)):
+        colour = NOT_TOLD if is_free else style.SKY
+        low, high = max(centre - width, 0.0), min(centre + width, 1.0)
+        axes.barh(at, 1.0, 0.56, color="none", edgecolor=style.FAINT, linewidth=0.6)
+        axes.barh(at, high - low, 0.5, left=low, color=colour)
+        axes.plot([centre, centre], [at - 0.3, at + 0.3], color=style.FAINT if is_free else style.BLUE, linewidth=2.0)
+        ends = [value_text(parameter, v) for v in (parameter.distribution.ends()[0], parameter.distribution.ends()[-1])]
+        for x, end, side in ((-0.015, ends[0], "right"), (1.015, ends[1], "left")):
+            axes.annotate(style.plain(end), (x, at), ha=side, va="center", fontsize=7.0, annotation_clip=False)
+    name_bars(axes, [p.name for p in parameters], list(free))
+    axes.tick_params(axis="y", pad=52)
+    axes.spines["left"].set_visible(False)
+    axes.set_xlim(0.0, 1.0)
+    axes.set_xlabel("Place within the range (share of the distribution below)")
+    legend_above(axes, [Patch(color=style.SKY, label=label)]
+                 + ([Patch(color=NOT_TOLD, label="not determined")] if any(free) else []))
+    return figure
+
+
+@matplotlib.rc_context(style.STYLE)
+def directions_figure(parameters: Sequence[Parameter], told: dict[str, Any]) -> Figure:
+    """Parts of the parameters in each direction."""
+    directions, ratio = numbers(told["directions"]), numbers(told["direction_ratio"])
+    free = [bool(f) for f in told["direction_not_determined"]]
+    k = len(parameters)
+    figure = style.new_figure(0.9 + 0.3 * k, min(style.WIDTH, 2.2 + 0.6 * k))
+    axes = figure.subplots()
+    axes.imshow(directions, cmap="PuOr", vmin=-1.2, vmax=1.2, aspect="auto")
+    for row in range(k):
+        for column in range(k):
+            axes.annotate(f"{directions[row, column]:+.2f}".replace("-", "−"), (column, row), ha="center", va="center",
+                          fontsize=7.0 if k <= 8 else 5.0, color=style.FAINT if free[row] else style.BLACK)
+        _beside(axes, row, f"{ratio[row]:.2f}" + ("  not told" if free[row] else ""), free[row])
+    if any(free):
+        axes.imshow(np.ma.masked_where(~np.repeat(np.array(free)[:, None], k, axis=1), np.ones((k, k))), cmap="Greys",
+                    vmin=0.0, vmax=8.0, aspect="auto")
+    axes.grid(visible=False)
+    axes.spines[:].set_visible(False)
+    axes.tick_params(length=0)
+    axes.set_xticks(range(k), [p.name for p in parameters], rotation=0 if k <= 6 else 60, ha="center" if k <= 6 else "right")
+    axes.set_yticks(range(k), [str(i + 1) for i in range(k)])
+    axes.set_ylabel("Direction")
+    _beside(axes, -0.75, "sd ratio", False)
+    return figure
+
+
+def _beside(axes: Axes, row: float, text: str, is_faint: bool) -> None:
+    axes.annotate(text, (1.02, row), xycoords=axes.get_yaxis_transform(), va="center", fontsize=7.0,
+                  color=style.FAINT if is_faint else style.BLACK, annotation_clip=False)
+
+
+def _ends(parameter: Parameter) -> tuple[float, float]:
+    """Of an axis of all the parameter's range."""
+    ends = parameter.distribution.ends()
+    low, high = (float(ends[0]), float(ends[-1])) if parameter.distribution.kind != "choice" else (-0.5, len(ends) - 0.5)
+    return low, high

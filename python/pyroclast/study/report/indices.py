@@ -1,0 +1,269 @@
+"""Reports of Morris' method, Sobol' indices and polynomial chaos."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from ... import style
+from ..methods import main_effects
+from ..methods.surrogate import LEAST_Q2
+from ..outputs import Output
+from ..parameters import Parameter
+from .drawing import (BAR, NOT_TOLD, Bar, draw_bar, grey_patch, legend_above, name_bars, output_label, parameter_label,
+                      seed_bars, seed_patch)
+from .responses import Curve, curves_figure, ranked
+from .section import Section, Shown, Table, nothing
+from .seen import Seen, between, listed, number, numbers, percent
+
+_FIRST, _TOTAL = style.SKY, style.BLUE
+_DEPENDS = 0.05  # p-value up to which an output depends on a parameter
+
+_MORRIS = ("μ* is the mean size of a parameter's effect over its whole range, in the output's unit, and σ their standard "
+           "deviation: σ well below μ* is an effect that is much the same everywhere, σ about μ* or above one that bends or "
+           "depends on other parameters. An effect is told from the seeds when μ* is above twice the standard error that the "
+           "seeds leave in one effect.")
+_MORRIS_CAPTION = ("Left: μ* with 95 % interval (bootstrap over the trajectories), ranked; the vermilion ticks are twice "
+                   "the seeds' standard error; below, the seed's share of the variance. Right: μ* and σ; the numbers are "
+                   "those of the bars, and on the dashed line σ = μ*. Grey: not told from the seeds.")
+_SHARES = ("The main index of a parameter is the share of the variance that goes when this parameter alone is known; the "
+           "total index is the share that stays when all others are known. Their difference are interactions.")
+_SOBOL_CAPTION = ("Main and total indices of the mean over seeds with 95 % intervals (bootstrap over the rows), ranked, and "
+                  "the seed's share of the variance. Grey: not told from the seeds.")
+_CHAOS_CAPTION = ("Main and total indices of the surrogate with 95 % intervals (bootstrap over the runs that it was fitted "
+                  "to), ranked, and the seed's share of the variance of the runs.")
+_CURVES_CHAOS = ("Response of the surrogate to one parameter, all others in the middle of their ranges, ± its error on runs "
+                 "kept apart; grey dots: means over seeds of all runs, where the others vary too.")
+_CURVES_SOBOL = ("Means over seeds of all points (grey dots), and the mean of the independent ones by classes of one "
+                 "parameter with its 95 % interval (Student's t over the points, all other parameters vary).")
+_DEPENDENCE = ("The parameters are correlated, so that shares of the variance do not add up. R² of the Hilbert-Schmidt "
+               "criterion is 0 for a parameter that the output does not depend on, and at most 1; a parameter that is only "
+               "correlated with one that has an effect shows dependence too.")
+_DEPENDENCE_CAPTION = ("Dependence on each parameter with 95 % intervals, and the seed's share of the variance. Grey: not "
+                       f"told from independence (p above {_DEPENDS:g}).")
+
+
+def sections(seen: Seen) -> list[Section]:
+    of_method = {"morris": _of_morris, "sobol": _of_sobol, "chaos": _of_chaos}[seen.method]
+    found = []
+    for output in seen.setup.outputs:
+        of_output = seen.of_outputs().get(output.name, {"none_because": "no point is complete"})
+        if set(of_output) == {"none_because"}:
+            found.append(nothing(output_label(output), of_output["none_because"]))
+        else:
+            found.append(of_method(seen, output, of_output))
+    return found
+
+
+def _of_morris(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
+    effects, share, parameters = found["effects"], found["seed_share"], seen.setup.parameters
+    title = output_label(output)
+    mu_star = numbers(effects["mu_star"])
+    if not np.isfinite(mu_star).any():
+        return nothing(title, "no step of a trajectory has both ends")
+    order = ranked(mu_star)
+    told = [parameters[i].name for i in order if effects["told_from_seeds"][i]]
+    dropped = [f"{parameters[i].name} {effects['planned'] - used}" for i, used in enumerate(effects["used"])
+               if used < effects["planned"]]
+    said = [f"{effects['planned']} trajectories.",
+            _told(told, share), _seed_sentence(share),
+            f"Steps that drop out for a missing value: {', '.join(dropped)}." if dropped else ""]
+    rows = [[str(at + 1), parameter_label(parameters[i]), number(mu_star[i], 3),
+             between(effects["mu_star_low"][i], effects["mu_star_high"][i], 3), number(effects["mu"][i], 3),
+             number(effects["sigma"][i], 3), number(effects["standard_error"][i], 2),
+             "yes" if effects["told_from_seeds"][i] else "no", f"{effects['used'][i]} of {effects['planned']}"]
+            for at, i in enumerate(order)]
+    table = Table(["", "parameter", "μ*", "95 % interval", "μ", "σ", "standard error from the seeds", "told from the seeds",
+                   "effects used"], rows, faint=_not_told(effects, order))
+    figure = morris_figure(output, parameters, effects, share)
+    return Section(title, [" ".join(filter(None, said)), _MORRIS], [Shown(f"{output.name}-morris", figure, _MORRIS_CAPTION)],
+                   [table])
+
+
+def _told(names: Sequence[str], share: dict[str, Any]) -> str:
+    if share["seeds"] < 2:
+        return "With one seed nothing can be told from the seeds; all effects stay grey."
+    return f"Told from the seeds: {listed(names)}." if names else "No parameter's effect is told from the seeds."
+
+
+def _seed_sentence(share: dict[str, Any]) -> str:
+    if share["seeds"] < 2 or share["mean"] is None:
+        return ""
+    return (f"The seed's share of the variance is {percent(share['mean'])} in the means over {share['seeds']} seeds and "
+            f"{percent(share['single'])} in single runs.")
+
+
+def _not_told(effects: dict[str, Any], order: Sequence[int]) -> frozenset[int]:
+    return frozenset(at for at, i in enumerate(order) if not effects["told_from_seeds"][i])
+
+
+@matplotlib.rc_context(style.STYLE)
+def morris_figure(output: Output, parameters: Sequence[Parameter], effects: dict[str, Any],
+                  share: dict[str, Any]) -> Figure:
+    """Ranked effects and the seed's share, beside effects and what they vary by."""
+    order = ranked(numbers(effects["mu_star"]))
+    told = [bool(effects["told_from_seeds"][i]) for i in order]
+    seeds = seed_bars(share)
+    figure = style.new_figure(max(3.0, 1.7 + BAR * (len(order) + len(seeds))))
+    grid = figure.add_gridspec(2, 2, height_ratios=[len(order) + 0.6, len(seeds) + 0.6], width_ratios=[1.1, 1.0])
+    bars, strip, plane = (figure.add_subplot(place) for place in (grid[0, 0], grid[1, 0], grid[:, 1]))
+    value, low, high, error = (numbers(effects[key]) for key in ("mu_star", "mu_star_low", "mu_star_high", "standard_error"))
+    for at, i in enumerate(order):
+        draw_bar(bars, at, Bar(value[i], low[i], high[i], style.BLUE if told[at] else NOT_TOLD))
+        if np.isfinite(error[i]):
+            bars.plot(np.full(2, 2.0 * error[i]), [at - 0.42, at + 0.42], color=style.VERMILLION, linewidth=1.2)
+    name_bars(bars, [f"{parameters[i].name}  {at + 1}" for at, i in enumerate(order)], [not t for t in told])
+    bars.set_xlim(left=0.0)
+    bars.set_xlabel(f"μ* of {output_label(output)}")
+    for at, (_, bar) in enumerate(seeds):
+        draw_bar(strip, at, bar)
+    name_bars(strip, [name for name, _ in seeds])
+    strip.set_xlim(0.0, 1.0)
+    strip.set_xlabel("Share of the variance")
+    _draw_plane(plane, order, told, effects)
+    plane.set_xlabel(f"μ* of {output_label(output)}")
+    plane.set_ylabel(f"σ of {output_label(output)}")
+    if not all(told):
+        legend_above(bars, [grey_patch()])
+    return figure
+
+
+def _draw_plane(axes: Axes, order: Sequence[int], told: Sequence[bool], effects: dict[str, Any]) -> None:
+    mu_star, sigma = numbers(effects["mu_star"]), numbers(effects["sigma"])
+    right, top = 1.1 * np.nanmax(mu_star) or 1.0, 1.15 * np.nanmax(np.nan_to_num(sigma)) or 1.0
+    axes.plot([0.0, right], [0.0, right], color=style.FAINT, linewidth=0.8, linestyle=(0, (4, 2)), scalex=False,
+              scaley=False)
+    for at, i in reversed(list(enumerate(order))):
+        colour = style.BLUE if told[at] else NOT_TOLD
+        axes.plot(mu_star[i], sigma[i], "o", color=colour, markersize=10.0, markeredgecolor="white", markeredgewidth=0.6,
+                  clip_on=False, zorder=3.0 - 0.01 * at)
+        axes.annotate(str(at + 1), (mu_star[i], sigma[i]), ha="center", va="center_baseline", fontsize=6.5,
+                      color="white" if told[at] else style.BLACK, zorder=3.005 - 0.01 * at, annotation_clip=False)
+    axes.set_xlim(0.0, right)
+    axes.set_ylim(0.0, max(top, 0.15 * right))
+
+
+def _of_sobol(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
+    parameters = seen.setup.parameters
+    order = ranked(numbers(found["total"]))
+    told = [parameters[i].name for i in order if found["told_from_seeds"][i]]
+    share = found["seed_share"]
+    lost = f"{percent(found['lost'])} of the rows are lost by runs without a value." if found["lost"] else ""
+    said = [f"{found['rows']} rows.", lost, _told(told, share), _seed_sentence(share), _interactions(found)]
+    # The points A and B of each row; all others share coordinates with them.
+    independent = np.arange(len(seen.u)) % (len(parameters) + 2) < 2
+    means = seen.means(output.name)[independent]
+    curves = [main_effects.curve(u, means) for u in seen.u[independent].T]
+    figures = [Shown(f"{output.name}-indices", indices_figure(parameters, found, share), _SOBOL_CAPTION),
+               Shown(f"{output.name}-curves", curves_figure(seen, output, [Curve(c.u, c.mean, c.low, c.high) for c in curves]),
+                     _CURVES_SOBOL)]
+    return Section(output_label(output), [" ".join(filter(None, said)), _SHARES], figures,
+                   [_index_table(parameters, found, order)])
+
+
+def _interactions(indices: dict[str, Any]) -> str:
+    return f"The main indices add up to {number(float(np.nansum(numbers(indices['first']))), 2)}; what is left to 1 are " \
+           "interactions, and the error of the indices."
+
+
+def _index_table(parameters: Sequence[Parameter], indices: dict[str, Any], order: Sequence[int]) -> Table:
+    knows = "told_from_seeds" in indices
+    rows = [[parameter_label(parameters[i]),
+             *(cell for what in ("first", "total") for cell in (
+                 number(indices[what][i], 3), between(indices[f"{what}_low"][i], indices[f"{what}_high"][i], 3))),
+             *([number(indices["seed_part"][i], 2), "yes" if indices["told_from_seeds"][i] else "no"] if knows else [])]
+            for i in order]
+    return Table(["parameter", "main", "95 % interval", "total", "95 % interval",
+                  *(["of the total from the seeds", "told from the seeds"] if knows else [])], rows,
+                 faint=_not_told(indices, order) if knows else frozenset())
+
+
+@matplotlib.rc_context(style.STYLE)
+def indices_figure(parameters: Sequence[Parameter], indices: dict[str, Any], share: dict[str, Any]) -> Figure:
+    """Main and total index of each parameter, ranked, and the seed's share."""
+    order = ranked(numbers(indices["total"]))
+    told = [bool(indices["told_from_seeds"][i]) if "told_from_seeds" in indices else True for i in order]
+    seeds = seed_bars(share)
+    figure = style.new_figure(1.0 + 1.3 * BAR * (len(order) + len(seeds)), 5.0)
+    axes = figure.subplots()
+    lowest = 0.0
+    for at, i in enumerate(order):
+        for what, colour, side in (("first", _FIRST, -0.19), ("total", _TOTAL, 0.19)):
+            value, low, high = (numbers(indices[f"{what}{end}"])[i] for end in ("", "_low", "_high"))
+            draw_bar(axes, at + side, Bar(value, low, high, colour if told[at] else NOT_TOLD), 0.36)
+            lowest = min(lowest, value, low)
+    for at, (_, bar) in enumerate(seeds, start=len(order)):
+        draw_bar(axes, at, bar, 0.5)
+    name_bars(axes, [parameters[i].name for i in order] + [name for name, _ in seeds], [not t for t in told])
+    axes.axvline(0.0, color=style.BLACK, linewidth=0.6)
+    axes.set_xlim(min(-0.01, 1.05 * lowest), max(1.0, axes.get_xlim()[1]))
+    axes.set_xlabel("Share of the variance")
+    handles = [Patch(color=_FIRST, label="main"), Patch(color=_TOTAL, label="total"), seed_patch()]
+    legend_above(axes, handles + ([] if all(told) else [grey_patch()]))
+    return figure
+
+
+def _of_chaos(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
+    parameters, share = seen.setup.parameters, found["seed_share"]
+    unit = output_label(output)
+    said = [f"The surrogate has {found['terms']} terms up to degree {found['degree']}. On runs kept apart its Q² is "
+            f"{number(found['q2'], 3)} and its error {number(found['error'], 3)} (root mean square, in the unit of {unit}, "
+            "the seeds' scatter included).",
+            f"{found['lost']} points are left out for a missing value." if found["lost"] else "", _seed_sentence(share)]
+    if "dependence" in found:
+        return _of_dependence(parameters, output, found, " ".join(filter(None, said)))
+    if "indices" not in found:
+        return Section(unit, [" ".join(filter(None, said)), f"There are no indices: {found['none_because']}.",
+                              f"Q² is 1 for a surrogate without error; below {LEAST_Q2:g} it says too little."])
+    indices = found["indices"]
+    error = found["error"]
+    curves = [Curve(numbers(c["u"]), y, y - error, y + error) for c in found["curves"] for y in [numbers(c["y"])]]
+    figures = [Shown(f"{output.name}-indices", indices_figure(parameters, indices, share), _CHAOS_CAPTION),
+               Shown(f"{output.name}-curves", curves_figure(seen, output, curves, is_smooth=True), _CURVES_CHAOS)]
+    order = ranked(numbers(indices["total"]))
+    return Section(unit, [" ".join(filter(None, [*said, _interactions(indices)])), _SHARES], figures,
+                   [_index_table(parameters, indices, order)])
+
+
+def _of_dependence(parameters: Sequence[Parameter], output: Output, found: dict[str, Any], said: str) -> Section:
+    dependence = found["dependence"]
+    order = ranked(numbers(dependence["r2"]))
+    rows = [[parameter_label(parameters[i]), number(dependence["r2"][i], 2),
+             between(dependence["r2_low"][i], dependence["r2_high"][i], 2), number(dependence["p_value"][i], 2)]
+            for i in order]
+    faint = frozenset(at for at, i in enumerate(order) if not _depends(dependence, i))
+    table = Table(["parameter", "R²", "95 % interval", "p of independence"], rows, faint=faint)
+    figure = dependence_figure(parameters, dependence, found["seed_share"])
+    return Section(output_label(output), [said, _DEPENDENCE],
+                   [Shown(f"{output.name}-dependence", figure, _DEPENDENCE_CAPTION)], [table])
+
+
+def _depends(dependence: dict[str, Any], i: int) -> bool:
+    return dependence["p_value"][i] is not None and dependence["p_value"][i] <= _DEPENDS
+
+
+@matplotlib.rc_context(style.STYLE)
+def dependence_figure(parameters: Sequence[Parameter], dependence: dict[str, Any], share: dict[str, Any]) -> Figure:
+    """R² of each parameter, ranked, and the seed's share."""
+    order = ranked(numbers(dependence["r2"]))
+    depends = [_depends(dependence, i) for i in order]
+    seeds = seed_bars(share)
+    figure = style.new_figure(1.0 + BAR * (len(order) + len(seeds)), 5.0)
+    axes = figure.subplots()
+    for at, i in enumerate(order):
+        value, low, high = (numbers(dependence[f"r2{end}"])[i] for end in ("", "_low", "_high"))
+        draw_bar(axes, at, Bar(value, low, high, style.BLUE if depends[at] else NOT_TOLD))
+    for at, (_, bar) in enumerate(seeds, start=len(order)):
+        draw_bar(axes, at, bar)
+    name_bars(axes, [parameters[i].name for i in order] + [name for name, _ in seeds], [not d for d in depends])
+    axes.axvline(0.0, color=style.BLACK, linewidth=0.6)
+    axes.set_xlim(right=max(1.0, axes.get_xlim()[1]))
+    axes.set_xlabel("R² of dependence; of the seed: share of the variance")
+    legend_above(axes, [seed_patch()] + ([] if all(depends) else [grey_patch("not told from independence")]))
+    return figure

@@ -1,0 +1,42 @@
+"""What stands on a page: sections of texts, figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A figure. name: of its files. caption: what it shows, and how it is to be read."""
+
+    name: str
+    figure: Figure
+    caption: str
+
+
+@dataclass(frozen=True)
+class Table:
+    """Texts in rows under a head. faint: rows that stand back, by their numbers."""
+
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    note: str = ""
+    faint: frozenset[int] = frozenset()
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of a page."""
+
+    title: str
+    texts: Sequence[str] = ()
+    figures: Sequence[Shown] = ()
+    tables: Sequence[Table] = ()
+
+
+def nothing(title: str, why: str) -> Section:
+    """In the place of what could not be found."""
+    return Section(title, [f"Nothing is said of this yet: {why}."])
