@@ -15,7 +15,7 @@ PROGRAM = os.environ["PYROCLAST"]
 MODEL = '''
 import json, math, os, pathlib, sys, time
 
-def line(x, seed, y=0.0):
+def line(seed, x=0.0, y=0.0):
     """Straight, with a scatter between seeds."""
     return {"z": 2.0 * x + y + 0.01 * seed}
 
