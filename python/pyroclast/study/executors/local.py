@@ -71,23 +71,18 @@ class _Server:
     """A process that calls the function of a study, point by point."""
 
     def __init__(self, place: str):
-        self.process = subprocess.Popen([sys.executable, "-m", "pyroclast.study.call", place], text=True,
+        self.process = subprocess.Popen([sys.executable, "-m", "pyroclast.study.call", place], bufsize=0,
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True,
                                         preexec_fn=die_with_parent(os.getpid()))
         self.job: Job | None = None
         self.is_ready = False  # it has loaded the function; from then on time counts
-        self.begun = 0.0
-
-    def begin_to_count(self) -> bool:
-        """Once it says that it is ready; False where it ended instead."""
-        assert self.process.stdout
-        self.is_ready, self.begun = bool(self.process.stdout.readline()), time.monotonic()
-        return self.is_ready
+        self._begun = 0.0
+        self._said = b""
 
     @property
     def wall(self) -> float:
         """Of the call that goes on, s."""
-        return time.monotonic() - self.begun if self.is_ready else 0.0
+        return time.monotonic() - self._begun if self.is_ready else 0.0
 
     @property
     def descriptor(self) -> int:
@@ -96,19 +91,24 @@ class _Server:
 
     def begin(self, job: Job) -> None:
         assert self.process.stdin
-        self.job, self.begun = job, time.monotonic()
+        self.job, self._begun = job, time.monotonic()
         try:
-            self.process.stdin.write(json.dumps([job.values, job.seed]) + "\n")
-            self.process.stdin.flush()
+            self.process.stdin.write((json.dumps([job.values, job.seed]) + "\n").encode())
         except BrokenPipeError:
             pass  # the end of its answers tells
 
-    def end(self) -> Result | None:
-        """What it answered; None where the process ended instead."""
-        assert self.process.stdout and self.job
-        line = self.process.stdout.readline()
-        job, self.job = self.job, None
-        return _result(job, json.loads(line), self.wall) if line.endswith("\n") else None
+    def hear(self) -> tuple[Result | None, bool]:
+        """Its answer, where it is whole, and whether the process has ended. Called when there is something to read."""
+        piece = os.read(self.descriptor, 65536)
+        self._said += piece
+        result = None
+        while (end := self._said.find(b"\n")) >= 0:
+            line, self._said = self._said[:end], self._said[end + 1:]
+            if not self.is_ready:
+                self.is_ready, self._begun = True, time.monotonic()
+            elif self.job is not None:
+                result, self.job = _result(self.job, json.loads(line), self.wall), None
+        return result, not piece
 
     def close(self) -> None:
         self.process.kill()
@@ -149,20 +149,18 @@ def _call(jobs: Sequence[Job], slots: int, finished: Callable[[Result], None], s
             for descriptor in ready:
                 server = busy[descriptor]
                 job = server.job
-                assert job is not None
-                if not server.is_ready and server.begin_to_count():
-                    continue
-                if not server.is_ready and server.process.wait() > 0:
-                    raise Error(f"{job.command[0]}: the function cannot be loaded; what Python says stands above")
-                result = server.end()
-                if result is None:
+                result, has_ended = server.hear()
+                if has_ended:
+                    if not server.is_ready and server.process.wait() > 0:
+                        raise Error(f"{jobs[0].command[0]}: the function cannot be loaded; what Python says stands above")
                     server.close()
-                    servers[servers.index(server)] = _Server(job.command[0])
-                    in_vain[job.id] = in_vain.get(job.id, 0) + 1
-                    if in_vain[job.id] < MOST_IN_VAIN:
-                        waiting.append(job)
-                    else:
-                        result = _result(job, f"the process ended {MOST_IN_VAIN} times", 0.0)
+                    servers[servers.index(server)] = _Server(jobs[0].command[0])
+                    if result is None and job is not None:
+                        in_vain[job.id] = in_vain.get(job.id, 0) + 1
+                        if in_vain[job.id] < MOST_IN_VAIN:
+                            waiting.append(job)
+                        else:
+                            result = _result(job, f"the process ended {MOST_IN_VAIN} times", 0.0)
                 if result is not None:
                     finished(result)
             for server in busy.values():
