@@ -6,8 +6,6 @@ import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from matplotlib.figure import Figure
-
 from ...style import save
 from ..study import Study
 from . import calibration, ensemble, indices, posterior, responses
@@ -55,14 +53,8 @@ def _save(sections: Sequence[Section], folder: Path) -> dict[str, bytes]:
     """PNG by the name of the figure."""
     pictures = {}
     for shown in (shown for section in sections for shown in section.figures):
-        _lay_out(shown.figure)
         for ending in _FORMATS:
             save(shown.figure, folder / f"{shown.name}.{ending}")
+            shown.figure.set_layout_engine("none")  # it has its layout, which takes most of the time
         pictures[shown.name] = (folder / f"{shown.name}.png").read_bytes()
     return pictures
-
-
-def _lay_out(figure: Figure) -> None:
-    """Once for all formats: it takes most of the time."""
-    figure.draw_without_rendering()
-    figure.set_layout_engine("none")

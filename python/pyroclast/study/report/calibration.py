@@ -200,7 +200,7 @@ def ranges_figure(parameters: Sequence[Parameter], u: Array, sd: Array, free: Se
     axes.spines["left"].set_visible(False)
     axes.set_xlim(0.0, 1.0)
     axes.set_xlabel("Place within the range (share of the distribution below)")
-    legend_above(axes, [Patch(color=style.SKY, label=label)]
+    legend_above(figure, [Patch(color=style.SKY, label=label)]
                  + ([Patch(color=NOT_TOLD, label="not determined")] if any(free) else []))
     return figure
 

@@ -25,6 +25,7 @@ NOT_TOLD = "#cfcfcf"
 SEED = style.ORANGE
 SEED_HATCH = "////"
 BAR = 0.26  # inches, of a figure's height
+_LEGEND = 0.2  # the same
 _WIDTHS = {1: 3.6, 2: 5.6}  # of a figure with so many panels in a row, inches
 _SUFFIX = re.compile(r"_(MPa|GPa|Pa|kN|N|J|K|degC|percent|mm|um|m|s|min|h)$")
 _SHOWN_UNITS = {"degC": "°C", "percent": "%", "um": "µm"}
@@ -160,10 +161,11 @@ def grey_patch(label: str = "not told from the seeds") -> Patch:
     return Patch(color=NOT_TOLD, label=label)
 
 
-def legend_above(axes: Axes, handles: Sequence[Any]) -> None:
-    """In one row over the axes, so that it covers nothing."""
-    axes.legend(handles=list(handles), loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2, ncols=len(handles),
-                handlelength=1.4, columnspacing=1.4, borderpad=0.0)
+def legend_above(figure: Figure, handles: Sequence[Any]) -> None:
+    """In one row over all axes, which make room for it."""
+    figure.legend(handles=list(handles), loc="upper left", ncols=len(handles), handlelength=1.4, columnspacing=1.4,
+                  borderaxespad=0.3, borderpad=0.0)
+    figure.get_layout_engine().set(rect=(0.0, 0.0, 1.0, 1.0 - _LEGEND / figure.get_figheight()))
 
 
 def draw_scatter(axes: Axes, x: Any, y: Any) -> None:

@@ -12,13 +12,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ... import style
-from ..methods import main_effects
 from ..methods.surrogate import LEAST_Q2
 from ..outputs import Output
 from ..parameters import Parameter
 from .drawing import (BAR, NOT_TOLD, Bar, draw_bar, grey_patch, legend_above, name_bars, output_label, parameter_label,
                       seed_bars, seed_patch)
-from .responses import Curve, curves_figure, ranked
+from .responses import Curve, classes, curves_figure, ranked
 from .section import Section, Shown, Table, nothing
 from .seen import Seen, between, listed, number, numbers, percent
 
@@ -130,7 +129,7 @@ def morris_figure(output: Output, parameters: Sequence[Parameter], effects: dict
     plane.set_xlabel(f"μ* of {output_label(output)}")
     plane.set_ylabel(f"σ of {output_label(output)}")
     if not all(told):
-        legend_above(bars, [grey_patch()])
+        legend_above(figure, [grey_patch()])
     return figure
 
 
@@ -158,10 +157,9 @@ def _of_sobol(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
     said = [f"{found['rows']} rows.", lost, _told(told, share), _seed_sentence(share), _interactions(found)]
     # The points A and B of each row; all others share coordinates with them.
     independent = np.arange(len(seen.u)) % (len(parameters) + 2) < 2
-    means = seen.means(output.name)[independent]
-    curves = [main_effects.curve(u, means) for u in seen.u[independent].T]
+    curves = classes(seen, output, independent)
     figures = [Shown(f"{output.name}-indices", indices_figure(parameters, found, share), _SOBOL_CAPTION),
-               Shown(f"{output.name}-curves", curves_figure(seen, output, [Curve(c.u, c.mean, c.low, c.high) for c in curves]),
+               Shown(f"{output.name}-curves", curves_figure(seen, output, curves),
                      _CURVES_SOBOL)]
     return Section(output_label(output), [" ".join(filter(None, said)), _SHARES], figures,
                    [_index_table(parameters, found, order)])
@@ -205,7 +203,7 @@ def indices_figure(parameters: Sequence[Parameter], indices: dict[str, Any], sha
     axes.set_xlim(min(-0.01, 1.05 * lowest), max(1.0, axes.get_xlim()[1]))
     axes.set_xlabel("Share of the variance")
     handles = [Patch(color=_FIRST, label="main"), Patch(color=_TOTAL, label="total"), seed_patch()]
-    legend_above(axes, handles + ([] if all(told) else [grey_patch()]))
+    legend_above(figure, handles + ([] if all(told) else [grey_patch()]))
     return figure
 
 
@@ -265,5 +263,5 @@ def dependence_figure(parameters: Sequence[Parameter], dependence: dict[str, Any
     axes.axvline(0.0, color=style.BLACK, linewidth=0.6)
     axes.set_xlim(right=max(1.0, axes.get_xlim()[1]))
     axes.set_xlabel("R² of dependence; of the seed: share of the variance")
-    legend_above(axes, [seed_patch()] + ([] if all(depends) else [grey_patch("not told from independence")]))
+    legend_above(figure, [seed_patch()] + ([] if all(depends) else [grey_patch("not told from independence")]))
     return figure

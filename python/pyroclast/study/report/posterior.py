@@ -133,7 +133,7 @@ def spread_figure(parameters: Sequence[Parameter], posterior: dict[str, Any]) ->
     axes.set_xlim(0.0, max(1.05, axes.get_xlim()[1]))
     axes.set_xlabel("Posterior standard deviation over the prior's")
     if any(free):
-        legend_above(axes, [grey_patch("not determined")])
+        legend_above(figure, [grey_patch("not determined")])
     return figure
 
 

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ... import style
+from ..methods import main_effects
 from ..outputs import Output
 from ..parameters import Parameter
 from .drawing import (BAR, NOT_TOLD, SEED, SEED_HATCH, Bar, along, draw_bar, draw_scatter, grey_patch, legend_above,
@@ -41,7 +42,7 @@ def sections(seen: Seen) -> list[Section]:
             continue
         effects = of_output["rank_effects"]
         figures = [Shown(f"{output.name}-effects", effects_figure(seen.setup.parameters, effects), _EFFECTS),
-                   Shown(f"{output.name}-curves", _curves_figure(seen, output, of_output["curves"]), _CURVES)]
+                   Shown(f"{output.name}-curves", curves_figure(seen, output, classes(seen, output)), _CURVES)]
         if seen.method == "grid" and _makes_a_plane(seen.setup.parameters):
             figures.append(Shown(f"{output.name}-contours", contours_figure(seen, output), _CONTOURS))
         found.append(Section(title, [_sentence(seen.setup.parameters, effects), _MEANING], figures,
@@ -111,7 +112,7 @@ def effects_figure(parameters: Sequence[Parameter], effects: dict[str, Any]) -> 
     axes.set_xlabel("Standardised rank regression coefficient")
     handles: list[Any] = [Line2D([], [], marker="D", linestyle="", color="white", markeredgecolor=style.BLACK,
                                  markersize=4.0, label="Spearman's correlation"), seed_patch("seed: root of its share")]
-    legend_above(axes, handles + ([] if all(told) else [grey_patch()]))
+    legend_above(figure, handles + ([] if all(told) else [grey_patch()]))
     return figure
 
 
@@ -124,11 +125,6 @@ def _ends(axes: Axes) -> tuple[float, float]:
     return max(low, -1.05), min(high, 1.05)
 
 
-def _curves_figure(seen: Seen, output: Output, curves: Sequence[dict[str, Any]]) -> Figure:
-    drawn = [Curve(numbers(c["u"]), numbers(c["mean"]), numbers(c["low"]), numbers(c["high"])) for c in curves]
-    return curves_figure(seen, output, drawn)
-
-
 @dataclass(frozen=True)
 class Curve:
     """A response to one parameter; arrays of shape (places,), the interval where there is one."""
@@ -137,6 +133,13 @@ class Curve:
     y: Array
     low: Array | None = None
     high: Array | None = None
+
+
+def classes(seen: Seen, output: Output, points: Any = slice(None)) -> list[Curve]:
+    """Means by classes of each parameter, of some points or all; each integer and choice is a class of its own."""
+    means = seen.means(output.name)[points]
+    found = [main_effects.curve(u, means) for u in seen.u[points].T]
+    return [Curve(c.u, c.mean, c.low, c.high) for c in found]
 
 
 @matplotlib.rc_context(style.STYLE)

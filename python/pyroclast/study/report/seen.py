@@ -22,13 +22,13 @@ Array = NDArray[np.float64]
 class Seen:
     """A study as it stands.
 
-    u: all points that the method asked for, (points, parameters) in the unit cube. rows: a line for each run, as in the
-        table. findings: None where there are none; `none_because` says why.
+    asked: all points that the method asked for, (points, parameters) in the unit cube. rows: a line for each run, as in
+        the table. findings: None where there are none; `none_because` says why.
     """
 
     setup: Setup
     forecast: Forecast
-    u: Array
+    asked: Array
     rows: list[dict[str, Any]]
     findings: dict[str, Any] | None
     none_because: str
@@ -45,6 +45,15 @@ class Seen:
         """Findings by output; some may be no more than {"none_because": text}."""
         found = (self.findings or {}).get("outputs", {})
         return {output.name: found[output.name] for output in self.setup.outputs if output.name in found}
+
+    @cached_property
+    def u(self) -> Array:
+        """The points, with integers and choices in the middles of their shares."""
+        u = self.asked.copy()
+        for column, parameter in enumerate(self.setup.parameters):
+            if (count := parameter.distribution.count) is not None:
+                u[:, column] = (np.minimum(np.floor(u[:, column] * count), count - 1) + 0.5) / count
+        return u
 
     @cached_property
     def _rows(self) -> dict[tuple[Any, ...], list[dict[str, Any]]]:
@@ -64,8 +73,8 @@ def seen(study: Study) -> Seen:
     """Of one reading of the store, so that all of it belongs together while another process adds runs."""
     with study._driver() as driver:
         findings, none_because = _findings(driver.findings)
-        u = driver.plan.propose(driver._answers).points
-        return Seen(study.setup, driver.forecast(), u, driver.rows(), findings, none_because)
+        asked = driver.plan.propose(driver._answers).points
+        return Seen(study.setup, driver.forecast(), asked, driver.rows(), findings, none_because)
 
 
 def _findings(find: Callable[[], dict[str, Any]]) -> tuple[dict[str, Any] | None, str]:
