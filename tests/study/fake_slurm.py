@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 _CLIENT = '''#!/usr/bin/python3 -SE
-import json, os, socket, sys
+import json, os, socket, sys, time
 here = os.path.dirname(os.path.abspath(__file__))
 text = sys.stdin.read() if os.path.basename(sys.argv[0]) == "sbatch" and len(sys.argv) > 2 else ""
 with socket.socket(socket.AF_UNIX) as server:
@@ -27,6 +27,9 @@ with socket.socket(socket.AF_UNIX) as server:
     code, out, err = json.loads(server.makefile().read())
 sys.stdout.write(out)
 sys.stderr.write(err)
+sys.stderr.flush()
+if "sleeping and retrying" in err:
+    time.sleep(60.0)
 sys.exit(code)
 '''
 

@@ -176,7 +176,7 @@ class Refused(SlurmTest):
         self.slurm.refusals = [
             "sbatch: error: QOSMaxSubmitJobPerUserLimit\nsbatch: error: Batch job submission failed: Job violates "
             "accounting/QOS policy (job submit limit, user's size and/or time limits)\n",
-            "sbatch: error: Batch job submission failed: Slurm temporarily unable to accept job, sleeping and retrying\n"]
+            "sbatch: error: Slurm temporarily unable to accept job, sleeping and retrying\n"]
         self.run_all(self.jobs(12), points_per_task=1)
         self.assert_all_done(12)
         self.assert_made_once(12)

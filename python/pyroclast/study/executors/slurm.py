@@ -16,7 +16,7 @@ import shlex
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -338,10 +338,20 @@ class _Queue:
                  "--open-mode=append", f"--output={log}", "--ntasks=1", "--cpus-per-task=1",
                  *([f"--dependency=afterany:{after}"] if after else []), *settings.options]
         # a session of its own: Ctrl-C is the driver's, and must not end it half-way
-        said = subprocess.run(words, input=script, capture_output=True, text=True, start_new_session=True)
-        if said.returncode == 0:
-            return said.stdout.strip().splitlines()[-1].partition(";")[0]
-        why = _words(said)
+        lines = []
+        with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                              start_new_session=True) as process:
+            assert process.stdin and process.stdout and process.stderr
+            process.stdin.write(script)
+            process.stdin.close()
+            for line in process.stderr:
+                lines.append(line)
+                if "sleeping and retrying" in line:
+                    process.terminate()  # it would go on for two minutes, and fewer tasks may be let in now
+            out = process.stdout.read()
+        if process.returncode == 0:
+            return out.strip().splitlines()[-1].partition(";")[0]
+        why = _words("sbatch", process.returncode, lines)
         if _LATER.search(why):
             raise _Refused(why)
         if _UNCLEAR.search(why):
@@ -373,15 +383,14 @@ def _ask(*words: str) -> str:
     except FileNotFoundError:
         raise Error(f"{words[0]} is not on the PATH; Slurm is used where jobs are submitted by sbatch") from None
     if said.returncode != 0:
-        raise Error(_words(said))
+        raise Error(_words(words[0], said.returncode, said.stderr.splitlines()))
     return said.stdout
 
 
-def _words(said: subprocess.CompletedProcess[str]) -> str:
+def _words(name: str, code: int, lines: Iterable[str]) -> str:
     """What a command of Slurm says is wrong, on a line."""
-    lines = [line.strip() for line in said.stderr.splitlines() if line.strip()] or [f"exit code {said.returncode}"]
-    name = said.args[0]
-    return "; ".join(lines) if lines[0].startswith(name) else f"{name}: {'; '.join(lines)}"
+    said = "; ".join(line.strip() for line in lines if line.strip()) or f"exit code {code}"
+    return said if said.startswith(name) else f"{name}: {said}"
 
 
 def _largest_array() -> int:
