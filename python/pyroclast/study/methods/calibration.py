@@ -220,8 +220,9 @@ def uncertainty(best: Array, u: Array, y: Array, targets: Targets, covariance: A
     The outputs are regressed on u, with quadratic terms where there are twice as many points as terms, and with weights
     that fall to zero beyond the farthest neighbour. A derivative counts as none where noise alone would give one as
     large to any of the q outputs in 5 % of cases (Student's t, Bonferroni). What noise adds to the information of the
-    others is taken off: else noise would determine parameters. The truncated normal distribution is then drawn from by
-    Gibbs steps along the eigenvectors of the information.
+    others is taken off, and a direction tells nothing where noise alone would tell as much in 5 % of cases: else noise
+    would determine parameters. The truncated normal distribution is then drawn from by Gibbs steps along the
+    eigenvectors of the information.
 
     Raises `Error` with fewer than k + 2 points.
     """
@@ -238,8 +239,10 @@ def uncertainty(best: Array, u: Array, y: Array, targets: Targets, covariance: A
     limit = t.ppf(1.0 - 0.025 / len(fit.jacobian), fit.freedom)
     told = np.where(np.abs(fit.jacobian) > limit * fit.error, fit.jacobian, 0.0)
     kept = (told != 0.0).astype(float)
-    information = told.T @ weight @ told - fit.unit * (kept.T @ (weight * fit.scatter) @ kept)
-    values, vectors = np.linalg.eigh(0.5 * (information + information.T))
+    noise = fit.unit * (kept.T @ (weight * fit.scatter) @ kept)
+    values, vectors = np.linalg.eigh(told.T @ weight @ told - noise)
+    from_noise = np.einsum("ij,ik,kj->j", vectors, noise, vectors)
+    values = np.where(values + from_noise > _noise_limit(weight @ fit.scatter) * from_noise, values, 0.0)
     order = np.argsort(values)[::-1]
     values, vectors = np.maximum(values[order], 0.0), vectors[:, order]
     pull = told.T @ weight @ (targets.values - fit.at_best)
@@ -278,6 +281,19 @@ def _misfits_of(outcomes: Sequence[Outcome], targets: Targets, covariance: Array
     if means:
         misfits[list(means)] = misfit(np.array(list(means.values())), targets, covariance)
     return misfits
+
+
+def _noise_limit(product: Array) -> float:
+    """What noise's part of the information exceeds in 5 % of cases, over its mean.
+
+    A sum of squares, taken as a chi square distribution of the same mean and variance (Satterthwaite, Biometrics Bull.
+    2, 1946). product: C^-1 times the residuals' covariance.
+    """
+    from scipy.stats import chi2
+
+    squares = np.trace(product @ product)
+    freedom = np.trace(product) ** 2 / squares if squares > 0.0 else 1.0
+    return float(chi2.ppf(0.95, freedom) / freedom)
 
 
 @dataclass(frozen=True)

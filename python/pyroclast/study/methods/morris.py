@@ -70,7 +70,6 @@ def effects(design: Array, y: Array, seed: int = 0, resamples: int = 1000) -> Ef
     moves = np.diff(design, axis=1)
     moved = np.argmax(moves != 0.0, axis=2)
     step = np.take_along_axis(moves, moved[..., None], axis=2)
-    y = np.where(np.isfinite(y).all(axis=2, keepdims=True), y, np.nan)
     by_seed = np.empty((trajectories, count, runs))
     np.put_along_axis(by_seed, moved[..., None], np.diff(y, axis=1) / step, axis=1)
     elementary = by_seed.mean(axis=2)
