@@ -280,8 +280,8 @@ class TimeLimit(SlurmTest):
 
     @unittest.skipUnless(PROGRAM, "needs the program, named by PYROCLAST")
     def test_run_goes_on_to_the_same_bits(self) -> None:
-        command = (PROGRAM, "run", str(CASES / "compression.toml"), "--set", "blocks.count=60", "--set",
-                   "stages[1].velocity=4 mm/s", "--set", "stages[1].stop_strain=0.003")
+        command = (PROGRAM, "run", str(CASES / "compression.toml"), "--set", "blocks.count=400", "--set",
+                   "stages[1].velocity=1 mm/s", "--set", "stages[1].stop_strain=0.003")
         job = replace(self.job(0), id="once", kind="pyroclast", command=command, outputs=("f_c_MPa",), keep="history")
         self.warn_first("once/history.csv")
         self.run_all([job])
