@@ -15,8 +15,8 @@ from matplotlib.patches import Patch
 from ... import style
 from ..methods.calibration import NOT_DETERMINED
 from ..parameters import Parameter, Value
-from .drawing import (BAR, NOT_TOLD, along, legend_above, name_bars, no_value_ticks, output_label, panels, parameter_label,
-                      places, value_text)
+from .drawing import (BAR, NOT_TOLD, along, ends, legend_above, name_bars, no_value_ticks, output_label, panels,
+                      parameter_label, places, value_text)
 from .section import Section, Shown, Table, nothing
 from .seen import Array, Seen, listed, number, numbers
 
@@ -39,6 +39,7 @@ _DIRECTIONS_CAPTION = ("Directions from the best told to the least, a row each: 
                        f"right the standard deviation over that of the ranges. Grey rows: above {NOT_DETERMINED:g}, which "
                        "the targets cannot tell.")
 _LEAST_PART = 0.3  # of a direction, that a sentence names
+_DARK = 0.7  # part whose colour is dark
 
 
 def sections(seen: Seen) -> list[Section]:
@@ -79,7 +80,10 @@ def misfit_figure(seen: Seen, found: dict[str, Any]) -> Figure:
     so_far = np.fmin.accumulate(misfits)
     last = np.append(np.flatnonzero(np.diff(generation)), len(misfits) - 1)
     axes.plot(generation[last], so_far[last], color=style.BLUE, drawstyle="steps-mid")
-    axes.axhline(len(found["targets"]["names"]), color=style.VERMILLION, linewidth=0.8)
+    targets = len(found["targets"]["names"])
+    axes.axhline(targets, color=style.VERMILLION, linewidth=0.8)
+    axes.annotate("number of targets", (1.0, targets), xytext=(0, 2), textcoords="offset points", fontsize=7.0, ha="right",
+                  xycoords=axes.get_yaxis_transform(), color=style.VERMILLION)
     if np.nanmin(misfits) > 0.0:
         axes.set_yscale("log")
     axes.xaxis.get_major_locator().set_params(integer=True)
@@ -101,7 +105,7 @@ def search_figure(seen: Seen, found: dict[str, Any]) -> Figure:
         if np.nanmin(misfits) > 0.0:
             axes.set_yscale("log")
         along(axes, parameter)
-        axes.set_xlim(*_ends(parameter))
+        axes.set_xlim(*ends(parameter))
         if axes.get_subplotspec().is_first_col():
             axes.set_ylabel("Misfit [sd²]")
         else:
@@ -192,8 +196,8 @@ def ranges_figure(parameters: Sequence[Parameter], u: Array, sd: Array, free: Se
         axes.barh(at, 1.0, 0.56, color="none", edgecolor=style.FAINT, linewidth=0.6)
         axes.barh(at, high - low, 0.5, left=low, color=colour)
         axes.plot([centre, centre], [at - 0.3, at + 0.3], color=style.FAINT if is_free else style.BLUE, linewidth=2.0)
-        ends = [value_text(parameter, v) for v in (parameter.distribution.ends()[0], parameter.distribution.ends()[-1])]
-        for x, end, side in ((-0.015, ends[0], "right"), (1.015, ends[1], "left")):
+        first, *_, last = (value_text(parameter, v) for v in parameter.distribution.ends())
+        for x, end, side in ((-0.015, first, "right"), (1.015, last, "left")):
             axes.annotate(style.plain(end), (x, at), ha=side, va="center", fontsize=7.0, annotation_clip=False)
     name_bars(axes, [p.name for p in parameters], list(free))
     axes.tick_params(axis="y", pad=52)
@@ -217,7 +221,7 @@ def directions_figure(parameters: Sequence[Parameter], told: dict[str, Any]) -> 
     for row in range(k):
         for column in range(k):
             axes.annotate(f"{directions[row, column]:+.2f}".replace("-", "−"), (column, row), ha="center", va="center",
-                          fontsize=7.0 if k <= 8 else 5.0, color=style.FAINT if free[row] else style.BLACK)
+                          fontsize=7.0 if k <= 8 else 5.0, color=_ink(directions[row, column], free[row]))
         _beside(axes, row, f"{ratio[row]:.2f}" + ("  not told" if free[row] else ""), free[row])
     if any(free):
         axes.imshow(np.ma.masked_where(~np.repeat(np.array(free)[:, None], k, axis=1), np.ones((k, k))), cmap="Greys",
@@ -232,13 +236,11 @@ def directions_figure(parameters: Sequence[Parameter], told: dict[str, Any]) -> 
     return figure
 
 
+def _ink(part: float, is_faint: bool) -> str:
+    """That is read on the colour of a part."""
+    return style.FAINT if is_faint else "white" if abs(part) > _DARK else style.BLACK
+
+
 def _beside(axes: Axes, row: float, text: str, is_faint: bool) -> None:
     axes.annotate(text, (1.02, row), xycoords=axes.get_yaxis_transform(), va="center", fontsize=7.0,
                   color=style.FAINT if is_faint else style.BLACK, annotation_clip=False)
-
-
-def _ends(parameter: Parameter) -> tuple[float, float]:
-    """Of an axis of all the parameter's range."""
-    ends = parameter.distribution.ends()
-    low, high = (float(ends[0]), float(ends[-1])) if parameter.distribution.kind != "choice" else (-0.5, len(ends) - 0.5)
-    return low, high

@@ -25,7 +25,7 @@ NOT_TOLD = "#cfcfcf"
 SEED = style.ORANGE
 SEED_HATCH = "////"
 BAR = 0.26  # inches, of a figure's height
-_LEGEND = 0.2  # the same
+_LEGEND = 0.16  # the same
 _WIDTHS = {1: 3.6, 2: 5.6}  # of a figure with so many panels in a row, inches
 _SUFFIX = re.compile(r"_(MPa|GPa|Pa|kN|N|J|K|degC|percent|mm|um|m|s|min|h)$")
 _SHOWN_UNITS = {"degC": "°C", "percent": "%", "um": "µm"}
@@ -92,6 +92,14 @@ def along(axes: Axes, parameter: Parameter, vertical: bool = False, label: bool 
         axis.get_major_locator().set_params(integer=True)
     if label:
         axes.set(**{f"{name}label": parameter_label(parameter)})
+
+
+def ends(parameter: Parameter) -> tuple[float, float]:
+    """Of an axis that shows all of the parameter's range."""
+    if parameter.distribution.count is not None:
+        return place(parameter, 0.0), place(parameter, 1.0)
+    low, high = parameter.distribution.ends()
+    return float(low), float(high)
 
 
 def panels(count: int, columns: int = 3, height: float = 2.0) -> tuple[Figure, list[Axes]]:

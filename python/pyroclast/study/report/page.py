@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ... import _core
+from ...decks import toml
 from ..driver import duration
 from ..store import DONE
 from .markup import Markup, element, picture, together
@@ -120,14 +121,14 @@ def _run_table(seen: Seen) -> Markup:
             "function": f"function {runner.function} of {runner.file}"}[runner.kind]
     walls = numbers(row["wall_s"] for row in seen.rows)
     walls = walls[np.isfinite(walls) & (walls > 0.0)]
-    time = f"{duration(float(walls.sum()))} in all, median {duration(float(np.median(walls)))} a run" if len(walls) else ""
-    settings = ", ".join(f"{key} = {value}" for key, value in setup.method.settings.items())
+    time = f"{_duration(float(walls.sum()))} in all, median {_duration(float(np.median(walls)))} a run" if len(walls) else ""
+    settings = ", ".join(f"{key} = {toml(value)}" for key, value in setup.method.settings.items())
     until = f", until the widest interval is below {setup.method.until:g}" if setup.method.until is not None else ""
     seeds = sorted({row["seed"] for row in seen.rows})
     hosts = sorted({row["host"] for row in seen.rows if row["host"]})
     return _facts([
         ("made by", made),
-        ("changes of the deck", ", ".join(f"{key} = {value}" for key, value in runner.changes)),
+        ("changes of the deck", ", ".join(f"{key} = {toml(value)}" for key, value in runner.changes)),
         ("method", f"{seen.method}{': ' if settings else ''}{settings}{until}"),
         ("points", f"{seen.forecast.points}" + (f", of which {seen.forecast.infeasible} are infeasible and were not run"
                                                 if seen.forecast.infeasible else "")),
@@ -140,6 +141,10 @@ def _run_table(seen: Seen) -> Markup:
         ("physics version", ", ".join(_versions(seen)) if runner.kind == "pyroclast" else ""),
         ("correlations", "; ".join(f"{a} and {b}: rank {rho:g}" for a, b, rho in setup.correlations)),
     ])
+
+
+def _duration(seconds: float) -> str:
+    return duration(seconds) if seconds >= 10.0 else f"{number(seconds, 2)} s"
 
 
 def _seeds(seeds: Sequence[int]) -> str:
@@ -164,8 +169,9 @@ def _varied(seen: Seen) -> Markup:
         else:
             how = f"{d.kind.replace('_', ' ')}, {value_text(p, d.ends()[0])} to {value_text(p, d.ends()[-1])}"
         keys = "; ".join(f"{path}{'' if factor == 1.0 else f' × {factor:g}'}" for path, factor in p.keys)
-        rows.append([parameter_label(p), how, p.how if p.keys else "", keys])
-    return _table(Table(["parameter", "drawn from", "as", "of the deck"], rows))
+        rows.append([parameter_label(p), how, *([p.how, keys] if p.keys else [])])
+    of_deck = ["as", "of the deck"] if seen.setup.runner.kind == "pyroclast" else []
+    return _table(Table(["parameter", "drawn from", *of_deck], rows))
 
 
 def _failures(seen: Seen) -> Markup:

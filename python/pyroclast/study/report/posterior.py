@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from ... import style
 from ..methods.calibration import NOT_DETERMINED
 from ..parameters import Parameter
-from .drawing import (BAR, NOT_TOLD, along, grey_patch, legend_above, name_bars, output_label, parameter_label, places,
+from .drawing import (BAR, NOT_TOLD, along, ends, grey_patch, legend_above, name_bars, output_label, parameter_label, places,
                       value_text)
 from .responses import ranked
 from .section import Section, Shown, Table
@@ -21,7 +21,7 @@ from .seen import Array, Seen, listed, number, numbers, percent
 
 _MOST_PAIRS = 6  # parameters of a pairs plot
 _MOST_DRAWN = 2000  # draws in a panel
-_BINS = 30
+_BINS = 25
 
 _MEANING = ("The posterior is what the targets leave of the ranges: values that the surrogates take to the targets within the "
             "scatter of the seeds, the sd of the experiment and the surrogates' error. A parameter is not determined where "
@@ -98,9 +98,11 @@ def pairs_figure(parameters: Sequence[Parameter], chain: Array, free: Sequence[b
                           color=style.FAINT if grey else style.BLUE)
                 along(axes, parameters[chosen[row]], vertical=True, label=column == 0)
                 axes.tick_params(labelleft=column == 0)
+                axes.set_ylim(*ends(parameters[chosen[row]]))
             if column <= row:
                 along(axes, parameters[chosen[column]], label=row == k - 1)
                 axes.tick_params(labelbottom=row == k - 1)
+                axes.set_xlim(*ends(parameters[chosen[column]]))
                 axes.tick_params(axis="x", rotation=45 if k > 3 else 0)
     figure.align_labels()
     return figure
@@ -108,8 +110,8 @@ def pairs_figure(parameters: Sequence[Parameter], chain: Array, free: Sequence[b
 
 def _draw_marginal(axes: Axes, parameter: Parameter, values: Array, is_free: bool) -> None:
     prior = places(parameter, (np.arange(_MOST_DRAWN) + 0.5) / _MOST_DRAWN)
-    low, high = prior.min(), prior.max()
-    bins = np.geomspace(low, high, _BINS) if parameter.distribution.kind == "log_uniform" else np.linspace(low, high, _BINS)
+    low, high = ends(parameter)
+    bins = np.geomspace(low, high, _BINS + 1) if parameter.distribution.kind == "log_uniform" else np.linspace(low, high, _BINS + 1)
     share = np.full(len(values), 1.0 / len(values))
     axes.hist(values, bins, weights=share, color=NOT_TOLD if is_free else style.SKY)
     axes.hist(prior, bins, weights=np.full(len(prior), 1.0 / len(prior)), histtype="step", color=style.BLACK, linewidth=0.8)
