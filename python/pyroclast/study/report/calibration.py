@@ -9,6 +9,7 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
@@ -39,6 +40,9 @@ _DIRECTIONS_CAPTION = ("Directions from the best told to the least, a row each: 
                        f"right the standard deviation over that of the ranges. Grey rows: above {NOT_DETERMINED:g}, which "
                        "the targets cannot tell.")
 _LEAST_PART = 0.3  # of a direction, that a sentence names
+_MOST_NAMED = 5  # directions in a sentence
+_MOST_DIRECTIONS = 10  # in a figure
+_NOT_TOLD_ROW = "#efefef"
 _DARK = 0.7  # part whose colour is dark
 
 
@@ -82,8 +86,8 @@ def misfit_figure(seen: Seen, found: dict[str, Any]) -> Figure:
     axes.plot(generation[last], so_far[last], color=style.BLUE, drawstyle="steps-mid")
     targets = len(found["targets"]["names"])
     axes.axhline(targets, color=style.VERMILLION, linewidth=0.8)
-    axes.annotate("number of targets", (1.0, targets), xytext=(0, 2), textcoords="offset points", fontsize=7.0, ha="right",
-                  xycoords=axes.get_yaxis_transform(), color=style.VERMILLION)
+    axes.annotate("number\nof targets", (1.01, targets), xycoords=axes.get_yaxis_transform(), va="center", fontsize=7.0,
+                  color=style.VERMILLION, annotation_clip=False)
     if np.nanmin(misfits) > 0.0:
         axes.set_yscale("log")
     axes.xaxis.get_major_locator().set_params(integer=True)
@@ -163,8 +167,10 @@ def _of_parameters(seen: Seen, found: dict[str, Any], best: Sequence[Value]) -> 
                     [table])]
     if len(parameters) > 1:
         figure = directions_figure(parameters, told)
+        more = len(parameters) - _MOST_DIRECTIONS
+        left_out = f" The {more} least told are not drawn." if more > 0 else ""
         made.append(Section("Directions", [_not_told(parameters, told), _DIRECTIONS],
-                            [Shown("directions", figure, _DIRECTIONS_CAPTION)]))
+                            [Shown("directions", figure, _DIRECTIONS_CAPTION + left_out)]))
     return made
 
 
@@ -181,7 +187,9 @@ def _not_told(parameters: Sequence[Parameter], told: dict[str, Any]) -> str:
             combinations.append(" ".join(f"{'+' if part > 0.0 else '−'}{abs(part):.2f} {name}" for part, name in parts))
     if not combinations:
         return "The targets tell all directions."
-    return f"The targets cannot tell: {'; '.join(combinations)}."
+    more = len(combinations) - _MOST_NAMED
+    return (f"The targets cannot tell: {'; '.join(combinations[:_MOST_NAMED])}"
+            + (f"; and {more} directions more." if more > 0 else "."))
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -211,26 +219,25 @@ def ranges_figure(parameters: Sequence[Parameter], u: Array, sd: Array, free: Se
 
 @matplotlib.rc_context(style.STYLE)
 def directions_figure(parameters: Sequence[Parameter], told: dict[str, Any]) -> Figure:
-    """Parts of the parameters in each direction."""
-    directions, ratio = numbers(told["directions"]), numbers(told["direction_ratio"])
-    free = [bool(f) for f in told["direction_not_determined"]]
-    k = len(parameters)
-    figure = style.new_figure(0.9 + 0.3 * k, min(style.WIDTH, 2.2 + 0.6 * k))
+    """Parts of the parameters in each direction, the best told ones first."""
+    directions = numbers(told["directions"])[:_MOST_DIRECTIONS]
+    free = np.array(told["direction_not_determined"], bool)[:_MOST_DIRECTIONS]
+    rows, k = directions.shape
+    figure = style.new_figure(0.9 + 0.3 * rows + (0.0 if k <= 6 else 0.8), min(style.WIDTH, 2.2 + 0.6 * k))
     axes = figure.subplots()
-    axes.imshow(directions, cmap="PuOr", vmin=-1.2, vmax=1.2, aspect="auto")
-    for row in range(k):
-        for column in range(k):
-            axes.annotate(f"{directions[row, column]:+.2f}".replace("-", "−"), (column, row), ha="center", va="center",
-                          fontsize=7.0 if k <= 8 else 5.0, color=_ink(directions[row, column], free[row]))
-        _beside(axes, row, f"{ratio[row]:.2f}" + ("  not told" if free[row] else ""), free[row])
-    if any(free):
-        axes.imshow(np.ma.masked_where(~np.repeat(np.array(free)[:, None], k, axis=1), np.ones((k, k))), cmap="Greys",
-                    vmin=0.0, vmax=8.0, aspect="auto")
+    shades = matplotlib.colormaps["PuOr"](0.5 + 0.42 * directions)
+    shades[free] = to_rgba(_NOT_TOLD_ROW)
+    axes.imshow(shades, aspect="auto")
+    for row, column in np.ndindex(rows, k):
+        axes.annotate(f"{directions[row, column]:+.2f}".replace("-", "−"), (column, row), ha="center", va="center",
+                      fontsize=7.0 if k <= 8 else 5.0, color=_ink(directions[row, column], free[row]))
+    for row, ratio in enumerate(told["direction_ratio"][:rows]):
+        _beside(axes, row, number(ratio, 2) + ("  not told" if free[row] else ""), free[row])
     axes.grid(visible=False)
     axes.spines[:].set_visible(False)
     axes.tick_params(length=0)
     axes.set_xticks(range(k), [p.name for p in parameters], rotation=0 if k <= 6 else 60, ha="center" if k <= 6 else "right")
-    axes.set_yticks(range(k), [str(i + 1) for i in range(k)])
+    axes.set_yticks(range(rows), [str(i + 1) for i in range(rows)])
     axes.set_ylabel("Direction")
     _beside(axes, -0.75, "sd ratio", False)
     return figure

@@ -88,6 +88,7 @@ def along(axes: Axes, parameter: Parameter, vertical: bool = False, label: bool 
         axis.set_ticks(range(len(distribution.choices)),
                        [style.plain(textwrap.shorten(str(c), _LONGEST_CHOICE, placeholder="…"))
                         for c in distribution.choices])
+        axes.set(**{f"{name}lim": ends(parameter)})
     elif distribution.kind == "integer":
         axis.get_major_locator().set_params(integer=True)
     if label:
