@@ -33,7 +33,8 @@ def write_report(study: Study) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     _clear(folder)
     if found.findings is not None:
-        (folder / FINDINGS).write_text(json.dumps(found.findings, ensure_ascii=False, allow_nan=False), encoding="utf-8")
+        findings = json.dumps(found.findings, ensure_ascii=False, allow_nan=False)
+        (folder / FINDINGS).write_text(findings, encoding="utf-8")
     sections = _SECTIONS[found.method](found) if found.findings is not None else []
     pictures = _save(sections, folder)
     page = folder / PAGE

@@ -21,27 +21,28 @@ from .drawing import (BAR, NOT_TOLD, along, ends, legend_above, name_bars, no_va
 from .section import Section, Shown, Table, nothing
 from .seen import Array, Seen, listed, number, numbers
 
-_MISFIT = ("The misfit is the sum of squares of what is left to the targets, each in standard deviations: of the mean over "
-           "the seeds, and of the experiment. With as many targets as parameters it can go to 0; about the number of "
-           "targets is as good as the scatter allows one to tell.")
-_MISFIT_CAPTION = ("Misfit of each point, by generation of the search; line: the best so far; crosses on the upper edge: "
-                   "infeasible, or without a value for a target. Vermilion: the number of targets.")
+_MISFIT = ("The misfit is the sum of squares of what is left to the targets, each in standard deviations: of the mean "
+           "over the seeds, and of the experiment. With as many targets as parameters it can go to 0; about the "
+           "number of targets is as good as the scatter allows one to tell.")
+_MISFIT_CAPTION = ("Misfit of each point, by generation of the search; line: the best so far; crosses on the upper "
+                   "edge: infeasible, or without a value for a target. Vermilion: the number of targets.")
 _SEARCH_CAPTION = ("Misfit of all points over each parameter; vermilion: the best point; crosses on the upper edge: "
                    "infeasible, or without a value for a target.")
-_RESIDUALS_CAPTION = ("Best point minus target, in standard deviations of that difference; band: ± 2.")
-_PARAMETERS = ("The standard deviation is that of a linear form around the best point, within the ranges. A parameter is not "
-               f"determined where it is above {NOT_DETERMINED:g} of that of its range: the targets say hardly more of it "
-               "than the range did.")
-_PARAMETERS_CAPTION = ("Best value and ± one standard deviation within the range of each parameter, whose ends stand beside. "
-                       "Grey: not determined.")
-_DIRECTIONS = ("A direction is a combination of parameters, each as a share of its range, that the targets tell as a whole. "
-               "Along one that they cannot tell, parameters may be exchanged for each other.")
-_DIRECTIONS_CAPTION = ("Directions from the best told to the least, a row each: the parts of the parameters, and at the "
-                       f"right the standard deviation over that of the ranges. Grey rows: above {NOT_DETERMINED:g}, which "
-                       "the targets cannot tell.")
+_RESIDUALS_CAPTION = "Best point minus target, in standard deviations of that difference; band: ± 2."
+_PARAMETERS = ("The standard deviation is that of a linear form around the best point, within the ranges. A parameter "
+               f"is not determined where it is above {NOT_DETERMINED:g} of that of its range: the targets say hardly "
+               "more of it than the range did.")
+_PARAMETERS_CAPTION = ("Best value and ± one standard deviation within the range of each parameter, whose ends stand "
+                       "beside. Grey: not determined.")
+_DIRECTIONS = ("A direction is a combination of parameters, each as a share of its range, that the targets tell as a "
+               "whole. Along one that they cannot tell, parameters may be exchanged for each other.")
+_DIRECTIONS_CAPTION = ("Directions from the best told to the least, a row each: the parts of the parameters, and at "
+                       "the right the standard deviation over that of the ranges. Grey rows: above "
+                       f"{NOT_DETERMINED:g}, which the targets cannot tell.")
 _LEAST_PART = 0.3  # of a direction, that a sentence names
 _MOST_NAMED = 5  # directions in a sentence
 _MOST_DIRECTIONS = 10  # in a figure
+_MOST_LEVEL = 6  # names of parameters side by side that are not turned
 _NOT_TOLD_ROW = "#efefef"
 _DARK = 0.7  # part whose colour is dark
 
@@ -124,7 +125,8 @@ def _of_targets(seen: Seen, found: dict[str, Any]) -> Section:
     rows = [[labels[name], number(value), number(stated, 3), number(at), number(of_difference, 3), number(residual, 2)]
             for name, value, stated, at, of_difference, residual
             in zip(targets["names"], targets["values"], targets["sd"], best, sd, residuals)]
-    table = Table(["target", "value", "sd of the experiment", "best point", "sd of the difference", "difference in sd"], rows)
+    table = Table(["target", "value", "sd of the experiment", "best point", "sd of the difference", "difference in sd"],
+                  rows)
     far = [name for name, residual in zip(targets["names"], residuals) if abs(residual) > 2.0]
     said = (f"Farther than two standard deviations from its target: {listed(far)}." if far else
             "All targets are met within two standard deviations.")
@@ -154,17 +156,17 @@ def _of_parameters(seen: Seen, found: dict[str, Any], best: Sequence[Value]) -> 
     if "none_because" in told:
         return [nothing("Parameters", told["none_because"])]
     u, sd = numbers(found["best"]["u"]), numbers(told["sd"])
-    rows = [[parameter_label(p), value_text(p, v), _interval(p, centre, width), number(ratio, 2), "no" if free else "yes"]
-            for p, v, centre, width, ratio, free
+    rows = [[parameter_label(p), value_text(p, v), _interval(p, centre, width), number(ratio, 2),
+             "no" if free else "yes"] for p, v, centre, width, ratio, free
             in zip(parameters, best, u, sd, told["sd_ratio"], told["not_determined"])]
     faint = frozenset(i for i, free in enumerate(told["not_determined"]) if free)
     free = [p.name for p, is_free in zip(parameters, told["not_determined"]) if is_free]
     said = f"Not determined: {listed(free)}." if free else "The targets determine all parameters."
     table = Table(["parameter", "best", "± one standard deviation", "sd over that of its range", "determined"], rows,
                   faint=faint)
+    ranges = ranges_figure(parameters, u, sd, told["not_determined"])
     made = [Section("Parameters", [f"{said} The form comes from {told['points']} points.", _PARAMETERS],
-                    [Shown("parameters", ranges_figure(parameters, u, sd, told["not_determined"]), _PARAMETERS_CAPTION)],
-                    [table])]
+                    [Shown("parameters", ranges, _PARAMETERS_CAPTION)], [table])]
     if len(parameters) > 1:
         figure = directions_figure(parameters, told)
         more = len(parameters) - _MOST_DIRECTIONS
@@ -223,7 +225,8 @@ def directions_figure(parameters: Sequence[Parameter], told: dict[str, Any]) -> 
     directions = numbers(told["directions"])[:_MOST_DIRECTIONS]
     free = np.array(told["direction_not_determined"], bool)[:_MOST_DIRECTIONS]
     rows, k = directions.shape
-    figure = style.new_figure(0.9 + 0.3 * rows + (0.0 if k <= 6 else 0.8), min(style.WIDTH, 2.2 + 0.6 * k))
+    is_wide = k > _MOST_LEVEL
+    figure = style.new_figure(0.9 + 0.3 * rows + (0.8 if is_wide else 0.0), min(style.WIDTH, 2.2 + 0.6 * k))
     axes = figure.subplots()
     shades = matplotlib.colormaps["PuOr"](0.5 + 0.42 * directions)
     shades[free] = to_rgba(_NOT_TOLD_ROW)
@@ -236,7 +239,8 @@ def directions_figure(parameters: Sequence[Parameter], told: dict[str, Any]) -> 
     axes.grid(visible=False)
     axes.spines[:].set_visible(False)
     axes.tick_params(length=0)
-    axes.set_xticks(range(k), [p.name for p in parameters], rotation=0 if k <= 6 else 60, ha="center" if k <= 6 else "right")
+    axes.set_xticks(range(k), [p.name for p in parameters], rotation=60 if is_wide else 0,
+                    ha="right" if is_wide else "center")
     axes.set_yticks(range(rows), [str(i + 1) for i in range(rows)])
     axes.set_ylabel("Direction")
     _beside(axes, -0.75, "sd ratio", False)

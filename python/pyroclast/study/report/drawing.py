@@ -131,8 +131,8 @@ def draw_bar(axes: Axes, at: float, bar: Bar, thickness: float = 0.7) -> None:
         axes.annotate("no value", (0.0, at), xytext=(3, 0), textcoords="offset points", va="center", fontsize=7.0,
                       color=style.FAINT)
         return
-    axes.barh(at, bar.value, thickness, color=bar.colour, hatch=bar.hatch, edgecolor="white" if bar.hatch else bar.colour,
-              linewidth=0.0)
+    axes.barh(at, bar.value, thickness, color=bar.colour, hatch=bar.hatch, linewidth=0.0,
+              edgecolor="white" if bar.hatch else bar.colour)
     if np.isfinite([bar.low, bar.high]).all():
         axes.plot([bar.low, bar.high], [at, at], color=style.BLACK, linewidth=0.9, marker="|", markersize=4.0,
                   markeredgewidth=0.9)

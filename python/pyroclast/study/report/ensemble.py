@@ -17,11 +17,11 @@ from .drawing import output_label
 from .section import Section, Shown, Table, nothing
 from .seen import Array, Seen, between, number, numbers, percent
 
-_MEANING = ("Each run has its own random specimen. The sd is that of single runs; the 95 % interval says where the mean "
-            "of very many seeds would lie (Student's t).")
+_MEANING = ("Each run has its own random specimen. The sd is that of single runs; the 95 % interval says where the "
+            "mean of very many seeds would lie (Student's t).")
 _CAPTION = ("Left: the runs in the order of their values, against the share of runs below them, and a normal "
-            "distribution of the same mean and sd. Right: the mean of the first runs and its 95 % interval, over how many "
-            "they are. Vermilion: the mean of all and its 95 % interval.")
+            "distribution of the same mean and sd. Right: the mean of the first runs and its 95 % interval, over how "
+            "many they are. Vermilion: the mean of all and its 95 % interval.")
 
 
 def sections(seen: Seen) -> list[Section]:
@@ -47,8 +47,8 @@ def _sentence(summary: dict[str, Any]) -> str:
     relative = f" (± {percent(half / abs(summary['mean']))})" if summary["mean"] else ""
     missing = f" {summary['missing']} runs gave no value." if summary["missing"] else ""
     return (f"The mean of {summary['n']} seeds is {number(summary['mean'])}, 95 % interval "
-            f"{between(summary['low'], summary['high'])}{relative}. Single runs scatter by {number(summary['sd'], 3)} (sd), "
-            f"which is {percent(summary['variation'])} of the mean.{missing}")
+            f"{between(summary['low'], summary['high'])}{relative}. Single runs scatter by "
+            f"{number(summary['sd'], 3)} (sd), which is {percent(summary['variation'])} of the mean.{missing}")
 
 
 def _table(seen: Seen) -> Table:
@@ -59,8 +59,9 @@ def _table(seen: Seen) -> Table:
         if "n" not in s:
             continue
         names = list(s["percentiles"])
-        rows.append([output_label(output), str(s["n"]), str(s["missing"]), number(s["mean"]), between(s["low"], s["high"]),
-                     number(s["sd"], 3), percent(s["variation"]), *(number(s["percentiles"][p]) for p in names)])
+        rows.append([output_label(output), str(s["n"]), str(s["missing"]), number(s["mean"]),
+                     between(s["low"], s["high"]), number(s["sd"], 3), percent(s["variation"]),
+                     *(number(s["percentiles"][p]) for p in names)])
     return Table(["output", "runs", "without a value", "mean", "95 % interval of the mean", "sd", "cv",
                   *(f"{float(p):g} % of runs below" for p in names)], rows)
 

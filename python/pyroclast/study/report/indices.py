@@ -17,35 +17,35 @@ from ..outputs import Output
 from ..parameters import Parameter
 from .drawing import (BAR, NOT_TOLD, Bar, draw_bar, grey_patch, legend_above, name_bars, output_label, parameter_label,
                       seed_bars, seed_patch)
-from .responses import Curve, classes, curves_figure, ranked
+from .responses import Curve, classes, curves_figure, ranked, seed_sentence, told_sentence
 from .section import Section, Shown, Table, nothing
-from .seen import Seen, between, listed, number, numbers, percent
+from .seen import Seen, between, number, numbers, percent
 
 _FIRST, _TOTAL = style.SKY, style.BLUE
 _DEPENDS = 0.05  # p-value up to which an output depends on a parameter
 
-_MORRIS = ("μ* is the mean size of a parameter's effect over its whole range, in the output's unit, and σ their standard "
-           "deviation: σ well below μ* is an effect that is much the same everywhere, σ about μ* or above one that bends or "
-           "depends on other parameters. An effect is told from the seeds when μ* is above twice the standard error that the "
-           "seeds leave in one effect.")
-_MORRIS_CAPTION = ("Left: μ* with 95 % interval (bootstrap over the trajectories), ranked; the vermilion ticks are twice "
-                   "the seeds' standard error; below, the seed's share of the variance. Right: μ* and σ; the numbers are "
-                   "those of the bars, and on the dashed line σ = μ*. Grey: not told from the seeds.")
-_SHARES = ("The main index of a parameter is the share of the variance that goes when this parameter alone is known; the "
-           "total index is the share that stays when all others are known. Their difference are interactions.")
-_SOBOL_CAPTION = ("Main and total indices of the mean over seeds with 95 % intervals (bootstrap over the rows), ranked, and "
-                  "the seed's share of the variance. Grey: not told from the seeds.")
-_CHAOS_CAPTION = ("Main and total indices of the surrogate with 95 % intervals (bootstrap over the runs that it was fitted "
-                  "to), ranked, and the seed's share of the variance of the runs.")
-_CURVES_CHAOS = ("Response of the surrogate to one parameter, all others in the middle of their ranges, ± its error on runs "
-                 "kept apart; grey dots: means over seeds of all runs, where the others vary too.")
+_MORRIS = ("μ* is the mean size of a parameter's effect over its whole range, in the output's unit, and σ their "
+           "standard deviation: σ well below μ* is an effect that is much the same everywhere, σ about μ* or above "
+           "one that bends or depends on other parameters. An effect is told from the seeds when μ* is above twice "
+           "the standard error that the seeds leave in one effect.")
+_MORRIS_CAPTION = ("Left: μ* with 95 % interval (bootstrap over the trajectories), ranked; the vermilion ticks are "
+                   "twice the seeds' standard error; below, the seed's share of the variance. Right: μ* and σ; the "
+                   "numbers are those of the bars, and on the dashed line σ = μ*. Grey: not told from the seeds.")
+_SHARES = ("The main index of a parameter is the share of the variance that goes when this parameter alone is known; "
+           "the total index is the share that stays when all others are known. Their difference are interactions.")
+_SOBOL_CAPTION = ("Main and total indices of the mean over seeds with 95 % intervals (bootstrap over the rows), "
+                  "ranked, and the seed's share of the variance. Grey: not told from the seeds.")
+_CHAOS_CAPTION = ("Main and total indices of the surrogate with 95 % intervals (bootstrap over the runs that it was "
+                  "fitted to), ranked, and the seed's share of the variance of the runs.")
+_CURVES_CHAOS = ("Response of the surrogate to one parameter, all others in the middle of their ranges, ± its error "
+                 "on runs kept apart; grey dots: means over seeds of all runs, where the others vary too.")
 _CURVES_SOBOL = ("Means over seeds of all points (grey dots), and the mean of the independent ones by classes of one "
                  "parameter with its 95 % interval (Student's t over the points, all other parameters vary).")
-_DEPENDENCE = ("The parameters are correlated, so that shares of the variance do not add up. R² of the Hilbert-Schmidt "
-               "criterion is 0 for a parameter that the output does not depend on, and at most 1; a parameter that is only "
-               "correlated with one that has an effect shows dependence too.")
-_DEPENDENCE_CAPTION = ("Dependence on each parameter with 95 % intervals, and the seed's share of the variance. Grey: not "
-                       f"told from independence (p above {_DEPENDS:g}).")
+_DEPENDENCE = ("The parameters are correlated, so that shares of the variance do not add up. R² of the "
+               "Hilbert-Schmidt criterion is 0 for a parameter that the output does not depend on, and at most 1; a "
+               "parameter that is only correlated with one that has an effect shows dependence too.")
+_DEPENDENCE_CAPTION = ("Dependence on each parameter with 95 % intervals, and the seed's share of the variance. Grey: "
+                       f"not told from independence (p above {_DEPENDS:g}).")
 
 
 def sections(seen: Seen) -> list[Section]:
@@ -71,31 +71,17 @@ def _of_morris(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
     dropped = [f"{parameters[i].name} {effects['planned'] - used}" for i, used in enumerate(effects["used"])
                if used < effects["planned"]]
     said = [f"{effects['planned']} trajectories.",
-            _told(told, share), _seed_sentence(share),
+            told_sentence(told, share), seed_sentence(share),
             f"Steps that drop out for a missing value: {', '.join(dropped)}." if dropped else ""]
     rows = [[str(at + 1), parameter_label(parameters[i]), number(mu_star[i], 3),
              between(effects["mu_star_low"][i], effects["mu_star_high"][i], 3), number(effects["mu"][i], 3),
              number(effects["sigma"][i], 3), number(effects["standard_error"][i], 2),
              "yes" if effects["told_from_seeds"][i] else "no", f"{effects['used'][i]} of {effects['planned']}"]
             for at, i in enumerate(order)]
-    table = Table(["", "parameter", "μ*", "95 % interval", "μ", "σ", "standard error from the seeds", "told from the seeds",
-                   "effects used"], rows, faint=_not_told(effects, order))
-    figure = morris_figure(output, parameters, effects, share)
-    return Section(title, [" ".join(filter(None, said)), _MORRIS], [Shown(f"{output.name}-morris", figure, _MORRIS_CAPTION)],
-                   [table])
-
-
-def _told(names: Sequence[str], share: dict[str, Any]) -> str:
-    if share["seeds"] < 2:
-        return "With one seed nothing can be told from the seeds; all effects stay grey."
-    return f"Told from the seeds: {listed(names)}." if names else "No parameter's effect is told from the seeds."
-
-
-def _seed_sentence(share: dict[str, Any]) -> str:
-    if share["seeds"] < 2 or share["mean"] is None:
-        return ""
-    return (f"The seed's share of the variance is {percent(share['mean'])} in the means over {share['seeds']} seeds and "
-            f"{percent(share['single'])} in single runs.")
+    table = Table(["", "parameter", "μ*", "95 % interval", "μ", "σ", "standard error from the seeds",
+                   "told from the seeds", "effects used"], rows, faint=_not_told(effects, order))
+    shown = Shown(f"{output.name}-morris", morris_figure(output, parameters, effects, share), _MORRIS_CAPTION)
+    return Section(title, [" ".join(filter(None, said)), _MORRIS], [shown], [table])
 
 
 def _not_told(effects: dict[str, Any], order: Sequence[int]) -> frozenset[int]:
@@ -112,7 +98,8 @@ def morris_figure(output: Output, parameters: Sequence[Parameter], effects: dict
     figure = style.new_figure(max(3.0, 1.7 + BAR * (len(order) + len(seeds))))
     grid = figure.add_gridspec(2, 2, height_ratios=[len(order) + 0.6, len(seeds) + 0.6], width_ratios=[1.1, 1.0])
     bars, strip, plane = (figure.add_subplot(place) for place in (grid[0, 0], grid[1, 0], grid[:, 1]))
-    value, low, high, error = (numbers(effects[key]) for key in ("mu_star", "mu_star_low", "mu_star_high", "standard_error"))
+    value, low, high = (numbers(effects[f"mu_star{end}"]) for end in ("", "_low", "_high"))
+    error = numbers(effects["standard_error"])
     for at, i in enumerate(order):
         draw_bar(bars, at, Bar(value[i], low[i], high[i], style.BLUE if told[at] else NOT_TOLD))
         if np.isfinite(error[i]):
@@ -140,8 +127,8 @@ def _draw_plane(axes: Axes, order: Sequence[int], told: Sequence[bool], effects:
               scaley=False)
     for at, i in reversed(list(enumerate(order))):
         colour = style.BLUE if told[at] else NOT_TOLD
-        axes.plot(mu_star[i], sigma[i], "o", color=colour, markersize=10.0, markeredgecolor="white", markeredgewidth=0.6,
-                  clip_on=False, zorder=3.0 - 0.01 * at)
+        axes.plot(mu_star[i], sigma[i], "o", color=colour, markersize=10.0, markeredgecolor="white",
+                  markeredgewidth=0.6, clip_on=False, zorder=3.0 - 0.01 * at)
         axes.annotate(str(at + 1), (mu_star[i], sigma[i]), ha="center", va="center_baseline", fontsize=6.5,
                       color="white" if told[at] else style.BLACK, zorder=3.005 - 0.01 * at, annotation_clip=False)
     axes.set_xlim(0.0, right)
@@ -154,7 +141,7 @@ def _of_sobol(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
     told = [parameters[i].name for i in order if found["told_from_seeds"][i]]
     share = found["seed_share"]
     lost = f"{percent(found['lost'])} of the rows are lost by runs without a value." if found["lost"] else ""
-    said = [f"{found['rows']} rows.", lost, _told(told, share), _seed_sentence(share), _interactions(found)]
+    said = [f"{found['rows']} rows.", lost, told_sentence(told, share), seed_sentence(share), _interactions(found)]
     # The points A and B of each row; all others share coordinates with them.
     independent = np.arange(len(seen.u)) % (len(parameters) + 2) < 2
     curves = classes(seen, output, independent)
@@ -166,8 +153,8 @@ def _of_sobol(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
 
 
 def _interactions(indices: dict[str, Any]) -> str:
-    return f"The main indices add up to {number(float(np.nansum(numbers(indices['first']))), 2)}; what is left to 1 are " \
-           "interactions, and the error of the indices."
+    total = float(np.nansum(numbers(indices["first"])))
+    return f"The main indices add up to {number(total, 2)}; what is left to 1 are interactions, and their error."
 
 
 def _index_table(parameters: Sequence[Parameter], indices: dict[str, Any], order: Sequence[int]) -> Table:
@@ -211,9 +198,9 @@ def _of_chaos(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
     parameters, share = seen.setup.parameters, found["seed_share"]
     unit = output_label(output)
     said = [f"The surrogate has {found['terms']} terms up to degree {found['degree']}. On runs kept apart its Q² is "
-            f"{number(found['q2'], 3)} and its error {number(found['error'], 3)} (root mean square, in the unit of {unit}, "
-            "the seeds' scatter included).",
-            f"{found['lost']} points are left out for a missing value." if found["lost"] else "", _seed_sentence(share)]
+            f"{number(found['q2'], 3)} and its error {number(found['error'], 3)} (root mean square, in the unit of "
+            f"{unit}, the seeds' scatter included).",
+            f"{found['lost']} points are left out for a missing value." if found["lost"] else "", seed_sentence(share)]
     if "dependence" in found:
         return _of_dependence(parameters, output, found, " ".join(filter(None, said)))
     if "indices" not in found:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+import math
+import statistics
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-
-import numpy as np
 
 from ... import _core
 from ...decks import toml
 from ..driver import duration
 from ..store import DONE
+from .drawing import parameter_label, value_text
 from .markup import Markup, element, picture, together
 from .section import Section, Shown, Table
-from .seen import Seen, number, numbers
-from .drawing import parameter_label, value_text
+from .seen import Seen, number
 
 _MOST_REASONS = 20
 _STYLE = """
@@ -35,8 +35,8 @@ figcaption, .note { font-size: .875rem; max-width: 46rem; margin-top: .35rem; } 
 .scroll { overflow-x: auto; margin: .75rem 0; } table { border-collapse: collapse; font-size: .9rem;
   font-variant-numeric: tabular-nums; } th, td { text-align: left; padding: .25rem .9rem .25rem 0; vertical-align: top;
   border-bottom: 1px solid var(--line); } th { font-weight: 600; } tr.faint td { color: var(--faint); }
-pre { background: var(--box); border: 1px solid var(--line); border-radius: 3px; padding: .7rem .9rem; font-size: .82rem;
-  line-height: 1.4; white-space: pre-wrap; overflow-wrap: anywhere; }
+pre { background: var(--box); border: 1px solid var(--line); border-radius: 3px; padding: .7rem .9rem;
+  font-size: .82rem; line-height: 1.4; white-space: pre-wrap; overflow-wrap: anywhere; }
 @media print { :root { color-scheme: light; --ink: #000; --faint: #444; --ground: #fff; --line: #bbb; --box: #fff;
   --warn: #fff; --link: #000; } body { max-width: none; padding: 0; font-size: 10pt; } h2, h3 { break-after: avoid; }
   tr { break-inside: avoid; } .scroll { overflow: visible; } @page { margin: 18mm 16mm; } }
@@ -64,8 +64,8 @@ def _head(seen: Seen) -> Markup:
                "posterior": "Posterior by MCMC on surrogates"}[seen.method]
     seeds = seen.forecast.runs // max(seen.forecast.points - seen.forecast.infeasible, 1)
     return together(element("h1", seen.setup.title),
-                    element("p", f"{meaning}: {_counted(seen.forecast.points, 'point')}, {_counted(seeds, 'seed')} each",
-                            class_="faint"))
+                    element("p", f"{meaning}: {_counted(seen.forecast.points, 'point')}, "
+                                 f"{_counted(seeds, 'seed')} each", class_="faint"))
 
 
 def _counted(number_of: int, what: str) -> str:
@@ -76,10 +76,10 @@ def _warnings(seen: Seen) -> Markup:
     said = []
     if not seen.is_complete:
         more = "" if seen.forecast.is_complete else " More points will follow."
-        left = "" if np.isnan(seen.forecast.seconds) or not seen.forecast.left else \
+        left = "" if math.isnan(seen.forecast.seconds) or not seen.forecast.left else \
             f" About {duration(seen.forecast.seconds)} of one core are left."
-        said.append(f"This study is not complete: {seen.forecast.known} of {seen.forecast.runs} runs are done.{more}{left} "
-                    "What stands here is of these runs alone.")
+        said.append(f"This study is not complete: {seen.forecast.known} of {seen.forecast.runs} runs are done."
+                    f"{more}{left} What stands here is of these runs alone.")
     if seen.none_because:
         said.append(f"Nothing could be found yet: {seen.none_because}")
     if failed := sum(row["state"] not in (DONE, "not run") for row in seen.rows):
@@ -96,10 +96,10 @@ def _section(section: Section, pictures: dict[str, bytes]) -> Markup:
 
 
 def _figure(shown: Shown, png: bytes) -> Markup:
-    files = together(" ", element("a", "PDF", href=f"{shown.name}.pdf"), " ", element("a", "PNG", href=f"{shown.name}.png"))
+    pdf, png_file = (element("a", ending.upper(), href=f"{shown.name}.{ending}") for ending in ("pdf", "png"))
     width = shown.figure.get_figwidth()
     image = element("div", picture(png, shown.caption), style=f"max-width: {8.3 * width:.1f}rem")
-    return element("figure", image, element("figcaption", shown.caption, files))
+    return element("figure", image, element("figcaption", shown.caption, " ", pdf, " ", png_file))
 
 
 def _table(table: Table) -> Markup:
@@ -107,7 +107,8 @@ def _table(table: Table) -> Markup:
     rows = [element("tr", *(element("td", cell) for cell in row), **({"class_": "faint"} if i in table.faint else {}))
             for i, row in enumerate(table.rows)]
     note = element("p", table.note, class_="note") if table.note else Markup()
-    return together(element("div", element("table", element("thead", head), element("tbody", *rows)), class_="scroll"), note)
+    whole = element("table", element("thead", head), element("tbody", *rows))
+    return together(element("div", whole, class_="scroll"), note)
 
 
 def _facts(facts: Sequence[tuple[str, str]]) -> Markup:
@@ -119,9 +120,8 @@ def _run_table(seen: Seen) -> Markup:
     setup, runner = seen.setup, seen.setup.runner
     made = {"pyroclast": f"deck {runner.deck}", "command": f"command {runner.command}",
             "function": f"function {runner.function} of {runner.file}"}[runner.kind]
-    walls = numbers(row["wall_s"] for row in seen.rows)
-    walls = walls[np.isfinite(walls) & (walls > 0.0)]
-    time = f"{_duration(float(walls.sum()))} in all, median {_duration(float(np.median(walls)))} a run" if len(walls) else ""
+    walls = [float(row["wall_s"]) for row in seen.rows if row["wall_s"]]
+    time = f"{_duration(sum(walls))} in all, median {_duration(statistics.median(walls))} a run" if walls else ""
     settings = ", ".join(f"{key} = {toml(value)}" for key, value in setup.method.settings.items())
     until = f", until the widest interval is below {setup.method.until:g}" if setup.method.until is not None else ""
     seeds = sorted({row["seed"] for row in seen.rows})

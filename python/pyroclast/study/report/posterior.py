@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from ... import style
 from ..methods.calibration import NOT_DETERMINED
 from ..parameters import Parameter
-from .drawing import (BAR, NOT_TOLD, along, ends, grey_patch, legend_above, name_bars, output_label, parameter_label, places,
-                      value_text)
+from .drawing import (BAR, NOT_TOLD, along, ends, grey_patch, legend_above, name_bars, output_label, parameter_label,
+                      places, value_text)
 from .responses import ranked
 from .section import Section, Shown, Table
 from .seen import Array, Seen, listed, number, numbers, percent
@@ -23,14 +23,14 @@ _MOST_PAIRS = 6  # parameters of a pairs plot
 _MOST_DRAWN = 2000  # draws in a panel
 _BINS = 25
 
-_MEANING = ("The posterior is what the targets leave of the ranges: values that the surrogates take to the targets within the "
-            "scatter of the seeds, the sd of the experiment and the surrogates' error. A parameter is not determined where "
-            f"its standard deviation is above {NOT_DETERMINED:g} of that of its range.")
-_PAIRS_CAPTION = ("Draws of the posterior: each parameter alone (line: the prior) and in pairs. Grey: not determined.")
-_SPREAD_CAPTION = ("Posterior standard deviation over the prior's, both as shares of the range; at 1 the targets say nothing. "
-                   "Grey: not determined.")
-_CHECK = ("Runs at draws of the posterior, against what the surrogates say there, in standard deviations of that difference. "
-          "Where the surrogates hold, 95 % lie within ± 2.")
+_MEANING = ("The posterior is what the targets leave of the ranges: values that the surrogates take to the targets "
+            "within the scatter of the seeds, the sd of the experiment and the surrogates' error. A parameter is not "
+            f"determined where its standard deviation is above {NOT_DETERMINED:g} of that of its range.")
+_PAIRS_CAPTION = "Draws of the posterior: each parameter alone (line: the prior) and in pairs. Grey: not determined."
+_SPREAD_CAPTION = ("Posterior standard deviation over the prior's, both as shares of the range; at 1 the targets say "
+                   "nothing. Grey: not determined.")
+_CHECK = ("Runs at draws of the posterior, against what the surrogates say there, in standard deviations of that "
+          "difference. Where the surrogates hold, 95 % lie within ± 2.")
 _CHECK_CAPTION = "True runs minus predictions at draws of the posterior, in standard deviations; band: ± 2."
 
 
@@ -69,8 +69,9 @@ def _table(parameters: Sequence[Parameter], posterior: dict[str, Any], chain: Ar
 def _surrogates(seen: Seen, found: dict[str, Any]) -> Table:
     labels = {o.name: output_label(o) for o in seen.setup.outputs}
     targets = found["targets"]
+    columns = zip(targets["names"], targets["values"], targets["sd"], found["q2"], found["error"])
     rows = [[labels[name], number(value), number(sd, 3), number(q2, 3), number(error, 3)]
-            for name, value, sd, q2, error in zip(targets["names"], targets["values"], targets["sd"], found["q2"], found["error"])]
+            for name, value, sd, q2, error in columns]
     return Table(["target", "value", "sd of the experiment", "Q² of its surrogate", "error of its surrogate"], rows)
 
 
@@ -94,8 +95,8 @@ def pairs_figure(parameters: Sequence[Parameter], chain: Array, free: Sequence[b
                     axes.set_title(style.plain(parameters[chosen[row]].name), fontsize=8.0)
             else:
                 grey = free[chosen[row]] and free[chosen[column]]
-                axes.plot(drawn[column], drawn[row], "o", markersize=1.2, alpha=0.35, markeredgewidth=0.0, rasterized=True,
-                          color=style.FAINT if grey else style.BLUE)
+                axes.plot(drawn[column], drawn[row], "o", markersize=1.2, alpha=0.35, markeredgewidth=0.0,
+                          rasterized=True, color=style.FAINT if grey else style.BLUE)
                 along(axes, parameters[chosen[row]], vertical=True, label=column == 0)
                 axes.tick_params(labelleft=column == 0)
                 axes.set_ylim(*ends(parameters[chosen[row]]))
@@ -111,10 +112,11 @@ def pairs_figure(parameters: Sequence[Parameter], chain: Array, free: Sequence[b
 def _draw_marginal(axes: Axes, parameter: Parameter, values: Array, is_free: bool) -> None:
     prior = places(parameter, (np.arange(_MOST_DRAWN) + 0.5) / _MOST_DRAWN)
     low, high = ends(parameter)
-    bins = np.geomspace(low, high, _BINS + 1) if parameter.distribution.kind == "log_uniform" else np.linspace(low, high, _BINS + 1)
-    share = np.full(len(values), 1.0 / len(values))
+    is_log = parameter.distribution.kind == "log_uniform"
+    bins = np.geomspace(low, high, _BINS + 1) if is_log else np.linspace(low, high, _BINS + 1)
+    share, of_prior = (np.full(len(draws), 1.0 / len(draws)) for draws in (values, prior))
     axes.hist(values, bins, weights=share, color=NOT_TOLD if is_free else style.SKY)
-    axes.hist(prior, bins, weights=np.full(len(prior), 1.0 / len(prior)), histtype="step", color=style.BLACK, linewidth=0.8)
+    axes.hist(prior, bins, weights=of_prior, histtype="step", color=style.BLACK, linewidth=0.8)
     axes.set_yticks([])
     axes.grid(visible=False)
     axes.spines["left"].set_visible(False)
@@ -143,8 +145,8 @@ def _of_check(names: Sequence[str], check: dict[str, Any]) -> Section:
     rows = [[name, str(n), number(rms, 2), percent(within)]
             for name, n, rms, within in zip(names, check["points"], check["rms"], check["within_two"])]
     table = Table(["target", "true runs", "root mean square", "within ± 2"], rows)
-    return Section("True runs", [_CHECK], [Shown("check", check_figure(names, numbers(check["standardised"])), _CHECK_CAPTION)],
-                   [table])
+    figure = check_figure(names, numbers(check["standardised"]))
+    return Section("True runs", [_CHECK], [Shown("check", figure, _CHECK_CAPTION)], [table])
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -155,7 +157,8 @@ def check_figure(names: Sequence[str], standardised: Array) -> Figure:
     axes.axvspan(-2.0, 2.0, color=style.GREEN, alpha=0.15, linewidth=0.0)
     axes.axvline(0.0, color=style.BLACK, linewidth=0.6)
     for at, values in enumerate(standardised.T):
-        axes.plot(values, np.full(len(values), at), "o", color=style.BLUE, markersize=4.0, alpha=0.7, markeredgewidth=0.0)
+        axes.plot(values, np.full(len(values), at), "o", color=style.BLUE, markersize=4.0, alpha=0.7,
+                  markeredgewidth=0.0)
     name_bars(axes, names)
     reach = max(3.0, 1.1 * float(np.nanmax(np.abs(standardised), initial=0.0)))
     axes.set_xlim(-reach, reach)

@@ -24,10 +24,10 @@ from .seen import Array, Seen, between, listed, number, numbers, percent
 _MEANING = ("A standardised rank regression coefficient says by how many standard deviations of its ranks the output "
             "moves when the parameter moves by one of its own; 1 or −1 is an output that this parameter alone orders. "
             "Spearman's correlation says the same of the parameter alone, without taking the others out.")
-_EFFECTS = ("Rank effects with 95 % intervals (bootstrap over the points). Grey: not told from the seeds. The seed's bar is "
-            "the root of its share of the variance, which is what a coefficient is of a straight line.")
-_CURVES = ("Means over seeds of all points (grey dots), and their mean by classes of one parameter with its 95 % interval "
-           "(Student's t over the points, all other parameters vary).")
+_EFFECTS = ("Rank effects with 95 % intervals (bootstrap over the points). Grey: not told from the seeds. The seed's "
+            "bar is the root of its share of the variance, which is what a coefficient is of a straight line.")
+_CURVES = ("Means over seeds of all points (grey dots), and their mean by classes of one parameter with its 95 % "
+           "interval (Student's t over the points, all other parameters vary).")
 _CONTOURS = "Mean over seeds between the points of the grid (dots); crosses: no value."
 _LEAST_R2 = 0.7  # of a rank regression that describes the output
 
@@ -55,22 +55,29 @@ def _makes_a_plane(parameters: Sequence[Parameter]) -> bool:
 
 
 def _sentence(parameters: Sequence[Parameter], effects: dict[str, Any]) -> str:
-    told = [i for i in ranked(numbers(effects["coefficient"])) if effects["told_from_seeds"][i]]
-    share = effects["seed_share"]
-    said = [f"{effects['points']} complete points."]
-    if share["seeds"] < 2:
-        said.append("With one seed nothing can be told from the seeds; all effects stay grey.")
-    elif told:
-        said.append(f"Told from the seeds: {listed([parameters[i].name for i in told])}.")
-    else:
-        said.append("No parameter's effect is told from the seeds.")
+    told = [parameters[i].name for i in ranked(numbers(effects["coefficient"])) if effects["told_from_seeds"][i]]
+    described = ""
     if effects["r2"] is not None:
         weak = "" if effects["r2"] >= _LEAST_R2 else "; much of it is not monotone, or an interaction, or the seeds"
-        said.append(f"The rank regression describes {percent(effects['r2'])} of the ranks' variance{weak}.")
-    if share["seeds"] >= 2:
-        said.append(f"The seed's share of the variance is {percent(share['mean'])} in the means over {share['seeds']} seeds "
-                    f"and {percent(share['single'])} in single runs.")
-    return " ".join(said)
+        described = f"The rank regression describes {percent(effects['r2'])} of the ranks' variance{weak}."
+    share = effects["seed_share"]
+    said = [f"{effects['points']} complete points.", told_sentence(told, share), described, seed_sentence(share)]
+    return " ".join(filter(None, said))
+
+
+def told_sentence(names: Sequence[str], share: dict[str, Any]) -> str:
+    """Which parameters' effects are told from the seeds."""
+    if share["seeds"] < 2:
+        return "With one seed nothing can be told from the seeds; all effects stay grey."
+    return f"Told from the seeds: {listed(names)}." if names else "No parameter's effect is told from the seeds."
+
+
+def seed_sentence(share: dict[str, Any]) -> str:
+    """The seed's share of the variance; empty where it is not known."""
+    if share["mean"] is None:
+        return ""
+    return (f"The seed's share of the variance is {percent(share['mean'])} in the means over {share['seeds']} seeds, "
+            f"and {percent(share['single'])} in single runs.")
 
 
 def ranked(values: Array) -> list[int]:
@@ -85,10 +92,11 @@ def _table(parameters: Sequence[Parameter], effects: dict[str, Any]) -> Table:
         faint |= set() if told else {line}
         rows.append([parameter_label(parameters[i]),
                      *(cell for what in ("coefficient", "correlation") for cell in (
-                         number(effects[what][i], 2), between(effects[f"{what}_low"][i], effects[f"{what}_high"][i], 2))),
+                         number(effects[what][i], 2),
+                         between(effects[f"{what}_low"][i], effects[f"{what}_high"][i], 2))),
                      number(effects["standard_error"][i], 2), "yes" if told else "no"])
-    return Table(["parameter", "coefficient", "95 % interval", "correlation", "95 % interval", "standard error from the seeds",
-                  "told from the seeds"], rows, faint=frozenset(faint))
+    return Table(["parameter", "coefficient", "95 % interval", "correlation", "95 % interval",
+                  "standard error from the seeds", "told from the seeds"], rows, faint=frozenset(faint))
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -102,8 +110,8 @@ def effects_figure(parameters: Sequence[Parameter], effects: dict[str, Any]) -> 
     for at, i in enumerate(order):
         value, low, high = (numbers(effects[f"coefficient{end}"])[i] for end in ("", "_low", "_high"))
         draw_bar(axes, at, Bar(value, low, high, style.BLUE if told[at] else NOT_TOLD))
-        axes.plot(numbers(effects["correlation"])[i], at, "D", color="white", markeredgecolor=style.BLACK, markersize=4.0,
-                  markeredgewidth=0.8, zorder=4)
+        axes.plot(numbers(effects["correlation"])[i], at, "D", color="white", markeredgecolor=style.BLACK,
+                  markersize=4.0, markeredgewidth=0.8, zorder=4)
     for at, (_, bar) in enumerate(seeds, start=len(order)):
         draw_bar(axes, at, bar)
     axes.axvline(0.0, color=style.BLACK, linewidth=0.6)
@@ -117,7 +125,8 @@ def effects_figure(parameters: Sequence[Parameter], effects: dict[str, Any]) -> 
 
 
 def _root(bar: Bar) -> Bar:
-    return Bar(*np.sqrt(np.maximum([bar.value, bar.low, bar.high], 0.0)), SEED, SEED_HATCH)
+    value, low, high = np.sqrt(np.maximum([bar.value, bar.low, bar.high], 0.0))
+    return Bar(value, low, high, SEED, SEED_HATCH)
 
 
 def _ends(axes: Axes) -> tuple[float, float]:
@@ -157,7 +166,8 @@ def curves_figure(seen: Seen, output: Output, curves: Sequence[Curve], is_smooth
             axes.fill_between(x, curve.low, curve.high, color=style.BLUE, alpha=0.2, linewidth=0.0)
         is_line = parameter.distribution.kind != "choice"
         axes.plot(x, curve.y, "-" if is_smooth else "o-" if is_line else "o", color=style.BLUE, markersize=3.5,
-                  linewidth=1.4 if is_smooth else 0.9, drawstyle="steps-mid" if is_smooth and not is_line else "default")
+                  linewidth=1.4 if is_smooth else 0.9,
+                  drawstyle="steps-mid" if is_smooth and not is_line else "default")
         along(axes, parameter)
     _share_ordinate(every, output)
     return figure
@@ -186,7 +196,7 @@ def contours_figure(seen: Seen, output: Output) -> Figure:
     table = np.full((len(up), len(across)), np.nan)
     table[np.searchsorted(up, y), np.searchsorted(across, x)] = z
     if np.unique(z[known]).size > 1:
-        filled = axes.contourf(across, up, np.ma.masked_invalid(table), 10, cmap="cividis")
+        filled = axes.contourf(across, up, table, 10, cmap="cividis")
         figure.colorbar(filled, ax=axes, label=output_label(output))
     axes.plot(x[known], y[known], "o", color="white", markeredgecolor=style.BLACK, markersize=3.0, markeredgewidth=0.6,
               clip_on=False, zorder=4)
