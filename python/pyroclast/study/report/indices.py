@@ -18,7 +18,7 @@ from ..parameters import Parameter
 from .drawing import (BAR, NOT_TOLD, Bar, draw_bar, grey_patch, legend_above, name_bars, output_label, parameter_label,
                       seed_bars, seed_patch)
 from .responses import Curve, classes, curves_figure, ranked, seed_sentence, told_sentence
-from .section import Section, Shown, Table, nothing
+from .section import Section, Shown, Table, how_to_read, nothing
 from .seen import Seen, between, number, numbers, percent
 
 _FIRST, _TOTAL = style.SKY, style.BLUE
@@ -50,7 +50,8 @@ _DEPENDENCE_CAPTION = ("Dependence on each parameter with 95 % intervals, and th
 
 def sections(seen: Seen) -> list[Section]:
     of_method = {"morris": _of_morris, "sobol": _of_sobol, "chaos": _of_chaos}[seen.method]
-    found = []
+    meaning = _MORRIS if seen.method == "morris" else _DEPENDENCE if seen.setup.correlations else _SHARES
+    found = [how_to_read(meaning)]
     for output in seen.setup.outputs:
         of_output = seen.of_outputs().get(output.name, {"none_because": "no point is complete"})
         if set(of_output) == {"none_because"}:
@@ -81,7 +82,7 @@ def _of_morris(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
     table = Table(["", "parameter", "μ*", "95 % interval", "μ", "σ", "standard error from the seeds",
                    "told from the seeds", "effects used"], rows, faint=_not_told(effects, order))
     shown = Shown(f"{output.name}-morris", morris_figure(output, parameters, effects, share), _MORRIS_CAPTION)
-    return Section(title, [" ".join(filter(None, said)), _MORRIS], [shown], [table])
+    return Section(title, [" ".join(filter(None, said))], [shown], [table])
 
 
 def _not_told(effects: dict[str, Any], order: Sequence[int]) -> frozenset[int]:
@@ -148,7 +149,7 @@ def _of_sobol(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
     figures = [Shown(f"{output.name}-indices", indices_figure(parameters, found, share), _SOBOL_CAPTION),
                Shown(f"{output.name}-curves", curves_figure(seen, output, curves),
                      _CURVES_SOBOL)]
-    return Section(output_label(output), [" ".join(filter(None, said)), _SHARES], figures,
+    return Section(output_label(output), [" ".join(filter(None, said))], figures,
                    [_index_table(parameters, found, order)])
 
 
@@ -212,7 +213,7 @@ def _of_chaos(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
     figures = [Shown(f"{output.name}-indices", indices_figure(parameters, indices, share), _CHAOS_CAPTION),
                Shown(f"{output.name}-curves", curves_figure(seen, output, curves, is_smooth=True), _CURVES_CHAOS)]
     order = ranked(numbers(indices["total"]))
-    return Section(unit, [" ".join(filter(None, [*said, _interactions(indices)])), _SHARES], figures,
+    return Section(unit, [" ".join(filter(None, [*said, _interactions(indices)]))], figures,
                    [_index_table(parameters, indices, order)])
 
 
@@ -225,7 +226,7 @@ def _of_dependence(parameters: Sequence[Parameter], output: Output, found: dict[
     faint = frozenset(at for at, i in enumerate(order) if not _depends(dependence, i))
     table = Table(["parameter", "R²", "95 % interval", "p of independence"], rows, faint=faint)
     figure = dependence_figure(parameters, dependence, found["seed_share"])
-    return Section(output_label(output), [said, _DEPENDENCE],
+    return Section(output_label(output), [said],
                    [Shown(f"{output.name}-dependence", figure, _DEPENDENCE_CAPTION)], [table])
 
 

@@ -62,7 +62,7 @@ def _head(seen: Seen) -> Markup:
                "morris": "Elementary effects (Morris)", "sobol": "Shares of the variance (Sobol')",
                "chaos": "Shares of the variance by polynomial chaos", "calibrate": "Calibration (CMA-ES)",
                "posterior": "Posterior by MCMC on surrogates"}[seen.method]
-    seeds = seen.forecast.runs // max(seen.forecast.points - seen.forecast.infeasible, 1)
+    seeds = len({row["seed"] for row in seen.rows})
     return together(element("h1", seen.setup.title),
                     element("p", f"{meaning}: {_counted(seen.forecast.points, 'point')}, "
                                  f"{_counted(seeds, 'seed')} each", class_="faint"))

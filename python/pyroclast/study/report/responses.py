@@ -18,7 +18,7 @@ from ..outputs import Output
 from ..parameters import Parameter
 from .drawing import (BAR, NOT_TOLD, SEED, SEED_HATCH, Bar, along, draw_bar, draw_scatter, grey_patch, legend_above,
                       name_bars, output_label, panels, parameter_label, places, seed_bars, seed_patch)
-from .section import Section, Shown, Table, nothing
+from .section import Section, Shown, Table, how_to_read, nothing
 from .seen import Array, Seen, between, listed, number, numbers, percent
 
 _MEANING = ("A standardised rank regression coefficient says by how many standard deviations of its ranks the output "
@@ -33,7 +33,7 @@ _LEAST_R2 = 0.7  # of a rank regression that describes the output
 
 
 def sections(seen: Seen) -> list[Section]:
-    found = []
+    found = [how_to_read(_MEANING)]
     for output in seen.setup.outputs:
         of_output = seen.of_outputs().get(output.name, {"none_because": "no point is complete"})
         title = output_label(output)
@@ -45,7 +45,7 @@ def sections(seen: Seen) -> list[Section]:
                    Shown(f"{output.name}-curves", curves_figure(seen, output, classes(seen, output)), _CURVES)]
         if seen.method == "grid" and _makes_a_plane(seen.setup.parameters):
             figures.append(Shown(f"{output.name}-contours", contours_figure(seen, output), _CONTOURS))
-        found.append(Section(title, [_sentence(seen.setup.parameters, effects), _MEANING], figures,
+        found.append(Section(title, [_sentence(seen.setup.parameters, effects)], figures,
                              [_table(seen.setup.parameters, effects)]))
     return found
 

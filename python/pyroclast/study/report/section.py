@@ -40,3 +40,8 @@ class Section:
 def nothing(title: str, why: str) -> Section:
     """In the place of what could not be found."""
     return Section(title, [f"Nothing is said of this yet: {why}."])
+
+
+def how_to_read(meaning: str) -> Section:
+    """What the numbers of a method mean, once for all outputs."""
+    return Section("How to read it", [meaning])
