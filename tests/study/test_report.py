@@ -153,11 +153,15 @@ class Standing(ReportTest):
             with self.subTest(name):
                 page = write_report(self.of(method, parameters, rest)).read_text()
                 self.assertIn("This study is not complete: 0 of ", page)
-                self.assertTrue("Nothing is said of this yet" in page or "Nothing could be found yet" in page)
+                self.assertRegex(page, "Nothing is said of this yet|Nothing could be found yet|There are no effects yet")
 
     def test_a_study_that_was_stopped_shows_what_there_is(self) -> None:
         study = self.of('kind = "grid"', XY)
-        self.assertFalse(study.run(First(27)))
+        self.assertFalse(study.run(First(9)))
+        page = write_report(study)
+        self.assertIn("There are no effects yet: 3 complete points", page.read_text())
+        self.assertTrue((page.parent / "f_c-curves.png").exists())
+        self.assertFalse(study.run(First(18)))
         page = write_report(study)
         self.assertIn("This study is not complete: 27 of 36 runs are done.", page.read_text())
         self.assertTrue((page.parent / "f_c-curves.png").exists())

@@ -105,7 +105,7 @@ def morris_figure(output: Output, parameters: Sequence[Parameter], effects: dict
         draw_bar(bars, at, Bar(value[i], low[i], high[i], style.BLUE if told[at] else NOT_TOLD))
         if np.isfinite(error[i]):
             bars.plot(np.full(2, 2.0 * error[i]), [at - 0.42, at + 0.42], color=style.VERMILLION, linewidth=1.2)
-    name_bars(bars, [f"{parameters[i].name}  {at + 1}" for at, i in enumerate(order)], [not t for t in told])
+    name_bars(bars, [f"{parameters[i].name} ({at + 1})" for at, i in enumerate(order)], [not t for t in told])
     bars.set_xlim(left=0.0)
     bars.set_xlabel(f"μ* of {output_label(output)}")
     for at, (_, bar) in enumerate(seeds):

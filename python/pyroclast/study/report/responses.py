@@ -18,7 +18,7 @@ from ..outputs import Output
 from ..parameters import Parameter
 from .drawing import (BAR, NOT_TOLD, SEED, SEED_HATCH, Bar, along, draw_bar, draw_scatter, grey_patch, legend_above,
                       name_bars, output_label, panels, parameter_label, places, seed_bars, seed_patch)
-from .section import Section, Shown, Table, how_to_read, nothing
+from .section import Section, Shown, Table, how_to_read
 from .seen import Array, Seen, between, listed, number, numbers, percent
 
 _MEANING = ("A standardised rank regression coefficient says by how many standard deviations of its ranks the output "
@@ -36,17 +36,17 @@ def sections(seen: Seen) -> list[Section]:
     found = [how_to_read(_MEANING)]
     for output in seen.setup.outputs:
         of_output = seen.of_outputs().get(output.name, {"none_because": "no point is complete"})
-        title = output_label(output)
-        if "none_because" in of_output:
-            found.append(nothing(title, of_output["none_because"]))
-            continue
-        effects = of_output["rank_effects"]
-        figures = [Shown(f"{output.name}-effects", effects_figure(seen.setup.parameters, effects), _EFFECTS),
-                   Shown(f"{output.name}-curves", curves_figure(seen, output, classes(seen, output)), _CURVES)]
-        if seen.method == "grid" and _makes_a_plane(seen.setup.parameters):
-            figures.append(Shown(f"{output.name}-contours", contours_figure(seen, output), _CONTOURS))
-        found.append(Section(title, [_sentence(seen.setup.parameters, effects)], figures,
-                             [_table(seen.setup.parameters, effects)]))
+        figures, texts, tables = [], [], []
+        if (effects := of_output.get("rank_effects")) is not None:
+            texts, tables = [_sentence(seen.setup.parameters, effects)], [_table(seen.setup.parameters, effects)]
+            figures = [Shown(f"{output.name}-effects", effects_figure(seen.setup.parameters, effects), _EFFECTS)]
+        if np.isfinite(seen.means(output.name)).any():
+            curves = curves_figure(seen, output, classes(seen, output))
+            figures.append(Shown(f"{output.name}-curves", curves, _CURVES))
+            if seen.method == "grid" and _makes_a_plane(seen.setup.parameters):
+                figures.append(Shown(f"{output.name}-contours", contours_figure(seen, output), _CONTOURS))
+        texts = texts or [f"There are no effects yet: {of_output['none_because']}."]
+        found.append(Section(output_label(output), texts, figures, tables))
     return found
 
 
@@ -160,8 +160,9 @@ def curves_figure(seen: Seen, output: Output, curves: Sequence[Curve], is_smooth
         draw_scatter(axes, places(parameter, u), means)
         x = places(parameter, curve.u)
         if curve.low is not None and curve.high is not None and not is_smooth:
-            axes.errorbar(x, curve.y, [curve.y - curve.low, curve.high - curve.y], fmt="none", color=style.BLUE,
-                          linewidth=0.9, capsize=2.0)
+            known = np.isfinite(curve.low)  # of one point there is no interval
+            axes.errorbar(x[known], curve.y[known], [(curve.y - curve.low)[known], (curve.high - curve.y)[known]],
+                          fmt="none", color=style.BLUE, linewidth=0.9, capsize=2.0)
         elif curve.low is not None:
             axes.fill_between(x, curve.low, curve.high, color=style.BLUE, alpha=0.2, linewidth=0.0)
         is_line = parameter.distribution.kind != "choice"
