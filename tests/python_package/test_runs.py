@@ -1,5 +1,6 @@
 """Runs in this process: the program's run, looked at, stopped, changed, copied and gone on with."""
 
+import contextlib
 import gc
 import json
 import os
@@ -575,3 +576,56 @@ class Processes(Case):
         self.assertEqual(len(set(runs)), 3)
         with self.assertRaisesRegex(pyroclast.DeckError, "specimen.width"):
             pyroclast.parallel.map_runs(pool.wrong, [1])
+
+
+class Numbers(Case):
+    """What may be a number in the summary is known before a run begins; studies refuse outputs by it."""
+
+    def named(self, case: str, **changes) -> tuple[set[str], set[str]]:
+        """Before the run, and after a look of each stage."""
+        made = pyroclast.Deck(CASES / f"{case}.toml")
+        for key, value in changes.items():
+            made[key.replace("__", ".")] = value
+        run = pyroclast.Run(made, threads=1)
+        before = set(run._core.summary_numbers())
+        while run.next():
+            with contextlib.suppress(pyroclast.Error):  # where that look was the last of its stage
+                run.end_stage()
+        self.assertNotIn("not begun", [stage["outcome"] for stage in run.summary["stages"]])
+        numbers = {name for stage in run.summary["stages"] for name, value in stage["results"].items()
+                   if not isinstance(value, str | None)}
+
+        def paths(node: dict, path: str = "") -> None:
+            for key, value in node.items():
+                if isinstance(value, dict):
+                    paths(value, f"{path}{key}.")
+                elif isinstance(value, int | float):
+                    numbers.add(path + key)
+
+        paths({key: value for key, value in run.summary.items() if key != "stages"})
+        return before, numbers
+
+    def test_every_stage_names_its_results_before_it_begins(self):
+        heats = {"coupling.exchange_increment": "20 K", "coupling.least_cycles": 200,
+                 "coupling.most_cycles": 300}
+        cases = {
+            "hot_strength": {"blocks.count": 150, "stages[1].ramp_time": "20 ms", **heats},
+            "cyclic": {"blocks.count": 150},
+            "residual_capacity": {"blocks.count": 150, **heats},
+            "fire_one_side": {"blocks.count": 200, "stages[1].ramp_time": "20 ms", **heats},
+            "thermal_wall": {},
+            "notched_beam": {"blocks.count": 250},
+            "direct_tension": {"blocks.count": 100},
+        }
+        for case, changes in cases.items():
+            with self.subTest(case):
+                before, numbers = self.named(case, **changes)
+                self.assertGreater(len(numbers), 20)
+                self.assertEqual(numbers - before, set())
+                self.assertNotIn("f_c_none_because", before)
+
+    def test_a_run_that_is_not_begun_has_a_summary_without_numbers(self):
+        run = pyroclast.Run(deck(), threads=1)
+        self.assertIsNone(run.summary["energy_J"]["kinetic"])
+        self.assertIsNone(run.summary["steps"])
+        self.assertEqual(run.results, {})

@@ -84,6 +84,20 @@ class WrongFiles(StudyTest):
         self.refused_by_deck(of_deck(LHS, '[parameters.nu]\nkey = "materials.mortar.nu"\nuniform = [0.2, 0.6]\n'),
                              "[parameters.nu]", "nu = 0.6", "must be")
 
+    def test_output_that_no_run_has(self) -> None:
+        for what, *words in (("f_c_Mpa", "f_c_MPa"), ("energy_J.kinetik", "energy_J.kinetic"),
+                             ("critical_temperature_degC",), ("expansion_reading",),
+                             ("history: stres_MPa largest", "stress_MPa"),
+                             ("history: stress_MPa at temperatur_degC = 400", "temperature_degC"),
+                             ("history: stress_MPa where strian is largest", "strain")):
+            with self.subTest(what):
+                self.refused_by_deck(of_deck(LHS, F_T, outputs=f'E = "E_GPa"\nx = "{what}"'), "x = ", "no run", *words)
+
+    def test_outputs_that_runs_have(self) -> None:
+        outputs = ['f_c_MPa', 'quasi_static', 'energy_J.dissipated_shear', 'cracks.tension_mortar_mortar.length_m', 'steps',
+                   'wall_time_s', 'specimen.mean_block_size_m', 'history: stress_MPa where strain is largest']
+        self.study(of_deck(LHS, F_T, outputs="\n".join(f'o{i} = "{o}"' for i, o in enumerate(outputs)))).check()
+
     def test_stage_that_is_not_there(self) -> None:
         text = of_deck(LHS, '[parameters.v]\nkey = "stages[crush].velocity"\nuniform = ["1 mm/s", "2 mm/s"]\n')
         self.refused_by_deck(text, "[parameters.v]", "crush", "compress")

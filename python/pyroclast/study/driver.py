@@ -80,7 +80,8 @@ class Driver:
         self._take_in_earlier()
 
     def check(self) -> None:
-        """Raises Error with all that is wrong at the ends of ranges and at points that are known beforehand."""
+        """Raises Error with all that is wrong at the ends of ranges and at points that are known beforehand, and with
+        outputs that no run has."""
         wrong = self.points.check_ends()
         if not wrong and not self.plan.draws_as_it_goes:
             for point in self._points(self.plan.propose(self._answers).points):
@@ -88,8 +89,14 @@ class Driver:
                     named = ", ".join(f"{p.name} = {v}{' ' if p.unit else ''}{p.unit}"
                                       for p, v in zip(self.study.parameters, point.values))
                     wrong.append(f"{self.study.place('method')}: at {named}: {point.infeasible}")
+        wrong = wrong or self.points.check_outputs(self._not_seen())
         if wrong:
             raise Error("\n".join(dict.fromkeys(wrong)))
+
+    def _not_seen(self) -> list[Output]:
+        """Outputs that no run has had yet."""
+        seen = {what for r in self.store for what, (value, _) in r.outputs.items() if value is not None}
+        return [o for o in self.study.outputs if o.what not in seen]
 
     def forecast(self) -> Forecast:
         """Of what the method asks for now."""

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import csv
+import difflib
 import json
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -64,12 +66,17 @@ class Output:
         found = _HISTORY.fullmatch(self._place) if self.of_history else None
         return [c for c in (found["column"], found["at"], found["of"]) if c] if found else []
 
+    @property
+    def summary_name(self) -> str:
+        """Of a number of the summary: a name, or a path."""
+        return self.what.removeprefix("summary:").strip()
+
     def of(self, folder: Path, summary: dict[str, Any]) -> tuple[float, str]:
         """The number and, where there is none (NaN), why. Not of functions."""
         return self._of_history(folder) if self.of_history else self._of_summary(summary)
 
     def _of_summary(self, summary: dict[str, Any]) -> tuple[float, str]:
-        name = self.what.removeprefix("summary:").strip()
+        name = self.summary_name
         results = [s.get("results", {}) for s in summary.get("stages", []) if isinstance(s, dict)]
         with_it = [r for r in results if name in r]
         node: Any = with_it[-1][name] if with_it else summary
@@ -94,6 +101,29 @@ class Output:
             if column not in table.names:
                 return math.nan, f"the history has no column {column!r}"
         return _at_place(table, found)
+
+
+@dataclass(frozen=True)
+class Offer:
+    """What the runs of a deck have, that an output can be."""
+
+    numbers: Sequence[str]  #: of the summary: results by name, others by path
+    columns: Sequence[str]  #: of the history
+
+    def lacks(self, output: Output) -> str:
+        """Why no run has an output, with what is nearest to it; empty where runs may have it. Not of functions."""
+        if not output.of_history:
+            name = output.summary_name
+            return "" if name in self.numbers else _unknown(f"no run of this deck has a number {name!r}", name, self.numbers)
+        for column in output.columns:
+            if column not in self.columns:
+                return _unknown(f"no run of this deck has a column {column!r} in its history", column, self.columns)
+        return ""
+
+
+def _unknown(what: str, name: str, known: Sequence[str]) -> str:
+    nearest = difflib.get_close_matches(name, known, 3, 0.6)
+    return what + (f"; nearest: {', '.join(nearest)}" if nearest else f"; there are {', '.join(known)}")
 
 
 def _because(name: str) -> str:

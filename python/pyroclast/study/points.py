@@ -7,7 +7,7 @@ import hashlib
 import json
 import shlex
 import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -17,6 +17,7 @@ from .. import _core
 from ..decks import toml
 from ..errors import DeckError, Error
 from .file import Setup
+from .outputs import Offer, Output
 from .parameters import Parameter, Value, numbered
 
 _ID_LENGTH = 16  # hexadecimal digits: two of a million points are the same by chance once in 10^7 studies
@@ -72,9 +73,12 @@ class Points:
 
     def resolve(self, values: Sequence[Value]) -> tuple[str, dict[str, str], list[Any]]:
         """The deck of a point, hashes of its files, and warnings. Raises Error, as DeckError for a deck in error."""
+        return _core.resolve(self._deck_text(values))
+
+    def _deck_text(self, values: Sequence[Value]) -> _core.DeckText:
         changes = [f"{path}={value}" for path, value in self.changes(values)]
-        return _core.resolve(_core.DeckText(self._text, str(self._study.runner.deck), str(self._study.runner.deck.parent),
-                                            changes, [], []))
+        deck = self._study.runner.deck
+        return _core.DeckText(self._text, str(deck), str(deck.parent), changes, [], [])
 
     def changes(self, values: Sequence[Value]) -> list[tuple[str, str]]:
         """Keys of the deck and what a point writes there, as `--set` takes them."""
@@ -138,6 +142,18 @@ class Points:
             except Error as error:
                 said.setdefault(str(error), f"{place}{error}")
         return list(said.values())
+
+    def check_outputs(self, outputs: Iterable[Output]) -> list[str]:
+        """Which of these no run has, by a run of the middle point that is not begun. Of decks, not of functions."""
+        outputs = [o for o in outputs if not o.is_function]
+        if not outputs or self._study.runner.kind != "pyroclast":
+            return []
+        run = _core.Session.begin(self._deck_text([p.distribution.at(0.5) for p in self._study.parameters]), None, 1, "",
+                                  None, None, False)
+        offer = Offer(run.summary_numbers(), [name for name, _ in run.columns])
+        run.close()
+        return [f"{self._study.place(f'outputs.{o.name}')}: {o.name} = {o.what!r}: {why}" for o in outputs
+                if (why := offer.lacks(o))]
 
     def _wrong_keys(self, middle: Sequence[Value]) -> list[str]:
         """Of parameters whose keys, or whose place in the command, there are not."""

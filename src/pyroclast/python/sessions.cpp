@@ -231,6 +231,9 @@ void bind_sessions(py::module_& m) {
           },
           "The same, not written.")
       .def(
+          "summary_numbers", [](const Held& h) { return summary_numbers(h.get().run()); },
+          "What may be a number in the summary when the run is over: results by name, others by path.")
+      .def(
           "copy",
           [](const Held& h, const std::vector<std::string>& changes, const std::optional<std::string>& out,
              bool overwrite) {

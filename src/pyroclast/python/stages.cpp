@@ -58,9 +58,10 @@ class PythonStage : public Stage {
     return values;
   }
 
-  StageReport report(const History&, RowRange, Outcome) const override {
-    const py::gil_scoped_acquire gil;
+  StageReport report(const History&, RowRange, Outcome outcome) const override {
     StageReport report;
+    if (outcome == Outcome::not_begun) return report;  // what it will have, its class does not tell
+    const py::gil_scoped_acquire gil;
     for (const auto& [name, value] : object().attr("results")().cast<std::map<std::string, double>>())
       report.results.push_back({name, value});
     return report;

@@ -25,6 +25,9 @@ constexpr double kEnergyNonsense = 0.05;
 /// Heat is conserved to rounding, which adds up over some 1e5 evaluations to far less than this share.
 constexpr double kHeatTolerance = 1e-6;
 
+/// End of the names of texts that say why a result is missing.
+constexpr const char* kReason = "none_because";
+
 /// An entry of the summary and the column of the history that it is the last value of.
 struct Entry {
   const char* name;
@@ -83,10 +86,15 @@ StageReport without_results(StageReport report, double energy_error) {
   const auto because = fmt::format("the energy ledger closes only within {:.3g} % of the energy turned over",
                                    100.0 * std::abs(energy_error));
   for (Result& result : report.results) result.value = {};
-  report.results.push_back({"none_because", because});
+  report.results.push_back({kReason, because});
   report.lines = {"no results, because " + because};
   report.warnings = {"this stage has no results: " + because + "; a body that flies off, or too long a step"};
   return report;
+}
+
+/// null where there is no value, as in a run that has no row yet.
+Json json_of(const std::optional<double>& value) {
+  return value ? Json(*value) : Json();
 }
 
 std::optional<double> heat_error(const History& history) {
@@ -116,7 +124,7 @@ template <std::size_t N>
 Json json_of(const std::array<Entry, N>& entries, const History& history) {
   Json json;
   for (const Entry& entry : entries)
-    if (const auto value = last_of(history, entry.column)) json[entry.name] = *value;
+    if (history.has(entry.column)) json[entry.name] = json_of(last_of(history, entry.column));
   return json;
 }
 
@@ -140,11 +148,15 @@ Json json_of(const Summary::OfStage& stage) {
           {"warnings", stage.report.warnings}};
 }
 
+Json whole(const std::optional<double>& value) {
+  return value ? Json(static_cast<std::int64_t>(*value)) : Json();
+}
+
 Json crack_json(const History& history, const std::string& crack) {
-  const auto last = [&](const char* what) { return *last_of(history, (crack + what).c_str()); };
-  return {{"damaged", static_cast<std::int64_t>(last("_damaged"))},
-          {"broken", static_cast<std::int64_t>(last("_broken"))},
-          {"length_m", last("_length_m")}};
+  const auto last = [&](const char* what) { return last_of(history, (crack + what).c_str()); };
+  return {{"damaged", whole(last("_damaged"))},
+          {"broken", whole(last("_broken"))},
+          {"length_m", json_of(last("_length_m"))}};
 }
 
 void add_motion(Json& json, const Summary& summary, const Run& run) {
@@ -153,23 +165,23 @@ void add_motion(Json& json, const Summary& summary, const Run& run) {
   json["energy_J"] = json_of(kEnergy, history);
   for (const auto& name : simulation.mechanics().dissipations())
     json["energy_J"][fmt::format("dissipated_{}", name)] =
-        *last_of(history, fmt::format("dissipated_{}_J", name).c_str());
-  json["energy_J"]["error_over_turnover"] = *summary.energy_error;
+        json_of(last_of(history, fmt::format("dissipated_{}_J", name).c_str()));
+  json["energy_J"]["error_over_turnover"] = json_of(summary.energy_error);
   for (const CrackKind& kind : crack_kinds(simulation.mechanics()))
     json["cracks"][kind.name] = crack_json(history, kind.name);
-  json["cracks"]["mean_opening_m"] = *last_of(history, "mean_opening_m");
+  json["cracks"]["mean_opening_m"] = json_of(last_of(history, "mean_opening_m"));
   json["expansion_reading"] = summary.expansion_reading;
   json["estimated_E_GPa"] = estimate_modulus(simulation.model(), simulation.materials()) * 1e-9;
   json["t_b_m"] = simulation.materials().fracture_zone;
   json["time_step_s"] = simulation.mechanics().time_step();
   json["mass_over_real_mass"] = simulation.mechanics().mass_ratio();
-  json["steps"] = static_cast<std::int64_t>(*last_of(history, "step"));
+  json["steps"] = whole(last_of(history, "step"));
 }
 
 void add_heat(Json& json, const Summary& summary, const Run& run) {
   const Conduction<2>& conduction = *run.simulation().field().conduction();
   json["heat_J"] = json_of(kHeat, run.history());
-  json["heat_J"]["error_over_largest"] = *summary.heat_error;
+  json["heat_J"]["error_over_largest"] = json_of(summary.heat_error);
   json["heat_solver"] = {{"steps", conduction.steps()},
                          {"steps_taken_back", conduction.retries()},
                          {"evaluations", conduction.stages()},
@@ -177,7 +189,18 @@ void add_heat(Json& json, const Summary& summary, const Run& run) {
   const Simulation& simulation = run.simulation();
   if (simulation.moves()) json["heat_solver"]["coupling"] = simulation.coupling_of_heat();
   if (simulation.cracks_hinder_heat())
-    json["heat_solver"]["gap_length_m"] = *last_of(run.history(), "heat_gap_length_m");
+    json["heat_solver"]["gap_length_m"] = json_of(last_of(run.history(), "heat_gap_length_m"));
+}
+
+/// Paths of what is a number, or null, which a number may take the place of.
+void add_numbers(const Json& json, const std::string& path, std::vector<std::string>& names) {
+  for (const auto& [key, value] : json.items()) {
+    const std::string own = path.empty() ? key : path + "." + key;
+    if (value.is_object())
+      add_numbers(value, own, names);
+    else if (value.is_number() || value.is_null())
+      names.push_back(own);
+  }
 }
 
 }  // namespace
@@ -230,8 +253,8 @@ std::string summary_text(const Summary& s, const Run& run) {
   json["sign"] = "stress and strain of the test are positive in compression";
   json["stages"] = Json::array();
   for (const auto& stage : s.stages) json["stages"].push_back(json_of(stage));
-  if (s.energy_error) add_motion(json, s, run);
-  if (s.heat_error) add_heat(json, s, run);
+  if (simulation.moves()) add_motion(json, s, run);
+  if (simulation.field().conduction()) add_heat(json, s, run);
   json["specimen"] = {{"blocks", specimen.tessellation.cells.size()},
                       {"mean_block_size_m", specimen.metrics.mean_size},
                       {"aggregate_fraction_asked", specimen.fraction_asked},
@@ -242,6 +265,21 @@ std::string summary_text(const Summary& s, const Run& run) {
   json["wall_time_s"] = s.wall_time;
   json["warnings"] = s.warnings;
   return json.dump(2) + "\n";
+}
+
+std::vector<std::string> summary_numbers(const Run& run) {
+  std::vector<std::string> names;
+  for (const auto& stage : run.stages())
+    for (const Result& result : stage->report(run.history(), {}, Outcome::not_begun).results)
+      if (!std::holds_alternative<std::string>(result.value) && !result.name.ends_with(kReason))
+        names.push_back(result.name);
+  Json rest = Json::parse(summary_text(summarize(run), run));
+  rest.erase("stages");
+  add_numbers(rest, "", names);
+  std::ranges::sort(names);
+  const auto twice = std::unique(names.begin(), names.end());
+  names.erase(twice, names.end());
+  return names;
 }
 
 void write_summary(const std::filesystem::path& path, const Summary& summary, const Run& run) {

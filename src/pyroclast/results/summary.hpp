@@ -34,6 +34,10 @@ struct Summary {
 /// face value.
 Summary summarize(const Run& run);
 
+/// What may be a number in the summary of a run when it is over: results of stages by their names, "f_c_MPa",
+/// and others by their paths, "energy_J.kinetic".
+std::vector<std::string> summary_numbers(const Run& run);
+
 /// `summary.json`, as a text.
 std::string summary_text(const Summary& summary, const Run& run);
 /// The file.

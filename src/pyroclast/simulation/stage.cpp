@@ -39,4 +39,8 @@ Forecast& Forecast::operator+=(const Forecast& other) {
   return *this;
 }
 
+Result::Value last_value(const History& history, std::string_view column, RowRange rows) {
+  return rows.empty() ? Result::Value() : Result::Value(history.values(column, rows).back());
+}
+
 }  // namespace pyroclast

@@ -86,6 +86,9 @@ struct Result {
   Value value;  ///< monostate: there is none
 };
 
+/// Of a column at the last of some rows; none where there are no rows.
+Result::Value last_value(const History& history, std::string_view column, RowRange rows);
+
 /// What came of a stage.
 struct StageReport {
   std::vector<Result> results;
@@ -129,7 +132,8 @@ class Stage {
   virtual std::vector<Column> columns() const { return {}; }
   virtual std::vector<double> values() const { return {}; }
 
-  /// \param rows  of the stage, in the history
+  /// Names all results that the stage can have, whatever became of it; those that it does not have are empty.
+  /// \param rows  of the stage, in the history; none before its first look
   virtual StageReport report(const History& history, RowRange rows, Outcome outcome) const = 0;
   /// \param foreseen  at the beginning of the stage; the stage changes it to what it leaves
   virtual Forecast forecast(const Simulation& simulation, Foreseen& foreseen) const = 0;

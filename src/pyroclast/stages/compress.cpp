@@ -264,10 +264,18 @@ double Compress::progress(const Simulation& simulation) const {
 }
 
 StageReport Compress::report(const History& history, RowRange rows, Outcome) const {
-  return compression_report(compression_rows(history, rows),
-                            {.is_upwards = is_upwards_,
-                             .to_a_value = keys_.until != CompressUntil::stop_strain,
-                             .waves_until = kPassages * wave_time_});
+  const bool to_a_value = keys_.until != CompressUntil::stop_strain;
+  const auto read = compression_rows(history, rows);
+  const auto report_of = [&](bool is_upwards) {
+    return compression_report(
+        read, {.is_upwards = is_upwards, .to_a_value = to_a_value, .waves_until = kPassages * wave_time_});
+  };
+  StageReport report = report_of(is_upwards_);
+  if (to_a_value && rows.empty()) {  // which way it will go is not known
+    const auto others = report_of(!is_upwards_).results;
+    report.results.insert(report.results.end(), others.begin(), others.end());
+  }
+  return report;
 }
 
 /// How far the platen will probably move, over the height.

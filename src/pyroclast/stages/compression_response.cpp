@@ -107,6 +107,7 @@ std::string line_of(const char* name, const Finding& finding, double factor, int
 
 StageReport unloading_report(const CompressionRows& rows) {
   StageReport report;
+  report.results = {{"E_unloading_GPa", {}}, {"E_unloading_none_because", {}}, {"stress_at_end_MPa", {}}};
   if (rows.count() == 0) return report;
   const double first = rows.stress.front();
   const auto line = fit(rows, rows.count(), kUnloadingTo * first, kUnloadingFrom * first);

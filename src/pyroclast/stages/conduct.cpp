@@ -84,17 +84,18 @@ double Conduct::progress(const Simulation& simulation) const {
 
 StageReport Conduct::report(const History& history, RowRange rows, Outcome outcome) const {
   StageReport report;
+  const auto last_or_none = [&](const char* name) { return last_value(history, name, rows); };
+  report.results = {
+      {"steady", outcome == Outcome::steady},
+      {"heating_time_s", last_or_none("heating_time_s")},
+      {"temperature_mean_degC", last_or_none("temperature_degC")},
+      {"temperature_min_degC", last_or_none("temperature_min_degC")},
+      {"temperature_max_degC", last_or_none("temperature_max_degC")},
+      {"rate_K_s", last_or_none("rate_K_s")},
+  };
   if (rows.empty()) return report;
   const auto last = [&](const char* name) { return history.values(name, rows).back(); };
   const double rate = last("rate_K_s");
-  report.results = {
-      {"steady", outcome == Outcome::steady},
-      {"heating_time_s", last("heating_time_s")},
-      {"temperature_mean_degC", last("temperature_degC")},
-      {"temperature_min_degC", last("temperature_min_degC")},
-      {"temperature_max_degC", last("temperature_max_degC")},
-      {"rate_K_s", rate},
-  };
   report.lines.push_back(fmt::format("mean {:.1f} degC, {:.1f} to {:.1f}, changing by {:.2g} K/s",
                                      last("temperature_degC"), last("temperature_min_degC"),
                                      last("temperature_max_degC"), rate));

@@ -522,14 +522,14 @@ double Drive::progress(const Simulation& simulation) const {
 
 StageReport Drive::report(const History& history, RowRange rows, Outcome) const {
   StageReport report;
-  report.results = {{"steps", steps_}};
-  if (rows.empty()) return report;
-  report.results.push_back({"unbalanced_ratio", history.values("unbalanced_ratio", rows).back()});
-  const double work = history.values("energy_loading_J", rows).back() - first_work_;
-  report.results.push_back({"loading_work_J", work});
+  const bool has_rows = !rows.empty();
+  const double work = has_rows ? history.values("energy_loading_J", rows).back() - first_work_ : 0.0;
+  report.results = {{"steps", steps_},
+                    {"unbalanced_ratio", last_value(history, "unbalanced_ratio", rows)},
+                    {"loading_work_J", has_rows ? Result::Value(work) : Result::Value()}};
   const auto of_records = record_results(keys_.records, keys_.results, body_, history, rows);
   report.results.insert(report.results.end(), of_records.begin(), of_records.end());
-  report.lines = lines_of(keys_.results, of_records);
+  if (has_rows) report.lines = lines_of(keys_.results, of_records);
   if (keys_.control) add_control(report, work);
   return report;
 }

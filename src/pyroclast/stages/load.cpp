@@ -108,12 +108,11 @@ StageReport Load::report(const History& history, RowRange rows, Outcome outcome)
   if (keys_.level)
     report.lines.push_back(fmt::format("load {:.2f} MPa: {:g} of f_c {:.2f} MPa, {}", keys_.stress * 1e-6,
                                        *keys_.level, keys_.strength * 1e-6, keys_.strength_of));
-  if (rows.empty()) return report;
   const auto stress = history.values("stress_MPa", rows);
-  const double borne = *std::ranges::max_element(stress);
-  report.results.push_back({"largest_stress_MPa", borne});
+  const double borne = stress.empty() ? 0.0 : *std::ranges::max_element(stress);
+  report.results.push_back({"largest_stress_MPa", stress.empty() ? Result::Value() : Result::Value(borne)});
   report.results.push_back({"steps", steps_});
-  report.results.push_back({"strain", history.values("strain", rows).back()});
+  report.results.push_back({"strain", last_value(history, "strain", rows)});
   if (outcome == Outcome::crushed) {
     report.lines.push_back(fmt::format("crushed: it bore {:.2f} MPa at most of the {:.2f} MPa of the load",
                                        borne, keys_.stress * 1e-6));

@@ -207,10 +207,11 @@ std::vector<Result> record_results(const std::vector<RecordParameters>& records,
   for (const RecordParameters& record : records) {
     const Column column = column_of(record);
     const auto peak = Course(history, rows, record).peak();
-    if (!peak) continue;
-    results.push_back({fmt::format("peak_{}", column.name), *history.cell(rows.first + *peak, column.name)});
-    results.push_back(
-        {fmt::format("peak_{}_time_s", record.name), *history.cell(rows.first + *peak, "time_s")});
+    const auto at_peak = [&](const std::string& name) {
+      return peak ? Result::Value(*history.cell(rows.first + *peak, name)) : Result::Value();
+    };
+    results.push_back({fmt::format("peak_{}", column.name), at_peak(column.name)});
+    results.push_back({fmt::format("peak_{}_time_s", record.name), at_peak("time_s")});
   }
   Values known = values_of(body);
   for (const RecordResult& each : asked) {

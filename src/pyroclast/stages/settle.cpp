@@ -59,8 +59,7 @@ Verdict Settle::judge(Simulation& simulation) {
 
 StageReport Settle::report(const History& history, RowRange rows, Outcome) const {
   StageReport report;
-  if (rows.empty()) return report;
-  report.results = {{"steps", steps_}, {"unbalanced_ratio", history.values("unbalanced_ratio", rows).back()}};
+  report.results = {{"steps", steps_}, {"unbalanced_ratio", last_value(history, "unbalanced_ratio", rows)}};
   return report;
 }
 
