@@ -180,8 +180,12 @@ class Standing(ReportTest):
         self.assertIn("of the rows miss a value: no indices", page)
 
     def test_one_seed_tells_nothing_from_the_seeds(self) -> None:
-        page = write_report(self.made('kind = "morris"\ntrajectories = 3', XY, seeds=1)).read_text()
-        self.assertIn("With one seed nothing can be told from the seeds", page)
+        for method, figure in (('kind = "morris"\ntrajectories = 3', "f_c-morris"), ("kind = \"lhs\"", "f_c-effects"),
+                               ('kind = "sobol"\nsamples = 16', "f_c-indices")):
+            with self.subTest(method):
+                study = self.made(method, XY, seeds=1)
+                self.assertIn("With one seed it is not known which effects", write_report(study).read_text())
+                self.assertNotIn(NOT_TOLD, _bars(self.figures(study)[figure].axes[0]).values())
 
 
 class Figures(ReportTest):
@@ -216,6 +220,13 @@ class Figures(ReportTest):
         of_curves = [[list(line.get_xdata()) for line in axes.lines] for axes in drawn.axes]
         self.assertIn([0.0, 1.0], of_curves[0])
         self.assertIn([1.0, 2.0, 3.0], of_curves[1])
+
+    def test_curves_are_those_of_the_findings(self) -> None:
+        study = self.made('kind = "lhs"\nsamples = 12', KIND + X)
+        found = study.findings["outputs"]["f_c"]["curves"]
+        self.assertEqual(found[0]["u"], [0.25, 0.75])
+        for axes, curve in zip(self.figures(study)["f_c-curves"].axes, found, strict=True):
+            self.assertIn(curve["mean"], [list(line.get_ydata()) for line in axes.lines])
 
 
 class Texts(unittest.TestCase):

@@ -17,6 +17,7 @@ from .methods import (calibration, ensemble, hsic, main_effects, morris, posteri
 
 Array = NDArray[np.float64]
 _OF_HELD = 1  # beside the method's seed: the points that a surrogate is tried on are another sequence
+_MOST_DRAWS = 4000  # of a chain that findings hold, evenly; its statistics are those of all
 _MOST_CURVE = 40  # points of a response curve that a surrogate gives
 
 
@@ -160,7 +161,8 @@ class _Sampled(_Plan):
 
         def find(y: Array) -> dict[str, Any]:
             effects = main_effects.rank_effects(u, y, self.seed)
-            return {"rank_effects": effects, "curves": [main_effects.curve(u[:, i], y) for i in range(self.k)]}
+            return {"rank_effects": effects, "curves": [
+                main_effects.curve(u[:, i], y, count=p.distribution.count) for i, p in enumerate(self.study.parameters)]}
 
         return {"outputs": self._by_output(answers, find)}
 
@@ -366,7 +368,8 @@ class _Posterior(_OnSurrogate, _ToTargets):
         found, pairs = self._sample(ask(points, self.study.seeds))
         v = posterior.check_points(found, int(self.settings["checks"]), self.seed)
         y = self._of_targets(ask(self._mixed(v), self.study.seeds))
-        result = {"posterior": dataclasses.replace(found, chain=self._mixed(found.chain)), "targets": self._targets,
+        drawn = found.chain[::max(1, len(found.chain) // _MOST_DRAWS)]
+        result = {"posterior": dataclasses.replace(found, chain=self._mixed(drawn)), "targets": self._targets,
                   "q2": [p[1].q2 for p in pairs], "error": [p[1].error for p in pairs]}
         if len(v):
             predicted = np.stack([p[0].predict(v) for p in pairs], axis=1)

@@ -42,30 +42,33 @@ class RankEffects:
     points: int
 
 
-def curve(u: Array, y: Array, most_classes: int = 10) -> Curve:
+def curve(u: Array, y: Array, most_classes: int = 10, count: int | None = None) -> Curve:
     """Mean output by classes of one parameter. u: (n,), y: (n, seeds) or (n,); missing points drop out.
 
-    As many levels as a grid has are classes of their own up to most_classes; else classes of equal count are formed, at
-    least five points in each.
+    count: values that the parameter has, each an even share of the range; None: any. Each value is a class of its own,
+        in the middle of its share, and so are the levels of a grid up to most_classes; else classes of equal count are
+        formed, at least five points in each.
     """
     from scipy.stats import t
 
+    if count is not None:
+        u = (np.minimum(np.floor(np.asarray(u, float) * count), count - 1) + 0.5) / count
     u, means = np.asarray(u, float), seeds.over_seeds(np.atleast_2d(np.asarray(y, float).T).T)
     u, means = u[np.isfinite(means)], means[np.isfinite(means)]
     levels, member = np.unique(u, return_inverse=True)
-    if len(levels) > most_classes:
+    if len(levels) > most_classes and count is None:
         classes = max(1, min(most_classes, len(u) // _LEAST_IN_CLASS))
         member = np.empty(len(u), int)
         member[np.argsort(u, kind="stable")] = np.arange(len(u)) * classes // len(u)
-    count = np.bincount(member)
-    at = np.bincount(member, u) / count
-    mean = np.bincount(member, means) / count
-    half = np.full(len(count), np.nan)
-    several = count > 1
+    points = np.bincount(member)
+    at = np.bincount(member, u) / points
+    mean = np.bincount(member, means) / points
+    half = np.full(len(points), np.nan)
+    several = points > 1
     squares = np.bincount(member, (means - mean[member]) ** 2)[several]
-    n = count[several]
+    n = points[several]
     half[several] = t.ppf(0.5 * (1.0 + seeds.LEVEL), n - 1) * np.sqrt(squares / (n - 1) / n)
-    return Curve(at, mean, mean - half, mean + half, count)
+    return Curve(at, mean, mean - half, mean + half, points)
 
 
 def rank_effects(u: Array, y: Array, seed: int = 0, resamples: int = 1000) -> RankEffects:

@@ -17,7 +17,7 @@ from ..outputs import Output
 from ..parameters import Parameter
 from .drawing import (BAR, NOT_TOLD, Bar, draw_bar, grey_patch, legend_above, name_bars, output_label, parameter_label,
                       seed_bars, seed_patch)
-from .responses import Curve, classes, curves_figure, ranked, seed_sentence, told_sentence
+from .responses import Curve, are_grey, classes, curves_figure, ranked, seed_sentence, told_cell, told_sentence
 from .section import Section, Shown, Table, how_to_read, nothing
 from .seen import Seen, between, number, numbers, percent
 
@@ -77,16 +77,13 @@ def _of_morris(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
     rows = [[str(at + 1), parameter_label(parameters[i]), number(mu_star[i], 3),
              between(effects["mu_star_low"][i], effects["mu_star_high"][i], 3), number(effects["mu"][i], 3),
              number(effects["sigma"][i], 3), number(effects["standard_error"][i], 2),
-             "yes" if effects["told_from_seeds"][i] else "no", f"{effects['used'][i]} of {effects['planned']}"]
+             told_cell(effects["told_from_seeds"][i], share), f"{effects['used'][i]} of {effects['planned']}"]
             for at, i in enumerate(order)]
     table = Table(["", "parameter", "μ*", "95 % interval", "μ", "σ", "standard error from the seeds",
-                   "told from the seeds", "effects used"], rows, faint=_not_told(effects, order))
+                   "told from the seeds", "effects used"], rows,
+                  faint=frozenset(np.flatnonzero(are_grey(effects, share, order))))
     shown = Shown(f"{output.name}-morris", morris_figure(output, parameters, effects, share), _MORRIS_CAPTION)
     return Section(title, [" ".join(filter(None, said))], [shown], [table])
-
-
-def _not_told(effects: dict[str, Any], order: Sequence[int]) -> frozenset[int]:
-    return frozenset(at for at, i in enumerate(order) if not effects["told_from_seeds"][i])
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -94,7 +91,7 @@ def morris_figure(output: Output, parameters: Sequence[Parameter], effects: dict
                   share: dict[str, Any]) -> Figure:
     """Ranked effects and the seed's share, beside effects and what they vary by."""
     order = ranked(numbers(effects["mu_star"]))
-    told = [bool(effects["told_from_seeds"][i]) for i in order]
+    grey = are_grey(effects, share, order)
     seeds = seed_bars(share)
     figure = style.new_figure(max(3.0, 1.7 + BAR * (len(order) + len(seeds))))
     grid = figure.add_gridspec(2, 2, height_ratios=[len(order) + 0.6, len(seeds) + 0.6], width_ratios=[1.1, 1.0])
@@ -102,10 +99,10 @@ def morris_figure(output: Output, parameters: Sequence[Parameter], effects: dict
     value, low, high = (numbers(effects[f"mu_star{end}"]) for end in ("", "_low", "_high"))
     error = numbers(effects["standard_error"])
     for at, i in enumerate(order):
-        draw_bar(bars, at, Bar(value[i], low[i], high[i], style.BLUE if told[at] else NOT_TOLD))
+        draw_bar(bars, at, Bar(value[i], low[i], high[i], NOT_TOLD if grey[at] else style.BLUE))
         if np.isfinite(error[i]):
             bars.plot(np.full(2, 2.0 * error[i]), [at - 0.42, at + 0.42], color=style.VERMILLION, linewidth=1.2)
-    name_bars(bars, [f"{parameters[i].name} ({at + 1})" for at, i in enumerate(order)], [not t for t in told])
+    name_bars(bars, [f"{parameters[i].name} ({at + 1})" for at, i in enumerate(order)], grey)
     bars.set_xlim(left=0.0)
     bars.set_xlabel(f"μ* of {output_label(output)}")
     for at, (_, bar) in enumerate(seeds):
@@ -113,25 +110,25 @@ def morris_figure(output: Output, parameters: Sequence[Parameter], effects: dict
     name_bars(strip, [name for name, _ in seeds])
     strip.set_xlim(0.0, 1.0)
     strip.set_xlabel("Share of the variance")
-    _draw_plane(plane, order, told, effects)
+    _draw_plane(plane, order, grey, effects)
     plane.set_xlabel(f"μ* of {output_label(output)}")
     plane.set_ylabel(f"σ of {output_label(output)}")
-    if not all(told):
+    if any(grey):
         legend_above(figure, [grey_patch()])
     return figure
 
 
-def _draw_plane(axes: Axes, order: Sequence[int], told: Sequence[bool], effects: dict[str, Any]) -> None:
+def _draw_plane(axes: Axes, order: Sequence[int], grey: Sequence[bool], effects: dict[str, Any]) -> None:
     mu_star, sigma = numbers(effects["mu_star"]), numbers(effects["sigma"])
     right, top = 1.1 * np.nanmax(mu_star) or 1.0, 1.15 * np.nanmax(np.nan_to_num(sigma)) or 1.0
     axes.plot([0.0, right], [0.0, right], color=style.FAINT, linewidth=0.8, linestyle=(0, (4, 2)), scalex=False,
               scaley=False)
     for at, i in reversed(list(enumerate(order))):
-        colour = style.BLUE if told[at] else NOT_TOLD
+        colour = NOT_TOLD if grey[at] else style.BLUE
         axes.plot(mu_star[i], sigma[i], "o", color=colour, markersize=10.0, markeredgecolor="white",
                   markeredgewidth=0.6, clip_on=False, zorder=3.0 - 0.01 * at)
         axes.annotate(str(at + 1), (mu_star[i], sigma[i]), ha="center", va="center_baseline", fontsize=6.5,
-                      color="white" if told[at] else style.BLACK, zorder=3.005 - 0.01 * at, annotation_clip=False)
+                      color=style.BLACK if grey[at] else "white", zorder=3.005 - 0.01 * at, annotation_clip=False)
     axes.set_xlim(0.0, right)
     axes.set_ylim(0.0, max(top, 0.15 * right))
 
@@ -150,7 +147,7 @@ def _of_sobol(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
                Shown(f"{output.name}-curves", curves_figure(seen, output, curves),
                      _CURVES_SOBOL)]
     return Section(output_label(output), [" ".join(filter(None, said))], figures,
-                   [_index_table(parameters, found, order)])
+                   [_index_table(parameters, found, share, order)])
 
 
 def _interactions(indices: dict[str, Any]) -> str:
@@ -158,23 +155,24 @@ def _interactions(indices: dict[str, Any]) -> str:
     return f"The main indices add up to {number(total, 2)}; what is left to 1 are interactions, and their error."
 
 
-def _index_table(parameters: Sequence[Parameter], indices: dict[str, Any], order: Sequence[int]) -> Table:
+def _index_table(parameters: Sequence[Parameter], indices: dict[str, Any], share: dict[str, Any],
+                 order: Sequence[int]) -> Table:
     knows = "told_from_seeds" in indices
     rows = [[parameter_label(parameters[i]),
              *(cell for what in ("first", "total") for cell in (
                  number(indices[what][i], 3), between(indices[f"{what}_low"][i], indices[f"{what}_high"][i], 3))),
-             *([number(indices["seed_part"][i], 2), "yes" if indices["told_from_seeds"][i] else "no"] if knows else [])]
+             *([number(indices["seed_part"][i], 2), told_cell(indices["told_from_seeds"][i], share)] if knows else [])]
             for i in order]
     return Table(["parameter", "main", "95 % interval", "total", "95 % interval",
                   *(["of the total from the seeds", "told from the seeds"] if knows else [])], rows,
-                 faint=_not_told(indices, order) if knows else frozenset())
+                 faint=frozenset(np.flatnonzero(are_grey(indices, share, order))))
 
 
 @matplotlib.rc_context(style.STYLE)
 def indices_figure(parameters: Sequence[Parameter], indices: dict[str, Any], share: dict[str, Any]) -> Figure:
     """Main and total index of each parameter, ranked, and the seed's share."""
     order = ranked(numbers(indices["total"]))
-    told = [bool(indices["told_from_seeds"][i]) if "told_from_seeds" in indices else True for i in order]
+    grey = are_grey(indices, share, order)
     seeds = seed_bars(share)
     figure = style.new_figure(1.0 + 1.3 * BAR * (len(order) + len(seeds)), 5.0)
     axes = figure.subplots()
@@ -182,16 +180,16 @@ def indices_figure(parameters: Sequence[Parameter], indices: dict[str, Any], sha
     for at, i in enumerate(order):
         for what, colour, side in (("first", _FIRST, -0.19), ("total", _TOTAL, 0.19)):
             value, low, high = (numbers(indices[f"{what}{end}"])[i] for end in ("", "_low", "_high"))
-            draw_bar(axes, at + side, Bar(value, low, high, colour if told[at] else NOT_TOLD), 0.36)
+            draw_bar(axes, at + side, Bar(value, low, high, NOT_TOLD if grey[at] else colour), 0.36)
             lowest = min(lowest, value, low)
     for at, (_, bar) in enumerate(seeds, start=len(order)):
         draw_bar(axes, at, bar, 0.5)
-    name_bars(axes, [parameters[i].name for i in order] + [name for name, _ in seeds], [not t for t in told])
+    name_bars(axes, [parameters[i].name for i in order] + [name for name, _ in seeds], grey)
     axes.axvline(0.0, color=style.BLACK, linewidth=0.6)
     axes.set_xlim(min(-0.01, 1.05 * lowest), max(1.0, axes.get_xlim()[1]))
     axes.set_xlabel("Share of the variance")
     handles = [Patch(color=_FIRST, label="main"), Patch(color=_TOTAL, label="total"), seed_patch()]
-    legend_above(figure, handles + ([] if all(told) else [grey_patch()]))
+    legend_above(figure, handles + ([grey_patch()] if any(grey) else []))
     return figure
 
 
@@ -214,7 +212,7 @@ def _of_chaos(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
                Shown(f"{output.name}-curves", curves_figure(seen, output, curves, is_smooth=True), _CURVES_CHAOS)]
     order = ranked(numbers(indices["total"]))
     return Section(unit, [" ".join(filter(None, [*said, _interactions(indices)]))], figures,
-                   [_index_table(parameters, indices, order)])
+                   [_index_table(parameters, indices, share, order)])
 
 
 def _of_dependence(parameters: Sequence[Parameter], output: Output, found: dict[str, Any], said: str) -> Section:

@@ -68,8 +68,19 @@ def _sentence(parameters: Sequence[Parameter], effects: dict[str, Any]) -> str:
 def told_sentence(names: Sequence[str], share: dict[str, Any]) -> str:
     """Which parameters' effects are told from the seeds."""
     if share["seeds"] < 2:
-        return "With one seed nothing can be told from the seeds; all effects stay grey."
+        return "With one seed it is not known which effects are told from the seeds."
     return f"Told from the seeds: {listed(names)}." if names else "No parameter's effect is told from the seeds."
+
+
+def are_grey(effects: dict[str, Any], share: dict[str, Any], order: Sequence[int]) -> list[bool]:
+    """Of parameters in an order, whose effects are not told from the seeds; none where nothing is known of that."""
+    knows = share["seeds"] > 1 and "told_from_seeds" in effects
+    return [knows and not effects["told_from_seeds"][i] for i in order]
+
+
+def told_cell(is_told: bool, share: dict[str, Any]) -> str:
+    """Of a table."""
+    return "not known" if share["seeds"] < 2 else "yes" if is_told else "no"
 
 
 def seed_sentence(share: dict[str, Any]) -> str:
@@ -86,17 +97,18 @@ def ranked(values: Array) -> list[int]:
 
 
 def _table(parameters: Sequence[Parameter], effects: dict[str, Any]) -> Table:
-    rows, faint = [], set()
-    for line, i in enumerate(ranked(numbers(effects["coefficient"]))):
-        told = effects["told_from_seeds"][i]
-        faint |= set() if told else {line}
+    rows = []
+    share = effects["seed_share"]
+    order = ranked(numbers(effects["coefficient"]))
+    for i in order:
         rows.append([parameter_label(parameters[i]),
                      *(cell for what in ("coefficient", "correlation") for cell in (
                          number(effects[what][i], 2),
                          between(effects[f"{what}_low"][i], effects[f"{what}_high"][i], 2))),
-                     number(effects["standard_error"][i], 2), "yes" if told else "no"])
+                     number(effects["standard_error"][i], 2), told_cell(effects["told_from_seeds"][i], share)])
     return Table(["parameter", "coefficient", "95 % interval", "correlation", "95 % interval",
-                  "standard error from the seeds", "told from the seeds"], rows, faint=frozenset(faint))
+                  "standard error from the seeds", "told from the seeds"], rows,
+                 faint=frozenset(np.flatnonzero(are_grey(effects, share, order))))
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -106,21 +118,21 @@ def effects_figure(parameters: Sequence[Parameter], effects: dict[str, Any]) -> 
     seeds = [(name, _root(bar)) for name, bar in seed_bars(effects["seed_share"])]
     figure = style.new_figure(1.0 + BAR * (len(order) + len(seeds)), 5.0)
     axes = figure.subplots()
-    told = [bool(effects["told_from_seeds"][i]) for i in order]
+    grey = are_grey(effects, effects["seed_share"], order)
     for at, i in enumerate(order):
         value, low, high = (numbers(effects[f"coefficient{end}"])[i] for end in ("", "_low", "_high"))
-        draw_bar(axes, at, Bar(value, low, high, style.BLUE if told[at] else NOT_TOLD))
+        draw_bar(axes, at, Bar(value, low, high, NOT_TOLD if grey[at] else style.BLUE))
         axes.plot(numbers(effects["correlation"])[i], at, "D", color="white", markeredgecolor=style.BLACK,
                   markersize=4.0, markeredgewidth=0.8, zorder=4)
     for at, (_, bar) in enumerate(seeds, start=len(order)):
         draw_bar(axes, at, bar)
     axes.axvline(0.0, color=style.BLACK, linewidth=0.6)
-    name_bars(axes, [parameters[i].name for i in order] + [name for name, _ in seeds], [not t for t in told])
+    name_bars(axes, [parameters[i].name for i in order] + [name for name, _ in seeds], grey)
     axes.set_xlim(min(-0.05, *_ends(axes)), max(1.0, *_ends(axes)))
     axes.set_xlabel("Standardised rank regression coefficient")
     handles: list[Any] = [Line2D([], [], marker="D", linestyle="", color="white", markeredgecolor=style.BLACK,
                                  markersize=4.0, label="Spearman's correlation"), seed_patch("seed: root of its share")]
-    legend_above(figure, handles + ([] if all(told) else [grey_patch()]))
+    legend_above(figure, handles + ([grey_patch()] if any(grey) else []))
     return figure
 
 
@@ -145,9 +157,10 @@ class Curve:
 
 
 def classes(seen: Seen, output: Output, points: Any = slice(None)) -> list[Curve]:
-    """Means by classes of each parameter, of some points or all; each integer and choice is a class of its own."""
+    """Means by classes of each parameter, of some points or all."""
     means = seen.means(output.name)[points]
-    found = [main_effects.curve(u, means) for u in seen.u[points].T]
+    found = [main_effects.curve(u, means, count=p.distribution.count)
+             for u, p in zip(seen.asked[points].T, seen.setup.parameters)]
     return [Curve(c.u, c.mean, c.low, c.high) for c in found]
 
 
