@@ -183,6 +183,21 @@ class Morris(unittest.TestCase):
         # sqrt(5)/6 is the standard deviation of four levels from 0 to 1.
         self.assertAlmostEqual(width, 2 * 1.96 * np.sqrt(5) / 6 / np.sqrt(20), delta=0.03)
 
+    def test_intervals_of_few_trajectories_hold_the_mean(self):
+        many = morris.design(20, 5000, 4, 1)
+        exact = morris.effects(many, morris_function(many)[..., None], resamples=2).mu_star
+        inside = 0
+        for repeat in range(60):
+            design = morris.design(20, 10, 4, 100 + repeat)
+            found = morris.effects(design, morris_function(design)[..., None], repeat, resamples=300)
+            inside += ((found.mu_star_low <= exact) & (exact <= found.mu_star_high)).sum()
+        self.assertGreater(inside / 1200, 0.89, "0.86 without the correction")
+
+    def test_level_of_few(self):
+        self.assertEqual(seeds.level(1), 1.0)
+        self.assertAlmostEqual(seeds.level(10), 0.9829, 4)  # t of 9 degrees is 2.262, times the root of 10/9
+        self.assertAlmostEqual(seeds.level(10**6), 0.95, 5)
+
     def test_noise_is_no_effect(self):
         told = 0
         for repeat in range(20):

@@ -5,6 +5,7 @@ import math
 import os
 import random
 import signal
+import shutil
 import subprocess
 import sys
 import threading
@@ -269,6 +270,18 @@ class OfDecks(StudyTest):
         said("run", str(text), "--executor", "commands")
         self.assertIn("2 of 2 done", said("status", str(text)))
         self.assertEqual(said("table", str(text), "-o", "-").count("\n"), 3)
+
+
+class Lists(StudyTest):
+    def test_a_list_of_commands_makes_what_the_program_does_not(self) -> None:
+        for text in (self.of_command("plain"), self.of_function('kind = "lhs"\nsamples = 4', rest="")):
+            study = self.study(text)
+            self.assertFalse(study.run("commands"))
+            for line in (study.setup.folder / "commands.txt").read_text().splitlines():
+                subprocess.run(line, shell=True, check=True, stdout=subprocess.DEVNULL)
+            self.assertTrue(study.run("commands"))
+            self.assertEqual({row["state"] for row in study.rows()}, {"done"})
+            shutil.rmtree(study.setup.folder)
 
 
 class Judgements(unittest.TestCase):

@@ -89,7 +89,7 @@ def rank_effects(u: Array, y: Array, seed: int = 0, resamples: int = 1000) -> Ra
     correlation, coefficient, r2 = _ranked(u, means)
     draws = np.random.default_rng(seed).integers(0, points, (resamples, points))
     resampled = np.array([_ranked(u[draw], means[draw])[:2] for draw in draws])
-    low, high = seeds.interval(resampled)
+    low, high = seeds.interval(resampled, points)
 
     standard_error, limit = np.full(count, np.nan), float("nan")
     if runs > 1:

@@ -81,7 +81,8 @@ def effects(design: Array, y: Array, seed: int = 0, resamples: int = 1000) -> Ef
         warnings.simplefilter("ignore", RuntimeWarning)
         mu, mu_star = np.nanmean(elementary, axis=0), np.nanmean(np.abs(elementary), axis=0)
         sigma = np.nanstd(elementary, axis=0, ddof=1)
-        low, high = seeds.interval(np.nanmean(np.abs(elementary)[draws], axis=1))
+        resampled = np.nanmean(np.abs(elementary)[draws], axis=1)
+        low, high = np.transpose([seeds.interval(of_one, n) for of_one, n in zip(resampled.T, used)])
         standard_error = np.full(count, np.nan)
         if runs > 1:
             standard_error = np.sqrt(np.nanmean(by_seed.var(axis=2, ddof=1), axis=0) / runs)

@@ -47,7 +47,7 @@ def share(y: Array, seed: int = 0, resamples: int = 1000) -> Share:
     single, mean = _shares(y, np.full((1, count), 1.0 / count))
     weights = np.random.default_rng(seed).multinomial(count, np.full(count, 1.0 / count), resamples) / count
     singles, means = _shares(y, weights[weights.max(axis=1) < 1.0])
-    (single_low, mean_low), (single_high, mean_high) = interval(np.stack([singles, means], axis=1))
+    (single_low, mean_low), (single_high, mean_high) = interval(np.stack([singles, means], axis=1), count)
     return Share(float(single[0]), single_low, single_high, float(mean[0]), mean_low, mean_high, points, count)
 
 
@@ -82,7 +82,21 @@ def rest_variance(y: Array) -> float:
     return float((rest**2).sum() / ((points - 1) * (count - 1)))
 
 
-def interval(resampled: Array) -> tuple[Array, Array]:
-    """Percentile interval of the resampled values (resamples, ...), both ends of shape (...)."""
-    low, high = np.nanpercentile(resampled, [50.0 * (1.0 - LEVEL), 50.0 * (1.0 + LEVEL)], axis=0)
+def level(count: int) -> float:
+    """Which share of the resampled values an interval has to hold, for as many things as were resampled.
+
+    Above LEVEL: a bootstrap of few is too narrow, as a normal distribution is beside Student's, and for its variance is
+    that of n, not n - 1 (the expanded percentile interval: Hesterberg, Am. Stat. 69, 2015, 371-386). 1 for one thing.
+    """
+    from scipy.stats import norm, t
+
+    if count < 2:
+        return 1.0
+    return float(1.0 - 2.0 * norm.sf(np.sqrt(count / (count - 1.0)) * t.ppf(0.5 * (1.0 + LEVEL), count - 1)))
+
+
+def interval(resampled: Array, count: int) -> tuple[Array, Array]:
+    """Percentile interval of the resampled values (resamples, ...), both ends of shape (...). count: see `level`."""
+    share = level(count)
+    low, high = np.nanpercentile(resampled, [50.0 * (1.0 - share), 50.0 * (1.0 + share)], axis=0)
     return low, high

@@ -11,6 +11,7 @@ from ...errors import Error
 from . import _needs, sampling, seeds
 
 Array = NDArray[np.float64]
+_MOST_LEVEL = 1.0 - 1e-6  # OpenTURNS takes none of 1
 MOST_LOST = 0.05
 """Share of the rows that may be lost before indices are refused."""
 
@@ -72,7 +73,7 @@ def indices(y: Array, seed: int = 0, allow_missing: bool = False, resamples: int
         # The estimator reads no inputs; it only wants their number.
         algorithm = ot.MartinezSensitivityAlgorithm(ot.Sample(len(outputs), blocks - 2), outputs, rows)
         algorithm.setBootstrapSize(resamples)
-        algorithm.setConfidenceLevel(seeds.LEVEL)
+        algorithm.setConfidenceLevel(min(seeds.level(rows), _MOST_LEVEL))
         algorithm.setUseAsymptoticDistribution(False)
         first, total = np.array(algorithm.getFirstOrderIndices()), np.array(algorithm.getTotalOrderIndices())
         intervals = algorithm.getFirstOrderIndicesInterval(), algorithm.getTotalOrderIndicesInterval()

@@ -148,7 +148,7 @@ def indices(surrogate: Surrogate, validation: Validation, seed: int = 0, resampl
     points = len(surrogate.y)
     draws = np.random.default_rng(seed).integers(0, points, (resamples, points))
     refitted = (np.linalg.lstsq(values[draw], surrogate.y[draw], rcond=None)[0] for draw in draws)
-    low, high = seeds.interval(np.array([_shares(degrees, again) for again in refitted]))
+    low, high = seeds.interval(np.array([_shares(degrees, again) for again in refitted]), points)
     return ChaosIndices(first, low[0], high[0], total, low[1], high[1])
 
 
