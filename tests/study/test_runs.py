@@ -258,6 +258,10 @@ class OfDecks(StudyTest):
             return done.stdout
 
         self.assertIn("2 points, 2 runs", said("check", str(text)))
+        slow = text.with_name("slow.toml")
+        slow.write_text(text.read_text().replace('"4 mm/s"', '"20 mm/s"'))
+        warned = subprocess.run([PROGRAM, "study", "check", str(slow)], capture_output=True, text=True).stderr
+        self.assertRegex(warned, "warning: .*velocity")
         foreseen = said("run", str(text), "--dry-run")
         self.assertIn("2 left", foreseen)
         self.assertRegex(foreseen, r"time +\d")

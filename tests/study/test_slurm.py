@@ -141,13 +141,19 @@ class Ordinary(SlurmTest):
 
     def test_runs_of_a_task(self) -> None:
         def count(expected: float, jobs: int, **settings) -> int:
-            return runs_per_task(Settings(slots=2, **settings), [replace(j, expected=expected) for j in self.jobs(jobs)])
+            return runs_per_task(Settings(slots=2, **settings), jobs, expected)
 
         self.assertEqual(count(0.0, 100), 1)  # not known
         self.assertEqual(count(60.0, 100), 10)
         self.assertEqual(count(60.0, 6), 3)  # all slots get some
         self.assertEqual(count(60.0, 100, time=300.0), 4)
         self.assertEqual(count(7200.0, 100), 1)
+
+    def test_the_first_runs_tell_how_many_a_task_takes(self) -> None:
+        self.run_all(self.jobs(12), points_per_task=0)
+        self.assert_all_done(12)
+        self.assert_made_once(12)
+        self.assertEqual([len(job.tasks) for job in self.slurm.jobs], [2, 2])  # two runs, then five in each of two tasks
 
     def test_of_a_function(self) -> None:
         file = self.folder / "model.py"

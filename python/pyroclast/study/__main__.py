@@ -102,8 +102,14 @@ def _run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _foresee(study: Study) -> int:
+def _checked(study: Study) -> None:
     study.check()
+    for warning in study.warnings():
+        print(f"warning: {warning}", file=sys.stderr)
+
+
+def _foresee(study: Study) -> int:
+    _checked(study)
     seen = study.forecast()
     setup = study.setup
     more = "" if seen.is_complete else " of the first generation; more follow"
@@ -124,7 +130,7 @@ def _foresee(study: Study) -> int:
 
 def _check(options: argparse.Namespace) -> int:
     study = _study(options)
-    study.check()
+    _checked(study)
     seen = study.forecast()
     print(f"{options.study} is valid: {study.setup.title}; {seen.points} points, {seen.runs} runs"
           + ("" if seen.is_complete else " to begin with"))

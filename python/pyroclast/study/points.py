@@ -143,6 +143,12 @@ class Points:
                 said.setdefault(str(error), f"{place}{error}")
         return list(said.values())
 
+    def warnings(self) -> list[Any]:
+        """What the check of the deck in the middle of all ranges warns of, as Diagnostic."""
+        if self._study.runner.kind != "pyroclast":
+            return []
+        return self.resolve([p.distribution.at(0.5) for p in self._study.parameters])[2]
+
     def check_outputs(self, outputs: Iterable[Output]) -> list[str]:
         """Which of these no run has, by a run of the middle point that is not begun. Of decks, not of functions."""
         outputs = [o for o in outputs if not o.is_function]

@@ -67,6 +67,11 @@ class Study:
         with self._driver() as driver:
             driver.check()
 
+    def warnings(self) -> list[Any]:
+        """What the check of the deck in the middle of all ranges warns of, as `pyroclast.errors.Diagnostic`."""
+        with self._driver() as driver:
+            return driver.points.warnings()
+
     def forecast(self) -> Forecast:
         """What is left to run."""
         with self._driver() as driver:

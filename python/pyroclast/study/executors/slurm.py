@@ -13,6 +13,7 @@ import math
 import os
 import re
 import shlex
+import statistics
 import subprocess
 import sys
 import time
@@ -163,6 +164,7 @@ class _Queue:
         self._slurm, self._runs, self._finished, self._stopped = slurm, runs, finished, stopped
         self._left = {job.id: job for job in jobs}
         self._book = Book(runs.parent)
+        self._walls: list[float] = []  # of runs that are over, s
         self._lost: dict[str, tuple[int, tuple[str, int] | None]] = {}  # times, and what was kept at the last
         self._gone: dict[tuple[str, int], float] = {}  # tasks that left the queue without all results, and when
         self._has_results = False
@@ -209,6 +211,8 @@ class _Queue:
 
     def _take(self, result: Result) -> None:
         del self._left[result.id]
+        if result.wall > 0.0:
+            self._walls.append(result.wall)
         self._lost.pop(result.id, None)
         self._finished(result)
 
@@ -295,7 +299,12 @@ class _Queue:
         waiting = [job for job in self._left.values() if job.id not in queued]
         while waiting and not self._stopped() and time.monotonic() >= self._next_try:
             alone = [job for job in waiting if job.id in self._lost]  # what ended a task may end the next one
-            chosen, count = (alone, 1) if alone else (waiting, runs_per_task(self._slurm.settings, waiting))
+            chosen, count = (alone, 1) if alone else (waiting, self._runs_per_task(waiting))
+            if not count:  # nobody knows how long a run takes: the first tell
+                if queued:
+                    return
+                chosen, count = waiting[:self._slurm.slots], 1
+                queued.update(job.id for job in chosen)
             chosen = chosen[:count * self._size]
             after = [a.job for a in self._book.arrays if a.job and any((a.name, task) in states for task in a.open)]
             array = self._book.add(chosen, count)
@@ -320,6 +329,14 @@ class _Queue:
             self._slurm.say(f"job {array.job}: {len(chosen)} runs in {len(array.open)} tasks")
             taken = set(array.runs)
             waiting = [job for job in waiting if job.id not in taken]
+
+    def _runs_per_task(self, jobs: Sequence[Job]) -> int:
+        """As the study file says, else by the time that runs take; 0 where that is not known and tasks would be many."""
+        settings = self._slurm.settings
+        expected = max(max(job.expected for job in jobs), statistics.median(self._walls) if self._walls else 0.0)
+        if not settings.points_per_task and not expected > 0.0 and len(jobs) > settings.slots:
+            return 0
+        return runs_per_task(settings, len(jobs), expected)
 
     def _sbatch(self, array: Array, after: str) -> str:
         """The number of the job. Raises Error with the words of sbatch."""
@@ -365,15 +382,14 @@ class _Queue:
                             f"command takes them in (to end them: scancel {jobs})")
 
 
-def runs_per_task(settings: Settings, jobs: Sequence[Job]) -> int:
-    """As the study file says, else by the time that the jobs will probably take."""
+def runs_per_task(settings: Settings, jobs: int, expected: float) -> int:
+    """As the study file says, else by the time that a run will probably take, s; 0: not known."""
     if settings.points_per_task:
         return settings.points_per_task
-    expected = max(job.expected for job in jobs)
     if not expected > 0.0:
         return 1
     in_time = int(min(_TASK_TIME, _SHARE_OF_TIME * settings.time) / expected)
-    return max(1, min(in_time, len(jobs) // settings.slots))
+    return max(1, min(in_time, jobs // settings.slots))
 
 
 def _ask(*words: str) -> str:
