@@ -288,6 +288,50 @@ class Lists(StudyTest):
             shutil.rmtree(study.setup.folder)
 
 
+TWO_AS_ONE = '''
+def model(seed, a, b, c, d):
+    """Of a and b only their product is seen, of d nothing."""
+    shift = 0.002 * (seed - 2)
+    return {"stiffness": a * b + shift, "strength": c ** 1.5 + a * b - shift}
+'''
+
+
+class Calibration(StudyTest):
+    def test_finds_the_parameters_of_a_target_and_says_what_it_cannot_tell_apart(self) -> None:
+        self.model.write_text(TWO_AS_ONE)
+        parameters = "".join(f"[parameters.{name}]\nuniform = [1, 3]\n" for name in "abcd")
+        truth = {"ab": 2.6, "c": 2.7}
+        targets = {"stiffness": truth["ab"], "strength": truth["c"] ** 1.5 + truth["ab"]}
+        study = self.study(f'''
+[study]
+runner = "function"
+function = "model.py:model"
+seeds = 3
+[method]
+kind = "calibrate"
+generations = 60
+{parameters}
+[outputs]
+stiffness = "stiffness"
+strength = "strength"
+''' + "".join(f"[targets.{name}]\nvalue = {value}\nsd = 0.02\n" for name, value in targets.items()))
+        self.assertTrue(study.run(jobs=1))
+        found = study.findings
+        best = [1.0 + 2.0 * u for u in found["best"]["u"]]
+        self.assertAlmostEqual(best[0] * best[1], truth["ab"], delta=0.03)
+        self.assertAlmostEqual(best[2], truth["c"], delta=0.02)
+        told = found["uncertainty"]
+        self.assertLess(told["sd_ratio"][2], 0.1)
+        self.assertTrue(told["not_determined"][3], told["sd_ratio"])
+        free = [v for v, is_free in zip(told["directions"], told["direction_not_determined"]) if is_free]
+        self.assertEqual(len(free), 2)
+        self.assertLess(max(abs(v[2]) for v in free), 0.05)  # c is told
+        along = [best[0], -best[1]]  # a and b against each other, by which the product stays
+        length = sum(x * x for x in along) ** 0.5
+        inside = sum((v[0] * along[0] + v[1] * along[1]) ** 2 for v in free) ** 0.5 / length
+        self.assertGreater(inside, 0.97)
+
+
 class Judgements(unittest.TestCase):
     def test_outcomes(self) -> None:
         self.assertEqual(judge({"outcome": "completed"})[0], "done")
