@@ -123,7 +123,9 @@ class Offer:
 
 def _unknown(what: str, name: str, known: Sequence[str]) -> str:
     nearest = difflib.get_close_matches(name, known, 3, 0.6)
-    return what + (f"; nearest: {', '.join(nearest)}" if nearest else f"; there are {', '.join(known)}")
+    short = [n for n in known if "." not in n]
+    more = ", and others by their path, such as energy_J.kinetic" if len(short) < len(known) else ""
+    return what + (f"; nearest: {', '.join(nearest)}" if nearest else f"; there are {', '.join(short)}{more}")
 
 
 def _because(name: str) -> str:

@@ -55,7 +55,7 @@ toml::table parse_toml(const SourceText& source, const std::string& name) {
   } catch (const toml::parse_error& error) {
     fail_to_parse(position(error.source().begin), error.description());
   }
-  if (root.empty()) fail({1, 1}, "the deck is empty", "");
+  if (root.empty()) fail({1, 1}, "the file is empty", "");
   return root;
 }
 
