@@ -8,6 +8,7 @@ import math
 import os
 import shutil
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from ..errors import Error
@@ -48,7 +49,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--program", help=argparse.SUPPRESS)  # by which `pyroclast study` names itself
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
-    def command(name: str, do, meaning: str) -> argparse.ArgumentParser:
+    def command(name: str, do: Callable[[argparse.Namespace], int], meaning: str) -> argparse.ArgumentParser:
         added = commands.add_parser(name, help=meaning, description=meaning)
         added.set_defaults(do=do)
         if name != "keys":

@@ -64,8 +64,9 @@ def main(words: list[str]) -> int:
     left = [job for job in left if made(job, runs) is None]
     for job in left:
         record = read_record(runs, job.id)
-        is_begun = record is not None and record.state == BEGUN
-        if is_begun and record.attempts >= MOST_IN_VAIN and kept(runs / job.id) is None:
+        if record is None or record.state != BEGUN:
+            continue
+        if record.attempts >= MOST_IN_VAIN and kept(runs / job.id) is None:
             given_up(job, runs, f"was stopped {record.attempts} times, as a task has no more time, and leaves no "
                      "checkpoint from which it could go on")
     left = [job for job in left if made(job, runs) is None]
