@@ -28,7 +28,7 @@ class Readme(unittest.TestCase):
         for line in lines:
             with self.subTest(line):
                 done = subprocess.run(["bash", "-c", line], cwd=folder, env=environment, capture_output=True, text=True,
-                                      timeout=300, check=False)
+                                      timeout=1200, check=False)
                 self.assertEqual(done.returncode, 0, done.stdout[-1000:] + done.stderr)
                 self.assertNotIn("no figures were drawn", done.stderr)
         for promised in ("mine.toml", "fire.toml", "runs/mine-specimen/figures", "runs/mine-properties/figures",
