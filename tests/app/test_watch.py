@@ -49,7 +49,7 @@ class Terminal:
 
     def end(self) -> int:
         """The exit code, when all that was started has ended."""
-        code = self.process.wait(timeout=120)
+        code = self.process.wait(timeout=600)
         self._reader.join(timeout=20)
         assert not self._reader.is_alive(), "something still has the terminal"
         return code
@@ -70,7 +70,7 @@ class Watched(unittest.TestCase):
     @classmethod
     def pyroclast(cls, *words: str, **changes: str) -> subprocess.CompletedProcess:
         return subprocess.run([PROGRAM, *words], cwd=cls.folder, env={**os.environ, "DISPLAY": "", **changes},
-                              capture_output=True, text=True, timeout=120, check=False)
+                              capture_output=True, text=True, timeout=600, check=False)
 
     def assert_same_results(self, name: str) -> None:
         for file in ("history.csv", "fields/frames.csv", "deck.toml"):
