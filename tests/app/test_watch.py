@@ -41,7 +41,7 @@ class Terminal:
         os.close(descriptor)
 
     def wait_for(self, text: str) -> None:
-        for _ in range(600):
+        for _ in range(6000):
             if text in self.shown:
                 return
             time.sleep(0.1)
