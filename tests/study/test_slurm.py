@@ -208,7 +208,7 @@ class Refused(SlurmTest):
 class Lost(SlurmTest):
     def test_cancelled_task(self) -> None:
         def cancel() -> None:
-            self.await_(lambda: len(self.slurm.running) == 2 and len(self.made()) == 2)
+            self.await_(lambda: len(self.made()) == 2 and (self.runs / "run-4" / "begun").exists())
             self.slurm.cancel(self.slurm.jobs[0], 1)
             self.await_(lambda: not self.slurm.jobs[0].tasks[1].state)
             self.open_gate()
