@@ -4,8 +4,8 @@ import json
 import math
 import os
 import random
-import signal
 import shutil
+import signal
 import subprocess
 import sys
 import threading

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import difflib
 import json
 import math
 import re
@@ -111,10 +110,12 @@ class Offer:
     columns: Sequence[str]  #: of the history
 
     def lacks(self, output: Output) -> str:
-        """Why no run has an output, with what is nearest to it; empty where runs may have it. Not of functions."""
+        """Why no run has an output, with the nearest name; empty where runs may have it. Not of functions."""
         if not output.of_history:
             name = output.summary_name
-            return "" if name in self.numbers else _unknown(f"no run of this deck has a number {name!r}", name, self.numbers)
+            if name in self.numbers:
+                return ""
+            return _unknown(f"no run of this deck has a number {name!r}", name, self.numbers)
         for column in output.columns:
             if column not in self.columns:
                 return _unknown(f"no run of this deck has a column {column!r} in its history", column, self.columns)
@@ -122,10 +123,13 @@ class Offer:
 
 
 def _unknown(what: str, name: str, known: Sequence[str]) -> str:
-    nearest = difflib.get_close_matches(name, known, 3, 0.6)
+    from .. import _core  # which a task does without
+
+    if hint := _core.did_you_mean(name, known):
+        return f"{what}; {hint}"
     short = [n for n in known if "." not in n]
     more = ", and others by their path, such as energy_J.kinetic" if len(short) < len(known) else ""
-    return what + (f"; nearest: {', '.join(nearest)}" if nearest else f"; there are {', '.join(short)}{more}")
+    return f"{what}; there are {', '.join(short)}{more}"
 
 
 def _because(name: str) -> str:

@@ -8,6 +8,7 @@
 #include <pybind11/stl.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/nearest.hpp"
 #include "pyroclast/deck/reference.hpp"
 #include "pyroclast/python/bindings.hpp"
 #include "pyroclast/python/errors.hpp"
@@ -186,6 +187,12 @@ void bind_tables(py::module_& m) {
         }));
       },
       py::arg("read"), "All that a reader of a TomlFile asks for, as Markdown.");
+  m.def(
+      "did_you_mean",
+      [](const std::string& text, const std::vector<std::string>& words) {
+        return did_you_mean(text, words);
+      },
+      py::arg("text"), py::arg("words"), "Names the nearest word; empty if none is near.");
 }
 
 }  // namespace pyroclast::python

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -192,14 +193,37 @@ void add_heat(Json& json, const Summary& summary, const Run& run) {
     json["heat_solver"]["gap_length_m"] = json_of(last_of(run.history(), "heat_gap_length_m"));
 }
 
+Json summary_json(const Summary& s, const Run& run) {
+  const Simulation& simulation = run.simulation();
+  const specimen::Specimen& specimen = simulation.specimen();
+  Json json;
+  json["title"] = s.title;
+  json["outcome"] = describe(s.outcome);
+  json["sign"] = "stress and strain of the test are positive in compression";
+  json["stages"] = Json::array();
+  for (const auto& stage : s.stages) json["stages"].push_back(json_of(stage));
+  if (simulation.moves()) add_motion(json, s, run);
+  if (simulation.field().conduction()) add_heat(json, s, run);
+  json["specimen"] = {{"blocks", specimen.tessellation.cells.size()},
+                      {"mean_block_size_m", specimen.metrics.mean_size},
+                      {"aggregate_fraction_asked", specimen.fraction_asked},
+                      {"aggregate_fraction_placed", specimen.fraction_placed},
+                      {"aggregate_fraction_superposed", specimen.fraction_superposed}};
+  for (std::size_t i = 0; i < specimen.phases.size(); ++i)
+    json["specimen"]["fraction"][specimen.phases[i]] = specimen.fraction[i];
+  json["wall_time_s"] = s.wall_time;
+  json["warnings"] = s.warnings;
+  return json;
+}
+
 /// Paths of what is a number, or null, which a number may take the place of.
-void add_numbers(const Json& json, const std::string& path, std::vector<std::string>& names) {
+void add_numbers(const Json& json, const std::string& path, std::set<std::string>& names) {
   for (const auto& [key, value] : json.items()) {
     const std::string own = path.empty() ? key : path + "." + key;
     if (value.is_object())
       add_numbers(value, own, names);
     else if (value.is_number() || value.is_null())
-      names.push_back(own);
+      names.insert(own);
   }
 }
 
@@ -245,41 +269,17 @@ Summary summarize(const Run& run) {
 }
 
 std::string summary_text(const Summary& s, const Run& run) {
-  const Simulation& simulation = run.simulation();
-  const specimen::Specimen& specimen = simulation.specimen();
-  Json json;
-  json["title"] = s.title;
-  json["outcome"] = describe(s.outcome);
-  json["sign"] = "stress and strain of the test are positive in compression";
-  json["stages"] = Json::array();
-  for (const auto& stage : s.stages) json["stages"].push_back(json_of(stage));
-  if (simulation.moves()) add_motion(json, s, run);
-  if (simulation.field().conduction()) add_heat(json, s, run);
-  json["specimen"] = {{"blocks", specimen.tessellation.cells.size()},
-                      {"mean_block_size_m", specimen.metrics.mean_size},
-                      {"aggregate_fraction_asked", specimen.fraction_asked},
-                      {"aggregate_fraction_placed", specimen.fraction_placed},
-                      {"aggregate_fraction_superposed", specimen.fraction_superposed}};
-  for (std::size_t i = 0; i < specimen.phases.size(); ++i)
-    json["specimen"]["fraction"][specimen.phases[i]] = specimen.fraction[i];
-  json["wall_time_s"] = s.wall_time;
-  json["warnings"] = s.warnings;
-  return json.dump(2) + "\n";
+  return summary_json(s, run).dump(2) + "\n";
 }
 
 std::vector<std::string> summary_numbers(const Run& run) {
-  std::vector<std::string> names;
+  std::set<std::string> names;
   for (const auto& stage : run.stages())
     for (const Result& result : stage->report(run.history(), {}, Outcome::not_begun).results)
       if (!std::holds_alternative<std::string>(result.value) && !result.name.ends_with(kReason))
-        names.push_back(result.name);
-  Json rest = Json::parse(summary_text(summarize(run), run));
-  rest.erase("stages");
-  add_numbers(rest, "", names);
-  std::ranges::sort(names);
-  const auto twice = std::unique(names.begin(), names.end());
-  names.erase(twice, names.end());
-  return names;
+        names.insert(result.name);
+  add_numbers(summary_json(summarize(run), run), "", names);
+  return {names.begin(), names.end()};
 }
 
 void write_summary(const std::filesystem::path& path, const Summary& summary, const Run& run) {

@@ -39,6 +39,10 @@ Forecast& Forecast::operator+=(const Forecast& other) {
   return *this;
 }
 
+Result::Value value_if(bool is_there, double value) {
+  return is_there ? Result::Value(value) : Result::Value();
+}
+
 Result::Value last_value(const History& history, std::string_view column, RowRange rows) {
   return rows.empty() ? Result::Value() : Result::Value(history.values(column, rows).back());
 }

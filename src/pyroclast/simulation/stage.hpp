@@ -86,6 +86,9 @@ struct Result {
   Value value;  ///< monostate: there is none
 };
 
+/// The value where it is there, else none.
+Result::Value value_if(bool is_there, double value);
+
 /// Of a column at the last of some rows; none where there are no rows.
 Result::Value last_value(const History& history, std::string_view column, RowRange rows);
 

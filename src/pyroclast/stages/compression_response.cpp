@@ -107,9 +107,8 @@ std::string line_of(const char* name, const Finding& finding, double factor, int
 
 StageReport unloading_report(const CompressionRows& rows) {
   StageReport report;
-  report.results = {{"E_unloading_GPa", {}}, {"E_unloading_none_because", {}}, {"stress_at_end_MPa", {}}};
-  if (rows.count() == 0) return report;
-  const double first = rows.stress.front();
+  const bool has_rows = rows.count() > 0;
+  const double first = has_rows ? rows.stress.front() : 0.0, last = has_rows ? rows.stress.back() : 0.0;
   const auto line = fit(rows, rows.count(), kUnloadingTo * first, kUnloadingFrom * first);
   Finding modulus;
   if (line && line->slope > 0.0)
@@ -117,9 +116,10 @@ StageReport unloading_report(const CompressionRows& rows) {
   else
     modulus.none_because = "fewer than three rows lie between 90 % and 10 % of the stress at the start";
   report.results = {{"E_unloading_GPa", value_of(modulus, 1e-9)},
-                    {"E_unloading_none_because", reason_of(modulus)},
-                    {"stress_at_end_MPa", rows.stress.back() * 1e-6}};
-  report.lines = {fmt::format("unloaded from {:.2f} to {:.2f} MPa", first * 1e-6, rows.stress.back() * 1e-6),
+                    {"E_unloading_none_because", has_rows ? reason_of(modulus) : Result::Value()},
+                    {"stress_at_end_MPa", value_if(has_rows, last * 1e-6)}};
+  if (!has_rows) return report;
+  report.lines = {fmt::format("unloaded from {:.2f} to {:.2f} MPa", first * 1e-6, last * 1e-6),
                   line_of("E in unloading", modulus, 1e-9, 2, " GPa")};
   return report;
 }

@@ -526,7 +526,7 @@ StageReport Drive::report(const History& history, RowRange rows, Outcome) const 
   const double work = has_rows ? history.values("energy_loading_J", rows).back() - first_work_ : 0.0;
   report.results = {{"steps", steps_},
                     {"unbalanced_ratio", last_value(history, "unbalanced_ratio", rows)},
-                    {"loading_work_J", has_rows ? Result::Value(work) : Result::Value()}};
+                    {"loading_work_J", value_if(has_rows, work)}};
   const auto of_records = record_results(keys_.records, keys_.results, body_, history, rows);
   report.results.insert(report.results.end(), of_records.begin(), of_records.end());
   if (has_rows) report.lines = lines_of(keys_.results, of_records);

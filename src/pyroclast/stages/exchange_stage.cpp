@@ -158,23 +158,20 @@ double ExchangeStage::interval_of(double temperature) const {
 StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome outcome) const {
   StageReport report;
   const ExchangeResponse r = exchange_response(history, rows, outcome);
-  const auto or_none = [](bool is_there, double value) {
-    return is_there ? Result::Value(value) : Result::Value();
-  };
   const bool has_rows = !rows.empty(), failed = r.critical_temperature.has_value();
   report.results = {
       {"field", needs().field == FieldChoice::uniform ? "uniform" : "conduction"},
       {"platen", has_press_ ? Result::Value(name(coupling().platen)) : Result::Value()},
-      {"load_stress_MPa", or_none(has_press_, load_stress_ * 1e-6)},
-      {"critical_temperature_degC", or_none(failed, r.critical_temperature.value_or(0.0))},
-      {"critical_time_s", or_none(failed, r.critical_time)},
-      {"highest_temperature_degC", or_none(has_rows, r.highest)},
+      {"load_stress_MPa", value_if(has_press_, load_stress_ * 1e-6)},
+      {"critical_temperature_degC", value_if(failed, r.critical_temperature.value_or(0.0))},
+      {"critical_time_s", value_if(failed, r.critical_time)},
+      {"highest_temperature_degC", value_if(has_rows, r.highest)},
       {"largest_exchange_increment_K", coupling().increment},
       {"exchanges", r.exchanges},
       {"exchanges_not_converged", r.not_converged},
-      {"worst_unbalanced_ratio", or_none(has_rows, r.worst_ratio)},
+      {"worst_unbalanced_ratio", value_if(has_rows, r.worst_ratio)},
       {"cycles", static_cast<std::int64_t>(r.cycles)},
-      {"largest_thrust_MPa", or_none(has_rows && has_press_, r.largest_thrust)},
+      {"largest_thrust_MPa", value_if(has_rows && has_press_, r.largest_thrust)},
   };
   if (!has_rows) return report;
   report.lines.push_back(fmt::format(

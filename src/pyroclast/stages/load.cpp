@@ -100,9 +100,8 @@ double Load::progress(const Simulation& simulation) const {
 
 StageReport Load::report(const History& history, RowRange rows, Outcome outcome) const {
   StageReport report;
-  report.results = {
-      {"load_stress_MPa", keys_.stress * 1e-6},
-      {"load_level", keys_.level ? Result::Value(*keys_.level) : Result::Value()},
+  report.results = {{"load_stress_MPa", keys_.stress * 1e-6},
+                    {"load_level", keys_.level ? Result::Value(*keys_.level) : Result::Value()},
       {"f_c_of_level_MPa", keys_.level ? Result::Value(keys_.strength * 1e-6) : Result::Value()},
       {"f_c_of_level_is", keys_.level ? Result::Value(keys_.strength_of) : Result::Value()}};
   if (keys_.level)
@@ -110,7 +109,7 @@ StageReport Load::report(const History& history, RowRange rows, Outcome outcome)
                                        *keys_.level, keys_.strength * 1e-6, keys_.strength_of));
   const auto stress = history.values("stress_MPa", rows);
   const double borne = stress.empty() ? 0.0 : *std::ranges::max_element(stress);
-  report.results.push_back({"largest_stress_MPa", stress.empty() ? Result::Value() : Result::Value(borne)});
+  report.results.push_back({"largest_stress_MPa", value_if(!rows.empty(), borne)});
   report.results.push_back({"steps", steps_});
   report.results.push_back({"strain", last_value(history, "strain", rows)});
   if (outcome == Outcome::crushed) {
