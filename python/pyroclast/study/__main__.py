@@ -104,8 +104,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _checked(study: Study) -> None:
-    study.check()
-    for warning in study.warnings():
+    for warning in study.check():
         print(f"warning: {warning}", file=sys.stderr)
 
 

@@ -26,11 +26,10 @@ def function_at(place: str) -> Callable[..., Any]:
     module = importlib.util.module_from_spec(spec)
     sys.path.insert(0, str(Path(path).resolve().parent))
     spec.loader.exec_module(module)
-    function: Any = getattr(module, name, None)
+    function: Callable[..., Any] | None = getattr(module, name, None)
     if not callable(function):
         raise Error(f"{path}: has no function {name}")
-    found: Callable[..., Any] = function
-    return found
+    return function
 
 
 def answer(function: Callable[..., Any], values: Mapping[str, Any], seed: int) -> dict[str, float]:

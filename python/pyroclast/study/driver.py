@@ -80,8 +80,7 @@ class Driver:
         self._take_in_earlier()
 
     def check(self) -> None:
-        """Raises Error with all that is wrong at the ends of ranges and at points that are known beforehand, and with
-        outputs that no run has."""
+        """Raises Error with all that is wrong; see `Study.check`."""
         wrong = self.points.check_ends()
         if not wrong and not self.plan.draws_as_it_goes:
             for point in self._points(self.plan.propose(self._answers).points):

@@ -1,4 +1,4 @@
-"""What each method asks for and makes of the answers: the mathematics of `methods`, with a study's names and settings."""
+"""What each method asks for and makes of the answers: the mathematics of `methods`, with a study's names."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _MOST_CURVE = 40  # points of a response curve that a surrogate gives
 
 @dataclass(frozen=True)
 class Answers:
-    """What is known of points. y: (points, seeds) by output, NaN without a value; the others likewise, and (points,)."""
+    """What is known of points. y: (points, seeds) by output, NaN without a value; others likewise, and (points,)."""
 
     y: dict[str, Array]
     is_known: NDArray[np.bool_]
@@ -160,9 +160,9 @@ class _Sampled(_Plan):
         answers = ask(u, self.study.seeds)
 
         def find(y: Array) -> dict[str, Any]:
-            effects = main_effects.rank_effects(u, y, self.seed)
-            return {"rank_effects": effects, "curves": [
-                main_effects.curve(u[:, i], y, count=p.distribution.count) for i, p in enumerate(self.study.parameters)]}
+            curves = [main_effects.curve(column, y, count=p.distribution.count)
+                      for column, p in zip(u.T, self.study.parameters)]
+            return {"rank_effects": main_effects.rank_effects(u, y, self.seed), "curves": curves}
 
         return {"outputs": self._by_output(answers, find)}
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from .. import _core
 from ..decks import toml
-from ..errors import DeckError, Error
+from ..errors import DeckError, Diagnostic, Error
 from .file import Setup
 from .outputs import Offer, Output
 from .parameters import Parameter, Value, numbered
@@ -71,7 +71,7 @@ class Points:
         runner = self._study.runner
         return runner.command or f"{runner.function}\n{runner.file.read_text(encoding='utf-8')}"
 
-    def resolve(self, values: Sequence[Value]) -> tuple[str, dict[str, str], list[Any]]:
+    def resolve(self, values: Sequence[Value]) -> tuple[str, dict[str, str], list[Diagnostic]]:
         """The deck of a point, hashes of its files, and warnings. Raises Error, as DeckError for a deck in error."""
         return _core.resolve(self._deck_text(values))
 
@@ -121,9 +121,14 @@ class Points:
         changes = [f"{path}={value}" for path, value in self._common]
         return tomllib.loads(_core.written(_core.DeckText(self._text, str(self._study.runner.deck), "", changes, [], [])))
 
+    @property
+    def middle(self) -> list[Value]:
+        """Of all ranges."""
+        return [p.distribution.at(0.5) for p in self._study.parameters]
+
     def check_ends(self) -> list[str]:
         """What is wrong at the middle and at the ends of each parameter's range; empty where all can be run."""
-        middle = [p.distribution.at(0.5) for p in self._study.parameters]
+        middle = self.middle
         if self._study.runner.kind == "pyroclast":
             try:
                 self._tables
@@ -143,19 +148,18 @@ class Points:
                 said.setdefault(str(error), f"{place}{error}")
         return list(said.values())
 
-    def warnings(self) -> list[Any]:
-        """What the check of the deck in the middle of all ranges warns of, as Diagnostic."""
+    def warnings(self) -> list[Diagnostic]:
+        """What the check of the deck in the middle of all ranges warns of."""
         if self._study.runner.kind != "pyroclast":
             return []
-        return self.resolve([p.distribution.at(0.5) for p in self._study.parameters])[2]
+        return self.resolve(self.middle)[2]
 
     def check_outputs(self, outputs: Iterable[Output]) -> list[str]:
         """Which of these no run has, by a run of the middle point that is not begun. Of decks, not of functions."""
         outputs = [o for o in outputs if not o.is_function]
         if not outputs or self._study.runner.kind != "pyroclast":
             return []
-        run = _core.Session.begin(self._deck_text([p.distribution.at(0.5) for p in self._study.parameters]), None, 1, "",
-                                  None, None, False)
+        run = _core.Session.begin(self._deck_text(self.middle), None, 1, "", None, None, False)
         offer = Offer(run.summary_numbers(), [name for name, _ in run.columns])
         run.close()
         return [f"{self._study.place(f'outputs.{o.name}')}: {o.name} = {o.what!r}: {why}" for o in outputs

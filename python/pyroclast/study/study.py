@@ -18,7 +18,7 @@ import numpy as np
 
 from .. import _core
 from ..decks import _is_list_of_tables, table_text, toml
-from ..errors import Error
+from ..errors import Diagnostic, Error
 from .driver import Driver, Forecast, free_cores
 from .executors import Executor
 from .executors.commands import Commands
@@ -62,14 +62,14 @@ class Study:
         needs_program = self.setup.runner.kind == "pyroclast"
         self._program = program or (_program() if needs_program else "")
 
-    def check(self) -> None:
-        """Raises Error with all that is wrong at the ends of ranges and at points that are known beforehand."""
+    def check(self) -> list[Diagnostic]:
+        """Returns what the check of the deck in the middle of all ranges warns of.
+
+        Raises Error with all that is wrong at the ends of ranges and at points that are known beforehand, and with
+        outputs that no run has.
+        """
         with self._driver() as driver:
             driver.check()
-
-    def warnings(self) -> list[Any]:
-        """What the check of the deck in the middle of all ranges warns of, as `pyroclast.errors.Diagnostic`."""
-        with self._driver() as driver:
             return driver.points.warnings()
 
     def forecast(self) -> Forecast:
@@ -146,8 +146,7 @@ class Study:
         if self.setup.runner.kind != "pyroclast":
             return None
         with self._driver() as driver:
-            middle = [p.distribution.at(0.5) for p in self.setup.parameters]
-            command = driver.points.command(self._program, middle, self.setup.seeds[0])
+            command = driver.points.command(self._program, driver.points.middle, self.setup.seeds[0])
         said = subprocess.run([command[0], "check", *command[2:], "--threads", "1"], capture_output=True, text=True)
         found = _ABOUT.search(said.stdout)
         return _seconds(found[1]) if found else None

@@ -1,8 +1,8 @@
 """Where the runs of a study are made.
 
-An executor has `run(jobs, runs, finished, stopped)`: it makes the jobs below the folder `runs`, calls `finished` with each
-result as it comes, from the thread that called it, and returns when all are done or `stopped()` holds. What it was not
-able to make is missing from what it finished.
+An executor has `run(jobs, runs, finished, stopped)`: it makes the jobs below the folder `runs`, calls `finished` with
+each result as it comes, from the thread that called it, and returns when all are done or `stopped()` holds. What it was
+not able to make is missing from what it finished.
 """
 
 from __future__ import annotations

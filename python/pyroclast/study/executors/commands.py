@@ -30,8 +30,7 @@ class Commands:
             if read_summary(folder) is not None:
                 finished(collected(job, runs))
             else:
-                if job.kind != "pyroclast":  # which makes its own
-                    folder.mkdir(exist_ok=True)
+                folder.mkdir(exist_ok=True)
                 lines.append(shlex.join(job.line(folder)))
         self.file.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
         self.written = len(lines)

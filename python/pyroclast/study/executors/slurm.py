@@ -295,15 +295,17 @@ class _Queue:
 
     def _submit(self, states: dict[tuple[str, int], str]) -> None:
         """What is in no task, unless Slurm has just refused it."""
+        settings = self._slurm.settings
         queued = {run for array in self._book.arrays for task in array.open for run in array.of_task(task)}
         waiting = [job for job in self._left.values() if job.id not in queued]
         while waiting and not self._stopped() and time.monotonic() >= self._next_try:
             alone = [job for job in waiting if job.id in self._lost]  # what ended a task may end the next one
-            chosen, count = (alone, 1) if alone else (waiting, self._runs_per_task(waiting))
-            if not count:  # nobody knows how long a run takes: the first tell
+            expected = self._expected(waiting)
+            chosen, count = alone or waiting, 1 if alone else runs_per_task(settings, len(waiting), expected)
+            if not alone and not settings.points_per_task and expected == 0.0 and len(waiting) > settings.slots:
                 if queued:
-                    return
-                chosen, count = waiting[:self._slurm.slots], 1
+                    return  # the first runs tell how many a task takes
+                chosen = chosen[:settings.slots]
                 queued.update(job.id for job in chosen)
             chosen = chosen[:count * self._size]
             after = [a.job for a in self._book.arrays if a.job and any((a.name, task) in states for task in a.open)]
@@ -313,7 +315,7 @@ class _Queue:
             except _Refused as refused:
                 self._book.drop(array)
                 tasks = math.ceil(len(chosen) / count)
-                self._size = max(1, min(self._slurm.slots, tasks) if states else 1, tasks // 2)
+                self._size = max(1, min(settings.slots, tasks) if states else 1, tasks // 2)
                 self._tell(f"{refused}; trying again every {self._slurm.patience:g} s")
                 self._next_try = time.monotonic() + self._slurm.patience
                 return
@@ -330,13 +332,9 @@ class _Queue:
             taken = set(array.runs)
             waiting = [job for job in waiting if job.id not in taken]
 
-    def _runs_per_task(self, jobs: Sequence[Job]) -> int:
-        """As the study file says, else by the time that runs take; 0 where that is not known and tasks would be many."""
-        settings = self._slurm.settings
-        expected = max(max(job.expected for job in jobs), statistics.median(self._walls) if self._walls else 0.0)
-        if not settings.points_per_task and not expected > 0.0 and len(jobs) > settings.slots:
-            return 0
-        return runs_per_task(settings, len(jobs), expected)
+    def _expected(self, jobs: Sequence[Job]) -> float:
+        """Time that a run will probably take, s; 0: not known."""
+        return max(max(job.expected for job in jobs), statistics.median(self._walls) if self._walls else 0.0)
 
     def _sbatch(self, array: Array, after: str) -> str:
         """The number of the job. Raises Error with the words of sbatch."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import Error
-from . import seeds
+from . import sampling, seeds
 
 Array = NDArray[np.float64]
 _LEAST_IN_CLASS = 5
@@ -52,7 +52,7 @@ def curve(u: Array, y: Array, most_classes: int = 10, count: int | None = None) 
     from scipy.stats import t
 
     if count is not None:
-        u = (np.minimum(np.floor(np.asarray(u, float) * count), count - 1) + 0.5) / count
+        u = sampling.in_shares(u, count)
     u, means = np.asarray(u, float), seeds.over_seeds(np.atleast_2d(np.asarray(y, float).T).T)
     u, means = u[np.isfinite(means)], means[np.isfinite(means)]
     levels, member = np.unique(u, return_inverse=True)

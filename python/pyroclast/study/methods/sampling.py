@@ -37,6 +37,12 @@ def inside(u: Array, levels: int) -> Array:
     return (np.asarray(u, float) * (levels - 1) + 0.5) / levels
 
 
+def in_shares(u: Array, count: int) -> Array:
+    """Anywhere in one of `count` equal shares moved to its middle, (i + 0.5)/n."""
+    shares: Array = np.minimum(np.floor(np.asarray(u, float) * count), count - 1)
+    return (shares + 0.5) / count
+
+
 def latin_hypercube(n: int, k: int, seed: int) -> Array:
     """n points, one in each of n equal classes of every parameter, shape (n, k).
 

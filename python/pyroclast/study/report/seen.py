@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...errors import Error
 from ..driver import Forecast
 from ..file import Setup
+from ..methods import sampling
 from ..study import Study
 
 Array = NDArray[np.float64]
@@ -52,7 +53,7 @@ class Seen:
         u = self.asked.copy()
         for column, parameter in enumerate(self.setup.parameters):
             if (count := parameter.distribution.count) is not None:
-                u[:, column] = (np.minimum(np.floor(u[:, column] * count), count - 1) + 0.5) / count
+                u[:, column] = sampling.in_shares(u[:, column], count)
         return u
 
     @cached_property
