@@ -44,7 +44,7 @@ def coefficients() -> dict[tuple[int, ...], float]:
 
 
 def weight(i: int, x: float) -> float:
-    """Of an input in 0 to 1."""
+    """Of an input in 0 to 1; of an array too."""
     return 2.0 * (1.1 * x / (x + 0.1) - 0.5) if i in CURVED else 2.0 * (x - 0.5)
 
 
