@@ -202,10 +202,10 @@ StageReport compression_report(const CompressionRows& rows, const CompressionAim
   StageReport report;
   CompressionResponse response = compression_response(rows, aim.waves_until);
   const bool bore = response.strength.value.has_value();
-  const bool before_peak = bore && aim.to_a_value && !response.peak_passed;
+  const bool before_peak = bore && !response.peak_passed;
   if (before_peak)
     response.strength = response.inelastic_strain = {
-        std::nullopt, fmt::format("the stage was to end before a peak, at {:.2f} MPa and strain {:.5f}",
+        std::nullopt, fmt::format("the stage ended before a peak, at {:.2f} MPa and strain {:.5f}",
                                   *response.strength * 1e-6, response.strain_at_peak)};
   const QuasiStaticReport inertia = quasi_static_report(rows);
   if (bore) report.decided_at = peak_of(rows);
@@ -237,9 +237,7 @@ StageReport compression_report(const CompressionRows& rows, const CompressionAim
   }
   report.lines.push_back(inertia.to_peak ? "quasi-static up to the peak" : "NOT quasi-static up to the peak");
   if (!bore) report.warnings.push_back("no f_c and no E: " + response.strength.none_because);
-  if (response.strength && !response.peak_passed)
-    report.warnings.emplace_back(
-        "the stress never fell after its largest value, so f_c is only what was reached");
+  if (before_peak && !aim.to_a_value) report.warnings.push_back("no f_c: " + response.strength.none_because);
   if (!inertia.to_peak && bore)
     report.warnings.push_back(fmt::format(
         "not quasi-static up to the peak: kinetic over elastic energy up to {:.1e}, "

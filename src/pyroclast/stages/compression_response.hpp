@@ -74,7 +74,7 @@ CompressionResponse compression_response(const CompressionRows& rows, double wav
 /// What a stage was to do.
 struct CompressionAim {
   bool is_upwards = false;   ///< the platen was moved up, to unload
-  bool to_a_value = false;   ///< it ends at a stress or a strain, and need not pass a peak
+  bool to_a_value = false;   ///< it ends at a stress or a strain: without a peak is nothing to warn of
   double waves_until = 0.0;  ///< see compression_response
 };
 
