@@ -363,8 +363,41 @@ class Surrogates(unittest.TestCase):
         rest = seeds.rest_variance(y)
         self.assertAlmostEqual(rest, 4.0, delta=0.8)
         self.assertAlmostEqual(judged.error**2 - judged.own_error**2, rest / 4.0)
+        # The same of Q2: the function's own variance is what is left of that of the means over the seeds.
+        means = y.mean(axis=1)
+        self.assertAlmostEqual((1.0 - judged.own_q2) * (means.var() - rest / 4.0), judged.own_error**2)
         without = surrogate.validate(self.chaos, self.held, y[:, 0])
         self.assertEqual(without.error, without.own_error)
+        self.assertEqual(without.q2, without.own_q2)
+
+    def test_seeds_scatter_does_not_spoil_a_good_surrogate(self):
+        """Of means over three seeds, a tenth of whose variance is the seeds' scatter (Ishigami's is 13.8)."""
+        def of_seeds(u, seed):
+            return ishigami(u)[:, None] + np.random.default_rng(seed).normal(0.0, np.sqrt(0.3 * 13.8), (len(u), 3))
+
+        held = sampling.sobol_sequence(100, 3, 9)
+        fitted = surrogate.fit(self.u[:150], of_seeds(self.u[:150], 1))
+        judged = surrogate.validate(fitted, held, of_seeds(held, 2))
+        true = surrogate.validate(fitted, held, ishigami(held))
+        self.assertLess(judged.q2, surrogate.LEAST_Q2)
+        self.assertGreater(true.q2, surrogate.LEAST_Q2)
+        self.assertAlmostEqual(judged.own_q2, true.q2, delta=0.03)
+        found = surrogate.indices(fitted, judged)
+        first, total = ishigami_indices()
+        inside = ((found.first_low <= first) & (first <= found.first_high)).sum() + \
+            ((found.total_low <= total) & (total <= found.total_high)).sum()
+        self.assertGreaterEqual(inside, 5)
+
+    def test_scatter_alone_is_refused(self):
+        """By luck the error can be smaller than the scatter, which makes own_q2 1: it tells nothing all the same."""
+        judged = surrogate.Validation(q2=0.1, own_q2=1.0, error=1.0, own_error=0.0, points=30)
+        with self.assertRaisesRegex(Error, "more seeds"):
+            judged.require()
+        random = np.random.default_rng(8)
+        bad = surrogate.fit(sampling.sobol_sequence(100, 3, 2), random.normal(size=(100, 3)))
+        for _ in range(20):
+            with self.assertRaisesRegex(Error, "Q2"):
+                surrogate.validate(bad, self.held, random.normal(size=(50, 3))).require()
 
     def test_refusals(self):
         noise = np.random.default_rng(7).normal(size=(100, 1))
@@ -676,7 +709,7 @@ class Posterior(unittest.TestCase):
         self.assertEqual((fails.within_two.tolist(), fails.points.tolist()), ([1.0, 0.0, 1.0], [7, 8, 8]))
 
     def test_refusals(self):
-        poor = [surrogate.Validation(0.89, 1.0, 1.0, 40)] + self.validations[1:]
+        poor = [surrogate.Validation(0.95, 0.89, 1.0, 1.0, 40)] + self.validations[1:]
         with self.assertRaisesRegex(Error, "0.890"):
             posterior.sample(self.surrogates, poor, self.targets, self.covariance)
         with mock.patch.dict(sys.modules, emcee=None), self.assertRaisesRegex(Error, "python3-emcee"):

@@ -265,8 +265,9 @@ class _Chaos(_OnSurrogate):
 
     def _find(self, y: Array) -> dict[str, Any]:
         fitted, validation = self._surrogate(y)
-        found: dict[str, Any] = {"q2": validation.q2, "error": validation.error, "terms": fitted.terms,
-                                 "degree": fitted.degree, "lost": fitted.lost, "seed_share": seeds.share(y)}
+        found: dict[str, Any] = {"q2": validation.q2, "own_q2": validation.own_q2, "error": validation.error,
+                                 "own_error": validation.own_error, "terms": fitted.terms, "degree": fitted.degree,
+                                 "lost": fitted.lost, "seed_share": seeds.share(y)}
         if self.study.correlations:  # shares of the variance do not add up then
             found["dependence"] = hsic.dependence(self.points(), y, self.seed)
             return found
@@ -370,7 +371,7 @@ class _Posterior(_OnSurrogate, _ToTargets):
         y = self._of_targets(ask(self._mixed(v), self.study.seeds))
         drawn = found.chain[::max(1, len(found.chain) // _MOST_DRAWS)]
         result = {"posterior": dataclasses.replace(found, chain=self._mixed(drawn)), "targets": self._targets,
-                  "q2": [p[1].q2 for p in pairs], "error": [p[1].error for p in pairs]}
+                  **{name: [getattr(p[1], name) for p in pairs] for name in ("q2", "own_q2", "error", "own_error")}}
         if len(v):
             predicted = np.stack([p[0].predict(v) for p in pairs], axis=1)
             result["check"] = posterior.check(predicted, y, np.array([p[1].error for p in pairs]))

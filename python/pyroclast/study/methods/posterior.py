@@ -57,7 +57,7 @@ def sample(surrogates: Sequence[Surrogate], validations: Sequence[Validation], t
     walkers: None: 4 k, at least 16. The chain goes on until it is 50 autocorrelation times long and that time has
     settled to 2 %, or to most_steps; five times are burn-in.
 
-    Raises `Error` where a surrogate's Q2 is below its least, or without emcee.
+    Raises `Error` where a surrogate tells too little (`Validation.require`), or without emcee.
     """
     emcee = _needs.library("emcee", "a posterior")
     for validation in validations:

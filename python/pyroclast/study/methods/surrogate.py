@@ -18,7 +18,9 @@ _PATIENCE = 3
 LEAST_HELD = 30
 """Points kept apart on which a surrogate is judged, at the least."""
 LEAST_Q2 = 0.9
-"""Below this no index and no posterior comes from a surrogate."""
+"""Below this no index and no posterior comes from a surrogate: of `Validation.own_q2`."""
+LEAST_TOLD = 0.5
+"""The least `Validation.q2`: below it most of what runs differ by is the seeds' scatter, or is not told at all."""
 
 
 @dataclass(frozen=True)
@@ -43,16 +45,25 @@ class Surrogate:
 class Validation:
     """How well a surrogate tells true runs that it has not seen."""
 
-    q2: float  #: 1 - mean square error / variance of the true values
+    q2: float  #: 1 - mean square error / variance of the true values, which are means over the seeds
+    own_q2: float  #: without what the seeds' scatter adds to both: of means over many seeds; the same with one seed
     error: float  #: root mean square error, in the output's unit
-    own_error: float  #: without what the seeds' scatter at these points adds to it; the same with one seed
+    own_error: float  #: without what the seeds' scatter adds to it; the same with one seed
     points: int
 
     def require(self) -> None:
-        """Raises `Error` where Q2 is below LEAST_Q2."""
-        if not self.q2 >= LEAST_Q2:
-            raise Error(f"the surrogate's Q2 is {self.q2:.3f} on {self.points} runs kept apart, and nothing is drawn "
-                        f"from one below {LEAST_Q2}; more points or narrower ranges may help")
+        """Raises `Error` where own_q2 is below LEAST_Q2, or q2 below LEAST_TOLD.
+
+        A surrogate stands for the mean over many seeds. It cannot tell the scatter that few seeds leave in the true
+        values, and is not to blame for it.
+        """
+        if not self.own_q2 >= LEAST_Q2:
+            raise Error(f"the surrogate's Q2 without the seeds' scatter is {self.own_q2:.3f} on {self.points} points "
+                        f"kept apart, and nothing is drawn from one below {LEAST_Q2}; more points or narrower ranges "
+                        f"may help")
+        if not self.q2 >= LEAST_TOLD:
+            raise Error(f"the surrogate's Q2 is {self.q2:.3f} on {self.points} points kept apart: it says too little "
+                        f"beside the seeds' scatter to be judged, which takes {LEAST_TOLD}; more seeds may help")
 
 
 @dataclass(frozen=True)
@@ -123,16 +134,17 @@ def validate(surrogate: Surrogate, u: Array, y: Array) -> Validation:
         raise Error("runs kept apart to judge a surrogate were used to fit it")
     square = float(((true - surrogate.predict(u)) ** 2).mean())
     variance = float(true.var())
-    q2 = 1.0 - square / variance if variance > 0.0 else -np.inf
-    own = max(square - rest, 0.0) if np.isfinite(rest) else square
-    return Validation(q2, float(np.sqrt(square)), float(np.sqrt(own)), len(u))
+    scatter = rest if np.isfinite(rest) else 0.0
+    own = max(square - scatter, 0.0)
+    return Validation(_q2(square, variance), _q2(own, variance - scatter), float(np.sqrt(square)),
+                      float(np.sqrt(own)), len(u))
 
 
 def indices(surrogate: Surrogate, validation: Validation, seed: int = 0, resamples: int = 500) -> ChaosIndices:
     """Sobol' indices from the coefficients of a chaos expansion. (Sudret, Reliab. Eng. Syst. Saf. 93, 2008.)
 
     The bootstrap keeps the polynomials and fits their coefficients anew. (Marelli, Sudret, Struct. Saf. 75, 2018.)
-    Raises `Error` for Kriging and where Q2 is below LEAST_Q2.
+    Raises `Error` for Kriging and where `Validation.require` does.
     """
     validation.require()
     if surrogate.kind != "chaos":
@@ -150,6 +162,10 @@ def indices(surrogate: Surrogate, validation: Validation, seed: int = 0, resampl
     refitted = (np.linalg.lstsq(values[draw], surrogate.y[draw], rcond=None)[0] for draw in draws)
     low, high = seeds.interval(np.array([_shares(degrees, again) for again in refitted]), points)
     return ChaosIndices(first, low[0], high[0], total, low[1], high[1])
+
+
+def _q2(square: float, variance: float) -> float:
+    return 1.0 - square / variance if variance > 0.0 else float("-inf")
 
 
 def _complete(u: Array, y: Array) -> tuple[Array, Array, float, int]:

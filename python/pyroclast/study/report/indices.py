@@ -198,13 +198,15 @@ def _of_chaos(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
     unit = output_label(output)
     said = [f"The surrogate has {found['terms']} terms up to degree {found['degree']}. On runs kept apart its Q² is "
             f"{number(found['q2'], 3)} and its error {number(found['error'], 3)} (root mean square, in the unit of "
-            f"{unit}, the seeds' scatter included).",
+            f"{unit}), the seeds' scatter included; without it {number(found['own_q2'], 3)} and "
+            f"{number(found['own_error'], 3)}.",
             f"{found['lost']} points are left out for a missing value." if found["lost"] else "", seed_sentence(share)]
     if "dependence" in found:
         return _of_dependence(parameters, output, found, " ".join(filter(None, said)))
     if "indices" not in found:
         return Section(unit, [" ".join(filter(None, said)), f"There are no indices: {found['none_because']}.",
-                              f"Q² is 1 for a surrogate without error; below {LEAST_Q2:g} it says too little."])
+                              f"Q² is 1 for a surrogate without error; below {LEAST_Q2:g}, without the seeds' scatter, it "
+                              "says too little."])
     indices = found["indices"]
     error = found["error"]
     curves = [Curve(numbers(c["u"]), y, y - error, y + error) for c in found["curves"] for y in [numbers(c["y"])]]

@@ -69,10 +69,11 @@ def _table(parameters: Sequence[Parameter], posterior: dict[str, Any], chain: Ar
 def _surrogates(seen: Seen, found: dict[str, Any]) -> Table:
     labels = {o.name: output_label(o) for o in seen.setup.outputs}
     targets = found["targets"]
-    columns = zip(targets["names"], targets["values"], targets["sd"], found["q2"], found["error"])
-    rows = [[labels[name], number(value), number(sd, 3), number(q2, 3), number(error, 3)]
-            for name, value, sd, q2, error in columns]
-    return Table(["target", "value", "sd of the experiment", "Q² of its surrogate", "error of its surrogate"], rows)
+    columns = zip(targets["names"], targets["values"], targets["sd"], found["q2"], found["own_q2"], found["error"])
+    rows = [[labels[name], number(value), number(sd, 3), number(q2, 3), number(own_q2, 3), number(error, 3)]
+            for name, value, sd, q2, own_q2, error in columns]
+    return Table(["target", "value", "sd of the experiment", "Q² of its surrogate", "without the seeds' scatter",
+                  "error of its surrogate"], rows)
 
 
 @matplotlib.rc_context(style.STYLE)
