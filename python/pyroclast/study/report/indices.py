@@ -205,8 +205,8 @@ def _of_chaos(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
         return _of_dependence(parameters, output, found, " ".join(filter(None, said)))
     if "indices" not in found:
         return Section(unit, [" ".join(filter(None, said)), f"There are no indices: {found['none_because']}.",
-                              f"Q² is 1 for a surrogate without error; below {LEAST_Q2:g}, without the seeds' scatter, it "
-                              "says too little."])
+                              f"Q² is 1 for a surrogate without error; below {LEAST_Q2:g}, without the seeds' "
+                              "scatter, it says too little."])
     indices = found["indices"]
     error = found["error"]
     curves = [Curve(numbers(c["u"]), y, y - error, y + error) for c in found["curves"] for y in [numbers(c["y"])]]
