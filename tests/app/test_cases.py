@@ -85,8 +85,11 @@ class Cases(unittest.TestCase):
         self.assertEqual([stage["kind"] for stage in as_it_stands.summary["stages"]],
                          ["settle", "load", "heat", "heat", "compress"])
         self.assertGreater(as_it_stands.summary["energy_J"]["dissipated_creep"], 0.0)
-        self.assertGreater(finished("hot_strength", "contacts.mortar_mortar.temperature_ratio=1").of("f_c_MPa"),
-                           1.02 * as_it_stands.of("f_c_MPa"))
+        # blocks as coarse as these pass no peak
+        self.assertIsNone(as_it_stands.of("f_c_MPa"))
+        borne, cold_bonds = (max(run.column("stress_MPa")) for run in (
+            as_it_stands, finished("hot_strength", "contacts.mortar_mortar.temperature_ratio=1")))
+        self.assertGreater(cold_bonds, 1.02 * borne)
         self.assertGreater(finished("hot_strength", "materials.mortar.E=29.4 GPa").of("E_GPa"),
                            1.05 * as_it_stands.of("E_GPa"))
 

@@ -354,8 +354,12 @@ class Heating(UserTest):
     def test_a_hot_specimen_is_compressed(self):
         summary = self.run_case("hot_compression", *changes("stages[1].to=420 degC", "stages[2].velocity=4 mm/s",
                                                             "stages[2].stop_strain=2e-3"))
-        self.assertGreater(summary["stages"][2]["results"]["f_c_MPa"], 1.0)
-        self.assertLess(summary["stages"][2]["results"]["f_c_MPa"], 25.0)
+        # it ends before a peak: what it bore is no strength
+        self.assertIsNone(summary["stages"][2]["results"]["f_c_MPa"])
+        self.assertTrue(any("no f_c" in warning for warning in summary["stages"][2]["warnings"]))
+        borne = max(row["stress_MPa"] for row in self.rows("hot_compression"))
+        self.assertGreater(borne, 1.0)
+        self.assertLess(borne, 25.0)
         self.assertIn("stress_strain.png", self.figures("hot_compression"))
         self.assert_that_overwriting_clears("hot_compression")
 
