@@ -1,6 +1,8 @@
-"""Tests of concrete whose paste creeps, as validation/calibrate_paste and validation/hot_concrete need them: heated under
-load (cases/anderberg_thelandersson.toml), and heated then crushed (cases/hot_strength.toml). Each specimen is loaded to
-a share of its own strength at 20 degC, which the second case finds without heating."""
+"""Tests of concrete whose paste creeps, as validation/calibrate_paste and validation/hot_concrete need them.
+
+Specimens are heated under load (cases/anderberg_thelandersson.toml), or heated then crushed (cases/hot_strength.toml).
+Each is loaded to a share of its own strength at 20 degC, which the second case finds without heating.
+"""
 
 import dataclasses
 import pathlib

@@ -71,7 +71,7 @@ def broken_off(folder: pathlib.Path, command: list[str]) -> bool:
 
 
 def _source(folder: pathlib.Path) -> pathlib.Path:
-    """File beside a run that holds the hash of the deck that it was made from; the run has the deck with its changes."""
+    """File beside a run with the hash of the deck that it was made from; the run has the deck with its changes."""
     return folder.parent / f"{folder.name}.source"
 
 

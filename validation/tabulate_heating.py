@@ -1,4 +1,4 @@
-"""Tabulates heated runs: total strain at every 100 degC against the band of its load level, and the critical temperature.
+"""Tabulates heated runs: total strain at every 100 degC beside the band of its load level, and critical temperature.
 
 Usage: python3 validation/tabulate_heating.py RUNS
 """

@@ -1,6 +1,6 @@
 """A Slurm that is none: sbatch, squeue, scontrol and scancel on the PATH, whose tasks are processes of this machine.
 
-It answers as Slurm 22.05 does, as far as studies ask it, and a test can let happen to its tasks what happens on clusters.
+It answers as Slurm 22.05 does, as far as studies ask it. A test can let happen to its tasks what happens on clusters.
 """
 
 from __future__ import annotations

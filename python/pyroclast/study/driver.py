@@ -245,8 +245,8 @@ class Driver:
         values = wanted.point.values
         return Job(wanted.ids[0], wanted.seed, study.runner.kind,
                    tuple(self.points.command(self.program, values, wanted.seed)),
-                   dict(zip((p.name for p in study.parameters), values)), tuple(o.what for o in study.outputs if not o.is_function),
-                   study.keep,
+                   dict(zip((p.name for p in study.parameters), values)),
+                   tuple(o.what for o in study.outputs if not o.is_function), study.keep,
                    study.wall_limit, max(_LEAST_CHECKPOINT, _SHARE_OF_CHECKPOINTS * expected),
                    _core.physics_version if study.runner.kind == "pyroclast" else 0, expected)
 
