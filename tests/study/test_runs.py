@@ -332,6 +332,30 @@ strength = "strength"
         self.assertGreater(inside, 0.97)
 
 
+class KeptApart(StudyTest):
+    METHOD = 'kind = "chaos"\nsamples = 20\nheld = 30'
+
+    def points(self, lost: str) -> list[str]:
+        """States of the points of a study that loses those."""
+        self.model.write_text(f"def line(x, seed):\n    return {{'z': 1.0 / (not {lost}) * x}}\n")
+        study = self.study(self.of_function(self.METHOD))
+        self.assertFalse(study.forecast().is_complete)
+        self.assertTrue(study.run(jobs=1))
+        self.found = study.findings["outputs"]["z"]
+        return states(study)
+
+    def test_points_without_a_value_are_made_up_for(self) -> None:
+        made = self.points("0.4 < x < 0.6")
+        kept_apart = made[20:]
+        self.assertGreater(len(kept_apart), 30)
+        self.assertEqual(kept_apart.count("done"), 30)
+        self.assertGreater(self.found["q2"], 0.999)
+
+    def test_up_to_as_many_again(self) -> None:
+        self.assertEqual(len(self.points("x > 0.2")), 20 + 60)
+        self.assertIn("at least 30", self.found["none_because"])
+
+
 class Judgements(unittest.TestCase):
     def test_outcomes(self) -> None:
         self.assertEqual(judge({"outcome": "completed"})[0], "done")

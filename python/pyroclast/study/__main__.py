@@ -112,7 +112,7 @@ def _foresee(study: Study) -> int:
     _checked(study)
     seen = study.forecast()
     setup = study.setup
-    more = "" if seen.is_complete else " of the first generation; more follow"
+    more = "" if seen.is_complete else " to begin with; more may follow"
     print(f"points          {seen.points}{more}")
     print(f"runs            {seen.runs}, {seen.known} of them done: {seen.left} left")
     seconds = seen.seconds / max(seen.left, 1) if not math.isnan(seen.seconds) else study.time_of_a_run()
@@ -141,7 +141,7 @@ def _status(options: argparse.Namespace) -> int:
     study = _study(options)
     seen = study.forecast()
     print(f"study           {study.setup.title} ({study.setup.method.kind})")
-    print(f"runs            {seen.known} of {seen.runs} done" + ("" if seen.is_complete else "; more points will follow"))
+    print(f"runs            {seen.known} of {seen.runs} done" + ("" if seen.is_complete else "; more points may follow"))
     if not math.isnan(seen.seconds) and seen.left:
         print(f"left            {duration(seen.seconds)} of one core")
     table = study.rows()

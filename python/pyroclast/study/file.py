@@ -212,7 +212,8 @@ def _method(table: _core.Table) -> Method:
         integer("samples", "Rows; each has two points more than there are parameters. A power of 2 fills best.", 8, 128)
     elif kind in ("chaos", "posterior"):
         integer("samples", "Points that the surrogate is fitted to.", 10, 200)
-        integer("held", "Further points that it is tried on.", 30, 30)
+        integer("held", "Further points that it is tried on. Those without a value are made up for, up to as "
+                        "many again.", 30, 30)
     elif kind == "calibrate":
         integer("population", "Points of a generation; 0: 4 + 3 ln of the number of parameters.", 0, 0)
         integer("generations", "At most.", 1, 50)

@@ -232,18 +232,34 @@ class _Sobol(_Plan):
 
 
 class _OnSurrogate(_Plan):
-    """A surrogate of each output, fitted in independent coordinates and tried on points kept apart."""
+    """A surrogate of each output, fitted in independent coordinates and tried on points kept apart.
 
-    def points(self) -> Array:
-        return self._mixed(self._independent())
+    Points kept apart that give no value are made up for by further ones, at most as many again as were asked for.
+    """
 
-    def _independent(self) -> Array:
-        n, held = int(self.settings["samples"]), int(self.settings["held"])
+    def propose(self, ask: Ask) -> Proposal:
+        answers = self._answers(ask)
+        return Proposal(self._mixed(self._independent(len(answers.is_known))), self.study.seeds, answers.has_all())
+
+    def _answers(self, ask: Ask) -> Answers:
+        """Of all points that are wanted so far."""
+        n, least = int(self.settings["samples"]), int(self.settings["held"])
+        held = least
+        while True:
+            answers = ask(self._mixed(self._independent(n + held)), self.study.seeds)
+            lost = max(int(np.isnan(y[n:]).any(axis=1).sum()) for y in answers.y.values())
+            wanted = min(least + lost, 2 * least)
+            if not answers.has_all() or wanted <= held:
+                return answers
+            held = wanted
+
+    def _independent(self, count: int) -> Array:
+        n = int(self.settings["samples"])
         return np.concatenate([sampling.sobol_sequence(n, self.k, self.seed),
-                               sampling.sobol_sequence(held, self.k, self.seed + _OF_HELD)])
+                               sampling.sobol_sequence(count - n, self.k, self.seed + _OF_HELD)])
 
     def _surrogate(self, y: Array) -> tuple[surrogate.Surrogate, surrogate.Validation]:
-        v, n = self._independent(), int(self.settings["samples"])
+        v, n = self._independent(len(y)), int(self.settings["samples"])
         fitted = surrogate.fit(v[:n], y[:n])
         return fitted, surrogate.validate(fitted, v[n:], y[n:])
 
@@ -260,8 +276,7 @@ class _OnSurrogate(_Plan):
 
 class _Chaos(_OnSurrogate):
     def findings(self, ask: Ask) -> dict[str, Any]:
-        answers = ask(self.points(), self.study.seeds)
-        return {"outputs": self._by_output(answers, self._find)}
+        return {"outputs": self._by_output(self._answers(ask), self._find)}
 
     def _find(self, y: Array) -> dict[str, Any]:
         fitted, validation = self._surrogate(y)
@@ -269,7 +284,7 @@ class _Chaos(_OnSurrogate):
                                  "own_error": validation.own_error, "terms": fitted.terms, "degree": fitted.degree,
                                  "lost": fitted.lost, "seed_share": seeds.share(y)}
         if self.study.correlations:  # shares of the variance do not add up then
-            found["dependence"] = hsic.dependence(self.points(), y, self.seed)
+            found["dependence"] = hsic.dependence(self._mixed(self._independent(len(y))), y, self.seed)
             return found
         try:
             found["indices"] = surrogate.indices(fitted, validation, self.seed)
@@ -338,15 +353,14 @@ class _Posterior(_OnSurrogate, _ToTargets):
         self._sampled: tuple[bytes, tuple[posterior.Posterior, Any]] | None = None
 
     def propose(self, ask: Ask) -> Proposal:
-        points = self.points()
-        answers = ask(points, self.study.seeds)
-        if not answers.has_all():
-            return Proposal(points, self.study.seeds, False)
-        try:
-            points = np.concatenate([points, self._checks(answers)])
-        except Error:
-            pass  # findings say why there is no posterior to check
-        return Proposal(points, self.study.seeds, True)
+        proposal = super().propose(ask)
+        if proposal.is_complete:
+            try:
+                points = np.concatenate([proposal.points, self._checks(self._answers(ask))])
+                return dataclasses.replace(proposal, points=points)
+            except Error:
+                pass  # findings say why there is no posterior to check
+        return proposal
 
     def _checks(self, answers: Answers) -> Array:
         found, _ = self._sample(answers)
@@ -365,8 +379,7 @@ class _Posterior(_OnSurrogate, _ToTargets):
         return self._sampled[1]
 
     def findings(self, ask: Ask) -> dict[str, Any]:
-        points = self.points()
-        found, pairs = self._sample(ask(points, self.study.seeds))
+        found, pairs = self._sample(self._answers(ask))
         v = posterior.check_points(found, int(self.settings["checks"]), self.seed)
         y = self._of_targets(ask(self._mixed(v), self.study.seeds))
         drawn = found.chain[::max(1, len(found.chain) // _MOST_DRAWS)]

@@ -75,7 +75,7 @@ def _counted(number_of: int, what: str) -> str:
 def _warnings(seen: Seen) -> Markup:
     said = []
     if not seen.is_complete:
-        more = "" if seen.forecast.is_complete else " More points will follow."
+        more = "" if seen.forecast.is_complete else " More points may follow."
         left = "" if math.isnan(seen.forecast.seconds) or not seen.forecast.left else \
             f" About {duration(seen.forecast.seconds)} of one core are left."
         said.append(f"This study is not complete: {seen.forecast.known} of {seen.forecast.runs} runs are done."
