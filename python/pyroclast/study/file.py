@@ -223,7 +223,7 @@ def _method(table: _core.Table) -> Method:
                                               "deviations, gains no more than this ...", 0.0, None, 0.1)
         integer("patience", "... in as many generations.", 1, 8)
     if kind == "posterior":
-        integer("steps", "Of each walker of the ensemble sampler, at most.", 100, 5000)
+        integer("steps", "Of each walker of the ensemble sampler, at most; it ends when it has converged.", 100, 50000)
         integer("checks", "Draws of the posterior that are run to check the surrogate.", 0, 5)
     if kind == "sobol":
         settings["allow_missing"] = table.flag("allow_missing", "Give indices even when more than 5 % of the rows are "

@@ -48,7 +48,7 @@ class Check:
 
 
 def sample(surrogates: Sequence[Surrogate], validations: Sequence[Validation], targets: Targets, covariance: Array,
-           seed: int = 0, walkers: int | None = None, most_steps: int = 5000) -> Posterior:
+           seed: int = 0, walkers: int | None = None, most_steps: int = 50000) -> Posterior:
     """Draws of the parameters, prior uniform in the unit cube.
 
     surrogates: one for each target, in their order. validations: theirs; the surrogates' own errors are added to the
