@@ -15,6 +15,7 @@ import unittest
 from pyroclast.errors import Error
 from pyroclast.study.executors.local import Local
 from pyroclast.study.outputs import Output
+from pyroclast.study.store import DONE, Result, Store
 from pyroclast.study.study import Study
 from pyroclast.study.work import judge
 from study_files import PROGRAM, StudyTest, of_deck
@@ -185,6 +186,21 @@ class Kills(StudyTest):
             time.sleep(0.05)
         self.assertEqual(alive(str(self.model)), [])
 
+    def test_a_killed_drivers_last_runs_are_not_made_again(self) -> None:
+        study = self.study(self.of_command("plain"))
+
+        class Deaf(Local):
+            """Its driver is killed before it writes down what it hears."""
+
+            def run(self, jobs, runs, finished, stopped) -> None:
+                super().run(jobs, runs, lambda result: None, stopped)
+
+        study.run(Deaf(2))
+        before = self.made(study)
+        self.assertEqual(len(before), 4)
+        self.assertTrue(study.run(jobs=2))
+        self.assertEqual(self.made(study), before)
+
     def test_ctrl_c_stops_and_goes_on(self) -> None:
         text = self.file(self.of_command("brief", 'kind = "lhs"\nsamples = 12'))
         words = [sys.executable, "-m", "pyroclast.study", "run", str(text), "--jobs", "2"]
@@ -200,6 +216,25 @@ class Kills(StudyTest):
         self.assertEqual(subprocess.run(words, stdout=subprocess.DEVNULL).returncode, 0)
         self.assertEqual(states(study), ["done"] * 12)
         self.assertLess(len(self.made(study)), 15)
+
+    def test_results_are_written_down_while_others_are_waited_for(self) -> None:
+        study = self.study(self.of_function('kind = "lhs"\nsamples = 2'))
+        known = []
+
+        class Slow:
+            name = "slow"
+
+            def run(self, jobs, runs, finished, stopped) -> None:
+                for job in jobs:
+                    finished(Result(job.id, job.seed, DONE, outputs={"z": (1.0, "")}))
+                until = time.monotonic() + 10.0
+                while len(known) < 2 and time.monotonic() < until:
+                    stopped()
+                    known[:] = list(Store(study.setup.folder, writes=False))
+                    time.sleep(0.05)
+
+        self.assertTrue(study.run(Slow()))
+        self.assertEqual(len(known), 2)
 
     def test_two_drivers_are_one_too_many(self) -> None:
         study = self.study(self.of_command("brief"))

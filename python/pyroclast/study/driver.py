@@ -27,7 +27,7 @@ from .parameters import Value
 from .plans import Answers, Plan, Proposal, plan_of
 from .points import Point, Points
 from .store import DONE, FAILED, NO_VALUE, Result, Store
-from .work import Job
+from .work import Job, made
 
 _LEAST_CHECKPOINT = 1.0  # s
 _SHARE_OF_CHECKPOINTS = 0.02  # of the expected time of a run
@@ -118,7 +118,7 @@ class Driver:
         self.check()
         while True:
             proposal = self.plan.propose(self._answers)
-            missing = [w for w in self._wanted(proposal) if self._result(w) is None]
+            missing = self._missing(proposal)
             if missing:
                 progress = _Progress(len(missing), say)
                 results = _Batches(self.store)
@@ -127,8 +127,12 @@ class Driver:
                     results.put(result)
                     progress.count(result)
 
+                def asked(results: _Batches = results) -> bool:
+                    results.flush_if_due()
+                    return stopped()
+
                 try:
-                    executor.run(self._jobs(missing), self.store.folder / "runs", finished, stopped)
+                    executor.run(self._jobs(missing), self._runs, finished, asked)
                 finally:
                     results.flush()
                 progress.end()
@@ -139,6 +143,17 @@ class Driver:
                 break
         self.write_table()
         return True
+
+    def _missing(self, proposal: Proposal) -> list[Wanted]:
+        """Runs of which neither the store nor a record knows what came of them; the store then knows the records."""
+        missing = [w for w in self._wanted(proposal) if self._result(w) is None]
+        records = [made(job, self._runs) for job in self._jobs(missing)]
+        self.store.put(record for record in records if record is not None)
+        return [w for w in missing if self._result(w) is None]
+
+    @property
+    def _runs(self) -> Path:
+        return self.store.folder / "runs"
 
     def rows(self) -> list[dict[str, Any]]:
         """A line for each run that the method asked for: what it was, what came of it, and how to make it again."""
@@ -216,7 +231,7 @@ class Driver:
         return self._with(result, lacking) if lacking else result
 
     def _with(self, result: Result, outputs: Sequence[Output]) -> Result | None:
-        folder = self.store.folder / "runs" / result.id
+        folder = self._runs / result.id
         summary = read_summary(folder)
         if summary is None or any(o.of_history for o in outputs) and not (folder / "history.csv").exists():
             return None
@@ -274,7 +289,10 @@ class _Batches:
 
     def put(self, result: Result) -> None:
         self._waiting.append(result)
-        if time.monotonic() - self._last > self._INTERVAL:
+        self.flush_if_due()
+
+    def flush_if_due(self) -> None:
+        if self._waiting and time.monotonic() - self._last > self._INTERVAL:
             self.flush()
 
     def flush(self) -> None:
