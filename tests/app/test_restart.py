@@ -91,7 +91,7 @@ class Resuming(RestartTest):
             self.assert_same("whole", out)
             log = (self.folder / out / "run.log").read_text()
             self.assertEqual(log.count("goes on from"), 1)
-            self.assertEqual(log.count("ended "), 1)  # what was said after the checkpoint is gone
+            self.assertEqual(log.count("\nended  "), 1)  # what was said after the checkpoint is gone
         done = self.pyroclast("resume", "whole", code=1)
         self.assertIn("the run is over", done.stderr)
         # the disk was full at the very end
