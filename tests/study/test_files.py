@@ -78,7 +78,12 @@ class WrongFiles(StudyTest):
         self.refused_by_deck(text, "[parameters.E]", "curve", "scale")
 
     def test_key_that_the_deck_does_not_know(self) -> None:
-        self.refused_by_deck(of_deck(LHS, F_T.replace("f_t\"", "f_tt\"")), "[parameters.f_t]", "f_tt")
+        nu = '[parameters.nu]\nkey = "materials.mortar.nu"\nuniform = [0.2, 0.3]\n'
+        text = of_deck(LHS, F_T.replace("f_t\"", "f_tt\"") + nu)
+        self.refused_by_deck(text, "[parameters.f_t]", "f_tt")
+        with self.assertRaises(Error) as caught:
+            self.study(text).check()
+        self.assertEqual(str(caught.exception).count("unknown key"), 1)
 
     def test_end_of_a_range_that_the_deck_refuses(self) -> None:
         self.refused_by_deck(of_deck(LHS, '[parameters.nu]\nkey = "materials.mortar.nu"\nuniform = [0.2, 0.6]\n'),

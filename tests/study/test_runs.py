@@ -297,9 +297,13 @@ class OfDecks(StudyTest):
         slow.write_text(text.read_text().replace('"4 mm/s"', '"20 mm/s"'))
         warned = subprocess.run([PROGRAM, "study", "check", str(slow)], capture_output=True, text=True).stderr
         self.assertRegex(warned, "warning: .*velocity")
-        foreseen = said("run", str(text), "--dry-run")
+        far = text.with_name("far.toml")
+        far.write_text(text.read_text().replace("[method]", 'folder = "not/there/yet"\n[method]'))
+        foreseen = said("run", str(far), "--dry-run")
         self.assertIn("2 left", foreseen)
         self.assertRegex(foreseen, r"time +\d")
+        self.assertIn("GB are free", foreseen)
+        self.assertFalse((self.folder / "not").exists())
         self.assertIn("not run", said("status", str(text), code=2))
         said("run", str(text), "--executor", "commands")
         lines = (self.folder / "study-study" / "commands.txt").read_text().splitlines()
@@ -308,6 +312,7 @@ class OfDecks(StudyTest):
             subprocess.run(line, shell=True, check=True, stdout=subprocess.DEVNULL)
         said("run", str(text), "--executor", "commands")
         self.assertIn("2 of 2 done", said("status", str(text)))
+        self.assertNotIn("time", said("run", str(text), "--dry-run"))
         self.assertEqual(said("table", str(text), "-o", "-").count("\n"), 3)
 
 

@@ -115,16 +115,18 @@ def _foresee(study: Study) -> int:
     more = "" if seen.is_complete else " to begin with; more may follow"
     print(f"points          {seen.points}{more}")
     print(f"runs            {seen.runs}, {seen.known} of them done: {seen.left} left")
-    seconds = seen.seconds / max(seen.left, 1) if not math.isnan(seen.seconds) else study.time_of_a_run()
+    if not seen.left:
+        return 0
+    seconds = seen.seconds / seen.left if not math.isnan(seen.seconds) else study.time_of_a_run()
     if seconds is None:
         print("time            not known before one run is done")
     else:
         print(f"time            {duration(seconds)} a run, {duration(seconds * seen.left)} of one core in all")
     if setup.runner.kind == "pyroclast":
-        free = shutil.disk_usage(setup.folder.parent if not setup.folder.exists() else setup.folder).free
+        there = next(folder for folder in (setup.folder.resolve(), *setup.folder.resolve().parents) if folder.exists())
         print(f"disk            about {seen.left * _DISK[setup.keep] / 1e6:.0f} MB to keep of each run its "
               f"{'summary' if setup.keep == 'summary' else 'history too' if setup.keep == 'history' else 'whole folder'}; "
-              f"{free / 1e9:.0f} GB are free")
+              f"{shutil.disk_usage(there).free / 1e9:.0f} GB are free")
     return 0
 
 

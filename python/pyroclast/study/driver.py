@@ -50,7 +50,7 @@ class Wanted:
 class Forecast:
     """What a study asks for, and what is left of it."""
 
-    points: int  #: that the method asks for so far
+    points: int  #: that the method asks for so far, each once
     runs: int  #: of these points, one for each seed
     known: int  #: runs of which it is known what came of them
     infeasible: int  #: points whose deck is refused
@@ -102,7 +102,7 @@ class Driver:
         proposal = self.plan.propose(self._answers)
         wanted = self._wanted(proposal)
         known = sum(self._result(w) is not None for w in wanted)
-        points = self._points(proposal.points)
+        points = set(self._points(proposal.points))
         return Forecast(len(points), len(wanted), known, sum(bool(p.infeasible) for p in points),
                         (len(wanted) - known) * self.expected, proposal.is_complete)
 

@@ -137,13 +137,13 @@ class Points:
         wrong = self._wrong_keys(middle)
         if wrong or self._study.runner.kind != "pyroclast":
             return wrong
-        said: dict[str, str] = {}  # by what is wrong, all of it
+        said: dict[str, str] = {}  # by what is wrong, once: an unknown key is so at both ends
         for place, values in self._ends(middle):
             try:
                 self.resolve(values)
             except DeckError as error:
                 for d in error.diagnostics:
-                    said.setdefault(f"{d.key} = {d.value}: {d.message}", f"{place}{d}")
+                    said.setdefault(f"{d.key}: {d.message}", f"{place}{d}")
             except Error as error:
                 said.setdefault(str(error), f"{place}{error}")
         return list(said.values())
