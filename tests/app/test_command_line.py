@@ -35,6 +35,15 @@ class CommandLine(unittest.TestCase):
         self.assertIn('did you mean "curves"?', self.error("list", "curvs"))
         self.assertIn('did you mean "hot_compression"?', self.error("new", "x", "--from", "hot_compresion"))
 
+    def test_where_nothing_more_can_be_written_the_exit_code_tells(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([PROGRAM, "list", "cases"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+            self.assertEqual((done.returncode, done.stderr.count("No space left on device")), (1, 1))
+            for words in (["rnu"], ["list", "cases"], ["law", "--verify", "elastic", "--paths", "1"]):
+                with self.subTest(words):
+                    done = subprocess.run([PROGRAM, *words], stdout=full, stderr=full, check=False)
+                    self.assertEqual(done.returncode, 1)
+
     def test_a_value_that_cannot_be_is_refused_with_what_can(self):
         case = str(CASES / "starter.toml")
         self.assertIn("--seed: Value -3 not in range 0 to", self.error("check", case, "--seed", "-3"))

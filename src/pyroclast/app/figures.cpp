@@ -7,6 +7,7 @@
 
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/app/python_package.hpp"
+#include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/results/folder_lock.hpp"
 
@@ -38,10 +39,10 @@ int figures(const std::vector<std::string>& words) {
 void draw_figures(const std::string& what, const std::filesystem::path& folder, Speech speech,
                   const std::function<bool()>& skip) {
   if (draw({what, folder.string()}, speech, skip) == 0) return;
-  fmt::print(stderr,
-             "warning: no figures were drawn; the results are complete without them.\n"
-             "To draw them later: pyroclast figures {} {}\n",
-             what, folder.string());
+  say_aside(
+      fmt::format("warning: no figures were drawn; the results are complete without them.\n"
+                  "To draw them later: pyroclast figures {} {}\n",
+                  what, folder.string()));
 }
 
 }  // namespace pyroclast::app

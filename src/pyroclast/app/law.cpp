@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/app/load.hpp"
+#include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/kit.hpp"
 #include "pyroclast/laws/registry.hpp"
@@ -28,7 +29,7 @@ const ContactMaterial& contact_of(const ConcreteMaterials& concrete, const std::
 /// A law that the command line states, with all its properties.
 ContactMaterial material_of_command(const LawOptions& options) {
   const LawTable& law = find_law(options.law, {}, sources_of(options.sources));
-  if (law.update(2)) fmt::print(stderr, "{}", describe_own_laws());
+  if (law.update(2)) say_aside(describe_own_laws());
   return stated_material(law, options.values);
 }
 
@@ -68,7 +69,7 @@ int verify_laws(const VerifyOptions& options) {
   for (const std::string& name : options.laws) {
     wanted.push_back(&find_law(name, {}, sources_of(options.sources)));
   }
-  fmt::print(stderr, "{}", describe_own_laws());
+  say_aside(describe_own_laws());
   if (wanted.empty()) wanted.assign(built_in_laws().begin(), built_in_laws().end());
   bool passed = true;
   for (const LawTable* law : wanted) {

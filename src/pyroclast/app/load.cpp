@@ -1,10 +1,10 @@
 #include "pyroclast/app/load.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include <fmt/format.h>
 
+#include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/plugin/load.hpp"
 #include "pyroclast/units/units.hpp"
 
@@ -58,7 +58,7 @@ LawSources sources_of(const OwnLawOptions& options) {
   sources.folders.insert(sources.folders.begin(), options.folders.begin(), options.folders.end());
   sources.may_compile = sources.may_compile && options.may_compile;
   sources.compiler.tell = [](const std::string& command) {
-    fmt::print(stderr, "compiling a law: {}\n", command);
+    say_aside(fmt::format("compiling a law: {}\n", command));
   };
   return sources;
 }

@@ -1,4 +1,6 @@
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <new>
 
 #include <CLI/CLI.hpp>
@@ -6,6 +8,7 @@
 
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/app/manual.hpp"
+#include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/app/watcher.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
@@ -222,19 +225,24 @@ int command_line(int argc, char** argv) {
   }
   if (*run) return app::run(options);
   if (*resume) return app::resume(resume_options);
-  if (*check) return app::check(options);
-  if (*specimen) return app::make_specimen(options);
-  if (*law) return *verify ? app::verify_laws(verify_options) : app::law(law_options);
-  if (*properties) return app::plot_properties(properties_options);
-  if (*figures) return app::figures(figures->remaining());
-  if (*watch) app::watch(watch->remaining());
-  if (*study) app::study(study->remaining());
-  if (*keys) return app::print_keys();
-  if (*laws) return app::print_laws();
-  if (*list) return app::print_list(list_of);
-  if (*manual) return app::print_manual(cli);
-  if (*completion) return app::print_completion(cli);
-  return app::make_deck(name, from);
+  const int code = [&] {
+    if (*check) return app::check(options);
+    if (*specimen) return app::make_specimen(options);
+    if (*law) return *verify ? app::verify_laws(verify_options) : app::law(law_options);
+    if (*properties) return app::plot_properties(properties_options);
+    if (*figures) return app::figures(figures->remaining());
+    if (*watch) app::watch(watch->remaining());
+    if (*study) app::study(study->remaining());
+    if (*keys) return app::print_keys();
+    if (*laws) return app::print_laws();
+    if (*list) return app::print_list(list_of);
+    if (*manual) return app::print_manual(cli);
+    if (*completion) return app::print_completion(cli);
+    return app::make_deck(name, from);
+  }();
+  if (std::fflush(stdout) != 0)
+    throw Error(fmt::format("what is printed cannot be written ({})", std::strerror(errno)));
+  return code;
 }
 
 }  // namespace
@@ -243,11 +251,11 @@ int main(int argc, char** argv) {
   try {
     return command_line(argc, argv);
   } catch (const pyroclast::Error& e) {
-    fmt::print(stderr, "error: {}\n", e.what());
+    app::say_aside(fmt::format("error: {}\n", e.what()));
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "error: out of memory\n");
+    app::say_aside("error: out of memory\n");
   } catch (const std::exception& e) {
-    fmt::print(stderr, "error: {}\n", e.what());
+    app::say_aside(fmt::format("error: {}\n", e.what()));
   }
   return 1;
 }

@@ -12,6 +12,7 @@
 
 #include "pyroclast/app/progress.hpp"
 #include "pyroclast/app/python_package.hpp"
+#include "pyroclast/app/say_aside.hpp"
 
 namespace pyroclast::app {
 
@@ -39,7 +40,8 @@ Watcher::Watcher(std::filesystem::path folder, RunLog& log)
   process_ = start_package(kModule, {folder_.string(), "--on", on},
                            {.hears_ctrl_c = false, .prints = log_.speech() != Speech::quiet});
   if (!process_)
-    fmt::print(stderr, "warning: {} cannot be run, so nobody watches; the run goes on\n", PYROCLAST_PYTHON);
+    say_aside(
+        fmt::format("warning: {} cannot be run, so nobody watches; the run goes on\n", PYROCLAST_PYTHON));
   else if (!has_window_ && has_terminal)
     log_.keep_progress_off_screen(true);
 }
@@ -66,11 +68,11 @@ void Watcher::tell_end(int status) {
   process_.reset();
   log_.keep_progress_off_screen(false);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
-  fmt::print(stderr,
-             "warning: the watcher ended ({}); the run does not. To watch it again: pyroclast watch {}\n",
-             WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status))
-                               : fmt::format("signal {}", WTERMSIG(status)),
-             folder_.string());
+  say_aside(fmt::format(
+      "warning: the watcher ended ({}); the run does not. To watch it again: pyroclast watch {}\n",
+      WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status))
+                        : fmt::format("signal {}", WTERMSIG(status)),
+      folder_.string()));
 }
 
 void watch(const std::vector<std::string>& words) {
