@@ -25,8 +25,11 @@ def main(x, seed, folder, mode="plain"):
     with open(count, "a") as file:
         file.write(f"{x} {seed}\\n")
     if mode == "crash":
-        print("the mortar is missing", file=sys.stderr)
+        print("error: the mortar is missing\\nwith mortar: the same again", file=sys.stderr)
         sys.exit(3)
+    if mode == "full" and not (folder.parent.parent / "room").exists():
+        print("error: history.csv: cannot be written (No space left on device)\\nto go on: make room", file=sys.stderr)
+        sys.exit(1)
     if mode == "slow":
         time.sleep(60.0)
     if mode == "brief":

@@ -236,6 +236,16 @@ class Kills(StudyTest):
         self.assertTrue(study.run(Slow()))
         self.assertEqual(len(known), 2)
 
+    def test_a_full_disk_is_no_fault_of_the_runs(self) -> None:
+        study = self.study(self.of_command("full"))
+        with self.assertRaisesRegex(Error, "No space left on device.*goes on"):
+            study.run(jobs=2)
+        self.assertLessEqual(len(self.made(study)), 3)
+        self.assertEqual(states(study), ["not run"] * 4)
+        (study.setup.folder / "room").touch()
+        self.assertTrue(study.run(jobs=2))
+        self.assertEqual(states(study), ["done"] * 4)
+
     def test_two_drivers_are_one_too_many(self) -> None:
         study = self.study(self.of_command("brief"))
 

@@ -46,6 +46,7 @@ case $3 in
       while :; do sleep 0.05; done
     fi ;;
   deadly) kill -9 $PPID; exit 1 ;;  # takes its task along
+  full) echo "error: summary.json: cannot be written (No space left on device)" >&2; exit 1 ;;
 esac
 finish "$1" "$2"
 '''
@@ -240,6 +241,12 @@ class Lost(SlurmTest):
         self.assertEqual(bad.state, CRASHED)
         self.assertIn(f"ended {MOST_LOST} times", bad.reason)
         self.assertEqual({r: self.results[r].state for r in self.results}, {f"run-{i}": DONE for i in (0, 2, 3, 4)})
+
+    def test_full_disk(self) -> None:
+        with self.assertRaisesRegex(Error, "task 1_. ended: summary.json: .*No space left on device"):
+            self.run_all(self.jobs(4, "full"))
+        self.assertEqual(self.results, {})
+        self.assertEqual(self.made(), [0])  # what a task has in its list was not tried
 
     def test_workers_that_cannot_start(self) -> None:
         with mock.patch.object(sys, "executable", "/nowhere/python3"), self.assertRaisesRegex(Error, "/nowhere/python3"):

@@ -121,6 +121,7 @@ class Store:
         return next((self._results[i] for i in ids if i in self._results), None)
 
     def put(self, results: Iterable[Result]) -> None:
+        """Raises Error where they cannot be written down, as on a full disk; what has a record is found again by it."""
         rows = []
         for result in results:
             self._results[result.id] = result
@@ -128,8 +129,11 @@ class Store:
             rows.append([json.dumps(named[key]) if key in _AS_JSON else named[key] for key in _COLUMNS])
         if self._base is None:
             return
-        with self._base:
-            self._base.executemany(f"INSERT OR REPLACE INTO runs VALUES ({', '.join('?' * len(_COLUMNS))})", rows)
+        try:
+            with self._base:
+                self._base.executemany(f"INSERT OR REPLACE INTO runs VALUES ({', '.join('?' * len(_COLUMNS))})", rows)
+        except sqlite3.OperationalError as error:
+            raise Error(f"{self._file}: {error}") from error
 
     def drop(self, ids: Iterable[str]) -> None:
         """Forgets runs and their records; they are then run again."""

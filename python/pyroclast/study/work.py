@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import datetime
+import errno
 import json
 import math
 import os
@@ -18,6 +19,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ..errors import Error
 from .outputs import Output, read_summary
 from .store import (CRASHED, DONE, NO_VALUE, NOT_QUASI_STATIC, NOT_SETTLED, TIMED_OUT, Result, read_record,
                     write_record)
@@ -31,6 +33,7 @@ MOST_IN_VAIN = 10
 PATIENCE = 30.0
 """Time that a process gets to keep its state before it is killed, s."""
 
+_LEAST_ROOM = 1e6  # bytes; with less, a process that fails without a word has probably no room to write one
 _LARGE = ("history.csv", "specimen", "fields", "figures", "checkpoints", "frames.json")
 _PR_SET_PDEATHSIG = 1
 _REASON_LENGTH = 300
@@ -137,7 +140,10 @@ class Attempt:
             _signal(self.process, signal.SIGKILL)
 
     def end(self) -> Result | None:
-        """What came of the process, which has ended; None where it was ended from outside and another one goes on."""
+        """What came of the process, which has ended; None where it was ended from outside and another one goes on.
+
+        Raises Error where the disk is full: that is no fault of the run, and the next one would fare no better.
+        """
         code = self.process.wait()
         summary = read_summary(self.folder)
         is_whole = summary is not None and summary.get("outcome") != "stopped"
@@ -146,10 +152,13 @@ class Attempt:
             return self._finish(*judge(summary), summary)
         if self.is_late:
             return self._finish(TIMED_OUT, f"wall limit of {self.job.wall_limit:g} s", None)
+        said = self._said()
+        if code != 0 and (is_of_full_disk(said) or not said and shutil.disk_usage(self._runs).free < _LEAST_ROOM):
+            raise Error(f"{said or f'{self._runs}: {os.strerror(errno.ENOSPC)}'}; runs keep their state: with room "
+                        "again, the same command goes on")
         ended_outside = self.asked_to_stop or code in (-signal.SIGKILL, -signal.SIGTERM, -signal.SIGHUP, -signal.SIGINT,
                                                        130)
         if not ended_outside:
-            said = self._said()
             how = f"signal {-code}" if code < 0 else f"exit code {code}" if code else "no summary.json was left"
             return self._finish(CRASHED, f"{how}: {said}" if said else how, None)
         write_record(self._runs, self._result(BEGUN))
@@ -175,12 +184,14 @@ class Attempt:
                       attempts=self.attempts, version=self.job.version)
 
     def _said(self) -> str:
-        """The last line that the process wrote."""
+        """The last error that the process wrote, else the last line."""
         try:
             lines = self._log.read_text(encoding="utf-8", errors="replace").split("\n")
         except OSError:
             return ""
-        return next((line.strip() for line in reversed(lines) if line.strip()), "")
+        lines = [line.strip() for line in reversed(lines) if line.strip()]
+        errors = [line.removeprefix("error: ") for line in lines if line.startswith("error: ")]
+        return next(iter(errors + lines), "")
 
 
 def collected(job: Job, runs: Path) -> Result:
@@ -258,6 +269,11 @@ def _signal(process: subprocess.Popen[bytes], number: int) -> None:
         os.killpg(process.pid, number)  # a session of its own
     except ProcessLookupError:
         pass
+
+
+def is_of_full_disk(said: str) -> bool:
+    """Whether a process said that it could write no more."""
+    return any(os.strerror(number) in said for number in (errno.ENOSPC, errno.EDQUOT))
 
 
 def die_with_parent(parent: int) -> Callable[[], None]:

@@ -16,6 +16,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
+from ..errors import Error
 from .executors.local import Local
 from .store import Result, read_record, write_record
 from .work import BEGUN, MOST_IN_VAIN, Job, given_up, jobs_of, kept, made
@@ -44,7 +45,7 @@ def requeue(task: str) -> bool:
 
 
 def main(words: list[str]) -> int:
-    """Exit code: 0 where all runs are over or the task is in the queue again."""
+    """Exit code: 0 where all runs are over or the task is in the queue again, else 1; what is wrong stands last."""
     file, runs, count = Path(words[0]), Path(words[1]), int(words[2])
     array, index = os.environ["SLURM_ARRAY_JOB_ID"], os.environ["SLURM_ARRAY_TASK_ID"]
     asked = threading.Event()
@@ -60,7 +61,11 @@ def main(words: list[str]) -> int:
             write_record(runs, result)
 
     functions = {job.id for job in left if job.kind == "function"}  # others have written theirs
-    Local(1).run(left, runs, finished, asked.is_set)
+    try:
+        Local(1).run(left, runs, finished, asked.is_set)
+    except (Error, OSError) as error:
+        print(error, flush=True)
+        return 1
     left = [job for job in left if made(job, runs) is None]
     for job in left:
         record = read_record(runs, job.id)

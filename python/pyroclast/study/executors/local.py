@@ -44,27 +44,37 @@ def _run(jobs: Sequence[Job], slots: int, runs: Path, finished: Callable[[Result
     waiting = deque(jobs)
     in_vain: dict[str, int] = {}
     running: dict[int, Attempt] = {}  # by the file descriptor that tells when its process has ended
-    while running or (waiting and not stopped()):
-        while waiting and len(running) < slots and not stopped():
-            attempt = Attempt(waiting.popleft(), runs)
-            running[os.pidfd_open(attempt.process.pid)] = attempt
-        ended, _, _ = select.select(list(running), [], [], _LOOK)
-        for descriptor in ended:
-            attempt = running.pop(descriptor)
-            os.close(descriptor)
-            attempt.asked_to_stop |= stopped()  # what stops this process may have stopped the run too
-            result = attempt.end()
-            job = attempt.job
-            if result is None and not stopped():
-                in_vain[job.id] = 0 if attempt.has_kept else in_vain.get(job.id, 0) + 1
-                if in_vain[job.id] >= MOST_IN_VAIN:
-                    result = attempt.give_up()
-                else:
-                    waiting.append(job)
-            if result is not None:
-                finished(result)
+    broken: Exception | None = None  # what no run can go on with, as a full disk
+
+    def is_over() -> bool:
+        return broken is not None or stopped()
+
+    while running or (waiting and not is_over()):
+        try:
+            while waiting and len(running) < slots and not is_over():
+                attempt = Attempt(waiting.popleft(), runs)
+                running[os.pidfd_open(attempt.process.pid)] = attempt
+            ended, _, _ = select.select(list(running), [], [], _LOOK)
+            for descriptor in ended:
+                attempt = running.pop(descriptor)
+                os.close(descriptor)
+                attempt.asked_to_stop |= is_over()  # what stops this process may have stopped the run too
+                result = attempt.end()
+                job = attempt.job
+                if result is None and not is_over():
+                    in_vain[job.id] = 0 if attempt.has_kept else in_vain.get(job.id, 0) + 1
+                    if in_vain[job.id] >= MOST_IN_VAIN:
+                        result = attempt.give_up()
+                    else:
+                        waiting.append(job)
+                if result is not None:
+                    finished(result)
+        except (Error, OSError) as error:
+            broken = broken or error  # the others get their time to keep their states
         for attempt in running.values():
-            attempt.look_after(stopped())
+            attempt.look_after(is_over())
+    if broken is not None:
+        raise broken
 
 
 class _Server:

@@ -24,7 +24,7 @@ from pathlib import Path
 from ...errors import Error
 from ..file import Slurm as Settings
 from ..store import Result, read_record
-from ..work import BEGUN, Job, given_up, kept, made
+from ..work import BEGUN, Job, given_up, is_of_full_disk, kept, made
 
 MOST_LOST = 3
 """Times, one after the other, that the task of a run ends without a result before the run is given up."""
@@ -278,6 +278,8 @@ class _Queue:
         else:
             suspects = missing
         last = _last_line(self._book.log(array, task))
+        if is_of_full_disk(last):
+            raise Error(f"task {array.job}_{task} ended: {last}")
         said = f": {last}" if last else ""
         self._slurm.say(f"task {array.job}_{task} ended without {len(missing)} of its runs{said}")
         for run in suspects:
