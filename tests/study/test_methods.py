@@ -128,6 +128,9 @@ class SeedShare(unittest.TestCase):
         self.assertGreater(seeds.share(noise).single_low, 0.9)
         self.assertLess(seeds.share(np.arange(200.0)[:, None] + np.zeros((1, 3))).single, 1e-12)
         self.assertTrue(np.isnan(seeds.share(noise[:, :1]).single))
+        two = seeds.share(noise[:, :2])
+        self.assertGreater(two.single, 0.9)
+        self.assertTrue(np.isnan([two.single_low, two.single_high, two.mean_low, two.mean_high]).all())
 
 
 class Morris(unittest.TestCase):

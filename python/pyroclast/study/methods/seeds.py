@@ -17,7 +17,7 @@ class Share:
     """How much of an output's variance comes from the seed. NaN with fewer than two seeds or points."""
 
     single: float  #: of the variance of single runs
-    single_low: float  #: 95 % interval, bootstrap over the seeds
+    single_low: float  #: 95 % interval, bootstrap over the seeds; NaN with two, of which there is one resample only
     single_high: float
     mean: float  #: of the variance of the mean over the seeds
     mean_low: float
@@ -45,6 +45,8 @@ def share(y: Array, seed: int = 0, resamples: int = 1000) -> Share:
         nan = float("nan")
         return Share(nan, nan, nan, nan, nan, nan, points, count)
     single, mean = _shares(y, np.full((1, count), 1.0 / count))
+    if count < 3:
+        return Share(float(single[0]), np.nan, np.nan, float(mean[0]), np.nan, np.nan, points, count)
     weights = np.random.default_rng(seed).multinomial(count, np.full(count, 1.0 / count), resamples) / count
     singles, means = _shares(y, weights[weights.max(axis=1) < 1.0])
     (single_low, mean_low), (single_high, mean_high) = interval(np.stack([singles, means], axis=1), count)
