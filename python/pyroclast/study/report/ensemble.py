@@ -45,7 +45,8 @@ def _sentence(summary: dict[str, Any]) -> str:
         return f"One run alone: {number(summary['mean'])}. Its scatter is not known."
     half = 0.5 * (summary["high"] - summary["low"])
     relative = f" (± {percent(half / abs(summary['mean']))})" if summary["mean"] else ""
-    missing = f" {summary['missing']} runs gave no value." if summary["missing"] else ""
+    lost = summary["missing"]
+    missing = f" {lost} {'runs' if lost > 1 else 'run'} gave no value." if lost else ""
     return (f"The mean of {summary['n']} seeds is {number(summary['mean'])}, 95 % interval "
             f"{between(summary['low'], summary['high'])}{relative}. Single runs scatter by "
             f"{number(summary['sd'], 3)} (sd), which is {percent(summary['variation'])} of the mean.{missing}")

@@ -196,11 +196,13 @@ def indices_figure(parameters: Sequence[Parameter], indices: dict[str, Any], sha
 def _of_chaos(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
     parameters, share = seen.setup.parameters, found["seed_share"]
     unit = output_label(output)
+    lost = found["lost"]
     said = [f"The surrogate has {found['terms']} terms up to degree {found['degree']}. On runs kept apart its Q² is "
             f"{number(found['q2'], 3)} and its error {number(found['error'], 3)} (root mean square, in the unit of "
-            f"{unit}), the seeds' scatter included; without it {number(found['own_q2'], 3)} and "
+            f"{unit}). The seeds' scatter is in both; without it Q² is {number(found['own_q2'], 3)} and the error "
             f"{number(found['own_error'], 3)}.",
-            f"{found['lost']} points are left out for a missing value." if found["lost"] else "", seed_sentence(share)]
+            f"{lost} {'points are' if lost > 1 else 'point is'} left out for a missing value." if lost else "",
+            seed_sentence(share)]
     if "dependence" in found:
         return _of_dependence(parameters, output, found, " ".join(filter(None, said)))
     if "indices" not in found:
