@@ -108,6 +108,10 @@ class Again(StudyTest):
         study.run(jobs=2)
         self.assertLess(len(self.made(study)), 9)
 
+    def test_points_that_come_again_count_once(self) -> None:
+        foreseen = self.study(self.of_command("plain", 'kind = "morris"\ntrajectories = 10\nlevels = 4')).forecast()
+        self.assertEqual((foreseen.points, foreseen.runs), (4, 4))
+
     def test_a_table_alone_is_enough(self) -> None:
         study = self.study(self.of_command("plain"))
         study.run(jobs=2)
