@@ -327,6 +327,9 @@ class OfDecks(StudyTest):
         said("run", str(text), "--executor", "commands")
         self.assertIn("2 of 2 done", said("status", str(text)))
         self.assertNotIn("time", said("run", str(text), "--dry-run"))
+        said("run", str(far), "--jobs", "2", "--keep", "history")
+        self.assertEqual(len(list((self.folder / "not/there/yet/runs").glob("*/history.csv"))), 2)
+        self.assertEqual(list((self.folder / "study-study/runs").glob("*/history.csv")), [])
         self.assertEqual(said("table", str(text), "-o", "-").count("\n"), 3)
 
 

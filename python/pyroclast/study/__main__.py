@@ -9,12 +9,13 @@ import os
 import shutil
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from ..errors import Error
 from .driver import duration
 from .executors.commands import Commands
-from .file import reference
+from .file import KEEP, reference
 from .study import EXECUTORS, Study
 
 _INTRODUCTION = """# Study reference
@@ -59,6 +60,7 @@ def _parser() -> argparse.ArgumentParser:
     run = command("run", _run, "Make the runs of a study that are missing; what is done is never run again")
     run.add_argument("--executor", choices=EXECUTORS, default="local", help="where the runs are made")
     run.add_argument("-j", "--jobs", type=_positive, help="runs at once on this machine (default: its cores)")
+    run.add_argument("--keep", choices=KEEP, help="what stays of each run that is made now (default: as the file says)")
     run.add_argument("--dry-run", action="store_true", help="only say how many runs, how long and how much disk")
     run.add_argument("--again", action="store_true", help="make runs that crashed or timed out once more")
     run.add_argument("--quiet", action="store_true", help="print nothing but errors")
@@ -84,6 +86,8 @@ def _study(options: argparse.Namespace) -> Study:
 
 def _run(options: argparse.Namespace) -> int:
     study = _study(options)
+    if options.keep:
+        study.setup = replace(study.setup, keep=options.keep)
     if options.dry_run:
         return _foresee(study)
     if options.again:
