@@ -7,7 +7,7 @@ import json
 import math
 import sqlite3
 import urllib.parse
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -127,13 +127,8 @@ class Store:
             self._results[result.id] = result
             named = asdict(result)
             rows.append([json.dumps(named[key]) if key in _AS_JSON else named[key] for key in _COLUMNS])
-        if self._base is None:
-            return
-        try:
-            with self._base:
-                self._base.executemany(f"INSERT OR REPLACE INTO runs VALUES ({', '.join('?' * len(_COLUMNS))})", rows)
-        except sqlite3.OperationalError as error:
-            raise Error(f"{self._file}: {error}") from error
+        if self._base is not None:
+            self._write(f"INSERT OR REPLACE INTO runs VALUES ({', '.join('?' * len(_COLUMNS))})", rows)
 
     def drop(self, ids: Iterable[str]) -> None:
         """Forgets runs and their records; they are then run again."""
@@ -141,9 +136,16 @@ class Store:
         for (i,) in gone:
             self._results.pop(i, None)
             record_file(self.folder / "runs", i).unlink(missing_ok=True)
+        self._write("DELETE FROM runs WHERE id = ?", gone)
+
+    def _write(self, what: str, rows: Sequence[Sequence[Any]]) -> None:
+        """For each row, all or none. Raises Error where it cannot be written."""
         assert self._base is not None
-        with self._base:
-            self._base.executemany("DELETE FROM runs WHERE id = ?", gone)
+        try:
+            with self._base:
+                self._base.executemany(what, rows)
+        except sqlite3.OperationalError as error:
+            raise Error(f"{self._file}: {error}") from error
 
     def __iter__(self) -> Iterator[Result]:
         return iter(self._results.values())
