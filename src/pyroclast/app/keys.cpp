@@ -8,7 +8,7 @@ namespace pyroclast::app {
 
 namespace {
 
-constexpr auto kIntroduction = R"(# Deck reference
+constexpr auto kKeysIntroduction = R"(# Deck reference
 
 Every table and key that a deck may hold. `pyroclast keys` prints this page from the code that reads decks.
 [deck.md](deck.md) and [heat.md](heat.md) explain what needs more than a line.
@@ -25,7 +25,7 @@ stages are.
 }  // namespace
 
 int print_keys() {
-  fmt::print("{}{}", kIntroduction, deck_reference(deck_schema()));
+  fmt::print("{}{}", kKeysIntroduction, deck_reference(deck_schema()));
   return 0;
 }
 

@@ -9,7 +9,7 @@ namespace pyroclast::app {
 
 namespace {
 
-constexpr auto kIntroduction = R"(# Contact laws
+constexpr auto kLawsIntroduction = R"(# Contact laws
 
 The laws that are part of the program. `pyroclast laws` prints this page from the laws themselves. A deck chooses one
 with `law = "name"` in a table of `[contacts]` ([deck.md](deck.md#phases-and-interfaces)); [method.md](method.md) tells
@@ -89,7 +89,7 @@ std::string page_of(const LawTable& law) {
 }  // namespace
 
 int print_laws() {
-  fmt::print("{}", kIntroduction);
+  fmt::print("{}", kLawsIntroduction);
   for (const LawTable* law : built_in_laws()) fmt::print("{}", page_of(*law));
   return 0;
 }

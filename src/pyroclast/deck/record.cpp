@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/nearest.hpp"
+#include "pyroclast/deck/key_path.hpp"
 #include "pyroclast/deck/survey_run.hpp"
 #include "pyroclast/deck/toml_characters.hpp"
 
@@ -78,11 +79,6 @@ std::string as_toml(const std::string& value) {
 
 bool is_table_like(const toml::node& node) {
   return node.is_table() || node.is_array_of_tables();
-}
-
-bool is_at_or_below(std::string_view path, std::string_view parent) {
-  if (parent.empty() || path == parent) return true;
-  return path.starts_with(parent) && (path[parent.size()] == '.' || path[parent.size()] == '[');
 }
 
 std::string in_brackets(const std::string& path) {
@@ -173,8 +169,8 @@ std::string DeckRecord::with_value(std::string_view path, const std::string& val
   return source_.replaced(position(region.begin), position(region.end), written);
 }
 
-/// First in the nearest table that there is, within its braces or below its header; where that has no header of its
-/// own, above all.
+/// First in the nearest table that there is, within its braces or below its header; where that has no header
+/// of its own, above all.
 std::string DeckRecord::with_new_key(std::string_view path, const std::string& value) const {
   const auto fits = [&](const std::string& text) {
     const auto table = try_toml(text);

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/deck/key_path.hpp"
 #include "pyroclast/deck/survey_run.hpp"
 
 namespace pyroclast {
@@ -21,12 +22,6 @@ const toml::table& no_table() {
 
 std::string joined(const std::string& table, std::string_view key) {
   return table.empty() ? std::string(key) : fmt::format("{}.{}", table, key);
-}
-
-/// Whether a path is that of a table or stands below it.
-bool is_at_or_below(std::string_view path, std::string_view table) {
-  return path.starts_with(table) &&
-         (path.size() == table.size() || path[table.size()] == '.' || path[table.size()] == '[');
 }
 
 /// What makes two readings of a key the same.

@@ -15,7 +15,7 @@ namespace pyroclast {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 /// A jump over the edge it stands on, from which on small and finite kinematics differ (validation/jumps.md).
 constexpr double kLargeJump = 1.0;
@@ -94,8 +94,8 @@ StageReport without_results(StageReport report, double energy_error) {
 }
 
 /// null where there is no value, as in a run that has no row yet.
-Json json_of(const std::optional<double>& value) {
-  return value ? Json(*value) : Json();
+OrderedJson json_of(const std::optional<double>& value) {
+  return value ? OrderedJson(*value) : OrderedJson();
 }
 
 std::optional<double> heat_error(const History& history) {
@@ -122,16 +122,16 @@ std::optional<std::size_t> large_jump(const Run& run, const Summary& s) {
 }
 
 template <std::size_t N>
-Json json_of(const std::array<Entry, N>& entries, const History& history) {
-  Json json;
+OrderedJson json_of(const std::array<Entry, N>& entries, const History& history) {
+  OrderedJson json;
   for (const Entry& entry : entries)
     if (history.has(entry.column)) json[entry.name] = json_of(last_of(history, entry.column));
   return json;
 }
 
-Json json_of(const Result::Value& value) {
+OrderedJson json_of(const Result::Value& value) {
   return std::visit(
-      [](const auto& v) -> Json {
+      [](const auto& v) -> OrderedJson {
         if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::monostate>)
           return nullptr;
         else
@@ -140,8 +140,8 @@ Json json_of(const Result::Value& value) {
       value);
 }
 
-Json json_of(const Summary::OfStage& stage) {
-  Json results = Json::object();
+OrderedJson json_of(const Summary::OfStage& stage) {
+  OrderedJson results = OrderedJson::object();
   for (const Result& result : stage.report.results) results[result.name] = json_of(result.value);
   return {{"kind", stage.kind},
           {"outcome", describe(stage.outcome)},
@@ -149,18 +149,18 @@ Json json_of(const Summary::OfStage& stage) {
           {"warnings", stage.report.warnings}};
 }
 
-Json whole(const std::optional<double>& value) {
-  return value ? Json(static_cast<std::int64_t>(*value)) : Json();
+OrderedJson whole(const std::optional<double>& value) {
+  return value ? OrderedJson(static_cast<std::int64_t>(*value)) : OrderedJson();
 }
 
-Json crack_json(const History& history, const std::string& crack) {
+OrderedJson crack_json(const History& history, const std::string& crack) {
   const auto last = [&](const char* what) { return last_of(history, (crack + what).c_str()); };
   return {{"damaged", whole(last("_damaged"))},
           {"broken", whole(last("_broken"))},
           {"length_m", json_of(last("_length_m"))}};
 }
 
-void add_motion(Json& json, const Summary& summary, const Run& run) {
+void add_motion(OrderedJson& json, const Summary& summary, const Run& run) {
   const Simulation& simulation = run.simulation();
   const History& history = run.history();
   json["energy_J"] = json_of(kEnergy, history);
@@ -179,7 +179,7 @@ void add_motion(Json& json, const Summary& summary, const Run& run) {
   json["steps"] = whole(last_of(history, "step"));
 }
 
-void add_heat(Json& json, const Summary& summary, const Run& run) {
+void add_heat(OrderedJson& json, const Summary& summary, const Run& run) {
   const Conduction<2>& conduction = *run.simulation().field().conduction();
   json["heat_J"] = json_of(kHeat, run.history());
   json["heat_J"]["error_over_largest"] = json_of(summary.heat_error);
@@ -193,14 +193,14 @@ void add_heat(Json& json, const Summary& summary, const Run& run) {
     json["heat_solver"]["gap_length_m"] = json_of(last_of(run.history(), "heat_gap_length_m"));
 }
 
-Json summary_json(const Summary& s, const Run& run) {
+OrderedJson summary_json(const Summary& s, const Run& run) {
   const Simulation& simulation = run.simulation();
   const specimen::Specimen& specimen = simulation.specimen();
-  Json json;
+  OrderedJson json;
   json["title"] = s.title;
   json["outcome"] = describe(s.outcome);
   json["sign"] = "stress and strain of the test are positive in compression";
-  json["stages"] = Json::array();
+  json["stages"] = OrderedJson::array();
   for (const auto& stage : s.stages) json["stages"].push_back(json_of(stage));
   if (simulation.moves()) add_motion(json, s, run);
   if (simulation.field().conduction()) add_heat(json, s, run);
@@ -217,7 +217,7 @@ Json summary_json(const Summary& s, const Run& run) {
 }
 
 /// Paths of what is a number, or null, which a number may take the place of.
-void add_numbers(const Json& json, const std::string& path, std::set<std::string>& names) {
+void add_numbers(const OrderedJson& json, const std::string& path, std::set<std::string>& names) {
   for (const auto& [key, value] : json.items()) {
     const std::string own = path.empty() ? key : path + "." + key;
     if (value.is_object())

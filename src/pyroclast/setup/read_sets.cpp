@@ -7,21 +7,18 @@
 #include <fmt/format.h>
 
 #include "pyroclast/setup/read_name.hpp"
+#include "pyroclast/setup/vec_of_place.hpp"
 
 namespace pyroclast {
 
 namespace {
-
-Vec<2> vec(const std::pair<double, double>& place) {
-  return {{place.first, place.second}};
-}
 
 /// Two places from a list that must hold so many.
 std::array<Vec<2>, 2> read_two(const Section& s, const char* key, Meaning meaning) {
   const auto places = s.places(key, unit::length, 2, meaning);
   if (places.size() > 2) s.error(key, "must be two places, [[x, y], [x, y]]");
   if (places.size() < 2) return {};
-  return {vec(places[0]), vec(places[1])};
+  return {vec_of(places[0]), vec_of(places[1])};
 }
 
 Place<2> read_place_of_set(const Section& s) {
@@ -38,7 +35,7 @@ Place<2> read_place_of_set(const Section& s) {
   }
   if (s.has("centre")) {
     const auto centre = s.place("centre", unit::length, "of a disc");
-    return InBall<2>{vec(centre.value_or(std::pair{0.0, 0.0})),
+    return InBall<2>{vec_of(centre.value_or(std::pair{0.0, 0.0})),
                      s.quantity("radius", unit::length, Range::positive(), "of a disc")};
   }
   if (s.has("line")) {
@@ -46,8 +43,8 @@ Place<2> read_place_of_set(const Section& s) {
     return OnLine<2>{from, to};
   }
   if (s.has("nearest"))
-    return NearestTo<2>{
-        vec(s.place("nearest", unit::length, "what is nearest to this place").value_or(std::pair{0.0, 0.0}))};
+    return NearestTo<2>{vec_of(
+        s.place("nearest", unit::length, "what is nearest to this place").value_or(std::pair{0.0, 0.0}))};
   return Everywhere{};
 }
 

@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/setup/vec_of_place.hpp"
 #include "pyroclast/specimen/cells_file.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/neper_tess.hpp"
@@ -111,18 +112,14 @@ struct Outline {
   std::optional<specimen::Cells> cells;
 };
 
-Vec<2> vec(const std::pair<double, double>& place) {
-  return {{place.first, place.second}};
-}
-
 std::vector<Vec<2>> vecs(const std::vector<std::pair<double, double>>& places) {
   std::vector<Vec<2>> result;
-  for (const auto& place : places) result.push_back(vec(place));
+  for (const auto& place : places) result.push_back(vec_of(place));
   return result;
 }
 
 Vec<2> read_place(const Section& s, std::string_view key, Meaning meaning) {
-  return vec(s.place(key, unit::length, meaning).value_or(std::pair{0.0, 0.0}));
+  return vec_of(s.place(key, unit::length, meaning).value_or(std::pair{0.0, 0.0}));
 }
 
 /// All of a specimen from a file; nothing after an error.

@@ -10,10 +10,6 @@
 namespace pyroclast::specimen {
 namespace {
 
-double circle_area(double diameter) {
-  return 0.25 * std::numbers::pi * diameter * diameter;
-}
-
 double diameter_of(double area) {
   return std::sqrt(4.0 * area / std::numbers::pi);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -7,6 +8,11 @@
 #include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast::specimen {
+
+/// Area of a circle, from its diameter.
+inline double circle_area(double diameter) {
+  return 0.25 * std::numbers::pi * diameter * diameter;
+}
 
 /// Fuller's curve rescaled to the coarse range: the share of the coarse aggregate area that passes a sieve of
 /// this size, 0 at d_min and 1 at d_max (paper, Eq. 16).

@@ -102,7 +102,7 @@ class Words {
 };
 
 /// Bounding box of the domain, in the file's unit of length.
-struct Box {
+struct Bounds {
   Vec<2> lower, upper;
 };
 
@@ -111,7 +111,7 @@ struct File {
   std::optional<int> cell_count;
   std::vector<Vec<2>> vertices;
   std::vector<std::vector<int>> faces;
-  std::optional<Box> domain;
+  std::optional<Bounds> domain;
 };
 
 Vec<2> read_point(Words& words, std::string_view what) {
@@ -181,7 +181,7 @@ std::vector<std::vector<int>> read_faces(Words& words, int vertex_count) {
 }
 
 /// \param is_rectangle  it must be an upright one
-Box read_domain(Words& words, bool is_rectangle) {
+Bounds read_domain(Words& words, bool is_rectangle) {
   words.expect("*general");
   words.next();  // The type says "cube" for a rectangle as well; the corners tell.
   words.expect("*vertex");
@@ -196,7 +196,7 @@ Box read_domain(Words& words, bool is_rectangle) {
     const int listed = words.count("the number of tessellation vertices of a domain vertex", 0);
     for (int j = 0; j < listed; ++j) words.integer("a tessellation vertex of a domain vertex");
   }
-  Box box{points[0], points[0]};
+  Bounds box{points[0], points[0]};
   for (const Vec<2>& p : points) {
     for (int i = 0; i < 2; ++i) {
       box.lower[i] = std::min(box.lower[i], p[i]);
@@ -250,7 +250,7 @@ File read(Words& words, bool is_rectangle) {
 }
 
 /// Puts a point of the file into [0, width] x [0, height], exactly onto a side when it is nearly there.
-Vec<2> scaled(const Vec<2>& point, const Box& domain, const Vec<2>& size) {
+Vec<2> scaled(const Vec<2>& point, const Bounds& domain, const Vec<2>& size) {
   // Twelve decimals are written; a domain of 1e-3 in the file's unit still resolves this.
   constexpr double snap = 1e-9;
   Vec<2> result;
@@ -261,7 +261,7 @@ Vec<2> scaled(const Vec<2>& point, const Box& domain, const Vec<2>& size) {
   return result;
 }
 
-void require_aspect_ratio(const Box& domain, double width, double height, const std::string& name) {
+void require_aspect_ratio(const Bounds& domain, double width, double height, const std::string& name) {
   const Vec<2> size = domain.upper - domain.lower;
   if (!(size[0] > 0.0 && size[1] > 0.0) ||
       std::abs(size[0] * height - size[1] * width) > 1e-6 * size[1] * width) {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/circle_grid.hpp"
+#include "pyroclast/specimen/gradation.hpp"
 
 namespace pyroclast::specimen {
 namespace {
@@ -32,10 +32,6 @@ std::optional<Aggregate> find_place(double diameter, const Region& region, const
     if (!grid.overlaps(circle, parameters.minimum_gap)) return circle;
   }
   return std::nullopt;
-}
-
-double circle_area(double diameter) {
-  return 0.25 * std::numbers::pi * diameter * diameter;
 }
 
 /// Refuses at once what can never fit: with the gaps, circles would take more than any packing.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-constexpr StageNeeds kNeeds{
+constexpr StageNeeds kConductNeeds{
     .mechanics = false, .field = FieldChoice::computed, .frames_in_time = FramesInTime::needed};
 
 std::unique_ptr<Stage> read_conduct(const Section& s, const StageTables& tables) {
@@ -34,11 +34,11 @@ std::unique_ptr<Stage> read_conduct(const Section& s, const StageTables& tables)
 
 StageKind conduct_kind() {
   return {"conduct", "lets heat flow by the boundaries of [heat], and moves nothing; needs conduction",
-          kNeeds, read_conduct};
+          kConductNeeds, read_conduct};
 }
 
 StageNeeds Conduct::needs() const {
-  return kNeeds;
+  return kConductNeeds;
 }
 
 void Conduct::begin(Simulation& simulation) {

@@ -11,9 +11,6 @@ namespace pyroclast {
 
 namespace {
 
-/// Temperatures that differ by less are the same, K.
-constexpr double kSameTemperature = 1e-6;
-
 /// What the exchanges of a stage came to.
 struct ExchangeResponse {
   std::optional<double> critical_temperature;  ///< mean over the specimen when the platen ran away, °C

@@ -6,6 +6,9 @@
 
 namespace pyroclast {
 
+/// Temperatures that differ by less are the same, K.
+inline constexpr double kSameTemperature = 1e-6;
+
 /// A stage that changes temperatures and hands them over to the mechanics: a look follows each exchange.
 class ExchangeStage : public Stage {
  public:

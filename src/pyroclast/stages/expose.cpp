@@ -14,7 +14,7 @@ constexpr double kSameTime = 1e-9;
 /// The mean temperature changes by about this share of what the hottest boundary could bring about.
 constexpr double kMeanChange = 0.5;
 
-constexpr StageNeeds kNeeds{.field = FieldChoice::computed, .frames_in_time = FramesInTime::optional};
+constexpr StageNeeds kExposeNeeds{.field = FieldChoice::computed, .frames_in_time = FramesInTime::optional};
 
 std::unique_ptr<Stage> read_expose(const Section& s, const StageTables& tables) {
   Expose::Keys keys;
@@ -31,11 +31,11 @@ std::unique_ptr<Stage> read_expose(const Section& s, const StageTables& tables) 
 
 StageKind expose_kind() {
   return {"expose", "lets heat flow by the boundaries of [heat], and the body follow; needs conduction",
-          kNeeds, read_expose};
+          kExposeNeeds, read_expose};
 }
 
 StageNeeds Expose::needs() const {
-  return kNeeds;
+  return kExposeNeeds;
 }
 
 void Expose::begin_change(Simulation& simulation) {

@@ -9,9 +9,6 @@ namespace pyroclast {
 
 namespace {
 
-/// Temperatures that differ by less are the same, K.
-constexpr double kSameTemperature = 1e-6;
-
 std::unique_ptr<Stage> read_heat_stage(const Section& s, const StageTables& tables) {
   Heat::Keys keys;
   keys.to = s.quantity("to", unit::temperature, Range::at_least(absolute_zero).usually(-50.0, 1300.0),

@@ -11,7 +11,7 @@ namespace pyroclast {
 
 namespace {
 
-constexpr std::int64_t kStepsPerLook = 200;
+constexpr std::int64_t kLoadStepsPerLook = 200;
 /// Concrete that is shortened so much has long passed its peak, at any temperature.
 constexpr double kFailureStrain = 0.01;
 /// The force of a ramp is adjusted this often; a whole part of a look.
@@ -79,7 +79,7 @@ bool Load::advance(Simulation& simulation, int most_steps) {
   const auto steps = std::min<std::int64_t>(kStepsPerForce - steps_ % kStepsPerForce, most_steps);
   simulation.mechanics().advance(static_cast<int>(steps));
   steps_ += steps;
-  return steps_ % kStepsPerLook == 0;
+  return steps_ % kLoadStepsPerLook == 0;
 }
 
 Verdict Load::judge(Simulation& simulation) {
@@ -100,8 +100,9 @@ double Load::progress(const Simulation& simulation) const {
 
 StageReport Load::report(const History& history, RowRange rows, Outcome outcome) const {
   StageReport report;
-  report.results = {{"load_stress_MPa", keys_.stress * 1e-6},
-                    {"load_level", keys_.level ? Result::Value(*keys_.level) : Result::Value()},
+  report.results = {
+      {"load_stress_MPa", keys_.stress * 1e-6},
+      {"load_level", keys_.level ? Result::Value(*keys_.level) : Result::Value()},
       {"f_c_of_level_MPa", keys_.level ? Result::Value(keys_.strength * 1e-6) : Result::Value()},
       {"f_c_of_level_is", keys_.level ? Result::Value(keys_.strength_of) : Result::Value()}};
   if (keys_.level)
@@ -123,9 +124,10 @@ StageReport Load::report(const History& history, RowRange rows, Outcome outcome)
 Forecast Load::forecast(const Simulation& simulation, Foreseen&) const {
   const double ramp = keys_.ramp_time / simulation.mechanics().time_step();
   // along a slow ramp the body is near its rest already
-  const double rest = std::min(std::max(steps_to_rest(keys_.unbalanced_ratio) - ramp, 1.0 * kStepsPerLook),
-                               static_cast<double>(keys_.most_steps));
-  return {.steps = ramp + rest, .looks = (ramp + rest) / kStepsPerLook, .frames = 1.0};
+  const double rest =
+      std::min(std::max(steps_to_rest(keys_.unbalanced_ratio) - ramp, 1.0 * kLoadStepsPerLook),
+               static_cast<double>(keys_.most_steps));
+  return {.steps = ramp + rest, .looks = (ramp + rest) / kLoadStepsPerLook, .frames = 1.0};
 }
 
 void Load::visit_state(StateVisitor& visitor) {

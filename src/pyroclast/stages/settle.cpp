@@ -10,7 +10,7 @@ namespace pyroclast {
 namespace {
 
 /// Settling is looked at this often; its end needs no finer grain.
-constexpr std::int64_t kStepsPerLook = 200;
+constexpr std::int64_t kSettleStepsPerLook = 200;
 /// Steps in which the unbalanced ratio falls to a tenth: specimens of 100 to 3,000 blocks with a combined
 /// damping of 0.8 come to 1e-4 in 3,400 to 5,400 steps, without a trend.
 constexpr double kStepsPerDecade = 1100.0;
@@ -40,7 +40,7 @@ void Settle::begin(Simulation& simulation) {
 
 bool Settle::advance(Simulation& simulation, int most_steps) {
   if (steps_to_look_ == 0)
-    steps_to_look_ = std::clamp<std::int64_t>(keys_.most_steps - steps_, 1, kStepsPerLook);
+    steps_to_look_ = std::clamp<std::int64_t>(keys_.most_steps - steps_, 1, kSettleStepsPerLook);
   const auto steps = std::min<std::int64_t>(steps_to_look_, most_steps);
   simulation.mechanics().advance(static_cast<int>(steps));
   steps_ += steps;
@@ -65,7 +65,7 @@ StageReport Settle::report(const History& history, RowRange rows, Outcome) const
 
 Forecast Settle::forecast(const Simulation&, Foreseen&) const {
   const double steps = std::min(steps_to_rest(keys_.unbalanced_ratio), static_cast<double>(keys_.most_steps));
-  return {.steps = steps, .looks = steps / kStepsPerLook, .frames = 1.0};
+  return {.steps = steps, .looks = steps / kSettleStepsPerLook, .frames = 1.0};
 }
 
 void Settle::visit_state(StateVisitor& visitor) {

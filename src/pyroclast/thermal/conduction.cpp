@@ -12,6 +12,7 @@
 
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/thermal/require.hpp"
 
 namespace pyroclast {
 
@@ -25,11 +26,6 @@ constexpr double kDoubtfulExcess = 0.01;
 /// Zones times stages that take some tenths of a second on one thread.
 constexpr std::int64_t kZonesPerBatch = 4'000'000;
 
-void require(bool allowed, const char* parameter, double value, const char* what) {
-  if (!allowed)
-    throw Error(fmt::format("heat conduction: {} is {}, but it must be {}", parameter, value, what));
-}
-
 const Interval& checked(const Interval& range) {
   if (!(absolute_zero <= range.lower && range.lower <= range.upper && std::isfinite(range.upper)))
     throw Error(fmt::format(
@@ -41,11 +37,13 @@ const Interval& checked(const Interval& range) {
 
 const HeatParameters& checked(const HeatParameters& p) {
   checked(p.temperature_range);
-  require(p.temperature_range.contains(p.initial_temperature), "the initial temperature",
+  require(p.temperature_range.contains(p.initial_temperature), "heat conduction", "the initial temperature",
           p.initial_temperature, "within the temperature range");
-  require(p.safety > 0.0 && p.safety <= 1.0, "the safety factor", p.safety, "greater than 0 and at most 1");
-  require(p.largest_change > 0.0, "the largest change per step [K]", p.largest_change, "greater than 0");
-  require(p.largest_step > 0.0, "the largest step [s]", p.largest_step, "greater than 0");
+  require(p.safety > 0.0 && p.safety <= 1.0, "heat conduction", "the safety factor", p.safety,
+          "greater than 0 and at most 1");
+  require(p.largest_change > 0.0, "heat conduction", "the largest change per step [K]", p.largest_change,
+          "greater than 0");
+  require(p.largest_step > 0.0, "heat conduction", "the largest step [s]", p.largest_step, "greater than 0");
   return p;
 }
 
@@ -291,7 +289,8 @@ void Conduction<Dim>::set_temperature(const std::vector<double>& temperature) {
     throw Error(fmt::format("heat conduction: {} temperatures are given for {} nodes", temperature.size(),
                             volume_.size()));
   for (double t : temperature)
-    require(grid_.range().contains(t), "a node's temperature", t, "within the temperature range");
+    require(grid_.range().contains(t), "heat conduction", "a node's temperature", t,
+            "within the temperature range");
   state_.temperature = temperature;
   state_.enthalpy.resize(temperature.size());
   for (int node = 0; node < nodes_.count(); ++node)
@@ -316,7 +315,8 @@ void Conduction<Dim>::advance_to(double end) {
 
 template <int Dim>
 SteadyState Conduction<Dim>::advance_to_steady(double tolerance, double latest) {
-  require(tolerance > 0.0, "the tolerance of the steady state [K/s]", tolerance, "greater than 0");
+  require(tolerance > 0.0, "heat conduction", "the tolerance of the steady state [K/s]", tolerance,
+          "greater than 0");
   drop_trial();
   begin_run(latest);
   while (time() < latest) {
@@ -329,7 +329,8 @@ SteadyState Conduction<Dim>::advance_to_steady(double tolerance, double latest) 
 template <int Dim>
 bool Conduction<Dim>::advance_step(double end, std::int64_t& stages) {
   if (trial_.under_way)
-    require(end == trial_.end, "the time to step towards [s]", end, "that of the step under way");
+    require(end == trial_.end, "heat conduction", "the time to step towards [s]", end,
+            "that of the step under way");
   else
     begin_run(end);
   return time() == end || continue_step(end, stages);
@@ -349,7 +350,7 @@ std::int64_t Conduction<Dim>::stages_per_batch() const {
 
 template <int Dim>
 void Conduction<Dim>::begin_run(double end) {
-  require(end >= time(), "the time to run to [s]", end, "no earlier than the present");
+  require(end >= time(), "heat conduction", "the time to run to [s]", end, "no earlier than the present");
   boundary_.require_defined(time(), end);
   require_prescriptions(end);
   prescribed_.clear();

@@ -10,6 +10,7 @@
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/model/outline.hpp"
+#include "pyroclast/thermal/require.hpp"
 #include "pyroclast/thermal/zone_conduction.hpp"
 
 namespace pyroclast {
@@ -20,19 +21,15 @@ namespace {
 /// them: so none goes to and fro from exchange to exchange.
 constexpr double kJoinsAbove = 2.0;
 
-void require(bool allowed, const char* quantity, double value, const char* what) {
-  if (!allowed)
-    throw Error(fmt::format("heat through cracks: {} is {}, but it must be {}", quantity, value, what));
-}
-
 const GapHeat& checked(const GapHeat& law) {
-  require(law.bridges >= 0.0 && std::isfinite(law.bridges), "the conductance of the bridges [W/(m2 K)]",
-          law.bridges, "0 or greater");
-  require(law.jump_distance > 0.0, "the jump distance [m]", law.jump_distance, "greater than 0");
-  require(law.emissivity >= 0.0 && law.emissivity <= 1.0, "the emissivity", law.emissivity,
-          "between 0 and 1");
-  require(law.split_below > 0.0, "the conductance below which nodes are split [W/(m2 K)]", law.split_below,
+  require(law.bridges >= 0.0 && std::isfinite(law.bridges), "heat through cracks",
+          "the conductance of the bridges [W/(m2 K)]", law.bridges, "0 or greater");
+  require(law.jump_distance > 0.0, "heat through cracks", "the jump distance [m]", law.jump_distance,
           "greater than 0");
+  require(law.emissivity >= 0.0 && law.emissivity <= 1.0, "heat through cracks", "the emissivity",
+          law.emissivity, "between 0 and 1");
+  require(law.split_below > 0.0, "heat through cracks",
+          "the conductance below which nodes are split [W/(m2 K)]", law.split_below, "greater than 0");
   return law;
 }
 
@@ -94,9 +91,10 @@ bool GapConduction<Dim>::set_gaps(std::vector<ContactGap> gaps, const std::vecto
     throw Error(
         fmt::format("heat through cracks: {} gaps are given for {} contacts", gaps.size(), gaps_.size()));
   for (const ContactGap& gap : gaps) {
-    require(gap.damage >= 0.0 && gap.damage <= 1.0, "a contact's damage", gap.damage, "between 0 and 1");
-    require(gap.opening >= 0.0 && std::isfinite(gap.opening), "a contact's opening [m]", gap.opening,
-            "0 or greater");
+    require(gap.damage >= 0.0 && gap.damage <= 1.0, "heat through cracks", "a contact's damage", gap.damage,
+            "between 0 and 1");
+    require(gap.opening >= 0.0 && std::isfinite(gap.opening), "heat through cracks",
+            "a contact's opening [m]", gap.opening, "0 or greater");
   }
   gaps_ = std::move(gaps);
   bool changes = false;

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <utility>
+
+#include "pyroclast/base/vec.hpp"
+
+namespace pyroclast {
+
+/// A place of a deck as a vector, m.
+inline Vec<2> vec_of(const std::pair<double, double>& place) {
+  return {{place.first, place.second}};
+}
+
+}  // namespace pyroclast
