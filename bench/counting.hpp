@@ -31,7 +31,58 @@ struct Counted {
   }
 };
 
-using Counting = pyroclast::OneByOne<Counted>;
+/// An instruction set of lanes (base/lanes.hpp) that takes one after the other.
+/// \tparam Number  what takes the place of a double: arithmetic, <, <=, abs and sqrt, from and to double
+template <class Number>
+struct OneByOne {
+  static constexpr int kWidth = 1;
+  using Value = Number;
+  using Truth = bool;
+  static Value load(const double* p) { return Value{*p}; }
+  static void store(double* p, Value v) { *p = static_cast<double>(v); }
+  static Value all(double v) { return Value{v}; }
+  static Value sqrt(Value v) {
+    using std::sqrt;
+    return sqrt(v);
+  }
+  static Value abs(Value v) {
+    using std::abs;
+    return abs(v);
+  }
+  /// v, not negative, with the sign of s; zero where s is zero.
+  static Value signed_like(Value v, Value s) { return Value{0.0} < s ? v : s < Value{0.0} ? -v : Value{0.0}; }
+  static Value smaller(Value a, Value b) { return b < a ? b : a; }
+  static Value larger(Value a, Value b) { return a < b ? b : a; }
+  static Value power_of_two(Value n) { return Value{pyroclast::power_of_two(static_cast<double>(n))}; }
+  static Truth less(Value a, Value b) { return a < b; }
+  static Truth less_equal(Value a, Value b) { return a <= b; }
+  static Truth both(Truth a, Truth b) { return a && b; }
+  static Truth either(Truth a, Truth b) { return a || b; }
+  static Truth opposite(Truth a) { return !a; }
+  static bool any(Truth a) { return a; }
+  static Value select(Truth c, Value yes, Value no) { return c ? yes : no; }
+  /// Lanes whose bit is set, the lowest bit first.
+  static Truth from_bits(unsigned bits) { return (bits & 1U) != 0; }
+  /// Pairs that stand one after the other, apart.
+  static void load_pairs(const double* p, Value& x, Value& y) {
+    x = load(p);
+    y = load(p + 1);
+  }
+  static void store_pairs(double* p, Value x, Value y) {
+    store(p, x);
+    store(p + 1, y);
+  }
+  /// Pairs that stand at offsets, apart.
+  static void gather_pairs(const double* p, const int* offset, Value& x, Value& y) {
+    load_pairs(p + offset[0], x, y);
+  }
+  /// Pairs less those that stand at other offsets, apart.
+  static void gather_differences(const double* p, const int* offset, const int* less, Value& x, Value& y) {
+    x = load(p + offset[0]) - load(p + less[0]);
+    y = load(p + offset[0] + 1) - load(p + less[0] + 1);
+  }
+};
+using Counting = OneByOne<Counted>;
 
 /// Operations in all lanes of the steps that were not measured, since the last reset.
 struct Operations {

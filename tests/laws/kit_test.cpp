@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lanes_of_law.hpp"
 #include "pyroclast/laws/cohesive.hpp"
 #include "pyroclast/laws/elastic.hpp"
 #include "pyroclast/laws/registry.hpp"
@@ -62,8 +63,8 @@ std::string complaint(const LawTable& law, const char* property, std::vector<Kit
 }
 
 template <class Law>
-std::string complaint(const char* property) {
-  return complaint(table_of<Law>(), property);
+std::string complaint(const char* property, std::vector<KitLanes> lanes = {}) {
+  return complaint(table_of<Law>(), property, std::move(lanes));
 }
 
 /// The paper's law, spoilt after each update.
@@ -167,7 +168,7 @@ struct LanesDisturbEachOther : Cohesively<LanesDisturbEachOther> {
   }
 };
 TEST(Kit, FindsLanesThatDisturbEachOther) {
-  EXPECT_NE(complaint<LanesDisturbEachOther>("lanes"), "");
+  EXPECT_NE(complaint<LanesDisturbEachOther>("lanes", {lanes_of_law<LanesDisturbEachOther>()}), "");
 }
 
 struct KeepsSilent : Cohesively<KeepsSilent> {
@@ -177,7 +178,7 @@ struct KeepsSilent : Cohesively<KeepsSilent> {
   }
 };
 TEST(Kit, FindsALawThatDoesNotSayWhatChanged) {
-  EXPECT_NE(complaint<KeepsSilent>("lanes"), "");
+  EXPECT_NE(complaint<KeepsSilent>("lanes", {lanes_of_law<KeepsSilent>()}), "");
 }
 
 TEST(Kit, FindsAnInstructionSetThatGivesOtherBits) {

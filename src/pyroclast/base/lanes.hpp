@@ -4,9 +4,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <type_traits>
 
-#ifdef __AVX2__
+#if defined(__AVX2__)
 #include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
 #endif
 
 /// Lanes: eight numbers that go through the same arithmetic together, one cache line of doubles.
@@ -53,58 +57,98 @@ inline double power_of_two(double n) {
 
 // Instruction sets. A file that names one other than Portable is compiled with that set's options.
 
-/// One lane after the other, no more than the language.
-/// \tparam Number  a double, or what takes its place: arithmetic, <, <=, abs and sqrt, from and to double
-template <class Number>
-struct OneByOne {
-  static constexpr int kWidth = 1;
-  using Value = Number;
-  using Truth = bool;
-  static Value load(const double* p) { return Value{*p}; }
-  static void store(double* p, Value v) { *p = static_cast<double>(v); }
-  static Value all(double v) { return Value{v}; }
+/// Two lanes in a vector of the compiler: SSE2 on x86-64, NEON on aarch64, elsewhere what the compiler makes
+/// of it. Conditions are vectors of all ones and all zeros, so that choices are bits.
+struct Portable {
+  static constexpr int kWidth = 2;
+  using Value = double __attribute__((vector_size(16)));
+  using Truth = decltype(Value{} < Value{});
+  using InMemory = double __attribute__((vector_size(16), may_alias));
+
+  static Value load(const double* p) { return *reinterpret_cast<const InMemory*>(p); }
+  static void store(double* p, Value v) { *reinterpret_cast<InMemory*>(p) = v; }
+  static Value all(double v) { return Value{v, v}; }
   static Value sqrt(Value v) {
-    using std::sqrt;
-    return sqrt(v);
+#ifdef __SSE2__
+    return _mm_sqrt_pd(v);
+#else
+    return Value{std::sqrt(v[0]), std::sqrt(v[1])};
+#endif
   }
   static Value abs(Value v) {
-    using std::abs;
-    return abs(v);
+    return reinterpret_cast<Value>(bits_of(v) & ~kSign);
   }
-  /// v, not negative, with the sign of s; zero where s is zero.
-  static Value signed_like(Value v, Value s) { return Value{0.0} < s ? v : s < Value{0.0} ? -v : Value{0.0}; }
-  static Value smaller(Value a, Value b) { return b < a ? b : a; }
-  static Value larger(Value a, Value b) { return a < b ? b : a; }
-  static Value power_of_two(Value n) { return Value{pyroclast::power_of_two(static_cast<double>(n))}; }
-  static Truth less(Value a, Value b) { return a < b; }
-  static Truth less_equal(Value a, Value b) { return a <= b; }
-  static Truth both(Truth a, Truth b) { return a && b; }
-  static Truth either(Truth a, Truth b) { return a || b; }
-  static Truth opposite(Truth a) { return !a; }
-  static bool any(Truth a) { return a; }
-  static Value select(Truth c, Value yes, Value no) { return c ? yes : no; }
+  static Value signed_like(Value v, Value s) {
+    const Truth moves = (s < 0.0) | (s > 0.0);
+    return reinterpret_cast<Value>(moves & (bits_of(v) ^ (bits_of(s) & kSign)));
+  }
+  static Value smaller(Value a, Value b) {
+    return b < a ? b : a;
+  }
+  static Value larger(Value a, Value b) {
+    return a < b ? b : a;
+  }
+  static Value power_of_two(Value n) {
+    return reinterpret_cast<Value>(bits_of(n + kToExponent) << 52);
+  }
+  static Truth less(Value a, Value b) {
+    return a < b;
+  }
+  static Truth less_equal(Value a, Value b) {
+    return a <= b;
+  }
+  static Truth both(Truth a, Truth b) {
+    return a & b;
+  }
+  static Truth either(Truth a, Truth b) {
+    return a | b;
+  }
+  static Truth opposite(Truth a) {
+    return ~a;
+  }
+  static bool any(Truth a) {
+#ifdef __SSE2__
+    return _mm_movemask_pd(reinterpret_cast<Value>(a)) != 0;
+#else
+    return (a[0] | a[1]) != 0;
+#endif
+  }
+  static Value select(Truth c, Value yes, Value no) {
+    return reinterpret_cast<Value>((c & bits_of(yes)) | (~c & bits_of(no)));
+  }
   /// Lanes whose bit is set, the lowest bit first.
-  static Truth from_bits(unsigned bits) { return (bits & 1U) != 0; }
+  static Truth from_bits(unsigned bits) {
+    return Truth{-static_cast<Bits>(bits & 1U), -static_cast<Bits>((bits >> 1U) & 1U)};
+  }
   /// Pairs that stand one after the other, apart.
   static void load_pairs(const double* p, Value& x, Value& y) {
-    x = load(p);
-    y = load(p + 1);
+    part_pairs(load(p), load(p + 2), x, y);
   }
   static void store_pairs(double* p, Value x, Value y) {
-    store(p, x);
-    store(p + 1, y);
+    store(p, __builtin_shufflevector(x, y, 0, 2));
+    store(p + 2, __builtin_shufflevector(x, y, 1, 3));
   }
   /// Pairs that stand at offsets, apart.
   static void gather_pairs(const double* p, const int* offset, Value& x, Value& y) {
-    load_pairs(p + offset[0], x, y);
+    part_pairs(load(p + offset[0]), load(p + offset[1]), x, y);
   }
   /// Pairs less those that stand at other offsets, apart.
   static void gather_differences(const double* p, const int* offset, const int* less, Value& x, Value& y) {
-    x = load(p + offset[0]) - load(p + less[0]);
-    y = load(p + offset[0] + 1) - load(p + less[0] + 1);
+    part_pairs(load(p + offset[0]) - load(p + less[0]), load(p + offset[1]) - load(p + less[1]), x, y);
+  }
+
+ private:
+  using Bits = std::remove_reference_t<decltype(Truth{}[0])>;
+  static constexpr Truth kSign{std::numeric_limits<Bits>::min(), std::numeric_limits<Bits>::min()};
+
+  static Truth bits_of(Value v) {
+    return reinterpret_cast<Truth>(v);
+  }
+  static void part_pairs(Value first, Value second, Value& x, Value& y) {
+    x = __builtin_shufflevector(first, second, 0, 2);
+    y = __builtin_shufflevector(first, second, 1, 3);
   }
 };
-using Portable = OneByOne<double>;
 
 #ifdef __AVX2__
 struct Avx2 {
@@ -229,37 +273,46 @@ struct Avx512 {
 
 // Eight numbers
 
+/// Calls `f(i)` for the parts of eight lanes, each i a constant. A loop would leave the parts in memory until
+/// the compiler unrolls it, late, and double its time for the rows of a law.
+template <int kParts, class F>
+[[gnu::always_inline]] inline void for_each_part(F&& f) {
+  if constexpr (kParts > 1) for_each_part<kParts - 1>(f);
+  f(std::integral_constant<int, kParts - 1>());
+}
+
 /// A condition in each lane.
 template <class Set>
 struct Mask {
   static constexpr int kParts = kLanes / Set::kWidth;
   typename Set::Truth part[kParts];
 
+  /// Part i is f(i).
+  template <class F>
+  [[gnu::always_inline]] static Mask of_parts(F f) {
+    Mask m;
+    for_each_part<kParts>([&](auto i) { m.part[i] = f(i); });
+    return m;
+  }
   /// Lanes whose bit is set, the lowest bit first.
   static Mask from_bits(unsigned bits) {
-    Mask m;
-    for (int i = 0; i < kParts; ++i)
-      m.part[i] = Set::from_bits((bits >> (i * Set::kWidth)) & ((1U << Set::kWidth) - 1U));
-    return m;
+    return of_parts(
+        [&](auto i) { return Set::from_bits((bits >> (i * Set::kWidth)) & ((1U << Set::kWidth) - 1U)); });
   }
   friend Mask operator&(const Mask& a, const Mask& b) {
-    Mask m;
-    for (int i = 0; i < kParts; ++i) m.part[i] = Set::both(a.part[i], b.part[i]);
-    return m;
+    return of_parts([&](auto i) { return Set::both(a.part[i], b.part[i]); });
   }
   friend Mask operator|(const Mask& a, const Mask& b) {
-    Mask m;
-    for (int i = 0; i < kParts; ++i) m.part[i] = Set::either(a.part[i], b.part[i]);
-    return m;
+    return of_parts([&](auto i) { return Set::either(a.part[i], b.part[i]); });
   }
   friend Mask operator!(const Mask& a) {
-    Mask m;
-    for (int i = 0; i < kParts; ++i) m.part[i] = Set::opposite(a.part[i]);
-    return m;
+    return of_parts([&](auto i) { return Set::opposite(a.part[i]); });
   }
   friend bool any(const Mask& a) {
     auto sum = a.part[0];
-    for (int i = 1; i < kParts; ++i) sum = Set::either(sum, a.part[i]);
+    for_each_part<kParts>([&](auto i) {
+      if constexpr (i > 0) sum = Set::either(sum, a.part[i]);
+    });
     return Set::any(sum);
   }
 };
@@ -273,90 +326,73 @@ struct Lanes {
   Lanes() = default;
   /// The same number in every lane.
   Lanes(double v) {  // NOLINT(google-explicit-constructor): a number is a number
-    for (auto& p : part) p = Set::all(v);
+    for_each_part<kParts>([&](auto i) { part[i] = Set::all(v); });
+  }
+  /// Part i is f(i).
+  template <class F>
+  [[gnu::always_inline]] static Lanes of_parts(F f) {
+    Lanes r;
+    for_each_part<kParts>([&](auto i) { r.part[i] = f(i); });
+    return r;
   }
   /// \param p  eight numbers, aligned to 64 bytes
   static Lanes load(const double* p) {
-    Lanes r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = Set::load(p + i * Set::kWidth);
-    return r;
+    return of_parts([&](auto i) { return Set::load(p + i * Set::kWidth); });
   }
   void store(double* p) const {
-    for (int i = 0; i < kParts; ++i) Set::store(p + i * Set::kWidth, part[i]);
+    for_each_part<kParts>([&](auto i) { Set::store(p + i * Set::kWidth, part[i]); });
   }
 
-  Lanes& operator+=(const Lanes& o) {
-    for (int i = 0; i < kParts; ++i) part[i] = part[i] + o.part[i];
-    return *this;
+  friend Lanes operator+(const Lanes& a, const Lanes& b) {
+    return of_parts([&](auto i) { return a.part[i] + b.part[i]; });
   }
-  Lanes& operator-=(const Lanes& o) {
-    for (int i = 0; i < kParts; ++i) part[i] = part[i] - o.part[i];
-    return *this;
+  friend Lanes operator-(const Lanes& a, const Lanes& b) {
+    return of_parts([&](auto i) { return a.part[i] - b.part[i]; });
   }
-  Lanes& operator*=(const Lanes& o) {
-    for (int i = 0; i < kParts; ++i) part[i] = part[i] * o.part[i];
-    return *this;
+  friend Lanes operator*(const Lanes& a, const Lanes& b) {
+    return of_parts([&](auto i) { return a.part[i] * b.part[i]; });
   }
-  Lanes& operator/=(const Lanes& o) {
-    for (int i = 0; i < kParts; ++i) part[i] = part[i] / o.part[i];
-    return *this;
+  friend Lanes operator/(const Lanes& a, const Lanes& b) {
+    return of_parts([&](auto i) { return a.part[i] / b.part[i]; });
   }
-  friend Lanes operator+(Lanes a, const Lanes& b) { return a += b; }
-  friend Lanes operator-(Lanes a, const Lanes& b) { return a -= b; }
-  friend Lanes operator*(Lanes a, const Lanes& b) { return a *= b; }
-  friend Lanes operator/(Lanes a, const Lanes& b) { return a /= b; }
   friend Lanes operator-(const Lanes& a) { return Lanes(0.0) - a; }
+  Lanes& operator+=(const Lanes& o) { return *this = *this + o; }
+  Lanes& operator-=(const Lanes& o) { return *this = *this - o; }
+  Lanes& operator*=(const Lanes& o) { return *this = *this * o; }
+  Lanes& operator/=(const Lanes& o) { return *this = *this / o; }
 
   friend Truth operator<(const Lanes& a, const Lanes& b) {
-    Truth m;
-    for (int i = 0; i < kParts; ++i) m.part[i] = Set::less(a.part[i], b.part[i]);
-    return m;
+    return Truth::of_parts([&](auto i) { return Set::less(a.part[i], b.part[i]); });
   }
   friend Truth operator<=(const Lanes& a, const Lanes& b) {
-    Truth m;
-    for (int i = 0; i < kParts; ++i) m.part[i] = Set::less_equal(a.part[i], b.part[i]);
-    return m;
+    return Truth::of_parts([&](auto i) { return Set::less_equal(a.part[i], b.part[i]); });
   }
   friend Truth operator>(const Lanes& a, const Lanes& b) { return b < a; }
   friend Truth operator>=(const Lanes& a, const Lanes& b) { return b <= a; }
 
   friend Lanes select(const Truth& c, const Lanes& yes, const Lanes& no) {
-    Lanes r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = Set::select(c.part[i], yes.part[i], no.part[i]);
-    return r;
+    return of_parts([&](auto i) { return Set::select(c.part[i], yes.part[i], no.part[i]); });
   }
   friend Lanes sqrt(const Lanes& a) {
-    Lanes r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = Set::sqrt(a.part[i]);
-    return r;
+    return of_parts([&](auto i) { return Set::sqrt(a.part[i]); });
   }
   friend Lanes abs(const Lanes& a) {
-    Lanes r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = Set::abs(a.part[i]);
-    return r;
+    return of_parts([&](auto i) { return Set::abs(a.part[i]); });
   }
   /// v, not negative, with the sign of s; zero where s is zero.
   friend Lanes signed_like(const Lanes& v, const Lanes& s) {
-    Lanes r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = Set::signed_like(v.part[i], s.part[i]);
-    return r;
+    return of_parts([&](auto i) { return Set::signed_like(v.part[i], s.part[i]); });
   }
   /// b where it is smaller, else a: also where they cannot be compared.
   friend Lanes smaller(const Lanes& a, const Lanes& b) {
-    Lanes r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = Set::smaller(a.part[i], b.part[i]);
-    return r;
+    return of_parts([&](auto i) { return Set::smaller(a.part[i], b.part[i]); });
   }
   friend Lanes larger(const Lanes& a, const Lanes& b) {
-    Lanes r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = Set::larger(a.part[i], b.part[i]);
-    return r;
+    return of_parts([&](auto i) { return Set::larger(a.part[i], b.part[i]); });
   }
   /// 2^n of whole numbers n in [-1022, 1023].
   friend Lanes power_of_two(const Lanes& n) {
-    Lanes r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = Set::power_of_two(n.part[i]);
-    return r;
+    return of_parts([&](auto i) { return Set::power_of_two(n.part[i]); });
   }
   /// Of all lanes, added in the order of a tree that does not depend on the instruction set.
   friend double sum(const Lanes& a) {

@@ -160,10 +160,7 @@ double draw(const PropertyInfo& info, Random& random) {
 class Kit {
  public:
   Kit(const LawTable& law, const KitOptions& options)
-      : law_(law),
-        options_(options),
-        portable_{"the table", {law.update_lanes_of[0], law.update_lanes_of[1]}},
-        findings_(kProperties.begin(), kProperties.end()) {}
+      : law_(law), options_(options), findings_(kProperties.begin(), kProperties.end()) {}
 
   KitReport run() {
     for (const int dim : options_.dimensions) {
@@ -889,7 +886,6 @@ class Kit {
         lost[l] = go(path, path.point, to, dim_);
         if (!warms) check_secant(path, from[l], path.point);
       }
-      check_lanes(portable_, paths, from, lost, one_set);
       for (const KitLanes& set : options_.lanes) check_lanes(set, paths, from, lost, one_set);
       for (int l = 0; l < kLanes; ++l) {
         Path& path = paths[l];
@@ -962,7 +958,6 @@ class Kit {
 
   const LawTable& law_;
   const KitOptions& options_;
-  KitLanes portable_;
   std::vector<KitFinding> findings_;
   int dim_ = 2, first_ = 0, lane_ = 0, leg_ = 0;
   Point before_;              ///< the last update

@@ -21,21 +21,6 @@ struct PointResponse {
   double stored = 0.0;                     ///< J/m²
 };
 
-/// What eight contact points answer in lanes, each number one lane after the other.
-struct LanesResponse {
-  std::array<double, kLanes> normal_traction{};                ///< Pa
-  std::array<std::array<double, kLanes>, 2> shear_traction{};  ///< Pa
-  std::array<double, kLanes> stored{};                         ///< J/m²
-  unsigned changed = 0;  ///< HistoryInfo::when of what changed in any lane; 0: nothing was lost
-};
-
-/// Takes eight points to eight jumps. Number i of lane l stands at [i * kLanes + l].
-/// \param constants  of all eight; of their choices only where each has its own numbers
-/// \param own        numbers of their own constants, or null
-/// \param history    changes only where the law says that it did, as in the step
-using LanesUpdate = LanesResponse (*)(const void* constants, const double* own, const double* jump,
-                                      double* history, double* losses);
-
 /// Those of the bodies' dimensions that a law is made for.
 enum class Dimensions : std::uint8_t { plane = 1, space = 2, both = 3 };
 
@@ -63,14 +48,11 @@ struct LawTable {
   ContactStiffness<double> (*stiffness)(const void* constants);
   /// Takes a point to a jump: opening, tangential components. Adds to the losses.
   std::array<PointResponse (*)(const void* constants, const double* jump, double* history, double* losses), 2>
-      update_of;  ///< in 2D and 3D; null where the law is not made for them
-  /// The same in lanes that are no more than the language: what the step does, without its memory.
-  std::array<LanesUpdate, 2> update_lanes_of;
+      update_of;        ///< in 2D and 3D; null where the law is not made for them
   const LawRows* rows;  ///< null where none are part of the program
 
   std::span<const HistoryInfo> history(int dim) const { return history_of[dim - 2]; }
   auto update(int dim) const { return update_of[dim - 2]; }
-  LanesUpdate update_lanes(int dim) const { return update_lanes_of[dim - 2]; }
 };
 
 namespace law_table {
@@ -125,66 +107,6 @@ PointResponse update(const void* constants, const double* jump, double* history,
   return response;
 }
 
-/// Adds to one number of each lane.
-struct LanesSum {
-  std::array<double, kLanes> number{};
-  void operator+=(const Lanes<Portable>& more) {
-    for (int l = 0; l < kLanes; ++l) number[l] += more.part[l];
-  }
-};
-
-template <class Law, int Dim>
-LanesResponse update_lanes(const void* constants, const double* own, const double* jump, double* history,
-                           double* losses) {
-  using Real = Lanes<Portable>;
-  using ForEach = typename Law::template Constants<Real>;
-  const auto load = [](const double* from) {
-    Real number;
-    for (int l = 0; l < kLanes; ++l) number.part[l] = from[l];
-    return number;
-  };
-  const auto& of_all = *static_cast<const typename Law::template Constants<double>*>(constants);
-  typename Law::template History<Dim, Real> h;
-  int at = 0;
-  h.each([&](const auto&, Real& number) { number = load(history + kLanes * at++); }, h);
-  typename Law::template Losses<LanesSum> l;
-  at = 0;
-  l.each([&](const auto&, LanesSum& sum) { std::copy_n(losses + kLanes * at++, kLanes, sum.number.begin()); },
-         l);
-  Tangential<Dim, Real> tangential;
-  for (int i = 0; i + 1 < Dim; ++i) tangential[i] = load(jump + kLanes * (i + 1));
-  ContactResponse<Dim, Real> r;
-  if (own) {
-    ForEach c;
-    ForEach::each_choice([](const auto&, auto& mine, const auto& of_set) { mine = of_set; }, c, of_all);
-    at = 0;
-    ForEach::each([&](const auto&, Real& number) { number = load(own + kLanes * at++); }, c);
-    r = Law::template update<Dim>(c, load(jump), tangential, h, l);
-  } else {
-    r = Law::template update<Dim>(of_all, load(jump), tangential, h, l);
-  }
-  at = 0;
-  h.each(
-      [&](const HistoryInfo& info, const Real& number) {
-        if (info.when == 0 || (r.changed & info.when) != 0)
-          std::copy_n(number.part, kLanes, history + kLanes * at);
-        ++at;
-      },
-      h);
-  at = 0;
-  l.each([&](const auto&,
-             const LanesSum& sum) { std::copy_n(sum.number.begin(), kLanes, losses + kLanes * at++); },
-         l);
-  LanesResponse response;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    response.normal_traction[lane] = r.normal_traction.part[lane];
-    for (int i = 0; i + 1 < Dim; ++i) response.shear_traction[i][lane] = r.shear_traction[i].part[lane];
-    response.stored[lane] = r.stored.part[lane];
-  }
-  response.changed = r.changed;
-  return response;
-}
-
 template <class Law>
 constexpr bool exact_in_shear() {
   if constexpr (requires { Law::exact_in_shear; })
@@ -208,14 +130,6 @@ constexpr auto update_or_null() {
   else
     return nullptr;
 }
-template <class Law, int Dim, Dimensions kDimensions>
-constexpr LanesUpdate update_lanes_or_null() {
-  if constexpr (includes(kDimensions, Dim))
-    return update_lanes<Law, Dim>;
-  else
-    return nullptr;
-}
-
 /// `Law::rows` of a law that is part of the program.
 template <class Law>
 constexpr const LawRows* rows_of() {
@@ -260,8 +174,6 @@ const LawTable& table_of() {
       },
       [](const void* constants) { return Law::stiffness(*static_cast<const Constants*>(constants)); },
       {law_table::update_or_null<Law, 2, kDimensions>(), law_table::update_or_null<Law, 3, kDimensions>()},
-      {law_table::update_lanes_or_null<Law, 2, kDimensions>(),
-       law_table::update_lanes_or_null<Law, 3, kDimensions>()},
       law_table::rows_of<Law>()};
   static_assert(std::is_standard_layout_v<LawTable> && std::is_trivially_copyable_v<LawTable>);
   return table;

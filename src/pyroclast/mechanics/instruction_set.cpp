@@ -4,17 +4,55 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/mechanics/compiled_step.hpp"
 #include "pyroclast/mechanics/law_rows.hpp"
-#include "pyroclast/mechanics/step/step.hpp"
 
 namespace pyroclast {
 
-#ifdef PYROCLAST_X86
-template <int Dim>
-StepFunctions<Dim> avx2_step(RowFunctions<Dim> (*rows_of)(const LawTable&));
-template <int Dim>
-StepFunctions<Dim> avx512_step(RowFunctions<Dim> (*rows_of)(const LawTable&));
+namespace {
+
+constexpr InstructionSet kAll[kInstructionSets]{InstructionSet::portable, InstructionSet::avx2,
+                                                InstructionSet::avx512};
+
+const StepOfSet* step_of(InstructionSet set) {
+  return steps.of_set[static_cast<std::size_t>(set)];
+}
+
+bool processor_has(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::portable:
+      return true;
+#ifdef __x86_64__
+    case InstructionSet::avx2:
+      return __builtin_cpu_supports("avx2") != 0;
+    case InstructionSet::avx512:
+      return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+             __builtin_cpu_supports("avx512vl") != 0;
+#else
+    case InstructionSet::avx2:
+    case InstructionSet::avx512:
+      break;
 #endif
+  }
+  return false;
+}
+
+std::string names_of(const std::vector<InstructionSet>& sets) {
+  std::vector<const char*> names;
+  for (const InstructionSet set : sets) names.push_back(name(set));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// What to do where a build of fewer sets than there are is not enough; empty where it holds all of them.
+std::string remedy() {
+  if (built_instruction_sets().size() == kInstructionSets) return {};
+  return fmt::format(
+      "; this pyroclast was built for {} alone: build it again with cmake -DPYROCLAST_SETS=all, or on this "
+      "machine",
+      describe_built_instruction_sets());
+}
+
+}  // namespace
 
 const char* name(InstructionSet set) {
   switch (set) {
@@ -28,53 +66,94 @@ const char* name(InstructionSet set) {
   return "";
 }
 
-std::vector<InstructionSet> usable_instruction_sets() {
-  std::vector<InstructionSet> sets{InstructionSet::portable};
-#ifdef PYROCLAST_X86
-  if (__builtin_cpu_supports("avx2")) sets.push_back(InstructionSet::avx2);
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl"))
-    sets.push_back(InstructionSet::avx512);
-#endif
+std::vector<InstructionSet> built_instruction_sets() {
+  std::vector<InstructionSet> sets;
+  for (const InstructionSet set : kAll)
+    if (step_of(set)) sets.push_back(set);
   return sets;
 }
 
-InstructionSet instruction_set(std::string_view wanted) {
-  std::vector<std::string_view> names;
-  for (InstructionSet set : usable_instruction_sets()) {
-    if (name(set) == wanted) return set;
-    names.emplace_back(name(set));
-  }
-  throw Error(fmt::format("instruction set \"{}\" is not one that this program and processor have: {}",
-                          wanted, fmt::join(names, ", ")));
+std::string describe_built_instruction_sets() {
+  return names_of(built_instruction_sets());
 }
+
+std::vector<InstructionSet> usable_instruction_sets() {
+  std::vector<InstructionSet> sets;
+  for (const InstructionSet set : built_instruction_sets())
+    if (processor_has(set)) sets.push_back(set);
+  return sets;
+}
+
+InstructionSet best_instruction_set() {
+  const auto sets = usable_instruction_sets();
+  if (sets.empty())
+    throw Error(fmt::format("this processor does not have the instruction set {}{}",
+                            describe_built_instruction_sets(), remedy()));
+  return sets.back();
+}
+
+InstructionSet instruction_set(std::string_view wanted) {
+  const auto sets = usable_instruction_sets();
+  for (const InstructionSet set : sets)
+    if (name(set) == wanted) return set;
+  if (sets.empty()) best_instruction_set();  // says why
+  throw Error(fmt::format("instruction set \"{}\" is not one that this program and processor have: {}{}",
+                          wanted, names_of(sets), remedy()));
+}
+
+namespace {
+
+/// Sets that a law could be run with instead, for people; empty where there are none.
+std::string other_sets_of(const LawTable& law) {
+  std::vector<InstructionSet> sets;
+  for (const InstructionSet set : usable_instruction_sets())
+    if (is_compiled(law, set)) sets.push_back(set);
+  return sets.empty() ? ""
+                      : fmt::format(", but for {}: --instructions {}", names_of(sets), name(sets.back()));
+}
+
+}  // namespace
 
 template <int Dim>
 RowFunctions<Dim> rows_of(const LawTable& law, InstructionSet set) {
   if (!law.update(Dim))
     throw Error(fmt::format("the contact law \"{}\" is made for bodies in {}D, not in {}D", law.name,
                             Dim == 2 ? 3 : 2, Dim));
-  const CompiledLaw* const compiled = law.rows ? law.rows->of_set[static_cast<std::size_t>(set)] : nullptr;
-  if (!compiled)
-    throw Error(fmt::format("the contact law \"{}\" is not compiled for the instruction set {}", law.name,
-                            name(set)));
-  return compiled->rows<Dim>();
+  if (!is_compiled(law, set))
+    throw Error(fmt::format("the contact law \"{}\" is not compiled for the instruction set {}{}", law.name,
+                            name(set), other_sets_of(law)));
+  return law.rows->of_set[static_cast<std::size_t>(set)]->rows<Dim>();
 }
 
 template RowFunctions<2> rows_of(const LawTable&, InstructionSet);
 template RowFunctions<3> rows_of(const LawTable&, InstructionSet);
 
+bool is_compiled(const LawTable& law, InstructionSet set) {
+  return law.rows && law.rows->of_set[static_cast<std::size_t>(set)];
+}
+
+namespace {
+
+template <int Dim, InstructionSet kSet>
+RowFunctions<Dim> rows_for(const LawTable& law) {
+  return rows_of<Dim>(law, kSet);
+}
+template <int Dim>
+constexpr decltype(StepFunctions<Dim>::rows_of) kRowsFor[kInstructionSets]{
+    rows_for<Dim, InstructionSet::portable>, rows_for<Dim, InstructionSet::avx2>,
+    rows_for<Dim, InstructionSet::avx512>};
+
+}  // namespace
+
 template <int Dim>
 StepFunctions<Dim> step_functions(InstructionSet set) {
-#ifdef PYROCLAST_X86
-  if (set == InstructionSet::avx512)
-    return avx512_step<Dim>([](const LawTable& law) { return rows_of<Dim>(law, InstructionSet::avx512); });
-  if (set == InstructionSet::avx2)
-    return avx2_step<Dim>([](const LawTable& law) { return rows_of<Dim>(law, InstructionSet::avx2); });
-#endif
-  (void)set;
-  return Step<Dim, Portable>::functions(
-      [](const LawTable& law) { return rows_of<Dim>(law, InstructionSet::portable); });
+  const StepOfSet* const step = step_of(set);
+  if (!step)
+    throw Error(
+        fmt::format("there is no step for the instruction set {} in this build{}", name(set), remedy()));
+  StepFunctions<Dim> functions = step->functions<Dim>();
+  functions.rows_of = kRowsFor<Dim>[static_cast<std::size_t>(set)];
+  return functions;
 }
 
 template StepFunctions<2> step_functions(InstructionSet);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -10,20 +11,35 @@ namespace pyroclast {
 
 /// What the step is compiled for. Results are the same, bit by bit.
 enum class InstructionSet : std::uint8_t {
-  portable,  ///< any processor
+  portable,  ///< any processor: 2 lanes an instruction where it has vectors at all
   avx2,      ///< 4 lanes an instruction
   avx512     ///< 8 lanes an instruction (AVX-512 F, DQ and VL)
 };
 inline constexpr int kInstructionSets = 3;
 
+// so that a file without their options can name them (base/lanes.hpp)
+struct Portable;
+struct Avx2;
+struct Avx512;
+
 const char* name(InstructionSet set);
 
-/// Those that this build holds and this processor has, the fastest last.
+/// Those that this build holds (cmake -DPYROCLAST_SETS), the fastest last; at least one.
+std::vector<InstructionSet> built_instruction_sets();
+/// The same for people, "portable, avx2, avx512".
+std::string describe_built_instruction_sets();
+
+/// Those that this build holds and this processor has, the fastest last. May be empty.
 std::vector<InstructionSet> usable_instruction_sets();
 
-/// The one of that name. Throws Error when there is none or this processor does not have it.
+/// The fastest of them. Throws Error when there is none: this build is for other processors.
+InstructionSet best_instruction_set();
+
+/// The one of that name. Throws Error when there is none, this build does not hold it or this processor does
+/// not have it.
 InstructionSet instruction_set(std::string_view name);
 
+/// Throws Error when this build does not hold the step for that set.
 template <int Dim>
 StepFunctions<Dim> step_functions(InstructionSet set);
 

@@ -127,8 +127,8 @@ class LawRow {
 };
 
 template <int Dim>
-std::function<LanesResponse(const void*, const double*, const double*, double*, double*)> lanes_of_row(
-    const LawTable& law, InstructionSet set) {
+LanesUpdate lanes_of_row(const LawTable& law, InstructionSet set) {
+  if (!law.update(Dim)) return {};
   const auto row = std::make_shared<LawRow<Dim>>(law, rows_of<Dim>(law, set));
   return [row](const void* constants, const double* own, const double* jump, double* history,
                double* losses) { return row->update(constants, own, jump, history, losses); };
@@ -139,8 +139,9 @@ std::function<LanesResponse(const void*, const double*, const double*, double*, 
 std::vector<KitLanes> lanes_of_step(const LawTable& law) {
   std::vector<KitLanes> all;
   for (const InstructionSet set : usable_instruction_sets())
-    all.push_back(
-        {fmt::format("the step in {}", name(set)), {lanes_of_row<2>(law, set), lanes_of_row<3>(law, set)}});
+    if (is_compiled(law, set))
+      all.push_back(
+          {fmt::format("the step in {}", name(set)), {lanes_of_row<2>(law, set), lanes_of_row<3>(law, set)}});
   return all;
 }
 

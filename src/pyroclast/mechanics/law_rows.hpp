@@ -55,9 +55,8 @@ struct Compiled {
   static const CompiledLaw law;
 };
 
-// so that a file without their options can name them
-struct Avx2;
-struct Avx512;
+/// Whether the rows of a law for that set are part of the program or of the law's shared object.
+bool is_compiled(const LawTable& law, InstructionSet set);
 
 /// Throws Error when the law is not made for that dimension, or its rows for that set are not part of the
 /// program.

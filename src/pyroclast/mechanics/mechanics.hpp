@@ -34,7 +34,7 @@ struct MechanicsParameters {
   MassChoice mass = MassChoice::real;
   double time_step = 0.0;  ///< s; the common step of MassChoice::scaled, not used with real mass
   double safety = 0.0;     ///< fraction of the stable step that is taken, in (0, 1]
-  InstructionSet instructions = usable_instruction_sets().back();
+  InstructionSet instructions = best_instruction_set();
   // these change speed, not results
   LayoutParameters layout;
   int zones_for_a_thread = 500;  ///< with fewer a thread waits longer at barriers than it saves

@@ -219,7 +219,7 @@ enum class Pass : std::uint8_t {
 /// The step, compiled for one instruction set.
 template <int Dim>
 struct StepFunctions {
-  RowFunctions<Dim> (*rows_of)(const LawTable& law);
+  RowFunctions<Dim> (*rows_of)(const LawTable& law);  ///< compiled with the law; set when a run starts
   /// Sums the forces of bundles and moves their gridpoints.
   /// \param scratch  2 Dim kLanes numbers for every row of the largest bundle, aligned to 64 bytes
   void (*move_bundles)(State<Dim>&, int first, int last, Pass, double* scratch);

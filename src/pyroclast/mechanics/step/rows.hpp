@@ -39,8 +39,8 @@ struct Rows {
   static Vector load(const Vec<Dim>* p) {
     Vector v;
     if constexpr (Dim == 2) {
-      for (int i = 0; i < Real::kParts; ++i)
-        Set::load_pairs(p[i * Set::kWidth].c.data(), v[0].part[i], v[1].part[i]);
+      for_each_part<Real::kParts>(
+          [&](auto i) { Set::load_pairs(p[i * Set::kWidth].c.data(), v[0].part[i], v[1].part[i]); });
     } else {
       alignas(64) double c[Dim][kLanes];
       for (int lane = 0; lane < kLanes; ++lane)
@@ -51,8 +51,8 @@ struct Rows {
   }
   static void store(const Vector& v, Vec<Dim>* p) {
     if constexpr (Dim == 2) {
-      for (int i = 0; i < Real::kParts; ++i)
-        Set::store_pairs(p[i * Set::kWidth].c.data(), v[0].part[i], v[1].part[i]);
+      for_each_part<Real::kParts>(
+          [&](auto i) { Set::store_pairs(p[i * Set::kWidth].c.data(), v[0].part[i], v[1].part[i]); });
     } else {
       alignas(64) double c[Dim][kLanes];
       store(v, c);
@@ -65,8 +65,9 @@ struct Rows {
     const double* const numbers = vectors.data()->c.data();
     Vector v;
     if constexpr (Dim == 2) {
-      for (int i = 0; i < Real::kParts; ++i)
+      for_each_part<Real::kParts>([&](auto i) {
         Set::gather_pairs(numbers, offset.data() + i * Set::kWidth, v[0].part[i], v[1].part[i]);
+      });
     } else {
       alignas(64) double c[Dim][kLanes];
       for (int lane = 0; lane < kLanes; ++lane)
@@ -80,9 +81,10 @@ struct Rows {
     if constexpr (Dim == 2) {
       const double* const numbers = vectors.data()->c.data();
       Vector v;
-      for (int i = 0; i < Real::kParts; ++i)
+      for_each_part<Real::kParts>([&](auto i) {
         Set::gather_differences(numbers, offset.data() + i * Set::kWidth, less.data() + i * Set::kWidth,
                                 v[0].part[i], v[1].part[i]);
+      });
       return v;
     } else {
       return gather(vectors, offset) - gather(vectors, less);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pyroclast/mechanics/compiled_step.hpp"
 #include "pyroclast/mechanics/step/contacts.hpp"
 #include "pyroclast/mechanics/step/motion.hpp"
 #include "pyroclast/mechanics/step/zones.hpp"
@@ -46,11 +47,6 @@ class Step {
         }
       });
     });
-  }
-
-  /// All of it. The first half, rows of faces, is compiled by law.
-  static StepFunctions<Dim> functions(RowFunctions<Dim> (*rows_of)(const LawTable&)) {
-    return {rows_of, move_bundles, sum_stiffness};
   }
 
   /// Sums of |stiffness| over the rows of the assembled matrix, zones and contacts, N/m.
@@ -118,5 +114,9 @@ class Step {
     }
   }
 };
+
+template <class Set>
+const StepOfSet CompiledStep<Set>::step{{nullptr, Step<2, Set>::move_bundles, Step<2, Set>::sum_stiffness},
+                                        {nullptr, Step<3, Set>::move_bundles, Step<3, Set>::sum_stiffness}};
 
 }  // namespace pyroclast
