@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from . import units as units
     from ._core import Body as Body
     from ._core import commit as commit
+    from ._core import instruction_sets as instruction_sets
     from ._core import version as version
     from .decks import Deck as Deck
     from .errors import DeckError as DeckError
@@ -62,7 +63,7 @@ if TYPE_CHECKING:
 else:
     # Imported when first asked for: figures must not need the compiled part.
     _PLACES = {
-        "_core": ("Body", "commit", "version"),
+        "_core": ("Body", "commit", "instruction_sets", "version"),
         "decks": ("Deck",),
         "errors": ("DeckError", "Diagnostic", "Error"),
         "functions": ("Function",),

@@ -10,6 +10,7 @@ from .errors import Diagnostic
 
 version: str
 commit: str
+instruction_sets: str
 physics_version: int
 
 class DeckText:

@@ -12,6 +12,7 @@
 #include "pyroclast/app/watcher.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
+#include "pyroclast/mechanics/instruction_set.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 #include "pyroclast/version.hpp"
 
@@ -93,8 +94,9 @@ void add_own_laws(CLI::App* command, app::OwnLawOptions& options) {
 int command_line(int argc, char** argv) {
   CLI::App cli{"Pyroclast: how concrete breaks under load and fire, by the discrete element method",
                "pyroclast"};
-  cli.set_version_flag(
-      "--version", fmt::format("pyroclast {} ({}), physics version {}", kVersion, kCommit, kPhysicsVersion));
+  cli.set_version_flag("--version",
+                       fmt::format("pyroclast {} ({}), physics version {}, instruction sets {}", kVersion,
+                                   kCommit, kPhysicsVersion, describe_built_instruction_sets()));
   cli.require_subcommand(1);
 
   app::RunOptions options;

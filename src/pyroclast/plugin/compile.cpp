@@ -4,6 +4,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -12,18 +14,16 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spawn.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
+#include "pyroclast/base/child_process.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/sha256.hpp"
+#include "pyroclast/plugin/build_settings.hpp"
 #include "pyroclast/plugin/stamp.hpp"
-
-extern char** environ;
 
 namespace pyroclast {
 
@@ -107,28 +107,6 @@ class FileLock {
   int descriptor_;
 };
 
-/// Runs a program without a shell; both its streams go to a file. True when it ends well.
-bool run(std::vector<std::string> words, const fs::path& output) {
-  std::vector<char*> arguments;
-  for (auto& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_CREAT | O_WRONLY | O_TRUNC,
-                                   S_IRUSR | S_IWUSR);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  pid_t child = 0;
-  const int failed =
-      posix_spawnp(&child, words.front().c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0)
-    throw Error(fmt::format("{}: the compiler cannot be run: {}", words.front(), std::strerror(failed)));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
 /// What a reader of the law needs of the compiler's words: errors, what stands in the law's own lines, and
 /// the excerpts of code below them.
 std::string essence(const std::string& messages, const fs::path& header) {
@@ -163,12 +141,12 @@ fs::path own_module() {
 std::vector<std::string> include_flags() {
   std::error_code ignored;
   const auto program = fs::read_symlink("/proc/self/exe", ignored);
-  const fs::path installed = program.parent_path().parent_path() / PYROCLAST_INSTALLED_INCLUDE;
+  const fs::path installed = program.parent_path().parent_path() / build_settings::kInstalledInclude;
   std::vector<std::vector<fs::path>> places{{installed}};
   for (fs::path above = own_module().parent_path(); above.has_relative_path(); above = above.parent_path())
-    places.push_back({above / PYROCLAST_INSTALLED_INCLUDE});
-  places.push_back({PYROCLAST_SOURCE_INCLUDE, PYROCLAST_GENERATED_INCLUDE});
-  places.push_back({PYROCLAST_FULL_INCLUDE});
+    places.push_back({above / build_settings::kInstalledInclude});
+  places.push_back({build_settings::kSourceInclude, build_settings::kGeneratedInclude});
+  places.push_back({build_settings::kFullInclude});
   for (const std::vector<fs::path>& folders : places) {
     if (!fs::exists(folders.front() / "pyroclast" / "plugin" / "stamp.hpp")) continue;
     std::vector<std::string> flags;
@@ -178,28 +156,21 @@ std::vector<std::string> include_flags() {
   throw Error(
       fmt::format("the headers of pyroclast, which a law in a header needs, are in none of {}, {}, {}; "
                   "install pyroclast with them",
-                  installed.string(), PYROCLAST_SOURCE_INCLUDE, PYROCLAST_FULL_INCLUDE));
+                  installed.string(), build_settings::kSourceInclude, build_settings::kFullInclude));
 }
 
 std::vector<std::string> flags_of(InstructionSet set) {
-  std::string all = PYROCLAST_LAW_FLAGS;
-  if (set == InstructionSet::avx2) all += " " PYROCLAST_LAW_FLAGS_AVX2;
-  if (set == InstructionSet::avx512) all += " " PYROCLAST_LAW_FLAGS_AVX512;
-  std::vector<std::string> flags;
-  std::istringstream stream(all);
-  for (std::string flag; stream >> flag;) flags.push_back(flag);
-  const auto includes = include_flags();
-  flags.insert(flags.end(), includes.begin(), includes.end());
-  return flags;
+  std::istringstream stream(fmt::format("{} {}", build_settings::kLawFlags,
+                                        build_settings::kFlagsOfSet[static_cast<std::size_t>(set)]));
+  return {std::istream_iterator<std::string>(stream), {}};
 }
 
 std::string source_of(const fs::path& header, const std::string& type, const LawCompiler& compiler) {
-  constexpr std::string_view kTypes[kInstructionSets]{"Portable", "Avx2", "Avx512"};
   const auto set = static_cast<std::size_t>(compiler.instructions);
   const auto dimensions = compiler.dimension == 2 ? "plane" : "space";
   std::string rows[kInstructionSets]{"nullptr", "nullptr", "nullptr"};
   rows[set] = fmt::format("&pyroclast::Compiled<pyroclast::{}, {}, pyroclast::Dimensions::{}>::law",
-                          kTypes[set], type, dimensions);
+                          build_settings::kTypeOfSet[set], type, dimensions);
   return fmt::format(R"(// Written by pyroclast to compile a contact law.
 #include {0}
 
@@ -212,8 +183,8 @@ extern "C" [[gnu::visibility("default")]] const pyroclast_law* pyroclast_law_v1(
   return &law;
 }}
 )",
-                     fmt::format("\"{}\"", header.string()), type, dimensions, PYROCLAST_VERSION, rows[0],
-                     rows[1], rows[2]);
+                     fmt::format("\"{}\"", header.string()), type, dimensions, build_settings::kVersion,
+                     rows[0], rows[1], rows[2]);
 }
 
 }  // namespace
@@ -271,29 +242,32 @@ fs::path compile_law(const fs::path& header, const std::string& type, const LawC
   const fs::path source = in_cache("law.cpp"), messages = in_cache("messages.txt");
   write(source, source_of(file, type, compiler));
 
-  std::vector<std::string> command{compiler.program};
   const auto flags = flags_of(compiler.instructions);
+  std::vector<std::string> command{compiler.program};
   command.insert(command.end(), flags.begin(), flags.end());
+  const auto folders = include_flags();
+  command.insert(command.end(), folders.begin(), folders.end());
   const auto with = [&](std::vector<std::string> more) {
     auto words = command;
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
   const auto attempt = [&](const std::vector<std::string>& words) {
-    if (!run(words, messages))
+    if (!run_program(words, messages, compiler.poll))
       throw Error(fmt::format(
           "{}: does not compile as the contact law {}; the compiler says:{}\nIt was run as: {}\n"
           "All that it says: {}",
           file.string(), type, essence(read_file(messages), file), fmt::join(words, " "), messages.string()));
   };
-  if (!run({compiler.program, "--version"}, messages))
+  if (!run_program({compiler.program, "--version"}, messages, compiler.poll))
     throw Error(fmt::format("{}: does not tell its version; see {}", compiler.program, messages.string()));
   const std::string version = read_file(messages);
   const fs::path preprocessed = in_cache("law.ii");
-  attempt(with({"-E", source.string(), "-o", preprocessed.string()}));
+  // without -P the text would hold the places of its headers, and a run that goes on has copies of its own
+  attempt(with({"-E", "-P", source.string(), "-o", preprocessed.string()}));
   const std::string key =
-      sha256(fmt::format("{}\n{}\n{}\n{} {} {:016x}", read_file(preprocessed), version,
-                         fmt::join(command, " "), PYROCLAST_VERSION, kLawTableVersion, layout_hash()));
+      sha256(fmt::format("{}\n{}\n{}\n{} {} {:016x}", read_file(preprocessed), version, fmt::join(flags, " "),
+                         build_settings::kVersion, kLawTableVersion, layout_hash()));
   fs::remove(preprocessed);
   const fs::path kept = compiler.cache / (key + ".so");
   if (fs::exists(kept)) return kept;

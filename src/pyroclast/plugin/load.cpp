@@ -16,6 +16,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/mechanics/instruction_set.hpp"
+#include "pyroclast/plugin/build_settings.hpp"
 #include "pyroclast/plugin/stamp.hpp"
 
 namespace pyroclast {
@@ -56,7 +57,7 @@ class Loader {
           before, after, kRemedy);
     auto* const function = reinterpret_cast<pyroclast_law_function>(dlsym(object, kLawSymbol));
     if (!function)
-      refuse("has no symbol {}: it is no contact law of pyroclast {}", kLawSymbol, PYROCLAST_VERSION);
+      refuse("has no symbol {}: it is no contact law of pyroclast {}", kLawSymbol, build_settings::kVersion);
     const pyroclast_law* const law = function();
     compare(law);
     examine(law->probe, "code for any processor");
@@ -81,9 +82,9 @@ class Loader {
       refuse(
           "hands over its law in form {} of {} bytes; this program takes form {} of {} bytes; build it again",
           law->table_version, law->size, kLawTableVersion, sizeof(pyroclast_law));
-    if (std::string_view(law->version) != PYROCLAST_VERSION)
+    if (std::string_view(law->version) != build_settings::kVersion)
       refuse("was built with pyroclast {}; this is pyroclast {}; build it again", law->version,
-             PYROCLAST_VERSION);
+             build_settings::kVersion);
     if (law->layout != layout_hash() || law->lanes != static_cast<std::uint32_t>(kLanes))
       refuse(
           "was built for another layout of the data ({:016x} with {} lanes; this program has {:016x} with "

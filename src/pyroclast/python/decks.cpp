@@ -62,6 +62,10 @@ Deck parse(const DeckText& text) {
 LawSources law_sources(const std::vector<std::string>& folders) {
   auto sources = LawSources::of_environment();
   sources.folders.insert(sources.folders.begin(), folders.begin(), folders.end());
+  sources.compiler.poll = [] {
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  };
   return sources;
 }
 

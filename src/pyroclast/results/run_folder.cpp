@@ -14,6 +14,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/base/sha256.hpp"
+#include "pyroclast/mechanics/instruction_set.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/version.hpp"
 
@@ -202,6 +203,7 @@ RunFolder::RunFolder(fs::path path, bool overwrite, const Manifest& manifest) : 
   json["seed"] = manifest.seed;
   json["threads"] = manifest.threads;
   json["instructions"] = manifest.instructions;
+  json["built_instructions"] = describe_built_instruction_sets();
   json["started"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
   for (const OwnLaw& law : manifest.laws)
     json["laws"].push_back({{"name", law.name},

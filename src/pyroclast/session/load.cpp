@@ -16,15 +16,21 @@ std::shared_ptr<Team> make_team(int asked) {
                    : std::make_shared<Team>(available_threads(), WhenCrowded::give_way);
 }
 
+/// A law in a header is compiled for the instruction set of the run.
+LawSources laws_for(InstructionSet set, LawSources laws) {
+  laws.compiler.instructions = set;
+  return laws;
+}
+
 }  // namespace
 
 Loaded::Loaded(Deck read, std::filesystem::path folder_of_deck, RunChoices chosen)
     : choices(std::move(chosen)),
       folder(std::move(folder_of_deck)),
       deck(std::move(read)),
-      setup(read_setup(deck, folder, choices.kinds, choices.laws)),
-      instructions(choices.instructions.empty() ? usable_instruction_sets().back()
+      instructions(choices.instructions.empty() ? best_instruction_set()
                                                 : instruction_set(choices.instructions)),
+      setup(read_setup(deck, folder, choices.kinds, laws_for(instructions, choices.laws))),
       team(make_team(choices.threads)) {
   for (const Diagnostic& warning : setup.warnings) warnings.push_back(to_string(warning));
   if (choices.threads > available_threads())

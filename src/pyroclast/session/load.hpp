@@ -36,8 +36,8 @@ struct Loaded {
   RunChoices choices;
   std::filesystem::path folder;
   Deck deck;
-  Setup setup;
   InstructionSet instructions;
+  Setup setup;
   std::shared_ptr<Team> team;
   std::vector<std::string> warnings;  ///< of deck and choices, a line each
 };
