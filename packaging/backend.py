@@ -54,6 +54,7 @@ def _make():
     if _BUILT:
         return
     _run("cmake", "-S", _ROOT, "-B", _BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DPYROCLAST_TESTS=OFF",
+         "-DPYROCLAST_SETS=all", "-DPYROCLAST_UNITY=ON",
          f"-DPYROCLAST_PYTHON={sys.executable}")
     _run("cmake", "--build", _BUILD)
 

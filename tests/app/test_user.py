@@ -759,16 +759,66 @@ struct Law {
 """
 
 
+def deck_of_careless_law(times: float) -> str:
+    head, rest = small_deck(stop_strain="stop_strain = 2e-4").split("[contacts.mortar_mortar]")
+    spring = f'law = "careless.hpp"\nK = "18e12 Pa/m"\ntimes = {times}\n'
+    head = re.sub(r"^compression = .*$", "", head, flags=re.MULTILINE)  # the cohesive law's
+    return (f"{head}[contacts.mortar_mortar]\n{spring}[contacts.aggregate_mortar]\n{spring}"
+            f"[mechanics]{rest.split('[mechanics]')[1]}")
+
+
+class LawInAHeader(UserTest):
+    """A law of one's own goes with the instruction set of the run, and its compiler with the program."""
+
+    def setUp(self):
+        super().setUp()
+        self.write(CARELESS_LAW, "careless.hpp")
+        self.write(deck_of_careless_law(1.0))
+        self.env = os.environ | {"PYROCLAST_CACHE": str(self.folder / "cache")}
+
+    def compiled(self, *words: str) -> bool:
+        done = self.pyroclast(*words, "--no-figures", env=self.env)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return "compiling a law" in done.stderr
+
+    def test_runs_in_every_set_with_the_same_bits_and_is_compiled_once_for_each(self):
+        self.assertTrue(self.compiled("run", "deck.toml", "--out", "best"))
+        self.assertTrue(self.compiled("run", "deck.toml", "--out", "portable", "--instructions", "portable"))
+        best, portable = (self.folder / name / "history.csv" for name in ("best", "portable"))
+        self.assertEqual(best.read_bytes(), portable.read_bytes())
+        # the folder of a run has a copy of the header, and needs no compiler
+        self.assertFalse(self.compiled("run", "best/deck.toml", "--out", "again"))
+        self.assertFalse(self.compiled("run", "best/deck.toml", "--out", "other", "--instructions", "portable"))
+        self.assertFalse(self.compiled("resume", "again", "--instructions", "portable"))
+
+    def test_a_killed_program_leaves_no_compiler_behind(self):
+        # a compiler that says that it runs, then takes for ever
+        self.write("#!/bin/sh\ncase $* in *--version*) echo 1;; *) echo $$ > pid.tmp; mv pid.tmp pid; sleep 1000;; esac\n",
+                   "slow")
+        (self.folder / "slow").chmod(0o755)
+        for signal_sent in (signal.SIGKILL, signal.SIGINT):
+            (self.folder / "pid").unlink(missing_ok=True)
+            run = subprocess.Popen([PROGRAM, "run", "deck.toml", "--out", "out"], cwd=self.folder,
+                                   env=self.env | {"CXX": str(self.folder / "slow")}, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
+            while not (self.folder / "pid").exists():
+                time.sleep(0.01)
+            compiler = pathlib.Path("/proc") / (self.folder / "pid").read_text().strip() / "stat"
+            run.send_signal(signal_sent)
+            self.assertEqual(run.wait(60), -signal_sent)
+            deadline = time.monotonic() + 60
+            while compiler.exists() and ") Z " not in compiler.read_text() and time.monotonic() < deadline:
+                time.sleep(0.01)
+            self.assertLess(time.monotonic(), deadline, signal_sent)
+            self.assertFalse((self.folder / "out").exists())
+
+
 class LedgerThatDoesNotClose(UserTest):
     """Energy that comes from nowhere: whatever a stage found is no result."""
 
     def run_with(self, times: float) -> tuple[int, str, dict]:
         self.write(CARELESS_LAW, "careless.hpp")
-        head, rest = small_deck(stop_strain="stop_strain = 2e-4").split("[contacts.mortar_mortar]")
-        spring = f'law = "careless.hpp"\nK = "18e12 Pa/m"\ntimes = {times}\n'
-        head = re.sub(r"^compression = .*$", "", head, flags=re.MULTILINE)  # the cohesive law's
-        self.write(f"{head}[contacts.mortar_mortar]\n{spring}[contacts.aggregate_mortar]\n{spring}"
-                   f"[mechanics]{rest.split('[mechanics]')[1]}")
+        self.write(deck_of_careless_law(times))
         done = self.pyroclast("run", "deck.toml", "--out", "out", "--overwrite", "--no-figures",
                               env=os.environ | {"PYROCLAST_CACHE": str(self.folder / "cache")})
         said = done.stdout + done.stderr

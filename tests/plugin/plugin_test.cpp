@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -257,6 +258,11 @@ TEST_F(LawInAHeader, AHeaderIsCompiledOnceForEachText) {
   other.join();
   EXPECT_EQ(found[0], found[1]);
   EXPECT_EQ(commands_.size(), 1U) << "the same text is compiled once";
+  // a run that goes on has a copy of the header elsewhere
+  fs::create_directories(folder_ / "inputs");
+  write("inputs/of_a_run.hpp", small());
+  EXPECT_EQ(compile_law(folder_ / "inputs" / "of_a_run.hpp", "small::Law", sources_.compiler), found[0]);
+  EXPECT_EQ(commands_.size(), 1U) << "wherever it lies";
 
   // a body moves with it
   const auto model = bodies::column(3, 0.01);
@@ -273,9 +279,23 @@ TEST_F(LawInAHeader, AHeaderIsCompiledOnceForEachText) {
   EXPECT_NE(body.contact(0).normal_traction, 0.0);
   if (usable_instruction_sets().size() > 1) {
     parameters.instructions = usable_instruction_sets().back();
-    EXPECT_TRUE(says(message([&] { Mechanics<2>(model, {2300.0}, properties, parameters); }),
-                     {"\"small\" is not compiled for the instruction set"}));
+    EXPECT_TRUE(says(
+        message([&] { Mechanics<2>(model, {2300.0}, properties, parameters); }),
+        {"\"small\" is not compiled for the instruction set", "but for portable: --instructions portable"}));
   }
+}
+
+TEST_F(LawInAHeader, WhatThePollThrowsEndsTheCompilerAndLeavesNothingInTheCache) {
+  write("mine.hpp", small() + "// another text\n" + "namespace small { inline int more() { return 1; } }\n");
+  LawCompiler compiler = sources_.compiler;
+  bool compiles = false;
+  compiler.tell = [&](const std::string&) { compiles = true; };
+  compiler.poll = [&] {
+    if (compiles) throw std::runtime_error("interrupted");
+  };
+  EXPECT_THROW(compile_law(folder_ / "mine.hpp", "small::Law", compiler), std::runtime_error);
+  EXPECT_TRUE(compiles);
+  for (const auto& file : fs::directory_iterator(compiler.cache)) EXPECT_NE(file.path().extension(), ".so");
 }
 
 TEST_F(LawInAHeader, WhatDoesNotCompileIsRefusedWithTheLineOfTheLaw) {
