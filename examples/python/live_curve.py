@@ -3,9 +3,9 @@ import os
 import sys
 from pathlib import Path
 
-from matplotlib import pyplot
-
+import numpy as np
 import pyroclast
+from matplotlib import pyplot
 
 deck = pyroclast.Deck(Path(__file__).parents[2] / "cases" / "starter.toml")
 deck["blocks.count"] = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
@@ -25,6 +25,6 @@ def draw(run: pyroclast.Run) -> None:
 run = pyroclast.Run(deck)
 run.at_looks(lambda run: draw(run) if run.history.rows % 25 == 0 else None)
 draw(run.finish())
-strain, stress = line.get_data()
+strain, stress = np.asarray(line.get_data())
 print(f"{len(strain)} points, the last {stress[-1]:.1f} MPa at a strain of {strain[-1]:.2f}e-3")
 assert 18.0 < stress[strain > 0.4][0] / strain[strain > 0.4][0] < 26.0, "GPa"

@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import numpy as np
+from scipy.integrate import trapezoid
 
 import pyroclast
 from pyroclast import MPa, N, m
@@ -14,7 +14,7 @@ mine: dict[str, Any] = {"G_n": G_n, "G_t": "240 N/m", "sigma_max": 2.5 * MPa, "t
                         "beta": 2, "lambda_n": 0.01, "lambda_t": 0.01, "friction": 0.6}
 law = pyroclast.Law(header, **mine)
 answer = law.drive(opening=[0.0, 2e-4], steps=4000)
-work = np.trapz(answer["sigma_Pa"], answer["u_n_m"])
+work = trapezoid(answer["sigma_Pa"], answer["u_n_m"])
 print(f"{law.name}: strength {answer['sigma_Pa'].max() / 1e6:.2f} MPa, work {work:.2f} J/m2")
 assert abs(answer["sigma_Pa"].max() / 2.5e6 - 1.0) < 0.01
 assert abs(work / G_n.to("J/m2") - 1.0) < 0.01

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import numpy as np
-
 import pyroclast
+from scipy.integrate import trapezoid
 
 
 class Shake(pyroclast.Stage):
@@ -26,5 +26,5 @@ deck.append("stages", kind="shake", velocity="10 mm/s").update(blocks={"count": 
 deck["stages[1].stop_strain"] = 5e-4
 history = pyroclast.Run(deck).finish().history
 strain, stress = (history[name][history["stage"] == 2] for name in ("strain", "stress"))
-print(f"{np.ptp(stress) / 1e6:.1f} MPa for a strain of {np.ptp(strain):.6f}, loop {np.trapz(stress, strain):.3g} J/m3")
+print(f"{np.ptp(stress) / 1e6:.1f} MPa for a strain of {np.ptp(strain):.6f}, loop {trapezoid(stress, strain):.3g} J/m3")
 assert abs(np.ptp(strain) * 0.3 / (10e-3 * 1000 * 1e-5) - 1.0) < 0.1, "velocity times half a period"

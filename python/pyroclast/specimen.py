@@ -275,7 +275,8 @@ def _one_piece(cells: list[NDArray[np.int32]], phase: NDArray[Any], votes: NDArr
     around: dict[int, list[int]] = {}
     sharing: dict[tuple[int, int], list[int]] = {}
     for i, cell in enumerate(cells):
-        for a, b in zip(cell.tolist(), np.roll(cell, -1).tolist()):
+        corners = [int(corner) for corner in cell]
+        for a, b in zip(corners, corners[1:] + corners[:1]):
             around.setdefault(a, []).append(i)
             sharing.setdefault((min(a, b), max(a, b)), []).append(i)
     beside: list[set[int]] = [set() for _ in cells]
@@ -316,7 +317,7 @@ def _fans(vertex: int, some: list[int], cells: list[NDArray[np.int32]]) -> int:
     """Into how many groups that hang together by edges the blocks around a vertex fall."""
     ends = []
     for i in some:
-        cell = cells[i].tolist()
+        cell = [int(corner) for corner in cells[i]]
         k = cell.index(vertex)
         ends.append({cell[k - 1], cell[(k + 1) % len(cell)]})
     groups: list[set[int]] = []

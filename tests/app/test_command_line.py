@@ -46,8 +46,13 @@ class CommandLine(unittest.TestCase):
 
     def test_a_value_that_cannot_be_is_refused_with_what_can(self):
         case = str(CASES / "starter.toml")
-        self.assertIn("--seed: Value -3 not in range 0 to", self.error("check", case, "--seed", "-3"))
-        self.assertIn("--threads: Value 5000 not in range 1 to 1024", self.error("check", case, "--threads", "5000"))
+        for option, word, least, most in (("--seed", "-3", 0, 9000000000000000), ("--threads", "5000", 1, 1024),
+                                          ("--threads", "0", 1, 1024), ("--threads", "two", 1, 1024),
+                                          ("--threads", "2.5", 1, 1024)):
+            self.assertIn(f"{option}: {word} is not a whole number from {least} to {most};",
+                          self.error("check", case, option, word))
+        self.assertIn("--steps: 0 is not a whole number from 1 to", self.error("law", case, "--steps", "0"))
+        self.assertIn("--paths: 0 is not a whole number from 1 to", self.error("law", "--verify", "--paths", "0"))
 
     def test_what_set_broke_is_told_of_set(self):
         case = str(CASES / "starter.toml")

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -34,7 +35,7 @@ DeckKey only_key(const DeckSchema& schema, const std::string& table, const std::
   return found.empty() ? DeckKey{} : found.front();
 }
 
-const DeckTable& table_of(const DeckSchema& schema, const std::string& path) {
+const DeckTable& table_of(const DeckSchema& schema, std::string_view path) {
   const auto found = std::find_if(schema.tables.begin(), schema.tables.end(),
                                   [&](const DeckTable& t) { return t.path == path; });
   EXPECT_NE(found, schema.tables.end()) << path;

@@ -14,13 +14,14 @@
 
 #include "known.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/lasting.hpp"
 
 namespace pyroclast {
 namespace {
 
 using Points = std::vector<std::pair<double, double>>;
 
-const Curve& builtin(const std::string& name) {
+PYROCLAST_LASTING const Curve& builtin(const std::string& name) {
   return builtin_curves().at(name).curve;
 }
 

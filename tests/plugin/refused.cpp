@@ -3,6 +3,16 @@
 #include "pyroclast/plugin/stamp.hpp"
 #include "small.hpp"
 
+#ifdef REFUSED_flush
+#include <xmmintrin.h>
+
+// As the start-up code does that GCC 12 and Clang 14 link to shared objects by -ffast-math:
+// numbers near zero are flushed to zero (bit 15), and taken as zero (bit 6).
+[[gnu::constructor]] static void flush_to_zero() {
+  _mm_setcsr(_mm_getcsr() | 0x8040u);
+}
+#endif
+
 #ifdef REFUSED_symbol
 extern "C" [[gnu::visibility("default")]] int something_else() {
   return 1;

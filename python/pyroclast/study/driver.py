@@ -210,7 +210,7 @@ class Driver:
     def _answers(self, cube: NDArray[np.float64], seeds: Sequence[int]) -> Answers:
         points = self._points(cube)
         shape = (len(points), len(seeds))
-        y = {o.name: np.full(shape, math.nan) for o in self.study.outputs}
+        y: dict[str, NDArray[np.float64]] = {o.name: np.full(shape, math.nan) for o in self.study.outputs}
         is_known = np.zeros(shape, dtype=bool)
         is_feasible = np.array([not p.infeasible for p in points], dtype=bool)
         for i, point in enumerate(points):

@@ -160,8 +160,8 @@ class _Sampled(_Plan):
         answers = ask(u, self.study.seeds)
 
         def find(y: Array) -> dict[str, Any]:
-            curves = [main_effects.curve(column, y, count=p.distribution.count)
-                      for column, p in zip(u.T, self.study.parameters)]
+            curves = [main_effects.curve(u[:, j], y, count=p.distribution.count)
+                      for j, p in enumerate(self.study.parameters)]
             return {"rank_effects": main_effects.rank_effects(u, y, self.seed), "curves": curves}
 
         return {"outputs": self._by_output(answers, find)}

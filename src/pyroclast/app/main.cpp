@@ -1,6 +1,8 @@
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <new>
 
 #include <CLI/CLI.hpp>
@@ -20,13 +22,27 @@ namespace {
 
 using namespace pyroclast;
 
+/// Takes whole numbers from `least` to `most`; in words of this program, as CLI11's are others in each
+/// version.
+CLI::Validator whole_number(std::int64_t least, std::int64_t most) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        std::int64_t number = 0;
+        const char* const end = text.data() + text.size();
+        const auto [at, error] = std::from_chars(text.data(), end, number);
+        if (error == std::errc() && at == end && number >= least && number <= most) return std::string();
+        return fmt::format("{} is not a whole number from {} to {}", text, least, most);
+      },
+      fmt::format("from {} to {}", least, most));
+}
+
 void add_deck(CLI::App* command, std::filesystem::path& deck) {
   command->add_option("DECK", deck, "TOML file that describes the run")->required();
 }
 
 void add_seed(CLI::App* command, std::optional<std::int64_t>& seed) {
   command->add_option("--seed", seed, "Seed of the specimen, instead of the deck's, 0 or more")
-      ->check(CLI::Range(std::int64_t{0}, specimen::kLargestSeed, "a whole number from 0"));
+      ->check(whole_number(0, specimen::kLargestSeed));
 }
 
 void add_output(CLI::App* command, app::RunOptions& options) {
@@ -55,7 +71,7 @@ void add_watch(CLI::App* command, app::RunOptions& options) {
 
 void add_threads(CLI::App* command, int& threads) {
   command->add_option("-t,--threads", threads, "Threads; results are the same for any number")
-      ->check(CLI::Range(1, app::kMostThreads));
+      ->check(whole_number(1, app::kMostThreads));
 }
 
 void add_processor(CLI::App* command, app::RunOptions& options) {
@@ -159,7 +175,7 @@ int command_line(int argc, char** argv) {
   law->add_option("--interface", law_options.interface,
                   "A table of [contacts], or a_a for two blocks of phase a (default: that of the matrix)");
   law->add_option("--steps", law_options.steps, "Cut each leg of the path into so many steps")
-      ->check(CLI::PositiveNumber)
+      ->check(whole_number(1, std::numeric_limits<int>::max()))
       ->default_val(1);
   law->add_option("-o,--out", law_options.out, "CSV file to write (default: standard output)");
   app::VerifyOptions verify_options;
@@ -170,7 +186,7 @@ int command_line(int argc, char** argv) {
           ->excludes(law_deck)
           ->excludes(law_path);
   law->add_option("--paths", verify_options.paths, "Random paths in each dimension")
-      ->check(CLI::PositiveNumber)
+      ->check(whole_number(1, std::numeric_limits<int>::max()))
       ->needs(verify)
       ->default_val(10000);
   law->add_option("--seed", verify_options.seed, "Of the random paths")->needs(verify)->default_val(1);

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pyroclast/base/lasting.hpp"
 #include "pyroclast/laws/table.hpp"
 #include "pyroclast/plugin/compile.hpp"
 
@@ -31,7 +32,7 @@ struct LawSources {
 ///
 /// Relative paths are taken from the folder of the deck. The law lives as long as the process.
 /// Throws Error when there is no such law, or it is refused (load_law, compile_law).
-const LawTable& find_law(std::string_view stated, const std::filesystem::path& deck_folder,
-                         const LawSources& sources);
+PYROCLAST_LASTING const LawTable& find_law(std::string_view stated, const std::filesystem::path& deck_folder,
+                                           const LawSources& sources);
 
 }  // namespace pyroclast

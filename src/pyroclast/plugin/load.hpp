@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pyroclast/base/lasting.hpp"
 #include "pyroclast/laws/table.hpp"
 
 namespace pyroclast {
@@ -27,7 +28,8 @@ struct LoadedLaw {
 /// Throws Error where it is none, was made for another version or layout, or takes numbers for anything but
 /// IEEE 754: with contraction, fast-math or flush to zero.
 /// \param header  that it was compiled from by this program
-const LoadedLaw& load_law(const std::filesystem::path& shared_object, LawHeader header = {});
+PYROCLAST_LASTING const LoadedLaw& load_law(const std::filesystem::path& shared_object,
+                                            LawHeader header = {});
 
 /// Those that were loaded so far, in that order.
 std::vector<const LoadedLaw*> loaded_laws();
