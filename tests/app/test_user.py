@@ -789,7 +789,8 @@ class LawInAHeader(UserTest):
         # the folder of a run has a copy of the header, and needs no compiler
         self.assertFalse(self.compiled("run", "best/deck.toml", "--out", "again"))
         self.assertFalse(self.compiled("run", "best/deck.toml", "--out", "other", "--instructions", "portable"))
-        self.assertFalse(self.compiled("resume", "again", "--instructions", "portable"))
+        self.write("[[stages]]" + STARTER.split("[[stages]]")[1], "more.toml")
+        self.assertFalse(self.compiled("resume", "again", "--stages", "more.toml", "--out", "fork", "--instructions", "portable"))
 
     def test_a_killed_program_leaves_no_compiler_behind(self):
         # a compiler that says that it runs, then takes for ever
