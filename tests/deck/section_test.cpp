@@ -7,7 +7,8 @@
 
 #include "diagnostics_of.hpp"
 
-namespace pyroclast {
+// of its own, as tests of a module are one unit
+namespace pyroclast::section_test {
 namespace {
 
 enum class Mass { real, scaled };
@@ -323,4 +324,4 @@ TEST(WrongTable, IsExplained) {
 }
 
 }  // namespace
-}  // namespace pyroclast
+}  // namespace pyroclast::section_test

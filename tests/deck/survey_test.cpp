@@ -12,7 +12,8 @@
 #include "diagnostics_of.hpp"
 #include "pyroclast/deck/reference.hpp"
 
-namespace pyroclast {
+// of its own, as tests of a module are one unit
+namespace pyroclast::survey_test {
 namespace {
 
 enum class Mass { scaled, real };
@@ -408,4 +409,4 @@ TEST(Reference, TellsWhatAKeyDependsOn) {
 }
 
 }  // namespace
-}  // namespace pyroclast
+}  // namespace pyroclast::survey_test

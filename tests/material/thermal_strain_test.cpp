@@ -8,7 +8,8 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 
-namespace pyroclast {
+// of its own, as tests of a module are one unit
+namespace pyroclast::thermal_strain_test {
 namespace {
 
 constexpr Interval kFire{20.0, 800.0};
@@ -117,4 +118,4 @@ TEST(ThermalStrain, SaysWhereItComesFrom) {
 }
 
 }  // namespace
-}  // namespace pyroclast
+}  // namespace pyroclast::thermal_strain_test

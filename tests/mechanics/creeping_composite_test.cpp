@@ -13,7 +13,8 @@
 #include "pyroclast/mechanics/mechanics.hpp"
 
 /// Inclusions in a matrix that creeps, or that shrinks on cooling by a slope of its own.
-namespace pyroclast {
+// of its own, as tests of a module are one unit
+namespace pyroclast::creeping_composite_test {
 namespace {
 
 using namespace bodies;
@@ -307,4 +308,4 @@ TEST(CreepVerification, OfASpecimenIsThatOfItsMatrixTimesR) {
 }
 
 }  // namespace
-}  // namespace pyroclast
+}  // namespace pyroclast::creeping_composite_test

@@ -7,7 +7,8 @@
 #include "pyroclast/mechanics/mechanics.hpp"
 
 /// Bodies whose temperature changes: stresses, contacts and the energy ledger.
-namespace pyroclast {
+// of its own, as tests of a module are one unit
+namespace pyroclast::thermal_stress_test {
 namespace {
 
 using namespace bodies;
@@ -684,4 +685,4 @@ TEST_F(TiedPlaten, TakesTheWorkOfForceTimesDisplacementThroughHeating) {
 }
 
 }  // namespace
-}  // namespace pyroclast
+}  // namespace pyroclast::thermal_stress_test

@@ -13,7 +13,8 @@
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
-namespace pyroclast::specimen {
+// of its own, as tests of a module are one unit
+namespace pyroclast::specimen::region_test {
 namespace {
 
 Vec<2> at(double x, double y) {
@@ -244,4 +245,4 @@ TEST(Region, AggregatesKeepAwayFromTheOutlineButNotFromCuts) {
 }
 
 }  // namespace
-}  // namespace pyroclast::specimen
+}  // namespace pyroclast::specimen::region_test

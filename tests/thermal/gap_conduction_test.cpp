@@ -20,7 +20,8 @@
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 
-namespace pyroclast {
+// of its own, as tests of a module are one unit
+namespace pyroclast::gap_conduction_test {
 namespace {
 
 constexpr double kConductivity = 1.6;   // W/(m K)
@@ -501,4 +502,4 @@ TEST(GapConduction, RefusesALawThatIsNone) {
 }
 
 }  // namespace
-}  // namespace pyroclast
+}  // namespace pyroclast::gap_conduction_test

@@ -11,7 +11,8 @@
 #include "pyroclast/thermal/time_stages.hpp"
 
 /// What the solver's time step must be, and what ends or corners do: each against a closed form.
-namespace pyroclast {
+// of its own, as tests of a module are one unit
+namespace pyroclast::step_limit_test {
 namespace {
 
 constexpr double kSide = 0.01, kConductivity = 2.0, kCapacity = 2e6;  // m, W/(m K), J/(m³ K)
@@ -214,4 +215,4 @@ TEST(ConductivityVerification, AZoneConductsAtItsMeanTemperature) {
 }
 
 }  // namespace
-}  // namespace pyroclast
+}  // namespace pyroclast::step_limit_test
