@@ -135,7 +135,7 @@ class Resuming(RestartTest):
         words = [PROGRAM, "run", CASES / "starter.toml", *changes(*SMALL, "stages[1].stop_strain=0.5"), "--out", "out",
                  "--no-figures"]
         with subprocess.Popen(words, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
-            self.wait_for("out", 20)
+            self.wait_for("out", 60)
             for words in (("resume", "out"), ("figures", "run", "out"),
                           ("run", CASES / "starter.toml", "--out", "out", "--overwrite"),
                           ("specimen", CASES / "starter.toml", "--out", "out", "--overwrite")):

@@ -792,6 +792,11 @@ class LawInAHeader(UserTest):
         self.write("[[stages]]" + STARTER.split("[[stages]]")[1], "more.toml")
         self.assertFalse(self.compiled("resume", "again", "--stages", "more.toml", "--out", "fork", "--instructions", "portable"))
 
+    def test_is_verified_in_the_dimension_that_it_is_compiled_for(self):
+        done = self.pyroclast("law", "--verify", "careless.hpp", "--paths", "64", env=self.env)
+        self.assertIn("careless: 64 paths in each of 1 dimensions", done.stdout, done.stderr)
+        self.assertIn(done.returncode, (0, 1))
+
     def test_a_killed_program_leaves_no_compiler_behind(self):
         # a compiler that says that it runs, then takes for ever
         self.write("#!/bin/sh\ncase $* in *--version*) echo 1;; *) echo $$ > pid.tmp; mv pid.tmp pid; sleep 1000;; esac\n",

@@ -993,7 +993,12 @@ std::string KitReport::text() const {
 }
 
 KitReport verify(const LawTable& law, const KitOptions& options) {
-  return Kit(law, options).run();
+  KitOptions tried = options;
+  std::erase_if(tried.dimensions, [&](int dim) { return !law.update(dim); });
+  if (tried.dimensions.empty())
+    throw Error(fmt::format("the contact law \"{}\" is made for none of the dimensions that are to be tried",
+                            law.name));
+  return Kit(law, tried).run();
 }
 
 }  // namespace pyroclast

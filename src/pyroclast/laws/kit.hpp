@@ -39,7 +39,7 @@ struct KitLanes {
 struct KitOptions {
   int paths = 10000;  ///< in each dimension
   std::uint64_t seed = 1;
-  std::vector<int> dimensions{2, 3};
+  std::vector<int> dimensions{2, 3};  ///< those that the law is made for are tried
   std::vector<KitLanes> lanes;
 };
 
