@@ -50,7 +50,7 @@ class Bodies {
   using Kept = std::map<std::tuple<int, Loading>, std::unique_ptr<Body>>;
 
   pyroclast::Setup setup_;
-  std::shared_ptr<pyroclast::Team> team_ = std::make_shared<pyroclast::Team>();
+  std::shared_ptr<pyroclast::Team> team_ = std::make_shared<pyroclast::Team>(1, pyroclast::WhenCrowded::stay);
   double velocity_;
   std::map<int, std::unique_ptr<Specimen>> specimens_;
   Kept<StepCost> costs_;

@@ -250,7 +250,8 @@ class Run:
         seed: of the specimen, instead of the deck's.
         out: folder of the results; None: nothing is written.
         overwrite: the results of an earlier run there.
-        threads: 0: as many as are free; results do not depend on them.
+        threads: at most; 0: as many as processors are free for this process, and never more. Small bodies, and runs
+            beside other work, take fewer. Results do not depend on them.
         instructions: "portable", "avx2" or "avx512"; empty: the best that there is.
         checkpoint: wall time between two checkpoints ("5 min"; a number: s) instead of the deck's.
 
@@ -664,7 +665,7 @@ class Run:
 
     @property
     def threads(self) -> int:
-        """That the run takes its steps with; may be set at a look."""
+        """Most that the run takes its steps with, never more than processors are free; may be set at a look."""
         return self._core.threads
 
     @threads.setter

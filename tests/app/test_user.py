@@ -459,6 +459,18 @@ class Running(UserTest):
         self.assertEqual((self.folder / "out1/history.csv").read_bytes(),
                          (self.folder / "out2/history.csv").read_bytes())
 
+    def test_a_run_that_is_bound_to_one_processor_has_one_thread_and_says_so(self):
+        allowed = os.sched_getaffinity(0)
+        try:
+            os.sched_setaffinity(0, {min(allowed)})
+            run = self.pyroclast("run", self.write(small_deck()), "--out", "out", "--threads", "8", "--no-figures")
+        finally:
+            os.sched_setaffinity(0, allowed)
+        self.assertEqual(run.returncode, 0)
+        self.assertIn("threads: 8 were asked for", run.stdout)
+        self.assertIn("1 thread, ", run.stdout)
+        self.assertEqual(json.loads((self.folder / "out/manifest.json").read_text())["threads"], 1)
+
     def test_the_same_deck_gives_the_same_history_with_any_instruction_set(self):
         deck = self.write(small_deck())
         for name, choice in (("best", []), ("plain", ["--instructions", "portable"])):

@@ -4,11 +4,14 @@
 #include <atomic>
 #include <chrono>
 #include <ctime>
+#include <fstream>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "pyroclast/base/error.hpp"
 
@@ -40,10 +43,10 @@ TEST(Team, NobodyPassesABarrierBeforeAllAreThere) {
     team.run(threads, [&](int thread) {
       for (int round = 1; round <= 100; ++round) {
         place[static_cast<std::size_t>(thread)] = round;
-        team.barrier(thread);
+        team.barrier();
         for (const int other : place)
           if (other != round) ++wrong;
-        team.barrier(thread);
+        team.barrier();
       }
     });
     EXPECT_EQ(wrong, 0) << threads;
@@ -101,24 +104,30 @@ TEST(Team, WaitsWithoutBurningTheMachine) {
   nap();
   team.run(3, [&](int thread) {
     if (thread == 0) nap();
-    team.barrier(thread);
+    team.barrier();
   });
   const double burnt = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   EXPECT_LT(burnt, 0.04);
 }
 
-// A thread that naps within calls stands for one whose core is taken.
+// What a thread that naps within calls stands for: one whose core is taken.
+void nap(int milliseconds) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+}
+
+/// A call in which all wait for one that naps.
+void run_crowded(Team& team, int threads) {
+  team.run(threads, [&](int thread) {
+    if (thread == 1) nap(50);
+    team.barrier();
+  });
+}
+
 TEST(Team, GivesWayWhileItsThreadsWaitForLongAndComesBack) {
-  const auto nap = [](int milliseconds) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-  };
-  const auto one_naps = [&](int thread) {
-    if (thread == 1) nap(25);
-  };
-  Team stays(2), gives_way(2, WhenCrowded::give_way);
+  Team stays(2, WhenCrowded::stay), gives_way(2);
   for (Team* team : {&stays, &gives_way}) {
     EXPECT_EQ(team->offered(), 2);
-    for (int i = 0; i < 2; ++i) team->run(2, one_naps);
+    run_crowded(*team, 2);
   }
   EXPECT_EQ(stays.offered(), 2);
   EXPECT_EQ(gives_way.offered(), 1);
@@ -127,6 +136,90 @@ TEST(Team, GivesWayWhileItsThreadsWaitForLongAndComesBack) {
   EXPECT_EQ(ranges, 1);
   while (gives_way.offered() == 1) nap(50);
   EXPECT_EQ(gives_way.offered(), 2);
+}
+
+// It halves its threads while they keep waiting, and doubles them again, each number only when the one before
+// has gone well: threads that nap for as long as each other do not wait.
+TEST(Team, HalvesAndDoublesItsThreads) {
+  Team team(4);
+  run_crowded(team, 4);
+  EXPECT_EQ(team.offered(), 2);
+  run_crowded(team, 2);
+  EXPECT_EQ(team.offered(), 1);
+  while (team.offered() == 1) nap(50);
+  EXPECT_EQ(team.offered(), 2);
+  run_crowded(team, 2);
+  EXPECT_EQ(team.offered(), 1);
+  while (team.offered() == 1) nap(50);
+  for (const int threads : {2, 4}) {
+    EXPECT_EQ(team.offered(), threads);
+    team.run(threads, [](int) { nap(200); });
+  }
+  EXPECT_EQ(team.offered(), 4);
+}
+
+// All threads of a call hear at the same barrier that it is crowded, long before its last round.
+TEST(Team, ACrowdedCallMayEndAtABarrier) {
+  constexpr int kRounds = 100;
+  for (const auto when_crowded : {WhenCrowded::stay, WhenCrowded::give_way}) {
+    Team team(3, when_crowded);
+    std::vector<int> rounds(3);
+    team.run(3, [&](int thread) {
+      int& round = rounds[static_cast<std::size_t>(thread)];
+      for (bool is_crowded = false; round < kRounds && !is_crowded; ++round) {
+        if (thread == 2) nap(2);
+        is_crowded = team.barrier();
+      }
+    });
+    if (when_crowded == WhenCrowded::stay) {
+      EXPECT_EQ(rounds, std::vector<int>(3, kRounds));
+    } else {
+      EXPECT_LT(rounds[0], kRounds / 2);
+      EXPECT_EQ(rounds, std::vector<int>(3, rounds[0]));
+      EXPECT_EQ(team.offered(), 1);
+    }
+  }
+}
+
+// A few long waits among much work are no crowd.
+TEST(Team, StaysWhereItsThreadsWaitLittle) {
+  Team team(2);
+  int barriers_that_break_off = 0;
+  team.run(2, [&](int thread) {
+    for (int round = 0; round < 5; ++round) {
+      nap(thread == 0 ? 190 : 200);
+      if (team.barrier() && thread == 0) ++barriers_that_break_off;
+    }
+  });
+  EXPECT_EQ(barriers_that_break_off, 0);
+  EXPECT_EQ(team.offered(), 2);
+}
+
+/// How often a thread of this process went to sleep.
+int sleeps(int thread) {
+  std::ifstream status("/proc/self/task/" + std::to_string(thread) + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("voluntary_ctxt_switches:")) return std::stoi(line.substr(line.find(':') + 1));
+  return -1;
+}
+
+TEST(Team, LeavesThreadsAsleepThatACallHasNoUseFor) {
+  Team team(3);
+  int last = 0;
+  team.run(3, [&](int thread) {
+    if (thread == 2) last = gettid();
+  });
+  int before = -1;
+  for (int now = sleeps(last); now != before || now == 0; now = sleeps(last)) {
+    before = now;
+    nap(50);
+  }
+  ASSERT_GT(before, 0);
+  for (int i = 0; i < 20; ++i) {
+    team.run(2, [](int) {});
+    nap(1);
+  }
+  EXPECT_EQ(sleeps(last), before);
 }
 
 }  // namespace

@@ -48,7 +48,8 @@ Mechanics<2> cracked(const Model<2>& model, MechanicsParameters<2> parameters, I
   parameters.instructions = set;
   parameters.gravity = {{0.0, -9.81}};
   parameters.zones_for_a_thread = 1;
-  auto m = mechanics(model, contact, parameters, 29.4e9, 0.2, std::make_shared<Team>(threads));
+  auto m =
+      mechanics(model, contact, parameters, 29.4e9, 0.2, std::make_shared<Team>(threads, WhenCrowded::stay));
   if (own_temperatures) {  // every zone and contact has properties of its own
     BodyProperties p;
     for (int z = 0; z < model.zone_count(); ++z)

@@ -1,6 +1,7 @@
 #include "pyroclast/mechanics/mechanics.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include "bodies.hpp"
 #include "known.hpp"
@@ -240,7 +241,8 @@ TEST(Determinism, IsBitwiseTheSameWithOneAndTwoThreads) {
     parameters.kinematics = Kinematics::finite;
     parameters.damping_form = DampingForm::combined;
     parameters.gravity = {{0.0, -9.81}};
-    auto m = mechanics(model, mortar_contact(), parameters, 29.4e9, 0.2, std::make_shared<Team>(threads));
+    auto m = mechanics(model, mortar_contact(), parameters, 29.4e9, 0.2,
+                       std::make_shared<Team>(threads, WhenCrowded::stay));
     for (int g = 0; g < model.gridpoint_count(); ++g) {
       const double y = model.position[g][1];
       if (y == 0.0 || y == 0.05) m.prescribe_velocity(g, 1, y == 0.0 ? 0.0 : 2e-3);
@@ -252,6 +254,36 @@ TEST(Determinism, IsBitwiseTheSameWithOneAndTwoThreads) {
   const auto two = run(2);
   EXPECT_TRUE(one == two);
   EXPECT_GT(std::get<2>(one), 0.0);
+}
+
+// Promise: so it is where the threads have one core for the two of them, so that they give way amid the
+// steps.
+TEST(Determinism, IsBitwiseTheSameWhereThreadsGiveWayAmidTheSteps) {
+  const Model<2> model = tessellated(120, 0.05, 0.05, 3);
+  const auto run = [&](const std::shared_ptr<Team>& team) {
+    auto parameters = quasi_static<2>();
+    parameters.zones_for_a_thread = 1;
+    auto m = mechanics(model, mortar_contact(), parameters, 29.4e9, 0.2, team);
+    for (int g = 0; g < model.gridpoint_count(); ++g) {
+      const double y = model.position[g][1];
+      if (y == 0.0 || y == 0.05) m.prescribe_velocity(g, 1, y == 0.0 ? 0.0 : 2e-3);
+    }
+    m.advance(300);
+    return std::tuple(m.steps(), m.displacements(), m.forces(), m.energy().loading, m.energy().accounted());
+  };
+  const auto straight = run(std::make_shared<Team>(1));
+  cpu_set_t before, one;
+  ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
+  int first = 0;
+  while (!CPU_ISSET(first, &before)) ++first;
+  CPU_ZERO(&one);
+  CPU_SET(first, &one);
+  ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+  const auto team = std::make_shared<Team>(2);
+  const auto gave_way = run(team);
+  ASSERT_EQ(sched_setaffinity(0, sizeof before, &before), 0);
+  EXPECT_TRUE(gave_way == straight);
+  EXPECT_EQ(team->offered(), 1);
 }
 
 // Promise: a rigid block slides down a 40 degree incline with phi = 20 degrees at g (sin 40 - cos 40 tan 20).

@@ -567,7 +567,7 @@ TEST(HeatLedger, IsBitwiseTheSameWithOneAndTwoThreads) {
     auto parameters = quasi_static<2>(0.5);
     parameters.zones_for_a_thread = 1;
     auto m = heated_under_load(model, mortar_contact(), parameters, 0.05, heating_and_cooling, 200,
-                               std::make_shared<Team>(threads));
+                               std::make_shared<Team>(threads, WhenCrowded::stay));
     const auto e = m.energy();
     return std::tuple(m.displacements(), m.forces(), e.property_change, e.mass_scaling, e.accounted());
   };

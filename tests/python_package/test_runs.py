@@ -550,6 +550,21 @@ class Creep(Case):
         self.assertFalse(pyroclast.Run(deck(), threads=1).creep_strain.any())
 
 
+class Threads(Case):
+    def test_are_at_most_as_many_as_processors_are_free(self):
+        run = pyroclast.Run(deck())
+        free = run.threads
+        self.assertLessEqual(free, len(os.sched_getaffinity(0)))
+        for asked, taken in ((1, 1), (1000, free), (0, free)):
+            run.threads = asked
+            self.assertEqual(run.threads, taken)
+        with self.assertRaisesRegex(pyroclast.Error, "-1"):
+            run.threads = -1
+        run = pyroclast.Run(deck(), threads=1000)
+        self.assertEqual(run.threads, free)
+        self.assertTrue(any("1000 were asked for" in warning for warning in run.warnings), run.warnings)
+
+
 class Processes(Case):
     def test_after_fork_a_run_in_the_child_raises_at_once(self):
         run = pyroclast.Run(deck(), threads=2)

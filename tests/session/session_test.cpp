@@ -1,9 +1,12 @@
 #include "pyroclast/session/session.hpp"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "messages.hpp"
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/processors.hpp"
 #include "results/folder.hpp"
 #include "stages/small_runs.hpp"
 
@@ -36,6 +39,29 @@ std::vector<std::string> cells(const Session& session) {
   for (std::size_t row = 0; row < history.row_count(); ++row)
     for (const auto& cell : history.row(row)) all.push_back(printed(cell));
   return all;
+}
+
+TEST(Loaded, TakesNoMoreThreadsThanProcessorsAreFreeAndSaysSo) {
+  const auto with_threads = [](int threads) {
+    RunChoices choices;
+    choices.threads = threads;
+    return Loaded(Deck::parse(deck(kUniform + kSettle), "deck.toml"), ".", choices);
+  };
+  const auto says_so = [](const Loaded& loaded) {
+    return std::ranges::count_if(loaded.warnings, [](const std::string& warning) {
+      return warning.find("were asked for") != std::string::npos;
+    });
+  };
+  const int free = free_processors();
+  for (const int threads : {0, 1, free}) {
+    const Loaded loaded = with_threads(threads);
+    EXPECT_EQ(loaded.team->size(), threads == 0 ? free : threads);
+    EXPECT_EQ(says_so(loaded), 0);
+  }
+  const Loaded more = with_threads(free + 6);
+  EXPECT_EQ(more.team->size(), free);
+  EXPECT_EQ(says_so(more), 1);
+  EXPECT_THROW(with_threads(-1), Error);
 }
 
 TEST_F(Results, ASessionWritesWhatItsHistoryHas) {

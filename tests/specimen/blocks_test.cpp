@@ -163,7 +163,7 @@ TEST(Laguerre, EveryPointOfACellBelongsToItsSeed) {
 /// Relaxed seeds and their cells, made by a number of threads.
 std::pair<Seeds, Tessellation> relaxed_cells(int threads) {
   Seeds seeds = random_seeds(7, 2000, 0.3);
-  Team team(threads);
+  Team team(threads, WhenCrowded::stay);
   for (int i = 0; i < 3; ++i) relax(seeds, region, 0, &team);
   Tessellation cells = laguerre_tessellation(seeds, region, &team).tessellation;
   return {seeds, cells};

@@ -249,7 +249,7 @@ TEST(Conduction, IsBitwiseTheSameOnAnyNumberOfThreads) {
   const auto run = [](int threads) {
     const auto model = plane_body({.blocks = {88, 88}, .size = {0.15, 0.15}, .jitter = 0.3});
     Conduction<2> heat(model, {moist_concrete()}, parameters(eurocode_range, 20.0),
-                       std::make_shared<Team>(threads));
+                       std::make_shared<Team>(threads, WhenCrowded::stay));
     EXPECT_GE(heat.nodes().count(), 3 * fewest_for_threads);
     expose_to_fire(heat, heat.faces([](const auto&) { return true; }));
     heat.set_source([](const Vec<2>& x, double) { return 1e6 * x[0]; });

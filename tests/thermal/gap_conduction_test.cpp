@@ -430,7 +430,7 @@ TEST(GapConduction, IsBitwiseTheSameOnAnyNumberOfThreads) {
   const auto run = [](int threads) {
     const auto model = plane_body({.blocks = {60, 60}, .size = {0.15, 0.15}, .jitter = 0.3});
     Conduction<2> heat(model, {moist_concrete()}, parameters(air_and_radiation()),
-                       std::make_shared<Team>(threads));
+                       std::make_shared<Team>(threads, WhenCrowded::stay));
     expose_to_fire(heat);
     heat.set_gaps(hairs(model, 1e-4));
     EXPECT_GE(heat.gaps()->parts().size(), 2 * fewest_for_threads);

@@ -151,7 +151,7 @@ int check(const RunOptions& options) {
   if (expected.steps > 0.0) fmt::print(", about {:.2g} steps", expected.steps);
   if (expected.heating_duration > 0.0) fmt::print(", heat flows for {}", duration(expected.heating_duration));
   fmt::print("; about {}\n", duration(seconds));
-  fmt::print("                on {} threads with {} instructions, {:.0f} MB of memory\n", loaded.team->size(),
+  fmt::print("                on {} with {} instructions, {:.0f} MB of memory\n", describe(*loaded.team),
              name(loaded.instructions), peak_memory() * 1e-6);
   return 0;
 }

@@ -26,7 +26,7 @@ struct RunOptions {
   bool overwrite = false;
   bool figures = true;
   bool watch = false;
-  int threads = 0;                   ///< 0: as many as the machine has
+  int threads = 0;                   ///< at most; 0: as many as processors are free
   std::string instructions;          ///< instruction set of the step; empty: the best that there is
   std::optional<std::int64_t> seed;  ///< instead of the deck's
   std::vector<std::string> changes;  ///< "key=value", see Deck::load

@@ -108,7 +108,7 @@ std::string describe_start(Session& session) {
   if (simulation.moves())
     text += fmt::format("mechanics       time step {:.3g} s, moving mass {:.3g} x the real one\n",
                         simulation.mechanics().time_step(), simulation.mechanics().mass_ratio());
-  return text + fmt::format("processor       {} threads, {} instructions\n", loaded.team->size(),
+  return text + fmt::format("processor       {}, {} instructions\n", describe(*loaded.team),
                             name(loaded.instructions));
 }
 

@@ -99,6 +99,10 @@ std::string describe(const specimen::Specimen& s) {
   return text + describe_warnings(specimen::warnings(s));
 }
 
+std::string describe(const Team& team) {
+  return team.size() == 1 ? "1 thread" : fmt::format("up to {} threads", team.size());
+}
+
 std::string describe_warnings(const std::vector<std::string>& warnings) {
   std::string text;
   for (const auto& warning : warnings) text += fmt::format("{:<16}{}\n", "warning", warning);

@@ -28,6 +28,9 @@ std::string describe_own_laws();
 /// What came of the specimen, for the screen.
 std::string describe(const specimen::Specimen& specimen);
 
+/// How many threads a run takes at most, for the screen.
+std::string describe(const Team& team);
+
 /// A line each, for the screen; empty without any.
 std::string describe_warnings(const std::vector<std::string>& warnings);
 

@@ -70,7 +70,11 @@ void add_watch(CLI::App* command, app::RunOptions& options) {
 }
 
 void add_threads(CLI::App* command, int& threads) {
-  command->add_option("-t,--threads", threads, "Threads; results are the same for any number")
+  command
+      ->add_option("-t,--threads", threads,
+                   "At most so many threads (default: as many as processors are free for the program). Small "
+                   "bodies, and "
+                   "runs beside other work, take fewer; results are the same for any number")
       ->check(whole_number(1, app::kMostThreads));
 }
 

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <utility>
 
 #include <fmt/format.h>
-#include <sched.h>
 
 #include "pyroclast/base/error.hpp"
 
@@ -13,16 +11,17 @@ namespace pyroclast {
 
 namespace {
 
-/// Others come within this time where the cores are free. Shorter, and a virtual machine that loses a core for a
-/// moment puts the other to sleep as well, at every barrier.
+/// Others come within this time where the cores are free. Shorter, and a virtual machine that loses a core
+/// for a moment puts the other to sleep as well, at every barrier.
 constexpr std::chrono::microseconds kSpin{500};
 /// Looks at the word between two looks at the clock.
 constexpr int kLooksPerClock = 16;
 
-// When a team gives way. On free cores long waits take less than a twentieth of the threads' time in calls; beside
-// as many loops as cores, two fifths.
-constexpr double kMostKeptWaiting = 0.2;                       ///< share of the threads' time in calls
-constexpr std::chrono::milliseconds kWindow{20};          ///< of each thread's calls, between two judgements
+// When a team gives way. On free cores long waits take less than a twentieth of the threads' time in calls;
+// beside as many loops as cores, two fifths.
+constexpr double kMostKeptWaiting = 0.2;                  ///< share of the threads' time in calls
+constexpr std::chrono::milliseconds kLongWaits{10};       ///< for each thread, between two judgements
+constexpr std::chrono::milliseconds kTry{100};            ///< of calls, until more threads have gone well
 constexpr std::chrono::milliseconds kShortestPause{250};  ///< doubled each time that it was too short
 constexpr std::chrono::seconds kLongestPause{8};
 
@@ -50,13 +49,6 @@ std::chrono::steady_clock::duration wait_while(const std::atomic<std::uint32_t>&
 
 }  // namespace
 
-int available_threads() {
-  cpu_set_t cores;
-  CPU_ZERO(&cores);
-  if (sched_getaffinity(0, sizeof cores, &cores) == 0) return std::max(1, CPU_COUNT(&cores));
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
-
 Team::Team(int threads, WhenCrowded when_crowded) : when_crowded_(when_crowded) {
   start(threads);
 }
@@ -69,18 +61,17 @@ void Team::start(int threads) {
   if (threads < 1)
     throw Error(fmt::format("the number of threads is {}, but it must be at least 1", threads));
   size_ = offered_ = threads;
-  thrown_.resize(static_cast<std::size_t>(threads));
-  waited_.assign(static_cast<std::size_t>(threads), {});
-  in_window_ = {};
+  const auto count = static_cast<std::size_t>(threads);
+  thrown_.resize(count);
+  seats_ = std::vector<Seat>(count);
   pause_ = kShortestPause;
-  const std::uint32_t seen = jobs_.load();
-  for (int thread = 1; thread < threads; ++thread) others_.emplace_back([=, this] { work(thread, seen); });
+  begin_try();
+  for (int thread = 1; thread < threads; ++thread) others_.emplace_back([=, this] { work(thread); });
 }
 
 void Team::stop() {
   ends_ = true;
-  jobs_.fetch_add(1, std::memory_order_release);
-  jobs_.notify_all();
+  for (int thread = 1; thread < size_; ++thread) wake(thread);
   for (auto& thread : others_) thread.join();
   others_.clear();
   ends_ = false;
@@ -101,14 +92,20 @@ void Team::call(int thread) {
 }
 
 /// What another thread does all its life.
-void Team::work(int thread, std::uint32_t seen) {
-  for (;;) {
-    wait_while(jobs_, seen);
-    ++seen;
+void Team::work(int thread) {
+  const auto& jobs = seats_[static_cast<std::size_t>(thread)].jobs;
+  for (std::uint32_t seen = 0;; ++seen) {
+    wait_while(jobs, seen);
     if (ends_) return;
-    if (thread < in_run_) call(thread);
-    if (working_.fetch_sub(1, std::memory_order_acq_rel) == 1) working_.notify_all();
+    call(thread);
+    if (working_.fetch_sub(1, std::memory_order_acq_rel) == 1) working_.notify_one();
   }
+}
+
+void Team::wake(int thread) {
+  auto& jobs = seats_[static_cast<std::size_t>(thread)].jobs;
+  jobs.fetch_add(1, std::memory_order_release);
+  jobs.notify_one();
 }
 
 void Team::run_job(const Job& job, int threads) {
@@ -119,15 +116,21 @@ void Team::run_job(const Job& job, int threads) {
     job.call(job.function, 0);
     return;
   }
-  const auto begin = Clock::now();
-  working_.store(static_cast<std::uint32_t>(size_ - 1), std::memory_order_relaxed);
-  jobs_.fetch_add(1, std::memory_order_release);
-  jobs_.notify_all();
+  crowded_ = false;
+  const auto began = window_began_ = Clock::now();
+  working_.store(static_cast<std::uint32_t>(threads - 1), std::memory_order_relaxed);
+  for (int thread = 1; thread < threads; ++thread) wake(thread);
   call(0);
   for (auto left = working_.load(std::memory_order_acquire); left != 0;
        left = working_.load(std::memory_order_acquire))
-    waited_[0].time += wait_while(working_, left);
-  if (when_crowded_ == WhenCrowded::give_way) see_whether_crowded(Clock::now() - begin);
+    add_wait(wait_while(working_, left));
+  judge();
+  const auto now = Clock::now();
+  in_window_ += in_run_ * (now - window_began_);
+  if (tries_ && (in_try_ += now - began) > kTry) {
+    tries_ = false;
+    pause_ = kShortestPause;
+  }
   in_run_ = 1;
   std::exception_ptr first;
   for (auto& thrown : thrown_) {
@@ -138,34 +141,54 @@ void Team::run_job(const Job& job, int threads) {
 }
 
 int Team::offered() {
-  if (offered_ < size_ && Clock::now() - lowered_at_ > pause_) offered_ = size_;
+  if (offered_ < size_ && !tries_ && Clock::now() - lowered_at_ > pause_) {
+    offered_ = std::min(2 * offered_, size_);
+    begin_try();
+  }
   return offered_;
 }
 
-/// \param took  the time of the present call
-void Team::see_whether_crowded(Clock::duration took) {
-  in_window_ += in_run_ * took;
-  if (in_window_ < in_run_ * Clock::duration(kWindow)) return;
-  Clock::duration waited{};
-  for (auto& thread : waited_) waited += std::exchange(thread.time, {});
-  const bool is_crowded = waited > kMostKeptWaiting * std::exchange(in_window_, {});
-  if (is_crowded) {
-    if (offered_ == size_) pause_ = std::min<Clock::duration>(2 * pause_, kLongestPause);
-    offered_ = in_run_ / 2;
-    lowered_at_ = Clock::now();
-  } else if (offered_ == size_) {
-    pause_ = kShortestPause;
-  }
+void Team::begin_try() {
+  tries_ = true;
+  in_try_ = in_window_ = {};
+  waited_.store(0, std::memory_order_relaxed);
 }
 
-void Team::wait_for_others(int thread) {
+/// A wait that just ended, as far as it lies in the window.
+void Team::add_wait(Clock::duration time) {
+  if (time == Clock::duration{}) return;
+  time = std::min(time, Clock::now() - window_began_);
+  waited_.fetch_add(time.count(), std::memory_order_relaxed);
+}
+
+/// Whether the long waits, where there were enough of them, took much of the threads' time. It asks the clock
+/// only then, and so costs nothing on free cores.
+void Team::judge() {
+  const Clock::duration waited(waited_.load(std::memory_order_relaxed));
+  if (crowded_ || when_crowded_ == WhenCrowded::stay || waited < in_run_ * Clock::duration(kLongWaits))
+    return;
+  const auto now = Clock::now();
+  const auto took = in_window_ + in_run_ * (now - window_began_);
+  waited_.store(0, std::memory_order_relaxed);
+  in_window_ = {};
+  window_began_ = now;
+  if (waited <= kMostKeptWaiting * took) return;
+  crowded_ = true;
+  if (tries_) pause_ = std::min<Clock::duration>(2 * pause_, kLongestPause);
+  tries_ = false;
+  offered_ = in_run_ / 2;
+  lowered_at_ = now;
+}
+
+void Team::wait_for_others() {
   const auto passed = passed_.load(std::memory_order_acquire);
   if (waiting_.fetch_add(1, std::memory_order_acq_rel) + 1 == static_cast<std::uint32_t>(in_run_)) {
+    judge();
     waiting_.store(0, std::memory_order_relaxed);
     passed_.fetch_add(1, std::memory_order_release);
     passed_.notify_all();
   } else {
-    waited_[static_cast<std::size_t>(thread)].time += wait_while(passed_, passed);
+    add_wait(wait_while(passed_, passed));
   }
 }
 

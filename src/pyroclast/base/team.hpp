@@ -11,8 +11,9 @@
 
 namespace pyroclast {
 
-/// What a team does when other work takes its cores: all its threads go on, or fewer for a while.
-enum class WhenCrowded { stay, give_way };
+/// What a team does when other work takes its cores: it goes on with fewer threads for a while, or with all
+/// of them, which is for tests and for measurements.
+enum class WhenCrowded { give_way, stay };
 
 /// Threads that belong to a run. The one that calls is the first of them.
 ///
@@ -20,12 +21,13 @@ enum class WhenCrowded { stay, give_way };
 /// woken: other work on the machine gets the core. One caller at a time.
 ///
 /// A thread whose core is taken by other work keeps all the others waiting. A team that gives way therefore
-/// adds up the long waits of its threads within calls. Where that is much it halves the number of threads
-/// that it offers, and tries all of them again after a while.
+/// adds up the waits of its threads within calls that were long enough to sleep. Where that is much of their
+/// time, it is crowded: it offers half as many threads, also in the middle of a call, and after a pause it
+/// tries twice as many again. A try that ends crowded doubles the pause.
 class Team {
  public:
   /// \param threads  at least 1, else Error
-  explicit Team(int threads = 1, WhenCrowded when_crowded = WhenCrowded::stay);
+  explicit Team(int threads = 1, WhenCrowded when_crowded = WhenCrowded::give_way);
   ~Team();
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
@@ -47,10 +49,13 @@ class Team {
             threads);
   }
 
-  /// Within `run`: waits for the other threads of that call.
-  /// \param thread  the one that waits
-  void barrier(int thread) {
-    if (in_run_ > 1) wait_for_others(thread);
+  /// Within `run`: waits for the other threads of that call. True where the team has become crowded: the call
+  /// does well to end here, and to go on in another one with as many threads as are offered then. All threads
+  /// of the call get the same answer, and keep getting it.
+  bool barrier() {
+    if (in_run_ == 1) return false;
+    wait_for_others();
+    return crowded_;
   }
 
   /// Calls `f(first, last)` for even ranges of [0, count), one a thread, where each gets `fewest` or more.
@@ -74,41 +79,46 @@ class Team {
     void (*call)(void* function, int thread) = nullptr;
     void* function = nullptr;
   };
+  /// Jobs that were given to a thread so far; it sleeps on that word, on a cache line of its own.
+  struct alignas(64) Seat {
+    std::atomic<std::uint32_t> jobs{0};
+  };
 
   void run_job(const Job& job, int threads);
-  void work(int thread, std::uint32_t seen);
+  void work(int thread);
+  void wake(int thread);
   void call(int thread);
-  void wait_for_others(int thread);
-  void see_whether_crowded(Clock::duration took);
+  void wait_for_others();
+  void begin_try();
+  void add_wait(Clock::duration time);
+  void judge();
   void start(int threads);
   void stop();
 
   int size_ = 1;
   std::vector<std::thread> others_;
+  std::vector<Seat> seats_;  ///< of all threads; the first has no need of its own
   Job job_;
   int in_run_ = 1;  ///< threads of the present call
   std::vector<std::exception_ptr> thrown_;
   bool ends_ = false;
 
-  /// Time in long waits within calls since the window began; a cache line each.
-  struct alignas(64) Waited {
-    Clock::duration time{};
-  };
+  // The last thread to come to a barrier writes these while all others wait there; between calls, who calls.
   WhenCrowded when_crowded_;
-  std::vector<Waited> waited_;    ///< of each thread
-  Clock::duration in_window_{};   ///< all threads' time in calls since the window began
-  int offered_ = 1;               ///< threads
-  Clock::time_point lowered_at_;  ///< when fewer threads than all were last offered
-  Clock::duration pause_{};       ///< until all are offered again
+  bool crowded_ = false;            ///< the present call became crowded
+  Clock::time_point window_began_;  ///< or the present call, where that was later
+  Clock::duration in_window_{};     ///< all threads' time in earlier calls since the window began
+  int offered_ = 1;                 ///< threads
+  bool tries_ = true;               ///< so many threads have yet to go well for a while
+  Clock::duration in_try_{};        ///< time of calls since the try began
+  Clock::time_point lowered_at_;    ///< when fewer threads than before were offered
+  Clock::duration pause_{};         ///< until more are tried
 
-  // Words on which threads wait, each on a cache line of its own.
-  alignas(64) std::atomic<std::uint32_t> jobs_{0};     ///< begun so far
+  // Words that several threads write, each on a cache line of its own.
   alignas(64) std::atomic<std::uint32_t> working_{0};  ///< other threads that are not through yet
   alignas(64) std::atomic<std::uint32_t> waiting_{0};  ///< at the barrier
   alignas(64) std::atomic<std::uint32_t> passed_{0};   ///< barriers passed so far
+  alignas(64) std::atomic<Clock::rep> waited_{0};      ///< in long waits since the window began
 };
-
-/// As many as the machine lets this process use.
-int available_threads();
 
 }  // namespace pyroclast

@@ -745,30 +745,37 @@ void Mechanics<Dim>::visit_properties(StateVisitor& visitor) {
 
 template <int Dim>
 void Mechanics<Dim>::sweep(int steps, Pass pass) {
-  const int threads = std::clamp(model_.zone_count() / parameters_.zones_for_a_thread, 1, team_->offered());
-  if (static_cast<int>(workers_.size()) != threads) {
-    workers_.clear();
-    for (Share& share : share_out(*layout_, threads)) workers_.push_back({std::move(share), make_scratch()});
-  }
   const bool measure = pass != Pass::move;
   const auto update_faces = [](State<Dim>& s, int first, int last, bool measured) {
     for_each_law(s, first, last, [&](const RowFunctions<Dim>& law, int begin, int end) {
       law.update(s, begin, end, measured);
     });
   };
-  team_->run(threads, [&](int thread) {
-    Worker& worker = workers_[static_cast<std::size_t>(thread)];
-    State<Dim> s = state_;
-    for (int i = 0; i < steps; ++i) {
-      for (const auto& faces : worker.share.crossing) update_faces(s, faces.first, faces.last, measure);
-      team_->barrier(thread);
-      for (const auto& stride : worker.share.strides) {
-        update_faces(s, stride.faces.first, stride.faces.last, measure);
-        step_.move_bundles(s, stride.bundles.first, stride.bundles.last, pass, worker.scratch.data());
-      }
-      team_->barrier(thread);
+  // A call ends before its last step where other work took the cores, and fewer threads go on.
+  for (int done = 0; done < steps;) {
+    const int threads = std::clamp(model_.zone_count() / parameters_.zones_for_a_thread, 1, team_->offered());
+    if (static_cast<int>(workers_.size()) != threads) {
+      workers_.clear();
+      for (Share& share : share_out(*layout_, threads))
+        workers_.push_back({std::move(share), make_scratch()});
     }
-  });
+    const int left = steps - done;
+    team_->run(threads, [&](int thread) {
+      Worker& worker = workers_[static_cast<std::size_t>(thread)];
+      State<Dim> s = state_;
+      int taken = 0;
+      for (bool is_crowded = false; taken < left && !is_crowded; ++taken) {
+        for (const auto& faces : worker.share.crossing) update_faces(s, faces.first, faces.last, measure);
+        team_->barrier();
+        for (const auto& stride : worker.share.strides) {
+          update_faces(s, stride.faces.first, stride.faces.last, measure);
+          step_.move_bundles(s, stride.bundles.first, stride.bundles.last, pass, worker.scratch.data());
+        }
+        is_crowded = team_->barrier();
+      }
+      if (thread == 0) done += taken;
+    });
+  }
 }
 
 // The state in the order of the model

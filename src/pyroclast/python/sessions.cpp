@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/processors.hpp"
 #include "pyroclast/python/arrays.hpp"
 #include "pyroclast/python/bindings.hpp"
 #include "pyroclast/python/decks.hpp"
@@ -328,7 +329,7 @@ void bind_sessions(py::module_& m) {
       .def_property_readonly("folder", read([](const Session& s) { return s.folder().string(); }))
       .def_property(
           "threads", [](const Held& h) { return h.get().simulation().team().size(); },
-          [](const Held& h, int threads) { h.resting().simulation().team().resize(threads); })
+          [](const Held& h, int threads) { h.resting().simulation().team().resize(usable_threads(threads)); })
       .def_property_readonly("material_names",
                              [](const Held& h) { return h.get().simulation().model().material_names; })
       .def(

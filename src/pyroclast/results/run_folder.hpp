@@ -40,7 +40,7 @@ struct Manifest {
   std::string deck_name;
   Inputs inputs;
   std::uint64_t seed = 0;
-  int threads = 1;
+  int threads = 1;           ///< the most that the run takes
   std::string instructions;  ///< instruction set of the step
   std::string command;
   std::vector<OwnLaw> laws;

@@ -5,16 +5,12 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/processors.hpp"
 #include "pyroclast/plugin/load.hpp"
 
 namespace pyroclast {
 
 namespace {
-
-std::shared_ptr<Team> make_team(int asked) {
-  return asked > 0 ? std::make_shared<Team>(asked)
-                   : std::make_shared<Team>(available_threads(), WhenCrowded::give_way);
-}
 
 /// A law in a header is compiled for the instruction set of the run.
 LawSources laws_for(InstructionSet set, LawSources laws) {
@@ -31,13 +27,13 @@ Loaded::Loaded(Deck read, std::filesystem::path folder_of_deck, RunChoices chose
       instructions(choices.instructions.empty() ? best_instruction_set()
                                                 : instruction_set(choices.instructions)),
       setup(read_setup(deck, folder, choices.kinds, laws_for(instructions, choices.laws))),
-      team(make_team(choices.threads)) {
+      team(std::make_shared<Team>(usable_threads(choices.threads))) {
   for (const Diagnostic& warning : setup.warnings) warnings.push_back(to_string(warning));
-  if (choices.threads > available_threads())
-    warnings.push_back(
-        fmt::format("--threads {}: only {} processors are free for this process, and more "
-                    "threads than those slow it down",
-                    choices.threads, available_threads()));
+  if (choices.threads > team->size())
+    warnings.push_back(fmt::format(
+        "threads: {} were asked for, and at most {} are taken, one for each processor that is free for "
+        "this process",
+        choices.threads, team->size()));
   if (choices.seed && setup.specimen.cells)
     throw Error("a seed has no meaning for a specimen whose blocks come from a file");
   if (choices.seed) setup.specimen.seed = *choices.seed;

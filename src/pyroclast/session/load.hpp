@@ -18,7 +18,7 @@ struct Loaded;
 /// What a user says beside a deck.
 struct RunChoices {
   std::optional<std::uint64_t> seed;  ///< instead of the deck's
-  int threads = 0;                    ///< 0: as many as the machine has
+  int threads = 0;                    ///< at most; 0: as many as processors are free
   std::string instructions;           ///< instruction set of the step; empty: the best that there is
   std::optional<double> checkpoint;   ///< wall time between two checkpoints instead of the deck's, s
   StageRegistry kinds;
