@@ -118,7 +118,7 @@ void nap(int milliseconds) {
 /// A call in which all wait for one that naps.
 void run_crowded(Team& team, int threads) {
   team.run(threads, [&](int thread) {
-    if (thread == 1) nap(50);
+    if (thread == 1) nap(100);
     team.barrier();
   });
 }
@@ -160,7 +160,7 @@ TEST(Team, HalvesAndDoublesItsThreads) {
 
 // All threads of a call hear at the same barrier that it is crowded, long before its last round.
 TEST(Team, ACrowdedCallMayEndAtABarrier) {
-  constexpr int kRounds = 100;
+  constexpr int kRounds = 200;
   for (const auto when_crowded : {WhenCrowded::stay, WhenCrowded::give_way}) {
     Team team(3, when_crowded);
     std::vector<int> rounds(3);
@@ -181,18 +181,14 @@ TEST(Team, ACrowdedCallMayEndAtABarrier) {
   }
 }
 
-// A few long waits among much work are no crowd.
-TEST(Team, StaysWhereItsThreadsWaitLittle) {
-  Team team(2);
-  int barriers_that_break_off = 0;
-  team.run(2, [&](int thread) {
-    for (int round = 0; round < 5; ++round) {
-      nap(thread == 0 ? 190 : 200);
-      if (team.barrier() && thread == 0) ++barriers_that_break_off;
-    }
-  });
-  EXPECT_EQ(barriers_that_break_off, 0);
-  EXPECT_EQ(team.offered(), 2);
+// Of 2 threads one waits while the other has no core, of 4 three do.
+TEST(Team, IsCrowdedWhereItsThreadsWaitForMoreThanHalfOfTheTime) {
+  using std::chrono::milliseconds;
+  EXPECT_FALSE(are_crowded(2, milliseconds(0), milliseconds(100)));
+  EXPECT_FALSE(are_crowded(2, milliseconds(50), milliseconds(100)));
+  EXPECT_TRUE(are_crowded(2, milliseconds(51), milliseconds(100)));
+  EXPECT_FALSE(are_crowded(4, milliseconds(150), milliseconds(100)));
+  EXPECT_TRUE(are_crowded(4, milliseconds(151), milliseconds(100)));
 }
 
 /// How often a thread of this process went to sleep.

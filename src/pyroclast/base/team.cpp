@@ -17,10 +17,12 @@ constexpr std::chrono::microseconds kSpin{500};
 /// Looks at the word between two looks at the clock.
 constexpr int kLooksPerClock = 16;
 
-// When a team gives way. On free cores long waits take less than a twentieth of the threads' time in calls;
-// beside as many loops as cores, two fifths.
-constexpr double kMostKeptWaiting = 0.2;                  ///< share of the threads' time in calls
-constexpr std::chrono::milliseconds kLongWaits{10};       ///< for each thread, between two judgements
+// When a team gives way. On free cores its threads are kept waiting for less than a tenth of the time, beside
+// as many loops as cores for four fifths. Two threads may share a core for some ticks before the system moves
+// one to another.
+constexpr double kMostKeptWaiting = 0.5;                  ///< share of the time of calls
+constexpr std::chrono::milliseconds kLongWaits{10};       ///< for each thread, before the team is judged
+constexpr std::chrono::milliseconds kShortestWindow{60};  ///< of calls, before the team is judged
 constexpr std::chrono::milliseconds kTry{100};            ///< of calls, until more threads have gone well
 constexpr std::chrono::milliseconds kShortestPause{250};  ///< doubled each time that it was too short
 constexpr std::chrono::seconds kLongestPause{8};
@@ -48,6 +50,10 @@ std::chrono::steady_clock::duration wait_while(const std::atomic<std::uint32_t>&
 }
 
 }  // namespace
+
+bool are_crowded(int threads, std::chrono::nanoseconds waited, std::chrono::nanoseconds took) {
+  return waited > kMostKeptWaiting * (threads - 1) * took;
+}
 
 Team::Team(int threads, WhenCrowded when_crowded) : when_crowded_(when_crowded) {
   start(threads);
@@ -126,7 +132,7 @@ void Team::run_job(const Job& job, int threads) {
     add_wait(wait_while(working_, left));
   judge();
   const auto now = Clock::now();
-  in_window_ += in_run_ * (now - window_began_);
+  in_window_ += now - window_began_;
   if (tries_ && (in_try_ += now - began) > kTry) {
     tries_ = false;
     pause_ = kShortestPause;
@@ -168,11 +174,12 @@ void Team::judge() {
   if (crowded_ || when_crowded_ == WhenCrowded::stay || waited < in_run_ * Clock::duration(kLongWaits))
     return;
   const auto now = Clock::now();
-  const auto took = in_window_ + in_run_ * (now - window_began_);
+  const auto took = in_window_ + (now - window_began_);
+  if (took < kShortestWindow) return;
   waited_.store(0, std::memory_order_relaxed);
   in_window_ = {};
   window_began_ = now;
-  if (waited <= kMostKeptWaiting * took) return;
+  if (!are_crowded(in_run_, waited, took)) return;
   crowded_ = true;
   if (tries_) pause_ = std::min<Clock::duration>(2 * pause_, kLongestPause);
   tries_ = false;

@@ -15,15 +15,21 @@ namespace pyroclast {
 /// of them, which is for tests and for measurements.
 enum class WhenCrowded { give_way, stay };
 
+/// Whether threads are a crowd's: kept waiting for so long that half as many would be faster. A thread
+/// without a core keeps all others waiting; where that is more than half of the time, the half of them need
+/// not wait for it. \param waited  by all of them together, in waits long enough to sleep \param took    time
+/// in which they did
+bool are_crowded(int threads, std::chrono::nanoseconds waited, std::chrono::nanoseconds took);
+
 /// Threads that belong to a run. The one that calls is the first of them.
 ///
 /// Who waits spins for some microseconds, in case the others are about to come, and then sleeps until it is
 /// woken: other work on the machine gets the core. One caller at a time.
 ///
 /// A thread whose core is taken by other work keeps all the others waiting. A team that gives way therefore
-/// adds up the waits of its threads within calls that were long enough to sleep. Where that is much of their
-/// time, it is crowded: it offers half as many threads, also in the middle of a call, and after a pause it
-/// tries twice as many again. A try that ends crowded doubles the pause.
+/// adds up the waits of its threads within calls that were long enough to sleep. Where that is more than
+/// half of the time, it is crowded: it offers half as many threads, also in the middle of a call, and after a
+/// pause it tries twice as many again. A try that ends crowded doubles the pause.
 class Team {
  public:
   /// \param threads  at least 1, else Error
@@ -107,7 +113,7 @@ class Team {
   WhenCrowded when_crowded_;
   bool crowded_ = false;            ///< the present call became crowded
   Clock::time_point window_began_;  ///< or the present call, where that was later
-  Clock::duration in_window_{};     ///< all threads' time in earlier calls since the window began
+  Clock::duration in_window_{};     ///< time of earlier calls since the window began
   int offered_ = 1;                 ///< threads
   bool tries_ = true;               ///< so many threads have yet to go well for a while
   Clock::duration in_try_{};        ///< time of calls since the try began
