@@ -71,7 +71,7 @@ void take_default_signals() {
 /// Starts the program, ends as it ends, and takes the whole group along when the process at the other end of
 /// `alive` is gone.
 [[noreturn]] void supervise(char* const* arguments, const char* output, int alive, int failure) {
-  setpgid(0, 0);
+  if (setpgid(0, 0) != 0) _exit(127);  // else the signal below would reach others
   take_default_signals();
   const pid_t program = fork();
   if (program == 0) become(arguments, output, failure);
@@ -113,18 +113,21 @@ bool run_program(const std::vector<std::string>& words, const std::filesystem::p
   }
   setpgid(supervisor, supervisor);  // whoever is first
   failure.close_writing();
-  int status = 0;
+  int status = -1;
   try {
     for (pid_t ended = 0; ended == 0;) {
       ::poll(nullptr, 0, kPollTime);
       ended = waitpid(supervisor, &status, WNOHANG);
       if (ended == 0) poll();
+      if (ended < 0 && errno == EINTR) ended = 0;
     }
   } catch (...) {
     kill(-supervisor, SIGKILL);
     wait_for(supervisor);
     throw;
   }
+  if (!WIFEXITED(status) && !WIFSIGNALED(status))
+    throw Error(fmt::format("{}: how it ended cannot be told: this process ignores SIGCHLD", words.front()));
   int error = 0;
   if (read(failure.read_end(), &error, sizeof error) == sizeof error)
     throw Error(fmt::format("{}: cannot be run: {}", words.front(), std::strerror(error)));
