@@ -65,8 +65,12 @@ struct Portable {
   using Truth = decltype(Value{} < Value{});
   using InMemory = double __attribute__((vector_size(16), may_alias));
 
-  static Value load(const double* p) { return *reinterpret_cast<const InMemory*>(p); }
-  static void store(double* p, Value v) { *reinterpret_cast<InMemory*>(p) = v; }
+  static Value load(const double* p) {
+    return *static_cast<const InMemory*>(__builtin_assume_aligned(p, sizeof(Value)));
+  }
+  static void store(double* p, Value v) {
+    *static_cast<InMemory*>(__builtin_assume_aligned(p, sizeof(Value))) = v;
+  }
   static Value all(double v) { return Value{v, v}; }
   static Value sqrt(Value v) {
 #ifdef __SSE2__
