@@ -752,14 +752,13 @@ void Mechanics<Dim>::sweep(int steps, Pass pass) {
     });
   };
   // A call ends before its last step where other work took the cores, and fewer threads go on.
-  for (int done = 0; done < steps;) {
+  for (int left = steps, moved = 0; left > 0; left -= moved) {
     const int threads = std::clamp(model_.zone_count() / parameters_.zones_for_a_thread, 1, team_->offered());
     if (static_cast<int>(workers_.size()) != threads) {
       workers_.clear();
       for (Share& share : share_out(*layout_, threads))
         workers_.push_back({std::move(share), make_scratch()});
     }
-    const int left = steps - done;
     team_->run(threads, [&](int thread) {
       Worker& worker = workers_[static_cast<std::size_t>(thread)];
       State<Dim> s = state_;
@@ -773,7 +772,7 @@ void Mechanics<Dim>::sweep(int steps, Pass pass) {
         }
         is_crowded = team_->barrier();
       }
-      if (thread == 0) done += taken;
+      if (thread == 0) moved = taken;
     });
   }
 }
