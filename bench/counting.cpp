@@ -95,7 +95,7 @@ class Shares {
 }  // namespace
 
 pyroclast::StepFunctions<2> counting_step() {
-  return {rows_of, move_bundles, CountingStep::sum_stiffness};
+  return {{move_bundles, CountingStep::sum_stiffness}, rows_of};
 }
 
 Operations operations() {

@@ -23,11 +23,10 @@ set(pyroclast_arithmetic_flags -ffp-contract=off -fno-math-errno)
 # Of a law outside of this project, whatever the build type and flags of that project.
 set(pyroclast_law_flags -O3 ${pyroclast_arithmetic_flags} -fno-fast-math -fvisibility=hidden -fvisibility-inlines-hidden)
 
-# Sets LAW_COMPILED and LAW_DECLARED in the caller: the rows of a law by instruction set, as C++ writes a list of
-# pointers, and the declarations of those that the files of pyroclast_instruction_sets define.
-# Takes LAW_TYPE, and more arguments of the template `Compiled`.
-function(pyroclast_list_rows)
-  list(JOIN ARGN ", " arguments)
+# Sets COMPILED and DECLARED in the caller: what is compiled for each instruction set, as C++ writes a list of pointers
+# in the order of InstructionSet, and the declarations of those that the files of pyroclast_instruction_sets define.
+# They are a member of a template whose first argument is the set; more arguments may follow.
+function(pyroclast_list_compiled template member)
   set(compiled)
   set(declared)
   foreach(set IN LISTS pyroclast_every_instruction_set)
@@ -35,12 +34,14 @@ function(pyroclast_list_rows)
       list(APPEND compiled "nullptr")
       continue()
     endif()
-    set(rows "pyroclast::Compiled<pyroclast::${pyroclast_type_of_${set}}, ${arguments}>")
-    list(APPEND compiled "&${rows}::law")
-    string(APPEND declared "extern template struct ${rows};\n")
+    set(arguments "pyroclast::${pyroclast_type_of_${set}}" ${ARGN})
+    list(JOIN arguments ", " arguments)
+    set(type "pyroclast::${template}<${arguments}>")
+    list(APPEND compiled "&${type}::${member}")
+    string(APPEND declared "extern template struct ${type};\n")
   endforeach()
   list(JOIN compiled ",\n    " compiled)
   string(STRIP "${declared}" declared)
-  set(LAW_COMPILED "${compiled}" PARENT_SCOPE)
-  set(LAW_DECLARED "${declared}" PARENT_SCOPE)
+  set(COMPILED "${compiled}" PARENT_SCOPE)
+  set(DECLARED "${declared}" PARENT_SCOPE)
 endfunction()

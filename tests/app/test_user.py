@@ -802,7 +802,8 @@ class LawInAHeader(UserTest):
         self.assertFalse(self.compiled("run", "best/deck.toml", "--out", "again"))
         self.assertFalse(self.compiled("run", "best/deck.toml", "--out", "other", "--instructions", "portable"))
         self.write("[[stages]]" + STARTER.split("[[stages]]")[1], "more.toml")
-        self.assertFalse(self.compiled("resume", "again", "--stages", "more.toml", "--out", "fork", "--instructions", "portable"))
+        self.assertFalse(self.compiled("resume", "again", "--stages", "more.toml", "--out", "fork",
+                                       "--instructions", "portable"))
 
     def test_is_verified_in_the_dimension_that_it_is_compiled_for(self):
         done = self.pyroclast("law", "--verify", "careless.hpp", "--paths", "64", env=self.env)
@@ -811,8 +812,8 @@ class LawInAHeader(UserTest):
 
     def test_a_killed_program_leaves_no_compiler_behind(self):
         # a compiler that says that it runs, then takes for ever
-        self.write("#!/bin/sh\ncase $* in *--version*) echo 1;; *) echo $$ > pid.tmp; mv pid.tmp pid; sleep 1000;; esac\n",
-                   "slow")
+        self.write("#!/bin/sh\ncase $* in *--version*) echo 1;; "
+                   "*) echo $$ > pid.tmp; mv pid.tmp pid; sleep 1000;; esac\n", "slow")
         (self.folder / "slow").chmod(0o755)
         for signal_sent in (signal.SIGKILL, signal.SIGINT):
             (self.folder / "pid").unlink(missing_ok=True)

@@ -36,7 +36,6 @@ class Pipe {
 
   int read_end() const { return ends_[0]; }
   int write_end() const { return ends_[1]; }
-  void close_reading() { close_end(0); }
   void close_writing() { close_end(1); }
 
  private:
@@ -56,6 +55,13 @@ void take_default_signals() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
+/// Says why the program could not be started.
+[[noreturn]] void give_up(int failure) {
+  const int error = errno;
+  [[maybe_unused]] const auto written = write(failure, &error, sizeof error);
+  _exit(127);
+}
+
 /// Becomes the program.
 [[noreturn]] void become(char* const* arguments, const char* output, int failure) {
   const int nothing = open("/dev/null", O_RDONLY);
@@ -63,23 +69,17 @@ void take_default_signals() {
   if (nothing >= 0 && file >= 0 && dup2(nothing, STDIN_FILENO) >= 0 && dup2(file, STDOUT_FILENO) >= 0 &&
       dup2(file, STDERR_FILENO) >= 0)
     execvp(arguments[0], arguments);
-  const int error = errno;
-  [[maybe_unused]] const auto written = write(failure, &error, sizeof error);
-  _exit(127);
+  give_up(failure);
 }
 
 /// Starts the program, ends as it ends, and takes the whole group along when the process at the other end of
 /// `alive` is gone.
 [[noreturn]] void supervise(char* const* arguments, const char* output, int alive, int failure) {
-  if (setpgid(0, 0) != 0) _exit(127);  // else the signal below would reach others
+  if (setpgid(0, 0) != 0) give_up(failure);  // else the signal below would reach others
   take_default_signals();
   const pid_t program = fork();
   if (program == 0) become(arguments, output, failure);
-  if (program < 0) {
-    const int error = errno;
-    [[maybe_unused]] const auto written = write(failure, &error, sizeof error);
-    _exit(127);
-  }
+  if (program < 0) give_up(failure);
   close(failure);
   for (;;) {
     int status = 0;
@@ -88,13 +88,6 @@ void take_default_signals() {
     pollfd other{alive, POLLIN, 0};
     if (poll(&other, 1, kPollTime) > 0) kill(0, SIGKILL);
   }
-}
-
-int wait_for(pid_t process) {
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
-  return status;
 }
 
 }  // namespace
@@ -123,7 +116,7 @@ bool run_program(const std::vector<std::string>& words, const std::filesystem::p
     }
   } catch (...) {
     kill(-supervisor, SIGKILL);
-    wait_for(supervisor);
+    while (waitpid(supervisor, &status, 0) < 0 && errno == EINTR) continue;
     throw;
   }
   if (!WIFEXITED(status) && !WIFSIGNALED(status))

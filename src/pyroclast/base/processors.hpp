@@ -8,7 +8,9 @@ namespace pyroclast {
 /// Share of the machine that the control groups of this process leave it, in processors: 1.5 where it may use
 /// 150 ms of processor time in each 100 ms. The smallest of its own group and of all above it that it can
 /// see, of both versions of control groups. None where nothing bounds it; a file that is missing or makes no
-/// sense bounds nothing. \param root  of the file system whose `/proc/self` and mount points are read
+/// sense bounds nothing.
+///
+/// \param root  of the file system whose `/proc/self` and mount points are read
 std::optional<double> processor_quota(const std::filesystem::path& root = "/");
 
 /// Threads that `allowed` processors and a quota can keep going all the time; at least 1.

@@ -17,8 +17,10 @@ enum class WhenCrowded { give_way, stay };
 
 /// Whether threads are a crowd's: kept waiting for so long that half as many would be faster. A thread
 /// without a core keeps all others waiting; where that is more than half of the time, the half of them need
-/// not wait for it. \param waited  by all of them together, in waits long enough to sleep \param took    time
-/// in which they did
+/// not wait for it.
+///
+/// \param waited  by all of them together, in waits long enough to sleep
+/// \param took    time in which they did
 bool are_crowded(int threads, std::chrono::nanoseconds waited, std::chrono::nanoseconds took);
 
 /// Threads that belong to a run. The one that calls is the first of them.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 
 #include "pyroclast/mechanics/instruction_set.hpp"
 #include "pyroclast/mechanics/state.hpp"
@@ -8,31 +9,28 @@
 /// The step for each instruction set that this build holds.
 namespace pyroclast {
 
-/// All of the step but the rows of laws, which are compiled with their law.
-struct StepOfSet {
-  StepFunctions<2> in_2d;
-  StepFunctions<3> in_3d;
-
-  template <int Dim>
-  const StepFunctions<Dim>& functions() const {
-    if constexpr (Dim == 2)
-      return in_2d;
-    else
-      return in_3d;
-  }
+/// The step of a body.
+template <int Dim>
+struct StepFunctions {
+  StepPasses<Dim> passes;
+  std::function<RowFunctions<Dim>(const LawTable& law)> rows_of;
 };
+
+/// Throws Error when this build does not hold the step for that set.
+template <int Dim>
+StepFunctions<Dim> step_functions(InstructionSet set);
 
 /// `Set` by its type in base/lanes.hpp; `step/step.hpp` defines it, included where that set's options hold.
 template <class Set>
 struct CompiledStep {
-  static const StepOfSet step;
+  static const ByDimension<StepPasses> step;
 };
 
 /// By InstructionSet; null where this build does not hold one.
 struct Steps {
-  std::array<const StepOfSet*, kInstructionSets> of_set{};
+  std::array<const ByDimension<StepPasses>*, kInstructionSets> of_set{};
+
+  static const Steps built;  ///< CMake writes the list (cmake/steps.cpp.in)
 };
-/// CMake writes the list (cmake/steps.cpp.in).
-extern const Steps steps;
 
 }  // namespace pyroclast

@@ -1,5 +1,8 @@
 #include "pyroclast/mechanics/instruction_set.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,8 +17,8 @@ namespace {
 constexpr InstructionSet kAll[kInstructionSets]{InstructionSet::portable, InstructionSet::avx2,
                                                 InstructionSet::avx512};
 
-const StepOfSet* step_of(InstructionSet set) {
-  return steps.of_set[static_cast<std::size_t>(set)];
+const ByDimension<StepPasses>* step_of(InstructionSet set) {
+  return Steps::built.of_set[static_cast<std::size_t>(set)];
 }
 
 bool processor_has(InstructionSet set) {
@@ -43,9 +46,10 @@ std::string names_of(const std::vector<InstructionSet>& sets) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// What to do where a build of fewer sets than there are is not enough; empty where it holds all of them.
+/// What to do where a build holds fewer sets than this processor has; empty where it holds them all.
 std::string remedy() {
-  if (built_instruction_sets().size() == kInstructionSets) return {};
+  const auto is_missing = [](InstructionSet set) { return processor_has(set) && !step_of(set); };
+  if (std::none_of(std::begin(kAll), std::end(kAll), is_missing)) return {};
   return fmt::format(
       "; this pyroclast was built for {} alone: build it again with cmake -DPYROCLAST_SETS=all, or on this "
       "machine",
@@ -122,7 +126,7 @@ RowFunctions<Dim> rows_of(const LawTable& law, InstructionSet set) {
   if (!is_compiled(law, set))
     throw Error(fmt::format("the contact law \"{}\" is not compiled for the instruction set {}{}", law.name,
                             name(set), other_sets_of(law)));
-  return law.rows->of_set[static_cast<std::size_t>(set)]->rows<Dim>();
+  return law.rows->of_set[static_cast<std::size_t>(set)]->rows.of<Dim>();
 }
 
 template RowFunctions<2> rows_of(const LawTable&, InstructionSet);
@@ -132,28 +136,13 @@ bool is_compiled(const LawTable& law, InstructionSet set) {
   return law.rows && law.rows->of_set[static_cast<std::size_t>(set)];
 }
 
-namespace {
-
-template <int Dim, InstructionSet kSet>
-RowFunctions<Dim> rows_for(const LawTable& law) {
-  return rows_of<Dim>(law, kSet);
-}
-template <int Dim>
-constexpr decltype(StepFunctions<Dim>::rows_of) kRowsFor[kInstructionSets]{
-    rows_for<Dim, InstructionSet::portable>, rows_for<Dim, InstructionSet::avx2>,
-    rows_for<Dim, InstructionSet::avx512>};
-
-}  // namespace
-
 template <int Dim>
 StepFunctions<Dim> step_functions(InstructionSet set) {
-  const StepOfSet* const step = step_of(set);
+  const auto* const step = step_of(set);
   if (!step)
     throw Error(
         fmt::format("there is no step for the instruction set {} in this build{}", name(set), remedy()));
-  StepFunctions<Dim> functions = step->functions<Dim>();
-  functions.rows_of = kRowsFor<Dim>[static_cast<std::size_t>(set)];
-  return functions;
+  return {step->of<Dim>(), [set](const LawTable& law) { return rows_of<Dim>(law, set); }};
 }
 
 template StepFunctions<2> step_functions(InstructionSet);

@@ -5,8 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "pyroclast/mechanics/state.hpp"
-
 namespace pyroclast {
 
 /// What the step is compiled for. Results are the same, bit by bit.
@@ -38,9 +36,5 @@ InstructionSet best_instruction_set();
 /// The one of that name. Throws Error when there is none, this build does not hold it or this processor does
 /// not have it.
 InstructionSet instruction_set(std::string_view name);
-
-/// Throws Error when this build does not hold the step for that set.
-template <int Dim>
-StepFunctions<Dim> step_functions(InstructionSet set);
 
 }  // namespace pyroclast

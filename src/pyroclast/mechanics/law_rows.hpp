@@ -31,17 +31,8 @@ struct Probes {
 
 /// A law for one instruction set. Where it is not made for a dimension the functions are null.
 struct CompiledLaw {
-  RowFunctions<2> in_2d;
-  RowFunctions<3> in_3d;
+  ByDimension<RowFunctions> rows;
   ArithmeticProbe probe;
-
-  template <int Dim>
-  const RowFunctions<Dim>& rows() const {
-    if constexpr (Dim == 2)
-      return in_2d;
-    else
-      return in_3d;
-  }
 };
 
 /// By InstructionSet; null where it was not compiled for one.

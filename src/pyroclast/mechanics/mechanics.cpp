@@ -302,7 +302,7 @@ void Mechanics<Dim>::place_own_constants() {
 template <int Dim>
 void Mechanics<Dim>::compute_stiffness() {
   FlatArray<double> scratch = make_scratch();
-  step_.sum_stiffness(state_, scratch.data());
+  step_.passes.sum_stiffness(state_, scratch.data());
   stiffness_.resize(model_.position.size());
   for (int g = 0; g < model_.gridpoint_count(); ++g) {
     const Vec<Dim> row = vector_at<Dim>(state_.stiffness, layout_->gridpoint_slot[g]);
@@ -768,7 +768,8 @@ void Mechanics<Dim>::sweep(int steps, Pass pass) {
         team_->barrier();
         for (const auto& stride : worker.share.strides) {
           update_faces(s, stride.faces.first, stride.faces.last, measure);
-          step_.move_bundles(s, stride.bundles.first, stride.bundles.last, pass, worker.scratch.data());
+          step_.passes.move_bundles(s, stride.bundles.first, stride.bundles.last, pass,
+                                    worker.scratch.data());
         }
         is_crowded = team_->barrier();
       }

@@ -10,7 +10,7 @@
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/laws/contact_properties.hpp"
 #include "pyroclast/material/creep.hpp"
-#include "pyroclast/mechanics/instruction_set.hpp"
+#include "pyroclast/mechanics/compiled_step.hpp"
 #include "pyroclast/mechanics/state.hpp"
 #include "pyroclast/mechanics/sweep.hpp"
 #include "pyroclast/model/model.hpp"

@@ -216,15 +216,29 @@ enum class Pass : std::uint8_t {
   measure            ///< forces and their sums, without motion
 };
 
-/// The step, compiled for one instruction set.
+/// The passes of the step, compiled for one instruction set; rows of faces are compiled with their law.
 template <int Dim>
-struct StepFunctions {
-  RowFunctions<Dim> (*rows_of)(const LawTable& law);  ///< compiled with the law; set when a run starts
+struct StepPasses {
   /// Sums the forces of bundles and moves their gridpoints.
   /// \param scratch  2 Dim kLanes numbers for every row of the largest bundle, aligned to 64 bytes
   void (*move_bundles)(State<Dim>&, int first, int last, Pass, double* scratch);
   /// Works out `State::stiffness`; leaves the contact forces unset until faces are updated.
   void (*sum_stiffness)(State<Dim>&, double* scratch);
+};
+
+/// What is compiled for one instruction set, for bodies in 2D and in 3D.
+template <template <int> class Functions>
+struct ByDimension {
+  Functions<2> in_2d;
+  Functions<3> in_3d;
+
+  template <int Dim>
+  const Functions<Dim>& of() const {
+    if constexpr (Dim == 2)
+      return in_2d;
+    else
+      return in_3d;
+  }
 };
 
 /// Calls `f(functions, first, last)` for runs of rows of faces that have one law.

@@ -29,7 +29,9 @@ std::string law_type(const std::filesystem::path& file, const std::string& text)
 
 /// The shared object of a law, from the cache where the same was compiled before: the same text of all its
 /// headers, wherever they lie, compiler, flags and layout. Throws Error with the compiler's words where it
-/// does not compile. \param type  of the law, as C++ names it
+/// does not compile.
+///
+/// \param type  of the law, as C++ names it
 std::filesystem::path compile_law(const std::filesystem::path& header, const std::string& type,
                                   const LawCompiler& compiler);
 

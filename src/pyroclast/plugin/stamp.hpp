@@ -94,8 +94,9 @@ inline std::uint64_t layout_hash() {
            offsetof(FaceSums, jump));
   hash.add(sizeof(Line), kLanes, kInstructionSets);
   hash.add(sizeof(RowFunctions<2>), offsetof(RowFunctions<2>, update),
-           offsetof(RowFunctions<2>, place_stiffness), sizeof(CompiledLaw), offsetof(CompiledLaw, in_2d),
-           offsetof(CompiledLaw, in_3d), offsetof(CompiledLaw, probe), sizeof(LawRows));
+           offsetof(RowFunctions<2>, place_stiffness), sizeof(CompiledLaw), offsetof(CompiledLaw, rows),
+           offsetof(ByDimension<RowFunctions>, in_2d), offsetof(ByDimension<RowFunctions>, in_3d),
+           offsetof(CompiledLaw, probe), sizeof(LawRows));
   hash.add(sizeof(LawTable), offsetof(LawTable, name), offsetof(LawTable, meaning),
            offsetof(LawTable, properties), offsetof(LawTable, choices), offsetof(LawTable, history_of),
            offsetof(LawTable, losses), offsetof(LawTable, size), offsetof(LawTable, constants),

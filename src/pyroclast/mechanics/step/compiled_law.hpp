@@ -15,8 +15,8 @@ constexpr RowFunctions<Dim> compiled_rows() {
 }
 
 template <class Set, class Law, Dimensions kDimensions>
-const CompiledLaw Compiled<Set, Law, kDimensions>::law{compiled_rows<2, Set, Law, kDimensions>(),
-                                                       compiled_rows<3, Set, Law, kDimensions>(),
-                                                       Probes<Set>::functions()};
+const CompiledLaw Compiled<Set, Law, kDimensions>::law{
+    {compiled_rows<2, Set, Law, kDimensions>(), compiled_rows<3, Set, Law, kDimensions>()},
+    Probes<Set>::functions()};
 
 }  // namespace pyroclast

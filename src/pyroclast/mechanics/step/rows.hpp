@@ -165,7 +165,7 @@ struct Rows {
     VectorRow<Dim>* displacement;
     VectorRow<Dim>* sum;
   };
-  /// \param memory  as of StepFunctions::move_bundles
+  /// \param memory  as of StepPasses::move_bundles
   static Scratch scratch_of(const Bundle& bundle, double* memory) {
     auto* rows = reinterpret_cast<VectorRow<Dim>*>(memory);
     return {rows, rows + bundle.rows};

@@ -116,7 +116,8 @@ class Step {
 };
 
 template <class Set>
-const StepOfSet CompiledStep<Set>::step{{nullptr, Step<2, Set>::move_bundles, Step<2, Set>::sum_stiffness},
-                                        {nullptr, Step<3, Set>::move_bundles, Step<3, Set>::sum_stiffness}};
+const ByDimension<StepPasses> CompiledStep<Set>::step{
+    {Step<2, Set>::move_bundles, Step<2, Set>::sum_stiffness},
+    {Step<3, Set>::move_bundles, Step<3, Set>::sum_stiffness}};
 
 }  // namespace pyroclast
