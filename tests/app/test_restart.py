@@ -99,6 +99,26 @@ class Resuming(RestartTest):
         self.pyroclast("resume", "whole", "--no-figures")
         self.assert_same("whole", "SIGTERM")
 
+    def test_a_body_that_turns_goes_on_with_the_masses_of_the_frames_before(self):
+        # scaled masses follow stiffnesses, which were those of the last change of properties
+        finite = changes('mechanics.kinematics="finite"', "stages[1].velocity=40 mm/s", "stages[1].stop_strain=4e-3")
+        self.run_case("whole", *finite, "--threads", "1")
+        self.broken_off("out", signal.SIGKILL, 600, *finite)
+        self.pyroclast("resume", "out", "--no-figures")
+        self.assert_same("whole", "out")
+
+    def test_a_frame_that_is_lost_is_named(self):
+        self.broken_off("out", signal.SIGKILL, 100)
+        (self.folder / "out/fields/blocks_0001.hdf").unlink()
+        with open(self.folder / "out/fields/contacts_0000.hdf", "r+b") as file:
+            file.truncate(1000)
+        done = self.pyroclast("resume", "out", "--no-figures")
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        for name in ("blocks_0001.hdf", "contacts_0000.hdf"):
+            self.assertIn(f"a frame is lost: fields/{name}", done.stdout)
+            self.assertIn(f"a frame is lost: fields/{name}", "".join(summary["warnings"]))
+        self.assertNotIn("blocks_0000.hdf", done.stdout)
+
     def test_a_damaged_checkpoint_is_refused_and_the_one_before_it_offered(self):
         self.run_case("whole")
         self.broken_off("out", signal.SIGKILL)

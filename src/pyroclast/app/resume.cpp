@@ -8,6 +8,10 @@ namespace pyroclast::app {
 
 namespace {
 
+void say_lost_frames(RunLog& log, const Session& session) {
+  for (const std::string& line : session.lost_frames()) log.say(fmt::format("{:<16}{}", "warning", line));
+}
+
 int go_on(const ResumeOptions& options) {
   const auto session = Session::resume(options.run, options.checkpoint, choices_of(options.as));
   const CheckpointInfo& from = *session->goes_on_from();
@@ -18,6 +22,7 @@ int go_on(const ResumeOptions& options) {
                           run.stage_number() + 1, run.stages().size()));
   if (from.commit != kCommit)
     log.say(fmt::format("                it was written by another build, of commit {}", from.commit));
+  say_lost_frames(log, *session);
   return drive(*session, log, options.as);
 }
 
@@ -30,6 +35,7 @@ int fork(const ResumeOptions& options) {
   log.say(fmt::format("fork            of {}, from the end of stage {}", options.run.string(),
                       session->run().last_begun_stage()));
   log.say(describe_start(*session));
+  say_lost_frames(log, *session);
   return drive(*session, log, options.as);
 }
 

@@ -206,7 +206,7 @@ class Section {
   /// Says that the key's value is the name of a file, followed by `rest`.
   void names_file(std::string_view key, std::filesystem::path file, std::string rest = {}) const;
 
-  /// Where the key stands (or its table, if the key is absent), as "file:line".
+  /// Where the key stands (or its table, if the key is absent), as "file:line"; "--set" where that stated it.
   std::string where(std::string_view key) const;
   /// Full path of the table, such as "contacts.mortar_mortar"; empty for the root.
   std::string path() const;

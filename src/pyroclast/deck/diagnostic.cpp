@@ -29,7 +29,8 @@ std::vector<Diagnostic> in_file_order(std::vector<Diagnostic> diagnostics) {
 
 std::string to_string(const Diagnostic& diagnostic) {
   std::string line = diagnostic.file;
-  if (diagnostic.line > 0) line += fmt::format(":{}:{}", diagnostic.line, diagnostic.column);
+  if (diagnostic.line > 0 && !diagnostic.is_changed)
+    line += fmt::format(":{}:{}", diagnostic.line, diagnostic.column);
   return line + ": " + without_place(diagnostic);
 }
 

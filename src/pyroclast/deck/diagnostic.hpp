@@ -12,6 +12,8 @@ struct Diagnostic {
   std::string file = {};
   int line = 0;    ///< from 1; 0 if the error is the file's as a whole
   int column = 0;  ///< from 1, in characters
+  bool is_changed =
+      false;  ///< the value comes from the command line: place of the changed deck, none of the file
   std::string key =
       {};  ///< full path, such as "contacts.mortar_mortar.f_t" or "stages[0].rate"; may be empty
   std::string value = {};    ///< as written in the deck; may be empty

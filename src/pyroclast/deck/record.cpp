@@ -259,9 +259,18 @@ Diagnostic DeckRecord::at_value(const std::string& path, const toml::node& node,
 }
 
 Diagnostic DeckRecord::locate(const std::string& path, const toml::source_region& region) const {
-  if (std::ranges::find(changed_, path) != changed_.end()) return {.file = "--set", .key = path};
+  const bool is_changed = std::ranges::find(changed_, path) != changed_.end();
   const SourcePosition at = position(region.begin);
-  return {.file = name_, .line = at.line, .column = at.column, .key = path};
+  return {.file = is_changed ? "--set" : name_,
+          .line = at.line,
+          .column = at.column,
+          .is_changed = is_changed,
+          .key = path};
+}
+
+std::string DeckRecord::where(const TableRecord& table, std::string_view key, const toml::node& node) const {
+  const Diagnostic place = locate(table.path_of(key), node.source());
+  return place.is_changed ? place.file : fmt::format("{}:{}", place.file, place.line);
 }
 
 std::string DeckRecord::as_written(const toml::node& node) const {

@@ -76,6 +76,9 @@ class DeckRecord {
   /// Whether nothing was reported at or below a path; false in a survey.
   bool is_clean(std::string_view path) const;
 
+  /// "file:line" of a value, or "--set".
+  std::string where(const TableRecord& table, std::string_view key, const toml::node& node) const;
+
   /// What was reported, and a report of each key that nobody read.
   std::vector<Diagnostic> diagnostics() const;
 

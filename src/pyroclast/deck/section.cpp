@@ -635,8 +635,7 @@ void Section::names_file(std::string_view key, std::filesystem::path file, std::
 std::string Section::where(std::string_view key) const {
   if (!table_) return deck_->name();
   const toml::node* node = table_->table.get(key);
-  const toml::node& place = node ? *node : table_->table;
-  return fmt::format("{}:{}", deck_->name(), place.source().begin.line);
+  return deck_->where(*table_, key, node ? *node : table_->table);
 }
 
 std::string Section::path() const {

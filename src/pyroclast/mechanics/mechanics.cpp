@@ -666,6 +666,8 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit("creep_strains", creep_strain_);
   visitor.visit("creep_under_way", creep_under_way_);
   visitor.visit("made_constraints", made_constraints_);
+  visitor.visit("stiffness",
+                stiffness_);  // of the frames of the last change of properties, which turn on since
   for_each_array(
       [&](const ArrayInfo& info, auto& array) {
         if constexpr (!std::is_same_v<decltype(*array.data()), bool&>)
@@ -676,7 +678,6 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   visit_properties(visitor);
   if (!visitor.replaces()) return;
   place_properties();
-  compute_stiffness();
   if (parameters_.mass == MassChoice::scaled)
     set_moving_mass();
   else

@@ -20,7 +20,8 @@ py::list diagnostics(const std::vector<Diagnostic>& list) {
   const py::object type = py::module_::import("pyroclast.errors").attr("Diagnostic");
   py::list all;
   for (const Diagnostic& d : list)
-    all.append(type(d.file, d.line, d.column, d.key, d.value, d.message, d.hint, to_string(d)));
+    all.append(type(d.file, d.is_changed ? 0 : d.line, d.is_changed ? 0 : d.column, d.key, d.value, d.message,
+                    d.hint, to_string(d)));
   return all;
 }
 

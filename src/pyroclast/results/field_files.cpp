@@ -238,6 +238,12 @@ FieldFiles::FieldFiles(const std::filesystem::path& folder, const Simulation& si
   write_mesh(folder, simulation.model());
 }
 
+std::vector<std::string> FieldFiles::lost() const {
+  std::vector<std::string> names = blocks_.lost();
+  if (contacts_) std::ranges::copy(contacts_->lost(), std::back_inserter(names));
+  return names;
+}
+
 void FieldFiles::write(const Simulation& simulation, const History& history, FrameRecords& frames) {
   const auto row = static_cast<std::int64_t>(history.row_count()) - 1;
   FrameRecords with_this = frames;

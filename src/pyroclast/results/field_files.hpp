@@ -30,6 +30,9 @@ class FieldFiles {
   /// heated, and before and after it that of the mechanics. Adds it to `frames` once all of it is written.
   void write(const Simulation& simulation, const History& history, FrameRecords& frames);
 
+  /// Names of the files of earlier frames that are missing or broken.
+  std::vector<std::string> lost() const;
+
  private:
   std::vector<std::string> columns_;  ///< of the history, that frames.csv has
   LineFile frames_;

@@ -130,6 +130,13 @@ std::string FrameSeries::file_name(MeshPart part, int frame) {
   return fmt::format("{}_{:04}.hdf", name(part), frame);
 }
 
+std::vector<std::string> FrameSeries::lost() const {
+  std::vector<std::string> names;
+  for (int frame = 0; frame < count(); ++frame)
+    if (const auto name = file_name(part_, frame); !Hdf5File::is_whole(folder_ / name)) names.push_back(name);
+  return names;
+}
+
 void FrameSeries::write(std::vector<double> times, const std::function<void(Hdf5File&)>& fields) {
   Hdf5File file(folder_ / file_name(part_, count()));
   link_mesh(file, part_);

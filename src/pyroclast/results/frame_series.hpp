@@ -31,6 +31,8 @@ class FrameSeries {
   void write(std::vector<double> times, const std::function<void(Hdf5File&)>& fields);
 
   int count() const { return static_cast<int>(times_.size()); }
+  /// Names of the files of frames that are counted, but are missing or broken.
+  std::vector<std::string> lost() const;
   /// Name of a frame's file.
   static std::string file_name(MeshPart part, int frame);
 

@@ -131,6 +131,12 @@ void Hdf5File::external_link(const std::string& name, const std::string& file, c
     fail("link " + name + " cannot be written");
 }
 
+bool Hdf5File::is_whole(const std::filesystem::path& path) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const Handle<H5Fclose> file{H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)};
+  return file.id >= 0;
+}
+
 void Hdf5File::close() {
   errno = 0;
   if (H5Fflush(file_, H5F_SCOPE_LOCAL) < 0) fail("cannot be made");

@@ -31,6 +31,9 @@ class Hdf5File {
 
   void close();
 
+  /// Whether a file is there, and was written to its end.
+  static bool is_whole(const std::filesystem::path& path);
+
  private:
   void write(const std::string& name, std::int64_t type, const void* data, std::size_t count, int columns);
   void write_attribute(const std::string& object, const std::string& name, std::int64_t type,

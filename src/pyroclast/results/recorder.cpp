@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "pyroclast/results/specimen_files.hpp"
 
 namespace pyroclast {
@@ -19,6 +21,10 @@ void Recorder::begin(const Run& run) {
   std::filesystem::remove(folder_ / "summary.json");
   history_.emplace(folder_ / "history.csv", run.history());
   if (has_fields_) fields_.emplace(folder_ / "fields", run.simulation(), run.history(), frames_);
+  lost_frames_.clear();
+  for (const std::string& name : fields_ ? fields_->lost() : std::vector<std::string>())
+    lost_frames_.push_back(fmt::format(
+        "a frame is lost: fields/{} is missing or broken; a run from the beginning has it", name));
   write_specimen_files(folder_ / "specimen", run.simulation().specimen(), specimen_);
 }
 
@@ -37,7 +43,8 @@ Summary Recorder::summary(const Run& run) const {
   Summary summary = summarize(run);
   summary.title = title_;
   std::vector<std::string> warnings = warnings_;
-  for (auto list : {specimen::warnings(run.simulation().specimen()), std::exchange(summary.warnings, {})})
+  for (auto list :
+       {lost_frames_, specimen::warnings(run.simulation().specimen()), std::exchange(summary.warnings, {})})
     warnings.insert(warnings.end(), list.begin(), list.end());
   summary.warnings = std::move(warnings);
   summary.expansion_reading = expansion_reading_;

@@ -29,6 +29,9 @@ class Recorder {
   /// Writes the specimen, the mesh, and all rows that there are; of a run that goes on from a checkpoint,
   /// what was written after it goes. Throws Error when a file cannot be written.
   void begin(const Run& run);
+  /// Of each file of an earlier frame that `begin` did not find whole, a line; also among the warnings of the
+  /// summary.
+  const std::vector<std::string>& lost_frames() const { return lost_frames_; }
   /// Writes the last row, and the fields where they are due.
   void record(const Run& run);
   /// Writes the summary of the rows so far.
@@ -49,7 +52,8 @@ class Recorder {
   std::string expansion_reading_;
   specimen::SpecimenParameters specimen_;
   std::vector<std::string> warnings_;  ///< of the deck, and of what was done to the run
-  bool has_fields_;                    ///< whether they are written
+  std::vector<std::string> lost_frames_;
+  bool has_fields_;  ///< whether they are written
   std::optional<HistoryFile> history_;
   std::optional<FieldFiles> fields_;
   FrameRecords frames_;

@@ -9,6 +9,7 @@
 #include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/results/frame_series.hpp"
+#include "pyroclast/results/text_file.hpp"
 #include "pyroclast/session/later.hpp"
 #include "pyroclast/session/session.hpp"
 #include "pyroclast/version.hpp"
@@ -99,7 +100,7 @@ void copy_frames(const fs::path& from, const fs::path& to, int count) {
   for (const MeshPart part : {MeshPart::blocks, MeshPart::contacts})
     for (int i = 0; i < count; ++i)
       if (const auto name = fs::path("fields") / FrameSeries::file_name(part, i); fs::exists(from / name))
-        fs::copy_file(from / name, to / name);
+        write_text_file(to / name, read_file(from / name));  // on the disk before a checkpoint counts on it
 }
 
 std::unique_ptr<Session> Session::resume(const fs::path& folder, const fs::path& stated,

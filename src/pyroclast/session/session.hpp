@@ -99,6 +99,8 @@ class Session {
   const std::filesystem::path& folder() const { return folder_; }
   /// What was in the folder and no run writes.
   const std::vector<std::filesystem::path>& foreign() const { return foreign_; }
+  /// See Recorder.
+  const std::vector<std::string>& lost_frames() const { return recorder_.lost_frames(); }
   /// That a run goes on from which was broken off, or forked.
   const std::optional<CheckpointInfo>& goes_on_from() const { return goes_on_from_; }
   const std::filesystem::path& last_checkpoint() const { return last_checkpoint_; }
