@@ -76,6 +76,11 @@ struct EnergyLedger {
     return zones + contacts + kinetic + dissipated.total() + local_damping + viscous_damping;
   }
   double error() const { return work_in() - accounted(); }
+  /// 0 where nothing is strained.
+  double kinetic_over_elastic() const {
+    const double elastic = zones + contacts;
+    return elastic > 0.0 ? std::abs(kinetic) / elastic : 0.0;
+  }
   /// What the error is measured by: all that was put in or taken out, each by its size. A change of
   /// properties takes stored energy out where a body softens, so that work_in alone may be near zero.
   double turnover() const {

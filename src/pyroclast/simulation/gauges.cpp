@@ -74,11 +74,7 @@ Motion measure_motion(const Mechanics<2>& mechanics) {
 
 constexpr auto kMotion = std::to_array<ColumnOf<Motion>>({
     {"unbalanced_ratio", "1", [](const Motion& m) { return m.unbalanced_ratio; }},
-    {"kinetic_over_strain", "1",
-     [](const Motion& m) {
-       const double elastic = m.energy.zones + m.energy.contacts;
-       return elastic > 0.0 ? std::abs(m.energy.kinetic) / elastic : 0.0;
-     }},
+    {"kinetic_over_strain", "1", [](const Motion& m) { return m.energy.kinetic_over_elastic(); }},
     {"largest_jump", "1", [](const Motion& m) { return m.largest_jump; }},
     {"energy_loading_J", "J", [](const Motion& m) { return m.energy.loading; }},
     {"energy_gravity_J", "J", [](const Motion& m) { return m.energy.gravity; }},

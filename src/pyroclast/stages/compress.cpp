@@ -18,11 +18,11 @@ constexpr std::int64_t kStepsPerChoice = 50;
 constexpr double kGain = 0.1;
 /// A velocity may fall so much faster than rise.
 constexpr double kSlowDown = 4.0;
-/// Up to this share of the stop strain a stress that falls is no failure: the platen only meets the specimen.
-constexpr double kFirstTouch = 0.1;
+/// Strain between two points of the curve that the results are read from.
+constexpr double kPointStrain = 1e-5;
 /// A gap between platen and specimen below this share of the height is none.
 constexpr double kNoGap = 1e-6;
-constexpr double kMostStepsPerLook = 1e9;
+constexpr double kMostSteps = 1e9;
 /// A stress that is to be reached is sought up to this strain where the deck does not say.
 constexpr double kLatestStrain = 0.02;
 /// A stress that is to be reached is probably reached at this strain.
@@ -93,9 +93,9 @@ std::unique_ptr<Stage> read_compress(const Section& s, const StageTables& tables
   else
     s.know({"unbalanced_ratio", "kinetic_over_strain", "platen_difference", "dissipation_rate"});
   read_end(s, keys);
-  keys.stop_fraction =
-      s.number("stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0,
-               "the run ends when the stress has fallen below this share of its largest value; 0: never");
+  keys.stop_fraction = s.number(
+      "stop_fraction_of_peak", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0,
+      "the run ends when the stress has passed its peak, f_c, and fallen below this share of it; 0: never");
   keys.history_strain = tables.output.history_strain;
   keys.frame_strain = tables.output.frame_strain;
   return std::make_unique<Compress>(keys);
@@ -105,10 +105,6 @@ std::unique_ptr<Stage> read_compress(const Section& s, const StageTables& tables
 
 StageKind compress_kind() {
   return {"compress", "drives the upper platen down, or up to unload", {}, read_compress};
-}
-
-bool has_fallen(double stress, double largest, double share) {
-  return share > 0.0 && largest > 0.0 && stress < share * largest;
 }
 
 void Compress::begin(Simulation& simulation) {
@@ -139,12 +135,22 @@ void Compress::begin_loading(Simulation& simulation) {
   is_loading_ = true;
   next_frame_ = keys_.frame_strain;
   dissipated_ = simulation.mechanics().energy().dissipated.total();
+  take_point(simulation);
 }
 
-std::int64_t Compress::steps_per_look(const Simulation& simulation) const {
+/// Until the platen has moved by a strain at its full velocity.
+std::int64_t Compress::steps_in(const Simulation& simulation, double strain) const {
   const double shortening_per_step = keys_.velocity * simulation.mechanics().time_step();
-  const double steps = std::round(keys_.history_strain * simulation.press().height() / shortening_per_step);
-  return static_cast<std::int64_t>(std::clamp(steps, 1.0, kMostStepsPerLook));
+  const double steps = std::round(strain * simulation.press().height() / shortening_per_step);
+  return static_cast<std::int64_t>(std::clamp(steps, 1.0, kMostSteps));
+}
+
+void Compress::take_point(Simulation& simulation) {
+  curve_.add(simulation.press(), simulation.mechanics());
+  const double time = static_cast<double>(steps_) * simulation.mechanics().time_step();
+  if (time < kPassages * wave_time_) return;
+  peak_.take(curve_.strain.back(), curve_.stress.back(), kStrengthRule);
+  largest_stress_ = std::max(largest_stress_, curve_.stress.back());
 }
 
 bool Compress::advance(Simulation& simulation, int most_steps) {
@@ -157,19 +163,22 @@ bool Compress::advance(Simulation& simulation, int most_steps) {
 
 bool Compress::move_at_velocity(Simulation& simulation, int most_steps) {
   Mechanics<2>& mechanics = simulation.mechanics();
-  if (steps_left_ == 0) {
-    steps_left_ = steps_per_look(simulation);
-    // one look of ramp ahead, so that the ramp leaves zero
+  if (steps_left_ == 0) steps_left_ = steps_in(simulation, keys_.history_strain);
+  if (steps_to_point_ == 0) {
+    steps_to_point_ = steps_in(simulation, kPointStrain);
+    // one point of ramp ahead, so that the ramp leaves zero
     const double ahead = keys_.ramp_time > 0.0
-                             ? static_cast<double>(steps_left_) * mechanics.time_step() / keys_.ramp_time
+                             ? static_cast<double>(steps_to_point_) * mechanics.time_step() / keys_.ramp_time
                              : 0.0;
     const double share = ramp_share(steps_, mechanics.time_step(), keys_.ramp_time);
     simulation.press().drive(direction() * keys_.velocity * std::min(1.0, share + ahead));
   }
-  const auto steps = std::min<std::int64_t>(steps_left_, most_steps);
+  const auto steps = std::min<std::int64_t>({steps_left_, steps_to_point_, most_steps});
   mechanics.advance(static_cast<int>(steps));
   steps_ += steps;
   steps_left_ -= steps;
+  steps_to_point_ -= steps;
+  if (steps_to_point_ == 0) take_point(simulation);
   return steps_left_ == 0;
 }
 
@@ -187,10 +196,14 @@ bool Compress::move_controlled(Simulation& simulation, int most_steps) {
   steps_ += steps;
   steps_left_ -= steps;
   if (steps_left_ > 0) return false;
-  way_ += velocity_ * (kStepsPerChoice * mechanics.time_step());
-  if (way_ < keys_.history_strain * simulation.press().height()) return false;
-  way_ = 0.0;
-  return true;
+  const auto came_by = [&](double& way, double strain) {
+    way += velocity_ * (kStepsPerChoice * mechanics.time_step());
+    if (way < strain * simulation.press().height()) return false;
+    way = 0.0;
+    return true;
+  };
+  if (came_by(way_to_point_, kPointStrain)) take_point(simulation);
+  return came_by(way_, keys_.history_strain);
 }
 
 void Compress::choose_velocity(const Simulation& simulation) {
@@ -216,17 +229,12 @@ double Compress::excess(const Simulation& simulation, double time) {
   const double power =
       (energy.dissipated.total() - std::exchange(dissipated_, energy.dissipated.total())) / time;
   const double top = simulation.press().stress_top(), bottom = simulation.press().stress_bottom();
-  const double largest = std::max(peak_stress_, 0.5 * (top + bottom));
+  const double largest = std::max(largest_stress_, 0.5 * (top + bottom));
   if (!(elastic > 0.0 && largest > 0.0)) return 1.0;  // the platen has not met the specimen yet
   return std::max({simulation.mechanics().unbalanced_ratio() / control.unbalanced_ratio,
                    std::sqrt(std::abs(energy.kinetic) / elastic / control.kinetic_over_strain),
                    std::abs(top - bottom) / largest / control.platen_difference,
                    power / elastic / control.dissipation_rate});
-}
-
-/// Strain of the stage up to which a stress that falls is no failure.
-double Compress::first_touch() const {
-  return keys_.until == CompressUntil::stop_strain ? kFirstTouch * keys_.stop_strain : 0.0;
 }
 
 /// What is left to where the stage ends, strain or Pa; negative upwards.
@@ -244,16 +252,12 @@ double Compress::left(const Simulation& simulation) const {
 }
 
 Verdict Compress::judge(Simulation& simulation) {
-  const double stress = simulation.press().stress(), strain = simulation.press().stage_strain();
+  const double strain = simulation.press().stage_strain();
   if (direction() * left(simulation) <= 0.0) return {.over = true};
   if (std::abs(strain) >= keys_.stop_strain)
     return {.over = true, .last = true, .outcome = Outcome::not_reached};
-  const double time = static_cast<double>(steps_) * simulation.mechanics().time_step();
-  if (time > kPassages * wave_time_) {
-    peak_stress_ = std::max(peak_stress_, stress);
-    if (strain > first_touch() && has_fallen(stress, peak_stress_, keys_.stop_fraction))
-      return {.over = true, .last = true, .outcome = Outcome::stress_fallen};
-  }
+  if (peak_.is_found() && simulation.press().stress() < keys_.stop_fraction * peak_.size())
+    return {.over = true, .last = true, .outcome = Outcome::stress_fallen};
   if (std::abs(strain) < next_frame_) return {};
   next_frame_ += keys_.frame_strain;
   return {.frame = true};
@@ -263,15 +267,23 @@ double Compress::progress(const Simulation& simulation) const {
   return is_loading_ ? std::clamp(1.0 - left(simulation) / first_left_, 0.0, 1.0) : 0.0;
 }
 
+/// The first row of the stage that is not before the peak.
+std::optional<std::size_t> Compress::row_of_peak(const History& history, RowRange rows) const {
+  if (!peak_.is_found()) return std::nullopt;
+  const auto strain = history.values("stage_strain", rows);
+  const auto row = std::ranges::find_if(strain, [&](double s) { return s >= peak_.driven(); });
+  return row == strain.end() ? std::nullopt : std::optional<std::size_t>(row - strain.begin());
+}
+
 StageReport Compress::report(const History& history, RowRange rows, Outcome) const {
   const bool to_a_value = keys_.until != CompressUntil::stop_strain;
-  const auto read = compression_rows(history, rows);
   const auto report_of = [&](bool is_upwards) {
     return compression_report(
-        read, {.is_upwards = is_upwards, .to_a_value = to_a_value, .waves_until = kPassages * wave_time_});
+        curve_, {.is_upwards = is_upwards, .to_a_value = to_a_value, .waves_until = kPassages * wave_time_});
   };
   StageReport report = report_of(is_upwards_);
-  if (to_a_value && rows.empty()) {  // which way it will go is not known
+  report.decided_at = row_of_peak(history, rows);
+  if (to_a_value && curve_.count() == 0) {  // which way it will go is not known
     const auto others = report_of(!is_upwards_).results;
     report.results.insert(report.results.end(), others.begin(), others.end());
   }
@@ -311,7 +323,17 @@ void Compress::visit_state(StateVisitor& visitor) {
   visitor.visit("velocity", velocity_);
   visitor.visit("way", way_);
   visitor.visit("dissipated", dissipated_);
-  visitor.visit("peak_stress", peak_stress_);
+  visitor.visit("steps_to_point", steps_to_point_);
+  visitor.visit("way_to_point", way_to_point_);
+  visitor.visit("largest_stress", largest_stress_);
+  {
+    const StateVisitor::Scope scope(visitor, "curve");
+    curve_.visit_state(visitor);
+  }
+  {
+    const StateVisitor::Scope scope(visitor, "peak");
+    peak_.visit_state(visitor);
+  }
   visitor.visit("next_frame", next_frame_);
 }
 

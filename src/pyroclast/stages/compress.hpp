@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pyroclast/stages/compression_response.hpp"
 #include "pyroclast/stages/registry.hpp"
 
 namespace pyroclast {
@@ -21,11 +22,6 @@ enum class CompressUntil : std::uint8_t {
   stress        ///< at a stress on the upper platen, up or down
 };
 
-/// Whether a stress has fallen below a share of the largest so far, as that of a specimen that fails. Noise
-/// around no stress is no failure: a largest stress that is not above 0 has no share to fall below.
-/// \param share  0: it never falls
-bool has_fallen(double stress, double largest, double share);
-
 /// Drives the upper platen, the lower one fixed: down, or up to unload. First brings it back to ends that it
 /// left, or that left it, while the temperature changed.
 class Compress : public Stage {
@@ -37,10 +33,9 @@ class Compress : public Stage {
     double ramp_time = 0.0;
     std::optional<VelocityControl> control = {};
     CompressUntil until = CompressUntil::stop_strain;
-    double to = 0.0;           ///< strain, or stress in Pa, where the stage ends by one of these
-    double stop_strain = 0.0;  ///< ends at this axial strain up or down, from the beginning of the stage
-    double stop_fraction =
-        0.0;  ///< ends when the stress has fallen below this fraction of the peak; 0: never
+    double to = 0.0;              ///< strain, or stress in Pa, where the stage ends by one of these
+    double stop_strain = 0.0;     ///< ends at this axial strain up or down, from the beginning of the stage
+    double stop_fraction = 0.0;   ///< ends when the stress has fallen below this fraction of f_c; 0: never
     double history_strain = 0.0;  ///< see OutputIntervals
     double frame_strain = 0.0;    ///< see OutputIntervals
   };
@@ -68,23 +63,28 @@ class Compress : public Stage {
   void choose_velocity(const Simulation& simulation);
   double excess(const Simulation& simulation, double time);
   double foreseen_strain() const;
-  double first_touch() const;
+  void take_point(Simulation& simulation);
+  std::optional<std::size_t> row_of_peak(const History& history, RowRange rows) const;
   double left(const Simulation& simulation) const;
   double direction() const { return is_upwards_ ? -1.0 : 1.0; }
-  std::int64_t steps_per_look(const Simulation& simulation) const;
+  std::int64_t steps_in(const Simulation& simulation, double strain) const;
 
   Keys keys_;
   std::int64_t gap_steps_left_ = 0;
-  bool is_loading_ = false;      ///< the gap is closed
-  bool is_upwards_ = false;      ///< unloads
-  double first_left_ = 0.0;      ///< from where it began to where it ends, strain or Pa
-  double wave_time_ = 0.0;       ///< in which a stress wave runs through the specimen once, s
-  std::int64_t steps_ = 0;       ///< since loading began
-  std::int64_t steps_left_ = 0;  ///< to the next look, or to the next choice of a controlled velocity
-  double velocity_ = 0.0;        ///< where it is controlled, m/s
-  double way_ = 0.0;             ///< since the last look, where the velocity is controlled, m
-  double dissipated_ = 0.0;      ///< at the last choice of the velocity, J
-  double peak_stress_ = 0.0;     ///< Pa
+  bool is_loading_ = false;          ///< the gap is closed
+  bool is_upwards_ = false;          ///< unloads
+  double first_left_ = 0.0;          ///< from where it began to where it ends, strain or Pa
+  double wave_time_ = 0.0;           ///< in which a stress wave runs through the specimen once, s
+  std::int64_t steps_ = 0;           ///< since loading began
+  std::int64_t steps_left_ = 0;      ///< to the next look, or to the next choice of a controlled velocity
+  std::int64_t steps_to_point_ = 0;  ///< of the curve
+  double velocity_ = 0.0;            ///< where it is controlled, m/s
+  double way_ = 0.0;                 ///< since the last look, where the velocity is controlled, m
+  double way_to_point_ = 0.0;        ///< since the last point of the curve, likewise, m
+  double dissipated_ = 0.0;          ///< at the last choice of the velocity, J
+  CompressionCurve curve_;
+  Peak peak_;                    ///< of the curve behind the first wave
+  double largest_stress_ = 0.0;  ///< likewise, Pa
   double next_frame_ = 0.0;      ///< strain of the stage
 };
 

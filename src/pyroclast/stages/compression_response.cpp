@@ -10,18 +10,33 @@ namespace pyroclast {
 
 namespace {
 
-constexpr double kFitFrom = 0.05, kFitTo = 1.0 / 3.0;       // of f_c
-constexpr double kToe = 1.1;                                // steepest slope over that of the first stretch
-constexpr int kStretches = 12;                              // the last one ends at 88 %
-constexpr double kStretchStep = 0.05;                       // of f_c
-constexpr double kFewestRows = 3.0;                         // on a line that is fitted
-constexpr double kFallThatProvesAPeak = 0.01;               // of f_c
+constexpr double kFitFrom = 0.05, kFitTo = 1.0 / 3.0;  // of f_c
+constexpr double kToe = 1.1;                           // steepest slope over that of the first stretch
+constexpr int kStretches = 12;                         // the last one ends at 88 %
+constexpr double kStretchStep = 0.05;                  // of f_c
+constexpr double kFewestPoints = 3.0;                  // on a line that is fitted
+constexpr PeakRule kSmallFall{.fall = 0.02, .lasting = 0.0}, kLargeFall{.fall = 0.1, .lasting = 0.0};
+constexpr double kMoves = 0.05;  // of f_c: two falls that tell strengths so far apart are worth a warning
+constexpr double kRisesAgain = 0.005;                       // of f_c
 constexpr double kInertiaCountsFrom = 0.1;                  // of f_c
 constexpr double kUnloadingFrom = 0.9, kUnloadingTo = 0.1;  // of the stress at which unloading began
 constexpr double kStartUnderLoad = 0.05;                    // of f_c
 
-std::size_t peak_of(const CompressionRows& rows) {
-  return std::max_element(rows.stress.begin(), rows.stress.end()) - rows.stress.begin();
+std::size_t largest_of(const CompressionCurve& curve) {
+  return std::max_element(curve.stress.begin(), curve.stress.end()) - curve.stress.begin();
+}
+
+/// Where a rule finds a peak, of the points after the first wave.
+std::optional<std::size_t> peak_of(const CompressionCurve& curve, double waves_until, const PeakRule& rule) {
+  Peak peak;
+  std::optional<std::size_t> at;
+  for (std::size_t i = 0; i < curve.count() && !peak.is_found(); ++i) {
+    if (curve.time[i] - curve.time.front() < waves_until) continue;
+    const double before = peak.size();
+    peak.take(curve.strain[i], curve.stress[i], rule);
+    if (peak.size() > before) at = i;
+  }
+  return peak.is_found() ? at : std::nullopt;
 }
 
 struct Line {
@@ -29,11 +44,11 @@ struct Line {
   double origin = 0.0;  ///< strain at which its stress is 0
 };
 
-/// Fitted to the rows before `end` with stresses from `low` to `high`; none with fewer than three.
-std::optional<Line> fit(const CompressionRows& rows, std::size_t end, double low, double high) {
+/// Fitted to the points before `end` with stresses from `low` to `high`; none with fewer than three.
+std::optional<Line> fit(const CompressionCurve& curve, std::size_t end, double low, double high) {
   double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
   for (std::size_t i = 0; i < end; ++i) {
-    const double strain = rows.strain[i], stress = rows.stress[i];
+    const double strain = curve.strain[i], stress = curve.stress[i];
     if (stress < low || stress > high) continue;
     n += 1.0;
     sx += strain;
@@ -41,29 +56,30 @@ std::optional<Line> fit(const CompressionRows& rows, std::size_t end, double low
     sxx += strain * strain;
     sxy += strain * stress;
   }
-  if (n < kFewestRows) return std::nullopt;
+  if (n < kFewestPoints) return std::nullopt;
   const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
   return Line{slope, sx / n - sy / n / slope};
 }
 
 /// Of all stretches as wide as the usual one.
-Line steepest(const CompressionRows& rows, std::size_t peak, double strength, Line line) {
+Line steepest(const CompressionCurve& curve, std::size_t peak, double strength, Line line) {
   for (int i = 0; i < kStretches; ++i) {
     const double from = kFitFrom + i * kStretchStep;
-    const auto other = fit(rows, peak, from * strength, (from + kFitTo - kFitFrom) * strength);
+    const auto other = fit(curve, peak, from * strength, (from + kFitTo - kFitFrom) * strength);
     if (other && other->slope > line.slope) line = *other;
   }
   return line;
 }
 
-void find_modulus(const CompressionRows& rows, std::size_t peak, CompressionResponse& r) {
-  const double strength = *r.strength;
-  auto line = fit(rows, peak, kFitFrom * strength, kFitTo * strength);
+void find_modulus(const CompressionCurve& curve, CompressionResponse& r) {
+  const std::size_t peak = r.peak;
+  const double strength = curve.stress[peak];
+  auto line = fit(curve, peak, kFitFrom * strength, kFitTo * strength);
   if (!line) {
-    r.modulus.none_because = "fewer than three rows of the history lie between 5 % and 1/3 of f_c";
+    r.modulus.none_because = "fewer than three points of the curve lie between 5 % and 1/3 of f_c";
     return;
   }
-  if (const Line other = steepest(rows, peak, strength, *line); other.slope > kToe * line->slope) {
+  if (const Line other = steepest(curve, peak, strength, *line); other.slope > kToe * line->slope) {
     line = other;
     r.toe = line->origin;
   }
@@ -73,16 +89,39 @@ void find_modulus(const CompressionRows& rows, std::size_t peak, CompressionResp
     r.modulus.none_because = "the stress does not rise with the strain between 5 % and 1/3 of f_c";
 }
 
-void find_inelastic_strain(const CompressionRows& rows, CompressionResponse& r) {
+void find_inelastic_strain(const CompressionCurve& curve, CompressionResponse& r) {
   std::string& none_because = r.inelastic_strain.none_because;
-  if (!r.modulus)
+  if (!r.strength)
+    none_because = "there is no f_c";
+  else if (!r.modulus)
     none_because = "there is no E";
-  else if (rows.stress.front() > kStartUnderLoad * *r.strength)
+  else if (curve.stress.front() > kStartUnderLoad * *r.strength)
     none_because = "the stage began under load";
-  else if (const double strain = r.strain_at_peak - r.toe - *r.strength / *r.modulus; strain >= 0.0)
+  else if (const double strain = curve.strain[r.peak] - r.toe - *r.strength / *r.modulus; strain >= 0.0)
     r.inelastic_strain.value = strain;
   else
     none_because = "the curve is steeper on its way to the peak than the line that gave E";
+}
+
+/// Whether the stress falls below that of a point, behind it, as from a peak.
+bool falls_behind(const CompressionCurve& curve, std::size_t point) {
+  return std::any_of(curve.stress.begin() + static_cast<std::ptrdiff_t>(point), curve.stress.end(),
+                     [&](double s) { return s < (1.0 - kStrengthRule.fall) * curve.stress[point]; });
+}
+
+/// Why the stress has no peak, and what to do about that.
+std::string none_because(const CompressionCurve& curve, std::size_t largest) {
+  const auto where =
+      fmt::format("{:.2f} MPa at strain {:.5f}", curve.stress[largest] * 1e-6, curve.strain[largest]);
+  const char* farther = "drive the platen farther, by a larger strain at which the stage ends";
+  if (!falls_behind(curve, largest))
+    return fmt::format(
+        "the stage ended before a peak: the stress did not fall by {:.0f} % from the largest, {}; {}",
+        100.0 * kStrengthRule.fall, where, farther);
+  return fmt::format(
+      "the stage ended too soon behind the largest stress, {}: it is a peak if the stress stays below "
+      "it for {:g} of strain; {}",
+      where, kStrengthRule.lasting, farther);
 }
 
 void find_none(CompressionResponse& r, const std::string& because) {
@@ -105,20 +144,20 @@ std::string line_of(const char* name, const Finding& finding, double factor, int
   return fmt::format("{} {:.{}f}{}", name, factor * *finding, digits, unit);
 }
 
-StageReport unloading_report(const CompressionRows& rows) {
+StageReport unloading_report(const CompressionCurve& curve) {
   StageReport report;
-  const bool has_rows = rows.count() > 0;
-  const double first = has_rows ? rows.stress.front() : 0.0, last = has_rows ? rows.stress.back() : 0.0;
-  const auto line = fit(rows, rows.count(), kUnloadingTo * first, kUnloadingFrom * first);
+  const bool has_points = curve.count() > 0;
+  const double first = has_points ? curve.stress.front() : 0.0, last = has_points ? curve.stress.back() : 0.0;
+  const auto line = fit(curve, curve.count(), kUnloadingTo * first, kUnloadingFrom * first);
   Finding modulus;
   if (line && line->slope > 0.0)
     modulus.value = line->slope;
   else
-    modulus.none_because = "fewer than three rows lie between 90 % and 10 % of the stress at the start";
+    modulus.none_because = "fewer than three points lie between 90 % and 10 % of the stress at the start";
   report.results = {{"E_unloading_GPa", value_of(modulus, 1e-9)},
-                    {"E_unloading_none_because", has_rows ? reason_of(modulus) : Result::Value()},
-                    {"stress_at_end_MPa", value_if(has_rows, last * 1e-6)}};
-  if (!has_rows) return report;
+                    {"E_unloading_none_because", has_points ? reason_of(modulus) : Result::Value()},
+                    {"stress_at_end_MPa", value_if(has_points, last * 1e-6)}};
+  if (!has_points) return report;
   report.lines = {fmt::format("unloaded from {:.2f} to {:.2f} MPa", first * 1e-6, last * 1e-6),
                   line_of("E in unloading", modulus, 1e-9, 2, " GPa")};
   return report;
@@ -126,36 +165,39 @@ StageReport unloading_report(const CompressionRows& rows) {
 
 }  // namespace
 
-CompressionRows compression_rows(const History& history, RowRange rows) {
-  CompressionRows read{history.values("stage_strain", rows),
-                       history.values("stress_MPa", rows),
-                       {},
-                       history.values("kinetic_over_strain", rows),
-                       history.values("time_s", rows)};
-  for (double& stress : read.stress) stress *= 1e6;
-  const auto top = history.values("stress_top_MPa", rows), bottom = history.values("stress_bottom_MPa", rows);
-  for (std::size_t i = 0; i < top.size(); ++i)
-    read.platen_difference.push_back(std::abs(top[i] - bottom[i]) * 1e6);
-  return read;
+void CompressionCurve::add(const Press<2>& press, const Mechanics<2>& mechanics) {
+  strain.push_back(press.stage_strain());
+  stress.push_back(press.stress());
+  platen_difference.push_back(std::abs(press.stress_top() - press.stress_bottom()));
+  kinetic_over_strain.push_back(mechanics.energy().kinetic_over_elastic());
+  time.push_back(mechanics.time());
 }
 
-QuasiStaticReport quasi_static_report(const CompressionRows& rows, const QuasiStaticBounds& bounds) {
+void CompressionCurve::visit_state(StateVisitor& visitor) {
+  visitor.visit("strain", strain);
+  visitor.visit("stress", stress);
+  visitor.visit("platen_difference", platen_difference);
+  visitor.visit("kinetic_over_strain", kinetic_over_strain);
+  visitor.visit("time", time);
+}
+
+QuasiStaticReport quasi_static_report(const CompressionCurve& curve, std::size_t peak,
+                                      const QuasiStaticBounds& bounds) {
   QuasiStaticReport report;
-  if (rows.count() == 0) return report;
-  const std::size_t peak = peak_of(rows);
-  const double strength = rows.stress[peak];
+  if (curve.count() == 0) return report;
+  const double strength = curve.stress[peak];
   const auto within = [&](double kinetic, double difference) {
     return kinetic <= bounds.kinetic_over_strain && difference <= bounds.platen_difference;
   };
   report.in_modulus = true;
-  for (std::size_t i = 0; i < rows.count(); ++i) {
-    if (rows.stress[i] < kInertiaCountsFrom * strength) continue;
+  for (std::size_t i = 0; i < curve.count(); ++i) {
+    if (curve.stress[i] < kInertiaCountsFrom * strength) continue;
     const bool after = i > peak;
     double& kinetic = after ? report.kinetic_after_peak : report.kinetic_to_peak;
     double& difference = after ? report.difference_after_peak : report.difference_to_peak;
-    kinetic = std::max(kinetic, rows.kinetic_over_strain[i]);
-    difference = std::max(difference, rows.platen_difference[i] / strength);
-    if (!after && rows.stress[i] <= kFitTo * strength)
+    kinetic = std::max(kinetic, curve.kinetic_over_strain[i]);
+    difference = std::max(difference, curve.platen_difference[i] / strength);
+    if (!after && curve.stress[i] <= kFitTo * strength)
       report.in_modulus = report.difference_to_peak <= bounds.platen_difference;
   }
   report.to_peak = within(report.kinetic_to_peak, report.difference_to_peak);
@@ -163,33 +205,43 @@ QuasiStaticReport quasi_static_report(const CompressionRows& rows, const QuasiSt
   return report;
 }
 
-CompressionResponse compression_response(const CompressionRows& rows, double waves_until) {
+CompressionResponse compression_response(const CompressionCurve& curve, double waves_until) {
   CompressionResponse r;
-  if (rows.count() == 0) {
-    find_none(r, "the stage ended before its first row of the history");
+  if (curve.count() == 0) {
+    find_none(r, "the stage ended before it loaded the specimen");
     return r;
   }
-  const std::size_t peak = peak_of(rows);
-  const double strength = rows.stress[peak], time = rows.time[peak] - rows.time.front();
-  r.strain_at_peak = rows.strain[peak];
-  if (!(strength > 0.0)) {
-    find_none(r, fmt::format("the specimen bore no compression: the largest stress is {:.3g} MPa",
-                             strength * 1e-6));
+  r.peak = r.largest = largest_of(curve);
+  const double largest = curve.stress[r.largest];
+  if (!(largest > 0.0)) {
+    find_none(
+        r, fmt::format("the specimen bore no compression: the largest stress is {:.3g} MPa", largest * 1e-6));
     return r;
   }
-  r.peak_passed = std::any_of(rows.stress.begin() + static_cast<std::ptrdiff_t>(peak), rows.stress.end(),
-                              [&](double s) { return s < (1.0 - kFallThatProvesAPeak) * strength; });
-  if (time < waves_until && r.peak_passed) {
+  const auto stress_of = [&](const PeakRule& rule) -> std::optional<double> {
+    const auto at = peak_of(curve, waves_until, rule);
+    return at ? std::optional(curve.stress[*at]) : std::nullopt;
+  };
+  const double time = curve.time[r.largest] - curve.time.front();
+  if (time < waves_until && falls_behind(curve, r.largest)) {
     find_none(r, fmt::format("the largest stress, {:.2f} MPa, came after {:.3g} ms, while the first stress "
                              "wave still ran through the specimen ({:.3g} ms); load more slowly, with a "
                              "longer ramp_time",
-                             strength * 1e-6, 1e3 * time, 1e3 * waves_until));
+                             largest * 1e-6, 1e3 * time, 1e3 * waves_until));
     return r;
   }
-  r.strength.value = strength;
-  find_modulus(rows, peak, r);
-  find_inelastic_strain(rows, r);
-  const QuasiStaticReport inertia = quasi_static_report(rows);
+  r.bore = true;
+  if (const auto peak = peak_of(curve, waves_until, kStrengthRule)) {
+    r.peak = *peak;
+    r.strength.value = curve.stress[*peak];
+  } else {
+    r.strength.none_because = none_because(curve, r.largest);
+  }
+  r.by_small_fall = stress_of(kSmallFall);
+  r.by_large_fall = stress_of(kLargeFall);
+  find_modulus(curve, r);
+  find_inelastic_strain(curve, r);
+  const QuasiStaticReport inertia = quasi_static_report(curve, r.peak);
   if (r.modulus && !inertia.in_modulus)
     r.modulus = {std::nullopt, "the platens' stresses differ by more than 2 % of f_c up to 1/3 of it"};
   if (r.inelastic_strain && !inertia.to_peak)
@@ -197,28 +249,48 @@ CompressionResponse compression_response(const CompressionRows& rows, double wav
   return r;
 }
 
-StageReport compression_report(const CompressionRows& rows, const CompressionAim& aim) {
-  if (aim.is_upwards) return unloading_report(rows);
+namespace {
+
+/// That the curve rises above f_c again, and that another rule would tell another strength.
+void tell_doubts(const CompressionCurve& curve, const CompressionResponse& r, StageReport& report) {
+  const double strength = *r.strength, largest = curve.stress[r.largest];
+  if (largest > (1.0 + kRisesAgain) * strength)
+    report.lines.push_back(fmt::format("rises again behind f_c, to {:.2f} MPa ({:+.0f} %) at strain {:.5f}",
+                                       largest * 1e-6, 100.0 * (largest / strength - 1.0),
+                                       curve.strain[r.largest]));
+  const double by_small = r.by_small_fall.value_or(strength), by_large = r.by_large_fall.value_or(largest);
+  if (by_large - by_small <= kMoves * strength) return;
+  report.warnings.push_back(fmt::format(
+      "f_c depends on how a peak is told: {:.2f} MPa by the first fall of 2 %, {:.2f} MPa {}; the stress "
+      "falls and rises again, as where few coarse blocks fail one by one (validation/peaks.md)",
+      by_small * 1e-6, by_large * 1e-6,
+      r.by_large_fall ? "by one of 10 %" : "at the end without a fall of 10 %"));
+}
+
+}  // namespace
+
+StageReport compression_report(const CompressionCurve& curve, const CompressionAim& aim) {
+  if (aim.is_upwards) return unloading_report(curve);
   StageReport report;
-  CompressionResponse response = compression_response(rows, aim.waves_until);
-  const bool bore = response.strength.value.has_value();
-  const bool before_peak = bore && !response.peak_passed;
-  if (before_peak)
-    response.strength = response.inelastic_strain = {
-        std::nullopt, fmt::format("the stage ended before a peak, at {:.2f} MPa and strain {:.5f}",
-                                  *response.strength * 1e-6, response.strain_at_peak)};
-  const QuasiStaticReport inertia = quasi_static_report(rows);
-  if (bore) report.decided_at = peak_of(rows);
+  const CompressionResponse r = compression_response(curve, aim.waves_until);
+  const QuasiStaticReport inertia = quasi_static_report(curve, r.peak);
+  const bool has_points = curve.count() > 0;
+  const auto megapascals = [](const std::optional<double>& stress) {
+    return value_if(stress.has_value(), stress.value_or(0.0) * 1e-6);
+  };
   report.results = {
-      {"E_GPa", value_of(response.modulus, 1e-9)},
-      {"E_none_because", reason_of(response.modulus)},
-      {"toe_strain", response.toe},
-      {"f_c_MPa", value_of(response.strength, 1e-6)},
-      {"f_c_none_because", reason_of(response.strength)},
-      {"strain_at_peak", response.strength ? Result::Value(response.strain_at_peak) : Result::Value()},
-      {"strain_ic", value_of(response.inelastic_strain, 1.0)},
-      {"strain_ic_none_because", reason_of(response.inelastic_strain)},
-      {"peak_passed", response.peak_passed},
+      {"E_GPa", value_of(r.modulus, 1e-9)},
+      {"E_none_because", reason_of(r.modulus)},
+      {"toe_strain", r.toe},
+      {"f_c_MPa", value_of(r.strength, 1e-6)},
+      {"f_c_none_because", reason_of(r.strength)},
+      {"strain_at_peak", value_if(r.strength.value.has_value(), r.strength ? curve.strain[r.peak] : 0.0)},
+      {"f_c_by_fall_of_2_percent_MPa", megapascals(r.by_small_fall)},
+      {"f_c_by_fall_of_10_percent_MPa", megapascals(r.by_large_fall)},
+      {"stress_max_MPa", value_if(has_points, has_points ? curve.stress[r.largest] * 1e-6 : 0.0)},
+      {"strain_at_stress_max", value_if(has_points, has_points ? curve.strain[r.largest] : 0.0)},
+      {"strain_ic", value_of(r.inelastic_strain, 1.0)},
+      {"strain_ic_none_because", reason_of(r.inelastic_strain)},
       {"quasi_static", inertia.to_peak},
       {"quasi_static_after_peak", inertia.after_peak},
       {"kinetic_over_elastic_to_peak", inertia.kinetic_to_peak},
@@ -226,19 +298,22 @@ StageReport compression_report(const CompressionRows& rows, const CompressionAim
       {"platen_difference_over_f_c_to_peak", inertia.difference_to_peak},
       {"platen_difference_over_f_c_after_peak", inertia.difference_after_peak},
   };
-  report.lines.push_back(line_of("f_c", response.strength, 1e-6, 2, " MPa"));
-  if (response.strength) report.lines.back() += fmt::format(" at strain {:.5f}", response.strain_at_peak);
-  if (bore) {
-    report.lines.push_back(line_of("E", response.modulus, 1e-9, 2, " GPa"));
-    if (response.modulus && response.toe > 0.0)
-      report.lines.back() += fmt::format(
-          ", where the curve is steepest: it begins with a toe, up to strain {:.5f}", response.toe);
-    if (!before_peak) report.lines.push_back(line_of("eps_ic", response.inelastic_strain, 1.0, 5, ""));
+  report.lines.push_back(line_of("f_c", r.strength, 1e-6, 2, " MPa"));
+  if (r.strength) report.lines.back() += fmt::format(" at strain {:.5f}", curve.strain[r.peak]);
+  if (r.strength) tell_doubts(curve, r, report);
+  if (r.bore) {
+    report.lines.push_back(line_of("E", r.modulus, 1e-9, 2, " GPa"));
+    if (r.modulus && r.toe > 0.0)
+      report.lines.back() +=
+          fmt::format(", where the curve is steepest: it begins with a toe, up to strain {:.5f}", r.toe);
+    if (r.strength) report.lines.push_back(line_of("eps_ic", r.inelastic_strain, 1.0, 5, ""));
   }
   report.lines.push_back(inertia.to_peak ? "quasi-static up to the peak" : "NOT quasi-static up to the peak");
-  if (!bore) report.warnings.push_back("no f_c and no E: " + response.strength.none_because);
-  if (before_peak && !aim.to_a_value) report.warnings.push_back("no f_c: " + response.strength.none_because);
-  if (!inertia.to_peak && bore)
+  if (!r.bore)
+    report.warnings.push_back("no f_c and no E: " + r.strength.none_because);
+  else if (!r.strength && !aim.to_a_value)
+    report.warnings.push_back("no f_c: " + r.strength.none_because);
+  if (!inertia.to_peak && r.bore)
     report.warnings.push_back(fmt::format(
         "not quasi-static up to the peak: kinetic over elastic energy up to {:.1e}, "
         "platen stresses differ by up to {:.1f} % of f_c; load more slowly or take a shorter time step",

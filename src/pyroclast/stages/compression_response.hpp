@@ -5,13 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "pyroclast/simulation/history.hpp"
+#include "pyroclast/base/state_visitor.hpp"
+#include "pyroclast/simulation/press.hpp"
 #include "pyroclast/simulation/stage.hpp"
+#include "pyroclast/stages/peak.hpp"
 
 namespace pyroclast {
 
-/// What is read of the history of one compression, a value for each of its rows; compression positive.
-struct CompressionRows {
+/// The peak of a stress over the strain of a stage.
+inline constexpr PeakRule kStrengthRule;
+
+/// The curve of one compression, at even strains whatever the rows of the history are; compression positive.
+struct CompressionCurve {
   std::vector<double> strain;               ///< since the stage began
   std::vector<double> stress;               ///< mean of both platens, Pa
   std::vector<double> platen_difference;    ///< |top - bottom|, Pa
@@ -19,9 +24,10 @@ struct CompressionRows {
   std::vector<double> time;                 ///< s
 
   std::size_t count() const { return stress.size(); }
+  /// Adds a point: what the press reads now.
+  void add(const Press<2>& press, const Mechanics<2>& mechanics);
+  void visit_state(StateVisitor& visitor);
 };
-
-CompressionRows compression_rows(const History& history, RowRange rows);
 
 /// A number that a test gave, or the reason why it gave none.
 struct Finding {
@@ -49,27 +55,35 @@ struct QuasiStaticReport {
   bool in_modulus = false;
 };
 
-/// Rows below 10 % of the peak stress are left out: the kinetic energy of the driven motion itself is there
+/// Points below 10 % of the peak stress are left out: the kinetic energy of the driven motion itself is there
 /// from the start, while elastic energy grows with the square of the stress, so their ratio says nothing
 /// before.
-QuasiStaticReport quasi_static_report(const CompressionRows& rows, const QuasiStaticBounds& bounds = {});
+///
+/// \param peak  point of f_c, or of the largest stress where there is no f_c
+QuasiStaticReport quasi_static_report(const CompressionCurve& curve, std::size_t peak,
+                                      const QuasiStaticBounds& bounds = {});
 
 /// What a compression test says of a concrete, positive in compression (paper, Table 3).
 struct CompressionResponse {
-  /// f_c: largest stress, mean of both platens, Pa. None where nothing was compressed, and where it came
-  /// while the first stress wave still ran.
+  bool bore = false;  ///< the specimen bore compression, and not that of the first wave alone
+  /// f_c: peak of the stress by kStrengthRule, mean of both platens, Pa. None where nothing was compressed,
+  /// where the stress never fell so, and where a larger one came while the first stress wave still ran.
   Finding strength;
-  double strain_at_peak = 0.0;
-  /// E: slope of the line fitted to the rows from 5 % to 1/3 of f_c, Pa. Where the curve begins with a toe,
-  /// that is, where it is steeper from 1/3 to 2/3 by more than a tenth, that of the steepest stretch as wide.
+  std::size_t peak = 0;     ///< point of f_c, or of the largest stress where there is no f_c
+  std::size_t largest = 0;  ///< point of the largest stress, whenever it came
+  /// The largest stress before the first fall by 2 % and by 10 %, lasting or not, Pa: how far f_c depends on
+  /// the rule.
+  std::optional<double> by_small_fall, by_large_fall;
+  /// E: slope of the line fitted to the points from 5 % to 1/3 of f_c, Pa; of the largest stress where there
+  /// is no f_c for the want of a fall. Where the curve begins with a toe, that is, where it is steeper from
+  /// 1/3 to 2/3 by more than a tenth, that of the steepest stretch as wide.
   Finding modulus;
   double toe = 0.0;          ///< strain at which that steepest line begins; 0 without a toe
   Finding inelastic_strain;  ///< eps_ic = strain at peak - toe - f_c / E
-  bool peak_passed = false;  ///< the stress fell by more than 1 % of f_c after it
 };
 
-/// \param waves_until  time since the first row up to which stress is that of a wave, s
-CompressionResponse compression_response(const CompressionRows& rows, double waves_until = 0.0);
+/// \param waves_until  time since the first point up to which stress is that of a wave, s
+CompressionResponse compression_response(const CompressionCurve& curve, double waves_until = 0.0);
 
 /// What a stage was to do.
 struct CompressionAim {
@@ -79,6 +93,6 @@ struct CompressionAim {
 };
 
 /// All of this, as the report of a stage.
-StageReport compression_report(const CompressionRows& rows, const CompressionAim& aim = {});
+StageReport compression_report(const CompressionCurve& curve, const CompressionAim& aim = {});
 
 }  // namespace pyroclast
