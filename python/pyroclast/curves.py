@@ -57,7 +57,8 @@ def _draw_run(axes: Axes, run: Run) -> None:
     strain = style.PER_MILLE * run.loaded_strain
     top, bottom = run.loaded_history("stress_top_MPa"), run.loaded_history("stress_bottom_MPa")
     axes.plot(strain, run.loaded_history("stress_MPa"), color=style.BLUE, linewidth=1.8, zorder=3,
-              label="this run, mean of both platens")
+              label="this run, mean of both platens"
+                    + (f";\nrises again, {100.0 * run.rise_again:+.0f} % above $f_c$" if run.rise_again > 0.005 else ""))
     axes.fill_between(strain, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
                       label="between its upper and lower platen")
 
@@ -96,7 +97,7 @@ def _draw_table(axes: Axes, run: Run) -> None:
         value = run.compression.get(key)
         if isinstance(value, (int, float)):
             return format(value, form)
-        return "not given" if run.compression else "no peak"
+        return "not given" if run.has_peak else "no peak"
 
     columns = ["this run"]
     others = []
@@ -126,7 +127,7 @@ def _draw_table(axes: Axes, run: Run) -> None:
 def compare(runs: Sequence[Run]) -> Figure:
     """Curves of several runs, their mean as far as all of them go, and the mean of their peaks.
 
-    More than MANY runs are drawn as the range that they span. A run without a peak (summary's compression is null)
+    More than MANY runs are drawn as the range that they span. A run without a peak (its summary has no f_c)
     is drawn but does not enter the mean of the peaks.
     """
     if not runs:
@@ -140,7 +141,7 @@ def compare(runs: Sequence[Run]) -> Figure:
         draw_spread(axes, curves, style.BLUE)
     else:
         for run, curve, name, (colour, dashes) in zip(runs, curves, names_apart(runs), cycle(style.LOOKS)):
-            strength = f"{run.peak[1]:.2f} MPa" + ("" if run.compression else ", no peak reached")
+            strength = f"{run.peak[1]:.2f} MPa" + ("" if run.has_peak else ", no peak reached")
             axes.plot(*curve, color=colour, linestyle=dashes, linewidth=1.0,
                       label=f"{textwrap.fill(name, 34)}\n{strength}")
         if len(runs) > 1:
@@ -226,7 +227,7 @@ def _advancing(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _draw_mean_peak(axes: Axes, runs: Sequence[Run]) -> None:
-    peaks = np.array([(style.PER_MILLE * run.peak[0], run.peak[1]) for run in runs if run.compression])
+    peaks = np.array([(style.PER_MILLE * run.peak[0], run.peak[1]) for run in runs if run.has_peak])
     if not len(peaks):
         return
     strain, stress = peaks.mean(axis=0)

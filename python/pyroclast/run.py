@@ -319,12 +319,35 @@ class Run:
         """Strain over the rows of `loaded`, less `strain_before`."""
         return self.loaded_history("strain") - self.strain_before
 
+    def _tested(self, name: str) -> float | None:
+        """A number among the results of the stage of `loaded`."""
+        stage = int(self.loaded_history("stage")[0])
+        return self._number(self.stage_results[stage], name) if stage < len(self.stage_results) else None
+
+    @property
+    def has_peak(self) -> bool:
+        """Whether the test has an f_c."""
+        return self._tested("f_c_MPa") is not None
+
+    @property
+    def rise_again(self) -> float:
+        """How far the stress rises above f_c behind it, over f_c; 0 where it does not, or there is no f_c."""
+        strength, largest = self._tested("f_c_MPa"), self._tested("stress_max_MPa")
+        return max(0.0, largest / strength - 1.0) if strength and largest else 0.0
+
     @property
     def peak(self) -> tuple[float, float]:
-        """`loaded_strain` and stress [MPa] where the history's stress is largest, even if it ended there.
+        """`loaded_strain` and stress [MPa] at f_c of the test, as the summary has it. Where that has none,
+        those where the history's stress is largest, even if it ended there.
 
         Throws RunError when the specimen was never compressed.
         """
+        strength, at = self._tested("f_c_MPa"), self._tested("strain_at_peak")
+        if strength is not None and at is not None:
+            before = 0.0
+            if "stage_strain" in self.history:
+                before = float(self.loaded_strain[0] - self.loaded_history("stage_strain")[0])
+            return at + before, strength
         strain, stress = self.loaded_strain, self.loaded_history("stress_MPa")
         self.history.known("strain", self.loaded)
         row = int(np.where(np.isfinite(strain), stress, -np.inf).argmax())

@@ -118,7 +118,14 @@ class Cases(unittest.TestCase):
         whole, half = finished("brazilian"), finished("brazilian", HALF_STRENGTH, HALF_COHESION)
         stress = 2.0 * whole.of("peak_load_N") / (math.pi * 0.15 * 0.3) * 1e-6
         self.assertAlmostEqual(whole.of("f_t_split_MPa"), stress, delta=1e-9 * stress)
-        self.assert_between(0.4, half.of("f_t_split_MPa") / whole.of("f_t_split_MPa"), 0.9)
+        # ... so weak it has not come to its peak where the run ends
+        self.assertIsNone(half.of("f_t_split_MPa"))
+
+        def load_at(run, widening: float) -> float:
+            rows = zip(run.column("widening_m"), run.column("load_N"))
+            return next(load for opened, load in rows if opened > widening)
+
+        self.assert_between(0.4, load_at(half, 2e-5) / load_at(whole, 2e-5), 0.8)
 
     def test_the_prism_parts_at_half_of_the_load_with_half_of_the_strength(self):
         whole, half = finished("direct_tension"), finished("direct_tension", HALF_STRENGTH)

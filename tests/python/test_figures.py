@@ -357,6 +357,9 @@ class ErrorsNameTheThing(FolderTest):
         rows = np.column_stack(list(columns.values()))
         lines = [",".join(table.names), *(",".join(map(str, row)) for row in rows)]
         (self.run_folder / "history.csv").write_text("\n".join(lines))
+        summary = json.loads((self.run_folder / "summary.json").read_text())
+        summary["stages"][1]["results"]["f_c_MPa"] = None
+        (self.run_folder / "summary.json").write_text(json.dumps(summary))
         self.assert_fails(["run", self.run_folder], "history.csv", "not compressed")
 
 

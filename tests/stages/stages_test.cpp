@@ -77,24 +77,25 @@ TEST(CompressStage, UnloadsAndReloads) {
   EXPECT_LT(r.energy_error_over_turnover(), 1e-4);
 }
 
-// Promise: a stress that the specimen cannot bear ends the run, which says so.
-// Where the platen meets the specimen, noise takes the stress below 0: that is no failure, and without a
-// share of the peak nothing is.
-TEST(CompressStage, EndsByAFallOfTheStressAlone) {
-  const std::vector<double> met{-2e3, -5.0, 20e6, 30e6, 16e6, -1e3};
-  const auto ended = [&](double share) {
-    double largest = 0.0;
-    for (std::size_t i = 0; i < met.size(); ++i) {
-      largest = std::max(largest, met[i]);
-      if (has_fallen(met[i], largest, share)) return i;
-    }
-    return met.size();
-  };
-  EXPECT_EQ(ended(0.0), met.size());
-  EXPECT_EQ(ended(0.5), 5u);
-  EXPECT_EQ(ended(0.6), 4u);
+// Promise: what the results are read from does not depend on how often rows are written.
+TEST(CompressStage, ResultsDoNotDependOnTheRowsOfTheHistory) {
+  const std::string text = deck(kUniform + kSettle + kFailure);
+  const Finished fine(text), coarse(with(text, "history_strain = 1e-5", "history_strain = 3e-4"));
+  for (const auto* name : {"E_GPa", "f_c_MPa", "strain_at_peak", "strain_ic"}) {
+    ASSERT_TRUE(fine.result(1, name)) << name;
+    EXPECT_EQ(coarse.result(1, name), fine.result(1, name)) << name;
+  }
 }
 
+// Promise: a stage that is to end at a share of f_c goes on until f_c is known.
+TEST(CompressStage, EndsBehindItsPeak) {
+  const Finished r(deck(kUniform + kSettle + kFailure + "stop_fraction_of_peak = 0.97\n"));
+  EXPECT_EQ(r.run.outcome(), Outcome::stress_fallen);
+  EXPECT_LT(r.last("stress_MPa"), 0.97 * r.result(1, "f_c_MPa").value());
+  EXPECT_GE(r.last("stage_strain"), r.result(1, "strain_at_peak").value() + kStrengthRule.lasting);
+}
+
+// Promise: a stress that the specimen cannot bear ends the run, which says so.
 TEST(CompressStage, SaysWhenAStressIsNotReached) {
   const Finished r(
       deck(kUniform + kSettle + compress("to_stress = \"90 MPa\"\nstop_strain = 0.004") + kCompress));

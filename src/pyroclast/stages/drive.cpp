@@ -28,7 +28,9 @@ constexpr double kLeftToPair = 0.05;
 /// A peak counts once noise is below this share of what is recorded, and below what is to fall from the peak.
 constexpr double kMostNoise = 0.1;
 /// Behind a peak is where its record has fallen below this share of it; the next peak is greater by as much.
-constexpr double kBehindPeak = 0.98;
+constexpr double kBehindPeak = 1.0 - PeakRule().fall;
+/// Peaks are looked for this often, whatever the rows of the history are.
+constexpr std::int64_t kStepsPerPoint = 100;
 /// Rows and frames of a stage where the deck does not say.
 constexpr double kLooks = 200.0, kFrames = 10.0;
 
@@ -161,8 +163,10 @@ Drive::Until read_until(const Section& s, const std::vector<RecordParameters>& r
       u.value = s.quantity("below", unit, Range::any(), "the stage ends when the record is less");
       break;
     case Drive::Until::Kind::share_of_peak:
-      u.value = s.number("share_of_peak", Range::inside(0.0, 1.0),
-                         "the stage ends when the record's size has fallen below this share of its greatest");
+      u.value =
+          s.number("share_of_peak", Range::inside(0.0, 1.0),
+                   "the stage ends when the record's size has passed its [peak](method.md#peaks), and fallen "
+                   "below this share of it");
       if (s.has("least_peak"))
         u.least_peak = s.quantity(
             "least_peak", unit, Range::positive(),
@@ -331,7 +335,10 @@ void Drive::begin(Simulation& simulation) {
   first_.assign(keys_.actions.size(), 0.0);
   if (keys_.control)
     first_opening_ = last_opening_ = simulation.record(keys_.control->record).read(simulation);
-  peaks_.assign(keys_.until.size(), 0.0);
+  came_.assign(keys_.actions.size(), 0.0);
+  farthest_.assign(keys_.actions.size(), 0.0);
+  record_peaks_.assign(keys_.records.size(), {});
+  peaks_.assign(keys_.until.size(), {});
   last_.clear();
   for (const Until& until : keys_.until) last_.push_back(simulation.record(until.record).read(simulation));
   const EnergyLedger energy = mechanics.energy();
@@ -392,9 +399,17 @@ std::int64_t Drive::steps_per_adjustment() const {
 void Drive::act(Simulation& simulation, double time) {
   ChangedLoads loads;
   if (keys_.control) steer(simulation, time, loads);
+  const double interval = static_cast<double>(steps_per_adjustment()) * simulation.mechanics().time_step();
+  is_driven_ = keys_.control && keys_.control->rate != 0.0;
   for (std::size_t i = 0; i < keys_.actions.size(); ++i) {
     const Action& action = keys_.actions[i];
     const double now = amount(i, time);
+    if (action.kind == ActionKind::hold || action.kind == ActionKind::release) continue;
+    came_[i] = action.kind == ActionKind::velocity ? came_[i] + now * interval : now;
+    if (std::abs(came_[i]) > farthest_[i]) {
+      farthest_[i] = std::abs(came_[i]);
+      is_driven_ = true;
+    }
     if (action.kind == ActionKind::velocity)
       for (int g : simulation.model().set(action.set))
         simulation.mechanics().prescribe_velocity(g, action.components.front(), now);
@@ -408,6 +423,27 @@ void Drive::act(Simulation& simulation, double time) {
     }
   }
   simulation.loads().set(loads);
+  if (is_driven_) driven_ += interval;
+}
+
+/// What unloads the body by command is no fall from a peak: nothing counts until it is driven farther than
+/// ever.
+void Drive::take_peaks(const Simulation& simulation) {
+  is_beyond_noise_ = is_beyond_noise_ || is_beyond_noise(kMostNoise, simulation);
+  std::vector<double> values;
+  for (const RecordParameters& record : keys_.records)
+    values.push_back(simulation.record(record.name).read(simulation));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    record_peaks_[i].take(i, driven_, is_driven_ && is_beyond_noise_, simulation.mechanics().time(), values);
+  for (std::size_t i = 0; i < keys_.until.size(); ++i) {
+    const Until& until = keys_.until[i];
+    if (until.kind != Until::Kind::share_of_peak || !is_driven_) continue;
+    const double size = std::abs(simulation.record(until.record).read(simulation));
+    const double most_noise = std::min(kMostNoise, 1.0 - until.value);
+    if (peaks_[i].size() > 0.0 ||
+        (until.least_peak ? size > *until.least_peak : is_beyond_noise(most_noise, simulation)))
+      peaks_[i].take(driven_, size, rule_of_records(peaks_[i]));
+  }
 }
 
 bool Drive::advance(Simulation& simulation, int most_steps) {
@@ -420,6 +456,7 @@ bool Drive::advance(Simulation& simulation, int most_steps) {
   const auto steps = std::min<std::int64_t>(interval - steps_ % interval, most_steps);
   simulation.mechanics().advance(static_cast<int>(steps));
   steps_ += steps;
+  if (steps_ % kStepsPerPoint == 0) take_peaks(simulation);
   return steps_ % steps_in(simulation, keys_.look_interval) == 0 ||
          (steps_ % interval == 0 && time(simulation) >= keys_.duration);
 }
@@ -435,7 +472,6 @@ bool Drive::is_beyond_noise(double share, const Simulation& simulation) {
 
 bool Drive::is_met(std::size_t condition, const Simulation& simulation) {
   const Until& until = keys_.until[condition];
-  double& peak = peaks_[condition];
   double& last = last_[condition];
   const double value = simulation.record(until.record).read(simulation);
   const double rate = std::abs(value - last) / (time(simulation) - last_look_);
@@ -445,14 +481,8 @@ bool Drive::is_met(std::size_t condition, const Simulation& simulation) {
       return value > until.value;
     case Until::Kind::below:
       return value < until.value;
-    case Until::Kind::share_of_peak: {
-      const double size = std::abs(value);
-      const double most_noise = std::min(kMostNoise, 1.0 - until.value);
-      const bool counts = peak > 0.0 || (until.least_peak ? size > *until.least_peak
-                                                          : is_beyond_noise(most_noise, simulation));
-      if (counts) peak = std::max(peak, size);
-      return size < until.value * peak;
-    }
+    case Until::Kind::share_of_peak:
+      return peaks_[condition].is_found() && std::abs(value) < until.value * peaks_[condition].size();
     case Until::Kind::rate_above:
       return rate > until.value;
     case Until::Kind::rate_below:
@@ -527,9 +557,10 @@ StageReport Drive::report(const History& history, RowRange rows, Outcome) const 
   report.results = {{"steps", steps_},
                     {"unbalanced_ratio", last_value(history, "unbalanced_ratio", rows)},
                     {"loading_work_J", value_if(has_rows, work)}};
-  const auto of_records = record_results(keys_.records, keys_.results, body_, history, rows);
+  const auto of_records = record_results(keys_.records, record_peaks_, keys_.results, body_, history, rows);
   report.results.insert(report.results.end(), of_records.begin(), of_records.end());
   if (has_rows) report.lines = lines_of(keys_.results, of_records);
+  report.warnings = missing_peaks(keys_.records, record_peaks_, keys_.results);
   if (keys_.control) add_control(report, work);
   return report;
 }
@@ -582,8 +613,24 @@ void Drive::visit_state(StateVisitor& visitor) {
   visitor.visit("steps", steps_);
   visitor.visit("frames", frames_);
   visitor.visit("first", first_);
-  visitor.visit("peaks", peaks_);
   visitor.visit("last", last_);
+  visitor.visit("came", came_);
+  visitor.visit("farthest", farthest_);
+  visitor.visit("driven", driven_);
+  visitor.visit("is_driven", is_driven_);
+  visitor.visit("is_beyond_noise", is_beyond_noise_);
+  const auto visit_all = [&](const char* name, auto& all) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const StateVisitor::Scope scope(visitor, fmt::format("{}[{}]", name, i));
+      all[i].visit_state(visitor);
+    }
+  };
+  if (visitor.replaces()) {
+    record_peaks_.resize(keys_.records.size());
+    peaks_.resize(keys_.until.size());
+  }
+  visit_all("record_peaks", record_peaks_);
+  visit_all("peaks", peaks_);
   visitor.visit("leading_peak", leading_peak_);
   visitor.visit("framed_peak", framed_peak_);
   visitor.visit("last_look", last_look_);

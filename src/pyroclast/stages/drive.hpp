@@ -89,6 +89,7 @@ class Drive : public Stage {
   std::int64_t steps_per_adjustment() const;
   void act(Simulation& simulation, double time);
   double amount(std::size_t action, double time) const;
+  void take_peaks(const Simulation& simulation);
   bool is_met(std::size_t condition, const Simulation& simulation);
   bool is_beyond_noise(double share, const Simulation& simulation);
   bool has_fallen(const Simulation& simulation);
@@ -103,8 +104,14 @@ class Drive : public Stage {
   std::int64_t frames_ = 0;
   /// Force along its direction, or pressure, of each action when the stage began.
   std::vector<double> first_;
-  /// Of the records of `until`: greatest size, 0 until a peak counts; value at the last look.
-  std::vector<double> peaks_, last_;
+  // What drives the body on: how far each action came, m, N or Pa, and how far at most; for how long, s.
+  std::vector<double> came_, farthest_;
+  double driven_ = 0.0;
+  bool is_driven_ = false;                         ///< now
+  bool is_beyond_noise_ = false;                   ///< since when peaks count
+  std::vector<RecordPeak> record_peaks_;           ///< of each record
+  std::vector<Peak> peaks_;                        ///< of the records of `until`
+  std::vector<double> last_;                       ///< likewise: value at the last look
   double leading_peak_ = 0.0, framed_peak_ = 0.0;  ///< of the leading record: greatest size; with a frame, SI
   double last_look_ = 0.0;                         ///< s
   double first_opening_ = 0.0, last_opening_ = 0.0;   ///< controlled, when the stage began, m

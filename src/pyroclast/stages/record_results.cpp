@@ -17,6 +17,9 @@ namespace pyroclast {
 
 namespace {
 
+/// How long a peak lasts, over the time for which the body was driven to it.
+constexpr double kLastingShare = 0.1;
+
 using Kind = RecordResult::Kind;
 using Values = std::map<std::string, double>;
 
@@ -50,9 +53,10 @@ RecordResult read_result(const Section& s, const std::vector<RecordParameters>& 
   r.kind = s.choice<Kind>(
       "kind",
       {{"given", Kind::given, "a quantity that is stated, for formulas"},
-       {"peak", Kind::peak, "value of a record where its size is largest"},
+       {"peak", Kind::peak, "value of a record at the [peak](method.md#peaks) of its size"},
+       {"largest", Kind::largest, "value of a record where its size is largest, peak or not"},
        {"last", Kind::last, "value of a record at the end of the stage"},
-       {"at_peak", Kind::at_peak, "value of a record where the size of another is largest"},
+       {"at_peak", Kind::at_peak, "value of a record at the peak of another"},
        {"work", Kind::work, "of a force over a displacement or opening: the area under the curve"},
        {"formula", Kind::formula, "of the results before it, in SI, and of thickness and weight"}},
       "what it is");
@@ -65,6 +69,7 @@ RecordResult read_result(const Section& s, const std::vector<RecordParameters>& 
       break;
     }
     case Kind::peak:
+    case Kind::largest:
     case Kind::last:
       r.record = found("record", "of which it is");
       break;
@@ -89,7 +94,7 @@ RecordResult read_result(const Section& s, const std::vector<RecordParameters>& 
       }
       break;
   }
-  if (r.kind == Kind::peak || r.kind == Kind::last || r.kind == Kind::at_peak)
+  if (r.kind == Kind::peak || r.kind == Kind::largest || r.kind == Kind::last || r.kind == Kind::at_peak)
     r.unit = column_of(r.record).unit;
   if (s.ok() && r.unit != "1") r.unit_size = read_any(s, "unit", fmt::format("1 {}", r.unit));
   return r;
@@ -115,12 +120,6 @@ class Course {
 
   const std::optional<double>& operator[](std::size_t i) const { return values_[i]; }
   std::size_t size() const { return values_.size(); }
-  std::optional<std::size_t> peak() const {
-    std::optional<std::size_t> largest;
-    for (std::size_t i = 0; i < values_.size(); ++i)
-      if (values_[i] && (!largest || std::abs(*values_[i]) > std::abs(*values_[*largest]))) largest = i;
-    return largest;
-  }
 
  private:
   std::vector<std::optional<double>> values_;
@@ -135,21 +134,34 @@ double work(const Course& force, const Course& way) {
   return sum;
 }
 
-std::optional<double> value_of(const RecordResult& asked, const Values& known, const History& history,
-                               RowRange rows) {
+/// Of one record among all.
+template <class T>
+const T* of_record(const std::vector<RecordParameters>& records, const std::vector<T>& all,
+                   const RecordParameters& record) {
+  const auto found = std::ranges::find(records, record.name, &RecordParameters::name) - records.begin();
+  return found < std::ssize(all) ? &all[found] : nullptr;
+}
+
+std::optional<double> value_of(const RecordResult& asked, const std::vector<RecordParameters>& records,
+                               const std::vector<RecordPeak>& peaks, const Values& known,
+                               const History& history, RowRange rows) {
   const auto course = [&](const RecordParameters& record) { return Course(history, rows, record); };
-  const auto at = [](const Course& values, std::optional<std::size_t> i) {
-    return i ? values[*i] : std::nullopt;
+  const auto at_peak = [&](const RecordParameters& of) -> std::optional<double> {
+    const RecordPeak* peak = of_record(records, peaks, of);
+    if (peak == nullptr || !peak->peak().is_found()) return std::nullopt;
+    return *of_record(records, peak->values(), asked.record);
   };
   switch (asked.kind) {
     case Kind::given:
       return asked.value;
     case Kind::peak:
-      return at(course(asked.record), course(asked.record).peak());
+      return at_peak(asked.record);
+    case Kind::largest:
+      return peaks.empty() ? std::nullopt : std::optional(of_record(records, peaks, asked.record)->largest());
     case Kind::last:
-      return rows.empty() ? std::nullopt : at(course(asked.record), rows.last - rows.first - 1);
+      return rows.empty() ? std::nullopt : course(asked.record)[rows.last - rows.first - 1];
     case Kind::at_peak:
-      return at(course(asked.record), course(asked.other).peak());
+      return at_peak(asked.other);
     case Kind::work:
       return work(course(asked.record), course(asked.other));
     case Kind::formula:
@@ -178,6 +190,33 @@ std::optional<RecordParameters> find_record(const Section& s, std::string_view k
   return std::nullopt;
 }
 
+void RecordPeak::take(std::size_t of, double driven, bool counts, double time,
+                      const std::vector<double>& values) {
+  const double size = std::abs(values[of]);
+  if (size > std::abs(largest_)) {
+    largest_ = values[of];
+    largest_time_ = time;
+  }
+  if (!counts) return;
+  const double before = peak_.size();
+  peak_.take(driven, size, rule_of_records(peak_));
+  if (peak_.size() == before) return;
+  time_ = time;
+  values_ = values;
+}
+
+void RecordPeak::visit_state(StateVisitor& visitor) {
+  peak_.visit_state(visitor);
+  visitor.visit("time", time_);
+  visitor.visit("values", values_);
+  visitor.visit("largest", largest_);
+  visitor.visit("largest_time", largest_time_);
+}
+
+PeakRule rule_of_records(const Peak& so_far) {
+  return {.lasting = kLastingShare * so_far.driven()};
+}
+
 void BodyFigures::visit_state(StateVisitor& visitor) {
   visitor.visit("thickness", thickness);
   visitor.visit("weight", weight);
@@ -201,26 +240,51 @@ std::vector<RecordResult> read_record_results(const Section& stage,
 }
 
 std::vector<Result> record_results(const std::vector<RecordParameters>& records,
+                                   const std::vector<RecordPeak>& peaks,
                                    const std::vector<RecordResult>& asked, const BodyFigures& body,
                                    const History& history, RowRange rows) {
   std::vector<Result> results;
-  for (const RecordParameters& record : records) {
-    const Column column = column_of(record);
-    const auto peak = Course(history, rows, record).peak();
-    const auto at_peak = [&](const std::string& name) {
-      return peak ? Result::Value(*history.cell(rows.first + *peak, name)) : Result::Value();
-    };
-    results.push_back({fmt::format("peak_{}", column.name), at_peak(column.name)});
-    results.push_back({fmt::format("peak_{}_time_s", record.name), at_peak("time_s")});
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const Column column = column_of(records[i]);
+    const double factor = column_over_si(records[i].kind);
+    const RecordPeak known = peaks.empty() ? RecordPeak() : peaks[i];
+    const bool has_peak = known.peak().is_found(), has_largest = !peaks.empty();
+    results.push_back({fmt::format("peak_{}", column.name),
+                       value_if(has_peak, has_peak ? factor * known.values()[i] : 0.0)});
+    results.push_back({fmt::format("peak_{}_time_s", records[i].name), value_if(has_peak, known.time())});
+    results.push_back(
+        {fmt::format("largest_{}", column.name), value_if(has_largest, factor * known.largest())});
+    results.push_back(
+        {fmt::format("largest_{}_time_s", records[i].name), value_if(has_largest, known.largest_time())});
   }
   Values known = values_of(body);
   for (const RecordResult& each : asked) {
-    const auto value = value_of(each, known, history, rows);
+    const auto value = value_of(each, records, peaks, known, history, rows);
     if (value) known[each.name] = *value;
     results.push_back({name_with_unit(each.name, each.unit),
                        value ? Result::Value(*value / each.unit_size) : Result::Value()});
   }
   return results;
+}
+
+std::vector<std::string> missing_peaks(const std::vector<RecordParameters>& records,
+                                       const std::vector<RecordPeak>& peaks,
+                                       const std::vector<RecordResult>& asked) {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < peaks.size(); ++i) {
+    const auto is_of_peak = [&](const RecordResult& each) {
+      return (each.kind == Kind::peak && each.record.name == records[i].name) ||
+             (each.kind == Kind::at_peak && each.other.name == records[i].name);
+    };
+    if (peaks[i].peak().is_found() || std::ranges::none_of(asked, is_of_peak)) continue;
+    lines.push_back(
+        fmt::format("{} has no peak: while the body was driven on, its size did not fall by {:.0f} % from "
+                    "its largest, {:.4g} {}, "
+                    "and stay below that for a tenth of the time to there; drive the body farther",
+                    records[i].name, 100.0 * PeakRule().fall,
+                    column_over_si(records[i].kind) * peaks[i].largest(), column_of(records[i]).unit));
+  }
+  return lines;
 }
 
 std::vector<std::string> lines_of(const std::vector<RecordResult>& asked,
