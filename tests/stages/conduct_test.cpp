@@ -24,7 +24,7 @@ HeatConditions fire_from_the_left() {
 /// Heat alone in a small specimen.
 struct Conducted {
   Conducted(const HeatConditions& heat, const Conduct::Keys& keys, int blocks = 100)
-      : simulation(small_specimen(blocks), kSpecimenThickness, alike_phases(), {}, heat, {}, std::nullopt,
+      : simulation(small_specimen(blocks), kSpecimenThickness, alike_phases(), {}, heat, {}, {}, std::nullopt,
                    std::make_shared<Team>()),
         run(simulation, stages_of(keys)) {}
 

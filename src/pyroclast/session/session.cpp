@@ -33,17 +33,6 @@ std::string told(std::string text) {
   return text.substr(0, text.find_last_not_of(' ') + 1);
 }
 
-/// Throws Error where a set has gridpoints of platens, which the press works.
-void require_off_press(const Simulation& simulation, const std::string& set) {
-  if (!simulation.has_press()) return;
-  const Model<2>& model = simulation.model();
-  for (const char* platen : {"bottom_platen", "top_platen"})
-    for (int g : model.set(set))
-      if (std::ranges::find(model.set(platen), g) != model.set(platen).end())
-        throw Error(
-            fmt::format("drive: set \"{}\" has gridpoints of {}, which the press works", set, platen));
-}
-
 /// Throws Error where materials differ in what a run takes only at its beginning.
 void require_same_body(const ConcreteMaterials& old, const ConcreteMaterials& changed) {
   for (std::size_t i = 0; i < old.solids.size(); ++i)
@@ -257,17 +246,16 @@ void Session::drive(const std::string& drives) {
   const auto stage = drive_kind().read(deck.root(), tables);
   deck.finish();
   const auto& drive = dynamic_cast<const Drive&>(*stage);
-  Supports<2> supports = supports_of(*simulation_);
-  drive.check(*simulation_, supports);
-  for (const std::string& set : drive.sets()) require_off_press(*simulation_, set);
+  Acting<2> acting = acting_on(*simulation_);
+  drive.check(*simulation_, acting);
   if (run_.stage_is_under_way()) {
     if (const auto* under_way = dynamic_cast<const Drive*>(&run_.stage()))
       drive.check_beside(*under_way, *simulation_);
     const auto load = [](const auto& one) { return one->loads(); };
     if (has_weight(*simulation_) || drive.loads() || std::ranges::any_of(run_.stages(), load))
-      require_held(*simulation_, supports, "drive");
+      require_held(*simulation_, acting.supports, "drive");
   }
-  run_.check_later_stages(supports);
+  run_.check_later_stages(acting);
   stage->begin(*simulation_);
   stage->advance(*simulation_, 0);
   depart({fmt::format("{} from step {} on", told(drives), simulation_->mechanics().steps())});

@@ -67,14 +67,24 @@ RecordParameters read_record(const Section& s) {
       "kind",
       {{"displacement", RecordKind::displacement, "mean of a set"},
        {"opening", RecordKind::opening, "mean displacement of the set `other` minus that of `set`"},
-       {"force", RecordKind::force, "on the body at a set: what loads, holds or drives it there"},
+       {"force", RecordKind::force,
+        "on the body by a set that loads, holds or drives it; else all that acts on the body there"},
        {"stress", RecordKind::stress, "mean over the zones of a set, tension positive"},
        {"temperature", RecordKind::temperature, "mean of a set"},
        {"crack_length", RecordKind::crack_length, "of the damaged contact points of a set of contacts"},
        {"crack_opening", RecordKind::crack_opening, "mean over a set of contacts, by length"}},
       "what is recorded");
   r.set = s.text("set", "of which it is; see [bodies.md](bodies.md#sets)");
-  s.know({"other", "direction"});
+  s.know({"other", "direction", "over"});
+  if (r.kind == RecordKind::displacement || r.kind == RecordKind::opening ||
+      r.kind == RecordKind::temperature)
+    r.over =
+        s.choice<MeanOver, MeanOver>("over",
+                                     {{"size", MeanOver::size,
+                                       "the zones that lie wholly in the set, by area; where there is none "
+                                       "its faces, by length; else gridpoints"},
+                                      {"gridpoints", MeanOver::gridpoints, "its gridpoints, each alike"}},
+                                     MeanOver::size, "what the mean is taken over");
   if (r.kind == RecordKind::opening)
     r.other = s.text("other", "the set that moves away from `set`, or towards it");
   switch (r.kind) {

@@ -317,7 +317,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
         [&](const std::string& name) -> const LawTable& { return find_law(name, folder, laws); }, setup);
   else
     read_resting(root, curves, setup);
-  if (setup.motion) setup.motion->records = records;
+  setup.records = records;
   setup.curves = curves.curves();
   warn_of_healing(root, setup);
   warn_of_first_strain(root, setup);
@@ -356,7 +356,7 @@ std::unique_ptr<Simulation> make_simulation(const Setup& setup, specimen::Specim
                             fmt::join(specimen.phases, ", "),
                             fmt::join(specimen::phases(setup.specimen), ", ")));
   return std::make_unique<Simulation>(std::move(specimen), setup.thickness, setup.solids, setup.sets,
-                                      setup.heat, setup.probes, setup.motion, std::move(team));
+                                      setup.heat, setup.probes, setup.records, setup.motion, std::move(team));
 }
 
 double expected_block_size(const specimen::SpecimenParameters& specimen, const ContactParameters& contacts) {

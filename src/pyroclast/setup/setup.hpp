@@ -36,6 +36,7 @@ struct Setup {
   std::vector<SetParameters<2>> sets;      ///< beside those that every model has
   HeatConditions heat;                     ///< uniform at the reference temperature without [heat]
   std::vector<ProbePosition> probes;
+  std::vector<RecordParameters> records;
   std::vector<std::unique_ptr<Stage>> stages;
   std::vector<std::string> stage_names;
   CheckpointChoice checkpoints;

@@ -160,17 +160,21 @@ Gauge crack_gauge(const Mechanics<2>& mechanics) {
   return gauge;
 }
 
-/// With a column for each record.
-Gauge record_gauge(const Simulation& simulation) {
+/// With a column for each record of motion, or of temperature.
+Gauge record_gauge(const Simulation& simulation, bool of_motion) {
+  const auto is_of_it = [of_motion](const Record& record) {
+    return (record.parameters().kind != RecordKind::temperature) == of_motion;
+  };
   Gauge gauge;
-  for (const Record& record : simulation.records()) gauge.columns.push_back(column_of(record.parameters()));
-  gauge.read = [](const Simulation& s) {
+  for (const Record& record : simulation.records())
+    if (is_of_it(record)) gauge.columns.push_back(column_of(record.parameters()));
+  gauge.read = [is_of_it](const Simulation& s) {
     std::vector<double> values;
     for (const Record& record : s.records())
-      values.push_back(column_over_si(record.parameters().kind) * record.read(s));
+      if (is_of_it(record)) values.push_back(column_over_si(record.parameters().kind) * record.read(s));
     return values;
   };
-  gauge.of_motion = true;
+  gauge.of_motion = of_motion;
   return gauge;
 }
 
@@ -198,7 +202,13 @@ std::vector<Gauge> motion_gauges(const Simulation& simulation) {
         kPress, [](const Simulation& s) -> const Press<2>& { return s.press(); }, true));
   gauges.push_back(motion_gauge(simulation.mechanics()));
   gauges.push_back(crack_gauge(simulation.mechanics()));
-  gauges.push_back(record_gauge(simulation));
+  return gauges;
+}
+
+std::vector<Gauge> record_gauges(const Simulation& simulation) {
+  std::vector<Gauge> gauges;
+  if (simulation.moves()) gauges.push_back(record_gauge(simulation, true));
+  gauges.push_back(record_gauge(simulation, false));
   return gauges;
 }
 

@@ -22,6 +22,8 @@ std::vector<Gauge> clock_gauges(const Simulation& simulation);
 std::vector<Gauge> temperature_gauges();
 /// Stresses and strains of the press, measures of equilibrium, cracks and energies.
 std::vector<Gauge> motion_gauges(const Simulation& simulation);
+/// What the deck's records are, by those of temperature, which heat alone has too, and those of motion.
+std::vector<Gauge> record_gauges(const Simulation& simulation);
 /// Rate and heat of a computed field.
 std::vector<Gauge> transport_gauges(const Simulation& simulation);
 /// Temperatures at the probes.

@@ -66,6 +66,21 @@ SetLoad<Dim> Loads<Dim>::on(const std::string& set) const {
 }
 
 template <int Dim>
+std::map<std::string, SetLoad<Dim>> Loads<Dim>::all() const {
+  std::map<std::string, SetLoad<Dim>> loads;
+  for (const auto& [set, entry] : entries_) loads[set] = entry.load;
+  return loads;
+}
+
+template <int Dim>
+Vec<Dim> Loads<Dim>::total(const std::string& set) const {
+  const auto found = entries_.find(set);
+  if (found == entries_.end()) return {};
+  const auto on = forces(found->second);
+  return chunked_sum<Vec<Dim>>(found->second.set.chunks, [&](int i, Vec<Dim>& total) { total += on[i]; });
+}
+
+template <int Dim>
 void Loads<Dim>::set(const std::map<std::string, SetLoad<Dim>>& loads) {
   for (const auto& [set, load] : loads) {
     const Entry& changed = entry(set);

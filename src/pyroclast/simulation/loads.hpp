@@ -29,6 +29,11 @@ class Loads {
   bool empty() const { return entries_.empty(); }
   /// None where the set was never loaded.
   SetLoad<Dim> on(const std::string& set) const;
+  /// Of each set that was ever loaded.
+  std::map<std::string, SetLoad<Dim>> all() const;
+  bool acts_on(const std::string& set) const { return entries_.contains(set); }
+  /// What acts on the body at the set by its own load, N.
+  Vec<Dim> total(const std::string& set) const;
   /// By set, from the next step on; other sets stay as they are, but that pressures which follow the body
   /// turn to where it is now. Throws Error, and changes nothing, when there is no such set, a force is to act
   /// on a component that is held or driven, or a pressure on a set without faces.

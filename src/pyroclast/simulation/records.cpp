@@ -1,12 +1,14 @@
 #include "pyroclast/simulation/records.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/model/sets.hpp"
 #include "pyroclast/simulation/cracks.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 
@@ -31,6 +33,14 @@ std::vector<int> zones_in(const Model<2>& model, const std::vector<int>& gridpoi
   for (int z = 0; z < model.zone_count(); ++z)
     if (std::ranges::all_of(model.zones[z], [&](int g) { return is_in[g]; })) zones.push_back(z);
   return zones;
+}
+
+/// Where there is no layout to say where chunks begin.
+GridpointSet in_model_order(std::vector<int> gridpoints) {
+  std::ranges::sort(gridpoints);
+  std::vector<int> chunks =
+      chunk_begins(static_cast<int>(gridpoints.size()), [&](int i) { return gridpoints[i]; });
+  return {std::move(gridpoints), std::move(chunks)};
 }
 
 }  // namespace
@@ -70,9 +80,8 @@ double column_over_si(RecordKind kind) {
   return kind == RecordKind::stress ? 1e-6 : 1.0;
 }
 
-Record::Record(const Mechanics<2>& mechanics, RecordParameters parameters)
+Record::Record(const Model<2>& model, const Mechanics<2>* mechanics, RecordParameters parameters)
     : parameters_(std::move(parameters)) {
-  const Model<2>& model = mechanics.model();
   const auto fail = [&](const std::string& why) {
     throw Error(fmt::format("{}: record \"{}\" {}", parameters_.place, parameters_.name, why));
   };
@@ -83,14 +92,25 @@ Record::Record(const Mechanics<2>& mechanics, RecordParameters parameters)
                        is_of_cracks(parameters_.kind) ? "contacts" : "gridpoints", names_of(sets)));
     return found->second;
   };
+  if (mechanics == nullptr && parameters_.kind != RecordKind::temperature)
+    fail(
+        "is of motion, but no stage moves the body: without one only records of kind temperature have an "
+        "effect");
   if (is_of_cracks(parameters_.kind)) {
     items_ = find(model.contact_sets, parameters_.set);
     std::ranges::sort(items_);
     for (int c : items_) size_.push_back(model.contacts[c].area / model.thickness);
   } else {
-    set_ = mechanics.set_of(find(model.sets, parameters_.set));
-    if (parameters_.kind == RecordKind::opening)
-      other_ = mechanics.set_of(find(model.sets, parameters_.other));
+    const auto chunked = [&](const std::string& name) {
+      return mechanics != nullptr ? mechanics->set_of(find(model.sets, name))
+                                  : in_model_order(find(model.sets, name));
+    };
+    set_ = chunked(parameters_.set);
+    mean_ = mean_over(model, set_);
+    if (parameters_.kind == RecordKind::opening) {
+      other_ = chunked(parameters_.other);
+      mean_of_other_ = mean_over(model, other_);
+    }
     if (parameters_.kind == RecordKind::stress) {
       items_ = zones_in(model, set_.gridpoints);
       if (items_.empty()) fail(fmt::format("is of the set \"{}\", which holds no zone", parameters_.set));
@@ -102,20 +122,64 @@ Record::Record(const Mechanics<2>& mechanics, RecordParameters parameters)
   whole_ = chunked_sum(chunks_, [&](int i) { return size_[i]; });
 }
 
+Record::Mean Record::mean_over(const Model<2>& model, GridpointSet set) const {
+  Mean mean{std::move(set), {}};
+  const auto& gridpoints = mean.set.gridpoints;
+  mean.weights.assign(gridpoints.size(), 0.0);
+  if (parameters_.over == MeanOver::size) {
+    const auto zones = zones_in(model, gridpoints);
+    const auto volume = zones.empty() ? std::vector<double>() : zone_geometry(model).volume;
+    for (int z : zones)
+      for (int g : model.zones[z])
+        mean.weights[std::ranges::lower_bound(gridpoints, g) - gridpoints.begin()] += volume[z] / 3.0;
+    if (zones.empty()) mean.weights = tributary_areas(gridpoints, faces_in(model, gridpoints));
+  }
+  const double whole = chunked_sum(mean.set.chunks, [&](int i) { return mean.weights[i]; });
+  for (double& weight : mean.weights)
+    weight = whole > 0.0 ? weight / whole : 1.0 / static_cast<double>(gridpoints.size());
+  return mean;
+}
+
+template <class T, class Value>
+T Record::Mean::of(Value value) const {
+  return chunked_sum<T>(set.chunks, [&](int i, T& sum) { sum += weights[i] * value(set.gridpoints[i]); });
+}
+
+/// A set that loads, holds or drives the body has what it does: its own load, and of each reaction an even
+/// share among those that hold the component. One that does none of it has all that acts on its gridpoints.
+double Record::force(const Simulation& simulation) const {
+  const Mechanics<2>& mechanics = simulation.mechanics();
+  const Supports<2>& supports = simulation.supports();
+  const Vec<2>& d = parameters_.direction;
+  const std::array<bool, 2> holds{supports.holds(parameters_.set, 0), supports.holds(parameters_.set, 1)};
+  if (!holds[0] && !holds[1] && !simulation.loads().acts_on(parameters_.set))
+    return dot(mechanics.total_applied_force(set_) - mechanics.total_force(set_), d);
+  const auto reaction = chunked_sum<Vec<2>>(set_.chunks, [&](int i, Vec<2>& sum) {
+    const int g = set_.gridpoints[i];
+    const Vec<2> force = mechanics.force(g);
+    for (const int c : {0, 1})
+      if (holds[c]) sum[c] -= force[c] / supports.holders(g, c);
+  });
+  return dot(simulation.loads().total(parameters_.set) + reaction, d);
+}
+
 double Record::read(const Simulation& simulation) const {
   return measure(simulation) - (counts_from_zero() ? zero_ : 0.0);
 }
 
 double Record::measure(const Simulation& simulation) const {
+  if (parameters_.kind == RecordKind::temperature)
+    return mean_.of<double>([&](int g) { return simulation.field().gridpoints()[g]; });
   const Mechanics<2>& mechanics = simulation.mechanics();
+  const auto displacement = [&](int g) { return mechanics.displacement(g); };
   const Vec<2>& d = parameters_.direction;
   switch (parameters_.kind) {
     case RecordKind::displacement:
-      return dot(mechanics.mean_displacement(set_), d);
+      return dot(mean_.of<Vec<2>>(displacement), d);
     case RecordKind::opening:
-      return dot(mechanics.mean_displacement(other_) - mechanics.mean_displacement(set_), d);
+      return dot(mean_of_other_.of<Vec<2>>(displacement) - mean_.of<Vec<2>>(displacement), d);
     case RecordKind::force:
-      return dot(mechanics.total_applied_force(set_) - mechanics.total_force(set_), d);
+      return force(simulation);
     case RecordKind::stress:
       return chunked_sum(chunks_,
                          [&](int i) {
@@ -125,14 +189,12 @@ double Record::measure(const Simulation& simulation) const {
                            return size_[i] * normal;
                          }) /
              whole_;
-    case RecordKind::temperature:
-      return chunked_sum(set_.chunks,
-                         [&](int i) { return simulation.field().gridpoints()[set_.gridpoints[i]]; }) /
-             static_cast<double>(set_.gridpoints.size());
     case RecordKind::crack_length:
       return chunked_sum(chunks_, [&](int i) { return is_damaged(mechanics, items_[i]) ? size_[i] : 0.0; });
     case RecordKind::crack_opening:
       return chunked_sum(chunks_, [&](int i) { return size_[i] * mechanics.opening(items_[i]); }) / whole_;
+    case RecordKind::temperature:
+      break;
   }
   return 0.0;
 }

@@ -17,11 +17,17 @@ class Simulation;
 enum class RecordKind : std::uint8_t {
   displacement,   ///< mean of a set along a direction, m
   opening,        ///< the same of a second set minus that of the first, m
-  force,          ///< on the body at a set, along a direction: what loads, holds or drives it there, N
+  force,          ///< on the body by a set that loads, holds or drives it, or at one that does not, N
   stress,         ///< mean over the zones of a set, normal to planes across a direction, tension positive, Pa
   temperature,    ///< mean of a set, °C
   crack_length,   ///< of the damaged contact points of a set, m
   crack_opening,  ///< mean over the contact points of a set, by length, m
+};
+
+/// What the mean of a set of gridpoints is taken over.
+enum class MeanOver : std::uint8_t {
+  size,  ///< the zones that lie wholly in the set, by area; without any its faces, by length; else gridpoints
+  gridpoints,  ///< each counts alike
 };
 
 struct RecordParameters {
@@ -31,6 +37,7 @@ struct RecordParameters {
   std::string other = "";  ///< the second set of an opening
   Vec<2> direction{};      ///< unit
   std::string place = "";  ///< where it is asked for, for messages
+  MeanOver over = MeanOver::size;
 };
 
 /// Column of a record in the history: its name and unit.
@@ -45,8 +52,11 @@ double column_over_si(RecordKind kind);
 /// A quantity that a run records. Displacements and openings count from the last zero.
 class Record {
  public:
-  /// Throws Error, with the record's place, when a set is missing or the set of a stress holds no zone.
-  Record(const Mechanics<2>& mechanics, RecordParameters parameters);
+  /// Throws Error, with the record's place, when a set is missing, the set of a stress holds no zone, or
+  /// nothing moves and it is of another kind than temperature.
+  ///
+  /// \param mechanics  null where nothing moves
+  Record(const Model<2>& model, const Mechanics<2>* mechanics, RecordParameters parameters);
 
   const RecordParameters& parameters() const { return parameters_; }
   /// Now, in SI; temperatures in °C.
@@ -64,10 +74,21 @@ class Record {
   bool counts_from_zero() const {
     return parameters_.kind == RecordKind::displacement || parameters_.kind == RecordKind::opening;
   }
+  /// A mean over a set: gridpoints and their weights, whose sum is 1.
+  struct Mean {
+    GridpointSet set;
+    std::vector<double> weights;
+
+    template <class T, class Value>
+    T of(Value value) const;
+  };
+  Mean mean_over(const Model<2>& model, GridpointSet set) const;
   double measure(const Simulation& simulation) const;
+  double force(const Simulation& simulation) const;
 
   RecordParameters parameters_;
   GridpointSet set_, other_;
+  Mean mean_, mean_of_other_;
   std::vector<int> items_;    ///< zones or contacts, ascending
   std::vector<int> chunks_;   ///< where those of each chunk begin
   std::vector<double> size_;  ///< of each, m³ or m

@@ -37,12 +37,13 @@ Run::Run(Simulation& simulation, std::vector<std::unique_ptr<Stage>> stages)
       records_(stages_.size()),
       most_steps_(most_steps(simulation)) {
   if (stages_.empty()) throw Error("a run needs at least one stage");
-  if (simulation.moves()) check(stages_, 0, supports_of(simulation));
+  if (simulation.moves()) check(stages_, 0, acting_on(simulation));
   const auto add = [&](std::vector<Gauge> gauges) { append(gauges_, std::move(gauges)); };
   add(clock_gauges(simulation));
   add(temperature_gauges());
   stages_columns_ = gauges_.size();
   add(motion_gauges(simulation));
+  add(record_gauges(simulation));
   add(transport_gauges(simulation));
   add(probe_gauges(simulation));
   name_columns();
@@ -63,15 +64,15 @@ void Run::name_columns() {
 
 /// Of the stages from this one on. Where platens hold the body, they do.
 void Run::check(const std::vector<std::unique_ptr<Stage>>& stages, std::size_t first,
-                Supports<2> supports) const {
+                Acting<2> acting) const {
   bool is_loaded = has_weight(simulation_);
   for (std::size_t i = 0; i < stages.size(); ++i) {
     const Stage& stage = *stages[i];
     is_loaded = is_loaded || stage.loads();
     if (i < first) continue;
-    stage.check(simulation_, supports);
+    stage.check(simulation_, acting);
     if (is_loaded && stage.needs().mechanics)
-      require_held(simulation_, supports, fmt::format("stage {} ({})", i + 1, stage.kind()));
+      require_held(simulation_, acting.supports, fmt::format("stage {} ({})", i + 1, stage.kind()));
   }
 }
 
@@ -110,7 +111,7 @@ void Run::change_later_stages(std::vector<std::unique_ptr<Stage>> stages) {
   const auto kept = static_cast<std::size_t>(last_begun_stage() + 1);
   if (stages.size() < std::max<std::size_t>(kept, 1))
     throw Error(fmt::format("the run has begun {} stages, but {} are given", kept, stages.size()));
-  if (simulation_.moves()) check(stages, kept, supports_of(simulation_));
+  if (simulation_.moves()) check(stages, kept, acting_on(simulation_));
   for (std::size_t i = 0; i < kept; ++i) stages[i] = std::move(stages_[i]);
   stages_ = std::move(stages);
   records_.resize(stages_.size());
@@ -121,8 +122,8 @@ void Run::change_later_stages(std::vector<std::unique_ptr<Stage>> stages) {
   if (stage_is_over_ && !stage_ends_run_ && has_more) outcome_ = Outcome::running;
 }
 
-void Run::check_later_stages(Supports<2> supports) const {
-  check(stages_, static_cast<std::size_t>(last_begun_stage() + 1), std::move(supports));
+void Run::check_later_stages(Acting<2> acting) const {
+  check(stages_, static_cast<std::size_t>(last_begun_stage() + 1), std::move(acting));
 }
 
 void Run::end_stage() {

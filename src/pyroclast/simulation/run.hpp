@@ -73,8 +73,8 @@ class Run {
   /// \param stages  all of the run; those up to the last begun are not taken
   void change_later_stages(std::vector<std::unique_ptr<Stage>> stages);
   /// Throws Error where stages that have not begun cannot be done, see Stage::check.
-  /// \param supports  now, or as they are about to be
-  void check_later_stages(Supports<2> supports) const;
+  /// \param acting  now, or as it is about to be
+  void check_later_stages(Acting<2> acting) const;
   /// Whether a stage has begun and is not over.
   bool stage_is_under_way() const { return stage_is_begun_ && !stage_is_over_; }
   /// Ends the stage that is under way, at the last look or where it was stopped since. Throws Error where
@@ -93,8 +93,7 @@ class Run {
   void visit_state(StateVisitor& visitor);
 
  private:
-  void check(const std::vector<std::unique_ptr<Stage>>& stages, std::size_t first,
-             Supports<2> supports) const;
+  void check(const std::vector<std::unique_ptr<Stage>>& stages, std::size_t first, Acting<2> acting) const;
   void begin_stage();
   bool move_to_look();
   int batch() const;

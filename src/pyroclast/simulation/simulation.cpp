@@ -92,6 +92,7 @@ ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const
 Simulation::Simulation(specimen::Specimen specimen, double thickness,
                        const std::vector<SolidMaterial>& solids, const std::vector<SetParameters<2>>& sets,
                        const HeatConditions& heat, const std::vector<ProbePosition>& probes,
+                       const std::vector<RecordParameters>& records,
                        const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team)
     : team_(std::move(team)),
       specimen_(std::move(specimen)),
@@ -100,6 +101,7 @@ Simulation::Simulation(specimen::Specimen specimen, double thickness,
       field_(make_field(model_, solids, heat_, team_)) {
   for (const auto& probe : probes) probes_.emplace_back(model_, probe);
   if (!motion) {
+    for (const RecordParameters& record : records) records_.emplace_back(model_, nullptr, record);
     show_cracks_to_heat();
     return;
   }
@@ -110,8 +112,9 @@ Simulation::Simulation(specimen::Specimen specimen, double thickness,
     if (const auto parted = model_.contact_sets.find(notch.name); parted != model_.contact_sets.end())
       for (int contact : parted->second) mechanics_->break_contact(contact);
   show_cracks_to_heat();
+  supports_ = std::make_unique<Supports<2>>(model_);
   loads_ = std::make_unique<Loads<2>>(*mechanics_, std::sqrt(specimen_.region.area()));
-  for (const RecordParameters& record : motion->records) records_.emplace_back(*mechanics_, record);
+  for (const RecordParameters& record : records) records_.emplace_back(model_, mechanics_.get(), record);
   if (std::ranges::find(motion->bearings, kUpperPlaten, &Bearing::name) == motion->bearings.end()) return;
   const specimen::Box& box = specimen_.region.box();
   press_ = std::make_unique<Press<2>>(*mechanics_, kVertical, box.height(), std::array{box.width()});
@@ -126,6 +129,27 @@ const Record& Simulation::record(std::string_view name) const {
 void Simulation::set_zero() {
   if (press_) press_->set_zero();
   for (Record& record : records_) record.set_zero(*this);
+}
+
+void Simulation::hold(const std::string& set, int component, const HeldMotion& motion,
+                      const std::string& place) {
+  supports_->hold(set, component, motion, place);
+  drive(set, component, 0.0);
+}
+
+void Simulation::drive(const std::string& set, int component, double velocity) {
+  for (int g : model_.set(set)) mechanics_->prescribe_velocity(g, component, velocity);
+}
+
+void Simulation::halt(const std::string& set, int component) {
+  supports_->halt(set, component);
+  drive(set, component, 0.0);
+}
+
+void Simulation::release(const std::string& set, int component, const std::string& place) {
+  supports_->release(set, component, place);
+  for (int g : model_.set(set))
+    if (!supports_->holds(g, component)) mechanics_->release(g, component);
 }
 
 const char* Simulation::coupling_of_heat() const {
@@ -155,6 +179,10 @@ void Simulation::visit_state(StateVisitor& visitor) {
     const StateVisitor::Scope scope(visitor, "field");
     field_.visit_state(visitor);
   }
+  {
+    const StateVisitor::Scope scope(visitor, "records");
+    for (Record& record : records_) record.visit_state(visitor);
+  }
   if (!moves()) return;
   {
     const StateVisitor::Scope scope(visitor, "hottest");
@@ -169,8 +197,8 @@ void Simulation::visit_state(StateVisitor& visitor) {
     loads_->visit_state(visitor);
   }
   {
-    const StateVisitor::Scope scope(visitor, "records");
-    for (Record& record : records_) record.visit_state(visitor);
+    const StateVisitor::Scope scope(visitor, "supports");
+    supports_->visit_state(visitor);
   }
   if (!press_) return;
   const StateVisitor::Scope scope(visitor, "press");

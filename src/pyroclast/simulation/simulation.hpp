@@ -18,6 +18,7 @@
 #include "pyroclast/simulation/press.hpp"
 #include "pyroclast/simulation/probe.hpp"
 #include "pyroclast/simulation/records.hpp"
+#include "pyroclast/simulation/supports.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 
@@ -26,7 +27,6 @@ namespace pyroclast {
 /// What a simulation that moves the body is made from, beside what every one is made from.
 struct MotionParameters {
   std::vector<Bearing> bearings;
-  std::vector<RecordParameters> records;
   ContactParameters contacts;
   std::optional<StrainOfConcrete> strain_of_concrete;  ///< where phases follow it
   OnCooling on_cooling = OnCooling::irreversible;
@@ -48,6 +48,7 @@ class Simulation {
   /// \param solids        by phase of the specimen, then those of bearings
   /// \param sets          beside those that every model has
   /// \param probes        of temperature
+  /// \param records       of motion only where something moves
   /// \param motion        empty where nothing moves: then there are no platens and no mechanics
   /// \param team          the threads of the run
   ///
@@ -55,8 +56,8 @@ class Simulation {
   /// probe lies outside.
   Simulation(specimen::Specimen specimen, double thickness, const std::vector<SolidMaterial>& solids,
              const std::vector<SetParameters<2>>& sets, const HeatConditions& heat,
-             const std::vector<ProbePosition>& probes, const std::optional<MotionParameters>& motion,
-             std::shared_ptr<Team> team);
+             const std::vector<ProbePosition>& probes, const std::vector<RecordParameters>& records,
+             const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
@@ -87,6 +88,16 @@ class Simulation {
   const Mechanics<2>& mechanics() const { return *mechanics_; }
   Loads<2>& loads() { return *loads_; }
   const Loads<2>& loads() const { return *loads_; }
+  const Supports<2>& supports() const { return *supports_; }
+  /// A set takes hold of a component, or moves on in another way, at a velocity from the next step on; see
+  /// Supports::hold.
+  void hold(const std::string& set, int component, const HeldMotion& motion, const std::string& place);
+  /// Another velocity of a set that is driven, m/s.
+  void drive(const std::string& set, int component, double velocity);
+  /// A set that was driven rests.
+  void halt(const std::string& set, int component);
+  /// See Supports::release.
+  void release(const std::string& set, int component, const std::string& place);
   const std::vector<Record>& records() const { return records_; }
   /// Throws Error when there is none of that name.
   const Record& record(std::string_view name) const;
@@ -122,6 +133,7 @@ class Simulation {
   std::vector<Probe> probes_;
   std::unique_ptr<Mechanics<2>> mechanics_;
   std::unique_ptr<Loads<2>> loads_;
+  std::unique_ptr<Supports<2>> supports_;
   std::vector<Record> records_;
   std::unique_ptr<Press<2>> press_;
   double heating_time_ = 0.0;

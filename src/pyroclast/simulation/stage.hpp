@@ -8,8 +8,8 @@
 
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/material/curve.hpp"
+#include "pyroclast/simulation/acting.hpp"
 #include "pyroclast/simulation/history.hpp"
-#include "pyroclast/simulation/supports.hpp"
 
 namespace pyroclast {
 
@@ -117,8 +117,8 @@ class Stage {
   virtual HeatingPlan heating() const { return {}; }
 
   /// Throws Error where the stage cannot be done, before any stage is begun.
-  /// \param supports  before the stage; it changes them to what it leaves
-  virtual void check(const Simulation&, Supports<2>&) const {}
+  /// \param acting  before the stage, which changes it to what it leaves
+  virtual void check(const Simulation&, Acting<2>&) const {}
   /// Whether it loads the body from outside.
   virtual bool loads() const { return false; }
   /// Prepares what acts on the body; moves nothing.

@@ -31,7 +31,7 @@ std::optional<std::string> Supports<2>::free_motion() const {
   std::array<double, 2> least{{1e300, 1e300}}, most{{-1e300, -1e300}};
   for (int g = 0; g < model_.gridpoint_count(); ++g)
     for (const int c : {0, 1})
-      if (held_[g][c]) {
+      if (holders_[g][c] > 0) {
         any[c] = true;
         least[c] = std::min(least[c], model_.position[g][1 - c]);
         most[c] = std::max(most[c], model_.position[g][1 - c]);
@@ -44,12 +44,88 @@ std::optional<std::string> Supports<2>::free_motion() const {
   return std::nullopt;
 }
 
-Supports<2> supports_of(const Simulation& simulation) {
-  Supports<2> supports(simulation.model());
-  for (int g = 0; g < simulation.model().gridpoint_count(); ++g)
-    for (const int c : {0, 1})
-      if (simulation.mechanics().is_prescribed(g, c)) supports.hold(g, c);
-  return supports;
+template <int Dim>
+void Supports<Dim>::count(const std::string& set, int component, int more) {
+  for (int g : model_.set(set)) holders_[g][component] += more;
+}
+
+template <int Dim>
+void Supports<Dim>::hold(const std::string& set, int component, const HeldMotion& motion,
+                         const std::string& place) {
+  const auto& own = model_.set(set);
+  for (const auto& [key, other] : held_) {
+    if (key.second != component || key.first == set || other.motion.is_like(motion)) continue;
+    for (int g : model_.set(key.first))
+      if (std::ranges::find(own, g) != own.end())
+        throw Error(fmt::format(
+            "{}: set \"{}\" shares gridpoint {} with set \"{}\" ({}), and both are held or driven "
+            "along {}, in different ways",
+            place, set, g, key.first, other.place, "xyz"[component]));
+  }
+  if (held_.insert_or_assign({set, component}, Held{motion, place}).second) count(set, component, 1);
+}
+
+template <int Dim>
+void Supports<Dim>::release(const std::string& set, int component, const std::string& place) {
+  if (held_.erase({set, component}) > 0) {
+    count(set, component, -1);
+    return;
+  }
+  std::string who = "nothing holds it";
+  for (int g : model_.set(set))
+    if (holds(g, component))
+      who = fmt::format("what holds it there is another set ({})", place_of(g, component));
+  throw Error(
+      fmt::format("{}: set \"{}\" is to be released along {}, but it is neither held nor driven so: {}",
+                  place, set, "xyz"[component], who));
+}
+
+template <int Dim>
+void Supports<Dim>::halt(const std::string& set, int component) {
+  const auto found = held_.find({set, component});
+  if (found != held_.end()) found->second.motion = {};
+}
+
+template <int Dim>
+std::string Supports<Dim>::place_of(int gridpoint, int component) const {
+  for (const auto& [key, held] : held_)
+    if (key.second == component &&
+        std::ranges::find(model_.set(key.first), gridpoint) != model_.set(key.first).end())
+      return held.place;
+  return {};
+}
+
+template <int Dim>
+void Supports<Dim>::visit_state(StateVisitor& visitor) {
+  std::vector<std::string> sets, places;
+  std::vector<int> components;
+  std::vector<HeldMotion> motions;
+  for (const auto& [key, held] : held_) {
+    sets.push_back(key.first);
+    components.push_back(key.second);
+    places.push_back(held.place);
+    motions.push_back(held.motion);
+  }
+  std::vector<double> velocities, ramp_times;
+  std::vector<std::uint8_t> are_free;
+  for (const HeldMotion& motion : motions) {
+    velocities.push_back(motion.velocity);
+    ramp_times.push_back(motion.ramp_time);
+    are_free.push_back(motion.is_free ? 1 : 0);
+  }
+  visitor.visit("sets", sets);
+  visitor.visit("components", components);
+  visitor.visit("places", places);
+  visitor.visit("velocities", velocities);
+  visitor.visit("ramp_times", ramp_times);
+  visitor.visit("are_free", are_free);
+  if (!visitor.replaces()) return;
+  held_.clear();
+  std::ranges::fill(holders_, std::array<int, Dim>{});
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    held_[{sets[i], components[i]}] = {{velocities[i], ramp_times[i], are_free[i] != 0}, places[i]};
+    count(sets[i], components[i], 1);
+  }
 }
 
 bool has_weight(const Simulation& simulation) {
@@ -65,5 +141,7 @@ void require_held(const Simulation& simulation, const Supports<2>& supports, con
                     "a set of it by a drive, or set gravity to 0",
                     what, *motion));
 }
+
+template class Supports<2>;
 
 }  // namespace pyroclast

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <ranges>
 #include <utility>
 
 #include <fmt/format.h>
@@ -31,6 +32,8 @@ constexpr double kMostNoise = 0.1;
 constexpr double kBehindPeak = 1.0 - PeakRule().fall;
 /// Peaks are looked for this often, whatever the rows of the history are.
 constexpr std::int64_t kStepsPerPoint = 100;
+/// Directions of forces that differ by less are parallel.
+constexpr double kParallel = 1e-9;
 /// Rows and frames of a stage where the deck does not say.
 constexpr double kLooks = 200.0, kFrames = 10.0;
 
@@ -250,52 +253,97 @@ Drive::Drive(Keys keys) : keys_(std::move(keys)) {
       leading_ = first->name;
 }
 
-void Drive::check(const Simulation& simulation, Supports<2>& supports) const {
+namespace {
+
+/// Throws Error where a set has gridpoints of platens, which the press works.
+void require_off_press(const Simulation& simulation, const Drive::Action& action) {
+  if (!simulation.has_press()) return;
   const Model<2>& model = simulation.model();
-  std::map<std::pair<int, int>, const Action*> taken;  // by gridpoint and component
+  for (const char* platen : {"bottom_platen", "top_platen"})
+    for (int g : model.set(action.set))
+      if (std::ranges::find(model.set(platen), g) != model.set(platen).end())
+        throw Error(fmt::format("{}: set \"{}\" has gridpoints of {}, which the press works", action.place,
+                                action.set, platen));
+}
+
+HeldMotion motion_of(const Drive::Action& action) {
+  if (action.kind == ActionKind::hold) return {};
+  return {action.amount, action.ramp_time, action.factor.has_value()};
+}
+
+/// Throws Error where a force acts along a component of a gridpoint that is held or driven.
+void require_free(const Model<2>& model, const Supports<2>& supports, const std::string& set,
+                  const Vec<2>& force, const std::string& place) {
+  for (int g : model.set(set))
+    for (const int c : {0, 1})
+      if (force[c] != 0.0 && supports.holds(g, c))
+        throw Error(fmt::format(
+            "{}: a force acts along {} on set \"{}\", which has gridpoints that are held or driven "
+            "along {} ({}): end the force by one of 0 N, or release them",
+            place, "xy"[c], set, "xy"[c], supports.place_of(g, c)));
+}
+
+}  // namespace
+
+void Drive::check(const Simulation& simulation, Acting<2>& acting) const {
+  const Model<2>& model = simulation.model();
   for (const Action& action : keys_.actions) {
     const auto found = model.sets.find(action.set);
     if (found == model.sets.end() || found->second.empty())
       throw Error(fmt::format("{}: there is no set \"{}\"; there are {}", action.place, action.set,
                               names_of(model.sets)));
-    for (int g : found->second)
-      for (int c : action.components) {
-        if (action.kind == ActionKind::release) {
-          supports.release(g, c);
-          continue;
-        }
-        const auto [known, is_new] = taken.emplace(std::pair{g, c}, &action);
-        if (!is_new && known->second != &action)
-          throw Error(fmt::format(
-              "{}: set \"{}\" shares gridpoint {} with set \"{}\" ({}), and both are held or driven "
-              "along {}",
-              action.place, action.set, g, known->second->set, known->second->place, "xy"[c]));
-        supports.hold(g, c);
-      }
+    require_off_press(simulation, action);
+    if (action.kind == ActionKind::pressure && faces_in(model, action.set_of(model)).empty())
+      throw Error(
+          fmt::format("{}: a pressure acts on faces that meet no other block, but set \"{}\" has none",
+                      action.place, action.set));
   }
-  for (const Action& action : keys_.actions) {
-    if (action.kind != ActionKind::force) continue;
-    for (int g : model.set(action.set))
-      for (const int c : {0, 1})
-        if (action.direction[c] != 0.0 && supports.holds(g, c))
-          throw Error(fmt::format(
-              "{}: the force acts along {} on gridpoints of set \"{}\" that are held or driven along "
-              "{}",
-              action.place, "xy"[c], action.set, "xy"[c]));
+  require_consistent();
+  const auto is_of = [](ActionKind kind) { return [kind](const Action& a) { return a.kind == kind; }; };
+  for (const Action& action : keys_.actions | std::views::filter(is_of(ActionKind::release)))
+    for (int c : action.components) acting.supports.release(action.set, c, action.place);
+  for (const Action& action : keys_.actions)
+    if (action.kind == ActionKind::hold || action.kind == ActionKind::velocity)
+      for (int c : action.components) acting.supports.hold(action.set, c, motion_of(action), action.place);
+  for (const auto& [set, load] : loads_at_end(simulation, acting)) {
+    const auto place =
+        std::ranges::find_if(keys_.actions, [&](const Action& a) { return a.set == set && !is_motion(a); });
+    acting.loads[set] = {load, place->place};
   }
+  for (const auto& [set, lasting] : acting.loads)
+    require_free(model, acting.supports, set, lasting.load.force, lasting.place);
+  if (keys_.control) {
+    const RecordParameters& record = simulation.record(keys_.control->record).parameters();
+    for (const std::string& set : {record.set, record.other})
+      require_free(model, acting.supports, set, record.direction, keys_.control->place);
+  }
+  for (const Action& action : keys_.actions | std::views::filter(is_of(ActionKind::velocity)))
+    acting.supports.halt(action.set, action.components.front());
 }
 
-std::vector<std::string> Drive::sets() const {
-  std::vector<std::string> names;
-  for (const Action& action : keys_.actions) names.push_back(action.set);
-  return names;
+/// One set is asked for one thing: not to be held and released, nor for pressures of both sorts.
+void Drive::require_consistent() const {
+  for (const Action& one : keys_.actions)
+    for (const Action& other : keys_.actions) {
+      if (&one >= &other || one.set != other.set) continue;
+      for (int c : one.components)
+        if (std::ranges::find(other.components, c) != other.components.end())
+          throw Error(fmt::format(
+              "{}: set \"{}\" is held, driven or released along {} twice in one stage, here and at {}",
+              other.place, other.set, "xy"[c], one.place));
+      if (one.kind == ActionKind::pressure && other.kind == ActionKind::pressure &&
+          one.is_follower != other.is_follower)
+        throw Error(fmt::format(
+            "{}: set \"{}\" has a pressure that follows the body and one that does not ({}); give one "
+            "of them to another set with the same faces",
+            other.place, other.set, one.place));
+    }
 }
 
 void Drive::check_beside(const Drive& under_way, const Simulation& simulation) const {
   const auto steers = [](const Action& a) {
     return a.kind != ActionKind::hold && a.kind != ActionKind::release;
   };
-  const auto is_motion = [](const Action& a) { return !a.components.empty(); };
   const Model<2>& model = simulation.model();
   for (const Action& other : under_way.keys_.actions) {
     if (!steers(other)) continue;
@@ -332,7 +380,7 @@ std::int64_t Drive::steps_in(const Simulation& simulation, double interval) cons
 
 void Drive::begin(Simulation& simulation) {
   Mechanics<2>& mechanics = simulation.mechanics();
-  first_.assign(keys_.actions.size(), 0.0);
+  velocity_.assign(keys_.actions.size(), 0.0);
   if (keys_.control)
     first_opening_ = last_opening_ = simulation.record(keys_.control->record).read(simulation);
   came_.assign(keys_.actions.size(), 0.0);
@@ -346,27 +394,111 @@ void Drive::begin(Simulation& simulation) {
   most_kinetic_ = std::abs(energy.kinetic);
   const Vec<2> weight = mechanics.total_weight(mechanics.set_of(simulation.model().set("specimen")));
   body_ = {simulation.model().thickness, norm(weight)};
-  for (std::size_t i = 0; i < keys_.actions.size(); ++i) {
-    const Action& action = keys_.actions[i];
-    const SetLoad<2> load = simulation.loads().on(action.set);
-    if (action.kind == ActionKind::force) first_[i] = dot(load.force, action.direction);
-    if (action.kind == ActionKind::pressure) first_[i] = load.pressure;
-    for (int g : simulation.model().set(action.set))
-      for (int c : action.components) {
-        if (action.kind == ActionKind::hold) mechanics.prescribe_velocity(g, c, 0.0);
-        if (action.kind == ActionKind::release) mechanics.release(g, c);
-      }
-  }
+  for (const Action& action : keys_.actions)
+    if (action.kind == ActionKind::release)
+      for (int c : action.components) simulation.release(action.set, c, action.place);
+  for (const Action& action : keys_.actions)
+    if (action.kind == ActionKind::hold || action.kind == ActionKind::velocity)
+      for (int c : action.components) simulation.hold(action.set, c, motion_of(action), action.place);
+  first_loads_.clear();
+  for (const Action& action : keys_.actions)
+    if (!is_motion(action)) first_loads_.push_back(simulation.loads().on(action.set));
+  // what is there already has to be surpassed before it counts as driving on
+  const auto loads = loads_at(0.0, [&](const std::string& set) { return first_load(set); });
+  for (std::size_t i = 0; i < keys_.actions.size(); ++i) farthest_[i] = std::abs(came(i, loads, 0.0));
 }
 
-/// What an action does now: on the way from what was there to its amount, or what was there and a controlled
-/// load.
-double Drive::amount(std::size_t i, double time) const {
-  const Action& action = keys_.actions[i];
-  if (keys_.control && action.kind == ActionKind::force) return first_[i] + load_factor_ * action.amount;
-  const double share = action.ramp_time > 0.0 ? std::min(1.0, time / action.ramp_time) : 1.0;
+/// Share of the way of an action from what was there to its amount.
+double Drive::share(const Action& action, double time) const {
+  return action.ramp_time > 0.0 ? std::min(1.0, time / action.ramp_time) : 1.0;
+}
+
+/// What an action adds now to what was there; a controlled force is added to what was there as a whole.
+double Drive::part(const Action& action, double time) const {
+  if (keys_.control && action.kind == ActionKind::force) return load_factor_ * action.amount;
   const double factor = action.factor ? (*action.factor)(std::min(time, keys_.duration)) : 1.0;
-  return first_[i] + share * (factor * action.amount - first_[i]);
+  return share(action, time) * factor * action.amount;
+}
+
+/// The loads of the sets that the stage loads: all that it states for a set adds up. What was there before
+/// ends along the directions that are stated, evenly over the longest of their ramps, and stays across them.
+/// \param before  the load of a set when the stage began
+template <class Before>
+std::map<std::string, SetLoad<2>> Drive::loads_at(double time, Before before) const {
+  std::map<std::string, SetLoad<2>> loads;
+  for (const Action& first : keys_.actions) {
+    if (is_motion(first) || loads.contains(first.set)) continue;
+    const SetLoad<2> old = before(first.set);
+    SetLoad<2>& load = loads[first.set] = old;
+    double left_of_force = 1.0, left_of_pressure = 1.0, pressure = 0.0;
+    Vec<2> force{};
+    std::vector<Vec<2>> along;  // directions of forces, orthonormal
+    bool has_pressure = false;
+    for (const Action& action : keys_.actions) {
+      if (action.set != first.set) continue;
+      if (action.kind == ActionKind::force) {
+        force += part(action, time) * action.direction;
+        if (keys_.control) continue;
+        left_of_force =
+            std::min(left_of_force, 1.0 - share(longest_ramp(first.set, ActionKind::force), time));
+        Vec<2> rest = action.direction;
+        for (const Vec<2>& known : along) rest += -dot(rest, known) * known;
+        if (norm(rest) > kParallel) along.push_back((1.0 / norm(rest)) * rest);
+      } else if (action.kind == ActionKind::pressure) {
+        pressure += part(action, time);
+        left_of_pressure = 1.0 - share(longest_ramp(first.set, ActionKind::pressure), time);
+        load.is_follower = action.is_follower;
+        has_pressure = true;
+      }
+    }
+    for (const Vec<2>& direction : along)
+      load.force += (-(1.0 - left_of_force) * dot(old.force, direction)) * direction;
+    load.force += force;
+    if (has_pressure) load.pressure = pressure + left_of_pressure * old.pressure;
+  }
+  return loads;
+}
+
+/// Of the loads of one sort on a set.
+const Drive::Action& Drive::longest_ramp(const std::string& set, ActionKind kind) const {
+  const Action* longest = nullptr;
+  for (const Action& action : keys_.actions)
+    if (action.set == set && action.kind == kind &&
+        (longest == nullptr || action.ramp_time > longest->ramp_time))
+      longest = &action;
+  return *longest;
+}
+
+std::map<std::string, SetLoad<2>> Drive::loads_at_end(const Simulation&, const Acting<2>& acting) const {
+  return loads_at(keys_.duration, [&](const std::string& set) {
+    const auto found = acting.loads.find(set);
+    return found == acting.loads.end() ? SetLoad<2>{} : found->second.load;
+  });
+}
+
+SetLoad<2> Drive::first_load(const std::string& set) const {
+  std::size_t i = 0;
+  for (const Action& action : keys_.actions) {
+    if (is_motion(action)) continue;
+    if (action.set == set) return first_loads_[i];
+    ++i;
+  }
+  return {};
+}
+
+/// How far an action has come: a displacement, the force along its direction, or a pressure.
+double Drive::came(std::size_t i, const std::map<std::string, SetLoad<2>>& loads, double interval) const {
+  const Action& action = keys_.actions[i];
+  switch (action.kind) {
+    case ActionKind::velocity:
+      return came_[i] + velocity_[i] * interval;
+    case ActionKind::force:
+      return dot(loads.at(action.set).force, action.direction);
+    case ActionKind::pressure:
+      return loads.at(action.set).pressure;
+    default:
+      return 0.0;
+  }
 }
 
 /// Where it goes as asked by itself, the pair has nothing to do; else the loads change in its stead.
@@ -379,9 +511,9 @@ void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads
   pair_force_ = control.stiffness * (first_opening_ + control.rate * time - opening);
   const double step = static_cast<double>(kStepsPerControl) * simulation.mechanics().time_step();
   load_factor_ += pair_force_ / unit_force() * step / control.response_time;
-  const auto& [name, kind, set, other, direction, place] = record.parameters();
-  loads[other] = {.force = pair_force_ * direction};
-  loads[set] = {.force = -pair_force_ * direction};
+  const RecordParameters& of = record.parameters();
+  loads[of.other] = {.force = pair_force_ * of.direction};
+  loads[of.set] = {.force = -pair_force_ * of.direction};
 }
 
 /// All forces of the stage at a factor of 1, N.
@@ -401,26 +533,18 @@ void Drive::act(Simulation& simulation, double time) {
   if (keys_.control) steer(simulation, time, loads);
   const double interval = static_cast<double>(steps_per_adjustment()) * simulation.mechanics().time_step();
   is_driven_ = keys_.control && keys_.control->rate != 0.0;
+  for (const auto& [set, load] : loads_at(time, [&](const std::string& of) { return first_load(of); }))
+    loads[set] = load;
   for (std::size_t i = 0; i < keys_.actions.size(); ++i) {
     const Action& action = keys_.actions[i];
-    const double now = amount(i, time);
-    if (action.kind == ActionKind::hold || action.kind == ActionKind::release) continue;
-    came_[i] = action.kind == ActionKind::velocity ? came_[i] + now * interval : now;
-    if (std::abs(came_[i]) > farthest_[i]) {
-      farthest_[i] = std::abs(came_[i]);
-      is_driven_ = true;
+    if (action.kind == ActionKind::velocity) {
+      velocity_[i] = part(action, time);
+      simulation.drive(action.set, action.components.front(), velocity_[i]);
     }
-    if (action.kind == ActionKind::velocity)
-      for (int g : simulation.model().set(action.set))
-        simulation.mechanics().prescribe_velocity(g, action.components.front(), now);
-    if (action.kind != ActionKind::force && action.kind != ActionKind::pressure) continue;
-    SetLoad<2>& load = loads.try_emplace(action.set, simulation.loads().on(action.set)).first->second;
-    if (action.kind == ActionKind::force) {
-      load.force += (now - dot(load.force, action.direction)) * action.direction;
-    } else {
-      load.pressure = now;
-      load.is_follower = action.is_follower;
-    }
+    came_[i] = came(i, loads, interval);
+    if (std::abs(came_[i]) <= farthest_[i]) continue;
+    farthest_[i] = std::abs(came_[i]);
+    is_driven_ = true;
   }
   simulation.loads().set(loads);
   if (is_driven_) driven_ += interval;
@@ -509,9 +633,7 @@ void Drive::halt(Simulation& simulation) {
     simulation.loads().set({{record.set, {}}, {record.other, {}}});
   }
   for (const Action& action : keys_.actions)
-    if (action.kind == ActionKind::velocity)
-      for (int g : simulation.model().set(action.set))
-        simulation.mechanics().prescribe_velocity(g, action.components.front(), 0.0);
+    if (action.kind == ActionKind::velocity) simulation.halt(action.set, action.components.front());
 }
 
 Verdict Drive::judge(Simulation& simulation) {
@@ -612,7 +734,19 @@ void Drive::visit_state(StateVisitor& visitor) {
   visitor.visit("last_opening", last_opening_);
   visitor.visit("steps", steps_);
   visitor.visit("frames", frames_);
-  visitor.visit("first", first_);
+  {
+    std::vector<double> numbers;
+    for (const SetLoad<2>& load : first_loads_)
+      numbers.insert(numbers.end(),
+                     {load.force[0], load.force[1], load.pressure, load.is_follower ? 1.0 : 0.0});
+    visitor.visit("first_loads", numbers);
+    if (visitor.replaces()) {
+      first_loads_.clear();
+      for (std::size_t i = 0; i + 3 < numbers.size(); i += 4)
+        first_loads_.push_back({Vec<2>{{numbers[i], numbers[i + 1]}}, numbers[i + 2], numbers[i + 3] != 0.0});
+    }
+  }
+  visitor.visit("velocity", velocity_);
   visitor.visit("last", last_);
   visitor.visit("came", came_);
   visitor.visit("farthest", farthest_);

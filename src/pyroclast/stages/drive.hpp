@@ -29,6 +29,8 @@ class Drive : public Stage {
     double ramp_time = 0.0;            ///< in which the amount comes to its value, evenly, s
     std::optional<Curve> factor = {};  ///< of the amount, over the time since the stage began, s
     std::string place = "";            ///< in the deck, for messages
+
+    const std::vector<int>& set_of(const Model<2>& model) const { return model.set(set); }
   };
   /// A condition on a record that ends the stage.
   struct Until {
@@ -66,10 +68,8 @@ class Drive : public Stage {
 
   const char* kind() const override { return "drive"; }
   StageNeeds needs() const override { return {}; }
-  void check(const Simulation& simulation, Supports<2>& supports) const override;
+  void check(const Simulation& simulation, Acting<2>& acting) const override;
   bool loads() const override;
-  /// Names of the sets that it acts on.
-  std::vector<std::string> sets() const;
   /// Throws Error where it would act on what another one, which is under way, moves or loads again and again.
   void check_beside(const Drive& under_way, const Simulation& simulation) const;
   void begin(Simulation& simulation) override;
@@ -84,11 +84,22 @@ class Drive : public Stage {
 
  private:
   using ChangedLoads = std::map<std::string, SetLoad<2>>;  ///< by set
+  static bool is_motion(const Action& a) {
+    return a.kind != ActionKind::force && a.kind != ActionKind::pressure;
+  }
+  void require_consistent() const;
+  double share(const Action& action, double time) const;
+  double part(const Action& action, double time) const;
+  template <class Before>
+  ChangedLoads loads_at(double time, Before before) const;
+  ChangedLoads loads_at_end(const Simulation& simulation, const Acting<2>& acting) const;
+  const Action& longest_ramp(const std::string& set, ActionKind kind) const;
+  SetLoad<2> first_load(const std::string& set) const;
+  double came(std::size_t action, const ChangedLoads& loads, double interval) const;
   void steer(const Simulation& simulation, double time, ChangedLoads& loads);
   double unit_force() const;
   std::int64_t steps_per_adjustment() const;
   void act(Simulation& simulation, double time);
-  double amount(std::size_t action, double time) const;
   void take_peaks(const Simulation& simulation);
   bool is_met(std::size_t condition, const Simulation& simulation);
   bool is_beyond_noise(double share, const Simulation& simulation);
@@ -102,8 +113,8 @@ class Drive : public Stage {
   std::optional<std::string> leading_;  ///< record that the test is about: the first force, else stress
   std::int64_t steps_ = 0;
   std::int64_t frames_ = 0;
-  /// Force along its direction, or pressure, of each action when the stage began.
-  std::vector<double> first_;
+  std::vector<SetLoad<2>> first_loads_;  ///< of the set of each load, when the stage began
+  std::vector<double> velocity_;         ///< of each action now, m/s
   // What drives the body on: how far each action came, m, N or Pa, and how far at most; for how long, s.
   std::vector<double> came_, farthest_;
   double driven_ = 0.0;

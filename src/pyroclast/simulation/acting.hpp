@@ -1,0 +1,29 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "pyroclast/simulation/loads.hpp"
+#include "pyroclast/simulation/supports.hpp"
+
+namespace pyroclast {
+
+/// A load that lasts, as far as it can be foreseen, and the place in the deck that stated it last.
+template <int Dim>
+struct LastingLoad {
+  SetLoad<Dim> load;
+  std::string place;
+};
+
+/// What holds, drives and loads the body before a stage, as far as it can be foreseen, so that decks are
+/// checked before they run.
+template <int Dim>
+struct Acting {
+  Supports<Dim> supports;
+  std::map<std::string, LastingLoad<Dim>> loads;  ///< by set
+};
+
+/// What acts now.
+Acting<2> acting_on(const Simulation& simulation);
+
+}  // namespace pyroclast
