@@ -9,40 +9,16 @@
 #include "messages.hpp"
 #include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/base/state_copy.hpp"
-#include "stages/small_runs.hpp"
+#include "stages/drives.hpp"
 
 namespace pyroclast {
 namespace {
-
-constexpr double kWidth = 0.06, kHeight = 0.12;  // m, thickness 1 m
-
-/// The small prism without platens, and without weight.
-std::string free_deck(const std::string& rest) {
-  std::string text = deck(rest);
-  for (const char* gone : {"[platens]\nthickness = \"10 mm\"\n", "platen_friction = 0.0\n",
-                           "[materials.platen]\nE = \"200 GPa\"\nnu = 0.3\ndensity = \"7850 kg/m3\"\n",
-                           "[output]\nhistory_strain = 1e-5\nframe_strain = 1e-3\n"})
-    text = with(text, gone, "");
-  return with(text, "mass = \"scaled\"\n", "mass = \"scaled\"\ngravity = \"0 m/s2\"\n");
-}
-
-std::string drive(const std::string& keys, const std::string& drives) {
-  return "[[stages]]\nkind = \"drive\"\n" + keys + "\n" + drives;
-}
-
-std::string does(const std::string& set, const std::string& what) {
-  return "[[stages.drives]]\nset = \"" + set + "\"\n" + what + "\n";
-}
 
 /// Left side held along x, one corner along y.
 const std::string kHeld = does("left", "hold = [\"x\"]") + does("corner", "hold = [\"y\"]");
 const std::string kCorner =
     "[[sets]]\nname = \"corner\"\nwithin = \"left\"\nnearest = [\"0 mm\", \"0 mm\"]\n";
 const std::string kToRest = "duration = \"2 s\"\nunbalanced_ratio = 1e-8";
-
-std::string record(const std::string& name, const std::string& kind, const std::string& rest) {
-  return "[[record]]\nname = \"" + name + "\"\nkind = \"" + kind + "\"\n" + rest + "\n";
-}
 
 const std::string kRecords =
     record("stress", "stress", "set = \"specimen\"\ndirection = \"x\"") +
