@@ -25,7 +25,7 @@ TEST(Sets, HoldWhatLiesInTheirPlaceBoundsIncluded) {
       with_sets({{.name = "box", .place = InBox<2>{{{0.0, 0.0}}, {{0.01, 0.02}}}},
                  {.name = "disc", .place = InBall<2>{{{0.0, 0.0}}, 0.02}},
                  {.name = "line", .within = "specimen", .place = OnLine<2>{{{0.0, 0.0}}, {{0.05, 0.0}}}},
-                 {.name = "corner", .within = "bottom", .place = NearestTo<2>{{{-1.0, 0.0}}}}});
+                 {.name = "corner", .within = "bottom", .place = NearestTo<2>{{{-0.002, 0.0}}}}});
   for (int g = 0; g < model.gridpoint_count(); ++g) {
     const auto is_in = [&](const char* name) { return std::ranges::count(model.set(name), g) == 1; };
     const Vec<2>& x = model.position[g];

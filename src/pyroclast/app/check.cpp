@@ -133,7 +133,7 @@ int check(const RunOptions& options) {
   const auto simulation = make_simulation(setup, loaded.team);
   const Model<2>& model = simulation->model();
   fmt::print("deck            {} is valid: {}\n", loaded.deck.name(), setup.title);
-  fmt::print("{}{}{}", describe_warnings(loaded.warnings), describe_own_laws(),
+  fmt::print("{}{}{}{}", describe_warnings(loaded.warnings), describe_unused(setup), describe_own_laws(),
              describe(simulation->specimen()));
   fmt::print("model           {} blocks{}, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
              simulation->moves() ? " with the platens" : "", model.zone_count(), model.gridpoint_count(),

@@ -99,8 +99,8 @@ int exit_code(const Summary& summary) {
 std::string describe_start(Session& session) {
   const Simulation& simulation = session.simulation();
   const Loaded& loaded = session.loaded();
-  std::string text =
-      describe_warnings(loaded.warnings) + describe_own_laws() + describe(simulation.specimen());
+  std::string text = describe_warnings(loaded.warnings) + describe_unused(loaded.setup) +
+                     describe_own_laws() + describe(simulation.specimen());
   const Model<2>& model = simulation.model();
   text += fmt::format("model           {} zones, {} contacts\n", model.zone_count(), model.contact_count());
   if (const auto* conduction = simulation.field().conduction())

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/plugin/load.hpp"
@@ -101,6 +102,12 @@ std::string describe(const specimen::Specimen& s) {
 
 std::string describe(const Team& team) {
   return team.size() == 1 ? "1 thread" : fmt::format("up to {} threads", team.size());
+}
+
+std::string describe_unused(const Setup& setup) {
+  if (setup.unused_sets.empty()) return {};
+  return fmt::format("{:<16}{}: no table names {}, so for Python and ParaView alone\n", "sets",
+                     fmt::join(setup.unused_sets, ", "), setup.unused_sets.size() == 1 ? "it" : "them");
 }
 
 std::string describe_warnings(const std::vector<std::string>& warnings) {

@@ -33,6 +33,8 @@ std::string describe(const Team& team);
 
 /// A line each, for the screen; empty without any.
 std::string describe_warnings(const std::vector<std::string>& warnings);
+/// What of a deck is there for others than the program; empty where nothing is.
+std::string describe_unused(const Setup& setup);
 
 /// What the heat solver is about to do, for the screen.
 /// \param temperatures  that the run may come to, °C

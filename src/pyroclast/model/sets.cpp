@@ -18,6 +18,8 @@ namespace {
 
 /// What is this near to a bound or a line, in sizes of the model, is on it.
 constexpr double kOnBound = 1e-9;
+/// What is farther from the body than so many blocks is not meant.
+constexpr double kNear = 1.0;
 
 template <int Dim>
 double size_of(const Model<Dim>& model) {
@@ -80,6 +82,25 @@ std::vector<Vec<Dim>> centroids(const Model<Dim>& model) {
     moment[block] = (1.0 / whole[block]) * moment[block];
   }
   return moment;
+}
+
+/// Of a point from the gridpoint next to it, m.
+template <int Dim>
+double distance_of(const Model<Dim>& model, const Vec<Dim>& point) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& x : model.position) least = std::min(least, norm(x - point));
+  return least;
+}
+
+/// The diameter of the largest block that is of no bearing, m.
+template <int Dim>
+double block_size(const Model<Dim>& model) {
+  double largest = 0.0;
+  for (int block = 0; block < model.block_count(); ++block)
+    for (int g = model.block_gridpoints[block];
+         g < model.block_gridpoints[block + 1] && !model.is_of_bearing(block); ++g)
+      largest = std::max(largest, norm(model.position[g] - model.position[model.block_gridpoints[block]]));
+  return largest;
 }
 
 template <int Dim>
@@ -169,7 +190,13 @@ void add_sets(Model<Dim>& model, const std::vector<SetParameters<Dim>>& sets) {
                          is_of_contacts ? "contacts" : "gridpoints", names_of(all)));
       within = &found->second;
     }
-    auto members = chosen(items_of(model, asked.of), within, asked.place, slack);
+    const auto items = items_of(model, asked.of);
+    if (const auto* nearest = std::get_if<NearestTo<Dim>>(&asked.place))
+      if (const double away = distance_of(model, nearest->point); away > kNear * block_size(model))
+        fail(fmt::format(
+            "is of what is nearest to a place that lies {:.4g} m from the body, more than a block is wide",
+            away));
+    auto members = chosen(items, within, asked.place, slack);
     if (members.empty()) fail("is empty: nothing lies there");
     all[asked.name] = std::move(members);
   }

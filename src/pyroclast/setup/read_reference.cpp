@@ -32,14 +32,31 @@ const std::vector<Choice<int>>& built_in() {
   return words;
 }
 
-/// The columns that a figure draws, by the figure.
-const std::vector<Cells>& tables() {
-  static const std::vector<Cells> all{{"strain", "stress_MPa"},
-                                      {"temperature_degC", "total_strain"},
-                                      {"temperature_degC", "total_strain_low", "total_strain_high"},
-                                      {"temperature_degC", "stress_MPa"},
-                                      {"heating_time_s", "temperature_degC"}};
+/// The columns that a figure draws, and whether the run has that figure.
+struct FigureTable {
+  Cells columns;
+  bool DrawnTables::*is_drawn;
+};
+
+const std::vector<FigureTable>& tables() {
+  static const std::vector<FigureTable> all{
+      {{"strain", "stress_MPa"}, &DrawnTables::strain_stress},
+      {{"temperature_degC", "total_strain"}, &DrawnTables::temperature_strain},
+      {{"temperature_degC", "total_strain_low", "total_strain_high"}, &DrawnTables::temperature_strain},
+      {{"temperature_degC", "stress_MPa"}, &DrawnTables::temperature_stress},
+      {{"heating_time_s", "temperature_degC"}, &DrawnTables::time_temperature}};
   return all;
+}
+
+/// Throws Error where no figure of the run shows what a reference is of.
+void require_drawn(bool DrawnTables::*of, const DrawnTables& drawn) {
+  if (drawn.*of) return;
+  Cells shown;
+  for (const FigureTable& table : tables())
+    if (drawn.*table.is_drawn) shown.push_back(fmt::format("{}", fmt::join(table.columns, ",")));
+  throw Error(shown.empty() ? "has no effect: the figures of this run draw no reference"
+                            : fmt::format("has no effect: no figure of this run draws it; they draw {}",
+                                          quoted_list(shown)));
 }
 
 Cells cells_of(std::string_view line) {
@@ -62,10 +79,12 @@ bool is_finite_number(const std::string& cell) {
   return error == std::errc() && end == cell.data() + cell.size() && std::isfinite(value);
 }
 
-void check_header(const Cells& header) {
-  if (std::ranges::find(tables(), header) != tables().end()) return;
+void check_header(const Cells& header, const DrawnTables& drawn) {
+  const auto found = std::ranges::find(tables(), header, &FigureTable::columns);
+  if (found != tables().end()) return require_drawn(found->is_drawn, drawn);
   Cells allowed;
-  for (const Cells& table : tables()) allowed.push_back(fmt::format("{}", fmt::join(table, ",")));
+  for (const FigureTable& table : tables())
+    allowed.push_back(fmt::format("{}", fmt::join(table.columns, ",")));
   throw Error(fmt::format("the header \"{}\" is none of {}", fmt::join(header, ","), quoted_list(allowed)));
 }
 
@@ -77,7 +96,7 @@ void check_row(const Cells& row, std::size_t columns) {
 }
 
 /// Throws Error naming file and line.
-void check_csv(const std::filesystem::path& path) {
+void check_csv(const std::filesystem::path& path, const DrawnTables& drawn) {
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path))
     throw Error(fmt::format("cannot open the file {}", path.string()));
@@ -88,7 +107,7 @@ void check_csv(const std::filesystem::path& path) {
     if (line.find_first_not_of(" \t\r") == line.npos || line.front() == '#') continue;
     try {
       if (header.empty())
-        check_header(header = cells_of(line));
+        check_header(header = cells_of(line), drawn);
       else
         check_row(cells_of(line), header.size()), ++rows;
     } catch (const Error& e) {
@@ -103,12 +122,18 @@ void check_csv(const std::filesystem::path& path) {
 
 }  // namespace
 
-void read_reference(const Section& output, const std::filesystem::path& folder) {
+void read_reference(const Section& output, const std::filesystem::path& folder, const DrawnTables& drawn) {
   const std::string name = output.word_or_text(
       "reference", built_in(), "CSV file beside the deck, see [deck.md](deck.md#reference-in-figures)",
       "what the figures draw beside the results");
   Cells words;
   for (const auto& word : built_in()) words.emplace_back(word.word);
+  try {
+    if (name == words[1]) require_drawn(&DrawnTables::strain_stress, drawn);
+    if (name == words[2]) require_drawn(&DrawnTables::temperature_strain, drawn);
+  } catch (const Error& e) {
+    output.error("reference", e.what());
+  }
   if (std::ranges::find(words, name) != words.end()) return;
   if (!name.ends_with(".csv")) {
     output.error("reference", fmt::format("is none of {}, and no file whose name ends in .csv{}",
@@ -116,7 +141,7 @@ void read_reference(const Section& output, const std::filesystem::path& folder) 
     return;
   }
   try {
-    check_csv(folder / name);
+    check_csv(folder / name, drawn);
     output.names_file("reference", folder / name);
   } catch (const Error& e) {
     output.error("reference", e.what());

@@ -6,10 +6,21 @@
 
 namespace pyroclast {
 
+/// What the figures of a run show, as figures.py decides it: a reference of something else would have no
+/// effect.
+struct DrawnTables {
+  bool strain_stress = false;       ///< a compression at the end
+  bool temperature_strain = false;  ///< an expansion under a held load
+  bool temperature_stress = false;  ///< a thrust between held platens
+  bool time_temperature = false;    ///< heat conduction
+};
+
 /// Reads which curves the figures draw beside the results: a built-in reference, or a CSV file of the user's.
 /// The run itself has no use for it; figures take it from the deck that the run keeps. A wrong name, and a
-/// file that figures could not draw, are errors of the deck. \param output  the table [output] \param folder
-/// from which a relative file name is taken
-void read_reference(const Section& output, const std::filesystem::path& folder);
+/// file that figures could not draw, or of which none shows anything, are errors of the deck.
+///
+/// \param output  the table [output]
+/// \param folder  from which a relative file name is taken
+void read_reference(const Section& output, const std::filesystem::path& folder, const DrawnTables& drawn);
 
 }  // namespace pyroclast

@@ -95,6 +95,36 @@ void check_heat(const Section& root, const HeatConditions& conditions,
   }
 }
 
+/// That heat which may flow does.
+void check_flow(const Section& root, const HeatConditions& conditions,
+                const std::vector<std::unique_ptr<Stage>>& stages) {
+  const auto heat = root.optional_section("heat");
+  const auto lets_flow = [](const auto& stage) { return stage->heating().duration > 0.0; };
+  if (!root.ok() || !heat || conditions.boundaries.empty() || std::ranges::any_of(stages, lets_flow)) return;
+  heat->error("boundaries",
+              "have no effect: no stage lets heat flow, as those of kind \"expose\" and \"conduct\" do");
+}
+
+/// A stage that moves the body takes it as the last exchange left it: what `conduct` did since then would
+/// have no effect on it.
+void check_hand_over(const Section& root, const std::vector<std::unique_ptr<Stage>>& stages) {
+  const auto sections = root.sections("stages");
+  std::optional<std::size_t> pending;  // a stage whose temperatures are still to be handed over
+  for (std::size_t i = 0; i < std::min(stages.size(), sections.size()); ++i) {
+    const StageNeeds needs = stages[i]->needs();
+    if (needs.exchanges) pending.reset();
+    if (!needs.mechanics) pending = i;
+    if (!pending || !needs.mechanics) continue;
+    sections[i].error(
+        "kind",
+        fmt::format(
+            "moves the body, but nobody has handed over to it the temperatures of stage {} ({}); put a "
+            "stage of kind \"expose\" between them, or in the place of that one",
+            *pending + 1, stages[*pending]->kind()));
+    return;
+  }
+}
+
 /// That boundaries act on sides that there are.
 void check_heated_sides(const Section& root, const Setup& setup) {
   std::vector<std::string> names{HeatedFaces::kOutline, HeatedFaces::kBox};
@@ -254,6 +284,32 @@ std::vector<std::string> materials_of(const std::vector<Bearing>& bearings) {
   return names;
 }
 
+/// Sets that no stage, record, heat boundary or other set names.
+std::vector<std::string> unused_sets(const Setup& setup) {
+  std::vector<std::string> used;
+  for (const auto& stage : setup.stages)
+    for (const std::string& set : stage->sets()) used.push_back(set);
+  for (const RecordParameters& record : setup.records) used.insert(used.end(), {record.set, record.other});
+  for (const HeatBoundaryCondition& boundary : setup.heat.boundaries) used.push_back(boundary.faces.part);
+  for (const auto& set : setup.sets) used.push_back(set.within);
+  std::vector<std::string> unused;
+  for (const auto& set : setup.sets)
+    if (std::ranges::find(used, set.name) == used.end()) unused.push_back(set.name);
+  return unused;
+}
+
+DrawnTables drawn_tables(const Setup& setup) {
+  const auto any = [&](auto is) { return std::ranges::any_of(setup.stages, is); };
+  const bool has_platens = setup.motion && std::ranges::any_of(setup.motion->bearings, [](const Bearing& b) {
+                             return b.name == "top_platen";
+                           });
+  const bool exchanges = has_platens && any([](const auto& stage) { return stage->needs().exchanges; });
+  return {.strain_stress = has_platens && !setup.stages.empty() && !setup.stages.back()->needs().exchanges,
+          .temperature_strain = exchanges,
+          .temperature_stress = exchanges,
+          .time_temperature = !setup.heat.uniform};
+}
+
 /// Materials, and what moves, where a stage moves the body.
 void read_moving(const Section& root, const std::vector<ReadBearing>& bearings, CurveReader& curves,
                  const LawFinder& find_law, Setup& setup) {
@@ -297,6 +353,8 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   CurveReader time_curves(folder, time_axis(), {0.0, setup.exposure}, fire_curves());
   if (auto heat = read_heat(root, time_curves)) setup.heat = std::move(*heat);
   check_heat(root, setup.heat, setup.stages);
+  check_hand_over(root, setup.stages);
+  check_flow(root, setup.heat, setup.stages);
   setup.temperatures = run_temperatures(root, setup.heat, setup.stages);
   const auto bearings = read.any_moves ? read_bearings(root) : std::vector<ReadBearing>();
   setup.specimen = read_specimen(root, folder, bearings);
@@ -332,7 +390,8 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   setup.checkpoints.keep_stages =
       output.flag("keep_stage_checkpoints", true,
                   "whether the state at the end of each stage is kept, for [forks](restart.md#forks)");
-  read_reference(output, folder);
+  setup.unused_sets = unused_sets(setup);
+  read_reference(output, folder, drawn_tables(setup));
   deck.finish();
   setup.warnings = deck.warnings();
   return setup;

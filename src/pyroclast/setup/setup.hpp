@@ -34,6 +34,7 @@ struct Setup {
   double exposure = 0.0;          ///< time for which boundaries act, s
   std::optional<MotionParameters> motion;  ///< empty where no stage moves the body
   std::vector<SetParameters<2>> sets;      ///< beside those that every model has
+  std::vector<std::string> unused_sets;    ///< those of them that no table names: for scripts and ParaView
   HeatConditions heat;                     ///< uniform at the reference temperature without [heat]
   std::vector<ProbePosition> probes;
   std::vector<RecordParameters> records;

@@ -31,8 +31,10 @@ std::vector<CreepIncrement> creep_increments(const std::vector<int>& zone_solids
   for (int z = 0; z < static_cast<int>(zone_solids.size()); ++z) {
     const SolidMaterial& solid = materials.solids[zone_solids[z]];
     const double now = field.zones()[z];
-    increments.push_back(solid.creep ? solid.creep->between(before.of_zone(z, kReferenceTemperature), now)
-                                     : CreepIncrement{});
+    increments.push_back(solid.creep
+                             ? solid.creep->between(before.of_zone_at_exchanges(z, kReferenceTemperature),
+                                                    before.of_zone(z, now))
+                             : CreepIncrement{});
   }
   return increments;
 }
@@ -63,18 +65,28 @@ HottestTemperatures::HottestTemperatures(const ConcreteMaterials& materials, con
   if (materials.asks_for_hottest()) zones_ = field.zones();
   if (materials.on_cooling == OnCooling::irreversible) contacts_ = field.contacts();
   of_all_ = field.mean();
+  seen_zones_ = zones_;
+  seen_contacts_ = contacts_;
+}
+
+void HottestTemperatures::see(const TemperatureField& field) {
+  for (std::size_t z = 0; z < zones_.size(); ++z) seen_zones_[z] = std::max(seen_zones_[z], field.zones()[z]);
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    seen_contacts_[c] = std::max(seen_contacts_[c], field.contacts()[c]);
 }
 
 void HottestTemperatures::take(const TemperatureField& field) {
-  for (std::size_t z = 0; z < zones_.size(); ++z) zones_[z] = std::max(zones_[z], field.zones()[z]);
-  for (std::size_t c = 0; c < contacts_.size(); ++c)
-    contacts_[c] = std::max(contacts_[c], field.contacts()[c]);
+  see(field);
+  zones_ = seen_zones_;
+  contacts_ = seen_contacts_;
   of_all_ = std::max(of_all_, field.mean());
 }
 
 void HottestTemperatures::visit_state(StateVisitor& visitor) {
   visitor.visit("zones", zones_);
   visitor.visit("contacts", contacts_);
+  visitor.visit("seen_zones", seen_zones_);
+  visitor.visit("seen_contacts", seen_contacts_);
   visitor.visit("of_all", of_all_);
 }
 

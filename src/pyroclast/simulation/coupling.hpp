@@ -11,7 +11,7 @@
 
 namespace pyroclast {
 
-/// The hottest that each zone and contact was so far at an exchange of temperatures, °C: what creeps does so
+/// The hottest that each zone and contact was so far, °C: what creeps does so
 /// when it is heated for the first time, what heat took does not come back on cooling, and free strain may
 /// have a slope of its own on cooling.
 class HottestTemperatures {
@@ -21,12 +21,20 @@ class HottestTemperatures {
   /// \param materials  empty where none of them asks
   HottestTemperatures(const ConcreteMaterials& materials, const TemperatureField& field);
 
+  /// The field came to its temperatures, but hands them over later, with an exchange.
+  void see(const TemperatureField& field);
   /// An exchange of the field's temperatures was made.
   void take(const TemperatureField& field);
   // at an exchange to the temperature now, °C; this itself where nothing asks
-  double of_zone(int zone, double now) const { return zones_.empty() ? now : std::max(now, zones_[zone]); }
+  double of_zone(int zone, double now) const {
+    return zones_.empty() ? now : std::max(now, seen_zones_[zone]);
+  }
   double of_contact(int contact, double now) const {
-    return contacts_.empty() ? now : std::max(now, contacts_[contact]);
+    return contacts_.empty() ? now : std::max(now, seen_contacts_[contact]);
+  }
+  /// At the exchanges so far alone: from where a zone goes on creeping.
+  double of_zone_at_exchanges(int zone, double now) const {
+    return zones_.empty() ? now : std::max(now, zones_[zone]);
   }
   /// Of all of the specimen, in a uniform field.
   double of_all(double now) const { return zones_.empty() ? now : std::max(now, of_all_); }
@@ -34,7 +42,8 @@ class HottestTemperatures {
   void visit_state(StateVisitor& visitor);
 
  private:
-  std::vector<double> zones_, contacts_;
+  std::vector<double> zones_, contacts_;            ///< at exchanges
+  std::vector<double> seen_zones_, seen_contacts_;  ///< since the last one, too; never less
   double of_all_ = 0.0;
 };
 

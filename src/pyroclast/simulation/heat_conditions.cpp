@@ -218,6 +218,11 @@ std::unique_ptr<Conduction<2>> make_conduction(const Model<2>& model,
   for (const auto& boundary : heat.boundaries) {
     try {
       const auto faces = choose_faces(model, *conduction, boundary.faces, specimen);
+      if (faces.empty())
+        throw Error(fmt::format(
+            "has no effect: no face of the outline lies wholly in \"{}\"; a face of the outline meets "
+            "no other block",
+            boundary.faces.part));
       use.add(faces, boundary);
       apply(*conduction, faces, boundary.condition);
     } catch (const Error& e) {

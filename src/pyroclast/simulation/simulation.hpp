@@ -114,6 +114,8 @@ class Simulation {
   /// An exchange: hands the field's temperatures over to the mechanics, see Mechanics::set_properties. What
   /// creeps does so from now until the next look of the run.
   void hand_over();
+  /// The field came to temperatures that an exchange will hand over later: what heat takes, these take.
+  void see_temperatures() { hottest_.see(field_); }
   /// The hottest that the mechanics was so far, °C.
   const HottestTemperatures& hottest() const { return hottest_; }
   /// Number of a new exchange of temperatures, from 1.

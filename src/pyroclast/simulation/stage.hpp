@@ -51,6 +51,7 @@ enum class FramesInTime : std::uint8_t { none, optional, needed };
 struct StageNeeds {
   bool mechanics = true;                 ///< moves the body
   bool press = false;                    ///< by platens
+  bool exchanges = false;                ///< hands temperatures over to the mechanics
   FieldChoice field = FieldChoice::any;  ///< of temperatures
   FramesInTime frames_in_time = FramesInTime::none;
 };
@@ -115,6 +116,8 @@ class Stage {
   /// What goes on between two looks where that may take long, "moving the platen down"; may be empty.
   virtual std::string doing() const { return {}; }
   virtual HeatingPlan heating() const { return {}; }
+  /// Names of the sets that it acts on.
+  virtual std::vector<std::string> sets() const { return {}; }
 
   /// Throws Error where the stage cannot be done, before any stage is begun.
   /// \param acting  before the stage, which changes it to what it leaves

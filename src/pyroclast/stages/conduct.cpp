@@ -65,6 +65,7 @@ bool Conduct::advance(Simulation& simulation, int) {
   if (!flow_.flows()) begin_flow(simulation);
   if (!flow_.advance(simulation.field())) return false;
   simulation.set_heating_time(simulation.field().time());
+  simulation.see_temperatures();
   return true;
 }
 

@@ -340,6 +340,12 @@ void Drive::require_consistent() const {
     }
 }
 
+std::vector<std::string> Drive::sets() const {
+  std::vector<std::string> names;
+  for (const Action& action : keys_.actions) names.push_back(action.set);
+  return names;
+}
+
 void Drive::check_beside(const Drive& under_way, const Simulation& simulation) const {
   const auto steers = [](const Action& a) {
     return a.kind != ActionKind::hold && a.kind != ActionKind::release;

@@ -70,6 +70,7 @@ class Drive : public Stage {
   StageNeeds needs() const override { return {}; }
   void check(const Simulation& simulation, Acting<2>& acting) const override;
   bool loads() const override;
+  std::vector<std::string> sets() const override;
   /// Throws Error where it would act on what another one, which is under way, moves or loads again and again.
   void check_beside(const Drive& under_way, const Simulation& simulation) const;
   void begin(Simulation& simulation) override;

@@ -14,7 +14,8 @@ constexpr double kSameTime = 1e-9;
 /// The mean temperature changes by about this share of what the hottest boundary could bring about.
 constexpr double kMeanChange = 0.5;
 
-constexpr StageNeeds kExposeNeeds{.field = FieldChoice::computed, .frames_in_time = FramesInTime::optional};
+constexpr StageNeeds kExposeNeeds{
+    .exchanges = true, .field = FieldChoice::computed, .frames_in_time = FramesInTime::optional};
 
 std::unique_ptr<Stage> read_expose(const Section& s, const StageTables& tables) {
   Expose::Keys keys;

@@ -52,7 +52,7 @@ StrainChange strain_change(const Simulation& simulation, double from, double to)
 StageKind heat_kind() {
   return {"heat",
           "changes the temperature of the whole specimen evenly, up or down; needs a uniform field",
-          {.field = FieldChoice::uniform},
+          {.exchanges = true, .field = FieldChoice::uniform},
           read_heat_stage};
 }
 

@@ -16,7 +16,7 @@ class Heat : public ExchangeStage {
   explicit Heat(const Keys& keys) : ExchangeStage(keys.exchange), keys_(keys) {}
 
   const char* kind() const override { return "heat"; }
-  StageNeeds needs() const override { return {.field = FieldChoice::uniform}; }
+  StageNeeds needs() const override { return {.exchanges = true, .field = FieldChoice::uniform}; }
   HeatingPlan heating() const override { return {.to = keys_.to}; }
   double progress(const Simulation& simulation) const override;
 
