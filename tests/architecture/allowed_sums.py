@@ -41,7 +41,9 @@ ALLOWED = [
     Allowed("model/sets.cpp", "centroids()", "over the zones of one block"),
     Allowed("simulation/loads.cpp", "Loads::forces()", _GRIDPOINT),
     Allowed("simulation/loads.cpp", "Loads::apply()", "at one gridpoint, over the sets that are loaded, by their names"),
-    Allowed("stages/drive.cpp", "Drive::act()", "on one set, over the drives of a stage"),
+    Allowed("stages/drive.cpp", "Drive::loads_at()", "on one set, over the drives of a stage"),
+    Allowed("stages/compress.cpp", "way += velocity_ *", "over time"),
+    Allowed("simulation/records.cpp", "mean.weights[", _GRIDPOINT),
     Allowed("stages/drive.cpp", "Drive::unit_force()", "over the drives of a stage"),
     Allowed("model/model.cpp", "face_frame()", "corners of one face"),
     # Inside one item

@@ -180,7 +180,7 @@ class Wrong(Case):
         for tables, told in (
                 ({"sets": [{"name": "spot", "box": [["1 m", "1 m"], ["2 m", "2 m"]]}]}, '"spot" is empty'),
                 ({"stages": [{"kind": "drive", "duration": "1 ms", "drives": [held, {**PULL, "set": "left"}]}]},
-                 "both are held or driven along x"),
+                 "is held, driven or released along x twice in one stage"),
                 ({"stages": [{"kind": "drive", "duration": "1 ms",
                               "drives": [{"set": "left", "hold": ["x"]}, PULL]}]},
                  "nothing holds the body against moving along y"),

@@ -132,7 +132,8 @@ def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> Se
                            "column of the table tells them apart.", 0, None, 0) if own.has("accept_version") else None
     folder = own.text("folder", "Where runs and results go, taken from the place of this file; without it "
                       "STUDY-study beside STUDY.toml.", f"{file.stem}-study")
-    earlier = own.texts("earlier", "Tables of earlier studies (table.csv), whose runs are taken in as they are.")
+    earlier = own.texts("earlier", "Tables of earlier studies (table.csv), whose runs are taken in as they are.",
+                        is_optional=True)
 
     method = _method(root.table("method", "Which points are run, and what is made of them."))
     outputs = [Output.of_function(name) for name in functions]
@@ -409,7 +410,7 @@ def _targets(root: _core.Table, method: str, outputs: list[Output]) -> list[Targ
 def _correlations(root: _core.Table, names: list[str], method: str) -> list[tuple[str, str, float]]:
     found = []
     for table in root.optional_tables("correlations", "Between two parameters; they are independent without it."):
-        between = table.texts("between", "Names of the two.")
+        between = table.texts("between", "Names of the two.", is_optional=False)
         rank = table.number("rank", "Spearman's correlation.", -0.99, 0.99)
         if table.ok() and (len(between) != 2 or any(name not in names for name in between)):
             table.error("between", f"two of {', '.join(names)} are needed")
@@ -429,7 +430,7 @@ def _slurm(root: _core.Table) -> Slurm:
                  table.quantity("time", "s", "Of a task; runs that it cannot end go on in another.", 60.0, None, 3600.0),
                  table.integer("points_per_task", "Runs that a task makes one after the other; 0: so many that it lasts "
                                "some ten minutes.", 0, None, 0),
-                 tuple(table.texts("options", "Further options of sbatch, such as [\"--partition=long\"].")))
+                 tuple(table.texts("options", "Further options of sbatch, such as [\"--partition=long\"].", is_optional=True)))
 
 
 def _check_together(root: _core.Table, own: _core.Table, method: Method, parameters: list[Parameter],

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -82,6 +83,36 @@ double seconds_of_run(const Forecast& forecast, double hottest, Simulation& simu
   return seconds;
 }
 
+/// Of compressed specimens, by the size of their blocks over d_max: how many fell clearly, and the scatter of
+/// f_c from seed to seed (validation/peaks.md).
+struct StudiedStrength {
+  double size;
+  int fell_clearly, of;
+  double scatter;
+};
+constexpr auto kStudiedStrengths = std::to_array<StudiedStrength>({
+    {0.42, 6, 10, 0.12},
+    {0.30, 5, 10, 0.08},
+    {0.21, 8, 10, 0.06},
+    {0.15, 8, 10, 0.03},
+    {0.09, 5, 5, 0.03},
+});
+
+void print_strength(const Setup& setup) {
+  const specimen::SpecimenParameters& s = setup.specimen;
+  const auto is_compress = [](const auto& stage) { return stage->kind() == std::string_view("compress"); };
+  if (s.blocks.count == 0 || s.aggregates.fraction == 0.0 || std::ranges::none_of(setup.stages, is_compress))
+    return;
+  const double size = std::sqrt(s.region.area() / s.blocks.count) / s.aggregates.d_max;
+  const auto& nearest = *std::ranges::min_element(kStudiedStrengths, {}, [&](const StudiedStrength& studied) {
+    return std::abs(std::log(size / studied.size));
+  });
+  fmt::print(
+      "strength        blocks are {:.2f} of d_max; of specimens with {:.2f}, {} of {} fell clearly, and f_c\n"
+      "                scattered by {:.0f} % from seed to seed (validation/peaks.md)\n",
+      size, nearest.size, nearest.fell_clearly, nearest.of, 100.0 * nearest.scatter);
+}
+
 double peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -144,6 +175,7 @@ int check(const RunOptions& options) {
   if (!simulation->field().is_uniform() && simulation->moves())
     fmt::print("                {}\n", simulation->coupling_of_heat());
 
+  print_strength(setup);
   const Forecast expected = forecast(setup.stages, *simulation, setup.temperatures);
   Run run(*simulation, std::move(setup.stages));
   const double seconds = seconds_of_run(expected, setup.temperatures.upper, *simulation, run);

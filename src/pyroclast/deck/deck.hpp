@@ -166,8 +166,10 @@ class Section {
   /// nothing.
   std::string word_or_text(std::string_view key, const std::vector<Choice<int>>& words, Meaning other,
                            Meaning meaning) const;
-  /// A list of strings; empty if the key is absent.
+  /// A list of strings that must be there; empty after an error.
   std::vector<std::string> texts(std::string_view key, Meaning meaning) const;
+  /// A list of strings; empty if the key is absent.
+  std::vector<std::string> optional_texts(std::string_view key, Meaning meaning) const;
 
   /// Whatever stands at a key that must be there, as JSON; a date is a text.
   /// \param value  what is written, for the deck reference

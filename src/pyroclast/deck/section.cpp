@@ -518,9 +518,10 @@ std::string Section::word_or_text(std::string_view key, const std::vector<Choice
   return (entry ? read_text(*entry) : std::nullopt).value_or(std::string(options.front().word));
 }
 
-std::vector<std::string> Section::texts(std::string_view key, Meaning meaning) const {
-  note(key_of(key, "list of texts"), meaning);
-  const auto entry = read(*deck_, table_, key);
+namespace {
+
+template <class Entry>
+std::vector<std::string> texts_of(const Entry& entry) {
   std::vector<std::string> list;
   if (!entry) return list;
   const auto* array = entry->node.as_array();
@@ -529,7 +530,7 @@ std::vector<std::string> Section::texts(std::string_view key, Meaning meaning) c
     return list;
   }
   for (const auto& element : *array) {
-    const auto text = element.value<std::string>();
+    const auto text = element.template value<std::string>();
     if (!text) {
       entry->error("must hold texts only, such as [\"aggregate\", \"mortar\"]");
       return {};
@@ -537,6 +538,18 @@ std::vector<std::string> Section::texts(std::string_view key, Meaning meaning) c
     list.push_back(*text);
   }
   return list;
+}
+
+}  // namespace
+
+std::vector<std::string> Section::texts(std::string_view key, Meaning meaning) const {
+  note(key_of(key, "list of texts"), meaning);
+  return texts_of(require(*deck_, table_, key, "a list of texts is needed"));
+}
+
+std::vector<std::string> Section::optional_texts(std::string_view key, Meaning meaning) const {
+  note(with_fallback(key_of(key, "list of texts"), "[]"), meaning);
+  return texts_of(read(*deck_, table_, key));
 }
 
 std::string Section::json(std::string_view key, std::string_view value, Meaning meaning) const {

@@ -131,10 +131,11 @@ void bind_table(py::module_& m) {
       .def("text", &text, arg("key"), arg("meaning"), arg("fallback") = none)
       .def(
           "texts",
-          [](const Table& t, const Text& key, const Text& meaning) {
-            return t.section.texts(key, meant(meaning));
+          [](const Table& t, const Text& key, const Text& meaning, bool is_optional) {
+            return is_optional ? t.section.optional_texts(key, meant(meaning))
+                               : t.section.texts(key, meant(meaning));
           },
-          arg("key"), arg("meaning"))
+          arg("key"), arg("meaning"), arg("is_optional"))
       .def("choice", &choice, arg("key"), arg("words"), arg("is_optional"), arg("meaning"))
       .def(
           "json",

@@ -334,7 +334,7 @@ std::vector<std::array<std::string, 2>> pair_in_name(const std::string& name,
 /// Of one interface: names that follow one another two and two.
 std::vector<std::array<std::string, 2>> read_between(const Section& s, const std::string& name,
                                                      const std::vector<std::string>& phases) {
-  const auto list = s.texts("between",
+  const auto list = s.optional_texts("between",
                             "the two phases whose blocks it joins, or several pairs in a row: a, b, c, d; "
                             "without it those in its name, a_b");
   if (!s.ok()) return {};

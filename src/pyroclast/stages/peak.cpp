@@ -11,7 +11,8 @@ void Peak::take(double driven, double size, const PeakRule& rule) {
     return;
   }
   if (size < (1.0 - rule.fall) * size_) has_fallen_ = 1;
-  if (has_fallen() && driven - driven_ >= rule.lasting) is_found_ = 1;
+  const bool collapsed = size_ > 0.0 && size < (1.0 - rule.collapse) * size_;
+  if (collapsed || (has_fallen() && driven - driven_ >= rule.lasting)) is_found_ = 1;
 }
 
 void Peak::visit_state(StateVisitor& visitor) {

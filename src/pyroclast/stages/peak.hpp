@@ -11,6 +11,7 @@ namespace pyroclast {
 struct PeakRule {
   double fall = 0.02;     ///< share of the peak by which the size must fall below it
   double lasting = 3e-4;  ///< how much farther the body must be driven before the size comes back to it
+  double collapse = 0.5;  ///< share of the peak: a fall by so much is one at once
 };
 
 /// Finds the peak of what a test measures while the body is driven on: the largest size before the first fall

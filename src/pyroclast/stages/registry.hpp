@@ -48,7 +48,7 @@ struct StageKind {
 /// The kinds of stages that a deck may ask for, by name.
 class StageRegistry {
  public:
-  /// With the kinds of this library: settle, load, compress, heat, expose, conduct.
+  /// With the kinds of this library: settle, load, compress, drive, heat, expose, conduct.
   StageRegistry();
 
   /// Throws Error when there is one of this name.
