@@ -115,6 +115,20 @@ class Reference(unittest.TestCase):
         found, _ = self.differences(HISTORY, new)
         self.assertIn(("rows", "stage 1 (heat): 2 / 3"), found)
 
+    def test_results_of_the_summary_are_held_too(self):
+        def compared(old: dict, new: dict):
+            return reference.compare_results({"cases": {"case": {"results": old}}}, {"cases": {"case": {"results": new}}},
+                                             "case")
+
+        old = {"1.outcome": "completed", "1.f_c_MPa": 30.0, "1.quasi_static": True}
+        self.assertEqual(compared(old, old | {"1.f_c_MPa": 30.0 + 1e-9, "1.new": 1}), ([], ["1.new"]))
+        self.assertEqual(compared(old, old | {"1.f_c_MPa": 30.0 + 1e-6})[0], [("1.f_c_MPa", "30.0 / 30.000001")])
+        self.assertEqual(compared(old, old | {"1.f_c_MPa": None})[0], [("1.f_c_MPa", "30.0 / None")])
+        self.assertEqual(compared(old, old | {"1.quasi_static": False})[0], [("1.quasi_static", "True / False")])
+        self.assertEqual(compared(old, {"1.outcome": "completed"})[0],
+                         [("1.f_c_MPa", "30.0 / none"), ("1.quasi_static", "True / none")])
+        self.assertEqual(compared({}, old), ([], []))  # a reference of before results were kept
+
     def test_a_column_that_vanished_is_a_difference_and_a_new_one_is_named(self):
         new = {column: cells for column, cells in HISTORY.items() if column != "largest_jump"} | {"opening": ["0"] * 4}
         found, added = self.differences(HISTORY, new)
