@@ -180,7 +180,25 @@ TEST(Control, WarnsWhereThePairBearsTheTest) {
   const StageReport report =
       run.stages()[0]->report(run.history(), run.records()[0].rows, Outcome::completed);
   ASSERT_EQ(report.warnings.size(), 1U);
-  EXPECT_NE(report.warnings[0].find("control of stretch: the pair bore"), std::string::npos);
+  EXPECT_NE(report.warnings[0].find("control of stretch: the largest load is"), std::string::npos);
+}
+
+// Promise: however fast the opening grows, the strength lies between the largest load and that with the pair.
+TEST(Control, TheStrengthLiesBetweenTheLoadAndTheLoadWithThePair) {
+  for (const char* rate : {"0.1 mm/s", "0.4 mm/s"}) {
+    pyroclast::Setup setup = pyroclast::read(bar(rate));
+    const auto simulation = make_simulation(setup, grid(kLength, kDepth, 20, 1));
+    pyroclast::Run run(*simulation, std::move(setup.stages));
+    run.run();
+    const StageReport report =
+        run.stages()[0]->report(run.history(), run.records()[0].rows, Outcome::completed);
+    const auto number = [&](const std::string& name) {
+      return std::get<double>(std::ranges::find(report.results, name, &Result::name)->value);
+    };
+    const double exact = kStrength * kDepth, with_pair = number("largest_load_with_control_N");
+    EXPECT_GT(with_pair, 0.998 * exact) << rate;
+    EXPECT_LT(with_pair / (1.0 + number("control_error_of_largest_load")), 1.002 * exact) << rate;
+  }
 }
 
 /// Bent until almost nothing of its crack is left: the mouth opens by a hundred times what parts a face.

@@ -129,7 +129,7 @@ class Drive : public Stage {
   double first_opening_ = 0.0, last_opening_ = 0.0;   ///< controlled, when the stage began, m
   double load_factor_ = 0.0, pair_force_ = 0.0;       ///< of the control; N, opening it
   double largest_pair_ = 0.0, largest_factor_ = 0.0;  ///< at looks
-  double pair_at_peak_ = 0.0;                         ///< when the factor was largest, N
+  double largest_with_pair_ = 0.0;                    ///< of the loads and the pair beside them, N
   double pair_work_ = 0.0;                            ///< J
   double first_work_ = 0.0;                           ///< of loads, when the stage began, J
   double most_kinetic_ = 0.0;                         ///< energy, while peaks do not count yet, J
