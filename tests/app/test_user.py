@@ -707,6 +707,9 @@ class Law(UserTest):
             self.assertFalse((self.folder / "law.csv").exists())
 
     def test_laws_are_verified_without_a_deck(self):
+        every = self.pyroclast("law", "--verify", "--paths", 8)
+        for law in ("cohesive", "elastic", "frictional", "mixed_mode"):
+            self.assertIn(f"{law}: 8 paths", every.stdout, every.stderr)
         done = self.pyroclast("law", "--verify", "elastic", "frictional", "--paths", 40, "--seed", 3)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         for law in ("elastic", "frictional"):

@@ -34,6 +34,21 @@ TEST(LawPoint, ALegIsCutIntoStepsAndEndsAtItsPoint) {
   EXPECT_EQ(point.columns().size(), point.values().size());
 }
 
+// Promise: a point goes the road of a run: what heat took does not come back on cooling, and cooling may take more.
+TEST(LawPoint, KeepsTheStrengthOfItsHighestTemperature) {
+  ContactMaterial material = stated_material(elastic(), kElastic);
+  material["K_n"] = Curve::table({20.0, 600.0}, {10e9, 4e9}, temperature_axis());
+  const auto stiffness = [&](OnCooling on_cooling) {
+    LawPoint point(material, on_cooling);
+    for (const double temperature : {600.0, 20.0}) point.go({1e-6, 0.0, temperature});
+    return point.values()[place(point, "sigma_Pa")] / 1e-6;
+  };
+  EXPECT_DOUBLE_EQ(stiffness(OnCooling::irreversible), 4e9);
+  EXPECT_DOUBLE_EQ(stiffness(OnCooling::reversible), 10e9);
+  material.residual_ratios[0] = Curve::table({20.0, 600.0}, {1.0, 0.8}, temperature_axis());
+  EXPECT_NEAR(stiffness(OnCooling::irreversible), 0.8 * 4e9, 1.0);
+}
+
 TEST(LawPoint, EveryPropertyMustBeStatedAndNoOther) {
   EXPECT_THROW(stated_material(elastic(), {kElastic.front()}), Error);
   EXPECT_THROW(stated_material(elastic(), {"K_n=10 GPa/m", "K_s=4 GPa"}), Error);

@@ -33,7 +33,7 @@ ContactMaterial material_of_command(const LawOptions& options) {
   return stated_material(law, options.values);
 }
 
-ContactMaterial material_of_deck(const LawOptions& options) {
+LawPoint point_of_deck(const LawOptions& options) {
   const Deck deck = Deck::load(options.deck);
   const Setup setup = read_setup(deck, options.deck.parent_path(), {}, sources_of(options.sources));
   if (!setup.motion)
@@ -42,7 +42,8 @@ ContactMaterial material_of_deck(const LawOptions& options) {
   const ContactParameters& contacts = setup.motion->contacts;
   const auto concrete = make_concrete(setup.solids, contacts, expected_block_size(setup.specimen, contacts));
   const std::string matrix = contacts.matrix + "_" + contacts.matrix;
-  return contact_of(concrete, options.interface.empty() ? matrix : options.interface);
+  return LawPoint(contact_of(concrete, options.interface.empty() ? matrix : options.interface),
+                  setup.motion->on_cooling);
 }
 
 }  // namespace
@@ -50,7 +51,7 @@ ContactMaterial material_of_deck(const LawOptions& options) {
 int law(const LawOptions& options) {
   if (options.law.empty() && options.deck.empty())
     throw Error("law: state a deck, or a law with --law and its properties with --set");
-  LawPoint point(options.law.empty() ? material_of_deck(options) : material_of_command(options));
+  LawPoint point = options.law.empty() ? point_of_deck(options) : LawPoint(material_of_command(options));
 
   std::string csv;
   for (const Column& column : point.columns()) csv += (csv.empty() ? "" : ",") + column.name;
@@ -66,9 +67,9 @@ int law(const LawOptions& options) {
 
 int verify_laws(const VerifyOptions& options) {
   std::vector<const LawTable*> wanted;
-  for (const std::string& name : options.laws) {
-    wanted.push_back(&find_law(name, {}, sources_of(options.sources)));
-  }
+  for (const std::string& name : options.laws)
+    if (!name.empty())  // CLI11 before 2.2 hands an empty word to an option that was given none
+      wanted.push_back(&find_law(name, {}, sources_of(options.sources)));
   say_aside(describe_own_laws());
   if (wanted.empty()) wanted.assign(built_in_laws().begin(), built_in_laws().end());
   bool passed = true;

@@ -173,6 +173,11 @@ enum class OnCooling : std::uint8_t {
 /// Whether any of them does.
 bool any_creeps(const std::vector<SolidMaterial>& solids);
 
+/// What E, strengths, energies and stiffnesses are those of, °C.
+inline double marked_by(OnCooling on_cooling, double temperature, double hottest) {
+  return on_cooling == OnCooling::irreversible ? hottest : temperature;
+}
+
 /// Everything a concrete specimen is made of.
 struct ConcreteMaterials {
   std::vector<SolidMaterial> solids;      ///< by phase, then those of bearings
@@ -186,7 +191,7 @@ struct ConcreteMaterials {
   bool asks_for_hottest() const;  ///< whether anything follows the highest temperature that was there
   /// That E, strengths, energies and stiffnesses are those of, see OnCooling, °C.
   double marked(double temperature, double hottest) const {
-    return on_cooling == OnCooling::irreversible ? hottest : temperature;
+    return marked_by(on_cooling, temperature, hottest);
   }
 };
 

@@ -76,8 +76,9 @@ ContactMaterial stated_material(const LawTable& law, const std::vector<std::stri
   return material;
 }
 
-LawPoint::LawPoint(ContactMaterial material)
+LawPoint::LawPoint(ContactMaterial material, OnCooling on_cooling)
     : material_(std::move(material)),
+      on_cooling_(on_cooling),
       law_(*material_.law),
       history_(law_.history(2).size()),
       losses_(law_.losses.size()) {
@@ -93,6 +94,11 @@ void LawPoint::go(const JumpPathPoint& to) {
   }
   update(to);
   at_ = to;
+}
+
+void LawPoint::warm_to(double temperature) {
+  hottest_ = std::max(hottest_, temperature);
+  constants_ = material_.at(temperature, marked_by(on_cooling_, temperature, hottest_)).constants();
 }
 
 std::vector<Column> LawPoint::columns() const {

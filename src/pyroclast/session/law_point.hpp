@@ -16,10 +16,11 @@ namespace pyroclast {
 /// cannot be.
 ContactMaterial stated_material(const LawTable& law, const std::vector<std::string>& values);
 
-/// One contact point on its way along a path of jumps, with its energies added up.
+/// One contact point on its way along a path of jumps, with its energies added up. As in a run it has the
+/// strengths of the highest temperature that it came to, and loses what the material loses on cooling.
 class LawPoint {
  public:
-  explicit LawPoint(ContactMaterial material);
+  explicit LawPoint(ContactMaterial material, OnCooling on_cooling = OnCooling::irreversible);
 
   void go(const JumpPathPoint& to);
   /// In `steps` equal parts; after each of them `look` is called.
@@ -40,11 +41,13 @@ class LawPoint {
   std::vector<double> values() const;
 
  private:
-  void warm_to(double temperature) { constants_ = material_.at(temperature).constants(); }
+  void warm_to(double temperature);
   void update(const JumpPathPoint& point);
   double dissipated() const;
 
   ContactMaterial material_;
+  OnCooling on_cooling_;
+  double hottest_ = kReferenceTemperature;  ///< so far, °C
   const LawTable& law_;
   std::vector<std::byte> constants_;
   std::vector<double> history_, losses_;
