@@ -62,7 +62,7 @@ def _same_run(folder: pathlib.Path, command: list[str]) -> bool:
 def _has_ended(folder: pathlib.Path) -> bool:
     """Whether a run came to its own end; one that a signal stopped has a summary too."""
     summary = folder / "summary.json"
-    return summary.exists() and json.loads(summary.read_text())["outcome"] != "stopped"
+    return summary.exists() and json.loads(summary.read_text())["outcome_id"] != "stopped"
 
 
 def broken_off(folder: pathlib.Path, command: list[str]) -> bool:

@@ -3,21 +3,25 @@
 import json
 import math
 import os
+import pathlib
 import random
 import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 
 from pyroclast.errors import Error
+from pyroclast.study import work
 from pyroclast.study.executors.local import Local
 from pyroclast.study.outputs import Output
-from pyroclast.study.store import DONE, Result, Store
+from pyroclast.study.store import DONE, Result, Store, write_record
 from pyroclast.study.study import Study
-from pyroclast.study.work import judge
+from pyroclast.study.work import Job, judge
 from study_files import PROGRAM, StudyTest, of_deck
 
 
@@ -77,6 +81,91 @@ class States(StudyTest):
         study = self.study(self.of_function('kind = "grid"', study='wall_limit = "1 s"'))
         self.assertTrue(study.run(jobs=2))
         self.assertEqual(sorted(states(study)), ["done"] * 3 + ["timed out"] * 2)
+
+
+BAR = """
+title = "bar"
+[specimen]
+shape = "cells"
+file = "bar.json"
+[materials.mortar]
+E = "30 GPa"
+nu = 0.2
+density = "2200 kg/m3"
+[contacts]
+t_b = "1.6 mm"
+t_b_scaling = "fixed"
+[contacts.mortar_mortar]
+law = "elastic"
+[mechanics]
+mass = "scaled"
+time_step = "10 us"
+safety = 0.9
+local_damping = 0.8
+damping_form = "combined"
+gravity = "0 m/s2"
+[output]
+fields = false
+[[record]]
+name = "top"
+kind = "displacement"
+set = "top"
+direction = "y"
+[[stages]]
+kind = "drive"
+duration = "20 ms"
+[[stages.drives]]
+set = "bottom"
+hold = ["x", "y"]
+[[stages.drives]]
+set = "top"
+pressure = "1 MPa"
+"""
+
+
+class Windows(unittest.TestCase):
+    """Between the end of a run and its row in the store a driver may be killed at any place: what is whole is taken."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.runs = pathlib.Path(folder.name)
+        (self.runs / "r").mkdir()
+        self.job = Job("r", 1, "pyroclast", ("pyroclast", "run", "deck.toml"), {"x": 1.0},
+                       ("f_c_MPa", "history: strain where stress_MPa is largest"), "summary", 60.0, 1.0, 6)
+        self.begun = Result("r", 1, work.BEGUN, values={"x": 1.0}, version=6, wall=0.0)
+
+    def leave(self, outcome: str = "completed", whole: bool = True) -> None:
+        (self.runs / "r/history.csv").write_text("stage,strain,stress_MPa\n0,0,0\n0,0.001,30\n0,0.002,20\n")
+        text = json.dumps({"outcome": outcome, "outcome_id": outcome, "wall_time_s": 2.5, "stages": [{"results": {"f_c_MPa": 30.0}}]})
+        (self.runs / "r/summary.json").write_text(text if whole else text[:20])
+
+    def test_before_the_summary_there_is_nothing_to_take(self):
+        write_record(self.runs, self.begun)
+        self.assertIsNone(work.made(self.job, self.runs))
+        self.leave(whole=False)
+        self.assertIsNone(work.made(self.job, self.runs))
+        self.leave("stopped")
+        self.assertIsNone(work.made(self.job, self.runs))
+        self.assertTrue((self.runs / "r/history.csv").exists())
+
+    def test_after_the_summary_the_run_counts_with_all_its_numbers(self):
+        write_record(self.runs, self.begun)
+        self.leave()
+        result = work.made(self.job, self.runs)
+        self.assertEqual((result.state, result.wall), ("done", 2.5))
+        self.assertEqual([value for value, _ in result.outputs.values()], [30.0, 0.001])
+        self.assertEqual(work.made(self.job, self.runs), result)  # its record is written
+        self.assertFalse((self.runs / "r/history.csv").exists())  # and it is thinned
+
+    def test_between_its_record_and_thinning(self):
+        write_record(self.runs, self.begun)
+        self.leave()
+        with unittest.mock.patch.object(work, "thin", side_effect=KeyboardInterrupt), self.assertRaises(KeyboardInterrupt):
+            work.made(self.job, self.runs)
+        self.assertTrue((self.runs / "r/history.csv").exists())
+        self.assertEqual(work.made(self.job, self.runs).state, "done")
+        self.assertFalse((self.runs / "r/history.csv").exists())
 
 
 class Again(StudyTest):
@@ -413,10 +502,54 @@ class KeptApart(StudyTest):
         self.assertIn("at least 30", self.found["none_because"])
 
 
+class NoValues(StudyTest):
+    def test_a_study_without_any_value_ends_with_an_error(self) -> None:
+        (self.folder / "study.toml").write_text("""
+[study]
+runner = "command"
+command = "false {x} {folder}"
+[method]
+kind = "grid"
+[parameters.x]
+uniform = [0, 1]
+[outputs]
+z = "z"
+""")
+        done = subprocess.run([PROGRAM, "study", "run", self.folder / "study.toml", "--quiet"], capture_output=True,
+                              text=True, check=False)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("error: no run gave a value: exit code 1", done.stderr)
+
+    def test_the_blocks_of_a_file_have_no_seed(self) -> None:
+        corners = [[0, 0], [0.05, 0], [0.05, 0.05], [0, 0.05], [0.05, 0.1], [0, 0.1]]
+        (self.folder / "bar.json").write_text(json.dumps(
+            {"phases": ["mortar"], "vertices_m": corners, "cells": [[0, 1, 2, 3], [3, 2, 4, 5]], "phase": [0, 0]}))
+        (self.folder / "bar.toml").write_text(BAR)
+        text = """
+[study]
+deck = "bar.toml"
+seeds = SEEDS
+[method]
+kind = "grid"
+[parameters.p]
+key = "stages[0].drives[1].pressure"
+uniform = ["1 MPa", "2 MPa"]
+[outputs]
+top = "history: top_m last"
+"""
+        study = self.study(text.replace("SEEDS", "1"))
+        self.assertTrue(study.run(jobs=1))
+        self.assertEqual(study.count_values(), len(study.rows()))
+        with self.assertRaisesRegex(Error, "study.toml:4: .*so a seed has no meaning"):
+            self.study(text.replace("SEEDS", "2")).check()
+
+
 class Judgements(unittest.TestCase):
     def test_outcomes(self) -> None:
         self.assertEqual(judge({"outcome": "completed"})[0], "done")
-        self.assertEqual(judge({"outcome": "the motion became unstable (a result is not finite)"})[0], "crashed")
+        self.assertEqual(judge({"outcome_id": "unstable", "outcome": "so"}), ("crashed", "so"))
+        stages = [{"outcome_id": "not_settled", "outcome": "why"}]
+        self.assertEqual(judge({"outcome_id": "completed", "stages": stages}), ("not settled", "why"))
 
     def test_numbers_of_a_summary(self) -> None:
         summary = {"steps": 5, "energy_J": {"kinetic": 2.5}, "stages": [

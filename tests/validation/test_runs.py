@@ -31,7 +31,7 @@ class Runs(unittest.TestCase):
         self.addCleanup(version.stop)
 
     def end(self, outcome: str):
-        (self.folder / "summary.json").write_text(json.dumps({"outcome": outcome}))
+        (self.folder / "summary.json").write_text(json.dumps({"outcome_id": outcome}))
 
     def test_what_was_killed_or_stopped_goes_on(self):
         for outcome in (None, "stopped"):

@@ -103,6 +103,10 @@ def _run(options: argparse.Namespace) -> int:
         say(f"stopped; to go on: pyroclast study run {options.study}")
         return 130
     say(f"table           {table}")
+    if not study.count_values():
+        reasons = {str(row["reason"]) for row in study.rows()}
+        print(f"error: no run gave a value: {'; '.join(sorted(reasons)[:3])}", file=sys.stderr)
+        return 1
     say(f"to draw it      pyroclast study report {options.study}")
     return 0
 

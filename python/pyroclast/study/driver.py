@@ -82,6 +82,9 @@ class Driver:
     def check(self) -> None:
         """Raises Error with all that is wrong; see `Study.check`."""
         wrong = self.points.check_ends()
+        if len(self.study.seeds) > 1 and not self.points.has_seed:
+            wrong.append(f"{self.study.place('study.seeds')}: the blocks of the deck come from a file, so a seed has no "
+                         "meaning; each point has one run")
         if not wrong and not self.plan.draws_as_it_goes:
             for point in self._points(self.plan.propose(self._answers).points):
                 if point.infeasible:
@@ -154,6 +157,11 @@ class Driver:
     @property
     def _runs(self) -> Path:
         return self.store.folder / "runs"
+
+    def count_values(self) -> int:
+        """Runs that gave a value of every output."""
+        return sum(result is not None and result.state == DONE
+                   for result in map(self._result, self._wanted(self.plan.propose(self._answers))))
 
     def rows(self) -> list[dict[str, Any]]:
         """A line for each run that the method asked for: what it was, what came of it, and how to make it again."""

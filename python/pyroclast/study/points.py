@@ -101,7 +101,16 @@ class Points:
         words = [program, "run", str(runner.deck)]
         for path, value in self.changes(values):
             words += ["--set", f"{path}={value}"]
-        return [*words, "--seed", str(seed)] + (["--out", str(folder)] if folder else [])
+        seeded = ["--seed", str(seed)] if self.has_seed else []
+        return [*words, *seeded] + (["--out", str(folder)] if folder else [])
+
+    @property
+    def has_seed(self) -> bool:
+        """Whether runs with other seeds are other runs: not where the blocks of a deck come from a file of cells."""
+        if self._study.runner.kind != "pyroclast":
+            return True
+        specimen = self._tables.get("specimen", {})
+        return not (isinstance(specimen, Mapping) and specimen.get("shape") == "cells")
 
     @cached_property
     def _text(self) -> str:

@@ -131,6 +131,11 @@ class Study:
         with self._driver() as driver:
             return driver.findings()
 
+    def count_values(self) -> int:
+        """Runs that gave a value of every output."""
+        with self._driver() as driver:
+            return driver.count_values()
+
     def rows(self) -> list[dict[str, Any]]:
         """The table as it is written: None where there is no value."""
         with self._driver() as driver:

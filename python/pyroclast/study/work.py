@@ -39,8 +39,8 @@ _PR_SET_PDEATHSIG = 1
 _REASON_LENGTH = 300
 _libc = ctypes.CDLL(None)  # before a fork: a child may not import
 
-_STATES = {"the body did not come to rest within the stated steps": NOT_SETTLED,
-           "the motion became unstable (a result is not finite)": CRASHED}
+_STATES = {"not_settled": NOT_SETTLED, "unstable": CRASHED}
+"""Of runs that came to their end and give no value, by `outcome_id` of the run or of one of its stages."""
 
 
 @dataclass(frozen=True)
@@ -101,6 +101,7 @@ class Attempt:
         self._log = runs / f"{job.id}.log"
         self._kept_before = kept(self.folder)
         self._begun = datetime.datetime.now(datetime.timezone.utc)
+        self._clock = time.monotonic()  # a limit follows no clock that somebody sets
         write_record(runs, self._result(BEGUN))
         command = self._command()
         self.folder.mkdir(exist_ok=True)
@@ -126,7 +127,7 @@ class Attempt:
         return self.job.wall_limit - self._wall_before - self._wall()
 
     def _wall(self) -> float:
-        return (datetime.datetime.now(datetime.timezone.utc) - self._begun).total_seconds()
+        return time.monotonic() - self._clock
 
     def look_after(self, stopped: bool) -> None:
         """Asks the process to keep its state and end where all is to stop, or at its wall limit; kills one that does
@@ -146,7 +147,7 @@ class Attempt:
         """
         code = self.process.wait()
         summary = read_summary(self.folder)
-        is_whole = summary is not None and summary.get("outcome") != "stopped"
+        is_whole = summary is not None and not was_stopped(summary)
         if is_whole and (code in (0, 2) or (code < 0 and self.job.kind == "pyroclast")):
             assert summary is not None
             return self._finish(*judge(summary), summary)
@@ -215,22 +216,26 @@ def _concluded(result: Result, reason: str, job: Job, runs: Path, summary: dict[
         if missing:
             state, reason = NO_VALUE, "; ".join(missing)
     result = replace(result, state=state, reason=reason[:_REASON_LENGTH], outputs=outputs)
+    write_record(runs, result)  # before what it was taken from is gone
     thin(runs / job.id, job.keep)
-    write_record(runs, result)
     return result
 
 
 def judge(summary: dict[str, Any]) -> tuple[str, str]:
     """State of a run that came to its end, and why it gives no value."""
-    outcome = str(summary.get("outcome", ""))
     stages = [s for s in summary.get("stages", []) if isinstance(s, dict)]
-    for said in [outcome, *(str(s.get("outcome", "")) for s in stages)]:
-        if said in _STATES:
-            return _STATES[said], said
+    for ended in (summary, *stages):
+        if (state := _STATES.get(str(ended.get("outcome_id", "")))) is not None:
+            return state, str(ended.get("outcome", ""))
     for number, stage in enumerate(stages, start=1):
         if stage.get("results", {}).get("quasi_static") is False:
             return NOT_QUASI_STATIC, f"stage {number} ({stage.get('kind')}) was not quasi-static"
-    return (CRASHED, "stopped") if outcome == "stopped" else (DONE, "")
+    return (CRASHED, "stopped") if was_stopped(summary) else (DONE, "")
+
+
+def was_stopped(summary: dict[str, Any]) -> bool:
+    """Whether a run was ended from outside, so that it can go on."""
+    return summary.get("outcome_id") == "stopped"
 
 
 def thin(folder: Path, keep: str) -> None:
@@ -245,11 +250,24 @@ def thin(folder: Path, keep: str) -> None:
 
 
 def made(job: Job, runs: Path) -> Result | None:
-    """What came of a run that is over, by its record; None where it has to be made, be it for further outputs."""
+    """What came of a run that is over, by its record, or by its folder where its driver was killed before it wrote
+    that; None where it has to be made, be it for further outputs.
+    """
     record = read_record(runs, job.id)
-    if record is None or record.state == BEGUN:
+    if record is None:
         return None
-    return None if record.state == DONE and not set(job.outputs) <= set(record.outputs) else record
+    if record.state == BEGUN:
+        summary = read_summary(runs / job.id)
+        if summary is None or was_stopped(summary):
+            return None
+        wall = max(record.wall, float(summary.get("wall_time_s") or 0.0))
+        state, reason = judge(summary)
+        (runs / f"{job.id}.log").unlink(missing_ok=True)
+        return _concluded(replace(record, state=state, wall=wall), reason, job, runs, summary)
+    if record.state == DONE and not set(job.outputs) <= set(record.outputs):
+        return None
+    thin(runs / job.id, job.keep)  # a driver may have been killed between the two
+    return record
 
 
 def given_up(job: Job, runs: Path, reason: str) -> Result:

@@ -82,16 +82,8 @@ std::string describe(const Summary& s, const std::filesystem::path& folder) {
 }
 
 int exit_code(const Summary& summary) {
-  switch (summary.outcome) {
-    case Outcome::stopped:
-      return 130;
-    case Outcome::not_settled:
-    case Outcome::not_reached:
-    case Outcome::unstable:
-      return 2;
-    default:
-      return summary.is_sound ? 0 : 2;
-  }
+  if (summary.outcome == Outcome::stopped) return 130;
+  return is_good(summary.outcome) && summary.is_sound ? 0 : 2;
 }
 
 }  // namespace

@@ -145,6 +145,8 @@ OrderedJson json_of(const Summary::OfStage& stage) {
   for (const Result& result : stage.report.results) results[result.name] = json_of(result.value);
   return {{"kind", stage.kind},
           {"outcome", describe(stage.outcome)},
+          {"outcome_id", id_of(stage.outcome)},
+          {"is_good", is_good(stage.outcome)},
           {"results", results},
           {"warnings", stage.report.warnings}};
 }
@@ -199,6 +201,8 @@ OrderedJson summary_json(const Summary& s, const Run& run) {
   OrderedJson json;
   json["title"] = s.title;
   json["outcome"] = describe(s.outcome);
+  json["outcome_id"] = id_of(s.outcome);
+  json["is_good"] = is_good(s.outcome) && s.is_sound;
   json["sign"] = "stress and strain of the test are positive in compression";
   json["stages"] = OrderedJson::array();
   for (const auto& stage : s.stages) json["stages"].push_back(json_of(stage));
@@ -248,9 +252,7 @@ Summary summarize(const Run& run) {
   }
   s.energy_error = energy_error(history, history.row_count());
   s.heat_error = heat_error(history);
-  if (s.outcome == Outcome::stopped || s.outcome == Outcome::not_settled || s.outcome == Outcome::unstable ||
-      s.outcome == Outcome::not_reached)
-    s.warnings.emplace_back(describe(s.outcome));
+  if (!is_good(s.outcome)) s.warnings.emplace_back(describe(s.outcome));
   if (s.energy_error && std::abs(*s.energy_error) > kEnergyTolerance)
     s.warnings.push_back(fmt::format(
         "the energy ledger closes only within {:.2f} % of the energy turned over", 100.0 * *s.energy_error));

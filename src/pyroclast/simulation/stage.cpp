@@ -1,33 +1,49 @@
 #include "pyroclast/simulation/stage.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace pyroclast {
 
+namespace {
+
+struct OutcomeInfo {
+  Outcome outcome;
+  const char* id;
+  bool is_good;
+  const char* sentence;
+};
+
+constexpr auto kOutcomes = std::to_array<OutcomeInfo>({
+    {Outcome::not_begun, "not_begun", false, "not begun"},
+    {Outcome::running, "running", false, "running"},
+    {Outcome::completed, "completed", true, "completed"},
+    {Outcome::steady, "steady", true, "the temperatures became steady"},
+    {Outcome::not_reached, "not_reached", false, "what the stage was to come to was not reached"},
+    {Outcome::crushed, "crushed", true, "the specimen was crushed while it was loaded"},
+    {Outcome::stress_fallen, "stress_fallen", true, "the stress fell below the stated fraction of the peak"},
+    {Outcome::ran_away, "ran_away", true, "the specimen failed: the upper platen ran away"},
+    {Outcome::not_settled, "not_settled", false, "the body did not come to rest within the stated steps"},
+    {Outcome::unstable, "unstable", false, "the motion became unstable (a result is not finite)"},
+    {Outcome::stopped, "stopped", false, "stopped"},
+});
+
+const OutcomeInfo& info_of(Outcome outcome) {
+  return *std::ranges::find(kOutcomes, outcome, &OutcomeInfo::outcome);
+}
+
+}  // namespace
+
 const char* describe(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::not_begun:
-      return "not begun";
-    case Outcome::running:
-      return "running";
-    case Outcome::completed:
-      return "completed";
-    case Outcome::steady:
-      return "the temperatures became steady";
-    case Outcome::not_reached:
-      return "the stated stress was not reached";
-    case Outcome::crushed:
-      return "the specimen was crushed while it was loaded";
-    case Outcome::stress_fallen:
-      return "the stress fell below the stated fraction of the peak";
-    case Outcome::ran_away:
-      return "the specimen failed: the upper platen ran away";
-    case Outcome::not_settled:
-      return "the body did not come to rest within the stated steps";
-    case Outcome::unstable:
-      return "the motion became unstable (a result is not finite)";
-    case Outcome::stopped:
-      return "stopped";
-  }
-  return "";
+  return info_of(outcome).sentence;
+}
+
+const char* id_of(Outcome outcome) {
+  return info_of(outcome).id;
+}
+
+bool is_good(Outcome outcome) {
+  return info_of(outcome).is_good;
 }
 
 Forecast& Forecast::operator+=(const Forecast& other) {

@@ -30,8 +30,12 @@ enum class Outcome : std::uint8_t {
   stopped         ///< from outside
 };
 
-/// In words.
+/// In words, for people.
 const char* describe(Outcome outcome);
+/// For programs: "not_settled".
+const char* id_of(Outcome outcome);
+/// Whether a run that ended so did what its deck asks, so that its results may be taken for such.
+bool is_good(Outcome outcome);
 
 /// What a stage says of the look that was just taken.
 struct Verdict {

@@ -678,7 +678,34 @@ double Drive::progress(const Simulation& simulation) const {
   return std::min(1.0, time(simulation) / keys_.duration);
 }
 
-StageReport Drive::report(const History& history, RowRange rows, Outcome) const {
+/// What a condition asks, and where its record stood at the end.
+std::string Drive::describe_unmet(std::size_t condition) const {
+  const Until& until = keys_.until[condition];
+  const auto record = std::ranges::find(keys_.records, until.record, &RecordParameters::name);
+  const double factor = column_over_si(record->kind);
+  const std::string unit = column_of(*record).unit;
+  const double last = factor * last_[condition];
+  switch (until.kind) {
+    case Until::Kind::above:
+      return fmt::format("{} is {:.4g} {}, not above {:.4g}", until.record, last, unit, factor * until.value);
+    case Until::Kind::below:
+      return fmt::format("{} is {:.4g} {}, not below {:.4g}", until.record, last, unit, factor * until.value);
+    case Until::Kind::share_of_peak:
+      if (!peaks_[condition].is_found())
+        return fmt::format("{} had no peak; it is {:.4g} {}", until.record, last, unit);
+      return fmt::format("{} is {:.4g} {}, not below {:g} of its peak, {:.4g}", until.record, last, unit,
+                         until.value, factor * peaks_[condition].size());
+    case Until::Kind::rate_above:
+      return fmt::format("{} did not change faster than {:.4g} {}/s", until.record, factor * until.value,
+                         unit);
+    case Until::Kind::rate_below:
+      return fmt::format("{} did not change more slowly than {:.4g} {}/s", until.record, factor * until.value,
+                         unit);
+  }
+  return {};
+}
+
+StageReport Drive::report(const History& history, RowRange rows, Outcome outcome) const {
   StageReport report;
   const bool has_rows = !rows.empty();
   const double work = has_rows ? history.values("energy_loading_J", rows).back() - first_work_ : 0.0;
@@ -690,6 +717,13 @@ StageReport Drive::report(const History& history, RowRange rows, Outcome) const 
   if (has_rows) report.lines = lines_of(keys_.results, of_records);
   report.warnings = missing_peaks(keys_.records, record_peaks_, keys_.results);
   if (keys_.control) add_control(report, work);
+  if (outcome == Outcome::not_reached || outcome == Outcome::not_settled) {
+    for (std::size_t i = 0; i < keys_.until.size(); ++i)
+      report.warnings.push_back(fmt::format("not met within the duration: {}", describe_unmet(i)));
+    if (outcome == Outcome::not_settled)
+      report.warnings.push_back(fmt::format(
+          "not met within the duration: the unbalanced ratio is not below {:g}", *keys_.unbalanced_ratio));
+  }
   return report;
 }
 

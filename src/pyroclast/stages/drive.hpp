@@ -106,6 +106,7 @@ class Drive : public Stage {
   bool is_beyond_noise(double share, const Simulation& simulation);
   bool has_fallen(const Simulation& simulation);
   void add_control(StageReport& report, double work) const;
+  std::string describe_unmet(std::size_t condition) const;
   double time(const Simulation& simulation) const;
   std::int64_t steps_in(const Simulation& simulation, double interval) const;
   void halt(Simulation& simulation);
