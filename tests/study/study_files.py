@@ -36,7 +36,7 @@ def main(x, seed, folder, mode="plain"):
         time.sleep(0.3)
     summary = {"outcome": "completed", "z": 2.0 * float(x) + 0.01 * int(seed), "stages": []}
     if mode == "restless":
-        summary["outcome"] = "the body did not come to rest within the stated steps"
+        summary["outcome"], summary["outcome_id"] = "the body did not come to rest", "not_settled"
     if mode == "fast":
         summary["stages"] = [{"kind": "compress", "outcome": "completed", "results": {"quasi_static": False}}]
     if mode == "silent":

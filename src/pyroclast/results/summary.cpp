@@ -220,13 +220,13 @@ OrderedJson summary_json(const Summary& s, const Run& run) {
   return json;
 }
 
-/// Paths of what is a number, or null, which a number may take the place of.
+/// Paths of what is a number, a flag, or null, which a number may take the place of.
 void add_numbers(const OrderedJson& json, const std::string& path, std::set<std::string>& names) {
   for (const auto& [key, value] : json.items()) {
     const std::string own = path.empty() ? key : path + "." + key;
     if (value.is_object())
       add_numbers(value, own, names);
-    else if (value.is_number() || value.is_null())
+    else if (value.is_number() || value.is_boolean() || value.is_null())
       names.insert(own);
   }
 }
@@ -252,7 +252,7 @@ Summary summarize(const Run& run) {
   }
   s.energy_error = energy_error(history, history.row_count());
   s.heat_error = heat_error(history);
-  if (!is_good(s.outcome)) s.warnings.emplace_back(describe(s.outcome));
+  if (run.has_ended() && !is_good(s.outcome)) s.warnings.emplace_back(describe(s.outcome));
   if (s.energy_error && std::abs(*s.energy_error) > kEnergyTolerance)
     s.warnings.push_back(fmt::format(
         "the energy ledger closes only within {:.2f} % of the energy turned over", 100.0 * *s.energy_error));

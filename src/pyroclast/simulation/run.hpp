@@ -82,6 +82,8 @@ class Run {
   void end_stage();
 
   Outcome outcome() const { return outcome_; }
+  /// Whether it has come to an end, or was stopped.
+  bool has_ended() const { return outcome_ != Outcome::running; }
   const std::vector<std::unique_ptr<Stage>>& stages() const { return stages_; }
   const std::vector<StageRecord>& records() const { return records_; }
   const History& history() const { return history_; }
