@@ -148,6 +148,33 @@ TEST(NodeEnthalpy, KeepsItsBitsWhenTheRangeWidens) {
   }
 }
 
+// Promise: every enthalpy has a temperature of the range, also where an end of the range is 0, the datum or
+// the end of a curve, and the enthalpy next to what is there: rounding takes nobody out of the table.
+TEST(NodeEnthalpy, IsSafeAtEveryEnd) {
+  const double ends[] = {-40.0, -0.1, 0.0, 5.0, 10.0, 19.9, 20.0, 20.05, 300.03, 1200.0};
+  const HeatMaterial even{Curve::constant(2.0), Curve::constant(2.2e6)};
+  for (const HeatMaterial& material : {even, cold_concrete()})
+    for (const double lower : ends)
+      for (const double upper : ends) {
+        if (lower >= upper) continue;
+        const TemperatureGrid grid({lower, upper});
+        std::vector<HeatTable> tables;
+        tables.emplace_back(material, "mortar", grid, window);
+        const NodeEnthalpy store(grid, tables, {{{0, 3.3e-6}, {0, 1.7e-7}}});
+        for (const double at : {lower, upper, 0.5 * (lower + upper)})
+          for (const double near : {lower, upper}) {
+            double enthalpy = store.enthalpy(0, at);
+            for (int i = 0; i < 8; ++i) enthalpy = std::nextafter(enthalpy, -1e300);
+            for (int i = 0; i < 16; ++i, enthalpy = std::nextafter(enthalpy, 1e300)) {
+              const double temperature = store.temperature(0, enthalpy, near);
+              ASSERT_GE(temperature, lower);
+              ASSERT_LE(temperature, upper);
+              ASSERT_NEAR(temperature, at, 1e-9);
+            }
+          }
+      }
+}
+
 TEST(NodeEnthalpy, HoldsTheEndsOfTheRangeAndSaysByHowMuch) {
   const TemperatureGrid grid(range);
   std::vector<HeatTable> tables;

@@ -177,13 +177,14 @@ double NodeEnthalpy::temperature(int node, double enthalpy, double near) const {
   const auto [coldest, hottest] = grid_.range();
   if (!(enthalpy > least_[node])) return coldest;
   if (enthalpy >= most_[node]) return hottest;
-  // Strides that double lead to a bracket, halving to the cell.
+  // Strides that double lead to a bracket, halving to the cell. An end of the range may lie beyond the knot at it by
+  // rounding, and the enthalpy between the two: then the cell at the end has it.
   int lower = grid_.cell(near), upper = lower + 1;
-  for (int stride = 1; enthalpy < at(node, lower); stride *= 2) {
+  for (int stride = 1; lower > grid_.first_cell() && enthalpy < at(node, lower); stride *= 2) {
     upper = lower;
     lower = std::max(grid_.first_cell(), lower - stride);
   }
-  for (int stride = 1; enthalpy > at(node, upper); stride *= 2) {
+  for (int stride = 1; upper <= grid_.last_cell() && enthalpy > at(node, upper); stride *= 2) {
     lower = upper;
     upper = std::min(grid_.last_cell() + 1, upper + stride);
   }
