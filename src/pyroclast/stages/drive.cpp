@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/rounding.hpp"
 #include "pyroclast/material/curve_reader.hpp"
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/simulation/simulation.hpp"
@@ -421,7 +422,7 @@ bool Drive::advance(Simulation& simulation, int most_steps) {
   simulation.mechanics().advance(static_cast<int>(steps));
   steps_ += steps;
   return steps_ % steps_in(simulation, keys_.look_interval) == 0 ||
-         (steps_ % interval == 0 && time(simulation) >= keys_.duration);
+         (steps_ % interval == 0 && at_most(keys_.duration, time(simulation)));
 }
 
 /// Whether noise is below this share of what records show of the stage. Forces go with the root of an energy;
@@ -500,7 +501,7 @@ Verdict Drive::judge(Simulation& simulation) {
   if (keys_.unbalanced_ratio && ramps_are_over &&
       simulation.mechanics().unbalanced_ratio() < *keys_.unbalanced_ratio)
     verdict.over = true;
-  if (!verdict.over && now >= keys_.duration) {
+  if (!verdict.over && at_most(keys_.duration, now)) {
     verdict.over = true;
     if (keys_.unbalanced_ratio) {
       verdict.last = true;
@@ -510,7 +511,7 @@ Verdict Drive::judge(Simulation& simulation) {
     }
   }
   if (verdict.over) halt(simulation);
-  const auto frames = static_cast<std::int64_t>(now / keys_.frame_interval);
+  const auto frames = static_cast<std::int64_t>(whole_below(now / keys_.frame_interval));
   verdict.frame = has_fallen(simulation) || frames > frames_;
   frames_ = std::max(frames_, frames);
   return verdict;

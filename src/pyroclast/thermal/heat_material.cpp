@@ -25,11 +25,12 @@ void require_usable(const Curve& curve, const std::string& title, const Temperat
   if (!curve.is_constant() && curve.axis() != temperature_axis())
     throw Error(fmt::format("{} ({}) is a function of {} [{}], but it must be one of the temperature", title,
                             curve.describe(), curve.axis().symbol, curve.axis().unit));
-  if (!(curve.range().lower <= range.lower && range.upper <= curve.range().upper))
+  if (!curve.holds(range))
     throw Error(fmt::format("{} ({}) does not cover the run's temperature range of {} to {} degC", title,
                             curve.describe(), range.lower, range.upper));
   const double first = std::max(curve.range().lower, TemperatureGrid::knot(grid.first_cell()));
-  const double last = std::min(curve.range().upper, TemperatureGrid::knot(grid.last_cell() + 1));
+  const double last =
+      std::max(first, std::min(curve.range().upper, TemperatureGrid::knot(grid.last_cell() + 1)));
   if (const double least = curve.minimum(first, last); !(least > 0.0))
     throw Error(fmt::format("{} ({}) falls to {}, but it must be greater than 0 from {} to {} degC", title,
                             curve.describe(), least, first, last));
@@ -177,8 +178,8 @@ double NodeEnthalpy::temperature(int node, double enthalpy, double near) const {
   const auto [coldest, hottest] = grid_.range();
   if (!(enthalpy > least_[node])) return coldest;
   if (enthalpy >= most_[node]) return hottest;
-  // Strides that double lead to a bracket, halving to the cell. An end of the range may lie beyond the knot at it by
-  // rounding, and the enthalpy between the two: then the cell at the end has it.
+  // Strides that double lead to a bracket, halving to the cell. An end of the range may lie beyond the knot
+  // at it by rounding, and the enthalpy between the two: then the cell at the end has it.
   int lower = grid_.cell(near), upper = lower + 1;
   for (int stride = 1; lower > grid_.first_cell() && enthalpy < at(node, lower); stride *= 2) {
     upper = lower;
