@@ -419,7 +419,8 @@ TEST(Conduction, LimitedFlowsAreBitwiseTheSameOnAnyNumberOfThreads) {
   const auto state = [&](int threads) {
     auto p = parameters({-250.0, 1300.0}, 20.0);
     p.largest_change = 2.0;
-    Conduction<2> heat(model, {constant_material(1.5, 2.2e6)}, p, std::make_shared<Team>(threads, WhenCrowded::stay));
+    Conduction<2> heat(model, {constant_material(1.5, 2.2e6)}, p,
+                       std::make_shared<Team>(threads, WhenCrowded::stay));
     heat.prescribe_temperature(heat.faces(on_plane<2>(0, 0.0, 1e-9)), Curve::constant(1000.0));
     heat.advance_to(1.0);
     EXPECT_GT(heat.limited_steps(), 0);
