@@ -496,8 +496,11 @@ Verdict Drive::judge(Simulation& simulation) {
   for (std::size_t i = 0; i < keys_.until.size(); ++i)
     if (is_met(i, simulation)) verdict.over = true;
   last_look_ = now;
+  // What acts is that of the middle of the last steps, so a ramp may end before all of it acts.
+  const double acted =
+      now - 0.5 * static_cast<double>(steps_per_adjustment()) * simulation.mechanics().time_step();
   const bool ramps_are_over =
-      std::ranges::all_of(keys_.actions, [&](const Action& a) { return now >= a.ramp_time; });
+      std::ranges::all_of(keys_.actions, [&](const Action& a) { return at_most(a.ramp_time, acted); });
   if (keys_.unbalanced_ratio && ramps_are_over &&
       simulation.mechanics().unbalanced_ratio() < *keys_.unbalanced_ratio)
     verdict.over = true;

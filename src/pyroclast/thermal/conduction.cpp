@@ -26,6 +26,10 @@ constexpr double kDoubtfulExcess = 0.01;
 /// Zones times stages that take some tenths of a second on one thread.
 constexpr std::int64_t kZonesPerBatch = 4'000'000;
 
+/// Limits stay on while they take more than this share of what a node may overstep by in a step: a step that
+/// is done twice costs more than one that is limited without need.
+constexpr double kLimitsMatter = 0.1;
+
 const Interval& checked(const Interval& range) {
   if (!(absolute_zero <= range.lower && range.lower <= range.upper && std::isfinite(range.upper)))
     throw Error(fmt::format(
@@ -612,7 +616,7 @@ void Conduction<Dim>::accept_trial() {
   state_.retries += trial_.retries;
   state_.stages += trial_.stages_done;
   if (trial_.limits != Limits::none) ++state_.limited_steps;
-  state_.limits = trial_.left_out * trial_.step > kAllowedBeyond;
+  state_.limits = trial_.left_out * trial_.step > kLimitsMatter * kAllowedBeyond;
   adapt_step();
   trial_.under_way = false;
   before_run_.holds = false;

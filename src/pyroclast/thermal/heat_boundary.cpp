@@ -52,19 +52,37 @@ void require_physical(const Radiation& c) {
   require_values(c.emissivity, kEmissivity, 0.0, 1.0);
 }
 
-/// Temperatures to which a condition can draw.
-Interval reach_of(const HeatFlux& c, double begin, double end) {
+/// Temperatures to which a flux between two can draw, W/m².
+Interval reach_of_flux(double least, double greatest) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Interval reach = nothing();
-  if (c.flux.minimum(begin, end) < 0.0) include(reach, -infinity);
-  if (c.flux.maximum(begin, end) > 0.0) include(reach, infinity);
+  if (least < 0.0) include(reach, -infinity);
+  if (greatest > 0.0) include(reach, infinity);
   return reach;
 }
-Interval reach_of(const Convection& c, double begin, double end) {
-  return {c.gas_temperature.minimum(begin, end), c.gas_temperature.maximum(begin, end)};
+Interval extremes(const Curve& curve, double begin, double end) {
+  return {curve.minimum(begin, end), curve.maximum(begin, end)};
 }
-Interval reach_of(const Radiation& c, double begin, double end) {
-  return {c.gas_temperature.minimum(begin, end), c.gas_temperature.maximum(begin, end)};
+
+/// Temperatures to which a condition can draw between two times.
+Interval reach_of(const HeatFlux& c, double begin, double end) {
+  const auto [least, greatest] = extremes(c.flux, begin, end);
+  return reach_of_flux(least, greatest);
+}
+template <class OfGas>
+Interval reach_of(const OfGas& c, double begin, double end) {
+  return extremes(c.gas_temperature, begin, end);
+}
+
+/// The same at one time.
+Interval reach_at(const HeatFlux& c, double time) {
+  const double flux = c.flux(time);
+  return reach_of_flux(flux, flux);
+}
+template <class OfGas>
+Interval reach_at(const OfGas& c, double time) {
+  const double gas = c.gas_temperature(time);
+  return {gas, gas};
 }
 
 /// Heat flux into a face at temperature T, at one time: constant - coefficient T - emissive (absolute T)^4.
@@ -155,8 +173,7 @@ Interval HeatBoundary::reach(double begin, double end) const {
 
 void HeatBoundary::add_reach(double time, std::vector<Interval>& ranges) const {
   for (const auto& entry : entries_) {
-    const Interval reach =
-        std::visit([&](const auto& c) { return reach_of(c, time, time); }, entry.condition);
+    const Interval reach = std::visit([&](const auto& c) { return reach_at(c, time); }, entry.condition);
     for (const auto& patch : entry.patches) include(ranges[patch.node], reach);
   }
 }

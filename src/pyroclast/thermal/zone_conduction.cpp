@@ -16,11 +16,7 @@ ZoneConduction<Dim>::ZoneConduction(const Model<Dim>& model, const ZoneGeometry<
     if (table < 0) continue;
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
       Zone zone{{}, table, geometry.volume[z], geometry.gradient[z]};
-      std::array<Vec<Dim>, Dim + 1> gradient{};
-      for (int i = 0; i < Dim; ++i) {
-        gradient[i] = zone.gradient[i];
-        gradient[Dim] -= zone.gradient[i];
-      }
+      const auto gradient = gradients(zone);
       std::array<double, Dim + 1> row{};
       for (int i = 0; i <= Dim; ++i)
         for (int j = 0; j <= Dim; ++j) row[i] += std::abs(dot(gradient[i], gradient[j])) * zone.volume;
@@ -31,6 +27,16 @@ ZoneConduction<Dim>::ZoneConduction(const Model<Dim>& model, const ZoneGeometry<
   }
   heat_.resize(zones_.size());
   uphill_.resize(zones_.size());
+}
+
+template <int Dim>
+std::array<Vec<Dim>, Dim + 1> ZoneConduction<Dim>::gradients(const Zone& zone) {
+  std::array<Vec<Dim>, Dim + 1> gradient{};
+  for (int i = 0; i < Dim; ++i) {
+    gradient[i] = zone.gradient[i];
+    gradient[Dim] -= zone.gradient[i];
+  }
+  return gradient;
 }
 
 template <int Dim>
@@ -82,11 +88,7 @@ void ZoneConduction<Dim>::update_apart(const std::vector<double>& temperature) {
   team_.share(zone_count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (auto z = begin; z < end; ++z) {
       const Zone& zone = zones_[z];
-      std::array<Vec<Dim>, Dim + 1> gradient{};
-      for (int i = 0; i < Dim; ++i) {
-        gradient[i] = zone.gradient[i];
-        gradient[Dim] -= zone.gradient[i];
-      }
+      const auto gradient = gradients(zone);
       const double conductivity = tables_[zone.table].conductivity(mean_temperature(zone, temperature));
       heat_[z] = {};
       for_each_pair([&](int pair, int i, int j) {

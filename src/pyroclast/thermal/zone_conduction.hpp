@@ -86,6 +86,8 @@ class ZoneConduction {
 
   template <class Visit>
   static void for_each_pair(Visit visit);
+  /// Of all shape functions, 1/m.
+  static std::array<Vec<Dim>, Dim + 1> gradients(const Zone& zone);
   double mean_temperature(const Zone& zone, const std::vector<double>& temperature) const;
   template <class Conductivity>
   std::vector<double> gather_rows(Conductivity conductivity) const;
