@@ -95,7 +95,7 @@ Specimen::Specimen(const Setup& setup, int blocks)
   const auto materials =
       pyroclast::make_concrete(setup.solids, setup.motion->contacts, made.metrics.mean_size);
   const pyroclast::TemperatureField field(model, pyroclast::kReferenceTemperature);
-  properties = pyroclast::properties_at(model, materials, field, {materials, field});
+  properties = pyroclast::properties_at(model, materials, field, {model, materials, field});
   for (const auto& solid : materials.solids)
     densities.push_back(solid.density(pyroclast::kReferenceTemperature));
 }

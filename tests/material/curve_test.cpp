@@ -232,6 +232,21 @@ TEST(Curve, TheDescriptionSaysKindAndRange) {
   expect_contains((2.5 * triangle()).describe(), {"2.5", "table of 3 points", "T = 20 to 500 degC"});
 }
 
+// Promise: a reading that misses the range by rounding, 1e-12 of the largest magnitude, gets the value at the
+// end; temperatures count from absolute zero. Any other one is refused.
+TEST(Curve, IsReadAtItsEndsUpToRounding) {
+  const Curve cold = Curve::table({-20.0, 0.0}, {1.0, 2.0}, temperature_axis());
+  EXPECT_EQ(cold(2e-10), 2.0);
+  EXPECT_TRUE(cold.holds({-20.0 - 2e-10, 2e-10}));
+  EXPECT_FALSE(cold.holds(4e-10));
+  EXPECT_THROW(cold(4e-10), Error);
+  const Curve later = Curve::table({0.0, 3600.0}, {1.0, 2.0}, time_axis());
+  EXPECT_EQ(later(3600.0 + 3e-9), 2.0);
+  EXPECT_EQ(later(-3e-9), 1.0);
+  EXPECT_THROW(later(3600.0 + 4e-9), Error);
+  EXPECT_THROW(later(-4e-9), Error);
+}
+
 /// A file in the test's temporary folder, deleted at the end.
 class CurveFile : public ::testing::Test {
  protected:

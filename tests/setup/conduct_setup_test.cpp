@@ -47,6 +47,34 @@ TEST(ConductSetup, NeedsNeitherContactsNorMechanicsNorPlatens) {
   EXPECT_NEAR(setup.temperatures.upper, 20.0 + 345.0 * std::log10(8.0 * 120.0 + 1.0), 1e-3);
 }
 
+// Promise: ends that a deck states in one unit and a table in another meet.
+TEST(ConductSetup, EndsInUnitsOfPapersMeetThoseOfTheRun) {
+  const std::string bounds =
+      "\n[[heat.boundaries]]\nfaces = \"right\"\nkind = \"temperature\"\ntemperature = ";
+  const auto deck = [&](const char* initial, const char* hottest, const char* points) {
+    const std::string heat = std::string(
+                                 "title = \"wall\"\n[specimen]\nseed = 1\nwidth = \"60 mm\"\nheight = \"60 "
+                                 "mm\"\n[blocks]\ncount = 20\nshortest_edge = 0.2\n") +
+                             "[materials.mortar]\ndensity = \"2200 kg/m3\"\nspecific_heat = \"1 kJ/kg/K\"\n" +
+                             "conductivity = { table = " + points +
+                             " }\n[heat]\nfield = \"conduction\"\ninitial = \"" + initial + "\"" + bounds +
+                             "\"" + hottest + "\"\n";
+    return heat +
+           "[[stages]]\nkind = \"conduct\"\nduration = \"1 min\"\ninterval = \"10 "
+           "s\"\n[output]\nframe_interval = \"1 min\"\n";
+  };
+  const auto runs = [](const std::string& text) {
+    const auto setup = read_setup(Deck::parse(text, "deck.toml"), ".");
+    make_simulation(setup)->field().begin_exposure(temperature_range(setup.heat, 60.0));
+  };
+  EXPECT_NO_THROW(
+      runs(deck("20 degC", "600 degC", R"([["68 degF", "1.5 W/m/K"], ["1112 degF", "1 W/m/K"]])")));
+  EXPECT_NO_THROW(
+      runs(deck("527.67 degR", "873.15 K", R"([["20 degC", "1.5 W/m/K"], ["600 degC", "1 W/m/K"]])")));
+  EXPECT_NO_THROW(
+      runs(deck("250.2 K", "0 degC", R"([["-9.31 degF", "1.5 W/m/K"], ["527.67 degR", "1 W/m/K"]])")));
+}
+
 TEST(ConductSetup, MakesASpecimenWithoutPlatensThatConducts) {
   const pyroclast::Setup setup =
       read_setup(Deck::parse(with(wall_deck(), "count = 2000", "count = 100"), "deck.toml"), ".");

@@ -82,7 +82,7 @@ TEST(CreepOfAnExchange, IsThatOfTheFirstHeating) {
   const auto materials = creeping_materials(OnCooling::irreversible);
   const Curve& strain = materials.solids[mortar_material].creep->strain;
   TemperatureField field(body, 20.0);
-  HottestTemperatures hottest(materials, field);
+  HottestTemperatures hottest(body, materials, field);
   double hottest_so_far = 20.0;
   for (const double to : {400.0, 20.0, 400.0, 450.0, 10.0, 300.0, 500.0}) {
     field.set_uniform(to);
@@ -95,11 +95,11 @@ TEST(CreepOfAnExchange, IsThatOfTheFirstHeating) {
   // brought to its first temperature without stress
   const TemperatureField warm(body, 300.0);
   field.set_uniform(350.0);
-  const auto first = properties_at(body, materials, field, HottestTemperatures(materials, warm));
+  const auto first = properties_at(body, materials, field, HottestTemperatures(body, materials, warm));
   EXPECT_EQ(compliances(body, first).first, (strain(350.0) - strain(300.0)) / 35e6);
   const TemperatureField cold(body, -30.0);
   field.set_uniform(120.0);
-  const auto from_cold = properties_at(body, materials, field, HottestTemperatures(materials, cold));
+  const auto from_cold = properties_at(body, materials, field, HottestTemperatures(body, materials, cold));
   EXPECT_EQ(compliances(body, from_cold).first, strain(120.0) / 35e6);
 }
 
@@ -123,7 +123,7 @@ TEST(PropertiesOnCooling, StayThoseOfTheHottestOrComeBack) {
     const bool stays = on_cooling == OnCooling::irreversible;
     TemperatureField field(body, 20.0);
     const TemperatureField hot(body, 400.0);
-    HottestTemperatures hottest(materials, field);
+    HottestTemperatures hottest(body, materials, field);
     hottest.take(hot);
     expect(field, stays ? hot : field, properties_at(body, materials, field, hottest));
 
@@ -131,7 +131,7 @@ TEST(PropertiesOnCooling, StayThoseOfTheHottestOrComeBack) {
         conduct(body, heat_conditions({on("left", convection(25.0, Curve::constant(600.0)))}), 600.0);
     const auto before = computed.zones();
     computed.advance(100.0, 600.0);
-    HottestTemperatures uneven(materials, computed);
+    HottestTemperatures uneven(body, materials, computed);
     expect(field, stays ? computed : field, [&] {
       // a computed field that has cooled to 20 degC
       const auto cold =
@@ -179,7 +179,7 @@ TEST(FreeStrainOnCooling, HasTheSlopeOfItsPhase) {
       }
     };
     TemperatureField field(body, 20.0);
-    HottestTemperatures hottest(materials, field);
+    HottestTemperatures hottest(body, materials, field);
     double hottest_so_far = 20.0;
     for (const double to : {400.0, 20.0, 300.0, 400.0, 450.0, 60.0}) {
       field.set_uniform(to);
@@ -191,9 +191,9 @@ TEST(FreeStrainOnCooling, HasTheSlopeOfItsPhase) {
     const auto hot = heated_field(body);
     const auto cold = cold_field(body);
     expect(cold.zones(), hot.zones(),
-           properties_at(body, materials, cold, HottestTemperatures(materials, hot)));
+           properties_at(body, materials, cold, HottestTemperatures(body, materials, hot)));
     expect(hot.zones(), hot.zones(),
-           properties_at(body, materials, hot, HottestTemperatures(materials, cold)));
+           properties_at(body, materials, hot, HottestTemperatures(body, materials, cold)));
   }
 }
 
@@ -244,7 +244,7 @@ TEST(PropertiesOnCooling, LoseTheirResidualShareEvenly) {
     }
   };
   TemperatureField field(body, 20.0);
-  HottestTemperatures hottest(materials, field);
+  HottestTemperatures hottest(body, materials, field);
   const TemperatureField hot(body, 420.0);
   expect(hot, hot, properties_at(body, materials, hot, hottest));
   hottest.take(hot);
@@ -254,8 +254,8 @@ TEST(PropertiesOnCooling, LoseTheirResidualShareEvenly) {
   }
   const auto uneven = heated_field(body);
   const auto cold = cold_field(body);
-  expect(uneven, uneven, properties_at(body, materials, uneven, HottestTemperatures(materials, cold)));
-  expect(cold, uneven, properties_at(body, materials, cold, HottestTemperatures(materials, uneven)));
+  expect(uneven, uneven, properties_at(body, materials, uneven, HottestTemperatures(body, materials, cold)));
+  expect(cold, uneven, properties_at(body, materials, cold, HottestTemperatures(body, materials, uneven)));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -60,6 +61,33 @@ TEST(Conduct, KeepsFramesAtTheStartAtTheirOwnTimesAndAtTheEnd) {
   c.go_on();
   EXPECT_EQ(c.frames, (std::vector<double>{0.0, 90.0, 180.0, 250.0}));
   EXPECT_EQ(c.looks, (std::vector<double>{0.0, 90.0, 100.0, 180.0, 200.0, 250.0}));  // one at each frame
+}
+
+// Promise: multiples of an interval that rounding moves by its last bits are neither missed nor looked at
+// twice.
+TEST(Conduct, LooksOnceAtEachWholeMultiple) {
+  for (const double interval : {0.1, 0.2, 0.3, 0.7, 1.1}) {
+    Conducted c(fire_from_the_left(),
+                {.duration = 30.0 * interval, .interval = interval, .frame_interval = 3.0 * interval}, 30);
+    c.go_on();
+    EXPECT_EQ(c.looks.size(), 31U) << interval;
+    EXPECT_EQ(c.frames.size(), 11U) << interval;
+  }
+}
+
+// Promise: a body cools in air below 20 degC, where its enthalpy counts from; no temperature leaves those of
+// the air and of the start.
+TEST(Conduct, ABodyCoolsBelowTheReferenceTemperature) {
+  for (const auto& [start, air] : {std::pair{20.0, 10.0}, {20.0, 5.0}, {0.0, -20.0}, {20.05, 20.0}}) {
+    HeatConditions heat = heat_conditions({on("left", convection(25.0, Curve::constant(air)))});
+    heat.initial = start;
+    Conducted c(heat, {.duration = 600.0, .interval = 10.0}, 150);
+    c.go_on();
+    EXPECT_EQ(c.run.outcome(), Outcome::completed);
+    EXPECT_GE(c.simulation.field().minimum(), air);
+    EXPECT_LE(c.simulation.field().maximum(), start);
+    EXPECT_LT(c.simulation.field().mean(), start);
+  }
 }
 
 TEST(Conduct, StopsAfterALookWhenAskedTo) {

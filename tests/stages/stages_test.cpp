@@ -380,5 +380,19 @@ TEST(Stages, ContradictionsAreRefused) {
             std::string::npos);
 }
 
+// Promise: a load stage is not over before all of the load is on, however soon the body rests; also where the
+// ramp is a whole number of steps.
+TEST(LoadStage, EndsWithAllOfItsLoad) {
+  for (const char* ramp : {"20 ms", "19.9 ms", "7 ms", "1 ms", "0 ms"}) {
+    std::string text = deck(kUniform + kSettle + load("stress = \"3 MPa\""));
+    const auto stage = text.rfind("ramp_time = \"20 ms\"\nunbalanced_ratio = 1e-6");
+    text.replace(stage, std::string("ramp_time = \"20 ms\"\nunbalanced_ratio = 1e-6").size(),
+                 std::string("ramp_time = \"") + ramp + "\"\nunbalanced_ratio = 1000");
+    const Finished run(text);
+    EXPECT_EQ(run.run.outcome(), Outcome::completed);
+    EXPECT_NEAR(run.simulation->press().stress_held(), 3e6, 1e-6) << ramp;  // rounding of 3e6 Pa
+  }
+}
+
 }  // namespace
 }  // namespace pyroclast

@@ -55,7 +55,7 @@ void expose_to_fire(Conduction<2>& heat, const std::vector<int>& faces) {
 /// Largest error of the steady field between outline temperatures that are linear in space.
 template <int Dim>
 double linear_field_error(const Model<Dim>& model, const std::vector<std::optional<HeatMaterial>>& materials,
-                          double size) {
+                          double size, bool limits = false) {
   Vec<Dim> gradient{{100.0 / size, -70.0 / size}};
   if constexpr (Dim == 3) gradient[2] = 40.0 / size;
   const auto exact = [&](int node, const Conduction<Dim>& heat) {
@@ -63,6 +63,7 @@ double linear_field_error(const Model<Dim>& model, const std::vector<std::option
   };
   auto p = parameters({-100.0, 500.0}, 200.0);
   p.largest_change = 200.0;
+  p.always_limits = limits;
   p.largest_step = 1e4;  // some times what the slowest wave needs to decay
   Conduction<Dim> heat(model, materials, p);
   for (int node : outline_nodes(heat)) heat.prescribe_node(node, Curve::constant(exact(node, heat)));
@@ -115,11 +116,12 @@ TEST(ConductionVerification, CarriesALinearFieldExactlyThroughASpecimenWithoutIt
 
 /// L2 error of T = 3 + exp(-t) cos(pi x) cos(pi y / 2), conductivity 1 + T/10, heat capacity 2 - T/10, driven
 /// by the source that makes it a solution. It is 3 on y = 1 and symmetric about the other sides.
-double manufactured_error(int blocks) {
+double manufactured_error(int blocks, bool limits = false) {
   const auto model = plane_body({.blocks = {blocks, blocks}, .size = {1.0, 1.0}, .jitter = 0.2});
   const HeatMaterial material{Curve::expression("1 + T / 10", {0.0, 10.0}, temperature_axis()),
                               Curve::expression("2 - T / 10", {0.0, 10.0}, temperature_axis())};
   auto p = parameters({0.0, 10.0}, 3.0);
+  p.always_limits = limits;
   p.largest_change = 0.02;  // an error in time far below that in space
   Conduction<2> heat(model, {material}, p);
   const auto exact = [](const Vec<2>& x, double t) {
@@ -153,6 +155,43 @@ TEST(ConductionVerification, IsOfSecondOrderInSpaceWithCurvesAndASource) {
   expect_known({"Order of heat conduction in space, with curves over temperature and a source",
                 "manufactured solution", "1"},
                std::log2(medium / fine), 2.0, 0.1);
+}
+
+/// L2 error of an insulated square whose temperatures 300 + 100 cos(pi x) cos(2 pi y) even out, K.
+double decaying_error(int blocks, bool limits) {
+  const auto model = plane_body({.blocks = {blocks, blocks}, .size = {1.0, 1.0}, .jitter = 0.3});
+  auto p = parameters({100.0, 500.0}, 300.0);
+  p.largest_change = 0.2;  // an error in time far below that in space
+  p.always_limits = limits;
+  Conduction<2> heat(model, {constant_material(1.0, 1.0)}, p);
+  const auto exact = [](const Vec<2>& x, double t) {
+    return 300.0 + 100.0 * std::exp(-5.0 * pi * pi * t) * std::cos(pi * x[0]) * std::cos(2.0 * pi * x[1]);
+  };
+  std::vector<double> start;
+  for (int g : heat.nodes().gridpoint) start.push_back(exact(model.position[g], 0.0));
+  heat.set_temperature(start);
+  heat.advance_to(0.02);
+  EXPECT_EQ(heat.limited_steps(), limits ? heat.steps() : 0);
+  double sum = 0.0;
+  for (int node = 0; node < heat.nodes().count(); ++node)
+    sum += std::pow(heat.temperature()[node] - exact(model.position[heat.nodes().gridpoint[node]], 0.02), 2);
+  return std::sqrt(sum / heat.nodes().count());
+}
+
+// Promise: limited flows lose no order where the temperatures are smooth.
+TEST(ConductionVerification, IsOfSecondOrderInSpaceWithLimitedFlows) {
+  const double medium = decaying_error(16, true), fine = decaying_error(32, true);
+  expect_known({"Order of heat conduction in space with limited flows", "decaying cosines", "1"},
+               std::log2(medium / fine), 2.0, 0.1);
+}
+
+TEST(ConductionVerification, CarriesALinearFieldExactlyWithLimitedFlows) {
+  const auto plane = plane_body({.blocks = {9, 7}, .size = {0.15, 0.12}, .jitter = 0.3});
+  const auto solid = solid_body({.blocks = {4, 4, 4}, .size = {0.1, 0.1, 0.1}, .jitter = 0.2});
+  const double error = std::max(linear_field_error<2>(plane, {constant_material(1.6, 2e6)}, 0.15, true),
+                                linear_field_error<3>(solid, {constant_material(1.6, 2e6)}, 0.1, true));
+  expect_known_field({"Steady heat with limited flows: temperatures", "linear field", "K"}, error, 100.0,
+                     round_off);
 }
 
 /// Concrete strip with one side in the standard fire for ten minutes.
@@ -375,6 +414,23 @@ HeatState heat_in_batches(HeatScheme scheme, std::int64_t stages, int batches_to
   return heat.state();
 }
 
+TEST(Conduction, LimitedFlowsAreBitwiseTheSameOnAnyNumberOfThreads) {
+  const auto model = plane_body({.blocks = {60, 60}, .size = {0.1, 0.1}, .jitter = 0.4});
+  const auto state = [&](int threads) {
+    auto p = parameters({-250.0, 1300.0}, 20.0);
+    p.largest_change = 2.0;
+    Conduction<2> heat(model, {constant_material(1.5, 2.2e6)}, p,
+                       std::make_shared<Team>(threads, WhenCrowded::stay));
+    heat.prescribe_temperature(heat.faces(on_plane<2>(0, 0.0, 1e-9)), Curve::constant(1000.0));
+    heat.advance_to(1.0);
+    EXPECT_GT(heat.limited_steps(), 0);
+    return heat.state();
+  };
+  const HeatState alone = state(1);
+  EXPECT_EQ(state(2), alone);
+  EXPECT_EQ(state(3), alone);
+}
+
 TEST(Conduction, IsBitwiseTheSameInBatchesOfAnySizeAndWhenABatchIsDropped) {
   constexpr int never = std::numeric_limits<int>::max();
   constexpr auto all = std::numeric_limits<std::int64_t>::max();
@@ -560,6 +616,106 @@ TEST(Conduction, HoldsOvershootsOfASharpFrontAtTheEndOfTheRange) {
   EXPECT_GT(heat.largest_overshoot(), 0.0);
   for (double t : heat.temperature()) EXPECT_TRUE(20.0 <= t && t <= 1000.0 + heat.largest_overshoot()) << t;
   EXPECT_LT(std::abs(heat.ledger().error()), 1e-10 * heat.ledger().stored);
+}
+
+/// How far temperatures leave those of the start and of the nodes that are held, K.
+template <int Dim>
+double excess_of_patch(const Model<Dim>& model, const std::vector<int>& nodes, double duration,
+                       double start = 20.0, double held = 1000.0) {
+  auto p = parameters({-250.0, 1300.0}, start);
+  p.largest_change = 2.0;
+  Conduction<Dim> heat(
+      model,
+      std::vector<std::optional<HeatMaterial>>(model.material_names.size(), constant_material(1.5, 2.2e6)),
+      p);
+  for (const int node : nodes) heat.prescribe_node(node, Curve::constant(held));
+  const auto [least, greatest] = std::minmax(start, held);
+  double beyond = 0.0;
+  for (int i = 1; i <= 20; ++i) {
+    heat.advance_to(duration * i * i / 400.0);
+    for (const double t : heat.temperature()) beyond = std::max({beyond, least - t, t - greatest});
+  }
+  EXPECT_LE(std::abs(heat.ledger().error()), 1e-10 * std::abs(heat.ledger().stored));
+  return beyond;
+}
+
+/// Nodes of a body's outline near a plane.
+template <int Dim>
+std::vector<int> nodes_on(const Model<Dim>& model, int axis, double at, double from, double to) {
+  const Conduction<Dim> heat(
+      model,
+      std::vector<std::optional<HeatMaterial>>(model.material_names.size(), constant_material(1.5, 2.2e6)),
+      parameters({0.0, 100.0}, 20.0));
+  std::vector<int> nodes;
+  for (const int node : outline_nodes(heat)) {
+    const auto& x = model.position[heat.nodes().gridpoint[node]];
+    const int across = (axis + 1) % Dim;
+    if (std::abs(x[axis] - at) < 1e-9 && from <= x[across] && x[across] <= to) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+// Promise: no temperature leaves those of the start and of what is prescribed, however obtuse the zones.
+TEST(Conduction, ASharpFrontStaysWithinItsBounds) {
+  const auto plane = plane_body({.blocks = {20, 20}, .size = {0.1, 0.1}, .jitter = 0.45});
+  EXPECT_LE(excess_of_patch(plane, nodes_on(plane, 0, 0.0, 0.03, 0.07), 600.0),
+            Conduction<2>::kAllowedBeyond);
+  EXPECT_LE(excess_of_patch(plane, nodes_on(plane, 0, 0.0, 0.0, 0.1), 600.0, 600.0, 20.0),
+            Conduction<2>::kAllowedBeyond);
+  const auto slender = plane_body({.blocks = {40, 5}, .size = {0.1, 0.1}, .jitter = 0.3});
+  EXPECT_LE(excess_of_patch(slender, nodes_on(slender, 1, 0.0, 0.03, 0.07), 600.0),
+            Conduction<2>::kAllowedBeyond);
+}
+
+TEST(Conduction, ASharpFrontInTetrahedraStaysWithinItsBounds) {
+  const auto solid = solid_body({.blocks = {8, 8, 8}, .size = {0.1, 0.1, 0.1}, .jitter = 0.25});
+  EXPECT_LE(excess_of_patch(solid, nodes_on(solid, 0, 0.0, 0.0, 0.1), 600.0), Conduction<3>::kAllowedBeyond);
+  EXPECT_LE(excess_of_patch(solid, nodes_on(solid, 2, 0.0, 0.03, 0.07), 600.0, 600.0, 20.0),
+            Conduction<3>::kAllowedBeyond);
+  const auto flat = solid_body({.blocks = {14, 3, 4}, .size = {0.1, 0.1, 0.1}, .jitter = 0.2});
+  EXPECT_LE(excess_of_patch(flat, nodes_on(flat, 2, 0.0, 0.0, 0.1), 600.0), Conduction<3>::kAllowedBeyond);
+}
+
+// Promise: a heat flux of 0 is none: it widens no bounds, excuses nothing, and changes no bit.
+TEST(Conduction, AFluxOfZeroIsNone) {
+  const auto model = plane_body({.blocks = {12, 12}, .size = {0.1, 0.1}, .jitter = 0.35});
+  const auto temperatures = [&](bool with_flux) {
+    auto p = parameters({20.0, 1100.0}, 20.0);
+    p.largest_change = 2.0;
+    Conduction<2> heat(model, {constant_material(1.5, 2.2e6)}, p);
+    heat.prescribe_temperature(heat.faces(on_plane<2>(0, 0.0, 1e-9)), Curve::constant(1000.0));
+    if (with_flux)
+      heat.apply(heat.faces(on_plane<2>(0, 0.1, 1e-9)),
+                 HeatFlux{Curve::table({0.0, 1e3}, {0.0, 0.0}, time_axis())});
+    heat.advance_to(60.0);
+    EXPECT_EQ(heat.bounds(), (Interval{20.0, 1000.0}));
+    return heat.temperature();
+  };
+  EXPECT_EQ(temperatures(true), temperatures(false));
+}
+
+// Promise: a flux, a source and a gas take temperatures where they do; the bounds say so.
+TEST(Conduction, WhatHeatsWidensTheBounds) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto model = plane_body({.blocks = {6, 6}, .size = {0.1, 0.1}, .jitter = 0.2});
+  const auto bounds = [&](const auto& act) {
+    Conduction<2> heat(model, {constant_material(1.5, 2.2e6)}, parameters({-100.0, 900.0}, 20.0));
+    act(heat, heat.faces(on_plane<2>(0, 0.0, 1e-9)));
+    heat.advance_to(10.0);
+    return heat.bounds();
+  };
+  EXPECT_EQ(
+      bounds([](auto& heat, const auto& faces) { heat.apply(faces, HeatFlux{Curve::constant(500.0)}); }),
+      (Interval{20.0, infinity}));
+  EXPECT_EQ(
+      bounds([](auto& heat, const auto& faces) { heat.apply(faces, HeatFlux{Curve::constant(-500.0)}); }),
+      (Interval{-infinity, 20.0}));
+  EXPECT_EQ(bounds([](auto& heat, const auto& faces) {
+              heat.apply(faces, Convection{Curve::constant(25.0), Curve::constant(-7.0)});
+            }),
+            (Interval{-7.0, 20.0}));
+  EXPECT_EQ(bounds([](auto& heat, const auto&) { heat.set_source([](const auto&, double) { return 1e3; }); }),
+            Interval());
 }
 
 TEST(Conduction, HeatThatWaitsAtTheEndOfTheRangeComesToItsPlaceWhenTheRangeWidens) {

@@ -74,6 +74,44 @@ INSTANTIATE_TEST_SUITE_P(Dimensionless, GoodQuantity,
                                          Good{"0.31", unit::dimensionless, 0.31},
                                          Good{"2 mm/m", unit::dimensionless, 0.002}));
 
+class ExactQuantity : public testing::TestWithParam<Good> {};
+
+// Promise: where units are decimals of each other, a value is the double nearest to what is written.
+TEST_P(ExactQuantity, IsTheNearestDouble) {
+  const auto& [text, unit, value] = GetParam();
+  EXPECT_EQ(parse_quantity(text, unit), value) << text;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Decimals, ExactQuantity,
+    testing::Values(Good{"10 us", unit::time, 1e-5}, Good{"7 um", unit::length, 7e-6},
+                    Good{"68 mm", unit::length, 0.068}, Good{"-0.3 mm", unit::length, -3e-4},
+                    Good{"1.7e-3 kN", unit::force, 1.7}, Good{"68 %", unit::dimensionless, 0.68},
+                    Good{"3 Å", unit::length, 3e-10}, Good{"0.1 ft", unit::length, 0.03048},
+                    Good{"3 inch", unit::length, 0.0762}, Good{"450 mm2", unit::area, 4.5e-4},
+                    Good{"1.1 min", unit::time, 66.0}, Good{"0.7 h", unit::time, 2520.0},
+                    Good{"12 K/min", unit::heating_rate, 0.2}, Good{"36 km/h", unit::velocity, 10.0},
+                    Good{"1 K/h", unit::heating_rate, 1.0 / 3600.0},
+                    Good{"0.1234567890123456789 m", unit::length, 0.1234567890123456789}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Temperatures, ExactQuantity,
+    testing::Values(Good{"68 degF", unit::temperature, 20.0}, Good{"293.15 K", unit::temperature, 20.0},
+                    Good{"32 degF", unit::temperature, 0.0}, Good{"-40 degF", unit::temperature, -40.0},
+                    Good{"0 K", unit::temperature, -273.15}, Good{"-459.67 degF", unit::temperature, -273.15},
+                    Good{"527.67 degR", unit::temperature, 20.0}, Good{"300 K", unit::temperature, 26.85},
+                    Good{"9 degR", unit::temperature_difference, 5.0},
+                    Good{"1.8 degF/s", unit::heating_rate, 1.0}));
+
+// Promise: a formula's values go the same way, but for the rounding of a sum and a product.
+TEST(UnitFactors, TakeValuesAsQuantitiesAre) {
+  EXPECT_EQ(unit_factors("degF", unit::temperature)(68.0), 20.0);
+  EXPECT_EQ(unit_factors("K", unit::temperature)(273.15), 0.0);
+  EXPECT_EQ(unit_factors("us", unit::time)(10.0), 1e-5);
+  EXPECT_TRUE(unit_factors("W/(m K)", unit::conductivity).is_none());
+  EXPECT_THROW(unit_factors("m", unit::time), QuantityError);
+}
+
 struct Bad {
   const char* text;
   Unit unit;

@@ -79,7 +79,7 @@ Interval drawn_range(const ReadCurve& property, const Interval& run) {
 
 std::string rows(const ReadCurve& property, const Interval& range) {
   const Curve& curve = property.curve;
-  const double reference = curve.range().contains(kReferenceTemperature) ? curve(kReferenceTemperature) : 0.0;
+  const double reference = curve.holds(kReferenceTemperature) ? curve(kReferenceTemperature) : 0.0;
   const int steps = std::max(1, static_cast<int>(std::ceil((range.upper - range.lower) / kTemperatureStep)));
   std::string text;
   for (int i = 0; i <= steps; ++i) {

@@ -142,8 +142,14 @@ ContactProperties ContactMaterial::at(double temperature, double marked) const {
 }
 
 double SolidMaterial::free_strain(double temperature, double hottest) const {
-  if (!contraction || temperature >= hottest) return thermal_strain(temperature);
-  return thermal_strain(hottest) - *contraction * (hottest - temperature);
+  if (!contraction || temperature >= hottest) return thermal_strain(temperature) - first_strain;
+  return thermal_strain(hottest) - *contraction * (hottest - temperature) - first_strain;
+}
+
+void set_stress_free(ConcreteMaterials& concrete, double temperature) {
+  concrete.stress_free = temperature;
+  for (SolidMaterial& solid : concrete.solids)
+    if (!solid.is_of_bearing) solid.first_strain = solid.thermal_strain(temperature);
 }
 
 CreepIncrement CreepMaterial::between(double from, double to) const {

@@ -48,8 +48,9 @@ struct SolidMaterial {
   std::optional<Curve> conductivity;    ///< gamma, W/(m K); only for heat conduction
   std::optional<Curve> specific_heat;   ///< c, J/(kg K); likewise
   bool is_of_bearing = false;           ///< not of the specimen: at 20 °C in every run
+  double first_strain = 0.0;  ///< thermal strain at the temperature without stress, see set_stress_free
 
-  /// Free strain at a temperature of what was at the hottest one before, °C.
+  /// Free strain, since the temperature without stress, at one of what was at the hottest one before, °C.
   double free_strain(double temperature, double hottest) const;
   /// E, Pa, at a temperature.
   /// \param marked  that it is that of, see OnCooling
@@ -186,6 +187,7 @@ struct ConcreteMaterials {
   double fracture_zone = 0.0;             ///< t_b as it came out, m
   OnCooling on_cooling = OnCooling::irreversible;
   std::optional<Composition> composition;  ///< where `follow_composition` was asked
+  std::optional<double> stress_free;       ///< where `set_stress_free` was asked, °C
 
   bool creeps() const { return any_creeps(solids); }
   bool asks_for_hottest() const;  ///< whether anything follows the highest temperature that was there
@@ -205,6 +207,11 @@ std::vector<std::string> phases_of(const std::vector<SolidMaterial>& solids);
 /// Throws Error when blocks of two phases would have no interface.
 ConcreteMaterials make_concrete(const std::vector<SolidMaterial>& solids, const ContactParameters& parameters,
                                 double block_size, std::optional<double> foreseen = std::nullopt);
+
+/// Lets the thermal strain of every phase count from a temperature, °C, at which the body was put together
+/// without stress, and where it was once; else it counts from the reference temperature. Comes after all that
+/// changes thermal strains. Throws Error where one is not defined there.
+void set_stress_free(ConcreteMaterials& concrete, double temperature);
 
 /// Gives the phases of this specimen what follows from its share of inclusions: the creep that makes the
 /// concrete's (see CreepLevel), and the thermal strains that make the concrete's. Both by Mixture<2>, with

@@ -8,14 +8,12 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/rounding.hpp"
 #include "pyroclast/base/sort_unique.hpp"
 #include "pyroclast/material/expression.hpp"
 
 namespace pyroclast {
 namespace {
-
-/// Readings outside a range by less than this fraction of its width count as rounding.
-constexpr double rounding = 1e-9;
 
 /// Even steps in which the extremes of a curve that is not piecewise linear are looked for.
 constexpr int extreme_steps = 1000;
@@ -31,6 +29,14 @@ void require_finite_interval(const std::string& name, const Interval& range, con
 }
 
 }  // namespace
+
+bool Interval::holds(double x, double zero) const {
+  if (contains(x) || !std::isfinite(x)) return contains(x);
+  double largest = std::abs(x - zero);
+  for (const double end : {lower, upper})
+    if (std::isfinite(end)) largest = std::max(largest, std::abs(end - zero));
+  return lower - kSameWithin * largest <= x && x <= upper + kSameWithin * largest;
+}
 
 /// What a curve evaluates; knows neither range nor name.
 class Curve::Function {
@@ -289,9 +295,12 @@ Curve operator*(const Curve& a, const Curve& b) {
 
 double Curve::clamped(double x) const {
   if (range_.contains(x)) return x;
-  const double slack = rounding * (range_.upper - range_.lower);
-  if (!(range_.lower - slack <= x && x <= range_.upper + slack)) refuse(x);
+  if (!holds(x)) refuse(x);
   return std::clamp(x, range_.lower, range_.upper);
+}
+
+double Curve::zero() const {
+  return axis() == temperature_axis() ? absolute_zero : 0.0;
 }
 
 /// Where the extremes on [a, b] are looked for.

@@ -12,14 +12,35 @@ namespace pyroclast {
 /// Temperature at which properties without a curve hold, and from which thermal strain counts: T0, °C.
 inline constexpr double kReferenceTemperature = 20.0;
 
+inline constexpr double absolute_zero = -273.15;  ///< °C
+
 /// Closed interval on which a curve is defined. The default is the whole real line.
 struct Interval {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
 
   bool contains(double x) const { return lower <= x && x <= upper; }
+  /// Whether it contains x but for rounding, see `same`: of the largest magnitude among x and the ends.
+  /// \param zero  from where magnitudes count
+  bool holds(double x, double zero = 0.0) const;
+  bool holds(const Interval& other, double zero = 0.0) const {
+    return holds(other.lower, zero) && holds(other.upper, zero);
+  }
   bool operator==(const Interval&) const = default;
 };
+
+/// Contains nothing, until it is made to include something.
+inline constexpr Interval nothing() {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return {infinity, -infinity};
+}
+inline void include(Interval& range, double x) {
+  range = {x < range.lower ? x : range.lower, x > range.upper ? x : range.upper};
+}
+inline void include(Interval& range, const Interval& other) {
+  range = {other.lower < range.lower ? other.lower : range.lower,
+           other.upper > range.upper ? other.upper : range.upper};
+}
 
 /// What a curve is a function of: the symbol (also the variable of an expression) and the unit, for messages.
 struct CurveAxis {
@@ -43,8 +64,7 @@ inline CurveAxis time_axis() {
 ///
 /// A curve is immutable and has value semantics; a copy shares its data. Any number of threads may read the
 /// same curve. It is never extrapolated: reading it outside its range throws. A reading that misses the range
-/// by no more than a billionth of its width is rounding (a field that should be at 20 degC) and gets the
-/// value at the end of the range.
+/// by rounding (a field that should be at 20 degC; see `holds`) gets the value at the end of the range.
 class Curve {
  public:
   class Function;
@@ -71,6 +91,9 @@ class Curve {
   double operator()(double x) const;
 
   Interval range() const { return range_; }
+  /// Whether it can be read at x, and throughout an interval: those that miss the range by rounding included.
+  bool holds(double x) const { return range_.holds(x, zero()); }
+  bool holds(const Interval& needed) const { return range_.holds(needed, zero()); }
 
   /// Greatest and least value on [a, b], which must lie within the range. Exact for constants, tables and
   /// their multiples; otherwise the extreme of a thousand even steps and the breaks of the function.
@@ -109,6 +132,7 @@ class Curve {
 
   Curve(std::shared_ptr<const Function> function, Interval range, std::shared_ptr<const Label> label);
 
+  double zero() const;
   double clamped(double x) const;
   std::string title() const;
   std::vector<double> candidates(double a, double b) const;

@@ -17,9 +17,6 @@ constexpr double kRampEnd = 1e9;
 /// What the deck reference says of a value that is of its key's kind.
 constexpr auto kQuantity = "quantity of the key's kind";
 
-/// Part of the needed interval's width by which a curve may fall short of it: rounding, as in Curve.
-constexpr double kRounding = 1e-9;
-
 std::string suffix(const Unit& unit) {
   return unit == unit::dimensionless ? "" : unit.si;
 }
@@ -32,24 +29,11 @@ double in_unit(double value, const std::string& given, const Unit& unit) {
   return parse_quantity(fmt::format("{} {}", value, given == "1" ? "" : given), unit);
 }
 
-/// The value in `unit.si` is `factor` times the value in a given unit, plus `offset` (of temperatures).
-struct Conversion {
-  double factor;
-  double offset;
-
-  /// Throws QuantityError.
-  Conversion(const std::string& given, const Unit& unit) {
-    offset = in_unit(0.0, given, unit);
-    factor = in_unit(1.0, given, unit) - offset;
-  }
-};
-
-Curve converted(const Curve& curve, const Conversion& to, const std::string& description) {
-  if (to.factor == 1.0 && to.offset == 0.0) return curve;
-  if (to.offset == 0.0) return (curve * to.factor).described_as(description);
+Curve converted(const Curve& curve, const UnitFactors& to, const std::string& description) {
+  if (to.is_none()) return curve;
+  if (to.shift == 0.0) return (curve * (to.factor / to.divisor)).described_as(description);
   return Curve::function(
-      description, [curve, to](double x) { return curve(x) * to.factor + to.offset; }, curve.range(),
-      curve.axis());
+      description, [curve, to](double x) { return to(curve(x)); }, curve.range(), curve.axis());
 }
 
 /// What `make` returns; its error is recorded at the key.
@@ -109,7 +93,7 @@ Curve CurveReader::read_described(const Section& section, std::string_view key, 
     curve = varied(forms, read_forms(forms, unit, true));
     if (!curve || !forms.ok() || !covers(section, key, *curve) || !within(section, key, *curve, unit, range))
       curve = Curve::constant(range.any_value());
-    else if (axis_ == temperature_axis() && curve->range().contains(kReferenceTemperature))
+    else if (axis_ == temperature_axis() && curve->holds(kReferenceTemperature))
       section.warn_if_unusual(key, (*curve)(kReferenceTemperature), unit, range);
   }
   const std::string path = path_of(section, key);
@@ -172,7 +156,7 @@ std::optional<Curve> CurveReader::read_product(const Section& forms, const Unit&
                      "of what the ratio `times` loses: the value is multiplied with 1 - share (1 - ratio)");
   if (!ratio || !forms.ok()) return std::nullopt;
   return try_at(forms, "times", [&] {
-    if (axis_ == temperature_axis() && ratio->range().contains(kReferenceTemperature)) {
+    if (axis_ == temperature_axis() && ratio->holds(kReferenceTemperature)) {
       const double at_reference = (*ratio)(kReferenceTemperature);
       if (!(std::abs(at_reference - 1.0) <= kRatioTolerance))
         throw Error(fmt::format("must be 1 at {} degC, where the value holds, but is {:.6g} there",
@@ -216,7 +200,7 @@ std::optional<Curve> CurveReader::read_builtin(const Section& section, std::stri
   return try_at(section, key, [&] {
     const NamedCurve& entry = builtins_.at(name);
     try {
-      return converted(entry.curve, Conversion(entry.unit, unit),
+      return converted(entry.curve, unit_factors(entry.unit, unit),
                        fmt::format("{} ({}) in {}", entry.name, entry.source, unit.si));
     } catch (const QuantityError&) {
       throw Error(entry.unit == "1"
@@ -242,7 +226,7 @@ std::optional<Curve> CurveReader::read_expression(const Section& forms, const Un
   return try_at(forms, "expression", [&]() -> std::optional<Curve> {
     const Curve curve = Curve::expression(formula, {range[0], range[1]}, axis_);
     return try_at(forms, "unit", [&] {
-      return converted(curve, Conversion(given, unit), fmt::format("formula \"{}\" in {}", formula, given));
+      return converted(curve, unit_factors(given, unit), fmt::format("formula \"{}\" in {}", formula, given));
     });
   });
 }
@@ -267,8 +251,7 @@ std::optional<Curve> CurveReader::read_ramp(const Section& forms, const Unit& un
 
 bool CurveReader::covers(const Section& section, std::string_view key, const Curve& curve) const {
   const Interval given = curve.range();
-  const double slack = kRounding * (needed_.upper - needed_.lower);
-  if (given.lower <= needed_.lower + slack && needed_.upper <= given.upper + slack) return true;
+  if (curve.holds(needed_)) return true;
   section.error(
       key, fmt::format("is given from {} to {} {}, but the run needs it from {} to {} {}; curves are not "
                        "extrapolated",

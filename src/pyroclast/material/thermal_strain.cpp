@@ -61,7 +61,7 @@ Curve secant_strain(const Curve& expansion, Interval range) {
 }
 
 Curve tangent_strain(const Curve& expansion, Interval range) {
-  if (!range.contains(kReferenceTemperature))
+  if (!range.holds(kReferenceTemperature, absolute_zero))
     throw Error(
         fmt::format("{}: the tangent reading integrates from {} degC, which is not between {} and {} degC",
                     expansion.describe(), kReferenceTemperature, range.lower, range.upper));

@@ -188,6 +188,7 @@ void add_heat(OrderedJson& json, const Summary& summary, const Run& run) {
   json["heat_solver"] = {{"steps", conduction.steps()},
                          {"steps_taken_back", conduction.retries()},
                          {"evaluations", conduction.stages()},
+                         {"limited_steps", conduction.limited_steps()},
                          {"largest_overshoot_K", conduction.largest_overshoot()}};
   const Simulation& simulation = run.simulation();
   if (simulation.moves()) json["heat_solver"]["coupling"] = simulation.coupling_of_heat();

@@ -135,8 +135,8 @@ std::optional<Interval> read_range(const Section& s, const HeatConditions& heat)
     s.error("temperature_range", "two temperatures are needed, the lower one first");
     return std::nullopt;
   }
-  const Interval range{ends[0], ends[1]};
-  if (range.contains(heat.initial)) return range;
+  if (Interval{ends[0], ends[1]}.holds(heat.initial, absolute_zero))
+    return Interval{std::min(ends[0], heat.initial), std::max(ends[1], heat.initial)};
   s.error("temperature_range", fmt::format("the initial temperature of {} degC is not in it", heat.initial));
   return std::nullopt;
 }

@@ -35,7 +35,7 @@ constexpr Meaning kSolid = "a phase of the specimen; each phase has such a table
 /// Records an error unless the curve, where it is defined there, has this value at the reference temperature.
 void require_at_reference(const Section& s, std::string_view key, const Curve& curve, double expected,
                           double tolerance) {
-  if (!s.ok() || !curve.range().contains(kReferenceTemperature)) return;
+  if (!s.ok() || !curve.holds(kReferenceTemperature)) return;
   const double value = curve(kReferenceTemperature);
   if (std::abs(value - expected) <= tolerance) return;
   s.error(key,

@@ -73,6 +73,11 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
   if (tables.coupling_table) tables.coupling = read_coupling(*tables.coupling_table);
   ReadStages read;
   read.any_moves = moves;
+  if (tables.coupling_table && tables.coupling_table->has("stress_free"))
+    read.stress_free = tables.coupling_table->quantity(
+        "stress_free", unit::temperature, Range::at_least(absolute_zero).usually(-30.0, 80.0),
+        "temperature at which the body was put together, and nothing is strained: thermal strain counts from "
+        "there, and the hottest that was so far is no less; without it 20 °C");
   for (std::size_t i = 0; i < sections.size(); ++i) {
     read.stages.push_back(chosen[i]->read(sections[i], tables));
     const std::string name =

@@ -10,8 +10,9 @@ namespace pyroclast {
 
 struct ReadStages {
   std::vector<std::unique_ptr<Stage>> stages;
-  std::vector<std::string> names;  ///< of the stages
-  bool any_moves = false;          ///< the body
+  std::vector<std::string> names;     ///< of the stages
+  std::optional<double> stress_free;  ///< as [coupling] says, °C
+  bool any_moves = false;             ///< the body
 };
 
 /// Reads [[stages]], and [output] and [coupling] as far as their kinds need them. What is wrong is recorded

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/rounding.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/setup/read_bearings.hpp"
 #include "pyroclast/setup/read_heat.hpp"
@@ -192,23 +193,29 @@ void warn_of_healing(const Section& root, const Setup& setup) {
 
 /// A body that is not at the temperature at which nothing is strained.
 void warn_of_first_strain(const Section& root, const Setup& setup) {
-  if (!setup.motion || setup.heat.initial == kReferenceTemperature) return;
+  if (!setup.motion) return;
+  const double unstrained = setup.motion->stress_free.value_or(kReferenceTemperature);
+  if (same(setup.heat.initial, unstrained, absolute_zero)) return;
   root.section("heat").warn(
       "initial",
       fmt::format("the body is unstrained at {:.6g} degC, and its expansion from there on acts at once "
-                  "at the first step, which can crack it: a stage that heats it does so gradually",
-                  kReferenceTemperature));
+                  "at the first step, which can crack it: a stage that heats it does so gradually; "
+                  "coupling.stress_free says another temperature",
+                  unstrained));
 }
 
 /// All temperatures that a run may come to, and the reference temperature, at which masses and stated
 /// stiffnesses hold.
+/// \param stress_free  °C, where the deck says one
 Interval run_temperatures(const Section& root, const HeatConditions& conditions,
+                          const std::optional<double>& stress_free,
                           const std::vector<std::unique_ptr<Stage>>& stages) {
   Interval t{std::min(kReferenceTemperature, conditions.initial),
              std::max(kReferenceTemperature, conditions.initial)};
   const auto include = [&](double low, double high) {
     t = {std::min(t.lower, low), std::max(t.upper, high)};
   };
+  if (stress_free) include(*stress_free, *stress_free);
   const bool stages_are_known =
       std::ranges::all_of(root.sections("stages"), [](const Section& s) { return s.ok(); });
   if (!stages_are_known) return t;  // what stands in for an error asks nothing of curves
@@ -355,7 +362,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   check_heat(root, setup.heat, setup.stages);
   check_hand_over(root, setup.stages);
   check_flow(root, setup.heat, setup.stages);
-  setup.temperatures = run_temperatures(root, setup.heat, setup.stages);
+  setup.temperatures = run_temperatures(root, setup.heat, read.stress_free, setup.stages);
   const auto bearings = read.any_moves ? read_bearings(root) : std::vector<ReadBearing>();
   setup.specimen = read_specimen(root, folder, bearings);
   setup.sets = read_sets(root);
@@ -376,6 +383,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   else
     read_resting(root, curves, setup);
   setup.records = records;
+  if (setup.motion) setup.motion->stress_free = read.stress_free;
   setup.curves = curves.curves();
   warn_of_healing(root, setup);
   warn_of_first_strain(root, setup);

@@ -61,10 +61,19 @@ BodyProperties properties_at_one_temperature(const Model<2>& model, const std::v
 
 }  // namespace
 
-HottestTemperatures::HottestTemperatures(const ConcreteMaterials& materials, const TemperatureField& field) {
+HottestTemperatures::HottestTemperatures(const Model<2>& model, const ConcreteMaterials& materials,
+                                         const TemperatureField& field) {
   if (materials.asks_for_hottest()) zones_ = field.zones();
   if (materials.on_cooling == OnCooling::irreversible) contacts_ = field.contacts();
   of_all_ = field.mean();
+  if (materials.stress_free) {
+    const double first = *materials.stress_free;
+    const std::vector<int> blocks = zone_blocks(model);
+    for (std::size_t z = 0; z < zones_.size(); ++z)
+      if (!model.is_of_bearing(blocks[z])) zones_[z] = std::max(zones_[z], first);
+    for (double& contact : contacts_) contact = std::max(contact, first);
+    of_all_ = std::max(of_all_, first);
+  }
   seen_zones_ = zones_;
   seen_contacts_ = contacts_;
 }

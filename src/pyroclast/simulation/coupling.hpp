@@ -17,9 +17,10 @@ namespace pyroclast {
 class HottestTemperatures {
  public:
   HottestTemperatures() = default;
-  /// As if the body had come to the temperatures that the field has now without stress.
-  /// \param materials  empty where none of them asks
-  HottestTemperatures(const ConcreteMaterials& materials, const TemperatureField& field);
+  /// As if the body had come without stress to the temperatures that the field has now, from the one without
+  /// stress where the materials say one.
+  HottestTemperatures(const Model<2>& model, const ConcreteMaterials& materials,
+                      const TemperatureField& field);
 
   /// The field came to its temperatures, but hands them over later, with an exchange.
   void see(const TemperatureField& field);

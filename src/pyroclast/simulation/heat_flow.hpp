@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cmath>
 #include <limits>
 
+#include "pyroclast/base/rounding.hpp"
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 
@@ -11,8 +11,7 @@ namespace pyroclast {
 /// The first multiple of an interval after a heating time, s; never for an infinite interval.
 inline double next_multiple(double interval, double time) {
   if (interval == std::numeric_limits<double>::infinity()) return interval;
-  const double next = interval * (std::floor(time / interval) + 1.0);
-  return next > time ? next : next + interval;  // rounding
+  return interval * (whole_below(time / interval) + 1.0);
 }
 
 /// Conducts heat through a computed field in batches.

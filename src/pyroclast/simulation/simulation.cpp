@@ -86,6 +86,7 @@ ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const
   if (follows_composition(solids, motion))
     follow_composition(materials, motion.contacts, motion.strain_of_concrete, specimen.fraction,
                        specimen.metrics.mean_size);
+  if (motion.stress_free) set_stress_free(materials, *motion.stress_free);
   return materials;
 }
 
@@ -106,7 +107,7 @@ Simulation::Simulation(specimen::Specimen specimen, double thickness,
     return;
   }
   materials_ = make_materials(solids, *motion, specimen_);
-  hottest_ = HottestTemperatures(materials_, field_);
+  hottest_ = HottestTemperatures(model_, materials_, field_);
   mechanics_ = make_mechanics(model_, materials_, field_, hottest_, motion->mechanics, team_);
   for (const specimen::Notch& notch : specimen_.region.notches())
     if (const auto parted = model_.contact_sets.find(notch.name); parted != model_.contact_sets.end())

@@ -30,6 +30,8 @@ struct MotionParameters {
   ContactParameters contacts;
   std::optional<StrainOfConcrete> strain_of_concrete;  ///< where phases follow it
   OnCooling on_cooling = OnCooling::irreversible;
+  std::optional<double>
+      stress_free;  ///< temperature at which nothing is strained, °C; else the reference one
   MechanicsParameters<2> mechanics;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "pyroclast/base/rounding.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/stages/compression_response.hpp"
 #include "pyroclast/stages/load.hpp"
@@ -118,7 +119,8 @@ void Compress::begin(Simulation& simulation) {
     return;
   }
   press.control_by_motion(keys_.velocity);
-  gap_steps_left_ = static_cast<std::int64_t>(gap / (keys_.velocity * simulation.mechanics().time_step()));
+  gap_steps_left_ =
+      static_cast<std::int64_t>(whole_below(gap / (keys_.velocity * simulation.mechanics().time_step())));
   if (gap_steps_left_ == 0) begin_loading(simulation);
 }
 

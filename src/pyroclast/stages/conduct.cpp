@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/rounding.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 
 namespace pyroclast {
@@ -56,8 +57,8 @@ double Conduct::steady_rate(const Simulation& simulation) const {
 void Conduct::begin_flow(const Simulation& simulation) {
   const double time = simulation.field().time();
   flow_steady_ = steady_rate(simulation);
-  double until = std::min({end(), next_frame_, next_multiple(keys_.interval, time)});
-  if (flow_steady_ == 0.0) until = std::min(until, steady_from_);
+  double until = earliest({end(), next_frame_, next_multiple(keys_.interval, time)});
+  if (flow_steady_ == 0.0) until = earliest({until, steady_from_});
   flow_.begin(keys_.change, until, flow_steady_);
 }
 

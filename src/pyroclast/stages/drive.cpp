@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/rounding.hpp"
 #include "pyroclast/material/curve_reader.hpp"
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/simulation/simulation.hpp"
@@ -592,7 +593,7 @@ bool Drive::advance(Simulation& simulation, int most_steps) {
   steps_ += steps;
   if (steps_ % kStepsPerPoint == 0) take_peaks(simulation);
   return steps_ % steps_in(simulation, keys_.look_interval) == 0 ||
-         (steps_ % interval == 0 && time(simulation) >= keys_.duration);
+         (steps_ % interval == 0 && at_most(keys_.duration, time(simulation)));
 }
 
 /// Whether noise is below this share of what records show of the stage. Forces go with the root of an energy;
@@ -653,12 +654,15 @@ Verdict Drive::judge(Simulation& simulation) {
   for (std::size_t i = 0; i < keys_.until.size(); ++i)
     if (is_met(i, simulation)) verdict.over = true;
   last_look_ = now;
+  // What acts is that of the middle of the last steps, so a ramp may end before all of it acts.
+  const double acted =
+      now - 0.5 * static_cast<double>(steps_per_adjustment()) * simulation.mechanics().time_step();
   const bool ramps_are_over =
-      std::ranges::all_of(keys_.actions, [&](const Action& a) { return now >= a.ramp_time; });
+      std::ranges::all_of(keys_.actions, [&](const Action& a) { return at_most(a.ramp_time, acted); });
   if (keys_.unbalanced_ratio && ramps_are_over &&
       simulation.mechanics().unbalanced_ratio() < *keys_.unbalanced_ratio)
     verdict.over = true;
-  if (!verdict.over && now >= keys_.duration) {
+  if (!verdict.over && at_most(keys_.duration, now)) {
     verdict.over = true;
     if (keys_.unbalanced_ratio) {
       verdict.last = true;
@@ -668,7 +672,7 @@ Verdict Drive::judge(Simulation& simulation) {
     }
   }
   if (verdict.over) halt(simulation);
-  const auto frames = static_cast<std::int64_t>(now / keys_.frame_interval);
+  const auto frames = static_cast<std::int64_t>(whole_below(now / keys_.frame_interval));
   verdict.frame = has_fallen(simulation) || frames > frames_;
   frames_ = std::max(frames_, frames);
   return verdict;

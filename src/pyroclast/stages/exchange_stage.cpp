@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/rounding.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 
 namespace pyroclast {
@@ -196,7 +197,7 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
 
 Forecast ExchangeStage::forecast(const Simulation&, Foreseen& foreseen) const {
   const double from = foreseen.temperature;
-  const double exchanges = std::ceil(foreseen_change(foreseen) / coupling().increment);
+  const double exchanges = whole_above(foreseen_change(foreseen) / coupling().increment);
   return {
       .steps = exchanges * exchange_.expected_cycles(),
       .looks = exchanges,

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "pyroclast/base/rounding.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 
 namespace pyroclast {
 
 namespace {
 
-/// Shares of a duration that differ by less are the same.
-constexpr double kSameTime = 1e-9;
 /// The mean temperature changes by about this share of what the hottest boundary could bring about.
 constexpr double kMeanChange = 0.5;
 
@@ -48,7 +47,7 @@ void Expose::begin_change(Simulation& simulation) {
 bool Expose::change(Simulation& simulation, Exchange& exchange, int) {
   if (!flow_.flows()) {
     simulation.show_cracks_to_heat();
-    flow_.begin(coupling().increment, std::min(began_ + keys_.duration, next_frame_));
+    flow_.begin(coupling().increment, earliest({began_ + keys_.duration, next_frame_}));
   }
   if (!flow_.advance(simulation.field())) return false;
   simulation.set_heating_time(simulation.field().time());
@@ -68,8 +67,8 @@ bool Expose::frame_time_came(const Simulation& simulation) {
 }
 
 double Expose::progress(const Simulation& simulation) const {
-  const double share = (simulation.heating_time() - began_) / keys_.duration;
-  return share > 1.0 - kSameTime ? 1.0 : share;
+  const double end = began_ + keys_.duration, time = simulation.heating_time();
+  return at_most(end, time) ? 1.0 : (time - began_) / keys_.duration;
 }
 
 double Expose::foreseen_change(Foreseen& foreseen) const {

@@ -68,10 +68,13 @@ void Load::begin(Simulation& simulation) {
 
 /// To what the ramp has in the middle of the steps to come.
 void Load::adjust_force(Simulation& simulation) const {
-  const double time_step = simulation.mechanics().time_step();
-  const double ahead = keys_.ramp_time > 0.0 ? 0.5 * kStepsPerForce * time_step / keys_.ramp_time : 0.0;
-  const double share = std::min(1.0, ramp_share(steps_, time_step, keys_.ramp_time) + ahead);
+  const double share = share_held_from(steps_, simulation.mechanics().time_step());
   simulation.press().hold(first_stress_ + share * (keys_.stress - first_stress_));
+}
+
+double Load::share_held_from(std::int64_t steps, double time_step) const {
+  const double ahead = keys_.ramp_time > 0.0 ? 0.5 * kStepsPerForce * time_step / keys_.ramp_time : 0.0;
+  return std::min(1.0, ramp_share(steps, time_step, keys_.ramp_time) + ahead);
 }
 
 bool Load::advance(Simulation& simulation, int most_steps) {
@@ -85,8 +88,9 @@ bool Load::advance(Simulation& simulation, int most_steps) {
 Verdict Load::judge(Simulation& simulation) {
   if (simulation.press().specimen_strain() - first_strain_ > keys_.failure_strain)
     return {.over = true, .last = true, .outcome = Outcome::crushed};
-  if (progress(simulation) < 1.0) return {};
   const Mechanics<2>& mechanics = simulation.mechanics();
+  // The ramp may end before the force is adjusted to all of it.
+  if (share_held_from(steps_ - kStepsPerForce, mechanics.time_step()) < 1.0) return {};
   if (mechanics.unbalanced_ratio() < keys_.unbalanced_ratio) return {.over = true};
   const double after_ramp = static_cast<double>(steps_) - keys_.ramp_time / mechanics.time_step();
   if (after_ramp >= static_cast<double>(keys_.most_steps))

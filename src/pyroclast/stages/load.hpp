@@ -35,6 +35,8 @@ class Load : public Stage {
 
  private:
   void adjust_force(Simulation& simulation) const;
+  /// Share of the change of force that is held for kStepsPerForce steps from one on.
+  double share_held_from(std::int64_t steps, double time_step) const;
 
   Keys keys_;
   std::int64_t steps_ = 0;     ///< since the stage began

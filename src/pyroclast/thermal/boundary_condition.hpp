@@ -29,6 +29,5 @@ struct Radiation {
 using BoundaryCondition = std::variant<HeatFlux, Convection, Radiation>;
 
 inline constexpr double stefan_boltzmann = 5.670374419e-8;  ///< W/(m² K⁴), CODATA 2018
-inline constexpr double absolute_zero = -273.15;            ///< °C
 
 }  // namespace pyroclast

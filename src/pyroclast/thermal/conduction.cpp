@@ -26,6 +26,10 @@ constexpr double kDoubtfulExcess = 0.01;
 /// Zones times stages that take some tenths of a second on one thread.
 constexpr std::int64_t kZonesPerBatch = 4'000'000;
 
+/// Limits stay on while they take more than this share of what a node may overstep by in a step: a step that
+/// is done twice costs more than one that is limited without need.
+constexpr double kLimitsMatter = 0.1;
+
 const Interval& checked(const Interval& range) {
   if (!(absolute_zero <= range.lower && range.lower <= range.upper && std::isfinite(range.upper)))
     throw Error(fmt::format(
@@ -82,13 +86,6 @@ std::vector<double> total_volumes(const std::vector<std::vector<NodeShare>>& sha
   return volume;
 }
 
-/// Makes a maximum that threads share at least as large as a value.
-void raise(std::atomic<double>& maximum, double value) {
-  double present = maximum;
-  while (present < value && !maximum.compare_exchange_weak(present, value)) {
-  }
-}
-
 /// By Gershgorin's theorem no rate of decay exceeds the largest row sum over capacity.
 template <class Capacity>
 HeatStepLimit strictest(const std::vector<double>& rows, double safety, Capacity capacity) {
@@ -141,6 +138,8 @@ void Conduction<Dim>::set_nodes(ThermalNodes nodes) {
   total_volume_ = chunked_sum(node_chunks_, [&](int node) { return volume_[node]; });
   for (auto* field : {&trial_.increment, &trial_.before, &trial_.first_rate, &boundary_heat_, &source_heat_})
     field->assign(volume_.size(), 0.0);
+  reach_.resize(volume_.size());
+  shares_.resize(volume_.size());
   boundary_.clear();
   for (const Applied& applied : applied_) add_to_boundary(applied);
   place_prescriptions();
@@ -297,6 +296,9 @@ void Conduction<Dim>::set_temperature(const std::vector<double>& temperature) {
     state_.enthalpy[node] = store_.enthalpy(node, temperature[node]);
   state_.stored_at_start = total_enthalpy();
   state_.ledger = {};
+  state_.bounds = nothing();
+  for (const double t : temperature) include(state_.bounds, t);
+  state_.limits = false;
 }
 
 template <int Dim>
@@ -360,16 +362,25 @@ void Conduction<Dim>::begin_run(double end) {
       chunk_begins(static_cast<int>(prescribed_.size()), [&](int i) { return prescribed_[i]; });
   held_at_.resize(prescriptions_.size());
   read_prescriptions(time());
-  before_run_ = {true, state_.next_step, state_.ledger.prescribed, {}, {}};
+  before_run_ = {true, state_.next_step, state_.ledger.prescribed, state_.bounds, {}, {}};
   for (int node : prescribed_) {
     before_run_.temperature.push_back(state_.temperature[node]);
     before_run_.enthalpy.push_back(state_.enthalpy[node]);
   }
   hold_prescribed();
-  // Without these the exact solution stays within the range, so that all excess is numerical.
-  const bool may_leave = source_ || !boundary_.draws_into(grid_.range(), time(), end);
-  allowed_excess_ = may_leave ? kDoubtfulExcess * (grid_.range().upper - grid_.range().lower)
-                              : std::numeric_limits<double>::max();
+  Interval reach = source_ ? Interval() : boundary_.reach(time(), end);
+  // Where nothing takes the exact solution out of the range, all excess is numerical.
+  const double doubtful = kDoubtfulExcess * (grid_.range().upper - grid_.range().lower);
+  const Interval wider{std::min(reach.lower, grid_.range().lower),
+                       std::max(reach.upper, grid_.range().upper)};
+  constexpr double any = std::numeric_limits<double>::max();
+  allowed_below_ = grid_.range().holds(wider.lower, absolute_zero) ? any : doubtful;
+  allowed_above_ = grid_.range().holds(wider.upper, absolute_zero) ? any : doubtful;
+  for (const int node : prescribed_) {
+    const Curve& curve = prescriptions_[prescription_[node]];
+    include(reach, {curve.minimum(time(), end), curve.maximum(time(), end)});
+  }
+  include(state_.bounds, reach);
   safe_step_ = range_limit(end).step;
   if (state_.next_step == 0.0) state_.next_step = std::min(safe_step_, parameters_.largest_step);
 }
@@ -392,8 +403,9 @@ bool Conduction<Dim>::continue_step(double end, std::int64_t& stages) {
     trial_.under_way = true;
     trial_.end = end;
     trial_.limit = present_limit(step).step;
+    trial_.limits = Limits::none;
     trial_.stages_done = trial_.retries = 0;
-    begin_trial(step);
+    begin_trial(step, state_.limits || parameters_.always_limits ? Limits::flows : Limits::none);
   }
   for (;;) {
     for (; trial_.next_stage < trial_.stages.count(); ++trial_.next_stage, --stages) {
@@ -401,22 +413,45 @@ bool Conduction<Dim>::continue_step(double end, std::int64_t& stages) {
       run_stage(trial_.stages[trial_.next_stage]);
     }
     const bool smallest = trial_.step <= safe_step_;
-    if (trial_.excess <= allowed_excess_ && (smallest || trial_.change <= parameters_.largest_change)) break;
-    if (smallest) refuse_excess();
+    const double half = std::max(0.5 * trial_.step, safe_step_);
+    if (!smallest && trial_.change > parameters_.largest_change) {
+      begin_trial(half, trial_.limits);
+    } else if (trial_.limits != Limits::strict && oversteps()) {
+      begin_trial(trial_.step, trial_.limits == Limits::none ? Limits::flows : Limits::strict);
+    } else if (trial_.below > allowed_below_ || trial_.above > allowed_above_) {
+      if (smallest) refuse_excess();
+      begin_trial(half, trial_.limits);
+    } else {
+      break;
+    }
     ++trial_.retries;
-    begin_trial(std::max(0.5 * trial_.step, safe_step_));
   }
   accept_trial();
   if (trial_.step == remaining) state_.time = end;
   return true;
 }
 
+/// The scheme that takes fewest stages, where limits allow for both: forward Euler oversteps no bounds.
 template <int Dim>
-void Conduction<Dim>::begin_trial(double step) {
+HeatScheme Conduction<Dim>::trial_scheme(Limits limits, double ratio) const {
+  if (limits == Limits::none) return parameters_.scheme;
+  const bool is_cheap =
+      fewest_stages(HeatScheme::euler, ratio) <= fewest_stages(HeatScheme::super_time_stepping, ratio);
+  return limits == Limits::strict || is_cheap ? HeatScheme::euler : parameters_.scheme;
+}
+
+template <int Dim>
+void Conduction<Dim>::begin_trial(double step, Limits limits) {
+  // A node passes what draws it from outside where a step takes all of its heat by more than one way.
+  if (limits != Limits::none && trial_.limits == Limits::none) trial_.limit = present_limit(step, 2.0).step;
   trial_.step = step;
-  trial_.stages = TimeStages(parameters_.scheme, fewest_stages(parameters_.scheme, step / trial_.limit));
+  trial_.left_out = 0.0;
+  const HeatScheme scheme = trial_scheme(limits, step / trial_.limit);
+  const bool is_strict = limits != Limits::none && scheme == HeatScheme::euler;
+  trial_.limits = is_strict ? Limits::strict : limits;
+  trial_.stages = TimeStages(scheme, fewest_stages(scheme, step / trial_.limit));
   trial_.next_stage = 0;
-  trial_.change = trial_.excess = 0.0;
+  trial_.change = trial_.below = trial_.above = 0.0;
   trial_.heat = {};
   trial_.temperature = state_.temperature;
   std::fill(trial_.increment.begin(), trial_.increment.end(), 0.0);
@@ -439,7 +474,8 @@ void Conduction<Dim>::run_stage(const TimeStage& stage) {
 template <int Dim>
 typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
   Inflow sum;
-  zones_.update(trial_.temperature);
+  const bool limits = trial_.limits != Limits::none;
+  limits ? zones_.update_apart(trial_.temperature) : zones_.update(trial_.temperature);
   if (gaps_) gaps_->update(trial_.temperature);
   sum.boundary = boundary_.inflow(time, trial_.temperature, boundary_heat_);
   if (source_) {
@@ -449,8 +485,70 @@ typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
     });
     sum.source = chunked_sum(node_chunks_, [&](int node) { return source_heat_[node]; });
   }
+  if (limits) limit_flows(time);
   sum.held = chunked_sum(prescribed_chunks_, [&](int i) { return inflow(prescribed_[i]); });
   return sum;
+}
+
+/// Lets heat from cold to hot flow as far as it takes no node, in one stable step, beyond its neighbours and
+/// beyond what acts on it from outside.
+template <int Dim>
+void Conduction<Dim>::limit_flows(double time) {
+  std::fill(reach_.begin(), reach_.end(), nothing());
+  boundary_.add_reach(time, reach_);
+  const auto share = [](double room, double heat) { return heat <= room ? 1.0 : std::max(room, 0.0) / heat; };
+  team_->share(nodes_.count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (int node = static_cast<int>(begin); node < end; ++node) {
+      shares_[node] = {1.0, 1.0};
+      const auto uphill = zones_.uphill(node);
+      if (prescription_[node] >= 0 || (uphill.in == 0.0 && uphill.out == 0.0)) continue;
+      const double temperature = trial_.temperature[node];
+      Interval range = reach_[node];
+      include(range, temperature);
+      include(range, zones_.around(node, trial_.temperature));
+      if (gaps_) gaps_->add_around(node, trial_.temperature, range);
+      if (source_heat_[node] > 0.0) include(range, std::numeric_limits<double>::infinity());
+      if (source_heat_[node] < 0.0) include(range, -std::numeric_limits<double>::infinity());
+      const double step = trial_.limit;
+      const double heat = state_.enthalpy[node] + trial_.increment[node] + step * inflow(node);
+      const auto [coldest, hottest] = grid_.range();
+      if (std::isfinite(range.upper))
+        shares_[node].in =
+            share(store_.enthalpy(node, std::min(range.upper, hottest)) - heat, step * uphill.in);
+      if (std::isfinite(range.lower))
+        shares_[node].out =
+            share(heat - store_.enthalpy(node, std::max(range.lower, coldest)), step * uphill.out);
+    }
+  });
+  const auto capacity = [&](int node) { return store_.least_capacity(node, trial_.temperature[node]); };
+  trial_.left_out = std::max(trial_.left_out, zones_.add_uphill(shares_, capacity));
+}
+
+/// Whether the trial took a node beyond its neighbours, or beyond the bounds, farther than it may come.
+template <int Dim>
+bool Conduction<Dim>::oversteps() {
+  std::fill(reach_.begin(), reach_.end(), nothing());
+  for (const double t : {time(), time() + trial_.step}) boundary_.add_reach(t, reach_);
+  std::atomic<bool> found{false};
+  team_->share(nodes_.count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (int node = static_cast<int>(begin); node < end && !found; ++node) {
+      if (prescription_[node] >= 0) continue;
+      const double heat = state_.enthalpy[node];
+      const double before = state_.temperature[node] + excess(node, state_.temperature[node], heat);
+      const double now =
+          trial_.temperature[node] + excess(node, trial_.temperature[node], heat + trial_.increment[node]);
+      if (now < state_.bounds.lower - kAllowedBeyond || now > state_.bounds.upper + kAllowedBeyond)
+        found = true;
+      if (std::abs(now - before) <= kAllowedBeyond) continue;
+      Interval range = reach_[node];
+      include(range, before);
+      include(range, zones_.around(node, trial_.temperature));
+      if (gaps_) gaps_->add_around(node, trial_.temperature, range);
+      if (now < range.lower - kAllowedBeyond && source_heat_[node] >= 0.0) found = true;
+      if (now > range.upper + kAllowedBeyond && source_heat_[node] <= 0.0) found = true;
+    }
+  });
+  return found;
 }
 
 /// Temperature that a node at an end of the range would have beyond it, K, see NodeEnthalpy.
@@ -463,9 +561,9 @@ double Conduction<Dim>::excess(int node, double temperature, double enthalpy) co
 template <int Dim>
 void Conduction<Dim>::update_nodes(const TimeStage& stage) {
   const bool first = stage.begin == 0.0;
-  std::atomic<double> largest_change{trial_.change}, largest_excess{0.0};
+  std::atomic<double> largest_change{trial_.change}, most_below{0.0}, most_above{0.0};
   team_->share(nodes_.count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    double change = 0.0, most_beyond = 0.0;
+    double change = 0.0, below = 0.0, above = 0.0;
     for (int node = static_cast<int>(begin); node < end; ++node) {
       const double start = state_.temperature[node], enthalpy = state_.enthalpy[node];
       double& temperature = trial_.temperature[node];
@@ -485,13 +583,16 @@ void Conduction<Dim>::update_nodes(const TimeStage& stage) {
       const double beyond = excess(node, temperature, enthalpy + increment);
       const double start_beyond = excess(node, start, enthalpy);
       change = std::max(change, std::abs(temperature + beyond - start - start_beyond));
-      most_beyond = std::max(most_beyond, std::abs(beyond));
+      below = std::max(below, -beyond);
+      above = std::max(above, beyond);
     }
     raise(largest_change, change);
-    raise(largest_excess, most_beyond);
+    raise(most_below, below);
+    raise(most_above, above);
   });
   trial_.change = largest_change;
-  trial_.excess = largest_excess;
+  trial_.below = most_below;
+  trial_.above = most_above;
 }
 
 template <int Dim>
@@ -506,7 +607,7 @@ void Conduction<Dim>::accept_trial() {
   state_.largest_change = trial_change();
   std::swap(state_.temperature, trial_.temperature);
   state_.rate = std::sqrt(squares / total_volume_);
-  state_.largest_overshoot = std::max(state_.largest_overshoot, trial_.excess);
+  state_.largest_overshoot = std::max({state_.largest_overshoot, trial_.below, trial_.above});
   state_.ledger.boundary.add(1.0, trial_.heat.boundary);
   state_.ledger.source += trial_.heat.source;
   state_.ledger.prescribed += trial_.heat.prescribed;
@@ -514,6 +615,8 @@ void Conduction<Dim>::accept_trial() {
   ++state_.steps;
   state_.retries += trial_.retries;
   state_.stages += trial_.stages_done;
+  if (trial_.limits != Limits::none) ++state_.limited_steps;
+  state_.limits = trial_.left_out * trial_.step > kLimitsMatter * kAllowedBeyond;
   adapt_step();
   trial_.under_way = false;
   before_run_.holds = false;
@@ -550,7 +653,9 @@ void Conduction<Dim>::adapt_step() {
 
 template <int Dim>
 void Conduction<Dim>::read_prescriptions(double time) {
-  for (std::size_t i = 0; i < prescriptions_.size(); ++i) held_at_[i] = prescriptions_[i](time);
+  const auto [lower, upper] = grid_.range();  // which it misses by rounding at most
+  for (std::size_t i = 0; i < prescriptions_.size(); ++i)
+    held_at_[i] = std::clamp(prescriptions_[i](time), lower, upper);
 }
 
 /// A temperature that is prescribed from now on comes with the heat that the jump to it needs.
@@ -570,6 +675,7 @@ void Conduction<Dim>::undo_begin(HeatState& state) const {
   if (!before_run_.holds) return;
   state.next_step = before_run_.next_step;
   state.ledger.prescribed = before_run_.prescribed;
+  state.bounds = before_run_.bounds;
   for (std::size_t i = 0; i < prescribed_.size(); ++i) {
     state.temperature[prescribed_[i]] = before_run_.temperature[i];
     state.enthalpy[prescribed_[i]] = before_run_.enthalpy[i];
@@ -579,12 +685,14 @@ void Conduction<Dim>::undo_begin(HeatState& state) const {
 // ---- Limits ----------------------------------------------------------------------------------------------
 
 /// Valid while no temperature changes by more than the largest change.
+/// \param weight_of_boundary  1 for a step that is stable, 2 for one in which no node passes its neighbours:
+///                            then the zones' rows, of twice what flows from hot to cold, are as long
 template <int Dim>
-HeatStepLimit Conduction<Dim>::present_limit(double step) const {
+HeatStepLimit Conduction<Dim>::present_limit(double step, double weight_of_boundary) const {
   auto rows = zones_.row_bound(state_.temperature);
   auto hottest = state_.temperature;
   for (double& t : hottest) t = std::min(t + parameters_.largest_change, grid_.range().upper);
-  boundary_.add_slope(time(), time() + step, hottest, rows);
+  boundary_.add_slope(time(), time() + step, hottest, weight_of_boundary, rows);
   if (gaps_) {
     const double coldest = *std::ranges::min_element(state_.temperature) - parameters_.largest_change;
     gaps_->add_row_bound(std::max(coldest, grid_.range().lower), hottest, rows);
@@ -598,7 +706,7 @@ template <int Dim>
 HeatStepLimit Conduction<Dim>::range_limit(double end) const {
   auto rows = zones_.row_bound();
   const std::vector<double> hottest(rows.size(), grid_.range().upper);
-  boundary_.add_slope(time(), end, hottest, rows);
+  boundary_.add_slope(time(), end, hottest, 1.0, rows);
   if (gaps_) gaps_->add_row_bound(grid_.range().lower, hottest, rows);
   return strictest(rows, parameters_.safety, [&](int node) { return store_.least_capacity(node); });
 }
@@ -614,7 +722,7 @@ void Conduction<Dim>::require_prescriptions(double end) const {
     require_defined(curve, "prescribed temperature", time(), end);
     const double least = curve.minimum(time(), end);
     const double greatest = curve.maximum(time(), end);
-    if (!grid_.range().contains(least) || !grid_.range().contains(greatest))
+    if (!grid_.range().holds({least, greatest}, absolute_zero))
       throw Error(
           fmt::format("prescribed temperature ({}) goes from {} to {} degC, but the run's temperature range "
                       "is {} to {} degC",
@@ -663,6 +771,9 @@ void Conduction<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit("rate", s.rate);
   visitor.visit("largest_change", s.largest_change);
   visitor.visit("largest_overshoot", s.largest_overshoot);
+  visitor.visit("bounds", s.bounds);
+  visitor.visit("limits", s.limits);
+  visitor.visit("limited_steps", s.limited_steps);
   visitor.visit("steps", s.steps);
   visitor.visit("retries", s.retries);
   visitor.visit("stages", s.stages);

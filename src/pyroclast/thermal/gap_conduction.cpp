@@ -56,7 +56,7 @@ void GapConduction<Dim>::set_grid(const TemperatureGrid& grid) {
   if (!gas.is_constant() && gas.axis() != temperature_axis())
     throw Error(fmt::format("the conductivity of the gas in cracks ({}) must be a curve of the temperature",
                             gas.describe()));
-  if (!(gas.range().lower <= range.lower && range.upper <= gas.range().upper))
+  if (!gas.holds(range))
     throw Error(
         fmt::format("the conductivity of the gas in cracks ({}) does not cover the run's temperature "
                     "range of {} to {} degC",
@@ -152,6 +152,14 @@ double GapConduction<Dim>::inflow(int node) const {
     sum += sides_[i] % 2 == 0 ? -heat : heat;
   }
   return sum;
+}
+
+template <int Dim>
+void GapConduction<Dim>::add_around(int node, const std::vector<double>& temperature, Interval& range) const {
+  for (int i = begin_[node]; i < begin_[node + 1]; ++i) {
+    const Crossing& x = crossings_[sides_[i] / 2];
+    include(range, temperature[sides_[i] % 2 == 0 ? x.b : x.a]);
+  }
 }
 
 template <int Dim>

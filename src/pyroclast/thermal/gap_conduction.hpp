@@ -48,6 +48,9 @@ class GapConduction {
   /// Heat that flows into a node from others through contacts, W.
   double inflow(int node) const;
 
+  /// Widens a range by the temperatures from which heat flows into a node through contacts.
+  void add_around(int node, const std::vector<double>& temperature, Interval& range) const;
+
   /// Adds to each node a bound of the sum of |conductance| over its row of the assembled matrix, W/K.
   /// \param coldest  bound of all temperatures, °C
   /// \param hottest  bound of each node's temperature, °C

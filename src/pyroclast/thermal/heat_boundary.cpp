@@ -52,17 +52,37 @@ void require_physical(const Radiation& c) {
   require_values(c.emissivity, kEmissivity, 0.0, 1.0);
 }
 
-bool gas_within(const Curve& gas, const Interval& range, double begin, double end) {
-  return range.contains(gas.minimum(begin, end)) && range.contains(gas.maximum(begin, end));
+/// Temperatures to which a flux between two can draw, W/m².
+Interval reach_of_flux(double least, double greatest) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Interval reach = nothing();
+  if (least < 0.0) include(reach, -infinity);
+  if (greatest > 0.0) include(reach, infinity);
+  return reach;
 }
-bool draws_into(const HeatFlux&, const Interval&, double, double) {
-  return false;
+Interval extremes(const Curve& curve, double begin, double end) {
+  return {curve.minimum(begin, end), curve.maximum(begin, end)};
 }
-bool draws_into(const Convection& c, const Interval& range, double begin, double end) {
-  return gas_within(c.gas_temperature, range, begin, end);
+
+/// Temperatures to which a condition can draw between two times.
+Interval reach_of(const HeatFlux& c, double begin, double end) {
+  const auto [least, greatest] = extremes(c.flux, begin, end);
+  return reach_of_flux(least, greatest);
 }
-bool draws_into(const Radiation& c, const Interval& range, double begin, double end) {
-  return gas_within(c.gas_temperature, range, begin, end);
+template <class OfGas>
+Interval reach_of(const OfGas& c, double begin, double end) {
+  return extremes(c.gas_temperature, begin, end);
+}
+
+/// The same at one time.
+Interval reach_at(const HeatFlux& c, double time) {
+  const double flux = c.flux(time);
+  return reach_of_flux(flux, flux);
+}
+template <class OfGas>
+Interval reach_at(const OfGas& c, double time) {
+  const double gas = c.gas_temperature(time);
+  return {gas, gas};
 }
 
 /// Heat flux into a face at temperature T, at one time: constant - coefficient T - emissive (absolute T)^4.
@@ -120,7 +140,7 @@ void require_curve_of_time(const Curve& curve, const char* quantity) {
 }
 
 void require_defined(const Curve& curve, const char* quantity, double begin, double end) {
-  if (!(curve.range().lower <= begin && end <= curve.range().upper))
+  if (!curve.holds({begin, end}))
     throw Error(fmt::format("{} ({}) is not defined all the way from {} to {} s", quantity, curve.describe(),
                             begin, end));
 }
@@ -144,11 +164,18 @@ void HeatBoundary::require_defined(double begin, double end) const {
       pyroclast::require_defined(*curve, quantity, begin, end);
 }
 
-bool HeatBoundary::draws_into(const Interval& range, double begin, double end) const {
-  return std::all_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
-    return std::visit([&](const auto& c) { return pyroclast::draws_into(c, range, begin, end); },
-                      entry.condition);
-  });
+Interval HeatBoundary::reach(double begin, double end) const {
+  Interval reach = nothing();
+  for (const auto& entry : entries_)
+    include(reach, std::visit([&](const auto& c) { return reach_of(c, begin, end); }, entry.condition));
+  return reach;
+}
+
+void HeatBoundary::add_reach(double time, std::vector<Interval>& ranges) const {
+  for (const auto& entry : entries_) {
+    const Interval reach = std::visit([&](const auto& c) { return reach_at(c, time); }, entry.condition);
+    for (const auto& patch : entry.patches) include(ranges[patch.node], reach);
+  }
 }
 
 HeatByKind HeatBoundary::inflow(double time, const std::vector<double>& temperature,
@@ -169,12 +196,13 @@ HeatByKind HeatBoundary::inflow(double time, const std::vector<double>& temperat
   return sum;
 }
 
-void HeatBoundary::add_slope(double begin, double end, const std::vector<double>& hottest,
+void HeatBoundary::add_slope(double begin, double end, const std::vector<double>& hottest, double weight,
                              std::vector<double>& slope) const {
   for (const auto& entry : entries_) {
     const FaceLaw law =
         std::visit([&](const auto& c) { return steepest_law(c, begin, end); }, entry.condition);
-    for (const auto& patch : entry.patches) slope[patch.node] += patch.area * law.slope(hottest[patch.node]);
+    for (const auto& patch : entry.patches)
+      slope[patch.node] += weight * patch.area * law.slope(hottest[patch.node]);
   }
 }
 

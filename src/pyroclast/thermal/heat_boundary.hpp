@@ -42,9 +42,11 @@ class HeatBoundary {
   /// Throws Error naming the curve that is not defined from `begin` to `end`, s.
   void require_defined(double begin, double end) const;
 
-  /// Whether the conditions can only draw temperatures towards the range between two times, s: there is no
-  /// given flux, and no gas temperature outside.
-  bool draws_into(const Interval& range, double begin, double end) const;
+  /// Temperatures to which the conditions can draw between two times, s: those of gases, and any above or
+  /// below where a given flux flows in or out.
+  Interval reach(double begin, double end) const;
+  /// Widens the range of each boundary node by the same at one time.
+  void add_reach(double time, std::vector<Interval>& ranges) const;
 
   /// Writes the heat that flows into each boundary node, W; leaves the other entries as they are.
   HeatByKind inflow(double time, const std::vector<double>& temperature, std::vector<double>& heat) const;
@@ -52,7 +54,8 @@ class HeatBoundary {
   /// Adds to each boundary node a bound of how fast its outflow grows with its temperature, W/K, between two
   /// times, s.
   /// \param hottest  bound of each node's temperature, °C
-  void add_slope(double begin, double end, const std::vector<double>& hottest,
+  /// \param weight   factor of the bound
+  void add_slope(double begin, double end, const std::vector<double>& hottest, double weight,
                  std::vector<double>& slope) const;
 
  private:

@@ -25,11 +25,12 @@ void require_usable(const Curve& curve, const std::string& title, const Temperat
   if (!curve.is_constant() && curve.axis() != temperature_axis())
     throw Error(fmt::format("{} ({}) is a function of {} [{}], but it must be one of the temperature", title,
                             curve.describe(), curve.axis().symbol, curve.axis().unit));
-  if (!(curve.range().lower <= range.lower && range.upper <= curve.range().upper))
+  if (!curve.holds(range))
     throw Error(fmt::format("{} ({}) does not cover the run's temperature range of {} to {} degC", title,
                             curve.describe(), range.lower, range.upper));
   const double first = std::max(curve.range().lower, TemperatureGrid::knot(grid.first_cell()));
-  const double last = std::min(curve.range().upper, TemperatureGrid::knot(grid.last_cell() + 1));
+  const double last =
+      std::max(first, std::min(curve.range().upper, TemperatureGrid::knot(grid.last_cell() + 1)));
   if (const double least = curve.minimum(first, last); !(least > 0.0))
     throw Error(fmt::format("{} ({}) falls to {}, but it must be greater than 0 from {} to {} degC", title,
                             curve.describe(), least, first, last));

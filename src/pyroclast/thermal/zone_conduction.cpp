@@ -16,11 +16,7 @@ ZoneConduction<Dim>::ZoneConduction(const Model<Dim>& model, const ZoneGeometry<
     if (table < 0) continue;
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
       Zone zone{{}, table, geometry.volume[z], geometry.gradient[z]};
-      std::array<Vec<Dim>, Dim + 1> gradient{};
-      for (int i = 0; i < Dim; ++i) {
-        gradient[i] = zone.gradient[i];
-        gradient[Dim] -= zone.gradient[i];
-      }
+      const auto gradient = gradients(zone);
       std::array<double, Dim + 1> row{};
       for (int i = 0; i <= Dim; ++i)
         for (int j = 0; j <= Dim; ++j) row[i] += std::abs(dot(gradient[i], gradient[j])) * zone.volume;
@@ -30,6 +26,17 @@ ZoneConduction<Dim>::ZoneConduction(const Model<Dim>& model, const ZoneGeometry<
     }
   }
   heat_.resize(zones_.size());
+  uphill_.resize(zones_.size());
+}
+
+template <int Dim>
+std::array<Vec<Dim>, Dim + 1> ZoneConduction<Dim>::gradients(const Zone& zone) {
+  std::array<Vec<Dim>, Dim + 1> gradient{};
+  for (int i = 0; i < Dim; ++i) {
+    gradient[i] = zone.gradient[i];
+    gradient[Dim] -= zone.gradient[i];
+  }
+  return gradient;
 }
 
 template <int Dim>
@@ -74,6 +81,49 @@ void ZoneConduction<Dim>::update(const std::vector<double>& temperature) {
       heat_[z][Dim] = -others;
     }
   });
+}
+
+template <int Dim>
+void ZoneConduction<Dim>::update_apart(const std::vector<double>& temperature) {
+  team_.share(zone_count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (auto z = begin; z < end; ++z) {
+      const Zone& zone = zones_[z];
+      const auto gradient = gradients(zone);
+      const double conductivity = tables_[zone.table].conductivity(mean_temperature(zone, temperature));
+      heat_[z] = {};
+      for_each_pair([&](int pair, int i, int j) {
+        const double conductance = -dot(gradient[i], gradient[j]) * (conductivity * zone.volume);
+        const double flow = conductance * (temperature[zone.node[j]] - temperature[zone.node[i]]);
+        uphill_[z][pair] = conductance < 0.0 ? flow : 0.0;
+        if (conductance < 0.0) return;
+        heat_[z][i] += flow;
+        heat_[z][j] -= flow;
+      });
+    }
+  });
+}
+
+template <int Dim>
+typename ZoneConduction<Dim>::Uphill ZoneConduction<Dim>::uphill(int node) const {
+  Uphill sum;
+  for (int c = begin_[node]; c < begin_[node + 1]; ++c) {
+    const auto [zone, corner] = corners_[c];
+    for_each_pair([&, zone = zone, corner = corner](int pair, int i, int j) {
+      if (i != corner && j != corner) return;
+      const double in = i == corner ? uphill_[zone][pair] : -uphill_[zone][pair];
+      (in > 0.0 ? sum.in : sum.out) += std::abs(in);
+    });
+  }
+  return sum;
+}
+
+template <int Dim>
+Interval ZoneConduction<Dim>::around(int node, const std::vector<double>& temperature) const {
+  Interval range = nothing();
+  for (int c = begin_[node]; c < begin_[node + 1]; ++c)
+    for (const int other : zones_[corners_[c][0]].node)
+      if (other != node) include(range, temperature[other]);
+  return range;
 }
 
 template <int Dim>

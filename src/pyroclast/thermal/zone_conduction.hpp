@@ -1,6 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -12,6 +16,13 @@ namespace pyroclast {
 
 /// Nodes or zones that a thread gets at least: for fewer the threads would take longer to meet.
 inline constexpr int fewest_for_threads = 5000;
+
+/// Makes a maximum that threads share at least as large as a value.
+inline void raise(std::atomic<double>& maximum, double value) {
+  double present = maximum;
+  while (present < value && !maximum.compare_exchange_weak(present, value)) {
+  }
+}
 
 /// Conduction within zones (linear triangles or tetrahedra) between thermal nodes. Each zone conducts by its
 /// conductivity at the mean temperature of its corners.
@@ -34,6 +45,26 @@ class ZoneConduction {
   /// Heat that flows into a node from its zones, W.
   double inflow(int node) const;
 
+  /// The same flows in two parts: those from hot to cold, for `inflow`, and those that zones with obtuse
+  /// angles have from cold to hot, for `uphill` and `add_uphill`.
+  void update_apart(const std::vector<double>& temperature);
+  /// Heat from cold to hot, W: what would flow into a node, and out of it.
+  struct Uphill {
+    double in = 0.0, out = 0.0;
+  };
+  Uphill uphill(int node) const;
+  /// Adds the flows from cold to hot to the others, each by the smaller of what the hot node may take in and
+  /// the cold one give.
+  /// \param shares    of each node: of what flows in, and of what flows out, from 0 to 1
+  /// \param capacity  of a node, J/K
+  ///
+  /// Returns the greatest speed by which what is left out would have changed a node's temperature, K/s.
+  template <class Capacity>
+  double add_uphill(const std::vector<Uphill>& shares, Capacity capacity);
+
+  /// Least and greatest temperature of the nodes with which a node shares a zone, without its own.
+  Interval around(int node, const std::vector<double>& temperature) const;
+
   /// Bound of the sum of |conductance| over a node's row of the assembled matrix, W/K, wherever the
   /// temperatures may be after changing by up to the tables' window.
   std::vector<double> row_bound(const std::vector<double>& temperature) const;
@@ -44,6 +75,8 @@ class ZoneConduction {
   std::vector<std::vector<NodeShare>> shares() const;
 
  private:
+  static constexpr int kPairs = Dim * (Dim + 1) / 2;  ///< of corners of a zone
+
   struct Zone {
     std::array<int, Dim + 1> node;
     int table;
@@ -51,6 +84,10 @@ class ZoneConduction {
     std::array<Vec<Dim>, Dim> gradient;  ///< of the first Dim shape functions, 1/m
   };
 
+  template <class Visit>
+  static void for_each_pair(Visit visit);
+  /// Of all shape functions, 1/m.
+  static std::array<Vec<Dim>, Dim + 1> gradients(const Zone& zone);
   double mean_temperature(const Zone& zone, const std::vector<double>& temperature) const;
   template <class Conductivity>
   std::vector<double> gather_rows(Conductivity conductivity) const;
@@ -62,9 +99,42 @@ class ZoneConduction {
   std::vector<std::array<int, Dim + 1>> gridpoints_;  ///< of each zone
   std::vector<std::array<double, Dim + 1>> row_;      ///< sums of |conductance| at unit conductivity, m
   std::vector<std::array<double, Dim + 1>> heat_;     ///< into each corner, W
+  std::vector<std::array<double, kPairs>> uphill_;    ///< into the first corner of each pair, W
   std::vector<int> begin_;                            ///< corners at node i: [i] to [i + 1]
   std::vector<std::array<int, 2>> corners_;           ///< zone and its corner
 };
+
+template <int Dim>
+template <class Visit>
+void ZoneConduction<Dim>::for_each_pair(Visit visit) {
+  int pair = 0;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = i + 1; j <= Dim; ++j) visit(pair++, i, j);
+}
+
+template <int Dim>
+template <class Capacity>
+double ZoneConduction<Dim>::add_uphill(const std::vector<Uphill>& shares, Capacity capacity) {
+  std::atomic<double> fastest{0.0};
+  team_.share(zone_count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    double most = 0.0;
+    for (auto z = begin; z < end; ++z) {
+      for_each_pair([&](int pair, int i, int j) {
+        const double flow = uphill_[z][pair];
+        if (flow == 0.0) return;
+        const int a = zones_[z].node[i], b = zones_[z].node[j];
+        const double share =
+            flow > 0.0 ? std::min(shares[a].in, shares[b].out) : std::min(shares[a].out, shares[b].in);
+        heat_[z][i] += share * flow;
+        heat_[z][j] -= share * flow;
+        if (share < 1.0)
+          most = std::max(most, (1.0 - share) * std::abs(flow) / std::min(capacity(a), capacity(b)));
+      });
+    }
+    raise(fastest, most);
+  });
+  return fastest;
+}
 
 extern template class ZoneConduction<2>;
 extern template class ZoneConduction<3>;

@@ -14,6 +14,8 @@
 #include <locale.h>
 #include <udunits2.h>
 
+#include "pyroclast/units/decimal.hpp"
+
 namespace pyroclast {
 namespace {
 
@@ -299,6 +301,7 @@ class UnitSystem {
 
 struct NumberAndUnit {
   double number;
+  std::string_view written;  ///< the number
   std::string_view unit;
 };
 
@@ -322,13 +325,14 @@ NumberAndUnit split(std::string_view text, const Unit& unit) {
   if (status == std::errc::result_out_of_range || !std::isfinite(number)) {
     throw QuantityError(Kind::not_finite, text, "the number is not finite or out of the range of doubles");
   }
-  rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+  const std::string_view written = rest.substr(0, static_cast<std::size_t>(end - rest.data()));
+  rest.remove_prefix(written.size());
   if (continues_number(rest)) {
     throw QuantityError(
         Kind::no_number, text,
         "not one number; write numbers with a decimal point and without separators; " + requirement(unit));
   }
-  return {number, trimmed(rest)};
+  return {number, written, trimmed(rest)};
 }
 
 /// Letters that stand for temperatures where people write, and for coulomb and farad here.
@@ -345,30 +349,77 @@ std::string_view meant_temperature(std::string_view given) {
                                   meant.empty() ? "" : fmt::format("; did you mean \"{}\"?", meant)));
 }
 
-double convert(double number, std::string_view text, std::string_view given, const Unit& unit) {
-  UnitSystem& system = UnitSystem::instance();
-  const std::scoped_lock lock(system.mutex());
-  const UnitHandle from = system.parse(given);
-  if (!from) {
-    throw QuantityError(QuantityError::Kind::unknown_unit, text,
-                        fmt::format("unknown unit \"{}\"; {}", given, requirement(unit)));
-  }
-  const UnitHandle to = system.parse(unit.si);
-  if (!to) throw Error(fmt::format("\"{}\", the unit of {}, is not known to UDUNITS-2", unit.si, unit.name));
-  if (!same_dimension(from.get(), to.get())) throw_wrong_dimension(text, given, unit);
-  if (structure_of(from.get()).has_offset && !structure_of(to.get()).has_offset) {
-    throw QuantityError(
-        QuantityError::Kind::wrong_dimension, text,
-        fmt::format("\"{}\" is a temperature, not a difference; {}", given, requirement(unit)));
-  }
-  const ConverterHandle converter(ut_get_converter(from.get(), to.get()));
-  if (!converter) throw_wrong_dimension(text, given, unit);
-  const double value = cv_convert_double(converter.get(), number);
-  if (!std::isfinite(value)) {
-    throw QuantityError(QuantityError::Kind::not_finite, text, fmt::format("too large in {}", unit.si));
-  }
-  return value;
+/// A conversion whose factors are decimals, or empty ones where they are not.
+struct DecimalConversion {
+  std::optional<Decimal> shift, factor, divisor;
+};
+
+/// Where a converter takes numbers, by doubles.
+UnitFactors measured(const cv_converter* converter) {
+  constexpr double kFar = 1e6;  // so that the shift is lost in the slope
+  const double start = cv_convert_double(converter, 0.0);
+  if (start == 0.0) return {.factor = cv_convert_double(converter, 1.0)};
+  const double slope = (cv_convert_double(converter, kFar) - start) / kFar;
+  return {.shift = start / slope, .factor = slope};
 }
+
+DecimalConversion decimals_of(const UnitFactors& of) {
+  constexpr Decimal kOne{1, 0};
+  const auto shift = of.shift == 0.0 ? Decimal{} : nearest_decimal(of.shift);
+  if (const auto factor = nearest_decimal(of.factor)) return {shift, factor, kOne};
+  return {shift, kOne, nearest_decimal(1.0 / of.factor)};
+}
+
+/// What converts a unit to that of a kind.
+/// \param text  for messages
+class Converter {
+ public:
+  Converter(std::string_view text, std::string_view given, const Unit& unit) {
+    UnitSystem& system = UnitSystem::instance();
+    const std::scoped_lock lock(system.mutex());
+    const UnitHandle from = system.parse(given);
+    if (!from) {
+      throw QuantityError(QuantityError::Kind::unknown_unit, text,
+                          fmt::format("unknown unit \"{}\"; {}", given, requirement(unit)));
+    }
+    const UnitHandle to = system.parse(unit.si);
+    if (!to)
+      throw Error(fmt::format("\"{}\", the unit of {}, is not known to UDUNITS-2", unit.si, unit.name));
+    if (!same_dimension(from.get(), to.get())) throw_wrong_dimension(text, given, unit);
+    if (structure_of(from.get()).has_offset && !structure_of(to.get()).has_offset) {
+      throw QuantityError(
+          QuantityError::Kind::wrong_dimension, text,
+          fmt::format("\"{}\" is a temperature, not a difference; {}", given, requirement(unit)));
+    }
+    converter_.reset(ut_get_converter(from.get(), to.get()));
+    if (!converter_) throw_wrong_dimension(text, given, unit);
+    by_doubles_ = measured(converter_.get());
+    by_decimals_ = decimals_of(by_doubles_);
+  }
+
+  /// The double nearest to the value of a number as it is written, where that can be told.
+  double operator()(double number, std::string_view written) const {
+    if (const auto decimal = decimal_of(written); decimal && is_exact())
+      if (const auto value =
+              nearest_double(*decimal, *by_decimals_.shift, *by_decimals_.factor, *by_decimals_.divisor))
+        return *value;
+    return cv_convert_double(converter_.get(), number);
+  }
+
+  UnitFactors conversion() const {
+    if (!is_exact()) return by_doubles_;
+    const auto [digits, exponent] = *by_decimals_.factor;
+    const Decimal factor{digits, std::max(exponent, 0)}, tens{1, std::max(-exponent, 0)};
+    return {by_decimals_.shift->value(), factor.value(), by_decimals_.divisor->value() * tens.value()};
+  }
+
+ private:
+  bool is_exact() const { return by_decimals_.shift && by_decimals_.factor && by_decimals_.divisor; }
+
+  ConverterHandle converter_;
+  UnitFactors by_doubles_;
+  DecimalConversion by_decimals_;
+};
 
 }  // namespace
 
@@ -376,10 +427,19 @@ QuantityError::QuantityError(Kind kind, std::string_view text, const std::string
     : Error(fmt::format("\"{}\": {}", text, reason)), kind_(kind), reason_(reason) {}
 
 double parse_quantity(std::string_view text, const Unit& unit) {
-  const auto [number, given] = split(text, unit);
-  if (!given.empty()) return convert(number, text, given, unit);
+  const auto [number, written, given] = split(text, unit);
+  if (!given.empty()) {
+    const double value = Converter(text, given, unit)(number, written);
+    if (std::isfinite(value)) return value;
+    throw QuantityError(QuantityError::Kind::not_finite, text, fmt::format("too large in {}", unit.si));
+  }
   if (unit == unit::dimensionless) return number;
   throw QuantityError(QuantityError::Kind::no_unit, text, "no unit; " + requirement(unit));
+}
+
+UnitFactors unit_factors(std::string_view given, const Unit& unit) {
+  return given == "1" && unit == unit::dimensionless ? UnitFactors()
+                                                     : Converter(given, given, unit).conversion();
 }
 
 double parse_any_quantity(std::string_view text) {

@@ -34,6 +34,9 @@ class QuantityError : public Error {
 /// ("18 400 GPa/m"), dates and logarithms ("s since 2000", "lg(re 1 mW)"), a unit for its reciprocal ("4 s"
 /// for a frequency), radians for a plain number. Safe to call from several threads.
 ///
+/// The value is the double nearest to what is written wherever the factor is a decimal or the reciprocal of
+/// one: "10 us" is 1e-5, "68 degF" 20 °C.
+///
 /// @throws QuantityError if the text has no number, a number that is not finite, no unit, a unit that is not
 ///         known, or a unit of another dimension.
 /// @throws Error if the unit database cannot be read.
@@ -43,6 +46,20 @@ double parse_quantity(std::string_view text, const Unit& unit);
 ///
 /// @throws QuantityError as above; wrong_dimension if it is of none.
 double parse_any_quantity(std::string_view text);
+
+/// From a value in one unit to that in another: (x + shift) * factor / divisor. Decimals where the units are
+/// decimals of each other, such as 60 s to a minute or 5/9 K to a degree Fahrenheit: then all three are
+/// exact.
+struct UnitFactors {
+  double shift = 0.0, factor = 1.0, divisor = 1.0;
+
+  bool is_none() const { return shift == 0.0 && factor == divisor; }
+  double operator()(double x) const { return (x + shift) * factor / divisor; }
+};
+
+/// From a unit, "1" for none, to that of a kind.
+/// @throws QuantityError as parse_quantity does.
+UnitFactors unit_factors(std::string_view given, const Unit& unit);
 
 /// The unit of a quantity, as it is written behind the number; "1" where there is none.
 std::string unit_of_quantity(std::string_view text);
