@@ -37,7 +37,7 @@ class RankEffects:
     coefficient_high: Array
     r2: float  #: share of the ranks' variance that the regression explains
     standard_error: Array  #: of the coefficient, jackknife over the seeds; NaN: one seed
-    told_from_seeds: NDArray[np.bool_]  #: |coefficient| > t standard_error; False where that is unknown
+    told_from_seeds: seeds.Told  #: its interval holds no 0, nor does coefficient ± t standard_error
     seed_share: seeds.Share
     points: int
 
@@ -74,8 +74,8 @@ def curve(u: Array, y: Array, most_classes: int = 10, count: int | None = None) 
 def rank_effects(u: Array, y: Array, seed: int = 0, resamples: int = 1000) -> RankEffects:
     """Rank correlation and regression. u: (n, k), y: (n, seeds); missing points drop out.
 
-    Told from the seeds is a coefficient beyond Student's t of 95 % times its standard error: twice it for many seeds,
-    more for few. Raises `Error` with fewer than k + 2 points. (Saltelli, Sobol', Reliab. Eng. Syst. Saf. 50, 1995.)
+    Told from the seeds is a coefficient whose interval excludes 0, over the points and over the seeds: there it is beyond
+    Student's t of 95 % times its standard error, twice it for many seeds, more for few. Raises `Error` with fewer than k + 2 points. (Saltelli, Sobol', Reliab. Eng. Syst. Saf. 50, 1995.)
     """
     from scipy.stats import t
 
@@ -98,7 +98,8 @@ def rank_effects(u: Array, y: Array, seed: int = 0, resamples: int = 1000) -> Ra
         standard_error = np.sqrt((runs - 1) * without.var(axis=0))
         limit = float(t.ppf(0.5 * (1.0 + seeds.LEVEL), runs - 1))
     return RankEffects(correlation, low[0], high[0], coefficient, low[1], high[1], r2, standard_error,
-                       np.abs(coefficient) > limit * standard_error, seeds.share(y, seed), points)
+                       seeds.told((low[1] * high[1] > 0.0) & (np.abs(coefficient) > limit * standard_error), runs),
+                       seeds.share(y, seed), points)
 
 
 def _ranked(u: Array, y: Array) -> tuple[Array, Array, float]:

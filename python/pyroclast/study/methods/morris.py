@@ -30,7 +30,8 @@ class Effects:
     mu_star_high: Array
     sigma: Array  #: their standard deviation: curvature and interactions
     standard_error: Array  #: of one elementary effect of the mean over seeds, from its spread over them; NaN: one seed
-    told_from_seeds: NDArray[np.bool_]  #: mu_star > 2 standard_error; False where that is unknown
+    from_seeds: Array  #: mu_star of seeds alone, at most, see `seeds.alone`; NaN: fewer than three seeds
+    told_from_seeds: seeds.Told  #: mu_star_low > from_seeds
     used: NDArray[np.int64]  #: elementary effects used
     planned: int  #: elementary effects of each parameter in the design
     elementary: Array  #: (trajectories, parameters), of the mean over seeds; NaN: dropped
@@ -63,7 +64,7 @@ def effects(design: Array, y: Array, seed: int = 0, resamples: int = 1000) -> Ef
     """Elementary effects of the mean over seeds. design: (T, k + 1, k), y: (T, k + 1, seeds).
 
     Steps that touch a missing point drop out. An absolute value makes an effect of noise, and more trajectories do not
-    take it away: an effect is therefore measured by the standard error of one elementary effect, not of their mean.
+    take it away: an effect is therefore told from the seeds where its interval is above what they alone give.
     """
     design, y = np.asarray(design, float), np.asarray(y, float)
     trajectories, count, runs = len(design), design.shape[2], y.shape[2]
@@ -86,5 +87,6 @@ def effects(design: Array, y: Array, seed: int = 0, resamples: int = 1000) -> Ef
         standard_error = np.full(count, np.nan)
         if runs > 1:
             standard_error = np.sqrt(np.nanmean(by_seed.var(axis=2, ddof=1), axis=0) / runs)
-    return Effects(mu, mu_star, low, high, sigma, standard_error, mu_star > 2.0 * standard_error, used, trajectories,
-                   elementary)
+        from_seeds = seeds.alone(lambda y: np.nanmean(np.abs(y), axis=0), by_seed, seed)
+    return Effects(mu, mu_star, low, high, sigma, standard_error, from_seeds, seeds.told(low > from_seeds, runs), used,
+                   trajectories, elementary)

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Told = NDArray[np.object_]
+"""Whether an effect is told from the seeds: True, False, or None where too few seeds are known to say."""
 LEVEL = 0.95
 """Of all intervals."""
+LEAST = 3
+"""Seeds without which nothing is told from them: two leave one difference, whose own spread is not known."""
+_DRAWS = 1000
 
 
 @dataclass(frozen=True)
@@ -82,6 +89,38 @@ def rest_variance(y: Array) -> float:
         return float("nan")
     rest = y - y.mean(axis=0) - y.mean(axis=1, keepdims=True) + y.mean()
     return float((rest**2).sum() / ((points - 1) * (count - 1)))
+
+
+def contrasts(count: int, seed: int) -> Array:
+    """Mixtures of the seeds in which all cancels that they have in common, each as long as their mean: (seeds, draws).
+
+    Where seeds are alike, such a mixture scatters as the mean over them does around the true one. It is a permutation of
+    the seeds, made continuous by rotations, as so few have few permutations (Langsrud, Stat. Comput. 15, 2005, 53-60).
+    """
+    drawn: Array = np.random.default_rng(seed).normal(size=(count, _DRAWS))
+    drawn -= drawn.mean(axis=0)
+    drawn /= np.linalg.norm(drawn, axis=0) * np.sqrt(count)
+    return drawn
+
+
+def alone(estimator: Callable[[Array], Any], y: Array, seed: int) -> Array:
+    """What the estimator gives, in LEVEL of the draws at most, for seeds alone; NaN with fewer than LEAST.
+
+    y: (..., seeds). estimator: of as many outputs as its last axis has; (effects, outputs).
+    """
+    count = y.shape[-1]
+    if count < LEAST:
+        few: Array = estimator(y[..., :1])
+        return np.full(len(few), np.nan)
+    pieces = [estimator(y @ some) for some in np.array_split(contrasts(count, seed), _DRAWS // 50, axis=1)]
+    found: Array = np.nanpercentile(np.concatenate(pieces, axis=1), 100.0 * LEVEL, axis=1)
+    return found
+
+
+def told(is_told: NDArray[np.bool_], count: int) -> Told:
+    """As it is with so many seeds."""
+    found: Told = is_told.astype(object) if count >= LEAST else np.full(is_told.shape, None, dtype=object)
+    return found
 
 
 def level(count: int) -> float:

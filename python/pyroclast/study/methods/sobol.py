@@ -27,7 +27,8 @@ class Indices:
     total_low: Array
     total_high: Array
     seed_part: Array  #: what the seeds' scatter adds to the total index; NaN: one seed
-    told_from_seeds: NDArray[np.bool_]  #: total > 4 seed_part: twice the standard error, squared; False if unknown
+    from_seeds: Array  #: total index of seeds alone, at most, see `seeds.alone`; NaN: fewer than three seeds
+    told_from_seeds: seeds.Told  #: total_low > from_seeds
     seed_share: seeds.Share  #: of the points A and B
     rows: int  #: used
     lost: float  #: share of the rows lost
@@ -79,9 +80,11 @@ def indices(y: Array, seed: int = 0, allow_missing: bool = False, resamples: int
         intervals = algorithm.getFirstOrderIndicesInterval(), algorithm.getTotalOrderIndicesInterval()
         ends = [np.array(end) for both in intervals for end in (both.getLowerBound(), both.getUpperBound())]
 
+    # Jansen's numerator of the total index, over the variance of the means: of each seed's departure from the mean ...
+    steps = y[:, :1] - y[:, 2:]
     seed_part = np.full(blocks - 2, np.nan)
     if runs > 1:
-        # Jansen's numerator of the total index, of each seed's departure from the mean.
-        seed_part = 0.5 * (y[:, :1] - y[:, 2:]).var(axis=2, ddof=1).mean(axis=0) / runs / variance
-    return Indices(first, ends[0], ends[1], total, ends[2], ends[3], seed_part, total > 4.0 * seed_part,
-                   seeds.share(y[:, :2].reshape(-1, runs), seed), rows, lost)
+        seed_part = 0.5 * steps.var(axis=2, ddof=1).mean(axis=0) / runs / variance
+    from_seeds = seeds.alone(lambda y: 0.5 * (y**2).mean(axis=0) / variance, steps, seed)  # ... and of seeds alone
+    return Indices(first, ends[0], ends[1], total, ends[2], ends[3], seed_part, from_seeds,
+                   seeds.told(ends[2] > from_seeds, runs), seeds.share(y[:, :2].reshape(-1, runs), seed), rows, lost)

@@ -26,10 +26,10 @@ _DEPENDS = 0.05  # p-value up to which an output depends on a parameter
 
 _MORRIS = ("μ* is the mean size of a parameter's effect over its whole range, in the output's unit, and σ their "
            "standard deviation: σ well below μ* is an effect that is much the same everywhere, σ about μ* or above "
-           "one that bends or depends on other parameters. An effect is told from the seeds when μ* is above twice "
-           "the standard error that the seeds leave in one effect.")
+           "one that bends or depends on other parameters. An effect is told from the seeds where its interval is "
+           "above the μ* that seeds alone give.")
 _MORRIS_CAPTION = ("Left: μ* with 95 % interval (bootstrap over the trajectories), ranked; the vermilion ticks are "
-                   "twice the seeds' standard error; below, the seed's share of the variance. Right: μ* and σ; the "
+                   "what seeds alone give, at most; below, the seed's share of the variance. Right: μ* and σ; the "
                    "numbers are those of the bars, and on the dashed line σ = μ*. Grey: not told from the seeds.")
 _SHARES = ("The main index of a parameter is the share of the variance that goes when this parameter alone is known; "
            "the total index is the share that stays when all others are known. Their difference are interactions.")
@@ -76,12 +76,12 @@ def _of_morris(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
             f"Steps that drop out for a missing value: {', '.join(dropped)}." if dropped else ""]
     rows = [[str(at + 1), parameter_label(parameters[i]), number(mu_star[i], 3),
              between(effects["mu_star_low"][i], effects["mu_star_high"][i], 3), number(effects["mu"][i], 3),
-             number(effects["sigma"][i], 3), number(effects["standard_error"][i], 2),
-             told_cell(effects["told_from_seeds"][i], share), f"{effects['used'][i]} of {effects['planned']}"]
+             number(effects["sigma"][i], 3), number(effects["from_seeds"][i], 2),
+             told_cell(effects["told_from_seeds"][i]), f"{effects['used'][i]} of {effects['planned']}"]
             for at, i in enumerate(order)]
-    table = Table(["", "parameter", "μ*", "95 % interval", "μ", "σ", "standard error from the seeds",
+    table = Table(["", "parameter", "μ*", "95 % interval", "μ", "σ", "of seeds alone",
                    "told from the seeds", "effects used"], rows,
-                  faint=frozenset(np.flatnonzero(are_grey(effects, share, order))))
+                  faint=frozenset(np.flatnonzero(are_grey(effects, order))))
     shown = Shown(f"{output.name}-morris", morris_figure(output, parameters, effects, share), _MORRIS_CAPTION)
     return Section(title, [" ".join(filter(None, said))], [shown], [table])
 
@@ -91,17 +91,17 @@ def morris_figure(output: Output, parameters: Sequence[Parameter], effects: dict
                   share: dict[str, Any]) -> Figure:
     """Ranked effects and the seed's share, beside effects and what they vary by."""
     order = ranked(numbers(effects["mu_star"]))
-    grey = are_grey(effects, share, order)
+    grey = are_grey(effects, order)
     seeds = seed_bars(share)
     figure = style.new_figure(max(3.0, 1.7 + BAR * (len(order) + len(seeds))))
     grid = figure.add_gridspec(2, 2, height_ratios=[len(order) + 0.6, len(seeds) + 0.6], width_ratios=[1.1, 1.0])
     bars, strip, plane = (figure.add_subplot(place) for place in (grid[0, 0], grid[1, 0], grid[:, 1]))
     value, low, high = (numbers(effects[f"mu_star{end}"]) for end in ("", "_low", "_high"))
-    error = numbers(effects["standard_error"])
+    alone = numbers(effects["from_seeds"])
     for at, i in enumerate(order):
         draw_bar(bars, at, Bar(value[i], low[i], high[i], NOT_TOLD if grey[at] else style.BLUE))
-        if np.isfinite(error[i]):
-            bars.plot(np.full(2, 2.0 * error[i]), [at - 0.42, at + 0.42], color=style.VERMILLION, linewidth=1.2)
+        if np.isfinite(alone[i]):
+            bars.plot(np.full(2, alone[i]), [at - 0.42, at + 0.42], color=style.VERMILLION, linewidth=1.2)
     name_bars(bars, [f"{parameters[i].name} ({at + 1})" for at, i in enumerate(order)], grey)
     bars.set_xlim(left=0.0)
     bars.set_xlabel(f"μ* of {output_label(output)}")
@@ -147,7 +147,7 @@ def _of_sobol(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
                Shown(f"{output.name}-curves", curves_figure(seen, output, curves),
                      _CURVES_SOBOL)]
     return Section(output_label(output), [" ".join(filter(None, said))], figures,
-                   [_index_table(parameters, found, share, order)])
+                   [_index_table(parameters, found, order)])
 
 
 def _interactions(indices: dict[str, Any]) -> str:
@@ -155,24 +155,23 @@ def _interactions(indices: dict[str, Any]) -> str:
     return f"The main indices add up to {number(total, 2)}; what is left to 1 are interactions, and their error."
 
 
-def _index_table(parameters: Sequence[Parameter], indices: dict[str, Any], share: dict[str, Any],
-                 order: Sequence[int]) -> Table:
+def _index_table(parameters: Sequence[Parameter], indices: dict[str, Any], order: Sequence[int]) -> Table:
     knows = "told_from_seeds" in indices
     rows = [[parameter_label(parameters[i]),
              *(cell for what in ("first", "total") for cell in (
                  number(indices[what][i], 3), between(indices[f"{what}_low"][i], indices[f"{what}_high"][i], 3))),
-             *([number(indices["seed_part"][i], 2), told_cell(indices["told_from_seeds"][i], share)] if knows else [])]
+             *([number(indices["from_seeds"][i], 2), told_cell(indices["told_from_seeds"][i])] if knows else [])]
             for i in order]
     return Table(["parameter", "main", "95 % interval", "total", "95 % interval",
-                  *(["of the total from the seeds", "told from the seeds"] if knows else [])], rows,
-                 faint=frozenset(np.flatnonzero(are_grey(indices, share, order))))
+                  *(["total of seeds alone", "told from the seeds"] if knows else [])], rows,
+                 faint=frozenset(np.flatnonzero(are_grey(indices, order))))
 
 
 @matplotlib.rc_context(style.STYLE)
 def indices_figure(parameters: Sequence[Parameter], indices: dict[str, Any], share: dict[str, Any]) -> Figure:
     """Main and total index of each parameter, ranked, and the seed's share."""
     order = ranked(numbers(indices["total"]))
-    grey = are_grey(indices, share, order)
+    grey = are_grey(indices, order)
     seeds = seed_bars(share)
     figure = style.new_figure(1.0 + 1.3 * BAR * (len(order) + len(seeds)), 5.0)
     axes = figure.subplots()
@@ -216,7 +215,7 @@ def _of_chaos(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
                Shown(f"{output.name}-curves", curves_figure(seen, output, curves, is_smooth=True), _CURVES_CHAOS)]
     order = ranked(numbers(indices["total"]))
     return Section(unit, [" ".join(filter(None, [*said, _interactions(indices)]))], figures,
-                   [_index_table(parameters, indices, share, order)])
+                   [_index_table(parameters, indices, order)])
 
 
 def _of_dependence(parameters: Sequence[Parameter], output: Output, found: dict[str, Any], said: str) -> Section:

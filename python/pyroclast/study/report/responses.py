@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 
 from ... import style
 from ..methods import main_effects
+from ..methods.seeds import LEAST
 from ..outputs import Output
 from ..parameters import Parameter
 from .drawing import (BAR, NOT_TOLD, SEED, SEED_HATCH, Bar, along, draw_bar, draw_scatter, grey_patch, legend_above,
@@ -67,20 +68,20 @@ def _sentence(parameters: Sequence[Parameter], effects: dict[str, Any]) -> str:
 
 def told_sentence(names: Sequence[str], share: dict[str, Any]) -> str:
     """Which parameters' effects are told from the seeds."""
-    if share["seeds"] < 2:
-        return "With one seed it is not known which effects are told from the seeds."
+    if share["seeds"] < LEAST:
+        return f"With fewer than {LEAST} seeds it is not known which effects are told from the seeds."
     return f"Told from the seeds: {listed(names)}." if names else "No parameter's effect is told from the seeds."
 
 
-def are_grey(effects: dict[str, Any], share: dict[str, Any], order: Sequence[int]) -> list[bool]:
+def are_grey(effects: dict[str, Any], order: Sequence[int]) -> list[bool]:
     """Of parameters in an order, whose effects are not told from the seeds; none where nothing is known of that."""
-    knows = share["seeds"] > 1 and "told_from_seeds" in effects
-    return [knows and not effects["told_from_seeds"][i] for i in order]
+    told = effects.get("told_from_seeds")
+    return [told is not None and told[i] is False for i in order]
 
 
-def told_cell(is_told: bool, share: dict[str, Any]) -> str:
+def told_cell(is_told: bool | None) -> str:
     """Of a table."""
-    return "not known" if share["seeds"] < 2 else "yes" if is_told else "no"
+    return "unknown" if is_told is None else "yes" if is_told else "no"
 
 
 def seed_sentence(share: dict[str, Any]) -> str:
@@ -105,10 +106,10 @@ def _table(parameters: Sequence[Parameter], effects: dict[str, Any]) -> Table:
                      *(cell for what in ("coefficient", "correlation") for cell in (
                          number(effects[what][i], 2),
                          between(effects[f"{what}_low"][i], effects[f"{what}_high"][i], 2))),
-                     number(effects["standard_error"][i], 2), told_cell(effects["told_from_seeds"][i], share)])
+                     number(effects["standard_error"][i], 2), told_cell(effects["told_from_seeds"][i])])
     return Table(["parameter", "coefficient", "95 % interval", "correlation", "95 % interval",
                   "standard error from the seeds", "told from the seeds"], rows,
-                 faint=frozenset(np.flatnonzero(are_grey(effects, share, order))))
+                 faint=frozenset(np.flatnonzero(are_grey(effects, order))))
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -118,7 +119,7 @@ def effects_figure(parameters: Sequence[Parameter], effects: dict[str, Any]) -> 
     seeds = [(name, _root(bar)) for name, bar in seed_bars(effects["seed_share"])]
     figure = style.new_figure(1.0 + BAR * (len(order) + len(seeds)), 5.0)
     axes = figure.subplots()
-    grey = are_grey(effects, effects["seed_share"], order)
+    grey = are_grey(effects, order)
     for at, i in enumerate(order):
         value, low, high = (numbers(effects[f"coefficient{end}"])[i] for end in ("", "_low", "_high"))
         draw_bar(axes, at, Bar(value, low, high, NOT_TOLD if grey[at] else style.BLUE))
