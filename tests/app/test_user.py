@@ -234,6 +234,39 @@ class FireUnderLoad(UserTest):
             paraview_run.series_of(self.out / "nowhere")
 
 
+class LedgerOfARing(UserTest):
+    """Most of the energy that a ring in cooling turns over is expansion; what cracks dissipate is a tenth of it."""
+
+    def ring(self, exchange: str, *changes: str) -> dict:
+        words = [word for change in (f'coupling.exchange_increment="{exchange}"', "blocks.count=250", *changes)
+                 for word in ("--set", change)]
+        done = self.pyroclast("run", CASES / "ring_cooling.toml", "--out", "out", "--overwrite", "--no-figures",
+                              "--no-fields", *words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"of the energy turned over, \d+\.?\d* % of what contacts dissipated")
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        energy = summary["energy_J"]
+        dissipated = sum(energy[f"dissipated_{name}"] for name in ("tension", "shear", "friction", "compression"))
+        self.assertAlmostEqual(energy["error_over_dissipated"], energy["error"] / dissipated, delta=1e-9)
+        told = " ".join(summary["warnings"])
+        return {"error": abs(energy["error_over_dissipated"]), "stress": summary["exchange_stress_over_strength"],
+                "of_ledger": "of what contacts dissipated" in told,
+                "of_exchanges": "exchanges of temperatures are too large" in told}
+
+    def test_it_is_judged_by_what_cracks_dissipated(self):
+        fine, coarse = self.ring("5 K"), self.ring("20 K")
+        self.assertLess(fine["error"], 0.01)
+        self.assertGreater(coarse["error"], 0.04)
+        self.assertEqual([fine["of_ledger"], coarse["of_ledger"]], [False, True])
+        self.assertEqual([fine["of_exchanges"], coarse["of_exchanges"]], [False, True])
+        self.assertAlmostEqual(coarse["stress"] / fine["stress"], 4.0)
+
+    def test_exchanges_that_are_too_large_are_told_where_the_ledger_closes(self):
+        slow = self.ring("20 K", "mechanics.safety=0.3")
+        self.assertLess(slow["error"], 0.01)
+        self.assertEqual([slow["of_ledger"], slow["of_exchanges"]], [False, True])
+
+
 class ReferenceOfTheFigures(UserTest):
     """`[output] reference` names what figures draw beside the results."""
 

@@ -21,6 +21,13 @@ using OrderedJson = nlohmann::ordered_json;
 constexpr double kLargeJump = 1.0;
 /// The energy ledger of a sound run closes within this share of the energy turned over.
 constexpr double kEnergyTolerance = 0.005;
+/// And within this share of what contacts dissipated, which may be little of that: measured in
+/// docs/method.md.
+constexpr double kDissipationTolerance = 0.01;
+/// Below this share of the energy turned over an error is no more than rounding, whatever it is a share of.
+constexpr double kRounding = 1e-6;
+/// Share of the tensile strength up to which an exchange of temperatures may bring stress at once; likewise.
+constexpr double kExchangeStress = 1.0;
 /// A run whose ledger is this far off has no results: energy came from nowhere, or a body flew off.
 constexpr double kEnergyNonsense = 0.05;
 /// Heat is conserved to rounding, which adds up over some 1e5 evaluations to far less than this share.
@@ -82,6 +89,21 @@ std::optional<double> energy_error(const History& history, std::size_t rows) {
   return turnover > 0.0 ? *error / turnover : 0.0;
 }
 
+/// The same over what contacts dissipated; none where they dissipated nothing, or the error is rounding.
+std::optional<double> error_over_dissipated(const History& history, const Simulation& simulation) {
+  const auto of_turnover = energy_error(history, history.row_count());
+  if (!of_turnover || !simulation.moves()) return std::nullopt;
+  std::set<std::string> names;
+  for (const LawTable* law : simulation.mechanics().laws())
+    for (const LossInfo& loss : law->losses)
+      if (loss.is_energy()) names.insert(loss.name);
+  double dissipated = 0.0;
+  for (const std::string& name : names)
+    dissipated += last_of(history, fmt::format("dissipated_{}_J", name).c_str()).value_or(0.0);
+  if (!(dissipated > 0.0)) return std::nullopt;
+  return std::abs(*of_turnover) > kRounding ? *last_of(history, "energy_error_J") / dissipated : 0.0;
+}
+
 /// A report whose results must not be taken for any.
 StageReport without_results(StageReport report, double energy_error) {
   const auto because = fmt::format("the energy ledger closes only within {:.3g} % of the energy turned over",
@@ -106,6 +128,53 @@ std::optional<double> heat_error(const History& history) {
     if (entry.name != std::string("error"))
       largest = std::max(largest, std::abs(last_of(history, entry.column).value_or(0.0)));
   return largest > 0.0 ? std::abs(*error) / largest : 0.0;
+}
+
+/// Stress that an exchange brings where it strains a body that cannot give way, over the tensile strength of
+/// the weakest contact: the largest at these temperatures. None where no contact has such a strength.
+std::optional<double> exchange_stress(const Simulation& simulation, double increment, double low,
+                                      double high) {
+  constexpr int kTemperatures = 5;
+  const ConcreteMaterials& materials = simulation.materials();
+  std::optional<double> largest;
+  for (int i = 0; i < kTemperatures; ++i) {
+    const double from = low + i * (high - low) / kTemperatures;
+    const double to = low + (i + 1) * (high - low) / kTemperatures;
+    double strain = 0.0;
+    for (const SolidMaterial& solid : materials.solids)
+      if (!solid.is_of_bearing)
+        strain = std::max(strain, std::abs(solid.thermal_strain(to) - solid.thermal_strain(from)));
+    const double stress =
+        estimate_modulus(simulation.model(), materials, to) * strain * increment / (to - from);
+    for (const ContactMaterial& contact : materials.contacts)
+      for (std::size_t p = 0; p < contact.numbers.size(); ++p)
+        if (contact.law->properties[p].key == std::string_view("f_t"))
+          if (const double strength = contact.numbers[p](to); strength > 0.0)
+            largest = std::max(largest.value_or(0.0), stress / strength);
+  }
+  return largest;
+}
+
+/// The largest of that of all stages whose fields are computed; where a field is uniform, only phases that
+/// differ strain each other.
+std::optional<double> exchange_stress(const Run& run, const Summary& s) {
+  std::optional<double> largest;
+  for (std::size_t i = 0; i < s.stages.size(); ++i) {
+    const auto& results = s.stages[i].report.results;
+    const auto increment = std::ranges::find(results, "largest_exchange_increment_K", &Result::name);
+    if (increment == results.end() || run.simulation().field().is_uniform()) continue;
+    const RowRange rows = run.records()[i].rows;
+    double low = run.simulation().field().mean(), high = low;
+    for (std::size_t row = rows.first; row < rows.last; ++row) {
+      low = std::min(low, run.history().cell(row, "temperature_min_degC").value_or(low));
+      high = std::max(high, run.history().cell(row, "temperature_max_degC").value_or(high));
+    }
+    if (!(high > low)) continue;
+    if (const auto of_stage =
+            exchange_stress(run.simulation(), std::get<double>(increment->value), low, high))
+      largest = std::max(largest.value_or(0.0), *of_stage);
+  }
+  return largest;
 }
 
 /// The first row at which a jump exceeds what small kinematics bear, of those that results rest on.
@@ -170,6 +239,8 @@ void add_motion(OrderedJson& json, const Summary& summary, const Run& run) {
     json["energy_J"][fmt::format("dissipated_{}", name)] =
         json_of(last_of(history, fmt::format("dissipated_{}_J", name).c_str()));
   json["energy_J"]["error_over_turnover"] = json_of(summary.energy_error);
+  json["energy_J"]["error_over_dissipated"] = json_of(summary.error_over_dissipated);
+  json["exchange_stress_over_strength"] = json_of(summary.exchange_stress);
   for (const CrackKind& kind : crack_kinds(simulation.mechanics()))
     json["cracks"][kind.name] = crack_json(history, kind.name);
   json["cracks"]["mean_opening_m"] = json_of(last_of(history, "mean_opening_m"));
@@ -252,11 +323,24 @@ Summary summarize(const Run& run) {
     s.is_sound = false;
   }
   s.energy_error = energy_error(history, history.row_count());
+  s.error_over_dissipated = error_over_dissipated(history, simulation);
+  s.exchange_stress = exchange_stress(run, s);
   s.heat_error = heat_error(history);
   if (run.has_ended() && !is_good(s.outcome)) s.warnings.emplace_back(describe(s.outcome));
   if (s.energy_error && std::abs(*s.energy_error) > kEnergyTolerance)
     s.warnings.push_back(fmt::format(
         "the energy ledger closes only within {:.2f} % of the energy turned over", 100.0 * *s.energy_error));
+  if (s.error_over_dissipated && std::abs(*s.error_over_dissipated) > kDissipationTolerance)
+    s.warnings.push_back(fmt::format(
+        "the energy ledger closes only within {:.2g} % of what contacts dissipated, not within {:.2g} %: a "
+        "lower mechanics.safety leaves less{}",
+        100.0 * std::abs(*s.error_over_dissipated), 100.0 * kDissipationTolerance,
+        history.has("exchange") ? ", and so does a smaller coupling.exchange_increment" : ""));
+  if (s.exchange_stress && *s.exchange_stress > kExchangeStress)
+    s.warnings.push_back(fmt::format(
+        "exchanges of temperatures are too large: one brings up to {:.2g} of the tensile strength at once, "
+        "and above {:.2g} cracks dissipate too much; a smaller coupling.exchange_increment brings less",
+        *s.exchange_stress, kExchangeStress));
   if (s.heat_error && *s.heat_error > kHeatTolerance)
     s.warnings.push_back(
         fmt::format("the heat ledger closes only within {:.2g} of its largest term", *s.heat_error));

@@ -24,6 +24,10 @@ struct Summary {
   double wall_time = 0.0;  ///< s
   /// Error of the energy ledger over the energy turned over; empty where nothing moves.
   std::optional<double> energy_error;
+  /// The same over what contacts dissipated; empty where they dissipated nothing.
+  std::optional<double> error_over_dissipated;
+  /// Largest stress that an exchange of computed temperatures brings at once, over the tensile strength.
+  std::optional<double> exchange_stress;
   /// Error of the heat ledger over the largest of its terms; empty where no heat is conducted.
   std::optional<double> heat_error;
   bool is_sound = true;               ///< false where a stage has no results, for its ledger does not close
