@@ -267,6 +267,110 @@ class LedgerOfARing(UserTest):
         self.assertEqual([slow["of_ledger"], slow["of_exchanges"]], [False, True])
 
 
+class StressFreeFieldOfARun(UserTest):
+    """A bar between fixed ends that was put together while it was hot on its left and is at 20 degC now."""
+
+    CELLS, SIZE, E, EXPANSION, LAYER = 6, 0.01, 30e9, 1.2e-5, 1.6e-3
+
+    def setUp(self):
+        super().setUp()
+        n, size = self.CELLS, self.SIZE
+        body = {"phases": ["mortar"], "phase": [0] * n,
+                "vertices_m": [[i * size, y] for i in range(n + 1) for y in (0.0, size)],
+                "cells": [[2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1] for i in range(n)]}
+        self.write(json.dumps(body), "bar.json")
+        specimen = 'title = "bar"\n[specimen]\nshape = "cells"\nfile = "bar.json"\n'
+        self.write(specimen + """[materials.mortar]
+density = "2200 kg/m3"
+conductivity = "2 W/(m K)"
+specific_heat = "900 J/(kg K)"
+[heat]
+field = "conduction"
+initial = "20 degC"
+[[heat.boundaries]]
+faces = "left"
+kind = "temperature"
+temperature = "60 degC"
+[[heat.boundaries]]
+faces = "right"
+kind = "temperature"
+temperature = "20 degC"
+[output]
+frame_interval = "1 h"
+[[stages]]
+kind = "conduct"
+duration = "10 h"
+interval = "1 h"
+steady_rate = "1e-9 K/s"
+""", "casting.toml")
+        drives = "".join(f'[[stages.drives]]\nset = "{side}"\nhold = ["{axis}"]\n'
+                         for side, axis in (("left", "x"), ("right", "x"), ("bottom", "y"), ("top", "y")))
+        self.write(specimen + f"""[materials.mortar]
+E = "{self.E} Pa"
+nu = 0.0
+density = "2200 kg/m3"
+expansion = "{self.EXPANSION} 1/K"
+[contacts]
+t_b = "{self.LAYER} m"
+t_b_scaling = "fixed"
+[contacts.mortar_mortar]
+law = "elastic"
+[mechanics]
+mass = "scaled"
+time_step = "1 us"
+safety = 0.9
+viscous_damping = "500 1/s"
+local_damping = 0.8
+damping_form = "combined"
+gravity = "0 m/s2"
+[coupling]
+stress_free = {{ frame = "casting/fields/FRAME" }}
+[[record]]
+name = "stress"
+kind = "stress"
+set = "specimen"
+direction = "x"
+[heat]
+field = "uniform"
+initial = "20 degC"
+[[stages]]
+kind = "drive"
+duration = "0.2 s"
+unbalanced_ratio = 1e-9
+{drives}""", "deck.toml")
+
+    def stress(self, out: str) -> float:
+        with open(self.folder / out / "history.csv", newline="") as file:
+            return float(list(csv.DictReader(file))[-1]["stress_MPa"])
+
+    def test_it_takes_the_stress_of_its_mean_contraction(self):
+        done = self.pyroclast("run", "casting.toml", "--out", "casting", "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        frame = sorted(file.name for file in (self.folder / "casting/fields").glob("blocks_*.hdf"))[-1]
+        deck = (self.folder / "deck.toml").read_text().replace("FRAME", frame)
+        self.write(deck)
+        done = self.pyroclast("run", "deck.toml", "--out", "out", "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        n = self.CELLS
+        compliance = (n * self.SIZE + (n - 1) * self.LAYER) / self.E
+        expected = 20.0 * self.EXPANSION * n * self.SIZE / compliance * 1e-6  # the mean was 40 degC
+        self.assertAlmostEqual(self.stress("out"), expected, delta=1e-4 * expected)
+        # a run keeps what it needs: without the other one it can be made again
+        shutil.rmtree(self.folder / "casting")
+        done = self.pyroclast("run", "out/deck.toml", "--out", "again", "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((self.folder / "again/history.csv").read_bytes(),
+                         (self.folder / "out/history.csv").read_bytes())
+
+    def test_what_is_no_frame_is_refused_with_its_place(self):
+        deck = (self.folder / "deck.toml").read_text()
+        for file, words in (("FRAME", "is no file of HDF5"), ("../../bar.json", "is no file of HDF5")):
+            done = self.pyroclast("check", self.write(deck.replace("FRAME", file)))
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("coupling.stress_free.frame", done.stderr)
+            self.assertIn(words, done.stderr)
+
+
 class ReferenceOfTheFigures(UserTest):
     """`[output] reference` names what figures draw beside the results."""
 

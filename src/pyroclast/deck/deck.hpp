@@ -59,7 +59,7 @@ struct KeyForms {
 
 /// A file that a deck names.
 struct DeckFile {
-  std::string key;             ///< full path of the key that names it
+  std::string key;  ///< full path of the key that names it; empty where it stands beside such a file
   std::filesystem::path file;  ///< where it was found
   std::string rest;            ///< of the value, behind the file's name
 };
@@ -207,6 +207,9 @@ class Section {
 
   /// Says that the key's value is the name of a file, followed by `rest`.
   void names_file(std::string_view key, std::filesystem::path file, std::string rest = {}) const;
+
+  /// Says that a file belongs to one that a key names, and must stand beside it.
+  void needs_file(std::filesystem::path file) const;
 
   /// Where the key stands (or its table, if the key is absent), as "file:line"; "--set" where that stated it.
   std::string where(std::string_view key) const;

@@ -645,6 +645,10 @@ void Section::names_file(std::string_view key, std::filesystem::path file, std::
   if (table_ && !deck_->survey()) deck_->add_file({table_->path_of(key), std::move(file), std::move(rest)});
 }
 
+void Section::needs_file(std::filesystem::path file) const {
+  if (table_ && !deck_->survey()) deck_->add_file({{}, std::move(file), {}});
+}
+
 std::string Section::where(std::string_view key) const {
   if (!table_) return deck_->name();
   const toml::node* node = table_->table.get(key);

@@ -29,7 +29,7 @@ Inputs inputs_of(const Deck& deck, const Setup& setup) {
         name = fmt::format("inputs/{}_{}", other, named.file.filename().string());
       file = inputs.files.insert(inputs.files.end(), {named.file, name, read_file(named.file)});
     }
-    values.emplace_back(named.key, fmt::format("\"{}{}\"", file->name, named.rest));
+    if (!named.key.empty()) values.emplace_back(named.key, fmt::format("\"{}{}\"", file->name, named.rest));
   }
   if (!setup.specimen.cells) {
     const auto seed = deck.root().section("specimen").integer("seed", Range::any(), "");

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/setup/read_frame.hpp"
 #include "pyroclast/stages/exchange_stage.hpp"
 
 namespace pyroclast {
@@ -33,6 +35,35 @@ OutputIntervals read_output(const Section& s, bool moves, bool has_platens, Fram
         "frames of the fields at its multiples, of the heating time; with \"conduct\" it is needed, with "
         "\"expose\" it takes the place of frame_temperature");
   return output;
+}
+
+/// Nothing after an error.
+std::optional<StressFree> read_stress_free(const Section& s, const std::filesystem::path& folder) {
+  const Range range = Range::at_least(absolute_zero).usually(-30.0, 80.0);
+  s.describe("stress_free",
+             {.value = "temperature, or { frame = file }",
+              .unit = unit::temperature,
+              .range = range,
+              .name = "stress_free"},
+             "temperature at which the body was put together, and nothing is strained: thermal strain counts "
+             "from there, and the hottest that was so far is no less; without it 20 °C");
+  if (!s.is_table("stress_free"))
+    return StressFree{{}, {s.quantity("stress_free", unit::temperature, range, "")}};
+  const Section frame = s.section("stress_free");
+  const std::string name =
+      frame.text("frame",
+                 "file `blocks_<k>.hdf` of the fields of another run, with the `mesh.h5` beside it: "
+                 "each gridpoint has the temperature of the nearest one there");
+  if (!frame.ok()) return std::nullopt;
+  const auto file = folder / name;
+  frame.names_file("frame", file);
+  frame.needs_file(file.parent_path() / "mesh.h5");
+  try {
+    return read_frame_temperatures(file);
+  } catch (const Error& error) {
+    frame.error("frame", error.what());
+    return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -70,14 +101,16 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
                               "them; see [deck.md](deck.md#exchanges-of-temperature)");
   else
     root.know({"coupling"});
-  if (tables.coupling_table) tables.coupling = read_coupling(*tables.coupling_table);
+  // A body that only stands at other temperatures than it was made at exchanges none.
+  const bool exchanges = any([](const StageNeeds& n) { return n.exchanges; });
   ReadStages read;
-  read.any_moves = moves;
   if (tables.coupling_table && tables.coupling_table->has("stress_free"))
-    read.stress_free = tables.coupling_table->quantity(
-        "stress_free", unit::temperature, Range::at_least(absolute_zero).usually(-30.0, 80.0),
-        "temperature at which the body was put together, and nothing is strained: thermal strain counts from "
-        "there, and the hottest that was so far is no less; without it 20 °C");
+    read.stress_free = read_stress_free(*tables.coupling_table, folder);
+  if (tables.coupling_table && !exchanges &&
+      tables.coupling_table->keys() == std::vector<std::string>{"stress_free"})
+    tables.coupling_table.reset();
+  if (tables.coupling_table) tables.coupling = read_coupling(*tables.coupling_table);
+  read.any_moves = moves;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     read.stages.push_back(chosen[i]->read(sections[i], tables));
     const std::string name =

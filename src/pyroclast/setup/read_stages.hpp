@@ -4,15 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "pyroclast/simulation/stress_free.hpp"
 #include "pyroclast/stages/registry.hpp"
 
 namespace pyroclast {
 
 struct ReadStages {
   std::vector<std::unique_ptr<Stage>> stages;
-  std::vector<std::string> names;     ///< of the stages
-  std::optional<double> stress_free;  ///< as [coupling] says, °C
-  bool any_moves = false;             ///< the body
+  std::vector<std::string> names;         ///< of the stages
+  std::optional<StressFree> stress_free;  ///< as [coupling] says
+  bool any_moves = false;                 ///< the body
 };
 
 /// Reads [[stages]], and [output] and [coupling] as far as their kinds need them. What is wrong is recorded

@@ -194,7 +194,9 @@ void warn_of_healing(const Section& root, const Setup& setup) {
 /// A body that is not at the temperature at which nothing is strained.
 void warn_of_first_strain(const Section& root, const Setup& setup) {
   if (!setup.motion) return;
-  const double unstrained = setup.motion->stress_free.value_or(kReferenceTemperature);
+  const auto& stress_free = setup.motion->stress_free;
+  if (stress_free && stress_free->is_field()) return;
+  const double unstrained = stress_free ? stress_free->temperatures.front() : kReferenceTemperature;
   if (same(setup.heat.initial, unstrained, absolute_zero)) return;
   root.section("heat").warn(
       "initial",
@@ -206,16 +208,15 @@ void warn_of_first_strain(const Section& root, const Setup& setup) {
 
 /// All temperatures that a run may come to, and the reference temperature, at which masses and stated
 /// stiffnesses hold.
-/// \param stress_free  °C, where the deck says one
 Interval run_temperatures(const Section& root, const HeatConditions& conditions,
-                          const std::optional<double>& stress_free,
+                          const std::optional<StressFree>& stress_free,
                           const std::vector<std::unique_ptr<Stage>>& stages) {
   Interval t{std::min(kReferenceTemperature, conditions.initial),
              std::max(kReferenceTemperature, conditions.initial)};
   const auto include = [&](double low, double high) {
     t = {std::min(t.lower, low), std::max(t.upper, high)};
   };
-  if (stress_free) include(*stress_free, *stress_free);
+  if (stress_free) include(stress_free->range().lower, stress_free->range().upper);
   const bool stages_are_known =
       std::ranges::all_of(root.sections("stages"), [](const Section& s) { return s.ok(); });
   if (!stages_are_known) return t;  // what stands in for an error asks nothing of curves

@@ -62,20 +62,41 @@ BodyProperties properties_at_one_temperature(const Model<2>& model, const std::v
 }  // namespace
 
 HottestTemperatures::HottestTemperatures(const Model<2>& model, const ConcreteMaterials& materials,
-                                         const TemperatureField& field) {
+                                         const TemperatureField& field,
+                                         const std::vector<double>& stress_free) {
   if (materials.asks_for_hottest()) zones_ = field.zones();
   if (materials.on_cooling == OnCooling::irreversible) contacts_ = field.contacts();
   of_all_ = field.mean();
   if (materials.stress_free) {
-    const double first = *materials.stress_free;
-    const std::vector<int> blocks = zone_blocks(model);
-    for (std::size_t z = 0; z < zones_.size(); ++z)
-      if (!model.is_of_bearing(blocks[z])) zones_[z] = std::max(zones_[z], first);
-    for (double& contact : contacts_) contact = std::max(contact, first);
-    of_all_ = std::max(of_all_, first);
+    begin_at(model, std::vector<double>(model.position.size(), *materials.stress_free));
+    of_all_ = std::max(of_all_, *materials.stress_free);
+  } else if (!stress_free.empty()) {
+    stress_free_zones_ = begin_at(model, stress_free);
   }
   seen_zones_ = zones_;
   seen_contacts_ = contacts_;
+}
+
+std::vector<double> HottestTemperatures::begin_at(const Model<2>& model,
+                                                  const std::vector<double>& gridpoints) {
+  std::vector<double> of_zones(model.zones.size(), kReferenceTemperature);
+  std::vector<bool> in_specimen(model.position.size());
+  for (int b = 0; b < model.block_count(); ++b) {
+    if (model.is_of_bearing(b)) continue;
+    for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
+      const auto [i, j, k] = model.zones[z];
+      of_zones[z] = (gridpoints[i] + gridpoints[j] + gridpoints[k]) / 3.0;
+      if (!zones_.empty()) zones_[z] = std::max(zones_[z], of_zones[z]);
+    }
+    for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g) in_specimen[g] = true;
+  }
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const auto& contact = model.contacts[c];
+    const double a = gridpoints[in_specimen[contact.a] ? contact.a : contact.b];
+    const double b = gridpoints[in_specimen[contact.b] ? contact.b : contact.a];
+    contacts_[c] = std::max(contacts_[c], 0.5 * (a + b));
+  }
+  return of_zones;
 }
 
 void HottestTemperatures::see(const TemperatureField& field) {
@@ -103,7 +124,7 @@ BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& mat
                              const TemperatureField& field, const HottestTemperatures& before) {
   const std::vector<int> zone_solids = solids_of_zones(model);
   BodyProperties p;
-  if (field.is_uniform()) {
+  if (field.is_uniform() && before.stress_free_zones().empty()) {
     p = properties_at_one_temperature(model, zone_solids, materials, field.mean(),
                                       before.of_all(field.mean()));
     p.creep = creep_increments(zone_solids, materials, field, before);
@@ -113,7 +134,10 @@ BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& mat
   p.zones.reserve(zone_solids.size());
   for (int z = 0; z < model.zone_count(); ++z) {
     const double now = field.zones()[z];
-    p.zones.push_back(zone_at(materials, materials.solids[zone_solids[z]], now, before.of_zone(z, now)));
+    const SolidMaterial& solid = materials.solids[zone_solids[z]];
+    p.zones.push_back(zone_at(materials, solid, now, before.of_zone(z, now)));
+    if (!before.stress_free_zones().empty() && !solid.is_of_bearing)
+      p.zones.back().thermal_strain -= solid.thermal_strain(before.stress_free_zones()[z]);
   }
   p.of_contact.reserve(model.contacts.size());
   for (int c = 0; c < model.contact_count(); ++c) {

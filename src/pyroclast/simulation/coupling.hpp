@@ -19,8 +19,9 @@ class HottestTemperatures {
   HottestTemperatures() = default;
   /// As if the body had come without stress to the temperatures that the field has now, from the one without
   /// stress where the materials say one.
+  /// \param stress_free  temperature without stress of each gridpoint where they differ, °C
   HottestTemperatures(const Model<2>& model, const ConcreteMaterials& materials,
-                      const TemperatureField& field);
+                      const TemperatureField& field, const std::vector<double>& stress_free = {});
 
   /// The field came to its temperatures, but hands them over later, with an exchange.
   void see(const TemperatureField& field);
@@ -37,15 +38,22 @@ class HottestTemperatures {
   double of_zone_at_exchanges(int zone, double now) const {
     return zones_.empty() ? now : std::max(now, zones_[zone]);
   }
+  /// Of each zone, °C, where the temperature without stress is a field; else none.
+  const std::vector<double>& stress_free_zones() const { return stress_free_zones_; }
   /// Of all of the specimen, in a uniform field.
   double of_all(double now) const { return zones_.empty() ? now : std::max(now, of_all_); }
 
   void visit_state(StateVisitor& visitor);
 
  private:
+  /// Raises all to temperatures of the gridpoints, of which those of bearings do not count. Returns the mean
+  /// of each zone.
+  std::vector<double> begin_at(const Model<2>& model, const std::vector<double>& gridpoints);
+
   std::vector<double> zones_, contacts_;            ///< at exchanges
   std::vector<double> seen_zones_, seen_contacts_;  ///< since the last one, too; never less
   double of_all_ = 0.0;
+  std::vector<double> stress_free_zones_;
 };
 
 /// Parameters of every zone and contact at the field's temperatures, and what zones creep on their way there.

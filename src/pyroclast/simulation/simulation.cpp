@@ -86,7 +86,8 @@ ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const
   if (follows_composition(solids, motion))
     follow_composition(materials, motion.contacts, motion.strain_of_concrete, specimen.fraction,
                        specimen.metrics.mean_size);
-  if (motion.stress_free) set_stress_free(materials, *motion.stress_free);
+  if (motion.stress_free && !motion.stress_free->is_field())
+    set_stress_free(materials, motion.stress_free->temperatures.front());
   return materials;
 }
 
@@ -107,7 +108,10 @@ Simulation::Simulation(specimen::Specimen specimen, double thickness,
     return;
   }
   materials_ = make_materials(solids, *motion, specimen_);
-  hottest_ = HottestTemperatures(model_, materials_, field_);
+  std::vector<double> stress_free;
+  if (motion->stress_free && motion->stress_free->is_field())
+    stress_free = stress_free_gridpoints(*motion->stress_free, model_, specimen_.metrics.mean_size);
+  hottest_ = HottestTemperatures(model_, materials_, field_, stress_free);
   mechanics_ = make_mechanics(model_, materials_, field_, hottest_, motion->mechanics, team_);
   for (const specimen::Notch& notch : specimen_.region.notches())
     if (const auto parted = model_.contact_sets.find(notch.name); parted != model_.contact_sets.end())

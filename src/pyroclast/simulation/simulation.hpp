@@ -18,6 +18,7 @@
 #include "pyroclast/simulation/press.hpp"
 #include "pyroclast/simulation/probe.hpp"
 #include "pyroclast/simulation/records.hpp"
+#include "pyroclast/simulation/stress_free.hpp"
 #include "pyroclast/simulation/supports.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
@@ -30,8 +31,7 @@ struct MotionParameters {
   ContactParameters contacts;
   std::optional<StrainOfConcrete> strain_of_concrete;  ///< where phases follow it
   OnCooling on_cooling = OnCooling::irreversible;
-  std::optional<double>
-      stress_free;  ///< temperature at which nothing is strained, °C; else the reference one
+  std::optional<StressFree> stress_free;  ///< else the reference temperature
   MechanicsParameters<2> mechanics;
 };
 

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+
+#include "pyroclast/simulation/stress_free.hpp"
+
+namespace pyroclast {
+
+/// Temperatures at the gridpoints of the specimen, bearings left aside, from a frame `blocks_<k>.hdf` of a
+/// run's fields and the `mesh.h5` beside it. Throws Error where the file is none, or its mesh is missing.
+StressFree read_frame_temperatures(const std::filesystem::path& frame);
+
+}  // namespace pyroclast
