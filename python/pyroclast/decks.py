@@ -122,6 +122,7 @@ class Deck:
         self._functions: dict[str, functions.Function] = {}
         self._specimen: tuple[Specimen, functions.Scratch] | None = None
         self._name, self._folder, self._text = "deck", "", ""
+        self._is_own = file is None  # the script's, not a file's: what it names, the script names
         if file is not None:
             self._name, self._folder = str(file), str(Path(file).parent)
             self._text = _read(file)
@@ -135,7 +136,7 @@ class Deck:
                   stages_in_python: Sequence[type[Stage]] = (), laws: Sequence[str | Path] = ()) -> Deck:
         """A deck from TOML. name: takes the file's place in messages. folder: that its file names are taken from."""
         deck = cls(stages_in_python=stages_in_python, laws=laws)
-        deck._text, deck._name, deck._folder = text, name, str(folder)
+        deck._text, deck._name, deck._folder, deck._is_own = text, name, str(folder), False
         deck._written()
         return deck
 
@@ -316,7 +317,7 @@ class Deck:
         other = Deck(stages_in_python=self._stages, laws=self._laws)
         other._text, other._name, other._folder = self._text, self._name, self._folder
         other._changes, other._functions = list(self._changes), dict(self._functions)
-        other._specimen = self._specimen
+        other._specimen, other._is_own = self._specimen, self._is_own
         return other
 
     def check(self) -> list[Diagnostic]:
@@ -338,7 +339,8 @@ class Deck:
         files = [("specimen.file", toml(str(Path(self._specimen[1].folder) / _CELLS)))] if (
             with_files and self._specimen) else []
         changes = [f"{path}={value}" for path, value in (*self._changes, *files, *more)]
-        return _core.DeckText(self._text, self._name, self._folder, changes, self._laws, self._stages)
+        return _core.DeckText(self._text, self._name, self._folder, changes, self._laws, self._stages,
+                              "all" if self._is_own else "changes")
 
     def _diagnostics(self) -> list[Diagnostic]:
         try:

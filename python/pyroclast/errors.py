@@ -27,6 +27,10 @@ class Error(Exception):
     """Something cannot be done; the text says what and why."""
 
 
+class CodeNotAllowed(Error):
+    """A deck or a study names code that may not run before the user allows it."""
+
+
 class DeckError(Error):
     """Everything that is wrong with a deck, a line each."""
 
@@ -36,3 +40,8 @@ class DeckError(Error):
 
     def __reduce__(self) -> tuple[type[DeckError], tuple[list[Diagnostic]]]:
         return DeckError, (self.diagnostics,)
+
+
+def escaped(text: str) -> str:
+    """A text from elsewhere as a terminal may show it: what acts on one is written out, but for line breaks."""
+    return "".join(c if c.isprintable() or c in "\n\t" else ascii(c)[1:-1] for c in text)

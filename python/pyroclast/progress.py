@@ -26,6 +26,7 @@ _ENERGY_OUT = (
     ("energy_local_damping_J", "local damping", "#d9d9d9", "...."),
     ("energy_viscous_damping_J", "viscous damping", style.FAINT, "xxxx"),
 )
+_MORE_LOSSES = (style.PURPLE, "#8c6d31", "#66c2a4")  # colours
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (5, 1.5, 1, 1.5)))  # by interface
 _MODE_COLOURS = {"tension": style.TENSION_COLOUR, "shear": style.SHEAR_COLOUR, "mixed": style.MIXED_COLOUR}
 _COUNTS_NOTE = "broken: $D=1$; damaged: $D>0$, the broken among them"
@@ -194,9 +195,18 @@ def energy(course: Course) -> Figure:
     return figure
 
 
+def _energies(run: Run) -> list[tuple[str, str, str, str | None]]:
+    """Columns of energies that the run has, with name, colour and hatch: a law may lose others than the paper's."""
+    known = [entry for entry in _ENERGY_OUT if entry[0] in run.history]
+    others = [name for name in run.history.names
+              if name.startswith("dissipated_") and name not in {column for column, *_ in _ENERGY_OUT}]
+    return known + [(name, name.removeprefix("dissipated_").removesuffix("_J").replace("_", " "), colour, "++")
+                    for name, colour in zip(others, cycle(_MORE_LOSSES))]
+
+
 def _draw_stack(axes: Axes, course: Course, turnover: float) -> None:
     below = np.zeros_like(course.over)
-    for column, name, colour, hatch in _ENERGY_OUT:
+    for column, name, colour, hatch in _energies(course.run):
         values = course[column]
         known = values[np.isfinite(values)]
         share = f"{100.0 * known[-1] / turnover:.1f} %" if len(known) else "not known"

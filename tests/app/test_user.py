@@ -926,7 +926,7 @@ class LawInAHeader(UserTest):
         super().setUp()
         self.write(CARELESS_LAW, "careless.hpp")
         self.write(deck_of_careless_law(1.0))
-        self.env = os.environ | {"PYROCLAST_CACHE": str(self.folder / "cache")}
+        self.env = os.environ | {"PYROCLAST_CACHE": str(self.folder / "cache"), "PYROCLAST_CODE": "always"}
 
     def compiled(self, *words: str) -> bool:
         done = self.pyroclast(*words, "--no-figures", env=self.env)
@@ -979,7 +979,7 @@ class LedgerThatDoesNotClose(UserTest):
         self.write(CARELESS_LAW, "careless.hpp")
         self.write(deck_of_careless_law(times))
         done = self.pyroclast("run", "deck.toml", "--out", "out", "--overwrite", "--no-figures",
-                              env=os.environ | {"PYROCLAST_CACHE": str(self.folder / "cache")})
+                              env=os.environ | {"PYROCLAST_CACHE": str(self.folder / "cache"), "PYROCLAST_CODE": "always"})
         said = done.stdout + done.stderr
         self.assertTrue((self.folder / "out/summary.json").exists(), said)
         return done.returncode, said, json.loads((self.folder / "out/summary.json").read_text())

@@ -54,8 +54,8 @@ TEST(Plugin, ALawForAnotherVersionOrLayoutIsRefusedWithBothValues) {
 }
 
 TEST(Plugin, ALawThatBearsTheNameOfOneOfTheProgramIsRefused) {
-  EXPECT_TRUE(
-      says(message([] { find_law("refused_name", LAWS, {}); }), {"refused_name.so", "called \"cohesive\""}));
+  EXPECT_TRUE(says(message([] { find_law("refused_name", LAWS, {}, true); }),
+                   {"refused_name.so", "called \"cohesive\""}));
 }
 
 TEST(Plugin, FastMathIsRefused) {
@@ -170,9 +170,10 @@ TEST(Plugin, ALoadedLawStandsBesideAPhaseThatCreeps) {
 TEST(Plugin, ALawForPlaneBodiesIsRefusedInSpace) {
   LawSources sources;
   sources.folders = {LAWS};
-  EXPECT_STREQ(find_law("small", "", sources).name, "small");
+  EXPECT_STREQ(find_law("small", "", sources, true).name, "small");
   sources.compiler.dimension = 3;
-  EXPECT_TRUE(says(message([&] { find_law("small", "", sources); }), {"made for bodies in 2D, not in 3D"}));
+  EXPECT_TRUE(
+      says(message([&] { find_law("small", "", sources, true); }), {"made for bodies in 2D, not in 3D"}));
 
   const auto model = bodies::five_tetrahedra();
   const LawTable& law = load_law(law_file("small")).table;
@@ -189,8 +190,8 @@ TEST(Plugin, ALawForPlaneBodiesIsRefusedInSpace) {
 TEST(Plugin, ANameIsSearchedInTheProgramBesideTheDeckAndInTheFolders) {
   LawSources sources;
   EXPECT_EQ(&find_law("cohesive", "", sources), &table_of<Cohesive>());
-  EXPECT_STREQ(find_law("renamed", LAWS, sources).name, "renamed");
-  EXPECT_STREQ(find_law("renamed.so", LAWS, sources).name, "renamed");
+  EXPECT_STREQ(find_law("renamed", LAWS, sources, true).name, "renamed");
+  EXPECT_STREQ(find_law("renamed.so", LAWS, sources, true).name, "renamed");
   EXPECT_TRUE(says(message([&] { find_law("absent", "some/deck", sources); }),
                    {"\"absent\"", "cohesive", "absent.so in some/deck"}));
   sources.folders = {"here", LAWS};
@@ -220,6 +221,7 @@ class LawInAHeader : public testing::Test {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     sources_.compiler.cache = folder_ / "cache";
+    sources_.permission.policy = CodePolicy::always;
     sources_.compiler.instructions = InstructionSet::portable;
     sources_.compiler.tell = [this](const std::string& command) { commands_.push_back(command); };
   }
@@ -332,6 +334,93 @@ TEST_F(LawInAHeader, ACompilerThatIsNotThereIsNamed) {
   write("mine.hpp", small());
   sources_.compiler.program = "no-such-compiler";
   EXPECT_TRUE(says(refusal_of("mine.hpp"), {"no-such-compiler"}));
+}
+
+/// Code beside a deck of somebody else.
+class CodeOfADeck : public LawInAHeader {
+ protected:
+  void SetUp() override {
+    LawInAHeader::SetUp();
+    sources_.permission = {CodePolicy::ask, false, folder_ / "config" / "allowed-code"};
+    write("mine.hpp", "#include \"part.hpp\"\n" + small());
+    write("part.hpp", "// nothing\n");
+  }
+  bool is_refused(const std::string& stated, bool named = false) {
+    try {
+      find_law(stated, folder_, sources_, named);
+    } catch (const CodeNotAllowed& error) {
+      EXPECT_EQ(error.file(), folder_ / "mine.hpp");
+      return true;
+    }
+    return false;
+  }
+};
+
+TEST_F(CodeOfADeck, RunsAfterTheUsersWordAndUntilItChanges) {
+  EXPECT_TRUE(is_refused("mine.hpp"));
+  EXPECT_TRUE(commands_.empty()) << "nothing is compiled before";
+  sources_.permission.allow = true;
+  EXPECT_FALSE(is_refused("mine.hpp"));
+  sources_.permission.allow = false;
+  EXPECT_FALSE(is_refused("mine.hpp"));
+  EXPECT_FALSE(is_refused("mine.hpp:small::Law"));
+  write("part.hpp", "// something\n");
+  EXPECT_TRUE(is_refused("mine.hpp")) << "a file that it includes has changed";
+  EXPECT_FALSE(is_refused("mine.hpp", true)) << "the user names it";
+  EXPECT_FALSE(is_refused("mine.hpp")) << "and did so";
+  sources_.permission.policy = CodePolicy::never;
+  EXPECT_TRUE(is_refused("mine.hpp"));
+  EXPECT_FALSE(is_refused("mine.hpp", true));
+  write("part.hpp", "// another thing\n");
+  sources_.permission.policy = CodePolicy::ask;
+  sources_.folders = {folder_};
+  EXPECT_FALSE(is_refused("mine.hpp")) << "it lies in a folder that the user names";
+}
+
+TEST_F(CodeOfADeck, AListThatOthersMayWriteIsNotTrusted) {
+  sources_.permission.allow = true;
+  EXPECT_FALSE(is_refused("mine.hpp"));
+  fs::permissions(sources_.permission.list, fs::perms::others_write, fs::perm_options::add);
+  EXPECT_TRUE(says(refusal_of("mine.hpp"), {"allowed-code", "not trusted", "0600"}));
+}
+
+TEST_F(CodeOfADeck, WhatCannotBeKnownIsRefused) {
+  for (const char* const line :
+       {"#include MACRO\n", "# /* */ include MACRO\n", "%:include MACRO\n", "#inc\\\nlude MACRO\n",
+        "const char* s = R\"(/*)\";\n#include MACRO\n//*/\n"}) {
+    write("mine.hpp", line + small());
+    EXPECT_TRUE(says(refusal_of("mine.hpp"), {"by a macro"})) << line;
+  }
+  for (const char* const line :
+       {"// #include MACRO\n", "/*\n#include MACRO\n*/\n", "const char* s = \"#include MACRO\";\n"}) {
+    write("mine.hpp", line + small());
+    EXPECT_TRUE(is_refused("mine.hpp")) << line;
+  }
+}
+
+TEST_F(CodeOfADeck, ATypeIsAName) {
+  for (const char* const type :
+       {"small::Law, int>(); system(\"x\")", "small::Law\n#include \"part.hpp\"", "::", "1a", "a::", "a b"})
+    EXPECT_TRUE(says(refusal_of(fmt::format("mine.hpp:{}", type)), {"is a name such as mine::Law"})) << type;
+}
+
+TEST(Plugin, TheEnvironmentSaysWhichCodeRuns) {
+  const auto policy = [](const char* word) {
+    setenv("PYROCLAST_CODE", word, 1);
+    setenv("XDG_CONFIG_HOME", "/four", 1);
+    const auto permission = CodePermission::of_environment();
+    unsetenv("PYROCLAST_CODE");
+    unsetenv("XDG_CONFIG_HOME");
+    EXPECT_EQ(permission.list, "/four/pyroclast/allowed-code");
+    return permission.policy;
+  };
+  EXPECT_EQ(policy(""), CodePolicy::ask);
+  EXPECT_EQ(policy("ask"), CodePolicy::ask);
+  EXPECT_EQ(policy("never"), CodePolicy::never);
+  EXPECT_EQ(policy("always"), CodePolicy::always);
+  EXPECT_TRUE(says(message([&] { policy("perhaps"); }), {"perhaps", "never", "ask", "always"}));
+  unsetenv("PYROCLAST_CODE");
+  unsetenv("XDG_CONFIG_HOME");
 }
 
 TEST(Plugin, TheTypeOfAHeaderIsTheStructWithAName) {

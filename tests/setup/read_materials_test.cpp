@@ -56,7 +56,7 @@ Materials read(const Deck& deck, Interval needed = kFire) {
   m.solids = read_solids(deck.root(), phases, {"platen"}, rules, {}, curves);
   m.contacts = read_contacts(
       deck.root(), phases, "mortar", true, rules.on_cooling,
-      [](const auto&) -> const LawTable& { return table_of<Cohesive>(); }, curves);
+      [](const auto&, bool) -> const LawTable& { return table_of<Cohesive>(); }, curves);
   m.curves = curves.curves();
   return m;
 }

@@ -12,7 +12,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from ..errors import Error
+from .. import _core
+from ..errors import CodeNotAllowed, Error, escaped
 from .driver import duration
 from .executors.commands import Commands
 from .file import KEEP, reference
@@ -29,12 +30,17 @@ _DISK = {"summary": 20e3, "history": 700e3, "all": 30e6}  # bytes of a run, of t
 
 
 def main(words: list[str]) -> int:
-    """Exit code: 0 done, 2 runs are missing, 1 an error."""
+    """Exit code: 0 done, 2 runs are missing, 3 code has to be allowed first, 1 another error."""
     options = _parser().parse_args(words)
     try:
+        if options.allow_code:
+            _core.allow_code()
         return int(options.do(options) or 0)
+    except CodeNotAllowed as error:
+        print(f"error: {escaped(str(error))}", file=sys.stderr)
+        return 3
     except Error as error:
-        print(f"error: {error}", file=sys.stderr)
+        print(f"error: {escaped(str(error))}", file=sys.stderr)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as error:
@@ -52,8 +58,11 @@ def _parser() -> argparse.ArgumentParser:
 
     def command(name: str, do: Callable[[argparse.Namespace], int], meaning: str) -> argparse.ArgumentParser:
         added = commands.add_parser(name, help=meaning, description=meaning)
-        added.set_defaults(do=do)
+        added.set_defaults(do=do, allow_code=False)
         if name != "keys":
+            added.add_argument("--allow-code", action="store_true",
+                               help="let code that the study and its deck name run, now and until it changes; read it "
+                               "first")
             added.add_argument("study", metavar="STUDY", help="TOML file that describes the study")
         return added
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import hashlib
 import json
-import shlex
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -15,7 +14,8 @@ from typing import Any
 
 from .. import _core
 from ..decks import toml
-from ..errors import DeckError, Diagnostic, Error
+from ..errors import CodeNotAllowed, DeckError, Diagnostic, Error
+from .code import words_of
 from .file import Setup
 from .outputs import Offer, Output
 from .parameters import Parameter, Value, numbered
@@ -60,6 +60,8 @@ class Points:
             return Point(values, [lambda seed: _hash([self._model, named, seed])])
         try:
             text, files, _ = self.resolve(values)
+        except CodeNotAllowed:
+            raise
         except Error as error:
             return Point(values, [], str(error))
         tables = tomllib.loads(text)
@@ -78,7 +80,7 @@ class Points:
     def _deck_text(self, values: Sequence[Value]) -> _core.DeckText:
         changes = [f"{path}={value}" for path, value in self.changes(values)]
         deck = self._study.runner.deck
-        return _core.DeckText(self._text, str(deck), str(deck.parent), changes, [], [])
+        return _core.DeckText(self._text, str(deck), str(deck.parent), changes, [], [], "none")
 
     def changes(self, values: Sequence[Value]) -> list[tuple[str, str]]:
         """Keys of the deck and what a point writes there, as `--set` takes them."""
@@ -96,9 +98,9 @@ class Points:
             return [f"{runner.file}:{runner.function}"]
         if runner.kind == "command":
             fields = {p.name: _plain(v, p) for p, v in zip(self._study.parameters, values)}
-            line = runner.command.format(**fields, seed=seed, folder=folder or "FOLDER")
-            return shlex.split(line)
-        words = [program, "run", str(runner.deck)]
+            # Words first: what is put into one stays in it, whatever it holds.
+            return [word.format(**fields, seed=seed, folder=folder or "FOLDER") for word in words_of(runner.command)]
+        words = [program, "run", str(runner.deck), "--of-study"]
         for path, value in self.changes(values):
             words += ["--set", f"{path}={value}"]
         seeded = ["--seed", str(seed)] if self.has_seed else []
@@ -128,7 +130,7 @@ class Points:
     def _tables(self) -> Mapping[str, Any]:
         """The deck as it stands, with the changes that all points have."""
         changes = [f"{path}={value}" for path, value in self._common]
-        return tomllib.loads(_core.written(_core.DeckText(self._text, str(self._study.runner.deck), "", changes, [], [])))
+        return tomllib.loads(_core.written(_core.DeckText(self._text, str(self._study.runner.deck), "", changes, [], [], "none")))
 
     @property
     def middle(self) -> list[Value]:
@@ -150,6 +152,8 @@ class Points:
         for place, values in self._ends(middle):
             try:
                 self.resolve(values)
+            except CodeNotAllowed:
+                raise
             except DeckError as error:
                 for d in error.diagnostics:
                     said.setdefault(f"{d.key}: {d.message}", f"{place}{d}")
@@ -180,7 +184,7 @@ class Points:
         if self._study.runner.kind == "command":
             try:
                 self.command("", middle, 1)
-            except (KeyError, IndexError, ValueError) as error:
+            except (Error, KeyError, IndexError, ValueError, AttributeError) as error:
                 named = f"{{{error.args[0]}}} is no parameter" if isinstance(error, KeyError) else str(error)
                 wrong.append(f"{self._study.place('study.command')}: {named}")
             unnamed = [p.name for p in self._study.parameters if f"{{{p.name}" not in self._study.runner.command]

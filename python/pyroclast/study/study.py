@@ -19,6 +19,7 @@ import numpy as np
 from .. import _core
 from ..decks import _is_list_of_tables, table_text, toml
 from ..errors import Diagnostic, Error
+from .code import require_code
 from .driver import Driver, Forecast, free_cores
 from .executors import Executor
 from .executors.commands import Commands
@@ -55,6 +56,7 @@ class Study:
         functions: further outputs, by names of their own: of a `pyroclast.run.Run`, called once for each run. What they
             need of the run has to be kept (`keep`).
         """
+        self._is_own = bool(tables)  # the script's, not a file's: what it names, the script names
         if tables:
             _write(Path(file), tables)
         self.setup: Setup = read_setup(file, list(functions or ()))
@@ -87,6 +89,7 @@ class Study:
 
         Ctrl-C stops it: each run keeps its state and goes on the next time.
         """
+        require_code(self.setup.runner, self._is_own)
         chosen = self.executor(executor, jobs) if isinstance(executor, str) else executor
         with self._driver(writes=True) as driver, _interrupts() as stopped:
             return driver.run(chosen, stopped, say or (lambda line: None))

@@ -12,7 +12,6 @@ import shutil
 import signal
 import socket
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -21,6 +20,7 @@ from typing import Any
 
 from ..errors import Error
 from .outputs import Output, read_summary
+from .start import python
 from .store import (CRASHED, DONE, NO_VALUE, NOT_QUASI_STATIC, NOT_SETTLED, TIMED_OUT, Result, read_record,
                     write_record)
 
@@ -76,8 +76,8 @@ class Job:
     def line(self, folder: Path) -> list[str]:
         """The command line of the run from its beginning, with results in a folder."""
         if self.kind == "function":
-            return [sys.executable, "-m", "pyroclast.study.call", self.command[0], json.dumps(self.values), str(self.seed),
-                    str(folder / "summary.json")]
+            return python("pyroclast.study.call", self.command[0], json.dumps(self.values), str(self.seed),
+                          str(folder / "summary.json"))
         if self.kind == "command":
             return [word.replace("FOLDER", str(folder)) for word in self.command]
         fields = [] if self.keep == "all" else ["--no-fields"]

@@ -8,6 +8,7 @@
 
 #include "pyroclast/app/load.hpp"
 #include "pyroclast/app/progress.hpp"
+#include "pyroclast/base/shown.hpp"
 #include "pyroclast/simulation/run.hpp"
 #include "pyroclast/thermal/time_stages.hpp"
 
@@ -155,15 +156,25 @@ void print_mechanics(const Simulation& simulation, MassChoice mass) {
   if (whole && (whole->creep_share || whole->strain_weight)) print_composition(*whole);
 }
 
+/// What is known of a deck without the code that it names.
+int say_unchecked(const Loaded& loaded) {
+  fmt::print("deck            {} holds no other error: {}\n{}", shown(loaded.deck.name()),
+             shown(loaded.setup.title), describe_warnings(loaded.warnings));
+  for (const std::string& code : loaded.setup.code_not_allowed)
+    fmt::print("not checked     the keys of its law: {}\n", shown(code, true));
+  return kCodeNotAllowed;
+}
+
 }  // namespace
 
 int check(const RunOptions& options) {
-  Loaded loaded = load(options);
+  Loaded loaded = load(options, false);
   Setup& setup = loaded.setup;
+  if (!setup.code_not_allowed.empty()) return say_unchecked(loaded);
   loaded.choices.before_making(loaded);
   const auto simulation = make_simulation(setup, loaded.team);
   const Model<2>& model = simulation->model();
-  fmt::print("deck            {} is valid: {}\n", loaded.deck.name(), setup.title);
+  fmt::print("deck            {} is valid: {}\n", shown(loaded.deck.name()), shown(setup.title));
   fmt::print("{}{}{}{}", describe_warnings(loaded.warnings), describe_unused(setup), describe_own_laws(),
              describe(simulation->specimen()));
   fmt::print("model           {} blocks{}, {} zones, {} gridpoints, {} contacts\n", model.block_count(),

@@ -15,6 +15,8 @@ constexpr int kMostThreads = 1024;
 struct OwnLawOptions {
   std::vector<std::filesystem::path> folders;  ///< see LawSources
   bool may_compile = true;
+  bool allow_code = false;  ///< see CodePermission
+  bool of_study = false;    ///< --set says what a study file does
 };
 
 /// How much a run says on the screen; `run.log` has the lines of `usual` at least.
@@ -67,6 +69,9 @@ struct PropertiesOptions {
 
 /// Reads a duration such as "5 min", s. Throws Error naming the option.
 double time_option(const std::string& name, const std::string& text);
+
+/// Exit code where code that came with a deck was not allowed.
+constexpr int kCodeNotAllowed = 3;
 
 // Each returns the exit code and throws Error for the user.
 int check(const RunOptions& options);

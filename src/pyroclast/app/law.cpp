@@ -28,7 +28,7 @@ const ContactMaterial& contact_of(const ConcreteMaterials& concrete, const std::
 
 /// A law that the command line states, with all its properties.
 ContactMaterial material_of_command(const LawOptions& options) {
-  const LawTable& law = find_law(options.law, {}, sources_of(options.sources));
+  const LawTable& law = find_law(options.law, {}, sources_of(options.sources), true);
   if (law.update(2)) say_aside(describe_own_laws());
   return stated_material(law, options.values);
 }
@@ -36,6 +36,7 @@ ContactMaterial material_of_command(const LawOptions& options) {
 LawPoint point_of_deck(const LawOptions& options) {
   const Deck deck = Deck::load(options.deck);
   const Setup setup = read_setup(deck, options.deck.parent_path(), {}, sources_of(options.sources));
+  require_code(setup);
   if (!setup.motion)
     throw Error(fmt::format("{}: is of heat conduction alone and has no contacts, so no contact law",
                             options.deck.string()));
@@ -69,7 +70,7 @@ int verify_laws(const VerifyOptions& options) {
   std::vector<const LawTable*> wanted;
   for (const std::string& name : options.laws)
     if (!name.empty())  // CLI11 before 2.2 hands an empty word to an option that was given none
-      wanted.push_back(&find_law(name, {}, sources_of(options.sources)));
+      wanted.push_back(&find_law(name, {}, sources_of(options.sources), true));
   say_aside(describe_own_laws());
   if (wanted.empty()) wanted.assign(built_in_laws().begin(), built_in_laws().end());
   bool passed = true;

@@ -19,8 +19,10 @@ constexpr int kManyBlocks = 20'000;
 
 }  // namespace
 
-Loaded load(const RunOptions& options) {
-  return {Deck::load(options.deck, options.changes), options.deck.parent_path(), choices_of(options)};
+Loaded load(const RunOptions& options, bool needs_code) {
+  RunChoices choices = choices_of(options);
+  choices.needs_code = needs_code;
+  return {Deck::load(options.deck, options.changes), options.deck.parent_path(), std::move(choices)};
 }
 
 RunChoices choices_of(const RunOptions& options) {
@@ -58,6 +60,8 @@ LawSources sources_of(const OwnLawOptions& options) {
   auto sources = LawSources::of_environment();
   sources.folders.insert(sources.folders.begin(), options.folders.begin(), options.folders.end());
   sources.may_compile = sources.may_compile && options.may_compile;
+  sources.permission.allow = options.allow_code;
+  sources.changes_name = !options.of_study;
   sources.compiler.tell = [](const std::string& command) {
     say_aside(fmt::format("compiling a law: {}\n", command));
   };

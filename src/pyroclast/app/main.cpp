@@ -15,6 +15,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/mechanics/instruction_set.hpp"
+#include "pyroclast/plugin/code_permission.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 #include "pyroclast/version.hpp"
 
@@ -107,6 +108,10 @@ void add_own_laws(CLI::App* command, app::OwnLawOptions& options) {
                    "Folders with contact laws, before those of PYROCLAST_LAW_PATH")
       ->take_all()
       ->allow_extra_args(false);
+  command->add_flag("--allow-code", options.allow_code,
+                    "Let code that the deck names run, now and until it changes; read it first");
+  command->add_flag("--of-study", options.of_study,
+                    "What --set says comes from the file of a study: code that it names needs your word");
   command->add_flag("!--no-compile", options.may_compile,
                     "Compile no contact law that a deck states as a header");
 }
@@ -272,6 +277,9 @@ int command_line(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return command_line(argc, argv);
+  } catch (const pyroclast::CodeNotAllowed& e) {
+    app::say_aside(fmt::format("error: {}\n", e.what()));
+    return app::kCodeNotAllowed;
   } catch (const pyroclast::Error& e) {
     app::say_aside(fmt::format("error: {}\n", e.what()));
   } catch (const std::bad_alloc&) {

@@ -102,6 +102,7 @@ void print(const std::vector<ReadCurve>& curves) {
 int plot_properties(const PropertiesOptions& options) {
   const Deck deck = Deck::load(options.deck);
   const Setup setup = read_setup(deck, options.deck.parent_path());
+  require_code(setup);
   std::string csv = "property,unit,temperature_degC,value,ratio_to_20_degC\n";
   for (const ReadCurve& property : properties_of(setup))
     csv += rows(property, drawn_range(property, setup.temperatures));

@@ -49,7 +49,8 @@ class Strings {
 };
 
 Strings arguments_of(const std::string& module, const std::vector<std::string>& words) {
-  std::vector<std::string> arguments{PYROCLAST_PYTHON, "-m", module};
+  std::vector<std::string> arguments{PYROCLAST_PYTHON, "-P", "-m",
+                                     module};  // -P: not from the current folder
   arguments.insert(arguments.end(), words.begin(), words.end());
   return Strings(std::move(arguments));
 }

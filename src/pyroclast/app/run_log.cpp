@@ -11,6 +11,8 @@
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 
+#include "pyroclast/base/shown.hpp"
+
 namespace pyroclast::app {
 
 namespace {
@@ -36,11 +38,11 @@ RunLog::RunLog(std::filesystem::path file, Speech speech, std::uint64_t kept)
 }
 
 void RunLog::say(const std::string& text) {
-  logger_->info("{}", text);
+  logger_->info("{}", shown(text, true));
 }
 
 void RunLog::say_now(const std::string& text) {
-  logger_->log(kProgress, "{:%H:%M:%S} {}", fmt::localtime(std::time(nullptr)), text);
+  logger_->log(kProgress, "{:%H:%M:%S} {}", fmt::localtime(std::time(nullptr)), shown(text));
 }
 
 void RunLog::keep_progress_off_screen(bool kept) {

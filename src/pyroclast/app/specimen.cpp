@@ -10,7 +10,7 @@ namespace pyroclast::app {
 int make_specimen(const RunOptions& asked) {
   RunOptions options = asked;
   if (options.out.empty()) options.out = output_folder(asked).string() + "-specimen";
-  const Loaded loaded = load(options);
+  const Loaded loaded = load(options, false);
   const Setup& setup = loaded.setup;
   const FolderLock lock(output_folder(options));
   RunFolder::check(output_folder(options), options.overwrite);

@@ -213,6 +213,8 @@ class Section {
 
   /// Where the key stands (or its table, if the key is absent), as "file:line"; "--set" where that stated it.
   std::string where(std::string_view key) const;
+  /// Whether the command line, or a script, states the key.
+  bool is_changed(std::string_view key) const;
   /// Full path of the table, such as "contacts.mortar_mortar"; empty for the root.
   std::string path() const;
 

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/shown.hpp"
+
 namespace pyroclast {
 namespace {
 
@@ -28,7 +30,7 @@ std::vector<Diagnostic> in_file_order(std::vector<Diagnostic> diagnostics) {
 }
 
 std::string to_string(const Diagnostic& diagnostic) {
-  std::string line = diagnostic.file;
+  std::string line = shown(diagnostic.file);
   if (diagnostic.line > 0 && !diagnostic.is_changed)
     line += fmt::format(":{}:{}", diagnostic.line, diagnostic.column);
   return line + ": " + without_place(diagnostic);
@@ -37,12 +39,12 @@ std::string to_string(const Diagnostic& diagnostic) {
 std::string without_place(const Diagnostic& diagnostic) {
   std::string line;
   if (!diagnostic.key.empty()) {
-    line += diagnostic.key;
-    if (!diagnostic.value.empty()) line += " = " + diagnostic.value;
+    line += shown_in_short(diagnostic.key);
+    if (!diagnostic.value.empty()) line += " = " + shown_in_short(diagnostic.value);
     line += ": ";
   }
-  line += diagnostic.message;
-  if (!diagnostic.hint.empty()) line += "; " + diagnostic.hint;
+  line += shown(diagnostic.message, true);
+  if (!diagnostic.hint.empty()) line += "; " + shown(diagnostic.hint, true);
   return line;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <string>
@@ -61,6 +62,9 @@ class DeckRecord {
   /// table; a table that is missing, too. Throws Error where that cannot be done.
   std::string with_value(std::string_view path, const std::string& value) const;
 
+  bool is_changed(const std::string& path) const {
+    return std::ranges::find(changed_, path) != changed_.end();
+  }
   void add_file(DeckFile file) { files_.push_back(std::move(file)); }
   const std::vector<DeckFile>& files() const { return files_; }
 

@@ -655,6 +655,10 @@ std::string Section::where(std::string_view key) const {
   return deck_->where(*table_, key, node ? *node : table_->table);
 }
 
+bool Section::is_changed(std::string_view key) const {
+  return table_ && deck_->is_changed(table_->path_of(key));
+}
+
 std::string Section::path() const {
   return table_ ? table_->path : "";
 }

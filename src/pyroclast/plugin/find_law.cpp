@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <regex>
 #include <string>
 #include <utility>
 
@@ -10,6 +11,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
+#include "pyroclast/base/shown.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/plugin/load.hpp"
 
@@ -43,7 +45,33 @@ const LawTable& with_own_name(const LoadedLaw& law) {
   return law.table;
 }
 
-const LawTable& law_of_header(const fs::path& header, std::string type, const LawSources& sources) {
+/// Whether a file lies in a folder that the user named.
+bool in_folders(const fs::path& file, const LawSources& sources) {
+  std::error_code ignored;
+  return std::ranges::any_of(sources.folders, [&](const fs::path& folder) {
+    return fs::equivalent(folder, file.has_parent_path() ? file.parent_path() : ".", ignored);
+  });
+}
+
+/// A type is a name: nothing else of a deck becomes source.
+void require_type(const fs::path& header, const std::string& type) {
+  static const std::regex kType("(::)?[A-Za-z_][A-Za-z0-9_]*(::[A-Za-z_][A-Za-z0-9_]*)*");
+  if (!std::regex_match(type, kType))
+    throw Error(fmt::format("{}: the type of a law is a name such as mine::Law, not \"{}\"", header.string(),
+                            shown_in_short(type)));
+}
+
+void require_code(const fs::path& file, const std::vector<fs::path>& all, const LawSources& sources,
+                  bool named) {
+  try {
+    sources.permission.require(file.string(), hash_of(all), named || in_folders(file, sources));
+  } catch (const CodeNotAllowed& error) {
+    throw CodeNotAllowed(error.what(), file);
+  }
+}
+
+const LawTable& law_of_header(const fs::path& header, std::string type, const LawSources& sources,
+                              bool named) {
   if (!fs::exists(header))
     throw Error(fmt::format("{}: there is no such header of a contact law", header.string()));
   if (!sources.may_compile)
@@ -56,13 +84,16 @@ const LawTable& law_of_header(const fs::path& header, std::string type, const La
     throw Error(fmt::format("{}: no folder for compiled laws: set PYROCLAST_CACHE", header.string()));
   std::string text = read_file(header);
   if (type.empty()) type = law_type(header, text);
+  require_type(header, type);
+  require_code(header, files_of_header(header), sources, named);
   return with_own_name(
       load_law(compile_law(header, type, sources.compiler), {fs::canonical(header), std::move(text)}));
 }
 
-const LawTable& law_of_object(const fs::path& file, const LawSources& sources) {
+const LawTable& law_of_object(const fs::path& file, const LawSources& sources, bool named) {
   if (!fs::exists(file))
     throw Error(fmt::format("{}: there is no such shared object of a contact law", file.string()));
+  require_code(file, {file}, sources, named);
   const LoadedLaw& law = load_law(file);
   if (const int dim = sources.compiler.dimension; !includes(law.dimensions, dim))
     throw Error(fmt::format("{}: the contact law \"{}\" is made for bodies in {}D, not in {}D", file.string(),
@@ -96,15 +127,17 @@ LawSources LawSources::of_environment() {
   sources.may_compile = refused.empty() || refused == "0";
   if (const auto compiler = variable("CXX"); !compiler.empty()) sources.compiler.program = compiler;
   sources.compiler.cache = cache_folder();
+  sources.permission = CodePermission::of_environment();
   return sources;
 }
 
-const LawTable& find_law(std::string_view stated, const fs::path& deck_folder, const LawSources& sources) {
+const LawTable& find_law(std::string_view stated, const fs::path& deck_folder, const LawSources& sources,
+                         bool named) {
   for (const LawTable* law : built_in_laws())
     if (law->name == stated) return *law;
   if (const auto [header, type] = header_and_type(stated); !header.empty())
-    return law_of_header(deck_folder / header, type, sources);
-  if (stated.ends_with(".so")) return law_of_object(deck_folder / stated, sources);
+    return law_of_header(deck_folder / header, type, sources, named);
+  if (stated.ends_with(".so")) return law_of_object(deck_folder / stated, sources, named);
 
   std::vector<std::string> searched, names;
   std::vector<fs::path> folders{deck_folder};
@@ -112,7 +145,7 @@ const LawTable& find_law(std::string_view stated, const fs::path& deck_folder, c
   if (stated.find('/') == std::string_view::npos && !stated.empty())
     for (const fs::path& folder : folders) {
       const fs::path file = folder / fmt::format("{}.so", stated);
-      if (fs::exists(file)) return law_of_object(file, sources);
+      if (fs::exists(file)) return law_of_object(file, sources, named);
       searched.push_back(folder.empty() ? "." : folder.string());
     }
   for (const LawTable* law : built_in_laws()) names.emplace_back(law->name);

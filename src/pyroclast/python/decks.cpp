@@ -19,13 +19,28 @@ namespace {
 std::string needed_unit(const DeckText& text, const std::string& key) {
   try {
     const Deck deck = parse(text);
-    read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text.laws));
+    read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text));
   } catch (const DeckError& error) {
     for (const Diagnostic& d : error.diagnostics())
       for (const Unit* unit : unit::all)
         if (d.key == key && d.message.find(requirement(*unit)) != std::string::npos) return unit->si;
   }
   return "";
+}
+
+/// Whether this process lets the code that it meets run from now on.
+bool allows_code = false;
+
+CodePermission code_permission() {
+  CodePermission permission = CodePermission::of_environment();
+  permission.allow = allows_code;
+  return permission;
+}
+
+CodeWords words_of(const std::string& text) {
+  if (text == "all") return CodeWords::all;
+  if (text == "changes") return CodeWords::changes;
+  return CodeWords::none;
 }
 
 /// Whether a text is a number with a unit of any quantity that decks hold.
@@ -61,6 +76,7 @@ Deck parse(const DeckText& text) {
 
 LawSources law_sources(const std::vector<std::string>& folders) {
   auto sources = LawSources::of_environment();
+  sources.permission = code_permission();
   sources.folders.insert(sources.folders.begin(), folders.begin(), folders.end());
   sources.compiler.poll = [] {
     const py::gil_scoped_acquire gil;
@@ -69,15 +85,35 @@ LawSources law_sources(const std::vector<std::string>& folders) {
   return sources;
 }
 
+LawSources law_sources(const DeckText& text) {
+  LawSources sources = law_sources(text.laws);
+  sources.deck_names = text.words == CodeWords::all;
+  sources.changes_name = text.words != CodeWords::none;
+  return sources;
+}
+
 void bind_decks(py::module_& m) {
   py::class_<DeckText>(m, "DeckText", "A deck as it is written, and what belongs to reading it.")
       .def(py::init([](std::string text, std::string name, std::string folder,
-                       std::vector<std::string> changes, std::vector<std::string> laws, py::list stages) {
-             return DeckText{std::move(text),    std::move(name), std::move(folder),
-                             std::move(changes), std::move(laws), std::move(stages)};
+                       std::vector<std::string> changes, std::vector<std::string> laws, py::list stages,
+                       const std::string& words) {
+             return DeckText{std::move(text), std::move(name),   std::move(folder), std::move(changes),
+                             std::move(laws), std::move(stages), words_of(words)};
            }),
            py::arg("text"), py::arg("name"), py::arg("folder"), py::arg("changes"), py::arg("laws"),
-           py::arg("stages"));
+           py::arg("stages"), py::arg("words"));
+  m.def(
+      "allow_code", [] { allows_code = true; },
+      "Lets code that decks and studies name run in this process; it stays allowed until it changes.");
+  m.def(
+      "require_code",
+      [](const std::string& what, const std::vector<std::string>& texts, bool named) {
+        std::string all;
+        for (const std::string& text : texts) all += sha256(text) + "\n";
+        code_permission().require(what, sha256(all), named);
+      },
+      py::arg("what"), py::arg("texts"), py::arg("named"),
+      "Returns where code, all its texts, may run; raises CodeNotAllowed elsewhere.");
   m.def(
       "written", [](const DeckText& text) { return parse(text).text(); }, py::arg("deck"),
       "The text of a deck with its changes in place.");
@@ -85,15 +121,19 @@ void bind_decks(py::module_& m) {
       "check",
       [](const DeckText& text) {
         const Deck deck = parse(text);
-        return diagnostics(
-            read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text.laws)).warnings);
+        Setup setup = read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text));
+        for (const std::string& code : setup.code_not_allowed)
+          setup.warnings.push_back(
+              {.file = deck.name(), .message = "keys of a law are not checked: " + code});
+        return diagnostics(setup.warnings);
       },
       py::arg("deck"), "Reads a deck; returns what it warns of.");
   m.def(
       "resolve",
       [](const DeckText& text) {
         const Deck deck = parse(text);
-        const Setup setup = read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text.laws));
+        const Setup setup = read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text));
+        require_code(setup);
         const Inputs inputs = inputs_of(deck, setup);
         py::dict files;
         for (const InputFile& file : inputs.files) files[py::str(file.name)] = sha256(file.contents);
@@ -112,7 +152,7 @@ void bind_decks(py::module_& m) {
       "ranges",
       [](const DeckText& text) {
         const Deck deck = parse(text);
-        const Setup setup = read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text.laws));
+        const Setup setup = read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text));
         return py::make_tuple(setup.temperatures.lower, setup.temperatures.upper, 0.0, setup.exposure);
       },
       py::arg("deck"), "Temperatures [degC] and heating times [s] that the run of a deck may come to.");

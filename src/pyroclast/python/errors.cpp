@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "pyroclast/deck/diagnostic.hpp"
+#include "pyroclast/plugin/code_permission.hpp"
 #include "pyroclast/python/bindings.hpp"
 
 namespace pyroclast::python {
@@ -31,6 +32,8 @@ void bind_errors(py::module_&) {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const DeckError& error) {
       raise("DeckError", diagnostics(error.diagnostics()));
+    } catch (const CodeNotAllowed& error) {
+      raise("CodeNotAllowed", py::str(error.what()));
     } catch (const Error& error) {
       raise("Error", py::str(error.what()));
     }

@@ -17,7 +17,7 @@ py::dict drive(const std::string& law, const std::string& folder, const std::vec
                const py::array_t<double, py::array::c_style | py::array::forcecast>& path, int steps) {
   if (path.ndim() != 2 || path.shape(1) != 3) throw Error("a path is an array of (points, 3)");
   if (steps < 1) throw Error("each leg of a path has at least one step");
-  LawPoint point(stated_material(find_law(law, folder, law_sources(sources)), values));
+  LawPoint point(stated_material(find_law(law, folder, law_sources(sources), true), values));
   const auto columns = point.columns();
   std::vector<std::vector<double>> rows;
   const auto points = path.unchecked<2>();
@@ -36,7 +36,7 @@ py::dict drive(const std::string& law, const std::string& folder, const std::vec
 py::list properties(const std::string& law, const std::string& folder,
                     const std::vector<std::string>& sources) {
   py::list all;
-  for (const PropertyInfo& info : find_law(law, folder, law_sources(sources)).properties)
+  for (const PropertyInfo& info : find_law(law, folder, law_sources(sources), true).properties)
     all.append(py::make_tuple(info.key, info.unit.si, info.meaning));
   return all;
 }
@@ -48,7 +48,7 @@ void bind_laws(py::module_& m) {
   m.def(
       "law_name",
       [](const std::string& law, const std::string& folder, const std::vector<std::string>& sources) {
-        return find_law(law, folder, law_sources(sources)).name;
+        return find_law(law, folder, law_sources(sources), true).name;
       },
       arg("law"), arg("folder"), arg("sources"),
       "Finds, loads or compiles a law; returns what it calls itself.");

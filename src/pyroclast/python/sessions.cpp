@@ -184,7 +184,8 @@ void bind_sessions(py::module_& m) {
           [](const DeckText& deck, std::optional<std::uint64_t> seed, int threads,
              const std::string& instructions, std::optional<double> checkpoint,
              const std::optional<std::string>& out, bool overwrite) {
-            const auto chosen = choices(seed, threads, instructions, checkpoint, deck.laws, deck.stages);
+            auto chosen = choices(seed, threads, instructions, checkpoint, deck.laws, deck.stages);
+            chosen.laws = law_sources(deck);
             return held([&] {
               return Session::begin({parse(deck), deck.folder, chosen}, output(out, overwrite));
             });

@@ -55,7 +55,7 @@ Specimen rectangle(double width, double height, int count, double shortest_edge,
 
 Specimen of_deck(const DeckText& text, const std::optional<std::uint64_t>& seed) {
   const Deck deck = parse(text);
-  Setup setup = read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text.laws));
+  Setup setup = read_setup(deck, text.folder, kinds_with(text.stages), law_sources(text));
   if (seed) setup.specimen.seed = *seed;
   const py::gil_scoped_release no_gil;
   return make_checked_specimen(setup.specimen);

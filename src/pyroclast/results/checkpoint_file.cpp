@@ -170,7 +170,8 @@ std::uint64_t write_checkpoint(const std::filesystem::path& path, const Checkpoi
   partial += ".partial";
   std::uint64_t bytes = 0;
   try {
-    File file(partial, O_WRONLY | O_CREAT | O_TRUNC);
+    std::filesystem::remove(partial);  // no link of that name is followed
+    File file(partial, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW);
     CheckpointWriter writer(file);
     visit(writer);
     bytes = writer.finish(info);

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/results/publish.hpp"
 
 namespace pyroclast {
 
@@ -53,7 +54,7 @@ void remove_if_empty(const std::vector<fs::path>& folders) {
 bool stands_for(const fs::path& name, int descriptor) {
   struct stat of_name {
   }, of_file{};
-  return stat(name.c_str(), &of_name) == 0 && fstat(descriptor, &of_file) == 0 &&
+  return lstat(name.c_str(), &of_name) == 0 && fstat(descriptor, &of_file) == 0 &&
          of_name.st_ino == of_file.st_ino && of_name.st_dev == of_file.st_dev;
 }
 
@@ -70,13 +71,19 @@ std::vector<fs::path> make_folders(const fs::path& path) {
 
 FolderLock::FolderLock(fs::path folder) : folder_(std::move(folder)), made_(make_folders(folder_)) {
   const fs::path file = folder_ / "lock";
+  struct stat there {};
+  if (lstat(file.c_str(), &there) == 0 && !S_ISREG(there.st_mode) && !S_ISLNK(there.st_mode))
+    throw Error(fmt::format("{}: is no regular file, and a run's lock is one", file.string()));
   do {
     if (descriptor_ >= 0) close(descriptor_);
-    descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    // Neither through a link to another file, nor into a pipe that nobody reads.
+    descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
     if (descriptor_ < 0) {
       const int cause = errno;
       remove_if_empty(made_);
-      throw Error(fmt::format("{}: cannot be written ({})", file.string(), std::strerror(cause)));
+      throw Error(cause == ELOOP
+                      ? is_a_link(file)
+                      : fmt::format("{}: cannot be written ({})", file.string(), std::strerror(cause)));
     }
     if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       const int cause = errno;
@@ -91,6 +98,13 @@ FolderLock::FolderLock(fs::path folder) : folder_(std::move(folder)), made_(make
               : fmt::format("{}: cannot be locked ({})", file.string(), std::strerror(cause)));
     }
   } while (!stands_for(file, descriptor_));
+  try {
+    require_no_links(folder_);
+  } catch (const Error&) {
+    fs::remove(file);
+    close(descriptor_);
+    throw;
+  }
   const std::string self = fmt::format("{}\n", getpid());
   if (ftruncate(descriptor_, 0) == 0) [[maybe_unused]]
     const auto told = pwrite(descriptor_, self.data(), self.size(), 0);

@@ -24,6 +24,24 @@ std::error_code sync(const std::filesystem::path& path) {
 
 }  // namespace
 
+std::string is_a_link(const std::filesystem::path& path) {
+  return fmt::format("{}: is a link, and nothing outside of a run's folder is written through it; remove it",
+                     path.string());
+}
+
+void require_no_links(const std::filesystem::path& run) {
+  std::error_code ignored;
+  for (const char* name : {"specimen", "fields", "figures", "checkpoints", "inputs", "history.csv", "run.log",
+                           "fields/frames.csv"})
+    if (std::filesystem::is_symlink(run / name, ignored)) throw Error(is_a_link(run / name));
+}
+
+int open_aside(const std::filesystem::path& partial) {
+  constexpr mode_t kMode = 0666;  // as far as the user's mask allows
+  unlink(partial.c_str());
+  return open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kMode);
+}
+
 void publish(const std::filesystem::path& partial, const std::filesystem::path& path) {
   std::error_code error = sync(partial);
   if (!error) std::filesystem::rename(partial, path, error);

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/results/publish.hpp"
@@ -22,15 +23,22 @@ void write_text_file(const std::filesystem::path& path, const std::string& text)
   std::filesystem::path partial = path;
   partial += ".partial";
   {
-    std::ofstream stream(partial, std::ios::binary);
-    stream << text << std::flush;
-    if (!stream) {
+    const int file = open_aside(partial);
+    std::size_t done = 0;
+    while (file >= 0 && done < text.size()) {
+      const ssize_t some = write(file, text.data() + done, text.size() - done);
+      if (some < 0 && errno != EINTR) break;
+      if (some > 0) done += static_cast<std::size_t>(some);
+    }
+    if (file < 0 || done < text.size()) {
       const int cause = errno;
+      if (file >= 0) close(file);
       std::error_code ignored;
       std::filesystem::remove(partial, ignored);
       errno = cause;
       fail(path);
     }
+    close(file);
   }
   publish(partial, path);
 }

@@ -28,6 +28,7 @@ Loaded::Loaded(Deck read, std::filesystem::path folder_of_deck, RunChoices chose
                                                 : instruction_set(choices.instructions)),
       setup(read_setup(deck, folder, choices.kinds, laws_for(instructions, choices.laws))),
       team(std::make_shared<Team>(usable_threads(choices.threads))) {
+  if (choices.needs_code) require_code(setup);
   for (const Diagnostic& warning : setup.warnings) warnings.push_back(to_string(warning));
   if (choices.threads > team->size())
     warnings.push_back(fmt::format(

@@ -23,6 +23,7 @@ struct RunChoices {
   std::optional<double> checkpoint;   ///< wall time between two checkpoints instead of the deck's, s
   StageRegistry kinds;
   LawSources laws = LawSources::of_environment();
+  bool needs_code = true;  ///< else what the deck names and may not run is in its setup
   /// Called before the specimen is made, which may take long.
   std::function<void(const Loaded&)> before_making = [](const Loaded&) {};
 };

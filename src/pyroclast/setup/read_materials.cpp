@@ -15,6 +15,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/material/thermal_strain.hpp"
+#include "pyroclast/plugin/code_permission.hpp"
 #include "pyroclast/plugin/load.hpp"
 
 namespace pyroclast {
@@ -334,9 +335,10 @@ std::vector<std::array<std::string, 2>> pair_in_name(const std::string& name,
 /// Of one interface: names that follow one another two and two.
 std::vector<std::array<std::string, 2>> read_between(const Section& s, const std::string& name,
                                                      const std::vector<std::string>& phases) {
-  const auto list = s.optional_texts("between",
-                            "the two phases whose blocks it joins, or several pairs in a row: a, b, c, d; "
-                            "without it those in its name, a_b");
+  const auto list =
+      s.optional_texts("between",
+                       "the two phases whose blocks it joins, or several pairs in a row: a, b, c, d; "
+                       "without it those in its name, a_b");
   if (!s.ok()) return {};
   if (!s.has("between")) {
     auto pair = pair_in_name(name, phases);
@@ -437,10 +439,14 @@ class InterfaceReader {
     const std::string stated =
         s.word_or_text("law", words, "a law of your own, see [laws.md](laws.md)", "contact law");
     try {
-      const LawTable& law = find_law_(stated);
+      const LawTable& law = find_law_(stated, s.is_changed("law"));
       for (const LoadedLaw* loaded : loaded_laws())
         if (&loaded->table == &law) name_file(s, *loaded, stated);
       return law;
+    } catch (const CodeNotAllowed& error) {
+      name_file(s, error.file(), stated);
+      s.leave_open();
+      return unknown_law();
     } catch (const Error& error) {
       s.error("law", error.what());
       s.leave_open();
@@ -448,15 +454,31 @@ class InterfaceReader {
     }
   }
 
+  /// Stands in for a law that may not run: no key is its own.
+  static const LawTable& unknown_law() {
+    static const LawTable law = [] {
+      LawTable table = *built_in_laws().front();
+      table.name = "unknown";
+      table.properties = {};
+      table.choices = {};
+      return table;
+    }();
+    return law;
+  }
+
   /// Of a law that is not part of the program: mine.so, or mine.hpp with or without ":Type".
   static void name_file(const Section& s, const LoadedLaw& law, const std::string& stated) {
-    if (law.header.file.empty()) {
-      s.names_file("law", law.shared_object);
-      return;
-    }
-    const std::string name = law.header.file.filename().string();
-    const auto end = stated.rfind(name) + name.size();
-    s.names_file("law", law.header.file, end < stated.size() ? stated.substr(end) : "");
+    name_file(s, law.header.file.empty() ? law.shared_object : law.header.file, stated);
+  }
+
+  static void name_file(const Section& s, const std::filesystem::path& file, const std::string& stated) {
+    const std::string name = file.filename().string();
+    const auto begin = stated.rfind(name);
+    const bool is_named = begin != std::string::npos;  // "mine" stands for mine.so
+    s.names_file("law", file, is_named ? stated.substr(begin + name.size()) : "");
+    if (file.extension() == ".so") return;
+    for (const std::filesystem::path& included : files_of_header(file))
+      if (included != std::filesystem::canonical(file)) s.needs_file(included);
   }
 
   const Section& shared_;

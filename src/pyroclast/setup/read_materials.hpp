@@ -42,8 +42,9 @@ std::vector<SolidMaterial> read_solids(const Section& root, const std::vector<st
 std::vector<SolidMaterial> read_conducting_solids(const Section& root, const std::vector<std::string>& phases,
                                                   CurveReader& curves);
 
-/// Finds the contact law that a deck names. Throws Error when there is none.
-using LawFinder = std::function<const LawTable&(const std::string& name)>;
+/// Finds the contact law that a deck names. Throws CodeNotAllowed where it may not run, and Error when there
+/// is none. \param named  the command line states it
+using LawFinder = std::function<const LawTable&(const std::string& name, bool named)>;
 
 /// Reads [contacts]. A property that is a plain constant follows the `temperature_ratio` of its interface.
 /// \param matrix       phase whose own interface there must be

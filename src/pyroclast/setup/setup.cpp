@@ -337,7 +337,7 @@ void read_moving(const Section& root, const std::vector<ReadBearing>& bearings, 
   for (const ReadBearing& read : bearings) motion.contacts.bearings.push_back(read.interface);
   setup.motion->mechanics =
       read_mechanics(root.section("mechanics", "how the body moves; see [method.md](method.md#motion)"));
-  check_contacts(root, setup);
+  if (setup.code_not_allowed.empty()) check_contacts(root, setup);
 }
 
 /// The same where only heat moves.
@@ -380,7 +380,15 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   if (read.any_moves)
     read_moving(
         root, bearings, curves,
-        [&](const std::string& name) -> const LawTable& { return find_law(name, folder, laws); }, setup);
+        [&](const std::string& name, bool named) -> const LawTable& {
+          try {
+            return find_law(name, folder, laws, laws.deck_names || (named && laws.changes_name));
+          } catch (const CodeNotAllowed& error) {
+            setup.code_not_allowed.emplace_back(error.what());
+            throw;
+          }
+        },
+        setup);
   else
     read_resting(root, curves, setup);
   setup.records = records;
@@ -404,6 +412,11 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   deck.finish();
   setup.warnings = deck.warnings();
   return setup;
+}
+
+void require_code(const Setup& setup) {
+  if (!setup.code_not_allowed.empty())
+    throw CodeNotAllowed(fmt::format("{}", fmt::join(setup.code_not_allowed, "\n")));
 }
 
 DeckSchema deck_schema(const StageRegistry& kinds) {

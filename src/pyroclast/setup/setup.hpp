@@ -41,6 +41,9 @@ struct Setup {
   std::vector<std::unique_ptr<Stage>> stages;
   std::vector<std::string> stage_names;
   CheckpointChoice checkpoints;
+  /// Code that the user did not allow, an explanation each: then the keys of contacts with it were not
+  /// checked, and the body cannot be made. See require_code.
+  std::vector<std::string> code_not_allowed;
   bool has_fields = true;            ///< whether frames of the fields are written
   std::vector<Diagnostic> warnings;  ///< of the deck: what is allowed, but most likely not meant
 };
@@ -51,6 +54,9 @@ struct Setup {
 /// Throws DeckError with every error of the deck.
 Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const StageRegistry& kinds = {},
                  const LawSources& laws = LawSources::of_environment());
+
+/// Throws CodeNotAllowed where the deck names code that may not run.
+void require_code(const Setup& setup);
 
 /// Everything that `read_setup` asks of a deck.
 DeckSchema deck_schema(const StageRegistry& kinds = {});

@@ -8,7 +8,6 @@ import os
 import select
 import socket
 import subprocess
-import sys
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -16,6 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...errors import Error
+from ..start import python
 from ..store import CRASHED, DONE, NO_VALUE, TIMED_OUT, Result
 from ..work import MOST_IN_VAIN, Attempt, Job, die_with_parent
 
@@ -81,7 +81,7 @@ class _Server:
     """A process that calls the function of a study, point by point."""
 
     def __init__(self, place: str):
-        self.process = subprocess.Popen([sys.executable, "-m", "pyroclast.study.call", place], bufsize=0,
+        self.process = subprocess.Popen(python("pyroclast.study.call", place), bufsize=0,
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True,
                                         preexec_fn=die_with_parent(os.getpid()))
         self.job: Job | None = None

@@ -15,7 +15,6 @@ import re
 import shlex
 import statistics
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, field
@@ -23,6 +22,7 @@ from pathlib import Path
 
 from ...errors import Error
 from ..file import Slurm as Settings
+from ..start import python
 from ..store import Result, read_record
 from ..work import BEGUN, Job, given_up, is_of_full_disk, kept, made
 
@@ -344,8 +344,7 @@ class _Queue:
         seconds = round(settings.time)
         warning = min(_WARNING, round(_SHARE_OF_WARNING * seconds))
         package = Path(__file__).parents[3]  # not resolved: in a build tree the compiled part stands beside links
-        worker = [sys.executable, "-m", "pyroclast.study.worker", str(self._book.jobs_file(array)), str(self._runs),
-                  str(array.count)]
+        worker = python("pyroclast.study.worker", str(self._book.jobs_file(array)), str(self._runs), str(array.count))
         script = (f"#!/bin/sh\nexport PYTHONPATH={shlex.quote(str(package))}${{PYTHONPATH:+:$PYTHONPATH}}\n"
                   f"exec {shlex.join(worker)}\n")
         tasks = len(array.open)

@@ -1,0 +1,211 @@
+#include "pyroclast/plugin/code_permission.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "pyroclast/base/read_file.hpp"
+#include "pyroclast/base/sha256.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostFiles = 1000;  // that a header includes
+
+std::string variable(const char* name) {
+  const char* const value = std::getenv(name);
+  return value ? value : "";
+}
+
+CodePolicy policy_of(const std::string& word) {
+  if (word.empty() || word == "ask") return CodePolicy::ask;
+  if (word == "never") return CodePolicy::never;
+  if (word == "always") return CodePolicy::always;
+  throw Error(fmt::format("PYROCLAST_CODE = \"{}\": must be \"never\", \"ask\" or \"always\"", word));
+}
+
+fs::path list_file() {
+  if (const auto config = variable("XDG_CONFIG_HOME"); !config.empty())
+    return fs::path(config) / "pyroclast" / "allowed-code";
+  if (const auto home = variable("HOME"); !home.empty())
+    return fs::path(home) / ".config" / "pyroclast" / "allowed-code";
+  return {};
+}
+
+/// Whether a list of the user alone has the hash.
+bool is_listed(const fs::path& list, const std::string& hash) {
+  struct stat is {};
+  if (list.empty() || stat(list.c_str(), &is) != 0) return false;
+  if (is.st_uid != geteuid() || (is.st_mode & (S_IWGRP | S_IWOTH)) != 0)
+    throw Error(
+        fmt::format("{}: others than you may write it, so what it allows is not trusted; it must be "
+                    "yours, with mode 0600",
+                    list.string()));
+  std::istringstream lines(read_file(list));
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(fmt::format("{} ", hash))) return true;
+  return false;
+}
+
+void add_to_list(const fs::path& list, const std::string& hash, const std::string& what) {
+  std::error_code ignored;
+  fs::create_directories(list.parent_path(), ignored);
+  std::string shown = what;
+  std::ranges::replace_if(
+      shown, [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
+  const std::time_t now = std::time(nullptr);
+  char date[sizeof "2000-01-01"];
+  std::strftime(date, sizeof date, "%F", std::localtime(&now));
+  const std::string line = fmt::format("{} {} {}\n", hash, date, shown);
+  const int file =
+      open(list.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  const bool written =
+      file >= 0 && write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+  const int cause = errno;
+  if (file >= 0) close(file);
+  if (!written)
+    throw Error(fmt::format("{}: that code is allowed cannot be kept there ({})", list.string(),
+                            std::strerror(cause)));
+}
+
+/// Lines as the preprocessor sees them: spliced, and without comments.
+std::vector<std::string> logical_lines(const std::string& text) {
+  std::string spliced;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::size_t end = text[i] == '\\' && text.compare(i + 1, 1, "\r") == 0 ? i + 2 : i + 1;
+    if (text[i] == '\\' && text.compare(end, 1, "\n") == 0)
+      i = end;
+    else
+      spliced += text[i];
+  }
+  std::vector<std::string> lines(1);
+  for (std::size_t i = 0; i < spliced.size();) {
+    const auto take_to = [&](std::size_t end) {
+      lines.back() += spliced.substr(i, end - i);
+      i = std::min(end, spliced.size());
+    };
+    if (spliced.compare(i, 2, "//") == 0) {
+      i = std::min(spliced.find('\n', i), spliced.size());
+    } else if (spliced.compare(i, 2, "/*") == 0) {
+      const auto end = spliced.find("*/", i + 2);
+      i = end == std::string::npos ? spliced.size() : end + 2;
+      lines.back() += ' ';
+    } else if (spliced.compare(i, 2, "R\"") == 0 && spliced.find('(', i) != std::string::npos) {
+      const auto open = spliced.find('(', i);
+      const auto close = spliced.find(fmt::format("){}\"", spliced.substr(i + 2, open - i - 2)), open);
+      i = close == std::string::npos ? spliced.size() : close + 1 + (open - i - 2) + 1;
+      lines.back() += "\"\"";
+    } else if (spliced[i] == '"' || spliced[i] == '\'') {
+      std::size_t end = i + 1;
+      while (end < spliced.size() && spliced[end] != spliced[i] && spliced[end] != '\n')
+        end += spliced[end] == '\\' ? 2 : 1;
+      take_to(end + 1);
+    } else if (spliced[i] == '\n') {
+      lines.emplace_back();
+      ++i;
+    } else {
+      take_to(i + 1);
+    }
+  }
+  return lines;
+}
+
+/// What stands behind the word of a line that takes in another file; empty for other lines.
+std::string included_by(const std::string& line) {
+  std::string_view rest = line;
+  const auto skip = [&] {
+    while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.front())) != 0)
+      rest.remove_prefix(1);
+  };
+  skip();
+  for (const std::string_view sign : {"#", "%:", "?\?="})
+    if (rest.starts_with(sign)) {
+      rest.remove_prefix(sign.size());
+      skip();
+      for (const std::string_view word : {"include_next", "include", "import", "embed"})
+        if (rest.starts_with(word)) {
+          rest.remove_prefix(word.size());
+          skip();
+          return std::string(rest);
+        }
+      return {};
+    }
+  return {};
+}
+
+/// The header, and the files that it includes in quotes where they lie beside it, each once.
+void add_files(const fs::path& header, std::vector<fs::path>& files) {
+  if (std::ranges::find(files, header) != files.end()) return;
+  if (files.size() >= kMostFiles)
+    throw Error(fmt::format("{}: includes more than {} files", files.front().string(), kMostFiles));
+  files.push_back(header);
+  for (const std::string& line : logical_lines(read_file(header))) {
+    const std::string included = included_by(line);
+    if (included.empty() || included[0] == '<') continue;
+    const auto end = included.find('"', 1);
+    if (included[0] != '"' || end == std::string::npos)
+      throw Error(
+          fmt::format("{}: includes a file by a macro, so which code it is is not known; name the file",
+                      header.string()));
+    const fs::path file = header.parent_path() / included.substr(1, end - 1);
+    if (fs::exists(file)) add_files(fs::canonical(file), files);
+  }
+}
+
+}  // namespace
+
+CodePermission CodePermission::of_environment() {
+  return {policy_of(variable("PYROCLAST_CODE")), false, list_file()};
+}
+
+void CodePermission::require(const std::string& what, const std::string& hash, bool named) const {
+  if (policy == CodePolicy::always) return;
+  if (policy == CodePolicy::never) {
+    if (named) return;
+    throw CodeNotAllowed(fmt::format(
+        "{}: is code that came with a file, and PYROCLAST_CODE = \"never\" lets none of it run", what));
+  }
+  if (is_listed(list, hash)) return;
+  if (allow) {
+    if (list.empty()) throw Error("--allow-code: there is no folder to keep it in; set XDG_CONFIG_HOME");
+    add_to_list(list, hash, what);
+    return;
+  }
+  if (!named)
+    throw CodeNotAllowed(fmt::format(
+        "{}: is code, and runs only after your word: read it, then say --allow-code once. Until it "
+        "changes it is known by its hash, {:.12}",
+        what, hash));
+  try {
+    if (!list.empty()) add_to_list(list, hash, what);
+  } catch (const Error&) {  // a home that cannot be written: it is asked for when it is not named
+  }
+}
+
+std::vector<fs::path> files_of_header(const fs::path& header) {
+  std::vector<fs::path> files;
+  add_files(fs::canonical(header), files);
+  return files;
+}
+
+std::string hash_of(const std::vector<fs::path>& files) {
+  std::string all;
+  for (const fs::path& file : files) all += fmt::format("{}\n", sha256(read_file(file)));
+  return sha256(all);
+}
+
+}  // namespace pyroclast

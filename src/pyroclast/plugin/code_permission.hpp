@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast {
+
+/// Code that came with a deck or a study and that the user did not allow.
+class CodeNotAllowed : public Error {
+ public:
+  explicit CodeNotAllowed(const std::string& message, std::filesystem::path file = {})
+      : Error(message), file_(std::move(file)) {}
+
+  /// That holds the code; empty where there is none.
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  std::filesystem::path file_;
+};
+
+/// Whose word counts: `never` runs nothing but what the command line names, `ask` what was allowed once too,
+/// `always` everything.
+enum class CodePolicy : std::uint8_t { never, ask, always };
+
+/// What a user said of code that comes with files: contact laws, functions and commands of studies. It is
+/// known by its hash, whatever its file is called and wherever it lies.
+struct CodePermission {
+  CodePolicy policy = CodePolicy::ask;
+  bool allow = false;          ///< what is met now is allowed from now on (--allow-code)
+  std::filesystem::path list;  ///< of the hashes that were allowed; empty where there is no place for it
+
+  /// As the environment says: PYROCLAST_CODE (never, ask or always), XDG_CONFIG_HOME or HOME (for the list).
+  /// Throws Error for another word.
+  static CodePermission of_environment();
+
+  /// Returns where the code may run. Throws CodeNotAllowed where it may not, and Error where others may write
+  /// the list, or it cannot be written.
+  /// \param what   names the code, for messages and in the list
+  /// \param hash   SHA-256 of all that runs
+  /// \param named  the command line, or a script, names it: then it is allowed from now on
+  void require(const std::string& what, const std::string& hash, bool named = false) const;
+};
+
+/// A header, and all that it includes in quotes from beside it, and so on. Throws Error where a file cannot
+/// be read, or is included by a macro, so that it is not known.
+std::vector<std::filesystem::path> files_of_header(const std::filesystem::path& header);
+
+/// SHA-256 of files, whatever they are called.
+std::string hash_of(const std::vector<std::filesystem::path>& files);
+
+}  // namespace pyroclast
