@@ -49,5 +49,25 @@ TEST(TomlCharacters, OutsideOfAsciiStandInStringsAndComments) {
     EXPECT_TRUE(character_fault(bad)) << bad;
 }
 
+TEST(TomlCharacters, KeysAreNoDeeperThanTheParserBears) {
+  const auto key = [](int parts) {
+    std::string text = "a";
+    for (int i = 1; i < parts; ++i) text += ".a";
+    return text;
+  };
+  EXPECT_FALSE(character_fault(key(256) + " = 1\n" + key(256) + ".b = 1\n"));
+  std::string many = "x = [";
+  for (int i = 0; i < 1000; ++i) many += "1.5, ";
+  EXPECT_FALSE(character_fault(many + "]\ny = \"" + key(1000) + "\" # " + key(1000) + "\n"));
+  for (const std::string& deep :
+       {key(50000) + " = 1", "[" + key(50000) + "]", "[[" + key(300) + "]]", "x = { " + key(300) + " = 1 }",
+        "[" + key(200) + "]\n" + key(100) + " = 1", key(200) + " = { " + key(100) + " = 1 }"}) {
+    const auto fault = character_fault("# first\n" + deep + "\n");
+    ASSERT_TRUE(fault) << deep.substr(0, 20);
+    EXPECT_GE(fault->at.line, 2);
+    EXPECT_NE(std::string(fault->what).find("256"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace pyroclast

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -206,6 +207,9 @@ bool DeckRecord::is_clean(std::string_view path) const {
 std::vector<Diagnostic> DeckRecord::diagnostics() const {
   std::vector<Diagnostic> result = diagnostics_;
   for (const TableRecord* table : tables_as_read_) append_unread(*table, result);
+  // What several readers miss is one error.
+  std::set<std::string> said;
+  std::erase_if(result, [&](const Diagnostic& d) { return !said.insert(to_string(d)).second; });
   return result;
 }
 

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <string>
+#include <vector>
 
 namespace pyroclast {
 namespace {
+
+constexpr int kMostDepth = 256;  // as toml++ allows for brackets; parts of keys take its stack unchecked
 
 /// Bytes of the character that a text begins with; 0 if that is not UTF-8 (Unicode 15.0, table 3-7).
 std::size_t utf8_length(std::string_view text) {
@@ -44,6 +48,12 @@ class Scanner {
     if (in_comment_ && c != '\n') return length;
     in_comment_ = false;
     return quote_ != '\0' ? pass_in_string(rest, length) : pass_outside(rest, length);
+  }
+
+  /// Levels at which what stands next lies.
+  int depth() const {
+    return std::accumulate(parts_above_.begin(), parts_above_.end(),
+                           header_parts_ + parts_ + static_cast<int>(open_.size()));
   }
 
  private:
@@ -85,16 +95,31 @@ class Scanner {
 
   void follow_structure(char c) {
     const bool value = is_value();
+    if (!value && c == '.') ++parts_;
     if (c == '\n' && open_.empty()) {
-      behind_equals_ = has_begun_ = false;
+      if (is_header_) header_parts_ = parts_;
+      behind_equals_ = has_begun_ = is_header_ = false;
+      parts_ = 0;
     } else if (c == ',' || (!value && (c == '=' || c == '.'))) {
       behind_equals_ = c == '=';
       has_begun_ = false;
+      if (c == ',') parts_ = 0;
     } else if ((c == '[' || c == '{') && !(value && has_begun_)) {
-      if (value) open_ += c;
+      if (value) {
+        open_ += c;
+        parts_above_.push_back(parts_);
+        parts_ = 0;
+      } else {
+        is_header_ = true;
+        header_parts_ = 0;
+      }
       behind_equals_ = has_begun_ = false;
     } else if (c == ']' || c == '}') {
-      if (!open_.empty()) open_.pop_back();
+      if (!open_.empty()) {
+        open_.pop_back();
+        parts_ = parts_above_.back();
+        parts_above_.pop_back();
+      }
       behind_equals_ = has_begun_ = true;
     } else if (!is_blank(c)) {
       has_begun_ = true;
@@ -107,6 +132,10 @@ class Scanner {
   bool escaped_ = false;           ///< the next character follows a backslash ...
   bool behind_backslash_ = false;  ///< ... or blanks that do
   std::string open_;               ///< brackets of arrays and inline tables
+  std::vector<int> parts_above_;   ///< of the key before each of these
+  int parts_ = 0;                  ///< of the key at hand, behind its first
+  int header_parts_ = 0;           ///< of the table that it is in
+  bool is_header_ = false;         ///< whether this line names a table
   bool behind_equals_ = false;
   bool has_begun_ = false;  ///< the key, a part of it, or the value
 };
@@ -127,6 +156,8 @@ std::optional<CharacterFault> character_fault(std::string_view text) {
     if (length > 1 && !scanner.may_be_foreign())
       return CharacterFault{at, "a character outside of ASCII stands here; it needs quotes around it"};
     const std::size_t passed = scanner.pass(rest, length);
+    if (rest.front() == '.' && scanner.depth() > kMostDepth)
+      return CharacterFault{at, "keys and tables lie deeper in one another here than 256 levels"};
     const int characters = length > 1 ? 1 : static_cast<int>(passed);
     at = rest.front() == '\n' ? SourcePosition{at.line + 1, 1}
                               : SourcePosition{at.line, at.column + characters};

@@ -49,7 +49,7 @@ std::optional<StressFree> read_stress_free(const Section& s, const std::filesyst
              "from there, and the hottest that was so far is no less; without it 20 °C");
   if (!s.is_table("stress_free"))
     return StressFree{{}, {s.quantity("stress_free", unit::temperature, range, "")}};
-  const Section frame = s.section("stress_free");
+  const Section frame = s.section("stress_free", "temperature of each gridpoint, as another run left it");
   const std::string name =
       frame.text("frame",
                  "file `blocks_<k>.hdf` of the fields of another run, with the `mesh.h5` beside it: "
