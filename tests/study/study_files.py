@@ -11,6 +11,7 @@ from pyroclast.study.study import Study
 
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 PROGRAM = os.environ["PYROCLAST"]
+os.environ["PYROCLAST_CODE"] = "always"  # tests/app/test_code.py tries the others
 
 MODEL = '''
 import json, math, os, pathlib, sys, time
@@ -26,6 +27,9 @@ def main(x, seed, folder, mode="plain"):
         file.write(f"{x} {seed}\\n")
     if mode == "crash":
         print("error: the mortar is missing\\nwith mortar: the same again", file=sys.stderr)
+        sys.exit(3)
+    if mode == "formula":
+        print('error: =HYPERLINK("x")', file=sys.stderr)
         sys.exit(3)
     if mode == "full" and not (folder.parent.parent / "room").exists():
         print("error: history.csv: cannot be written (No space left on device)\\nto go on: make room", file=sys.stderr)

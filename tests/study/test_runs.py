@@ -17,6 +17,7 @@ import unittest.mock
 
 from pyroclast.errors import Error
 from pyroclast.study import work
+from pyroclast.study.driver import _cell, _text
 from pyroclast.study.executors.local import Local
 from pyroclast.study.outputs import Output
 from pyroclast.study.store import DONE, Result, Store, write_record
@@ -51,6 +52,38 @@ class States(StudyTest):
         self.assertEqual(row["state"], "crashed")
         self.assertIn("exit code 3: the mortar is missing", row["reason"])
         self.assertIsNone(row["z"])
+
+    def test_no_cell_of_the_table_is_a_formula(self) -> None:
+        made = self.study(self.of_command("formula"))
+        self.assertTrue(made.run(jobs=2))
+        self.assertIn('exit code 3: =HYPERLINK("x")', made.rows()[0]["reason"])
+        reasons = ["=1+1", "+1", "-1", "@x", "plain"]
+        self.assertEqual([_cell(text) for text in reasons], ["'=1+1", "'+1", "'-1", "'@x", "plain"])
+        self.assertEqual([_text(_cell(text)) for text in reasons], reasons)
+        self.assertEqual(_cell(-1.5), -1.5)
+
+    def test_a_word_of_a_command_stays_one_whatever_is_put_into_it(self) -> None:
+        file = self.folder / "words.toml"
+        file.write_text(f"""[study]
+seeds = 1
+runner = "command"
+command = "{sys.executable} words.py {{kind}} {{folder}}"
+[parameters.kind]
+choice = ["fine sand", "a; touch gone", "$(touch gone)"]
+[method]
+kind = "grid"
+[outputs]
+z = "z"
+""")
+        (self.folder / "words.py").write_text("import json, sys\nkind, folder = sys.argv[1:]\n"
+                                              "open(folder + '/summary.json', 'w').write(json.dumps({'z': len(kind)}))\n")
+        study = Study(file)
+        here = os.getcwd()
+        os.chdir(self.folder)
+        self.addCleanup(os.chdir, here)
+        self.assertTrue(study.run(jobs=1))
+        self.assertEqual([row["z"] for row in study.rows()], [9.0, 13.0, 13.0])
+        self.assertFalse((self.folder / "gone").exists())
 
     def test_timed_out(self) -> None:
         row = self.one("slow", 'wall_limit = "0.5 s"')

@@ -32,6 +32,7 @@ from .work import Job, made
 _LEAST_CHECKPOINT = 1.0  # s
 _SHARE_OF_CHECKPOINTS = 0.02  # of the expected time of a run
 _PROGRESS = 1.0  # s between two lines of progress
+_BEGINS_FORMULA = ("=", "+", "-", "@", "\t", "\r")  # in a cell of a spreadsheet
 
 
 @dataclass(frozen=True)
@@ -190,7 +191,7 @@ class Driver:
         with open(aside, "w", newline="", encoding="utf-8") as text:
             writer = csv.DictWriter(text, list(rows[0]) if rows else ["run"], lineterminator="\n")
             writer.writeheader()
-            writer.writerows(rows)
+            writer.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
         aside.rename(file)
         return file
 
@@ -333,13 +334,23 @@ class _Progress:
         self._say(f"{self._done} of {self._total} runs{failed}" + (f", about {duration(left)} left" if left else ""))
 
 
+def _cell(value: Any) -> Any:
+    """What no spreadsheet takes for a formula: a text that would be one stands behind an apostrophe."""
+    return f"'{value}" if isinstance(value, str) and value.startswith(_BEGINS_FORMULA) else value
+
+
+def _text(cell: str) -> str:
+    """What `_cell` made a cell of."""
+    return cell[1:] if cell.startswith("'") and cell[1:].startswith(_BEGINS_FORMULA) else cell
+
+
 def _result_of(row: dict[str, str], outputs: Sequence[Output]) -> Result:
     found: dict[str, tuple[float | None, str]] = {}
     for output in outputs:
         if output.name in row:
-            found[output.what] = (float(row[output.name]), "") if row[output.name] else (None, row["reason"])
+            found[output.what] = (float(row[output.name]), "") if row[output.name] else (None, _text(row["reason"]))
     version = row.get("physics_version") or "0"
-    return Result(row["run"], int(row["seed"]), row["state"], row["reason"], found, {}, row["host"],
+    return Result(row["run"], int(row["seed"]), row["state"], _text(row["reason"]), found, {}, row["host"],
                   wall=float(row["wall_s"] or 0.0), version=int(version))
 
 
