@@ -652,7 +652,11 @@ Verdict Drive::judge(Simulation& simulation) {
   largest_pair_ = std::max(largest_pair_, std::abs(pair_force_));
   const double now = time(simulation);
   for (std::size_t i = 0; i < keys_.until.size(); ++i)
-    if (is_met(i, simulation)) verdict.over = true;
+    if (is_met(i, simulation)) {
+      verdict.over = true;
+      if (keys_.until[i].kind == Until::Kind::share_of_peak)
+        for (RecordPeak& peak : record_peaks_) peak.end();
+    }
   last_look_ = now;
   // What acts is that of the middle of the last steps, so a ramp may end before all of it acts.
   const double acted =

@@ -23,6 +23,11 @@ class Peak {
   /// before \param size    what is measured; where it is not above 0 there is no peak
   void take(double driven, double size, const PeakRule& rule);
 
+  /// The body has failed, as another quantity shows, and is driven no farther: what has fallen has its peak.
+  void end() {
+    if (has_fallen()) is_found_ = 1;
+  }
+
   bool is_found() const { return is_found_ != 0; }
   /// The largest size before the peak was found: the peak where it was found, else what may become it.
   double size() const { return size_; }

@@ -43,6 +43,9 @@ class RecordPeak {
   /// \param values   of all records, SI
   void take(std::size_t of, double driven, bool counts, double time, const std::vector<double>& values);
 
+  /// See Peak::end.
+  void end() { peak_.end(); }
+
   const Peak& peak() const { return peak_; }
   double time() const { return time_; }                          ///< of the peak, s
   const std::vector<double>& values() const { return values_; }  ///< of all records at the peak, SI
