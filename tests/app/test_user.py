@@ -267,6 +267,23 @@ class LedgerOfARing(UserTest):
         self.assertEqual([slow["of_ledger"], slow["of_exchanges"]], [False, True])
 
 
+class Memory(UserTest):
+    def peak(self, *words) -> float:
+        """MB of a command, whatever comes of it."""
+        with subprocess.Popen([PROGRAM, *map(str, words)], cwd=self.folder, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL) as process:
+            _, _, used = os.wait4(process.pid, 0)
+            process.returncode = 0
+        return used.ru_maxrss * 1024e-6
+
+    def test_check_foretells_what_a_run_takes(self):
+        words = (CASES / "starter.toml", "--set", "blocks.count=10000", "--set", "stages[0].most_steps=50", "-t", 1)
+        check = self.pyroclast("check", *words)
+        foretold = float(re.search(r"(\d+) MB of memory", check.stdout)[1])
+        taken = self.peak("run", *words, "--out", "out", "--no-figures", "--quiet")
+        self.assertLess(abs(foretold / taken - 1.0), 0.15, (foretold, taken))
+
+
 class StressFreeFieldOfARun(UserTest):
     """A bar between fixed ends that was put together while it was hot on its left and is at 20 degC now."""
 

@@ -9,6 +9,7 @@
 #include "pyroclast/app/load.hpp"
 #include "pyroclast/app/progress.hpp"
 #include "pyroclast/base/shown.hpp"
+#include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/simulation/run.hpp"
 #include "pyroclast/thermal/time_stages.hpp"
 
@@ -189,6 +190,7 @@ int check(const RunOptions& options) {
   print_strength(setup);
   const Forecast expected = forecast(setup.stages, *simulation, setup.temperatures);
   Run run(*simulation, std::move(setup.stages));
+  if (setup.has_fields) rehearse_mesh(model);
   const double seconds = seconds_of_run(expected, setup.temperatures.upper, *simulation, run);
   fmt::print("run             {} stages", run.stages().size());
   if (expected.steps > 0.0) fmt::print(", about {:.2g} steps", expected.steps);

@@ -120,6 +120,13 @@ void write_mesh(const std::filesystem::path& folder, const Model<2>& model) {
   file.close();
 }
 
+void rehearse_mesh(const Model<2>& model) {
+  Hdf5File file("");
+  write_blocks(file, model);
+  write_contacts(file, model);
+  file.close();
+}
+
 FrameSeries::FrameSeries(std::filesystem::path folder, MeshPart part, std::vector<double> times)
     : folder_(std::move(folder)), part_(part), times_(std::move(times)) {
   for (int later = count(); std::filesystem::remove(folder_ / file_name(part_, later)); ++later) continue;

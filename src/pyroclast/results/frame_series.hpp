@@ -17,6 +17,8 @@ enum class MeshPart : std::uint8_t { blocks, contacts };
 /// Writes `mesh.h5`, which holds blocks and contacts once for all frames: zones as triangles with block and
 /// material, contact points as lines to the middle of their face with interface and length.
 void write_mesh(const std::filesystem::path& folder, const Model<2>& model);
+/// Takes the memory that this takes, and writes nothing: a run needs most there.
+void rehearse_mesh(const Model<2>& model);
 
 /// Frames of a part of the mesh as VTKHDF files, which ParaView and VTK read: each frame k is a file
 /// `blocks_<k>.hdf` or `contacts_<k>.hdf` that links to `mesh.h5` beside it, and `blocks.hdf.series` or

@@ -49,7 +49,7 @@ Hdf5File::Hdf5File(std::filesystem::path path) : path_(std::move(path)) {
   constexpr std::size_t kGrowth = std::size_t{1} << 20;
   const Properties access(H5P_FILE_ACCESS);
   H5Pset_fapl_core(access, kGrowth, false);
-  file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, Untimed(H5P_FILE_CREATE), access);
+  file_ = H5Fcreate(path_.empty() ? "nowhere" : path_.c_str(), H5F_ACC_TRUNC, Untimed(H5P_FILE_CREATE), access);
   if (file_ < 0) fail("cannot be created");
 }
 
@@ -145,7 +145,7 @@ void Hdf5File::close() {
   if (bytes <= 0 || H5Fget_file_image(file_, image.data(), image.size()) != bytes) fail("cannot be made");
   H5Fclose(file_);
   file_ = -1;
-  write_text_file(path_, image);
+  if (!path_.empty()) write_text_file(path_, image);
 }
 
 }  // namespace pyroclast

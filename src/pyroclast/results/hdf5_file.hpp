@@ -11,6 +11,7 @@ namespace pyroclast {
 /// never meets a half-written one. Every failure (a full disk, say) is an Error that names the file.
 class Hdf5File {
  public:
+  /// \param path  empty: it is made, and goes nowhere
   explicit Hdf5File(std::filesystem::path path);
   ~Hdf5File();
   Hdf5File(const Hdf5File&) = delete;
