@@ -261,6 +261,26 @@ TEST(Drive, APeakIsWhereTheBodyFailsWhileItIsDrivenOn) {
   EXPECT_FALSE(only_back.result(0, "peak_grip_N").has_value());
 }
 
+// Promise: a result in a unit whose nothing is elsewhere is one in that unit.
+TEST(Drive, ResultsOfTemperatureAreInTheirUnit) {
+  const Finished run(free_deck(
+      kUniform + kCorner + kRecords +
+      drive("duration = \"1 ms\"", kHeld + result("f", "kind = \"given\"\nvalue = \"68 degF\"") +
+                                       result("k", "kind = \"given\"\nvalue = \"293.15 K\"") +
+                                       result("g", "kind = \"formula\"\nformula = \"f\"\nunit = \"degF\""))));
+  EXPECT_NEAR(run.result(0, "f_degF").value(), 68.0, 1e-9);
+  EXPECT_NEAR(run.result(0, "k_K").value(), 293.15, 1e-9);
+  EXPECT_NEAR(run.result(0, "g_degF").value(), 68.0, 1e-9);
+}
+
+TEST(Drive, ARecordWithTheNameOfAnotherColumnIsRefused) {
+  EXPECT_NE(message(free_deck(kUniform + kCorner +
+                              "[[record]]\nname = \"temperature\"\nkind = \"temperature\"\nset = \"left\"\n" +
+                              drive("duration = \"1 ms\"", kHeld)))
+                .find("two columns \"temperature_degC\""),
+            std::string::npos);
+}
+
 TEST(Drive, ResultsThatCannotBeMadeAreRefused) {
   const auto refused = [](const std::string& results) {
     return message(free_deck(kUniform + kCorner + kRecords + drive("duration = \"1 ms\"", kHeld + results)));
@@ -273,6 +293,8 @@ TEST(Drive, ResultsThatCannotBeMadeAreRefused) {
   says(refused(result("f", "kind = \"formula\"\nformula = \"2 * pp\"")),
        "\"pp\" is not known; names are thickness, weight");
   says(refused(result("q", "kind = \"given\"\nvalue = \"3 mol\"")), "of none of the kinds");
+  says(refused(result("peak_grip", "kind = \"last\"\nrecord = \"grip\"")),
+       "\"peak_grip_N\" is a result that every stage with this record has");
   says(refused(result("weight", "kind = \"given\"\nvalue = \"3 kN\"")), "is known to formulas already");
   says(refused(result("2a", "kind = \"given\"\nvalue = \"3 kN\"")), "must begin with a letter");
 }

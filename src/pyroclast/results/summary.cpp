@@ -79,17 +79,23 @@ std::optional<double> last_of(const History& history, const char* column) {
   return last_of(history, column, history.row_count());
 }
 
+/// Energy that was put in, in all ways that there are, after the first rows, J.
+double turned_over(const History& history, std::size_t rows) {
+  double sum = 0.0;
+  for (const char* column : kPutIn) sum += std::abs(last_of(history, column, rows).value_or(0.0));
+  return sum;
+}
+
 /// Error of the energy ledger over the energy turned over, after the first rows; none where nothing moves, or
 /// nothing was turned over.
 std::optional<double> energy_error(const History& history, std::size_t rows) {
   const auto error = last_of(history, "energy_error_J", rows);
   if (!error) return std::nullopt;
-  double turnover = 0.0;
-  for (const char* column : kPutIn) turnover += std::abs(last_of(history, column, rows).value_or(0.0));
+  const double turnover = turned_over(history, rows);
   return turnover > 0.0 ? *error / turnover : 0.0;
 }
 
-/// The same over what contacts dissipated; none where they dissipated nothing, or the error is rounding.
+/// The same over what contacts dissipated; none where that is nothing, or rounding.
 std::optional<double> error_over_dissipated(const History& history, const Simulation& simulation) {
   const auto of_turnover = energy_error(history, history.row_count());
   if (!of_turnover || !simulation.moves()) return std::nullopt;
@@ -100,7 +106,7 @@ std::optional<double> error_over_dissipated(const History& history, const Simula
   double dissipated = 0.0;
   for (const std::string& name : names)
     dissipated += last_of(history, fmt::format("dissipated_{}_J", name).c_str()).value_or(0.0);
-  if (!(dissipated > 0.0)) return std::nullopt;
+  if (!(dissipated > kRounding * turned_over(history, history.row_count()))) return std::nullopt;
   return std::abs(*of_turnover) > kRounding ? *last_of(history, "energy_error_J") / dissipated : 0.0;
 }
 
@@ -123,10 +129,12 @@ OrderedJson json_of(const std::optional<double>& value) {
 std::optional<double> heat_error(const History& history) {
   const auto error = last_of(history, "heat_error_J");
   if (!error) return std::nullopt;
+  // Over the whole run: what flowed in may have flowed out again.
   double largest = 0.0;
   for (const Entry& entry : kHeat)
     if (entry.name != std::string("error"))
-      largest = std::max(largest, std::abs(last_of(history, entry.column).value_or(0.0)));
+      for (std::size_t row = 0; row < history.row_count(); ++row)
+        largest = std::max(largest, std::abs(history.cell(row, entry.column).value_or(0.0)));
   return largest > 0.0 ? std::abs(*error) / largest : 0.0;
 }
 

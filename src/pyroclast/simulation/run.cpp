@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -46,6 +48,7 @@ Run::Run(Simulation& simulation, std::vector<std::unique_ptr<Stage>> stages)
   add(record_gauges(simulation));
   add(transport_gauges(simulation));
   add(probe_gauges(simulation));
+  require_own_columns();
   name_columns();
 }
 
@@ -60,6 +63,21 @@ void Run::name_columns() {
     if (i == gauges_.size()) break;
     for (const Column& column : gauges_[i].columns) history_.add_column(column);
   }
+}
+
+/// Throws Error where two would write into one column: a record or a probe with the name of another quantity.
+void Run::require_own_columns() const {
+  std::set<std::string> names;
+  for (const Column& column : row_columns()) names.insert(column.name);
+  for (const auto& stage : stages_)
+    for (const Column& column : stage->columns()) names.insert(column.name);
+  for (const Gauge& gauge : gauges_)
+    for (const Column& column : gauge.columns)
+      if (!names.insert(column.name).second)
+        throw Error(
+            fmt::format("history.csv would have two columns \"{}\": a [[record]] or a probe has the name of "
+                        "another quantity; give it another one",
+                        column.name));
 }
 
 /// Of the stages from this one on. Where platens hold the body, they do.

@@ -104,6 +104,7 @@ class Run {
   void add_row();
   void end_stage(const Verdict& verdict);
   void name_columns();
+  void require_own_columns() const;
 
   Simulation& simulation_;
   std::vector<std::unique_ptr<Stage>> stages_;

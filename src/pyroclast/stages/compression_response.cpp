@@ -308,12 +308,14 @@ StageReport compression_report(const CompressionCurve& curve, const CompressionA
           fmt::format(", where the curve is steepest: it begins with a toe, up to strain {:.5f}", r.toe);
     if (r.strength) report.lines.push_back(line_of("eps_ic", r.inelastic_strain, 1.0, 5, ""));
   }
-  report.lines.push_back(inertia.to_peak ? "quasi-static up to the peak" : "NOT quasi-static up to the peak");
+  if (r.strength)
+    report.lines.push_back(inertia.to_peak ? "quasi-static up to the peak"
+                                           : "NOT quasi-static up to the peak");
   if (!r.bore)
     report.warnings.push_back("no f_c and no E: " + r.strength.none_because);
   else if (!r.strength && !aim.to_a_value)
     report.warnings.push_back("no f_c: " + r.strength.none_because);
-  if (!inertia.to_peak && r.bore)
+  if (!inertia.to_peak && r.strength)
     report.warnings.push_back(fmt::format(
         "not quasi-static up to the peak: kinetic over elastic energy up to {:.1e}, "
         "platen stresses differ by up to {:.1f} % of f_c; load more slowly or take a shorter time step",

@@ -223,6 +223,11 @@ std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
     const auto is_force = [](const Drive::Action& a) { return a.kind == ActionKind::force; };
     if (s.ok() && std::ranges::none_of(keys.actions, is_force))
       own->error("needs a force among the drives of the stage, which it multiplies");
+    for (const Section& drive : s.sections("drives"))
+      for (const char* key : {"ramp_time", "factor"})
+        if (drive.has("force") && drive.has(key))
+          drive.error(key,
+                      "has no effect on a force that [stages.control] multiplies: the opening says how fast");
   }
   if (s.has("unbalanced_ratio"))
     keys.unbalanced_ratio =
@@ -518,16 +523,34 @@ void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads
   pair_force_ = control.stiffness * (first_opening_ + control.rate * time - opening);
   const double step = static_cast<double>(kStepsPerControl) * simulation.mechanics().time_step();
   // what bears the load now bears the pair beside it
-  largest_with_pair_ =
-      std::max(largest_with_pair_, std::abs(load_factor_) * unit_force() + std::abs(pair_force_));
+  largest_with_pair_ = std::max(largest_with_pair_, total_load(load_factor_) + std::abs(pair_force_));
   load_factor_ += pair_force_ / unit_force() * step / control.response_time;
   largest_factor_ = std::max(largest_factor_, std::abs(load_factor_));
+  largest_load_ = std::max(largest_load_, total_load(load_factor_));
   const RecordParameters& of = record.parameters();
   loads[of.other] = {.force = pair_force_ * of.direction};
   loads[of.set] = {.force = -pair_force_ * of.direction};
 }
 
-/// All forces of the stage at a factor of 1, N.
+/// What the loaded sets bear together at a factor of the controlled forces, with what was there before: the
+/// most in any of their directions, N. Sets that are pulled apart bear it once.
+double Drive::total_load(double factor) const {
+  std::map<std::string, Vec<2>> forces;
+  for (const Action& action : keys_.actions)
+    if (action.kind == ActionKind::force) forces.try_emplace(action.set, first_load(action.set).force);
+  for (const Action& action : keys_.actions)
+    if (action.kind == ActionKind::force) forces[action.set] += (factor * action.amount) * action.direction;
+  double most = 0.0;
+  for (const auto& [set, along] : forces) {
+    if (!(norm(along) > 0.0)) continue;
+    double sum = 0.0;
+    for (const auto& [other, force] : forces) sum += std::max(0.0, dot(force, along) / norm(along));
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
+/// All forces of the stage at a factor of 1, N: by it the pair's force is handed over to them.
 double Drive::unit_force() const {
   double sum = 0.0;
   for (const Action& action : keys_.actions)
@@ -742,7 +765,7 @@ StageReport Drive::report(const History& history, RowRange rows, Outcome outcome
 /// \param work  of the stage's loads, J
 void Drive::add_control(StageReport& report, double work) const {
   const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
-  const double peak = largest_factor_ * unit_force();
+  const double peak = largest_load_;
   const double of_peak = std::max(0.0, share(largest_with_pair_, peak) - 1.0);
   const double of_work = share(std::abs(pair_work_), std::abs(work));
   report.results.push_back({"largest_load_factor", largest_factor_});
@@ -783,6 +806,7 @@ void Drive::visit_state(StateVisitor& visitor) {
   visitor.visit("pair_force", pair_force_);
   visitor.visit("largest_pair", largest_pair_);
   visitor.visit("largest_factor", largest_factor_);
+  visitor.visit("largest_load", largest_load_);
   visitor.visit("largest_with_pair", largest_with_pair_);
   visitor.visit("pair_work", pair_work_);
   visitor.visit("last_opening", last_opening_);

@@ -99,6 +99,7 @@ class Drive : public Stage {
   double came(std::size_t action, const ChangedLoads& loads, double interval) const;
   void steer(const Simulation& simulation, double time, ChangedLoads& loads);
   double unit_force() const;
+  double total_load(double factor) const;
   std::int64_t steps_per_adjustment() const;
   void act(Simulation& simulation, double time);
   void take_peaks(const Simulation& simulation);
@@ -131,6 +132,7 @@ class Drive : public Stage {
   double load_factor_ = 0.0, pair_force_ = 0.0;       ///< of the control; N, opening it
   double largest_pair_ = 0.0, largest_factor_ = 0.0;  ///< at looks
   double largest_with_pair_ = 0.0;                    ///< of the loads and the pair beside them, N
+  double largest_load_ = 0.0;                         ///< of the loads alone, N
   double pair_work_ = 0.0;                            ///< J
   double first_work_ = 0.0;                           ///< of loads, when the stage began, J
   double most_kinetic_ = 0.0;                         ///< energy, while peaks do not count yet, J

@@ -96,7 +96,10 @@ RecordResult read_result(const Section& s, const std::vector<RecordParameters>& 
   }
   if (r.kind == Kind::peak || r.kind == Kind::largest || r.kind == Kind::last || r.kind == Kind::at_peak)
     r.unit = column_of(r.record).unit;
-  if (s.ok() && r.unit != "1") r.unit_size = read_any(s, "unit", fmt::format("1 {}", r.unit));
+  if (s.ok() && r.unit != "1") {
+    r.unit_zero = read_any(s, "unit", fmt::format("0 {}", r.unit));
+    r.unit_size = read_any(s, "unit", fmt::format("1 {}", r.unit)) - r.unit_zero;
+  }
   return r;
 }
 
@@ -225,11 +228,22 @@ void BodyFigures::visit_state(StateVisitor& visitor) {
 std::vector<RecordResult> read_record_results(const Section& stage,
                                               const std::vector<RecordParameters>& records) {
   std::vector<RecordResult> results;
+  std::vector<std::string> automatic;
+  for (const RecordParameters& record : records)
+    for (const char* kind : {"peak", "largest"}) {
+      automatic.push_back(fmt::format("{}_{}", kind, column_of(record).name));
+      automatic.push_back(fmt::format("{}_{}_time_s", kind, record.name));
+    }
   Values known = values_of({1.0, 1.0});
   for (const Section& s : stage.optional_sections(
            "results",
            "numbers that the stage makes of its records, and of results before them; any number")) {
     RecordResult result = read_result(s, records, known);
+    const std::string in_summary = name_with_unit(result.name, result.unit);
+    if (s.ok() && std::ranges::find(automatic, in_summary) != automatic.end())
+      s.error("name",
+              fmt::format("\"{}\" is a result that every stage with this record has: choose another name",
+                          in_summary));
     if (s.ok() && !is_name_in_formulas(result.name))
       s.error("name", "must begin with a letter, and hold letters, digits and _ only");
     else if (s.ok() && !known.emplace(result.name, 1.0).second)
@@ -262,7 +276,7 @@ std::vector<Result> record_results(const std::vector<RecordParameters>& records,
     const auto value = value_of(each, records, peaks, known, history, rows);
     if (value) known[each.name] = *value;
     results.push_back({name_with_unit(each.name, each.unit),
-                       value ? Result::Value(*value / each.unit_size) : Result::Value()});
+                       value ? Result::Value((*value - each.unit_zero) / each.unit_size) : Result::Value()});
   }
   return results;
 }

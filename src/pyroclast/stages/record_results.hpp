@@ -30,8 +30,8 @@ struct RecordResult {
   RecordParameters record{}, other{};  ///< of which it is; over which, or at whose peak
   double value = 0.0;                  ///< given, SI
   std::string formula = "";
-  std::string unit = "1";  ///< in which it is told
-  double unit_size = 1.0;  ///< of that unit, SI
+  std::string unit = "1";                   ///< in which it is told
+  double unit_zero = 0.0, unit_size = 1.0;  ///< nothing, and one, of that unit, SI
 };
 
 /// The peak of the size of a record while a stage drives the body on, and its largest size.
