@@ -28,6 +28,7 @@ from pyroclast.study.store import CRASHED, DONE, Result, opened, read_record
 from pyroclast.study.work import Job, made
 
 PROGRAM = os.environ.get("PYROCLAST", "")
+os.environ["PYROCLAST_CODE"] = "always"  # tests/app/test_code.py tries the others
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 
 MODEL = '''
