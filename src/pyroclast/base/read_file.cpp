@@ -9,11 +9,18 @@
 
 namespace pyroclast {
 
-std::string read_file(const std::filesystem::path& file) {
-  // Others never end, or wait for ever.
+void require_regular_file(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored))
     throw Error(fmt::format("{}: is no regular file", file.string()));
+}
+
+std::string read_file(const std::filesystem::path& file) {
+  require_regular_file(file);
+  return read_named_file(file);
+}
+
+std::string read_named_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (!stream) throw Error(fmt::format("{}: cannot be read", file.string()));

@@ -20,7 +20,7 @@ std::string text_of(const std::filesystem::path& file) {
   if (!std::filesystem::exists(status)) fail("no such file");
   if (std::filesystem::is_directory(status)) fail("is a directory; a deck is a TOML file");
   try {
-    return read_file(file);
+    return read_named_file(file);
   } catch (const Error&) {
     fail("cannot be read");
   }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/read_file.hpp"
 
 namespace pyroclast {
 namespace {
@@ -86,6 +87,7 @@ class TableReader {
 
 Curve read_curve_csv(const std::filesystem::path& path, const CurveAxis& axis,
                      const UnitConversion& convert_abscissa, const UnitConversion& convert_value) {
+  require_regular_file(path);
   std::ifstream file(path);
   if (!file) throw Error(fmt::format("cannot open the table file {}", path.string()));
   return read_curve_csv(file, path, axis, convert_abscissa, convert_value);

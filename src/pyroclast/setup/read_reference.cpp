@@ -13,6 +13,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/nearest.hpp"
+#include "pyroclast/base/read_file.hpp"
 
 namespace pyroclast {
 
@@ -97,6 +98,7 @@ void check_row(const Cells& row, std::size_t columns) {
 
 /// Throws Error naming file and line.
 void check_csv(const std::filesystem::path& path, const DrawnTables& drawn) {
+  require_regular_file(path);
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path))
     throw Error(fmt::format("cannot open the file {}", path.string()));

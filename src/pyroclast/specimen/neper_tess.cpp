@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/read_file.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/region.hpp"
@@ -295,6 +296,7 @@ Tessellation cells_of(const File& file, const Vec<2>& size) {
 }
 
 std::ifstream opened(const std::filesystem::path& file) {
+  require_regular_file(file);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw Error(fmt::format("Cannot open the tessellation file {}.", file.string()));
   return stream;
