@@ -340,7 +340,7 @@ class Deck:
             with_files and self._specimen) else []
         changes = [f"{path}={value}" for path, value in (*self._changes, *files, *more)]
         return _core.DeckText(self._text, self._name, self._folder, changes, self._laws, self._stages,
-                              "all" if self._is_own else "changes")
+                              self._is_own, True)
 
     def _diagnostics(self) -> list[Diagnostic]:
         try:

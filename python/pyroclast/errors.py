@@ -40,8 +40,3 @@ class DeckError(Error):
 
     def __reduce__(self) -> tuple[type[DeckError], tuple[list[Diagnostic]]]:
         return DeckError, (self.diagnostics,)
-
-
-def escaped(text: str) -> str:
-    """A text from elsewhere as a terminal may show it: what acts on one is written out, but for line breaks."""
-    return "".join(c if c.isprintable() or c in "\n\t" else ascii(c)[1:-1] for c in text)

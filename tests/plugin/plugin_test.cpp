@@ -349,7 +349,7 @@ class CodeOfADeck : public LawInAHeader {
     try {
       find_law(stated, folder_, sources_, named);
     } catch (const CodeNotAllowed& error) {
-      EXPECT_EQ(error.file(), folder_ / "mine.hpp");
+      EXPECT_EQ(error.code(), folder_ / "mine.hpp");
       return true;
     }
     return false;
@@ -387,7 +387,8 @@ TEST_F(CodeOfADeck, AListThatOthersMayWriteIsNotTrusted) {
 TEST_F(CodeOfADeck, WhatCannotBeKnownIsRefused) {
   for (const char* const line :
        {"#include MACRO\n", "# /* */ include MACRO\n", "%:include MACRO\n", "#inc\\\nlude MACRO\n",
-        "const char* s = R\"(/*)\";\n#include MACRO\n//*/\n"}) {
+        "const char* s = R\"(/*)\";\n#include MACRO\n//*/\n",
+        "#define FOOR\nconst char* s = FOOR\"(\";\n#include MACRO\nconst char* t = \")\";\n"}) {
     write("mine.hpp", line + small());
     EXPECT_TRUE(says(refusal_of("mine.hpp"), {"by a macro"})) << line;
   }

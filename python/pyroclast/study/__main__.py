@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from .. import _core
-from ..errors import CodeNotAllowed, Error, escaped
+from ..errors import CodeNotAllowed, Error
 from .driver import duration
 from .executors.commands import Commands
 from .file import KEEP, reference
@@ -37,10 +37,10 @@ def main(words: list[str]) -> int:
             _core.allow_code()
         return int(options.do(options) or 0)
     except CodeNotAllowed as error:
-        print(f"error: {escaped(str(error))}", file=sys.stderr)
+        print(f"error: {_core.shown(str(error))}", file=sys.stderr)
         return 3
     except Error as error:
-        print(f"error: {escaped(str(error))}", file=sys.stderr)
+        print(f"error: {_core.shown(str(error))}", file=sys.stderr)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as error:

@@ -80,7 +80,7 @@ class Points:
     def _deck_text(self, values: Sequence[Value]) -> _core.DeckText:
         changes = [f"{path}={value}" for path, value in self.changes(values)]
         deck = self._study.runner.deck
-        return _core.DeckText(self._text, str(deck), str(deck.parent), changes, [], [], "none")
+        return _core.DeckText(self._text, str(deck), str(deck.parent), changes, [], [], False, False)
 
     def changes(self, values: Sequence[Value]) -> list[tuple[str, str]]:
         """Keys of the deck and what a point writes there, as `--set` takes them."""
@@ -130,7 +130,7 @@ class Points:
     def _tables(self) -> Mapping[str, Any]:
         """The deck as it stands, with the changes that all points have."""
         changes = [f"{path}={value}" for path, value in self._common]
-        return tomllib.loads(_core.written(_core.DeckText(self._text, str(self._study.runner.deck), "", changes, [], [], "none")))
+        return tomllib.loads(_core.written(_core.DeckText(self._text, str(self._study.runner.deck), "", changes, [], [], False, False)))
 
     @property
     def middle(self) -> list[Value]:

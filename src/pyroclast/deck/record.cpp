@@ -263,12 +263,11 @@ Diagnostic DeckRecord::at_value(const std::string& path, const toml::node& node,
 }
 
 Diagnostic DeckRecord::locate(const std::string& path, const toml::source_region& region) const {
-  const bool is_changed = std::ranges::find(changed_, path) != changed_.end();
   const SourcePosition at = position(region.begin);
-  return {.file = is_changed ? "--set" : name_,
+  return {.file = is_changed(path) ? "--set" : name_,
           .line = at.line,
           .column = at.column,
-          .is_changed = is_changed,
+          .is_changed = is_changed(path),
           .key = path};
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <sstream>
@@ -15,8 +14,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "pyroclast/base/environment.hpp"
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/sha256.hpp"
+#include "pyroclast/base/shown.hpp"
 
 namespace pyroclast {
 
@@ -26,11 +27,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostFiles = 1000;  // that a header includes
 
-std::string variable(const char* name) {
-  const char* const value = std::getenv(name);
-  return value ? value : "";
-}
-
 CodePolicy policy_of(const std::string& word) {
   if (word.empty() || word == "ask") return CodePolicy::ask;
   if (word == "never") return CodePolicy::never;
@@ -39,9 +35,9 @@ CodePolicy policy_of(const std::string& word) {
 }
 
 fs::path list_file() {
-  if (const auto config = variable("XDG_CONFIG_HOME"); !config.empty())
+  if (const auto config = environment("XDG_CONFIG_HOME"); !config.empty())
     return fs::path(config) / "pyroclast" / "allowed-code";
-  if (const auto home = variable("HOME"); !home.empty())
+  if (const auto home = environment("HOME"); !home.empty())
     return fs::path(home) / ".config" / "pyroclast" / "allowed-code";
   return {};
 }
@@ -64,13 +60,10 @@ bool is_listed(const fs::path& list, const std::string& hash) {
 void add_to_list(const fs::path& list, const std::string& hash, const std::string& what) {
   std::error_code ignored;
   fs::create_directories(list.parent_path(), ignored);
-  std::string shown = what;
-  std::ranges::replace_if(
-      shown, [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
   const std::time_t now = std::time(nullptr);
   char date[sizeof "2000-01-01"];
   std::strftime(date, sizeof date, "%F", std::localtime(&now));
-  const std::string line = fmt::format("{} {} {}\n", hash, date, shown);
+  const std::string line = fmt::format("{} {} {}\n", hash, date, shown(what));
   const int file =
       open(list.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
   const bool written =
@@ -80,6 +73,17 @@ void add_to_list(const fs::path& list, const std::string& hash, const std::strin
   if (!written)
     throw Error(fmt::format("{}: that code is allowed cannot be kept there ({})", list.string(),
                             std::strerror(cause)));
+}
+
+/// Whether a raw string begins at an R: one that no other name ends with.
+bool begins_raw_string(const std::string& text, std::size_t r) {
+  if (text.compare(r, 2, "R\"") != 0 || text.find('(', r) == std::string::npos) return false;
+  std::size_t begin = r;
+  while (begin > 0 &&
+         (std::isalnum(static_cast<unsigned char>(text[begin - 1])) != 0 || text[begin - 1] == '_'))
+    --begin;
+  const std::string prefix = text.substr(begin, r - begin);
+  return prefix.empty() || prefix == "u8" || prefix == "u" || prefix == "U" || prefix == "L";
 }
 
 /// Lines as the preprocessor sees them: spliced, and without comments.
@@ -104,7 +108,7 @@ std::vector<std::string> logical_lines(const std::string& text) {
       const auto end = spliced.find("*/", i + 2);
       i = end == std::string::npos ? spliced.size() : end + 2;
       lines.back() += ' ';
-    } else if (spliced.compare(i, 2, "R\"") == 0 && spliced.find('(', i) != std::string::npos) {
+    } else if (begins_raw_string(spliced, i)) {
       const auto open = spliced.find('(', i);
       const auto close = spliced.find(fmt::format("){}\"", spliced.substr(i + 2, open - i - 2)), open);
       i = close == std::string::npos ? spliced.size() : close + 1 + (open - i - 2) + 1;
@@ -169,15 +173,17 @@ void add_files(const fs::path& header, std::vector<fs::path>& files) {
 }  // namespace
 
 CodePermission CodePermission::of_environment() {
-  return {policy_of(variable("PYROCLAST_CODE")), false, list_file()};
+  return {policy_of(environment("PYROCLAST_CODE")), false, list_file()};
 }
 
 void CodePermission::require(const std::string& what, const std::string& hash, bool named) const {
   if (policy == CodePolicy::always) return;
   if (policy == CodePolicy::never) {
     if (named) return;
-    throw CodeNotAllowed(fmt::format(
-        "{}: is code that came with a file, and PYROCLAST_CODE = \"never\" lets none of it run", what));
+    throw CodeNotAllowed(
+        fmt::format("{}: is code that came with a file, and PYROCLAST_CODE = \"never\" lets none of it run",
+                    what),
+        what);
   }
   if (is_listed(list, hash)) return;
   if (allow) {
@@ -186,10 +192,12 @@ void CodePermission::require(const std::string& what, const std::string& hash, b
     return;
   }
   if (!named)
-    throw CodeNotAllowed(fmt::format(
-        "{}: is code, and runs only after your word: read it, then say --allow-code once. Until it "
-        "changes it is known by its hash, {:.12}",
-        what, hash));
+    throw CodeNotAllowed(
+        fmt::format(
+            "{}: is code, and runs only after your word: read it, then say --allow-code once. Until it "
+            "changes it is known by its hash, {:.12}",
+            what, hash),
+        what);
   try {
     if (!list.empty()) add_to_list(list, hash, what);
   } catch (const Error&) {  // a home that cannot be written: it is asked for when it is not named
@@ -202,9 +210,15 @@ std::vector<fs::path> files_of_header(const fs::path& header) {
   return files;
 }
 
-std::string hash_of(const std::vector<fs::path>& files) {
+std::string hash_of_files(const std::vector<fs::path>& files) {
+  std::vector<std::string> texts;
+  for (const fs::path& file : files) texts.push_back(read_file(file));
+  return hash_of_texts(texts);
+}
+
+std::string hash_of_texts(const std::vector<std::string>& texts) {
   std::string all;
-  for (const fs::path& file : files) all += fmt::format("{}\n", sha256(read_file(file)));
+  for (const std::string& text : texts) all += fmt::format("{}\n", sha256(text));
   return sha256(all);
 }
 

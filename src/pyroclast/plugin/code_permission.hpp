@@ -13,14 +13,13 @@ namespace pyroclast {
 /// Code that came with a deck or a study and that the user did not allow.
 class CodeNotAllowed : public Error {
  public:
-  explicit CodeNotAllowed(const std::string& message, std::filesystem::path file = {})
-      : Error(message), file_(std::move(file)) {}
+  CodeNotAllowed(const std::string& message, std::string code) : Error(message), code_(std::move(code)) {}
 
-  /// That holds the code; empty where there is none.
-  const std::filesystem::path& file() const { return file_; }
+  /// What names the code, see CodePermission::require: of a law its file.
+  const std::string& code() const { return code_; }
 
  private:
-  std::filesystem::path file_;
+  std::string code_;
 };
 
 /// Whose word counts: `never` runs nothing but what the command line names, `ask` what was allowed once too,
@@ -50,7 +49,8 @@ struct CodePermission {
 /// be read, or is included by a macro, so that it is not known.
 std::vector<std::filesystem::path> files_of_header(const std::filesystem::path& header);
 
-/// SHA-256 of files, whatever they are called.
-std::string hash_of(const std::vector<std::filesystem::path>& files);
+/// SHA-256 of code in several texts, or files, whatever these are called.
+std::string hash_of_texts(const std::vector<std::string>& texts);
+std::string hash_of_files(const std::vector<std::filesystem::path>& files);
 
 }  // namespace pyroclast

@@ -1,7 +1,6 @@
 #include "pyroclast/plugin/find_law.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <regex>
 #include <string>
 #include <utility>
@@ -9,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pyroclast/base/environment.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/shown.hpp"
@@ -21,16 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string variable(const char* name) {
-  const char* const value = std::getenv(name);
-  return value ? value : "";
-}
-
 fs::path cache_folder() {
-  if (const auto own = variable("PYROCLAST_CACHE"); !own.empty()) return fs::path(own) / "laws";
-  if (const auto shared = variable("XDG_CACHE_HOME"); !shared.empty())
+  if (const auto own = environment("PYROCLAST_CACHE"); !own.empty()) return fs::path(own) / "laws";
+  if (const auto shared = environment("XDG_CACHE_HOME"); !shared.empty())
     return fs::path(shared) / "pyroclast" / "laws";
-  if (const auto home = variable("HOME"); !home.empty())
+  if (const auto home = environment("HOME"); !home.empty())
     return fs::path(home) / ".cache" / "pyroclast" / "laws";
   return {};
 }
@@ -63,11 +58,7 @@ void require_type(const fs::path& header, const std::string& type) {
 
 void require_code(const fs::path& file, const std::vector<fs::path>& all, const LawSources& sources,
                   bool named) {
-  try {
-    sources.permission.require(file.string(), hash_of(all), named || in_folders(file, sources));
-  } catch (const CodeNotAllowed& error) {
-    throw CodeNotAllowed(error.what(), file);
-  }
+  sources.permission.require(file.string(), hash_of_files(all), named || in_folders(file, sources));
 }
 
 const LawTable& law_of_header(const fs::path& header, std::string type, const LawSources& sources,
@@ -117,15 +108,15 @@ std::pair<std::string, std::string> header_and_type(std::string_view stated) {
 
 LawSources LawSources::of_environment() {
   LawSources sources;
-  const std::string path = variable("PYROCLAST_LAW_PATH");
+  const std::string path = environment("PYROCLAST_LAW_PATH");
   for (std::size_t begin = 0; begin < path.size();) {
     const auto end = std::min(path.find(':', begin), path.size());
     if (end > begin) sources.folders.emplace_back(path.substr(begin, end - begin));
     begin = end + 1;
   }
-  const std::string refused = variable("PYROCLAST_NO_COMPILE");
+  const std::string refused = environment("PYROCLAST_NO_COMPILE");
   sources.may_compile = refused.empty() || refused == "0";
-  if (const auto compiler = variable("CXX"); !compiler.empty()) sources.compiler.program = compiler;
+  if (const auto compiler = environment("CXX"); !compiler.empty()) sources.compiler.program = compiler;
   sources.compiler.cache = cache_folder();
   sources.permission = CodePermission::of_environment();
   return sources;

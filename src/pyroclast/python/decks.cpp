@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include "pyroclast/base/sha256.hpp"
+#include "pyroclast/base/shown.hpp"
 #include "pyroclast/base/unit.hpp"
 #include "pyroclast/python/bindings.hpp"
 #include "pyroclast/python/errors.hpp"
@@ -35,12 +36,6 @@ CodePermission code_permission() {
   CodePermission permission = CodePermission::of_environment();
   permission.allow = allows_code;
   return permission;
-}
-
-CodeWords words_of(const std::string& text) {
-  if (text == "all") return CodeWords::all;
-  if (text == "changes") return CodeWords::changes;
-  return CodeWords::none;
 }
 
 /// Whether a text is a number with a unit of any quantity that decks hold.
@@ -87,8 +82,8 @@ LawSources law_sources(const std::vector<std::string>& folders) {
 
 LawSources law_sources(const DeckText& text) {
   LawSources sources = law_sources(text.laws);
-  sources.deck_names = text.words == CodeWords::all;
-  sources.changes_name = text.words != CodeWords::none;
+  sources.deck_names = text.deck_names;
+  sources.changes_name = text.changes_name;
   return sources;
 }
 
@@ -96,21 +91,23 @@ void bind_decks(py::module_& m) {
   py::class_<DeckText>(m, "DeckText", "A deck as it is written, and what belongs to reading it.")
       .def(py::init([](std::string text, std::string name, std::string folder,
                        std::vector<std::string> changes, std::vector<std::string> laws, py::list stages,
-                       const std::string& words) {
+                       bool deck_names, bool changes_name) {
              return DeckText{std::move(text), std::move(name),   std::move(folder), std::move(changes),
-                             std::move(laws), std::move(stages), words_of(words)};
+                             std::move(laws), std::move(stages), deck_names,        changes_name};
            }),
            py::arg("text"), py::arg("name"), py::arg("folder"), py::arg("changes"), py::arg("laws"),
-           py::arg("stages"), py::arg("words"));
+           py::arg("stages"), py::arg("deck_names"), py::arg("changes_name"));
+  m.def(
+      "shown", [](const std::string& text) { return shown(text, true); }, py::arg("text"),
+      "A text from elsewhere as a terminal may show it: what acts on one is written out, but for line "
+      "breaks.");
   m.def(
       "allow_code", [] { allows_code = true; },
       "Lets code that decks and studies name run in this process; it stays allowed until it changes.");
   m.def(
       "require_code",
       [](const std::string& what, const std::vector<std::string>& texts, bool named) {
-        std::string all;
-        for (const std::string& text : texts) all += sha256(text) + "\n";
-        code_permission().require(what, sha256(all), named);
+        code_permission().require(what, hash_of_texts(texts), named);
       },
       py::arg("what"), py::arg("texts"), py::arg("named"),
       "Returns where code, all its texts, may run; raises CodeNotAllowed elsewhere.");

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,17 +10,14 @@
 
 namespace pyroclast::python {
 
-/// Who names the laws of a deck: no one but its file, the script that changed it, or the script that made it.
-enum class CodeWords : std::uint8_t { none, changes, all };
-
 /// A deck as it is written, and what belongs to reading it.
 struct DeckText {
   std::string text, name;
-  std::string folder;                 ///< that its file names are taken from
-  std::vector<std::string> changes;   ///< "key=value"
-  std::vector<std::string> laws;      ///< folders
-  pybind11::list stages;              ///< classes
-  CodeWords words = CodeWords::none;  ///< of code
+  std::string folder;                             ///< that its file names are taken from
+  std::vector<std::string> changes;               ///< "key=value"
+  std::vector<std::string> laws;                  ///< folders
+  pybind11::list stages;                          ///< classes
+  bool deck_names = false, changes_name = false;  ///< laws, see LawSources
 };
 
 Deck parse(const DeckText& text);

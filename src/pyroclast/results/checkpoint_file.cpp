@@ -37,21 +37,18 @@ struct Trailer {
 /// A file by its descriptor.
 class File {
  public:
-  File(const std::filesystem::path& path, int flags)
-      : path_(path), descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) fail(flags == O_RDONLY ? "cannot be read" : "cannot be written");
+  static File to_read(const std::filesystem::path& path) {
+    return {path, open(path.c_str(), O_RDONLY | O_CLOEXEC), "cannot be read"};
+  }
+  static File to_write(const std::filesystem::path& path) {
+    return {path, open_aside(path), "cannot be written"};
   }
   ~File() { close(descriptor_); }
   File(const File&) = delete;
   File& operator=(const File&) = delete;
 
   void write(const void* data, std::uint64_t bytes) {
-    for (std::span rest(static_cast<const char*>(data), bytes); !rest.empty();) {
-      const ssize_t done = ::write(descriptor_, rest.data(), rest.size());
-      if (done < 0 && errno == EINTR) continue;
-      if (done <= 0) fail("cannot be written");
-      rest = rest.subspan(static_cast<std::size_t>(done));
-    }
+    if (!write_all(descriptor_, data, bytes)) fail("cannot be written");
   }
   /// False where the file ends before.
   bool read(std::uint64_t from, void* data, std::uint64_t bytes) const {
@@ -72,6 +69,10 @@ class File {
   }
 
  private:
+  File(const std::filesystem::path& path, int descriptor, const char* why)
+      : path_(path), descriptor_(descriptor) {
+    if (descriptor_ < 0) fail(why);
+  }
   [[noreturn]] void fail(const char* what) const {
     throw Error(fmt::format("{}: {} ({})", path_.string(), what, std::strerror(errno)));
   }
@@ -122,7 +123,7 @@ class CheckpointWriter : public StateVisitor {
 class CheckpointReader : public StateVisitor {
  public:
   explicit CheckpointReader(const CheckpointFile& checkpoint)
-      : checkpoint_(checkpoint), file_(checkpoint.path(), O_RDONLY) {}
+      : checkpoint_(checkpoint), file_(File::to_read(checkpoint.path())) {}
   bool replaces() const override { return true; }
 
   void finish() const {
@@ -170,8 +171,7 @@ std::uint64_t write_checkpoint(const std::filesystem::path& path, const Checkpoi
   partial += ".partial";
   std::uint64_t bytes = 0;
   try {
-    std::filesystem::remove(partial);  // no link of that name is followed
-    File file(partial, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW);
+    File file = File::to_write(partial);
     CheckpointWriter writer(file);
     visit(writer);
     bytes = writer.finish(info);
@@ -188,7 +188,7 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
   const auto fail = [&](const std::string& what) {
     throw Error(fmt::format("{}: {}", path_.string(), what));
   };
-  const File file(path_, O_RDONLY);
+  const File file = File::to_read(path_);
   const std::uint64_t size = file.size();
   std::array<char, 8> begin{};
   Trailer trailer;

@@ -12,6 +12,7 @@
 
 #include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/results/history_file.hpp"
+#include "pyroclast/setup/read_frame.hpp"
 #include "pyroclast/simulation/cracks.hpp"
 
 namespace pyroclast {
@@ -40,7 +41,7 @@ std::string array(const char* place, std::string_view name, std::string_view uni
 
 void write_temperatures(Hdf5File& file, const TemperatureField& field) {
   const auto& temperature = field.gridpoints();
-  file.dataset(array("PointData", "temperature", "degC"),
+  file.dataset(fmt::format("/VTKHDF/{}", kFrameTemperature),
                std::vector<float>(temperature.begin(), temperature.end()));
 }
 

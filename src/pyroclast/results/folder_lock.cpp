@@ -15,6 +15,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/results/publish.hpp"
+#include "pyroclast/results/run_folder.hpp"
 
 namespace pyroclast {
 
@@ -99,7 +100,7 @@ FolderLock::FolderLock(fs::path folder) : folder_(std::move(folder)), made_(make
     }
   } while (!stands_for(file, descriptor_));
   try {
-    require_no_links(folder_);
+    RunFolder::require_no_links(folder_);
   } catch (const Error&) {
     fs::remove(file);
     close(descriptor_);

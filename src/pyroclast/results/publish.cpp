@@ -1,6 +1,7 @@
 #include "pyroclast/results/publish.hpp"
 
 #include <cerrno>
+#include <span>
 #include <system_error>
 
 #include <fcntl.h>
@@ -29,17 +30,20 @@ std::string is_a_link(const std::filesystem::path& path) {
                      path.string());
 }
 
-void require_no_links(const std::filesystem::path& run) {
-  std::error_code ignored;
-  for (const char* name : {"specimen", "fields", "figures", "checkpoints", "inputs", "history.csv", "run.log",
-                           "fields/frames.csv"})
-    if (std::filesystem::is_symlink(run / name, ignored)) throw Error(is_a_link(run / name));
-}
-
 int open_aside(const std::filesystem::path& partial) {
   constexpr mode_t kMode = 0666;  // as far as the user's mask allows
   unlink(partial.c_str());
   return open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kMode);
+}
+
+bool write_all(int descriptor, const void* data, std::size_t bytes) {
+  for (std::span rest(static_cast<const char*>(data), bytes); !rest.empty();) {
+    const ssize_t done = write(descriptor, rest.data(), rest.size());
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) return false;
+    rest = rest.subspan(static_cast<std::size_t>(done));
+  }
+  return true;
 }
 
 void publish(const std::filesystem::path& partial, const std::filesystem::path& path) {

@@ -15,6 +15,7 @@
 #include "pyroclast/base/physics_version.hpp"
 #include "pyroclast/base/sha256.hpp"
 #include "pyroclast/mechanics/instruction_set.hpp"
+#include "pyroclast/results/publish.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/version.hpp"
 
@@ -51,6 +52,8 @@ constexpr auto kWritten = std::to_array<const char*>({
 });
 constexpr auto kFolders =
     std::to_array<std::string_view>({"specimen", "fields", "figures", "checkpoints", "inputs"});
+/// Files that grow line by line, so that their names are opened to write; others appear under theirs.
+constexpr auto kGrowing = std::to_array<std::string_view>({"history.csv", "run.log", "fields/frames.csv"});
 /// Names of figures, in any format.
 constexpr auto kFigures = std::to_array<const char*>({
     "convergence",
@@ -149,6 +152,15 @@ void RunFolder::check(const fs::path& path, bool overwrite) {
   if (!holds_a_run(path))
     throw Error(fmt::format("{}: is not empty and holds no {} of a run, so it is not overwritten",
                             path.string(), kManifest));
+}
+
+void RunFolder::require_no_links(const fs::path& path) {
+  std::error_code ignored;
+  const auto require = [&](std::string_view name) {
+    if (fs::is_symlink(path / name, ignored)) throw Error(is_a_link(path / name));
+  };
+  std::ranges::for_each(kFolders, require);
+  std::ranges::for_each(kGrowing, require);
 }
 
 void RunFolder::require(const fs::path& path) {

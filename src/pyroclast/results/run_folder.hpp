@@ -54,6 +54,8 @@ class RunFolder {
  public:
   /// Throws Error when the folder, which this process has locked, may not be written.
   static void check(const std::filesystem::path& path, bool overwrite);
+  /// Throws Error where a folder that a run writes into, or a file that it appends to, is a link.
+  static void require_no_links(const std::filesystem::path& path);
   /// Throws Error when it is not the folder of a run.
   static void require(const std::filesystem::path& path);
 

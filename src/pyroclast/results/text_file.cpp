@@ -24,13 +24,7 @@ void write_text_file(const std::filesystem::path& path, const std::string& text)
   partial += ".partial";
   {
     const int file = open_aside(partial);
-    std::size_t done = 0;
-    while (file >= 0 && done < text.size()) {
-      const ssize_t some = write(file, text.data() + done, text.size() - done);
-      if (some < 0 && errno != EINTR) break;
-      if (some > 0) done += static_cast<std::size_t>(some);
-    }
-    if (file < 0 || done < text.size()) {
+    if (file < 0 || !write_all(file, text.data(), text.size())) {
       const int cause = errno;
       if (file >= 0) close(file);
       std::error_code ignored;

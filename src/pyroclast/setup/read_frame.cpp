@@ -65,7 +65,7 @@ class Frame {
 
 StressFree read_frame_temperatures(const std::filesystem::path& path) {
   const Frame frame(path);
-  const auto temperature = frame.numbers("PointData/temperature [degC]");
+  const auto temperature = frame.numbers(kFrameTemperature);
   const auto points = frame.numbers("Points");
   const auto corners = frame.integers("Connectivity");
   const auto bearing = frame.integers("CellData/bearing");

@@ -444,7 +444,7 @@ class InterfaceReader {
         if (&loaded->table == &law) name_file(s, *loaded, stated);
       return law;
     } catch (const CodeNotAllowed& error) {
-      name_file(s, error.file(), stated);
+      name_file(s, error.code(), stated);
       s.leave_open();
       return unknown_law();
     } catch (const Error& error) {

@@ -415,8 +415,8 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
 }
 
 void require_code(const Setup& setup) {
-  if (!setup.code_not_allowed.empty())
-    throw CodeNotAllowed(fmt::format("{}", fmt::join(setup.code_not_allowed, "\n")));
+  const auto& refused = setup.code_not_allowed;
+  if (!refused.empty()) throw CodeNotAllowed(fmt::format("{}", fmt::join(refused, "\n")), refused.front());
 }
 
 DeckSchema deck_schema(const StageRegistry& kinds) {

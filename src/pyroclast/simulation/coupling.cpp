@@ -80,7 +80,6 @@ HottestTemperatures::HottestTemperatures(const Model<2>& model, const ConcreteMa
 std::vector<double> HottestTemperatures::begin_at(const Model<2>& model,
                                                   const std::vector<double>& gridpoints) {
   std::vector<double> of_zones(model.zones.size(), kReferenceTemperature);
-  std::vector<bool> in_specimen(model.position.size());
   for (int b = 0; b < model.block_count(); ++b) {
     if (model.is_of_bearing(b)) continue;
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
@@ -88,13 +87,11 @@ std::vector<double> HottestTemperatures::begin_at(const Model<2>& model,
       of_zones[z] = (gridpoints[i] + gridpoints[j] + gridpoints[k]) / 3.0;
       if (!zones_.empty()) zones_[z] = std::max(zones_[z], of_zones[z]);
     }
-    for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g) in_specimen[g] = true;
   }
+  const auto between = contact_gridpoints(model);
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const auto& contact = model.contacts[c];
-    const double a = gridpoints[in_specimen[contact.a] ? contact.a : contact.b];
-    const double b = gridpoints[in_specimen[contact.b] ? contact.b : contact.a];
-    contacts_[c] = std::max(contacts_[c], 0.5 * (a + b));
+    const auto [a, b] = between[c];
+    contacts_[c] = std::max(contacts_[c], 0.5 * (gridpoints[a] + gridpoints[b]));
   }
   return of_zones;
 }

@@ -105,14 +105,11 @@ Record::Record(const Model<2>& model, const Mechanics<2>* mechanics, RecordParam
       return mechanics != nullptr ? mechanics->set_of(find(model.sets, name))
                                   : in_model_order(find(model.sets, name));
     };
-    set_ = chunked(parameters_.set);
-    mean_ = mean_over(model, set_);
-    if (parameters_.kind == RecordKind::opening) {
-      other_ = chunked(parameters_.other);
-      mean_of_other_ = mean_over(model, other_);
-    }
+    mean_ = mean_over(model, chunked(parameters_.set));
+    if (parameters_.kind == RecordKind::opening)
+      mean_of_other_ = mean_over(model, chunked(parameters_.other));
     if (parameters_.kind == RecordKind::stress) {
-      items_ = zones_in(model, set_.gridpoints);
+      items_ = zones_in(model, mean_.set.gridpoints);
       if (items_.empty()) fail(fmt::format("is of the set \"{}\", which holds no zone", parameters_.set));
       const auto volume = zone_geometry(model).volume;
       for (int z : items_) size_.push_back(volume[z]);
@@ -153,9 +150,9 @@ double Record::force(const Simulation& simulation) const {
   const Vec<2>& d = parameters_.direction;
   const std::array<bool, 2> holds{supports.holds(parameters_.set, 0), supports.holds(parameters_.set, 1)};
   if (!holds[0] && !holds[1] && !simulation.loads().acts_on(parameters_.set))
-    return dot(mechanics.total_applied_force(set_) - mechanics.total_force(set_), d);
-  const auto reaction = chunked_sum<Vec<2>>(set_.chunks, [&](int i, Vec<2>& sum) {
-    const int g = set_.gridpoints[i];
+    return dot(mechanics.total_applied_force(mean_.set) - mechanics.total_force(mean_.set), d);
+  const auto reaction = chunked_sum<Vec<2>>(mean_.set.chunks, [&](int i, Vec<2>& sum) {
+    const int g = mean_.set.gridpoints[i];
     const Vec<2> force = mechanics.force(g);
     for (const int c : {0, 1})
       if (holds[c]) sum[c] -= force[c] / supports.holders(g, c);

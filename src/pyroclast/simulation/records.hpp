@@ -65,8 +65,8 @@ class Record {
     if (counts_from_zero()) zero_ += read(simulation);
   }
   /// Sets of an opening, which a control pulls apart; the first alone of others.
-  const GridpointSet& set() const { return set_; }
-  const GridpointSet& other() const { return other_; }
+  const GridpointSet& set() const { return mean_.set; }
+  const GridpointSet& other() const { return mean_of_other_.set; }
 
   void visit_state(StateVisitor& visitor) { visitor.visit(parameters_.name, zero_); }
 
@@ -87,7 +87,6 @@ class Record {
   double force(const Simulation& simulation) const;
 
   RecordParameters parameters_;
-  GridpointSet set_, other_;
   Mean mean_, mean_of_other_;
   std::vector<int> items_;    ///< zones or contacts, ascending
   std::vector<int> chunks_;   ///< where those of each chunk begin

@@ -537,9 +537,9 @@ void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads
 double Drive::total_load(double factor) const {
   std::map<std::string, Vec<2>> forces;
   for (const Action& action : keys_.actions)
-    if (action.kind == ActionKind::force) forces.try_emplace(action.set, first_load(action.set).force);
-  for (const Action& action : keys_.actions)
-    if (action.kind == ActionKind::force) forces[action.set] += (factor * action.amount) * action.direction;
+    if (action.kind == ActionKind::force)
+      forces.try_emplace(action.set, first_load(action.set).force).first->second +=
+          (factor * action.amount) * action.direction;
   double most = 0.0;
   for (const auto& [set, along] : forces) {
     if (!(norm(along) > 0.0)) continue;

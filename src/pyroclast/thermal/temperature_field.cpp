@@ -28,28 +28,36 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 
 }  // namespace
 
+std::vector<std::array<int, 2>> contact_gridpoints(const Model<2>& model) {
+  std::vector<bool> in_specimen(model.position.size());
+  for (int b = 0; b < model.block_count(); ++b)
+    if (!model.is_of_bearing(b))
+      std::fill(in_specimen.begin() + model.block_gridpoints[b],
+                in_specimen.begin() + model.block_gridpoints[b + 1], true);
+  std::vector<std::array<int, 2>> pairs;
+  for (const auto& c : model.contacts)
+    pairs.push_back({in_specimen[c.a] ? c.a : c.b, in_specimen[c.b] ? c.b : c.a});
+  return pairs;
+}
+
 TemperatureField::TemperatureField(const Model<2>& model)
     : model_(model),
       gridpoints_(model_.position.size(), kReferenceTemperature),
       zones_(model_.zones.size()),
       contacts_(model_.contacts.size()) {
   specimen_volume_ = zone_geometry(model_).volume;
-  std::vector<bool> in_specimen(model_.position.size());
   for (int b = 0; b < model_.block_count(); ++b) {
     if (model_.is_of_bearing(b)) {
       std::fill(specimen_volume_.begin() + model_.block_zones[b],
                 specimen_volume_.begin() + model_.block_zones[b + 1], 0.0);
       continue;
     }
-    for (int g = model_.block_gridpoints[b]; g < model_.block_gridpoints[b + 1]; ++g) {
-      in_specimen[g] = true;
+    for (int g = model_.block_gridpoints[b]; g < model_.block_gridpoints[b + 1]; ++g)
       specimen_gridpoints_.push_back(g);
-    }
   }
   zone_chunks_ = chunk_begins(model_.zone_count());
   volume_ = chunked_sum(zone_chunks_, [&](int z) { return specimen_volume_[z]; });
-  for (const auto& c : model_.contacts)
-    contact_gridpoints_.push_back({in_specimen[c.a] ? c.a : c.b, in_specimen[c.b] ? c.b : c.a});
+  contact_gridpoints_ = contact_gridpoints(model_);
 }
 
 TemperatureField::TemperatureField(const Model<2>& model, double temperature) : TemperatureField(model) {

@@ -11,6 +11,10 @@
 
 namespace pyroclast {
 
+/// Gridpoints between which the temperature of each contact point lies: its two, at a bearing twice the
+/// specimen's.
+std::vector<std::array<int, 2>> contact_gridpoints(const Model<2>& model);
+
 /// The temperatures of a specimen during a run: one for the whole specimen, or the computed field. The
 /// platens are at the reference temperature throughout.
 class TemperatureField {
