@@ -261,6 +261,24 @@ TEST(Drive, APeakIsWhereTheBodyFailsWhileItIsDrivenOn) {
   EXPECT_FALSE(only_back.result(0, "peak_grip_N").has_value());
 }
 
+// Promise: a fall is that of a peak once it has lasted for a tenth of the time for which the body was driven.
+TEST(Drive, APeakLastsForATenthOfTheTimeToIt) {
+  const auto run = [&](double duration) {
+    return Finished(free_deck(
+        kUniform + kCorner + kRecords +
+        drive(fmt::format("duration = \"{:.6g} s\"\nlook_interval = \"0.2 ms\"", duration),
+              kHeld + does("right", "velocity = \"2 mm/s\"\ndirection = \"x\"\nramp_time = \"1 ms\""))));
+  };
+  const Finished whole = run(0.05);
+  const double peak = whole.result(0, "peak_grip_N").value(),
+               time = whole.result(0, "peak_grip_time_s").value();
+  const Finished short_of_it = run(1.08 * time), beyond = run(1.14 * time);
+  EXPECT_FALSE(short_of_it.result(0, "peak_grip_N"));
+  EXPECT_EQ(short_of_it.result(0, "largest_grip_N"), peak);
+  EXPECT_EQ(beyond.result(0, "peak_grip_N"), peak);
+  EXPECT_EQ(beyond.result(0, "peak_grip_time_s"), time);
+}
+
 TEST(Drive, ResultsThatCannotBeMadeAreRefused) {
   const auto refused = [](const std::string& results) {
     return message(free_deck(kUniform + kCorner + kRecords + drive("duration = \"1 ms\"", kHeld + results)));
