@@ -205,7 +205,6 @@ TEST(PeakBounds, ACollapseIsAPeakAtOnce) {
   EXPECT_EQ(peak_of({{1e-3, 100.0}, {1.01e-3, 49.9}}), 100.0);
   EXPECT_EQ(peak_of({{1e-3, 100.0}, {1.01e-3, 50.1}}), std::nullopt);
   EXPECT_EQ(peak_of({{1e-3, 100.0}, {1.01e-3, 40.0}, {2e-3, 500.0}}), 100.0);
-  EXPECT_EQ(peak_of({{1e-3, 0.0}, {1.01e-3, -1.0}, {2e-3, -5.0}}), std::nullopt);  // nothing was borne
   EXPECT_EQ(peak_of({{1e-3, 100.0}, {1.01e-3, 79.0}}, {.collapse = 0.2}), 100.0);
 }
 
@@ -386,7 +385,7 @@ TEST(ModulusBounds, ThreePointsMakeALine) {
   EXPECT_NEAR(*three, 8e9, 1.0);
   EXPECT_EQ(with_points({4e6, 12e6}).none_because,
             "fewer than three points of the curve lie between 5 % and 1/3 of f_c");
-  EXPECT_EQ(with_points({12e6, 8e6, 4e6}).none_because,
+  EXPECT_EQ(with_points({12e6, 11.9e6, 11.8e6}).none_because,
             "the stress does not rise with the strain between 5 % and 1/3 of f_c");
   // those at the ends of the range count
   EXPECT_TRUE(with_points({2e6, 8e6, kStrength * (1.0 / 3.0)}));

@@ -330,5 +330,49 @@ TEST(DrivesBeside, WhatContradictsIsRefused) {
               }));
 }
 
+// Promise: a condition is one of its kinds, within its range, on a record that there is.
+TEST(DrivesBeside, ConditionsThatAreNoneAreRefused) {
+  const std::string records =
+      record("end", "displacement", "set = \"right\"\ndirection = \"x\"") +
+      record("gap", "opening", "set = \"left\"\nother = \"right\"\ndirection = \"x\"");
+  const std::string held = does("left", "hold = [\"x\", \"y\"]");
+  const auto refused = [&](const std::string& rest) {
+    return message(free_deck(kUniform + records + drive("duration = \"1 ms\"", held + rest)));
+  };
+  const auto until = [&](const std::string& rest) {
+    return refused("[[stages.until]]\nrecord = \"end\"\n" + rest);
+  };
+  EXPECT_EQ(until("above = \"-1 mm\""), kNone);
+  EXPECT_EQ(until("below = \"0 mm\""), kNone);
+  EXPECT_EQ(until("share_of_peak = 0.999\nleast_peak = \"1 um\""), kNone);
+  EXPECT_EQ(until("rate_above = \"1e-9 m/s\""), kNone);
+  const std::string alone =
+      "one of above, below, share_of_peak, rate_above and rate_below is needed, and one alone";
+  expect_in(alone, until(""));
+  expect_in(alone, until("above = \"1 mm\"\nbelow = \"0 mm\""));
+  for (const char* share : {"0", "1", "1.05"})
+    expect_in("share_of_peak", until(std::string("share_of_peak = ") + share));
+  expect_in("least_peak", until("share_of_peak = 0.5\nleast_peak = \"0 mm\""));
+  expect_in("rate_above", until("rate_above = \"0 m/s\""));
+  expect_in("rate_below", until("rate_below = \"0 m/s\""));
+  expect_in("is no [[record]]; there are end, gap",
+            refused("[[stages.until]]\nrecord = \"no\"\nabove = \"1 mm\""));
+  const auto control = [&](const std::string& of, const std::string& rest,
+                           const std::string& stiffness = "1 GN/m") {
+    return refused("[stages.control]\nrecord = \"" + of + "\"\nrate = \"1 mm/s\"\nstiffness = \"" +
+                   stiffness + "\"\nresponse_time = \"1 ms\"\n" + rest);
+  };
+  const std::string pull = does("right", "force = \"1 kN\"\ndirection = [1, 0]");
+  EXPECT_EQ(control("gap", pull), kNone);
+  expect_in("must be the name of a [[record]] of kind opening", control("end", pull));
+  expect_in("must be the name of a [[record]] of kind opening", control("no", pull));
+  expect_in("needs a force among the drives", control("gap", ""));
+  expect_in("needs a force among the drives", control("gap", does("right", "pressure = \"1 MPa\"")));
+  expect_in("stiffness", control("gap", pull, "0 N/m"));
+  expect_in("look_interval",
+            message(free_deck(kUniform + drive("duration = \"1 ms\"\nlook_interval = \"0 s\"", held))));
+  expect_in("duration", message(free_deck(kUniform + drive("duration = \"0 s\"", held))));
+}
+
 }  // namespace
 }  // namespace pyroclast::keys_test
