@@ -94,6 +94,18 @@ TEST(EnergyLedger, TheErrorIsJudgedByTheSizesOfWhatWasPutIn) {
   }
 }
 
+// Promise: little energy is energy too, put in or dissipated.
+TEST(EnergyLedger, LittleEnergyIsJudgedToo) {
+  Made r = tests();
+  for (const char* part :
+       {"energy_loading_J", "energy_gravity_J", "energy_property_change_J", "energy_mass_scaling_J"})
+    r.put(part, 1e-4);
+  r.dissipate(1e-5);
+  r.put("energy_error_J", 1e-6);
+  EXPECT_NEAR(r.summary().energy_error.value(), 2.5e-3, 1e-12);
+  EXPECT_NEAR(r.summary().error_over_dissipated.value(), 0.1, 1e-9);
+}
+
 // Promise: where nothing was turned over, nothing can be missing; where nothing was measured, nothing is
 // said.
 TEST(EnergyLedger, NothingTurnedOverHasNoError) {
@@ -297,6 +309,29 @@ TEST(ExchangeStress, TheFirstStageCounts) {
   EXPECT_GT(r.summary().exchange_stress.value(), 0.0);
 }
 
+// Promise: where expansion grows with the temperature, each part of the way is judged by its own.
+TEST(ExchangeStress, EachPartOfTheWayHasItsOwnExpansion) {
+  const std::string bent =
+      "{ table = [[\"20 degC\", 1e-5], [\"45 degC\", 1e-5], [\"50 degC\", 3e-5], "
+      "[\"820 degC\", 3e-5]], unit = \"1/K\" }";
+  std::string text = with(deck(kSettle + kExpose + kHeatedFace, bent),
+                          "[[\"20 degC\", 1], [\"820 degC\", 0.1]]", "[[\"20 degC\", 1], [\"820 degC\", 1]]");
+  Made r(with(text, "most_cycles = 5000", "most_cycles = 60"));
+  r.put("temperature_min_degC", 20.0);
+  r.put("temperature_max_degC", 70.0);
+  const ConcreteMaterials& materials = r.simulation->materials();
+  double largest = 0.0;
+  for (const double from : {20.0, 30.0, 40.0, 50.0, 60.0})
+    for (const SolidMaterial& solid : materials.solids)
+      if (!solid.is_of_bearing)
+        largest = std::max(largest, estimate_modulus(r.simulation->model(), materials, from + 10.0) * 5.0 *
+                                        (solid.thermal_strain(from + 10.0) - solid.thermal_strain(from)) /
+                                        10.0 / 2.5e6);
+  EXPECT_NEAR(r.summary().exchange_stress.value(), largest, 1e-9 * largest);
+  // twice as much as that of the even body, at least
+  EXPECT_GT(largest, 1.9 * 0.5);
+}
+
 // Promise: up to the strength an exchange is small enough; beyond it is told.
 TEST(ExchangeStress, IsTooLargeFromTheStrengthOn) {
   // E falls by a thousandth a kelvin, so the coldest exchange is the largest where strength stays
@@ -354,6 +389,9 @@ TEST(HeatLedger, TheErrorIsJudgedByTheLargestTerm) {
       EXPECT_DOUBLE_EQ(r.summary().heat_error.value(), 2.0) << largest;
     }
   }
+  for (const char* term : kHeatTerms) r.put(term, 1e-3);  // little heat is heat too
+  r.put("heat_error_J", 5e-4);
+  EXPECT_DOUBLE_EQ(r.summary().heat_error.value(), 0.5);
   for (const char* term : kHeatTerms) r.put(term, 0.0);
   EXPECT_EQ(r.summary().heat_error, 0.0);
   r.put("heat_error_J", std::nullopt);

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pyroclast/base/state_copy.hpp"
 #include "pyroclast/stages/compress.hpp"
 #include "pyroclast/stages/conduct.hpp"
 #include "pyroclast/stages/expose.hpp"
@@ -503,6 +504,91 @@ TEST(CompressReports, TheRowOfThePeakDecided) {
   EXPECT_LT(strain[*decided - 1], peak);
   const Finished no_peak(deck(kUniform + kSettle + kCompress));
   EXPECT_FALSE(no_peak.report(1).decided_at);
+}
+
+// ---- A platen that is apart ------------------------------------------------------------------------------
+
+// Promise: a platen that stands apart from the body is brought to it first: what a compression measures
+// counts from where they meet.
+TEST(CompressReports, AGapIsClosedFirst) {
+  const Finished touching(deck(kUniform + kSettle + kCompress));
+  const Finished apart(deck(kUniform + kSettle + heat("120 degC") + heat("20 degC", "fixed") + kCompress));
+  const RowRange rows = apart.run.records()[3].rows;
+  // the body has shrunk by 1e-3 of its height under the platen
+  EXPECT_GT(apart.end_of(3, "strain"), apart.end_of(2, "strain") + 1e-4);
+  EXPECT_NEAR(apart.end_of(3, "stage_strain"), touching.end_of(1, "stage_strain"), 2e-5);
+  EXPECT_NEAR(apart.end_of(3, "stress_MPa"), touching.end_of(1, "stress_MPa"),
+              0.05 * touching.end_of(1, "stress_MPa"));
+  EXPECT_NEAR(apart.result(3, "E_GPa").value(), touching.result(1, "E_GPa").value(),
+              0.03 * touching.result(1, "E_GPa").value());
+  EXPECT_NEAR(static_cast<double>(rows.last - rows.first), 20.0, 3.0);
+}
+
+// ---- States ----------------------------------------------------------------------------------------------
+
+/// What a run gives: its rows, which of them are frames, and what its stages report.
+struct Told {
+  std::vector<std::vector<std::optional<double>>> rows;
+  std::vector<bool> frames;
+  std::vector<std::string> lines;
+  bool operator==(const Told&) const = default;
+};
+
+/// Goes to the end of a run, from a look on.
+Told tell(Trial& trial, std::size_t from) {
+  Told told;
+  std::size_t look = trial.run.history().row_count();
+  while (trial.run.next()) {
+    if (look++ < from) continue;
+    told.rows.push_back(trial.run.history().row(trial.run.history().row_count() - 1));
+    told.frames.push_back(trial.run.frame_is_due());
+  }
+  for (std::size_t i = 0; i < trial.run.stages().size(); ++i) {
+    const StageRecord& record = trial.run.records()[i];
+    const StageReport report =
+        trial.run.stages()[i]->report(trial.run.history(), record.rows, record.outcome);
+    told.lines.insert(told.lines.end(), report.lines.begin(), report.lines.end());
+  }
+  return told;
+}
+
+// Promise: a stage goes on from its state, at whatever look that was taken, as if it had not been broken off.
+TEST(States, EachStageGoesOnFromAnyLook) {
+  const std::string driven =
+      with(with(kControl, "10 mm/s", "4 mm/s"), "unbalanced_ratio = 2e-4", "unbalanced_ratio = 2e-3");
+  const std::string frames = "frame_strain = 1e-3\nframe_temperature = \"11 K\"";
+  const std::string fast = "[[stages]]\nkind = \"compress\"\nvelocity = \"2 mm/s\"\nramp_time = \"10 ms\"\n";
+  const std::vector<std::string> texts{
+      deck(kUniform + kSettle + load("stress = \"1 MPa\"") + kCompress + fast + "to_stress = \"0 MPa\"\n"),
+      with(with(deck(kUniform + kSettle + load("stress = \"1 MPa\"") + heat("62 degC") +
+                     heat("40 degC", "fixed")),
+                "frame_strain = 1e-3", frames),
+           "least_cycles = 50", "least_cycles = 50\npredictor = true"),
+      with(deck(kUniform + kSettle + heat("70 degC") + heat("20 degC", "fixed") + fast +
+                "stop_strain = 0.0008\n" + driven),
+           "frame_strain = 1e-3", "frame_strain = 2e-4"),
+      deck(kUniform + kSettle + fast + "stop_strain = 0.0024\n"),
+      with(with(deck(kSettle + kExpose + kHeatedFace), "most_cycles = 5000", "most_cycles = 60"),
+           "frame_strain = 1e-3", "frame_strain = 1e-3\nframe_interval = \"100 s\"")};
+  for (std::size_t t = 0; t < texts.size(); ++t) {
+    const std::size_t looks = [&] {
+      Trial counted(texts[t]);
+      counted.run.run();
+      return counted.run.history().row_count();
+    }();
+    for (const double share : {0.3, 0.55, 0.9}) {
+      const auto stop = static_cast<std::size_t>(share * static_cast<double>(looks));
+      Trial straight(texts[t]), first(texts[t]), second(texts[t]);
+      while (first.run.history().row_count() < stop) first.run.next();
+      StateCopy copy;
+      copy.take([&](StateVisitor& visitor) { first.run.visit_state(visitor); });
+      copy.put([&](StateVisitor& visitor) { second.run.visit_state(visitor); });
+      const Told expected = tell(straight, stop), told = tell(second, stop);
+      EXPECT_EQ(told.rows, expected.rows) << t << ", look " << stop << " of " << looks;
+      EXPECT_EQ(told.frames, expected.frames) << t << ", look " << stop << " of " << looks;
+      EXPECT_EQ(told.lines, expected.lines) << t << ", look " << stop << " of " << looks;
+    }
+  }
 }
 
 }  // namespace

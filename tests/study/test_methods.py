@@ -647,6 +647,14 @@ class Judged(unittest.TestCase):
         self.assertEqual((kriging.degree, kriging.terms, kriging.kind), (0, 0, "kriging"))
         np.testing.assert_allclose(kriging.predict(u), x[:, 0], atol=1e-3)
 
+    def test_kriging_does_not_ask_for_the_unit_of_small_numbers(self):
+        u = sampling.sobol_sequence(40, 2, 3)
+        y = np.sin(3.0 * u[:, 0]) + u[:, 1]
+        held = sampling.sobol_sequence(20, 2, 4)
+        expected = surrogate.fit(u, y, "kriging").predict(held)
+        for unit in (1e-6, 1e-3, 1e3):
+            np.testing.assert_allclose(surrogate.fit(u, unit * y, "kriging").predict(held) / unit, expected, atol=0.005)
+
     def test_thirty_points_are_enough(self):
         u = sampling.sobol_sequence(64, 2, 3)
         fitted = surrogate.fit(u, u[:, 0], most_degree=2)
