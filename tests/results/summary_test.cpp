@@ -312,8 +312,8 @@ TEST(ExchangeStress, TheFirstStageCounts) {
 // Promise: where expansion grows with the temperature, each part of the way is judged by its own.
 TEST(ExchangeStress, EachPartOfTheWayHasItsOwnExpansion) {
   const std::string bent =
-      "{ table = [[\"20 degC\", 1e-5], [\"45 degC\", 1e-5], [\"50 degC\", 3e-5], "
-      "[\"820 degC\", 3e-5]], unit = \"1/K\" }";
+      "{ table = [[\"20 degC\", \"1e-5 1/K\"], [\"45 degC\", \"1e-5 1/K\"], [\"50 degC\", \"3e-5 1/K\"], "
+      "[\"820 degC\", \"3e-5 1/K\"]] }";
   std::string text = with(deck(kSettle + kExpose + kHeatedFace, bent),
                           "[[\"20 degC\", 1], [\"820 degC\", 0.1]]", "[[\"20 degC\", 1], [\"820 degC\", 1]]");
   Made r(with(text, "most_cycles = 5000", "most_cycles = 60"));
