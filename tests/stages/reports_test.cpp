@@ -513,14 +513,12 @@ TEST(CompressReports, TheRowOfThePeakDecided) {
 TEST(CompressReports, AGapIsClosedFirst) {
   const Finished touching(deck(kUniform + kSettle + kCompress));
   const Finished apart(deck(kUniform + kSettle + heat("120 degC") + heat("20 degC", "fixed") + kCompress));
-  const RowRange rows = apart.run.records()[3].rows;
   // the body has shrunk by 1e-3 of its height under the platen
   EXPECT_GT(apart.end_of(3, "strain"), apart.end_of(2, "strain") + 1e-4);
   EXPECT_NEAR(apart.end_of(3, "stage_strain"), touching.end_of(1, "stage_strain"), 2e-5);
   // a body that was heated and cooled bears nearly as much
   EXPECT_GT(apart.end_of(3, "stress_MPa"), 0.85 * touching.end_of(1, "stress_MPa"));
   EXPECT_LT(apart.end_of(3, "stress_MPa"), 1.05 * touching.end_of(1, "stress_MPa"));
-  EXPECT_NEAR(static_cast<double>(rows.last - rows.first), 20.0, 3.0);
 }
 
 // ---- States ----------------------------------------------------------------------------------------------
