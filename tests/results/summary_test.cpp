@@ -83,6 +83,9 @@ TEST(EnergyLedger, TheErrorIsJudgedByTheSizesOfWhatWasPutIn) {
   EXPECT_DOUBLE_EQ(r.summary().energy_error.value(), 0.002);
   r.put("energy_error_J", -0.02);
   EXPECT_DOUBLE_EQ(r.summary().energy_error.value(), -0.002);
+  r.put("energy_mass_scaling_J", std::nullopt);  // what is not there is nothing
+  r.put("energy_error_J", 0.018);
+  EXPECT_DOUBLE_EQ(r.summary().energy_error.value(), 0.002);
   for (const char* part :
        {"energy_loading_J", "energy_gravity_J", "energy_property_change_J", "energy_mass_scaling_J"}) {
     Made alone = tests();
@@ -141,8 +144,10 @@ TEST(EnergyLedger, HalfAPercentOfTheTurnoverIsTheBoundOfAWarning) {
   r.turn_over_ten_joules();
   r.dissipate(0.0);
   for (const double sign : {1.0, -1.0}) {
-    r.put("energy_error_J", sign * 0.0499);
-    EXPECT_EQ(r.summary().warnings, std::vector<std::string>{});
+    for (const double within : {0.0499, 0.05}) {
+      r.put("energy_error_J", sign * within);
+      EXPECT_EQ(r.summary().warnings, std::vector<std::string>{});
+    }
     r.put("energy_error_J", sign * 0.0501);
     const Summary s = r.summary();
     ASSERT_EQ(s.warnings.size(), 1u);
@@ -172,6 +177,8 @@ TEST(EnergyLedger, FivePercentOfTheTurnoverIsTheBoundOfResults) {
   Made r = tests();
   r.turn_over_ten_joules();
   for (const double sign : {1.0, -1.0}) {
+    r.put("energy_error_J", sign * 0.5);
+    EXPECT_TRUE(r.summary().is_sound);
     r.put("energy_error_J", sign * 0.499);
     EXPECT_TRUE(r.summary().is_sound);
     for (int stage : {0, 1, 2}) EXPECT_TRUE(has_results(r.summary(), stage));
@@ -229,6 +236,8 @@ TEST(EnergyLedger, OnePercentOfTheDissipatedIsTheBoundOfAWarning) {
   for (const double sign : {1.0, -1.0}) {
     r.put("energy_error_J", sign * 0.0199);
     EXPECT_DOUBLE_EQ(r.summary().error_over_dissipated.value(), sign * 0.00995);
+    EXPECT_EQ(r.summary().warnings, std::vector<std::string>{});
+    r.put("energy_error_J", sign * 0.02);
     EXPECT_EQ(r.summary().warnings, std::vector<std::string>{});
     r.put("energy_error_J", sign * 0.0202);
     const Summary s = r.summary();
@@ -303,6 +312,14 @@ TEST(ExchangeStress, IsThatOfAHeldBodyOverItsStrength) {
   EXPECT_DOUBLE_EQ(r.as_json()["exchange_stress_over_strength"], r.summary().exchange_stress.value());
 }
 
+// Promise: where all temperatures are the same, no exchange strains anything.
+TEST(ExchangeStress, ThereIsNoneAtOneTemperature) {
+  Made r(heated("[[\"20 degC\", 1], [\"820 degC\", 1]]"));
+  r.put("temperature_min_degC", r.simulation->field().mean());
+  r.put("temperature_max_degC", r.simulation->field().mean());
+  EXPECT_EQ(r.summary().exchange_stress, std::nullopt);
+}
+
 // Promise: every stage counts, the first one too.
 TEST(ExchangeStress, TheFirstStageCounts) {
   const Made r(with(deck(kExpose + kHeatedFace), "most_cycles = 5000", "most_cycles = 60"));
@@ -345,7 +362,11 @@ TEST(ExchangeStress, IsTooLargeFromTheStrengthOn) {
   const Summary below = at(0.99 * strength), above = at(1.02 * strength);
   EXPECT_NEAR(below.exchange_stress.value(), 0.99, 0.005);
   EXPECT_EQ(count_of(below.warnings, kTooLarge), 0);
-  EXPECT_EQ(count_of(above.warnings, kTooLarge + ": one brings up to 1 of the tensile strength at once"), 1);
+  EXPECT_EQ(count_of(above.warnings,
+                     kTooLarge +
+                         ": one brings up to 1 of the tensile strength at once, and above 1 cracks dissipate "
+                         "too much; a smaller coupling.exchange_increment brings less"),
+            1);
 }
 
 // Promise: a uniform field strains nothing by its exchanges, and a stage without any says nothing.
@@ -394,6 +415,10 @@ TEST(HeatLedger, TheErrorIsJudgedByTheLargestTerm) {
   EXPECT_DOUBLE_EQ(r.summary().heat_error.value(), 0.5);
   for (const char* term : kHeatTerms) r.put(term, 0.0);
   EXPECT_EQ(r.summary().heat_error, 0.0);
+  for (const char* term : kHeatTerms) r.put(term, std::nullopt);
+  r.put("heat_stored_J", 0.25);
+  r.put("heat_error_J", 0.25);
+  EXPECT_DOUBLE_EQ(r.summary().heat_error.value(), 1.0);
   r.put("heat_error_J", std::nullopt);
   EXPECT_EQ(r.summary().heat_error, std::nullopt);
 }
@@ -437,6 +462,11 @@ TEST(LargeJumps, CountUpToWhatDecidedTheResults) {
   EXPECT_EQ(count_of(failed.summary().warnings, kJumps), 0);
   failed.put({decided, decided + 1}, "largest_jump", 1.01);
   EXPECT_EQ(count_of(failed.summary().warnings, kJumps), 1);
+  // the first stage counts as any other
+  Made first = tests();
+  first.put("largest_jump", 0.5);
+  first.put(first.rows_of(0), "largest_jump", 1.01);
+  EXPECT_EQ(count_of(first.summary().warnings, kJumps), 1);
   // rows before any stage do not count
   Made before = tests();
   before.put("largest_jump", 0.5);
@@ -530,6 +560,17 @@ TEST(SummaryFile, EachNumberIsTheLastOfItsColumn) {
   for (const std::string& name : losses) EXPECT_EQ(told["energy_J"]["dissipated_" + name], expected += 1.0);
   EXPECT_EQ(told["energy_J"]["error_over_turnover"], *s.energy_error);
   EXPECT_EQ(told["energy_J"]["error_over_dissipated"], *s.error_over_dissipated);
+}
+
+// Promise: the first look is enough to have numbers.
+TEST(SummaryFile, TheFirstLookHasNumbers) {
+  Trial trial(deck(kTwoTests));
+  ASSERT_TRUE(trial.run.next());
+  ASSERT_EQ(trial.run.history().row_count(), 1u);
+  const json told = json::parse(summary_text(summarize(trial.run), trial.run));
+  EXPECT_EQ(told["steps"], 0);
+  EXPECT_TRUE(told["energy_J"]["kinetic"].is_number());
+  EXPECT_TRUE(told["energy_J"]["error_over_turnover"].is_number());
 }
 
 // Promise: what is not of the history comes from the simulation, in the units of its names.

@@ -521,6 +521,18 @@ TEST(CompressReports, AGapIsClosedFirst) {
   EXPECT_LT(apart.end_of(3, "stress_MPa"), 1.05 * touching.end_of(1, "stress_MPa"));
 }
 
+// Promise: while the platen comes to the body, the stage says so, and then no more.
+TEST(CompressReports, SaysThatThePlatenComes) {
+  Trial trial(deck(kUniform + kSettle + heat("120 degC") + heat("20 degC", "fixed") + kCompress));
+  std::vector<std::string> said;
+  trial.run.between_batches([&](pyroclast::Run& run) {
+    if (run.last_begun_stage() == 3 && (said.empty() || said.back() != run.stage().doing()))
+      said.push_back(run.stage().doing());
+  });
+  trial.run.run();
+  EXPECT_EQ(said, (std::vector<std::string>{"moving the platen to the specimen", ""}));
+}
+
 // ---- States ----------------------------------------------------------------------------------------------
 
 /// What a run gives: its rows, which of them are frames, and what its stages report.
@@ -555,6 +567,16 @@ TEST(States, EachStageGoesOnFromAnyLook) {
       with(with(kControl, "10 mm/s", "4 mm/s"), "unbalanced_ratio = 2e-4", "unbalanced_ratio = 2e-3");
   const std::string frames = "frame_strain = 1e-3\nframe_temperature = \"11 K\"";
   const std::string fast = "[[stages]]\nkind = \"compress\"\nvelocity = \"2 mm/s\"\nramp_time = \"10 ms\"\n";
+  // loads that were there before, and others over them along a ramp
+  const std::string first_loads = does("left", "hold = [\"x\", \"y\"]") +
+                                  does("right", "force = \"9 kN\"\ndirection = [3, 4]") +
+                                  does("top", "pressure = \"2 MPa\"");
+  const std::string other_loads =
+      does("right", "force = \"5 kN\"\ndirection = [0, -1]\nramp_time = \"15 ms\"") +
+      does("top", "pressure = \"-1 MPa\"\nramp_time = \"18 ms\"");
+  const std::string loaded_again =
+      free_deck(kUniform + drive("duration = \"10 ms\"\nlook_interval = \"1 ms\"", first_loads) +
+                drive("duration = \"20 ms\"\nlook_interval = \"1 ms\"", other_loads));
   const std::vector<std::string> texts{
       deck(kUniform + kSettle + load("stress = \"1 MPa\"") + kCompress + fast + "to_stress = \"0 MPa\"\n"),
       with(with(deck(kUniform + kSettle + load("stress = \"1 MPa\"") + heat("62 degC") +
@@ -566,7 +588,8 @@ TEST(States, EachStageGoesOnFromAnyLook) {
            "frame_strain = 1e-3", "frame_strain = 2e-4"),
       deck(kUniform + kSettle + fast + "stop_strain = 0.0024\n"),
       with(with(deck(kSettle + kExpose + kHeatedFace), "most_cycles = 5000", "most_cycles = 60"),
-           "frame_strain = 1e-3", "frame_strain = 1e-3\nframe_interval = \"100 s\"")};
+           "frame_strain = 1e-3", "frame_strain = 1e-3\nframe_interval = \"100 s\""),
+      loaded_again};
   for (std::size_t t = 0; t < texts.size(); ++t) {
     const std::size_t looks = [&] {
       Trial counted(texts[t]);

@@ -4,6 +4,7 @@ Run from this folder, without the compiled part of the package:
     PYTHONPATH=../../python python3 -m unittest test_methods
 """
 
+import inspect
 import subprocess
 import sys
 import unittest
@@ -11,7 +12,7 @@ from itertools import combinations
 from unittest import mock
 
 import numpy as np
-from scipy.stats import chi2, spearmanr, t
+from scipy.stats import chi2, norm, spearmanr, t
 
 from pyroclast.errors import Error
 from pyroclast.study.methods import (calibration, ensemble, hsic, main_effects, morris, posterior, sampling, seeds,
@@ -92,6 +93,9 @@ class Sampling(unittest.TestCase):
     def test_points_of_the_sequence_are_no_ends(self):
         points = sampling.sobol_sequence(100, 2, 1, first=7)  # no power of two, and no warning
         self.assertTrue((points > 0.0).all() and (points < 1.0).all())
+        from scipy.stats import qmc
+        own = qmc.Sobol(2, scramble=True, bits=30, seed=np.random.default_rng(1)).random(128)
+        np.testing.assert_array_equal(np.floor(sampling.sobol_sequence(128, 2, 1) * 2.0**30), own * 2.0**30)
         # to 30 bits, each in the middle of its place
         np.testing.assert_array_equal(np.mod(points * 2.0**31, 2.0), 1.0)
 
@@ -104,6 +108,10 @@ class Sampling(unittest.TestCase):
         moved = sampling.correlated(points, [[1.0, 0.5], [0.5, 1.0]])
         np.testing.assert_array_equal(moved[:, 0], points[:, 0])
         self.assertFalse(np.array_equal(np.sort(moved[:, 1]), np.sort(points[:, 1])))
+        # a Gaussian copula: of independent normal scores a and b, r a + sqrt(1 - r^2) b
+        r = 2.0 * np.sin(np.pi * 0.5 / 6.0)
+        a, b = norm.ppf(points.T)
+        np.testing.assert_allclose(moved[:, 1], norm.cdf(r * a + np.sqrt(1.0 - r**2) * b), atol=1e-12)
 
     def test_latin_hypercube_has_one_point_in_each_class(self):
         points = sampling.latin_hypercube(17, 3, 5)
@@ -204,6 +212,21 @@ class Seeds(unittest.TestCase):
         # of two: Student's t of one degree is 12.71, times the root of 2, of which a normal has all
         self.assertAlmostEqual(seeds.level(2), 1.0)
         self.assertAlmostEqual(seeds.level(5), 0.99809, 4)  # 2.776 times the root of 5/4
+
+    def test_a_resample_of_some_seeds_is_the_share_of_these(self):
+        """A seed that a resample does not have does not count, and one that it has twice is free of bias."""
+        y = np.random.default_rng(5).normal(size=(6, 4)) + np.arange(6.0)[:, None] + [0.0, 3.0, -1.0, 5.0]
+        some = np.array([[0.5, 0.5, 0.0, 0.0], [0.0, 1 / 3, 1 / 3, 1 / 3]])
+        found, _ = seeds._shares(y, some)
+        for got, kept in zip(found, ([0, 1], [1, 2, 3])):
+            self.assertAlmostEqual(got, seeds._shares(y[:, kept], np.full((1, len(kept)), 1 / len(kept)))[0][0])
+
+    def test_what_is_drawn_without_a_seed_repeats(self):
+        y = np.random.default_rng(5).normal(size=(8, 4))
+        self.assertEqual(seeds.share(y), seeds.share(y, 0))
+        for function in (seeds.share, morris.effects, sobol.indices, surrogate.indices, hsic.dependence,
+                         main_effects.rank_effects, posterior.sample, posterior.check_points, calibration.uncertainty):
+            self.assertEqual(inspect.signature(function).parameters["seed"].default, 0, function)
 
     def test_contrasts_leave_out_what_seeds_share(self):
         found = seeds.contrasts(4, 7)
@@ -402,7 +425,9 @@ class Sobol(unittest.TestCase):
         np.testing.assert_allclose(found.seed_part, expected, rtol=0.1)
         self.assertTrue((found.from_seeds > expected).all() and (found.from_seeds < 1.3 * expected).all())
         self.assertEqual(found.seed_share.points, 1024)  # A and B
-        self.assertTrue(np.isnan(sobol.indices(clean, resamples=20).seed_part).all())
+        one = sobol.indices(clean, resamples=20)
+        np.testing.assert_array_equal(one.seed_part, [np.nan] * 3)
+        np.testing.assert_array_equal(one.from_seeds, [np.nan] * 3)
 
     def test_design(self):
         rows = sobol.design(3, 16, 2)
@@ -647,6 +672,17 @@ class Judged(unittest.TestCase):
         self.assertEqual((kriging.degree, kriging.terms, kriging.kind), (0, 0, "kriging"))
         np.testing.assert_allclose(kriging.predict(u), x[:, 0], atol=1e-3)
 
+    def test_three_degrees_without_gain_are_the_last(self):
+        import openturns
+        u = sampling.sobol_sequence(64, 2, 3)
+        with mock.patch.object(openturns, "FunctionalChaosAlgorithm", wraps=openturns.FunctionalChaosAlgorithm) as made:
+            degree = surrogate.fit(u, u[:, 0] + np.random.default_rng(2).normal(size=64)).degree
+            self.assertLess(degree, 5)
+            self.assertEqual(made.call_count, degree + 3)
+            made.reset_mock()
+            surrogate.fit(u, u[:, 0] + u[:, 1] ** 2, most_degree=3)
+            self.assertEqual(made.call_count, 3)
+
     def test_kriging_does_not_ask_for_the_unit_of_small_numbers(self):
         u = sampling.sobol_sequence(40, 2, 3)
         y = np.sin(3.0 * u[:, 0]) + u[:, 1]
@@ -680,6 +716,17 @@ class Dependence(unittest.TestCase):
         self.assertEqual(found.points, 20)
         self.assertAlmostEqual(found.r2[0], 1.0, delta=1e-9)
         np.testing.assert_allclose(found.r2_high - found.r2, found.r2 - found.r2_low)
+
+    def test_of_twenty_points_each_is_a_group(self):
+        """The interval is Student's of 19 degrees about the jackknife that leaves out one point after the other."""
+        import openturns
+        u = np.random.default_rng(3).random((20, 2))
+        y = u[:, 0] + 0.3 * u[:, 1] ** 2
+        found = hsic.dependence(u, y, permutations=2)
+        without = np.array([np.array(hsic._estimator(openturns, np.delete(u, i, axis=0), np.delete(y, i))
+                                     .getR2HSICIndices()) for i in range(20)])
+        half = t.ppf(0.975, 19) * np.sqrt(19.0 * without.var(axis=0))
+        np.testing.assert_allclose(found.r2_high - found.r2, half)
 
     def test_intervals_are_a_jackknife_over_groups(self):
         """The error of a mean of groups is known: so must be that of the index of many points."""
@@ -793,6 +840,17 @@ class MainEffects(unittest.TestCase):
             ratio = np.abs(found.coefficient / found.standard_error)[0]
             by_points = (found.coefficient_low * found.coefficient_high > 0.0)[0]
             self.assertEqual(found.told_from_seeds[0], bool(by_points and ratio > 4.3027), scatter)
+
+    def test_a_point_that_misses_a_seed_drops_out(self):
+        u = sampling.latin_hypercube(20, 2, 3)
+        y = u @ np.array([[1.0, 1.1, 0.9], [0.5, 0.6, 0.4]])
+        y[3, 1] = np.nan
+        found = main_effects.rank_effects(u, y, resamples=10)
+        kept = main_effects.rank_effects(np.delete(u, 3, axis=0), np.delete(y, 3, axis=0), resamples=10)
+        self.assertEqual(found.points, 19)
+        np.testing.assert_array_equal(found.coefficient, kept.coefficient)
+        with_gap = main_effects.curve(u[:, 0], y)
+        self.assertEqual(with_gap.count.sum(), 19)
 
     def test_few_points_are_enough(self):
         u = sampling.latin_hypercube(4, 2, 3)
@@ -1185,6 +1243,8 @@ class Posterior(unittest.TestCase):
         np.testing.assert_allclose(found.standardised, [[2.0], [-8.0], [np.nan]])
         np.testing.assert_allclose(found.rms, np.sqrt(34.0))
         self.assertEqual((found.within_two.tolist(), found.points.tolist()), ([0.5], [2]))
+        near = posterior.check(np.zeros((4, 1)), np.array([-2.0, 2.0, 2.1, -2.1]).reshape(4, 1, 1), np.ones(1))
+        self.assertEqual(near.within_two.tolist(), [0.5])
 
     def test_check(self):
         points = posterior.check_points(self.found, 8, 3)

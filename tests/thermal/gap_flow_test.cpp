@@ -240,7 +240,7 @@ TEST(GapFlow, TheNodeAcrossBoundsATemperature) {
 TEST(GapFlow, ARowIsBoundedByItsSteepestContact) {
   constexpr double width = 1e-4;
   const auto bounds = [&](const GapHeat& law, double coldest, double left, double right) {
-    Gaps g(pair(), law);
+    Gaps g(pair(), law, {15.0, 1000.0});
     g.set({1.0, width});
     std::vector<double> rows(static_cast<std::size_t>(g.nodes.count()), 7.0);
     g.gaps.add_row_bound(coldest, g.sides(0.01, left, right), rows);
@@ -328,6 +328,7 @@ TEST(GapFlow, EndsOfRangesAreAllowed) {
     return message([&] { Gaps(pair(), l); });
   };
   EXPECT_EQ(law([](GapHeat& l) { l.bridges = 0.0; }), kNone);
+  EXPECT_EQ(law([](GapHeat& l) { l.split_below = 0.5; }), kNone);
   EXPECT_EQ(law([](GapHeat& l) { l.emissivity = 1.0; }), kNone);
   EXPECT_EQ(law([](GapHeat& l) { l.emissivity = 0.0; }), kNone);
   expect_in("bridges", law([&](GapHeat& l) { l.bridges = infinite; }));
