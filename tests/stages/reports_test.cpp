@@ -251,6 +251,16 @@ TEST(ExchangeReports, HeatingTakesItsTime) {
   EXPECT_EQ(nothing.run.outcome(), Outcome::completed);
 }
 
+// Promise: heating ends at just its temperature, though its increments are no sums of powers of two.
+TEST(ExchangeReports, HeatingEndsAtJustItsTemperature) {
+  const Finished r(with(deck(kUniform + kSettle + heat("21 degC") + heat("20 degC")),
+                        "exchange_increment = \"5 K\"", "exchange_increment = \"0.1 K\""));
+  EXPECT_EQ(r.end_of(1, "temperature_degC"), 21.0);
+  EXPECT_EQ(r.result(1, "exchanges"), 10.0);
+  EXPECT_EQ(r.end_of(2, "temperature_degC"), 20.0);
+  EXPECT_EQ(r.result(2, "exchanges"), 10.0);
+}
+
 // Promise: what is left of the way is told while it goes on.
 TEST(ExchangeReports, ProgressIsTheShareOfTheWay) {
   Trial trial(deck(kUniform + kSettle + heat("40 degC")));
@@ -539,6 +549,7 @@ TEST(CompressReports, SaysThatThePlatenComes) {
 struct Told {
   std::vector<std::vector<std::optional<double>>> rows;
   std::vector<bool> frames;
+  std::vector<double> progress;
   std::vector<std::string> lines;
   bool operator==(const Told&) const = default;
 };
@@ -551,6 +562,7 @@ Told tell(Trial& trial, std::size_t from) {
     if (look++ < from) continue;
     told.rows.push_back(trial.run.history().row(trial.run.history().row_count() - 1));
     told.frames.push_back(trial.run.frame_is_due());
+    told.progress.push_back(trial.run.progress());
   }
   for (std::size_t i = 0; i < trial.run.stages().size(); ++i) {
     const StageRecord& record = trial.run.records()[i];
@@ -577,6 +589,14 @@ TEST(States, EachStageGoesOnFromAnyLook) {
   const std::string loaded_again =
       free_deck(kUniform + drive("duration = \"10 ms\"\nlook_interval = \"1 ms\"", first_loads) +
                 drive("duration = \"20 ms\"\nlook_interval = \"1 ms\"", other_loads));
+  // heat alone, twice, so that neither the time nor the frames of the second one begin at 0
+  const std::string conducts =
+      "[[stages]]\nkind = \"conduct\"\nduration = \"100 s\"\ninterval = \"15 s\"\n"
+      "[[stages]]\nkind = \"conduct\"\nduration = \"170 s\"\ninterval = \"20 s\"\nsteady_rate = \"1e-9 "
+      "K/s\"\n";
+  std::string walls = with(shipped_case("thermal_wall"), "count = 2000", "count = 100");
+  const auto of_stage = walls.find("[[stages]]"), of_probes = walls.find("[[probes]]");
+  walls = with(walls.substr(0, of_stage) + conducts + walls.substr(of_probes), "\"15 min\"", "\"35 s\"");
   const std::vector<std::string> texts{
       deck(kUniform + kSettle + load("stress = \"1 MPa\"") + kCompress + fast + "to_stress = \"0 MPa\"\n"),
       with(with(deck(kUniform + kSettle + load("stress = \"1 MPa\"") + heat("62 degC") +
@@ -589,23 +609,28 @@ TEST(States, EachStageGoesOnFromAnyLook) {
       deck(kUniform + kSettle + fast + "stop_strain = 0.0024\n"),
       with(with(deck(kSettle + kExpose + kHeatedFace), "most_cycles = 5000", "most_cycles = 60"),
            "frame_strain = 1e-3", "frame_strain = 1e-3\nframe_interval = \"100 s\""),
-      loaded_again};
+      loaded_again,
+      walls};
   for (std::size_t t = 0; t < texts.size(); ++t) {
     const std::size_t looks = [&] {
       Trial counted(texts[t]);
       counted.run.run();
       return counted.run.history().row_count();
     }();
+    Trial straight(texts[t]), in_pieces(texts[t]);
+    in_pieces.run.limit_batch(7);
+    EXPECT_EQ(tell(in_pieces, 0), tell(straight, 0)) << t << ": where batches end changes no result";
     for (const double share : {0.3, 0.55, 0.9}) {
       const auto stop = static_cast<std::size_t>(share * static_cast<double>(looks));
-      Trial straight(texts[t]), first(texts[t]), second(texts[t]);
+      Trial again(texts[t]), first(texts[t]), second(texts[t]);
       while (first.run.history().row_count() < stop) first.run.next();
       StateCopy copy;
       copy.take([&](StateVisitor& visitor) { first.run.visit_state(visitor); });
       copy.put([&](StateVisitor& visitor) { second.run.visit_state(visitor); });
-      const Told expected = tell(straight, stop), told = tell(second, stop);
+      const Told expected = tell(again, stop), told = tell(second, stop);
       EXPECT_EQ(told.rows, expected.rows) << t << ", look " << stop << " of " << looks;
       EXPECT_EQ(told.frames, expected.frames) << t << ", look " << stop << " of " << looks;
+      EXPECT_EQ(told.progress, expected.progress) << t << ", look " << stop << " of " << looks;
       EXPECT_EQ(told.lines, expected.lines) << t << ", look " << stop << " of " << looks;
     }
   }
