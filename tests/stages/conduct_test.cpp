@@ -90,6 +90,19 @@ TEST(Conduct, ABodyCoolsBelowTheReferenceTemperature) {
   }
 }
 
+// Promise: a body without any flow is steady only for who asks for a steady state.
+TEST(Conduct, WhoAsksForNoSteadyStateGetsNone) {
+  HeatConditions heat = heat_conditions({on("left", convection(25.0, Curve::constant(20.0)))});
+  heat.initial = 20.0;
+  Conducted c(heat, {.duration = 100.0, .interval = 40.0}, 30);
+  c.go_on();
+  EXPECT_EQ(c.run.outcome(), Outcome::completed);
+  EXPECT_EQ(c.looks, (std::vector<double>{0.0, 40.0, 80.0, 100.0}));
+  Conducted steady(heat, {.duration = 100.0, .interval = 40.0, .steady_rate = 1e-9}, 30);
+  steady.go_on();
+  EXPECT_EQ(steady.run.outcome(), Outcome::steady);
+}
+
 TEST(Conduct, StopsAfterALookWhenAskedTo) {
   const HeatConditions heat = fire_from_the_left();
   Conducted c(heat, {.duration = 250.0, .change = 10.0});

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "known.hpp"
@@ -198,6 +199,49 @@ TEST(Control, TheStrengthLiesBetweenTheLoadAndTheLoadWithThePair) {
     const double exact = kStrength * kDepth, with_pair = number("largest_load_with_control_N");
     EXPECT_GT(with_pair, 0.998 * exact) << rate;
     EXPECT_LT(with_pair / (1.0 + number("control_error_of_largest_load")), 1.002 * exact) << rate;
+  }
+}
+
+// Promise: the report tells how much of the test was the pair's, by its own columns, and warns from 5 % on.
+TEST(Control, TheReportTellsThePairsPart) {
+  constexpr double kForces = 100e3;  // of the stage, at a factor of 1
+  for (const char* rate : {"0.04 mm/s", "0.15 mm/s", "0.4 mm/s", "2 mm/s"}) {
+    pyroclast::Setup setup = pyroclast::read(bar(rate));
+    const auto simulation = make_simulation(setup, grid(kLength, kDepth, 20, 1));
+    pyroclast::Run run(*simulation, std::move(setup.stages));
+    run.run();
+    const RowRange rows = run.records()[0].rows;
+    const StageReport report = run.stages()[0]->report(run.history(), rows, Outcome::completed);
+    const auto number = [&](const std::string& name) {
+      return std::get<double>(std::ranges::find(report.results, name, &Result::name)->value);
+    };
+    const auto factor = run.history().values("load_factor", rows),
+               pair = run.history().values("control_force_N", rows),
+               stretch = run.history().values("stretch_m", rows);
+    double largest_factor = 0.0, largest_pair = 0.0, work = 0.0;
+    for (std::size_t i = 0; i < factor.size(); ++i) {
+      largest_factor = std::max(largest_factor, std::abs(factor[i]));
+      largest_pair = std::max(largest_pair, std::abs(pair[i]));
+      if (i > 0) work += 0.5 * (pair[i] + pair[i - 1]) * (stretch[i] - stretch[i - 1]);
+    }
+    const double peak = number("largest_load_factor") * kForces,
+                 with_pair = number("largest_load_with_control_N");
+    EXPECT_GE(number("largest_load_factor"), largest_factor);
+    EXPECT_NEAR(number("largest_load_factor"), largest_factor, 0.01 * largest_factor);
+    EXPECT_NEAR(number("control_force_over_peak") * peak, largest_pair, 1e-9 * largest_pair);
+    EXPECT_GE(with_pair, peak);
+    EXPECT_NEAR(number("control_error_of_largest_load"), with_pair / peak - 1.0, 1e-12);
+    const double of_work = number("control_work_over_loading_work");
+    EXPECT_NEAR(of_work * number("loading_work_J"), std::abs(work), 0.1 * std::abs(work) + 1e-3);
+    ASSERT_EQ(report.lines.size(), 1U);
+    EXPECT_EQ(
+        report.lines[0],
+        fmt::format("control of stretch: the largest load is {:.4g} N, and {:.4g} N with what the pair bore "
+                    "beside it ({:+.2g} %); the pair bore up to {:.2g} % of it, and did {:.2g} % of the work",
+                    peak, with_pair, 100.0 * number("control_error_of_largest_load"),
+                    100.0 * number("control_force_over_peak"), 100.0 * of_work));
+    const bool is_much = std::max(number("control_error_of_largest_load"), of_work) > 0.05;
+    EXPECT_EQ(report.warnings.size(), is_much ? 1U : 0U) << rate;
   }
 }
 

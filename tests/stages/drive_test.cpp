@@ -1,6 +1,7 @@
 #include "pyroclast/stages/drive.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -279,6 +280,35 @@ TEST(Drive, ARecordWithTheNameOfAnotherColumnIsRefused) {
                               drive("duration = \"1 ms\"", kHeld)))
                 .find("two columns \"temperature_degC\""),
             std::string::npos);
+}
+
+// Promise: a fall is that of a peak once it has lasted for a tenth of the time for which the body was driven.
+TEST(Drive, APeakLastsForATenthOfTheTimeToIt) {
+  const auto run = [&](double duration) {
+    return Finished(free_deck(
+        kUniform + kCorner + kRecords +
+        drive(fmt::format("duration = \"{:.6g} s\"\nlook_interval = \"0.2 ms\"", duration),
+              kHeld + does("right", "velocity = \"0.4 mm/s\"\ndirection = \"x\"\nramp_time = \"1 ms\""))));
+  };
+  const Finished whole = run(0.1);
+  const double peak = whole.result(0, "peak_grip_N").value(),
+               time = whole.result(0, "peak_grip_time_s").value();
+  const auto rows = whole.run.records()[0].rows;
+  const auto grip = whole.run.history().values("grip_N", rows),
+             at = whole.run.history().values("time_s", rows);
+  const auto fallen =
+      std::ranges::find_if(grip, [&](double g) { return std::abs(g) > 0.99 * std::abs(peak); });
+  const auto below =
+      std::find_if(fallen, grip.end(), [&](double g) { return std::abs(g) < 0.8 * std::abs(peak); });
+  ASSERT_NE(below, grip.end());
+  const double later = at[static_cast<std::size_t>(below - grip.begin())] + 1e-3;
+  ASSERT_GT(later, 1.12 * time);
+  const Finished beyond = run(later), short_of_it = run(1.08 * time);
+  ASSERT_GT(std::abs(beyond.last("grip_N")), 0.55 * std::abs(peak));  // no collapse
+  EXPECT_EQ(beyond.result(0, "peak_grip_N"), peak);
+  EXPECT_EQ(beyond.result(0, "peak_grip_time_s"), time);
+  EXPECT_FALSE(short_of_it.result(0, "peak_grip_N"));
+  EXPECT_EQ(short_of_it.result(0, "largest_grip_N"), peak);
 }
 
 TEST(Drive, ResultsThatCannotBeMadeAreRefused) {

@@ -4,6 +4,7 @@ Run from this folder, without the compiled part of the package:
     PYTHONPATH=../../python python3 -m unittest test_methods
 """
 
+import inspect
 import subprocess
 import sys
 import unittest
@@ -11,7 +12,7 @@ from itertools import combinations
 from unittest import mock
 
 import numpy as np
-from scipy.stats import spearmanr, t
+from scipy.stats import chi2, norm, spearmanr, t
 
 from pyroclast.errors import Error
 from pyroclast.study.methods import (calibration, ensemble, hsic, main_effects, morris, posterior, sampling, seeds,
@@ -77,6 +78,41 @@ class Sampling(unittest.TestCase):
         with self.assertRaises(Error):
             sampling.grid([3, 0])
 
+    def test_shares_have_their_middles(self):
+        np.testing.assert_allclose(sampling.in_shares(np.array([0.0, 0.24, 0.25, 0.6, 0.99, 1.0]), 4),
+                                   [0.125, 0.125, 0.375, 0.625, 0.875, 0.875])
+        np.testing.assert_allclose(sampling.grid([1, 2], ends=False), [[0.5, 0.25], [0.5, 0.75]])
+        self.assertEqual(len(sampling.grid([1, 1])), 1)
+
+    def test_the_best_of_many_latin_hypercubes_is_even(self):
+        from scipy.stats import qmc
+        found = qmc.discrepancy(sampling.latin_hypercube(20, 2, 3))
+        others = [qmc.discrepancy(qmc.LatinHypercube(2, seed=seed).random(20)) for seed in range(100)]
+        self.assertLess(found, np.percentile(others, 10))
+
+    def test_points_of_the_sequence_are_no_ends(self):
+        points = sampling.sobol_sequence(100, 2, 1, first=7)  # no power of two, and no warning
+        self.assertTrue((points > 0.0).all() and (points < 1.0).all())
+        from scipy.stats import qmc
+        own = qmc.Sobol(2, scramble=True, bits=30, seed=np.random.default_rng(1)).random(128)
+        np.testing.assert_array_equal(np.floor(sampling.sobol_sequence(128, 2, 1) * 2.0**30), own * 2.0**30)
+        # to 30 bits, each in the middle of its place
+        np.testing.assert_array_equal(np.mod(points * 2.0**31, 2.0), 1.0)
+
+    def test_rank_correlations_need_their_form(self):
+        u = np.full((5, 2), 0.5)
+        for wrong in ([[1.0, 0.2]], [[1.0, 0.2], [0.2, 0.9]], [[1.0, 0.2], [0.3, 1.0]], np.eye(3)):
+            with self.assertRaisesRegex(Error, "of 2 parameters: a symmetric matrix with ones on its diagonal"):
+                sampling.correlated(u, wrong)
+        points = sampling.sobol_sequence(64, 2, 1)
+        moved = sampling.correlated(points, [[1.0, 0.5], [0.5, 1.0]])
+        np.testing.assert_array_equal(moved[:, 0], points[:, 0])
+        self.assertFalse(np.array_equal(np.sort(moved[:, 1]), np.sort(points[:, 1])))
+        # a Gaussian copula: of independent normal scores a and b, r a + sqrt(1 - r^2) b
+        r = 2.0 * np.sin(np.pi * 0.5 / 6.0)
+        a, b = norm.ppf(points.T)
+        np.testing.assert_allclose(moved[:, 1], norm.cdf(r * a + np.sqrt(1.0 - r**2) * b), atol=1e-12)
+
     def test_latin_hypercube_has_one_point_in_each_class(self):
         points = sampling.latin_hypercube(17, 3, 5)
         np.testing.assert_array_equal(np.sort(np.floor(17 * points), axis=0), np.tile(np.arange(17.0)[:, None], 3))
@@ -133,7 +169,119 @@ class SeedShare(unittest.TestCase):
         self.assertTrue(np.isnan([two.single_low, two.single_high, two.mean_low, two.mean_high]).all())
 
 
+class Seeds(unittest.TestCase):
+    """What stands behind every statement about noise, by hand."""
+
+    def test_shares_by_hand(self):
+        # Two points whose means are 0 and 4, three seeds that add -1, 0, 1: of them the variance between is 1, that of
+        # the points 8; nothing is left over.
+        y = np.array([[-1.0, 0.0, 1.0], [3.0, 4.0, 5.0]])
+        share = seeds.share(y, resamples=50)
+        self.assertAlmostEqual(share.single, 1.0 / 9.0)
+        self.assertAlmostEqual(share.mean, (1.0 / 3.0) / (1.0 / 3.0 + 8.0))
+        self.assertEqual((share.points, share.seeds), (2, 3))
+        self.assertAlmostEqual(seeds.rest_variance(y), 0.0)
+        # A rest of +-1 that is no seed's and no point's: 4 squares over one degree of freedom. It moves the points'
+        # means by nothing here, so that their own variance is what is left of 8 without its third.
+        rest = np.array([[1.0, -1.0], [-1.0, 1.0]])
+        self.assertAlmostEqual(seeds.rest_variance(rest), 4.0)
+        y = np.array([[0.0, 0.0], [4.0, 4.0]]) + rest
+        share = seeds.share(y)
+        self.assertAlmostEqual(share.single, 2.0 / (2.0 + 8.0 - 0.5 * 4.0))
+        self.assertAlmostEqual(share.mean, 1.0 / (1.0 + 8.0 - 0.5 * 4.0))
+
+    def test_what_is_missing_or_too_few(self):
+        y = np.array([[-1.0, 0.0, 1.0], [3.0, 4.0, 5.0], [np.nan, 100.0, 7.0]])
+        self.assertEqual(seeds.share(y, resamples=50), seeds.share(y[:2], resamples=50))
+        self.assertAlmostEqual(seeds.rest_variance(y), 0.0)
+        for few in (y[:1], y[:2, :1]):
+            share = seeds.share(few)
+            self.assertTrue(np.isnan([share.single, share.single_low, share.single_high, share.mean, share.mean_low,
+                                      share.mean_high]).all())
+            self.assertEqual((share.points, share.seeds), few.shape)
+            self.assertTrue(np.isnan(seeds.rest_variance(few)))
+        np.testing.assert_array_equal(np.isnan(seeds.over_seeds(y)), [False, False, True])
+
+    def test_intervals_hold_their_share_of_what_was_resampled(self):
+        even = np.arange(1001.0)[:, None] * [1.0, -1.0]
+        low, high = seeds.interval(even, 10**9)
+        np.testing.assert_allclose(low, [25.0, -975.0], atol=0.01)
+        np.testing.assert_allclose(high, [975.0, -25.0], atol=0.01)
+        low, high = seeds.interval(even, 1)
+        np.testing.assert_array_equal((low[0], high[0]), (0.0, 1000.0))
+        # of two: Student's t of one degree is 12.71, times the root of 2, of which a normal has all
+        self.assertAlmostEqual(seeds.level(2), 1.0)
+        self.assertAlmostEqual(seeds.level(5), 0.99809, 4)  # 2.776 times the root of 5/4
+
+    def test_a_resample_of_some_seeds_is_the_share_of_these(self):
+        """A seed that a resample does not have does not count, and one that it has twice is free of bias."""
+        y = np.random.default_rng(5).normal(size=(6, 4)) + np.arange(6.0)[:, None] + [0.0, 3.0, -1.0, 5.0]
+        some = np.array([[0.5, 0.5, 0.0, 0.0], [0.0, 1 / 3, 1 / 3, 1 / 3]])
+        found, _ = seeds._shares(y, some)
+        for got, kept in zip(found, ([0, 1], [1, 2, 3])):
+            self.assertAlmostEqual(got, seeds._shares(y[:, kept], np.full((1, len(kept)), 1 / len(kept)))[0][0])
+
+    def test_what_is_drawn_without_a_seed_repeats(self):
+        y = np.random.default_rng(5).normal(size=(8, 4))
+        self.assertEqual(seeds.share(y), seeds.share(y, 0))
+        for function in (seeds.share, morris.effects, sobol.indices, surrogate.indices, hsic.dependence,
+                         main_effects.rank_effects, posterior.sample, posterior.check_points, calibration.uncertainty):
+            self.assertEqual(inspect.signature(function).parameters["seed"].default, 0, function)
+
+    def test_contrasts_leave_out_what_seeds_share(self):
+        found = seeds.contrasts(4, 7)
+        self.assertEqual(found.shape, (4, 1000))
+        np.testing.assert_allclose(found.sum(axis=0), 0.0, atol=1e-12)
+        np.testing.assert_allclose((found**2).sum(axis=0), 0.25)  # as long as the mean of four
+        np.testing.assert_allclose(found.mean(axis=1), 0.0, atol=0.05)  # no seed is preferred
+        np.testing.assert_array_equal(found, seeds.contrasts(4, 7))
+        self.assertFalse(np.array_equal(found, seeds.contrasts(4, 8)))
+
+    def test_what_seeds_alone_give_is_a_quantile(self):
+        """Of a single output with three seeds: the mixtures lie on a circle, so that their sizes follow a cosine."""
+        y = np.array([[1.0, 0.0, -1.0], [2.0, 0.0, -2.0]])
+        found = seeds.alone(np.abs, y, 1)
+        # length of (1, 0, -1) times that of the mixtures, 1/sqrt(3), times cos(0.05 pi/2)
+        expected = np.sqrt(2.0 / 3.0) * np.cos(0.025 * np.pi)
+        np.testing.assert_allclose(found, [expected, 2.0 * expected], rtol=0.005)
+        few = seeds.alone(np.abs, y[:, :2], 1)
+        self.assertEqual(few.shape, (2,))
+        self.assertTrue(np.isnan(few).all())
+
+    def test_two_seeds_tell_nothing_and_three_do(self):
+        told = np.array([True, False])
+        self.assertEqual(seeds.told(told, 2).tolist(), [None, None])
+        self.assertEqual(seeds.told(told, 3).tolist(), [True, False])
+
+
 class Morris(unittest.TestCase):
+    def test_by_hand(self):
+        """Two trajectories, one parameter, two seeds: effects 2 and -1 of the means, over a step of 1."""
+        design = np.array([[[0.0], [1.0]], [[1.0], [0.0]]])
+        y = np.array([[[0.0, 0.0], [1.0, 3.0]], [[0.0, 0.0], [0.0, 2.0]]])
+        found = morris.effects(design, y, resamples=20)
+        np.testing.assert_allclose(found.elementary, [[2.0], [-1.0]])
+        np.testing.assert_allclose(found.mu, 0.5)
+        np.testing.assert_allclose(found.mu_star, 1.5)
+        np.testing.assert_allclose(found.sigma, np.sqrt(4.5))
+        # between seeds each step varies by 2; of the mean of two seeds half of that
+        np.testing.assert_allclose(found.standard_error, 1.0)
+        self.assertEqual((found.used.tolist(), found.planned), ([2], 2))
+        np.testing.assert_allclose([found.mu_star_low, found.mu_star_high], [[1.0], [2.0]])
+        one = morris.effects(design, y[..., :1], resamples=20)
+        self.assertTrue(np.isnan(one.standard_error).all())
+
+    def test_two_levels_are_the_fewest(self):
+        self.assertEqual(np.unique(morris.design(3, 5, 2, 1)).tolist(), [0.0, 1.0])
+        for levels in (0, 1, 3):
+            with self.assertRaisesRegex(Error, f"{levels} levels"):
+                morris.design(3, 5, levels, 1)
+        # the step is levels/(2 (levels - 1)), up as often as down
+        moves = np.diff(morris.design(4, 200, 4, 1), axis=1)
+        moves = moves[moves != 0.0]
+        np.testing.assert_allclose(np.abs(moves), 2.0 / 3.0)
+        self.assertAlmostEqual((moves > 0.0).mean(), 0.5, delta=0.06)
+
     def test_design(self):
         design = morris.design(5, 30, 6, 4)
         moves = np.diff(design, axis=1)
@@ -257,6 +405,30 @@ class Morris(unittest.TestCase):
 
 
 class Sobol(unittest.TestCase):
+    def test_limits(self):
+        y = ishigami(sobol.design(3, 100, 1))[..., None]
+        y[:5, 0] = np.nan  # just what may be lost
+        self.assertEqual(sobol.indices(y, resamples=20).rows, 95)
+        y[5, 0] = np.nan
+        with self.assertRaisesRegex(Error, "6.0% of the rows miss a value: no indices above 5%"):
+            sobol.indices(y, resamples=20)
+        y[1:] = np.nan
+        with self.assertRaisesRegex(Error, "at least two complete rows"):
+            sobol.indices(y, allow_missing=True)
+
+    def test_what_seeds_add_to_a_total_index(self):
+        """Each run has noise of its own, of variance 0.09 of single runs: Jansen's numerator is half of twice that."""
+        clean = ishigami(sobol.design(3, 512, 1))[..., None]
+        y = clean + np.random.default_rng(3).normal(0.0, 0.3, (512, 5, 4))
+        found = sobol.indices(y, resamples=20)
+        expected = 0.09 / 4 / y[:, 0].mean(axis=1).var()
+        np.testing.assert_allclose(found.seed_part, expected, rtol=0.1)
+        self.assertTrue((found.from_seeds > expected).all() and (found.from_seeds < 1.3 * expected).all())
+        self.assertEqual(found.seed_share.points, 1024)  # A and B
+        one = sobol.indices(clean, resamples=20)
+        np.testing.assert_array_equal(one.seed_part, [np.nan] * 3)
+        np.testing.assert_array_equal(one.from_seeds, [np.nan] * 3)
+
     def test_design(self):
         rows = sobol.design(3, 16, 2)
         self.assertEqual(rows.shape, (16, 5, 3))
@@ -447,7 +619,127 @@ class Surrogates(unittest.TestCase):
         self.assertEqual(surrogate.fit(self.u, y, most_degree=2).lost, 1)
 
 
+class Judged(unittest.TestCase):
+    """By what a surrogate is judged, by hand."""
+
+    def test_bounds(self):
+        def of(q2, own_q2):
+            return surrogate.Validation(q2=q2, own_q2=own_q2, error=1.0, own_error=1.0, points=30)
+
+        of(0.5, 0.9).require()
+        for q2, own_q2, words in ((0.5, 0.899, "0.899 on 30 points.*below 0.9"), (0.499, 0.9, "0.499 on 30.*takes 0.5"),
+                                  (0.9, float("nan"), "nan"), (float("nan"), 0.9, "nan")):
+            with self.assertRaisesRegex(Error, words):
+                of(q2, own_q2).require()
+
+    def test_shares_of_an_expansion(self):
+        # 5 + 3 a + 2 b + 1 ab: 9, 4 and 1 of 14
+        degrees = np.array([[0, 0], [1, 0], [0, 2], [1, 1]])
+        first, total = surrogate._shares(degrees, np.array([5.0, -3.0, 2.0, 1.0]))
+        np.testing.assert_allclose(first, [9 / 14, 4 / 14])
+        np.testing.assert_allclose(total, [10 / 14, 5 / 14])
+
+    def test_q2(self):
+        self.assertEqual(surrogate._q2(1.0, 4.0), 0.75)
+        self.assertEqual(surrogate._q2(0.0, 0.0), -np.inf)
+        self.assertEqual(surrogate._q2(0.0, -1.0), -np.inf)
+        self.assertEqual(surrogate._q2(0.25, 0.5), 0.5)
+
+    def test_complete_points_and_their_noise(self):
+        u = np.arange(8.0).reshape(4, 2)
+        y = np.array([[1.0, 3.0], [np.nan, 1.0], [3.0, 1.0], [2.0, 2.0]])
+        kept, means, noise, lost = surrogate._complete(u, y)
+        np.testing.assert_array_equal(kept, u[[0, 2, 3]])
+        np.testing.assert_array_equal(means, [2.0, 2.0, 2.0])
+        self.assertAlmostEqual(noise, seeds.rest_variance(y) / 2.0)
+        self.assertAlmostEqual(noise, 1.0)  # of 4/2 in single runs
+        self.assertEqual(lost, 1)
+        kept, means, noise, lost = surrogate._complete(u, y[:, 1])
+        self.assertEqual((len(kept), noise, lost), (4, 0.0, 0))
+
+    def test_a_degree_is_found_and_few_points_are_refused(self):
+        u = sampling.sobol_sequence(64, 2, 3)
+        x = 2.0 * u - 1.0
+        cubic = surrogate.fit(u, x[:, 0] ** 3 + x[:, 1])
+        self.assertEqual(cubic.degree, 3)
+        self.assertEqual((cubic.lost, cubic.kind), (0, "chaos"))
+        np.testing.assert_allclose(cubic.predict(u), x[:, 0] ** 3 + x[:, 1], atol=1e-9)
+        self.assertEqual(surrogate.fit(u, x[:, 0] ** 3, most_degree=2).degree <= 2, True)
+        with self.assertRaisesRegex(Error, "3 complete points: a surrogate in 2 parameters needs at least 4"):
+            surrogate.fit(u[:3], x[:3, 0])
+        self.assertEqual(len(surrogate.fit(u[:4], x[:4, 0], most_degree=1).u), 4)
+        kriging = surrogate.fit(u, x[:, 0], "kriging")
+        self.assertEqual((kriging.degree, kriging.terms, kriging.kind), (0, 0, "kriging"))
+        np.testing.assert_allclose(kriging.predict(u), x[:, 0], atol=1e-3)
+
+    def test_three_degrees_without_gain_are_the_last(self):
+        import openturns
+        u = sampling.sobol_sequence(64, 2, 3)
+        with mock.patch.object(openturns, "FunctionalChaosAlgorithm", wraps=openturns.FunctionalChaosAlgorithm) as made:
+            degree = surrogate.fit(u, u[:, 0] + np.random.default_rng(2).normal(size=64)).degree
+            self.assertLess(degree, 5)
+            self.assertEqual(made.call_count, degree + 3)
+            made.reset_mock()
+            surrogate.fit(u, u[:, 0] + u[:, 1] ** 2, most_degree=3)
+            self.assertEqual(made.call_count, 3)
+
+    def test_kriging_does_not_ask_for_the_unit_of_small_numbers(self):
+        u = sampling.sobol_sequence(40, 2, 3)
+        y = np.sin(3.0 * u[:, 0]) + u[:, 1]
+        held = sampling.sobol_sequence(20, 2, 4)
+        expected = surrogate.fit(u, y, "kriging").predict(held)
+        for unit in (1e-6, 1e-3, 1e3):
+            np.testing.assert_allclose(surrogate.fit(u, unit * y, "kriging").predict(held) / unit, expected, atol=0.005)
+
+    def test_thirty_points_are_enough(self):
+        u = sampling.sobol_sequence(64, 2, 3)
+        fitted = surrogate.fit(u, u[:, 0], most_degree=2)
+        held = sampling.sobol_sequence(30, 2, 4)
+        y = held[:, 0] + np.where(np.arange(30) % 2, 0.1, -0.1)
+        judged = surrogate.validate(fitted, held, y)
+        self.assertEqual(judged.points, 30)
+        self.assertAlmostEqual(judged.error, 0.1)
+        self.assertAlmostEqual(judged.q2, 1.0 - 0.01 / y.var())
+        with self.assertRaisesRegex(Error, "29 complete runs"):
+            surrogate.validate(fitted, held[:29], y[:29])
+
+
 class Dependence(unittest.TestCase):
+    def test_limits(self):
+        u = sampling.sobol_sequence(20, 2, 1)
+        with self.assertRaisesRegex(Error, "19 complete points"):
+            hsic.dependence(u[:19], u[:19, 0])
+        with self.assertRaisesRegex(Error, "does not vary"):
+            hsic.dependence(u, np.ones(20))
+        y = np.concatenate([u[:, 0], [np.nan]])
+        found = hsic.dependence(np.vstack([u, [[0.5, 0.5]]]), y, permutations=20)
+        self.assertEqual(found.points, 20)
+        self.assertAlmostEqual(found.r2[0], 1.0, delta=1e-9)
+        np.testing.assert_allclose(found.r2_high - found.r2, found.r2 - found.r2_low)
+
+    def test_of_twenty_points_each_is_a_group(self):
+        """The interval is Student's of 19 degrees about the jackknife that leaves out one point after the other."""
+        import openturns
+        u = np.random.default_rng(3).random((20, 2))
+        y = u[:, 0] + 0.3 * u[:, 1] ** 2
+        found = hsic.dependence(u, y, permutations=2)
+        without = np.array([np.array(hsic._estimator(openturns, np.delete(u, i, axis=0), np.delete(y, i))
+                                     .getR2HSICIndices()) for i in range(20)])
+        half = t.ppf(0.975, 19) * np.sqrt(19.0 * without.var(axis=0))
+        np.testing.assert_allclose(found.r2_high - found.r2, half)
+
+    def test_intervals_are_a_jackknife_over_groups(self):
+        """The error of a mean of groups is known: so must be that of the index of many points."""
+        repeats = []
+        for repeat in range(20):
+            random = np.random.default_rng(repeat)
+            u = random.random((60, 1))
+            repeats.append(hsic.dependence(u, u[:, 0] + random.normal(0.0, 0.4, 60), permutations=2))
+        spread = np.std([found.r2[0] for found in repeats], ddof=1)
+        half = np.mean([found.r2_high[0] - found.r2[0] for found in repeats])
+        self.assertGreater(half / spread, 1.4)  # 2.09 by Student's t
+        self.assertLess(half / spread, 3.0)
+
     def test_tells_what_matters_and_what_is_correlated_with_it(self):
         u = sampling.correlated(sampling.sobol_sequence(100, 3, 1), [[1, 0.8, 0], [0.8, 1, 0], [0, 0, 1]])
         found = hsic.dependence(u, np.cos(6.0 * u[:, 0])[:, None] * np.ones(2), permutations=200)
@@ -468,6 +760,20 @@ class Ensemble(unittest.TestCase):
         self.assertAlmostEqual(found.high - 6.0, 3.182 * sd / 2.0, places=3)
         self.assertAlmostEqual(found.relative_width, 3.182 * sd / 2.0 / 6.0, places=3)
         self.assertEqual(found.percentiles[50.0], 5.5)
+
+    def test_percentiles_and_level(self):
+        found = ensemble.summary(np.arange(11.0), level=0.9, percentiles=(10, 75))
+        self.assertEqual(dict(found.percentiles), {10.0: 1.0, 75.0: 7.5})
+        # Student's t of ten degrees, 90 %, from a table; s is the root of 11.
+        self.assertAlmostEqual(5.0 - found.low, 1.812, places=3)
+        self.assertAlmostEqual(found.high - 5.0, 1.812, places=3)
+        self.assertEqual(ensemble.summary([1.0, 3.0]).sd, np.sqrt(2.0))
+        self.assertEqual(ensemble.widest([found, ensemble.summary([4.9, 5.0, 5.1])]), found.relative_width)
+        around_nothing = ensemble.summary([-1.0, 1.0])
+        self.assertTrue(np.isnan(around_nothing.variation) and around_nothing.relative_width == np.inf)
+        below = ensemble.summary([-4.0, -6.0])
+        self.assertAlmostEqual(below.variation, np.sqrt(2.0) / 5.0)
+        self.assertGreater(below.relative_width, 0.0)
 
     def test_too_few(self):
         one = ensemble.summary([3.0])
@@ -494,6 +800,63 @@ class MainEffects(unittest.TestCase):
         curve = main_effects.curve(u[:, 0], y)
         self.assertEqual((len(curve.u), curve.count.sum(), curve.count.min()), (10, 61, 6))
         np.testing.assert_allclose(curve.mean, curve.u**2, atol=0.004)
+
+    def test_curve_of_few_values_and_of_classes(self):
+        # Three values, each anywhere in its share: classes of their own, in the middle.
+        curve = main_effects.curve(np.array([0.1, 0.3, 0.4, 0.5, 0.9]), np.array([1.0, 3.0, 5.0, 7.0, 9.0]), count=3)
+        np.testing.assert_allclose(curve.u, [1 / 6, 0.5, 5 / 6])
+        np.testing.assert_allclose(curve.mean, [2.0, 6.0, 9.0])
+        self.assertEqual(curve.count.tolist(), [2, 2, 1])
+        half = t.ppf(0.975, 1) * np.sqrt(2.0) / np.sqrt(2.0)
+        np.testing.assert_allclose(curve.high - curve.mean, [half, half, np.nan])
+        np.testing.assert_allclose(curve.mean - curve.low, [half, half, np.nan])
+        # Of continuous values five points make a class at the least, and most_classes at the most; a grid has its own.
+        even = np.linspace(0.0, 1.0, 24)
+        self.assertEqual(main_effects.curve(even, even).count.tolist(), [6, 6, 6, 6])
+        self.assertEqual(main_effects.curve(even, even, most_classes=3).count.tolist(), [8, 8, 8])
+        np.testing.assert_allclose(main_effects.curve(even[::-1], even, most_classes=2).mean, [17.5 / 23, 5.5 / 23])
+        self.assertEqual(len(main_effects.curve(np.arange(10.0) / 9, np.arange(10.0)).u), 10)
+        self.assertEqual(len(main_effects.curve(np.arange(11.0) / 10, np.arange(11.0)).u), 2)
+        self.assertEqual(len(main_effects.curve(np.arange(12.0) / 11, np.arange(12.0), count=12).u), 12)
+
+    def test_standard_error_is_the_jackknife_over_the_seeds(self):
+        """Two parameters in order; each seed adds to one of them: the coefficients follow by hand."""
+        u = sampling.latin_hypercube(30, 2, 3)
+        random = np.random.default_rng(2)
+        y = u @ [1.0, 0.5] + 0.3 * random.normal(size=(3, 30))
+        found = main_effects.rank_effects(u, y.T, resamples=50)
+        without = [main_effects.rank_effects(u, np.delete(y, s, axis=0).T, resamples=2).coefficient for s in range(3)]
+        np.testing.assert_allclose(found.standard_error, np.sqrt(2.0 / 3.0 * ((without - np.mean(without, axis=0)) ** 2)
+                                                                 .sum(axis=0)))
+        self.assertEqual(found.points, 30)
+        self.assertTrue(np.isnan(main_effects.rank_effects(u, y.T[:, :1], resamples=5).standard_error).all())
+
+    def test_told_takes_students_t_of_the_seeds(self):
+        """Of three seeds 4.30 standard errors are needed, though 2 would do for many."""
+        u = sampling.latin_hypercube(40, 1, 3)
+        for scatter in np.linspace(0.2, 6.0, 30):
+            pattern = np.random.default_rng(4).normal(size=(40, 3))
+            found = main_effects.rank_effects(u, u + scatter * pattern, resamples=100)
+            ratio = np.abs(found.coefficient / found.standard_error)[0]
+            by_points = (found.coefficient_low * found.coefficient_high > 0.0)[0]
+            self.assertEqual(found.told_from_seeds[0], bool(by_points and ratio > 4.3027), scatter)
+
+    def test_a_point_that_misses_a_seed_drops_out(self):
+        u = sampling.latin_hypercube(20, 2, 3)
+        y = u @ np.array([[1.0, 1.1, 0.9], [0.5, 0.6, 0.4]])
+        y[3, 1] = np.nan
+        found = main_effects.rank_effects(u, y, resamples=10)
+        kept = main_effects.rank_effects(np.delete(u, 3, axis=0), np.delete(y, 3, axis=0), resamples=10)
+        self.assertEqual(found.points, 19)
+        np.testing.assert_array_equal(found.coefficient, kept.coefficient)
+        with_gap = main_effects.curve(u[:, 0], y)
+        self.assertEqual(with_gap.count.sum(), 19)
+
+    def test_few_points_are_enough(self):
+        u = sampling.latin_hypercube(4, 2, 3)
+        self.assertEqual(main_effects.rank_effects(u, u[:, :1] * np.ones(3), resamples=5).points, 4)
+        with self.assertRaisesRegex(Error, "3 complete points: the rank regression on 2 parameters needs at least 4"):
+            main_effects.rank_effects(u[:3], u[:3, :1] * np.ones(3))
 
     def test_rank_effects(self):
         u = sampling.latin_hypercube(80, 3, 2)
@@ -575,7 +938,115 @@ class Misfit(unittest.TestCase):
             calibration.misfit_covariance([np.ones((1, 1))], targets)
 
 
+class NoiseLimit(unittest.TestCase):
+    def test_is_the_quantile_of_a_mean_of_squares(self):
+        """As many equal parts as outputs, whatever their size; one part that outweighs all others is one square."""
+        for size in (1e-3, 1.0, 1e3):
+            self.assertAlmostEqual(calibration._noise_limit(size * np.eye(3)), 7.8147 / 3.0, places=4)
+            self.assertAlmostEqual(calibration._noise_limit(size * np.diag([1.0, 0.0, 0.0])), 3.8415, places=4)
+        # 4 and 1: 25/17 degrees of freedom
+        self.assertAlmostEqual(calibration._noise_limit(np.diag([2.0, 0.5])),
+                               chi2.ppf(0.95, 25.0 / 17.0) / (25.0 / 17.0))
+        self.assertAlmostEqual(calibration._noise_limit(np.zeros((2, 2))), 3.8415, places=4)
+
+
+class LocalForm(unittest.TestCase):
+    def test_is_exact_for_what_it_has_terms_for(self):
+        u = sampling.sobol_sequence(40, 2, 3)
+        best = np.array([0.4, 0.6])
+        away = u - best
+        y = np.column_stack([1.0 + away @ [2.0, -3.0] + 5.0 * away[:, 0] * away[:, 1], 4.0 - away[:, 1] ** 2])
+        fit = calibration._local_form(best, u, y, 40)
+        np.testing.assert_allclose(fit.at_best, [1.0, 4.0], atol=1e-9)
+        np.testing.assert_allclose(fit.jacobian, [[2.0, -3.0], [0.0, 0.0]], atol=1e-8)
+        np.testing.assert_allclose(fit.scatter, 0.0, atol=1e-15)
+        self.assertEqual((fit.freedom, fit.points), (34, 40))
+        # twelve points have quadratic terms, eleven have none
+        self.assertEqual(calibration._local_form(best, u, y, 12).freedom, 6)
+        self.assertEqual(calibration._local_form(best, u, y, 11).freedom, 8)
+
+    def test_errors_are_those_of_noise(self):
+        """Of many draws, derivatives scatter as their errors say, and residuals as the noise."""
+        u = np.random.default_rng(1).random((60, 2))
+        best = np.full(2, 0.5)
+        fits = [calibration._local_form(best, u, np.random.default_rng(s).normal(0.0, [0.2, 0.5], (60, 2)), 60)
+                for s in range(300)]
+        spread = np.std([fit.jacobian for fit in fits], axis=0)
+        np.testing.assert_allclose(np.sqrt(np.mean([fit.error**2 for fit in fits], axis=0)), spread, rtol=0.12)
+        np.testing.assert_allclose(np.mean([np.diag(fit.scatter) for fit in fits], axis=0), [0.04, 0.25], rtol=0.05)
+
+    def test_weights_fall_to_the_farthest(self):
+        """(1 - (d/1.1 farthest)^3)^3, of three points on a line: a mean by these weights where all else is even."""
+        best, u = np.array([0.0]), np.array([[-0.5], [0.5], [-1.0], [1.0]])
+        y = np.array([[1.0], [1.0], [0.0], [0.0]])
+        near, far = (1.0 - (0.5 / 1.1) ** 3) ** 3, (1.0 - (1.0 / 1.1) ** 3) ** 3
+        fit = calibration._local_form(best, u, y, 4)
+        np.testing.assert_allclose(fit.at_best, near / (near + far))
+        np.testing.assert_allclose(fit.jacobian, 0.0, atol=1e-12)
+        self.assertEqual(calibration._local_form(best, u, y, 2).points, 2)
+
+
+class Finished(unittest.TestCase):
+    """When a search ends."""
+    settings = calibration.Settings(most_generations=5, least_sigma=0.01, least_gain=0.1, patience=2)
+
+    def why(self, misfits, sigma=0.5):
+        return calibration._why_finished(self.settings, [np.array(values) for values in misfits], np.array([sigma, 0.0]))
+
+    def test_short_steps(self):
+        self.assertIn("no step is longer than 0.01", self.why([], 0.01))
+        self.assertEqual(self.why([], 0.0101), "")
+
+    def test_no_gain(self):
+        self.assertEqual(self.why([[5.0, 9.0], [7.0]]), "", "not before it was patient")
+        self.assertIn("2 generations gained no more than 0.1", self.why([[5.0, 9.0], [7.0], [4.91, 6.0]]))
+        self.assertEqual(self.why([[5.0, 9.0], [7.0], [4.89, 6.0]]), "")
+        self.assertIn("gained no more", self.why([[5.0], [4.0], [7.0], [6.0]]))
+        self.assertEqual(self.why([[np.inf], [np.inf], [np.inf]]), "", "nothing feasible yet")
+        self.assertEqual(self.why([[np.inf], [np.inf], [3.0]]), "")
+
+    def test_generations(self):
+        self.assertEqual(self.why([[9.0], [7.0], [5.0], [3.0]]), "")
+        self.assertEqual(self.why([[9.0], [7.0], [5.0], [3.0], [1.0]]), "5 generations")
+
+
 class Calibration(unittest.TestCase):
+    def test_judged_by_hand(self):
+        """Misfits of points whose outputs are known; infeasible, failed and unknown ones beside them."""
+        targets = calibration.Targets(("a", "b"), np.array([1.0, 2.0]), np.array([0.5, 2.0]))
+        outcomes = [np.array([[1.0, 2.0], [2.0, 6.0]]), calibration.Infeasible(0.1), None,
+                    np.array([[1.0, np.nan], [1.0, 2.0]])]
+        found = calibration._misfits_of(outcomes, targets, np.diag([0.25, 4.0]))
+        np.testing.assert_allclose(found, [0.25 / 0.25 + 4.0 / 4.0, np.inf, np.nan, np.inf])
+        np.testing.assert_allclose(calibration._covariance_of(outcomes[1:], targets), np.diag([0.25, 4.0]))
+        np.testing.assert_allclose(calibration._covariance_of(outcomes, targets),
+                                   calibration.misfit_covariance(outcomes[:1], targets))
+
+    def test_too_few_points_tell_nothing(self):
+        u = sampling.sobol_sequence(8, 2, 1)
+        targets = calibration.Targets(("a",), np.array([0.5]), np.array([0.1]))
+        y = u @ np.array([[1.0], [0.5]])
+        y[4:] = np.nan
+        told = calibration.uncertainty(np.full(2, 0.5), u, y, targets, np.eye(1), draws=5)
+        self.assertEqual(told.points, 4)
+        y[3] = np.nan
+        with self.assertRaisesRegex(Error, "3 complete points: a linear form in 2 parameters needs at least 4"):
+            calibration.uncertainty(np.full(2, 0.5), u, y, targets, np.eye(1))
+
+    def test_what_is_not_determined(self):
+        """Of a linear output of the first of two parameters: the posterior of the second is the prior."""
+        u = sampling.sobol_sequence(64, 2, 1)
+        for sd, determined in ((0.15, True), (0.6, False)):
+            targets = calibration.Targets(("a",), np.array([0.5]), np.array([sd]))
+            told = calibration.uncertainty(np.full(2, 0.5), u, u[:, :1], targets, np.array([[sd**2]]))
+            self.assertEqual(told.not_determined.tolist(), [not determined, True])
+            self.assertEqual(told.direction_not_determined.tolist(), [not determined, True])
+            # without the cube's sides: 12 of the prior, 1/sd^2 of the target
+            np.testing.assert_allclose(told.direction_ratio, [np.sqrt(12.0 / (12.0 + sd**-2)), 1.0], rtol=1e-6)
+            np.testing.assert_allclose(np.abs(told.directions), np.eye(2), atol=1e-9)
+            np.testing.assert_allclose(told.sd_ratio, told.sd * np.sqrt(12.0))
+            np.testing.assert_allclose(told.sd[1], 12.0**-0.5, rtol=0.04)
+
     def test_linear_answer(self):
         truth = np.array([0.3, 0.7])
         targets = linear_targets(truth)
@@ -737,6 +1208,43 @@ class Posterior(unittest.TestCase):
         self.assertTrue(found.not_determined.all(), found.sd_ratio)
         self.assertLess(found.correlation[0, 1], -0.95)
         self.assertTrue(found.chain.min() >= 0.0 and found.chain.max() <= 1.0)
+
+    def test_its_numbers_are_those_of_its_chain(self):
+        found = self.found
+        np.testing.assert_allclose(found.mean, found.chain.mean(axis=0))
+        np.testing.assert_allclose(found.sd, found.chain.std(axis=0, ddof=1))
+        np.testing.assert_allclose(found.sd_ratio, found.sd * np.sqrt(12.0))
+        self.assertEqual(found.not_determined.tolist(), (found.sd_ratio > 0.8).tolist())
+        walkers = 16
+        burn = found.steps - len(found.chain) // walkers
+        self.assertEqual(burn, int(5.0 * found.autocorrelation.max()))  # five times are left out
+        self.assertAlmostEqual(found.effective, len(found.chain) / found.autocorrelation.max())
+        if found.converged:
+            self.assertTrue((50.0 * found.autocorrelation < found.steps).all())
+            self.assertTrue(found.statement.endswith("; converged"))
+
+    def test_more_walkers_for_more_parameters(self):
+        few = posterior.sample(self.surrogates, self.validations, self.targets, self.covariance, 1, most_steps=20)
+        self.assertEqual((few.steps, len(few.chain)), (20, 10 * 16))  # half is left out while nothing is known
+        stated = posterior.sample(self.surrogates, self.validations, self.targets, self.covariance, 1, walkers=8,
+                                  most_steps=20)
+        self.assertEqual(len(stated.chain), 10 * 8)
+
+    def test_the_surrogates_own_errors_widen_it(self):
+        wide = [surrogate.Validation(v.q2, v.own_q2, v.error, 0.3, v.points) for v in self.validations]
+        found = posterior.sample(self.surrogates, wide, self.targets, self.covariance, 1, most_steps=1000)
+        exact = np.linalg.inv(JACOBIAN.T @ np.linalg.inv(self.covariance + 0.09 * np.eye(3)) @ JACOBIAN)
+        self.assertGreater(found.sd.min(), 3.0 * self.found.sd.max())
+        self.assertLess((found.sd / np.sqrt(np.diag(exact))).max(), 1.1)
+
+    def test_check_by_hand(self):
+        y = np.array([[[1.0], [3.0]], [[0.0], [0.0]], [[8.0], [np.nan]]])  # (n, seeds, q)
+        found = posterior.check(np.array([[1.0], [4.0], [0.0]]), y, np.array([0.5]))
+        np.testing.assert_allclose(found.standardised, [[2.0], [-8.0], [np.nan]])
+        np.testing.assert_allclose(found.rms, np.sqrt(34.0))
+        self.assertEqual((found.within_two.tolist(), found.points.tolist()), ([0.5], [2]))
+        near = posterior.check(np.zeros((4, 1)), np.array([-2.0, 2.0, 2.1, -2.1]).reshape(4, 1, 1), np.ones(1))
+        self.assertEqual(near.within_two.tolist(), [0.5])
 
     def test_check(self):
         points = posterior.check_points(self.found, 8, 3)
