@@ -56,11 +56,11 @@ double Recorder::wall_time() const {
   return earlier_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
-void Recorder::visit_state(StateVisitor& visitor) {
+void Recorder::visit_state(StateVisitor& visitor, std::size_t rows) {
   const StateVisitor::Scope scope(visitor, "results");
   double time = wall_time();
-  visitor.visit("wall_time", time);
-  visitor.visit("frame_rows", frames_.rows);
+  visitor.visit("wall_time", time, state::at_least(0));
+  visitor.visit("frame_rows", frames_.rows, state::index(rows));
   if (visitor.replaces()) earlier_ = time;
 }
 
