@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from ..errors import Error
 
@@ -81,7 +81,7 @@ class Store:
         self.folder = folder
         self._results: dict[str, Result] = {}
         self._base: sqlite3.Connection | None = None
-        self._lock = None
+        self._lock: TextIO | None = None
         if not writes:
             self._read()
             return

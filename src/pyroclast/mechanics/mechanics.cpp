@@ -732,6 +732,18 @@ void Mechanics<Dim>::require_constraints(const StateVisitor& visitor) const {
   const auto within = [](std::int64_t first, std::int64_t last, std::size_t size) {
     return 0 <= first && first <= last && last <= static_cast<std::int64_t>(size);
   };
+  std::size_t made = 0, rows_of_made = 0, tied = 0;
+  for (std::size_t b = 0; b < made_constraints_.size(); ++b)
+    if (made_constraints_[b] >= 0) {
+      ++made;
+      rows_of_made += static_cast<std::size_t>(layout_->bundles[b].rows);
+    }
+  for (const TieOfBundle& tie : ties_) tied += tie.slots.size();
+  visitor.require(s.constraints.size() == made, "constraints", "are not those of the bundles that have some");
+  visitor.require(s.constraint_rows.size() == rows_of_made, "constraint_rows",
+                  "are not those of the bundles that have some");
+  visitor.require(s.ties.size() == ties_.size(), "ties", "are not as many as those of the bundles");
+  visitor.require(s.tied_slots.size() == tied, "tied_slots", "are not as many as those of the bundles");
   for (std::size_t b = 0; b < made_constraints_.size(); ++b) {
     const int index = made_constraints_[b];
     visitor.require(s.constraints_of_bundle[b] < 0 || s.constraints_of_bundle[b] == index,
