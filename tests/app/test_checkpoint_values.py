@@ -196,7 +196,7 @@ class Values(unittest.TestCase):
             state.write(scratch / "checkpoints" / newest.name, self.hash_of, **changes)
             outcome = self.resumed(scratch, newest.name)
             came[outcome.split(":")[0]] += 1
-            if "nan" in what and outcome != "refused":
+            if "nan" in what and outcome != "refused" and not what.startswith("records:"):  # which holds no reals
                 wrong.append(f"{what}: a NaN is taken ({outcome})")
             elif outcome not in ("refused", "ended", "goes on") and not outcome.startswith("told: "):
                 wrong.append(f"{what}: {outcome}")
@@ -230,7 +230,7 @@ class Values(unittest.TestCase):
                 ("history.is_there", whole["history.is_there"][1:], "entries"),
                 ("history.columns", whole["history.columns"][:-1], "line's end"),
                 ("mechanics.ties_of_bundles", struct.pack("<3i", 0, 0, -3), "must be"),
-                ("mechanics.made_constraints", many + whole["mechanics.made_constraints"][4:], "not there"),
+                ("mechanics.made_constraints", many + whole["mechanics.made_constraints"][4:], "bundles"),
                 ("mechanics.set_of_contact", minus + whole["mechanics.set_of_contact"][4:], "must be 0 to"),
                 ("mechanics.law_of_set", many + whole["mechanics.law_of_set"][4:], "must be 0 to"),
                 ("mechanics.velocity", struct.pack("<d", math.nan) + whole["mechanics.velocity"][8:], "nan"),
@@ -242,7 +242,7 @@ class Values(unittest.TestCase):
                 done = subprocess.run([PROGRAM, "resume", out, "--no-figures"], capture_output=True, text=True,
                                       timeout=60, check=False)
                 self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
-                self.assertIn(f"{newest.name}: is not sound: \"{name}\"", done.stderr)
+                self.assertIn(f"{newest.name}: is not sound: \"{name.replace('made_', '')}\"", done.stderr)
                 self.assertIn(says, done.stderr)
 
 
