@@ -59,7 +59,8 @@ def _draw_run(axes: Axes, run: Run) -> None:
     axes.plot(strain, run.loaded_history("stress_MPa"), color=style.BLUE, linewidth=1.8, zorder=3,
               label="this run, mean of both platens"
                     + (f";\nrises again, {100.0 * run.rise_again:+.0f} % above $f_c$" if run.rise_again > 0.005 else ""))
-    axes.fill_between(strain, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
+    rows = style.kept(strain, top, bottom)
+    axes.fill_between(strain[rows], top[rows], bottom[rows], color=style.SKY, alpha=0.5, linewidth=0.0,
                       label="between its upper and lower platen")
 
 

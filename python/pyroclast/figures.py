@@ -1,6 +1,6 @@
 """Draws the figures of runs and specimens.
 
-    python3 -m pyroclast.figures run RUN_DIR        RUN_DIR/figures/...
+    python3 -m pyroclast.figures run RUN_DIR        RUN_DIR/figures/..., or with --out FOLDER there
     python3 -m pyroclast.figures specimen DIR       DIR/figures/{gradation,morphology}.png
     python3 -m pyroclast.figures compare RUN_DIR... --out FILE
     python3 -m pyroclast.figures levels RUN_DIR... --out FILE
@@ -20,6 +20,7 @@ Prints the path of each figure. Ends with 1 and one line on stderr when somethin
 from __future__ import annotations
 
 import argparse
+import gc
 import sys
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -113,17 +114,22 @@ def _of_compression(run: Run, magnification: float | None) -> Iterator[tuple[str
 
 
 def draw_run(folder: Path, file_format: str = "png", magnification: float | None = None,
-             temperatures: Sequence[float] | None = None) -> Iterator[Path]:
+             temperatures: Sequence[float] | None = None, out: Path | None = None) -> Iterator[Path]:
     """Draws all figures of a run into its figures/ folder; yields each path once written. Where the run conducts heat,
     it also writes temperature_profile.csv and isotherm.csv into the folder.
+
+    out: folder for all of these in the place of the run's own, which is then only read.
 
     temperatures [°C]: of the fracture patterns of a heated run, see `heating_fracture`.
     """
     run = Run(folder)
     for name, draw in figures_of(run, magnification, temperatures):
         if name == "temperature_profile":
-            write_profile(read_profile(run), run.folder)
-        yield save(draw(), run.folder / "figures" / f"{name}.{file_format}")
+            if out is not None:
+                out.mkdir(parents=True, exist_ok=True)
+            write_profile(read_profile(run), out or run.folder)
+        yield save(draw(), (out or run.folder / "figures") / f"{name}.{file_format}")
+        gc.collect()  # a figure refers to itself; of a long history it holds much
 
 
 def draw_properties(folder: Path, file_format: str = "png") -> Iterator[Path]:
@@ -184,8 +190,10 @@ def _parser() -> argparse.ArgumentParser:
                      help="of displacements in fracture (default: chosen from the last frame, and stated)")
     run.add_argument("--temperatures", type=_temperatures, metavar="T,T,...",
                      help="°C, of the fracture patterns of a heated run (default: chosen from its frames)")
+    run.add_argument("--out", type=Path, metavar="FOLDER",
+                     help="into this folder; the run's own is then only read (default: its figures/)")
     run.set_defaults(draw=lambda asked: draw_run(asked.folder, asked.format, asked.magnification,
-                                                 asked.temperatures))
+                                                 asked.temperatures, asked.out))
 
     for name, draw, help_text in (("specimen", draw_specimen, "morphology and gradation of a specimen"),
                                   ("properties", draw_properties, "properties over the temperature")):

@@ -11,10 +11,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import Enum
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
 
+_PIECE = 1 << 24  # bytes of a table that are read at once
+_FEW = 1 << 18  # bytes for which the compiled part is not loaded
+_NUMBERS = b"0123456789+-.eE,\n"
 _MOST_SHOWN = 40  # characters of a cell in a message
 _LARGEST_WHOLE = 2.0**53
 _TIGHTEST_PACKING = 1032  # bytes from one of a file: what deflate reaches at best
@@ -38,40 +42,132 @@ class Table:
     which a GapWarning tells.
     """
 
+    _takes_torn = True  #: a last line that does not end, but has all its cells
+
     def __init__(self, path: Path, may_be_empty: bool = False, comments: bool = False):
         """comments: whether lines that begin with # are skipped.
 
         Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
         self.path = path
-        try:
-            text = self._text()
-            written = text.splitlines()
-            first = next((i for i, line in enumerate(written) if not _skipped(line)), 0) if comments else 0
-            lines = list(csv.reader("" if comments and _skipped(line) else line for line in written[first:]))
-        except (OSError, UnicodeDecodeError, csv.Error) as error:
-            raise RunError(f"{path}: cannot be read: {_reason(error)}") from error
-        if not lines or not lines[0]:
+        self.names: list[str] = []
+        self._gaps: tuple[int, int, str, str] | None = None  # how many, and line, column and cell of the first
+        self._values = np.empty((0, 0))  # (columns, room for rows)
+        self._count = 0
+        self._next_line = 1
+        self._taken = 0  # bytes
+        self._left = 0.0  # pieces of the size of the last one
+        if comments:
+            self._take_commented()
+        else:
+            self._take_added()
+        if not self.names:
             raise RunError(f"{path}: is empty; a header line is expected")
-        if not text.endswith("\n") and len(lines[-1]) != len(lines[0]):
-            lines.pop()  # the row that a run was killed in
-        self.names = [name.strip() for name in lines[0]]
-        self._columns = self._parsed(lines[1:], first + 2)
         if not len(self) and not may_be_empty:
             raise RunError(f"{path}: has a header but no rows")
 
-    def _text(self) -> str:
-        with open(self.path, newline="", encoding="utf-8") as file:
-            return file.read()
+    def _take_commented(self) -> None:
+        """A table of a user's own."""
+        try:
+            with open(self.path, newline="", encoding="utf-8") as file:
+                text = file.read()
+        except (OSError, UnicodeDecodeError) as error:
+            raise RunError(f"{self.path}: cannot be read: {_reason(error)}") from error
+        written = text.splitlines()
+        self._next_line += next((i for i, line in enumerate(written) if not _skipped(line)), 0)
+        kept = "".join("\n" if _skipped(line) else f"{line}\n" for line in written[self._next_line - 1:])
+        self._begin((kept if text.endswith("\n") else kept[:-1]).encode(), all_of_it=True)
+        self._tell_gaps()
 
-    def _parsed(self, lines: list[list[str]], first: int) -> dict[str, np.ndarray]:
-        """Columns of rows that are cut into cells. first: number of their first line."""
-        self._gaps: list[tuple[int, str, str]] = []
-        rows = [self._numbers(number, cells) for number, cells in enumerate(lines, start=first) if cells]
-        if self._gaps:
-            line, name, cell = self._gaps[0]
+    def _take_added(self) -> bool:
+        """The lines that came since, piece by piece, so that a long file is never in memory as a text. Returns whether
+        there were any.
+        """
+        before = self._next_line
+        for piece in self._pieces():
+            if rows := piece if self.names else self._begin(piece):
+                self._take(rows)
+        self._tell_gaps()
+        return self._next_line > before
+
+    def _pieces(self) -> Iterator[bytes]:
+        """Whole lines, and at the end that which is not whole."""
+        try:
+            with open(self.path, "rb") as file:
+                file.seek(self._taken)
+                rest = b""
+                while more := file.read(_PIECE):
+                    cut = more.rfind(b"\n") + 1
+                    piece, rest = (rest + more[:cut], more[cut:]) if cut else (b"", rest + more)
+                    if piece:
+                        self._taken += len(piece)
+                        self._left = (os.fstat(file.fileno()).st_size - self._taken) / len(piece)
+                        yield piece
+                if rest and self._takes_torn:
+                    yield rest
+        except OSError as error:
+            raise RunError(f"{self.path}: cannot be read: {_reason(error)}") from error
+
+    def _begin(self, piece: bytes, all_of_it: bool = False) -> bytes:
+        """Takes the names; returns what follows their line, unless that was taken too."""
+        head, _, rest = piece.partition(b"\n")
+        lines = self._cut(head)
+        if all_of_it or b'"' in head or len(lines) > 1:  # a name may hold line ends, and other marks cut lines too
+            lines, rest = self._cut(piece), b""
+        if not lines or not lines[0]:
+            raise RunError(f"{self.path}: is empty; a header line is expected")
+        self._take_header(lines)
+        self._drop_torn(lines, piece)
+        self._append(self._parsed(lines))
+        return rest
+
+    def _take_header(self, lines: list[list[str]]) -> None:
+        self.names = [name.strip() for name in lines.pop(0)]
+        self._next_line += 1
+        self._values = np.empty((len(self.names), 0))
+
+    def _drop_torn(self, lines: list[list[str]], text: bytes) -> None:
+        if lines and not text.endswith(b"\n") and len(lines[-1]) != len(self.names):
+            lines.pop()  # the row that a run was killed in
+
+    def _take(self, piece: bytes) -> None:
+        numbers = _read_rows(piece, len(self.names))
+        if numbers is None:
+            lines = self._cut(piece)
+            self._drop_torn(lines, piece)
+            numbers = self._parsed(lines)
+        else:
+            self._next_line += numbers.shape[1]
+        self._append(numbers)
+
+    def _cut(self, piece: bytes) -> list[list[str]]:
+        try:
+            return list(csv.reader(piece.decode("utf-8").splitlines()))
+        except (UnicodeDecodeError, csv.Error) as error:
+            raise RunError(f"{self.path}: cannot be read: {_reason(error)}") from error
+
+    def _append(self, numbers: np.ndarray) -> None:
+        """numbers: (columns, rows)."""
+        count = self._count + numbers.shape[1]
+        if count > self._values.shape[1]:
+            room = max(count, int(1.02 * self._left * numbers.shape[1]) + count, 2 * self._count)
+            values = np.empty((len(self.names), room))  # of which no memory is taken before it is written
+            values[:, :self._count] = self._values[:, :self._count]
+            self._values = values
+        self._values[:, self._count:count] = numbers
+        self._count = count
+
+    def _parsed(self, lines: list[list[str]]) -> np.ndarray:
+        """(columns, rows) of lines that are cut into cells."""
+        rows = [self._numbers(number, cells) for number, cells in enumerate(lines, start=self._next_line) if cells]
+        self._next_line += len(lines)
+        return np.array(rows).reshape(-1, len(self.names)).T
+
+    def _tell_gaps(self) -> None:
+        if self._gaps is not None:
+            count, line, name, cell = self._gaps
             warnings.warn(f"{self.path}, line {line}: column {_shown(name)} holds {_shown(cell)}; cells that are not "
-                          f"finite, {len(self._gaps)} in all, are drawn as gaps", GapWarning, stacklevel=3)
-        return dict(zip(self.names, np.array(rows).reshape(-1, len(self.names)).T))
+                          f"finite, {count} in all, are drawn as gaps", GapWarning, stacklevel=4)
+        self._gaps = None
 
     def _numbers(self, line: int, cells: list[str]) -> list[float]:
         if len(cells) != len(self.names):
@@ -85,16 +181,18 @@ class Table:
                 where = f"{self.path}, line {line}"
                 raise RunError(f"{where}: column {_shown(name)} holds {_shown(cell)}, not a number") from None
             if cell and not abs(number) <= LARGEST:
-                self._gaps.append((line, name, cell))
+                first = self._gaps or (0, line, name, cell)
+                self._gaps = (first[0] + 1, *first[1:])
                 number = np.nan
             numbers.append(number)
         return numbers
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Throws RunError naming file and column when there is no such column."""
-        if name not in self._columns:
+        if name not in self.names:
             raise RunError(f"{self.path}: has no column '{name}'")
-        return self._columns[name]
+        # of names that are there twice the last one counts
+        return self._values[len(self.names) - 1 - self.names[::-1].index(name), :self._count]
 
     def whole(self, name: str, none: int | None = None) -> np.ndarray:
         """(rows,) int64, a column of whole numbers from zero. none: what an empty cell stands for.
@@ -117,29 +215,20 @@ class Table:
         return values
 
     def __contains__(self, name: str) -> bool:
-        return name in self._columns
+        return name in self.names
 
     def __len__(self) -> int:
-        return len(self._columns[self.names[0]])
+        return self._count
 
 
 class GrowingTable(Table):
     """A table that another process still writes: the rows that are whole, as far as they have come."""
 
+    _takes_torn = False
+
     def __init__(self, path: Path, may_be_empty: bool = True):
-        self.path = path
-        self._taken = 0  # bytes
         self._inode = path.stat().st_ino if path.exists() else None
         super().__init__(path, may_be_empty)
-        self._next_line = len(self) + 2
-
-    def _text(self) -> str:
-        with open(self.path, "rb") as file:
-            file.seek(self._taken)
-            added = file.read()
-        added = added[:added.rfind(b"\n") + 1]
-        self._taken += len(added)
-        return added.decode("utf-8")
 
     @property
     def is_replaced(self) -> bool:
@@ -152,14 +241,7 @@ class GrowingTable(Table):
 
     def grow(self) -> bool:
         """Takes in the rows that came since; returns whether there were any. Throws RunError as at first."""
-        try:
-            lines = list(csv.reader(self._text().splitlines()))
-        except (OSError, UnicodeDecodeError, csv.Error) as error:
-            raise RunError(f"{self.path}: cannot be read: {_reason(error)}") from error
-        added = self._parsed(lines, self._next_line)
-        self._next_line += len(lines)
-        self._columns = {name: np.concatenate([values, added[name]]) for name, values in self._columns.items()}
-        return bool(lines)
+        return self._take_added()
 
 
 class Writer(Enum):
@@ -242,6 +324,51 @@ def read_json(path: Path) -> dict:
     if not isinstance(value, dict):
         raise RunError(f"{path}: is not a JSON object")
     return value
+
+
+def _read_rows(lines: bytes, columns: int) -> np.ndarray | None:
+    """(columns, rows) of whole lines of finite numbers, NaN where a cell is empty; None where they are something else."""
+    global _core
+    if _core is None and len(lines) > _FEW:
+        try:
+            from . import _core as compiled
+        except Exception:  # figures must not need it
+            compiled = False
+        _core = compiled
+    if _core:
+        return _core.read_rows(lines, columns, LARGEST)
+    return read_rows(lines, columns)
+
+
+_core: Any = None  # once it was asked for
+
+
+def read_rows(lines: bytes, columns: int) -> np.ndarray | None:
+    """As the compiled part does it, but slower."""
+    if not lines.endswith(b"\n") or lines.translate(None, _NUMBERS):
+        return None
+    text = np.frombuffer(lines, dtype=np.uint8)
+    ends = np.flatnonzero((text == ord(",")) | (text == ord("\n")))
+    if len(ends) % columns:
+        return None
+    is_line_end = (text[ends] == ord("\n")).reshape(-1, columns)
+    if not is_line_end[:, -1].all() or is_line_end[:, :-1].any():
+        return None
+    empty = np.diff(ends, prepend=-1) == 1
+    if columns == 1 and empty.any():
+        return None
+    cells = b"," + lines.replace(b"\n", b",")
+    for _ in range(2):
+        cells = cells.replace(b",,", b",nan,")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            values = np.fromstring(cells[1:], sep=",")
+        except (DeprecationWarning, ValueError):
+            return None
+    if len(values) != len(ends) or not (np.abs(values[~empty]) <= LARGEST).all():
+        return None
+    return values.reshape(-1, columns).T
 
 
 def _skipped(line: str) -> bool:

@@ -104,7 +104,7 @@ def write_profile(profile: Profile, folder: Path) -> None:
 
 
 def _write(path: Path, header: tuple[str, ...], rows: list[tuple[float, ...]]) -> None:
-    aside = path.with_name(f"{path.name}.partial")
+    aside = style.partial(path)
     try:
         with open(aside, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")

@@ -108,10 +108,10 @@ def heating_cracks(run: Run) -> Figure:
     for axes, mode in zip(counts, modes):
         _draw_counts(axes, course, mode)
         for interface, dashes in zip(run.crack_modes.get(mode, []), cycle(_DASHES)):
-            length.plot(course.over, course[f"{mode}_{interface}_length_m"], color=_MODE_COLOURS[mode],
+            length.plot(*style.thinned(course.over, course[f"{mode}_{interface}_length_m"]), color=_MODE_COLOURS[mode],
                         linestyle=dashes, linewidth=0.7)
     length.set_ylabel("Length of all cracks, $D>0$ [m]")
-    opening.plot(course.over, 1e6 * course["mean_opening_m"], color=style.BLACK)
+    opening.plot(*style.thinned(course.over, 1e6 * course["mean_opening_m"]), color=style.BLACK)
     opening.set_ylabel("Mean opening of contacts\ndamaged in tension [µm]")
     for axes in panels:
         axes.set_xlim(course.start, np.nanmax(course.over))
@@ -124,8 +124,9 @@ def heating_cracks(run: Run) -> Figure:
 
 def _draw_stress_behind(axes: Axes, course: Course) -> None:
     behind = axes.twinx()
-    behind.fill_between(course.over, course["stress_MPa"], color="#ededed", linewidth=0.0)
-    behind.plot(course.over, course["stress_MPa"], color=style.FAINT, linewidth=0.8)
+    rows = style.kept(course.over, course["stress_MPa"])
+    behind.fill_between(course.over[rows], course["stress_MPa"][rows], color="#ededed", linewidth=0.0)
+    behind.plot(*style.thinned(course.over, course["stress_MPa"]), color=style.FAINT, linewidth=0.8)
     behind.set_ylim(bottom=0.0)
     behind.set_ylabel("Axial stress [MPa]", color="#6a6a6a")
     behind.tick_params(axis="y", colors="#6a6a6a")
@@ -139,9 +140,9 @@ def _draw_counts(axes: Axes, course: Course, mode: str) -> None:
     colour = _MODE_COLOURS[mode]
     for interface, dashes in zip(course.run.crack_modes.get(mode, []), cycle(_DASHES)):
         name = interface.replace("_", "–")
-        axes.plot(course.over, course[f"{mode}_{interface}_broken"], color=colour, linestyle=dashes,
+        axes.plot(*style.thinned(course.over, course[f"{mode}_{interface}_broken"]), color=colour, linestyle=dashes,
                   linewidth=1.8, label=f"{mode}, {name}: broken")
-        axes.plot(course.over, course[f"{mode}_{interface}_damaged"], color=colour, linestyle=dashes,
+        axes.plot(*style.thinned(course.over, course[f"{mode}_{interface}_damaged"]), color=colour, linestyle=dashes,
                   linewidth=0.7, label=f"{mode}, {name}: damaged")
     axes.set_ylim(bottom=0.0)
     axes.set_ylabel(f"Cracked contact points,\n{mode}")
@@ -177,7 +178,7 @@ def energy(course: Course) -> Figure:
     upper.plot(course.over, work_in, color=style.BLACK, linewidth=1.4, linestyle=(0, (4, 2)),
                label="work put in (loading,\ngravity, change of\nproperties, mass scaling)")
     if course["energy_property_change_J"].any():
-        upper.plot(course.over, course["energy_property_change_J"], color=style.PURPLE, linewidth=1.4,
+        upper.plot(*style.thinned(course.over, course["energy_property_change_J"]), color=style.PURPLE, linewidth=1.4,
                    linestyle=(0, (1.5, 1)), label="put in by the change of\nproperties alone")
     upper.set_xlim(course.start, np.nanmax(course.over))
     upper.tick_params(labelbottom=False)
@@ -205,11 +206,16 @@ def _energies(run: Run) -> list[tuple[str, str, str, str | None]]:
 
 
 def _draw_stack(axes: Axes, course: Course, turnover: float) -> None:
-    below = np.zeros_like(course.over)
-    for column, name, colour, hatch in _energies(course.run):
+    energies = _energies(course.run)
+    rows, top = np.zeros(len(course.over), dtype=bool), np.zeros_like(course.over)
+    for column, *_ in energies:
+        top = top + course[column]
+        rows |= style.kept(course.over, top)
+    over, below = course.over[rows], np.zeros(np.count_nonzero(rows))
+    for column, name, colour, hatch in energies:
         values = course[column]
         known = values[np.isfinite(values)]
         share = f"{100.0 * known[-1] / turnover:.1f} %" if len(known) else "not known"
-        axes.fill_between(course.over, below, below + values, facecolor=colour, hatch=hatch,
+        axes.fill_between(over, below, below + values[rows], facecolor=colour, hatch=hatch,
                           edgecolor="white", linewidth=0.3, label=f"{name}: {share}")
-        below = below + values
+        below = below + values[rows]

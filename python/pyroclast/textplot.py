@@ -7,12 +7,15 @@ import re
 
 import numpy as np
 
+from .style import thinned
+
 _THIRDS = ".-'"  # where in its cell the curve is, from below
 _STEEP, _NOW = ":", "o"
 _PLAIN = {"°C": "degC", "µ": "u", "·": " x ", "⁻³": "^-3", "–": "-", "×": "x"}  # not every terminal has these marks
 _LEAST = (30, 5)  # columns and rows of a plot that still says something
 _ROWS_A_TICK, _COLUMNS_A_TICK = 4, 12
 _LARGEST_PLAIN, _LEAST_PLAIN = 1e5, 1e-4  # numbers beyond are printed with a power of ten
+_MOST_POINTS = 5000  # more than a terminal has cells to tell apart
 _SAMPLES = 3  # of a straight piece of the curve, in each cell that it may cross
 
 
@@ -29,6 +32,7 @@ def curve(x: np.ndarray, y: np.ndarray, x_label: str, y_label: str, size: tuple[
 
     x_label, y_label: with unit, as figures have them. size: columns and rows of all lines together.
     """
+    x, y = thinned(x, y, _MOST_POINTS)
     rows, columns = max(size[1] - 4, _LEAST[1]), max(size[0], _LEAST[0])
     known = np.isfinite(x) & np.isfinite(y)
     (x_low, x_high), (y_low, y_high) = (_range(values[known]) for values in (x, y))

@@ -4,8 +4,8 @@
     python3 -m pyroclast.watch RUN_DIR --once   what there is by now
 
 With a display it opens a window. Without one it prints the curve in plain characters, and keeps a picture up to date,
-RUN_DIR/figures/watch.png. It only reads what the run writes: however it ends, the run goes on. Ends with 1 and one line
-on stderr when there is no run.
+RUN_DIR/figures/watch.png; who may not write there finds it at a place of their own, which is told. It only reads what
+the run writes: however it ends, the run goes on. Ends with 1 and one line on stderr when there is no run.
 
 In a notebook:
 
@@ -22,6 +22,8 @@ from __future__ import annotations
 
 import argparse
 import base64
+import errno
+import hashlib
 import html
 import io
 import os
@@ -29,6 +31,7 @@ import re
 import shutil
 import signal
 import sys
+import tempfile
 import textwrap
 import time
 import warnings
@@ -65,6 +68,7 @@ _CURVE_HEIGHT, _TERMINAL = 20, (80, 24)
 _LEFT_OPEN = 24 * 3600.0  # s: a window that nobody closes goes at last
 _END_OF_LOG = 8192  # bytes
 _NICENESS = 5
+_REFUSED = (errno.EACCES, errno.EPERM, errno.EROFS)
 
 
 @dataclass(frozen=True)
@@ -110,8 +114,10 @@ class Watch:
     Throws RunError when the folder holds no run.
     """
 
-    def __init__(self, folder: str | Path):
+    def __init__(self, folder: str | Path, picture: str | Path | None = None):
+        """picture: the file that `save` writes, its format by its ending; None: PICTURE in the folder."""
         self.run = GrowingRun(folder)
+        self.picture = Path(picture) if picture is not None else None
         self._lock = Lock(self.run.folder)
         self._seen: tuple | None = None
         if not self.is_running and not any((self.folder / name).exists() for name in ("history.csv", "manifest.json")):
@@ -235,7 +241,7 @@ class Watch:
             self._draw_section(section, below, frame)
         except RunError:
             _say_in(section, "the newest frame cannot be read")
-        return figure
+        return style.thin(figure)
 
     def _draw_curve(self, axes: Axes, frame: Frame | None) -> None:
         drawn = _curve_of(self.run)
@@ -294,8 +300,18 @@ class Watch:
         return into.getvalue()
 
     def save(self) -> Path:
-        """Writes PICTURE, whole or not at all. Returns its path."""
-        return save(self.draw(), self.folder / PICTURE)
+        """Writes the picture, whole or not at all. Returns its path: that which was asked for, or PICTURE in the folder,
+        or where the folder may not be written a place of the user's own.
+        """
+        figure = self.draw()
+        if self.picture is None:
+            try:
+                return save(figure, self.folder / PICTURE)
+            except OSError as problem:
+                if problem.errno not in _REFUSED:
+                    raise
+                self.picture = _own_place(self.folder)
+        return save(figure, self.picture)
 
     def _repr_png_(self) -> bytes:
         return self.png()
@@ -304,6 +320,16 @@ class Watch:
         picture = base64.b64encode(self.png()).decode()
         told = html.escape("; ".join(self.headlines()), quote=True)
         return f'<img alt="{told}" src="data:image/png;base64,{picture}"/>'
+
+
+def _own_place(folder: Path) -> Path:
+    """Of a picture of a run whose folder is another's, or is on a disk that is only read."""
+    try:
+        cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    except RuntimeError:  # a user without a home
+        cache = Path(tempfile.gettempdir()) / f"cache-{os.getuid()}"
+    name = hashlib.sha256(str(folder.resolve()).encode()).hexdigest()[:12]
+    return cache / "pyroclast" / "watch" / f"{folder.resolve().name}-{name}.png"
 
 
 def _say_in(axes: Axes, text: str) -> None:
@@ -325,7 +351,11 @@ class _Nothing:
             return
         begun = time.process_time()
         try:
-            watch.save()
+            asked = watch.picture
+            file = watch.save()
+            if file != asked and file != watch.folder / PICTURE and not self._told:
+                _tell(f"{watch.folder} may not be written; the picture is {file}")
+                self._told = True
         except OSError as problem:
             if not self._told:
                 _tell(f"no picture: {problem}")
@@ -413,14 +443,15 @@ class _Window:
 SCREENS = ("window", "terminal", "lines", "nothing")
 
 
-def _screen(asked: str | None, folder: Path) -> _Nothing | _Window:
+def _screen(asked: str | None, watch: Watch) -> _Nothing | _Window:
     """asked: one of SCREENS; without it, what there is."""
     has_terminal = sys.stdout.isatty() and os.environ.get("TERM", "dumb") != "dumb"
     if asked == "window" or asked is None and os.environ.get("DISPLAY"):
         try:
-            return _Window(str(folder))
+            return _Window(str(watch.folder))
         except ImportError as problem:
-            _tell(f"no window ({' '.join(str(problem).split())}); the picture is {folder / PICTURE}")
+            picture = watch.picture or watch.folder / PICTURE
+            _tell(f"no window ({' '.join(str(problem).split())}); the picture is {picture}")
     elif asked == "nothing":
         return _Nothing()
     return _Terminal() if has_terminal and asked in (None, "terminal") else _Lines()
@@ -446,7 +477,16 @@ def follow(watch: Watch, screen: _Nothing | _Window) -> None:
 
 def _once(watch: Watch) -> None:
     _print(watch.text(shutil.get_terminal_size(_TERMINAL).columns - 1, _CURVE_HEIGHT))
-    print(watch.save())
+    asked = watch.picture
+    try:
+        file = watch.save()
+        if file not in (asked, watch.folder / PICTURE):
+            _tell(f"{watch.folder} may not be written; the picture is elsewhere:")
+        print(file)
+    except OSError as problem:
+        if asked is not None or watch.picture is None:
+            raise
+        _tell(f"no picture: neither {watch.folder} nor a place of your own may be written; --out FILE says where")
 
 
 def _print(lines: Sequence[str], before: str = "") -> None:
@@ -468,16 +508,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--on", choices=SCREENS,
                         help="a window; the terminal, drawn anew in place; lines, a curve below the other; or nothing "
                              f"but {PICTURE} in the folder (default: what there is)")
+    parser.add_argument("--out", type=Path, metavar="FILE",
+                        help=f"the picture, instead of {PICTURE} in the folder (png, svg or pdf)")
     asked = parser.parse_args(arguments)
+    if asked.out is not None and asked.out.suffix.lower() not in (".png", ".svg", ".pdf"):
+        parser.error("--out: the file's ending must be .png, .svg or .pdf")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", GapWarning)  # the figures tell of them
-            watch = Watch(asked.folder)
+            watch = Watch(asked.folder, asked.out)
             if asked.once:
                 _once(watch)
             else:
                 os.nice(_NICENESS)
-                follow(watch, _screen(asked.on, asked.folder))
+                follow(watch, _screen(asked.on, watch))
     except KeyboardInterrupt:
         return 128 + signal.SIGINT
     except BrokenPipeError:  # who read it has gone

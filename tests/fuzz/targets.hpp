@@ -31,6 +31,10 @@ bool cells(std::string_view text);
 bool quantity(std::string_view text);
 /// A CSV file with a path of jumps.
 bool jump_path(std::string_view text);
+/// Edits of the state of one of three small runs, or the table of a checkpoint.
+bool checkpoint(std::string_view text);
+/// The manifest of a run's folder, and what may stand in the place of a frame.
+bool run_folder(std::string_view text);
 
 struct Target {
   std::string_view name;
@@ -39,14 +43,16 @@ struct Target {
 inline void PrintTo(const Target& target, std::ostream* stream) {
   *stream << target.name;
 }
-inline constexpr std::array<Target, 8> kTargets{{{"deck", deck},
-                                                 {"changes", changes},
-                                                 {"formula", formula},
-                                                 {"table", table},
-                                                 {"tessellation", tessellation},
-                                                 {"cells", cells},
-                                                 {"quantity", quantity},
-                                                 {"jump_path", jump_path}}};
+inline constexpr std::array<Target, 10> kTargets{{{"deck", deck},
+                                                  {"changes", changes},
+                                                  {"formula", formula},
+                                                  {"table", table},
+                                                  {"tessellation", tessellation},
+                                                  {"cells", cells},
+                                                  {"quantity", quantity},
+                                                  {"jump_path", jump_path},
+                                                  {"checkpoint", checkpoint},
+                                                  {"run_folder", run_folder}}};
 
 /// Ends the process where a promise about what was read does not hold.
 inline void require(bool holds, std::string_view promise) {

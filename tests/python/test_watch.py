@@ -28,6 +28,7 @@ sys.path[:0] = [str(HERE), str(PACKAGE)]
 import synthetic_run  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
 from test_figures import png_size  # noqa: E402
+from pyroclast import files, style  # noqa: E402
 from pyroclast.files import GrowingTable, Lock, RunError, Writer  # noqa: E402
 from pyroclast.run import Run  # noqa: E402
 from pyroclast.textplot import curve  # noqa: E402
@@ -404,6 +405,155 @@ class Command(WatchTest):
         self.assertEqual(done.stderr.count("\n"), 1)
         self.assertIn("no window", done.stderr)
         self.assertIn("run ended", done.stdout)
+
+
+class Readers(WatchTest):
+    """Several at once, and those who may not write."""
+
+    def test_twenty_at_once(self):
+        self.begin(rows=100)
+        with self.writer():
+            all_of_them = [subprocess.Popen([sys.executable, "-m", "pyroclast.watch", str(self.folder), "--once"],
+                                            env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                            text=True)
+                           for _ in range(20)]
+            for process in all_of_them:
+                said, wrong = process.communicate(timeout=300)
+                self.assertEqual((process.returncode, wrong), (0, ""))
+                self.assertEqual(said.splitlines()[-1], str(self.folder / PICTURE))
+        self.assertEqual([file.name for file in (self.folder / "figures").iterdir()], ["watch.png"])
+        self.assertGreater(png_size(self.folder / PICTURE)[0], 100)
+
+    def as_reader(self, home: Path, module: str, *words) -> subprocess.CompletedProcess:
+        """By a user who may not write into the run's folder."""
+        for place in (self.root, self.folder, *self.folder.rglob("*")):
+            place.chmod(0o555 if place.is_dir() else 0o444)
+        self.addCleanup(lambda: [place.chmod(0o755) for place in (self.root, self.folder, *self.folder.rglob("*"))])
+        own = {"user": 65534, "group": 65534, "extra_groups": []} if os.getuid() == 0 else {}
+        home.chmod(0o777)
+        return subprocess.run([sys.executable, "-m", f"pyroclast.{module}", *map(str, words)],
+                              env=environment(HOME=str(home), XDG_CACHE_HOME="", MPLCONFIGDIR=str(home / "mpl")),
+                              capture_output=True, text=True, timeout=120, check=False, **own)
+
+    def home(self) -> Path:
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        return Path(temporary.name)
+
+    def test_who_may_not_write_watches_and_has_the_picture_elsewhere(self):
+        self.begin(rows=100)
+        before = sorted(self.folder.rglob("*"))
+        home = self.home()
+        done = self.as_reader(home, "watch", self.folder, "--once")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("Axial strain", done.stdout)
+        self.assertIn(f"{self.folder} may not be written; the picture is elsewhere", done.stderr)
+        picture = Path(done.stdout.splitlines()[-1])
+        self.assertTrue(picture.is_relative_to(home), picture)
+        self.assertGreater(png_size(picture)[0], 100)
+        done = self.as_reader(home, "watch", self.folder, "--once", "--out", home / "mine.svg")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertTrue((home / "mine.svg").exists())
+        done = self.as_reader(home, "watch", self.folder, "--on", "nothing")  # nobody writes, so it ends at once
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("may not be written; the picture is", done.stderr)
+        self.assertEqual(sorted(self.folder.rglob("*")), before)
+
+    def test_who_may_write_nowhere_is_told_in_a_sentence(self):
+        self.begin(rows=100)
+        home = self.home()
+        (home / ".cache").write_text("no folder")
+        done = self.as_reader(home, "watch", self.folder, "--once")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("no picture: neither", done.stderr)
+
+    def test_who_may_not_write_draws_elsewhere(self):
+        shutil.copytree(self.whole, self.folder)
+        before = sorted(self.folder.rglob("*"))
+        home = self.home()
+        done = self.as_reader(home, "figures", "run", self.folder, "--out", home / "drawn")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(sorted(file.name for file in (home / "drawn").iterdir()),
+                         ["cracks.png", "energy.png", "fracture.png", "stress_strain.png"])
+        self.assertEqual(sorted(self.folder.rglob("*")), before)
+
+
+class Long(WatchTest):
+    """A history of very many rows."""
+
+    ROWS = int(os.environ.get("PYROCLAST_ROWS", "200000"))
+
+    def setUp(self):
+        super().setUp()
+        shutil.copytree(self.whole, self.folder)
+        header, *rows = self.rows
+        cells = np.genfromtxt(rows, delimiter=",")
+        names = header.strip().split(",")
+        places = np.linspace(0, len(rows) - 1, self.ROWS)
+        columns = [np.interp(places, np.arange(len(rows)), column) for column in cells.T]
+        for name in ("stage", "exchange"):
+            if name in names:
+                columns[names.index(name)] = np.round(columns[names.index(name)])
+        columns[names.index("step")] = np.arange(self.ROWS)
+        with open(self.folder / "history.csv", "w", encoding="utf-8") as file:
+            file.write(header)
+            for first in range(0, self.ROWS, 10000):
+                np.savetxt(file, np.column_stack([column[first:first + 10000] for column in columns]), "%.12g", ",")
+
+    def used(self, module: str, *words) -> tuple[float, float]:
+        """Processor time, s, and the most memory, MB."""
+        program = ("import resource, runpy, sys\nsys.argv = sys.argv[1:]\n"
+                   "try:\n    runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=False)\n"
+                   "except SystemExit as end:\n    assert not end.code, end.code\n"
+                   "used = resource.getrusage(resource.RUSAGE_SELF)\n"
+                   "print(used.ru_utime + used.ru_stime, used.ru_maxrss / 1e3)\n")
+        done = subprocess.run([sys.executable, "-c", program, f"pyroclast.{module}", *map(str, words)],
+                              env=environment(), capture_output=True, text=True, timeout=600, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        seconds, megabytes = map(float, done.stdout.splitlines()[-1].split())
+        return seconds, megabytes
+
+    def test_it_is_watched_and_drawn_in_seconds(self):
+        million = self.ROWS / 1e6
+        for module, *words in (("watch", self.folder, "--once"),
+                               ("figures", "run", self.folder, "--out", self.root / "drawn")):
+            with self.subTest(module):
+                seconds, megabytes = self.used(module, *words)
+                self.assertLess(seconds, 4.0 + 20.0 * million)  # without the compiled part
+                self.assertLess(megabytes, 300.0 + 700.0 * million)
+
+    def test_what_is_left_of_a_line_has_its_extremes_and_gaps(self):
+        random = np.random.default_rng(1)
+        x = np.arange(300_000.0)
+        y = random.normal(size=len(x)).cumsum()
+        y[123_456], y[200_000], y[250_000:250_100] = 1e6, -1e6, np.nan
+        for thin_x, thin_y in (style.thinned(x, y), style.thinned(x, y, 1000)):
+            self.assertLess(len(thin_x), 21_000)
+            self.assertEqual((np.nanmin(thin_y), np.nanmax(thin_y)), (-1e6, 1e6))
+            self.assertEqual((thin_x[0], thin_x[-1]), (x[0], x[-1]))
+            self.assertTrue(np.isnan(thin_y).any())
+            self.assertTrue((np.diff(thin_x) > 0.0).all())
+        short = x[:100], y[:100]
+        np.testing.assert_array_equal(style.thinned(*short), short)
+
+
+class Tables(WatchTest):
+    """Rows that are read many at once are those that are read cell by cell."""
+
+    def test_all_ways_agree(self):
+        random = np.random.default_rng(2)
+        rows = [[*map(repr, map(float, random.normal(size=3) * 10.0 ** random.integers(-12, 12))),
+                 "" if i % 7 == 0 else "3", str(i), ""] for i in range(2000)]
+        text = "".join(",".join(row) + "\n" for row in rows).encode()
+        wanted = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows]).T
+        np.testing.assert_array_equal(files.read_rows(text, 6), wanted)
+
+    def test_what_is_no_grid_of_numbers_is_left_to_the_slow_way(self):
+        for lines in (b"1,2\n3\n", b"1,2,3\n", b"1,x\n", b"1,2", b"1,inf\n", b"1,nan\n", b"1,1e31\n", b'"1",2\n',
+                      b"1,2\r\n", b"1, 2\n", b"\n", b"1-2,3\n", b"1,2\n\n", b"1_0,2\n", b"\xff,1\n",
+                      b"1,2\n3,4,5\n6\n", b"e,1\n", b""):
+            with self.subTest(lines):
+                self.assertIsNone(files.read_rows(lines, 2))
 
 
 if __name__ == "__main__":

@@ -32,11 +32,11 @@ struct Thing {
 
   void visit_state(StateVisitor& visitor) {
     visitor.visit("number", number);
-    visitor.visit("count", count);
+    visitor.visit("count", count, state::within(-1, 1000));
     const StateVisitor::Scope scope(visitor, "more");
     visitor.visit("flag", flag);
     visitor.visit("list", list);
-    visitor.visit("array", array);
+    visitor.visit("array", array, state::count());
     visitor.visit("text", text);
   }
 };

@@ -180,6 +180,7 @@ TEST(Run, CallsBackAtTheStepAskedForAndChangesNothing) {
 class Copy : public StateVisitor {
  public:
   bool replaces() const override { return puts; }
+  bool checks() const override { return puts; }
   bool puts = false;
 
  protected:

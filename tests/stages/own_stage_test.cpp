@@ -37,7 +37,7 @@ class Shake : public Stage {
   Forecast forecast(const Simulation&, Foreseen&) const override {
     return {.steps = static_cast<double>(half_period_ * turns_), .looks = static_cast<double>(turns_)};
   }
-  void visit_state(StateVisitor& visitor) override { visitor.visit("steps", steps_); }
+  void visit_state(StateVisitor& visitor) override { visitor.visit("steps", steps_, state::count()); }
 
  private:
   std::int64_t turn() const { return steps_ / half_period_; }

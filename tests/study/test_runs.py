@@ -1,5 +1,8 @@
 """Runs of studies: made once, judged, taken up again after a kill, never left behind."""
 
+import contextlib
+import fcntl
+import io
 import json
 import math
 import os
@@ -7,6 +10,7 @@ import pathlib
 import random
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -14,6 +18,7 @@ import threading
 import time
 import unittest
 import unittest.mock
+from collections.abc import Callable, Iterator
 
 from pyroclast.errors import Error
 from pyroclast.study import work
@@ -34,6 +39,14 @@ def alive(word: str) -> list[str]:
     """Processes with the word in their command line."""
     found = subprocess.run(["pgrep", "-f", word], capture_output=True, text=True).stdout.split()
     return [pid for pid in found if int(pid) != os.getpid()]
+
+
+@contextlib.contextmanager
+def opened_lock(folder: pathlib.Path) -> Iterator[None]:
+    """As another process that runs the study holds it."""
+    with open(folder / "lock", "w", encoding="utf-8") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
 
 
 class States(StudyTest):
@@ -252,6 +265,76 @@ class Again(StudyTest):
         study.run(jobs=2)
         self.assertEqual(study.rows(), before)
         self.assertEqual(len(self.made(study)), 4)
+
+    def damaged(self, file: pathlib.Path) -> dict[str, Callable[[], object]]:
+        """Ways to spoil a store, by name."""
+        whole = file.read_bytes()
+
+        def only_read() -> None:
+            file.write_bytes(whole)
+            file.chmod(0)
+
+        def of_another() -> None:
+            file.unlink()
+            with contextlib.closing(sqlite3.connect(file)) as base:
+                base.execute("CREATE TABLE runs (id, other)")
+                base.commit()
+
+        return {"garbage": lambda: file.write_bytes(b"not a database" * 100),
+                "cut": lambda: file.write_bytes(whole[:len(whole) // 2]),
+                "cut in its first page": lambda: file.write_bytes(whole[:1000]),
+                "of zeros": lambda: file.write_bytes(bytes(len(whole))),
+                "empty": lambda: file.write_bytes(b""),
+                "a folder": lambda: (file.unlink(), file.mkdir()),
+                "of another program": of_another} | ({"not to be read": only_read} if os.getuid() else {})
+
+    def test_every_command_makes_a_damaged_base_again_and_says_so(self) -> None:
+        text = self.file(self.of_command("plain"))
+        study = self.study(self.of_command("plain"))
+        study.run(jobs=2)
+        before = study.rows()
+        file = study.setup.folder / "study.sqlite"
+        for what, spoil in self.damaged(file).items():
+            commands = [("run",), ("status",)]
+            if what == "garbage":
+                commands += [("run", "--dry-run"), ("check",), ("table", "-o", "-"), ("table",), ("report",)]
+            for command, *more in commands:
+                with self.subTest(f"{command} of one that is {what}"):
+                    spoil()
+                    done = subprocess.run([PROGRAM, "study", command, str(text), *more], capture_output=True, text=True)
+                    self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+                    self.assertRegex(done.stderr, r"study\.sqlite could not be read; it is made again from the records "
+                                                  r"of 4 runs")
+                    self.assertEqual(self.study(self.of_command("plain")).rows(), before)
+        self.assertEqual(len(self.made(study)), 4)
+        self.assertTrue(list(study.setup.folder.glob("study.damaged*")))
+
+    def test_a_base_that_cannot_be_made_again_is_done_without(self) -> None:
+        study = self.study(self.of_command("plain"))
+        study.run(jobs=2)
+        before = study.rows()
+        (study.setup.folder / "study.sqlite").write_bytes(b"not a database" * 100)
+        with opened_lock(study.setup.folder), contextlib.redirect_stderr(io.StringIO()) as said:
+            self.assertEqual(self.study(self.of_command("plain")).rows(), before)
+        self.assertIn("taken from the records of 4 runs", said.getvalue())
+
+    def test_a_journal_of_a_damaged_base_does_not_spoil_the_new_one(self) -> None:
+        study = self.study(self.of_command("plain"))
+        study.run(jobs=2)
+        before = study.rows()
+        file = study.setup.folder / "study.sqlite"
+        file.write_bytes(b"not a database" * 100)
+        file.with_name("study.sqlite-journal").write_bytes(b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7" + bytes(504))
+        self.assertEqual(study.rows(), before)
+        self.assertFalse(file.with_name("study.sqlite-journal").exists())
+
+    def test_before_the_first_run_there_is_no_table(self) -> None:
+        text = self.file(self.of_command("plain"))
+        for more in ((), ("-o", "-"), ("-o", str(self.folder / "mine.csv"))):
+            done = subprocess.run([PROGRAM, "study", "table", str(text), *more], capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            self.assertIn("there is no table yet, for no run is done", done.stderr)
+        self.assertEqual(list(self.folder.glob("**/*.csv")), [])
 
     def test_a_new_output_is_taken_of_what_is_kept(self) -> None:
         text = self.of_command("plain", study='folder = "here"')

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from .. import _core
 from ..errors import CodeNotAllowed, Error
-from .driver import duration
+from .driver import NOT_RUN, duration
 from .executors.commands import Commands
 from .file import KEEP, reference
 from .study import EXECUTORS, Study
@@ -174,13 +174,17 @@ def _status(options: argparse.Namespace) -> int:
 
 
 def _table(options: argparse.Namespace) -> int:
-    file = _study(options).write_table()
+    study = _study(options)
+    if all(row["state"] == NOT_RUN for row in study.rows()):
+        print(f"{study.setup.folder}: there is no table yet, for no run is done; to make them: pyroclast study run "
+              f"{options.study}", file=sys.stderr)
+        return 2
     if options.out is None:
-        print(file)
+        print(study.write_table())
     elif str(options.out) == "-":
-        sys.stdout.write(file.read_text(encoding="utf-8"))
+        sys.stdout.write(study.table_text())
     else:
-        shutil.copyfile(file, options.out)
+        options.out.write_text(study.table_text(), encoding="utf-8")
     return 0
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 import os
 import shlex
@@ -28,6 +29,8 @@ from .plans import Answers, Plan, Proposal, plan_of
 from .points import Point, Points
 from .store import DONE, FAILED, NO_VALUE, Result, Store
 from .work import Job, made
+
+NOT_RUN = "not run"
 
 _LEAST_CHECKPOINT = 1.0  # s
 _SHARE_OF_CHECKPOINTS = 0.02  # of the expected time of a run
@@ -171,7 +174,7 @@ class Driver:
             result = self._result(wanted)
             row: dict[str, Any] = {"run": wanted.ids[0], "seed": wanted.seed}
             row.update({p.column: v for p, v in zip(self.study.parameters, wanted.point.values)})
-            row["state"] = result.state if result else "not run"
+            row["state"] = result.state if result else NOT_RUN
             for output in self.study.outputs:
                 number = result.number(output.what) if result else math.nan
                 row[output.name] = None if math.isnan(number) else number
@@ -186,14 +189,19 @@ class Driver:
     def write_table(self) -> Path:
         """table.csv in the folder of the study, in the place of an earlier one."""
         file = self.store.folder / "table.csv"
-        rows = self.rows()
         aside = file.with_suffix(".new")
-        with open(aside, "w", newline="", encoding="utf-8") as text:
-            writer = csv.DictWriter(text, list(rows[0]) if rows else ["run"], lineterminator="\n")
-            writer.writeheader()
-            writer.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
+        aside.write_text(self.table_text(), encoding="utf-8", newline="")
         aside.rename(file)
         return file
+
+    def table_text(self) -> str:
+        """Of `rows`, as CSV."""
+        rows = self.rows()
+        text = io.StringIO(newline="")
+        writer = csv.DictWriter(text, list(rows[0]) if rows else ["run"], lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({name: _cell(value) for name, value in row.items()} for row in rows)
+        return text.getvalue()
 
     def findings(self) -> dict[str, Any]:
         """What the method makes of the results; numbers, texts, lists and dicts only."""

@@ -5,13 +5,15 @@ from __future__ import annotations
 import fcntl
 import json
 import math
+import os
 import sqlite3
+import sys
 import urllib.parse
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from ..errors import Error
 
@@ -55,6 +57,17 @@ class Result:
 _COLUMNS = tuple(Result.__dataclass_fields__)
 _NAMES = ", ".join(f'"{name}"' for name in _COLUMNS)
 _AS_JSON = ("outputs", "values")
+# what comes of a database that is none, is cut, or holds something else
+_DAMAGE = (sqlite3.Error, ValueError, TypeError, KeyError, AttributeError)
+
+_said: set[str] = set()
+
+
+def _say_once(line: str) -> None:
+    """A command may open a store more than once."""
+    if line not in _said:
+        _said.add(line)
+        print(line, file=sys.stderr)
 
 
 class Store:
@@ -68,48 +81,106 @@ class Store:
         self.folder = folder
         self._results: dict[str, Result] = {}
         self._base: sqlite3.Connection | None = None
-        self._lock = None
+        self._lock: TextIO | None = None
         if not writes:
             self._read()
             return
         folder.mkdir(parents=True, exist_ok=True)
-        self._lock = open(folder / "lock", "w", encoding="utf-8")
+        if not self._take_lock():
+            raise Error(f"{folder}: another process runs a study in this folder") from None
+        self._open()
+
+    def _take_lock(self) -> bool:
+        self._lock = open(self.folder / "lock", "w", encoding="utf-8")
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             self._lock.close()
-            raise Error(f"{folder}: another process runs a study in this folder") from None
-        self._open()
+            self._lock = None
+            return False
+        return True
 
     @property
     def _file(self) -> Path:
         return self.folder / "study.sqlite"
 
     def _read(self) -> None:
-        if self._file.exists():
+        if not self._file.exists():
+            return
+        try:
             base = sqlite3.connect(f"file:{urllib.parse.quote(str(self._file))}?mode=ro", uri=True)
-            self._take_from(base)
-            base.close()
+            with closing(base):
+                self._take_from(base)
+        except _DAMAGE as error:
+            self._raise_if_busy(error)
+            self._read_records(error)
+
+    def _read_records(self, error: Exception) -> None:
+        """In the place of a database that cannot be read; makes it again where that is possible."""
+        self._results.clear()
+        try:
+            if self._take_lock():
+                self._open()
+                self.close()
+                return
+        except (OSError, Error):  # nothing can be written here, or another process does it
+            self.close()
+        self.put(_records(self.folder / "runs"))
+        _say_once(f"warning: {self._file} cannot be read ({error}) nor made again here; what is known is taken from "
+                  f"the records of {len(self)} runs")
 
     def _open(self) -> None:
-        is_new = not self._file.exists()
+        is_there = self._file.exists()
         try:
-            self._base = self._connected()
-        except sqlite3.DatabaseError as error:
-            if isinstance(error, sqlite3.OperationalError):  # a full disk, say, and nothing wrong with the file
-                raise Error(f"{self._file}: {error}") from error
-            self._file.rename(self._file.with_suffix(".damaged"))
-            self._base, is_new = self._connected(), True
+            is_new = self._connect()
+        except _DAMAGE as error:
+            self._raise_if_busy(error)
+            if isinstance(error, sqlite3.OperationalError) and not self._is_broken():
+                raise Error(f"{self._file}: {error}") from error  # a full disk, say, and nothing wrong with the file
+            self._set_aside()
+            is_new = self._connect()
         if is_new:
             self.put(_records(self.folder / "runs"))
+        if is_new and is_there:
+            _say_once(f"warning: {self._file} could not be read; it is made again from the records of {len(self)} runs")
 
-    def _connected(self) -> sqlite3.Connection:
+    def _connect(self) -> bool:
+        """Whether the database was made now."""
+        self._results.clear()
+        if self._file.exists() and not os.access(self._file, os.R_OK | os.W_OK):
+            raise sqlite3.OperationalError("no permission to read and write it")
         base = sqlite3.connect(self._file)
-        base.execute(f"CREATE TABLE IF NOT EXISTS runs ({_NAMES}, PRIMARY KEY (id))")
-        self._take_from(base)
-        return base
+        try:
+            is_new = not base.execute("SELECT count(*) FROM sqlite_master WHERE name = 'runs'").fetchone()[0]
+            base.execute(f"CREATE TABLE IF NOT EXISTS runs ({_NAMES}, PRIMARY KEY (id))")
+            self._take_from(base)
+        except _DAMAGE:
+            base.close()
+            raise
+        self._base = base
+        return is_new
+
+    def _is_broken(self) -> bool:
+        """Of an error that can have other causes: whether it is that of the file."""
+        return self._file.is_dir() or not os.access(self._file, os.R_OK | os.W_OK)
+
+    def _set_aside(self) -> None:
+        """With what SQLite keeps beside it, which would be taken for that of the new one."""
+        for ending in ("", "-journal", "-wal", "-shm"):
+            file = self._file.with_name(self._file.name + ending)
+            if os.path.lexists(file):
+                number, aside = 1, file.with_name(f"study.damaged{ending}")
+                while os.path.lexists(aside):
+                    number, aside = number + 1, file.with_name(f"study.damaged.{number}{ending}")
+                file.rename(aside)
+
+    def _raise_if_busy(self, error: Exception) -> None:
+        if isinstance(error, sqlite3.OperationalError) and "locked" in str(error):
+            raise Error(f"{self._file}: {error}") from error
 
     def _take_from(self, base: sqlite3.Connection) -> None:
+        if [row[1] for row in base.execute("PRAGMA table_info(runs)")] != list(_COLUMNS):
+            raise sqlite3.DatabaseError("holds no table of runs")  # SQLite would take a name for a text
         for row in base.execute(f"SELECT {_NAMES} FROM runs"):
             named = dict(zip(_COLUMNS, row))
             named.update({key: json.loads(named[key]) for key in _AS_JSON})
@@ -154,9 +225,12 @@ class Store:
         return len(self._results)
 
     def close(self) -> None:
-        if self._base is not None and self._lock is not None:
+        if self._base is not None:
             self._base.close()
+            self._base = None
+        if self._lock is not None:
             self._lock.close()
+            self._lock = None
 
 
 @contextmanager

@@ -164,6 +164,11 @@ class Study:
         with self._driver() as driver:
             return driver.write_table()
 
+    def table_text(self) -> str:
+        """What table.csv would hold now; nothing is written."""
+        with self._driver() as driver:
+            return driver.table_text()
+
     @contextmanager
     def _driver(self, writes: bool = False) -> Iterator[Driver]:
         with opened(self.setup.folder, writes) as store:

@@ -25,6 +25,16 @@ auto lines_of(const Layout<Dim>& layout, Lines& lines, const First& first, int c
   return lines.data() + first[row] + static_cast<std::size_t>(point - layout.first_point_of(row)) * count;
 }
 
+/// What was made alike before has time steps that differ by less than this factor.
+constexpr double kSameStep = 2.0;
+/// More than there is of any thing in a body.
+constexpr double kMostOfAKind = std::numeric_limits<int>::max();
+
+bool is_slot_of(int slot, const Bundle& bundle) {
+  const int first = slot_of(bundle.first_row, 0);
+  return first <= slot && slot < first + bundle.rows * kLanes;
+}
+
 int place_of(const LawTable& law, Remembers what, int dim) {
   const auto history = law.history(dim);
   const auto found = std::ranges::find(history, what, &HistoryInfo::what);
@@ -656,25 +666,30 @@ void Mechanics<Dim>::forget() {
 template <int Dim>
 void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   if (visitor.replaces()) forget();
-  visitor.visit("steps", steps_);
-  visitor.visit("time_step", state_.time_step);  // of real mass: fixed when the run began
+  visitor.visit("steps", steps_, state::count());
+  // of real mass: fixed when the run began, of which this body is a beginning
+  visitor.visit("time_step", state_.time_step,
+                state::within(state_.time_step / kSameStep, state_.time_step * kSameStep));
   visitor.visit("property_change", property_change_);
   visitor.visit("mass_scaling", mass_scaling_);
   visitor.visit("begun_property_change", begun_property_change_);
   visitor.visit("begun_mass_scaling", begun_mass_scaling_);
   visitor.visit("creep_work", creep_work_);
-  visitor.visit("creep_strains", creep_strain_);
-  visitor.visit("creep_under_way", creep_under_way_);
-  visitor.visit("made_constraints", made_constraints_);
-  visitor.visit("stiffness",
-                stiffness_);  // of the frames of the last change of properties, which turn on since
+  visitor.visit_numbers("creep_strains", creep_strain_, state::finite().of(creep_strain_.size()));
+  visitor.visit_numbers("creep_under_way", creep_under_way_);
+  visitor.require(creep_under_way_.empty() || (creeps() && creep_under_way_.size() == creep_strain_.size()),
+                  "creep_under_way", "does not have each zone, or nothing creeps");
+  visitor.visit("made_constraints", made_constraints_,
+                state::within(-1, kMostOfAKind).of(made_constraints_.size()));
+  // of the frames of the last change of properties, which turn on since
+  visitor.visit("stiffness", stiffness_, state::at_least(0).of(stiffness_.size()));
   for_each_array(
       [&](const ArrayInfo& info, auto& array) {
-        if constexpr (!std::is_same_v<decltype(*array.data()), bool&>)
-          if (info.lasts == Lasts::kept) visitor.visit(info.name, array);
+        if (info.lasts == Lasts::kept) visit_array(visitor, info.name, array);
       },
       storage_);
   visit_ties(visitor);
+  require_constraints(visitor);
   visit_properties(visitor);
   if (!visitor.replaces()) return;
   place_properties();
@@ -684,6 +699,89 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
     set_step_over_mass();
 }
 
+/// Those of the state that last. What holds, drives or loads comes and goes; of all else there is as much as
+/// there was.
+template <int Dim>
+template <class Array>
+void Mechanics<Dim>::visit_array(StateVisitor& visitor, const char* name, Array& array) {
+  using T = std::decay_t<decltype(*array.data())>;
+  if constexpr (std::is_same_v<T, int>) {
+    const bool is_of_bundles = static_cast<void*>(&array) == &storage_.constraints_of_bundle;
+    visitor.visit(
+        name, array,
+        is_of_bundles ? state::within(-1, kMostOfAKind).of(array.size()) : state::within(0, kMostOfAKind));
+  } else if constexpr (std::is_same_v<T, BundleConstraints> || std::is_same_v<T, Tie> ||
+                       std::is_same_v<T, ConstraintRow<Dim>>) {
+    visitor.visit_plain(name, array);
+  } else if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, std::uint8_t> ||
+                       std::is_same_v<T, std::byte>) {
+    throw Error(
+        fmt::format("\"{}\" has no form in which a state can keep it", name));  // a fault of the program
+  } else {
+    visitor.visit_numbers(name, array, state::finite().of(array.size()));
+  }
+}
+
+/// Throws Error where what holds, drives or loads names something that is not there. Only of what comes from
+/// outside.
+template <int Dim>
+void Mechanics<Dim>::require_constraints(const StateVisitor& visitor) const {
+  if (!visitor.checks()) return;
+  const auto& s = storage_;
+  const auto rows = static_cast<std::int64_t>(s.constraint_rows.size());
+  const auto within = [](std::int64_t first, std::int64_t last, std::size_t size) {
+    return 0 <= first && first <= last && last <= static_cast<std::int64_t>(size);
+  };
+  std::size_t made = 0, rows_of_made = 0, tied = 0;
+  for (std::size_t b = 0; b < made_constraints_.size(); ++b)
+    if (made_constraints_[b] >= 0) {
+      ++made;
+      rows_of_made += static_cast<std::size_t>(layout_->bundles[b].rows);
+    }
+  for (const TieOfBundle& tie : ties_) tied += tie.slots.size();
+  visitor.require(s.constraints.size() == made, "constraints", "are not those of the bundles that have some");
+  visitor.require(s.constraint_rows.size() == rows_of_made, "constraint_rows",
+                  "are not those of the bundles that have some");
+  visitor.require(s.ties.size() == ties_.size(), "ties", "are not as many as those of the bundles");
+  visitor.require(s.tied_slots.size() == tied, "tied_slots", "are not as many as those of the bundles");
+  for (std::size_t b = 0; b < made_constraints_.size(); ++b) {
+    const int index = made_constraints_[b];
+    visitor.require(s.constraints_of_bundle[b] < 0 || s.constraints_of_bundle[b] == index,
+                    "constraints_of_bundle", "names others than those that were made for it");
+    if (index < 0) continue;
+    const Bundle& bundle = layout_->bundles[b];
+    visitor.require(index < static_cast<int>(s.constraints.size()), "made_constraints",
+                    "names one that is not there");
+    const BundleConstraints& own = s.constraints[index];
+    visitor.require(own.first_row >= 0 && own.first_row + static_cast<std::int64_t>(bundle.rows) <= rows,
+                    "constraints", "names rows that are not there");
+    visitor.require(within(own.first_tie, own.last_tie, s.ties.size()), "constraints",
+                    "names ties that are not there");
+    visitor.require(std::isfinite(own.loading_work), "constraints", "has a work that is not finite");
+    for (int i = own.first_tie; i < own.last_tie; ++i) {
+      const Tie& tie = s.ties[i];
+      visitor.require(within(tie.begin, tie.end, s.tied_slots.size()), "ties",
+                      "names slots that are not there");
+      visitor.require(0 <= tie.component && tie.component < Dim, "ties", "has no direction of this body");
+      for (int j = tie.begin; j < tie.end; ++j)
+        visitor.require(is_slot_of(s.tied_slots[j], bundle), "tied_slots", "names a slot of another bundle");
+    }
+  }
+  for (const auto& row : s.constraint_rows)
+    for (int i = 0; i < Dim; ++i)
+      for (int lane = 0; lane < kLanes; ++lane)
+        visitor.require(
+            std::isfinite(row.prescribed_velocity[i][lane]) && std::isfinite(row.applied[i][lane]),
+            "constraint_rows", "has a velocity or a force that is not finite");
+  for (const TieOfBundle& tie : ties_) {
+    visitor.require(made_constraints_[tie.bundle] >= 0, "ties_of_bundles",
+                    "ties a bundle without constraints");
+    for (const int slot : tie.slots)
+      visitor.require(is_slot_of(slot, layout_->bundles[tie.bundle]), "ties_of_bundles",
+                      "names a slot of another bundle");
+  }
+}
+
 template <int Dim>
 void Mechanics<Dim>::visit_ties(StateVisitor& visitor) {
   std::vector<int> numbers;
@@ -691,10 +789,13 @@ void Mechanics<Dim>::visit_ties(StateVisitor& visitor) {
     numbers.insert(numbers.end(), {tie.bundle, tie.component, static_cast<int>(tie.slots.size())});
     numbers.insert(numbers.end(), tie.slots.begin(), tie.slots.end());
   }
-  visitor.visit("ties_of_bundles", numbers);
+  visitor.visit("ties_of_bundles", numbers, state::within(0, kMostOfAKind));
   if (!visitor.replaces()) return;
   ties_.clear();
   for (auto i = numbers.begin(); i != numbers.end();) {
+    visitor.require(numbers.end() - i >= 3 && i[2] <= numbers.end() - i - 3 && i[1] < Dim &&
+                        i[0] < static_cast<int>(layout_->bundles.size()),
+                    "ties_of_bundles", "is no list of ties");
     const auto slots = i + 3;
     const auto end = slots + i[2];
     ties_.push_back({i[0], i[1], {slots, end}});
@@ -712,7 +813,8 @@ void Mechanics<Dim>::visit_properties(StateVisitor& visitor) {
     for (int b = 0; b < model_.block_count(); ++b) zones.push_back(properties_.zones[model_.block_zones[b]]);
   else
     zones = properties_.zones;
-  visitor.visit("zone_properties", zones);
+  const int count = by_block ? model_.block_count() : model_.zone_count();
+  visitor.visit_numbers("zone_properties", zones, state::finite().of(static_cast<std::size_t>(count)));
 
   ContactSets& sets = properties_.contacts;
   std::vector<int> laws, choices;
@@ -722,10 +824,16 @@ void Mechanics<Dim>::visit_properties(StateVisitor& visitor) {
     numbers.insert(numbers.end(), sets.numbers(set).begin(), sets.numbers(set).end());
     choices.insert(choices.end(), sets.choices(set).begin(), sets.choices(set).end());
   }
-  visitor.visit("law_of_set", laws);
-  visitor.visit("numbers_of_sets", numbers);
-  visitor.visit("choices_of_sets", choices);
-  visitor.visit("set_of_contact", properties_.of_contact);
+  visitor.visit("law_of_set", laws, state::index(laws_.size()));
+  std::size_t number_count = 0, choice_count = 0;
+  for (const int index : laws) {
+    number_count += laws_.at(index)->properties.size();
+    choice_count += laws_.at(index)->choices.size();
+  }
+  visitor.visit("numbers_of_sets", numbers, state::number().of(number_count));
+  visitor.visit("choices_of_sets", choices, state::index(ChoiceInfo::kMostOptions).of(choice_count));
+  visitor.visit("set_of_contact", properties_.of_contact,
+                state::index(laws.size()).of(model_.contacts.size()));
   if (!visitor.replaces()) return;
 
   for (int b = 0; b < model_.block_count(); ++b)
@@ -738,7 +846,9 @@ void Mechanics<Dim>::visit_properties(StateVisitor& visitor) {
     const LawTable& law = *laws_.at(index);
     const auto last_number = number + static_cast<std::ptrdiff_t>(law.properties.size());
     const auto last_choice = choice + static_cast<std::ptrdiff_t>(law.choices.size());
-    sets.add({law, {number, last_number}, {choice, last_choice}});
+    const ContactProperties set{law, {number, last_number}, {choice, last_choice}};
+    if (visitor.checks()) validate(set, law.name);
+    sets.add(set);
     number = last_number;
     choice = last_choice;
   }

@@ -318,6 +318,9 @@ class Mechanics {
   SymmetricTensor<Dim> stress_in_own_frame(int zone, Rotation<double>& rotation) const;
   void visit_properties(StateVisitor& visitor);
   void visit_ties(StateVisitor& visitor);
+  template <class Array>
+  void visit_array(StateVisitor& visitor, const char* name, Array& array);
+  void require_constraints(const StateVisitor& visitor) const;
   int constraints_of(int gridpoint);
   void drop_if_free(int bundle);
   ConstraintRow<Dim>& constraint_row(int constraints, int gridpoint);

@@ -1,10 +1,16 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include "pyroclast/base/error.hpp"
@@ -162,9 +168,42 @@ void bind_table(py::module_& m) {
           "where", [](const Table& t, const Text& key) { return t.section.where(key); }, arg("key"));
 }
 
+/// A cell as Python's `float` reads it; false where it would be read otherwise, or is not a finite number.
+bool read_cell(const char* begin, const char* end, double largest, double& value) {
+  if (begin == end) {
+    value = std::numeric_limits<double>::quiet_NaN();
+    return true;
+  }
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  return error == std::errc{} && stop == end && std::abs(value) <= largest;
+}
+
+/// Whole lines of a table of numbers: (columns, rows), NaN where a cell is empty. None where a line is
+/// anything else: then whoever asked reads it cell by cell, and says what is wrong.
+py::object read_rows(const py::bytes& lines, py::ssize_t columns, double largest) {
+  const std::string_view text = lines;
+  const auto rows = static_cast<py::ssize_t>(std::ranges::count(text, '\n'));
+  if (columns < 1 || text.empty() || text.back() != '\n') return py::none();
+  py::array_t<double> table({columns, rows});
+  double* const cells = table.mutable_data();
+  const char* at = text.data();
+  for (py::ssize_t row = 0; row < rows; ++row)
+    for (py::ssize_t column = 0; column < columns; ++column) {
+      const char* end = at;
+      while (*end != ',' && *end != '\n') ++end;
+      const bool is_last = column + 1 == columns;
+      if ((*end == '\n') != is_last || (columns == 1 && end == at)) return py::none();
+      if (!read_cell(at, end, largest, cells[column * rows + row])) return py::none();
+      at = end + 1;
+    }
+  return table;
+}
+
 }  // namespace
 
 void bind_tables(py::module_& m) {
+  m.def("read_rows", &read_rows, py::arg("lines"), py::arg("columns"), py::arg("largest"),
+        "Whole lines of numbers, (columns, rows); None where they are anything else.");
   bind_table(m);
   using File = std::shared_ptr<const Deck>;
   struct TomlFile {

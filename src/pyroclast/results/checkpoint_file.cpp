@@ -4,6 +4,9 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <exception>
+#include <limits>
+#include <new>
 #include <set>
 #include <span>
 #include <utility>
@@ -33,6 +36,28 @@ struct Trailer {
   std::uint64_t table_begin = 0, table_bytes = 0, table_hash = 0;
   std::array<char, 8> end{};
 };
+
+/// Entries of a table. Throws Json::exception where one is of another kind.
+void read_entry(const Json& json, std::string& value) {
+  json.get_to(value);
+}
+void read_entry(const Json& json, std::vector<std::string>& value) {
+  json.get_to(value);
+}
+void read_entry(const Json& json, bool& value) {
+  value = json.get_ref<const Json::boolean_t&>();
+}
+void read_entry(const Json& json, double& value) {
+  value = json.get_ref<const Json::number_float_t&>();
+}
+/// Whole numbers that are not negative, as all of them are.
+template <class Whole>
+void read_entry(const Json& json, Whole& value) {
+  const std::uint64_t number = json.get_ref<const Json::number_unsigned_t&>();
+  if (number > static_cast<std::uint64_t>(std::numeric_limits<Whole>::max()))
+    throw Json::out_of_range::create(401, "a number of the table is too large", nullptr);
+  value = static_cast<Whole>(number);
+}
 
 /// A file by its descriptor.
 class File {
@@ -125,6 +150,7 @@ class CheckpointReader : public StateVisitor {
   explicit CheckpointReader(const CheckpointFile& checkpoint)
       : checkpoint_(checkpoint), file_(File::to_read(checkpoint.path())) {}
   bool replaces() const override { return true; }
+  bool checks() const override { return true; }
 
   void finish() const {
     for (const auto& [name, row] : checkpoint_.rows_)
@@ -150,10 +176,14 @@ class CheckpointReader : public StateVisitor {
     read(name, kept, row.resize ? row.resize(kept.count) : row.data);
     taken_.insert(name);
   }
+  void refuse(const std::string& name, const std::string& what) const override {
+    throw Error(fmt::format("{}: is not sound: \"{}\" {}", checkpoint_.path().string(), name, what));
+  }
 
  private:
   void read(const std::string& name, const CheckpointFile::Row& row, std::byte* data) const {
-    if (!file_.read(row.begin, data, row.bytes()) || XXH3_64bits(data, row.bytes()) != row.hash)
+    if ((row.bytes() > 0 && !file_.read(row.begin, data, row.bytes())) ||
+        XXH3_64bits(data, row.bytes()) != row.hash)
       fail(fmt::format("is damaged: \"{}\" is not what was written", name));
   }
   [[noreturn]] void fail(const std::string& what) const {
@@ -206,12 +236,16 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
     fail("is damaged: its table is not what was written");
   try {
     const Json json = Json::parse(table);
-    CheckpointInfo::each(info_, [&](const char* name, auto& value) { json.at(name).get_to(value); });
+    CheckpointInfo::each(info_, [&](const char* name, auto& value) { read_entry(json.at(name), value); });
     for (const Json& row : json.at("rows")) {
-      const Row r{row.at(1), row.at(2), row.at(3), row.at(4)};
-      if (r.begin > size || (r.item > 0 && r.count > (size - r.begin) / r.item))
+      Row r;
+      read_entry(row.at(1), r.begin);
+      read_entry(row.at(2), r.item);
+      read_entry(row.at(3), r.count);
+      read_entry(row.at(4), r.hash);
+      if (r.begin > size || r.item == 0 || r.count > (size - r.begin) / r.item)
         fail("is damaged in its table");
-      rows_[row.at(0)] = r;
+      rows_[row.at(0).get<std::string>()] = r;
     }
   } catch (const Json::exception&) {
     fail("is of another version of pyroclast: its table has another form");
@@ -219,9 +253,20 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
 }
 
 void CheckpointFile::restore(const std::function<void(StateVisitor&)>& visit) const {
-  CheckpointReader reader(*this);
-  visit(reader);
-  reader.finish();
+  const auto fail = [&](const char* what) {
+    const std::string place = path_.string() + ": ";
+    throw Error(std::string_view(what).starts_with(place) ? what
+                                                          : fmt::format("{}is not sound: {}", place, what));
+  };
+  try {
+    CheckpointReader reader(*this);
+    visit(reader);
+    reader.finish();
+  } catch (const std::bad_alloc&) {
+    fail("it asks for more memory than there is");
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
 }
 
 void CheckpointFile::verify() const {

@@ -1,5 +1,7 @@
 #include "pyroclast/results/recorder.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -56,11 +58,14 @@ double Recorder::wall_time() const {
   return earlier_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
-void Recorder::visit_state(StateVisitor& visitor) {
+void Recorder::visit_state(StateVisitor& visitor, std::size_t rows) {
   const StateVisitor::Scope scope(visitor, "results");
   double time = wall_time();
-  visitor.visit("wall_time", time);
-  visitor.visit("frame_rows", frames_.rows);
+  visitor.visit("wall_time", time, state::at_least(0));
+  visitor.visit("frame_rows", frames_.rows, state::index(rows));
+  visitor.require(
+      std::ranges::adjacent_find(frames_.rows, std::ranges::greater_equal()) == frames_.rows.end(),
+      "frame_rows", "does not name each row once, in order");
   if (visitor.replaces()) earlier_ = time;
 }
 

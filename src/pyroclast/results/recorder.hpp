@@ -44,7 +44,8 @@ class Recorder {
   /// Of the run, with those parts of it that other processes did, s.
   double wall_time() const;
   const FrameRecords& frames() const { return frames_; }
-  void visit_state(StateVisitor& visitor);
+  /// \param rows  of the history
+  void visit_state(StateVisitor& visitor, std::size_t rows);
 
  private:
   std::filesystem::path folder_;

@@ -79,7 +79,12 @@ constexpr auto kFigureFormats = std::to_array<const char*>({"png", "svg", "pdf"}
 /// Whether a run writes a file of this name, relative to its folder; also one that was never finished.
 bool is_own(const fs::path& file) {
   std::string name = file.generic_string();
-  if (name.ends_with(".partial")) name.resize(name.size() - std::string_view(".partial").size());
+  if (name.ends_with(".partial")) {
+    name.resize(name.size() - std::string_view(".partial").size());
+    // beside the number of the process that wrote it, where several may
+    if (const auto end = name.find_last_not_of("0123456789"); end + 1 < name.size() && name[end] == '.')
+      name.resize(end);
+  }
   const auto matches = [&](const std::string& pattern) {
     return fnmatch(pattern.c_str(), name.c_str(), FNM_PATHNAME) == 0;
   };
@@ -173,10 +178,15 @@ void RunFolder::require(const fs::path& path) {
 
 std::vector<Departure> RunFolder::departures(const fs::path& path) {
   const auto manifest = manifest_of(path);
-  if (!manifest.is_object()) return {};
+  if (!manifest.is_object() || !manifest.contains(kDepartures)) return {};
   std::vector<Departure> all;
-  for (const auto& one : manifest.value(kDepartures, nlohmann::ordered_json::array()))
-    if (one.is_object()) all.push_back({one.value("why", ""), one.value("changed_by_script", true)});
+  for (const auto& one : manifest[kDepartures]) {
+    if (!one.is_object()) continue;
+    // whatever stands there instead of a text and a flag, something was done to the run
+    const auto why = one.value("why", nlohmann::ordered_json());
+    all.push_back({why.is_string() ? why.get<std::string>() : why.dump(),
+                   one.value("changed_by_script", nlohmann::ordered_json(true)) != false});
+  }
   return all;
 }
 
@@ -184,6 +194,7 @@ void RunFolder::note_departure(const fs::path& path, const Departure& departure)
   const auto known = departures(path);
   if (std::ranges::find(known, departure) != known.end()) return;
   auto manifest = manifest_of(path);
+  if (!manifest[kDepartures].is_array()) manifest[kDepartures] = nlohmann::ordered_json::array();
   manifest[kDepartures].push_back({{"why", departure.why}, {"changed_by_script", departure.is_change}});
   write_text_file(path / kManifest, manifest.dump(2) + "\n");
 }

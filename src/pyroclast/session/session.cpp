@@ -112,7 +112,7 @@ void Session::open(std::int64_t last_checkpoint) {
 
 void Session::visit_state(StateVisitor& visitor) {
   run_.visit_state(visitor);
-  recorder_.visit_state(visitor);
+  recorder_.visit_state(visitor, run_.history().row_count());
 }
 
 void Session::restore(const CheckpointFile& checkpoint) {

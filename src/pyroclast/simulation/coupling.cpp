@@ -110,11 +110,11 @@ void HottestTemperatures::take(const TemperatureField& field) {
 }
 
 void HottestTemperatures::visit_state(StateVisitor& visitor) {
-  visitor.visit("zones", zones_);
-  visitor.visit("contacts", contacts_);
-  visitor.visit("seen_zones", seen_zones_);
-  visitor.visit("seen_contacts", seen_contacts_);
-  visitor.visit("of_all", of_all_);
+  visitor.visit("zones", zones_, kTemperatures.of(zones_.size()));
+  visitor.visit("contacts", contacts_, kTemperatures.of(contacts_.size()));
+  visitor.visit("seen_zones", seen_zones_, kTemperatures.of(seen_zones_.size()));
+  visitor.visit("seen_contacts", seen_contacts_, kTemperatures.of(seen_contacts_.size()));
+  visitor.visit("of_all", of_all_, kTemperatures);
 }
 
 BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& materials,

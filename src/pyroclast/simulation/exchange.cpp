@@ -140,12 +140,12 @@ double Exchange::expected_cycles() const {
 }
 
 void Exchange::visit_state(StateVisitor& visitor) {
-  visitor.visit("exchange", number_);
-  visitor.visit("cycles", cycles_);
+  visitor.visit("exchange", number_, state::count());
+  visitor.visit("cycles", cycles_, state::count());
   visitor.visit("converged", converged_);
   visitor.visit("ran_away", ran_away_);
   visitor.visit("is_handed_over", is_handed_over_);
-  visitor.visit("even_steps_left", even_steps_left_);
+  visitor.visit("even_steps_left", even_steps_left_, state::within(0, kEvenSteps));
   visitor.visit("even_axial", even_motion_.axial);
   visitor.visit("even_lateral", even_motion_.lateral);
   visitor.visit("even_lift", even_motion_.lift);

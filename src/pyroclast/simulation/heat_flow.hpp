@@ -34,7 +34,7 @@ class HeatFlow {
   }
 
   void visit_state(StateVisitor& visitor) {
-    visitor.visit("largest_change", largest_change_);
+    visitor.visit("largest_change", largest_change_, state::number());
     visitor.visit("until", until_);
     visitor.visit("steady_rate", steady_rate_);
     visitor.visit("flows", flows_);

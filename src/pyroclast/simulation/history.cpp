@@ -80,7 +80,9 @@ void History::visit_state(StateVisitor& visitor) {
     }
   visitor.visit("columns", of_values);
   visitor.visit("values", values);
-  visitor.visit("is_there", is_there);
+  visitor.visit("is_there", is_there, state::within(0, 1).of(values.size()));
+  visitor.require(of_values.empty() ? values.empty() : values.size() % of_values.size() == 0, "values",
+                  "are not as many in each row as there are columns");
   if (!visitor.replaces()) return;
 
   cells_.clear();

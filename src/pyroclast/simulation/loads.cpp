@@ -159,7 +159,7 @@ void Loads<Dim>::visit_state(StateVisitor& visitor) {
   }
   for (auto& [name, entry] : entries_) {
     const StateVisitor::Scope scope(visitor, name);
-    visitor.visit("force", entry.load.force);
+    visitor.visit_numbers("force", entry.load.force);
     visitor.visit("pressure", entry.load.pressure);
     visitor.visit("is_follower", entry.load.is_follower);
     visitor.visit("marked", entry.marked);

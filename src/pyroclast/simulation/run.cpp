@@ -237,7 +237,7 @@ void Run::end_stage(const Verdict& verdict) {
 }
 
 void Run::visit_state(StateVisitor& visitor) {
-  visitor.visit("stage", stage_);
+  visitor.visit("stage", stage_, state::count());
   if (stage_ < 0 || stage_ >= static_cast<std::int64_t>(stages_.size()))
     throw Error(fmt::format("the state is that of stage {}, but this run has {}", stage_, stages_.size()));
   visitor.visit("has_started", has_started_);
@@ -249,6 +249,9 @@ void Run::visit_state(StateVisitor& visitor) {
     const StateVisitor::Scope scope(visitor, "history");
     history_.visit_state(visitor);
   }
+  for (const StageRecord& record : records_)
+    visitor.require(record.rows.first <= record.rows.last && record.rows.last <= history_.row_count(),
+                    "records", "names rows that the history does not have");
   simulation_.visit_state(visitor);
   for (std::int64_t i = 0; i <= stage_; ++i) {
     const StateVisitor::Scope scope(visitor, fmt::format("stages[{}]", i));
@@ -260,13 +263,17 @@ void Run::visit_state(StateVisitor& visitor) {
 void Run::visit_records(StateVisitor& visitor) {
   std::vector<StageRecord> records(records_.begin(), records_.begin() + stage_ + 1);
   if (outcome_ == Outcome::stopped) records.back().outcome = Outcome::running;
-  visitor.visit("records", records);
+  visitor.visit_plain("records", records, static_cast<std::size_t>(stage_) + 1);
+  for (const StageRecord& record : records)
+    visitor.require(record.outcome <= Outcome::stopped, "records", "has an outcome that there is none of");
   Outcome outcome = outcome_ == Outcome::stopped ? Outcome::running : outcome_;
-  visitor.visit("outcome", outcome);
+  visitor.visit("outcome", outcome, state::within(0, static_cast<double>(Outcome::stopped)));
   if (!visitor.replaces()) return;
   std::ranges::copy(records, records_.begin());
   const bool has_more = stage_ + 1 < static_cast<std::int64_t>(stages_.size());
   outcome_ = stage_is_over_ && !stage_ends_run_ && has_more ? Outcome::running : outcome;
+  visitor.require(outcome_ != Outcome::running || !stage_is_over_ || has_more, "outcome",
+                  "says that the run goes on behind its last stage");
 }
 
 }  // namespace pyroclast

@@ -179,7 +179,7 @@ void Simulation::hand_over() {
 
 void Simulation::visit_state(StateVisitor& visitor) {
   visitor.visit("heating_time", heating_time_);
-  visitor.visit("exchanges", exchanges_);
+  visitor.visit("exchanges", exchanges_, state::count());
   {
     const StateVisitor::Scope scope(visitor, "field");
     field_.visit_state(visitor);

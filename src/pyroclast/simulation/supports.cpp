@@ -114,11 +114,12 @@ void Supports<Dim>::visit_state(StateVisitor& visitor) {
     are_free.push_back(motion.is_free ? 1 : 0);
   }
   visitor.visit("sets", sets);
-  visitor.visit("components", components);
+  visitor.visit("components", components, state::index(Dim).of(sets.size()));
   visitor.visit("places", places);
-  visitor.visit("velocities", velocities);
-  visitor.visit("ramp_times", ramp_times);
-  visitor.visit("are_free", are_free);
+  visitor.require(places.size() == sets.size(), "places", "are not as many as the sets");
+  visitor.visit("velocities", velocities, state::finite().of(sets.size()));
+  visitor.visit("ramp_times", ramp_times, state::finite().of(sets.size()));
+  visitor.visit("are_free", are_free, state::within(0, 1).of(sets.size()));
   if (!visitor.replaces()) return;
   held_.clear();
   std::ranges::fill(holders_, std::array<int, Dim>{});

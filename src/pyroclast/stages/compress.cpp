@@ -315,17 +315,17 @@ Forecast Compress::forecast(const Simulation& simulation, Foreseen&) const {
 }
 
 void Compress::visit_state(StateVisitor& visitor) {
-  visitor.visit("gap_steps_left", gap_steps_left_);
+  visitor.visit("gap_steps_left", gap_steps_left_, state::within(0, kMostSteps));
   visitor.visit("is_loading", is_loading_);
   visitor.visit("is_upwards", is_upwards_);
   visitor.visit("first_left", first_left_);
   visitor.visit("wave_time", wave_time_);
-  visitor.visit("steps", steps_);
-  visitor.visit("steps_left", steps_left_);
+  visitor.visit("steps", steps_, state::count());
+  visitor.visit("steps_left", steps_left_, state::within(0, kMostSteps));
   visitor.visit("velocity", velocity_);
   visitor.visit("way", way_);
   visitor.visit("dissipated", dissipated_);
-  visitor.visit("steps_to_point", steps_to_point_);
+  visitor.visit("steps_to_point", steps_to_point_, state::within(0, kMostSteps));
   visitor.visit("way_to_point", way_to_point_);
   visitor.visit("largest_stress", largest_stress_);
   {
@@ -336,7 +336,7 @@ void Compress::visit_state(StateVisitor& visitor) {
     const StateVisitor::Scope scope(visitor, "peak");
     peak_.visit_state(visitor);
   }
-  visitor.visit("next_frame", next_frame_);
+  visitor.visit("next_frame", next_frame_, state::number());
 }
 
 }  // namespace pyroclast

@@ -175,10 +175,11 @@ void CompressionCurve::add(const Press<2>& press, const Mechanics<2>& mechanics)
 
 void CompressionCurve::visit_state(StateVisitor& visitor) {
   visitor.visit("strain", strain);
-  visitor.visit("stress", stress);
-  visitor.visit("platen_difference", platen_difference);
-  visitor.visit("kinetic_over_strain", kinetic_over_strain);
-  visitor.visit("time", time);
+  const StateRule alike = state::finite().of(strain.size());
+  visitor.visit("stress", stress, alike);
+  visitor.visit("platen_difference", platen_difference, alike);
+  visitor.visit("kinetic_over_strain", kinetic_over_strain, state::number().of(strain.size()));
+  visitor.visit("time", time, alike);
 }
 
 QuasiStaticReport quasi_static_report(const CompressionCurve& curve, std::size_t peak,

@@ -117,9 +117,9 @@ Forecast Conduct::forecast(const Simulation&, Foreseen& foreseen) const {
 
 void Conduct::visit_state(StateVisitor& visitor) {
   visitor.visit("began", began_);
-  visitor.visit("steady_from", steady_from_);
+  visitor.visit("steady_from", steady_from_, state::number());
   visitor.visit("flow_steady", flow_steady_);
-  visitor.visit("next_frame", next_frame_);
+  visitor.visit("next_frame", next_frame_, state::number());
   flow_.visit_state(visitor);
 }
 

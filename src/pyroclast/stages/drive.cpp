@@ -253,6 +253,13 @@ StageKind drive_kind() {
 }
 
 Drive::Drive(Keys keys) : keys_(std::move(keys)) {
+  // as many as the keys ask for, from before it begins: a state is taken into it
+  for (auto* of_action : {&velocity_, &came_, &farthest_}) of_action->resize(keys_.actions.size());
+  last_.resize(keys_.until.size());
+  peaks_.resize(keys_.until.size());
+  record_peaks_.resize(keys_.records.size());
+  for (const Action& action : keys_.actions)
+    if (!is_motion(action)) first_loads_.emplace_back();
   for (const RecordKind kind : {RecordKind::force, RecordKind::stress})
     if (const auto first = std::ranges::find(keys_.records, kind, &RecordParameters::kind);
         !leading_ && first != keys_.records.end())
@@ -305,16 +312,17 @@ void Drive::check(const Simulation& simulation, Acting<2>& acting) const {
                       action.place, action.set));
   }
   require_consistent();
-  const auto is_of = [](ActionKind kind) { return [kind](const Action& a) { return a.kind == kind; }; };
-  for (const Action& action : keys_.actions | std::views::filter(is_of(ActionKind::release)))
-    for (int c : action.components) acting.supports.release(action.set, c, action.place);
+  for (const Action& action : keys_.actions)
+    if (action.kind == ActionKind::release)
+      for (int c : action.components) acting.supports.release(action.set, c, action.place);
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::hold || action.kind == ActionKind::velocity)
       for (int c : action.components) acting.supports.hold(action.set, c, motion_of(action), action.place);
-  for (const auto& [set, load] : loads_at_end(simulation, acting)) {
+  for (const auto& loaded : loads_at_end(simulation, acting)) {
+    const std::string& set = loaded.first;
     const auto place =
         std::ranges::find_if(keys_.actions, [&](const Action& a) { return a.set == set && !is_motion(a); });
-    acting.loads[set] = {load, place->place};
+    acting.loads[set] = {loaded.second, place->place};
   }
   for (const auto& [set, lasting] : acting.loads)
     require_free(model, acting.supports, set, lasting.load.force, lasting.place);
@@ -323,8 +331,8 @@ void Drive::check(const Simulation& simulation, Acting<2>& acting) const {
     for (const std::string& set : {record.set, record.other})
       require_free(model, acting.supports, set, record.direction, keys_.control->place);
   }
-  for (const Action& action : keys_.actions | std::views::filter(is_of(ActionKind::velocity)))
-    acting.supports.halt(action.set, action.components.front());
+  for (const Action& action : keys_.actions)
+    if (action.kind == ActionKind::velocity) acting.supports.halt(action.set, action.components.front());
 }
 
 /// One set is asked for one thing: not to be held and released, nor for pressures of both sorts.
@@ -810,38 +818,36 @@ void Drive::visit_state(StateVisitor& visitor) {
   visitor.visit("largest_with_pair", largest_with_pair_);
   visitor.visit("pair_work", pair_work_);
   visitor.visit("last_opening", last_opening_);
-  visitor.visit("steps", steps_);
-  visitor.visit("frames", frames_);
+  visitor.visit("steps", steps_, state::count());
+  visitor.visit("frames", frames_, state::count());
   {
     std::vector<double> numbers;
     for (const SetLoad<2>& load : first_loads_)
       numbers.insert(numbers.end(),
                      {load.force[0], load.force[1], load.pressure, load.is_follower ? 1.0 : 0.0});
-    visitor.visit("first_loads", numbers);
+    const auto loads = std::ranges::count_if(keys_.actions, [](const Action& a) { return !is_motion(a); });
+    visitor.visit("first_loads", numbers, state::finite().of(4 * static_cast<std::size_t>(loads)));
     if (visitor.replaces()) {
       first_loads_.clear();
       for (std::size_t i = 0; i + 3 < numbers.size(); i += 4)
         first_loads_.push_back({Vec<2>{{numbers[i], numbers[i + 1]}}, numbers[i + 2], numbers[i + 3] != 0.0});
     }
   }
-  visitor.visit("velocity", velocity_);
-  visitor.visit("last", last_);
-  visitor.visit("came", came_);
-  visitor.visit("farthest", farthest_);
+  const StateRule of_each_action = state::finite().of(keys_.actions.size());
+  visitor.visit("velocity", velocity_, of_each_action);
+  visitor.visit("last", last_, state::finite().of(keys_.until.size()));
+  visitor.visit("came", came_, of_each_action);
+  visitor.visit("farthest", farthest_, of_each_action);
   visitor.visit("driven", driven_);
   visitor.visit("is_driven", is_driven_);
   visitor.visit("is_beyond_noise", is_beyond_noise_);
-  const auto visit_all = [&](const char* name, auto& all) {
+  const auto visit_all = [&](const char* name, auto& all, auto... more) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const StateVisitor::Scope scope(visitor, fmt::format("{}[{}]", name, i));
-      all[i].visit_state(visitor);
+      all[i].visit_state(visitor, more...);
     }
   };
-  if (visitor.replaces()) {
-    record_peaks_.resize(keys_.records.size());
-    peaks_.resize(keys_.until.size());
-  }
-  visit_all("record_peaks", record_peaks_);
+  visit_all("record_peaks", record_peaks_, keys_.records.size());
   visit_all("peaks", peaks_);
   visitor.visit("leading_peak", leading_peak_);
   visitor.visit("framed_peak", framed_peak_);

@@ -79,7 +79,7 @@ double Expose::foreseen_change(Foreseen& foreseen) const {
 
 void Expose::visit_change(StateVisitor& visitor) {
   visitor.visit("began", began_);
-  visitor.visit("next_frame", next_frame_);
+  visitor.visit("next_frame", next_frame_, state::number());
   flow_.visit_state(visitor);
 }
 

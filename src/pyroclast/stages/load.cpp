@@ -135,7 +135,7 @@ Forecast Load::forecast(const Simulation& simulation, Foreseen&) const {
 }
 
 void Load::visit_state(StateVisitor& visitor) {
-  visitor.visit("steps", steps_);
+  visitor.visit("steps", steps_, state::count());
   visitor.visit("first_stress", first_stress_);
   visitor.visit("first_strain", first_strain_);
 }

@@ -18,8 +18,8 @@ void Peak::take(double driven, double size, const PeakRule& rule) {
 void Peak::visit_state(StateVisitor& visitor) {
   visitor.visit("size", size_);
   visitor.visit("driven", driven_);
-  visitor.visit("has_fallen", has_fallen_);
-  visitor.visit("is_found", is_found_);
+  visitor.visit("has_fallen", has_fallen_, state::within(0, 1));
+  visitor.visit("is_found", is_found_, state::within(0, 1));
 }
 
 }  // namespace pyroclast

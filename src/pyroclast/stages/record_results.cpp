@@ -208,10 +208,12 @@ void RecordPeak::take(std::size_t of, double driven, bool counts, double time,
   values_ = values;
 }
 
-void RecordPeak::visit_state(StateVisitor& visitor) {
+void RecordPeak::visit_state(StateVisitor& visitor, std::size_t records) {
   peak_.visit_state(visitor);
   visitor.visit("time", time_);
   visitor.visit("values", values_);
+  visitor.require(values_.size() == records || (values_.empty() && !peak_.is_found()), "values",
+                  "does not have one for each record");
   visitor.visit("largest", largest_);
   visitor.visit("largest_time", largest_time_);
 }

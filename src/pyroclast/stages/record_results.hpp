@@ -52,7 +52,8 @@ class RecordPeak {
   double largest() const { return largest_; }                    ///< value where the size is largest, SI
   double largest_time() const { return largest_time_; }
 
-  void visit_state(StateVisitor& visitor);
+  /// \param records  how many there are
+  void visit_state(StateVisitor& visitor, std::size_t records);
 
  private:
   Peak peak_;

@@ -69,8 +69,8 @@ Forecast Settle::forecast(const Simulation&, Foreseen&) const {
 }
 
 void Settle::visit_state(StateVisitor& visitor) {
-  visitor.visit("steps", steps_);
-  visitor.visit("steps_to_look", steps_to_look_);
+  visitor.visit("steps", steps_, state::count());
+  visitor.visit("steps_to_look", steps_to_look_, state::within(0, kSettleStepsPerLook));
 }
 
 double steps_to_rest(double unbalanced_ratio) {

@@ -53,6 +53,10 @@ struct SteadyState {
   double rate = 0.0;  ///< L2 norm of the temperature's change, K/s, see Conduction::rate
 };
 
+/// Temperatures of a state, °C: with room for rounding, and hotter than any concrete. Tables of properties
+/// are as wide.
+inline constexpr StateRule kTemperatures = state::within(absolute_zero - 1.0, 1e5);
+
 /// What a conduction that runs has come to at the end of its last completed step. This and what it was set up
 /// with are all that it needs to go on bitwise as before.
 struct HeatState {

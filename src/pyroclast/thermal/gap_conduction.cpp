@@ -191,8 +191,9 @@ double GapConduction<Dim>::area() const {
 
 template <int Dim>
 void GapConduction<Dim>::visit_state(StateVisitor& visitor) {
-  visitor.visit("gaps", gaps_);
-  visitor.visit("parts", parts_);
+  visitor.visit_numbers("gaps", gaps_, state::at_least(0).of(gaps_.size()));
+  for (const ContactGap& gap : gaps_) visitor.require(gap.damage <= 1.0, "gaps", "has a damage above 1");
+  visitor.visit("parts", parts_, state::within(0, 1).of(parts_.size()));
 }
 
 template class GapConduction<2>;

@@ -140,21 +140,24 @@ void TemperatureField::read_conduction() {
 void TemperatureField::visit_state(StateVisitor& visitor) {
   if (is_uniform()) {
     double temperature = mean_;
-    visitor.visit("temperature", temperature);
+    visitor.visit("temperature", temperature, kTemperatures);
     if (visitor.replaces()) set_uniform(temperature);
     return;
   }
   conduction_->visit_state(visitor);
-  visitor.visit("gridpoints", gridpoints_);  // an advance under way leaves them where it began
-  visitor.visit("time", time_);
-  visitor.visit("fastest", fastest_);
+  visitor.visit("gridpoints", gridpoints_,
+                kTemperatures.of(gridpoints_.size()));  // an advance under way leaves them where it began
+  visitor.visit("time", time_, state::at_least(0));
+  visitor.visit("fastest", fastest_, state::number());
   const StateVisitor::Scope scope(visitor, "advance");
   visitor.visit("under_way", advance_.under_way);
-  visitor.visit("largest_change", advance_.largest_change);
+  visitor.visit("largest_change", advance_.largest_change, state::number());
   visitor.visit("until", advance_.until);
   visitor.visit("steady_rate", advance_.steady_rate);
   visitor.visit("change", advance_.change);
-  visitor.visit("begin", advance_.begin);
+  visitor.visit("begin", advance_.begin, kTemperatures);
+  visitor.require(!advance_.under_way || advance_.begin.size() == conduction_->temperature().size(), "begin",
+                  "does not have the temperature of each node");
   if (visitor.replaces()) update();
 }
 
