@@ -38,16 +38,12 @@ class Table:
     which a GapWarning tells.
     """
 
-    def __init__(self, path: Path, may_be_empty: bool = False, comments: bool = False):
-        """comments: whether lines that begin with # are skipped.
-
-        Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
+    def __init__(self, path: Path, may_be_empty: bool = False):
+        """Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
         self.path = path
         try:
             text = self._text()
-            written = text.splitlines()
-            first = next((i for i, line in enumerate(written) if not _skipped(line)), 0) if comments else 0
-            lines = list(csv.reader("" if comments and _skipped(line) else line for line in written[first:]))
+            lines = list(csv.reader(text.splitlines()))
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             raise RunError(f"{path}: cannot be read: {_reason(error)}") from error
         if not lines or not lines[0]:
@@ -55,7 +51,7 @@ class Table:
         if not text.endswith("\n") and len(lines[-1]) != len(lines[0]):
             lines.pop()  # the row that a run was killed in
         self.names = [name.strip() for name in lines[0]]
-        self._columns = self._parsed(lines[1:], first + 2)
+        self._columns = self._parsed(lines[1:], 2)
         if not len(self) and not may_be_empty:
             raise RunError(f"{path}: has a header but no rows")
 
@@ -242,10 +238,6 @@ def read_json(path: Path) -> dict:
     if not isinstance(value, dict):
         raise RunError(f"{path}: is not a JSON object")
     return value
-
-
-def _skipped(line: str) -> bool:
-    return not line.strip() or line.startswith("#")
 
 
 def _reason(error: Exception) -> str:

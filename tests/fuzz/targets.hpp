@@ -31,6 +31,8 @@ bool cells(std::string_view text);
 bool quantity(std::string_view text);
 /// A CSV file with a path of jumps.
 bool jump_path(std::string_view text);
+/// A table of temperatures over the time.
+bool record(std::string_view text);
 
 struct Target {
   std::string_view name;
@@ -39,14 +41,15 @@ struct Target {
 inline void PrintTo(const Target& target, std::ostream* stream) {
   *stream << target.name;
 }
-inline constexpr std::array<Target, 8> kTargets{{{"deck", deck},
+inline constexpr std::array<Target, 9> kTargets{{{"deck", deck},
                                                  {"changes", changes},
                                                  {"formula", formula},
                                                  {"table", table},
                                                  {"tessellation", tessellation},
                                                  {"cells", cells},
                                                  {"quantity", quantity},
-                                                 {"jump_path", jump_path}}};
+                                                 {"jump_path", jump_path},
+                                                 {"record", record}}};
 
 /// Ends the process where a promise about what was read does not hold.
 inline void require(bool holds, std::string_view promise) {

@@ -42,6 +42,7 @@ struct Setup {
   std::vector<std::string> stage_names;
   CheckpointChoice checkpoints;
   bool has_fields = true;            ///< whether frames of the fields are written
+  std::string reference;             ///< table for the figures, see read_reference
   std::vector<Diagnostic> warnings;  ///< of the deck: what is allowed, but most likely not meant
 };
 
