@@ -849,9 +849,9 @@ class Law(UserTest):
         deck = self.write(small_deck())
         for text, words in (("u_n, u_s [um]\n1,2\n", ("path.csv:1", "no unit")),
                             ("u_n [um], v [um]\n1,2\n", ("path.csv:1", '"v"', "u_s")),
-                            ("u_n [kg]\n1\n", ("path.csv:2", "kg")),
-                            ("u_n [um], u_s [um]\n1,2\n3\n", ("path.csv:3", "2 columns")),
-                            ("u_n [um]\n", ("path.csv", "no path"))):
+                            ("u_n [kg]\n1\n", ("path.csv:1", "kg")),
+                            ("u_n [um], u_s [um]\n1,2\n3\n", ("path.csv:3", "1 cell, line 1 has 2")),
+                            ("u_n [um]\n", ("path.csv:1", "no number"))):
             self.write(text, "path.csv")
             done = self.pyroclast("law", deck, "--path", "path.csv", "--out", "law.csv")
             self.assertEqual(done.returncode, 1, text)
