@@ -44,10 +44,8 @@ class Table:
 
     _takes_torn = True  #: a last line that does not end, but has all its cells
 
-    def __init__(self, path: Path, may_be_empty: bool = False, comments: bool = False):
-        """comments: whether lines that begin with # are skipped.
-
-        Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
+    def __init__(self, path: Path, may_be_empty: bool = False):
+        """Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
         self.path = path
         self.names: list[str] = []
         self._gaps: tuple[int, int, str, str] | None = None  # how many, and line, column and cell of the first
@@ -56,27 +54,11 @@ class Table:
         self._next_line = 1
         self._taken = 0  # bytes
         self._left = 0.0  # pieces of the size of the last one
-        if comments:
-            self._take_commented()
-        else:
-            self._take_added()
+        self._take_added()
         if not self.names:
             raise RunError(f"{path}: is empty; a header line is expected")
         if not len(self) and not may_be_empty:
             raise RunError(f"{path}: has a header but no rows")
-
-    def _take_commented(self) -> None:
-        """A table of a user's own."""
-        try:
-            with open(self.path, newline="", encoding="utf-8") as file:
-                text = file.read()
-        except (OSError, UnicodeDecodeError) as error:
-            raise RunError(f"{self.path}: cannot be read: {_reason(error)}") from error
-        written = text.splitlines()
-        self._next_line += next((i for i, line in enumerate(written) if not _skipped(line)), 0)
-        kept = "".join("\n" if _skipped(line) else f"{line}\n" for line in written[self._next_line - 1:])
-        self._begin((kept if text.endswith("\n") else kept[:-1]).encode(), all_of_it=True)
-        self._tell_gaps()
 
     def _take_added(self) -> bool:
         """The lines that came since, piece by piece, so that a long file is never in memory as a text. Returns whether
@@ -107,11 +89,11 @@ class Table:
         except OSError as error:
             raise RunError(f"{self.path}: cannot be read: {_reason(error)}") from error
 
-    def _begin(self, piece: bytes, all_of_it: bool = False) -> bytes:
+    def _begin(self, piece: bytes) -> bytes:
         """Takes the names; returns what follows their line, unless that was taken too."""
         head, _, rest = piece.partition(b"\n")
         lines = self._cut(head)
-        if all_of_it or b'"' in head or len(lines) > 1:  # a name may hold line ends, and other marks cut lines too
+        if b'"' in head or len(lines) > 1:  # a name may hold line ends, and other marks cut lines too
             lines, rest = self._cut(piece), b""
         if not lines or not lines[0]:
             raise RunError(f"{self.path}: is empty; a header line is expected")
@@ -369,10 +351,6 @@ def read_rows(lines: bytes, columns: int) -> np.ndarray | None:
     if len(values) != len(ends) or not (np.abs(values[~empty]) <= LARGEST).all():
         return None
     return values.reshape(-1, columns).T
-
-
-def _skipped(line: str) -> bool:
-    return not line.strip() or line.startswith("#")
 
 
 def _reason(error: Exception) -> str:

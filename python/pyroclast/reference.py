@@ -24,14 +24,17 @@ class Reference:
     """What the deck of a run asks for beside its results."""
 
     def __init__(self, folder: Path, name: str):
-        """folder: of the run. Throws RunError when the name is none, or its table is missing or malformed."""
+        """folder: of the run, where the program leaves the table of a file as reference.csv, in these names and units.
+
+        Throws RunError when the name is none, or the table is missing or malformed.
+        """
         self.name = name
         self.table: Table | None = None
         if name in (NONE, COMPRESSION, TRANSIENT_STRAIN):
             return
         if not name.endswith(".csv") or "\0" in name:
             raise RunError(f"{folder / 'deck.toml'}: output.reference = {ascii(name[:40])} is no reference")
-        self.table = Table(folder / name, comments=True)
+        self.table = Table(folder / "reference.csv")
         self.name = Path(name).stem
         if tuple(self.table.names) not in _TABLES:
             raise RunError(f"{self.table.path}: has other columns than {', '.join(map('/'.join, _TABLES))}")

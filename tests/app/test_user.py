@@ -442,13 +442,13 @@ class ReferenceOfTheFigures(UserTest):
 
     def test_what_is_wrong_is_told_at_its_place(self):
         self.write("strain,stress\n0,0\n", "columns.csv")
-        self.write("# mine\nstrain,stress_MPa\n0,0\n1,high\n", "word.csv")
+        self.write("# mine\nstrain,stress_MPa\n0,0\n1,high\n2,1\n", "word.csv")
         self.write("strain,stress_MPa\n0,0,0\n", "three.csv")
         self.write("strain,stress_MPa\n0,0\n", "short.csv")
         for reference, part in (("compresion", 'did you mean "compression"?'), ("mine", "ends in .csv"),
-                                ("gone.csv", "cannot open"),
-                                ("columns.csv", 'columns.csv:1: the header "strain,stress"'),
-                                ("word.csv", 'word.csv:4: "high"'), ("three.csv", "three.csv:2: 3 values"),
+                                ("gone.csv", "cannot be read"),
+                                ("columns.csv", 'columns.csv:1: the columns 1 "strain", 2 "stress" are none'),
+                                ("word.csv", 'word.csv:4: "high"'), ("three.csv", "three.csv:2: \"0,0,0\" has 3 cells"),
                                 ("short.csv", "1 rows")):
             with self.subTest(reference):
                 done = self.pyroclast("check", self.deck(reference))
@@ -463,6 +463,22 @@ class ReferenceOfTheFigures(UserTest):
         self.assertTrue((self.folder / "run" / "inputs" / "tests_of_1976.csv").exists())
         self.assertEqual(self.pyroclast("figures", "run", "run", "--format", "svg").returncode, 0)
         self.assertIn("tests_of_1976", (self.folder / "run" / "figures" / "stress_strain.svg").read_text())
+
+    def test_a_table_in_other_units_is_the_same(self):
+        self.write("\ufeffDehnung strain [%];Spannung [kPa]\r\n0,0;0\r\n0,1;20000,5\r\n", "other.csv")
+        done = self.pyroclast("run", self.deck("other.csv"), "--out", "run", "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((self.folder / "run" / "reference.csv").read_text(), "strain,stress_MPa\n0,0\n0.001,20.0005\n")
+
+    def test_what_hardly_is_in_its_unit_is_warned_of(self):
+        for rows, part in (("0,0\n-0.001,-20\n-0.002,-35\n", "the stress reaches -35 MPa; figures draw compression"),
+                           ("0,0\n0.001,20000000\n0.002,35000000\n", "most likely in another unit"),
+                           ("0,0\n0.1,20\n0.2,35\n", "the strain reaches 0.2 (no unit); it is most likely")):
+            with self.subTest(rows):
+                self.write(f"strain,stress_MPa\n{rows}", "warned.csv")
+                done = self.pyroclast("check", self.deck("warned.csv"))
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn(part, done.stdout + done.stderr)
 
 
 class Properties(UserTest):
@@ -896,9 +912,9 @@ class Law(UserTest):
         deck = self.write(small_deck())
         for text, words in (("u_n, u_s [um]\n1,2\n", ("path.csv:1", "no unit")),
                             ("u_n [um], v [um]\n1,2\n", ("path.csv:1", '"v"', "u_s")),
-                            ("u_n [kg]\n1\n", ("path.csv:2", "kg")),
-                            ("u_n [um], u_s [um]\n1,2\n3\n", ("path.csv:3", "2 columns")),
-                            ("u_n [um]\n", ("path.csv", "no path"))):
+                            ("u_n [kg]\n1\n", ("path.csv:1", "kg")),
+                            ("u_n [um], u_s [um]\n1,2\n3\n", ("path.csv:3", "1 cell, line 1 has 2")),
+                            ("u_n [um]\n", ("path.csv:1", "no number"))):
             self.write(text, "path.csv")
             done = self.pyroclast("law", deck, "--path", "path.csv", "--out", "law.csv")
             self.assertEqual(done.returncode, 1, text)

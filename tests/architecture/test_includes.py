@@ -13,6 +13,7 @@ MODULES = [
     "laws",
     "units",
     "deck",
+    "tables",
     "specimen",
     "material",
     "model",
@@ -31,6 +32,7 @@ MODULES = [
 # Exceptions: what a module must not include all the same, and the files of it that may.
 # What computes knows no deck: it can be used without one.
 NEVER = {
+    "tables": {"deck": ["read_choice.hpp", "read_choice.cpp"]},
     "specimen": {"units": [], "deck": []},
     "material": {"deck": ["curve_reader.hpp", "curve_reader.cpp"]},
     "model": {"units": [], "deck": []},

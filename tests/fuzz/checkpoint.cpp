@@ -85,8 +85,8 @@ Base base_of(std::size_t number) {
       "[[sets]]\nname = \"one\"\nbox = [[\"10 mm\", \"0 mm\"], [\"20 mm\", \"120 mm\"]]\n"
       "[[sets]]\nname = \"other\"\nbox = [[\"40 mm\", \"0 mm\"], [\"50 mm\", \"120 mm\"]]\n"
       "[[sets]]\nname = \"corner\"\nwithin = \"left\"\nnearest = [\"0 mm\", \"0 mm\"]\n" +
-      record("middle", "opening", "set = \"one\"\nother = \"other\"\ndirection = \"x\"") +
-      record("grip", "force", "set = \"left\"\ndirection = \"x\"");
+      pyroclast::record("middle", "opening", "set = \"one\"\nother = \"other\"\ndirection = \"x\"") +
+      pyroclast::record("grip", "force", "set = \"left\"\ndirection = \"x\"");
   const std::string controlled = drive(
       "duration = \"20 ms\"\n[stages.control]\nrecord = \"middle\"\nrate = \"1 mm/s\"\n"
       "stiffness = \"2 GN/m\"\nresponse_time = \"2 ms\"",

@@ -1,8 +1,6 @@
 #include "pyroclast/material/jump_path.hpp"
 
 #include <cmath>
-#include <sstream>
-#include <string>
 
 #include "targets.hpp"
 
@@ -10,8 +8,7 @@ namespace pyroclast::fuzz {
 
 bool jump_path(std::string_view text) {
   return takes([&] {
-    std::istringstream stream{std::string(text)};
-    for (const auto& point : read_jump_path(stream, "path.csv"))
+    for (const auto& point : pyroclast::jump_path(MeasuredTable::parse(text, "path.csv", 1)))
       require(std::isfinite(point.opening) && std::isfinite(point.slip) && std::isfinite(point.temperature),
               "a path is finite");
   });

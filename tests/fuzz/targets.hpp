@@ -35,6 +35,8 @@ bool jump_path(std::string_view text);
 bool checkpoint(std::string_view text);
 /// The manifest of a run's folder, and what may stand in the place of a frame.
 bool run_folder(std::string_view text);
+/// A table of temperatures over the time.
+bool record(std::string_view text);
 
 struct Target {
   std::string_view name;
@@ -43,7 +45,7 @@ struct Target {
 inline void PrintTo(const Target& target, std::ostream* stream) {
   *stream << target.name;
 }
-inline constexpr std::array<Target, 10> kTargets{{{"deck", deck},
+inline constexpr std::array<Target, 11> kTargets{{{"deck", deck},
                                                   {"changes", changes},
                                                   {"formula", formula},
                                                   {"table", table},
@@ -52,7 +54,8 @@ inline constexpr std::array<Target, 10> kTargets{{{"deck", deck},
                                                   {"quantity", quantity},
                                                   {"jump_path", jump_path},
                                                   {"checkpoint", checkpoint},
-                                                  {"run_folder", run_folder}}};
+                                                  {"run_folder", run_folder},
+                                                  {"record", record}}};
 
 /// Ends the process where a promise about what was read does not hold.
 inline void require(bool holds, std::string_view promise) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -142,6 +143,16 @@ TEST(CurveReader, ReadsACsvFileBesideTheDeck) {
   EXPECT_DOUBLE_EQ(
       read_good("{ value = \"2 MPa\", times = { csv = \"ratio.csv\" } }", unit::stress, folder.path())(800.0),
       1e6);
+}
+
+TEST(CurveReader, TakesColumnsOfAFileByNameOrNumber) {
+  const Folder folder;
+  folder.write("many.csv", "run;T [degC];E1 [GPa];E2\n1;20;1,5;70\n2;800;0,5;10\n");
+  for (const std::string choice : {"columns = [\"T\", \"E2\"], units = [\"\", \"GPa\"]",
+                                   "columns = [2, 4], units = [\"degC\", \"GPa\"]"})
+    EXPECT_DOUBLE_EQ(read_good("{ csv = \"many.csv\", " + choice + " }", unit::stress, folder.path())(410.0),
+                     40e9)
+        << choice;
 }
 
 TEST(CurveReader, EvaluatesAnExpressionInItsUnitAndRange) {
@@ -291,7 +302,29 @@ TEST(BadCurve, InACsvFileIsNamedByFileAndLine) {
   read(deck, unit::stress, Range::any(), kFire, folder.path());
   const Diagnostic diagnostic = only_diagnostic_of(deck);
   EXPECT_EQ(diagnostic.key, "materials.mortar.key.csv");
-  EXPECT_TRUE(mentions(diagnostic.message, "modulus.csv:2")) << diagnostic.message;
+  EXPECT_TRUE(mentions(diagnostic.message, "modulus.csv:1")) << diagnostic.message;
+}
+
+TEST(BadCurve, OfAFileWithMoreColumnsIsToldWhichToWrite) {
+  const Folder folder;
+  folder.write("many.csv", "T [degC],E1 [GPa],E2 [GPa]\n20,1,70\n800,1,10\n");
+  for (const auto& [value, key, message] : {
+           std::tuple{"{ csv = \"many.csv\" }", "csv",
+                      "write { csv = \"many.csv\", columns = [\"T\", \"E1\"] }"},
+           std::tuple{"{ csv = \"many.csv\", columns = [\"T\", \"E11\"] }", "csv", "did you mean \"E1\"?"},
+           std::tuple{"{ csv = \"many.csv\", columns = [\"T\"] }", "columns", "must be a list of 2 columns"},
+           std::tuple{"{ csv = \"many.csv\", columns = [1, 0] }", "columns", "its number from 1"},
+           std::tuple{"{ csv = \"many.csv\", columns = [1, 2], units = [\"K\"] }", "units",
+                      "must be a list of 2 units"},
+           std::tuple{"{ csv = \"many.csv\", columns = [1, 2], units = [\"K\", \"GPa\"] }", "csv",
+                      "is in \"degC\" by the file and in \"K\" by the deck"},
+       }) {
+    const Deck deck = deck_of(value);
+    read(deck, unit::stress, Range::any(), kFire, folder.path());
+    const Diagnostic diagnostic = only_diagnostic_of(deck);
+    EXPECT_EQ(diagnostic.key, std::string("materials.mortar.key.") + key) << value;
+    EXPECT_TRUE(mentions(diagnostic.message, message)) << diagnostic.message;
+  }
 }
 
 // What a run does not read needs no allowed value.

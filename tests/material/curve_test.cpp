@@ -17,6 +17,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/material/curve_file.hpp"
 #include "pyroclast/material/expression.hpp"
+#include "pyroclast/units/units.hpp"
 
 namespace pyroclast {
 namespace {
@@ -247,54 +248,32 @@ TEST(Curve, IsReadAtItsEndsUpToRounding) {
   EXPECT_THROW(later(-4e-9), Error);
 }
 
-/// A file in the test's temporary folder, deleted at the end.
-class CurveFile : public ::testing::Test {
- protected:
-  void TearDown() override { std::filesystem::remove(path_); }
+Curve of_file(const std::string& content) {
+  const auto table = MeasuredTable::parse(content, "folder/strength.csv", kCurveColumns);
+  return curve_of_table(table, {"strength.csv", {}, {}}, temperature_axis(), unit::stress);
+}
 
-  Curve read(const std::string& content) {
-    std::ofstream(path_) << content;
-    const auto celsius = [](double value, const std::string& unit) {
-      if (unit == "degC") return value;
-      if (unit == "K") return value - 273.15;
-      throw Error("unit " + unit + " is no temperature");
-    };
-    const auto pascal = [](double value, const std::string& unit) {
-      return unit == "MPa" ? value * 1e6 : value;
-    };
-    return read_curve_csv(path_, temperature_axis(), celsius, pascal);
-  }
-
-  std::filesystem::path path_ =
-      std::filesystem::path(::testing::TempDir()) /
-      (std::string("pyroclast_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv");
-};
-
-TEST_F(CurveFile, ValuesAreConvertedFromTheUnitsOfTheHeader) {
-  const Curve curve = read("# from a test\nT [K], strength [MPa]\r\n\n293.15, 35\n 373.15 ,\t17.5\n");
+TEST(CurveFile, ValuesAreConvertedFromTheUnitsOfTheHeader) {
+  const Curve curve = of_file("# from a test\nT [K], strength [MPa]\r\n\n293.15, 35\n 373.15 ,\t17.5\n");
   EXPECT_DOUBLE_EQ(curve(20), 35e6);
   EXPECT_DOUBLE_EQ(curve(100), 17.5e6);
-  expect_contains(curve.describe(), {path_.filename().string()});
+  expect_contains(curve.describe(), {"table file strength.csv"});
 }
 
-TEST_F(CurveFile, ErrorsNameFileAndLine) {
-  const auto refusal = [this](const std::string& content) { return message([&] { read(content); }); };
-  const std::string file = path_.filename().string();
-  const std::string header = "T [degC], f [MPa]\n";
-  expect_contains(refusal("20, 1\n30, 2\n"), {file + ":1:", "name [unit]", "\"20\""});
-  expect_contains(refusal(header + "20, 1\n30, x1\n"), {file + ":3:", "\"x1\" is not a number"});
-  expect_contains(refusal(header + "20, 1\n30 2\n"), {file + ":3:", "two cells"});
-  expect_contains(refusal(header + "20, 1, 5\n"), {file + ":2:", "two cells"});
-  expect_contains(refusal(header + "20, 1\n\n20, 2\n"), {file + ":4:", "ascend"});
+TEST(CurveFile, ErrorsNameFileAndLine) {
+  const auto refusal = [](const std::string& content) { return message([&] { of_file(content); }); };
+  const std::string file = "folder/strength.csv", header = "T [degC], f [MPa]\n";
+  expect_contains(refusal("20, 1\n30, 2\n"),
+                  {file + ":1:", "column 1 has no unit", "\"temperature [degC]\""});
+  expect_contains(refusal(header + "20, 1\n30, x1\n"), {file + ":3:", "\"x1\" in column \"f\" is no number"});
+  expect_contains(refusal(header + "20, 1\n30, 2\n40 3\n"),
+                  {file + ":4:", "\"40 3\" holds no number (delimiter: \",\")"});
+  expect_contains(refusal(header + "20, 1, 5\n"), {file + ":2:", "3 cells"});
+  expect_contains(refusal(header + "20, 1\n\n20, 2\n"), {file + ":4:", "from line 2 to line 4"});
   expect_contains(refusal(header + "20, 1\n"), {file, "at least 2 points"});
-  expect_contains(refusal("T [bar], f [MPa]\n20, 1\n"), {file + ":2:", "unit bar is no temperature"});
-  expect_contains(refusal(""), {file, "at least 2 points"});
-}
-
-TEST_F(CurveFile, AMissingFileIsNamed) {
-  const auto same = [](double value, const std::string&) { return value; };
-  expect_contains(message([&] { read_curve_csv("no_such_table.csv", temperature_axis(), same, same); }),
-                  {"no_such_table.csv"});
+  expect_contains(refusal("T [bar], f [MPa]\n20, 1\n"),
+                  {file + ":1:", "unit \"bar\" has the wrong dimension"});
+  expect_contains(refusal(""), {file, "is empty"});
 }
 
 TEST(Expression, KeepsWorkingAfterAMove) {

@@ -132,7 +132,7 @@ class Damaged(unittest.TestCase):
                             ("wall", synthetic_run.write_conduction)):
             write(cls.root / name)
             write(cls.root / f"{name}_whole")
-            (cls.root / name / "mine.csv").write_text("strain,stress_MPa\n" + "0.001,20\n" * 9)
+            (cls.root / name / "reference.csv").write_text("strain,stress_MPa\n" + "0.001,20\n" * 9)
             reference = {"compressed": "mine.csv", "failed": "transient_strain"}.get(name, "compression")
             (cls.root / name / "deck.toml").write_text(f'[output]\nreference = "{reference}"\n')
             parent = {"parent": {"folder": str(cls.root / f"{name}_whole")}}

@@ -721,9 +721,8 @@ class ReferencesOfTheDeck(HeatedTest):
                                         (self.heated("c", Heating(restrained=True)), "thrust",
                                          "temperature_degC,stress_MPa")):
             with self.subTest(columns):
-                (folder / "inputs").mkdir()
                 rows = "\n".join(",".join([str(i)] * len(columns.split(","))) for i in range(3))
-                (folder / "inputs" / "tests_of_1976.csv").write_text(f"# comment\n\n{columns}\n{rows}\n")
+                (folder / "reference.csv").write_text(f"{columns}\n{rows}\n")
                 self.assertIn("tests_of_1976", self.legend(folder, figure, "inputs/tests_of_1976.csv"))
 
     def test_comparison_names_the_references_of_its_runs(self):
@@ -737,12 +736,12 @@ class ReferencesOfTheDeck(HeatedTest):
         deck = self.compressed / "deck.toml"
         for text, part in (("[output", "deck.toml"), ("[output]\nreference = 1", "not a text"),
                            ('[output]\nreference = "other"', "'other'"),
-                           ('[output]\nreference = "gone.csv"', "gone.csv")):
+                           ('[output]\nreference = "gone.csv"', "reference.csv")):
             deck.write_text(text)
             self.assert_fails(["run", self.compressed], str(self.compressed), part)
-        (self.compressed / "a.csv").write_text("# a\nstrain,stress_MPa\n0,0\n1,x\n")
+        (self.compressed / "reference.csv").write_text("strain,stress_MPa\n0,0\n1,x\n")
         deck.write_text('[output]\nreference = "a.csv"')
-        self.assert_fails(["run", self.compressed], "a.csv, line 4", "'x'")
+        self.assert_fails(["run", self.compressed], "reference.csv, line 3", "'x'")
 
 
 class ManyRuns(HeatedTest):

@@ -211,8 +211,8 @@ TEST(RecordResults, TheStateOfAPeakIsAllOfIt) {
   auto first = known_peaks();
   RecordPeak second;
   StateCopy copy;
-  copy.take([&](StateVisitor& visitor) { first[0].visit_state(visitor); });
-  copy.put([&](StateVisitor& visitor) { second.visit_state(visitor); });
+  copy.take([&](StateVisitor& visitor) { first[0].visit_state(visitor, 3); });
+  copy.put([&](StateVisitor& visitor) { second.visit_state(visitor, 3); });
   EXPECT_TRUE(second.peak().is_found());
   EXPECT_EQ(second.peak().size(), 50.0);
   EXPECT_EQ(second.time(), 101.0);

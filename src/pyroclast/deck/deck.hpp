@@ -174,6 +174,9 @@ class Section {
   /// Whatever stands at a key that must be there, as JSON; a date is a text.
   /// \param value  what is written, for the deck reference
   std::string json(std::string_view key, std::string_view value, Meaning meaning) const;
+  /// The same for a key that may be absent; `fallback`, itself JSON, is then what it says.
+  std::string json(std::string_view key, std::string_view value, const std::string& fallback,
+                   Meaning meaning) const;
   /// The keys that are written, in the order of their names. None of them counts as read.
   std::vector<std::string> keys() const;
 

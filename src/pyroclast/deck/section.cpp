@@ -552,13 +552,27 @@ std::vector<std::string> Section::optional_texts(std::string_view key, Meaning m
   return texts_of(read(*deck_, table_, key));
 }
 
+namespace {
+
+std::string json_of(const toml::node& node) {
+  std::ostringstream text;
+  text << toml::json_formatter(node);
+  return text.str();
+}
+
+}  // namespace
+
 std::string Section::json(std::string_view key, std::string_view value, Meaning meaning) const {
   note(key_of(key, std::string(value)), meaning);
   const auto entry = require(*deck_, table_, key, fmt::format("{} is needed", value));
-  if (!entry) return "null";
-  std::ostringstream text;
-  text << toml::json_formatter(entry->node);
-  return text.str();
+  return entry ? json_of(entry->node) : "null";
+}
+
+std::string Section::json(std::string_view key, std::string_view value, const std::string& fallback,
+                          Meaning meaning) const {
+  note(with_fallback(key_of(key, std::string(value)), fallback), meaning);
+  const auto entry = read(*deck_, table_, key);
+  return entry ? json_of(entry->node) : fallback;
 }
 
 std::vector<std::string> Section::keys() const {

@@ -7,6 +7,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/material/curve_file.hpp"
+#include "pyroclast/tables/read_choice.hpp"
 
 namespace pyroclast {
 namespace {
@@ -23,10 +24,6 @@ std::string suffix(const Unit& unit) {
 
 std::string with_unit(double value, const Unit& unit) {
   return fmt::format("{:.6g}{}{}", value, suffix(unit).empty() ? "" : " ", suffix(unit));
-}
-
-double in_unit(double value, const std::string& given, const Unit& unit) {
-  return parse_quantity(fmt::format("{} {}", value, given == "1" ? "" : given), unit);
 }
 
 Curve converted(const Curve& curve, const UnitFactors& to, const std::string& description) {
@@ -181,14 +178,12 @@ std::optional<Curve> CurveReader::read_table(const Section& forms, const Unit& u
 
 std::optional<Curve> CurveReader::read_csv(const Section& forms, const Unit& unit) const {
   const std::string file =
-      forms.text("csv", "CSV file beside the deck: two columns under a header with units");
-  if (file.empty()) return std::nullopt;
+      forms.text("csv", "file beside the deck with a [measured table](deck.md#measured-tables)");
+  const ColumnChoice choice = read_column_choice(forms, file, kCurveColumns);
+  if (file.empty() || !forms.ok()) return std::nullopt;
   forms.names_file("csv", folder_ / file);
   return try_at(forms, "csv", [&] {
-    return read_curve_csv(
-        folder_ / file, axis_,
-        [&](double x, const std::string& given) { return in_unit(x, given, abscissa()); },
-        [&](double y, const std::string& given) { return in_unit(y, given, unit); });
+    return curve_of_table(MeasuredTable::load(folder_ / file, kCurveColumns), choice, axis_, unit);
   });
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <istream>
 #include <vector>
 
 #include "pyroclast/material/curve.hpp"
+#include "pyroclast/tables/measured_table.hpp"
 
 namespace pyroclast {
 
@@ -14,12 +14,10 @@ struct JumpPathPoint {
   double temperature = kReferenceTemperature;
 };
 
-/// A path of jumps from a CSV file whose header names columns with their units, among "u_n [um]", "u_s [um]"
-/// and "T [degC]", in any order; what has no column stays at rest. Lines that are blank or begin with # are
-/// skipped. Throws Error naming file and line when the file cannot be read, a column is not known or stands
-/// twice, or a value does not convert.
+/// A path of jumps from a table whose columns are named among "u_n [um]", "u_s [um]" and "T [degC]", in any
+/// order and unit; what has no column stays at rest. Throws Error naming file and line when a column is not
+/// known or stands twice, or a value does not convert.
+std::vector<JumpPathPoint> jump_path(const MeasuredTable& table);
 std::vector<JumpPathPoint> read_jump_path(const std::filesystem::path& file);
-/// The same from a stream; `file` names it in messages.
-std::vector<JumpPathPoint> read_jump_path(std::istream& stream, const std::filesystem::path& file);
 
 }  // namespace pyroclast

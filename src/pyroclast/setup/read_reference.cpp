@@ -1,9 +1,7 @@
 #include "pyroclast/setup/read_reference.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,13 +11,11 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/nearest.hpp"
-#include "pyroclast/base/read_file.hpp"
+#include "pyroclast/tables/measured_table.hpp"
 
 namespace pyroclast {
 
 namespace {
-
-using Cells = std::vector<std::string>;
 
 const std::vector<Choice<int>>& built_in() {
   static const std::vector<Choice<int>> words{
@@ -33,102 +29,131 @@ const std::vector<Choice<int>>& built_in() {
   return words;
 }
 
+/// A column that figures draw, as it is named where a run keeps it.
+struct DrawnColumn {
+  std::string_view name;
+  std::string_view meaning;
+  const Unit& unit;
+  double written = 1.0;  ///< by which values are divided there
+  double most = 0.0;     ///< beyond it a value is most likely in another unit; 0: never
+};
+
+constexpr double kMegapascal = 1e6;
+constexpr DrawnColumn kStrainColumn{"strain", "strain", unit::dimensionless, 1.0, 0.1};
+constexpr DrawnColumn kTotalColumn{"total_strain", "total strain", unit::dimensionless, 1.0, 0.1};
+constexpr DrawnColumn kLowColumn{"total_strain_low", "least total strain", unit::dimensionless, 1.0, 0.1};
+constexpr DrawnColumn kHighColumn{"total_strain_high", "greatest total strain", unit::dimensionless, 1.0,
+                                  0.1};
+constexpr DrawnColumn kStressColumn{"stress_MPa", "stress", unit::stress, kMegapascal, 1e9};
+constexpr DrawnColumn kTemperatureColumn{"temperature_degC", "temperature", unit::temperature};
+constexpr DrawnColumn kTimeColumn{"heating_time_s", "time", unit::time};
+
 /// The columns that a figure draws, and whether the run has that figure.
 struct FigureTable {
-  Cells columns;
+  std::vector<DrawnColumn> columns;
   bool DrawnTables::*is_drawn;
 };
 
 const std::vector<FigureTable>& tables() {
   static const std::vector<FigureTable> all{
-      {{"strain", "stress_MPa"}, &DrawnTables::strain_stress},
-      {{"temperature_degC", "total_strain"}, &DrawnTables::temperature_strain},
-      {{"temperature_degC", "total_strain_low", "total_strain_high"}, &DrawnTables::temperature_strain},
-      {{"temperature_degC", "stress_MPa"}, &DrawnTables::temperature_stress},
-      {{"heating_time_s", "temperature_degC"}, &DrawnTables::time_temperature}};
+      {{kStrainColumn, kStressColumn}, &DrawnTables::strain_stress},
+      {{kTemperatureColumn, kTotalColumn}, &DrawnTables::temperature_strain},
+      {{kTemperatureColumn, kLowColumn, kHighColumn}, &DrawnTables::temperature_strain},
+      {{kTemperatureColumn, kStressColumn}, &DrawnTables::temperature_stress},
+      {{kTimeColumn, kTemperatureColumn}, &DrawnTables::time_temperature}};
   return all;
+}
+
+std::string names_of(const FigureTable& table) {
+  std::vector<std::string_view> names;
+  for (const DrawnColumn& column : table.columns) names.push_back(column.name);
+  return fmt::format("{}", fmt::join(names, ","));
 }
 
 /// Throws Error where no figure of the run shows what a reference is of.
 void require_drawn(bool DrawnTables::*of, const DrawnTables& drawn) {
   if (drawn.*of) return;
-  Cells shown;
+  std::vector<std::string> shown;
   for (const FigureTable& table : tables())
-    if (drawn.*table.is_drawn) shown.push_back(fmt::format("{}", fmt::join(table.columns, ",")));
+    if (drawn.*table.is_drawn) shown.push_back(names_of(table));
   throw Error(shown.empty() ? "has no effect: the figures of this run draw no reference"
                             : fmt::format("has no effect: no figure of this run draws it; they draw {}",
                                           quoted_list(shown)));
 }
 
-Cells cells_of(std::string_view line) {
-  constexpr std::string_view kBlanks = " \t\r";
-  Cells cells;
-  while (true) {
-    const auto comma = line.find(',');
-    std::string_view cell = line.substr(0, comma);
-    const auto first = cell.find_first_not_of(kBlanks);
-    cell = first == cell.npos ? "" : cell.substr(first, cell.find_last_not_of(kBlanks) - first + 1);
-    cells.emplace_back(cell);
-    if (comma == line.npos) return cells;
-    line.remove_prefix(comma + 1);
+/// What figures draw of a column: its unit fits, and where none is said it is a strain by its name.
+bool is_of(const MeasuredTable& table, std::size_t index, const DrawnColumn& drawn) {
+  const ColumnHeader& header = table.columns()[index];
+  const bool is_plain = header.unit.empty() && drawn.unit == unit::dimensionless;
+  return table.fits(index, "", drawn.unit) && (!is_plain || header.name.find("strain") != header.name.npos);
+}
+
+/// Throws Error where figures draw no such columns.
+const FigureTable& figure_table(const MeasuredTable& table, std::size_t first) {
+  std::vector<std::string> allowed;
+  for (const FigureTable& figure : tables()) {
+    bool is_it = figure.columns.size() + first == table.columns().size();
+    for (std::size_t i = 0; is_it && i < figure.columns.size(); ++i)
+      is_it = is_of(table, first + i, figure.columns[i]);
+    if (is_it) return figure;
+    allowed.push_back(names_of(figure));
   }
+  refuse(
+      table.path(), table.header_line(),
+      fmt::format("the columns {} are none that figures draw: {}, each with its unit, such as \"strain [1], "
+                  "stress [MPa]\"",
+                  table.list_of_columns(), quoted_list(allowed)));
 }
 
-bool is_finite_number(const std::string& cell) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return error == std::errc() && end == cell.data() + cell.size() && std::isfinite(value);
+void warn_of_magnitude(const Section& output, const MeasuredTable& table, const DrawnColumn& column,
+                       const std::vector<double>& values) {
+  const auto [least, greatest] = std::ranges::minmax(values);
+  const auto say = [&](double value, std::string_view what) {
+    output.warn("reference",
+                fmt::format("{}: the {} reaches {:.6g}{}{}; {}", table.path().string(), column.meaning,
+                            value / column.written, column.unit == unit::stress ? " MPa" : "",
+                            column.unit == unit::dimensionless ? " (no unit)" : "", what));
+  };
+  const double most = std::max(std::abs(least), std::abs(greatest));
+  if (column.unit == unit::stress && -least > greatest)
+    say(least, "figures draw compression as positive, so that little or nothing of it shows");
+  else if (column.most > 0.0 && most > column.most)
+    say(most, "it is most likely in another unit, which its header must say");
 }
 
-void check_header(const Cells& header, const DrawnTables& drawn) {
-  const auto found = std::ranges::find(tables(), header, &FigureTable::columns);
-  if (found != tables().end()) return require_drawn(found->is_drawn, drawn);
-  Cells allowed;
-  for (const FigureTable& table : tables())
-    allowed.push_back(fmt::format("{}", fmt::join(table.columns, ",")));
-  throw Error(fmt::format("the header \"{}\" is none of {}", fmt::join(header, ","), quoted_list(allowed)));
-}
-
-void check_row(const Cells& row, std::size_t columns) {
-  if (row.size() != columns)
-    throw Error(fmt::format("{} values for the header's {} columns", row.size(), columns));
-  for (const std::string& cell : row)
-    if (!is_finite_number(cell)) throw Error(fmt::format("\"{}\" is not a finite number", cell));
-}
-
-/// Throws Error naming file and line.
-void check_csv(const std::filesystem::path& path, const DrawnTables& drawn) {
-  require_regular_file(path);
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path))
-    throw Error(fmt::format("cannot open the file {}", path.string()));
-  Cells header;
-  int rows = 0, number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
-    if (line.find_first_not_of(" \t\r") == line.npos || line.front() == '#') continue;
-    try {
-      if (header.empty())
-        check_header(header = cells_of(line), drawn);
-      else
-        check_row(cells_of(line), header.size()), ++rows;
-    } catch (const Error& e) {
-      throw Error(fmt::format("{}:{}: {}", path.string(), number, e.what()));
-    }
+/// The table in the names and units of figures.
+std::string read_table(const Section& output, const std::filesystem::path& path, const DrawnTables& drawn) {
+  constexpr std::size_t kLeastRows = 2;  // of which a line is made
+  const MeasuredTable table = MeasuredTable::load(path, 2);
+  const std::size_t first = table.columns().size() > 2 && table.is_index(0) ? 1 : 0;
+  const FigureTable& figure = figure_table(table, first);
+  require_drawn(figure.is_drawn, drawn);
+  if (table.rows() < kLeastRows)
+    throw Error(fmt::format("{}: has {} rows of numbers; {} or more are needed", path.string(), table.rows(),
+                            kLeastRows));
+  std::vector<std::vector<double>> values;
+  for (std::size_t i = 0; i < figure.columns.size(); ++i) {
+    const DrawnColumn& column = figure.columns[i];
+    values.push_back(table.values({first + i, table.unit_of(first + i, column.unit)}, column.unit));
+    warn_of_magnitude(output, table, column, values.back());
   }
-  constexpr int kLeastRows = 2;  // of which a line is made
-  if (rows < kLeastRows)
-    throw Error(fmt::format("{}: has {} rows of numbers under a header; {} or more are needed", path.string(),
-                            rows, kLeastRows));
+  std::string text = names_of(figure) + "\n";
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    for (std::size_t i = 0; i < values.size(); ++i)
+      text +=
+          fmt::format("{}{}", values[i][row] / figure.columns[i].written, i + 1 < values.size() ? "," : "\n");
+  return text;
 }
 
 }  // namespace
 
-void read_reference(const Section& output, const std::filesystem::path& folder, const DrawnTables& drawn) {
+std::string read_reference(const Section& output, const std::filesystem::path& folder,
+                           const DrawnTables& drawn) {
   const std::string name = output.word_or_text(
-      "reference", built_in(), "CSV file beside the deck, see [deck.md](deck.md#reference-in-figures)",
+      "reference", built_in(),
+      "file beside the deck with a [table](deck.md#reference-in-figures); its name ends in .csv",
       "what the figures draw beside the results");
-  Cells words;
+  std::vector<std::string> words;
   for (const auto& word : built_in()) words.emplace_back(word.word);
   try {
     if (name == words[1]) require_drawn(&DrawnTables::strain_stress, drawn);
@@ -136,17 +161,19 @@ void read_reference(const Section& output, const std::filesystem::path& folder, 
   } catch (const Error& e) {
     output.error("reference", e.what());
   }
-  if (std::ranges::find(words, name) != words.end()) return;
+  if (std::ranges::find(words, name) != words.end()) return {};
   if (!name.ends_with(".csv")) {
     output.error("reference", fmt::format("is none of {}, and no file whose name ends in .csv{}",
                                           quoted_list(words), did_you_mean(name, words, "; ")));
-    return;
+    return {};
   }
   try {
-    check_csv(folder / name, drawn);
+    std::string table = read_table(output, folder / name, drawn);
     output.names_file("reference", folder / name);
+    return table;
   } catch (const Error& e) {
     output.error("reference", e.what());
+    return {};
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "pyroclast/deck/deck.hpp"
 
@@ -16,11 +17,13 @@ struct DrawnTables {
 };
 
 /// Reads which curves the figures draw beside the results: a built-in reference, or a CSV file of the user's.
-/// The run itself has no use for it; figures take it from the deck that the run keeps. A wrong name, and a
-/// file that figures could not draw, or of which none shows anything, are errors of the deck.
+/// The run itself has no use for it; figures take it from the folder of the run. A wrong name, and a
+/// file that figures could not draw, or of which none shows anything, are errors of the deck. Returns the
+/// table of a file in the names and units of figures, as CSV; empty without one.
 ///
 /// \param output  the table [output]
 /// \param folder  from which a relative file name is taken
-void read_reference(const Section& output, const std::filesystem::path& folder, const DrawnTables& drawn);
+std::string read_reference(const Section& output, const std::filesystem::path& folder,
+                           const DrawnTables& drawn);
 
 }  // namespace pyroclast

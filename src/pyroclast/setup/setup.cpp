@@ -408,7 +408,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
       output.flag("keep_stage_checkpoints", true,
                   "whether the state at the end of each stage is kept, for [forks](restart.md#forks)");
   setup.unused_sets = unused_sets(setup);
-  read_reference(output, folder, drawn_tables(setup));
+  setup.reference = read_reference(output, folder, drawn_tables(setup));
   deck.finish();
   setup.warnings = deck.warnings();
   return setup;

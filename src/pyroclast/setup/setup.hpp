@@ -45,6 +45,7 @@ struct Setup {
   /// checked, and the body cannot be made. See require_code.
   std::vector<std::string> code_not_allowed;
   bool has_fields = true;            ///< whether frames of the fields are written
+  std::string reference;             ///< table for the figures, see read_reference
   std::vector<Diagnostic> warnings;  ///< of the deck: what is allowed, but most likely not meant
 };
 

@@ -29,7 +29,10 @@ namespace {
 class Words {
  public:
   Words(std::istream& stream, std::string name)
-      : name_(std::move(name)), text_(std::istreambuf_iterator<char>(stream), {}) {}
+      : name_(std::move(name)), text_(std::istreambuf_iterator<char>(stream), {}) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+  }
 
   /// The next word without taking it; empty at the end of the file.
   std::string_view peek() {

@@ -337,8 +337,8 @@ NumberAndUnit split(std::string_view text, const Unit& unit) {
 
 /// Letters that stand for temperatures where people write, and for coulomb and farad here.
 std::string_view meant_temperature(std::string_view given) {
-  if (given == "C" || given == "°C") return "degC";
-  if (given == "F") return "degF";
+  if (given == "C" || given == "°C" || given == "deg C") return "degC";
+  if (given == "F" || given == "°F" || given == "deg F") return "degF";
   return "";
 }
 
@@ -421,6 +421,11 @@ class Converter {
   DecimalConversion by_decimals_;
 };
 
+double finite(double value, std::string_view text, const Unit& unit) {
+  if (std::isfinite(value)) return value;
+  throw QuantityError(QuantityError::Kind::not_finite, text, fmt::format("too large in {}", unit.si));
+}
+
 }  // namespace
 
 QuantityError::QuantityError(Kind kind, std::string_view text, const std::string& reason)
@@ -428,13 +433,20 @@ QuantityError::QuantityError(Kind kind, std::string_view text, const std::string
 
 double parse_quantity(std::string_view text, const Unit& unit) {
   const auto [number, written, given] = split(text, unit);
-  if (!given.empty()) {
-    const double value = Converter(text, given, unit)(number, written);
-    if (std::isfinite(value)) return value;
-    throw QuantityError(QuantityError::Kind::not_finite, text, fmt::format("too large in {}", unit.si));
-  }
+  if (!given.empty()) return finite(Converter(text, given, unit)(number, written), text, unit);
   if (unit == unit::dimensionless) return number;
   throw QuantityError(QuantityError::Kind::no_unit, text, "no unit; " + requirement(unit));
+}
+
+std::function<double(std::string_view)> quantity_reader(std::string_view given, const Unit& unit) {
+  if (given == "1" && unit == unit::dimensionless)
+    return [unit](std::string_view text) { return parse_quantity(text, unit); };
+  const auto converter = std::make_shared<const Converter>(given, given, unit);
+  return [converter, unit](std::string_view text) {
+    const auto [number, written, rest] = split(text, unit);
+    if (!rest.empty()) throw QuantityError(QuantityError::Kind::no_number, text, "not a number alone");
+    return finite((*converter)(number, written), text, unit);
+  };
 }
 
 UnitFactors unit_factors(std::string_view given, const Unit& unit) {
@@ -454,6 +466,17 @@ double parse_any_quantity(std::string_view text) {
   }
   throw QuantityError(QuantityError::Kind::wrong_dimension, text,
                       "its unit is of none of the kinds that decks hold (`pyroclast list units`)");
+}
+
+bool is_unit(std::string_view text) {
+  UnitSystem& system = UnitSystem::instance();
+  const std::scoped_lock lock(system.mutex());
+  return system.parse(text) != nullptr;
+}
+
+std::string_view meant_unit(std::string_view given, const Unit& unit) {
+  const std::string_view meant = unit == unit::temperature ? meant_temperature(given) : "";
+  return meant.empty() ? given : meant;
 }
 
 std::string unit_of_quantity(std::string_view text) {

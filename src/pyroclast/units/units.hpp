@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -42,6 +43,12 @@ class QuantityError : public Error {
 /// @throws Error if the unit database cannot be read.
 double parse_quantity(std::string_view text, const Unit& unit);
 
+/// What reads numbers that are all in one unit, "1" for none, as parse_quantity reads them with it. It throws
+/// QuantityError for a text that is no number, or one that is not finite.
+///
+/// @throws QuantityError if the unit is not known or of another dimension.
+std::function<double(std::string_view number)> quantity_reader(std::string_view given, const Unit& unit);
+
 /// The value of a quantity of any kind that decks hold, in the unit of its kind.
 ///
 /// @throws QuantityError as above; wrong_dimension if it is of none.
@@ -60,6 +67,13 @@ struct UnitFactors {
 /// From a unit, "1" for none, to that of a kind.
 /// @throws QuantityError as parse_quantity does.
 UnitFactors unit_factors(std::string_view given, const Unit& unit);
+
+/// Whether a text is a unit that quantities may have, of whatever kind.
+bool is_unit(std::string_view text);
+
+/// What measured tables mean by a unit where a quantity of this kind is read: "C" and "°C" of a temperature
+/// are "degC". A deck is told so instead, as it is written by hand.
+std::string_view meant_unit(std::string_view given, const Unit& unit);
 
 /// The unit of a quantity, as it is written behind the number; "1" where there is none.
 std::string unit_of_quantity(std::string_view text);

@@ -1,0 +1,167 @@
+#include "pyroclast/tables/cell.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace pyroclast {
+namespace {
+
+constexpr std::string_view kMinus = "\xE2\x88\x92";  // U+2212
+constexpr std::string_view kDigits = "0123456789";
+constexpr std::size_t kMostHourDigits = 6;
+
+bool are_digits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of(kDigits) == text.npos;
+}
+
+std::vector<std::string_view> parts_between(std::string_view text, char sign) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const std::size_t end = text.find(sign);
+    parts.push_back(text.substr(0, end));
+    if (end == text.npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+/// Digits, or groups of three with a sign between them; empty where it is something else.
+std::optional<std::string> whole_part(std::string_view text, char thousands) {
+  const auto groups = parts_between(text, thousands);
+  if (!std::ranges::all_of(groups, are_digits)) return std::nullopt;
+  if (groups.size() == 1) return std::string(text);
+  if (groups[0].size() > 3 || groups[0][0] == '0') return std::nullopt;
+  std::string digits(groups[0]);
+  for (std::size_t i = 1; i < groups.size(); ++i) {
+    if (groups[i].size() != 3) return std::nullopt;
+    digits += groups[i];
+  }
+  return digits;
+}
+
+/// Day, month and year in either order, perhaps with a time behind them.
+bool is_date(std::string_view cell) {
+  for (const char sign : {'/', '-', '.'}) {
+    const auto parts = parts_between(cell.substr(0, cell.find_first_of(" T")), sign);
+    if (parts.size() == 3 && std::ranges::all_of(parts, are_digits)) return true;
+  }
+  return false;
+}
+
+struct ClockText {
+  std::vector<std::string_view> parts;
+  std::string_view fraction;  ///< digits behind the seconds
+};
+
+/// Two or three parts, those behind the first of two digits and below 60.
+std::optional<ClockText> clock_text(std::string_view cell) {
+  ClockText clock;
+  const std::size_t sign = cell.find_first_of(".,");
+  if (sign != cell.npos) {
+    clock.fraction = cell.substr(sign + 1);
+    if (!are_digits(clock.fraction)) return std::nullopt;
+  }
+  clock.parts = parts_between(cell.substr(0, sign), ':');
+  if (clock.parts.size() < 2 || clock.parts.size() > 3 || !std::ranges::all_of(clock.parts, are_digits))
+    return std::nullopt;
+  if (clock.parts[0].size() > kMostHourDigits) return std::nullopt;
+  for (std::size_t i = 1; i < clock.parts.size(); ++i)
+    if (clock.parts[i].size() != 2 || clock.parts[i][0] > '5') return std::nullopt;
+  return clock;
+}
+
+}  // namespace
+
+std::optional<std::string> plain_number(std::string_view cell, DecimalSign sign) {
+  std::string number;
+  if (cell.starts_with('-') || cell.starts_with(kMinus)) number = "-";
+  if (cell.starts_with('-') || cell.starts_with('+'))
+    cell.remove_prefix(1);
+  else if (cell.starts_with(kMinus))
+    cell.remove_prefix(kMinus.size());
+
+  std::string_view power;
+  const std::size_t e = cell.find_first_of("eE");
+  if (e != cell.npos) {
+    power = cell.substr(e + 1);
+    cell = cell.substr(0, e);
+    const bool has_sign = power.starts_with('-') || power.starts_with('+');
+    if (!are_digits(power.substr(has_sign ? 1 : 0))) return std::nullopt;
+  }
+
+  const bool is_point = sign == DecimalSign::point;
+  const std::size_t decimal = cell.find(is_point ? '.' : ',');
+  const std::string_view before = cell.substr(0, decimal);
+  const std::string_view behind = decimal == cell.npos ? "" : cell.substr(decimal + 1);
+  if (before.empty() || (decimal != cell.npos && behind.empty())) {
+    if (!is_point || before.size() + behind.size() == 0) return std::nullopt;  // ".5" and "20." alone
+  }
+  if (!behind.empty() && !are_digits(behind)) return std::nullopt;
+  if (before.empty()) {
+    number += '0';
+  } else if (power.empty()) {
+    const auto whole = whole_part(before, is_point ? ',' : '.');
+    if (!whole) return std::nullopt;
+    number += *whole;
+  } else {
+    if (!are_digits(before)) return std::nullopt;  // nobody groups digits and writes a power of ten
+    number += before;
+  }
+  if (!behind.empty()) number += fmt::format(".{}", behind);
+  return power.empty() ? number : fmt::format("{}e{}", number, power);
+}
+
+SignEvidence sign_evidence(std::string_view number) {
+  const bool has_point = number.find('.') != number.npos, has_comma = number.find(',') != number.npos;
+  const bool by_point = plain_number(number, DecimalSign::point).has_value();
+  const bool by_comma = plain_number(number, DecimalSign::comma).has_value();
+  if (!has_point && !has_comma) return SignEvidence::none;
+  if (by_point && by_comma) return has_point ? SignEvidence::point_or_comma : SignEvidence::comma_or_point;
+  if (by_point) return has_comma ? SignEvidence::point_thousands : SignEvidence::point;
+  return has_point ? SignEvidence::comma_thousands : SignEvidence::comma;
+}
+
+CellKind kind_of_cell(std::string_view cell) {
+  if (cell.empty()) return CellKind::empty;
+  if (plain_number(cell, DecimalSign::point) || plain_number(cell, DecimalSign::comma))
+    return CellKind::number;
+  if (clock_text(cell)) return CellKind::clock;
+  return is_date(cell) ? CellKind::date : CellKind::text;
+}
+
+std::optional<ClockForm> clock_form(std::string_view unit) {
+  std::string letters;
+  for (const std::string_view part : parts_between(unit, ':')) {
+    constexpr std::array<std::string_view, 4> kHours{"h", "hh", "H", "HH"};
+    constexpr std::array<std::string_view, 5> kMinutes{"m", "mm", "M", "MM", "min"};
+    constexpr std::array<std::string_view, 5> kSeconds{"s", "ss", "S", "SS", "sec"};
+    const auto is_of = [&](const auto& words) { return std::ranges::find(words, part) != words.end(); };
+    letters += is_of(kHours) ? 'h' : is_of(kMinutes) ? 'm' : is_of(kSeconds) ? 's' : '?';
+  }
+  if (letters == "hms") return ClockForm::unknown;
+  if (letters == "ms") return ClockForm::minutes_seconds;
+  return letters == "hm" ? std::optional(ClockForm::hours_minutes) : std::nullopt;
+}
+
+int clock_parts(std::string_view clock) {
+  return 1 + static_cast<int>(std::ranges::count(clock, ':'));
+}
+
+std::string clock_seconds(std::string_view clock, ClockForm form) {
+  const auto text = clock_text(clock);
+  constexpr long long kSixty = 60;
+  long long count = 0;
+  for (const std::string_view part : text->parts) {
+    long long number = 0;
+    std::from_chars(part.data(), part.data() + part.size(), number);
+    count = kSixty * count + number;
+  }
+  if (text->parts.size() == 2 && form == ClockForm::hours_minutes) count *= kSixty;
+  return text->fraction.empty() ? fmt::format("{}", count) : fmt::format("{}.{}", count, text->fraction);
+}
+
+}  // namespace pyroclast

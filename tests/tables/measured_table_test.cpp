@@ -1,0 +1,256 @@
+#include "pyroclast/tables/measured_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include "layouts.hpp"
+#include "messages.hpp"
+
+namespace pyroclast {
+namespace {
+
+using layouts::Record;
+
+const Record kFurnace{{0.0, 20.0}, {30.0, 41.5}, {90.0, 185.25}, {1800.0, 842.125}, {7200.0, 1049.0}};
+
+void expect_same(const Record& read, const Record& record, const std::string& text) {
+  ASSERT_EQ(read.size(), record.size()) << text;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    EXPECT_EQ(read[i].first, record[i].first) << "row " << i << " of\n" << text;
+    EXPECT_EQ(read[i].second, record[i].second) << "row " << i << " of\n" << text;
+  }
+}
+
+// Promise: one record reads to the same numbers, to the bit, however it is written.
+TEST(MeasuredTable, ThirtyLayoutsOfOneRecordAreTheSame) {
+  for (const layouts::Layout& layout : layouts::all()) {
+    const std::string text = layouts::written(layout, kFurnace);
+    Record read;
+    ASSERT_NO_THROW(read = layouts::read(text, layouts::choice_of(layout))) << text;
+    expect_same(read, kFurnace, text);
+  }
+}
+
+// Promise: the same for whatever of these is put together, where a reader can tell a comma from a comma.
+TEST(MeasuredTable, AllCombinationsAreTheSame) {
+  using namespace layouts;
+  int count = 0;
+  for (const std::string_view delimiter : {",", ";", "\t", " "}) {
+    for (const char decimal : {'.', ','}) {
+      for (const Units units : {Units::brackets, Units::parentheses, Units::slash, Units::row_below,
+                                Units::row_above, Units::suffix}) {
+        for (const Time time : {Time::seconds, Time::minutes, Time::clock, Time::minutes_seconds}) {
+          for (const Names names : {Names::plain, Names::quoted, Names::none}) {
+            for (const std::string_view begin : {std::string_view(""), kMark}) {
+              for (const bool has_index : {false, true}) {
+                if (delimiter == " " && has_index) continue;  // a name that is missing does not show
+                const bool quotes_cells = delimiter == "," && decimal == ',';
+                const Layout layout{delimiter, decimal,   units, time,  names, begin,
+                                    "\n",      has_index, false, false, false, quotes_cells};
+                if (names != Names::none && units == Units::suffix && time >= Time::clock) continue;
+                const std::string text = written(layout, kFurnace);
+                Record read;
+                ASSERT_NO_THROW(read = layouts::read(text, choice_of(layout))) << text;
+                expect_same(read, kFurnace, text);
+                ++count;
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(count, 1500);
+}
+
+std::string refusal(std::string_view text, const ColumnChoice& choice = {"furnace.csv", {}, {}}) {
+  return message([&] { layouts::read(text, choice); });
+}
+
+TEST(MeasuredTable, ReadsWhatElseIsWritten) {
+  const Record two{{0.0, 20.0}, {1800.0, 800.0}};
+  for (const std::string text : {
+           "time [min],temperature [degC]\n0,20\n30,800\n",
+           "time [min],temperature [°C]\n0,20\n30,800\n",
+           "time [min], temperature [C]\n0, 20\n30, 800\n",
+           "time [min]; temperature [K]\n0; 293,15\n30; 1073,15\n",
+           "Time,TC1\nmin,C\n0,20\n30,800\n",
+           "min,C\nTime,TC1\n0,20\n30,800\n",
+           "Zeit;TC 1, Mitte\n[min];[degC]\n0;20\n30;800\n",
+           ",time [min],temperature [degC]\n0,0,20\n1,30,800\n",
+           "No.\ttime [min]\ttemperature [degC]\n1\t0\t20\n2\t30\t800\n",
+           "\ttime [min]\ttemperature [degC]\n0\t0\t20\n1\t30\t800\n",
+           "time [min],temperature [degC],\n0,20,\n30,800,\n",
+           "time [min],temperature [degC],,\n0,20,,\n,,,\n30,800,,\n,,,\n",
+           "time [min]   gas temperature [degC]\n  0          20\n  30         800\n",
+           "time [min]\t\ttemperature [degC]\n0\t\t20\n30\t\t800\n",
+           "time [min],\ttemperature [degC]\n0,\t20\n30,\t800\n",
+           "time / min   T / °C\n0  20\n30  800\n",
+           "t/min;T/K\n0;293.15\n30;1073.15\n",
+           "time [h:min:s],temperature [degC]\n0:00:00.0,20\n0:30:00,800\n",
+           "time,temperature [degC]\n00:00:00,20\n00:30:00,800\n",
+           "time,temperature [degC]\n00:00,20\n30:00,800\n0:59:00,900\n",
+           "time [hh:mm],temperature [degC]\n00:00,20\n00:30,800\n",
+           "time [s],temperature [degC]\n0,20\n\"1,800.0\",800\n",
+           "time [s];temperature [degC]\n0;20,0\n1.800,0;800\n",
+           "time [s];temperature [degC]\n0;20,0\n1,8e3;8E+2\n",
+           "time_min,gas_degC\n0,20\n30,800\n",
+           "! a\n% b\n// c\n# d\n\ntime [min],temperature [degC]\n0,+20\n# e\n+30,+800\n",
+           "SEP=;\ntime [min];temperature [degC]\n0;20\n30;800",
+           "\"time [min]\";\"the \"\"gas\"\" [degC]\"\n\"0\";\"20\"\n\"30\";\"800\"\n",
+           "time [min] , temperature [degC]\r0 , 20\r30 , 800\r",
+       }) {
+    Record read;
+    ASSERT_NO_THROW(read = layouts::read(text)) << text;
+    if (read.size() == 3) read.pop_back();
+    expect_same(read, two, text);
+  }
+}
+
+TEST(MeasuredTable, ReadsNegativeNumbers) {
+  const std::string text =
+      "time [s];temperature [degC]\n0;-20,5\n1;\xE2\x88\x92"
+      "3\n";
+  expect_same(layouts::read(text), {{0.0, -20.5}, {1.0, -3.0}}, text);
+}
+
+TEST(MeasuredTable, TakesColumnsByNameOrNumber) {
+  const std::string text = "scan,time [min],TC1 [degC],TC2,state\n7,0,20,21,on\n9,30,800,805,off\n";
+  const Record tc2{{0.0, 21.0}, {1800.0, 805.0}};
+  expect_same(layouts::read(text, {"f.csv", {{"time"}, {"TC2"}}, {"", "degC"}}), tc2, text);
+  expect_same(layouts::read(text, {"f.csv", {{"", 2}, {"", 4}}, {"min", "C"}}), tc2, text);
+  const std::string bare = "0 20 21\n30 800 805\n";
+  expect_same(layouts::read(bare, {"f.csv", {{"", 1}, {"", 3}}, {"min", "degC"}}), tc2, bare);
+}
+
+TEST(MeasuredTable, RefusesOtherColumnsThanAsked) {
+  const std::string text = "time [min],TC1 [degC],TC2 [degC]\n0,20,21\n30,800,805\n";
+  const std::string all = refusal(text);
+  expect_in("furnace.csv:1: has 3 columns, of which 2 are needed (time, temperature)", all);
+  expect_in("1 \"time\" [min], 2 \"TC1\" [degC], 3 \"TC2\" [degC]", all);
+  expect_in("write { csv = \"furnace.csv\", columns = [\"time\", \"TC1\"] }", all);
+  expect_in("{ csv = \"furnace.csv\", columns = [1, 2], units = [\"s\", \"degC\"] }",
+            refusal("0 20 21\n30 800 805\n"));
+  const std::string misspelt = refusal(text, {"furnace.csv", {{"time"}, {"TC11"}}, {}});
+  expect_in("has no column \"TC11\"; did you mean \"TC1\"?; it has 1 \"time\"", misspelt);
+  expect_in("has no column 4", refusal(text, {"furnace.csv", {{"", 1}, {"", 4}}, {}}));
+  expect_in("is chosen twice", refusal(text, {"furnace.csv", {{"TC1"}, {"", 2}}, {}}));
+  expect_in("more than one column \"a\"; write one of their numbers, 2 or 3",
+            refusal("t [s],a [degC],a [degC]\n0,1,2\n1,2,3\n", {"furnace.csv", {{"t"}, {"a"}}, {}}));
+  expect_in("has 1 column (delimiter: none), but 2 are needed", refusal("time [s]\n1\n2\n"));
+  // counting times are no index before columns of which none is a time
+  expect_in("has 3 columns", refusal("time,TC1 [degC],TC2 [degC]\n0,20,21\n1,30,31\n"));
+}
+
+TEST(MeasuredTable, RefusesColumnsWithoutUnit) {
+  const std::string text = refusal("time [min],gas\n0,20\n30,800\n");
+  expect_in(
+      "furnace.csv:1: column \"gas\" has no unit; write \"gas [degC]\" above it, or { csv = \"furnace.csv\", "
+      "columns = [\"time\", \"gas\"], units = [\"min\", \"degC\"] }",
+      text);
+  expect_in("column 1 has no unit; write \"time [s]\" above it", refusal("0,20\n30,800\n"));
+  expect_in("unknown unit \"foo\"", refusal("time [foo],gas [degC]\n0,20\n30,800\n"));
+  expect_in("wrong dimension", refusal("time [min],gas [m]\n0,20\n30,800\n"));
+  expect_in("is in \"min\" by the file and in \"s\" by the deck",
+            refusal("time [min],gas [degC]\n0,20\n30,800\n", {"furnace.csv", {}, {"s", ""}}));
+  expect_in("has the unit \"s\" behind its name and \"min\" in the row of units",
+            refusal("time [s],gas\nmin,degC\n0,20\n1,30\n"));
+}
+
+TEST(MeasuredTable, ShowsBothReadingsOfACommaOfThreeDigits) {
+  const std::string text = refusal("time [s];T [degC]\n0;20\n60;1,234\n");
+  expect_in("furnace.csv:3: \"1,234\" may be 1.234 (decimal comma) or 1234 (comma between thousands)", text);
+  expect_in("sed", text);
+  const std::string both = refusal("time [s];T [degC]\n0;20,5\n60;21.5\n");
+  expect_in("furnace.csv:3: \"21.5\" in line 3 has a point and \"20,5\" in line 2 a comma", both);
+  expect_in("each of which may be the decimal sign", refusal("time [s];T [degC]\n0;20,5\n60;1.234\n"));
+  expect_in("each of which may be the decimal sign", refusal("time [s];T [degC]\n0;20.5\n60;1,234\n"));
+  const auto one = [](std::string_view lines) {
+    return message([&] { MeasuredTable::parse(lines, "path.csv", 1); });
+  };
+  expect_in(
+      "path.csv:2: \"2,345\" may be one number with a decimal comma or two numbers with a comma between "
+      "them; "
+      "write \"2.345\" or \"2; 345\"",
+      one("1,234\n2,345\n"));
+}
+
+TEST(MeasuredTable, TellsADecimalCommaFromADelimiter) {
+  expect_in(
+      "furnace.csv:2: \"0,0,20,5\" has 4 cells, line 1 has 2 (delimiter: \",\"); a comma cannot be the "
+      "delimiter "
+      "and the decimal sign",
+      refusal("time [s],T [degC]\n0,0,20,5\n60,0,30,5\n"));
+  EXPECT_EQ(MeasuredTable::parse("u_n [um]\n0,5\n1,234\n", "path.csv", 1).columns().size(), 1u);
+  EXPECT_EQ(MeasuredTable::parse("u_n [um],u_s [um]\n0,5\n1,234\n", "path.csv", 1).columns().size(), 2u);
+}
+
+TEST(MeasuredTable, ShowsBothReadingsOfATimeOfTwoParts) {
+  expect_in(
+      "furnace.csv:2: \"00:00\" in column \"time\" may be minutes and seconds or hours and minutes; write "
+      "\"time "
+      "[mm:ss]\" or \"time [hh:mm]\"",
+      refusal("time,T [degC]\n00:00,20\n12:30,800\n"));
+  expect_in("furnace.csv:2: \"00:00:00\" in column \"time\" is a time, but the column is in \"min\"",
+            refusal("time [min],T [degC]\n00:00:00,20\n00:12:30,800\n"));
+}
+
+TEST(MeasuredTable, RefusesDates) {
+  expect_in("furnace.csv:2: \"01/02/2024\" in column \"time\" is a date, of which the order of day and month",
+            refusal("time [s],T [degC]\n01/02/2024,20\n02/02/2024,800\n"));
+  expect_in("is a date", refusal("time [s];T [degC]\n01.02.2024 12:00:00;20\n01.02.2024 12:30:00;800\n"));
+}
+
+TEST(MeasuredTable, NamesTheLinesOfTimesThatDoNotAscend) {
+  expect_in(
+      "furnace.csv:5: the time (column \"time\") stays the same from line 3 to line 5; it must ascend: "
+      "delete one",
+      refusal("time [s],T [degC]\n0,20\n30,30\n\n30,40\n60,50\n"));
+  expect_in(
+      "furnace.csv:4: the time (column \"time\") falls from line 3 to line 4; it must ascend: sort the lines",
+      refusal("time [s],T [degC]\n0,20\n30,30\n20,40\n"));
+}
+
+TEST(MeasuredTable, NamesCellsThatAreNoNumbers) {
+  const std::string header = "time [s],T [degC]\n";
+  expect_in("furnace.csv:3: \"n/a\" in column \"T\" is no number", refusal(header + "0,20\n30,n/a\n60,30\n"));
+  expect_in("furnace.csv:3: column \"T\" is empty", refusal(header + "0,20\n30,\n60,30\n"));
+  expect_in("furnace.csv:3: \"30\" has 1 cell, line 1 has 2", refusal(header + "0,20\n30\n60,30\n"));
+  expect_in("furnace.csv:4: \"END\" holds no number (delimiter: \",\"); delete the line or write # before it",
+            refusal(header + "0,20\n30,30\nEND\n"));
+  expect_in("not finite", refusal(header + "0,20\n30,1e999\n"));
+  expect_in(
+      "furnace.csv:1: \"time [s],T [degC]\" holds no number; rows of numbers must follow "
+      "the header",
+      refusal(header));
+  expect_in("a quote does not close", refusal(header + "0,\"20\n30,30\n"));
+  expect_in("is empty", refusal(""));
+  expect_in("is empty", refusal("\n# nothing\n"));
+  expect_in("3 lines without numbers stand above the first row of numbers, beginning with \"Logger 7;\"",
+            refusal("Logger 7;\nTime;T\ns;degC\n0;20\n1;30\n"));
+  expect_in("lines 1 and 2 hold no numbers, and neither is a row of units",
+            refusal("Logger;seven\nTime;T\n0;20\n1;30\n"));
+}
+
+TEST(MeasuredTable, TellsOtherEncodings) {
+  const std::string text = "time [s],T [degC]\n0,20\n30,30\n";
+  std::string little, big;
+  for (const char c : text) {
+    little += {c, '\0'};
+    big += {'\0', c};
+  }
+  expect_in(
+      "furnace.csv: is UTF-16, not UTF-8; write `iconv -f UTF-16 -t UTF-8 furnace.csv > utf8_furnace.csv`",
+      refusal("\xFF\xFE" + little));
+  expect_in("iconv -f UTF-16 -t", refusal("\xFE\xFF" + big));
+  expect_in("iconv -f UTF-16LE -t", refusal(little));
+  expect_in("iconv -f UTF-16BE -t", refusal(big));
+  expect_in(
+      "furnace.csv:1: byte 0xB0 is not UTF-8, but of Latin-1 or Windows; write `iconv -f WINDOWS-1252 -t "
+      "UTF-8 ",
+      refusal("time [s],T [\xB0"
+              "C]\n0,20\n30,30\n"));
+  expect_in("furnace.csv:3: holds a byte 0", refusal(std::string("a\rb\r\nc\0", 7)));
+}
+
+}  // namespace
+}  // namespace pyroclast
