@@ -40,6 +40,7 @@ from .records import record_course, record_fracture, records, records_of
 from .run import Run, RunError, Specimen
 from .sections import fracture, gradation, morphology, select_frames
 from .style import save
+from .writing import make_folder
 
 _FORMATS = ("png", "svg", "pdf")
 
@@ -128,20 +129,20 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
             if out is not None:
                 out.mkdir(parents=True, exist_ok=True)
             write_profile(read_profile(run), out or run.folder)
-        yield save(draw(), (out or run.folder / "figures") / f"{name}.{file_format}")
+        yield save(draw(), (out or make_folder(run.folder / "figures")) / f"{name}.{file_format}")
         gc.collect()  # a figure refers to itself; of a long history it holds much
 
 
 def draw_properties(folder: Path, file_format: str = "png") -> Iterator[Path]:
     """Draws the properties over the temperature into the folder's figures/; yields the path once written."""
     table = read_properties(folder / "properties.csv")
-    yield save(properties(table), folder / "figures" / f"properties.{file_format}")
+    yield save(properties(table), make_folder(folder / "figures") / f"properties.{file_format}")
 
 
 def draw_specimen(folder: Path, file_format: str = "png") -> Iterator[Path]:
     """Draws the figures of a specimen into its figures/ folder; yields each path once written."""
     specimen = Specimen(folder)
-    place = specimen.folder / "figures"
+    place = make_folder(specimen.folder / "figures")
     yield save(gradation(specimen), place / f"gradation.{file_format}")
     yield save(morphology(specimen), place / f"morphology.{file_format}")
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from .errors import Error
+from .writing import write_text
 
 _TOLERANCE = 1e-6  # of the range of values
 _FIRST_INTERVALS = 64
@@ -116,7 +117,7 @@ def write_table(folder: str | Path, key: str, unit: str, points: Sequence[tuple[
     name = "".join(c if c.isalnum() else "_" for c in key).strip("_")
     path = Path(folder) / f"{name}.csv"
     lines = [f"{axis.name} [{axis.unit}], {name} [{unit or '1'}]", *(f"{x!r}, {y!r}" for x, y in points)]
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_text(path, "\n".join(lines) + "\n")
     return path
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from . import style
 from .mesh import BlockMesh
 from .run import Run, RunError
 from .sections import specimen_box
+from .writing import whole
 
 ISOTHERM = 500.0
 """°C, below which the reduced cross-section of EN 1992-1-2 takes concrete as whole."""
@@ -104,15 +104,10 @@ def write_profile(profile: Profile, folder: Path) -> None:
 
 
 def _write(path: Path, header: tuple[str, ...], rows: list[tuple[float, ...]]) -> None:
-    aside = style.partial(path)
-    try:
-        with open(aside, "w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(header)
-            writer.writerows([f"{value:.9g}" for value in row] for row in rows)
-        os.replace(aside, path)
-    finally:
-        aside.unlink(missing_ok=True)
+    with whole(path) as aside, open(aside, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(header)
+        writer.writerows([f"{value:.9g}" for value in row] for row in rows)
 
 
 @matplotlib.rc_context(style.STYLE)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import textwrap
 from collections.abc import Container, Sequence
 from itertools import cycle
@@ -13,6 +12,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
+
+from .writing import whole
 
 WIDTH = 7.2
 """Width of a page of two columns, inches."""
@@ -134,11 +135,6 @@ def load_label(run) -> str:
     return "" if run.load_stress is None else f"$\\sigma$ = {run.load_stress:g} MPa"
 
 
-def partial(path: Path) -> Path:
-    """Where a process writes a file before that takes its name; `--overwrite` knows this ending."""
-    return path.with_name(f"{path.name}.{os.getpid()}.partial")
-
-
 def kept(x: np.ndarray, *values: np.ndarray, most: int = _MOST_POINTS) -> np.ndarray:
     """(n,) bool: about so many points at most of a curve, or of several over the same x, that look the same: of each
     stretch its ends, the extremes of all and the first gap of each.
@@ -188,10 +184,6 @@ def save(figure: Figure, path: Path) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
     ending = path.suffix.lower()
     undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-    aside = partial(path)
-    try:
+    with whole(path) as aside:
         thin(figure).savefig(aside, format=ending[1:], metadata=undated.get(ending))
-        aside.replace(path)
-    finally:
-        aside.unlink(missing_ok=True)
     return path

@@ -48,6 +48,7 @@ from . import style
 from .files import GapWarning, Lock, RunError, Writer, read_json
 from .heated_sections import draw_temperature
 from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL
+from .interrupts import hear_ctrl_c
 from .progress import MINUTES_LABEL, Course, heating_course, loading_course
 from .records import leading, record_course, records_of
 from .run import Frame, GrowingRun
@@ -510,6 +511,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                              f"but {PICTURE} in the folder (default: what there is)")
     parser.add_argument("--out", type=Path, metavar="FILE",
                         help=f"the picture, instead of {PICTURE} in the folder (png, svg or pdf)")
+    hear_ctrl_c()
     asked = parser.parse_args(arguments)
     if asked.out is not None and asked.out.suffix.lower() not in (".png", ".svg", ".pdf"):
         parser.error("--out: the file's ending must be .png, .svg or .pdf")

@@ -280,7 +280,8 @@ class FoldersOfOthers(UserTest):
         elsewhere.mkdir()
         for name, target, words in (("lock", mine, ("figures", "run", "out")), ("run.log", mine, ("resume", "out")),
                                     ("history.csv", mine, ("resume", "out")),
-                                    ("figures", elsewhere, ("figures", "run", "out"))):
+                                    ("figures", elsewhere, ("figures", "run", "out")),
+                                    ("figures", elsewhere, ("figures", "run", "out", "--format", "svg"))):
             with self.subTest(name):
                 place = self.folder / "out" / name
                 kept = place.read_bytes() if place.is_file() else None

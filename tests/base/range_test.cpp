@@ -21,6 +21,17 @@ TEST(Range, KeepsOrExcludesItsEnds) {
   EXPECT_TRUE(Range::at_most(2.0).contains(2.0));
 }
 
+// Promise: what lies beyond an end by rounding alone is that end; what lies farther stays outside.
+TEST(Range, AnEndIsMetButForRounding) {
+  const Range width = Range::between(0.0, 0.05999999999999999);
+  EXPECT_FALSE(width.contains(0.06));
+  EXPECT_EQ(width.but_for_rounding(0.06), 0.05999999999999999);
+  EXPECT_EQ(width.but_for_rounding(0.06000001), 0.06000001);
+  EXPECT_EQ(Range::at_least(0.3).but_for_rounding(0.3 - 1e-16), 0.3);
+  EXPECT_EQ(Range::above(0.3).but_for_rounding(0.3 - 1e-16), 0.3 - 1e-16);
+  EXPECT_EQ(Range::non_negative().but_for_rounding(-1e-300), -1e-300);
+}
+
 TEST(Range, NeverContainsNan) {
   EXPECT_FALSE(Range::any().contains(std::nan("")));
 }

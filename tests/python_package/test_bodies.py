@@ -8,7 +8,7 @@ import pyroclast
 from pyroclast import MPa, kN, mm, s
 from small import Case, plate
 
-PULL = {"set": "right", "velocity": "1 mm/s", "direction": "x", "ramp_time": "2 ms"}
+PULL = {"set": "right", "velocity": "1 mm/s", "direction": "x", "ramp_time": "1 ms"}
 
 
 class Bodies(Case):

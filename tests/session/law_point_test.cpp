@@ -34,7 +34,31 @@ TEST(LawPoint, ALegIsCutIntoStepsAndEndsAtItsPoint) {
   EXPECT_EQ(point.columns().size(), point.values().size());
 }
 
-// Promise: a point goes the road of a run: what heat took does not come back on cooling, and cooling may take more.
+TEST(LawPoint, WhatALawRefusesNamesTheWordOfTheCommandLine) {
+  try {
+    stated_material(elastic(), {"K_n=-1 GPa/m", "K_s=4 GPa/m"});
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "--set K_n=-1 GPa/m: K_n of the contact law \"elastic\" must be greater than 0");
+  }
+}
+
+// Promise: a point begins at the temperature of its body, whose strength it has.
+TEST(LawPoint, BeginsAtItsTemperature) {
+  ContactMaterial material = stated_material(elastic(), kElastic);
+  material["K_n"] = Curve::table({20.0, 600.0}, {10e9, 4e9}, temperature_axis());
+  LawPoint point(material, OnCooling::irreversible, 600.0);
+  EXPECT_EQ(point.temperature(), 600.0);
+  const MeasuredTable path = MeasuredTable::parse("u_n [um]\n0\n1\n", "path.csv", 1);
+  for (const JumpPathPoint& to : jump_path(path, point.temperature())) point.go(to);
+  EXPECT_DOUBLE_EQ(point.values()[place(point, "sigma_Pa")], 4e9 * 1e-6);
+  point.go({1e-6, 0.0, 20.0});
+  EXPECT_DOUBLE_EQ(point.values()[place(point, "sigma_Pa")], 4e9 * 1e-6);  // it does not come back
+}
+
+// Promise: a point goes the road of a run: what heat took does not come back on cooling, and cooling may take
+// more.
 TEST(LawPoint, KeepsTheStrengthOfItsHighestTemperature) {
   ContactMaterial material = stated_material(elastic(), kElastic);
   material["K_n"] = Curve::table({20.0, 600.0}, {10e9, 4e9}, temperature_axis());

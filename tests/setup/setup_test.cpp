@@ -144,9 +144,9 @@ TEST(Setup, TellsOfKeysThatContradictEachOther) {
   EXPECT_NE(message(with(deck, "d_max = \"32 mm\"", "d_max = \"3 mm\"")).find("d_max"), std::string::npos);
   EXPECT_NE(message(with(deck, "kind = \"compress\"", "kind = \"compres\"")).find("compress"),
             std::string::npos);
-  EXPECT_NE(
-      message(with(deck, "G_f1 = \"60 N/m\"", "G_f1 = \"0.1 N/m\"")).find("at 20 degC: mortar_mortar: G_f1"),
-      std::string::npos);
+  EXPECT_NE(message(with(deck, "G_f1 = \"60 N/m\"", "G_f1 = \"0.1 N/m\""))
+                .find("contacts.mortar_mortar.G_f1 = \"0.1 N/m\": at 20 degC it must be greater than"),
+            std::string::npos);
 }
 
 // Promise: the estimate printed before a run is a lower bound near what the run gives.

@@ -184,6 +184,23 @@ TEST(Control, WarnsWhereThePairBearsTheTest) {
   EXPECT_NE(report.warnings[0].find("control of stretch: the largest load is"), std::string::npos);
 }
 
+// Promise: where the loads close the opening that they are to open, the run ends before numbers run away.
+TEST(Control, OfTheWrongSenseEndsTheRun) {
+  pyroclast::Setup setup =
+      pyroclast::read(with(bar("0.04 mm/s"), "direction = [1, 0]", "direction = [-1, 0]"));
+  const auto simulation = make_simulation(setup, grid(kLength, kDepth, 20, 1));
+  pyroclast::Run run(*simulation, std::move(setup.stages));
+  EXPECT_EQ(run.run(), Outcome::control_lost);
+  const StageReport report =
+      run.stages()[0]->report(run.history(), run.records()[0].rows, Outcome::control_lost);
+  EXPECT_TRUE(std::ranges::any_of(report.warnings, [](const std::string& warning) {
+    return warning.find("the control of stretch ran away") != std::string::npos;
+  }));
+  // the opening that ends it is that of the whole stage, 60 um
+  const auto stretch = run.history().values("stretch_m", run.records()[0].rows);
+  EXPECT_LT(std::abs(stretch.back()), 1e-3);
+}
+
 // Promise: however fast the opening grows, the strength lies between the largest load and that with the pair.
 TEST(Control, TheStrengthLiesBetweenTheLoadAndTheLoadWithThePair) {
   for (const char* rate : {"0.1 mm/s", "0.4 mm/s"}) {

@@ -134,6 +134,47 @@ TEST(Drive, LoadsStayUntilTheyAreChanged) {
   EXPECT_NEAR(run.end_of(2, "grip_N"), 30e3, 1.0);
 }
 
+// Promise: what a stage comes to is what acts after it, to the last part of a ramp, in stages however short.
+TEST(Drive, WhatActsAfterAStageIsItsEnd) {
+  const auto left = [](const std::string& keys, const std::string& load) {
+    const Finished run(free_deck(kUniform + kCorner + kRecords +
+                                 drive(keys, kHeld + does("right", "pressure = \"-1 MPa\"\n" + load)) +
+                                 drive(kToRest, does("corner", "hold = [\"y\"]"))));
+    return run.end_of(1, "grip_N");
+  };
+  const double whole = -1e6 * kHeight;
+  EXPECT_NEAR(left("duration = \"1 ms\"", "factor = { table = [[\"0 s\", 0], [\"1 ms\", 1]] }"), whole, 1.0);
+  EXPECT_NEAR(left("duration = \"1 ms\"", "ramp_time = \"1 ms\""), whole, 1.0);
+  EXPECT_NEAR(left("duration = \"50 us\"", "ramp_time = \"50 us\""), whole, 1.0);
+  // a stage that a condition ends before its ramp keeps what it came to: a fifth
+  EXPECT_NEAR(left("duration = \"10 ms\"\nlook_interval = \"1 ms\"",
+                   "ramp_time = \"10 ms\"\n[[stages.until]]\nrecord = \"grip\"\nrate_above = \"1e-9 N/s\""),
+              0.1 * whole, 1.0);
+}
+
+// Promise: a stage lasts for its duration in whole steps, not for more.
+TEST(Drive, LastsWholeSteps) {
+  for (const auto& [duration, steps] :
+       {std::pair{"1.001 ms", 101}, {"1 ms", 100}, {"0.3 us", 1}, {"70 us", 7}}) {
+    const Finished run(free_deck(
+        kUniform + kCorner + kRecords +
+        drive(fmt::format("duration = \"{}\"", duration), kHeld + does("right", "pressure = \"1 Pa\""))));
+    EXPECT_EQ(run.run.simulation().mechanics().steps(), steps) << duration;
+  }
+}
+
+// Promise: a body that bears nothing any more, or never did, rests.
+TEST(Drive, AnUnloadedBodyRests) {
+  const Finished unloaded(
+      free_deck(kUniform + kCorner + kRecords +
+                drive(kToRest, kHeld + does("right", "pressure = \"3 MPa\"\nramp_time = \"5 ms\"")) +
+                drive(kToRest, does("right", "pressure = \"0 MPa\"\nramp_time = \"5 ms\""))));
+  EXPECT_EQ(unloaded.run.outcome(), Outcome::completed);
+  EXPECT_NEAR(unloaded.last("grip_N"), 0.0, 1e-3);
+  const Finished never(free_deck(kUniform + kCorner + kRecords + drive(kToRest, kHeld)));
+  EXPECT_EQ(never.run.outcome(), Outcome::completed);
+}
+
 TEST(Drive, EndsByARecord) {
   const std::string moved =
       kHeld + does("right", "velocity = \"2 mm/s\"\ndirection = \"x\"\nramp_time = \"1 ms\"");
@@ -353,6 +394,34 @@ TEST(Drive, WhatCannotBeDoneIsRefusedBeforeTheRun) {
        "the name of one that there is");
   says(refused(kHeld, record("r", "stress", "set = \"corner\"\ndirection = \"x\"")), "which holds no zone");
   says(message(free_deck(kUniform + kSettle + kCompress)), "\"compress\" needs the table [platens]");
+  says(refused(kHeld + does("right", "pressure = \"1 MPa\"\nramp_time = \"2 ms\"")),
+       "ramp_time = \"2 ms\": must end within the stage");
+  says(refused(kHeld + does("right", "force = \"0 N\"\ndirection = [1, 0]")),
+       "no force acts on set \"right\" along that direction, so that this ends nothing");
+  says(refused(kHeld + does("right", "pressure = \"0 Pa\"")), "no pressure acts on set \"right\"");
+  const std::string pressed = drive("duration = \"1 ms\"", kHeld + does("right", "pressure = \"1 MPa\""));
+  says(refused(does("right", "force = \"0 N\"\ndirection = [1, 0]"), pressed),
+       "ends nothing; a pressure does (");
+  EXPECT_EQ(refused(does("right", "pressure = \"0 Pa\""), pressed), "no Error was thrown");
+  const std::string pulled =
+      drive("duration = \"1 ms\"", kHeld + does("right", "force = \"1 kN\"\ndirection = [1, 1]"));
+  says(refused(does("right", "force = \"0 N\"\ndirection = [1, -1]"), pulled), "along that direction");
+  EXPECT_EQ(refused(does("right", "force = \"0 N\"\ndirection = [0, 1]"), pulled), "no Error was thrown");
+}
+
+TEST(Drive, ASlitNeedsALawThatKnowsDamage) {
+  std::string text = free_deck(drive("duration = \"1 ms\"", kHeld + does("right", "pressure = \"1 MPa\"")) +
+                               kUniform + kCorner);
+  text = with(text, "temperature_ratio = { table = [[\"20 degC\", 1], [\"820 degC\", 0.1]] }\n" + kMortarBond,
+              "law = \"elastic\"\n");
+  text = with(text, "strength_factor = 1.0\n", "");
+  text = with(text, "seed = 1\n",
+              "seed = 1\n[[specimen.notches]]\nname = \"cut\"\nmouth = [\"0 mm\", \"60 mm\"]\n"
+              "tip = [\"20 mm\", \"60 mm\"]\nwidth = \"0 mm\"\n");
+  const std::string told = message(text);
+  EXPECT_NE(told.find(": specimen.notches[0]: cut is a slit through contacts of "), std::string::npos)
+      << told;
+  EXPECT_NE(told.find("which the law \"elastic\" never parts"), std::string::npos) << told;
 }
 
 // A body that is held as it may expand stays without stress.

@@ -25,6 +25,7 @@ from pyroclast.study import work
 from pyroclast.study.driver import _cell, _text
 from pyroclast.study.executors.local import Local
 from pyroclast.study.outputs import Output
+from pyroclast.study.report import write_report
 from pyroclast.study.store import DONE, Result, Store, write_record
 from pyroclast.study.study import Study
 from pyroclast.study.work import Job, judge
@@ -212,6 +213,50 @@ class Windows(unittest.TestCase):
         self.assertTrue((self.runs / "r/history.csv").exists())
         self.assertEqual(work.made(self.job, self.runs).state, "done")
         self.assertFalse((self.runs / "r/history.csv").exists())
+
+
+class Links(StudyTest):
+    """Links that somebody else laid in the folder of a study."""
+
+    def setUp(self) -> None:
+        super().setUp()
+        self.mine = self.folder / "thesis.tex"
+        self.mine.write_text("precious")
+        self.elsewhere = self.folder / "elsewhere"
+        self.elsewhere.mkdir()
+
+    def check_untouched(self) -> None:
+        self.assertEqual((self.mine.read_text(), list(self.elsewhere.iterdir())), ("precious", []))
+
+    def test_what_would_be_written_through_is_refused(self) -> None:
+        for name, target in (("lock", self.mine), ("study.sqlite", self.mine), ("runs", self.elsewhere),
+                             ("report", self.elsewhere)):
+            with self.subTest(name):
+                study = self.study(self.of_command("plain", 'kind = "grid"', f'folder = "of_{name}"'))
+                study.setup.folder.mkdir()
+                (study.setup.folder / name).symlink_to(target)
+                with self.assertRaises(OSError) as caught:
+                    study.run(jobs=1)
+                    write_report(study)
+                self.assertEqual(caught.exception.filename, str(study.setup.folder / name))
+                self.assertIn("is a link", str(caught.exception))
+                self.check_untouched()
+
+    def test_what_is_made_whole_takes_the_place_of_the_link(self) -> None:
+        study = self.study(self.of_command("plain", 'kind = "grid"'))
+        study.run(jobs=1)
+        for name in ("table.csv", "report/report.html"):
+            file = study.setup.folder / name
+            file.unlink(missing_ok=True)
+            file.parent.mkdir(exist_ok=True)
+            file.symlink_to(self.mine)
+        study.run(jobs=1)
+        write_report(study)
+        for name in ("table.csv", "report/report.html"):
+            file = study.setup.folder / name
+            self.assertTrue(file.is_file() and not file.is_symlink(), name)
+        self.check_untouched()
+        self.assertEqual(list(study.setup.folder.glob("**/*.partial")), [])
 
 
 class Again(StudyTest):

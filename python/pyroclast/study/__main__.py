@@ -14,6 +14,7 @@ from pathlib import Path
 
 from .. import _core
 from ..errors import CodeNotAllowed, Error
+from ..interrupts import hear_ctrl_c
 from .driver import NOT_RUN, duration
 from .executors.commands import Commands
 from .file import KEEP, reference
@@ -31,8 +32,9 @@ _DISK = {"summary": 20e3, "history": 700e3, "all": 30e6}  # bytes of a run, of t
 
 def main(words: list[str]) -> int:
     """Exit code: 0 done, 2 runs are missing, 3 code has to be allowed first, 1 another error."""
-    options = _parser().parse_args(words)
     try:
+        hear_ctrl_c()
+        options = _parser().parse_args(words)
         if options.allow_code:
             _core.allow_code()
         return int(options.do(options) or 0)

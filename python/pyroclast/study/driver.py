@@ -21,8 +21,9 @@ from numpy.typing import NDArray
 from .. import _core
 from ..errors import Error
 from ..run import Run
+from ..writing import write_text
 from .executors import Executor
-from .file import Setup
+from .file import FIRST_SEED, Setup
 from .outputs import Output, read_summary
 from .parameters import Value
 from .plans import Answers, Plan, Proposal, plan_of
@@ -86,9 +87,10 @@ class Driver:
     def check(self) -> None:
         """Raises Error with all that is wrong; see `Study.check`."""
         wrong = self.points.check_ends()
-        if len(self.study.seeds) > 1 and not self.points.has_seed:
-            wrong.append(f"{self.study.place('study.seeds')}: the blocks of the deck come from a file, so a seed has no "
-                         "meaning; each point has one run")
+        if not self.points.has_seed:
+            stated = {"seeds": len(self.study.seeds) > 1, "first_seed": self.study.seeds[0] != FIRST_SEED}
+            wrong += [f"{self.study.place('study.' + key)}: the blocks of the deck come from a file, so a seed has no "
+                      "meaning; each point has one run" for key, is_stated in stated.items() if is_stated]
         if not wrong and not self.plan.draws_as_it_goes:
             for point in self._points(self.plan.propose(self._answers).points):
                 if point.infeasible:
@@ -189,9 +191,7 @@ class Driver:
     def write_table(self) -> Path:
         """table.csv in the folder of the study, in the place of an earlier one."""
         file = self.store.folder / "table.csv"
-        aside = file.with_suffix(".new")
-        aside.write_text(self.table_text(), encoding="utf-8", newline="")
-        aside.rename(file)
+        write_text(file, self.table_text())
         return file
 
     def table_text(self) -> str:

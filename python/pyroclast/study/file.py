@@ -17,6 +17,7 @@ from .parameters import Distribution, Parameter, Value
 
 KEEP = ("summary", "history", "all")
 RUNNERS = ("pyroclast", "command", "function")
+FIRST_SEED = 1
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?:\s+(\S.*?))?\s*")
 _UNTIL = re.compile(r"\s*widest interval\s*<\s*([0-9.eE+-]+)\s*(%?)\s*")
@@ -123,7 +124,7 @@ def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> Se
     runner = _runner(own, file.parent)
     count = own.integer("seeds", "Realisations of the specimen that each point is run with; the same for all points. "
                         "Results of a point are means over them.", 1, 10000, 1)
-    first = own.integer("first_seed", "The first of them; the others follow.", 0, None, 1)
+    first = own.integer("first_seed", "The first of them; the others follow.", 0, None, FIRST_SEED)
     keep = own.choice("keep", [("summary", "summary, manifest and deck"), ("history", "and the history"),
                                ("all", "all that a run writes")], True, "What stays of a run once its outputs are taken.")
     wall_limit = own.quantity("wall_limit", "s", "Wall time after which a run is stopped and counts as timed out; "

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from ..errors import Error
+from ..writing import refuse_link, write_text
 
 DONE = "done"
 CRASHED = "crashed"
@@ -91,7 +92,9 @@ class Store:
         self._open()
 
     def _take_lock(self) -> bool:
-        self._lock = open(self.folder / "lock", "w", encoding="utf-8")
+        refuse_link(self.folder / "lock")
+        refuse_link(self._file)
+        self._lock = open(self.folder / "lock", "a", encoding="utf-8")
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
@@ -251,9 +254,7 @@ def record_file(runs: Path, run: str) -> Path:
 def write_record(runs: Path, result: Result) -> None:
     """In the place of an earlier one, which stays whole if this is broken off."""
     file = record_file(runs, result.id)
-    aside = file.with_suffix(".new")
-    aside.write_text(json.dumps(asdict(result)), encoding="utf-8")
-    aside.rename(file)
+    write_text(file, json.dumps(asdict(result)))
 
 
 def read_record(runs: Path, run: str) -> Result | None:

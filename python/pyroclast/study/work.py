@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import Error
+from ..writing import make_folder, refuse_link
 from .outputs import Output, read_summary
 from .start import python
 from .store import (CRASHED, DONE, NO_VALUE, NOT_QUASI_STATIC, NOT_SETTLED, TIMED_OUT, Result, read_record,
@@ -104,7 +105,8 @@ class Attempt:
         self._clock = time.monotonic()  # a limit follows no clock that somebody sets
         write_record(runs, self._result(BEGUN))
         command = self._command()
-        self.folder.mkdir(exist_ok=True)
+        make_folder(self.folder)
+        refuse_link(self._log)
         with open(self._log, "ab") as log:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                             start_new_session=True, preexec_fn=die_with_parent(os.getpid()))

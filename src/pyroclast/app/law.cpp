@@ -44,7 +44,7 @@ LawPoint point_of_deck(const LawOptions& options) {
   const auto concrete = make_concrete(setup.solids, contacts, expected_block_size(setup.specimen, contacts));
   const std::string matrix = contacts.matrix + "_" + contacts.matrix;
   return LawPoint(contact_of(concrete, options.interface.empty() ? matrix : options.interface),
-                  setup.motion->on_cooling);
+                  setup.motion->on_cooling, setup.heat.initial);
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ int law(const LawOptions& options) {
   std::string csv;
   for (const Column& column : point.columns()) csv += (csv.empty() ? "" : ",") + column.name;
   csv += '\n';
-  for (const JumpPathPoint& to : read_jump_path(options.path))
+  for (const JumpPathPoint& to : read_jump_path(options.path, point.temperature()))
     point.go(to, options.steps, [&] { csv += fmt::format("{:.12g}\n", fmt::join(point.values(), ",")); });
   if (options.out.empty())
     fmt::print("{}", csv);

@@ -48,9 +48,17 @@ class Strings {
   std::vector<char*> pointers_;
 };
 
+/// Runs a module as a program. While it loads, Ctrl-C ends it as it ends any program; the module may hear
+/// Ctrl-C itself from then on.
+constexpr auto kStart =
+    "import runpy, signal\n"
+    "if signal.getsignal(signal.SIGINT) is signal.default_int_handler:\n"
+    "    signal.signal(signal.SIGINT, signal.SIG_DFL)\n"
+    "runpy.run_module('{}', run_name='__main__', alter_sys=True)\n";
+
 Strings arguments_of(const std::string& module, const std::vector<std::string>& words) {
-  std::vector<std::string> arguments{PYROCLAST_PYTHON, "-P", "-m",
-                                     module};  // -P: not from the current folder
+  // -P: not from the current folder
+  std::vector<std::string> arguments{PYROCLAST_PYTHON, "-P", "-c", fmt::format(kStart, module)};
   arguments.insert(arguments.end(), words.begin(), words.end());
   return Strings(std::move(arguments));
 }

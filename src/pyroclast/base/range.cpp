@@ -4,12 +4,20 @@
 
 #include <fmt/format.h>
 
+#include "pyroclast/base/rounding.hpp"
+
 namespace pyroclast {
 
 bool Range::contains(double value) const {
   const bool above_lower = lower_inclusive ? value >= lower : value > lower;
   const bool below_upper = upper_inclusive ? value <= upper : value < upper;
   return above_lower && below_upper;
+}
+
+double Range::but_for_rounding(double value) const {
+  if (lower_inclusive && value < lower && same(value, lower)) return lower;
+  if (upper_inclusive && value > upper && same(value, upper)) return upper;
+  return value;
 }
 
 double Range::any_value() const {

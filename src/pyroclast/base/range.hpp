@@ -40,6 +40,8 @@ struct Range {
 
   /// False for NaN.
   bool contains(double value) const;
+  /// The value; of one that lies beyond an end by rounding alone, that end.
+  double but_for_rounding(double value) const;
   bool is_usual(double value) const { return value >= usual_lower && value <= usual_upper; }
   /// Some value of the range, a whole number where there is one; the stand-in for a value that could not be
   /// read.

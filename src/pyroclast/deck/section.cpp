@@ -105,6 +105,7 @@ std::optional<double> read_quantity(const Entry& entry, const Unit& unit, const 
     wrong_type(entry, unit == unit::dimensionless ? "a number"
                                                   : fmt::format("a string such as \"{}\"", unit.example));
   }
+  if (value) value = range.but_for_rounding(*value);
   if (value && !check_range(entry, *value, range, suffix(unit))) return std::nullopt;
   return value;
 }

@@ -35,7 +35,9 @@ namespace {
 [[noreturn]] void fail(const std::string& name, const PropertyInfo& property, double value,
                        const std::string& wanted) {
   const std::string unit = property.unit == unit::dimensionless ? "" : fmt::format(" ({})", property.unit.si);
-  throw Error(fmt::format("{}: {}{} = {:g}, but it must be {}", name, property.key, unit, value, wanted));
+  throw PropertyError(
+      fmt::format("{}: {}{} = {:g}, but it must be {}", name, property.key, unit, value, wanted),
+      property.key, wanted);
 }
 
 }  // namespace

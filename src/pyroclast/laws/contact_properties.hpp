@@ -3,8 +3,10 @@
 #include <concepts>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/table.hpp"
 
 namespace pyroclast {
@@ -42,7 +44,16 @@ struct ContactProperties {
   void require(const LawTable& wanted) const;
 };
 
-/// Throws Error, naming the quantity, when a parameter is out of its range or the law objects.
+/// A property that cannot be as it is.
+class PropertyError : public Error {
+ public:
+  PropertyError(const std::string& message, std::string of, std::string as)
+      : Error(message), key(std::move(of)), wanted(std::move(as)) {}
+  std::string key;     ///< of the property
+  std::string wanted;  ///< what it must be, in words
+};
+
+/// Throws PropertyError when a parameter is out of its range or the law objects.
 /// \param name  of the contact, for the message
 void validate(const ContactProperties& properties, const std::string& name);
 

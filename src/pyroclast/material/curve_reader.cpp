@@ -260,7 +260,7 @@ bool CurveReader::within(const Section& section, std::string_view key, const Cur
   try {
     for (const double extreme :
          {curve.minimum(needed_.lower, needed_.upper), curve.maximum(needed_.lower, needed_.upper)}) {
-      if (range.contains(extreme)) continue;
+      if (range.contains(range.but_for_rounding(extreme))) continue;
       section.error(key, fmt::format("comes to {} between {} and {} {}; must be {}", with_unit(extreme, unit),
                                      needed_.lower, needed_.upper, axis_.unit, range.describe(suffix(unit))));
       return false;

@@ -24,8 +24,8 @@ constexpr std::array<Quantity, 3> kQuantities{{{"u_n", &JumpPathPoint::opening, 
 
 }  // namespace
 
-std::vector<JumpPathPoint> jump_path(const MeasuredTable& table) {
-  std::vector<JumpPathPoint> path(table.rows());
+std::vector<JumpPathPoint> jump_path(const MeasuredTable& table, double temperature) {
+  std::vector<JumpPathPoint> path(table.rows(), {.temperature = temperature});
   std::vector<std::string_view> taken;
   const auto fail = [&](std::size_t column, std::string_view what) {
     refuse(table.path(), table.header_line(), fmt::format("{} {}", table.column_name(column), what));
@@ -49,8 +49,8 @@ std::vector<JumpPathPoint> jump_path(const MeasuredTable& table) {
   return path;
 }
 
-std::vector<JumpPathPoint> read_jump_path(const std::filesystem::path& file) {
-  return jump_path(MeasuredTable::parse(read_named_file(file), file, 1));
+std::vector<JumpPathPoint> read_jump_path(const std::filesystem::path& file, double temperature) {
+  return jump_path(MeasuredTable::parse(read_named_file(file), file, 1), temperature);
 }
 
 }  // namespace pyroclast

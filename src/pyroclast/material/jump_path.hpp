@@ -17,7 +17,9 @@ struct JumpPathPoint {
 /// A path of jumps from a table whose columns are named among "u_n [um]", "u_s [um]" and "T [degC]", in any
 /// order and unit; what has no column stays at rest. Throws Error naming file and line when a column is not
 /// known or stands twice, or a value does not convert.
-std::vector<JumpPathPoint> jump_path(const MeasuredTable& table);
-std::vector<JumpPathPoint> read_jump_path(const std::filesystem::path& file);
+/// \param temperature  of a path without that column, °C
+std::vector<JumpPathPoint> jump_path(const MeasuredTable& table, double temperature = kReferenceTemperature);
+std::vector<JumpPathPoint> read_jump_path(const std::filesystem::path& file,
+                                          double temperature = kReferenceTemperature);
 
 }  // namespace pyroclast

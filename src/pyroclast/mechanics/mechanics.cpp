@@ -27,6 +27,8 @@ auto lines_of(const Layout<Dim>& layout, Lines& lines, const First& first, int c
 
 /// What was made alike before has time steps that differ by less than this factor.
 constexpr double kSameStep = 2.0;
+/// Forces of a smaller strain are none beside what a body bears: some 30 Pa in concrete.
+constexpr double kNoStrain = 1e-9;
 /// More than there is of any thing in a body.
 constexpr double kMostOfAKind = std::numeric_limits<int>::max();
 
@@ -72,6 +74,9 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
   place_properties();
   compute_stiffness();
   set_masses(densities);
+  mean_height_ =
+      chunked_sum(layout_->chunks.zones, [&](int z) { return 1.0 / norm(geometry_.gradient[z][0]); }) /
+      static_cast<double>(model.zones.size());
   sweep(1, Pass::measure);
   // nothing has acted yet
   std::fill(storage_.force.begin(), storage_.force.end(), VectorRow<Dim>{});
@@ -620,7 +625,7 @@ void Mechanics<Dim>::apply_force(int gridpoint, const Vec<Dim>& force) {
 }
 
 template <int Dim>
-void Mechanics<Dim>::break_contact(int contact) {
+bool Mechanics<Dim>::break_contact(int contact) {
   const LawTable& law = law_of(contact);
   bool breaks = false;
   for (const auto what : {Remembers::tension_damage, Remembers::shear_damage, Remembers::mixed_damage})
@@ -629,7 +634,7 @@ void Mechanics<Dim>::break_contact(int contact) {
           .number[layout_->contact_slot[contact] % kLanes] = 1.0;
       breaks = true;
     }
-  if (!breaks) throw Error(fmt::format("contact {} is {}: it cannot start as broken", contact, law.name));
+  return breaks;
 }
 
 // Motion
@@ -1228,7 +1233,10 @@ double Mechanics<Dim>::unbalanced_ratio() const {
   const double applied =
       chunked_sum(layout_->chunks.bundles, [&](int b) { return state_.bundle_sums[b].applied; }) +
       chunked_sum(layout_->chunks.face_rows, [&](int row) { return state_.face_sums[row].applied; });
-  return applied > 0.0 ? unbalanced / applied : 0.0;
+  const double least = kNoStrain * mean_height_ * chunked_sum(layout_->chunks.gridpoints, [&](int gridpoint) {
+                         return stiffness_[gridpoint];
+                       });
+  return unbalanced / std::max(applied, least);
 }
 
 template <int Dim>

@@ -183,9 +183,9 @@ class Mechanics {
   void untie();
   /// Force on a gridpoint, N, until set again; free components only.
   void apply_force(int gridpoint, const Vec<Dim>& force);
-  /// Starts a contact as broken: neither tension nor cohesion ever held it. Throws Error where its law knows
-  /// no damage.
-  void break_contact(int contact);
+  /// Starts a contact as broken: neither tension nor cohesion ever held it. False where its law knows no
+  /// damage, so that it holds.
+  [[nodiscard]] bool break_contact(int contact);
 
   /// Runs a number of steps.
   void advance(int steps);
@@ -260,7 +260,8 @@ class Mechanics {
   /// v(t + dt/2), central differences conserve their sum exactly in a linear body, so the ledger's error is
   /// that of the contacts.
   EnergyLedger energy() const;
-  /// Mean unbalanced force over mean force applied to the gridpoints by zones, contacts and gravity.
+  /// Mean unbalanced force over mean force applied to the gridpoints by zones, contacts and gravity. Forces
+  /// below those of a strain of 1e-9 count as these: a body without load rests too.
   double unbalanced_ratio() const;
   double mean_unbalanced_force() const;  ///< of the gridpoints, N
   Kinematics kinematics() const { return parameters_.kinematics; }
@@ -355,6 +356,7 @@ class Mechanics {
   std::vector<double> gravity_mass_;  ///< real mass, which gravity acts on, kg
   std::vector<double> mass_;          ///< mass that moves, kg
   std::vector<double> stiffness_;     ///< k_gp, N/m
+  double mean_height_ = 0.0;          ///< of zones, m
   double real_mass_ = 0.0, moving_mass_ = 0.0;
 
   std::int64_t steps_ = 0;

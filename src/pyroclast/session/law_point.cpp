@@ -72,17 +72,26 @@ ContactMaterial stated_material(const LawTable& law, const std::vector<std::stri
       throw Error(fmt::format("the contact law \"{}\" needs {}: {}; say for example --set {}='{}'", law.name,
                               law.properties[i].key, law.properties[i].meaning, law.properties[i].key,
                               law.properties[i].unit.example));
-  validate(material.at(kReferenceTemperature), law.name);
+  try {
+    validate(material.at(kReferenceTemperature), law.name);
+  } catch (const PropertyError& e) {
+    const auto change = std::ranges::find_if(
+        values, [&](const std::string& value) { return value.starts_with(e.key + "="); });
+    throw Error(
+        fmt::format("--set {}: {} of the contact law \"{}\" must be {}", *change, e.key, law.name, e.wanted));
+  }
   return material;
 }
 
-LawPoint::LawPoint(ContactMaterial material, OnCooling on_cooling)
+LawPoint::LawPoint(ContactMaterial material, OnCooling on_cooling, double temperature)
     : material_(std::move(material)),
       on_cooling_(on_cooling),
+      hottest_(temperature),
       law_(*material_.law),
       history_(law_.history(2).size()),
-      losses_(law_.losses.size()) {
-  warm_to(kReferenceTemperature);
+      losses_(law_.losses.size()),
+      at_{.temperature = temperature} {
+  warm_to(temperature);
 }
 
 void LawPoint::go(const JumpPathPoint& to) {

@@ -20,7 +20,9 @@ ContactMaterial stated_material(const LawTable& law, const std::vector<std::stri
 /// strengths of the highest temperature that it came to, and loses what the material loses on cooling.
 class LawPoint {
  public:
-  explicit LawPoint(ContactMaterial material, OnCooling on_cooling = OnCooling::irreversible);
+  /// \param temperature  at which it begins, °C
+  explicit LawPoint(ContactMaterial material, OnCooling on_cooling = OnCooling::irreversible,
+                    double temperature = kReferenceTemperature);
 
   void go(const JumpPathPoint& to);
   /// In `steps` equal parts; after each of them `look` is called.
@@ -39,6 +41,7 @@ class LawPoint {
   /// What `values` are: names with their units at the end, all SI and degC.
   std::vector<Column> columns() const;
   std::vector<double> values() const;
+  double temperature() const { return at_.temperature; }  ///< °C
 
  private:
   void warm_to(double temperature);
@@ -47,7 +50,7 @@ class LawPoint {
 
   ContactMaterial material_;
   OnCooling on_cooling_;
-  double hottest_ = kReferenceTemperature;  ///< so far, °C
+  double hottest_;  ///< so far, °C
   const LawTable& law_;
   std::vector<std::byte> constants_;
   std::vector<double> history_, losses_;

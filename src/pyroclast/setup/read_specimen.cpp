@@ -189,6 +189,7 @@ Outline read_outline(const Section& s, const std::filesystem::path& folder) {
   number = 0;
   for (const Section& n : s.optional_sections("notches", "straight cuts from the outline, any number")) {
     specimen::Notch notch;
+    notch.place = fmt::format("{}: {}", n.where("width"), n.path());
     notch.name = n.text("name", fmt::format("notch_{}", ++number), "of its side");
     notch.mouth = read_place(n, "mouth", "where it begins, on the outline");
     notch.tip = read_place(n, "tip", "where it ends, in the specimen; a corner of blocks");
@@ -409,6 +410,7 @@ specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::p
   }
   if (outline.shape == Shape::tessellation)
     s.error("file", "is needed where specimen.shape is \"tessellation\"");
+  b.place = fmt::format("{}: {}", s.where("count"), s.path());
   b.count = static_cast<int>(s.integer("count", Range::between(4, 100e6), "number of blocks"));
   b.relaxation =
       static_cast<int>(s.integer("relaxation", Range::between(0, 1000), 0,

@@ -106,13 +106,17 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
   ReadStages read;
   if (tables.coupling_table && tables.coupling_table->has("stress_free"))
     read.stress_free = read_stress_free(*tables.coupling_table, folder);
-  if (tables.coupling_table && !exchanges &&
-      tables.coupling_table->keys() == std::vector<std::string>{"stress_free"})
-    tables.coupling_table.reset();
+  if (tables.coupling_table && !exchanges) {
+    if (tables.coupling_table->keys() == std::vector<std::string>{"stress_free"})
+      tables.coupling_table.reset();
+    else
+      root.warn("coupling", "no stage uses it: none changes temperatures beside the mechanics");
+  }
   if (tables.coupling_table) tables.coupling = read_coupling(*tables.coupling_table);
   read.any_moves = moves;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     read.stages.push_back(chosen[i]->read(sections[i], tables));
+    read.stages.back()->set_place(fmt::format("{}: {}", sections[i].where("kind"), sections[i].path()));
     const std::string name =
         sections[i].text("name", "", "for `resume --from-stage`; without one its kind stands for it");
     read.names.push_back(name.empty() ? chosen[i]->name : name);

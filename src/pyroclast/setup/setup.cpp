@@ -251,9 +251,14 @@ void check_contacts(const Section& root, const Setup& setup) {
         T = kReferenceTemperature;
         validate(contact.at(T, marked), key);
       }
-    } catch (const Error& e) {
-      contacts.error(key, fmt::format("at {:.6g} degC{}: {}", T,
-                                      T < marked ? fmt::format(" after {:.6g} degC", marked) : "", e.what()));
+    } catch (const PropertyError& e) {
+      const Section own = contacts.section(key);
+      const std::string at =
+          fmt::format("at {:.6g} degC{}", T, T < marked ? fmt::format(" after {:.6g} degC", marked) : "");
+      if (own.has(e.key))
+        own.error(e.key, fmt::format("{} it must be {}", at, e.wanted));
+      else
+        contacts.error(key, fmt::format("{}: {}", at, e.what()));
     }
   };
   const std::size_t bearings = setup.motion->contacts.bearings.size();

@@ -65,6 +65,14 @@ void Run::name_columns() {
   }
 }
 
+/// Of the record with a column of this name, to begin a message with; empty where there is none.
+std::string Run::place_of(const std::string& column) const {
+  for (const Record& record : simulation_.records())
+    if (column_of(record.parameters()).name == column && !record.parameters().place.empty())
+      return record.parameters().place + ": ";
+  return {};
+}
+
 /// Throws Error where two would write into one column: a record or a probe with the name of another quantity.
 void Run::require_own_columns() const {
   std::set<std::string> names;
@@ -74,10 +82,10 @@ void Run::require_own_columns() const {
   for (const Gauge& gauge : gauges_)
     for (const Column& column : gauge.columns)
       if (!names.insert(column.name).second)
-        throw Error(
-            fmt::format("history.csv would have two columns \"{}\": a [[record]] or a probe has the name of "
-                        "another quantity; give it another one",
-                        column.name));
+        throw Error(fmt::format(
+            "{}history.csv would have two columns \"{}\": a [[record]] or a probe has the name of "
+            "another quantity; give it another one",
+            place_of(column.name), column.name));
 }
 
 /// Of the stages from this one on. Where platens hold the body, they do.
@@ -90,7 +98,8 @@ void Run::check(const std::vector<std::unique_ptr<Stage>>& stages, std::size_t f
     if (i < first) continue;
     stage.check(simulation_, acting);
     if (is_loaded && stage.needs().mechanics)
-      require_held(simulation_, acting.supports, fmt::format("stage {} ({})", i + 1, stage.kind()));
+      require_held(simulation_, acting.supports,
+                   stage.place().empty() ? fmt::format("stage {} ({})", i + 1, stage.kind()) : stage.place());
   }
 }
 

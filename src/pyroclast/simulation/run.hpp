@@ -104,6 +104,7 @@ class Run {
   void add_row();
   void end_stage(const Verdict& verdict);
   void name_columns();
+  std::string place_of(const std::string& column) const;
   void require_own_columns() const;
 
   Simulation& simulation_;

@@ -46,6 +46,15 @@ TemperatureField make_field(const Model<2>& model, const std::vector<SolidMateri
   return {model, make_conduction(model, solids, heat, initial, team)};
 }
 
+/// A slit parts a contact whose law holds it together.
+[[noreturn]] void refuse_slit(const specimen::Notch& slit, const std::string& interface,
+                              const std::string& law) {
+  throw Error(
+      fmt::format("{}{} is a slit through contacts of {}, which the law \"{}\" never parts: give "
+                  "[contacts.{}] a law that knows damage, or the notch a width",
+                  slit.place.empty() ? "" : slit.place + ": ", slit.name, interface, law, interface));
+}
+
 std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const ConcreteMaterials& materials,
                                              const TemperatureField& field,
                                              const HottestTemperatures& hottest,
@@ -115,7 +124,11 @@ Simulation::Simulation(specimen::Specimen specimen, double thickness,
   mechanics_ = make_mechanics(model_, materials_, field_, hottest_, motion->mechanics, team_);
   for (const specimen::Notch& notch : specimen_.region.notches())
     if (const auto parted = model_.contact_sets.find(notch.name); parted != model_.contact_sets.end())
-      for (int contact : parted->second) mechanics_->break_contact(contact);
+      for (int contact : parted->second)
+        if (!mechanics_->break_contact(contact)) {
+          const int interface = model_.contacts[contact].interface;
+          refuse_slit(notch, model_.interface_names[interface], materials_.contacts[interface].law->name);
+        }
   show_cracks_to_heat();
   supports_ = std::make_unique<Supports<2>>(model_);
   loads_ = std::make_unique<Loads<2>>(*mechanics_, std::sqrt(specimen_.region.area()));

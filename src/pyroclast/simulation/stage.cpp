@@ -24,6 +24,7 @@ constexpr auto kOutcomes = std::to_array<OutcomeInfo>({
     {Outcome::stress_fallen, "stress_fallen", true, "the stress fell below the stated fraction of the peak"},
     {Outcome::ran_away, "ran_away", true, "the specimen failed: the upper platen ran away"},
     {Outcome::not_settled, "not_settled", false, "the body did not come to rest within the stated steps"},
+    {Outcome::control_lost, "control_lost", false, "the controlled opening left its course"},
     {Outcome::unstable, "unstable", false, "the motion became unstable (a result is not finite)"},
     {Outcome::stopped, "stopped", false, "stopped"},
 });

@@ -26,6 +26,7 @@ enum class Outcome : std::uint8_t {
   ran_away,       ///< the specimen failed under its load
   crushed,        ///< it failed while it was being loaded
   not_settled,    ///< did not come to rest within the stated steps
+  control_lost,   ///< a controlled opening left its course
   unstable,       ///< a result is not finite
   stopped         ///< from outside
 };
@@ -117,6 +118,9 @@ class Stage {
   /// The name by which a deck asks for it.
   virtual const char* kind() const = 0;
   virtual StageNeeds needs() const = 0;
+  /// Where the deck asks for it, "deck.toml:40: stages[0]"; empty where no deck does.
+  const std::string& place() const { return place_; }
+  void set_place(std::string place) { place_ = std::move(place); }
   /// What goes on between two looks where that may take long, "moving the platen down"; may be empty.
   virtual std::string doing() const { return {}; }
   virtual HeatingPlan heating() const { return {}; }
@@ -149,6 +153,9 @@ class Stage {
   virtual Forecast forecast(const Simulation& simulation, Foreseen& foreseen) const = 0;
 
   virtual void visit_state(StateVisitor& visitor) = 0;
+
+ private:
+  std::string place_;
 };
 
 }  // namespace pyroclast

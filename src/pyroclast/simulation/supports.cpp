@@ -59,8 +59,11 @@ void Supports<Dim>::hold(const std::string& set, int component, const HeldMotion
       if (std::ranges::find(own, g) != own.end())
         throw Error(fmt::format(
             "{}: set \"{}\" shares gridpoint {} with set \"{}\" ({}), and both are held or driven "
-            "along {}, in different ways",
-            place, set, g, key.first, other.place, "xyz"[component]));
+            "along {}, {}",
+            place, set, g, key.first, other.place, "xyz"[component],
+            motion.is_free && other.motion.is_free
+                ? "by velocities with factors, which may differ: drive one set that has both"
+                : "in different ways"));
   }
   if (held_.insert_or_assign({set, component}, Held{motion, place}).second) count(set, component, 1);
 }

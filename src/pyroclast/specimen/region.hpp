@@ -69,10 +69,11 @@ struct Loop {
 /// A notch. Where it has no width it is a slit: the blocks on both of its sides are parted from the start.
 struct Notch {
   std::string name;
-  Vec<2> mouth;        ///< on the outline, m
-  Vec<2> tip;          ///< in the body, m
-  double width = 0.0;  ///< m; 0: a slit; else a slot that ends in a point
-  double point = 0.0;  ///< length over which the walls of a slot run together, m; all of it: a wedge
+  Vec<2> mouth;            ///< on the outline, m
+  Vec<2> tip;              ///< in the body, m
+  double width = 0.0;      ///< m; 0: a slit; else a slot that ends in a point
+  double point = 0.0;      ///< length over which the walls of a slot run together, m; all of it: a wedge
+  std::string place = {};  ///< in a deck, to begin messages with: "deck.toml:12: specimen.notches[0]"
 
   double length() const { return norm(tip - mouth); }
 };

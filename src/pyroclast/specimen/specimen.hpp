@@ -78,6 +78,7 @@ struct BlockParameters {
   double shortest_edge = 0.0;  ///< edges below this fraction of the mean edge are removed, in [0, 0.5]
   /// Of the region, made elsewhere and still to be regularised; then only `shortest_edge` counts.
   std::optional<Tessellation> tessellation;
+  std::string place = {};  ///< in a deck, to begin messages with: "deck.toml:12: blocks"; may be empty
 };
 
 /// Blocks that are made elsewhere.

@@ -33,6 +33,9 @@ constexpr double kMostNoise = 0.1;
 constexpr double kBehindPeak = 1.0 - PeakRule().fall;
 /// Peaks are looked for this often, whatever the rows of the history are.
 constexpr std::int64_t kStepsPerPoint = 100;
+/// A controlled opening that is to stay as it is has left its course where it differs by this share of the
+/// body's size.
+constexpr double kLost = 0.01;
 /// Directions of forces that differ by less are parallel.
 constexpr double kParallel = 1e-9;
 /// Rows and frames of a stage where the deck does not say.
@@ -67,7 +70,7 @@ std::optional<ActionKind> kind_of(const Section& s) {
   return chosen;
 }
 
-Drive::Action read_action(const Section& s, CurveReader& curves) {
+Drive::Action read_action(const Section& s, double duration, CurveReader& curves) {
   Drive::Action a;
   a.set = s.text("set", "set of gridpoints that it acts on; see [bodies.md](bodies.md#sets)");
   a.place = fmt::format("{}: {}", s.where("set"), s.path());
@@ -84,6 +87,8 @@ Drive::Action read_action(const Section& s, CurveReader& curves) {
   const auto read_change = [&] {
     a.ramp_time = s.quantity("ramp_time", unit::time, Range::non_negative(), 0.0,
                              "in which it comes evenly from what it was to its value");
+    if (s.ok() && !at_most(a.ramp_time, duration))
+      s.error("ramp_time", "must end within the stage (its duration): what is stated would never be reached");
     if (s.has("factor"))
       a.factor = curves.read(s, "factor", unit::dimensionless, Range::any(),
                              "of the value, over the time since the stage began");
@@ -212,7 +217,7 @@ std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
       s.quantity("duration", unit::time, Range::positive(), "after which the stage ends at the latest");
   CurveReader curves(tables.folder, time_axis(), {0.0, keys.duration}, fire_curves());
   for (const Section& own : s.sections("drives", "what is held, moved or loaded, any number"))
-    keys.actions.push_back(read_action(own, curves));
+    keys.actions.push_back(read_action(own, keys.duration, curves));
   for (const Section& own :
        s.optional_sections("until", "conditions of which the first that is met ends the stage"))
     keys.until.push_back(read_until(own, tables.records));
@@ -221,8 +226,9 @@ std::unique_ptr<Stage> read_drive(const Section& s, const StageTables& tables) {
                                           "what it takes; see [bodies.md](bodies.md#control)")) {
     keys.control = read_control(*own, tables.records);
     const auto is_force = [](const Drive::Action& a) { return a.kind == ActionKind::force; };
-    if (s.ok() && std::ranges::none_of(keys.actions, is_force))
-      own->error("needs a force among the drives of the stage, which it multiplies");
+    if (s.ok() && std::ranges::none_of(
+                      keys.actions, [&](const Drive::Action& a) { return is_force(a) && a.amount != 0.0; }))
+      own->error("needs a force among the drives of the stage, which it multiplies, and not one of 0 N");
     for (const Section& drive : s.sections("drives"))
       for (const char* key : {"ramp_time", "factor"})
         if (drive.has("force") && drive.has(key))
@@ -312,6 +318,7 @@ void Drive::check(const Simulation& simulation, Acting<2>& acting) const {
                       action.place, action.set));
   }
   require_consistent();
+  for (const Action& action : keys_.actions) require_effect(action, acting);
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::release)
       for (int c : action.components) acting.supports.release(action.set, c, action.place);
@@ -333,6 +340,25 @@ void Drive::check(const Simulation& simulation, Acting<2>& acting) const {
   }
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::velocity) acting.supports.halt(action.set, action.components.front());
+}
+
+/// A load of nothing ends what acts. Throws Error where that is nothing either.
+void Drive::require_effect(const Action& action, const Acting<2>& acting) const {
+  if (is_motion(action) || action.amount != 0.0) return;
+  const auto found = acting.loads.find(action.set);
+  const SetLoad<2> load = found == acting.loads.end() ? SetLoad<2>{} : found->second.load;
+  const bool is_force = action.kind == ActionKind::force;
+  if (is_force ? std::abs(dot(load.force, action.direction)) > kParallel * norm(load.force)
+               : load.pressure != 0.0)
+    return;
+  const bool has_other = is_force ? load.pressure != 0.0 : norm(load.force) > 0.0;
+  const std::string other = is_force ? "a pressure of 0 Pa ends one" : "a force of 0 N along it ends one";
+  throw Error(fmt::format("{}: no {} acts on set \"{}\"{}, so that this ends nothing{}", action.place,
+                          is_force ? "force" : "pressure", action.set,
+                          is_force ? " along that direction" : "",
+                          has_other ? fmt::format("; a {} does ({}), and {}", is_force ? "pressure" : "force",
+                                                  found->second.place, other)
+                                    : ""));
 }
 
 /// One set is asked for one thing: not to be held and released, nor for pressures of both sorts.
@@ -528,7 +554,11 @@ void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads
   const double opening = record.read(simulation);
   pair_work_ += pair_force_ * (opening - last_opening_);
   last_opening_ = opening;
-  pair_force_ = control.stiffness * (first_opening_ + control.rate * time - opening);
+  const double behind = first_opening_ + control.rate * time - opening;
+  pair_force_ = control.stiffness * behind;
+  const double whole = std::abs(control.rate) * keys_.duration;
+  is_lost_ =
+      std::abs(behind) > (whole > 0.0 ? whole : kLost * std::sqrt(simulation.specimen().region.area()));
   const double step = static_cast<double>(kStepsPerControl) * simulation.mechanics().time_step();
   // what bears the load now bears the pair beside it
   largest_with_pair_ = std::max(largest_with_pair_, total_load(load_factor_) + std::abs(pair_force_));
@@ -570,10 +600,24 @@ std::int64_t Drive::steps_per_adjustment() const {
   return keys_.control ? kStepsPerControl : kStepsPerAdjustment;
 }
 
-void Drive::act(Simulation& simulation, double time) {
+/// The duration in whole steps.
+std::int64_t Drive::most_steps(const Simulation& simulation) const {
+  return std::max<std::int64_t>(
+      1, static_cast<std::int64_t>(whole_above(keys_.duration / simulation.mechanics().time_step())));
+}
+
+/// For how many steps what acts now does so.
+std::int64_t Drive::steps_to_come(const Simulation& simulation) const {
+  const std::int64_t interval = steps_per_adjustment();
+  return std::min(interval, most_steps(simulation) - (steps_ - steps_ % interval));
+}
+
+/// As what acts in the middle of the steps to come.
+void Drive::act(Simulation& simulation) {
+  const double interval = static_cast<double>(steps_to_come(simulation)) * simulation.mechanics().time_step();
+  const double time = this->time(simulation) + 0.5 * interval;
   ChangedLoads loads;
   if (keys_.control) steer(simulation, time, loads);
-  const double interval = static_cast<double>(steps_per_adjustment()) * simulation.mechanics().time_step();
   is_driven_ = keys_.control && keys_.control->rate != 0.0;
   for (const auto& [set, load] : loads_at(time, [&](const std::string& of) { return first_load(of); }))
     loads[set] = load;
@@ -613,18 +657,14 @@ void Drive::take_peaks(const Simulation& simulation) {
 }
 
 bool Drive::advance(Simulation& simulation, int most_steps) {
-  const double time_step = simulation.mechanics().time_step();
   const std::int64_t interval = steps_per_adjustment();
-  if (steps_ % interval == 0) {
-    // in the middle of the steps to come
-    act(simulation, time(simulation) + 0.5 * static_cast<double>(interval) * time_step);
-  }
-  const auto steps = std::min<std::int64_t>(interval - steps_ % interval, most_steps);
+  if (steps_ % interval == 0) act(simulation);
+  const auto steps = std::min<std::int64_t>(steps_to_come(simulation) - steps_ % interval, most_steps);
   simulation.mechanics().advance(static_cast<int>(steps));
   steps_ += steps;
   if (steps_ % kStepsPerPoint == 0) take_peaks(simulation);
-  return steps_ % steps_in(simulation, keys_.look_interval) == 0 ||
-         (steps_ % interval == 0 && at_most(keys_.duration, time(simulation)));
+  return steps_ % steps_in(simulation, keys_.look_interval) == 0 || is_lost_ ||
+         steps_ >= this->most_steps(simulation);
 }
 
 /// Whether noise is below this share of what records show of the stage. Forces go with the root of an energy;
@@ -668,12 +708,14 @@ bool Drive::has_fallen(const Simulation& simulation) {
   return true;
 }
 
-/// What was moved stays where it is, and no pair is left.
+/// Loads stay as they are at the end, what was moved stays where it is, and no pair is left.
 void Drive::halt(Simulation& simulation) {
+  ChangedLoads loads = loads_at(time(simulation), [&](const std::string& set) { return first_load(set); });
   if (keys_.control) {
     const RecordParameters& record = simulation.record(keys_.control->record).parameters();
-    simulation.loads().set({{record.set, {}}, {record.other, {}}});
+    loads[record.set] = loads[record.other] = {};
   }
+  simulation.loads().set(loads);
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::velocity) simulation.halt(action.set, action.components.front());
 }
@@ -692,12 +734,13 @@ Verdict Drive::judge(Simulation& simulation) {
   // What acts is that of the middle of the last steps, so a ramp may end before all of it acts.
   const double acted =
       now - 0.5 * static_cast<double>(steps_per_adjustment()) * simulation.mechanics().time_step();
+  if (is_lost_ && !verdict.over) verdict = {.over = true, .last = true, .outcome = Outcome::control_lost};
   const bool ramps_are_over =
       std::ranges::all_of(keys_.actions, [&](const Action& a) { return at_most(a.ramp_time, acted); });
   if (keys_.unbalanced_ratio && ramps_are_over &&
       simulation.mechanics().unbalanced_ratio() < *keys_.unbalanced_ratio)
     verdict.over = true;
-  if (!verdict.over && at_most(keys_.duration, now)) {
+  if (!verdict.over && steps_ >= most_steps(simulation)) {
     verdict.over = true;
     if (keys_.unbalanced_ratio) {
       verdict.last = true;
@@ -756,6 +799,14 @@ StageReport Drive::report(const History& history, RowRange rows, Outcome outcome
   if (has_rows) report.lines = lines_of(keys_.results, of_records);
   report.warnings = missing_peaks(keys_.records, record_peaks_, keys_.results);
   if (keys_.control) add_control(report, work);
+  if (outcome == Outcome::control_lost)
+    report.warnings.push_back(
+        fmt::format("the control of {} ran away: with a positive rate the forces of the stage must open it "
+                    "where they grow "
+                    "(turn the direction, the rate, or set and other of the record), and its stiffness must "
+                    "exceed that of "
+                    "the softening",
+                    keys_.control->record));
   if (outcome == Outcome::not_reached || outcome == Outcome::not_settled) {
     for (std::size_t i = 0; i < keys_.until.size(); ++i)
       report.warnings.push_back(fmt::format("not met within the duration: {}", describe_unmet(i)));
@@ -840,6 +891,7 @@ void Drive::visit_state(StateVisitor& visitor) {
   visitor.visit("farthest", farthest_, of_each_action);
   visitor.visit("driven", driven_);
   visitor.visit("is_driven", is_driven_);
+  visitor.visit("is_lost", is_lost_);
   visitor.visit("is_beyond_noise", is_beyond_noise_);
   const auto visit_all = [&](const char* name, auto& all, auto... more) {
     for (std::size_t i = 0; i < all.size(); ++i) {

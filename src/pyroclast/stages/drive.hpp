@@ -89,6 +89,7 @@ class Drive : public Stage {
     return a.kind != ActionKind::force && a.kind != ActionKind::pressure;
   }
   void require_consistent() const;
+  void require_effect(const Action& action, const Acting<2>& acting) const;
   double share(const Action& action, double time) const;
   double part(const Action& action, double time) const;
   template <class Before>
@@ -101,7 +102,9 @@ class Drive : public Stage {
   double unit_force() const;
   double total_load(double factor) const;
   std::int64_t steps_per_adjustment() const;
-  void act(Simulation& simulation, double time);
+  std::int64_t most_steps(const Simulation& simulation) const;
+  std::int64_t steps_to_come(const Simulation& simulation) const;
+  void act(Simulation& simulation);
   void take_peaks(const Simulation& simulation);
   bool is_met(std::size_t condition, const Simulation& simulation);
   bool is_beyond_noise(double share, const Simulation& simulation);
@@ -122,6 +125,7 @@ class Drive : public Stage {
   std::vector<double> came_, farthest_;
   double driven_ = 0.0;
   bool is_driven_ = false;                         ///< now
+  bool is_lost_ = false;                           ///< the controlled opening left its course
   bool is_beyond_noise_ = false;                   ///< since when peaks count
   std::vector<RecordPeak> record_peaks_;           ///< of each record
   std::vector<Peak> peaks_;                        ///< of the records of `until`

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ...writing import make_folder
 from ..outputs import read_summary
 from ..store import Result
 from ..work import Job, collected
@@ -23,14 +24,14 @@ class Commands:
     def run(self, jobs: Sequence[Job], runs: Path, finished: Callable[[Result], None],
             stopped: Callable[[], bool]) -> None:
         """Takes in what is done and writes the rest; see executors."""
-        runs.mkdir(parents=True, exist_ok=True)
+        make_folder(runs)
         lines = []
         for job in jobs:
             folder = runs / job.id
             if read_summary(folder) is not None:
                 finished(collected(job, runs))
             else:
-                folder.mkdir(exist_ok=True)
+                make_folder(folder)
                 lines.append(shlex.join(job.line(folder)))
         self.file.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
         self.written = len(lines)

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...errors import Error
+from ...writing import make_folder
 from ..start import python
 from ..store import CRASHED, DONE, NO_VALUE, TIMED_OUT, Result
 from ..work import MOST_IN_VAIN, Attempt, Job, die_with_parent
@@ -35,7 +36,7 @@ class Local:
         if jobs and jobs[0].kind == "function":
             _call(jobs, min(self.slots, len(jobs)), finished, stopped)
         else:
-            runs.mkdir(parents=True, exist_ok=True)
+            make_folder(runs)
             _run(jobs, self.slots, runs, finished, stopped)
 
 

@@ -21,6 +21,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from ...errors import Error
+from ...writing import make_folder, write_text
 from ..file import Slurm as Settings
 from ..start import python
 from ..store import Result, read_record
@@ -96,17 +97,15 @@ class Book:
                             "then remove it") from error
 
     def write(self) -> None:
-        aside = self._file.with_suffix(".new")
         text = json.dumps({"number": self._number, "arrays": [asdict(array) for array in self.arrays]})
-        aside.write_text(text, encoding="utf-8")
-        aside.rename(self._file)
+        write_text(self._file, text)
 
     def add(self, jobs: Sequence[Job], count: int) -> Array:
         """Before it is submitted, so that it is known whatever happens."""
-        self.folder.mkdir(exist_ok=True)
+        make_folder(self.folder)
         self._number += 1
         array = Array(f"{self.prefix}{self._number}", [job.id for job in jobs], count)
-        self.jobs_file(array).write_text("".join(f"{job.to_json()}\n" for job in jobs), encoding="utf-8")
+        write_text(self.jobs_file(array), "".join(f"{job.to_json()}\n" for job in jobs))
         self.arrays.append(array)
         self.write()
         return array
@@ -152,7 +151,7 @@ class Slurm:
             name = named and (named[1] or _SHORT.get(named[2]))
             if name in _OURS:
                 raise Error(f"[slurm] options: {option!r}: the study says --{name} itself")
-        runs.mkdir(parents=True, exist_ok=True)
+        make_folder(runs)
         _Queue(self, jobs, runs.resolve(), finished, stopped).work()
 
 

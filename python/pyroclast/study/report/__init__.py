@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from ...style import save
+from ...writing import make_folder, write_text
 from ..study import Study
 from . import calibration, ensemble, indices, posterior, responses
 from .page import page_of
@@ -29,18 +30,15 @@ def write_report(study: Study) -> Path:
     the page.
     """
     found = seen(study)
-    folder = study.setup.folder / "report"
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = make_folder(study.setup.folder / "report")
     _clear(folder)
     if found.findings is not None:
         findings = json.dumps(found.findings, ensure_ascii=False, allow_nan=False)
-        (folder / FINDINGS).write_text(findings, encoding="utf-8")
+        write_text(folder / FINDINGS, findings)
     sections = _SECTIONS[found.method](found) if found.findings is not None else []
     pictures = _save(sections, folder)
     page = folder / PAGE
-    aside = page.with_suffix(".new")
-    aside.write_text(page_of(found, sections, pictures), encoding="utf-8")
-    aside.replace(page)
+    write_text(page, page_of(found, sections, pictures))
     return page
 
 

@@ -1,0 +1,44 @@
+"""Files and folders of fixed names that others may have laid links in: nothing is written through a link."""
+
+from __future__ import annotations
+
+import errno
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+@contextmanager
+def whole(path: Path) -> Iterator[Path]:
+    """A file beside `path` that is written, and then takes its place; where something goes wrong there is none.
+
+    It is made under a name that was free. A link at `path` is replaced and not followed. `--overwrite` knows its ending.
+    """
+    aside = path.with_name(f"{path.name}.{secrets.token_hex(4)}.partial")
+    os.close(os.open(aside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+    try:
+        yield aside
+        os.replace(aside, path)
+    finally:
+        aside.unlink(missing_ok=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """The file is there whole or not at all."""
+    with whole(path) as aside:
+        aside.write_text(text, encoding="utf-8", newline="")
+
+
+def make_folder(path: Path) -> Path:
+    """Of a fixed name, where there is none. Raises OSError where it is a link."""
+    path.mkdir(parents=True, exist_ok=True)
+    refuse_link(path)
+    return path
+
+
+def refuse_link(path: Path) -> None:
+    """Raises OSError where `path` is a link."""
+    if path.is_symlink():
+        raise OSError(errno.ELOOP, "is a link, and nothing is written through it; remove it", str(path))
