@@ -21,6 +21,7 @@ DPI = 300
 
 _MOST_POINTS = 20_000  # of a line in a figure: more than its width has dots
 _TITLE_WIDTH = 100  # characters that fit a page
+_MOST_OF_A_TEXT = 200  # characters of a user's text
 
 STYLE = {
     "font.size": 8.0,
@@ -81,8 +82,14 @@ def legend_alone(axes: Axes, handles: list, labels: list[str], **options) -> Non
 
 def plain(text: str) -> str:
     """Text of the user's, as it stands: on one line, and no formula."""
-    shown = "".join(c if c.isprintable() else " " for c in text)
-    return " ".join(shown.split()).replace("$", r"\$")
+    return visible(text).replace("$", r"\$")
+
+
+def visible(text: str) -> str:
+    """On one line, with what cannot be seen written out, such as \\x1b, and cut where it is long."""
+    line = " ".join("".join(c if c.isprintable() or c.isspace() else c.encode("unicode_escape").decode()
+                            for c in text).split())
+    return line if len(line) <= _MOST_OF_A_TEXT else f"{line[:_MOST_OF_A_TEXT]}… ({len(line)} characters)"
 
 
 def draw_parent(axes: Axes, parent, over, values) -> None:

@@ -896,10 +896,13 @@ class Titles(HeatedTest):
     def test_long_ones_are_broken_into_lines_that_fit(self):
         folder = self.root / "run"
         synthetic_run.write_run(folder)
-        synthetic_run.write_summary(folder, 30 * "long title ", [("compress", {"quasi_static": True})])
-        lines = style.title_of(Run(folder)).splitlines()
-        self.assertEqual(" ".join(lines), (30 * "long title ").strip())
-        self.assertLessEqual(max(map(len, lines)), 100)
+        for title, shown in ((15 * "long title ", (15 * "long title ").strip()),
+                             (30 * "long title ", (30 * "long title ")[:200] + "… (329 characters)"),
+                             ("a\x1b[31m\u202eb\n c", r"a\x1b[31m\u202eb c")):
+            synthetic_run.write_summary(folder, title, [("compress", {"quasi_static": True})])
+            lines = style.title_of(Run(folder)).splitlines()
+            self.assertEqual(" ".join(lines), shown)
+            self.assertLessEqual(max(map(len, lines)), 100)
 
 
 class Reader(FolderTest):

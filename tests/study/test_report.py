@@ -81,7 +81,7 @@ class ReportTest(StudyTest):
 
     def of(self, method: str, parameters: str = "", rest: str = "", seeds: int = 3) -> Study:
         return self.study(f'''
-title = "A <script>alert(1)</script> & more"
+title = "A <script>alert(1)</script> & more \\u001b[31m\\u202e"
 [study]
 runner = "function"
 function = "model.py:model"
@@ -104,6 +104,23 @@ E = "E"
         return {shown.name: shown.figure for section in _SECTIONS[found.method](found) for shown in section.figures}
 
 
+class Elsewhere(ReportTest):
+    def test_a_report_may_leave_the_study_as_it_is(self) -> None:
+        study = self.made(*METHODS["ensemble"])
+        out = self.folder / "drawn"
+        out.mkdir()
+        (out / "mine.png").write_text("mine")
+
+        def contents() -> list[tuple[str, int]]:
+            return sorted((str(file), file.stat().st_mtime_ns) for file in study.setup.folder.rglob("*"))
+
+        before = contents()
+        self.assertEqual(write_report(study, out), out / "report.html")
+        self.assertEqual(contents(), before)
+        self.assertEqual((out / "mine.png").read_text(), "mine")
+        self.assertTrue((out / "findings.json").exists())
+
+
 class Pages(ReportTest):
     def check(self, name: str, seeds: int = 3) -> None:
         page = write_report(self.made(*METHODS[name], seeds))
@@ -115,7 +132,7 @@ class Pages(ReportTest):
         self.assertEqual(text.count('src="data:image/png;base64,'), len(FIGURES[name]))
         said = re.sub('src="[^"]*"', "", text)
         self.assertNotRegex(said, "https?://|<script|<i>|<b>|nan")
-        self.assertIn("A &lt;script&gt;alert(1)&lt;/script&gt; &amp; more", said)
+        self.assertIn(r"A &lt;script&gt;alert(1)&lt;/script&gt; &amp; more \x1b[31m\u202e", said)
         self.assertNotIn("not complete", said)
         self.assertIn("-m pyroclast.study.call", said)
         json.loads((page.parent / "findings.json").read_text())

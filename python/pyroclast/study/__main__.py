@@ -79,7 +79,9 @@ def _parser() -> argparse.ArgumentParser:
     command("status", _status, "Say what is done, what failed and why, and what is left")
     table = command("table", _table, "Write the table of all runs as CSV")
     table.add_argument("-o", "--out", type=Path, help="file (default: table.csv in the folder of the study; -: here)")
-    command("report", _report, "Draw the figures of a study, and one page that gathers them")
+    report = command("report", _report, "Draw the figures of a study, and one page that gathers them")
+    report.add_argument("-o", "--out", type=Path, metavar="FOLDER",
+                        help="where they go (default: report in the folder of the study, which is then written to)")
     command("keys", _keys, "Print every key that a study file may hold, as Markdown")
     return parser
 
@@ -193,7 +195,7 @@ def _table(options: argparse.Namespace) -> int:
 def _report(options: argparse.Namespace) -> int:
     from .report import write_report
 
-    print(write_report(_study(options)))
+    print(write_report(_study(options), options.out))
     return 0
 
 

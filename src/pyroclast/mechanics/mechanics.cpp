@@ -27,8 +27,8 @@ auto lines_of(const Layout<Dim>& layout, Lines& lines, const First& first, int c
 
 /// What was made alike before has time steps that differ by less than this factor.
 constexpr double kSameStep = 2.0;
-/// Forces of a smaller strain are none beside what a body bears: some 30 Pa in concrete.
-constexpr double kNoStrain = 1e-9;
+/// Forces of a smaller strain are none beside what a body bears: some 3 Pa in concrete.
+constexpr double kNoStrain = 1e-10;
 /// More than there is of any thing in a body.
 constexpr double kMostOfAKind = std::numeric_limits<int>::max();
 

@@ -261,7 +261,7 @@ class Mechanics {
   /// that of the contacts.
   EnergyLedger energy() const;
   /// Mean unbalanced force over mean force applied to the gridpoints by zones, contacts and gravity. Forces
-  /// below those of a strain of 1e-9 count as these: a body without load rests too.
+  /// below those of a strain of 1e-10 count as these: a body without load rests too.
   double unbalanced_ratio() const;
   double mean_unbalanced_force() const;  ///< of the gridpoints, N
   Kinematics kinematics() const { return parameters_.kinematics; }

@@ -23,15 +23,21 @@ _SECTIONS: dict[str, Callable[[Seen], list[Section]]] = {
     "posterior": posterior.sections}
 
 
-def write_report(study: Study) -> Path:
+def write_report(study: Study, out: Path | None = None) -> Path:
     """Draws the figures of a study into report/ of its folder, writes its findings there, and a page with all of it.
 
     What an earlier report left there is taken away. A study that is not complete gets a page of what there is. Returns
     the page.
+
+    out: a folder for all of these in the place of the study's own, which is then only read; nothing is taken away.
     """
     found = seen(study)
-    folder = make_folder(study.setup.folder / "report")
-    _clear(folder)
+    if out is None:
+        folder = make_folder(study.setup.folder / "report")
+        _clear(folder)
+    else:
+        folder = out
+        folder.mkdir(parents=True, exist_ok=True)
     if found.findings is not None:
         findings = json.dumps(found.findings, ensure_ascii=False, allow_nan=False)
         write_text(folder / FINDINGS, findings)
