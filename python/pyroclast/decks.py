@@ -326,13 +326,14 @@ class Deck:
         return _core.check(self._resolved(tables))
 
     def save(self, file: str | Path) -> None:
-        """Writes the deck; tables of its functions and the blocks of its specimen beside it. Files that it names keep
-        their names.
+        """Writes the deck, and beside it tables of its functions and the blocks of its specimen, as files whose names
+        begin with that of the deck: "wall.toml" has "wall_cells.json". Files that it names keep their names.
         """
-        folder = Path(file).resolve().parent
+        folder, owner = Path(file).resolve().parent, f"{Path(file).name.removesuffix('.toml')}_"
+        named = [(path, f"{{ csv = {toml(table.name)} }}") for path, table in self._tables(folder, owner)]
         if self._specimen:
-            self._specimen[0].save(folder / _CELLS)
-        named = [(path, f"{{ csv = {toml(table.name)} }}") for path, table in self._tables(folder)]
+            self._specimen[0].save(folder / f"{owner}{_CELLS}")
+            named.append(("specimen.file", toml(f"{owner}{_CELLS}")))
         Path(file).write_text(_core.written(self._raw(named, with_files=False)), encoding="utf-8")
 
     def _raw(self, more: Sequence[tuple[str, str]] = (), with_files: bool = True) -> _core.DeckText:
@@ -372,8 +373,8 @@ class Deck:
             tables.append(("specimen.file", toml(str(Path(place.folder) / _CELLS))))
         return self._raw(tables, with_files=False)
 
-    def _tables(self, folder: Path) -> list[tuple[str, Path]]:
-        """Writes the tables of the functions."""
+    def _tables(self, folder: Path, owner: str = "") -> list[tuple[str, Path]]:
+        """Writes the tables of the functions; their names begin with `owner`."""
         tables: list[tuple[str, Path]] = []
         for axis in (functions.TIME, functions.TEMPERATURE):  # the times say how hot the run becomes
             stand_in = [change for change in self._placeholders() if change[0] not in dict(tables)]
@@ -383,7 +384,7 @@ class Deck:
                 interval = function.interval or self._interval(path, [*stand_in, *((p, _csv(t)) for p, t in tables)])
                 points = functions.tabulate(path, function, *interval)
                 unit = function.unit or self._needed_unit(path, points[0][1])
-                tables.append((path, functions.write_table(folder, path, unit, points)))
+                tables.append((path, functions.write_table(folder, path, unit, points, owner)))
         return tables
 
     def _interval(self, path: str, stand_in: Sequence[tuple[str, str]]) -> tuple[float, float]:

@@ -140,10 +140,13 @@ def draw_properties(folder: Path, file_format: str = "png") -> Iterator[Path]:
 
 
 def draw_specimen(folder: Path, file_format: str = "png") -> Iterator[Path]:
-    """Draws the figures of a specimen into its figures/ folder; yields each path once written."""
+    """Draws the figures of a specimen into its figures/ folder; yields each path once written. A specimen without
+    circles has no gradation.
+    """
     specimen = Specimen(folder)
     place = make_folder(specimen.folder / "figures")
-    yield save(gradation(specimen), place / f"gradation.{file_format}")
+    if len(specimen.aggregates):
+        yield save(gradation(specimen), place / f"gradation.{file_format}")
     yield save(morphology(specimen), place / f"morphology.{file_format}")
 
 

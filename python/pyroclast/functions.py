@@ -111,11 +111,12 @@ def tabulate(key: str, function: Function, low: float, high: float) -> list[tupl
     return points
 
 
-def write_table(folder: str | Path, key: str, unit: str, points: Sequence[tuple[float, float]]) -> Path:
-    """A CSV file as decks read it, named after its key."""
+def write_table(folder: str | Path, key: str, unit: str, points: Sequence[tuple[float, float]],
+                owner: str = "") -> Path:
+    """A CSV file as decks read it, named after its key. owner: what the name begins with."""
     axis = axis_of(key)
     name = "".join(c if c.isalnum() else "_" for c in key).strip("_")
-    path = Path(folder) / f"{name}.csv"
+    path = Path(folder) / f"{owner}{name}.csv"
     lines = [f"{axis.name} [{axis.unit}], {name} [{unit or '1'}]", *(f"{x!r}, {y!r}" for x, y in points)]
     write_text(path, "\n".join(lines) + "\n")
     return path

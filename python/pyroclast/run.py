@@ -478,6 +478,15 @@ class Specimen:
             raise RunError(f"{self._tables / 'specimen.json'}: '{name}' is missing or not a finite number")
         return value
 
+    @property
+    def shares(self) -> dict[str, float]:
+        """Of the area, by material."""
+        shares = self.facts.get("fraction")
+        if not isinstance(shares, dict) or not all(isinstance(v, (int, float)) and 0.0 <= v <= 1.0
+                                                   for v in shares.values()):
+            raise RunError(f"{self._tables / 'specimen.json'}: 'fraction' is missing or no table of shares")
+        return shares
+
     @cached_property
     def aggregates(self) -> Table:
         """Placed circles: x_m, y_m, diameter_m."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import matplotlib
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 from matplotlib.figure import Figure
@@ -326,15 +327,25 @@ def morphology(specimen: Specimen) -> Figure:
     axes.grid(False)
     axes.set_xlabel("x [mm]")
     axes.set_ylabel("y [mm]")
-    axes.set_title(
-        f"{specimen.fact('blocks'):.0f} blocks, {len(circles)} aggregates; aggregate fraction\n"
-        f"asked {specimen.fact('fraction_asked'):.3f}, placed {specimen.fact('fraction_placed'):.3f}, "
-        f"after superposition {specimen.fact('fraction_superposed'):.3f}")
-    circle = Line2D([], [], color=style.BLUE, marker="o", markerfacecolor="none", linestyle="none",
-                    label="placed circle")
-    handles = [*_material_legend(blocks), circle]
+    axes.set_title(f"{specimen.fact('blocks'):.0f} blocks{_shares(specimen)}")
+    handles: list[Artist] = list(_material_legend(blocks))
+    if len(circles):
+        handles.append(Line2D([], [], color=style.BLUE, marker="o", markerfacecolor="none", linestyle="none",
+                              label="placed circle"))
     style.legend_alone(beside, handles, [handle.get_label() for handle in handles], loc="upper left")
     return figure
+
+
+def _shares(specimen: Specimen) -> str:
+    """Of the aggregates, where there are circles; else of the materials, where there are several."""
+    if len(specimen.aggregates):
+        return (f", {len(specimen.aggregates)} aggregates; aggregate fraction\n"
+                f"asked {specimen.fact('fraction_asked'):.3f}, placed {specimen.fact('fraction_placed'):.3f}, "
+                f"after superposition {specimen.fact('fraction_superposed'):.3f}")
+    shares = {name: share for name, share in specimen.shares.items() if share > 0.0}
+    if len(shares) < 2:
+        return ""
+    return "; of the area " + ", ".join(f"{style.plain(name)} {100.0 * share:.1f} %" for name, share in shares.items())
 
 
 @matplotlib.rc_context(style.STYLE)

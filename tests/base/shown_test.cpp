@@ -2,8 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include "pyroclast/base/read_file.hpp"
+
 namespace pyroclast {
 namespace {
+
+// Promise: a path that an escape in double quotes has spoilt is told with the way out.
+TEST(Shown, APathWithControlCharactersHasARemedy) {
+  EXPECT_EQ(remedy_of_path("sub/furnace.csv"), "");
+  EXPECT_NE(remedy_of_path("sub\furnace.csv").find("write \"/\" in paths"), std::string::npos);
+}
 
 TEST(Shown, WhatActsOnATerminalIsWrittenOut) {
   EXPECT_EQ(shown("wall 20 °C, σ"), "wall 20 °C, σ");

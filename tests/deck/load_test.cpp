@@ -95,6 +95,11 @@ TEST(DeckText, WithAKeyTwiceIsASyntaxErrorAtTheSecond) {
   EXPECT_TRUE(mentions(diagnostic.message, "width"));
 }
 
+TEST(DeckText, WithAPathOfWindowsIsExplained) {
+  const Diagnostic diagnostic = syntax_error_of("file = \"C:\\data\"\n");
+  EXPECT_TRUE(mentions(diagnostic.hint, "write \"/\" in paths")) << diagnostic.message;
+}
+
 TEST(DeckText, WithAQuantityOutsideQuotesIsExplained) {
   for (const std::string line : {"width = 150 mm", "angle = 34deg", "rate = -5 K/min # ramp", "part = 31 %",
                                  "temperature = 20°C", "sieves = [4.75 mm, 8 mm]"}) {

@@ -78,8 +78,13 @@ class Arrays(Case):
         self.assertEqual((folder / "moved" / "program" / "history.csv").read_bytes(),
                          (folder / "run" / "history.csv").read_bytes())
         of_cells.save(folder / "saved.toml")
-        self.assertEqual(json.loads((folder / "cells.json").read_text())["phases"], ["mortar"])
+        self.assertEqual(json.loads((folder / "saved_cells.json").read_text())["phases"], ["mortar"])
         self.assertEqual(len(pyroclast.Specimen.of(folder / "saved.toml").phase), 40)
+        other = of_cells.copy()
+        other["title"] = "other"
+        other.save(folder / "other.toml")  # into the same folder: neither takes the blocks of the other
+        self.assertEqual(sorted(file.name for file in folder.glob("*_cells.json")),
+                         ["other_cells.json", "saved_cells.json"])
 
     def test_platens_and_bearings_lie_on_them(self):
         starter = deck()

@@ -85,11 +85,13 @@ void print_kept(const std::filesystem::path& folder, const std::vector<std::file
 
 std::string describe(const specimen::Specimen& s) {
   const auto& m = s.metrics;
-  std::string text = fmt::format("specimen        {} blocks, {} aggregates\n", s.tessellation.cells.size(),
-                                 s.aggregates.size());
-  text += fmt::format(
-      "                aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} after superposition\n",
-      s.fraction_asked, s.fraction_placed, s.fraction_superposed);
+  std::string text = fmt::format("specimen        {} blocks", s.tessellation.cells.size());
+  if (!s.aggregates.empty() || s.fraction_asked > 0.0)
+    text += fmt::format(
+        ", {} aggregates\n                aggregate fraction {:.3f} asked, {:.3f} placed, {:.3f} after "
+        "superposition",
+        s.aggregates.size(), s.fraction_asked, s.fraction_placed, s.fraction_superposed);
+  text += '\n';
   for (std::size_t i = 0; i < s.phases.size(); ++i)
     text += fmt::format("                {:<12} {:.3f} of the area\n", s.phases[i], s.fraction[i]);
   text += fmt::format("blocks          mean size {:.3f} mm, mean edge {:.3f} mm\n", kMilli * m.mean_size,

@@ -1,5 +1,6 @@
 #include "pyroclast/base/read_file.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
@@ -15,6 +16,11 @@ void require_regular_file(const std::filesystem::path& file) {
     throw Error(fmt::format("{}: is no regular file", file.string()));
 }
 
+std::string remedy_of_path(std::string_view path) {
+  const bool has_control = std::ranges::any_of(path, [](unsigned char c) { return c < 0x20; });
+  return has_control ? fmt::format("; {}", kPathsInToml) : "";
+}
+
 std::string read_file(const std::filesystem::path& file) {
   require_regular_file(file);
   return read_named_file(file);
@@ -23,7 +29,7 @@ std::string read_file(const std::filesystem::path& file) {
 std::string read_named_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) throw Error(fmt::format("{}: cannot be read", file.string()));
+  if (!stream) throw Error(fmt::format("{}: cannot be read{}", file.string(), remedy_of_path(file.string())));
   return bytes;
 }
 

@@ -24,7 +24,7 @@ std::string listed(const std::vector<Diagnostic>& diagnostics) {
 
 std::vector<Diagnostic> in_file_order(std::vector<Diagnostic> diagnostics) {
   std::stable_sort(diagnostics.begin(), diagnostics.end(), [](const Diagnostic& a, const Diagnostic& b) {
-    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+    return std::tie(a.is_missing, a.line, a.column) < std::tie(b.is_missing, b.line, b.column);
   });
   return diagnostics;
 }

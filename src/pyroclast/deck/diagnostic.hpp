@@ -19,11 +19,14 @@ struct Diagnostic {
   std::string value = {};    ///< as written in the deck; may be empty
   std::string message = {};  ///< what is wrong and what is allowed
   std::string hint = {};     ///< what is probably meant; may be empty
+  bool is_missing = false;   ///< a key or table that is needed and not there
+  std::string meant = {};  ///< of an unknown key: full path of that which is most likely meant; may be empty
 };
 
 /// `file:line:column: key = value: message; hint`, without the parts that are empty.
 std::string to_string(const Diagnostic& diagnostic);
 
+/// What is missing comes last: a key that is unknown may be it.
 std::vector<Diagnostic> in_file_order(std::vector<Diagnostic> diagnostics);
 
 /// The same from the key on: it does not depend on where the deck stands.

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/nearest.hpp"
+#include "pyroclast/base/read_file.hpp"
 #include "pyroclast/deck/key_path.hpp"
 #include "pyroclast/deck/survey_run.hpp"
 #include "pyroclast/deck/toml_characters.hpp"
@@ -47,8 +48,11 @@ toml::table parse_toml(const SourceText& source, const std::string& name) {
   };
   const auto fail_to_parse = [&](SourcePosition at, std::string_view what) {
     const bool unquoted = has_unquoted_quantity(source.line(at.line));
+    const bool escapes = what.find("escape sequence") != std::string_view::npos;
     fail(at, fmt::format("not valid TOML: {}", what),
-         unquoted ? "a value with a unit stands in quotes, e.g. \"150 mm\"" : "");
+         unquoted  ? "a value with a unit stands in quotes, e.g. \"150 mm\""
+         : escapes ? std::string(kPathsInToml)
+                   : "");
   };
   if (const auto fault = character_fault(source.text())) fail_to_parse(fault->at, fault->what);
   toml::table root;
@@ -158,6 +162,12 @@ void DeckRecord::report(const TableRecord& table, const std::string& path, std::
   diagnostics_.push_back(std::move(diagnostic));
 }
 
+void DeckRecord::report_missing(const TableRecord& table, std::string_view key, const std::string& needed) {
+  if (survey_) return;
+  report(table, table.path_of(key), "missing; " + needed);
+  diagnostics_.back().is_missing = true;
+}
+
 std::string DeckRecord::with_value(std::string_view path, const std::string& value) const {
   const std::string written = as_toml(value);
   const auto node = root_.at_path(path);
@@ -207,6 +217,10 @@ bool DeckRecord::is_clean(std::string_view path) const {
 std::vector<Diagnostic> DeckRecord::diagnostics() const {
   std::vector<Diagnostic> result = diagnostics_;
   for (const TableRecord* table : tables_as_read_) append_unread(*table, result);
+  std::set<std::string> meant;
+  for (const Diagnostic& d : result)
+    if (!d.meant.empty()) meant.insert(d.meant);
+  std::erase_if(result, [&](const Diagnostic& d) { return d.is_missing && meant.contains(d.key); });
   // What several readers miss is one error.
   std::set<std::string> said;
   std::erase_if(result, [&](const Diagnostic& d) { return !said.insert(to_string(d)).second; });
@@ -236,8 +250,11 @@ Diagnostic DeckRecord::not_read(const TableRecord& table, const toml::key& key,
     return diagnostic;
   }
   diagnostic.message = is_table_like(node) ? "unknown table" : "unknown key";
-  diagnostic.hint = did_you_mean(name, known);
-  if (!diagnostic.hint.empty()) return diagnostic;
+  if (const auto near = nearest(name, known)) {
+    diagnostic.hint = did_you_mean(name, known);
+    diagnostic.meant = table.path_of(known[*near]);
+    return diagnostic;
+  }
   diagnostic.message += known.empty()
                             ? fmt::format("; no keys are allowed {}", in_brackets(table.path))
                             : fmt::format("; allowed {}: {}", in_brackets(table.path), quoted_list(known));

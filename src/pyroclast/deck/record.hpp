@@ -71,6 +71,8 @@ class DeckRecord {
   /// An error at a value.
   void report(const std::string& path, const toml::node& node, std::string message, std::string hint = {});
   /// An error of a table, such as a missing key of the given path.
+  /// A key that the table must have.
+  void report_missing(const TableRecord& table, std::string_view key, const std::string& needed);
   void report(const TableRecord& table, const std::string& path, std::string message);
   /// Something that is allowed, but most likely not meant, at a value; a key that is absent stands for its
   /// table.

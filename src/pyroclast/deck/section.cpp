@@ -245,7 +245,7 @@ std::optional<Entry> read(DeckRecord& deck, TableRecord* table, std::string_view
 std::optional<Entry> require(DeckRecord& deck, TableRecord* table, std::string_view key,
                              const std::string& needed) {
   auto entry = read(deck, table, key);
-  if (!entry && table && !table->undecided) deck.report(*table, table->path_of(key), "missing; " + needed);
+  if (!entry && table && !table->undecided) deck.report_missing(*table, key, needed);
   return entry;
 }
 

@@ -15,6 +15,7 @@
 #include <udunits2.h>
 
 #include "pyroclast/units/decimal.hpp"
+#include "pyroclast/units/spellings.hpp"
 
 namespace pyroclast {
 namespace {
@@ -342,11 +343,16 @@ std::string_view meant_temperature(std::string_view given) {
   return "";
 }
 
+/// What is needed, and which unit is most likely meant.
+std::string remedy(std::string_view given, const Unit& unit) {
+  const std::string_view meant = meant_spelling(given, unit);
+  if (meant.empty() || meant == given) return requirement(unit);
+  return fmt::format("{}; did you mean \"{}\"?", requirement(unit), meant);
+}
+
 [[noreturn]] void throw_wrong_dimension(std::string_view text, std::string_view given, const Unit& unit) {
-  const std::string_view meant = unit == unit::temperature ? meant_temperature(given) : "";
   throw QuantityError(QuantityError::Kind::wrong_dimension, text,
-                      fmt::format("unit \"{}\" has the wrong dimension; {}{}", given, requirement(unit),
-                                  meant.empty() ? "" : fmt::format("; did you mean \"{}\"?", meant)));
+                      fmt::format("unit \"{}\" has the wrong dimension; {}", given, remedy(given, unit)));
 }
 
 /// A conversion whose factors are decimals, or empty ones where they are not.
@@ -380,7 +386,7 @@ class Converter {
     const UnitHandle from = system.parse(given);
     if (!from) {
       throw QuantityError(QuantityError::Kind::unknown_unit, text,
-                          fmt::format("unknown unit \"{}\"; {}", given, requirement(unit)));
+                          fmt::format("unknown unit \"{}\"; {}", given, remedy(given, unit)));
     }
     const UnitHandle to = system.parse(unit.si);
     if (!to)
@@ -389,7 +395,7 @@ class Converter {
     if (structure_of(from.get()).has_offset && !structure_of(to.get()).has_offset) {
       throw QuantityError(
           QuantityError::Kind::wrong_dimension, text,
-          fmt::format("\"{}\" is a temperature, not a difference; {}", given, requirement(unit)));
+          fmt::format("\"{}\" is a temperature, not a difference; {}", given, remedy(given, unit)));
     }
     converter_.reset(ut_get_converter(from.get(), to.get()));
     if (!converter_) throw_wrong_dimension(text, given, unit);
