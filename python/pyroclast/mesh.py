@@ -81,13 +81,16 @@ def read_mesh(path: Path) -> Mesh:
 
 def _names(file: h5py.File, name: str) -> tuple[str, ...]:
     """What the values of a dataset stand for."""
-    names = file[name].attrs.get("names")
-    if names is None:
-        raise RunError(f"{file.filename}: /{name} has no attribute 'names'")
-    text = names.decode() if isinstance(names, bytes) else str(names)
-    if not text.replace("\n", "").isprintable():
-        raise RunError(f"{file.filename}: attribute 'names' of /{name} holds no names")
-    return tuple(text.split("\n"))
+    names = file.get(f"{name}_names")
+    if not isinstance(names, h5py.Dataset) or names.dtype.kind != "S" or names.ndim != 1:
+        raise RunError(f"{file.filename}: has no dataset /{name}_names of texts")
+    try:
+        texts = [text.decode() for text in names[()]]
+    except UnicodeDecodeError:
+        texts = ["\0"]
+    if not "".join(texts).isprintable():
+        raise RunError(f"{file.filename}: /{name}_names holds no names")
+    return tuple(texts)
 
 
 def _cells(file: h5py.File, group: str, cell_type: int, name: str) -> tuple[np.ndarray, np.ndarray]:

@@ -636,6 +636,7 @@ class Running(UserTest):
         self.assert_that_overwriting_clears("out")
 
     def test_fields_open_in_vtk_with_blocks_materials_stresses_and_contacts(self):
+        import h5py  # pylint: disable=import-outside-toplevel
         from vtkmodules.vtkIOHDF import vtkHDFReader  # pylint: disable=import-outside-toplevel
 
         deck = self.write(small_deck())
@@ -663,6 +664,12 @@ class Running(UserTest):
         # 4e-4 of 100 mm, and a little more through the platens
         self.assertAlmostEqual(points.GetArray("displacement [m]").GetTuple(top)[1], -4e-5, delta=1e-5)
         contacts = read(series[-1]["name"].replace("blocks", "contacts"))
+        for grid, array, names in ((blocks, "material_names", {"aggregate", "mortar", "platen"}),
+                                   (contacts, "interface_names", {"mortar_mortar", "aggregate_mortar", "platen"})):
+            told = grid.GetFieldData().GetAbstractArray(array)
+            self.assertLessEqual(names, {told.GetValue(i) for i in range(told.GetNumberOfValues())})
+        with h5py.File(fields / series[-1]["name"]) as frame:
+            self.assertIn("mesh.h5 of the same folder", str(frame.attrs["needs"]))
         for name in ("interface", "bearing", "length [m]", "tension_damage [1]", "shear_damage [1]", "crack [1]",
                      "opening [m]", "tangential_jump [m]", "normal_traction [Pa]", "shear_traction [Pa]",
                      "closure [m]"):

@@ -332,11 +332,12 @@ def write_mesh(path: Path, section: Section) -> None:
         file["blocks/block"] = section.block.astype(np.int32)
         file["blocks/material"] = section.material.astype(np.uint8)
         file["blocks/bearing"] = (section.material == 2).astype(np.uint8)
-        file["blocks/material"].attrs["names"] = "aggregate\nmortar\nplaten"
+        file["blocks/material_names"] = np.array(["aggregate", "mortar", "platen"], "S")
         lines = np.arange(len(section.line_points)).reshape(-1, 2)
         _write_cells(file.create_group("contacts"), section.line_points, lines, 3)
         file["contacts/interface"] = section.interface.astype(np.uint8)
-        file["contacts/interface"].attrs["names"] = "aggregate_aggregate\naggregate_mortar\nmortar_mortar\nplaten"
+        file["contacts/interface_names"] = np.array(
+            ["aggregate_aggregate", "aggregate_mortar", "mortar_mortar", "platen"], "S")
         file["contacts/length"] = section.length
 
 

@@ -120,7 +120,7 @@ class OtherBodies(FolderTest):
             '[[record]]\nname = "grip"\nkind = "force"\n[[record]]\nname = "stretch"\nkind = "opening"\n')
         with h5py.File(self.run_folder / "fields" / "mesh.h5", "r+") as file:
             file["blocks/bearing"][...] = 0
-            file["blocks/material"].attrs["names"] = "aggregate\nmortar\nsand"
+            file["blocks/material_names"][...] = np.array(["aggregate", "mortar", "sand"], "S")
 
     def test_records_are_drawn_over_the_opening_and_all_blocks_are_of_the_body(self):
         code, printed, err = self.command("run", self.run_folder)

@@ -33,6 +33,12 @@ std::vector<CellField> cell_fields(MeshPart part) {
   return {{"interface", "interface"}, {"bearing", "bearing"}, {"length", "length [m]"}};
 }
 
+/// Names of what cells are made of, as VTK shows them, and where they stand in mesh.h5.
+std::pair<std::string, std::string> names_of(MeshPart part) {
+  if (part == MeshPart::blocks) return {"material_names", "/blocks/material_names"};
+  return {"interface_names", "/contacts/interface_names"};
+}
+
 void write_grid(Hdf5File& file, const std::string& group, const std::vector<double>& points,
                 const std::vector<std::int64_t>& connectivity, int corners, std::uint8_t type) {
   const auto cells = static_cast<std::int64_t>(connectivity.size()) / corners;
@@ -58,6 +64,10 @@ void link_mesh(Hdf5File& file, MeshPart part) {
   for (const char* array : {"Points", "Connectivity", "Offsets", "Types", "NumberOfPoints", "NumberOfCells",
                             "NumberOfConnectivityIds"})
     file.external_link(fmt::format("/VTKHDF/{}", array), "mesh.h5", fmt::format("/{}/{}", grid, array));
+  file.attribute("/", "needs", std::string("mesh.h5 of the same folder, which holds the mesh of this frame"));
+  const auto [shown, stored] = names_of(part);
+  file.group("/VTKHDF/FieldData");
+  file.external_link(fmt::format("/VTKHDF/FieldData/{}", shown), "mesh.h5", stored);
   file.group("/VTKHDF/PointData");
   file.group("/VTKHDF/CellData");
   for (const CellField& field : cell_fields(part))
@@ -85,7 +95,7 @@ void write_blocks(Hdf5File& file, const Model<2>& model) {
   file.dataset("/blocks/block", block);
   file.dataset("/blocks/material", material);
   file.dataset("/blocks/bearing", bearing);
-  file.attribute("/blocks/material", "names", fmt::format("{}", fmt::join(model.material_names, "\n")));
+  file.dataset(names_of(MeshPart::blocks).second, model.material_names);
 }
 
 void write_contacts(Hdf5File& file, const Model<2>& model) {
@@ -106,7 +116,7 @@ void write_contacts(Hdf5File& file, const Model<2>& model) {
   }
   write_grid(file, "/contacts", points, connectivity, 2, kVtkLine);
   file.dataset("/contacts/interface", interface);
-  file.attribute("/contacts/interface", "names", fmt::format("{}", fmt::join(model.interface_names, "\n")));
+  file.dataset(names_of(MeshPart::contacts).second, model.interface_names);
   file.dataset("/contacts/bearing", bearing);
   file.dataset("/contacts/length", length);
 }

@@ -1,5 +1,6 @@
 #include "pyroclast/results/hdf5_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -49,7 +50,8 @@ Hdf5File::Hdf5File(std::filesystem::path path) : path_(std::move(path)) {
   constexpr std::size_t kGrowth = std::size_t{1} << 20;
   const Properties access(H5P_FILE_ACCESS);
   H5Pset_fapl_core(access, kGrowth, false);
-  file_ = H5Fcreate(path_.empty() ? "nowhere" : path_.c_str(), H5F_ACC_TRUNC, Untimed(H5P_FILE_CREATE), access);
+  file_ =
+      H5Fcreate(path_.empty() ? "nowhere" : path_.c_str(), H5F_ACC_TRUNC, Untimed(H5P_FILE_CREATE), access);
   if (file_ < 0) fail("cannot be created");
 }
 
@@ -75,7 +77,8 @@ void Hdf5File::write(const std::string& name, std::int64_t type, const void* dat
   const hsize_t dims[2] = {count / width, width};
   const int rank = columns > 0 ? 2 : 1;
   const Handle<H5Sclose> space{H5Screate_simple(rank, dims, nullptr)};
-  // Not compressed: most bytes of a field are noise, and deflating a frame takes as long as 150 steps.
+  // Not compressed: shuffled and deflated, the frames of cases/starter.toml are 1.6 times smaller and take 7
+  // % of its processor time.
   const Handle<H5Dclose> set{
       H5Dcreate2(file_, name.c_str(), type, space.id, H5P_DEFAULT, Untimed(H5P_DATASET_CREATE), H5P_DEFAULT)};
   if (set.id < 0 || (count > 0 && H5Dwrite(set.id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0))
@@ -96,6 +99,18 @@ void Hdf5File::dataset(const std::string& name, const std::vector<std::int32_t>&
 }
 void Hdf5File::dataset(const std::string& name, const std::vector<std::uint8_t>& v, int columns) {
   write(name, H5T_NATIVE_UINT8, v.data(), v.size(), columns);
+}
+
+void Hdf5File::dataset(const std::string& name, const std::vector<std::string>& v) {
+  std::size_t longest = 1;
+  for (const std::string& text : v) longest = std::max(longest, text.size());
+  std::string padded;
+  for (const std::string& text : v) padded += text + std::string(longest - text.size(), '\0');
+  const Handle<H5Tclose> type{H5Tcopy(H5T_C_S1)};
+  H5Tset_size(type.id, longest);
+  H5Tset_strpad(type.id, H5T_STR_NULLPAD);
+  H5Tset_cset(type.id, H5T_CSET_UTF8);
+  write(name, type.id, padded.data(), v.size(), 0);
 }
 
 void Hdf5File::write_attribute(const std::string& object, const std::string& name, std::int64_t type,

@@ -18,12 +18,13 @@ class Hdf5File {
   Hdf5File& operator=(const Hdf5File&) = delete;
 
   void group(const std::string& name);
-  /// Row-major; `columns` 0 gives a one-dimensional dataset. Compressed when long.
+  /// Row-major; `columns` 0 gives a one-dimensional dataset.
   void dataset(const std::string& name, const std::vector<double>& values, int columns = 0);
   void dataset(const std::string& name, const std::vector<float>& values, int columns = 0);
   void dataset(const std::string& name, const std::vector<std::int64_t>& values, int columns = 0);
   void dataset(const std::string& name, const std::vector<std::int32_t>& values, int columns = 0);
   void dataset(const std::string& name, const std::vector<std::uint8_t>& values, int columns = 0);
+  void dataset(const std::string& name, const std::vector<std::string>& values);
   void attribute(const std::string& object, const std::string& name, const std::string& text);
   void attribute(const std::string& object, const std::string& name, double value);
   void attribute(const std::string& object, const std::string& name, const std::vector<std::int64_t>& values);
