@@ -15,6 +15,7 @@ ALLOWED = [
     Allowed("app/check.cpp", "", "over the stages of a deck"),
     Allowed("base/chunked_sum.hpp", "total += sum;", "chunked_sum itself"),
     Allowed("base/vec.hpp", "", "components of one vector"),
+    Allowed("tables/header.cpp", "words_of()", "characters of one word"),
     Allowed("units/decimal.cpp", "decimal_of()", "digits of one number"),
     Allowed("material/creep.cpp", "", "components of one tensor"),
     Allowed("material/mixture.cpp", "", "over the phases of a composite"),
