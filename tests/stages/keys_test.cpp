@@ -301,8 +301,14 @@ TEST(DrivesBeside, WhatContradictsIsRefused) {
         [&] { const Trial trial(free_deck(kUniform + drive("duration = \"1 ms\"", drives))); });
   };
   expect_in("there is no set \"nowhere\"; there are ", refused(does("nowhere", "hold = [\"x\"]")));
-  expect_in("set \"left\" is held, driven or released along x twice in one stage",
-            refused(does("left", "hold = [\"x\"]") + does("left", "release = [\"y\", \"x\"]")));
+  const std::string twice =
+      refused(does("left", "hold = [\"x\"]") + does("left", "release = [\"y\", \"x\"]"));
+  expect_in("set \"left\" is held, driven or released along x twice in one stage", twice);
+  // the later place first, and then the other one
+  const auto line = [&](std::size_t from) {
+    return std::stoi(twice.substr(twice.find("deck.toml:", from) + 10));
+  };
+  EXPECT_GT(line(0), line(twice.find(" at ")));
   expect_in(
       "set \"left\" is held, driven or released along y twice in one stage",
       refused(does("left", "hold = [\"y\"]") + does("left", "velocity = \"1 mm/s\"\ndirection = \"y\"")));

@@ -458,6 +458,12 @@ class Morris(unittest.TestCase):
         np.testing.assert_array_equal(found.used, 5 - lost)
         self.assertEqual((lost.sum(), found.planned), (3, 5))
         np.testing.assert_allclose(found.mu, [1.0, 2.0, 3.0])
+        y[..., 0] = np.nan
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # nothing is left, which is no surprise
+            nothing = morris.effects(design, y, resamples=5)
+        self.assertEqual(nothing.used.tolist(), [0, 0, 0])
+        self.assertTrue(np.isnan([nothing.mu, nothing.mu_star, nothing.mu_star_low, nothing.sigma]).all())
 
 
 class Sobol(unittest.TestCase):
@@ -1187,6 +1193,7 @@ class Finished(unittest.TestCase):
         self.assertIn("2 generations gained no more than 0.1", self.why([[5.0, 9.0], [7.0], [4.91, 6.0]]))
         self.assertEqual(self.why([[5.0, 9.0], [7.0], [4.89, 6.0]]), "")
         self.assertIn("gained no more", self.why([[5.0], [4.0], [7.0], [6.0]]))
+        self.assertEqual(self.why([[5.0], [4.8], [5.2]]), "", "either of the last two may have gained")
         self.assertEqual(self.why([[np.inf], [np.inf], [np.inf]]), "", "nothing feasible yet")
         self.assertEqual(self.why([[np.inf], [np.inf], [3.0]]), "")
 
