@@ -274,11 +274,11 @@ TEST(EnergyLedger, RoundingIsNoShareOfTheDissipated) {
     EXPECT_EQ(r.summary().error_over_dissipated, std::nullopt);
     EXPECT_EQ(r.summary().warnings, std::vector<std::string>{});
   }
+  r.put("energy_error_J", std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(r.summary().error_over_dissipated, std::nullopt);
   r.dissipate(1.01e-5);  // a millionth of the turnover is 1e-5
   r.put("energy_error_J", -2e-5);
   EXPECT_NEAR(r.summary().error_over_dissipated.value(), -2.0 / 1.01, 1e-9);
-  r.put("energy_error_J", std::numeric_limits<double>::quiet_NaN());
-  EXPECT_EQ(r.summary().error_over_dissipated, std::nullopt);
 }
 
 // ---- Exchanges of temperatures ---------------------------------------------------------------------------
@@ -618,6 +618,8 @@ TEST(SummaryFile, TellsWhatTheBodyIs) {
   s.expansion_reading = "free";
   const json told = json::parse(summary_text(s, r.run));
   EXPECT_EQ(told["title"], "a title");
+  EXPECT_EQ(summary_text(s, r.run).find("{\n  \"title\": \"a title\",\n  \""), 0u)
+      << "for readers, a key a line";
   EXPECT_EQ(told["wall_time_s"], 12.5);
   EXPECT_EQ(told["expansion_reading"], "free");
   EXPECT_EQ(told["estimated_E_GPa"],
