@@ -269,6 +269,7 @@ TEST(EnergyLedger, RoundingIsNoShareOfTheDissipated) {
   r.put("dissipated_" + std::string(losses[0]) + "_J", std::nullopt);
   r.put("energy_error_J", 0.02);
   EXPECT_DOUBLE_EQ(r.summary().error_over_dissipated.value(), 0.01 / static_cast<double>(losses.size() - 1));
+  r.put("energy_error_J", -1.01e-5);
   for (const double rounding : {0.0, 0.99e-5}) {
     r.dissipate(rounding);
     EXPECT_EQ(r.summary().error_over_dissipated, std::nullopt);
@@ -279,6 +280,16 @@ TEST(EnergyLedger, RoundingIsNoShareOfTheDissipated) {
   r.dissipate(1.01e-5);  // a millionth of the turnover is 1e-5
   r.put("energy_error_J", -2e-5);
   EXPECT_NEAR(r.summary().error_over_dissipated.value(), -2.0 / 1.01, 1e-9);
+  // just a millionth, of 1 J
+  for (const char* part : {"energy_gravity_J", "energy_property_change_J", "energy_mass_scaling_J"})
+    r.put(part, 0.0);
+  r.put("energy_loading_J", 1.0);
+  r.put("energy_error_J", 1e-6);
+  EXPECT_EQ(r.summary().error_over_dissipated, 0.0);
+  r.dissipate(0.0);
+  r.put("dissipated_" + std::string(losses[0]) + "_J", 1e-6);
+  r.put("energy_error_J", 1e-3);
+  EXPECT_EQ(r.summary().error_over_dissipated, std::nullopt);
 }
 
 // ---- Exchanges of temperatures ---------------------------------------------------------------------------
@@ -471,6 +482,9 @@ TEST(HeatLedger, AMillionthIsTheBoundOfAWarning) {
   r.put("heat_error_J", 5e-3);
   EXPECT_EQ(r.summary().warnings,
             std::vector<std::string>{"the heat ledger closes only within 0.0005 of its largest term"});
+  for (const char* term : kHeatTerms) r.put(term, 1.0);
+  r.put("heat_error_J", -1e-6);  // just that
+  EXPECT_EQ(r.summary().warnings, std::vector<std::string>{});
 }
 
 // ---- Jumps -----------------------------------------------------------------------------------------------
