@@ -613,6 +613,23 @@ Told tell(Trial& trial, std::size_t from) {
   return told;
 }
 
+// Promise: however slow a compression is, what is left of it is a state to go on from.
+TEST(States, ASlowCompressionHasOne) {
+  const std::string text = deck(kUniform + kSettle + with(kCompress, "0.5 mm/s", "1e-9 mm/s"));
+  Trial first(text), second(text);
+  StateCopy copy;
+  struct Enough {};
+  first.run.limit_batch(100);
+  first.run.between_batches([&](pyroclast::Run& run) {
+    if (run.last_begun_stage() != 1) return;
+    copy.take([&](StateVisitor& visitor) { run.visit_state(visitor); });
+    throw Enough();
+  });
+  EXPECT_THROW(first.run.run(), Enough);
+  EXPECT_NO_THROW(copy.put([&](StateVisitor& visitor) { second.run.visit_state(visitor); }));
+  EXPECT_EQ(second.run.last_begun_stage(), 1);
+}
+
 // Promise: a stage goes on from its state, at whatever look that was taken, as if it had not been broken off.
 TEST(States, EachStageGoesOnFromAnyLook) {
   const std::string driven =
