@@ -769,6 +769,16 @@ class Judged(unittest.TestCase):
             surrogate.fit(u, u[:, 0] + u[:, 1] ** 2, most_degree=3)
             self.assertEqual(made.call_count, 3)
 
+    def test_any_point_may_be_drawn_again(self):
+        u = sampling.sobol_sequence(20, 2, 3)
+        fitted = surrogate.fit(u, u[:, 0], most_degree=1)
+        fine = surrogate.Validation(1.0, 1.0, 0.0, 0.0, 30)
+        with mock.patch.object(np.linalg, "lstsq", wraps=np.linalg.lstsq) as solved:
+            surrogate.indices(fitted, fine, resamples=60)
+        drawn = [call.args[1] for call in solved.call_args_list]
+        self.assertEqual([len(values) for values in drawn], 60 * [20])
+        self.assertEqual(set(np.concatenate(drawn)), set(u[:, 0]))
+
     def test_degrees_end_at_the_stated_one_and_at_the_most_terms(self):
         import openturns
         u = sampling.sobol_sequence(64, 2, 3)
@@ -909,6 +919,11 @@ class Ensemble(unittest.TestCase):
         self.assertEqual(ensemble.widest([found, ensemble.summary([4.9, 5.0, 5.1])]), found.relative_width)
         around_nothing = ensemble.summary([-1.0, 1.0])
         self.assertTrue(np.isnan(around_nothing.variation) and around_nothing.relative_width == np.inf)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # nothing is divided by nothing
+            self.assertEqual(ensemble.summary([-1.0, 1.0]).relative_width, np.inf)
+            # Student's t of one degree, 12.706, times a standard deviation of the root of 2, over the root of 2
+            self.assertAlmostEqual(ensemble.summary([0.0, 2.0]).relative_width, 12.706, places=3)
         below = ensemble.summary([-4.0, -6.0])
         self.assertAlmostEqual(below.variation, np.sqrt(2.0) / 5.0)
         self.assertGreater(below.relative_width, 0.0)
@@ -1019,6 +1034,14 @@ class MainEffects(unittest.TestCase):
         np.testing.assert_allclose(found.coefficient, [1.0, 0.0], atol=1e-12)
         np.testing.assert_allclose(found.correlation, [1.0, 0.0], atol=1e-12)
         self.assertAlmostEqual(found.r2, 1.0)
+
+    def test_any_point_may_be_drawn_again(self):
+        u = sampling.latin_hypercube(12, 1, 3)
+        with mock.patch.object(main_effects, "_ranked", wraps=main_effects._ranked) as ranked:
+            main_effects.rank_effects(u, u * [1.0, 2.0, 3.0], resamples=50)
+        drawn = [call.args[0] for call in ranked.call_args_list[1:51]]
+        self.assertEqual({len(points) for points in drawn}, {12})
+        self.assertEqual(set(np.concatenate(drawn)[:, 0]), set(u[:, 0]))
 
     def test_intervals_are_a_bootstrap_over_the_points(self):
         """Of one parameter the coefficient is Spearman's correlation, whatever points are drawn how often."""
