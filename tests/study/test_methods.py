@@ -102,7 +102,9 @@ class Sampling(unittest.TestCase):
         self.assertEqual(asked.call_count, 100)
 
     def test_points_of_the_sequence_are_no_ends(self):
-        points = sampling.sobol_sequence(100, 2, 1, first=7)  # no power of two, and no warning
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # no power of two, and no warning
+            points = sampling.sobol_sequence(100, 2, 1, first=7)
         self.assertTrue((points > 0.0).all() and (points < 1.0).all())
         from scipy.stats import qmc
         own = qmc.Sobol(2, scramble=True, bits=30, seed=np.random.default_rng(1)).random(128)
@@ -1205,7 +1207,8 @@ class Finished(unittest.TestCase):
     settings = calibration.Settings(most_generations=5, least_sigma=0.01, least_gain=0.1, patience=2)
 
     def why(self, misfits, sigma=0.5):
-        return calibration._why_finished(self.settings, [np.array(values) for values in misfits], np.array([sigma, 0.0]))
+        known = [np.array(values) for values in misfits]
+        return calibration._why_finished(self.settings, known, np.array([sigma, 0.0]))
 
     def test_short_steps(self):
         self.assertIn("no step is longer than 0.01", self.why([], 0.01))
