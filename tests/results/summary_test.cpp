@@ -262,12 +262,33 @@ TEST(EnergyLedger, RoundingIsNoShareOfTheDissipated) {
   r.put("energy_error_J", -1.01e-5);
   EXPECT_NEAR(r.summary().error_over_dissipated.value(), -0.505, 1e-9);
   EXPECT_EQ(count_of(r.summary().warnings, kOfDissipated), 1);
+  // of several losses one that is not there is nothing
+  const auto losses = r.simulation->mechanics().dissipations();
+  ASSERT_GE(losses.size(), 2u);
+  r.dissipate(2.0 * static_cast<double>(losses.size()));
+  r.put("dissipated_" + std::string(losses[0]) + "_J", std::nullopt);
+  r.put("energy_error_J", 0.02);
+  EXPECT_DOUBLE_EQ(r.summary().error_over_dissipated.value(), 0.01 / static_cast<double>(losses.size() - 1));
+  r.put("energy_error_J", -1.01e-5);
   for (const double rounding : {0.0, 0.99e-5}) {
     r.dissipate(rounding);
     EXPECT_EQ(r.summary().error_over_dissipated, std::nullopt);
     EXPECT_EQ(r.summary().warnings, std::vector<std::string>{});
   }
   r.put("energy_error_J", std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(r.summary().error_over_dissipated, std::nullopt);
+  r.dissipate(1.01e-5);  // a millionth of the turnover is 1e-5
+  r.put("energy_error_J", -2e-5);
+  EXPECT_NEAR(r.summary().error_over_dissipated.value(), -2.0 / 1.01, 1e-9);
+  // just a millionth, of 1 J
+  for (const char* part : {"energy_gravity_J", "energy_property_change_J", "energy_mass_scaling_J"})
+    r.put(part, 0.0);
+  r.put("energy_loading_J", 1.0);
+  r.put("energy_error_J", 1e-6);
+  EXPECT_EQ(r.summary().error_over_dissipated, 0.0);
+  r.dissipate(0.0);
+  r.put("dissipated_" + std::string(losses[0]) + "_J", 1e-6);
+  r.put("energy_error_J", 1e-3);
   EXPECT_EQ(r.summary().error_over_dissipated, std::nullopt);
 }
 
@@ -326,6 +347,23 @@ TEST(ExchangeStress, ThereIsNoneAtOneTemperature) {
 TEST(ExchangeStress, TheFirstStageCounts) {
   const Made r(with(deck(kExpose + kHeatedFace), "most_cycles = 5000", "most_cycles = 60"));
   EXPECT_GT(r.summary().exchange_stress.value(), 0.0);
+}
+
+// Promise: of several stages the one with the largest exchanges counts, whichever it is.
+TEST(ExchangeStress, TheLargestOfAllStagesCounts) {
+  const auto of = [](const std::string& first, const std::string& second) {
+    const auto stage = [](const std::string& increment) {
+      return with(kExpose, "6 min", "1 min") +
+             "[stages.coupling]\nmost_cycles = 60\nexchange_increment = \"" + increment + "\"\n";
+    };
+    Made r(deck(kSettle + stage(first) + stage(second) + kHeatedFace));
+    r.put("temperature_min_degC", 20.0);
+    r.put("temperature_max_degC", 70.0);
+    return r.summary().exchange_stress.value();
+  };
+  const double small = of("2 K", "2 K");
+  EXPECT_NEAR(of("2 K", "6 K"), 3.0 * small, 1e-9);
+  EXPECT_NEAR(of("6 K", "2 K"), 3.0 * small, 1e-9);
 }
 
 // Promise: where expansion grows with the temperature, each part of the way is judged by its own.
@@ -417,6 +455,13 @@ TEST(HeatLedger, TheErrorIsJudgedByTheLargestTerm) {
   EXPECT_DOUBLE_EQ(r.summary().heat_error.value(), 0.5);
   for (const char* term : kHeatTerms) r.put(term, 0.0);
   EXPECT_EQ(r.summary().heat_error, 0.0);
+  // what flowed in and out again counts, in whatever row, the first and the last too
+  const std::size_t rows = r.run.history().row_count();
+  for (const std::size_t row : {std::size_t{0}, rows / 2, rows - 1}) {
+    r.put("heat_flux_J", 0.0);
+    r.put({row, row + 1}, "heat_flux_J", -0.01);
+    EXPECT_DOUBLE_EQ(r.summary().heat_error.value(), 0.05) << row;
+  }
   for (const char* term : kHeatTerms) r.put(term, std::nullopt);
   r.put("heat_stored_J", 0.25);
   r.put("heat_error_J", 0.25);
@@ -437,6 +482,9 @@ TEST(HeatLedger, AMillionthIsTheBoundOfAWarning) {
   r.put("heat_error_J", 5e-3);
   EXPECT_EQ(r.summary().warnings,
             std::vector<std::string>{"the heat ledger closes only within 0.0005 of its largest term"});
+  for (const char* term : kHeatTerms) r.put(term, 1.0);
+  r.put("heat_error_J", -1e-6);  // just that
+  EXPECT_EQ(r.summary().warnings, std::vector<std::string>{});
 }
 
 // ---- Jumps -----------------------------------------------------------------------------------------------
@@ -584,6 +632,8 @@ TEST(SummaryFile, TellsWhatTheBodyIs) {
   s.expansion_reading = "free";
   const json told = json::parse(summary_text(s, r.run));
   EXPECT_EQ(told["title"], "a title");
+  EXPECT_EQ(summary_text(s, r.run).find("{\n  \"title\": \"a title\",\n  \""), 0u)
+      << "for readers, a key a line";
   EXPECT_EQ(told["wall_time_s"], 12.5);
   EXPECT_EQ(told["expansion_reading"], "free");
   EXPECT_EQ(told["estimated_E_GPa"],

@@ -204,6 +204,53 @@ TEST(ControlledVelocity, GrowsByAFactorEInTheTimeOfItsRamp) {
     EXPECT_NEAR(strain[i], way(time[i]) / 0.12, 0.03 * way(time[i]) / 0.12 + 3e-6) << i;
 }
 
+/// Velocities of the platen between the rows of a stage, m/s, and the times between their middles.
+std::pair<std::vector<double>, std::vector<double>> velocities(const Finished& r, int stage) {
+  const RowRange rows = r.run.records()[static_cast<std::size_t>(stage)].rows;
+  const auto time = r.run.history().values("time_s", rows), strain = r.run.history().values("strain", rows);
+  std::vector<double> velocity, between;
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    velocity.push_back(0.12 * (strain[i] - strain[i - 1]) / (time[i] - time[i - 1]));
+    if (i > 1) between.push_back(0.5 * (time[i] - time[i - 2]));
+  }
+  return {velocity, between};
+}
+
+// Promise: a velocity falls four times as fast as it rises, which is a factor e in the time of the ramp, to
+// the lowest.
+TEST(ControlledVelocity, FallsFourTimesAsFastAsItRises) {
+  // until something cracks no tolerance is met; then that of the cracks is missed by far
+  const Finished r(
+      deck(kUniform + kSettle +
+           stage("compress",
+                 "velocity = \"0.5 mm/s\"\nramp_time = \"20 ms\"\nstop_strain = 0.003\n"
+                 "fastest_velocity = \"8 mm/s\"\nunbalanced_ratio = 1e9\n"
+                 "kinetic_over_strain = 1e9\nplaten_difference = 1e9\ndissipation_rate = \"0.6 1/s\"")));
+  const auto [velocity, between] = velocities(r, 1);
+  double rises = 0.0, falls = 0.0;
+  for (std::size_t i = 0; i < between.size(); ++i) {
+    if (velocity[i] < 2.4e-3 || velocity[i + 1] < 2.4e-3) continue;  // there a row is a choice
+    const double rate = std::log(velocity[i + 1] / velocity[i]) / between[i];
+    rises = std::max(rises, rate);
+    falls = std::max(falls, -rate);
+  }
+  EXPECT_NEAR(rises, 1.0 / 0.02, 1.0);
+  EXPECT_NEAR(falls, 4.0 / 0.02, 4.0);
+  EXPECT_NEAR(velocity.back(), 0.5e-3, 1e-5);
+}
+
+// Promise: each of the tolerances of inertia binds by itself: what never meets it stays at the lowest
+// velocity.
+TEST(ControlledVelocity, EachToleranceBindsAlone) {
+  const std::string no = "1e9", all = "1e-12";
+  for (const Finished& r : {controlled(all, no, no, "0.0002"), controlled(no, all, no, "0.0002"),
+                            controlled(no, no, all, "0.0002")}) {
+    const auto velocity = velocities(r, 1).first;
+    EXPECT_NEAR(velocity.back(), 0.5e-3, 0.02e-3);
+    EXPECT_LT(*std::ranges::max_element(velocity), 0.52e-3);
+  }
+}
+
 // Promise: the velocity settles where the one tolerance that binds is just met.
 TEST(ControlledVelocity, SettlesWhereItsToleranceIsMet) {
   const Finished kinetic = controlled("1e9", "2e-4", "1e9", "0.0006");
@@ -301,8 +348,14 @@ TEST(DrivesBeside, WhatContradictsIsRefused) {
         [&] { const Trial trial(free_deck(kUniform + drive("duration = \"1 ms\"", drives))); });
   };
   expect_in("there is no set \"nowhere\"; there are ", refused(does("nowhere", "hold = [\"x\"]")));
-  expect_in("set \"left\" is held, driven or released along x twice in one stage",
-            refused(does("left", "hold = [\"x\"]") + does("left", "release = [\"y\", \"x\"]")));
+  const std::string twice =
+      refused(does("left", "hold = [\"x\"]") + does("left", "release = [\"y\", \"x\"]"));
+  expect_in("set \"left\" is held, driven or released along x twice in one stage", twice);
+  // the later place first, and then the other one
+  const auto line = [&](std::size_t from) {
+    return std::stoi(twice.substr(twice.find("deck.toml:", from) + 10));
+  };
+  EXPECT_GT(line(0), line(twice.find(" at ")));
   expect_in(
       "set \"left\" is held, driven or released along y twice in one stage",
       refused(does("left", "hold = [\"y\"]") + does("left", "velocity = \"1 mm/s\"\ndirection = \"y\"")));

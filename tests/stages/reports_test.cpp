@@ -106,6 +106,10 @@ TEST(NotSettled, LoadingGivesUpAfterItsStepsBehindTheRamp) {
   EXPECT_GE(r.result(1, "steps").value(), ramp + 500.0);
   EXPECT_LT(r.result(1, "steps").value(), ramp + 500.0 + 200.0);
   EXPECT_TRUE(r.report(1).warnings.empty());
+  // behind a ramp of no time at just its steps, as it is looked at then
+  const Finished at_once(deck(kUniform + kSettle + with(with(text, "\"20 ms\"", "\"0 s\""), "500", "400")));
+  EXPECT_EQ(at_once.run.outcome(), Outcome::not_settled);
+  EXPECT_EQ(at_once.result(1, "steps"), 400.0);
 }
 
 // Promise: a drive that does not rest within its duration ends the run as not settled; one whose conditions
@@ -196,6 +200,18 @@ TEST(ExchangeReports, CountsWhatDidNotComeToRest) {
   EXPECT_EQ(r.warnings, std::vector<std::string>{
                             "2 of 3 exchanges of temperature did not come to rest within the stated cycles "
                             "(worst unbalanced ratio 5.0e-02); history.csv flags them"});
+  // what is hottest is told where it is more than a kelvin above the mean
+  for (const double hottest : {80.99, 81.01}) {
+    const History even = history_of({{"temperature_degC", {80.0}},
+                                     {"temperature_max_degC", {hottest}},
+                                     {"heating_time_s", {1.0}},
+                                     {"cycles", {1.0}},
+                                     {"converged", {1.0}},
+                                     {"unbalanced_ratio", {0.0}}});
+    EXPECT_EQ(Heat(heating()).report(even, {0, 1}, Outcome::completed).lines[0].find("in the mean") !=
+                  std::string::npos,
+              hottest > 81.0);
+  }
   const StageReport first = Heat(heating()).report(exchanges(), {1, 2}, Outcome::completed);
   EXPECT_TRUE(first.warnings.empty());
   EXPECT_EQ(number(first, "exchanges_not_converged"), 0.0);
@@ -503,6 +519,25 @@ TEST(CompressReports, LooksFramesAndProgressAreEven) {
   }
 }
 
+// Promise: the velocity rises evenly over its ramp; it is chosen anew at each point of the curve, 1e-5 of
+// strain.
+TEST(CompressReports, TheVelocityRisesOverItsRamp) {
+  for (const double ramp : {0.02, 0.0}) {
+    const Finished r(deck(kUniform + kSettle +
+                          with(kCompress, "ramp_time = \"20 ms\"",
+                               ramp > 0.0 ? "ramp_time = \"20 ms\"" : "ramp_time = \"0 s\"")));
+    const RowRange rows = r.run.records()[1].rows;
+    const double begin = r.run.history().cell(rows.first - 1, "time_s").value();
+    const auto strain = r.run.history().values("stage_strain", rows),
+               time = r.run.history().values("time_s", rows);
+    for (std::size_t i = 0; i < strain.size(); ++i) {
+      const double t = time[i] - begin;
+      const double way = t < ramp ? 0.5 * t * t / ramp : t - 0.5 * ramp;
+      EXPECT_NEAR(strain[i], 0.5e-3 * way / 0.12, 0.7e-5) << ramp << " " << t;
+    }
+  }
+}
+
 TEST(CompressReports, TheRowOfThePeakDecided) {
   const Finished r(deck(kUniform + kSettle + kFailure));
   const RowRange rows = r.run.records()[1].rows;
@@ -536,8 +571,11 @@ TEST(CompressReports, SaysThatThePlatenComes) {
   Trial trial(deck(kUniform + kSettle + heat("120 degC") + heat("20 degC", "fixed") + kCompress));
   std::vector<std::string> said;
   trial.run.between_batches([&](pyroclast::Run& run) {
-    if (run.last_begun_stage() == 3 && (said.empty() || said.back() != run.stage().doing()))
-      said.push_back(run.stage().doing());
+    if (run.last_begun_stage() != 3) return;
+    if (said.empty() || said.back() != run.stage().doing()) said.push_back(run.stage().doing());
+    if (!run.stage().doing().empty()) {
+      EXPECT_EQ(run.stage().progress(*trial.simulation), 0.0);
+    }
   });
   trial.run.run();
   EXPECT_EQ(said, (std::vector<std::string>{"moving the platen to the specimen", ""}));
@@ -551,6 +589,7 @@ struct Told {
   std::vector<bool> frames;
   std::vector<double> progress;
   std::vector<std::string> lines;
+  std::vector<std::pair<std::string, Result::Value>> results;
   bool operator==(const Told&) const = default;
 };
 
@@ -569,8 +608,26 @@ Told tell(Trial& trial, std::size_t from) {
     const StageReport report =
         trial.run.stages()[i]->report(trial.run.history(), record.rows, record.outcome);
     told.lines.insert(told.lines.end(), report.lines.begin(), report.lines.end());
+    for (const Result& result : report.results) told.results.emplace_back(result.name, result.value);
   }
   return told;
+}
+
+// Promise: however slow a compression is, what is left of it is a state to go on from.
+TEST(States, ASlowCompressionHasOne) {
+  const std::string text = deck(kUniform + kSettle + with(kCompress, "0.5 mm/s", "1e-9 mm/s"));
+  Trial first(text), second(text);
+  StateCopy copy;
+  struct Enough {};
+  first.run.limit_batch(100);
+  first.run.between_batches([&](pyroclast::Run& run) {
+    if (run.last_begun_stage() != 1) return;
+    copy.take([&](StateVisitor& visitor) { run.visit_state(visitor); });
+    throw Enough();
+  });
+  EXPECT_THROW(first.run.run(), Enough);
+  EXPECT_NO_THROW(copy.put([&](StateVisitor& visitor) { second.run.visit_state(visitor); }));
+  EXPECT_EQ(second.run.last_begun_stage(), 1);
 }
 
 // Promise: a stage goes on from its state, at whatever look that was taken, as if it had not been broken off.
@@ -632,6 +689,7 @@ TEST(States, EachStageGoesOnFromAnyLook) {
       EXPECT_EQ(told.frames, expected.frames) << t << ", look " << stop << " of " << looks;
       EXPECT_EQ(told.progress, expected.progress) << t << ", look " << stop << " of " << looks;
       EXPECT_EQ(told.lines, expected.lines) << t << ", look " << stop << " of " << looks;
+      EXPECT_EQ(told.results, expected.results) << t << ", look " << stop << " of " << looks;
     }
   }
 }

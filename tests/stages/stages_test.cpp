@@ -95,6 +95,21 @@ TEST(CompressStage, EndsBehindItsPeak) {
   EXPECT_GE(r.last("stage_strain"), r.result(1, "strain_at_peak").value() + kStrengthRule.lasting);
 }
 
+// Promise: what a blow brings before the wave has run through the body twice is no strength, and ends no
+// stage.
+TEST(CompressStage, ABlowIsNoStrength) {
+  const Finished r(
+      deck(kUniform + kSettle +
+           with(with(kFailure, "1 mm/s", "200 mm/s"), "ramp_time = \"10 ms\"", "ramp_time = \"0 ms\"") +
+           "stop_fraction_of_peak = 0.9\n"));
+  EXPECT_EQ(r.run.outcome(), Outcome::completed);
+  ASSERT_EQ(r.report(1).warnings.size(), 1u);
+  const std::string told =
+      fmt::format("while the first stress wave still ran through the specimen ({:.3g} ms)",
+                  2.0 * 1e3 * wave_time(*r.simulation));
+  EXPECT_NE(r.report(1).warnings[0].find(told), std::string::npos) << r.report(1).warnings[0];
+}
+
 // Promise: a stress that the specimen cannot bear ends the run, which says so.
 TEST(CompressStage, SaysWhenAStressIsNotReached) {
   const Finished r(

@@ -8,6 +8,7 @@ import inspect
 import subprocess
 import sys
 import unittest
+import warnings
 from itertools import combinations
 from unittest import mock
 
@@ -15,8 +16,8 @@ import numpy as np
 from scipy.stats import chi2, norm, spearmanr, t
 
 from pyroclast.errors import Error
-from pyroclast.study.methods import (calibration, ensemble, hsic, main_effects, morris, posterior, sampling, seeds,
-                                     sobol, surrogate)
+from pyroclast.study.methods import (_needs, calibration, ensemble, hsic, main_effects, morris, posterior, sampling,
+                                     seeds, sobol, surrogate)
 
 
 def ishigami(u):
@@ -90,8 +91,20 @@ class Sampling(unittest.TestCase):
         others = [qmc.discrepancy(qmc.LatinHypercube(2, seed=seed).random(20)) for seed in range(100)]
         self.assertLess(found, np.percentile(others, 10))
 
+    def test_the_best_is_the_best_of_a_hundred(self):
+        from scipy.stats import qmc
+        drawn = qmc.LatinHypercube(2, seed=np.random.default_rng(4))
+        all_of_them = [drawn.random(12) for _ in range(100)]
+        best = all_of_them[int(np.argmin([qmc.discrepancy(points) for points in all_of_them]))]
+        np.testing.assert_array_equal(sampling.latin_hypercube(12, 2, 4), best)
+        with mock.patch("scipy.stats.qmc.discrepancy", wraps=qmc.discrepancy) as asked:
+            sampling.latin_hypercube(12, 2, 4)
+        self.assertEqual(asked.call_count, 100)
+
     def test_points_of_the_sequence_are_no_ends(self):
-        points = sampling.sobol_sequence(100, 2, 1, first=7)  # no power of two, and no warning
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # no power of two, and no warning
+            points = sampling.sobol_sequence(100, 2, 1, first=7)
         self.assertTrue((points > 0.0).all() and (points < 1.0).all())
         from scipy.stats import qmc
         own = qmc.Sobol(2, scramble=True, bits=30, seed=np.random.default_rng(1)).random(128)
@@ -147,6 +160,32 @@ class Sampling(unittest.TestCase):
             sampling.correlated(np.full((3, 2), 0.4), [[1, 0.9], [0.1, 1]])
 
 
+class Needs(unittest.TestCase):
+    def test_openturns_is_silent_within_and_afterwards_as_before(self):
+        import openturns
+        before = openturns.Log.Flags()
+        openturns.RandomGenerator.SetSeed(5)
+        openturns.RandomGenerator.Generate()
+        state = openturns.RandomGenerator.GetState()
+        drawn = []
+        for seed in (3, 3, 4):
+            with _needs.openturns("a test", seed) as ot:
+                self.assertEqual(ot.Log.Flags(), ot.Log.ERROR)
+                drawn.append(ot.RandomGenerator.Generate())
+        self.assertEqual(openturns.Log.Flags(), before)
+        self.assertEqual(openturns.RandomGenerator.GetState().getIndex(), state.getIndex())
+        self.assertEqual(drawn[0], drawn[1])
+        self.assertNotEqual(drawn[0], drawn[2])
+
+    def test_how_often_is_drawn_where_nothing_is_stated(self):
+        for function, key, count in ((seeds.share, "resamples", 1000), (morris.effects, "resamples", 1000),
+                                     (main_effects.rank_effects, "resamples", 1000), (sobol.indices, "resamples", 500),
+                                     (surrogate.indices, "resamples", 500), (hsic.dependence, "permutations", 500),
+                                     (calibration.uncertainty, "draws", 4000), (posterior.sample, "most_steps", 50000),
+                                     (main_effects.curve, "most_classes", 10), (surrogate.fit, "most_degree", 10)):
+            self.assertEqual(inspect.signature(function).parameters[key].default, count, function)
+
+
 class SeedShare(unittest.TestCase):
     def test_known_variances(self):
         random = np.random.default_rng(2)
@@ -200,6 +239,12 @@ class Seeds(unittest.TestCase):
                                       share.mean_high]).all())
             self.assertEqual((share.points, share.seeds), few.shape)
             self.assertTrue(np.isnan(seeds.rest_variance(few)))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # no 0/0 on the way
+            for few in (y[:1], y[:2, :1]):
+                seeds.share(few)
+                seeds.rest_variance(few)
+            seeds.share(y[:2])  # of three seeds a ninth of the resamples has one seed alone
         np.testing.assert_array_equal(np.isnan(seeds.over_seeds(y)), [False, False, True])
 
     def test_intervals_hold_their_share_of_what_was_resampled(self):
@@ -212,6 +257,19 @@ class Seeds(unittest.TestCase):
         # of two: Student's t of one degree is 12.71, times the root of 2, of which a normal has all
         self.assertAlmostEqual(seeds.level(2), 1.0)
         self.assertAlmostEqual(seeds.level(5), 0.99809, 4)  # 2.776 times the root of 5/4
+
+    def test_intervals_are_those_of_resampled_seeds(self):
+        """Of two points whose means differ by 8: a resample that has s seeds of three more than once is known."""
+        y = np.array([[-3.0, 0.0, 3.0], [5.0, 8.0, 11.0]])
+        found = seeds.share(y, resamples=4000)
+        # all three: 9 of 9 + 32. Two of one and one of another seed: of these the variance is 4.5 or 18, the points' 32
+        shares = np.repeat([9.0 / 41.0, 4.5 / 36.5, 18.0 / 50.0], [6, 12, 6])
+        self.assertAlmostEqual(found.single, 9.0 / 41.0)
+        self.assertAlmostEqual(found.single_low, shares.min())
+        self.assertAlmostEqual(found.single_high, shares.max())
+        means = shares / 3.0 / (shares / 3.0 + 1.0 - shares)
+        self.assertAlmostEqual(found.mean_low, means.min())
+        self.assertAlmostEqual(found.mean_high, means.max())
 
     def test_a_resample_of_some_seeds_is_the_share_of_these(self):
         """A seed that a resample does not have does not count, and one that it has twice is free of bias."""
@@ -277,10 +335,10 @@ class Morris(unittest.TestCase):
             with self.assertRaisesRegex(Error, f"{levels} levels"):
                 morris.design(3, 5, levels, 1)
         # the step is levels/(2 (levels - 1)), up as often as down
-        moves = np.diff(morris.design(4, 200, 4, 1), axis=1)
+        moves = np.diff(morris.design(4, 2000, 4, 1), axis=1)
         moves = moves[moves != 0.0]
         np.testing.assert_allclose(np.abs(moves), 2.0 / 3.0)
-        self.assertAlmostEqual((moves > 0.0).mean(), 0.5, delta=0.06)
+        self.assertAlmostEqual((moves > 0.0).mean(), 0.5, delta=0.02)
 
     def test_design(self):
         design = morris.design(5, 30, 6, 4)
@@ -402,6 +460,12 @@ class Morris(unittest.TestCase):
         np.testing.assert_array_equal(found.used, 5 - lost)
         self.assertEqual((lost.sum(), found.planned), (3, 5))
         np.testing.assert_allclose(found.mu, [1.0, 2.0, 3.0])
+        y[..., 0] = np.nan
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # nothing is left, which is no surprise
+            nothing = morris.effects(design, y, resamples=5)
+        self.assertEqual(nothing.used.tolist(), [0, 0, 0])
+        self.assertTrue(np.isnan([nothing.mu, nothing.mu_star, nothing.mu_star_low, nothing.sigma]).all())
 
 
 class Sobol(unittest.TestCase):
@@ -415,6 +479,30 @@ class Sobol(unittest.TestCase):
         y[1:] = np.nan
         with self.assertRaisesRegex(Error, "at least two complete rows"):
             sobol.indices(y, allow_missing=True)
+
+    def test_a_twentieth_of_the_rows_may_be_lost(self):
+        y = np.random.default_rng(1).random((1000, 3, 1))
+        y[:50, 2] = np.nan
+        self.assertEqual(sobol.indices(y, resamples=5).rows, 950)
+        y[50, 2] = np.nan
+        with self.assertRaisesRegex(Error, "5.1% of the rows"):
+            sobol.indices(y, resamples=5)
+
+    def test_intervals_hold_what_so_few_rows_need(self):
+        import openturns
+        y = np.random.default_rng(1).random((10, 3, 1))
+        with mock.patch.object(openturns.MartinezSensitivityAlgorithm, "setConfidenceLevel", autospec=True) as asked:
+            sobol.indices(y, resamples=5)
+        self.assertAlmostEqual(asked.call_args.args[1], 0.9829, 4)  # as `Morris.test_level_of_few` has it
+        coarse, fine = (sobol.indices(y, resamples=count) for count in (10, 500))
+        self.assertFalse(np.array_equal(coarse.first_low, fine.first_low))
+
+    def test_the_seeds_part_by_hand(self):
+        """Two rows, eight times each, one parameter, two seeds: A, B, AB."""
+        y = np.array([[[1.0, 3.0], [0.0, 0.0], [0.0, 0.0]], [[6.0, 6.0], [1.0, 1.0], [2.0, 6.0]]])
+        found = sobol.indices(np.repeat(y, 8, axis=0), resamples=5)
+        # steps (1, 3) and (4, 0): variances 2 and 8, whose mean is 5; the means of A are 2 and 6, their variance 4
+        np.testing.assert_allclose(found.seed_part, [0.5 * 5.0 / 2.0 / 4.0])
 
     def test_what_seeds_add_to_a_total_index(self):
         """Each run has noise of its own, of variance 0.09 of single runs: Jansen's numerator is half of twice that."""
@@ -683,6 +771,39 @@ class Judged(unittest.TestCase):
             surrogate.fit(u, u[:, 0] + u[:, 1] ** 2, most_degree=3)
             self.assertEqual(made.call_count, 3)
 
+    def test_any_point_may_be_drawn_again(self):
+        u = sampling.sobol_sequence(20, 2, 3)
+        fitted = surrogate.fit(u, u[:, 0], most_degree=1)
+        fine = surrogate.Validation(1.0, 1.0, 0.0, 0.0, 30)
+        with mock.patch.object(np.linalg, "lstsq", wraps=np.linalg.lstsq) as solved:
+            surrogate.indices(fitted, fine, resamples=60)
+        drawn = [call.args[1] for call in solved.call_args_list]
+        self.assertEqual([len(values) for values in drawn], 60 * [20])
+        self.assertEqual(set(np.concatenate(drawn)), set(u[:, 0]))
+
+    def test_degrees_end_at_the_stated_one_and_at_the_most_terms(self):
+        import openturns
+        u = sampling.sobol_sequence(64, 2, 3)
+        algorithm = openturns.FunctionalChaosAlgorithm
+        with mock.patch.object(openturns, "FunctionalChaosAlgorithm", wraps=algorithm) as made, \
+                mock.patch.object(surrogate, "_PATIENCE", 99):
+            surrogate.fit(u, np.abs(u[:, 0] - 0.4))
+            self.assertEqual(made.call_count, 10)
+            for most, degree in ((10, 3), (9, 2), (11, 3)):  # 3, 6, 10 and 14 terms
+                made.reset_mock()
+                with mock.patch.object(surrogate, "_MOST_TERMS", most):
+                    surrogate.fit(u, u[:, 0] ** 5, most_degree=5)
+                self.assertEqual(made.call_count, degree)
+
+    def test_kriging_is_matern_of_lengths_within_bounds(self):
+        """A parameter that does nothing has the longest length, noise of which nothing is told the shortest."""
+        u = sampling.sobol_sequence(30, 2, 3)
+        covariance = surrogate.fit(u, np.sin(6.0 * u[:, 0]), "kriging").fitted.getCovarianceModel()
+        self.assertEqual(covariance.getFullParameter()[-1], 2.5)
+        self.assertAlmostEqual(covariance.getScale()[1], 20.0)
+        noise = np.random.default_rng(1).normal(size=30)
+        self.assertAlmostEqual(min(surrogate.fit(u, noise, "kriging").fitted.getCovarianceModel().getScale()), 0.02)
+
     def test_kriging_does_not_ask_for_the_unit_of_small_numbers(self):
         u = sampling.sobol_sequence(40, 2, 3)
         y = np.sin(3.0 * u[:, 0]) + u[:, 1]
@@ -700,6 +821,14 @@ class Judged(unittest.TestCase):
         self.assertEqual(judged.points, 30)
         self.assertAlmostEqual(judged.error, 0.1)
         self.assertAlmostEqual(judged.q2, 1.0 - 0.01 / y.var())
+        self.assertAlmostEqual(judged.own_error, 0.1)
+        # seeds that scatter while their mean is exact: the error is less than the scatter, so that none is its own
+        scattered = held[:, :1] + np.where(np.arange(30) % 2, 0.1, -0.1)[:, None] * [1.0, -1.0]
+        exact = surrogate.validate(fitted, held, scattered)
+        self.assertAlmostEqual(exact.error, 0.0)
+        self.assertEqual((exact.own_error, exact.own_q2), (0.0, 1.0))
+        with self.assertRaisesRegex(Error, "used to fit"):  # one is enough
+            surrogate.validate(fitted, np.vstack([held[:-1], u[:1]]), y)
         with self.assertRaisesRegex(Error, "29 complete runs"):
             surrogate.validate(fitted, held[:29], y[:29])
 
@@ -727,6 +856,25 @@ class Dependence(unittest.TestCase):
                                      .getR2HSICIndices()) for i in range(20)])
         half = t.ppf(0.975, 19) * np.sqrt(19.0 * without.var(axis=0))
         np.testing.assert_allclose(found.r2_high - found.r2, half)
+
+    def test_groups_are_twenty_of_equal_count(self):
+        u = np.random.default_rng(3).random((40, 2))
+        with mock.patch.object(hsic, "_estimator", wraps=hsic._estimator) as made:
+            found = hsic.dependence(u, u[:, 0], permutations=2)
+        self.assertEqual([len(call.args[2]) for call in made.call_args_list], [40] + 20 * [38])
+        left_out = [set(range(40)) - {int(np.flatnonzero(u[:, 0] == value)[0]) for value in call.args[2]}
+                    for call in made.call_args_list[1:]]
+        self.assertEqual(set.union(*left_out), set(range(40)))
+        # the unit of the output does not matter: its kernel is as wide as it scatters
+        np.testing.assert_allclose(hsic.dependence(u, 1e3 * u[:, 0], permutations=2).r2, found.r2)
+
+    def test_a_p_value_counts_permutations(self):
+        u = np.random.default_rng(3).random((40, 2))
+        y = np.random.default_rng(4).normal(size=40)
+        tenths = 10.0 * hsic.dependence(u, y, permutations=9).p_value
+        np.testing.assert_allclose(tenths, np.round(tenths), atol=1e-9)
+        finer = 10.0 * hsic.dependence(u, y, permutations=499).p_value
+        self.assertGreater(np.abs(finer - np.round(finer)).max(), 1e-3)
 
     def test_intervals_are_a_jackknife_over_groups(self):
         """The error of a mean of groups is known: so must be that of the index of many points."""
@@ -760,6 +908,8 @@ class Ensemble(unittest.TestCase):
         self.assertAlmostEqual(found.high - 6.0, 3.182 * sd / 2.0, places=3)
         self.assertAlmostEqual(found.relative_width, 3.182 * sd / 2.0 / 6.0, places=3)
         self.assertEqual(found.percentiles[50.0], 5.5)
+        np.testing.assert_allclose([found.percentiles[share] for share in (5.0, 50.0, 95.0)], [4.15, 5.5, 8.55])
+        self.assertEqual(list(ensemble.summary([]).percentiles), [5.0, 50.0, 95.0])
 
     def test_percentiles_and_level(self):
         found = ensemble.summary(np.arange(11.0), level=0.9, percentiles=(10, 75))
@@ -771,6 +921,11 @@ class Ensemble(unittest.TestCase):
         self.assertEqual(ensemble.widest([found, ensemble.summary([4.9, 5.0, 5.1])]), found.relative_width)
         around_nothing = ensemble.summary([-1.0, 1.0])
         self.assertTrue(np.isnan(around_nothing.variation) and around_nothing.relative_width == np.inf)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # nothing is divided by nothing
+            self.assertEqual(ensemble.summary([-1.0, 1.0]).relative_width, np.inf)
+            # Student's t of one degree, 12.706, times a standard deviation of the root of 2, over the root of 2
+            self.assertAlmostEqual(ensemble.summary([0.0, 2.0]).relative_width, 12.706, places=3)
         below = ensemble.summary([-4.0, -6.0])
         self.assertAlmostEqual(below.variation, np.sqrt(2.0) / 5.0)
         self.assertGreater(below.relative_width, 0.0)
@@ -818,6 +973,8 @@ class MainEffects(unittest.TestCase):
         self.assertEqual(len(main_effects.curve(np.arange(10.0) / 9, np.arange(10.0)).u), 10)
         self.assertEqual(len(main_effects.curve(np.arange(11.0) / 10, np.arange(11.0)).u), 2)
         self.assertEqual(len(main_effects.curve(np.arange(12.0) / 11, np.arange(12.0), count=12).u), 12)
+        few = main_effects.curve(np.arange(4.0) / 3, np.arange(4.0), most_classes=2)
+        self.assertEqual((few.count.tolist(), few.mean.tolist()), ([4], [1.5]), "one class at the least")
 
     def test_standard_error_is_the_jackknife_over_the_seeds(self):
         """Two parameters in order; each seed adds to one of them: the coefficients follow by hand."""
@@ -869,6 +1026,36 @@ class MainEffects(unittest.TestCase):
         self.assertGreater(found.r2, 0.95)
         self.assertTrue(within(found.coefficient_low, found.coefficient, found.coefficient_high))
         self.assertLess(found.seed_share.single, 0.1)
+
+    def test_what_does_not_vary_has_no_effect(self):
+        u = sampling.latin_hypercube(20, 2, 3)
+        u[:, 1] = 0.5
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            found = main_effects.rank_effects(u, u[:, :1] * [1.0, 2.0, 3.0], resamples=20)
+        np.testing.assert_allclose(found.coefficient, [1.0, 0.0], atol=1e-12)
+        np.testing.assert_allclose(found.correlation, [1.0, 0.0], atol=1e-12)
+        self.assertAlmostEqual(found.r2, 1.0)
+
+    def test_any_point_may_be_drawn_again(self):
+        u = sampling.latin_hypercube(12, 1, 3)
+        with mock.patch.object(main_effects, "_ranked", wraps=main_effects._ranked) as ranked:
+            main_effects.rank_effects(u, u * [1.0, 2.0, 3.0], resamples=50)
+        drawn = [call.args[0] for call in ranked.call_args_list[1:51]]
+        self.assertEqual({len(points) for points in drawn}, {12})
+        self.assertEqual(set(np.concatenate(drawn)[:, 0]), set(u[:, 0]))
+
+    def test_intervals_are_a_bootstrap_over_the_points(self):
+        """Of one parameter the coefficient is Spearman's correlation, whatever points are drawn how often."""
+        u = sampling.latin_hypercube(30, 1, 3)
+        y = u + np.random.default_rng(2).normal(0.0, 0.3, (30, 1))
+        found = main_effects.rank_effects(u, y, resamples=3000)
+        draws = np.random.default_rng(1).integers(0, 30, (3000, 30))
+        expected = np.percentile([spearmanr(u[draw, 0], y[draw, 0])[0] for draw in draws], [2.05, 97.95])
+        width = expected[1] - expected[0]  # of 30 points 95.9 %: t of 29 degrees is 2.045, times the root of 30/29
+        for low, high in ((found.coefficient_low, found.coefficient_high),
+                          (found.correlation_low, found.correlation_high)):
+            np.testing.assert_allclose([low[0], high[0]], expected, atol=0.1 * width)
 
     def test_noise_is_no_effect(self):
         told = 0
@@ -932,6 +1119,19 @@ class Misfit(unittest.TestCase):
         np.testing.assert_allclose(np.diag(single), SEEDS[:2].var(axis=0, ddof=1))
         np.testing.assert_allclose(single[0, 1], 0.25 * np.cov(SEEDS[:2].T)[0, 1])
 
+    def test_what_misses_a_value_does_not_count_and_one_seed_tells_nothing(self):
+        whole, broken = SEEDS[:2], np.array([[1.0, np.nan, 2.0], [5.0, 0.0, 9.0]])
+        for outcomes in ([whole, broken], [broken, whole]):
+            single, freedom = calibration.seed_covariance(outcomes)
+            self.assertEqual(freedom, 1)
+            np.testing.assert_array_equal(single, calibration.seed_covariance([whole])[0])
+        single, freedom = calibration.seed_covariance([SEEDS[:1], SEEDS[1:2]])
+        self.assertEqual(freedom, 0)
+        np.testing.assert_array_equal(single, np.zeros((3, 3)))
+        # of one output there is nothing to shrink: runs 0 and 2 have a variance of 2, their mean one of 1
+        targets = calibration.Targets(("a",), np.zeros(1), np.array([0.5]))
+        np.testing.assert_allclose(calibration.misfit_covariance([np.array([[0.0], [2.0]])], targets), [[1.25]])
+
     def test_no_scatter_at_all_is_refused(self):
         targets = calibration.Targets(("f_c",), np.zeros(1), np.zeros(1))
         with self.assertRaisesRegex(Error, "f_c"):
@@ -975,6 +1175,22 @@ class LocalForm(unittest.TestCase):
         np.testing.assert_allclose(np.sqrt(np.mean([fit.error**2 for fit in fits], axis=0)), spread, rtol=0.12)
         np.testing.assert_allclose(np.mean([np.diag(fit.scatter) for fit in fits], axis=0), [0.04, 0.25], rtol=0.05)
 
+    def test_of_points_equally_far_it_is_ordinary_least_squares(self):
+        """Two slopes and a mean from four points: one degree of freedom, whose residuals are +-c."""
+        u, c = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]), 0.5
+        y = 3.0 + u @ [[2.0], [4.0]] + c * np.array([[1.0], [1.0], [-1.0], [-1.0]])
+        fit = calibration._local_form(np.zeros(2), u, y, 4)
+        np.testing.assert_allclose(fit.at_best, [3.0])
+        np.testing.assert_allclose(fit.jacobian, [[2.0, 4.0]])
+        np.testing.assert_allclose(fit.scatter, [[4.0 * c**2]])
+        np.testing.assert_allclose(fit.unit, 0.5 * np.eye(2), atol=1e-12)
+        np.testing.assert_allclose(fit.error, [[np.sqrt(2.0) * c] * 2])
+        self.assertEqual((fit.freedom, fit.points), (1, 4))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            at_best = calibration._local_form(np.zeros(2), np.zeros((4, 2)), y[:, :1], 4)
+        np.testing.assert_allclose(at_best.at_best, [3.0])
+
     def test_weights_fall_to_the_farthest(self):
         """(1 - (d/1.1 farthest)^3)^3, of three points on a line: a mean by these weights where all else is even."""
         best, u = np.array([0.0]), np.array([[-0.5], [0.5], [-1.0], [1.0]])
@@ -991,7 +1207,8 @@ class Finished(unittest.TestCase):
     settings = calibration.Settings(most_generations=5, least_sigma=0.01, least_gain=0.1, patience=2)
 
     def why(self, misfits, sigma=0.5):
-        return calibration._why_finished(self.settings, [np.array(values) for values in misfits], np.array([sigma, 0.0]))
+        known = [np.array(values) for values in misfits]
+        return calibration._why_finished(self.settings, known, np.array([sigma, 0.0]))
 
     def test_short_steps(self):
         self.assertIn("no step is longer than 0.01", self.why([], 0.01))
@@ -1002,6 +1219,7 @@ class Finished(unittest.TestCase):
         self.assertIn("2 generations gained no more than 0.1", self.why([[5.0, 9.0], [7.0], [4.91, 6.0]]))
         self.assertEqual(self.why([[5.0, 9.0], [7.0], [4.89, 6.0]]), "")
         self.assertIn("gained no more", self.why([[5.0], [4.0], [7.0], [6.0]]))
+        self.assertEqual(self.why([[5.0], [4.8], [5.2]]), "", "either of the last two may have gained")
         self.assertEqual(self.why([[np.inf], [np.inf], [np.inf]]), "", "nothing feasible yet")
         self.assertEqual(self.why([[np.inf], [np.inf], [3.0]]), "")
 
@@ -1032,6 +1250,24 @@ class Calibration(unittest.TestCase):
         y[3] = np.nan
         with self.assertRaisesRegex(Error, "3 complete points: a linear form in 2 parameters needs at least 4"):
             calibration.uncertainty(np.full(2, 0.5), u, y, targets, np.eye(1))
+
+    def test_a_slope_counts_beyond_what_noise_gives(self):
+        """Student's t of 17 degrees: 2.110 for one output, and 2.458 for two, of which each may err half as often."""
+        u = np.random.default_rng(2).random((20, 2))
+        noise = np.random.default_rng(3).normal(0.0, 0.1, (20, 2))
+        best = np.full(2, 0.5)
+        pure = calibration._local_form(best, u, noise, 10)  # of ten points without quadratic terms: 7 degrees
+        self.assertEqual(pure.freedom, 7)
+        for outputs, limit in ((1, 2.3646), (2, 2.8412)):
+            for factor, told in ((0.99, False), (1.01, True)):
+                # so much slope of the first output along the first parameter makes just this ratio
+                y = noise[:, :outputs].copy()
+                y[:, 0] += (factor * limit * pure.error[0, 0] - pure.jacobian[0, 0]) * u[:, 0]
+                targets = calibration.Targets(("a", "b")[:outputs], np.zeros(outputs), np.full(outputs, 0.1))
+                covariance = np.diag(([1e-4, 1e4])[:outputs])
+                found = calibration.uncertainty(best, u, y, targets, covariance, neighbours=10, draws=5)
+                self.assertEqual((found.direction_ratio < 1.0).any(), told, (outputs, factor))
+                self.assertEqual(found.points, 10)
 
     def test_what_is_not_determined(self):
         """Of a linear output of the first of two parameters: the posterior of the second is the prior."""
@@ -1160,6 +1396,46 @@ class Calibration(unittest.TestCase):
         found = calibration.search(2, calibration.Settings(most_generations=30), judge)
         np.testing.assert_allclose(found.mean, 0.9, atol=0.03)
 
+    def test_begins_in_the_middle_with_its_step(self):
+        found = calibration.search(2, calibration.Settings(sigma=0.2, most_generations=0), lambda _: None)
+        np.testing.assert_allclose(found.mean, [0.5, 0.5])
+        np.testing.assert_allclose(found.sigma, [0.2, 0.2])
+        self.assertEqual((found.generations, found.misfits, found.finished), ([], [], "0 generations"))
+        # 4 + 3 ln k points a generation; one parameter has an idle second one beside
+        for k, count in ((1, 6), (2, 6), (3, 7)):
+            found = calibration.search(k, calibration.Settings(), lambda _: None)
+            self.assertEqual([points.shape for points in found.generations], [(count, k)])
+            np.testing.assert_array_equal(found.points, found.points.round(9))
+            self.assertEqual((found.misfits, found.finished), ([], ""))
+        self.assertEqual(len(calibration.search(2, calibration.Settings(population=11), lambda _: None).points), 11)
+
+    def test_a_search_that_only_shrinks_has_degenerated(self):
+        def judge(generations):
+            return np.abs(generations[-1] - 0.3).sum(axis=1), np.zeros(len(generations[-1]))
+
+        endless = calibration.Settings(most_generations=5000, least_sigma=-1.0, patience=9999)
+        found = calibration.search(2, endless, judge)
+        self.assertEqual(found.finished, "the search has degenerated")
+        self.assertLess(found.sigma.max(), 1e-9)
+
+    def test_what_failed_is_infeasible_by_nothing(self):
+        """Searched alike, whether a point is failed or infeasible by 0, beside ones that are infeasible by little."""
+        def search_with(failed):
+            def outcome(u):
+                asked.append(u.tobytes())
+                if u[0] > 0.55:
+                    return calibration.Infeasible(0.01 * u[0])
+                return failed if u[1] < 0.45 else linear(u)
+
+            asked = []
+            found = calibration.calibrate(2, targets, calibration.Settings(most_generations=8), outcome)
+            self.assertEqual(len(asked), len(set(asked)), "each point is asked for once")
+            return found.points
+
+        targets = linear_targets(np.array([0.6, 0.6]))
+        np.testing.assert_array_equal(search_with(np.full((4, 3), np.nan)), search_with(calibration.Infeasible(0.0)))
+        self.assertEqual(calibration.Infeasible().by, 0.0)
+
     def test_one_parameter(self):
         targets = calibration.Targets(("a",), np.array([0.2]), np.array([0.01]))
         found = calibration.calibrate(1, targets, calibration.Settings(), lambda u: np.full((2, 1), u[0]))
@@ -1229,6 +1505,28 @@ class Posterior(unittest.TestCase):
         stated = posterior.sample(self.surrogates, self.validations, self.targets, self.covariance, 1, walkers=8,
                                   most_steps=20)
         self.assertEqual(len(stated.chain), 10 * 8)
+
+    def test_four_walkers_a_parameter(self):
+        u = sampling.sobol_sequence(40, 5, 5)
+        sums = [surrogate.fit(u, u.sum(axis=1), most_degree=1)]
+        fine = [surrogate.Validation(1.0, 1.0, 0.0, 0.0, 40)]
+        targets = calibration.Targets(("a",), np.array([2.5]), np.array([0.5]))
+        found = posterior.sample(sums, fine, targets, np.array([[0.25]]), most_steps=4)
+        self.assertEqual(len(found.chain), 2 * 20)
+
+    def test_has_converged_when_long_enough_and_settled(self):
+        """Looked at every 500 steps: fifty autocorrelation times, which have changed by less than 2 %."""
+        import emcee
+        for times, steps in (([9.0, 9.19, 9.37], 1500),  # by 2.07 %, then by 1.92 %
+                             ([20.0, 20.0, 20.0], 1500), ([29.9, 29.9, 29.9], 1500), ([30.1] * 4, 2000)):
+            asked = iter(times)
+            with mock.patch.object(emcee.EnsembleSampler, "get_autocorr_time",
+                                   lambda self, tol: np.array([1.0, next(asked)])), \
+                    mock.patch.object(surrogate.Surrogate, "predict", lambda self, u: u[:, 0]):
+                found = posterior.sample(self.surrogates, self.validations, self.targets, self.covariance, 1)
+            self.assertEqual((found.steps, found.converged), (steps, True), times)
+            self.assertEqual(len(found.chain), 16 * (steps - int(5.0 * times[-1])))
+            self.assertAlmostEqual(found.effective, len(found.chain) / times[-1])
 
     def test_the_surrogates_own_errors_widen_it(self):
         wide = [surrogate.Validation(v.q2, v.own_q2, v.error, 0.3, v.points) for v in self.validations]
