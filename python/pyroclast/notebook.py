@@ -74,7 +74,7 @@ def _cracks(run: Run) -> np.ndarray:
     """
     contacts = run.contacts()
     damage = contacts[[name for name in contacts if "damage" in name]].max(axis=1)
-    ends = contacts[["x", "y"]]
+    ends = contacts[["x_m", "y_m"]]
     middles = ends.groupby(contacts["face"]).transform("mean")
     return np.stack([ends, middles], axis=1)[damage >= _OPEN]
 

@@ -755,9 +755,10 @@ class Run:
         return self._core.copied("temperature")
 
     def contacts(self) -> pandas.DataFrame:
-        """State of all contact points, a row each: `interface` and `law` (names), `x` and `y` [m], the number of the
-        `face`, `area` [m²], `normal_x` and `normal_y`, `opening` and `slip` [m], `normal_traction` and `shear_traction`
-        [Pa], `stored` energy [J/m²], what their laws remember, and what they lost (`lost_...`) [J/m²].
+        """State of all contact points, a row each: `interface` and `law` (names), `x_m` and `y_m`, the number of the
+        `face`, `area_m2`, `normal_x` and `normal_y`, `opening_m` and `slip_m`, `normal_traction_Pa` and
+        `shear_traction_Pa`, `stored_J_m2`, what their laws remember (`closure_m`), and what they lost
+        (`lost_tension_J_m2`).
         """
         import pandas
         return pandas.DataFrame(self._core.contacts()).astype({"face": int})
@@ -767,17 +768,22 @@ class Run:
         return self.history.to_pandas()
 
     def to_meshio(self) -> meshio.Mesh:
-        """The body now as a mesh of triangles in space, z = 0, in m: the data `displacement`, `velocity` and
-        `temperature` of gridpoints, `stress`, `block` and `material` of zones.
+        """The body now as a mesh of triangles in space, z = 0, in m, with data named as in the files of fields:
+        `displacement [m]`, `velocity [m s-1]` and `temperature [degC]` of gridpoints, `stress [Pa]`, `block` and
+        `material` of zones. `field_data` has the names of the materials: their number and the dimension of their
+        zones, as meshes of gmsh do.
         """
         import meshio
         block = self.zone_block
-        points = {"temperature": self.temperature}
+        points = {"temperature [degC]": self.temperature}
         cells: dict[str, list[Any]] = {"block": [block], "material": [self.block_material[block]]}
         if self._core.moves:
-            points |= {"displacement": _in_space(self.displacement), "velocity": _in_space(self.velocity)}
-            cells["stress"] = [self.stress]
-        return meshio.Mesh(_in_space(self.position), [("triangle", self.zones)], point_data=points, cell_data=cells)
+            points |= {"displacement [m]": _in_space(self.displacement),
+                       "velocity [m s-1]": _in_space(self.velocity)}
+            cells["stress [Pa]"] = [self.stress]
+        names = {name: np.array([number, 2]) for number, name in enumerate(self.material_names)}
+        return meshio.Mesh(_in_space(self.position), [("triangle", self.zones)], point_data=points, cell_data=cells,
+                           field_data=names)
 
     # In a notebook
 

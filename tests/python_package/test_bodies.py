@@ -44,7 +44,7 @@ class Bodies(Case):
         self.assertAlmostEqual(state.stretch / (moved[right].mean() - moved[left].mean()), 1.0, delta=0.01)
         self.assertAlmostEqual(state.pull / (state.across * 40e-3 * 0.1), 1.0, delta=0.05)
         self.assertEqual(run.history.units["pull_N"], "N")
-        x = run.contacts()["x"].to_numpy()[run.contact_sets["halves"]]
+        x = run.contacts()["x_m"].to_numpy()[run.contact_sets["halves"]]
         self.assertTrue(len(x) and (x >= 25e-3 - 1e-12).all() and (x <= 35e-3 + 1e-12).all())
         with self.assertRaises(KeyError):
             run.sets["nowhere"]

@@ -468,14 +468,20 @@ class Arrays(Case):
         self.assertAlmostEqual(-mean / state.stress, 1.0, delta=0.02)
         contacts = run.contacts()
         self.assertEqual(set(contacts["law"]), {"cohesive", "elastic", "frictional"})
-        self.assertLess(contacts["normal_traction"].mean(), 0.0)
+        self.assertLess(contacts["normal_traction_Pa"].mean(), 0.0)
 
     def test_meshio_and_a_notebook_show_the_run(self):
         run = pyroclast.Run(deck(), threads=1)
         run.until(strain=1e-4)
         file = self.folder() / "body.vtk"
-        run.to_meshio().write(file)
+        mesh = run.to_meshio()
+        mesh.write(file)
         self.assertGreater(file.stat().st_size, 1000)
+        self.assertEqual([name for name, _ in sorted(mesh.field_data.items(), key=lambda entry: entry[1][0])],
+                         run.material_names)
+        self.assertLessEqual({"displacement [m]", "velocity [m s-1]"}, set(mesh.point_data))
+        self.assertLessEqual({"x_m", "area_m2", "opening_m", "normal_traction_Pa", "closure_m", "tension_damage",
+                              "lost_tension_J_m2"}, set(run.contacts()))
         self.assertTrue(run._repr_png_().startswith(b"\x89PNG"))
         self.assertIn("data:image/png;base64,", run._repr_html_())
 
@@ -487,7 +493,7 @@ class Arrays(Case):
         self.assertTrue(run._repr_png_().startswith(b"\x89PNG"))
         run.finish()
         self.assertGreater(run.temperature.max(), 100.0)
-        self.assertIn("temperature", run.to_meshio().point_data)
+        self.assertIn("temperature [degC]", run.to_meshio().point_data)
         self.assertIn("data:image/png", run._repr_html_())
         with self.assertRaisesRegex(pyroclast.Error, "nothing moves"):
             run.displacement

@@ -477,7 +477,7 @@ class Sobol(unittest.TestCase):
         with self.assertRaisesRegex(Error, "6.0% of the rows miss a value: no indices above 5%"):
             sobol.indices(y, resamples=20)
         y[1:] = np.nan
-        with self.assertRaisesRegex(Error, "at least two complete rows"):
+        with self.assertRaisesRegex(Error, "at least 8 complete rows"):
             sobol.indices(y, allow_missing=True)
 
     def test_a_twentieth_of_the_rows_may_be_lost(self):

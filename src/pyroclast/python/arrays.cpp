@@ -161,23 +161,24 @@ py::dict contacts(const Simulation& simulation) {
     for (std::size_t i = 0; i < states.size(); ++i) to[i] = number(i);
     all[py::str(name)] = column;
   };
-  add("x", [&](std::size_t i) { return model.position[model.contacts[i].a][0]; });
-  add("y", [&](std::size_t i) { return model.position[model.contacts[i].a][1]; });
+  add("x_m", [&](std::size_t i) { return model.position[model.contacts[i].a][0]; });
+  add("y_m", [&](std::size_t i) { return model.position[model.contacts[i].a][1]; });
   add("face", [&](std::size_t i) { return static_cast<double>(model.contacts[i].face); });
-  add("area", [&](std::size_t i) { return model.contacts[i].area; });
+  add("area_m2", [&](std::size_t i) { return model.contacts[i].area; });
   add("normal_x", [&](std::size_t i) { return model.contacts[i].normal[0]; });
   add("normal_y", [&](std::size_t i) { return model.contacts[i].normal[1]; });
-  add("opening", [&](std::size_t i) { return states[i].opening; });
-  add("slip", [&](std::size_t i) { return states[i].tangential_jump[0]; });
-  add("normal_traction", [&](std::size_t i) { return states[i].normal_traction; });
-  add("shear_traction", [&](std::size_t i) { return states[i].shear_traction[0]; });
-  add("stored", [&](std::size_t i) { return states[i].stored; });
+  add("opening_m", [&](std::size_t i) { return states[i].opening; });
+  add("slip_m", [&](std::size_t i) { return states[i].tangential_jump[0]; });
+  add("normal_traction_Pa", [&](std::size_t i) { return states[i].normal_traction; });
+  add("shear_traction_Pa", [&](std::size_t i) { return states[i].shear_traction[0]; });
+  add("stored_J_m2", [&](std::size_t i) { return states[i].stored; });
   for (const LawTable* table : mechanics.laws()) {
     for (const HistoryInfo& info : table->history(2))
-      if (!all.contains(info.name))
-        add(info.name, [&](std::size_t i) { return states[i].remembered(std::string_view(info.name)); });
+      if (const std::string name = column_with_unit(info.name, info.unit).name; !all.contains(py::str(name)))
+        add(name, [&](std::size_t i) { return states[i].remembered(std::string_view(info.name)); });
     for (const LossInfo& info : table->losses)
-      if (const std::string name = std::string("lost_") + info.name; !all.contains(py::str(name)))
+      if (const std::string name = column_with_unit(fmt::format("lost_{}", info.name), info.unit).name;
+          !all.contains(py::str(name)))
         add(name, [&](std::size_t i) { return states[i].lost(info.name); });
   }
   return all;

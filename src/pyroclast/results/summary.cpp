@@ -107,7 +107,7 @@ std::optional<double> error_over_dissipated(const History& history, const Simula
   for (const std::string& name : names)
     dissipated += last_of(history, fmt::format("dissipated_{}_J", name).c_str()).value_or(0.0);
   if (!(dissipated > kRounding * turned_over(history, history.row_count()))) return std::nullopt;
-  return std::abs(*of_turnover) > kRounding ? *last_of(history, "energy_error_J") / dissipated : 0.0;
+  return std::abs(*of_turnover) <= kRounding ? 0.0 : *last_of(history, "energy_error_J") / dissipated;
 }
 
 /// A report whose results must not be taken for any.

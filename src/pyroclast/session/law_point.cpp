@@ -15,14 +15,6 @@ namespace pyroclast {
 
 namespace {
 
-/// With the unit behind its name, where it has one.
-Column column_of(const std::string& name, const Unit& unit) {
-  if (unit == unit::dimensionless) return {name, unit.si};
-  std::string spelt = unit.si;
-  std::ranges::replace(spelt, '/', '_');
-  return {fmt::format("{}_{}", name, spelt), unit.si};
-}
-
 /// Property or choice `key` of a law, from "key=value".
 void set_value(ContactMaterial& material, const LawTable& law, const std::string& change,
                std::vector<bool>& given) {
@@ -118,10 +110,10 @@ std::vector<Column> LawPoint::columns() const {
                               {"tau_Pa", "Pa"},
                               {"stored_J_m2", "J/m2"},
                               {"property_change_J_m2", "J/m2"}};
-  for (const HistoryInfo& info : law_.history(2)) columns.push_back(column_of(info.name, info.unit));
+  for (const HistoryInfo& info : law_.history(2)) columns.push_back(column_with_unit(info.name, info.unit));
   for (const LossInfo& info : law_.losses)
     columns.push_back(
-        column_of(fmt::format("{}{}", info.is_energy() ? "dissipated_" : "", info.name), info.unit));
+        column_with_unit(fmt::format("{}{}", info.is_energy() ? "dissipated_" : "", info.name), info.unit));
   return columns;
 }
 

@@ -1,5 +1,6 @@
 #include "pyroclast/simulation/history.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 
@@ -9,6 +10,13 @@
 #include "pyroclast/base/error.hpp"
 
 namespace pyroclast {
+
+Column column_with_unit(const std::string& name, const Unit& unit) {
+  if (unit == unit::dimensionless) return {name, unit.si};
+  std::string spelt = unit.si;
+  std::ranges::replace(spelt, '/', '_');
+  return {fmt::format("{}_{}", name, spelt), unit.si};
+}
 
 void History::add_column(const Column& column) {
   const auto found = find(column.name);

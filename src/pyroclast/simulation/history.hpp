@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pyroclast/base/state_visitor.hpp"
+#include "pyroclast/base/unit.hpp"
 
 namespace pyroclast {
 
@@ -17,6 +18,9 @@ struct Column {
 
   bool operator==(const Column&) const = default;
 };
+
+/// Of a quantity of a law, in SI: with the unit behind its name, where it has one.
+Column column_with_unit(const std::string& name, const Unit& unit);
 
 /// Rows of a history, from `first` up to but without `last`.
 struct RowRange {

@@ -16,7 +16,7 @@ namespace {
 struct ExchangeResponse {
   std::optional<double> critical_temperature;  ///< mean over the specimen when the platen ran away, °C
   double critical_time = 0.0;                  ///< heating time then, s
-  double highest = 0.0;                        ///< temperature reached anywhere, °C
+  double highest = absolute_zero;              ///< temperature reached anywhere, °C
   double last_mean = 0.0;                      ///< at the last exchange, °C
   std::int64_t exchanges = 0;
   std::int64_t not_converged = 0;  ///< exchanges after which the body did not come to rest

@@ -12,6 +12,8 @@ from . import _needs, sampling, seeds
 
 Array = NDArray[np.float64]
 _MOST_LEVEL = 1.0 - 1e-6  # OpenTURNS takes none of 1
+FEWEST = 8
+"""Rows. Intervals come of draws with replacement, and of fewer rows some of the draws are of one row alone."""
 MOST_LOST = 0.05
 """Share of the rows that may be lost before indices are refused."""
 
@@ -52,7 +54,7 @@ def indices(y: Array, seed: int = 0, allow_missing: bool = False, resamples: int
     """Indices of the mean over seeds by Martinez' correlation estimators. y: (n, k + 2, seeds), as `design` has them.
 
     A row with a missing point drops out as a whole. Raises `Error` where more than MOST_LOST of the rows are lost and
-    that is not allowed, where fewer than two rows remain, where the output does not vary, or without openturns.
+    that is not allowed, where fewer than FEWEST rows remain, where the output does not vary, or without openturns.
     (Baudin, Boumhaout, Delage, Iooss, Martinez, 2016; openturns MartinezSensitivityAlgorithm.)
     """
     y = np.asarray(y, float)
@@ -60,8 +62,8 @@ def indices(y: Array, seed: int = 0, allow_missing: bool = False, resamples: int
     lost = float((~complete).mean())
     if lost > MOST_LOST and not allow_missing:
         raise Error(f"{lost:.1%} of the rows miss a value: no indices above {MOST_LOST:.0%}, unless that is allowed")
-    if complete.sum() < 2:
-        raise Error("Sobol' indices need at least two complete rows")
+    if complete.sum() < FEWEST:
+        raise Error(f"Sobol' indices need at least {FEWEST} complete rows")
     y = y[complete]
     rows, blocks, runs = y.shape
     means = seeds.over_seeds(y)
