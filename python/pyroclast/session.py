@@ -768,19 +768,18 @@ class Run:
         return self.history.to_pandas()
 
     def to_meshio(self) -> meshio.Mesh:
-        """The body now as a mesh of triangles in space, z = 0, in m, with data named as in the files of fields:
-        `displacement [m]`, `velocity [m s-1]` and `temperature [degC]` of gridpoints, `stress [Pa]`, `block` and
-        `material` of zones. `field_data` has the names of the materials: their number and the dimension of their
-        zones, as meshes of gmsh do.
+        """The body now as a mesh of triangles in space, z = 0, in m, with the data `displacement_m`, `velocity_m_s` and
+        `temperature_degC` of gridpoints, `stress_Pa`, `block` and `material` of zones. `field_data` has the names of
+        the materials: their number and the dimension of their zones, as meshes of gmsh do.
         """
         import meshio
         block = self.zone_block
-        points = {"temperature [degC]": self.temperature}
+        points = {"temperature_degC": self.temperature}
         cells: dict[str, list[Any]] = {"block": [block], "material": [self.block_material[block]]}
         if self._core.moves:
-            points |= {"displacement [m]": _in_space(self.displacement),
-                       "velocity [m s-1]": _in_space(self.velocity)}
-            cells["stress [Pa]"] = [self.stress]
+            points |= {"displacement_m": _in_space(self.displacement),
+                       "velocity_m_s": _in_space(self.velocity)}
+            cells["stress_Pa"] = [self.stress]
         names = {name: np.array([number, 2]) for number, name in enumerate(self.material_names)}
         return meshio.Mesh(_in_space(self.position), [("triangle", self.zones)], point_data=points, cell_data=cells,
                            field_data=names)

@@ -2,7 +2,7 @@
 
 Each number of a checkpoint is put to values that it cannot have, its hash is made anew, and the run resumed with little
 time and memory. It goes on, or ends with an error that names the file: never by a signal, and never without an end.
-PYROCLAST_EDITS: how many edits are drawn for each run (default 25; 0: all).
+PYROCLAST_EDITS: how many edits are drawn for each run (default 8; 0: all).
 """
 
 import collections
@@ -22,10 +22,10 @@ import time
 import unittest
 
 PROGRAM = os.environ["PYROCLAST"]
-EDITS = int(os.environ.get("PYROCLAST_EDITS", "25"))
+EDITS = int(os.environ.get("PYROCLAST_EDITS", "8"))
 CASES = pathlib.Path(__file__).parents[2] / "cases"
 MEMORY = 2 << 30  # bytes, of address space
-SECONDS = 2.5  # for which a run that goes on is watched
+SECONDS = 1.5  # for which a run that goes on is watched
 TRAILER = struct.Struct("<QQQ8s")
 
 PRISM = ("specimen.width=50 mm", "specimen.height=100 mm", "aggregates.d_max=12 mm", 'aggregates.sieves=["8 mm"]')

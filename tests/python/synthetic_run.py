@@ -382,7 +382,8 @@ def write_specimen(folder: Path, section: Section) -> None:
                np.column_stack([sizes, asked, np.maximum(asked - 1.0, 0.0)]))
     (folder / "specimen.json").write_text(json.dumps({
         "width_m": section.width, "height_m": section.height, "fraction_asked": 0.34,
-        "fraction_placed": 0.338, "fraction_superposed": 0.312, "blocks": len(section.block_material)}))
+        "fraction_placed": 0.338, "fraction_superposed": 0.312, "blocks": len(section.block_material),
+        "fraction": {"aggregate": 0.312, "mortar": 0.688}}))
 
 
 def _band(points: np.ndarray, section: Section) -> np.ndarray:

@@ -35,7 +35,7 @@ from pyroclast.progress import heating_course  # noqa: E402
 from pyroclast.properties import read_properties  # noqa: E402
 from pyroclast.records import record_fracture, records  # noqa: E402
 from pyroclast.run import Frame, Run, RunError, Specimen, Table  # noqa: E402
-from pyroclast.sections import count_cracks, fracture, select_frames, specimen_box  # noqa: E402
+from pyroclast.sections import count_cracks, fracture, morphology, select_frames, specimen_box  # noqa: E402
 
 
 # A fifth of what users get: what is drawn is the same, and half of the time goes into pictures' compression.
@@ -202,7 +202,11 @@ class CommandsMakePictures(FolderTest):
         folder = self.root / "specimen"
         synthetic_run.write_specimen(folder, self.section)
         (folder / "aggregates.csv").write_text("x_m,y_m,diameter_m\n")
-        self.assertEqual(self.command("specimen", folder)[0], 0)
+        (folder / "gradation.csv").unlink()
+        code, printed, _ = self.command("specimen", folder)
+        self.assertEqual((code, [Path(line).name for line in printed]), (0, ["morphology.png"]))
+        title = morphology(Specimen(folder)).axes[0].get_title()
+        self.assertTrue(title.endswith("blocks; of the area aggregate 31.2 %, mortar 68.8 %"), title)
 
     def test_compare_writes_the_file_asked_for(self):
         other, out = self.root / "other", self.root / "new" / "both.png"
