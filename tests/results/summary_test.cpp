@@ -225,6 +225,31 @@ TEST(EnergyLedger, AStageIsJudgedByItsOwnPart) {
   EXPECT_TRUE(has_results(at_the_end.summary(), 2));
 }
 
+// ---- Strengths of several stages
+// ---------------------------------------------------------------------------
+
+// Promise: a strength above that at which the specimen failed before is told as hardening; one below it, or
+// after a stage that found none, is not.
+TEST(Strengths, AFailedSpecimenHasNoGreaterOne) {
+  const auto warnings = [](const std::vector<Result::Value>& strengths) {
+    Summary summary;
+    for (const Result::Value& strength : strengths) {
+      summary.stages.push_back({"compress", Outcome::completed, {}});
+      summary.stages.back().report.results.push_back({"f_c_MPa", strength});
+    }
+    warn_of_hardening(summary);
+    std::vector<std::size_t> counts;
+    for (const auto& stage : summary.stages) counts.push_back(stage.report.warnings.size());
+    return counts;
+  };
+  using Counts = std::vector<std::size_t>;
+  const Result::Value none;
+  EXPECT_EQ(warnings({27.9, none, 33.4}), (Counts{0, 0, 1}));
+  EXPECT_EQ(warnings({27.9, 20.0, 25.0}), (Counts{0, 0, 0}));
+  EXPECT_EQ(warnings({none, 33.4}), (Counts{0, 0}));
+  EXPECT_EQ(warnings({27.9, 30.0, 29.0}), (Counts{0, 1, 0}));
+}
+
 // ---- What contacts dissipated ----------------------------------------------------------------------------
 
 // Promise: within 1 % of what contacts dissipated the ledger is sound, of either sign; beyond is a warning,

@@ -55,6 +55,20 @@ TEST(LawPoint, BeginsAtItsTemperature) {
   EXPECT_DOUBLE_EQ(point.values()[place(point, "sigma_Pa")], 4e9 * 1e-6);
   point.go({1e-6, 0.0, 20.0});
   EXPECT_DOUBLE_EQ(point.values()[place(point, "sigma_Pa")], 4e9 * 1e-6);  // it does not come back
+  LawPoint made_hot(material, OnCooling::irreversible, 20.0, 600.0);
+  made_hot.go({1e-6, 0.0});
+  EXPECT_DOUBLE_EQ(made_hot.values()[place(made_hot, "sigma_Pa")], 4e9 * 1e-6);
+}
+
+// Promise: a point goes to no temperature that a run of its law could not have.
+TEST(LawPoint, RefusesTemperaturesThatALawCannotHave) {
+  ContactMaterial material = stated_material(elastic(), kElastic);
+  material["K_n"] = Curve::table({20.0, 600.0}, {10e9, 0.0}, temperature_axis());
+  LawPoint point(material);
+  EXPECT_THROW(point.go({1e-6, 0.0, -10.0}), Error);
+  EXPECT_THROW(point.go({1e-6, 0.0, 700.0}), Error);
+  EXPECT_THROW(point.go({1e-6, 0.0, 600.0}), Error);
+  EXPECT_NO_THROW(point.go({1e-6, 0.0, 500.0}));
 }
 
 // Promise: a point goes the road of a run: what heat took does not come back on cooling, and cooling may take

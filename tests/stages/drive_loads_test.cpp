@@ -35,7 +35,8 @@ struct Look {
   SetLoad<2> top, right;
 };
 
-/// Loads of two sets at the looks of a stage: they are those of the middle of the 20 steps before.
+/// Loads of two sets at the looks of a stage: they are those of the middle of the 20 steps before, and at the
+/// end of the stage those of its end.
 std::vector<Look> loads_of(Trial& trial, int stage) {
   const double step = trial.simulation->mechanics().time_step();
   std::vector<Look> looks;
@@ -44,7 +45,8 @@ std::vector<Look> loads_of(Trial& trial, int stage) {
     const double now = trial.run.history().last("step").value();
     if (trial.run.stage_number() < stage) begin = now;
     if (trial.run.stage_number() != stage || now == begin) continue;
-    looks.push_back({(now - begin - 10.0) * step, trial.simulation->loads().on("top"),
+    const double behind = trial.run.stage_is_under_way() ? 10.0 : 0.0;
+    looks.push_back({(now - begin - behind) * step, trial.simulation->loads().on("top"),
                      trial.simulation->loads().on("right")});
   }
   return looks;

@@ -403,6 +403,7 @@ TEST(Drive, WhatCannotBeDoneIsRefusedBeforeTheRun) {
   says(refused(does("right", "force = \"0 N\"\ndirection = [1, 0]"), pressed),
        "ends nothing; a pressure does (");
   EXPECT_EQ(refused(does("right", "pressure = \"0 Pa\""), pressed), "no Error was thrown");
+  says(refused(kHeld + does("left", "pressure = \"1 MPa\"")), "all of which is held or driven along it");
   const std::string pulled =
       drive("duration = \"1 ms\"", kHeld + does("right", "force = \"1 kN\"\ndirection = [1, 1]"));
   says(refused(does("right", "force = \"0 N\"\ndirection = [1, -1]"), pulled), "along that direction");

@@ -43,8 +43,11 @@ LawPoint point_of_deck(const LawOptions& options) {
   const ContactParameters& contacts = setup.motion->contacts;
   const auto concrete = make_concrete(setup.solids, contacts, expected_block_size(setup.specimen, contacts));
   const std::string matrix = contacts.matrix + "_" + contacts.matrix;
-  return LawPoint(contact_of(concrete, options.interface.empty() ? matrix : options.interface),
-                  setup.motion->on_cooling, setup.heat.initial);
+  const auto& stress_free = setup.motion->stress_free;
+  return LawPoint(
+      contact_of(concrete, options.interface.empty() ? matrix : options.interface), setup.motion->on_cooling,
+      setup.heat.initial,
+      stress_free && !stress_free->is_field() ? stress_free->temperatures.front() : absolute_zero);
 }
 
 }  // namespace
@@ -57,8 +60,15 @@ int law(const LawOptions& options) {
   std::string csv;
   for (const Column& column : point.columns()) csv += (csv.empty() ? "" : ",") + column.name;
   csv += '\n';
-  for (const JumpPathPoint& to : read_jump_path(options.path, point.temperature()))
-    point.go(to, options.steps, [&] { csv += fmt::format("{:.12g}\n", fmt::join(point.values(), ",")); });
+  int number = 0;
+  for (const JumpPathPoint& to : read_jump_path(options.path, point.temperature())) {
+    ++number;
+    try {
+      point.go(to, options.steps, [&] { csv += fmt::format("{:.12g}\n", fmt::join(point.values(), ",")); });
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: row {}: {}", options.path.string(), number, error.what()));
+    }
+  }
   if (options.out.empty())
     fmt::print("{}", csv);
   else

@@ -5,6 +5,8 @@
 #include <iterator>
 #include <numeric>
 #include <set>
+#include <unordered_set>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -13,6 +15,12 @@
 namespace pyroclast {
 
 namespace {
+
+/// Of each gridpoint, the first place where it stands.
+void keep_first(std::vector<int>& set) {
+  std::unordered_set<int> seen;
+  std::erase_if(set, [&](int gridpoint) { return !seen.insert(gridpoint).second; });
+}
 
 using specimen::Edge;
 using specimen::Region;
@@ -263,6 +271,8 @@ Model<2> make_concrete_model(const Specimen& specimen, double thickness,
       set.insert(set.end(), a.begin(), a.end());
     }
   }
+  // a corner of a block may belong to two of the outline's edges
+  for (auto& [name, set] : model.sets) keep_first(set);
   return model;
 }
 

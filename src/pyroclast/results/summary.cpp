@@ -313,6 +313,23 @@ void add_numbers(const OrderedJson& json, const std::string& path, std::set<std:
 
 }  // namespace
 
+void warn_of_hardening(Summary& summary) {
+  std::optional<double> failed_at;
+  for (std::size_t i = 0; i < summary.stages.size(); ++i) {
+    StageReport& report = summary.stages[i].report;
+    const auto found = std::ranges::find(report.results, "f_c_MPa", &Result::name);
+    if (found == report.results.end()) continue;
+    const double* const strength = std::get_if<double>(&found->value);
+    if (strength == nullptr) continue;
+    if (failed_at && *strength > *failed_at)
+      report.warnings.push_back(fmt::format(
+          "f_c {:.2f} MPa is of a specimen that had failed at {:.2f} MPa in an earlier stage: it is "
+          "hardening of what is left, not a strength",
+          *strength, *failed_at));
+    failed_at = failed_at ? std::max(*failed_at, *strength) : *strength;
+  }
+}
+
 Summary summarize(const Run& run) {
   const History& history = run.history();
   const Simulation& simulation = run.simulation();
@@ -330,6 +347,7 @@ Summary summarize(const Run& run) {
     report = without_results(std::move(report), error);
     s.is_sound = false;
   }
+  warn_of_hardening(s);
   s.energy_error = energy_error(history, history.row_count());
   s.error_over_dissipated = error_over_dissipated(history, simulation);
   s.exchange_stress = exchange_stress(run, s);

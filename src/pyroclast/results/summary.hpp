@@ -34,6 +34,9 @@ struct Summary {
   std::vector<std::string> warnings;  ///< of the run as a whole; those of stages stand in their reports
 };
 
+/// Warns of a strength above one at which the specimen failed in an earlier stage: what failed hardens.
+void warn_of_hardening(Summary& summary);
+
 /// Gathers it from the rows so far, with a warning for each thing that keeps the result from being taken at
 /// face value.
 Summary summarize(const Run& run);

@@ -75,10 +75,10 @@ ContactMaterial stated_material(const LawTable& law, const std::vector<std::stri
   return material;
 }
 
-LawPoint::LawPoint(ContactMaterial material, OnCooling on_cooling, double temperature)
+LawPoint::LawPoint(ContactMaterial material, OnCooling on_cooling, double temperature, double hottest)
     : material_(std::move(material)),
       on_cooling_(on_cooling),
-      hottest_(temperature),
+      hottest_(std::max(temperature, hottest)),
       law_(*material_.law),
       history_(law_.history(2).size()),
       losses_(law_.losses.size()),
@@ -98,8 +98,12 @@ void LawPoint::go(const JumpPathPoint& to) {
 }
 
 void LawPoint::warm_to(double temperature) {
-  hottest_ = std::max(hottest_, temperature);
-  constants_ = material_.at(temperature, marked_by(on_cooling_, temperature, hottest_)).constants();
+  const double hottest = std::max(hottest_, temperature);
+  for (const Curve& number : material_.numbers) number(temperature);  // which refuses what it does not hold
+  const ContactProperties now = material_.at(temperature, marked_by(on_cooling_, temperature, hottest));
+  validate(now, fmt::format("at {:g} degC", temperature));
+  constants_ = now.constants();
+  hottest_ = hottest;
 }
 
 std::vector<Column> LawPoint::columns() const {

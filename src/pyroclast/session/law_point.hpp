@@ -21,8 +21,12 @@ ContactMaterial stated_material(const LawTable& law, const std::vector<std::stri
 class LawPoint {
  public:
   /// \param temperature  at which it begins, °C
+  /// \param hottest      no less than which it was so far, °C
+  ///
+  /// Throws Error, here and in `go`, for a temperature at which the law cannot be, or that a curve does not
+  /// hold.
   explicit LawPoint(ContactMaterial material, OnCooling on_cooling = OnCooling::irreversible,
-                    double temperature = kReferenceTemperature);
+                    double temperature = kReferenceTemperature, double hottest = absolute_zero);
 
   void go(const JumpPathPoint& to);
   /// In `steps` equal parts; after each of them `look` is called.

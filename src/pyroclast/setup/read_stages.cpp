@@ -48,7 +48,7 @@ std::optional<StressFree> read_stress_free(const Section& s, const std::filesyst
              "temperature at which the body was put together, and nothing is strained: thermal strain counts "
              "from there, and the hottest that was so far is no less; without it 20 °C");
   if (!s.is_table("stress_free"))
-    return StressFree{{}, {s.quantity("stress_free", unit::temperature, range, "")}};
+    return StressFree{{}, {s.quantity("stress_free", unit::temperature, range, "")}, ""};
   const Section frame = s.section("stress_free", "temperature of each gridpoint, as another run left it");
   const std::string name =
       frame.text("frame",
@@ -59,7 +59,9 @@ std::optional<StressFree> read_stress_free(const Section& s, const std::filesyst
   frame.names_file("frame", file);
   frame.needs_file(file.parent_path() / "mesh.h5");
   try {
-    return read_frame_temperatures(file);
+    StressFree field = read_frame_temperatures(file);
+    field.place = fmt::format("{}: coupling.stress_free.frame", frame.where("frame"));
+    return field;
   } catch (const Error& error) {
     frame.error("frame", error.what());
     return std::nullopt;
@@ -110,7 +112,10 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
     if (tables.coupling_table->keys() == std::vector<std::string>{"stress_free"})
       tables.coupling_table.reset();
     else
-      root.warn("coupling", "no stage uses it: none changes temperatures beside the mechanics");
+      root.warn(
+          "coupling",
+          fmt::format("no stage exchanges temperatures with the mechanics, so that nothing of it acts{}",
+                      tables.coupling_table->has("stress_free") ? " but stress_free" : ""));
   }
   if (tables.coupling_table) tables.coupling = read_coupling(*tables.coupling_table);
   read.any_moves = moves;

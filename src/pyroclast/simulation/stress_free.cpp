@@ -59,10 +59,11 @@ std::vector<double> stress_free_gridpoints(const StressFree& field, const Model<
       const Vec<2>& at = model.position[g];
       const int place = places.nearest(at, reach);
       if (place < 0)
-        throw Error(
-            fmt::format("coupling.stress_free: the other run has no gridpoint within {:.3g} mm of ({:.4g}, "
-                        "{:.4g}) mm; its body must cover the specimen",
-                        1e3 * reach, 1e3 * at[0], 1e3 * at[1]));
+        throw Error(fmt::format(
+            "{}: the other run has no gridpoint within {:.3g} mm of ({:.4g}, {:.4g}) mm; its body must "
+            "cover the specimen",
+            field.place.empty() ? "coupling.stress_free" : field.place, 1e3 * reach, 1e3 * at[0],
+            1e3 * at[1]));
       temperature[g] = field.temperatures[place];
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "pyroclast/base/vec.hpp"
@@ -12,6 +13,7 @@ namespace pyroclast {
 struct StressFree {
   std::vector<Vec<2>> places;        ///< gridpoints of the other run, m; none for one temperature
   std::vector<double> temperatures;  ///< of each place, or the one, °C
+  std::string place;                 ///< in the deck, for messages
 
   bool is_field() const { return !places.empty(); }
   Interval range() const;

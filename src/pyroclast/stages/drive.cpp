@@ -302,6 +302,18 @@ void require_free(const Model<2>& model, const Supports<2>& supports, const std:
             place, "xy"[c], set, "xy"[c], supports.place_of(g, c)));
 }
 
+/// Whether supports bear all of a pressure on a set.
+bool is_borne(const Model<2>& model, const Supports<2>& supports, const std::string& set) {
+  for (const auto& face : faces_in(model, model.set(set))) {
+    const Vec<2> along = model.position[face.gridpoints[1]] - model.position[face.gridpoints[0]];
+    const Vec<2> normal{{along[1], -along[0]}};
+    for (const int g : face.gridpoints)
+      for (const int c : {0, 1})
+        if (std::abs(normal[c]) > kParallel * norm(normal) && !supports.holds(g, c)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void Drive::check(const Simulation& simulation, Acting<2>& acting) const {
@@ -331,8 +343,14 @@ void Drive::check(const Simulation& simulation, Acting<2>& acting) const {
         std::ranges::find_if(keys_.actions, [&](const Action& a) { return a.set == set && !is_motion(a); });
     acting.loads[set] = {loaded.second, place->place};
   }
-  for (const auto& [set, lasting] : acting.loads)
+  for (const auto& [set, lasting] : acting.loads) {
     require_free(model, acting.supports, set, lasting.load.force, lasting.place);
+    if (lasting.load.pressure != 0.0 && is_borne(model, acting.supports, set))
+      throw Error(
+          fmt::format("{}: a pressure acts on set \"{}\", all of which is held or driven along it, so that "
+                      "it moves nothing",
+                      lasting.place, set));
+  }
   if (keys_.control) {
     const RecordParameters& record = simulation.record(keys_.control->record).parameters();
     for (const std::string& set : {record.set, record.other})
