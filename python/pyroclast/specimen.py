@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core, mesh_cells
+from . import _core, label_image, mesh_cells
 from .errors import Error
 from .units import Quantity
 
@@ -105,13 +105,14 @@ class Specimen:
         return cls(made)
 
     @classmethod
-    def from_image(cls, image: ArrayLike, pixel: str | Quantity, phases: Mapping[Any, str | None], *, blocks: int,
-                   seed: int = 1, shortest_edge: float = 0.2, relaxation: int = 0,
+    def from_image(cls, image: ArrayLike | str | Path, pixel: str | Quantity, phases: Mapping[Any, str | None], *,
+                   blocks: int, seed: int = 1, shortest_edge: float = 0.2, relaxation: int = 0,
                    radius_spread: float = 0.0) -> Specimen:
         """A specimen of Voronoi blocks, each of the phase that most of its pixels are of.
 
         image: (rows, columns) of labels, the first row on top: the rectangle from [0, 0] to columns and rows times
-            `pixel`.
+            `pixel`. Or the name of a file that holds it: .npy, or .png and .tif of one page whose grey values, or
+            numbers of colours of a palette, are the labels.
         pixel: the side of one, with its unit ("0.2 mm").
         phases: the name of each label's phase; None: there is nothing, so that blocks there are left out, and pieces
             that do not hang together with the largest.
@@ -119,13 +120,13 @@ class Specimen:
         seed, shortest_edge, relaxation, radius_spread: as a deck's keys of these names.
 
         `agreement` tells which share of the image is of the phase of its block. Blocks must be smaller than what they
-        shall show, and larger than a pixel; a smaller one is of the pixel in its middle.
+        shall show, and larger than a pixel; a smaller one is of the pixel in its middle. Warns of a phase that pixels
+        are of and no block, which keeps its place in `phases`, and of an image that is not 10 mm to 10 m wide and high.
 
-        Raises Error for a label without a name, naming its pixel, and for an image without anything.
+        Raises Error for labels without a name, telling how many pixels have each label and where the first is, for
+        pixels that are masked or NaN, for an image without anything, and for a file that is no such image.
         """
-        pixels = np.asarray(image)
-        if pixels.ndim != 2:
-            raise Error(f"an image must be (rows, columns), not {pixels.shape}")
+        pixels, source = label_image.pixels_of(image)
         side = _length("pixel", pixel, "0.2 mm")
         names = list(dict.fromkeys(name for name in phases.values() if name is not None))
         shown = np.full(pixels.shape, -2)
@@ -133,8 +134,10 @@ class Specimen:
             shown[pixels == label] = -1 if name is None else names.index(name)
         if (shown == -2).any():
             row, column = np.argwhere(shown == -2)[0]
-            raise Error(f"pixel [{row}, {column}] has the label {pixels[row, column].item()!r}, for which there is no "
-                        f"phase; there are {', '.join(map(repr, phases))}")
+            raise Error(f"{source}pixel [{row}, {column}] has the label {pixels[row, column].item()!r}, for which "
+                        f"there is no phase; {np.count_nonzero(shown == -2)} of {shown.size} pixels have none. The "
+                        f"image has "
+                        f"{label_image.counted(pixels)}; phases has {', '.join(map(repr, phases)) or 'none'}")
         rows, columns = shown.shape
         made = _core.Specimen.rectangle(columns * side, rows * side, blocks, shortest_edge, relaxation, radius_spread,
                                         seed)
@@ -145,12 +148,18 @@ class Specimen:
             phase = _one_piece(cells, phase, votes)
         kept = np.flatnonzero(phase >= 0)
         if not len(kept):
-            raise Error("there is nothing in the image that is as large as a block")
+            raise Error(f"{source}there is nothing in the image that is as large as a block; it has "
+                        f"{label_image.counted(pixels)}")
         alike = float(np.take_along_axis(votes, phase[:, None] + 1, axis=1).sum() / votes.sum())
         used, numbers = np.unique(np.concatenate([cells[i] for i in kept]), return_inverse=True)
         ends = np.cumsum([len(cells[i]) for i in kept])[:-1]
         whole = _from_cells(made.vertices[used], np.split(numbers, ends), phase[kept], dict(enumerate(names)), "m",
                             None)
+        for number, name in enumerate(names):
+            if (count := np.count_nonzero(shown == number)) and not (phase[kept] == number).any():
+                warnings.warn(f"{source}phase {name!r} is of {count} pixel{'' if count == 1 else 's'} and of no block: "
+                              f"its share is 0. Take more blocks, or another phase for its label", stacklevel=2)
+        _warn_of_size(whole, f"{source}the image has {columns} x {rows} pixels of {pixel}")
         return cls(whole, alike)
 
     @classmethod

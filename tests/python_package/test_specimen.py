@@ -492,6 +492,70 @@ class Images(Case):
         speckled = np.where(np.random.default_rng(2).random((60, 60)) < 0.25, 0, 1)
         pyroclast.Specimen.from_image(speckled, "1 mm", {0: None, 1: "mortar"}, blocks=1500)
 
+    def test_a_file_is_opened_by_its_name(self):
+        from PIL import Image
+        folder, image, names = self.folder(), self.image().astype(np.uint8), {0: "mortar", 1: "stone"}
+        straight = pyroclast.Specimen.from_image(image, 1 * mm, names, blocks=100)
+        np.save(folder / "slice.npy", image)
+        Image.fromarray(image).save(folder / "slice.png")
+        Image.fromarray(image.astype(np.int32)).save(folder / "slice.tif")
+        with_palette = Image.fromarray(image).convert("P")
+        with_palette.putpalette([255, 0, 0, 0, 255, 0])
+        with_palette.save(folder / "palette.png")
+        Image.fromarray(image.astype(bool)).save(folder / "bits.png")
+        for name in ("slice.npy", "slice.png", "slice.tif", "bits.png"):
+            made = pyroclast.Specimen.from_image(folder / name, 1 * mm, names, blocks=100)
+            np.testing.assert_array_equal(made.phase, straight.phase)
+        made = pyroclast.Specimen.from_image(str(folder / "palette.png"), 1 * mm, names, blocks=100)
+        np.testing.assert_array_equal(made.phase, straight.phase)
+        Image.fromarray(np.zeros((9, 9, 3), np.uint8)).save(folder / "colours.png")
+        Image.fromarray(image).save(folder / "pages.tif", save_all=True, append_images=[Image.fromarray(image)])
+        (folder / "broken.png").write_text("no picture")
+        (folder / "broken.npy").write_text("no array")
+        for name, told in (("colours.png", "colours.png: its pixels are RGB"), ("pages.tif", "holds 2 pages"),
+                           ("broken.png", "broken.png: "), ("broken.npy", "broken.npy: "), ("none.png", "No such file"),
+                           ("slice.jpg", "read from .npy, .png, .tif")):
+            with self.assertRaisesRegex(pyroclast.Error, told):
+                pyroclast.Specimen.from_image(folder / name, 1 * mm, names, blocks=100)
+
+    def test_masked_pixels_and_nan_are_told(self):
+        image = self.image().astype(float)
+        image[7, 5:8] = np.nan
+        for pixels, told in ((image, r"3 of 7200 pixels are NaN, the first is \[7, 5\].*label of their own"),
+                             (np.ma.masked_invalid(image), r"3 of 7200 pixels are masked, .*\[7, 5\].*filled"),
+                             (image[:, :6], r"1 of 720 pixels is NaN")):
+            with self.assertRaisesRegex(pyroclast.Error, told):
+                pyroclast.Specimen.from_image(pixels, 1 * mm, {0: "mortar", 1: "stone"}, blocks=50)
+        whole = np.ma.array(self.image(), mask=False)
+        self.assertEqual(len(pyroclast.Specimen.from_image(whole, 1 * mm, {0: "a", 1: "b"}, blocks=50).cells), 50)
+
+    def test_labels_are_counted(self):
+        image = self.image()
+        image[100, 30] = 7
+        stones = np.count_nonzero(image == 1)
+        with self.assertRaisesRegex(pyroclast.Error, rf"pixel \[100, 30\] has the label 7.*1 of 7200 pixels have none.*"
+                                                     rf"{stones} pixels\), 7 \(1 pixel\); phases has 0, 1"):
+            pyroclast.Specimen.from_image(image, 1 * mm, {0: "mortar", 1: "stone"}, blocks=50)
+        with self.assertRaisesRegex(pyroclast.Error, "and 7190 others"):
+            pyroclast.Specimen.from_image(np.arange(7200).reshape(120, 60), 1 * mm, {0: "a"}, blocks=50)
+
+    def test_a_phase_of_one_pixel_is_warned_of_and_does_not_fail(self):
+        image = self.image()
+        image[100, 30] = 2
+        with self.assertWarnsRegex(UserWarning, "phase 'pore' is of 1 pixel and of no block") as warned:
+            made = pyroclast.Specimen.from_image(image, 1 * mm, {0: "mortar", 1: "stone", 2: "pore"}, blocks=100)
+        self.assertEqual(warned.filename, __file__)
+        self.assertEqual((made.phases, made.shares["pore"]), (["mortar", "stone", "pore"], 0.0))
+
+    def test_the_size_of_pixels_is_checked(self):
+        for pixel, told in (("0 mm", "pixel is 0 mm; it must be greater than 0"), (-1 * mm, "greater than 0"),
+                            ("nan mm", "pixel: .*not finite")):
+            with self.assertRaisesRegex(pyroclast.Error, told):
+                pyroclast.Specimen.from_image(self.image(), pixel, {0: "a", 1: "b"}, blocks=50)
+        for pixel in ("1 m", "1 um"):
+            with self.assertWarnsRegex(UserWarning, f"usually .*: the image has 60 x 120 pixels of {pixel}"):
+                pyroclast.Specimen.from_image(self.image(), pixel, {0: "a", 1: "b"}, blocks=50)
+
     def test_what_is_wrong_is_told(self):
         for image, pixel, phases, told in (
                 (self.image(), 1e-3, {0: "a", 1: "b"}, "a unit of length is needed"),
