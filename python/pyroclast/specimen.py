@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Hashable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core
+from . import _core, label_image, mesh_cells
 from .errors import Error
 from .units import Quantity
 
@@ -20,9 +21,8 @@ if TYPE_CHECKING:
 
 Label = Union[int, str]
 
-_MESH_CELLS = ("triangle", "quad", "polygon")
-_LESS_THAN_CELLS = ("vertex", "line")
 _FLAT = 1e-9  # of the size of a mesh
+_USUAL = (0.01, 10.0)  # width and height of a body, m, as for a deck
 
 
 class Specimen:
@@ -39,68 +39,80 @@ class Specimen:
         self._agreement = agreement
 
     @classmethod
-    def from_arrays(cls, vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any], labels: Sequence[Label],
-                    phases: Mapping[Any, str] | None = None) -> Specimen:
+    def from_arrays(cls, vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
+                    labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None = None, *,
+                    unit: str | Quantity, join: str | Quantity | None = None) -> Specimen:
         """A specimen of cells that are made elsewhere.
 
-        vertices: (n, 2), m.
+        vertices: (n, 2), in `unit`.
         cells: for each the numbers of its vertices in turn, from 0, in either sense; neighbours share vertices.
-        labels: of each cell, the name of its phase, or what `phases` has the name for.
+        labels: of each cell, the name of its phase, or what `phases` has the name for; an array may have any shape
+            that has one label for each cell, such as (cells, 1).
         phases: the name of each label's phase, in the order that `phase` counts in; None: labels are names.
+        unit: of the vertices: "m", "mm", ...
+        join: vertices nearer to each other than this length become one, and those nearer to an edge of a cell that
+            does not have them become corners of it ("1 um"); None: cells share the vertices that they name.
 
         Each phase needs its tables of [materials] and [contacts]. Where cells leave places free, there are holes;
-        `sides` has what the sides are called.
+        `sides` has what the sides are called. Messages count cells and vertices from 0. Warns of an outline that is
+        not 10 mm to 10 m wide and high.
 
         Raises Error, naming the cell, where one is not convex, names a vertex that there is not, has a label without a
         name or does not fit together with its neighbours; and where the cells are not one piece.
         """
-        at = np.asarray(vertices, float)
-        if at.ndim != 2 or at.shape[1] != 2:
-            raise Error(f"vertices must be (n, 2), not {at.shape}")
-        rows = [_corners(cell, number) for number, cell in enumerate(cells)]
-        if not rows:
-            raise Error("there are no cells")
-        names, phase = _named(labels, phases)
-        first = np.cumsum([0, *map(len, rows)]).astype(np.int32)
-        return cls(_core.Specimen.from_cells(at, np.concatenate(rows), first, names, phase))
+        made = _from_cells(vertices, cells, labels, phases, unit, join)
+        _warn_of_size(made, f"the vertices are in {_unit_name(unit)}")
+        return cls(made)
 
     @classmethod
-    def from_meshio(cls, mesh: meshio.Mesh, data: str, phases: Mapping[Any, str]) -> Specimen:
-        """A specimen of the triangles, quads and polygons of a mesh, in m; its lines and vertices are left out.
+    def from_meshio(cls, mesh: meshio.Mesh, data: str | None = None, phases: Mapping[Any, str] | None = None, *,
+                    unit: str | Quantity, join: str | Quantity | None = None) -> Specimen:
+        """A specimen of the triangles, quads and polygons of a mesh; its lines and vertices are left out. Of triangles
+        and quads of a higher order the corners count, so that their sides are straight.
 
-        data: name of the cell data that label the cells.
-        phases: the name of each label's phase.
+        data: name of the cell data that label the cells, such as "gmsh:physical"; None: the cell sets say what they
+            are of (Abaqus *ELSET), or where there are none the physical groups of gmsh.
+        phases: the name of each label's phase; a label is a value of the cell data, the name of a cell set or that of
+            a physical group. None: cell sets and physical groups are called as their phases are. Of cell sets those
+            count that are named here.
+        unit: of the points: "m", "mm", ...; a mesh does not say it.
+        join: as for `from_arrays`: joins parts of a mesh that do not share points.
 
-        Raises Error for other cells, for a mesh that does not lie in a plane z = const., for cell data that are not
-        there, and as `from_arrays`.
+        Messages count from 0 the cells that are taken, in their order.
+
+        Raises Error for other cells, for a mesh that does not lie in a plane z = const., for cell data or sets that are
+        not there, for a cell in no set or in two, and as `from_arrays`.
         """
         points = np.asarray(mesh.points, float)
-        size = float(np.ptp(points, axis=0).max())
-        if points.shape[1] == 3 and np.ptp(points[:, 2]) > _FLAT * size:
-            raise Error("the mesh does not lie in a plane z = const.")
-        if data not in mesh.cell_data:
-            raise Error(f"the mesh has no cell data {data!r}; it has {', '.join(mesh.cell_data) or 'none'}")
+        size = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
+        if points.ndim == 2 and points.shape[1] == 3 and len(points) and np.ptp(points[:, 2]) > _FLAT * size:
+            raise Error(f"the mesh does not lie in a plane z = const.: z goes from {points[:, 2].min():g} to "
+                        f"{points[:, 2].max():g}; turn it into one")
+        taken: list[int] = []
         cells: list[NDArray[Any]] = []
-        labels: list[Any] = []
-        for block, values in zip(mesh.cells, mesh.cell_data[data]):
-            if block.type in _LESS_THAN_CELLS:
+        for number, block in enumerate(mesh.cells):
+            if (corners := mesh_cells.corners_of_type(block.type)) is None:
                 continue
-            if not block.type.startswith(_MESH_CELLS) or block.type[-1:].isdigit() and block.type[:4] != "poly":
-                raise Error(f"the mesh has cells of type {block.type!r}; blocks can be {', '.join(_MESH_CELLS)}")
-            cells += list(block.data)
-            labels += np.asarray(values).tolist()
-        used, numbers = np.unique(np.concatenate(cells) if cells else [], return_inverse=True)
+            taken.append(number)
+            cells += [np.asarray(cell)[:corners or None] for cell in block.data]
+        labels, names = mesh_cells.labels_of(mesh, data, phases, taken)
+        if not cells:
+            raise Error(f"the mesh has no cells that can be blocks: {', '.join(mesh_cells.KINDS)}")
+        used, numbers = np.unique(np.concatenate(cells), return_inverse=True)
         ends = np.cumsum([len(cell) for cell in cells])[:-1]
-        return cls.from_arrays(points[used.astype(int), :2], np.split(numbers, ends) if cells else [], labels, phases)
+        made = _from_cells(points[used.astype(int), :2], np.split(numbers, ends), labels, names, unit, join)
+        _warn_of_size(made, f"the points of the mesh are in {_unit_name(unit)}")
+        return cls(made)
 
     @classmethod
-    def from_image(cls, image: ArrayLike, pixel: str | Quantity, phases: Mapping[Any, str | None], *, blocks: int,
-                   seed: int = 1, shortest_edge: float = 0.2, relaxation: int = 0,
+    def from_image(cls, image: ArrayLike | str | Path, pixel: str | Quantity, phases: Mapping[Any, str | None], *,
+                   blocks: int, seed: int = 1, shortest_edge: float = 0.2, relaxation: int = 0,
                    radius_spread: float = 0.0) -> Specimen:
         """A specimen of Voronoi blocks, each of the phase that most of its pixels are of.
 
         image: (rows, columns) of labels, the first row on top: the rectangle from [0, 0] to columns and rows times
-            `pixel`.
+            `pixel`. Or the name of a file that holds it: .npy, or .png and .tif of one page whose grey values, or
+            numbers of colours of a palette, are the labels.
         pixel: the side of one, with its unit ("0.2 mm").
         phases: the name of each label's phase; None: there is nothing, so that blocks there are left out, and pieces
             that do not hang together with the largest.
@@ -108,22 +120,24 @@ class Specimen:
         seed, shortest_edge, relaxation, radius_spread: as a deck's keys of these names.
 
         `agreement` tells which share of the image is of the phase of its block. Blocks must be smaller than what they
-        shall show, and larger than a pixel; a smaller one is of the pixel in its middle.
+        shall show, and larger than a pixel; a smaller one is of the pixel in its middle. Warns of a phase that pixels
+        are of and no block, which keeps its place in `phases`, and of an image that is not 10 mm to 10 m wide and high.
 
-        Raises Error for a label without a name, naming its pixel, and for an image without anything.
+        Raises Error for labels without a name, telling how many pixels have each label and where the first is, for
+        pixels that are masked or NaN, for an image without anything, and for a file that is no such image.
         """
-        pixels = np.asarray(image)
-        if pixels.ndim != 2:
-            raise Error(f"an image must be (rows, columns), not {pixels.shape}")
-        side = _length(pixel)
+        pixels, source = label_image.pixels_of(image)
+        side = _length("pixel", pixel, "0.2 mm")
         names = list(dict.fromkeys(name for name in phases.values() if name is not None))
         shown = np.full(pixels.shape, -2)
         for label, name in phases.items():
             shown[pixels == label] = -1 if name is None else names.index(name)
         if (shown == -2).any():
             row, column = np.argwhere(shown == -2)[0]
-            raise Error(f"pixel [{row}, {column}] has the label {pixels[row, column].item()!r}, for which there is no "
-                        f"phase; there are {', '.join(map(repr, phases))}")
+            raise Error(f"{source}pixel [{row}, {column}] has the label {pixels[row, column].item()!r}, for which "
+                        f"there is no phase; {np.count_nonzero(shown == -2)} of {shown.size} pixels have none. The "
+                        f"image has "
+                        f"{label_image.counted(pixels)}; phases has {', '.join(map(repr, phases)) or 'none'}")
         rows, columns = shown.shape
         made = _core.Specimen.rectangle(columns * side, rows * side, blocks, shortest_edge, relaxation, radius_spread,
                                         seed)
@@ -134,12 +148,19 @@ class Specimen:
             phase = _one_piece(cells, phase, votes)
         kept = np.flatnonzero(phase >= 0)
         if not len(kept):
-            raise Error("there is nothing in the image that is as large as a block")
+            raise Error(f"{source}there is nothing in the image that is as large as a block; it has "
+                        f"{label_image.counted(pixels)}")
         alike = float(np.take_along_axis(votes, phase[:, None] + 1, axis=1).sum() / votes.sum())
         used, numbers = np.unique(np.concatenate([cells[i] for i in kept]), return_inverse=True)
         ends = np.cumsum([len(cells[i]) for i in kept])[:-1]
-        whole = cls.from_arrays(made.vertices[used], np.split(numbers, ends), phase[kept], dict(enumerate(names)))
-        return cls(whole._core, alike)
+        whole = _from_cells(made.vertices[used], np.split(numbers, ends), phase[kept], dict(enumerate(names)), "m",
+                            None)
+        for number, name in enumerate(names):
+            if (count := np.count_nonzero(shown == number)) and not (phase[kept] == number).any():
+                warnings.warn(f"{source}phase {name!r} is of {count} pixel{'' if count == 1 else 's'} and of no block: "
+                              f"its share is 0. Take more blocks, or another phase for its label", stacklevel=2)
+        _warn_of_size(whole, f"{source}the image has {columns} x {rows} pixels of {pixel}")
+        return cls(whole, alike)
 
     @classmethod
     def of(cls, deck: Deck | str | Path, seed: int | None = None) -> Specimen:
@@ -149,9 +170,16 @@ class Specimen:
         return cls(_core.Specimen.of_deck(as_deck(deck)._resolved(Scratch()), seed))
 
     @classmethod
-    def read(cls, file: str | Path) -> Specimen:
-        """From a file as `save` writes it. Raises Error, which names the file."""
-        return cls(_core.Specimen.read(str(file)))
+    def read(cls, file: str | Path, join: str | Quantity | None = None) -> Specimen:
+        """From a file as `save` writes it, or with another unit in the name of its vertices (`vertices_mm`).
+
+        join: as for `from_arrays`.
+
+        Raises Error, which names the file.
+        """
+        made = _core.Specimen.read(str(file), _join(join))
+        _warn_of_size(made, str(file))
+        return cls(made)
 
     def save(self, file: str | Path) -> None:
         """Writes the blocks as JSON; a deck reads them by `[specimen] shape = "cells"` and `file`."""
@@ -214,34 +242,82 @@ class Specimen:
         return f"<Specimen of {len(self._core.phase)} blocks: {shares}>"
 
 
+def _from_cells(vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
+                labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None, unit: str | Quantity,
+                join: str | Quantity | None) -> _core.Specimen:
+    metres = _length("unit", unit if isinstance(unit, Quantity) else f"1 {unit}", "mm")
+    at = np.asarray(vertices, float)
+    if at.ndim != 2 or at.shape[1] != 2:
+        raise Error(f"vertices must be (n, 2), not {at.shape}")
+    if metres != 1.0:
+        at = at * metres if metres > 1.0 else at / (1.0 / metres)  # the nearest double of decimals of mm
+    rows = [_corners(cell, number) for number, cell in enumerate(cells)]
+    if not rows:
+        raise Error("there are no cells")
+    names, phase = _named(labels, phases, len(rows))
+    first = np.cumsum([0, *map(len, rows)]).astype(np.int32)
+    return _core.Specimen.from_cells(at, np.concatenate(rows), first, names, phase, _join(join))
+
+
 def _corners(cell: ArrayLike, number: int) -> NDArray[np.int32]:
     corners = np.asarray(cell)
     if corners.ndim != 1 or corners.dtype.kind not in "iu":
-        raise Error(f"cell {number} must be a list of vertices by their numbers")
+        raise Error(f"cell {number} (from 0) must be a list of vertices by their numbers")
     if len(corners) and not 0 <= corners.min() <= corners.max() < 2**31:
-        raise Error(f"cell {number} names vertex {corners.min() if corners.min() < 0 else corners.max()}, which cannot "
-                    "be")
+        raise Error(f"cell {number} (from 0) names vertex {corners.min() if corners.min() < 0 else corners.max()}, "
+                    "which cannot be")
     return corners.astype(np.int32)
 
 
-def _named(labels: Sequence[Label], phases: Mapping[Any, str] | None) -> tuple[list[str], NDArray[np.int32]]:
+def _named(labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None,
+           cells: int) -> tuple[list[str], NDArray[np.int32]]:
     """Names of phases, and of each cell an index into them."""
-    values: list[Any] = np.asarray(labels).tolist() if isinstance(labels, np.ndarray) else list(labels)
-    names = list(dict.fromkeys(values if phases is None else phases.values()))
+    values: list[Any] = labels.ravel().tolist() if isinstance(labels, np.ndarray) else list(labels)
+    if len(values) != cells:
+        shape = f", in shape {labels.shape}" if isinstance(labels, np.ndarray) else ""
+        raise Error(f"there are {cells} cells, but the labels of {len(values)}{shape}")
+    values = [label.item() if isinstance(label, np.ndarray) and label.size == 1 else label for label in values]
+    values = [label[0] if isinstance(label, (list, tuple)) and len(label) == 1 else label for label in values]
+    names = list(dict.fromkeys(label for label in values if isinstance(label, str))
+                 if phases is None else dict.fromkeys(phases.values()))
     for number, label in enumerate(values):
         if phases is None and not isinstance(label, str):
-            raise Error(f"cell {number} has the label {label!r}; say by phases={{{label!r}: ...}} what it is called")
-        if phases is not None and label not in phases:
-            raise Error(f"cell {number} has the label {label!r}, for which there is no phase; there are "
-                        f"{', '.join(map(repr, phases))}")
+            raise Error(f"cell {number} (from 0) has the label {label!r}; say by phases={{{label!r}: ...}} what it is "
+                        "called")
+        if phases is not None and (not isinstance(label, Hashable) or label not in phases):
+            raise Error(f"cell {number} (from 0) has the label {label!r}, for which there is no phase; there are "
+                        f"{', '.join(map(repr, phases)) or 'none'}")
     place = {name: i for i, name in enumerate(names)}
     return names, np.array([place[label if phases is None else phases[label]] for label in values], np.int32)
 
 
-def _length(pixel: str | Quantity) -> float:
-    if isinstance(pixel, (int, float)):
-        raise Error(f'pixel: a unit of length is needed, e.g. "0.2 mm"; got {pixel!r}')
-    return _core.convert(str(pixel), "m")
+def _length(name: str, value: str | Quantity, example: str) -> float:
+    """In m, positive."""
+    if not isinstance(value, (str, Quantity)):
+        raise Error(f'{name}: a unit of length is needed, e.g. "{example}"; got {value!r}')
+    try:
+        metres = _core.convert(str(value), "m")
+    except Error as error:
+        raise Error(f"{name}: {error}") from None
+    if not metres > 0.0:
+        raise Error(f"{name} is {value}; it must be greater than 0")
+    return metres
+
+
+def _join(join: str | Quantity | None) -> float:
+    return 0.0 if join is None else _length("join", join, "1 um")
+
+
+def _unit_name(unit: str | Quantity) -> str:
+    return unit if isinstance(unit, str) else unit.unit if unit.value == 1.0 else str(unit)
+
+
+def _warn_of_size(made: _core.Specimen, why: str) -> None:
+    """Warns the caller's caller of an outline that is not as large as specimens are."""
+    width, height = made.size
+    if min(width, height) < _USUAL[0] or max(width, height) > _USUAL[1]:
+        warnings.warn(f"the outline is {width:.6g} m wide and {height:.6g} m high, but usually it is between "
+                      f"{_USUAL[0]:g} and {_USUAL[1]:g} m: {why}", stacklevel=3)
 
 
 def _votes(made: _core.Specimen, shown: NDArray[Any], side: float, phases: int) -> NDArray[np.int64]:

@@ -14,6 +14,67 @@ from small import PROGRAM, Case, deck, plate
 SQUARES = [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [4, 5, 9, 8], [6, 7, 11, 10], [8, 9, 13, 12], [9, 10, 14, 13],
            [10, 11, 15, 14]]
 
+HEATED = """title = "case"
+[specimen]
+{}
+[materials.mortar]
+density = "2200 kg/m3"
+conductivity = "1.5 W/(m K)"
+specific_heat = "900 J/(kg K)"
+[heat]
+field = "conduction"
+[[heat.boundaries]]
+faces = "outline"
+kind = "temperature"
+temperature = "100 degC"
+[[stages]]
+kind = "conduct"
+duration = "1 min"
+interval = "20 s"
+[output]
+frame_interval = "1 min"
+"""  # a body that is heated, with what [specimen] and more tables say
+TESS = """***tess
+ **format
+   3.4
+ **general
+   2 standard
+ **cell
+  2
+ **vertex
+ 6
+   1  0 0 0     0
+   2  1 0 0     0
+   3  2 0 0     0
+   4  2 1 0     0
+   5  1 1 0     0
+   6  0 1 0     0
+ **face
+ 2
+   1 4 1 2 5 6
+     4 1 1 1 1
+    0 0 0 1
+     0 -1 0 0 0
+   2 4 2 3 4 5
+     4 1 1 1 1
+    0 0 0 1
+     0 -1 0 0 0
+ **domain
+  *general
+   cube
+  *vertex
+   4
+   1  0 0 0 x1
+      1 1
+   2  2 0 0 x2
+      1 2
+   3  2 1 0 x3
+      1 3
+   4  0 1 0 x4
+      1 4
+***end
+"""
+
 
 def squares(size=0.02) -> np.ndarray:
     """Corners of three by three squares, of which SQUARES leaves the middle one out."""
@@ -23,11 +84,12 @@ def squares(size=0.02) -> np.ndarray:
 class Arrays(Case):
     def refused(self, told, vertices=None, cells=SQUARES, labels=("mortar",) * 8, **more):
         with self.assertRaisesRegex(pyroclast.Error, told):
-            pyroclast.Specimen.from_arrays(squares() if vertices is None else vertices, cells, labels, **more)
+            pyroclast.Specimen.from_arrays(squares() if vertices is None else vertices, cells, labels,
+                                           **{"unit": "m", **more})
 
     def test_cells_become_a_specimen_with_its_outline_and_holes(self):
         labels = ["mortar"] * 7 + ["stone"]
-        made = pyroclast.Specimen.from_arrays(squares(), [SQUARES[0][::-1], *SQUARES[1:]], labels)
+        made = pyroclast.Specimen.from_arrays(squares(), [SQUARES[0][::-1], *SQUARES[1:]], labels, unit="m")
         self.assertEqual(made.sides, ["bottom", "right", "top", "left", "hole_1"])
         self.assertAlmostEqual(made.area, 8 * 0.02**2)
         self.assertAlmostEqual(made.shares["stone"], 1 / 8)
@@ -35,27 +97,103 @@ class Arrays(Case):
         np.testing.assert_array_equal(made.vertices, squares())
         self.assertEqual(sorted(made.cells[0].tolist()), sorted(SQUARES[0]))
         tilted = squares() + np.array([0.3, 0.1]) + squares()[:, ::-1] * [0.0, 0.5]
-        self.assertEqual(pyroclast.Specimen.from_arrays(tilted, SQUARES, np.arange(8) % 2, {0: "a", 1: "b"}).sides,
+        self.assertEqual(pyroclast.Specimen.from_arrays(tilted, SQUARES, np.arange(8) % 2, {0: "a", 1: "b"},
+                                                        unit="m").sides,
                          ["side_1", "side_2", "side_3", "side_4", "hole_1"])
 
     def test_what_does_not_fit_is_told_by_cell(self):
-        self.refused("cell 2 names vertex 99", cells=[*SQUARES[:2], [2, 3, 99, 6], *SQUARES[3:]])
-        self.refused("cell 2 names vertex -1", cells=[*SQUARES[:2], [2, 3, -1, 6], *SQUARES[3:]])
-        self.refused("cell 1 must be a list", cells=[SQUARES[0], [0.5, 1, 2], *SQUARES[2:]])
-        self.refused("cell 1 has 2 corners", cells=[SQUARES[0], [1, 2], *SQUARES[2:]])
-        self.refused("cell 3 has the label 1", labels=["mortar"] * 3 + [1] * 5)
-        self.refused("cell 0 has the label 'mortar'", phases={1: "mortar"})
-        self.refused("phases of 7", labels=["mortar"] * 7)
-        self.refused("not one piece|meet in one point", cells=[SQUARES[0], SQUARES[-1]], labels=["mortar"] * 2)
+        self.refused("cell 2 .from 0. names vertex 99", cells=[*SQUARES[:2], [2, 3, 99, 6], *SQUARES[3:]])
+        self.refused("cell 2 .from 0. names vertex -1", cells=[*SQUARES[:2], [2, 3, -1, 6], *SQUARES[3:]])
+        self.refused("cell 1 .from 0. must be a list", cells=[SQUARES[0], [0.5, 1, 2], *SQUARES[2:]])
+        self.refused("cell 1 .from 0. has 2 corners", cells=[SQUARES[0], [1, 2], *SQUARES[2:]])
+        self.refused("cell 3 .from 0. has the label 1", labels=["mortar"] * 3 + [1] * 5)
+        self.refused("cell 0 .from 0. has the label 'mortar'", phases={1: "mortar"})
+        self.refused("8 cells, but the labels of 7", labels=["mortar"] * 7)
+        self.refused("2 pieces", cells=[SQUARES[0], SQUARES[-1]], labels=["mortar"] * 2)
         self.refused("no cells", cells=[], labels=[])
         self.refused("must be .n, 2.", vertices=squares().T)
         dented = squares()
         dented[5] = [0.001, 0.001]
-        self.refused("not convex", vertices=dented)
+        self.refused("cell 0 .from 0. near .* not convex", vertices=dented)
+
+    def test_messages_count_cells_from_0(self):
+        vertices = [(0.1 * (i // 2), 0.1 * (i % 2)) for i in range(10)] + [(0.35, 0.05)]
+        cells = [[2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1] for i in range(3)] + [[6, 8, 9, 7, 10]]
+        vertices[10] = (0.37, 0.05)
+        with self.assertRaisesRegex(pyroclast.Error, "cell [23] .from 0."):
+            pyroclast.Specimen.from_arrays(vertices, cells, ["m"] * 4, unit="m")
+
+    def test_the_unit_of_vertices_is_asked_for(self):
+        with self.assertRaisesRegex(TypeError, "unit"):
+            pyroclast.Specimen.from_arrays(squares(), SQUARES, ["mortar"] * 8)
+        in_m = pyroclast.Specimen.from_arrays(squares(), SQUARES, ["mortar"] * 8, unit="m")
+        for unit, size in (("mm", 20.0), (mm, 20.0), ("km", 2e-5), (20 * mm, 1.0)):
+            made = pyroclast.Specimen.from_arrays(squares(size), SQUARES, ["mortar"] * 8, unit=unit)
+            np.testing.assert_allclose(made.vertices, in_m.vertices, rtol=1e-15)
+        tenths = pyroclast.Specimen.from_arrays([[0.1, 0], [17.3, 0], [0.1, 20]], [[0, 1, 2]], ["mortar"], unit="mm")
+        np.testing.assert_array_equal(tenths.vertices[:2, 0], [0.0001, 0.0173])
+        for unit, told in (("s", "unit: .*length"), ("1", "unit"), (0 * mm, "unit is .* greater than 0"),
+                           (3, "unit of")):
+            self.refused(told, unit=unit)
+
+    def test_an_outline_that_is_too_small_or_too_large_is_warned_of(self):
+        for size, unit in ((20.0, "m"), (0.02, "mm")):
+            with self.assertWarnsRegex(UserWarning, f"usually it is between .*vertices are in {unit}") as warned:
+                made = pyroclast.Specimen.from_arrays(squares(size), SQUARES, ["mortar"] * 8, unit=unit)
+            self.assertEqual(warned.filename, __file__)
+        on_it = plate()
+        on_it["specimen"] = made
+        self.assertRegex("\n".join(map(str, on_it.check())),
+                         "specimen.file.*the outline is 6e-05 m wide and 6e-05 m high")
+        folder = self.folder()
+        corners = {"phases": ["mortar"], "cells": [[0, 1, 2, 3]], "phase": [0]}
+        (folder / "mm.json").write_text(json.dumps(
+            {**corners, "vertices_m": [[0, 0], [100, 0], [100, 200], [0, 200]]}))
+        body = pyroclast.Deck.from_text(HEATED.format('shape = "cells"\nfile = "mm.json"'), folder=folder)
+        self.assertRegex(str(body.check()[0]), "100 m wide and 200 m high.*vertices_mm")
+        (folder / "mm.json").write_text(json.dumps(
+            {**corners, "vertices_mm": [[0, 0], [100, 0], [100, 200], [0, 200]]}))
+        self.assertEqual(body.check(), [])
+        self.assertAlmostEqual(pyroclast.Specimen.of(body).area, 0.02)
+        wide = pyroclast.Deck.from_text(HEATED.format(
+            'shape = "polygon"\nseed = 1\ncorners = [["0 m", "0 m"], ["20 m", "0 m"], ["0 m", "1 m"]]\n'
+            '[blocks]\ncount = 40\nshortest_edge = 0.2'))
+        self.assertRegex(str(wide.check()[0]), "specimen.corners.*20 m wide")
+
+    def test_labels_of_any_shape_with_one_for_each_cell(self):
+        numbers = np.arange(8) % 2
+        straight = pyroclast.Specimen.from_arrays(squares(), SQUARES, numbers, {0: "a", 1: "b"}, unit="m")
+        for labels in (numbers[:, None], numbers[None], [[n] for n in numbers.tolist()], list(numbers[:, None])):
+            made = pyroclast.Specimen.from_arrays(squares(), SQUARES, labels, {0: "a", 1: "b"}, unit="m")
+            np.testing.assert_array_equal(made.phase, straight.phase)
+        self.refused(r"labels of 16, in shape \(8, 2\)", labels=np.zeros((8, 2)), phases={0: "a"})
+        self.refused("cell 0 .from 0. has the label", labels=[[1, 2]] * 8, phases={1: "a"})
+
+    def test_pieces_are_told_and_joined_on_request(self):
+        apart = np.vstack([squares(), squares()])
+        cells = [*SQUARES[:5], *(np.array(SQUARES[5:]) + 16)]
+        self.refused(r"are 2 pieces .*cell 5 \(from 0\) at \(0.01, 0.05\) m is of .* 3 cells; .*coincide.*join =",
+                     vertices=apart, cells=cells)
+        for join in ("1 um", 1e-3 * mm):
+            made = pyroclast.Specimen.from_arrays(apart, cells, ["mortar"] * 8, unit="m", join=join)
+            self.assertEqual((made.sides[-1], len(made.vertices)), ("hole_1", 16))
+        folder = self.folder()
+        (folder / "two.json").write_text(json.dumps(
+            {"phases": ["mortar"], "vertices_m": apart.tolist(), "cells": np.array(cells).tolist(), "phase": [0] * 8}))
+        self.assertEqual(pyroclast.Specimen.read(folder / "two.json", join="1 um").sides[-1], "hole_1")
+        with self.assertRaisesRegex(pyroclast.Error, "two.json: the cells are 2 pieces"):
+            pyroclast.Specimen.read(folder / "two.json")
+        text = 'shape = "cells"\nfile = "two.json"'
+        with self.assertRaisesRegex(pyroclast.DeckError, "specimen.file = .*2 pieces"):
+            pyroclast.Deck.from_text(HEATED.format(text), folder=folder).check()
+        pyroclast.Deck.from_text(HEATED.format(text + '\njoin = "1 um"'), folder=folder).check()
+        self.refused("join", join=1e-6)
+        self.refused("cell 0 .* two corners", join="25 mm")
 
     def test_a_run_of_them_is_made_again_from_its_folder(self):
         made = pyroclast.Specimen.of(plate())
-        again = pyroclast.Specimen.from_arrays(made.vertices, made.cells, [made.phases[i] for i in made.phase])
+        again = pyroclast.Specimen.from_arrays(made.vertices, made.cells, [made.phases[i] for i in made.phase],
+                                                 unit="m")
         of_cells = plate()
         of_cells["specimen"] = again
         self.assertEqual(of_cells["specimen"], {"shape": "cells", "file": "cells.json", "thickness": "0.1 m"})
@@ -91,14 +229,14 @@ class Arrays(Case):
         of_cells = deck()
         made = pyroclast.Specimen.of(starter)
         of_cells["specimen"] = pyroclast.Specimen.from_arrays(made.vertices, made.cells, made.phase,
-                                                              dict(enumerate(made.phases)))
+                                                              dict(enumerate(made.phases)), unit="m")
         runs = [pyroclast.Run(d, threads=1).until(strain=1e-4) for d in (starter, of_cells)]
         self.assertEqual(runs[0].stress, runs[1].stress)
         seat = {"name": "seat", "at": ["31 mm", "0 mm"], "width": "23 mm", "thickness": "6 mm", "contact": "glued"}
         on_bearing = plate(bearings=[seat], stages=[{"kind": "drive", "duration": "1 ms", "drives": [
             {"set": "seat_support", "hold": ["x", "y"]}]}])
         made = pyroclast.Specimen.of(plate())
-        on_bearing["specimen"] = pyroclast.Specimen.from_arrays(made.vertices, made.cells, ["mortar"] * 40)
+        on_bearing["specimen"] = pyroclast.Specimen.from_arrays(made.vertices, made.cells, ["mortar"] * 40, unit="m")
         on_bearing["materials.platen"] = starter["materials.platen"]
         run = pyroclast.Run(on_bearing, threads=1)
         face = run.position[run.sets["seat_face"], 0]
@@ -126,7 +264,7 @@ class Arrays(Case):
         for change, told in (({"cells": [[0, 1.5, 2]]}, r"mine.json: cells\[0\]"), ({"phase": None}, 'no list "phase"'),
                              ({"vertices_m": [[0, 0, 0]]}, r"vertices_m\[0\]: must be a place"),
                              ({"cells": [[0, 1, 1e300]]}, r"cells\[0\]"), ({"phases": [3]}, r"phases\[0\]"),
-                             ({"phase": [0] * 7 + [5]}, "cell 7 is of phase 5")):
+                             ({"phase": [0] * 7 + [5]}, "cell 7 .from 0. is of phase 5")):
             file.write_text(json.dumps({**good, **change}))
             with self.assertRaisesRegex(pyroclast.Error, told):
                 pyroclast.Specimen.read(file)
@@ -134,14 +272,89 @@ class Arrays(Case):
             file.write_text(text)
             with self.assertRaisesRegex(pyroclast.Error, "mine.json: is no"):
                 pyroclast.Specimen.read(file)
-        file.write_text(json.dumps(good))
+        dented = squares()
+        dented[0] = [0.019, 0.019]
+        for change, told in (({"vertices_m": dented.tolist()}, r"mine.json: cell 0 \(from 0\) .*not convex"),
+                             ({"vertices_mm": []}, 'mine.json: .*"vertices_m" and "vertices_mm"; only one')):
+            file.write_text(json.dumps({**good, **change}))
+            with self.assertRaisesRegex(pyroclast.Error, told):
+                pyroclast.Specimen.read(file)
+        file.write_text(json.dumps({**good, "vertices_m": None, "vertices_s": good["vertices_m"]}))
+        with self.assertRaisesRegex(pyroclast.Error, 'mine.json: .*only one'):
+            pyroclast.Specimen.read(file)
+        del good["vertices_m"]
+        file.write_text(json.dumps({**good, "vertices_s": squares().tolist()}))
+        with self.assertRaisesRegex(pyroclast.Error, 'mine.json: "vertices_s": .*length'):
+            pyroclast.Specimen.read(file)
+        file.write_text(json.dumps({**good, "vertices_mm": squares(20).tolist()}))
+        np.testing.assert_array_equal(pyroclast.Specimen.read(file).vertices[:4, 0], [0.0, 0.02, 0.04, 0.06])
+        file.write_text(json.dumps({**good, "vertices_m": squares().tolist()}))
         self.assertEqual(pyroclast.Specimen.read(file).sides[-1], "hole_1")
+
+
+class Tessellations(Case):
+    def of(self, tess, specimen='shape = "tessellation"\nwidth = "100 mm"\nseed = 1', blocks="", more=""):
+        """A deck with the blocks of a .tess file."""
+        folder = self.folder()
+        (folder / "a.tess").write_text(tess, encoding="utf-8")
+        text = f'{specimen}\n[blocks]\nfile = "a.tess"\nshortest_edge = 0.0\n{blocks}\n{more}'
+        return pyroclast.Deck.from_text(HEATED.format(text), "a.toml", folder)
+
+    def refused(self, told, *args, **more):
+        with self.assertRaisesRegex(pyroclast.DeckError, told):
+            self.of(*args, **more).check()
+
+    def test_a_tilted_plane_is_laid_flat(self):
+        tilted = TESS
+        for x in (2, 1, 0):
+            tilted = tilted.replace(f" {x} 1 0 ", f" {x} 0.707106781187 0.707106781187 ")
+        self.assertNotEqual(tilted, TESS)
+        made = pyroclast.Specimen.of(self.of(tilted))
+        np.testing.assert_allclose(np.ptp(made.vertices, axis=0), [0.1, 0.05], rtol=1e-11)
+
+    def test_groups_are_phases(self):
+        grouped = TESS.replace("**cell\n  2", "**cell\n  2\n  *group\n   1 7")
+        self.refused(r"blocks.file.*line 8 of the file .*groups 1, 7: groups = .* 2 names", grouped)
+        self.refused("blocks.groups.*so 2 names are needed, got 1", grouped, blocks='groups = ["mortar"]')
+        self.refused("blocks.groups.*into no groups", TESS, blocks='groups = ["mortar"]')
+        self.refused("blocks.groups.*none is the matrix", grouped, blocks='groups = ["paste", "stone"]')
+        stone = "[materials.stone]\n" + HEATED.split("[materials.mortar]\n")[1].split("[heat]")[0]
+        made = pyroclast.Specimen.of(self.of(grouped, blocks='groups = ["mortar", "stone"]', more=stone))
+        self.assertEqual(made.phases, ["mortar", "stone"])
+        self.assertAlmostEqual(made.shares["stone"], 0.5)
+        of_stone = made.cells[made.phase.tolist().index(1)]
+        self.assertAlmostEqual(made.vertices[of_stone, 0].min(), 0.05)
+        self.assertEqual(pyroclast.Specimen.of(self.of(grouped, blocks='groups = ["mortar", "mortar"]')).phases,
+                         ["mortar"])
+        run = pyroclast.Run(self.of(grouped, blocks='groups = ["mortar", "stone"]', more=stone))
+        self.assertEqual(len(run.specimen.phase), 2)
+
+    def test_groups_beside_circles_are_warned_of(self):
+        grouped = TESS.replace("**cell\n  2", "**cell\n  2\n  *group\n   1 2")
+        circles = ('[aggregates]\nfraction = 0.0\nd_min = "5 mm"\nd_max = "10 mm"\nfuller_exponent = 0.45\n'
+                   'minimum_gap = "1 mm"\nsieves = ["8 mm"]\n[superposition]\nrule = "area"\ncovered_fraction = 0.5\n'
+                   "[materials.aggregate]\n" + HEATED.split("[materials.mortar]\n")[1].split("[heat]")[0])
+        self.assertIn("have no effect", "\n".join(map(str, self.of(grouped, more=circles).check())))
+        self.refused("blocks.groups.*beside .aggregates.", grouped, more=circles, blocks='groups = ["mortar", "stone"]')
+
+    def test_a_periodic_one_is_refused_with_the_remedy(self):
+        self.refused("a.tess, line 5: .*periodic.*without -periodicity", TESS.replace("standard", "periodic"))
+
+    def test_a_byte_order_mark_is_no_part_of_the_file(self):
+        self.assertEqual(len(pyroclast.Specimen.of(self.of("\ufeff" + TESS)).cells), 2)
+
+    def test_a_unit_says_how_large_it_is(self):
+        in_cm = 'shape = "tessellation"\nunit = "cm"\nseed = 1'
+        np.testing.assert_allclose(np.ptp(pyroclast.Specimen.of(self.of(TESS, in_cm)).vertices, axis=0), [0.02, 0.01])
+        self.assertRegex(str(self.of(TESS, in_cm.replace("cm", "mm")).check()[0]), "specimen.unit.*0.002 m wide")
+        self.refused("specimen.unit.*length", TESS, in_cm.replace("cm", "s"))
+        self.refused("specimen.width.*no effect", TESS, in_cm + '\nwidth = "10 mm"')
 
 
 class Meshes(Case):
     def test_a_mesh_of_polygons_comes_back(self):
         made = pyroclast.Specimen.of(plate())
-        again = pyroclast.Specimen.from_meshio(made.to_meshio(), "phase", dict(enumerate(made.phases)))
+        again = pyroclast.Specimen.from_meshio(made.to_meshio(), "phase", dict(enumerate(made.phases)), unit="m")
         self.assertEqual(sorted(map(len, again.cells)), sorted(map(len, made.cells)))
         self.assertAlmostEqual(again.area, made.area, places=12)
 
@@ -150,18 +363,86 @@ class Meshes(Case):
         cells = [("line", np.array([[1, 2]])), ("quad", np.array(SQUARES[1:]) + 1),
                  ("triangle", np.array([[1, 2, 6], [1, 6, 5]]))]
         mesh = meshio.Mesh(points, cells, cell_data={"kind": [[7], [1] * 7, [2, 2]]})
-        made = pyroclast.Specimen.from_meshio(mesh, "kind", {1: "mortar", 2: "stone"})
+        made = pyroclast.Specimen.from_meshio(mesh, "kind", {1: "mortar", 2: "stone"}, unit="m")
         self.assertAlmostEqual(made.shares["stone"], 1 / 8)
-        for change, told in (({"data": "sort"}, "no cell data 'sort'; it has kind"),
+        for change, told in (({"data": "sort"}, "no cell data 'sort'; it has cell data kind"),
                              ({"phases": {1: "mortar"}}, "label 2")):
             with self.assertRaisesRegex(pyroclast.Error, told):
-                pyroclast.Specimen.from_meshio(**{"mesh": mesh, "data": "kind", "phases": {1: "a", 2: "b"}, **change})
+                pyroclast.Specimen.from_meshio(**{"mesh": mesh, "data": "kind", "phases": {1: "a", 2: "b"},
+                                                      "unit": "m", **change})
         points[3, 2] = 0.01
         with self.assertRaisesRegex(pyroclast.Error, "plane"):
-            pyroclast.Specimen.from_meshio(meshio.Mesh(points, cells, cell_data=mesh.cell_data), "kind", {})
+            pyroclast.Specimen.from_meshio(meshio.Mesh(points, cells, cell_data=mesh.cell_data), "kind", {}, unit="m")
         solid = meshio.Mesh(points, [("tetra", np.array([[0, 1, 2, 3]]))], cell_data={"kind": [[1]]})
         with self.assertRaisesRegex(pyroclast.Error, "plane|'tetra'"):
-            pyroclast.Specimen.from_meshio(solid, "kind", {1: "mortar"})
+            pyroclast.Specimen.from_meshio(solid, "kind", {1: "mortar"}, unit="m")
+
+
+    def two_quads(self, **more) -> meshio.Mesh:
+        points = 0.1 * np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]])
+        return meshio.Mesh(points, more.pop("cells", [("quad", np.array([[0, 1, 2, 3], [1, 4, 5, 2]]))]), **more)
+
+    def of_stone(self, *args, **more) -> float:
+        """Where the stone begins, m."""
+        made = pyroclast.Specimen.from_meshio(*args, unit="m", **more)
+        return float(made.vertices[made.cells[made.phases.index("stone")], 0].min())
+
+    def test_cell_data_with_a_column_of_their_own(self):
+        mesh = self.two_quads(cell_data={"l": [np.array([[1], [2]])]})
+        self.assertEqual(self.of_stone(mesh, "l", {1: "mortar", 2: "stone"}), 0.1)
+        three = self.two_quads(cell_data={"l": [np.zeros((2, 3))]})
+        with self.assertRaisesRegex(pyroclast.Error, "'l' have 3 numbers for each cell"):
+            pyroclast.Specimen.from_meshio(three, "l", {0: "mortar"}, unit="m")
+
+    def test_cell_sets_are_phases(self):
+        mesh = self.two_quads(cell_sets={"paste": [np.array([0])], "stone": [np.array([1])]})
+        self.assertEqual(self.of_stone(mesh), 0.1)
+        self.assertEqual(self.of_stone(mesh, phases={"paste": "mortar", "stone": "stone"}), 0.1)
+        for told, more in (("no cell data 'paste'; it has cell sets paste, stone; leave data out", {"data": "paste"}),
+                           ("cell 1 .from 0. is in none of the cell sets paste", {"phases": {"paste": "mortar"}}),
+                           ("no cell set 'x'; it has paste, stone", {"phases": {"paste": "mortar", "x": "y"}}),
+                           ("nothing that says .* it has cell sets paste, stone; phases has 1", {"phases": {1: "a"}})):
+            with self.assertRaisesRegex(pyroclast.Error, told):
+                pyroclast.Specimen.from_meshio(mesh, unit="m", **more)
+        both = self.two_quads(cell_sets={"all": [np.array([0, 1])], "stone": [np.array([1])]})
+        with self.assertRaisesRegex(pyroclast.Error, "cell 1 .from 0. is in the cell sets 'all' and 'stone'"):
+            pyroclast.Specimen.from_meshio(both, unit="m")
+        with self.assertRaisesRegex(pyroclast.Error, "it has cell data l; data='l' takes cell data"):
+            pyroclast.Specimen.from_meshio(self.two_quads(cell_data={"l": [[1, 1]]}), phases={1: "mortar"}, unit="m")
+        with self.assertRaisesRegex(pyroclast.Error, "nothing that says what its cells are of; it has no cell data"):
+            pyroclast.Specimen.from_meshio(self.two_quads(), unit="m")
+
+    def test_elsets_of_abaqus_and_physical_names_of_gmsh(self):
+        folder = self.folder()
+        (folder / "sets.inp").write_text("*NODE\n1, 0, 0, 0\n2, 0.1, 0, 0\n3, 0.1, 0.1, 0\n4, 0, 0.1, 0\n5, 0.2, 0, 0\n"
+                                         "6, 0.2, 0.1, 0\n*ELEMENT, TYPE=CPS4, ELSET=PASTE\n1, 1, 2, 3, 4\n"
+                                         "*ELEMENT, TYPE=CPS4, ELSET=STONE\n2, 2, 5, 6, 3\n")
+        mesh = meshio.read(folder / "sets.inp")
+        self.assertEqual(self.of_stone(mesh, phases={"PASTE": "mortar", "STONE": "stone"}), 0.1)
+        groups = {"bottom": np.array([3, 1]), "paste": np.array([1, 2]), "stone": np.array([2, 2])}
+        cells = [("line", np.array([[0, 1]])), ("quad", np.array([[0, 1, 2, 3], [1, 4, 5, 2]]))]
+        mesh = self.two_quads(cells=cells, cell_data={"gmsh:physical": [np.array([3]), np.array([1, 2])]},
+                              field_data=groups)
+        for more in ({}, {"data": "gmsh:physical"}, {"phases": {"paste": "mortar", "stone": "stone"}},
+                     {"phases": {1: "mortar", 2: "stone"}}):
+            self.assertEqual(self.of_stone(mesh, **more), 0.1)
+
+    def test_of_cells_of_higher_order_the_corners_count(self):
+        points = 0.1 * np.array([[0, 0], [2, 0], [2, 2], [0, 2], [1, 0], [2, 1], [1, 2], [0, 1], [4, 0], [3, 0],
+                                 [3, 1]])
+        cells = [("quad8", np.array([[0, 1, 2, 3, 4, 5, 6, 7]])), ("triangle6", np.array([[1, 8, 2, 9, 10, 5]])),
+                 ("line3", np.array([[0, 1, 4]]))]
+        made = pyroclast.Specimen.from_meshio(meshio.Mesh(points, cells, cell_data={"k": [[1], [1], [1]]}), "k",
+                                              {1: "mortar"}, unit="m")
+        self.assertEqual(sorted(map(len, made.cells)), [3, 4])
+        self.assertAlmostEqual(made.area, 0.06)
+
+    def test_a_mesh_in_mm(self):
+        mesh = self.two_quads(cell_data={"l": [[1, 1]]})
+        mesh.points = mesh.points * 1000.0
+        self.assertAlmostEqual(pyroclast.Specimen.from_meshio(mesh, "l", {1: "mortar"}, unit="mm").area, 0.02)
+        with self.assertWarnsRegex(UserWarning, "200 m wide and 100 m high.*points of the mesh are in m"):
+            pyroclast.Specimen.from_meshio(mesh, "l", {1: "mortar"}, unit="m")
 
 
 class Images(Case):
@@ -215,6 +496,70 @@ class Images(Case):
         self.assertAlmostEqual(made.shares["stone"] * made.area, 1e-6 * np.pi * 14.0**2, delta=0.1 * 6e-4)
         speckled = np.where(np.random.default_rng(2).random((60, 60)) < 0.25, 0, 1)
         pyroclast.Specimen.from_image(speckled, "1 mm", {0: None, 1: "mortar"}, blocks=1500)
+
+    def test_a_file_is_opened_by_its_name(self):
+        from PIL import Image
+        folder, image, names = self.folder(), self.image().astype(np.uint8), {0: "mortar", 1: "stone"}
+        straight = pyroclast.Specimen.from_image(image, 1 * mm, names, blocks=100)
+        np.save(folder / "slice.npy", image)
+        Image.fromarray(image).save(folder / "slice.png")
+        Image.fromarray(image.astype(np.int32)).save(folder / "slice.tif")
+        with_palette = Image.fromarray(image).convert("P")
+        with_palette.putpalette([255, 0, 0, 0, 255, 0])
+        with_palette.save(folder / "palette.png")
+        Image.fromarray(image.astype(bool)).save(folder / "bits.png")
+        for name in ("slice.npy", "slice.png", "slice.tif", "bits.png"):
+            made = pyroclast.Specimen.from_image(folder / name, 1 * mm, names, blocks=100)
+            np.testing.assert_array_equal(made.phase, straight.phase)
+        made = pyroclast.Specimen.from_image(str(folder / "palette.png"), 1 * mm, names, blocks=100)
+        np.testing.assert_array_equal(made.phase, straight.phase)
+        Image.fromarray(np.zeros((9, 9, 3), np.uint8)).save(folder / "colours.png")
+        Image.fromarray(image).save(folder / "pages.tif", save_all=True, append_images=[Image.fromarray(image)])
+        (folder / "broken.png").write_text("no picture")
+        (folder / "broken.npy").write_text("no array")
+        for name, told in (("colours.png", "colours.png: its pixels are RGB"), ("pages.tif", "holds 2 pages"),
+                           ("broken.png", "broken.png: "), ("broken.npy", "broken.npy: "), ("none.png", "No such file"),
+                           ("slice.jpg", "read from .npy, .png, .tif")):
+            with self.assertRaisesRegex(pyroclast.Error, told):
+                pyroclast.Specimen.from_image(folder / name, 1 * mm, names, blocks=100)
+
+    def test_masked_pixels_and_nan_are_told(self):
+        image = self.image().astype(float)
+        image[7, 5:8] = np.nan
+        for pixels, told in ((image, r"3 of 7200 pixels are NaN, the first is \[7, 5\].*label of their own"),
+                             (np.ma.masked_invalid(image), r"3 of 7200 pixels are masked, .*\[7, 5\].*filled"),
+                             (image[:, :6], r"1 of 720 pixels is NaN")):
+            with self.assertRaisesRegex(pyroclast.Error, told):
+                pyroclast.Specimen.from_image(pixels, 1 * mm, {0: "mortar", 1: "stone"}, blocks=50)
+        whole = np.ma.array(self.image(), mask=False)
+        self.assertEqual(len(pyroclast.Specimen.from_image(whole, 1 * mm, {0: "a", 1: "b"}, blocks=50).cells), 50)
+
+    def test_labels_are_counted(self):
+        image = self.image()
+        image[100, 30] = 7
+        stones = np.count_nonzero(image == 1)
+        with self.assertRaisesRegex(pyroclast.Error, rf"pixel \[100, 30\] has the label 7.*1 of 7200 pixels have none.*"
+                                                     rf"{stones} pixels\), 7 \(1 pixel\); phases has 0, 1"):
+            pyroclast.Specimen.from_image(image, 1 * mm, {0: "mortar", 1: "stone"}, blocks=50)
+        with self.assertRaisesRegex(pyroclast.Error, "and 7190 others"):
+            pyroclast.Specimen.from_image(np.arange(7200).reshape(120, 60), 1 * mm, {0: "a"}, blocks=50)
+
+    def test_a_phase_of_one_pixel_is_warned_of_and_does_not_fail(self):
+        image = self.image()
+        image[100, 30] = 2
+        with self.assertWarnsRegex(UserWarning, "phase 'pore' is of 1 pixel and of no block") as warned:
+            made = pyroclast.Specimen.from_image(image, 1 * mm, {0: "mortar", 1: "stone", 2: "pore"}, blocks=100)
+        self.assertEqual(warned.filename, __file__)
+        self.assertEqual((made.phases, made.shares["pore"]), (["mortar", "stone", "pore"], 0.0))
+
+    def test_the_size_of_pixels_is_checked(self):
+        for pixel, told in (("0 mm", "pixel is 0 mm; it must be greater than 0"), (-1 * mm, "greater than 0"),
+                            ("nan mm", "pixel: .*not finite")):
+            with self.assertRaisesRegex(pyroclast.Error, told):
+                pyroclast.Specimen.from_image(self.image(), pixel, {0: "a", 1: "b"}, blocks=50)
+        for pixel in ("1 m", "1 um"):
+            with self.assertWarnsRegex(UserWarning, f"usually .*: the image has 60 x 120 pixels of {pixel}"):
+                pyroclast.Specimen.from_image(self.image(), pixel, {0: "a", 1: "b"}, blocks=50)
 
     def test_what_is_wrong_is_told(self):
         for image, pixel, phases, told in (

@@ -63,22 +63,52 @@ TEST(SpecimenFromCells, WhatDoesNotFitIsToldByCell) {
     change(t, phase);
     return message([&] { specimen_from({t, {"mortar"}, phase}); });
   };
-  EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[2][1] = 99; }), "cell 2 names vertex 99"));
+  EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[2][1] = 99; }), "cell 2 .from 0. names vertex 99"));
   EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[2][2] = t.cells[2][0]; }),
-                   "cell 2 names vertex [0-9]+ twice"));
-  EXPECT_TRUE(says(refused([](auto&, auto& phase) { phase[5] = 1; }), "cell 5 is of phase 1"));
+                   "cell 2 .from 0. names vertex [0-9]+ .from 0. twice"));
+  EXPECT_TRUE(says(refused([](auto&, auto& phase) { phase[5] = 1; }), "cell 5 .from 0. is of phase 1"));
   EXPECT_TRUE(says(refused([](auto&, auto& phase) { phase.pop_back(); }), "8 cells, but the phases of 7"));
-  EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[1].resize(2); }), "cell 1 has 2 corners"));
-  EXPECT_TRUE(says(refused([](auto& t, auto&) { t.vertices[3] = {{NAN, 0.0}}; }), "vertex 3 is not finite"));
+  EXPECT_TRUE(says(refused([](auto& t, auto&) { t.cells[1].resize(2); }), "cell 1 .from 0. has 2 corners"));
+  EXPECT_TRUE(says(refused([](auto& t, auto&) {
+                     t.vertices[3] = {{NAN, 0.0}};
+                   }),
+                   "vertex 3 .from 0. is not finite"));
   EXPECT_TRUE(says(refused([](auto& t, auto& phase) {
                      t.cells.erase(t.cells.begin() + 1);
                      t.cells.erase(t.cells.begin() + 2);
                      phase.resize(6);
                    }),
-                   "meet in one point|not one piece"));
-  EXPECT_TRUE(says(refused([](auto& t, auto&) { t.vertices[5] = {{2.5, 2.5}}; }), "not one piece"));
+                   "meet in one point|2 pieces"));
+  EXPECT_TRUE(says(refused([](auto& t, auto&) {
+                     t.vertices[5] = {{2.5, 2.5}};
+                   }),
+                   "more than one outer outline|pieces|not convex"));
   const Tessellation flat{{{{0, 0}}, {{1, 0}}, {{2, 0}}}, {{0, 1, 2}}};
   EXPECT_TRUE(says(message([&] { specimen_from({flat, {"mortar"}, {0}}); }), "enclose no area"));
+}
+
+// Promise: cells count from 0 in every message, as arrays and files of cells do.
+TEST(SpecimenFromCells, ADentedCellIsToldByItsNumberFromZero) {
+  Tessellation t = ring_of_squares();
+  t.vertices[0] = {{0.9, 0.9}};  // a corner of cell 0 alone
+  EXPECT_TRUE(says(message([&] {
+                     specimen_from({t, {"mortar"}, std::vector<int>(8, 0)});
+                   }),
+                   "cell 0 .from 0. near .* is not convex"));
+}
+
+TEST(SpecimenFromCells, AFileSaysTheUnitOfItsVertices) {
+  const auto of_list = [](const std::string& lists) {
+    return R"({"phases": ["a"], "cells": [[0, 1, 2]], "phase": [0])" + lists + "}";
+  };
+  const CellsFile file = cells_from(of_list(R"(, "vertices_mm": [[0, 0], [100, 0], [0, 100]])"), "mine.json");
+  EXPECT_EQ(file.unit, "mm");
+  EXPECT_EQ(file.cells.tessellation.vertices[1], (Vec<2>{{100.0, 0.0}}));
+  EXPECT_TRUE(says(message([&] { cells_from(of_list(""), "mine.json"); }),
+                   "mine.json: there is no list \"vertices_m\""));
+  EXPECT_TRUE(
+      says(message([&] { cells_from(of_list(R"(, "vertices_m": [], "vertices_mm": [])"), "mine.json"); }),
+           "\"vertices_m\" and \"vertices_mm\"; only one is allowed"));
 }
 
 TEST(SpecimenFromCells, ANumberTooLargeIsToldWithItsFile) {

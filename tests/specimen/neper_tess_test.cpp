@@ -1,8 +1,10 @@
 #include "pyroclast/specimen/neper_tess.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <regex>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -107,7 +109,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 TEST(NeperTess, ReadsAndScalesToTheSpecimen) {
   const TessFile file(two_cells);
-  const Tessellation t = read_neper_tess(file.path(), 0.2, 0.1);
+  const Tessellation t = read_neper_tess(file.path(), 0.2, 0.1).tessellation;
   ASSERT_EQ(t.cells.size(), 2U);
   EXPECT_EQ(t.vertices.size(), 6U);
   EXPECT_TRUE(mismatched_cells(t, Region::rectangle(0.2, 0.1)).empty());
@@ -126,7 +128,7 @@ TEST(NeperTess, AVertexThatRegularisationRepeatsOrDropsIsNoTrouble) {
   text = replaced(text, " **edge\n 7", "   7  1.1 0.9 0    -1\n **edge\n 8");
   text = replaced(text, "   7  2 5 0\n", "   7  2 5 0\n   8  5 7 -1\n");
   const TessFile file(text);
-  const Tessellation t = read_neper_tess(file.path(), 0.2, 0.1);
+  const Tessellation t = read_neper_tess(file.path(), 0.2, 0.1).tessellation;
   EXPECT_EQ(t.cells[0].size(), 4U);
   EXPECT_EQ(t.vertices.size(), 6U);
 }
@@ -167,7 +169,7 @@ TEST(NeperTess, ReadsBackWhatWeWrite) {
   Random random(1);
   const Tessellation ours = make_blocks(p, Region::rectangle(0.15, 0.3), random).tessellation;
   const TessFile file(as_tess(ours, 0.15, 0.3));
-  const Tessellation read = read_neper_tess(file.path(), 0.15, 0.3);
+  const Tessellation read = read_neper_tess(file.path(), 0.15, 0.3).tessellation;
   ASSERT_EQ(read.cells.size(), ours.cells.size());
   std::vector<Vec<2>> a;
   std::vector<Vec<2>> b;
@@ -195,7 +197,7 @@ TEST(NeperTess, OfAnyOutlineItIsThatOfTheSpecimen) {
     Random random(1);
     const double width = region.box().width();  // of a circle's polygon not quite its diameter
     const TessFile file(as_tess(make_blocks(p, region, random).tessellation, domain));
-    const Tessellation read = read_neper_tess(file.path(), width);
+    const Tessellation read = read_neper_tess(file.path(), TessSize{.width = width}).tessellation;
     EXPECT_EQ(read.cells.size(), 400U);
     const Region found = outline_of(read);
     EXPECT_NEAR(found.area(), region.area(), 1e-9 * region.area());
@@ -212,6 +214,100 @@ TEST(NeperTess, OfAnyOutlineItIsThatOfTheSpecimen) {
   }
 }
 
+/// With every place (x, y, z) of a text's vertices and domain turned: z is 0 before.
+std::string turned(const std::string& text, const Vec<3>& x, const Vec<3>& y) {
+  std::string result;
+  std::istringstream lines(text);
+  // A number, a place with z = 0, and what follows it: a state or a label.
+  const std::regex place(R"(^( +\d+ +)([-0-9.]+) ([-0-9.]+) 0( +.*)$)");
+  std::string section;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find('*') != std::string::npos) section = line;
+    std::smatch found;
+    if (section.find("*vertex") != std::string::npos && std::regex_match(line, found, place)) {
+      const Vec<3> at = std::stod(found[2]) * x + std::stod(found[3]) * y + Vec<3>{{7.0, -3.0, 2.0}};
+      line = fmt::format("{}{:.12f} {:.12f} {:.12f}{}", found[1].str(), at[0], at[1], at[2], found[4].str());
+    }
+    result += line + "\n";
+  }
+  return result;
+}
+
+// Promise: a slice through space has its own height, however it lies.
+TEST(NeperTess, ATiltedPlaneIsLaidFlat) {
+  const double half = std::sqrt(0.5);
+  const Vec<3> x{{1, 0, 0}}, y{{0, 1, 0}}, z{{0, 0, 1}};
+  for (const auto& [along, up] : {std::pair{x, half * (y + z)}, std::pair{half * (x + z), y}, std::pair{x, z},
+                                  std::pair{y, z}, std::pair{half * (x - y), z}}) {
+    const TessFile file(turned(two_cells, along, up));
+    const Tessellation flat = read_neper_tess(file.path(), 0.2, 0.1).tessellation;
+    const TessFile straight(two_cells);
+    const Tessellation as_it_was = read_neper_tess(straight.path(), 0.2, 0.1).tessellation;
+    ASSERT_EQ(flat.vertices.size(), as_it_was.vertices.size());
+    for (std::size_t v = 0; v < flat.vertices.size(); ++v)
+      EXPECT_LT(norm(flat.vertices[v] - as_it_was.vertices[v]), 1e-12);  // 12 decimals of a length of 2
+  }
+  const TessFile bent(replaced(two_cells, "4  2 1 0 ", "4  2 1 0.1 "));
+  EXPECT_TRUE(says(message([&] { read_neper_tess(bent.path(), 0.2, 0.1); }),
+                   "line [0-9]+: \\([-0-9., ]+\\) lies [0-9.]+ off the plane of the largest cell"));
+}
+
+TEST(NeperTess, HasTheGroupsOfItsCells) {
+  const TessFile without(two_cells);
+  EXPECT_TRUE(read_neper_tess(without.path(), 0.2, 0.1).group.empty());
+  const TessFile file(replaced(two_cells, "  *crysym", "  *group\n   4 -1\n  *crysym"));
+  const NeperTess read = read_neper_tess(file.path(), 0.2, 0.1);
+  EXPECT_EQ(read.group, (std::vector<int>{4, -1}));
+  EXPECT_EQ(read.group_line, 10);
+  const TessFile few(replaced(two_cells, "  *crysym", "  *group\n   4\n  *crysym"));
+  EXPECT_TRUE(
+      says(message([&] { read_neper_tess(few.path(), 0.2, 0.1); }), "line 12: expected the group of cell 2"));
+}
+
+// Promise: cells that vanished in the file leave no block, and those behind them keep their groups.
+TEST(NeperTess, EmptyCellsAreLeftOut) {
+  std::string text = replaced(two_cells, "**cell\n  2", "**cell\n  3\n  *group\n   1 2 3");
+  text = replaced(text, "**face\n 2", "**face\n 3");
+  text = replaced(text, "   2 4 2 5 4 3", "   2 0\n     0\n    0 0 0 0\n     0 0 0 0 0\n   3 4 2 5 4 3");
+  const TessFile file(text);
+  const NeperTess read = read_neper_tess(file.path(), 0.2, 0.1);
+  EXPECT_EQ(read.tessellation.cells.size(), 2U);
+  EXPECT_EQ(read.group, (std::vector<int>{1, 3}));
+  const TessFile short_face(replaced(text, "   2 0\n", "   2 2 1 2\n"));
+  EXPECT_TRUE(says(message([&] { read_neper_tess(short_face.path(), 0.2, 0.1); }),
+                   "three or more vertices of a face"));
+}
+
+// Promise: a cell that regularisation has dented becomes convex blocks, all of its group.
+TEST(NeperTess, ACellThatBendsInwardsIsCutIntoConvexParts) {
+  std::string text = replaced(two_cells, "**cell\n  2", "**cell\n  2\n  *group\n   8 9");
+  text = replaced(text, "**vertex\n 6", "**vertex\n 7");
+  text = replaced(text, " **edge\n 7", "   7  1.5 0.5 0     2\n **edge\n 7");
+  text = replaced(text, "1 4 1 2 5 6\n     4 1 7 5 6", "1 5 1 2 7 5 6\n     5 1 7 8 5 6");
+  text = replaced(text, "2 4 2 5 4 3\n     4 7 -4 -3 -2", "2 5 2 7 5 4 3\n     5 7 8 -4 -3 -2");
+  const TessFile file(text);
+  const NeperTess read = read_neper_tess(file.path(), 0.2, 0.1);
+  ASSERT_EQ(read.tessellation.cells.size(), 3U);
+  EXPECT_EQ(read.group, (std::vector<int>{8, 9, 9}));
+  EXPECT_NO_THROW(require_valid(read.tessellation, Region::rectangle(0.2, 0.1), "cells"));
+  EXPECT_EQ(read_neper_tess(file.path(), TessSize{.unit = 1e-3}).tessellation.cells.size(), 3U);
+}
+
+TEST(NeperTess, IsAsLargeAsItsUnitSays) {
+  const TessFile file(two_cells);
+  const Tessellation t = read_neper_tess(file.path(), TessSize{.unit = 0.1}).tessellation;
+  EXPECT_DOUBLE_EQ(outline_of(t).box().width(), 0.2);
+  EXPECT_DOUBLE_EQ(outline_of(t).box().height(), 0.1);
+}
+
+// Promise: cells count from 1, as the file does.
+TEST(NeperTess, MessagesCountAsTheFileDoes) {
+  const TessFile file(replaced(two_cells, "2 4 2 5 4 3", "2 4 2 4 5 3"));
+  EXPECT_TRUE(says(message([&] { read_neper_tess(file.path(), 0.2, 0.1); }), "cell [12] .from 1."));
+  EXPECT_TRUE(says(message([&] { read_neper_tess(file.path(), TessSize{.width = 0.2}); }),
+                   "^" + file.path().string() + ".*cell [12] .from 1."));
+}
+
 /// The paper's aggregates on 500 blocks that were written to a file and read back.
 Specimen from_tess(double shortest_edge) {
   BlockParameters p;
@@ -219,7 +315,7 @@ Specimen from_tess(double shortest_edge) {
   Random random(1);
   const TessFile file(as_tess(make_blocks(p, Region::rectangle(0.15, 0.3), random).tessellation, 0.15, 0.3));
   SpecimenParameters parameters = paper_specimen(1);
-  parameters.blocks.tessellation = read_neper_tess(file.path(), 0.15, 0.3);
+  parameters.blocks.tessellation = read_neper_tess(file.path(), 0.15, 0.3).tessellation;
   parameters.blocks.shortest_edge = shortest_edge;
   return make_specimen(parameters);
 }
@@ -262,7 +358,9 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"start", "***tess\n", "***tesr\n", "line 1: expected '\\*\\*\\*tess', found '\\*\\*\\*tesr'"},
         Fault{"version", "3.5", "1.9", "line 3: expected a format version 2.x or 3.x, found '1.9'"},
         Fault{"dimension", "2 standard", "3 standard", "line 5: expected the dimension 2"},
-        Fault{"type", "2 standard", "2 periodic", "line 5: expected the type 'standard'"},
+        Fault{"type", "2 standard", "2 periodic",
+              "line 5: the tessellation is periodic: .* Make it without -periodicity"},
+        Fault{"other type", "2 standard", "2 raster", "line 5: expected the type 'standard'"},
         Fault{"number", "0.8 0 0     0", "0.8 O 0     0",
               "line 18: expected a coordinate of a vertex, found 'O'"},
         Fault{"infinite", "0.8 0 0     0", "inf 0 0     0", "line 18: .*finite"},

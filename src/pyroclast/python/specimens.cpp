@@ -10,8 +10,10 @@
 #include "pyroclast/python/arrays.hpp"
 #include "pyroclast/python/bindings.hpp"
 #include "pyroclast/python/decks.hpp"
+#include "pyroclast/setup/cells_in_metres.hpp"
 #include "pyroclast/specimen/cells_file.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
+#include "pyroclast/specimen/pieces.hpp"
 
 namespace pyroclast::python {
 
@@ -23,8 +25,9 @@ using Integers = py::array_t<int, py::array::c_style | py::array::forcecast>;
 
 /// \param corners  of all cells in turn
 /// \param first    of each cell, and behind the last
+/// \param join     m; 0: none
 Specimen from_cells(const Reals& vertices, const Integers& corners, const Integers& first,
-                    std::vector<std::string> phases, const Integers& phase) {
+                    std::vector<std::string> phases, const Integers& phase, double join) {
   specimen::Cells cells;
   const auto at = vertices.unchecked<2>();
   for (py::ssize_t v = 0; v < at.shape(0); ++v) cells.tessellation.vertices.push_back({{at(v, 0), at(v, 1)}});
@@ -34,7 +37,18 @@ Specimen from_cells(const Reals& vertices, const Integers& corners, const Intege
   cells.phases = std::move(phases);
   cells.phase.assign(phase.data(), phase.data() + phase.size());
   const py::gil_scoped_release no_gil;
-  return specimen::specimen_from(std::move(cells));
+  return specimen::specimen_from(specimen::joined(specimen::checked(std::move(cells)), join));
+}
+
+Specimen read(const std::string& file, double join) {
+  specimen::Cells cells = cells_in_metres(file, join);
+  specimen::Region region;
+  try {
+    region = specimen::outline_of(cells.tessellation);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", file, error.what()));
+  }
+  return specimen::specimen_from(std::move(cells), std::move(region));
 }
 
 /// A rectangle of blocks, all of one phase.
@@ -73,13 +87,11 @@ void bind_specimens(py::module_& m) {
   using py::arg;
   py::class_<Specimen, std::shared_ptr<Specimen>>(m, "Specimen", "Blocks, and what each is made of.")
       .def_static("from_cells", &from_cells, arg("vertices"), arg("corners"), arg("first"), arg("phases"),
-                  arg("phase"))
+                  arg("phase"), arg("join"))
       .def_static("rectangle", &rectangle, arg("width"), arg("height"), arg("count"), arg("shortest_edge"),
                   arg("relaxation"), arg("radius_spread"), arg("seed"))
       .def_static("of_deck", &of_deck, arg("deck"), arg("seed"))
-      .def_static(
-          "read", [](const std::string& file) { return specimen::specimen_from(specimen::read_cells(file)); },
-          arg("file"))
+      .def_static("read", &read, arg("file"), arg("join"))
       .def(
           "text",
           [](const Specimen& s) {
@@ -103,6 +115,9 @@ void bind_specimens(py::module_& m) {
       .def_property_readonly("phases", [](const Specimen& s) { return s.phases; })
       .def_property_readonly("shares", [](const Specimen& s) { return s.fraction; })
       .def_property_readonly("area", [](const Specimen& s) { return s.region.area(); })
+      .def_property_readonly(
+          "size",
+          [](const Specimen& s) { return std::pair(s.region.box().width(), s.region.box().height()); })
       .def_property_readonly("sides", &side_names);
 }
 

@@ -13,8 +13,8 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/setup/cells_in_metres.hpp"
 #include "pyroclast/setup/vec_of_place.hpp"
-#include "pyroclast/specimen/cells_file.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/neper_tess.hpp"
 #include "pyroclast/specimen/outline_seeds.hpp"
@@ -100,7 +100,8 @@ enum class Shape { rectangle, disc, ring, polygon, tessellation, cells };
 struct Outline {
   Shape shape;
   double width = 0.0, height = 0.0, diameter = 0.0, inner_diameter = 0.0;  ///< m
-  std::vector<Vec<2>> corners;                                             ///< m
+  double unit = 0.0;            ///< of the coordinates of a file, m
+  std::vector<Vec<2>> corners;  ///< m
   struct Hole {
     std::string name;
     Vec<2> centre{};
@@ -122,23 +123,41 @@ Vec<2> read_place(const Section& s, std::string_view key, Meaning meaning) {
   return vec_of(s.place(key, unit::length, meaning).value_or(std::pair{0.0, 0.0}));
 }
 
+/// What lengths of a specimen usually are, m.
+constexpr Range kSize = Range::positive().usually(0.01, 10.0);
+
 /// All of a specimen from a file; nothing after an error.
 std::optional<specimen::Cells> read_cells(const Section& s, const std::filesystem::path& folder) {
   const std::string name = s.text("file",
                                   "of shape \"cells\": JSON with the blocks, see "
                                   "[bodies.md](bodies.md#blocks-made-elsewhere)");
+  const double join = s.quantity(
+      "join", unit::length, Range::non_negative(), 0.0,
+      "vertices of the file nearer to each other than this become one, and those nearer to an edge of "
+      "a cell a corner of it; 0: cells share the vertices that the file says");
   if (!s.has("file")) return std::nullopt;
   s.names_file("file", folder / name);
   try {
-    return specimen::read_cells(folder / name);
+    return cells_in_metres(folder / name, join);
   } catch (const Error& error) {
     s.error("file", error.what());
     return std::nullopt;
   }
 }
 
+/// Of a file's coordinates, m; 0 after an error.
+double read_unit(const Section& s) {
+  const std::string name = s.text(
+      "unit", "of length, of the coordinates in `blocks.file`: the specimen is as large as the file says");
+  try {
+    return metres_of(name);
+  } catch (const Error& error) {
+    s.error("unit", error.what());
+    return 0.0;
+  }
+}
+
 Outline read_outline(const Section& s, const std::filesystem::path& folder) {
-  const Range size = Range::positive().usually(0.01, 10.0);
   Outline o;
   o.shape = s.choice<Shape, Shape>(
       "shape",
@@ -153,24 +172,29 @@ Outline read_outline(const Section& s, const std::filesystem::path& folder) {
        {"cells", Shape::cells, "of blocks that are made elsewhere, as the specimen is in all"}},
       Shape::rectangle, "outline of the specimen");
   if (o.shape == Shape::rectangle) {
-    o.width = s.quantity("width", unit::length, size, "of the specimen");
-    o.height = s.quantity("height", unit::length, size, "of the specimen");
+    o.width = s.quantity("width", unit::length, kSize, "of the specimen");
+    o.height = s.quantity("height", unit::length, kSize, "of the specimen");
   } else if (o.shape == Shape::polygon) {
     o.corners = vecs(s.places("corners", unit::length, 3, "of the specimen, in either sense"));
   } else if (o.shape == Shape::tessellation) {
-    o.width = s.quantity("width", unit::length, size, "of the specimen; the height follows from the file");
+    if (s.has("unit")) {
+      o.unit = read_unit(s);
+      s.know({"width"});
+    } else {
+      o.width = s.quantity("width", unit::length, kSize, "of the specimen; the height follows from the file");
+    }
     s.know({"holes", "notches"});
   } else if (o.shape == Shape::cells) {
     o.cells = read_cells(s, folder);
     s.know({"seed", "holes", "notches"});
   } else {
-    o.diameter = s.quantity("diameter", unit::length, size, "of the specimen");
+    o.diameter = s.quantity("diameter", unit::length, kSize, "of the specimen");
     if (o.shape == Shape::ring) {
-      o.inner_diameter = s.quantity("inner_diameter", unit::length, size, "of the bore");
+      o.inner_diameter = s.quantity("inner_diameter", unit::length, kSize, "of the bore");
       if (s.ok() && o.inner_diameter >= o.diameter) s.error("inner_diameter", "must be less than diameter");
     }
   }
-  s.know({"width", "height", "corners", "diameter", "inner_diameter", "file"});
+  s.know({"width", "height", "corners", "diameter", "inner_diameter", "file", "join", "unit"});
   if (o.shape == Shape::cells || o.shape == Shape::tessellation) return o;
   int number = 0;
   for (const Section& h : s.optional_sections("holes", "holes in the specimen, any number")) {
@@ -345,7 +369,10 @@ specimen::Region make_region(const Section& s, const Outline& o, const specimen:
               "with blocks.file must be \"rectangle\" or \"tessellation\", which is the outline of the file");
     return region;
   } catch (const Error& error) {
-    s.error(error.what());
+    if (o.cells)
+      s.error("file", error.what());
+    else
+      s.error(error.what());
     return specimen::Region::rectangle(1.0, 1.0);
   }
 }
@@ -379,22 +406,58 @@ std::vector<specimen::Inclusions> read_inclusions(const Section& root) {
 }
 
 /// The blocks of a Neper file; nothing after an error, or where it cannot be for this outline.
-std::optional<specimen::Tessellation> read_tessellation(const Section& blocks,
-                                                        const std::filesystem::path& file,
-                                                        const Outline& outline) {
+std::optional<specimen::NeperTess> read_tessellation(const Section& blocks, const std::filesystem::path& file,
+                                                     const Outline& outline) {
   try {
     if (outline.shape == Shape::rectangle && outline.width > 0.0 && outline.height > 0.0)
       return specimen::read_neper_tess(file, outline.width, outline.height);
-    if (outline.shape == Shape::tessellation && outline.width > 0.0)
-      return specimen::read_neper_tess(file, outline.width);
+    if (outline.shape == Shape::tessellation && (outline.width > 0.0 || outline.unit > 0.0))
+      return specimen::read_neper_tess(file, {.width = outline.width, .unit = outline.unit});
   } catch (const Error& error) {
     blocks.error("file", error.what());
   }
   return std::nullopt;
 }
 
+/// The groups of a Neper file as phases.
+/// \param names       of the phases, in the ascending order of the groups
+/// \param is_covered  aggregates or inclusions say what blocks are of
+void read_groups(const Section& s, const specimen::NeperTess& tess, const std::vector<std::string>& names,
+                 bool is_covered, specimen::BlockParameters& b) {
+  std::vector<int> groups = tess.group;
+  std::ranges::sort(groups);
+  groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
+  const std::string found =
+      fmt::format("line {} of the file (*group) puts its cells into the group{} {}", tess.group_line,
+                  groups.size() == 1 ? "" : "s", fmt::join(groups, ", "));
+  if (!s.has("groups")) {
+    if (groups.size() > 1 && is_covered)
+      s.warn("file",
+             fmt::format("{}; they have no effect, as [aggregates] or [[inclusions]] say what blocks are of",
+                         found));
+    else if (groups.size() > 1)
+      s.error("file", fmt::format("{}: groups = [...] must say which phase each is, with {} names", found,
+                                  groups.size()));
+    return;
+  }
+  if (groups.empty())
+    s.error("groups", "has no meaning here: the file puts its cells into no groups (*group)");
+  else if (is_covered)
+    s.error("groups", "has no meaning beside [aggregates] or [[inclusions]], which say what blocks are of");
+  else if (names.size() != groups.size())
+    s.error("groups", fmt::format("{}, so {} name{} are needed, got {}", found, groups.size(),
+                                  groups.size() == 1 ? "" : "s", names.size()));
+  if (!s.ok()) return;
+  for (const std::string& name : names)
+    if (std::ranges::find(b.phases, name) == b.phases.end()) b.phases.push_back(name);
+  for (const int group : tess.group) {
+    const auto& name = names[std::ranges::lower_bound(groups, group) - groups.begin()];
+    b.phase.push_back(static_cast<int>(std::ranges::find(b.phases, name) - b.phases.begin()));
+  }
+}
+
 specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::path& folder,
-                                      const Outline& outline) {
+                                      const Outline& outline, bool is_covered) {
   specimen::BlockParameters b;
   b.shortest_edge =
       s.number("shortest_edge", Range::between(0.0, 0.5),
@@ -405,9 +468,17 @@ specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::p
         s.text("file", "Neper tessellation (.tess), beside the deck, that is read instead of making one");
     s.names_file("file", file);
     if (s.has("count")) s.error("count", "has no meaning beside file: the tessellation is read, not made");
-    b.tessellation = read_tessellation(s, file, outline);
+    const std::vector<std::string> names = s.optional_texts(
+        "groups",
+        "phases of the groups that the file puts its cells into (`*group`), in the ascending "
+        "order of their numbers; then nothing else says what blocks are of");
+    if (auto tess = read_tessellation(s, file, outline)) {
+      read_groups(s, *tess, names, is_covered, b);
+      b.tessellation = std::move(tess->tessellation);
+    }
     return b;
   }
+  s.know({"groups"});
   if (outline.shape == Shape::tessellation)
     s.error("file", "is needed where specimen.shape is \"tessellation\"");
   b.place = fmt::format("{}: {}", s.where("count"), s.path());
@@ -430,6 +501,42 @@ bool read_matrix_alone(const Section& root, specimen::SpecimenParameters& p) {
   return true;
 }
 
+/// That the matrix is one of the phases that cells have; the only one is.
+void check_matrix(const Section& s, std::string_view key, const std::vector<std::string>& phases,
+                  bool has_matrix, specimen::SpecimenParameters& p) {
+  if (phases.size() == 1 && !has_matrix) p.matrix = phases.front();
+  if (std::ranges::find(phases, p.matrix) == phases.end())
+    s.error(key, fmt::format("its phases are {}, and none is the matrix, \"{}\": [superposition] matrix "
+                             "says which is",
+                             fmt::join(phases, ", "), p.matrix));
+}
+
+/// Warns of an outline that is not as large as specimens are, where no key has done that.
+void check_outline(const Section& s, const Outline& outline, const specimen::Region& region) {
+  if (!s.ok()) return;
+  const auto key = [&]() -> std::string_view {
+    switch (outline.shape) {
+      case Shape::polygon:
+        return "corners";
+      case Shape::tessellation:
+        return outline.unit > 0.0 ? "unit" : "width";
+      case Shape::cells:
+        return "file";
+      default:
+        return {};
+    }
+  }();
+  const double width = region.box().width(), height = region.box().height();
+  const bool is_told =
+      outline.shape == Shape::tessellation && !kSize.is_usual(outline.width) && outline.unit == 0.0;
+  if (key.empty() || is_told || (kSize.is_usual(width) && kSize.is_usual(height))) return;
+  s.warn(key, fmt::format("the outline is {:.6g} m wide and {:.6g} m high, but usually it is {}{}", width,
+                          height, kSize.describe_usual("m"),
+                          outline.shape == Shape::cells
+                              ? "; are the coordinates in another unit? `vertices_mm` in the file says so"
+                              : ""));
+}
+
 /// What counts beside cells. The tables of what is made otherwise have no effect.
 void read_beside_cells(const Section& root, const Section& s, std::span<const ReadBearing> bearings,
                        Outline outline, specimen::SpecimenParameters& p) {
@@ -438,11 +545,8 @@ void read_beside_cells(const Section& root, const Section& s, std::span<const Re
   const bool has_matrix = read_matrix_alone(root, p);
   if (!outline.cells || !s.ok()) return;
   p.blocks.count = static_cast<int>(outline.cells->tessellation.cells.size());
-  if (outline.cells->phases.size() == 1 && !has_matrix) p.matrix = outline.cells->phases.front();
-  if (std::ranges::find(outline.cells->phases, p.matrix) == outline.cells->phases.end())
-    s.error("file", fmt::format("its phases are {}, and none is the matrix, \"{}\": [superposition] matrix "
-                                "says which is",
-                                fmt::join(outline.cells->phases, ", "), p.matrix));
+  check_outline(s, outline, p.region);
+  check_matrix(s, "file", outline.cells->phases, has_matrix, p);
   p.cells = std::move(outline.cells);
 }
 
@@ -478,12 +582,14 @@ specimen::SpecimenParameters read_specimen(const Section& root, const std::files
   if (aggregates) p.aggregates = read_aggregates(*aggregates);
   p.inclusions = read_inclusions(root);
   const Section blocks = root.section("blocks", "the tessellation into blocks");
-  p.blocks = read_blocks(blocks, folder, outline);
+  p.blocks = read_blocks(blocks, folder, outline, aggregates || !p.inclusions.empty());
   p.region = make_region(s, outline, p.blocks, bearings);
+  check_outline(s, outline, p.region);
   if (s.ok()) check_bearings(p.region, bearings);
   if (s.ok() && aggregates && aggregates->ok()) check_size(*aggregates, p);
   if (!aggregates && p.inclusions.empty()) {
-    read_matrix_alone(root, p);
+    const bool has_matrix = read_matrix_alone(root, p);
+    if (!p.blocks.phases.empty()) check_matrix(blocks, "groups", p.blocks.phases, has_matrix, p);
     p.aggregates.phase = p.matrix;
     check_phases(s, p, bearings);
     return p;

@@ -37,7 +37,7 @@ std::uint32_t square(double x, double length) {
   return static_cast<std::uint32_t>(std::clamp(x / length * curve_side, 0.0, curve_side - 1.0));
 }
 
-void number_cells(Tessellation& tessellation, const Box& box) {
+std::vector<std::size_t> number_cells(Tessellation& tessellation, const Box& box) {
   std::vector<std::pair<std::uint64_t, std::size_t>> order;
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
@@ -47,9 +47,14 @@ void number_cells(Tessellation& tessellation, const Box& box) {
   }
   std::sort(order.begin(), order.end());
   std::vector<std::vector<int>> cells;
+  std::vector<std::size_t> before;
   cells.reserve(order.size());
-  for (const auto& [place, c] : order) cells.push_back(std::move(tessellation.cells[c]));
+  for (const auto& [place, c] : order) {
+    cells.push_back(std::move(tessellation.cells[c]));
+    before.push_back(c);
+  }
   tessellation.cells = std::move(cells);
+  return before;
 }
 
 void number_vertices(Tessellation& tessellation) {
@@ -71,9 +76,10 @@ void number_vertices(Tessellation& tessellation) {
 
 }  // namespace
 
-void number_along_curve(Tessellation& tessellation, const Box& box) {
-  number_cells(tessellation, box);
+std::vector<std::size_t> number_along_curve(Tessellation& tessellation, const Box& box) {
+  std::vector<std::size_t> before = number_cells(tessellation, box);
   number_vertices(tessellation);
+  return before;
 }
 
 }  // namespace pyroclast::specimen

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast::specimen {
@@ -7,6 +10,7 @@ namespace pyroclast::specimen {
 /// Numbers cells along a Hilbert curve over a box, and vertices in the order in which
 /// the cells meet them. Geometry and each cell's own order stay. Blocks that lie together then stand together
 /// in memory, which is what the time of a step depends on once a specimen has outgrown the caches.
-void number_along_curve(Tessellation& tessellation, const Box& box);
+/// Returns of each cell, in the new order, the number that it had.
+std::vector<std::size_t> number_along_curve(Tessellation& tessellation, const Box& box);
 
 }  // namespace pyroclast::specimen

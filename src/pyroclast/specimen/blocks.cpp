@@ -138,7 +138,8 @@ Blocks make_blocks(const BlockParameters& parameters, const Region& region, Rand
     blocks.edges_removed = done.edges_removed;
     blocks.edges_left_short = done.edges_left_short;
   }
-  number_along_curve(blocks.tessellation, region.box());
+  for (const std::size_t before : number_along_curve(blocks.tessellation, region.box()))
+    if (!parameters.phase.empty()) blocks.phase.push_back(parameters.phase[before]);
   return blocks;
 }
 

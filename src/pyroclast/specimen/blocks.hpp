@@ -10,6 +10,7 @@ namespace pyroclast::specimen {
 /// The blocks of a specimen before superposition.
 struct Blocks {
   Tessellation tessellation;
+  std::vector<int> phase;  ///< of each, index into `BlockParameters::phases`; empty where these are not known
   int edges_removed, edges_left_short;
   int seeds_redrawn;
   int rounds;  ///< tessellations made

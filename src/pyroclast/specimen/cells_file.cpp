@@ -19,11 +19,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// What the name of the list of vertices begins with; the unit follows.
+constexpr std::string_view kVertices = "vertices_";
+
 /// One of the lists.
 /// \param read    of an item; throws Json::exception for another kind of item
 /// \param needed  in words: what the items are
 template <class Read>
-auto list(const Json& json, const char* key, const char* needed, Read read) {
+auto list(const Json& json, const std::string& key, const std::string& needed, Read read) {
   const auto found = json.find(key);
   if (found == json.end() || !found->is_array()) throw Error(fmt::format("there is no list \"{}\"", key));
   std::vector<decltype(read(*found))> items;
@@ -54,6 +57,21 @@ Vec<2> place(const Json& item) {
   return {{x, y}};
 }
 
+/// The name of the list of vertices.
+std::string vertices_key(const Json& json) {
+  std::string key;
+  for (const auto& [name, items] : json.items()) {
+    if (!name.starts_with(kVertices)) continue;
+    if (!key.empty())
+      throw Error(fmt::format("there are the lists \"{}\" and \"{}\"; only one is allowed", key, name));
+    key = name;
+  }
+  if (key.empty())
+    throw Error(
+        "there is no list \"vertices_m\", nor one in another unit of length, such as \"vertices_mm\"");
+  return key;
+}
+
 }  // namespace
 
 std::string cells_text(const Cells& cells) {
@@ -67,20 +85,21 @@ std::string cells_text(const Cells& cells) {
   return json.dump() + "\n";
 }
 
-Cells read_cells(const std::filesystem::path& file) {
+CellsFile read_cells(const std::filesystem::path& file) {
   return cells_from(read_file(file), file.string());
 }
 
-Cells cells_from(const std::string& text, const std::string& name) {
+CellsFile cells_from(const std::string& text, const std::string& name) {
   try {
     const Json json = Json::parse(text);
     if (!json.is_object()) throw Error("is no table of lists");
+    const std::string key = vertices_key(json), unit = key.substr(kVertices.size());
     Cells cells;
     cells.phases = list(json, "phases", "a name", [](const Json& item) { return item.get<std::string>(); });
-    cells.tessellation.vertices = list(json, "vertices_m", "a place, [x, y] in m", place);
+    cells.tessellation.vertices = list(json, key, fmt::format("a place, [x, y] in {}", unit), place);
     cells.tessellation.cells = list(json, "cells", "a list of vertices, each by its number from 0", numbers);
     cells.phase = list(json, "phase", "the number of a phase, from 0", number);
-    return checked(std::move(cells));
+    return {checked(std::move(cells)), unit};
   } catch (const Json::parse_error& error) {
     throw Error(fmt::format("{}: is not JSON, at byte {}", name, error.byte));
   } catch (const Json::out_of_range& error) {  // by its text, "[...] number overflow parsing '1e999'"

@@ -9,6 +9,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/specimen/metrics.hpp"
+#include "pyroclast/specimen/pieces.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
@@ -21,9 +22,13 @@ constexpr double kStraight = 1e-6;
 constexpr double kSameLevel = 1e-9;
 
 /// Vertices along each loop of the outline, the cells on the left.
-std::vector<std::vector<int>> loops_of(const Tessellation& tessellation) {
+/// Throws Error when the cells are not one piece.
+std::vector<std::vector<int>> loops_of(const Tessellation& tessellation, const std::vector<Edge>& edges,
+                                       const Numbering& numbering) {
   std::vector<int> next(tessellation.vertices.size(), -1);
-  for (const Edge& e : edges(tessellation)) {
+  if (const std::string pieces = describe_pieces(tessellation, edges, numbering); !pieces.empty())
+    throw Error(pieces);
+  for (const Edge& e : edges) {
     if (e.right >= 0) continue;
     if (next[e.v0] >= 0)
       throw Error(fmt::format("parts of the outline meet in one point, ({:.6g}, {:.6g}) m",
@@ -69,41 +74,42 @@ std::vector<std::string> names_of(const std::vector<Vec<2>>& corners, double tol
 
 void require_cells(const Cells& cells) {
   const Tessellation& t = cells.tessellation;
-  const auto& [tessellation, phases, phase] = cells;
+  const auto& [tessellation, phases, phase, origin] = cells;
   if (t.cells.empty()) throw Error("there are no cells");
   if (phase.size() != t.cells.size())
     throw Error(fmt::format("there are {} cells, but the phases of {}", t.cells.size(), phase.size()));
   for (std::size_t c = 0; c < t.cells.size(); ++c) {
     if (phase[c] < 0 || phase[c] >= std::ssize(phases))
-      throw Error(fmt::format("cell {} is of phase {}, but there are {}", c, phase[c], phases.size()));
+      throw Error(fmt::format("{} is of phase {} (from 0), but there are {}", Numbering{}.cell(c), phase[c],
+                              phases.size()));
     if (t.cells[c].size() < 3)
-      throw Error(fmt::format("cell {} has {} corners, but needs 3", c, t.cells[c].size()));
+      throw Error(fmt::format("{} has {} corners, but needs 3", Numbering{}.cell(c), t.cells[c].size()));
     for (int v : t.cells[c])
       if (v < 0 || v >= std::ssize(t.vertices))
-        throw Error(fmt::format("cell {} names vertex {}, but there are {}", c, v, t.vertices.size()));
+        throw Error(fmt::format("{} names vertex {} (from 0), but there are {}", Numbering{}.cell(c), v,
+                                t.vertices.size()));
     std::vector<int> sorted = t.cells[c];
     std::ranges::sort(sorted);
     if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
-      throw Error(fmt::format("cell {} names vertex {} twice", c, *twice));
+      throw Error(fmt::format("{} names vertex {} (from 0) twice", Numbering{}.cell(c), *twice));
   }
   for (std::size_t v = 0; v < t.vertices.size(); ++v)
     if (!std::isfinite(t.vertices[v][0]) || !std::isfinite(t.vertices[v][1]))
-      throw Error(fmt::format("vertex {} is not finite", v));
+      throw Error(fmt::format("vertex {} (from 0) is not finite", v));
 }
 
-}  // namespace
-
-Region outline_of(const Tessellation& tessellation) {
+Region outline_of_loops(const Tessellation& tessellation, const std::vector<Edge>& edges,
+                        const Numbering& numbering) {
   std::vector<Vec<2>> outer;
   std::vector<Hole> holes;
-  for (const auto& loop : loops_of(tessellation)) {
+  for (const auto& loop : loops_of(tessellation, edges, numbering)) {
     std::vector<Vec<2>> corners = corners_of(loop, tessellation.vertices);
     if (area(corners) < 0.0)
       holes.push_back({fmt::format("hole_{}", holes.size() + 1), std::move(corners)});
     else if (outer.empty())
       outer = std::move(corners);
     else
-      throw Error("the cells are not one piece");
+      throw Error("the cells have more than one outer outline: some lie upon others");
   }
   if (outer.size() < 3 || !(area(outer) > 0.0)) throw Error("the cells enclose no area");
   const Box box = box_of(outer);
@@ -116,6 +122,17 @@ Region outline_of(const Tessellation& tessellation) {
   if (names.front() == "bottom" && origin == Vec<2>{})
     return Region::rectangle(opposite[0], opposite[1]).with_holes(holes);
   return Region::polygon(std::move(outer), names).with_holes(holes);
+}
+
+}  // namespace
+
+Region outline_of(const Tessellation& tessellation, const Numbering& numbering) {
+  const std::vector<Edge> all = edges(tessellation, numbering);
+  try {
+    return outline_of_loops(tessellation, all, numbering);
+  } catch (const Error& error) {
+    throw Error(error.what() + describe_joinable(tessellation));
+  }
 }
 
 Cells checked(Cells cells) {
@@ -135,8 +152,8 @@ Specimen specimen_from(Cells cells) {
 }
 
 Specimen specimen_from(Cells cells, Region region) {
-  auto [tessellation, phases, phase] = checked(std::move(cells));
-  require_valid(tessellation, region, "The cells");
+  auto [tessellation, phases, phase, origin] = checked(std::move(cells));
+  require_valid(tessellation, region, origin.empty() ? "The cells" : origin);
   Specimen specimen{};
   specimen.region = std::move(region);
   specimen.fraction.assign(phases.size(), 0.0);

@@ -10,8 +10,9 @@ namespace pyroclast::specimen {
 /// The outline of cells: its outer loop and its holes, with straight sides joined from corner to corner.
 /// Sides of the outer loop are called `side_1`, `side_2`, ... from its lowest corner on (of several the
 /// leftmost), those of each hole `hole_1`, ...; those of a rectangle along the axes `bottom`, `right`, `top`,
-/// `left`. Throws Error when the cells are not one piece, or meet in a point alone.
-Region outline_of(const Tessellation& tessellation);
+/// `left`. Throws Error when the cells are not one piece (`describe_pieces`), or meet in a point alone; it
+/// says whether vertices could be joined (`describe_joinable`).
+Region outline_of(const Tessellation& tessellation, const Numbering& numbering = {});
 
 /// Turns cells counter-clockwise. Throws Error, naming the cell, counted from 0, when it names a vertex or a
 /// phase that there is not.

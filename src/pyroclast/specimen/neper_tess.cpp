@@ -17,6 +17,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/read_file.hpp"
+#include "pyroclast/specimen/convex_parts.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/region.hpp"
@@ -80,9 +81,16 @@ class Words {
   }
 
   [[noreturn]] void fail(std::string_view found, std::string_view expected) const {
-    throw Error(fmt::format("{}, line {}: expected {}, found {}.", name_, line_, expected,
-                            found.empty() ? std::string("the end of the file") : fmt::format("'{}'", found)));
+    fail(fmt::format("expected {}, found {}.", expected,
+                     found.empty() ? std::string("the end of the file") : fmt::format("'{}'", found)));
   }
+  [[noreturn]] void fail(std::string_view message) const { fail_at(line_, message); }
+  [[noreturn]] void fail_at(int line, std::string_view message) const {
+    throw Error(fmt::format("{}, line {}: {}", name_, line, message));
+  }
+
+  /// Of the last word that was looked at.
+  int line() const { return line_; }
 
  private:
   static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
@@ -105,7 +113,13 @@ class Words {
   int line_ = 1;
 };
 
-/// Bounding box of the domain, in the file's unit of length.
+/// A place in space, in the file's unit of length, with the line that it stands on.
+struct Place {
+  Vec<3> at;
+  int line = 0;
+};
+
+/// Bounding box of the domain laid flat, in the file's unit of length.
 struct Bounds {
   Vec<2> lower, upper;
 };
@@ -113,16 +127,18 @@ struct Bounds {
 /// What we take from a file, in its own unit of length.
 struct File {
   std::optional<int> cell_count;
-  std::vector<Vec<2>> vertices;
-  std::vector<std::vector<int>> faces;
-  std::optional<Bounds> domain;
+  std::vector<int> group;  ///< of each cell; empty where there is no *group
+  int group_line = 0;
+  std::vector<Place> vertices;
+  std::vector<std::vector<int>> faces;  ///< vertices of each; none of a cell that is empty
+  std::vector<Place> domain;
 };
 
-Vec<2> read_point(Words& words, std::string_view what) {
-  Vec<2> point;
-  for (int i = 0; i < 2; ++i) point[i] = words.number(fmt::format("a coordinate of {}", what));
-  words.number(fmt::format("the z coordinate of {}", what));
-  return point;
+Place read_point(Words& words, std::string_view what) {
+  Place place;
+  for (int i = 0; i < 3; ++i) place.at[i] = words.number(fmt::format("a coordinate of {}", what));
+  place.line = words.line();
+  return place;
 }
 
 void read_format(Words& words) {
@@ -135,11 +151,27 @@ void read_general(Words& words) {
   const int dimension = words.integer("the dimension");
   if (dimension != 2) words.fail(std::to_string(dimension), "the dimension 2 (made by neper -T -dim 2)");
   const std::string_view type = words.next();
+  if (type == "periodic")
+    words.fail(
+        "the tessellation is periodic: its cells stick out of the domain on one side and lack on the other, "
+        "so "
+        "they have no outline to load or heat. Make it without -periodicity.");
   if (type != "standard") words.fail(type, "the type 'standard'");
 }
 
-std::vector<Vec<2>> read_vertices(Words& words) {
-  std::vector<Vec<2>> vertices;
+void read_cell(Words& words, File& file) {
+  file.cell_count = words.count("the number of cells", 1);
+  while (!words.peek().empty() && !words.peek().starts_with("**")) {
+    if (words.next() != "*group") continue;
+    if (!file.group.empty()) words.fail("*group", "one list '*group' alone");
+    file.group_line = words.line();
+    for (int cell = 1; cell <= *file.cell_count; ++cell)
+      file.group.push_back(words.integer(fmt::format("the group of cell {}", cell)));
+  }
+}
+
+std::vector<Place> read_vertices(Words& words) {
+  std::vector<Place> vertices;
   const int count = words.count("the number of vertices", 3);
   for (int i = 1; i <= count; ++i) {
     words.identifier("vertex", i);
@@ -151,7 +183,9 @@ std::vector<Vec<2>> read_vertices(Words& words) {
 
 std::vector<int> read_face(Words& words, int vertex_count) {
   std::vector<int> face;
-  const int corner_count = words.count("the number of vertices of a face", 3);
+  const int corner_count = words.count("the number of vertices of a face", 0);
+  if (corner_count == 1 || corner_count == 2)
+    words.fail(std::to_string(corner_count), "three or more vertices of a face, or none of an empty cell");
   for (int i = 0; i < corner_count; ++i) {
     const int vertex = words.integer("a vertex of a face");
     if (vertex < 1 || vertex > vertex_count) {
@@ -161,10 +195,10 @@ std::vector<int> read_face(Words& words, int vertex_count) {
     if (face.empty() || face.back() != vertex - 1) face.push_back(vertex - 1);
   }
   while (face.size() > 1 && face.front() == face.back()) face.pop_back();
-  if (face.size() < 3)
+  if (corner_count > 0 && face.size() < 3)
     words.fail(fmt::format("{} different ones", face.size()), "at least three vertices of a face");
 
-  const int edge_count = words.count("the number of edges of a face", 3);
+  const int edge_count = words.count("the number of edges of a face", corner_count == 0 ? 0 : 3);
   for (int i = 0; i < edge_count; ++i) words.integer("an edge of a face");
   for (int i = 0; i < 4; ++i) words.number("a parameter of the plane of a face");
   words.integer("the state of a face");
@@ -184,15 +218,12 @@ std::vector<std::vector<int>> read_faces(Words& words, int vertex_count) {
   return faces;
 }
 
-/// \param is_rectangle  it must be an upright one
-Bounds read_domain(Words& words, bool is_rectangle) {
+std::vector<Place> read_domain(Words& words) {
   words.expect("*general");
   words.next();  // The type says "cube" for a rectangle as well; the corners tell.
   words.expect("*vertex");
   const int count = words.count("the number of domain vertices", 3);
-  if (is_rectangle && count != 4)
-    words.fail(std::to_string(count), "4 domain vertices, those of a rectangle");
-  std::vector<Vec<2>> points;
+  std::vector<Place> points;
   for (int i = 1; i <= count; ++i) {
     words.identifier("domain vertex", i);
     points.push_back(read_point(words, "a domain vertex"));
@@ -200,6 +231,116 @@ Bounds read_domain(Words& words, bool is_rectangle) {
     const int listed = words.count("the number of tessellation vertices of a domain vertex", 0);
     for (int j = 0; j < listed; ++j) words.integer("a tessellation vertex of a domain vertex");
   }
+  return points;
+}
+
+File read(Words& words) {
+  File file;
+  std::set<std::string, std::less<>> seen;
+  words.expect("***tess");
+  while (words.peek() != "***end") {
+    const std::string_view section = words.next();
+    if (!section.starts_with("**") || section.starts_with("***"))
+      words.fail(section, "a section '**...' or '***end'");
+    if (!seen.emplace(section).second) words.fail(section, fmt::format("one section '{}' alone", section));
+    if (section == "**format") read_format(words);
+    if (section == "**general") read_general(words);
+    if (section == "**cell") read_cell(words, file);
+    if (section == "**vertex") file.vertices = read_vertices(words);
+    if (section == "**face") file.faces = read_faces(words, static_cast<int>(file.vertices.size()));
+    if (section == "**domain") file.domain = read_domain(words);
+    words.skip_to_section();
+  }
+  if (!file.cell_count) words.fail("***end", "a section '**cell' before it");
+  if (file.faces.empty()) words.fail("***end", "a section '**face' before it");
+  if (file.domain.empty()) words.fail("***end", "a section '**domain' before it");
+  if (static_cast<std::size_t>(*file.cell_count) != file.faces.size()) {
+    words.fail(fmt::format("{} cells and {} faces", *file.cell_count, file.faces.size()),
+               "as many faces as cells");
+  }
+  return file;
+}
+
+Vec<3> cross_product(const Vec<3>& a, const Vec<3>& b) {
+  return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
+}
+
+/// The plane in which a tessellation lies, with two directions in it.
+struct Plane {
+  Vec<3> origin, x{{1.0, 0.0, 0.0}}, y{{0.0, 1.0, 0.0}};
+
+  Vec<2> flat(const Place& place) const { return {{dot(place.at - origin, x), dot(place.at - origin, y)}}; }
+};
+
+/// A place further than this share of the size from the plane is out of it: twelve decimals are written.
+constexpr double kOutOfPlane = 1e-6;
+/// Directions nearer than this to the normal of a plane have none in it.
+constexpr double kNormal = 1e-3;
+
+/// The places that cells and domain use.
+std::vector<Place> used_places(const File& file) {
+  std::vector<bool> is_used(file.vertices.size(), false);
+  for (const auto& face : file.faces)
+    for (const int v : face) is_used[v] = true;
+  std::vector<Place> places = file.domain;
+  for (std::size_t v = 0; v < is_used.size(); ++v)
+    if (is_used[v]) places.push_back(file.vertices[v]);
+  return places;
+}
+
+/// The plane of a tessellation: that of the largest of its faces. Its x is the file's x, or y where x is
+/// normal to it, as far as it lies in the plane; its y points to where the file's y does, or z. Throws Error
+/// for a place out of it.
+Plane plane_of(const Words& words, const File& file) {
+  const std::vector<Place> places = used_places(file);
+  Vec<3> low = places.front().at, high = low;
+  for (const Place& p : places)
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p.at[i]);
+      high[i] = std::max(high[i], p.at[i]);
+    }
+  const double slack = kOutOfPlane * norm(high - low);
+  if (high[2] - low[2] <= slack) return {};  // coordinates stay as they are
+
+  Vec<3> normal{}, on_plane{};
+  for (const auto& face : file.faces) {
+    Vec<3> twice{};
+    for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+      const Vec<3>& corner = file.vertices[face[0]].at;
+      twice += cross_product(file.vertices[face[i]].at - corner, file.vertices[face[i + 1]].at - corner);
+    }
+    if (norm(twice) <= norm(normal)) continue;
+    normal = twice;
+    on_plane = file.vertices[face[0]].at;
+  }
+  if (!(norm(normal) > 0.0)) words.fail("no cell has an area");
+  normal *= 1.0 / norm(normal);
+  for (const Place& p : places)
+    if (const double distance = std::abs(dot(p.at - on_plane, normal)); distance > slack)
+      words.fail_at(p.line,
+                    fmt::format("({:.8g}, {:.8g}, {:.8g}) lies {:.3g} off the plane of the largest cell; the "
+                                "cells must lie in one plane",
+                                p.at[0], p.at[1], p.at[2], distance));
+  Plane plane{.origin = on_plane};
+  const auto in_plane = [&](const Vec<3>& direction) { return direction - dot(direction, normal) * normal; };
+  const Vec<3> x{{1.0, 0.0, 0.0}}, y{{0.0, 1.0, 0.0}};
+  plane.x = norm(in_plane(x)) > kNormal ? in_plane(x) : in_plane(y);
+  plane.x *= 1.0 / norm(plane.x);
+  plane.y = cross_product(normal, plane.x);
+  const double up = std::abs(plane.y[1]) > kNormal ? plane.y[1] : plane.y[2];
+  if (up < 0.0) plane.y *= -1.0;
+  return plane;
+}
+
+/// \param is_rectangle  it must be an upright one
+Bounds bounds_of(const Words& words, const File& file, const Plane& plane, bool is_rectangle) {
+  const auto refuse = [&](std::string_view found) {
+    words.fail_at(file.domain.back().line,
+                  fmt::format("expected a domain that is an upright rectangle, found {}.", found));
+  };
+  std::vector<Vec<2>> points;
+  for (const Place& p : file.domain) points.push_back(plane.flat(p));
+  if (is_rectangle && points.size() != 4) refuse(fmt::format("{} corners", points.size()));
   Bounds box{points[0], points[0]};
   for (const Vec<2>& p : points) {
     for (int i = 0; i < 2; ++i) {
@@ -217,40 +358,13 @@ Bounds read_domain(Words& words, bool is_rectangle) {
       if (std::abs(p[i] - box.upper[i]) <= slack) {
         corner |= 1 << i;
       } else if (std::abs(p[i] - box.lower[i]) > slack) {
-        words.fail("a vertex off its corners", "a domain that is an upright rectangle");
+        refuse("a vertex off its corners");
       }
     }
     found |= 1 << corner;
   }
-  if (found != 0b1111) words.fail("fewer than four corners", "a domain that is an upright rectangle");
+  if (found != 0b1111) refuse("fewer than four corners");
   return box;
-}
-
-File read(Words& words, bool is_rectangle) {
-  File file;
-  std::set<std::string, std::less<>> seen;
-  words.expect("***tess");
-  while (words.peek() != "***end") {
-    const std::string_view section = words.next();
-    if (!section.starts_with("**") || section.starts_with("***"))
-      words.fail(section, "a section '**...' or '***end'");
-    if (!seen.emplace(section).second) words.fail(section, fmt::format("one section '{}' alone", section));
-    if (section == "**format") read_format(words);
-    if (section == "**general") read_general(words);
-    if (section == "**cell") file.cell_count = words.count("the number of cells", 1);
-    if (section == "**vertex") file.vertices = read_vertices(words);
-    if (section == "**face") file.faces = read_faces(words, static_cast<int>(file.vertices.size()));
-    if (section == "**domain") file.domain = read_domain(words, is_rectangle);
-    words.skip_to_section();
-  }
-  if (!file.cell_count) words.fail("***end", "a section '**cell' before it");
-  if (file.faces.empty()) words.fail("***end", "a section '**face' before it");
-  if (!file.domain) words.fail("***end", "a section '**domain' before it");
-  if (static_cast<std::size_t>(*file.cell_count) != file.faces.size()) {
-    words.fail(fmt::format("{} cells and {} faces", *file.cell_count, file.faces.size()),
-               "as many faces as cells");
-  }
-  return file;
 }
 
 /// Puts a point of the file into [0, width] x [0, height], exactly onto a side when it is nearly there.
@@ -276,26 +390,46 @@ void require_aspect_ratio(const Bounds& domain, double width, double height, con
   }
 }
 
-/// Cells of a file whose domain takes this size, m.
-Tessellation cells_of(const File& file, const Vec<2>& size) {
-  Tessellation result;
+/// A tessellation, with what messages call its cells.
+struct Read {
+  NeperTess tess;
+  Numbering numbering;
+};
+
+/// Cells of a file whose domain takes this size, m. A cell that bends inwards, as regularisation leaves them,
+/// becomes its convex parts.
+Read cells_of(const File& file, const Plane& plane, const Bounds& domain, const Vec<2>& size) {
+  Read read;
+  Tessellation& result = read.tess.tessellation;
   std::vector<int> number(file.vertices.size(), -1);
   std::vector<Vec<2>> polygon;
-  for (const std::vector<int>& face : file.faces) {
+  for (std::size_t f = 0; f < file.faces.size(); ++f) {
     std::vector<int> cell;
-    for (const int v : face) {
+    for (const int v : file.faces[f]) {
       int& n = number[static_cast<std::size_t>(v)];
       if (n < 0) {
         n = static_cast<int>(result.vertices.size());
-        result.vertices.push_back(scaled(file.vertices[static_cast<std::size_t>(v)], *file.domain, size));
+        result.vertices.push_back(
+            scaled(plane.flat(file.vertices[static_cast<std::size_t>(v)]), domain, size));
       }
       cell.push_back(n);
     }
-    result.cells.push_back(std::move(cell));
-    corners(result, result.cells.size() - 1, polygon);
-    if (area(polygon) < 0.0) std::reverse(result.cells.back().begin(), result.cells.back().end());
+    if (cell.empty()) continue;
+    polygon.clear();
+    for (const int v : cell) polygon.push_back(result.vertices[v]);
+    if (area(polygon) < 0.0) {
+      std::ranges::reverse(cell);
+      std::ranges::reverse(polygon);
+    }
+    for (const std::vector<int>& part : convex_parts(polygon)) {
+      auto& corners = result.cells.emplace_back();
+      for (const int corner : part) corners.push_back(cell[corner]);
+      read.numbering.in_file.push_back(static_cast<int>(f) + 1);
+      if (!file.group.empty()) read.tess.group.push_back(file.group[f]);
+    }
   }
-  return result;
+  read.tess.group_line = file.group_line;
+  return read;
 }
 
 std::ifstream opened(const std::filesystem::path& file) {
@@ -307,34 +441,46 @@ std::ifstream opened(const std::filesystem::path& file) {
 
 }  // namespace
 
-Tessellation read_neper_tess(const std::filesystem::path& file, double width, double height) {
+NeperTess read_neper_tess(const std::filesystem::path& file, double width, double height) {
   std::ifstream stream = opened(file);
   return read_neper_tess(stream, file.string(), width, height);
 }
 
-Tessellation read_neper_tess(std::istream& stream, const std::string& name, double width, double height) {
+NeperTess read_neper_tess(std::istream& stream, const std::string& name, double width, double height) {
   Words words(stream, name);
-  const File file = read(words, true);
-  require_aspect_ratio(*file.domain, width, height, name);
-  Tessellation result = cells_of(file, {{width, height}});
-  require_valid(result, Region::rectangle(width, height), name);
-  return result;
+  const File file = read(words);
+  const Plane plane = plane_of(words, file);
+  const Bounds domain = bounds_of(words, file, plane, true);
+  require_aspect_ratio(domain, width, height, name);
+  Read result = cells_of(file, plane, domain, {{width, height}});
+  require_valid(result.tess.tessellation, Region::rectangle(width, height), name, result.numbering);
+  return std::move(result.tess);
 }
 
-Tessellation read_neper_tess(const std::filesystem::path& file, double width) {
+NeperTess read_neper_tess(const std::filesystem::path& file, const TessSize& size) {
   std::ifstream stream = opened(file);
-  return read_neper_tess(stream, file.string(), width);
+  return read_neper_tess(stream, file.string(), size);
 }
 
-Tessellation read_neper_tess(std::istream& stream, const std::string& name, double width) {
+NeperTess read_neper_tess(std::istream& stream, const std::string& name, const TessSize& size) {
   Words words(stream, name);
-  const File file = read(words, false);
-  const Vec<2> size = file.domain->upper - file.domain->lower;
-  if (!(size[0] > 0.0 && size[1] > 0.0))
-    throw Error(fmt::format("{}: the domain is {:.8g} x {:.8g}.", name, size[0], size[1]));
-  Tessellation result = cells_of(file, (width / size[0]) * size);
-  require_valid(result, outline_of(result), name);
-  return result;
+  const File file = read(words);
+  const Plane plane = plane_of(words, file);
+  const Bounds domain = bounds_of(words, file, plane, false);
+  const Vec<2> in_file = domain.upper - domain.lower;
+  if (!(in_file[0] > 0.0 && in_file[1] > 0.0))
+    throw Error(fmt::format("{}: the domain is {:.8g} x {:.8g}.", name, in_file[0], in_file[1]));
+  Read result =
+      cells_of(file, plane, domain, (size.unit > 0.0 ? size.unit : size.width / in_file[0]) * in_file);
+  const Tessellation& cells = result.tess.tessellation;
+  try {
+    require_valid(cells, outline_of(cells, result.numbering), name, result.numbering);
+  } catch (const Error& error) {
+    const std::string_view what = error.what();
+    if (what.starts_with(name)) throw;
+    throw Error(fmt::format("{}: {}", name, what));
+  }
+  return std::move(result.tess);
 }
 
 }  // namespace pyroclast::specimen

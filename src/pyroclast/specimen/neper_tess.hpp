@@ -3,22 +3,39 @@
 #include <filesystem>
 #include <istream>
 #include <string>
+#include <vector>
 
 #include "pyroclast/specimen/specimen.hpp"
 
 namespace pyroclast::specimen {
 
+/// Cells of a Neper tessellation, and the groups that its file puts them into.
+struct NeperTess {
+  Tessellation tessellation;
+  std::vector<int> group;  ///< of each cell, as the file has it (*group); empty where it has none
+  int group_line = 0;      ///< of the file, on which *group stands
+};
+
+/// How large a tessellation becomes: one of the two.
+struct TessSize {
+  double width = 0.0;  ///< of the box around it, m
+  double unit = 0.0;   ///< of the file's coordinates, m
+};
+
 /// Reads a two-dimensional Neper tessellation (.tess, format 2.0 to 3.x; Quey et al., CMAME 200, 2011) and
 /// scales it to [0, width] x [0, height] (m). Its domain must be an upright rectangle of the same aspect
 /// ratio (to 1e-6). Cells come in the file's order, counter-clockwise; vertices that no cell uses are
-/// dropped. Throws Error, with file and line, when the file does not follow the format, and when the cells do
-/// not tile the domain.
-Tessellation read_neper_tess(const std::filesystem::path& file, double width, double height);
+/// dropped, and so are cells without vertices. A cell that bends inwards, as Neper's regularisation leaves
+/// some, is cut into convex parts. A tessellation in any plane of space is laid flat: x stays the file's x as
+/// far as that lies in the plane, or else its y; y points to where the file's y does, or else its z.
+/// Throws Error, with file and line, when the file does not follow the format, when it is periodic, and when
+/// the cells do not lie in a plane or do not tile the domain; messages count cells from 1, as the file does.
+NeperTess read_neper_tess(const std::filesystem::path& file, double width, double height);
 /// The same from a stream; `name` takes the file's place in messages.
-Tessellation read_neper_tess(std::istream& stream, const std::string& name, double width, double height);
-/// The same for a domain of any outline, which becomes that of the specimen (`outline_of`). It is scaled to a
-/// width (m), and the box around it begins at [0, 0].
-Tessellation read_neper_tess(const std::filesystem::path& file, double width);
-Tessellation read_neper_tess(std::istream& stream, const std::string& name, double width);
+NeperTess read_neper_tess(std::istream& stream, const std::string& name, double width, double height);
+/// The same for a domain of any outline, which becomes that of the specimen (`outline_of`). The box around it
+/// begins at [0, 0].
+NeperTess read_neper_tess(const std::filesystem::path& file, const TessSize& size);
+NeperTess read_neper_tess(std::istream& stream, const std::string& name, const TessSize& size);
 
 }  // namespace pyroclast::specimen

@@ -59,6 +59,9 @@ void require_valid(const FibreParameters& p) {
 void require_valid(const BlockParameters& p) {
   require(p.shortest_edge >= 0.0 && p.shortest_edge <= 0.5, "The shortest edge", p.shortest_edge,
           "0 to 0.5 of the mean edge");
+  if (p.tessellation && !p.phases.empty() && p.phase.size() != p.tessellation->cells.size())
+    throw Error(fmt::format("The phases of {} blocks are known; allowed are those of all {}.", p.phase.size(),
+                            p.tessellation->cells.size()));
   if (p.tessellation) return;
   require(p.count >= 1, "The number of blocks", p.count, "1 or more");
   require(p.radius_spread >= 0.0 && p.radius_spread < 1.0, "The radius spread", p.radius_spread,
@@ -127,6 +130,7 @@ double block_size(const Specimen& specimen) {
 
 std::vector<std::string> phases(const SpecimenParameters& parameters) {
   if (parameters.cells) return parameters.cells->phases;
+  if (!parameters.blocks.phases.empty()) return parameters.blocks.phases;
   std::vector<std::string> names;
   const auto add = [&](const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
@@ -178,13 +182,17 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
 
   Blocks blocks = make_blocks(parameters.blocks, parameters.region, block_random, team);
   specimen.tessellation = std::move(blocks.tessellation);
-  const int matrix = index_of(specimen.phases, parameters.matrix);
-  Superposed superposed = superpose(specimen.tessellation, specimen.aggregates, parameters, matrix);
-  specimen.covered_fraction = superposed.covered_fraction;
-  specimen.phase = std::move(superposed.phase);
-  specimen.fraction_of_circles = fraction_of(specimen, [&](int phase) { return phase != matrix; });
-  superpose(specimen.tessellation, specimen.fibres, specimen.phase);
-  specimen.fraction_superposed = fraction_of(specimen, [&](int phase) { return phase != matrix; });
+  if (blocks.phase.empty()) {
+    const int matrix = index_of(specimen.phases, parameters.matrix);
+    Superposed superposed = superpose(specimen.tessellation, specimen.aggregates, parameters, matrix);
+    specimen.covered_fraction = superposed.covered_fraction;
+    specimen.phase = std::move(superposed.phase);
+    specimen.fraction_of_circles = fraction_of(specimen, [&](int phase) { return phase != matrix; });
+    superpose(specimen.tessellation, specimen.fibres, specimen.phase);
+    specimen.fraction_superposed = fraction_of(specimen, [&](int phase) { return phase != matrix; });
+  } else {
+    specimen.phase = std::move(blocks.phase);
+  }
   for (int phase = 0; phase < static_cast<int>(specimen.phases.size()); ++phase)
     specimen.fraction.push_back(fraction_of(specimen, [&](int p) { return p == phase; }));
 

@@ -69,6 +69,15 @@ struct Tessellation {
   std::vector<std::vector<int>> cells;  ///< vertex indices of each cell, counter-clockwise
 };
 
+/// How messages number the cells of a tessellation.
+struct Numbering {
+  std::vector<int>
+      in_file;  ///< of each cell its number in a file that counts from 1; empty: from 0, as they stand
+
+  /// "cell 3 (from 0)", "cell 4 (from 1)".
+  std::string cell(std::size_t number) const;
+};
+
 /// Tessellation asked for.
 struct BlockParameters {
   int count = 0;  ///< number of blocks
@@ -78,6 +87,10 @@ struct BlockParameters {
   double shortest_edge = 0.0;  ///< edges below this fraction of the mean edge are removed, in [0, 0.5]
   /// Of the region, made elsewhere and still to be regularised; then only `shortest_edge` counts.
   std::optional<Tessellation> tessellation;
+  /// What the cells of `tessellation` are of, where that is known: names, and of each cell an index into
+  /// them. Then nothing is superposed.
+  std::vector<std::string> phases = {};
+  std::vector<int> phase = {};
   std::string place = {};  ///< in a deck, to begin messages with: "deck.toml:12: blocks"; may be empty
 };
 
@@ -86,6 +99,7 @@ struct Cells {
   Tessellation tessellation;
   std::vector<std::string> phases;  ///< what they can be made of
   std::vector<int> phase;           ///< of each, index into `phases`
+  std::string origin = {};          ///< what messages begin with, such as the name of a file; may be empty
 };
 
 struct SpecimenParameters {
@@ -101,7 +115,8 @@ struct SpecimenParameters {
   double covered_fraction = 0.5;  ///< of a block above which it is aggregate, for Superposition::area
 };
 
-/// Names of what the blocks can be made of: those of cells, or aggregates, inclusions, matrix; each once.
+/// Names of what the blocks can be made of: those of cells, of the blocks' own phases, or aggregates,
+/// inclusions, matrix; each once.
 std::vector<std::string> phases(const SpecimenParameters& parameters);
 
 /// Edge of a tessellation. `left` is the cell that sees it counter-clockwise from `v0` to `v1`.
@@ -113,7 +128,7 @@ struct Edge {
 
 /// The edges of a tessellation, each once, in the order in which the cells meet them.
 /// Throws Error when an edge belongs to more than two cells or two cells see it in the same sense.
-std::vector<Edge> edges(const Tessellation& tessellation);
+std::vector<Edge> edges(const Tessellation& tessellation, const Numbering& numbering = {});
 
 /// How good the blocks are; lengths in m.
 struct BlockMetrics {

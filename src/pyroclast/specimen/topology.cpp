@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/specimen/convex_parts.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 
 namespace pyroclast::specimen {
@@ -56,13 +57,18 @@ class DirectedEdges {
 
 }  // namespace
 
+std::string Numbering::cell(std::size_t number) const {
+  return in_file.empty() ? fmt::format("cell {} (from 0)", number)
+                         : fmt::format("cell {} (from 1)", in_file[number]);
+}
+
 void corners(const Tessellation& tessellation, std::size_t cell, std::vector<Vec<2>>& result) {
   result.clear();
   for (const int v : tessellation.cells[cell])
     result.push_back(tessellation.vertices[static_cast<std::size_t>(v)]);
 }
 
-std::vector<Edge> edges(const Tessellation& tessellation) {
+std::vector<Edge> edges(const Tessellation& tessellation, const Numbering& numbering) {
   const DirectedEdges directed(tessellation);
   std::vector<Edge> result;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
@@ -72,10 +78,11 @@ std::vector<Edge> edges(const Tessellation& tessellation) {
       const int v1 = cell[i + 1 < cell.size() ? i + 1 : 0];
       const auto [partners, other] = directed.find(v1, v0);
       if (partners > 1 || directed.find(v0, v1).first > 1) {
+        const Vec<2>&from = tessellation.vertices[v0], &to = tessellation.vertices[v1];
         throw Error(fmt::format(
-            "The edge between vertices {} and {} of the tessellation is seen twice in the same sense; "
-            "cell {} overlaps another.",
-            v0, v1, c));
+            "{} overlaps another: both have the edge from ({:.6g}, {:.6g}) to ({:.6g}, {:.6g}) m, in the "
+            "same sense",
+            numbering.cell(c), from[0], from[1], to[0], to[1]));
       }
       const int left = static_cast<int>(c);
       if (other < 0 || other > left) result.push_back({v0, v1, left, other});
@@ -104,26 +111,27 @@ std::vector<int> mismatched_cells(const Tessellation& tessellation, const Region
   return result;
 }
 
-void require_valid(const Tessellation& tessellation, const Region& region, const std::string& origin) {
+void require_valid(const Tessellation& tessellation, const Region& region, const std::string& origin,
+                   const Numbering& numbering) {
   const std::vector<int> mismatched = mismatched_cells(tessellation, region);
   if (!mismatched.empty()) {
+    const Vec<2>& at = tessellation.vertices[tessellation.cells[mismatched.front()].front()];
     throw Error(
-        fmt::format("{}: {} of {} cells do not fit together with their neighbours, the first is cell {}.",
-                    origin, mismatched.size(), tessellation.cells.size(), mismatched.front() + 1));
+        fmt::format("{}: {} of {} cells do not fit together with their neighbours, the first is {} near "
+                    "({:.6g}, {:.6g}) m.",
+                    origin, mismatched.size(), tessellation.cells.size(), numbering.cell(mismatched.front()),
+                    at[0], at[1]));
   }
-  // Coordinates of a file carry twelve decimals, so a corner on a straight line may bend inwards by this
-  // much.
-  constexpr double slack = 1e-6;
   double total = 0.0;
   std::vector<Vec<2>> polygon;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
     corners(tessellation, c, polygon);
     const double cell_area = area(polygon);
     total += cell_area;
-    if (!(cell_area > 0.0) || largest_angle(polygon) > std::numbers::pi + slack ||
+    if (!(cell_area > 0.0) || largest_angle(polygon) > std::numbers::pi + kInwards ||
         !(thinnest_zone(polygon) > 0.0)) {
-      throw Error(fmt::format("{}: cell {} near ({:.6g}, {:.6g}) m is not convex or has no area.", origin,
-                              c + 1, polygon.front()[0], polygon.front()[1]));
+      throw Error(fmt::format("{}: {} near ({:.6g}, {:.6g}) m is not convex or has no area.", origin,
+                              numbering.cell(c), polygon.front()[0], polygon.front()[1]));
     }
   }
   if (std::abs(total - region.area()) > 1e-10 * region.area())

@@ -17,6 +17,7 @@ std::vector<int> mismatched_cells(const Tessellation& tessellation, const Region
 
 /// Throws Error when the cells do not tile the region, or when a cell is not convex or has a zone without
 /// area. `origin` names the tessellation in the message.
-void require_valid(const Tessellation& tessellation, const Region& region, const std::string& origin);
+void require_valid(const Tessellation& tessellation, const Region& region, const std::string& origin,
+                   const Numbering& numbering = {});
 
 }  // namespace pyroclast::specimen
