@@ -437,6 +437,23 @@ TEST(DriveVerification, AHeldBodyExpandsWithoutStress) {
   EXPECT_NEAR(run.last("stress_MPa"), 0.0, 0.02);
 }
 
+// Promise: an exchange of a body that nothing loads rests when the body has grown, not when it is only slow.
+TEST(DriveVerification, AFreeBodyHasGrownWhenItsExchangeRests) {
+  std::string text =
+      free_deck(kCorner + kRecords + drive("duration = \"1 ms\"", kHeld) + kExpose +
+                "[heat]\nfield = \"conduction\"\n[[heat.boundaries]]\nfaces = \"outline\"\n"
+                "kind = \"temperature\"\n"
+                "temperature = { from = \"20 degC\", rate = \"6 K/min\", to = \"33 degC\" }\n");
+  text = with(text, "duration = \"6 min\"\nplaten = \"force\"", "duration = \"1 h\"");
+  text = with(text, "exchange_increment = \"5 K\"\nunbalanced_ratio = 1e-3\nplaten_difference = \"20 kPa\"",
+              "exchange_increment = \"20 K\"\nunbalanced_ratio = 1e-5\nplaten_difference = \"0.1 MPa\"");
+  const Finished run(text);
+  EXPECT_EQ(run.last("converged"), 1.0);
+  const double growth = 1e-5 * 13.0 * kWidth;
+  expect_known({"growth of a free body at rest, 13 K in one exchange", "alpha dT l", "m"}, run.last("end_m"),
+               growth, 0.01 * growth);
+}
+
 TEST(Drive, AFollowerTurnsWithTheBodyAndADeadLoadDoesNot) {
   for (const bool follows : {true, false}) {
     const std::string text =

@@ -120,10 +120,13 @@ bool Exchange::is_still(const Simulation& simulation) const {
   const Mechanics<2>& mechanics = simulation.mechanics();
   if (imbalance(simulation) >= coupling_.platen_difference) return false;
   if (mechanics.unbalanced_ratio() < coupling_.unbalanced_ratio) return true;
-  // a body that expands freely bears nothing to compare with
-  const double face = specimen::block_size(simulation.specimen()) * simulation.model().thickness;
+  // A body that expands freely bears nothing to compare with. What is out of balance at each block alike, as
+  // where all of it still grows, adds up over the body.
+  const double block = specimen::block_size(simulation.specimen());
+  const double size = std::sqrt(simulation.specimen().region.area());
   return !simulation.has_press() &&
-         mechanics.mean_unbalanced_force() < kAsGoodAsNone * coupling_.platen_difference * face;
+         mechanics.mean_unbalanced_force() * (size / block) <
+             kAsGoodAsNone * coupling_.platen_difference * block * simulation.model().thickness;
 }
 
 std::vector<Column> Exchange::columns() {
