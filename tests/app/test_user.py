@@ -435,51 +435,115 @@ unbalanced_ratio = 1e-9
             self.assertIn(words, done.stderr)
 
 
-class ReferenceOfTheFigures(UserTest):
-    """`[output] reference` names what figures draw beside the results."""
+class ReferencesOfTheDeck(UserTest):
+    """`[[output.references]]` names what figures draw beside the results, and what the summary holds them against."""
 
-    def deck(self, reference: str) -> pathlib.Path:
-        return self.write(small_deck(history_strain=f'history_strain = 4e-6\nreference = "{reference}"'))
+    def deck(self, *references: str, deck: str = "") -> pathlib.Path:
+        tables = "".join(f"\n[[output.references]]\n{keys}\n" for keys in references)
+        return self.write((deck or small_deck()) + tables)
+
+    def run_it(self, deck: pathlib.Path) -> dict:
+        done = self.pyroclast("run", deck, "--out", "run", "--no-figures", "--overwrite")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads((self.folder / "run" / "summary.json").read_text())
 
     def test_what_is_wrong_is_told_at_its_place(self):
-        self.write("strain,stress\n0,0\n", "columns.csv")
+        self.write("strain,force\n0,0\n1,2\n", "columns.csv")
+        self.write("a,b,c,d\n5,0,0,0\n", "four.csv")
         self.write("# mine\nstrain,stress_MPa\n0,0\n1,high\n2,1\n", "word.csv")
         self.write("strain,stress_MPa\n0,0,0\n", "three.csv")
         self.write("strain,stress_MPa\n0,0\n", "short.csv")
-        for reference, part in (("compresion", 'did you mean "compression"?'), ("mine", "ends in .csv"),
-                                ("gone.csv", "cannot be read"),
-                                ("columns.csv", 'columns.csv:1: the columns 1 "strain", 2 "stress" are none'),
-                                ("word.csv", 'word.csv:4: "high"'), ("three.csv", "three.csv:2: \"0,0,0\" has 3 cells"),
-                                ("short.csv", "1 rows")):
-            with self.subTest(reference):
-                done = self.pyroclast("check", self.deck(reference))
+        stress = 'of = "stress"'
+        for keys, key, part in (
+                ('builtin = "compresion"', "builtin", 'did you mean "compression"?'),
+                (f'builtin = "compression"\n{stress}', "of", "has no effect"),
+                (f'file = "gone.csv"\n{stress}', "file", "cannot be read"),
+                ('file = "gone.csv"\nof = "strength"', "of", 'draw "stress" over strain'),
+                (f'file = "gone.csv"\n{stress}\nover = "time"', "over", 'over it, but over "strain"'),
+                (f'file = "columns.csv"\n{stress}', "file", 'columns.csv:1: column "force" has no unit'),
+                (f'file = "four.csv"\n{stress}', "file", '{ file = "four.csv", columns = ["a", "b"]'),
+                (f'file = "word.csv"\n{stress}', "file", 'word.csv:4: "high"'),
+                (f'file = "three.csv"\n{stress}', "file", 'three.csv:2: "0,0,0" has 3 cells'),
+                (f'file = "short.csv"\n{stress}', "file", "1 rows"),
+                (f'file = "short.csv"\n{stress}\ncolumns = ["strain"]', "columns", "a list of 2 to 3 columns"),
+                (f'file = "word.csv"\n{stress}\nsign = [-1]', "sign", "a list of 2 numbers"),
+                (f'file = "word.csv"\n{stress}\nsign = [-1, 2]', "sign", "each 1 or -1"),
+                (f'file = "word.csv"\n{stress}\nname = "fig. 3"', "name", "no dot")):
+            with self.subTest(keys):
+                done = self.pyroclast("check", self.deck(keys))
                 self.assertNotEqual(done.returncode, 0)
-                self.assertRegex(done.stderr, rf'deck.toml:\d+:\d+: output.reference = "{reference}": ')
+                self.assertRegex(done.stderr, rf"deck.toml:\d+:\d+: output.references\[0\].{key} = ")
                 self.assertIn(part, done.stderr)
 
-    def test_a_table_is_kept_with_the_run_and_drawn(self):
-        self.write("strain,stress_MPa\n0,0\n0.001,20\n", "tests_of_1976.csv")
-        done = self.pyroclast("run", self.deck("tests_of_1976.csv"), "--out", "run", "--no-figures")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertTrue((self.folder / "run" / "inputs" / "tests_of_1976.csv").exists())
-        self.assertEqual(self.pyroclast("figures", "run", "run", "--format", "svg").returncode, 0)
-        self.assertIn("tests_of_1976", (self.folder / "run" / "figures" / "stress_strain.svg").read_text())
+    def test_names_tell_references_apart(self):
+        self.write("strain,stress_MPa\n0,0\n1e-3,20\n", "a.csv")
+        done = self.pyroclast("check", self.deck('file = "a.csv"\nof = "stress"', 'file = "a.csv"\nof = "stress"'))
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn('"a" is the name of another reference', done.stderr)
 
-    def test_a_table_in_other_units_is_the_same(self):
+    def test_tables_are_kept_with_the_run_drawn_and_held_against_it(self):
+        self.write("strain,stress_MPa\n0,0\n0.001,20\n", "tests_of_1976.csv")
+        self.write("strain [%],stress [MPa]\n0,0\n0.1,18\n", "press.csv")
+        summary = self.run_it(self.deck('file = "tests_of_1976.csv"\nof = "stress"',
+                                        'file = "press.csv"\nof = "stress"\nname = "Our press"',
+                                        'builtin = "compression"'))
+        self.assertTrue((self.folder / "run" / "inputs" / "tests_of_1976.csv").exists())
+        self.assertEqual(set(summary["references"]), {"tests_of_1976", "Our press"})
+        for distances in summary["references"].values():
+            self.assertAlmostEqual(distances["share_covered"], 0.4, delta=0.01)  # stop_strain 4e-4 of 1e-3
+            self.assertGreater(distances["rms_over_greatest"], 0.0)
+        self.assertEqual(self.pyroclast("figures", "run", "run", "--format", "svg").returncode, 0)
+        picture = (self.folder / "run" / "figures" / "stress_strain.svg").read_text()
+        for name in ("tests_of_1976", "Our press", "Anderberg"):
+            self.assertIn(name, picture)
+
+    def test_a_table_in_other_units_and_signs_is_the_same(self):
+        self.write("strain,stress_MPa\n0,0\n0.001,20.0005\n", "plain.csv")
         self.write("\ufeffDehnung strain [%];Spannung [kPa]\r\n0,0;0\r\n0,1;20000,5\r\n", "other.csv")
-        done = self.pyroclast("run", self.deck("other.csv"), "--out", "run", "--no-figures")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual((self.folder / "run" / "reference.csv").read_text(), "strain,stress_MPa\n0,0\n0.001,20.0005\n")
+        self.write("nr,eps,sigma,u\n1,0,0,7\n2,-0.1,-20000500,7\n", "signs.csv")
+        self.run_it(self.deck('file = "plain.csv"\nof = "stress"', 'file = "other.csv"\nof = "stress"',
+                              'file = "signs.csv"\nof = "stress"\ncolumns = ["eps", "sigma"]\n'
+                              'units = ["%", "Pa"]\nsign = [-1, -1]'))
+        plain, *others = json.loads((self.folder / "run" / "references.json").read_text())
+        self.assertEqual(plain["x"], [0.0, 0.001])
+        self.assertEqual(plain["high"], [0.0, 20.0005])
+        for other in others:
+            for key in ("x", "low", "high"):
+                self.assertEqual([abs(value) for value in other[key]], plain[key], other["name"])
+
+    def test_the_dialects_of_curves_are_those_of_references(self):
+        head, rows = "time [min],temperature [degC]", ("0,20", "30,800")
+        wall = WALL.replace("count = 2000", "count = 50")
+        for text in (f"{head}\n" + "\n".join(rows), f"\ufeff{head}\n" + "\n".join(rows),
+                     "Zeit [min];Temperatur [degC]\n0,0;20,0\n30,0;800,0\n", f",{head}\n0,0,20\n1,30,800\n",
+                     f"{head},\n0,20,\n30,800,\n", "time [hh:mm:ss],temperature [degC]\n00:00:00,20\n00:30:00,800\n",
+                     '"time [min]","temperature [degC]"\n"0","20"\n"30","800"\n',
+                     "time [min]\ttemperature [degC]\n0\t20\n30\t800\n", "min,C\nTime,TC1\n0,20\n30,800\n",
+                     f"sep=,\n{head}\n0,20\n30,800\n", f"{head}\n0,+20\n30,+800\n",
+                     "time (min),temperature (degC)\n0,20\n30,800\n"):
+            with self.subTest(text):
+                self.write(text, "furnace.csv")
+                done = self.pyroclast("check", self.deck('file = "furnace.csv"\nof = "temperature"', deck=wall))
+                self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_what_hardly_is_in_its_unit_is_warned_of(self):
-        for rows, part in (("0,0\n-0.001,-20\n-0.002,-35\n", "the stress reaches -35 MPa; figures draw compression"),
-                           ("0,0\n0.001,20000000\n0.002,35000000\n", "most likely in another unit"),
-                           ("0,0\n0.1,20\n0.2,35\n", "the strain reaches 0.2 (no unit); it is most likely")):
+        for rows, parts in (("0,0\n-0.001,-20\n-0.002,-35\n", ("the stress reaches -35 MPa; figures draw compression",
+                                                              "write sign = [-1, -1]")),
+                            ("0,0\n0.001,20000000\n0.002,35000000\n", ("most likely in another unit",)),
+                            ("0,0\n0.1,20\n0.2,35\n", ("the strain reaches 0.2 (no unit); it is most likely",))):
             with self.subTest(rows):
                 self.write(f"strain,stress_MPa\n{rows}", "warned.csv")
-                done = self.pyroclast("check", self.deck("warned.csv"))
+                done = self.pyroclast("check", self.deck('file = "warned.csv"\nof = "stress"'))
                 self.assertEqual(done.returncode, 0, done.stderr)
-                self.assertIn(part, done.stdout + done.stderr)
+                for part in parts:
+                    self.assertIn(part, done.stdout + done.stderr)
+
+    def test_a_reference_of_stress_in_heat_alone_is_refused(self):
+        self.write("strain,stress_MPa\n0,0\n0.001,20\n", "strain.csv")
+        done = self.pyroclast("check", self.deck('file = "strain.csv"\nof = "stress"', deck=WALL))
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn('no figure of this run draws it; the figures of this run draw "temperature" over heating_time',
+                      done.stderr)
 
 
 class Properties(UserTest):
