@@ -17,6 +17,9 @@ from .run import Frame, Run, RunError
 
 _MEAN_POINTS = 400
 _LEAST_STRAIN_SHOWN = 0.004
+_TABLE_LOOKS = [(colour, dashes) for dashes in ((0, (5, 2)), (0, (2, 1.2)))
+                for colour in (style.GREEN, style.PURPLE, style.BLACK, style.SKY)]
+"""Colours and dashes of users' references: none is that of a reference of the program."""
 MANY = 6
 """More runs than these are drawn as a range, not as a curve each."""
 
@@ -168,14 +171,13 @@ def draw_tables(axes: Axes, runs: Sequence[Run], over: tuple[str, float], *drawn
     """
     x, x_factor = over
     tables = {own.content: (own, y_factor) for run in runs for y, y_factor in drawn for own in run.references.of(y, x)}
-    looks = cycle((style.VERMILLION, style.PURPLE, style.GREEN, style.BLACK))
-    for (own, y_factor), colour in zip(tables.values(), looks):
+    for (own, y_factor), (colour, dashes) in zip(tables.values(), cycle(_TABLE_LOOKS)):
         name = style.plain(own.name)
         if own.is_range:
             axes.fill_between(x_factor * own.x, y_factor * own.low, y_factor * own.high, color=colour, alpha=0.25,
                               linewidth=0.0, label=name)
         else:
-            axes.plot(x_factor * own.x, y_factor * own.low, color=colour, linestyle=(0, (5, 2)), linewidth=1.2,
+            axes.plot(x_factor * own.x, y_factor * own.low, color=colour, linestyle=dashes, linewidth=1.2,
                       label=name)
 
 
