@@ -538,12 +538,127 @@ class ReferencesOfTheDeck(UserTest):
                 for part in parts:
                     self.assertIn(part, done.stdout + done.stderr)
 
+    def test_load_over_the_opening_of_a_notch_stands_beside_a_measured_curve(self):
+        shutil.copy(pathlib.Path(__file__).parent / "made_up_beam.csv", self.folder)
+        small = ("blocks.count=200", "stages[2].control.rate=0.2 mm/s", "stages[2].control.response_time=10 ms")
+        beam = (CASES / "notched_beam.toml").read_text()
+        deck = self.deck('file = "made_up_beam.csv"\nof = "load"\nname = "beam"',
+                         'file = "made_up_beam.csv"\nof = "load"\nover = "deflection"\nname = "elsewhere"', deck=beam)
+        done = self.pyroclast("run", deck, *(word for change in small for word in ("--set", change)), "--out", "run",
+                              "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        summary = json.loads((self.folder / "run" / "summary.json").read_text())
+        beam, elsewhere = summary["references"]["beam"], summary["references"]["elsewhere"]
+        peak = summary["stages"][2]["results"]["P_N"]
+        # A stage watches its records between rows too, where the load may be a little larger.
+        self.assertAlmostEqual(beam["peak_difference"], peak / 12.6e3 - 1.0, delta=0.002)
+        self.assertGreater(beam["share_covered"], 0.99)
+        self.assertLess(beam["rms_over_greatest"], elsewhere["rms_over_greatest"])
+        self.assertLess(beam["area_between_N_m"], 12.6e3 * 0.35e-3)
+        self.assertEqual(self.pyroclast("figures", "run", "run", "--format", "svg").returncode, 0)
+        picture = (self.folder / "run" / "figures" / "records.svg").read_text()
+        for text in ("beam", "elsewhere", "cmod: Opening [mm]", "deflection: Displacement [mm]"):
+            self.assertIn(text, picture)
+
     def test_a_reference_of_stress_in_heat_alone_is_refused(self):
         self.write("strain,stress_MPa\n0,0\n0.001,20\n", "strain.csv")
         done = self.pyroclast("check", self.deck('file = "strain.csv"\nof = "stress"', deck=WALL))
         self.assertNotEqual(done.returncode, 0)
         self.assertIn('no figure of this run draws it; the figures of this run draw "temperature" over heating_time',
                       done.stderr)
+
+
+class GradingsAndStones(UserTest):
+    """Aggregates as they were measured: sieve analyses, and stones where they lie."""
+
+    def deck(self, grading: str) -> pathlib.Path:
+        """The small deck with other keys in the place of its grading."""
+        deck = small_deck(count="count = 400")
+        own = f"[aggregates]\n{grading}\n"
+        return self.write(re.sub(r"\[aggregates\].*?(?=\n\[)", lambda _: own, deck, flags=re.DOTALL))
+
+    def specimen(self, grading: str, out: str) -> pathlib.Path:
+        done = self.pyroclast("specimen", self.deck(grading), "--out", out, "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return self.folder / out / "specimen"
+
+    def refuse(self, grading: str, *parts: str) -> None:
+        done = self.pyroclast("check", self.deck(grading))
+        self.assertNotEqual(done.returncode, 0)
+        for part in parts:
+            self.assertIn(part, done.stderr)
+
+    GIVEN = 'fraction = 0.3\nminimum_gap = "0.5 mm"\n'
+
+    def diameters(self, folder: pathlib.Path) -> list[float]:
+        with open(folder / "aggregates.csv", newline="") as file:
+            return [float(row["diameter_m"]) for row in csv.DictReader(file)]
+
+    def test_a_sieve_analysis_is_read_from_the_deck_and_from_a_file(self):
+        listed = 'passing = [["4 mm", "0 %"], ["6 mm", "50 %"], ["8 mm", "50 %"], ["10 mm", "100 %"]]\n'
+        sizes = self.diameters(self.specimen(f'{self.GIVEN}{listed}passing_by = "area"\n', "listed"))
+        self.assertGreaterEqual(min(sizes), 4e-3)
+        self.assertFalse([d for d in sizes if 6e-3 < d < 8e-3])
+        self.write("Sieb [mm];Durchgang [%]\n16;100\n10;100\n8;50\n6;50\n4;0\n2;0\n", "sieves.csv")
+        from_file = f'{self.GIVEN}passing = {{ csv = "sieves.csv" }}\npassing_by = "area"\n'
+        self.assertEqual(self.diameters(self.specimen(from_file, "file")), sizes)
+
+    def test_by_volume_circles_are_smaller_than_stones(self):
+        passing = 'passing = [["4 mm", "0 %"], ["10 mm", "100 %"]]\n'
+        mean = {}
+        for by in ("area", "volume"):
+            sizes = self.diameters(self.specimen(f'{self.GIVEN}{passing}passing_by = "{by}"\n', by))
+            mean[by] = sum(d**3 for d in sizes) / sum(d**2 for d in sizes)
+        self.assertLess(mean["volume"], mean["area"])
+
+    def test_one_class_of_sizes(self):
+        fuller = f'{self.GIVEN}d_min = "4 mm"\nd_max = "10 mm"\nfuller_exponent = 0.5\n'
+        self.assertEqual(self.diameters(self.specimen(f"{fuller}sieves = []\n", "empty")),
+                         self.diameters(self.specimen(fuller, "none")))
+
+    def test_stones_of_another_specimen_are_read_back(self):
+        fuller = f'{self.GIVEN}d_min = "4 mm"\nd_max = "10 mm"\nfuller_exponent = 0.5\n'
+        first = self.specimen(fuller, "first")
+        shutil.copy(first / "aggregates.csv", self.folder / "mine.csv")
+        second = self.specimen('stones = { csv = "mine.csv" }\n', "second")
+        self.assertEqual((second / "aggregates.csv").read_bytes(), (first / "aggregates.csv").read_bytes())
+        facts = [json.loads((folder / "specimen.json").read_text()) for folder in (first, second)]
+        self.assertEqual(facts[0]["fraction"], facts[1]["fraction"])
+        for folder in (first, second):
+            self.assertEqual(self.pyroclast("figures", "specimen", folder.parent).returncode, 0)
+
+    def test_stones_of_several_phases_have_names(self):
+        self.write("x [mm],y [mm],d [mm],phase\n10,10,8,0\n30,30,10,1\n", "two.csv")
+        both = 'stones = { csv = "two.csv", phases = ["aggregate", "mortar"] }\n'
+        self.assertEqual(self.diameters(self.specimen(both, "two")), [0.01, 0.008])
+        self.refuse('stones = { csv = "two.csv" }\n', "aggregates.stones.csv", "two.csv:3: the phase 1 has no name")
+
+    def test_what_is_wrong_is_told_at_its_place(self):
+        self.write("x [mm],y [mm],d [mm]\n10,10,8\n15,10,8\n", "overlap.csv")
+        self.write("x [mm],y [mm],d [mm]\n10,10,8\n49,10,8\n", "outside.csv")
+        self.write("size [mm],passing\n4,0\n8,100\n", "percent.csv")
+        area = 'passing_by = "area"\n'
+        for grading, parts in (
+                ('stones = { csv = "overlap.csv" }\n', ("deck.toml:", "overlap.csv:3", "lies on another")),
+                ('stones = { csv = "outside.csv" }\n', ("outside.csv:3", "does not lie in the specimen")),
+                ('stones = { csv = "overlap.csv" }\nfraction = 0.3\n', ("aggregates.fraction", "has no effect")),
+                (f'{self.GIVEN}passing = {{ csv = "percent.csv" }}\n{area}', ("aggregates.passing", "reaches 100")),
+                (f'{self.GIVEN}passing = [["4 mm", "0 %"], ["8 mm", "90 %"]]\n{area}', ("to 100 % at the largest",)),
+                (f'{self.GIVEN}passing = [["4 mm", "0 %"], ["8 mm", "100 %"]]\n', ("aggregates.passing_by",)),
+                (f'{self.GIVEN}passing = [["4 mm", "0 %"], ["8 mm", "100 %"]]\n{area}d_max = "8 mm"\n',
+                 ("aggregates.d_max", "has no effect")),
+                (f'{self.GIVEN}passing = [["4 mm", "0 %"], ["8 mm", "100 %"]]\n{area}d_min = "9 mm"\n',
+                 ("aggregates.d_min", "must lie from the smallest sieve"))):
+            with self.subTest(grading):
+                self.refuse(grading, *parts)
+
+    def test_a_skeleton_of_stones_is_told(self):
+        self.write(STARTER)
+        plain = self.pyroclast("check", "deck.toml")
+        self.assertNotIn("skeleton", plain.stdout)
+        coarse = self.pyroclast("check", "deck.toml", "--set", "aggregates.fraction=0.45", "--set", "specimen.seed=4")
+        self.assertEqual(coarse.returncode, 0, coarse.stderr)
+        self.assertRegex(coarse.stdout, r"stones form a skeleton: \d+ % of the aggregate is one cluster")
 
 
 class Properties(UserTest):
