@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 
 from . import reference, style
 from .curves import MANY, compare, draw_spread, draw_tables, mean_of, names_apart
-from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL, draw_band, strain_limits
+from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL, draw_band, over_minutes, strain_limits
 from .progress import MINUTES_LABEL, heating_course, heating_minutes, loading_course, temperature_label
 from .run import Run, RunError
 
@@ -99,13 +99,12 @@ def compare_total_strain(runs: Sequence[Run]) -> Figure:
     bands, timed = [], _timed(runs)
     over, label = _axis(runs)
     for group in _by_load(runs):
-        asked = not timed and any(run.reference.name == reference.TRANSIENT_STRAIN for run in group.runs)
+        asked = not timed and any(reference.TRANSIENT_STRAIN in run.references.builtin for run in group.runs)
         if asked and (band := reference.strain_band(group.runs[0].load_level)):
             bands.append(band)
             draw_band(axes, band, group.colour)
         _draw_group(axes, group, over)
-    if not timed:
-        draw_tables(axes, runs, ("temperature_degC", 1.0), ("total_strain", style.PER_MILLE))
+    draw_tables(axes, runs, _over(runs), ("total_strain", style.PER_MILLE))
     axes.axhline(0.0, color=style.BLACK, linewidth=0.6)
     axes.set_ylim(*strain_limits(runs, bands))
     axes.set_xlabel(label)
@@ -128,8 +127,7 @@ def compare_thrust(runs: Sequence[Run]) -> Figure:
         draw_spread(axes, [(over(run), run.heated_history("stress_MPa")) for run in runs], style.BLUE)
     else:
         _draw_thrusts(axes, runs, over)
-    if not _timed(runs):
-        draw_tables(axes, runs, ("temperature_degC", 1.0), ("stress_MPa", 1.0))
+    draw_tables(axes, runs, _over(runs), ("stress", 1.0))
     axes.set_xlabel(label)
     axes.set_ylabel(THRUST_LABEL.replace("\n", " "))
     style.legend_alone(beside, *axes.get_legend_handles_labels(), loc="upper left")
@@ -205,8 +203,13 @@ def _demand_heated(runs: Sequence[Run]) -> None:
 
 
 def _timed(runs: Sequence[Run]) -> bool:
-    """Whether the runs are drawn over minutes: no specimen is uniform."""
-    return not any(run.uniform for run in runs)
+    """Whether the runs are drawn over minutes: all are."""
+    return all(run.timed for run in runs)
+
+
+def _over(runs: Sequence[Run]) -> tuple[str, float]:
+    """The same for references."""
+    return over_minutes(_timed(runs))
 
 
 def _axis(runs: Sequence[Run]) -> tuple[Callable[[Run], np.ndarray], str]:

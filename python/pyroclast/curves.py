@@ -17,6 +17,9 @@ from .run import Frame, Run, RunError
 
 _MEAN_POINTS = 400
 _LEAST_STRAIN_SHOWN = 0.004
+_TABLE_LOOKS = [(colour, dashes) for dashes in ((0, (5, 2)), (0, (2, 1.2)))
+                for colour in (style.GREEN, style.PURPLE, style.BLACK, style.SKY)]
+"""Colours and dashes of users' references: none is that of a reference of the program."""
 MANY = 6
 """More runs than these are drawn as a range, not as a curve each."""
 
@@ -35,9 +38,9 @@ def stress_strain(run: Run, marks: Mapping[str, Frame]) -> Figure:
         style.draw_parent(axes, run.parent, style.PER_MILLE * run.parent.loaded_strain,
                           run.parent.loaded_history("stress_MPa"))
     _draw_run(axes, run)
-    if run.reference.name == reference.COMPRESSION:
+    if reference.COMPRESSION in run.references.builtin:
         _draw_references(axes, max(np.nanmax(run.loaded_strain), _LEAST_STRAIN_SHOWN))
-    draw_tables(axes, [run], ("strain", style.PER_MILLE), ("stress_MPa", 1.0))
+    draw_tables(axes, [run], ("strain", style.PER_MILLE), ("stress", 1.0))
     _draw_marks(axes, marks)
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
@@ -102,7 +105,7 @@ def _draw_table(axes: Axes, run: Run) -> None:
 
     columns = ["this run"]
     others = []
-    if run.reference.name == reference.COMPRESSION:
+    if reference.COMPRESSION in run.references.builtin:
         columns += ["paper's DEM", "experiment"]
         others = [reference.PAPER_DEM, reference.EXPERIMENT]
     axes.axis("off")
@@ -150,9 +153,9 @@ def compare(runs: Sequence[Run]) -> Figure:
                       label=f"mean of {len(runs)}, as far as all go")
     _draw_mean_peak(axes, runs)
     last = max(np.nanmax(run.loaded_strain) for run in runs)
-    if any(run.reference.name == reference.COMPRESSION for run in runs):
+    if any(reference.COMPRESSION in run.references.builtin for run in runs):
         _draw_references(axes, max(last, _LEAST_STRAIN_SHOWN), wrapped=True)
-    draw_tables(axes, runs, ("strain", style.PER_MILLE), ("stress_MPa", 1.0))
+    draw_tables(axes, runs, ("strain", style.PER_MILLE), ("stress", 1.0))
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel(style.STRAIN_LABEL)
@@ -161,23 +164,21 @@ def compare(runs: Sequence[Run]) -> Figure:
     return figure
 
 
-def draw_tables(axes: Axes, runs: Sequence[Run], over: tuple[str, float], drawn: tuple[str, float]) -> None:
-    """The tables of the users' own that the runs' decks name, each once.
+def draw_tables(axes: Axes, runs: Sequence[Run], over: tuple[str, float], *drawn: tuple[str, float]) -> None:
+    """The references of the users' own that the runs' decks ask for, each once.
 
-    over, drawn: column and the factor to the axis' unit. Columns <drawn>_low and <drawn>_high are a range.
+    over, drawn: what they are of, as decks name it, and the factor from the history's unit to the axis'.
     """
-    (x, x_factor), (y, y_factor) = over, drawn
-    tables = {(own.name, own.table.path.read_bytes()): own for run in runs
-              for own in [run.reference] if own.table is not None}
-    looks = cycle((style.VERMILLION, style.PURPLE, style.GREEN))
-    for own, colour in zip(tables.values(), looks):
+    x, x_factor = over
+    tables = {own.content: (own, y_factor) for run in runs for y, y_factor in drawn for own in run.references.of(y, x)}
+    for (own, y_factor), (colour, dashes) in zip(tables.values(), cycle(_TABLE_LOOKS)):
         name = style.plain(own.name)
-        if own.has(x, y):
-            axes.plot(x_factor * own.table[x], y_factor * own.table[y], color=colour, linestyle=(0, (5, 2)),
-                      linewidth=1.2, label=name)
-        elif own.has(x, f"{y}_low", f"{y}_high"):
-            axes.fill_between(x_factor * own.table[x], y_factor * own.table[f"{y}_low"],
-                              y_factor * own.table[f"{y}_high"], color=colour, alpha=0.25, linewidth=0.0, label=name)
+        if own.is_range:
+            axes.fill_between(x_factor * own.x, y_factor * own.low, y_factor * own.high, color=colour, alpha=0.25,
+                              linewidth=0.0, label=name)
+        else:
+            axes.plot(x_factor * own.x, y_factor * own.low, color=colour, linestyle=dashes, linewidth=1.2,
+                      label=name)
 
 
 def draw_spread(axes: Axes, curves: Sequence[tuple[np.ndarray, np.ndarray]], colour: str,

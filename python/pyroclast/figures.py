@@ -8,8 +8,8 @@
 
 A run that was heated gets total_strain.png (thrust.png when its platens were fixed), heating_cracks.png,
 heating_energy.png, convergence.png and heating_fracture.png;
-a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png and fracture.png; one without platens
-gets records.png, energy.png and fracture.png; one of
+a run whose last stage compresses gets stress_strain.png, cracks.png, energy.png and fracture.png; one with [[record]]
+tables gets records.png; one without platens gets energy.png and fracture.png beside it; one of
 heat conduction alone gets neither. A run that computes its temperatures gets temperature_history.png,
 temperature.png, temperature_profile.png and, if it comes to 500 °C, isotherm.png. A run that keeps no fields gets
 those of them that are drawn from its history.
@@ -61,6 +61,8 @@ def figures_of(run: Run, magnification: float | None = None,
         yield from _of_conduction(run)
     elif not run.ends_heated:
         yield from _of_compression(run, magnification)
+    if not run.only_conducts and records_of(run):
+        yield "records", lambda: records(run)
 
 
 def _of_heating(run: Run, magnification: float | None,
@@ -72,7 +74,7 @@ def _of_heating(run: Run, magnification: float | None,
     yield "heating_cracks", lambda: heating_cracks(run)
     yield "heating_energy", lambda: energy(heating_course(run))
     yield "convergence", lambda: convergence(run)
-    if not run.uniform:
+    if run.heats:
         yield from _of_conduction(run)
     if run.has_fields:
         yield "heating_fracture", lambda: heating_fracture(run, temperatures, magnification)
@@ -84,7 +86,7 @@ def _of_records(run: Run, magnification: float | None) -> Iterator[tuple[str, Ca
         yield "energy", lambda: energy(record_course(run))
     if run.exchanged.any():
         yield "convergence", lambda: convergence(run)
-    if not run.uniform:
+    if run.heats:
         yield from _of_conduction(run)
     if run.has_fields:
         yield "fracture", lambda: record_fracture(run, magnification)

@@ -299,13 +299,25 @@ def dataset(file: h5py.File, name: str) -> np.ndarray:
 
 def read_json(path: Path) -> dict:
     """The object in a JSON file; throws RunError when it cannot be read or is something else."""
-    try:
-        value = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        raise RunError(f"{path}: cannot be read: {_reason(error)}") from error
+    value = _read_json(path)
     if not isinstance(value, dict):
         raise RunError(f"{path}: is not a JSON object")
     return value
+
+
+def read_json_list(path: Path) -> list:
+    """The list in a JSON file; throws RunError when it cannot be read or is something else."""
+    value = _read_json(path)
+    if not isinstance(value, list):
+        raise RunError(f"{path}: is not a JSON list")
+    return value
+
+
+def _read_json(path: Path) -> Any:
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise RunError(f"{path}: cannot be read: {_reason(error)}") from error
 
 
 def _read_rows(lines: bytes, columns: int) -> np.ndarray | None:

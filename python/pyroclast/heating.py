@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from . import reference, style
 from .curves import draw_tables
 from .progress import MINUTES_LABEL, heating_course, heating_minutes, temperature_label
+from .records import records_of
 from .run import Run
 
 TOTAL_STRAIN_LABEL = "Total axial strain, expansion\npositive, load included [$10^{-3}$]"
@@ -28,13 +29,12 @@ def total_strain(run: Run) -> Figure:
     figure, over, upper, lower, below = _two_while_heated(run)
     strain = style.PER_MILLE * run.total_strain
     band = None
-    if run.uniform and run.reference.name == reference.TRANSIENT_STRAIN:
+    if not run.timed and reference.TRANSIENT_STRAIN in run.references.builtin:
         band = reference.strain_band(run.load_level)
     if band:
         draw_band(upper, band, style.ORANGE, _BAND_LABEL)
     _draw_heated_parent(upper, run, "specimen_strain", -style.PER_MILLE)
-    if run.uniform:
-        draw_tables(upper, [run], ("temperature_degC", 1.0), ("total_strain", style.PER_MILLE))
+    draw_tables(upper, [run], over_minutes(run.timed), ("total_strain", style.PER_MILLE))
     label = f"this run, {style.load_label(run)}".rstrip(", ")
     upper.plot(over, strain, color=style.BLUE, linewidth=1.8, label=label)
     upper.axhline(0.0, color=style.BLACK, linewidth=0.6)
@@ -54,8 +54,7 @@ def thrust(run: Run) -> Figure:
     stress = run.heated_history("stress_MPa")
     top, bottom = run.heated_history("stress_top_MPa"), run.heated_history("stress_bottom_MPa")
     _draw_heated_parent(upper, run, "stress_MPa", 1.0)
-    if run.uniform:
-        draw_tables(upper, [run], ("temperature_degC", 1.0), ("stress_MPa", 1.0))
+    draw_tables(upper, [run], over_minutes(run.timed), ("stress", 1.0))
     upper.fill_between(over, top, bottom, color=style.SKY, alpha=0.5, linewidth=0.0,
                        label="between its upper and lower platen")
     upper.plot(over, stress, color=style.BLUE, linewidth=1.8, label="this run, mean of both platens")
@@ -72,15 +71,15 @@ def _draw_heated_parent(axes: Axes, run: Run, column: str, factor: float) -> Non
     """A column of the run that this one is a fork of, where that was heated too."""
     if run.parent and run.parent.heated.any():
         history, rows = run.parent.history, run.parent.standing
-        over = history["temperature_degC"] if run.uniform else history["heating_time_s"] / 60.0
+        over = history["heating_time_s"] / 60.0 if run.timed else history["temperature_degC"]
         style.draw_parent(axes, run.parent, over[rows], factor * history[column][rows])
 
 
 def _two_while_heated(run: Run) -> tuple[Figure, np.ndarray, Axes, Axes, Axes]:
     """Figure with room for a curve, the lateral strain below it, and axes for a legend; and what curves are drawn over:
-    the temperature, or minutes where the specimen is not uniform.
+    the temperature, or minutes where the run is `timed`.
     """
-    over = run.heated_history("temperature_degC") if run.uniform else heating_minutes(run)
+    over = heating_minutes(run) if run.timed else run.heated_history("temperature_degC")
     figure = style.new_figure(5.2)
     upper, lower, below = figure.subplots(3, 1, height_ratios=[1.0, 0.5, 0.26])
     upper.set_title(style.title_of(run))
@@ -91,9 +90,14 @@ def _two_while_heated(run: Run) -> tuple[Figure, np.ndarray, Axes, Axes, Axes]:
     lower.axhline(0.0, color=style.BLACK, linewidth=0.6)
     lower.set_ylim(*_padded(style.PER_MILLE * run.history.known("lateral_strain", run.standing)))
     lower.set_ylabel("Lateral strain,\nexpansion\npositive [$10^{-3}$]")
-    lower.set_xlabel(temperature_label(run) if run.uniform else MINUTES_LABEL)
+    lower.set_xlabel(MINUTES_LABEL if run.timed else temperature_label(run))
     _mark_failure(lower, run, over)
     return figure, over, upper, lower, below
+
+
+def over_minutes(timed: bool) -> tuple[str, float]:
+    """What references of a heating are drawn over, see draw_tables: minutes, or the temperature."""
+    return ("heating_time", 1.0 / 60.0) if timed else ("temperature", 1.0)
 
 
 def draw_band(axes: Axes, band: reference.StrainBand, colour: str, label: str | None = None) -> None:
@@ -109,8 +113,8 @@ def draw_band(axes: Axes, band: reference.StrainBand, colour: str, label: str | 
 
 def strain_limits(runs: Sequence[Run], bands: Sequence[reference.StrainBand]) -> tuple[float, float]:
     """Limits [10^-3] that show bands, tables and total strains, but not how far a failing specimen went."""
-    tables = [run.reference.table[name] for run in runs if run.reference.table for name in run.reference.table.names
-              if name.startswith("total_strain")]
+    tables = [values for run in runs for own in run.references.tables if own.of == "total_strain"
+              for values in (own.low, own.high)]
     strains = [run.total_strain[run.standing[run.heated]] for run in runs]
     for run in runs:
         run.history.known("specimen_strain", run.standing)
@@ -135,7 +139,7 @@ def _mark_failure(axes: Axes, run: Run, over: np.ndarray) -> None:
     """over: of the rows of the heating, temperatures or minutes; the last is that of the failure."""
     if run.critical_temperature is None or not np.isfinite(over[-1]):
         return
-    at = f"{run.critical_temperature:.0f} °C" if run.uniform else f"{over[-1]:.0f} min"
+    at = f"{over[-1]:.0f} min" if run.timed else f"{run.critical_temperature:.0f} °C"
     axes.axvline(over[-1], color=style.VERMILLION, linewidth=1.0, linestyle=(0, (1, 1.5)), label=f"failed at {at}")
 
 
@@ -159,7 +163,7 @@ def convergence(run: Run) -> Figure:
             axes.plot(over[~converged], values[~converged], "x", color=style.VERMILLION, markersize=5.0,
                       linestyle="none", label=f"not converged ({(~converged).sum()} exchanges)")
         axes.set_ylabel(label)
-        if course.ordered or not run.uniform:
+        if course.ordered or run.timed:
             _mark_failure(axes, run, course.over)
     upper.set_ylim(bottom=0.0)
     lower.set_yscale("log")
@@ -172,7 +176,7 @@ def convergence(run: Run) -> Figure:
 
 @matplotlib.rc_context(style.STYLE)
 def temperature_history(run: Run) -> Figure:
-    """Least, mean and greatest temperature of the specimen, and those at its probes, over the time."""
+    """Least, mean and greatest temperature of the specimen, its probes and records of temperature, over the time."""
     minutes = run.history["heating_time_s"] / 60.0
     figure = style.new_figure(3.8)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.3])
@@ -180,9 +184,12 @@ def temperature_history(run: Run) -> Figure:
     axes.fill_between(minutes, run.history["temperature_min_degC"], run.history["temperature_max_degC"],
                       color=style.FAINT, alpha=0.25, linewidth=0.0, label="least to greatest")
     axes.plot(minutes, run.history["temperature_degC"], color=style.BLACK, label="mean")
-    for (name, values), (colour, dashes) in zip(run.probes.items(), cycle(style.LOOKS)):
-        axes.plot(minutes, values, color=colour, linestyle=dashes, linewidth=1.0, label=f"probe {name}")
-    draw_tables(axes, [run], ("heating_time_s", 1.0 / 60.0), ("temperature_degC", 1.0))
+    records = {record.name: record.of(run) for record in records_of(run) if record.kind == "temperature"}
+    watched = [*((name, f"probe {name}", values) for name, values in run.probes.items()),
+               *((name, name, values) for name, values in records.items())]
+    for (_, label, values), (colour, dashes) in zip(watched, cycle(style.LOOKS)):
+        axes.plot(minutes, values, color=colour, linestyle=dashes, linewidth=1.0, label=label)
+    draw_tables(axes, [run], over_minutes(True), *((name, 1.0) for name in ["temperature", *(w[0] for w in watched)]))
     axes.set_xlim(left=0.0)
     axes.set_xlabel("Time [min]")
     axes.set_ylabel("Temperature [°C]")

@@ -56,9 +56,9 @@ def loading_course(run: Run) -> Course:
 
 
 def heating_course(run: Run) -> Course:
-    """The heating, over temperature, or over time when the specimen is not uniform or also cools."""
+    """The heating, over temperature, or over time when the run is `timed` or also cools."""
     temperature, known = run.heated_history("temperature_degC"), run.history.known("temperature_degC", run.heated)
-    if not run.uniform or (known < np.maximum.accumulate(known) - _COOLED).any():
+    if run.timed or (known < np.maximum.accumulate(known) - _COOLED).any():
         start = run.history.known("heating_time_s", run.heated)[0] / 60.0
         return Course(run, run.heated, heating_minutes(run), MINUTES_LABEL, start, ordered=False)
     return Course(run, run.heated, temperature, temperature_label(run), start=known.min())

@@ -11,7 +11,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from . import style
-from .progress import Course
+from .curves import draw_tables
+from .progress import MINUTES_LABEL, Course
 from .run import Frame, Run, RunError
 from .sections import Panel, count_cracks, fracture_panels
 
@@ -41,9 +42,14 @@ class Record:
     def unit(self) -> str:
         return _SHOWN[self.column.rsplit("_", 1)[1]][0]
 
+    @property
+    def factor(self) -> float:
+        """From the history's unit to `unit`."""
+        return _SHOWN[self.column.rsplit("_", 1)[1]][1]
+
     def of(self, run: HasHistory) -> np.ndarray:
         """(rows,) in `unit`."""
-        return _SHOWN[self.column.rsplit("_", 1)[1]][1] * run.history[self.column]
+        return self.factor * run.history[self.column]
 
     @property
     def label(self) -> str:
@@ -96,25 +102,68 @@ def record_course(run: Run) -> Course:
     return Course(run, rows, over[rows], label, start=float(min(0.0, over[rows].min())), ordered=False)
 
 
+@dataclass(frozen=True)
+class _Panel:
+    """What stands in one panel of `records`."""
+
+    records: list[Record]
+    over: str  #: as references name it: a record, "time" or "heating_time"
+    values: np.ndarray  #: (rows,) in the unit of the label
+    label: str
+    factor: float  #: from the history's unit to the label's
+
+
+def _panels(run: Run) -> list[_Panel]:
+    """One for each kind of record, over what all are drawn over; more where a reference asks for something else."""
+    found = records_of(run)
+    by_name = {record.name: record for record in found}
+    common, over, label = abscissa(run, found)
+    if common and len(found) == 1:  # nothing else is drawn over it
+        common, over, label = None, run.history["time_s"], _TIME_LABEL
+    drawn = [record for record in found if record is not common]
+    over_name, factor = (common.name, common.factor) if common else ("time", 1.0)
+    panels = [_Panel([record for record in drawn if record.kind == kind], over_name, over, label, factor)
+              for kind in dict.fromkeys(record.kind for record in drawn)]
+    asked = dict.fromkeys((table.of, table.over) for table in run.references.tables if table.of in by_name)
+    for of, other in asked:
+        if other == over_name or (other == "heating_time" and by_name[of].kind == "temperature" and run.heats):
+            continue
+        if other in by_name:
+            record = by_name[other]
+            panels.append(_Panel([by_name[of]], other, record.of(run), record.title, record.factor))
+        elif other == "time":
+            panels.append(_Panel([by_name[of]], other, run.history["time_s"], _TIME_LABEL, 1.0))
+        else:
+            minutes = run.history["heating_time_s"] / 60.0
+            panels.append(_Panel([by_name[of]], other, minutes, MINUTES_LABEL, 1.0 / 60.0))
+    return panels
+
+
 @matplotlib.rc_context(style.STYLE)
 def records(run: Run) -> Figure:
-    """Each kind of record in a panel of its own, over the first opening or displacement that there is."""
-    found = records_of(run)
-    over_record, over, label = abscissa(run, found)
-    drawn = [record for record in found if record is not over_record]
-    kinds = list(dict.fromkeys(record.kind for record in drawn))
-    if not kinds:
+    """Each kind of record in a panel of its own, over the first opening or displacement that there is. References
+    stand beside them, those over something else in panels of their own.
+    """
+    panels = _panels(run)
+    if not panels:
         raise RunError(f"{run.folder / 'deck.toml'}: has no [[record]] to draw")
-    figure = style.new_figure(0.9 + 2.2 * len(kinds))
-    panels = figure.subplots(len(kinds), 1, sharex=True, squeeze=False)[:, 0]
+    figure = style.new_figure(0.9 + 2.2 * len(panels))
+    all_axes = figure.subplots(len(panels), 1, squeeze=False)[:, 0]
     figure.suptitle(style.title_of(run), fontsize=9.0)
-    for axes, kind in zip(panels, kinds):
-        for record, colour in zip((r for r in drawn if r.kind == kind), _colours()):
-            axes.plot(over, record.of(run), color=colour, linewidth=1.5, label=record.name)
-        axes.set_ylabel(next(record.label for record in drawn if record.kind == kind))
+    last_of = {panel.label: axes for panel, axes in zip(panels, all_axes)}
+    for panel, axes in zip(panels, all_axes):
+        for record, colour in zip(panel.records, _colours()):
+            axes.plot(panel.values, record.of(run), color=colour, linewidth=1.5, label=record.name)
+        draw_tables(axes, [run], (panel.over, panel.factor), *((r.name, r.factor) for r in panel.records))
+        axes.set_ylabel(panel.records[0].label)
         axes.axhline(0.0, color=style.BLACK, linewidth=0.5)
         axes.legend(loc="best")
-    panels[-1].set_xlabel(label)
+        below = last_of[panel.label]
+        if axes is below:
+            axes.set_xlabel(panel.label)
+        else:
+            axes.sharex(below)
+            axes.tick_params(labelbottom=False)
     return figure
 
 

@@ -8,40 +8,88 @@ import csv
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from .files import RunError, Table
+from .files import LARGEST, RunError, read_json_list
 
-NONE, COMPRESSION, TRANSIENT_STRAIN = "none", "compression", "transient_strain"
-"""What a deck may say at output.reference, beside the name of a CSV file."""
-_TABLES = (("strain", "stress_MPa"), ("temperature_degC", "total_strain"),
-           ("temperature_degC", "total_strain_low", "total_strain_high"), ("temperature_degC", "stress_MPa"),
-           ("heating_time_s", "temperature_degC"))
+COMPRESSION, TRANSIENT_STRAIN = "compression", "transient_strain"
+"""References of the program, as decks name them."""
 
 
+@dataclass(frozen=True)
 class Reference:
+    """A table of the user's. Values are in the units of the history's columns; low and high are the same unless it is
+    a range.
+    """
+
+    name: str
+    of: str
+    over: str
+    x: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+
+    @property
+    def is_range(self) -> bool:
+        return bool((self.low != self.high).any())
+
+    @property
+    def content(self) -> tuple[str, bytes]:
+        """The same of two that would be drawn alike."""
+        return self.name, b"".join(np.asarray(v).tobytes() for v in (self.x, self.low, self.high))
+
+
+@dataclass(frozen=True)
+class References:
     """What the deck of a run asks for beside its results."""
 
-    def __init__(self, folder: Path, name: str):
-        """folder: of the run, where the program leaves the table of a file as reference.csv, in these names and units.
+    builtin: frozenset[str] = frozenset()  #: of COMPRESSION, TRANSIENT_STRAIN
+    tables: tuple[Reference, ...] = ()
 
-        Throws RunError when the name is none, or the table is missing or malformed.
-        """
-        self.name = name
-        self.table: Table | None = None
-        if name in (NONE, COMPRESSION, TRANSIENT_STRAIN):
-            return
-        if not name.endswith(".csv") or "\0" in name:
-            raise RunError(f"{folder / 'deck.toml'}: output.reference = {ascii(name[:40])} is no reference")
-        self.table = Table(folder / "reference.csv")
-        self.name = Path(name).stem
-        if tuple(self.table.names) not in _TABLES:
-            raise RunError(f"{self.table.path}: has other columns than {', '.join(map('/'.join, _TABLES))}")
+    def of(self, of: str, over: str) -> list[Reference]:
+        """The tables of a quantity over another, as the deck names both."""
+        return [table for table in self.tables if (table.of, table.over) == (of, over)]
 
-    def has(self, *columns: str) -> bool:
-        """Whether it is a table of just these columns."""
-        return self.table is not None and tuple(self.table.names) == columns
+
+def read_references(path: Path) -> References:
+    """From references.json, which the program leaves in the folder of a run; none without it.
+
+    Throws RunError when it is malformed.
+    """
+    if not path.exists():
+        return References()
+    builtin, tables = set(), []
+    for number, entry in enumerate(read_json_list(path)):
+        if not isinstance(entry, dict):
+            raise RunError(f"{path}: entry {number} is no object")
+        if "builtin" in entry:
+            if entry["builtin"] not in (COMPRESSION, TRANSIENT_STRAIN):
+                raise RunError(f"{path}: entry {number}: 'builtin' is neither {COMPRESSION} nor {TRANSIENT_STRAIN}")
+            builtin.add(entry["builtin"])
+        else:
+            tables.append(_table(path, number, entry))
+    return References(frozenset(builtin), tuple(tables))
+
+
+def _table(path: Path, number: int, entry: dict[str, Any]) -> Reference:
+    words = [entry.get(key) for key in ("name", "of", "over")]
+    if not all(isinstance(word, str) for word in words):
+        raise RunError(f"{path}: entry {number}: 'name', 'of' and 'over' are not all texts")
+    columns = []
+    for key in ("x", "low", "high"):
+        values = entry.get(key)
+        if not isinstance(values, list) or not all(_is_number(value) for value in values):
+            raise RunError(f"{path}: entry {number}: '{key}' is no list of finite numbers")
+        columns.append(np.array(values, dtype=float))
+    if len({len(column) for column in columns}) != 1 or len(columns[0]) < 2:
+        raise RunError(f"{path}: entry {number}: 'x', 'low' and 'high' are not alike in length, or shorter than 2")
+    return Reference(*words, *columns)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= LARGEST
 
 
 # Compression at room temperature; stress and strain positive in compression.

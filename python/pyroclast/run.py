@@ -16,7 +16,7 @@ import numpy as np
 
 from .files import LARGEST, GrowingTable, RunError, Table, dataset, open_hdf, read_json
 from .mesh import Mesh, read_mesh
-from .reference import NONE, Reference
+from .reference import References, read_references
 
 _UNIFORM = 1.0  # K
 
@@ -97,13 +97,9 @@ class Run:
         return [s if isinstance(s, dict) else {} for s in stages] if isinstance(stages, list) else []
 
     @cached_property
-    def reference(self) -> Reference:
-        """What the deck that the run keeps asks figures to draw beside the results."""
-        output = self.deck.get("output", {})
-        name = output.get("reference", NONE) if isinstance(output, dict) else None
-        if not isinstance(name, str):
-            raise RunError(f"{self.folder / 'deck.toml'}: output.reference is not a text")
-        return Reference(self.folder, name)
+    def references(self) -> References:
+        """What the deck of the run asks figures to draw beside the results."""
+        return read_references(self.folder / "references.json")
 
     @property
     def title(self) -> str:
@@ -280,6 +276,20 @@ class Run:
         return not (spread > _UNIFORM).any()  # a gap tells nothing
 
     @property
+    def heats(self) -> bool:
+        """Whether its temperatures are drawn over the time: they differ within the specimen, or stand beside a
+        reference.
+        """
+        if not self.uniform:
+            return True
+        return "heat_stored_J" in self.history and any(t.over == "heating_time" for t in self.references.tables)
+
+    @property
+    def timed(self) -> bool:
+        """Whether its heating is drawn over minutes: it is not uniform, or stands beside a reference over time."""
+        return not self.uniform or any(self.references.of(of, "heating_time") for of in ("stress", "total_strain"))
+
+    @property
     def unconverged(self) -> np.ndarray:
         """(rows,) bool: exchanges whose cycles did not reach equilibrium, without that of the failure."""
         if not self.exchanged.any():
@@ -445,7 +455,7 @@ class GrowingRun(Run):
     """A run that another process still writes: what is there by now, rows that are whole. `refresh` takes in more."""
 
     _table = GrowingTable
-    _LASTING = frozenset({"folder", "history", "mesh", "deck", "reference", "parent"})
+    _LASTING = frozenset({"folder", "history", "mesh", "deck", "references", "parent"})
 
     def refresh(self) -> bool:
         """Takes in what was written since; returns whether the rows that were there are others or have become more."""

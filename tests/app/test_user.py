@@ -435,51 +435,230 @@ unbalanced_ratio = 1e-9
             self.assertIn(words, done.stderr)
 
 
-class ReferenceOfTheFigures(UserTest):
-    """`[output] reference` names what figures draw beside the results."""
+class ReferencesOfTheDeck(UserTest):
+    """`[[output.references]]` names what figures draw beside the results, and what the summary holds them against."""
 
-    def deck(self, reference: str) -> pathlib.Path:
-        return self.write(small_deck(history_strain=f'history_strain = 4e-6\nreference = "{reference}"'))
+    def deck(self, *references: str, deck: str = "") -> pathlib.Path:
+        tables = "".join(f"\n[[output.references]]\n{keys}\n" for keys in references)
+        return self.write((deck or small_deck()) + tables)
+
+    def run_it(self, deck: pathlib.Path) -> dict:
+        done = self.pyroclast("run", deck, "--out", "run", "--no-figures", "--overwrite")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads((self.folder / "run" / "summary.json").read_text())
 
     def test_what_is_wrong_is_told_at_its_place(self):
-        self.write("strain,stress\n0,0\n", "columns.csv")
+        self.write("strain,force\n0,0\n1,2\n", "columns.csv")
+        self.write("a,b,c,d\n5,0,0,0\n", "four.csv")
         self.write("# mine\nstrain,stress_MPa\n0,0\n1,high\n2,1\n", "word.csv")
         self.write("strain,stress_MPa\n0,0,0\n", "three.csv")
         self.write("strain,stress_MPa\n0,0\n", "short.csv")
-        for reference, part in (("compresion", 'did you mean "compression"?'), ("mine", "ends in .csv"),
-                                ("gone.csv", "cannot be read"),
-                                ("columns.csv", 'columns.csv:1: the columns 1 "strain", 2 "stress" are none'),
-                                ("word.csv", 'word.csv:4: "high"'), ("three.csv", "three.csv:2: \"0,0,0\" has 3 cells"),
-                                ("short.csv", "1 rows")):
-            with self.subTest(reference):
-                done = self.pyroclast("check", self.deck(reference))
+        stress = 'of = "stress"'
+        for keys, key, part in (
+                ('builtin = "compresion"', "builtin", 'did you mean "compression"?'),
+                (f'builtin = "compression"\n{stress}', "of", "has no effect"),
+                (f'file = "gone.csv"\n{stress}', "file", "cannot be read"),
+                ('file = "gone.csv"\nof = "strength"', "of", 'draw "stress" over strain'),
+                (f'file = "gone.csv"\n{stress}\nover = "time"', "over", 'over it, but over "strain"'),
+                (f'file = "columns.csv"\n{stress}', "file", 'columns.csv:1: column "force" has no unit'),
+                (f'file = "four.csv"\n{stress}', "file", '{ file = "four.csv", columns = ["a", "b"]'),
+                (f'file = "word.csv"\n{stress}', "file", 'word.csv:4: "high"'),
+                (f'file = "three.csv"\n{stress}', "file", 'three.csv:2: "0,0,0" has 3 cells'),
+                (f'file = "short.csv"\n{stress}', "file", "1 rows"),
+                (f'file = "short.csv"\n{stress}\ncolumns = ["strain"]', "columns", "a list of 2 to 3 columns"),
+                (f'file = "word.csv"\n{stress}\nsign = [-1]', "sign", "a list of 2 numbers"),
+                (f'file = "word.csv"\n{stress}\nsign = [-1, 2]', "sign", "each 1 or -1"),
+                (f'file = "word.csv"\n{stress}\nname = "fig. 3"', "name", "no dot")):
+            with self.subTest(keys):
+                done = self.pyroclast("check", self.deck(keys))
                 self.assertNotEqual(done.returncode, 0)
-                self.assertRegex(done.stderr, rf'deck.toml:\d+:\d+: output.reference = "{reference}": ')
+                self.assertRegex(done.stderr, rf"deck.toml:\d+:\d+: output.references\[0\].{key} = ")
                 self.assertIn(part, done.stderr)
 
-    def test_a_table_is_kept_with_the_run_and_drawn(self):
-        self.write("strain,stress_MPa\n0,0\n0.001,20\n", "tests_of_1976.csv")
-        done = self.pyroclast("run", self.deck("tests_of_1976.csv"), "--out", "run", "--no-figures")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertTrue((self.folder / "run" / "inputs" / "tests_of_1976.csv").exists())
-        self.assertEqual(self.pyroclast("figures", "run", "run", "--format", "svg").returncode, 0)
-        self.assertIn("tests_of_1976", (self.folder / "run" / "figures" / "stress_strain.svg").read_text())
+    def test_names_tell_references_apart(self):
+        self.write("strain,stress_MPa\n0,0\n1e-3,20\n", "a.csv")
+        done = self.pyroclast("check", self.deck('file = "a.csv"\nof = "stress"', 'file = "a.csv"\nof = "stress"'))
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn('"a" is the name of another reference', done.stderr)
 
-    def test_a_table_in_other_units_is_the_same(self):
+    def test_tables_are_kept_with_the_run_drawn_and_held_against_it(self):
+        self.write("strain,stress_MPa\n0,0\n0.001,20\n", "tests_of_1976.csv")
+        self.write("strain [%],stress [MPa]\n0,0\n0.1,18\n", "press.csv")
+        summary = self.run_it(self.deck('file = "tests_of_1976.csv"\nof = "stress"',
+                                        'file = "press.csv"\nof = "stress"\nname = "Our press"',
+                                        'builtin = "compression"'))
+        self.assertTrue((self.folder / "run" / "inputs" / "tests_of_1976.csv").exists())
+        self.assertEqual(set(summary["references"]), {"tests_of_1976", "Our press"})
+        for distances in summary["references"].values():
+            self.assertAlmostEqual(distances["share_covered"], 0.4, delta=0.01)  # stop_strain 4e-4 of 1e-3
+            self.assertGreater(distances["rms_over_greatest"], 0.0)
+        self.assertEqual(self.pyroclast("figures", "run", "run", "--format", "svg").returncode, 0)
+        picture = (self.folder / "run" / "figures" / "stress_strain.svg").read_text()
+        for name in ("tests_of_1976", "Our press", "Anderberg"):
+            self.assertIn(name, picture)
+
+    def test_a_table_in_other_units_and_signs_is_the_same(self):
+        self.write("strain,stress_MPa\n0,0\n0.001,20.0005\n", "plain.csv")
         self.write("\ufeffDehnung strain [%];Spannung [kPa]\r\n0,0;0\r\n0,1;20000,5\r\n", "other.csv")
-        done = self.pyroclast("run", self.deck("other.csv"), "--out", "run", "--no-figures")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual((self.folder / "run" / "reference.csv").read_text(), "strain,stress_MPa\n0,0\n0.001,20.0005\n")
+        self.write("nr,eps,sigma,u\n1,0,0,7\n2,-0.1,-20000500,7\n", "signs.csv")
+        self.run_it(self.deck('file = "plain.csv"\nof = "stress"', 'file = "other.csv"\nof = "stress"',
+                              'file = "signs.csv"\nof = "stress"\ncolumns = ["eps", "sigma"]\n'
+                              'units = ["%", "Pa"]\nsign = [-1, -1]'))
+        plain, *others = json.loads((self.folder / "run" / "references.json").read_text())
+        self.assertEqual(plain["x"], [0.0, 0.001])
+        self.assertEqual(plain["high"], [0.0, 20.0005])
+        for other in others:
+            for key in ("x", "low", "high"):
+                self.assertEqual([abs(value) for value in other[key]], plain[key], other["name"])
+
+    def test_the_dialects_of_curves_are_those_of_references(self):
+        head, rows = "time [min],temperature [degC]", ("0,20", "30,800")
+        wall = WALL.replace("count = 2000", "count = 50")
+        for text in (f"{head}\n" + "\n".join(rows), f"\ufeff{head}\n" + "\n".join(rows),
+                     "Zeit [min];Temperatur [degC]\n0,0;20,0\n30,0;800,0\n", f",{head}\n0,0,20\n1,30,800\n",
+                     f"{head},\n0,20,\n30,800,\n", "time [hh:mm:ss],temperature [degC]\n00:00:00,20\n00:30:00,800\n",
+                     '"time [min]","temperature [degC]"\n"0","20"\n"30","800"\n',
+                     "time [min]\ttemperature [degC]\n0\t20\n30\t800\n", "min,C\nTime,TC1\n0,20\n30,800\n",
+                     f"sep=,\n{head}\n0,20\n30,800\n", f"{head}\n0,+20\n30,+800\n",
+                     "time (min),temperature (degC)\n0,20\n30,800\n"):
+            with self.subTest(text):
+                self.write(text, "furnace.csv")
+                done = self.pyroclast("check", self.deck('file = "furnace.csv"\nof = "temperature"', deck=wall))
+                self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_what_hardly_is_in_its_unit_is_warned_of(self):
-        for rows, part in (("0,0\n-0.001,-20\n-0.002,-35\n", "the stress reaches -35 MPa; figures draw compression"),
-                           ("0,0\n0.001,20000000\n0.002,35000000\n", "most likely in another unit"),
-                           ("0,0\n0.1,20\n0.2,35\n", "the strain reaches 0.2 (no unit); it is most likely")):
+        for rows, parts in (("0,0\n-0.001,-20\n-0.002,-35\n", ("the stress reaches -35 MPa; figures draw compression",
+                                                              "write sign = [-1, -1]")),
+                            ("0,0\n0.001,20000000\n0.002,35000000\n", ("most likely in another unit",)),
+                            ("0,0\n0.1,20\n0.2,35\n", ("the strain reaches 0.2 (no unit); it is most likely",))):
             with self.subTest(rows):
                 self.write(f"strain,stress_MPa\n{rows}", "warned.csv")
-                done = self.pyroclast("check", self.deck("warned.csv"))
+                done = self.pyroclast("check", self.deck('file = "warned.csv"\nof = "stress"'))
                 self.assertEqual(done.returncode, 0, done.stderr)
-                self.assertIn(part, done.stdout + done.stderr)
+                for part in parts:
+                    self.assertIn(part, done.stdout + done.stderr)
+
+    def test_load_over_the_opening_of_a_notch_stands_beside_a_measured_curve(self):
+        shutil.copy(pathlib.Path(__file__).parent / "made_up_beam.csv", self.folder)
+        small = ("blocks.count=200", "stages[2].control.rate=0.2 mm/s", "stages[2].control.response_time=10 ms")
+        beam = (CASES / "notched_beam.toml").read_text()
+        deck = self.deck('file = "made_up_beam.csv"\nof = "load"\nname = "beam"',
+                         'file = "made_up_beam.csv"\nof = "load"\nover = "deflection"\nname = "elsewhere"', deck=beam)
+        done = self.pyroclast("run", deck, *(word for change in small for word in ("--set", change)), "--out", "run",
+                              "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        summary = json.loads((self.folder / "run" / "summary.json").read_text())
+        beam, elsewhere = summary["references"]["beam"], summary["references"]["elsewhere"]
+        peak = summary["stages"][2]["results"]["P_N"]
+        # A stage watches its records between rows too, where the load may be a little larger.
+        self.assertAlmostEqual(beam["peak_difference"], peak / 12.6e3 - 1.0, delta=0.002)
+        self.assertGreater(beam["share_covered"], 0.99)
+        self.assertLess(beam["rms_over_greatest"], elsewhere["rms_over_greatest"])
+        self.assertLess(beam["area_between_N_m"], 12.6e3 * 0.35e-3)
+        self.assertEqual(self.pyroclast("figures", "run", "run", "--format", "svg").returncode, 0)
+        picture = (self.folder / "run" / "figures" / "records.svg").read_text()
+        for text in ("beam", "elsewhere", "cmod: Opening [mm]", "deflection: Displacement [mm]"):
+            self.assertIn(text, picture)
+
+    def test_a_reference_of_stress_in_heat_alone_is_refused(self):
+        self.write("strain,stress_MPa\n0,0\n0.001,20\n", "strain.csv")
+        done = self.pyroclast("check", self.deck('file = "strain.csv"\nof = "stress"', deck=WALL))
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn('no figure of this run draws it; the figures of this run draw "temperature" over heating_time',
+                      done.stderr)
+
+
+class GradingsAndStones(UserTest):
+    """Aggregates as they were measured: sieve analyses, and stones where they lie."""
+
+    def deck(self, grading: str) -> pathlib.Path:
+        """The small deck with other keys in the place of its grading."""
+        deck = small_deck(count="count = 400")
+        own = f"[aggregates]\n{grading}\n"
+        return self.write(re.sub(r"\[aggregates\].*?(?=\n\[)", lambda _: own, deck, flags=re.DOTALL))
+
+    def specimen(self, grading: str, out: str) -> pathlib.Path:
+        done = self.pyroclast("specimen", self.deck(grading), "--out", out, "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return self.folder / out / "specimen"
+
+    def refuse(self, grading: str, *parts: str) -> None:
+        done = self.pyroclast("check", self.deck(grading))
+        self.assertNotEqual(done.returncode, 0)
+        for part in parts:
+            self.assertIn(part, done.stderr)
+
+    GIVEN = 'fraction = 0.3\nminimum_gap = "0.5 mm"\n'
+
+    def diameters(self, folder: pathlib.Path) -> list[float]:
+        with open(folder / "aggregates.csv", newline="") as file:
+            return [float(row["diameter_m"]) for row in csv.DictReader(file)]
+
+    def test_a_sieve_analysis_is_read_from_the_deck_and_from_a_file(self):
+        listed = 'passing = [["4 mm", "0 %"], ["6 mm", "50 %"], ["8 mm", "50 %"], ["10 mm", "100 %"]]\n'
+        sizes = self.diameters(self.specimen(f'{self.GIVEN}{listed}passing_by = "area"\n', "listed"))
+        self.assertGreaterEqual(min(sizes), 4e-3)
+        self.assertFalse([d for d in sizes if 6e-3 < d < 8e-3])
+        self.write("Sieb [mm];Durchgang [%]\n16;100\n10;100\n8;50\n6;50\n4;0\n2;0\n", "sieves.csv")
+        from_file = f'{self.GIVEN}passing = {{ csv = "sieves.csv" }}\npassing_by = "area"\n'
+        self.assertEqual(self.diameters(self.specimen(from_file, "file")), sizes)
+
+    def test_by_volume_circles_are_smaller_than_stones(self):
+        passing = 'passing = [["4 mm", "0 %"], ["10 mm", "100 %"]]\n'
+        mean = {}
+        for by in ("area", "volume"):
+            sizes = self.diameters(self.specimen(f'{self.GIVEN}{passing}passing_by = "{by}"\n', by))
+            mean[by] = sum(d**3 for d in sizes) / sum(d**2 for d in sizes)
+        self.assertLess(mean["volume"], mean["area"])
+
+    def test_one_class_of_sizes(self):
+        fuller = f'{self.GIVEN}d_min = "4 mm"\nd_max = "10 mm"\nfuller_exponent = 0.5\n'
+        self.assertEqual(self.diameters(self.specimen(f"{fuller}sieves = []\n", "empty")),
+                         self.diameters(self.specimen(fuller, "none")))
+
+    def test_stones_of_another_specimen_are_read_back(self):
+        fuller = f'{self.GIVEN}d_min = "4 mm"\nd_max = "10 mm"\nfuller_exponent = 0.5\n'
+        first = self.specimen(fuller, "first")
+        shutil.copy(first / "aggregates.csv", self.folder / "mine.csv")
+        second = self.specimen('stones = { csv = "mine.csv" }\n', "second")
+        self.assertEqual((second / "aggregates.csv").read_bytes(), (first / "aggregates.csv").read_bytes())
+        facts = [json.loads((folder / "specimen.json").read_text()) for folder in (first, second)]
+        self.assertEqual(facts[0]["fraction"], facts[1]["fraction"])
+        for folder in (first, second):
+            self.assertEqual(self.pyroclast("figures", "specimen", folder.parent).returncode, 0)
+
+    def test_stones_of_several_phases_have_names(self):
+        self.write("x [mm],y [mm],d [mm],phase\n10,10,8,0\n30,30,10,1\n", "two.csv")
+        both = 'stones = { csv = "two.csv", phases = ["aggregate", "mortar"] }\n'
+        self.assertEqual(self.diameters(self.specimen(both, "two")), [0.01, 0.008])
+        self.refuse('stones = { csv = "two.csv" }\n', "aggregates.stones.csv", "two.csv:3: the phase 1 has no name")
+
+    def test_what_is_wrong_is_told_at_its_place(self):
+        self.write("x [mm],y [mm],d [mm]\n10,10,8\n15,10,8\n", "overlap.csv")
+        self.write("x [mm],y [mm],d [mm]\n10,10,8\n49,10,8\n", "outside.csv")
+        self.write("size [mm],passing\n4,0\n8,100\n", "percent.csv")
+        area = 'passing_by = "area"\n'
+        for grading, parts in (
+                ('stones = { csv = "overlap.csv" }\n', ("deck.toml:", "overlap.csv:3", "lies on another")),
+                ('stones = { csv = "outside.csv" }\n', ("outside.csv:3", "does not lie in the specimen")),
+                ('stones = { csv = "overlap.csv" }\nfraction = 0.3\n', ("aggregates.fraction", "has no effect")),
+                (f'{self.GIVEN}passing = {{ csv = "percent.csv" }}\n{area}', ("aggregates.passing", "reaches 100")),
+                (f'{self.GIVEN}passing = [["4 mm", "0 %"], ["8 mm", "90 %"]]\n{area}', ("to 100 % at the largest",)),
+                (f'{self.GIVEN}passing = [["4 mm", "0 %"], ["8 mm", "100 %"]]\n', ("aggregates.passing_by",)),
+                (f'{self.GIVEN}passing = [["4 mm", "0 %"], ["8 mm", "100 %"]]\n{area}d_max = "8 mm"\n',
+                 ("aggregates.d_max", "has no effect")),
+                (f'{self.GIVEN}passing = [["4 mm", "0 %"], ["8 mm", "100 %"]]\n{area}d_min = "9 mm"\n',
+                 ("aggregates.d_min", "must lie from the smallest sieve"))):
+            with self.subTest(grading):
+                self.refuse(grading, *parts)
+
+    def test_a_skeleton_of_stones_is_told(self):
+        self.write(STARTER)
+        plain = self.pyroclast("check", "deck.toml")
+        self.assertNotIn("skeleton", plain.stdout)
+        coarse = self.pyroclast("check", "deck.toml", "--set", "aggregates.fraction=0.45", "--set", "specimen.seed=4")
+        self.assertEqual(coarse.returncode, 0, coarse.stderr)
+        self.assertRegex(coarse.stdout, r"stones form a skeleton: \d+ % of the aggregate is one cluster")
 
 
 class Properties(UserTest):

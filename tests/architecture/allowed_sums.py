@@ -41,6 +41,8 @@ ALLOWED = [
     Allowed("thermal/heat_material.cpp", "HeatTable::extend()", "over the knots of a table"),
     # Before there is a body
     Allowed("specimen/*", "", _GEOMETRY),
+    Allowed("setup/read_specimen.cpp", "set_gradation_of_stones()", _GEOMETRY),
+    Allowed("setup/read_specimen.cpp", "set_fraction()", _GEOMETRY),
     Allowed("*", "estimate_modulus()", "an estimate for the screen, on one thread, from the model as built"),
     Allowed("mechanics/layout.cpp", "order_blocks()", "centre of one block"),
     Allowed("model/outline.cpp", "outline()", "centre of one face"),

@@ -132,9 +132,11 @@ class Damaged(unittest.TestCase):
                             ("wall", synthetic_run.write_conduction)):
             write(cls.root / name)
             write(cls.root / f"{name}_whole")
-            (cls.root / name / "reference.csv").write_text("strain,stress_MPa\n" + "0.001,20\n" * 9)
-            reference = {"compressed": "mine.csv", "failed": "transient_strain"}.get(name, "compression")
-            (cls.root / name / "deck.toml").write_text(f'[output]\nreference = "{reference}"\n')
+            (cls.root / name / "references.json").write_text(json.dumps(
+                [{"builtin": "transient_strain" if name == "failed" else "compression"},
+                 {"name": "mine", "of": "stress", "over": "strain", "x": [0.0, 0.001], "low": [0.0, 20.0],
+                  "high": [0.0, 21.0]}]))
+            (cls.root / name / "deck.toml").write_text('[output]\n')
             parent = {"parent": {"folder": str(cls.root / f"{name}_whole")}}
             (cls.root / name / "manifest.json").write_text(json.dumps(parent))
         cls.content = {path: path.read_bytes() for path in cls.root.rglob("*") if path.is_file()}

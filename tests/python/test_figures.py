@@ -138,6 +138,19 @@ class OtherBodies(FolderTest):
         np.testing.assert_array_equal(low, run.mesh.blocks.points.min(axis=0))
         np.testing.assert_array_equal(high, run.mesh.blocks.points.max(axis=0))
 
+    def test_references_stand_beside_the_records_that_they_are_of(self):
+        table = {"x": [0.0, 1e-4], "low": [0.0, 2e3], "high": [0.0, 2e3]}
+        (self.run_folder / "references.json").write_text(json.dumps(
+            [{"name": "beam 3", "of": "grip", "over": "stretch"} | table,
+             {"name": "beam 4", "of": "grip", "over": "time"} | table]))
+        first, second = records(Run(self.run_folder)).axes
+        drawn = {line.get_label(): line for line in first.lines}
+        np.testing.assert_allclose(drawn["beam 3"].get_xdata(), [0.0, 0.1])  # mm
+        np.testing.assert_allclose(drawn["beam 3"].get_ydata(), [0.0, 2.0])  # kN
+        self.assertNotIn("beam 4", drawn)
+        self.assertIn("beam 4", [line.get_label() for line in second.lines])
+        self.assertEqual([axes.get_xlabel() for axes in (first, second)], ["stretch: Opening [mm]", "Time [s]"])
+
     def test_records_are_drawn_without_fields(self):
         shutil.rmtree(self.run_folder / "fields")
         code, printed, err = self.command("run", self.run_folder)
@@ -696,56 +709,74 @@ class ReferencesOfTheDeck(HeatedTest):
         self.compressed = self.root / "compressed"
         synthetic_run.write_run(self.compressed)
 
-    def legend(self, folder: Path, name: str, reference: str | None) -> str:
+    def ask(self, folder: Path, *references: dict) -> None:
+        (folder / "references.json").write_text(json.dumps(references))
+
+    def legend(self, folder: Path, name: str, *references: dict) -> str:
         """Text of a figure of the run, drawn as svg."""
-        deck = folder / "deck.toml"
-        deck.write_text("[output]\n" + ("" if reference is None else f'reference = "{reference}"\n'))
+        self.ask(folder, *references)
         code, _, err = self.command("run", folder, "--format", "svg")
         self.assertEqual((code, err), (0, ""))
         return (folder / "figures" / f"{name}.svg").read_text()
 
+    def table(self, of: str, over: str, name: str = "tests_of_1976", **values: list[float]) -> dict:
+        return {"name": name, "of": of, "over": over} | {"x": [0, 1], "low": [0, 1], "high": [0, 1]} | values
+
     def test_none_is_drawn_unless_asked_for(self):
-        for asked in (None, "none"):
-            text = self.legend(self.compressed, "stress_strain", asked)
-            self.assertNotIn("Anderberg", text)
-            self.assertNotIn("experiment", text)
-        self.assertNotIn("Anderberg", self.legend(self.heated("run"), "total_strain", None))
+        text = self.legend(self.compressed, "stress_strain")
+        self.assertNotIn("Anderberg", text)
+        self.assertNotIn("experiment", text)
+        (self.compressed / "references.json").unlink()
+        self.assertNotIn("Anderberg", stress_strain_text(self, self.compressed))
+        self.assertNotIn("Anderberg", self.legend(self.heated("run"), "total_strain"))
 
     def test_built_in(self):
-        text = self.legend(self.compressed, "stress_strain", "compression")
+        text = self.legend(self.compressed, "stress_strain", {"builtin": "compression"})
         self.assertIn("Anderberg", text)
         self.assertIn("experiment", text)
-        self.assertIn("Anderberg", self.legend(self.heated("run"), "total_strain", "transient_strain"))
+        self.assertIn("Anderberg", self.legend(self.heated("run"), "total_strain", {"builtin": "transient_strain"}))
 
-    def test_table_of_ones_own_is_named(self):
-        for folder, figure, columns in ((self.compressed, "stress_strain", "strain,stress_MPa"),
-                                        (self.heated("a"), "total_strain", "temperature_degC,total_strain"),
-                                        (self.heated("b"), "total_strain",
-                                         "temperature_degC,total_strain_low,total_strain_high"),
-                                        (self.heated("c", Heating(restrained=True)), "thrust",
-                                         "temperature_degC,stress_MPa")):
-            with self.subTest(columns):
-                rows = "\n".join(",".join([str(i)] * len(columns.split(","))) for i in range(3))
-                (folder / "reference.csv").write_text(f"{columns}\n{rows}\n")
-                self.assertIn("tests_of_1976", self.legend(folder, figure, "inputs/tests_of_1976.csv"))
+    def test_tables_of_ones_own_are_named_where_they_are_drawn(self):
+        wall = self.root / "wall"
+        synthetic_run.write_conduction(wall)
+        for folder, figure, of, over in ((self.compressed, "stress_strain", "stress", "strain"),
+                                         (self.heated("a"), "total_strain", "total_strain", "temperature"),
+                                         (self.heated("b", Heating(spread=60.0)), "total_strain", "total_strain",
+                                          "heating_time"),
+                                         (self.heated("c", Heating(restrained=True)), "thrust", "stress",
+                                          "temperature"),
+                                         (wall, "temperature_history", "temperature", "heating_time")):
+            with self.subTest(of=of, over=over):
+                text = self.legend(folder, figure, self.table(of, over), self.table(of, over, "a range", high=[1, 2]),
+                                   self.table(of, "something else", "not drawn"))
+                self.assertIn("tests_of_1976", text)
+                self.assertIn("a range", text)
+                self.assertNotIn("not drawn", text)
+
+    def test_uniform_runs_stand_beside_references_over_time(self):
+        folder = self.heated("uniform")
+        self.assertIn("tests_of_1976", self.legend(folder, "total_strain", self.table("total_strain", "heating_time")))
 
     def test_comparison_names_the_references_of_its_runs(self):
         out = self.root / "out.svg"
-        for asked, drawn in (("none", False), ("compression", True)):
-            (self.compressed / "deck.toml").write_text(f'[output]\nreference = "{asked}"\n')
+        for asked in ([], [{"builtin": "compression"}]):
+            self.ask(self.compressed, *asked)
             self.assertEqual(self.command("compare", self.compressed, "--out", out)[0], 0)
-            self.assertEqual("Anderberg" in out.read_text(), drawn)
+            self.assertEqual("Anderberg" in out.read_text(), bool(asked))
 
     def test_what_is_wrong_is_named(self):
-        deck = self.compressed / "deck.toml"
-        for text, part in (("[output", "deck.toml"), ("[output]\nreference = 1", "not a text"),
-                           ('[output]\nreference = "other"', "'other'"),
-                           ('[output]\nreference = "gone.csv"', "reference.csv")):
-            deck.write_text(text)
-            self.assert_fails(["run", self.compressed], str(self.compressed), part)
-        (self.compressed / "reference.csv").write_text("strain,stress_MPa\n0,0\n1,x\n")
-        deck.write_text('[output]\nreference = "a.csv"')
-        self.assert_fails(["run", self.compressed], "reference.csv, line 3", "'x'")
+        for text, part in (("[", "cannot be read"), ("{}", "is not a JSON list"), ("[1]", "entry 0 is no object"),
+                           ('[{"builtin": "other"}]', "entry 0: 'builtin' is neither"),
+                           (json.dumps([self.table("stress", "strain", x=[0])]), "not alike in length"),
+                           (json.dumps([self.table("stress", "strain", x=[0, "x"])]), "'x' is no list of finite numbers"),
+                           (json.dumps([self.table("stress", 1)]), "'name', 'of' and 'over' are not all texts")):
+            (self.compressed / "references.json").write_text(text)
+            self.assert_fails(["run", self.compressed], "references.json", part)
+
+
+def stress_strain_text(test: ReferencesOfTheDeck, folder: Path) -> str:
+    test.assertEqual(test.command("run", folder, "--format", "svg")[0], 0)
+    return (folder / "figures" / "stress_strain.svg").read_text()
 
 
 class ManyRuns(HeatedTest):
@@ -819,11 +850,11 @@ class NothingOverlapsOrIsCutOff(HeatedTest):
     def test_in_any_figure(self):
         cold = self.root / "cold"
         synthetic_run.write_run(cold)
-        (cold / "deck.toml").write_text('[output]\nreference = "compression"\n')
+        (cold / "references.json").write_text('[{"builtin": "compression"}]')
         wall = self.root / "wall"
         synthetic_run.write_conduction(wall)
         hot = self.heated("hot", Heating(critical=605.0, unconverged=(40,), spread=60.0))
-        (hot / "deck.toml").write_text('[output]\nreference = "transient_strain"\n')
+        (hot / "references.json").write_text('[{"builtin": "transient_strain"}]')
         after = self.heated("after", Heating(level=0.3, hottest=300.0, cooled=True, compressed=True))
         held = self.heated("held", Heating(restrained=True, spread=60.0))
         for folder in (cold, wall, hot, after, held):

@@ -64,17 +64,52 @@ TEST(Effects, ABoundaryWithoutAFaceIsRefused) {
                   {"deck.toml:", "no face of the outline lies wholly in \"inside\""});
 }
 
+std::string with_reference(const std::string& text, const std::string& keys) {
+  return with(text, "frame_strain = 1e-3\n", "frame_strain = 1e-3\n[[output.references]]\n" + keys + "\n");
+}
+
 TEST(Effects, AReferenceThatNoFigureDrawsIsRefused) {
-  const auto with_reference = [](const std::string& text, const std::string& name) {
-    return with(text, "frame_strain = 1e-3\n", "frame_strain = 1e-3\nreference = \"" + name + "\"\n");
+  const std::string heated = deck(kUniform + kSettle + load("stress = \"0.5 MPa\"") + heat("220 degC"));
+  expect_contains(refused(with_reference(heated, "builtin = \"compression\"")),
+                  {"deck.toml:", "output.references[0].builtin = \"compression\"",
+                   "no figure of this run draws it", "\"total_strain\" over temperature"});
+  EXPECT_EQ(refused(with_reference(heated, "builtin = \"transient_strain\"")), "no Error was thrown");
+  expect_contains(
+      refused(with_reference(deck(kUniform + kSettle + kCompress), "builtin = \"transient_strain\"")),
+      {"no figure of this run draws it; the figures of this run draw \"stress\" over strain"});
+}
+
+// A thrust needs platens that are held in place; computed temperatures are drawn over the time.
+TEST(Effects, WhatAReferenceIsDrawnOverFollowsTheRun) {
+  const auto refused_of = [](const std::string& text, const std::string& keys) {
+    return refused(with_reference(text, "file = \"gone.csv\"\n" + keys));
   };
   const std::string heated = deck(kUniform + kSettle + load("stress = \"0.5 MPa\"") + heat("220 degC"));
-  expect_contains(refused(with_reference(heated, "compression")),
-                  {"output.reference = \"compression\"", "no figure of this run draws it",
-                   "temperature_degC,stress_MPa"});
-  EXPECT_EQ(refused(with_reference(heated, "transient_strain")), "no Error was thrown");
-  expect_contains(refused(with_reference(deck(kUniform + kSettle + kCompress), "transient_strain")),
-                  {"no figure of this run draws it; they draw \"strain,stress_MPa\""});
+  expect_contains(refused_of(heated, "of = \"stress\""),
+                  {"output.references[0].of = \"stress\"", "no figure"});
+  expect_contains(refused_of(heated, "of = \"total_strain\"\nover = \"heating_time\""),
+                  {"output.references[0].over", "over it, but over \"temperature\""});
+  const std::string computed = conducting(kSettle + kExpose);
+  expect_contains(refused_of(computed, "of = \"total_strain\"\nover = \"temperature\""),
+                  {"over it, but over \"heating_time\""});
+  expect_contains(refused_of(computed, "of = \"temperatur\""),
+                  {"no figure", "did you mean \"temperature\"?"});
+  expect_contains(refused_of(computed, "of = \"temperature\""), {"gone.csv"});
+  expect_contains(refused(with_reference(computed, "builtin = \"transient_strain\"")),
+                  {"no figure of this run draws \"total_strain\" over it, but over \"heating_time\""});
+}
+
+TEST(Effects, AReferenceOfARecordIsDrawnOverTheFirstOpeningOrDisplacement) {
+  const std::string records =
+      record("widening", "displacement", "set = \"left\"\ndirection = \"x\"") +
+      record("grip", "force", "set = \"top\"\ndirection = \"y\"") +
+      record("gap", "opening", "set = \"left\"\nother = \"right\"\ndirection = \"x\"");
+  const auto over = [&](const std::string& keys) {
+    return refused(
+        with_reference(deck(kUniform + kSettle + records), "file = \"gone.csv\"\nof = \"grip\"\n" + keys));
+  };
+  expect_contains(over("over = \"nothing\""), {"over it, but over \"gap\", \"time\", \"widening\""});
+  expect_contains(over(""), {"output.references[0].file", "gone.csv"});
 }
 
 TEST(Effects, ASetThatNoTableNamesIsTold) {

@@ -103,6 +103,19 @@ class WrongFiles(StudyTest):
                    'wall_time_s', 'specimen.mean_block_size_m', 'history: stress_MPa where strain is largest']
         self.study(of_deck(LHS, F_T, outputs="\n".join(f'o{i} = "{o}"' for i, o in enumerate(outputs)))).check()
 
+    def test_distances_from_references_are_outputs(self) -> None:
+        (self.folder / "press.csv").write_text("strain,stress_MPa\n0,0\n0.001,20\n")
+        (self.folder / "deck.toml").write_text((CASES / "compression.toml").read_text() +
+                                               '[[output.references]]\nfile = "press.csv"\nof = "stress"\n')
+        own = f'"{self.folder / "deck.toml"}"'
+
+        def asking(*outputs: str) -> str:
+            asked = "\n".join(f'o{i} = "references.press.{o}"' for i, o in enumerate(outputs))
+            return of_deck(LHS, F_T, outputs=asked).replace(f'"{CASES / "compression.toml"}"', own)
+
+        self.study(asking("rms_over_greatest", "peak_difference", "area_between_MPa", "share_covered")).check()
+        self.refused_by_deck(asking("rms"), "o0 = ", "no run", "references.press.rms")
+
     def test_stage_that_is_not_there(self) -> None:
         text = of_deck(LHS, '[parameters.v]\nkey = "stages[crush].velocity"\nuniform = ["1 mm/s", "2 mm/s"]\n')
         self.refused_by_deck(text, "[parameters.v]", "crush", "compress")

@@ -21,7 +21,7 @@ from .outputs import Offer, Output
 from .parameters import Parameter, Value, numbered
 
 _ID_LENGTH = 16  # hexadecimal digits: two of a million points are the same by chance once in 10^7 studies
-_NO_RESULT = ("fields", "reference", "checkpoint", "keep_stage_checkpoints")  # keys of [output] that change none
+_NO_RESULT = ("fields", "checkpoint", "keep_stage_checkpoints")  # keys of [output] that change none
 
 
 class Point:

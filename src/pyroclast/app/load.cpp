@@ -7,6 +7,7 @@
 
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/plugin/load.hpp"
+#include "pyroclast/specimen/clusters.hpp"
 #include "pyroclast/units/units.hpp"
 
 namespace pyroclast::app {
@@ -94,6 +95,8 @@ std::string describe(const specimen::Specimen& s) {
   text += '\n';
   for (std::size_t i = 0; i < s.phases.size(); ++i)
     text += fmt::format("                {:<12} {:.3f} of the area\n", s.phases[i], s.fraction[i]);
+  if (const std::string skeleton = specimen::skeleton(s); !skeleton.empty())
+    text += fmt::format("                {}\n", skeleton);
   text += fmt::format("blocks          mean size {:.3f} mm, mean edge {:.3f} mm\n", kMilli * m.mean_size,
                       kMilli * m.mean_edge);
   text += fmt::format("                shortest edge {:.3f} mm, block {} at ({:.2f}, {:.2f}) mm\n",

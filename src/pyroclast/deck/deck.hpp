@@ -101,6 +101,9 @@ class Section {
   /// A list of at least one quantity; empty after an error.
   std::vector<double> quantities(std::string_view key, const Unit& unit, const Range& range,
                                  Meaning meaning) const;
+  /// The same for a list that may be absent, or hold nothing.
+  std::vector<double> optional_quantities(std::string_view key, const Unit& unit, const Range& range,
+                                          Meaning meaning) const;
 
   /// A dimensionless number, written as a number or as a string such as "31 %".
   double number(std::string_view key, const Range& range, Meaning meaning) const;

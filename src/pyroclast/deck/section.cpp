@@ -399,6 +399,15 @@ std::vector<double> Section::quantities(std::string_view key, const Unit& unit, 
   return entry ? read_quantities(*entry, unit, range) : std::vector<double>{};
 }
 
+std::vector<double> Section::optional_quantities(std::string_view key, const Unit& unit, const Range& range,
+                                                 Meaning meaning) const {
+  note(with_fallback(quantities_key(key, unit, range), "[]"), meaning);
+  const auto entry = read(*deck_, table_, key);
+  const toml::array* list = entry ? entry->node.as_array() : nullptr;
+  if (!entry || (list && list->empty())) return {};
+  return read_quantities(*entry, unit, range);
+}
+
 double Section::number(std::string_view key, const Range& range, Meaning meaning) const {
   return quantity(key, unit::dimensionless, range, meaning);
 }

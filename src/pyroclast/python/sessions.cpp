@@ -233,7 +233,7 @@ void bind_sessions(py::module_& m) {
           },
           "The same, not written.")
       .def(
-          "summary_numbers", [](const Held& h) { return summary_numbers(h.get().run()); },
+          "summary_numbers", [](const Held& h) { return h.get().summary_numbers(); },
           "What may be a number in the summary when the run is over: results by name, others by path.")
       .def(
           "copy",

@@ -19,7 +19,7 @@ std::string Inputs::hash() const {
 
 Inputs inputs_of(const Deck& deck, const Setup& setup) {
   Inputs inputs;
-  inputs.reference = setup.reference;
+  inputs.references = json_of(setup.references);
   std::vector<std::pair<std::string, std::string>> values;
   for (const DeckFile& named : deck.files()) {
     auto file = std::ranges::find(inputs.files, named.file, &InputFile::source);

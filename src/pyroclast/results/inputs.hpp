@@ -20,7 +20,7 @@ struct Inputs {
   /// The deck, with the seed of the run, and files by their names in the folder: run there it gives the same.
   std::string deck_text;
   std::vector<InputFile> files;
-  std::string reference = {};  ///< for figures: one of the files, as read_reference gives it; may be empty
+  std::string references = {};  ///< for figures, see json_of; may be empty
 
   /// Of the deck and its files.
   std::string hash() const;

@@ -15,6 +15,7 @@ Recorder::Recorder(std::filesystem::path folder, const Setup& setup)
       title_(setup.title),
       expansion_reading_(setup.expansion_reading == ExpansionReading::secant ? "secant" : "tangent"),
       specimen_(setup.specimen),
+      references_(setup.references),
       has_fields_(setup.has_fields) {
   for (const Diagnostic& warning : setup.warnings) warnings_.push_back(without_place(warning));
 }
@@ -42,7 +43,7 @@ Summary Recorder::finish(const Run& run) {
 }
 
 Summary Recorder::summary(const Run& run) const {
-  Summary summary = summarize(run);
+  Summary summary = summarize(run, references_);
   summary.title = title_;
   std::vector<std::string> warnings = warnings_;
   for (auto list :

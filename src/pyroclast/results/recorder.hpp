@@ -41,6 +41,9 @@ class Recorder {
   /// Adds a line to the warnings of the summary.
   void warn(std::string line) { warnings_.push_back(std::move(line)); }
 
+  /// What `finish` will have as numbers, see summary_numbers.
+  std::vector<std::string> numbers(const Run& run) const { return summary_numbers(run, references_); }
+
   /// Of the run, with those parts of it that other processes did, s.
   double wall_time() const;
   const FrameRecords& frames() const { return frames_; }
@@ -52,6 +55,7 @@ class Recorder {
   std::string title_;
   std::string expansion_reading_;
   specimen::SpecimenParameters specimen_;
+  std::vector<Reference> references_;
   std::vector<std::string> warnings_;  ///< of the deck, and of what was done to the run
   std::vector<std::string> lost_frames_;
   bool has_fields_;  ///< whether they are written

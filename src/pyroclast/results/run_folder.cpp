@@ -26,14 +26,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kManifest = "manifest.json";
-constexpr const char* kReference = "reference.csv";
+constexpr const char* kReferences = "references.json";
 constexpr const char* kProgram = "pyroclast";
 
 /// All that a run, `specimen`, `figures` and `watch` write into the folder of a run, as patterns of
 /// fnmatch(3), besides the manifest. What is not here outlives `--overwrite`.
 constexpr auto kWritten = std::to_array<const char*>({
     "deck.toml",
-    kReference,
+    kReferences,
     "history.csv",
     "isotherm.csv",
     "temperature_profile.csv",
@@ -68,6 +68,7 @@ constexpr auto kFigures = std::to_array<const char*>({
     "heating_fracture",
     "isotherm",
     "morphology",
+    "records",
     "stress_strain",
     "temperature",
     "temperature_history",
@@ -118,7 +119,7 @@ nlohmann::ordered_json json_of(const std::vector<InputFile>& inputs) {
 void write_inputs(const fs::path& folder, const Inputs& inputs) {
   if (!inputs.files.empty()) fs::create_directory(folder / "inputs");
   for (const InputFile& input : inputs.files) write_text_file(folder / input.name, input.contents);
-  if (!inputs.reference.empty()) write_text_file(folder / kReference, inputs.reference);
+  if (!inputs.references.empty()) write_text_file(folder / kReferences, inputs.references);
   write_text_file(folder / "deck.toml", inputs.deck_text);
 }
 

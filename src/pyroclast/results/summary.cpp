@@ -275,6 +275,14 @@ void add_heat(OrderedJson& json, const Summary& summary, const Run& run) {
     json["heat_solver"]["gap_length_m"] = json_of(last_of(run.history(), "heat_gap_length_m"));
 }
 
+OrderedJson json_of(const ReferenceDistances& of) {
+  const CurveDistances& d = of.distances;
+  return {{"rms_over_greatest", json_of(d.rms)},
+          {"peak_difference", json_of(d.at_peak)},
+          {fmt::format("area_between{}{}", of.area_unit.empty() ? "" : "_", of.area_unit), json_of(d.area)},
+          {"share_covered", json_of(d.covered)}};
+}
+
 OrderedJson summary_json(const Summary& s, const Run& run) {
   const Simulation& simulation = run.simulation();
   const specimen::Specimen& specimen = simulation.specimen();
@@ -288,6 +296,7 @@ OrderedJson summary_json(const Summary& s, const Run& run) {
   for (const auto& stage : s.stages) json["stages"].push_back(json_of(stage));
   if (simulation.moves()) add_motion(json, s, run);
   if (simulation.field().conduction()) add_heat(json, s, run);
+  for (const ReferenceDistances& of : s.references) json["references"][of.name] = json_of(of);
   json["specimen"] = {{"blocks", specimen.tessellation.cells.size()},
                       {"mean_block_size_m", specimen.metrics.mean_size},
                       {"aggregate_fraction_asked", specimen.fraction_asked},
@@ -330,7 +339,7 @@ void warn_of_hardening(Summary& summary) {
   }
 }
 
-Summary summarize(const Run& run) {
+Summary summarize(const Run& run, std::span<const Reference> references) {
   const History& history = run.history();
   const Simulation& simulation = run.simulation();
   Summary s;
@@ -348,6 +357,11 @@ Summary summarize(const Run& run) {
     s.is_sound = false;
   }
   warn_of_hardening(s);
+  s.references = reference_distances(references, run);
+  for (ReferenceDistances& of : s.references) {
+    if (!s.is_sound) of.distances = {};
+    s.warnings.insert(s.warnings.end(), of.warnings.begin(), of.warnings.end());
+  }
   s.energy_error = energy_error(history, history.row_count());
   s.error_over_dissipated = error_over_dissipated(history, simulation);
   s.exchange_stress = exchange_stress(run, s);
@@ -385,13 +399,13 @@ std::string summary_text(const Summary& s, const Run& run) {
   return summary_json(s, run).dump(2) + "\n";
 }
 
-std::vector<std::string> summary_numbers(const Run& run) {
+std::vector<std::string> summary_numbers(const Run& run, std::span<const Reference> references) {
   std::set<std::string> names;
   for (const auto& stage : run.stages())
     for (const Result& result : stage->report(run.history(), {}, Outcome::not_begun).results)
       if (!std::holds_alternative<std::string>(result.value) && !result.name.ends_with(kReason))
         names.insert(result.name);
-  add_numbers(summary_json(summarize(run), run), "", names);
+  add_numbers(summary_json(summarize(run, references), run), "", names);
   return {names.begin(), names.end()};
 }
 

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "pyroclast/results/reference_distances.hpp"
 #include "pyroclast/simulation/run.hpp"
 
 namespace pyroclast {
@@ -20,6 +22,7 @@ struct Summary {
   std::string title;
   Outcome outcome = Outcome::completed;
   std::vector<OfStage> stages;
+  std::vector<ReferenceDistances> references;
   std::string expansion_reading;
   double wall_time = 0.0;  ///< s
   /// Error of the energy ledger over the energy turned over; empty where nothing moves.
@@ -39,11 +42,12 @@ void warn_of_hardening(Summary& summary);
 
 /// Gathers it from the rows so far, with a warning for each thing that keeps the result from being taken at
 /// face value.
-Summary summarize(const Run& run);
+/// \param references  that the run is held against
+Summary summarize(const Run& run, std::span<const Reference> references = {});
 
 /// What may be a number in the summary of a run when it is over: results of stages by their names, "f_c_MPa",
 /// and others by their paths, "energy_J.kinetic".
-std::vector<std::string> summary_numbers(const Run& run);
+std::vector<std::string> summary_numbers(const Run& run, std::span<const Reference> references = {});
 
 /// `summary.json`, as a text.
 std::string summary_text(const Summary& summary, const Run& run);

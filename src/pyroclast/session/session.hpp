@@ -59,6 +59,8 @@ class Session {
   Summary finish();
   /// The same, not written.
   Summary summary() const { return recorder_.summary(run_); }
+  /// Names of the numbers that it has when the run is over.
+  std::vector<std::string> summary_numbers() const { return recorder_.numbers(run_); }
 
   /// Asked before every batch; true stops the run, after a checkpoint where there is a folder.
   void stop_when(const std::function<bool()>& asked);

@@ -16,8 +16,12 @@
 #include "pyroclast/setup/cells_in_metres.hpp"
 #include "pyroclast/setup/vec_of_place.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
+#include "pyroclast/specimen/gradation.hpp"
+#include "pyroclast/specimen/grading_curve.hpp"
 #include "pyroclast/specimen/neper_tess.hpp"
 #include "pyroclast/specimen/outline_seeds.hpp"
+#include "pyroclast/tables/measured_table.hpp"
+#include "pyroclast/tables/read_choice.hpp"
 
 namespace pyroclast {
 
@@ -28,6 +32,9 @@ constexpr int kPlacementAttempts = 100'000;
 
 /// Smallest side of a test specimen over the largest aggregate (EN 12390-1 asks for 3.5).
 constexpr double kFewestAggregatesAcross = 3.0;
+
+/// The last share of a sieve analysis may be off 1 by this, from percents.
+constexpr double kAllPass = 1e-9;
 
 constexpr Meaning kPhase = "what they are made of: a table of [materials]";
 constexpr Meaning kSuperposition =
@@ -40,33 +47,223 @@ int read_attempts(const Section& s) {
                 "random places that are tried for one of them before placing is given up"));
 }
 
-specimen::AggregateParameters read_aggregates(const Section& s) {
-  specimen::AggregateParameters a;
-  a.phase = s.text("phase", "aggregate", kPhase);
-  a.fraction =
-      s.number("fraction", Range{.lower = 0.0, .upper = 1.0, .upper_inclusive = false}.usually(0.0, 0.5),
-               "area of coarse aggregate over area of the specimen");
+/// A file of measurements that a table names by `csv`.
+struct NamedTable {
+  MeasuredTable table;
+  std::vector<ChosenColumn> columns;
+};
+
+/// Nothing after an error.
+/// \param asked  the last of them may be missing in the file, down to `least`
+std::optional<NamedTable> read_named_table(const Section& s, const std::filesystem::path& folder,
+                                           std::span<const AskedColumn> asked, std::size_t least) {
+  const std::string file = s.text("csv", "[measured table](deck.md#measured-tables) beside the deck");
+  const ColumnChoice choice = read_column_choice(s, file, least, asked.size());
+  if (!s.ok() || !s.has("csv")) return std::nullopt;
+  try {
+    MeasuredTable table = MeasuredTable::load(folder / file, least);
+    const std::size_t stated = choice.columns.empty() ? table.columns().size() : choice.columns.size();
+    auto columns = table.choose(choice, asked.first(std::clamp(stated, least, asked.size())));
+    s.names_file("csv", folder / file);
+    return NamedTable{std::move(table), std::move(columns)};
+  } catch (const Error& error) {
+    s.error("csv", error.what());
+    return std::nullopt;
+  }
+}
+
+/// A sieve analysis, by ascending size; nothing after an error.
+std::optional<specimen::GradingCurve> read_passing(const Section& s, const std::filesystem::path& folder) {
+  s.describe(
+      "passing", {.value = "list of points [size, share], or { csv = file }", .name = "passing"},
+      "grading that was measured, in the place of Fuller's curve: the share that passes each sieve, 100 % "
+      "the largest; straight between sieves, and rescaled to what is larger than d_min");
+  specimen::GradingCurve curve;
+  const auto complain = [&](const std::string& what) {
+    s.error("passing", what);
+    return std::nullopt;
+  };
+  if (s.is_table("passing")) {
+    const std::array<AskedColumn, 2> asked{{{"size", unit::length}, {"passing", unit::dimensionless}}};
+    const auto read =
+        read_named_table(s.section("passing", "a sieve analysis: sizes, and the shares that pass"), folder,
+                         asked, asked.size());
+    if (!read) return std::nullopt;
+    try {
+      curve.sizes = read->table.values(read->columns[0], unit::length);
+      curve.shares = read->table.values(read->columns[1], unit::dimensionless);
+    } catch (const Error& error) {
+      return complain(error.what());
+    }
+  } else {
+    for (const auto& [size, share] : s.points("passing", unit::length, unit::dimensionless, "")) {
+      curve.sizes.push_back(size);
+      curve.shares.push_back(share);
+    }
+  }
+  if (!s.ok() || curve.sizes.empty()) return std::nullopt;
+  if (curve.sizes.front() > curve.sizes.back()) {  // as laboratories list sieves
+    std::ranges::reverse(curve.sizes);
+    std::ranges::reverse(curve.shares);
+  }
+  if (curve.sizes.size() < 2 || curve.sizes.front() < 0.0 ||
+      std::ranges::adjacent_find(curve.sizes, std::ranges::greater_equal()) != curve.sizes.end())
+    return complain("must have two sizes or more, which ascend or descend, none below 0");
+  if (curve.shares.back() > 1.0 + kAllPass)
+    return complain(
+        fmt::format("reaches {:.6g}, but where all passes the share is 1, or 100 %: the unit is "
+                    "missing",
+                    curve.shares.back()));
+  if (!std::ranges::is_sorted(curve.shares) || curve.shares.front() < 0.0 ||
+      curve.shares.back() < 1.0 - kAllPass)
+    return complain("must ascend with the size, from 0 % or more to 100 % at the largest");
+  curve.shares.back() = 1.0;
+  return curve;
+}
+
+/// A measured grading.
+void read_measured_grading(const Section& s, const std::filesystem::path& folder,
+                           specimen::AggregateParameters& a) {
+  enum class By { area, volume };
+  const auto curve = read_passing(s, folder);
+  const By by = s.choice<By>(
+      "passing_by",
+      {{"area", By::area, "shares are of the area of the circles"},
+       {"volume", By::volume,
+        "shares are of the volume of the stones, or their mass: circles are what a plane cuts from spheres, "
+        "see [method.md](method.md#specimen)"}},
+      "what the shares of `passing` are of");
+  const bool has_d_min = s.has("d_min");
+  const double d_min =
+      has_d_min ? s.quantity("d_min", unit::length, Range::positive().usually(5e-4, 0.1), "smallest diameter")
+                : 0.0;
+  if (!curve || !s.ok()) return;
+  const double least = has_d_min ? d_min : curve->sizes.front();
+  if (least <= 0.0) {
+    s.error("d_min", "is needed where the smallest size of `passing` is 0");
+    return;
+  }
+  try {
+    const auto cut = specimen::above(by == By::volume ? specimen::of_section(*curve) : *curve, least);
+    a.sieves = cut.sizes;
+    a.passing = cut.shares;
+    a.d_min = cut.sizes.front();
+    a.d_max = cut.sizes.back();
+    a.fuller_exponent = 1.0;
+  } catch (const Error& error) {
+    s.error(has_d_min ? "d_min" : "passing", error.what());
+  }
+}
+
+/// Fuller's curve.
+void read_fuller_grading(const Section& s, specimen::AggregateParameters& a) {
   a.d_min = s.quantity("d_min", unit::length, Range::positive().usually(5e-4, 0.1), "smallest diameter");
   a.d_max = s.quantity("d_max", unit::length, Range::positive().usually(5e-4, 0.15), "largest diameter");
   a.fuller_exponent = s.number("fuller_exponent", Range::positive().usually(0.2, 1.0), "of Fuller's curve");
-  a.minimum_gap = s.quantity("minimum_gap", unit::length, Range::non_negative(),
-                             "between two aggregates, and between an aggregate and the outline");
-  a.attempts = read_attempts(s);
-  a.place = fmt::format("{}: {}", s.where("fraction"), s.path());
-  const auto between = s.quantities("sieves", unit::length, Range::positive(),
-                                    "bounds of the size intervals between d_min and d_max, ascending");
-  if (!s.ok()) return a;
+  const auto between = s.optional_quantities(
+      "sieves", unit::length, Range::positive(),
+      "bounds of the size intervals between d_min and d_max, ascending; without any there is one interval");
+  if (!s.ok()) return;
   if (a.d_max <= a.d_min) s.error("d_max", "must be greater than d_min");
   a.sieves = {a.d_min};
   for (double sieve : between) {
     if (sieve <= a.sieves.back() || sieve >= a.d_max) {
       s.error("sieves", "must ascend and lie between d_min and d_max, both excluded");
-      return a;
+      return;
     }
     a.sieves.push_back(sieve);
   }
   a.sieves.push_back(a.d_max);
+}
+
+/// The gradation of stones that are known is their own.
+void set_gradation_of_stones(specimen::AggregateParameters& a) {
+  std::vector<double> sizes;
+  for (const specimen::Stone& stone : a.stones) sizes.push_back(stone.diameter);
+  std::ranges::sort(sizes);
+  double passed = 0.0;
+  for (const double size : sizes) {
+    passed += specimen::circle_area(size);
+    if (!a.sieves.empty() && a.sieves.back() == size) {
+      a.passing.back() = passed;
+      continue;
+    }
+    a.sieves.push_back(size);
+    a.passing.push_back(passed);
+  }
+  for (double& share : a.passing) share /= passed;
+  a.d_min = sizes.front();
+  a.d_max = sizes.back();
+}
+
+/// Stones that are known, as a run writes them.
+void read_stones(const Section& s, const std::filesystem::path& folder, specimen::AggregateParameters& a) {
+  constexpr std::size_t kWithoutPhase = 3;
+  const Section own = s.section("stones",
+                                "places and diameters of all circles, in the place of a grading: "
+                                "`specimen/aggregates.csv` of a run, or "
+                                "a table of x, y, diameter, and the number of a phase or none");
+  const std::array<AskedColumn, 4> asked{
+      {{"x", unit::length}, {"y", unit::length}, {"diameter", unit::length}, {"phase", unit::dimensionless}}};
+  const auto read = read_named_table(own, folder, asked, kWithoutPhase);
+  auto phases = own.optional_texts("phases",
+                                   "names of the phases, by their numbers from 0; without them all stones "
+                                   "are of number 0, and of `phase`");
+  if (phases.empty()) phases = {a.phase};
+  if (!read || !own.ok()) return;
+  a.place = fmt::format("{}: {}", own.where("csv"), own.path());
+  try {
+    std::vector<std::vector<double>> values;
+    for (std::size_t i = 0; i < read->columns.size(); ++i)
+      values.push_back(read->table.values(read->columns[i], asked[i].unit));
+    for (std::size_t row = 0; row < read->table.rows(); ++row) {
+      const auto place = fmt::format("{}:{}", read->table.path().string(), read->table.line(row));
+      const double phase = values.size() > kWithoutPhase ? values[kWithoutPhase][row] : 0.0;
+      if (!(values[2][row] > 0.0)) throw Error(fmt::format("{}: the diameter must be greater than 0", place));
+      if (!(phase >= 0.0 && phase < static_cast<double>(phases.size()) && phase == std::floor(phase)))
+        throw Error(fmt::format("{}: the phase {:.6g} has no name: `phases` has those of 0 to {}", place,
+                                phase, phases.size() - 1));
+      a.stones.push_back({{{values[0][row], values[1][row]}},
+                          values[2][row],
+                          phases[static_cast<std::size_t>(phase)],
+                          place});
+    }
+  } catch (const Error& error) {
+    own.error("csv", error.what());
+    return;
+  }
+  set_gradation_of_stones(a);
+}
+
+specimen::AggregateParameters read_aggregates(const Section& s, const std::filesystem::path& folder) {
+  specimen::AggregateParameters a;
+  a.phase = s.text("phase", "aggregate", kPhase);
+  s.know({"stones", "fraction", "minimum_gap", "attempts", "passing", "passing_by", "d_min", "d_max",
+          "fuller_exponent", "sieves"});
+  if (s.has("stones")) {
+    read_stones(s, folder, a);
+    return a;
+  }
+  a.fraction =
+      s.number("fraction", Range{.lower = 0.0, .upper = 1.0, .upper_inclusive = false}.usually(0.0, 0.5),
+               "area of coarse aggregate over area of the specimen");
+  a.place = fmt::format("{}: {}", s.where("fraction"), s.path());
+  if (s.has("passing"))
+    read_measured_grading(s, folder, a);
+  else
+    read_fuller_grading(s, a);
+  a.minimum_gap = s.quantity("minimum_gap", unit::length, Range::non_negative(),
+                             "between two aggregates, and between an aggregate and the outline");
+  a.attempts = read_attempts(s);
   return a;
+}
+
+/// What stones that are known take of the specimen.
+void set_fraction(const specimen::Region& region, specimen::AggregateParameters& a) {
+  if (a.stones.empty()) return;
+  double area = 0.0;
+  for (const specimen::Stone& stone : a.stones) area += specimen::circle_area(stone.diameter);
+  a.fraction = area / region.area();
 }
 
 specimen::FibreParameters read_fibres(const Section& s) {
@@ -85,7 +282,7 @@ specimen::FibreParameters read_fibres(const Section& s) {
 void check_size(const Section& s, const specimen::SpecimenParameters& p) {
   const specimen::Box& box = p.region.box();
   const double narrowest = std::min(box.width(), box.height()), largest = p.aggregates.d_max;
-  if (p.aggregates.fraction == 0.0) return;
+  if (p.aggregates.fraction == 0.0 || !p.aggregates.stones.empty()) return;
   if (largest + 2.0 * p.aggregates.minimum_gap > narrowest)
     s.error("d_max", fmt::format("with minimum_gap on both sides must be less than the specimen, {:.6g} m",
                                  narrowest));
@@ -387,7 +584,7 @@ void check_bearings(const specimen::Region& region, std::span<const ReadBearing>
                                           fmt::join(names, ", "), b.bearing.side));
 }
 
-std::vector<specimen::Inclusions> read_inclusions(const Section& root) {
+std::vector<specimen::Inclusions> read_inclusions(const Section& root, const std::filesystem::path& folder) {
   std::vector<specimen::Inclusions> list;
   for (const Section& s : root.optional_sections(
            "inclusions", "what stands in the matrix beside [aggregates]; placed after these, in turn")) {
@@ -398,7 +595,7 @@ std::vector<specimen::Inclusions> read_inclusions(const Section& root) {
          {"fibre", Kind::fibre, "straight fibres: the blocks that one crosses are of its phase"}},
         "shape of the inclusions");
     if (kind == Kind::circle)
-      list.emplace_back(read_aggregates(s));
+      list.emplace_back(read_aggregates(s, folder));
     else
       list.emplace_back(read_fibres(s));
   }
@@ -579,12 +776,15 @@ specimen::SpecimenParameters read_specimen(const Section& root, const std::files
       root.optional_section("aggregates",
                             "coarse aggregates, placed as circles with diameters after Fuller's curve "
                             "P(d) = (d / d_max)^fuller_exponent, Eq. (16); without it there are none");
-  if (aggregates) p.aggregates = read_aggregates(*aggregates);
-  p.inclusions = read_inclusions(root);
+  if (aggregates) p.aggregates = read_aggregates(*aggregates, folder);
+  p.inclusions = read_inclusions(root, folder);
   const Section blocks = root.section("blocks", "the tessellation into blocks");
   p.blocks = read_blocks(blocks, folder, outline, aggregates || !p.inclusions.empty());
   p.region = make_region(s, outline, p.blocks, bearings);
   check_outline(s, outline, p.region);
+  set_fraction(p.region, p.aggregates);
+  for (specimen::Inclusions& kind : p.inclusions)
+    if (auto* circles = std::get_if<specimen::AggregateParameters>(&kind)) set_fraction(p.region, *circles);
   if (s.ok()) check_bearings(p.region, bearings);
   if (s.ok() && aggregates && aggregates->ok()) check_size(*aggregates, p);
   if (!aggregates && p.inclusions.empty()) {

@@ -14,7 +14,7 @@
 #include "pyroclast/setup/read_heat.hpp"
 #include "pyroclast/setup/read_materials.hpp"
 #include "pyroclast/setup/read_probes.hpp"
-#include "pyroclast/setup/read_reference.hpp"
+#include "pyroclast/setup/read_references.hpp"
 #include "pyroclast/setup/read_sets.hpp"
 #include "pyroclast/setup/read_specimen.hpp"
 #include "pyroclast/setup/read_stages.hpp"
@@ -311,18 +311,6 @@ std::vector<std::string> unused_sets(const Setup& setup) {
   return unused;
 }
 
-DrawnTables drawn_tables(const Setup& setup) {
-  const auto any = [&](auto is) { return std::ranges::any_of(setup.stages, is); };
-  const bool has_platens = setup.motion && std::ranges::any_of(setup.motion->bearings, [](const Bearing& b) {
-                             return b.name == "top_platen";
-                           });
-  const bool exchanges = has_platens && any([](const auto& stage) { return stage->needs().exchanges; });
-  return {.strain_stress = has_platens && !setup.stages.empty() && !setup.stages.back()->needs().exchanges,
-          .temperature_strain = exchanges,
-          .temperature_stress = exchanges,
-          .time_temperature = !setup.heat.uniform};
-}
-
 /// Materials, and what moves, where a stage moves the body.
 void read_moving(const Section& root, const std::vector<ReadBearing>& bearings, CurveReader& curves,
                  const LawFinder& find_law, Setup& setup) {
@@ -413,7 +401,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
       output.flag("keep_stage_checkpoints", true,
                   "whether the state at the end of each stage is kept, for [forks](restart.md#forks)");
   setup.unused_sets = unused_sets(setup);
-  setup.reference = read_reference(output, folder, drawn_tables(setup));
+  setup.references = read_references(output, folder, setup);
   deck.finish();
   setup.warnings = deck.warnings();
   return setup;

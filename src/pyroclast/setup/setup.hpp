@@ -11,6 +11,7 @@
 #include "pyroclast/material/curve_reader.hpp"
 #include "pyroclast/material/thermal_strain.hpp"
 #include "pyroclast/plugin/find_law.hpp"
+#include "pyroclast/setup/read_references.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 #include "pyroclast/stages/registry.hpp"
 
@@ -44,9 +45,9 @@ struct Setup {
   /// Code that the user did not allow, an explanation each: then the keys of contacts with it were not
   /// checked, and the body cannot be made. See require_code.
   std::vector<std::string> code_not_allowed;
-  bool has_fields = true;            ///< whether frames of the fields are written
-  std::string reference;             ///< table for the figures, see read_reference
-  std::vector<Diagnostic> warnings;  ///< of the deck: what is allowed, but most likely not meant
+  bool has_fields = true;             ///< whether frames of the fields are written
+  std::vector<Reference> references;  ///< beside the results
+  std::vector<Diagnostic> warnings;   ///< of the deck: what is allowed, but most likely not meant
 };
 
 /// Reads a deck. A relative file name in it is taken from `folder`.

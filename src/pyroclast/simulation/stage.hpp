@@ -65,6 +65,7 @@ struct StageNeeds {
 struct HeatingPlan {
   double duration = 0.0;          ///< for which boundaries act, s
   std::optional<double> to = {};  ///< temperature of a uniform field at its end, °C
+  bool is_restrained = false;     ///< between platens that are held in place
 };
 
 /// What a stage will probably cost.

@@ -31,6 +31,16 @@ double fuller_passing(const AggregateParameters& parameters, double size) {
   return (passing(size) - smallest) / (1.0 - smallest);
 }
 
+double passing(const AggregateParameters& parameters, double size) {
+  if (parameters.passing.empty()) return fuller_passing(parameters, size);
+  const std::vector<double>&sizes = parameters.sieves, &shares = parameters.passing;
+  const auto next = std::ranges::upper_bound(sizes, size) - sizes.begin();
+  if (next == 0) return 0.0;
+  if (next == std::ssize(sizes)) return 1.0;
+  const double part = (size - sizes[next - 1]) / (sizes[next] - sizes[next - 1]);
+  return shares[next - 1] + part * (shares[next] - shares[next - 1]);
+}
+
 std::vector<double> draw_diameters(const AggregateParameters& parameters, double specimen_area,
                                    Random& random) {
   const double total = parameters.fraction * specimen_area;
@@ -39,7 +49,9 @@ std::vector<double> draw_diameters(const AggregateParameters& parameters, double
   double remaining = 0.0;
   for (std::size_t i = sieves.size() - 1; i > 0; --i) {
     const double low = sieves[i - 1];
-    remaining += total * (fuller_passing(parameters, sieves[i]) - fuller_passing(parameters, low));
+    const double share = passing(parameters, sieves[i]) - passing(parameters, low);
+    if (share == 0.0) continue;  // a gap of the grading
+    remaining += total * share;
     while (remaining >= circle_area(low)) {
       const double high = std::min(sieves[i], diameter_of(remaining));
       diameters.push_back(draw_diameter(low, high, parameters.fuller_exponent, random));
@@ -58,11 +70,11 @@ std::vector<GradationPoint> gradation(const AggregateParameters& parameters,
   for (const Aggregate& a : aggregates) total += circle_area(a.diameter);
   std::vector<GradationPoint> points;
   for (const double size : sizes) {
-    double passing = 0.0;
+    double realised = 0.0;
     for (const Aggregate& a : aggregates) {
-      if (a.diameter <= size) passing += circle_area(a.diameter);
+      if (a.diameter <= size) realised += circle_area(a.diameter);
     }
-    points.push_back({size, 100.0 * fuller_passing(parameters, size), 100.0 * passing / total});
+    points.push_back({size, 100.0 * passing(parameters, size), 100.0 * realised / total});
   }
   return points;
 }

@@ -13,6 +13,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/random.hpp"
 #include "pyroclast/specimen/blocks.hpp"
+#include "pyroclast/specimen/circle_grid.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/gradation.hpp"
 #include "pyroclast/specimen/metrics.hpp"
@@ -31,7 +32,11 @@ void require(bool condition, std::string_view what, double value, std::string_vi
   if (!condition) throw Error(fmt::format("{} is {:.6g}; allowed is {}.", what, value, allowed));
 }
 
+/// Stones may touch, and lie on the outline, within what a file of nine digits tells.
+constexpr double kTouching = 1e-6;
+
 void require_valid(const AggregateParameters& p) {
+  if (!p.stones.empty()) return;  // add_stones holds them against those that stand
   require(p.fraction >= 0.0 && p.fraction < 1.0, "The aggregate fraction", p.fraction, "0 to below 1");
   if (p.fraction == 0.0) return;
   require(p.d_min > 0.0, "The smallest aggregate diameter", p.d_min, "a positive length");
@@ -40,6 +45,10 @@ void require_valid(const AggregateParameters& p) {
           "above 0, up to 1");
   require(p.minimum_gap >= 0.0, "The minimum gap between aggregates", p.minimum_gap, "0 or more");
   require(p.attempts > 0, "The number of attempts to place an aggregate", p.attempts, "1 or more");
+  const bool has_curve =
+      p.passing.empty() || (p.passing.size() == p.sieves.size() && p.passing.front() == 0.0 &&
+                            p.passing.back() == 1.0 && std::is_sorted(p.passing.begin(), p.passing.end()));
+  if (!has_curve) throw Error("The shares that pass the sieves must ascend from 0 to 1, one for each sieve.");
   const bool ascending =
       std::adjacent_find(p.sieves.begin(), p.sieves.end(), std::greater_equal<>()) == p.sieves.end();
   if (p.sieves.size() < 2 || !ascending || p.sieves.front() != p.d_min || p.sieves.back() != p.d_max) {
@@ -82,10 +91,35 @@ int index_of(const std::vector<std::string>& phases, const std::string& name) {
   return static_cast<int>(std::find(phases.begin(), phases.end(), name) - phases.begin());
 }
 
+/// Adds stones that are known. Throws Error where one does not lie in the specimen, or lies on another.
+void add_stones(const SpecimenParameters& p, const AggregateParameters& asked, int kind, Specimen& specimen) {
+  CircleGrid grid(p.region.box(), 2.0 * asked.d_min);
+  for (const Aggregate& circle : specimen.aggregates) grid.insert(circle);
+  std::vector<Aggregate> circles;
+  for (const Stone& stone : asked.stones) {
+    const double radius = 0.5 * stone.diameter, tolerance = kTouching * stone.diameter;
+    const auto fail = [&](std::string_view what) {
+      throw Error(fmt::format("{}: {}: the stone of {:.6g} mm at ({:.6g}, {:.6g}) mm {}", asked.place,
+                              stone.place, 1e3 * stone.diameter, 1e3 * stone.centre[0], 1e3 * stone.centre[1],
+                              what));
+    };
+    if (p.region.distance_before_cuts(stone.centre) > tolerance - radius)
+      fail("does not lie in the specimen, all of it");
+    const Aggregate circle{stone.centre, stone.diameter, index_of(specimen.phases, stone.phase), kind};
+    if (grid.overlaps(circle, -tolerance)) fail("lies on another: stones may touch, and not overlap");
+    grid.insert(circle);
+    circles.push_back(circle);
+  }
+  std::stable_sort(circles.begin(), circles.end(),
+                   [](const Aggregate& a, const Aggregate& b) { return a.diameter > b.diameter; });
+  specimen.aggregates.insert(specimen.aggregates.end(), circles.begin(), circles.end());
+}
+
 /// Adds circles of one kind to those that stand.
 void add_aggregates(const SpecimenParameters& p, const AggregateParameters& asked, int kind, Random& random,
                     Specimen& specimen) {
   specimen.fraction_asked += asked.fraction;
+  if (!asked.stones.empty()) return add_stones(p, asked, kind, specimen);
   if (asked.fraction == 0.0) return;
   const auto diameters = draw_diameters(asked, p.region.area(), random);
   for (Aggregate& circle : place(diameters, p.region, asked, specimen.aggregates, random)) {
@@ -135,9 +169,16 @@ std::vector<std::string> phases(const SpecimenParameters& parameters) {
   const auto add = [&](const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   };
-  add(parameters.aggregates.phase);
+  const auto add_of = [&](const AggregateParameters& kind) {
+    if (kind.stones.empty()) add(kind.phase);
+    for (const Stone& stone : kind.stones) add(stone.phase);
+  };
+  add_of(parameters.aggregates);
   for (const Inclusions& kind : parameters.inclusions)
-    add(std::visit([](const auto& k) { return k.phase; }, kind));
+    if (const auto* circles = std::get_if<AggregateParameters>(&kind))
+      add_of(*circles);
+    else
+      add(std::get<FibreParameters>(kind).phase);
   add(parameters.matrix);
   return names;
 }
@@ -155,7 +196,11 @@ std::vector<std::string> warnings(const Specimen& s) {
 }
 
 Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
-  if (parameters.cells) return specimen_from(*parameters.cells, parameters.region);
+  if (parameters.cells) {
+    Specimen specimen = specimen_from(*parameters.cells, parameters.region);
+    specimen.matrix = index_of(specimen.phases, parameters.matrix);
+    return specimen;
+  }
   require_valid(parameters);
   // Streams of their own: another number of blocks leaves the aggregates where they are.
   Random aggregate_random(2 * parameters.seed);
@@ -183,7 +228,7 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
   Blocks blocks = make_blocks(parameters.blocks, parameters.region, block_random, team);
   specimen.tessellation = std::move(blocks.tessellation);
   if (blocks.phase.empty()) {
-    const int matrix = index_of(specimen.phases, parameters.matrix);
+    const int matrix = specimen.matrix = index_of(specimen.phases, parameters.matrix);
     Superposed superposed = superpose(specimen.tessellation, specimen.aggregates, parameters, matrix);
     specimen.covered_fraction = superposed.covered_fraction;
     specimen.phase = std::move(superposed.phase);

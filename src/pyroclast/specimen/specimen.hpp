@@ -30,7 +30,16 @@ struct Fibre {
   int phase = 0;    ///< index into Specimen::phases
 };
 
-/// Coarse aggregate asked for: Fuller's curve P(d) = (d/d_max)^nf between d_min and d_max (paper, Eq. 16).
+/// A stone that is known: a circle at a place, read from a list.
+struct Stone {
+  Vec<2> centre;      ///< m
+  double diameter;    ///< m
+  std::string phase;  ///< what it is made of
+  std::string place;  ///< where it is stated, "stones.csv:7", for errors
+};
+
+/// Coarse aggregate asked for: Fuller's curve P(d) = (d/d_max)^nf between d_min and d_max (paper, Eq. 16), a
+/// measured grading curve, or the stones themselves.
 /// With a fraction of 0 the other members are not looked at.
 struct AggregateParameters {
   std::string phase = "aggregate";
@@ -39,9 +48,13 @@ struct AggregateParameters {
   double d_max = 0.0;            ///< largest diameter, m
   double fuller_exponent = 0.0;  ///< nf
   std::vector<double> sieves;    ///< ascending bounds of the size intervals, m; first d_min, last d_max
-  double minimum_gap = 0.0;      ///< smallest distance between aggregates and to the outline, m
-  int attempts = 0;              ///< random centres tried for one aggregate before placing fails
-  std::string place = "";        ///< where they are asked for, "mine.toml:12: aggregates", for errors
+  /// Share of the area that passes each sieve, from 0 to 1; empty: by Fuller's curve. With it nf is 1, for
+  /// which a curve is straight between sieves.
+  std::vector<double> passing = {};
+  std::vector<Stone> stones = {};  ///< as they lie; then nothing is drawn or placed
+  double minimum_gap = 0.0;        ///< smallest distance between aggregates and to the outline, m
+  int attempts = 0;                ///< random centres tried for one aggregate before placing fails
+  std::string place = "";          ///< where they are asked for, "mine.toml:12: aggregates", for errors
 };
 
 /// Fibres asked for: each at a random place, in a random direction.
@@ -148,6 +161,7 @@ struct Specimen {
   Region region;
   Tessellation tessellation;
   std::vector<std::string> phases;    ///< what blocks can be made of
+  int matrix = -1;                    ///< index into `phases`; -1: not known
   std::vector<int> phase;             ///< per cell, index into `phases`
   std::vector<Aggregate> aggregates;  ///< circles as placed, those of each kind largest first
   std::vector<Fibre> fibres;          ///< as placed

@@ -30,6 +30,7 @@ class ExchangeStage : public Stage {
   explicit ExchangeStage(const Keys& keys) : keys_(keys), exchange_(keys.coupling) {}
 
   const Coupling& coupling() const { return keys_.coupling; }
+  bool is_restrained() const { return keys_.coupling.platen == PlatenControl::fixed; }
   double first_temperature() const { return first_temperature_; }  ///< mean at the beginning, °C
 
   virtual void begin_change(Simulation& simulation) = 0;

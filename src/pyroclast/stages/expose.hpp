@@ -20,7 +20,9 @@ class Expose : public ExchangeStage {
 
   const char* kind() const override { return "expose"; }
   StageNeeds needs() const override;
-  HeatingPlan heating() const override { return {.duration = keys_.duration}; }
+  HeatingPlan heating() const override {
+    return {.duration = keys_.duration, .is_restrained = is_restrained()};
+  }
   double progress(const Simulation& simulation) const override;
 
  private:

@@ -17,7 +17,7 @@ class Heat : public ExchangeStage {
 
   const char* kind() const override { return "heat"; }
   StageNeeds needs() const override { return {.exchanges = true, .field = FieldChoice::uniform}; }
-  HeatingPlan heating() const override { return {.to = keys_.to}; }
+  HeatingPlan heating() const override { return {.to = keys_.to, .is_restrained = is_restrained()}; }
   double progress(const Simulation& simulation) const override;
 
  private:

@@ -318,7 +318,8 @@ std::string MeasuredTable::line_to_write(const ColumnChoice& choice, const std::
     all_say_units = all_say_units && !unit.empty();
     units.push_back(in_quotes(unit.empty() ? asked[i].unit.si : unit));
   }
-  std::string line = fmt::format("{{ csv = \"{}\", columns = [{}]", choice.file, fmt::join(names, ", "));
+  std::string line =
+      fmt::format("{{ {} = \"{}\", columns = [{}]", choice.key, choice.file, fmt::join(names, ", "));
   if (!all_say_units) line += fmt::format(", units = [{}]", fmt::join(units, ", "));
   return line + " }";
 }

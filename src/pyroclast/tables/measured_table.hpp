@@ -30,6 +30,7 @@ struct ColumnChoice {
   std::string file;                ///< as the deck names it
   std::vector<Column> columns;     ///< of each quantity; empty where the table has no others
   std::vector<std::string> units;  ///< of each quantity, "" where the file says it; may be empty
+  std::string key = "csv";         ///< by which the deck names the file
 };
 
 /// A column that was chosen, and the unit of its numbers.

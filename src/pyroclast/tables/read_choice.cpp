@@ -6,8 +6,17 @@
 namespace pyroclast {
 namespace {
 
+struct Counts {
+  std::size_t least, most;
+
+  bool hold(std::size_t count) const { return count >= least && count <= most; }
+  std::string words() const {
+    return least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most);
+  }
+};
+
 /// Empty after an error.
-std::vector<ColumnChoice::Column> read_columns(const Section& section, std::size_t count) {
+std::vector<ColumnChoice::Column> read_columns(const Section& section, const Counts& counts) {
   const auto list = nlohmann::json::parse(section.json("columns", "list of names or numbers", "[]",
                                                        "columns by their names, or by their numbers from 1"));
   if (list.is_array() && list.empty()) return {};
@@ -21,20 +30,27 @@ std::vector<ColumnChoice::Column> read_columns(const Section& section, std::size
     else
       is_good = false;
   }
-  if (is_good && columns.size() == count) return columns;
-  section.error("columns",
-                fmt::format("must be a list of {} columns, each its name or its number from 1", count));
+  if (is_good && counts.hold(columns.size())) return columns;
+  section.error("columns", fmt::format("must be a list of {} columns, each its name or its number from 1",
+                                       counts.words()));
   return {};
 }
 
 }  // namespace
 
-ColumnChoice read_column_choice(const Section& section, const std::string& file, std::size_t count) {
-  ColumnChoice choice{file, read_columns(section, count), {}};
+ColumnChoice read_column_choice(const Section& section, const std::string& file, std::size_t least,
+                                std::size_t most) {
+  const Counts counts{least, most};
+  ColumnChoice choice{file, read_columns(section, counts), {}};
   choice.units = section.optional_texts(
       "units", "units of the columns, where the file does not say them; `\"\"` where it does");
-  if (!choice.units.empty() && choice.units.size() != count) {
-    section.error("units", fmt::format("must be a list of {} units, \"\" where the file says it", count));
+  if (choice.units.empty()) return choice;
+  const bool fits = choice.columns.empty() ? counts.hold(choice.units.size())
+                                           : choice.units.size() == choice.columns.size();
+  if (!fits) {
+    const std::string wanted =
+        choice.columns.empty() ? counts.words() : fmt::format("{}", choice.columns.size());
+    section.error("units", fmt::format("must be a list of {} units, \"\" where the file says it", wanted));
     choice.units.clear();
   }
   return choice;

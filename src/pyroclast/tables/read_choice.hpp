@@ -9,8 +9,9 @@
 namespace pyroclast {
 
 /// Reads `columns` and `units`, which say what of a file is meant.
-/// \param file   as the deck names it
-/// \param count  of the quantities that are read
-ColumnChoice read_column_choice(const Section& section, const std::string& file, std::size_t count);
+/// \param file         as the deck names it
+/// \param least, most  of the quantities that are read, how many
+ColumnChoice read_column_choice(const Section& section, const std::string& file, std::size_t least,
+                                std::size_t most);
 
 }  // namespace pyroclast

@@ -1,0 +1,332 @@
+#include "pyroclast/setup/read_references.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/nearest.hpp"
+#include "pyroclast/setup/setup.hpp"
+#include "pyroclast/tables/measured_table.hpp"
+#include "pyroclast/tables/read_choice.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+constexpr double kMega = 1e6;
+constexpr double kMostStrain = 0.1;  ///< beyond it a number is most likely in another unit
+constexpr double kMostStress = 1e9;  ///< Pa, likewise
+constexpr std::size_t kLeastRows = 2;
+constexpr std::size_t kCurveColumns = 2, kRangeColumns = 3;
+
+/// What figures of a run draw, and over what; the first of these stands where the deck does not say it.
+struct Drawn {
+  DrawnQuantity of;
+  std::vector<DrawnQuantity> over;
+  DrawnRows rows;
+};
+
+const DrawnQuantity& mean_temperature() {
+  static const DrawnQuantity it{"temperature", "temperature_degC", &unit::temperature};
+  return it;
+}
+
+const DrawnQuantity& heating_time() {
+  static const DrawnQuantity it{"heating_time", "heating_time_s", &unit::time};
+  return it;
+}
+
+DrawnQuantity quantity_of(const RecordParameters& record) {
+  return {record.name, column_of(record).name, &unit_of(record.kind), column_over_si(record.kind)};
+}
+
+/// What a record is drawn over: the first opening, else the first displacement, else time.
+const RecordParameters* abscissa(const std::vector<RecordParameters>& records) {
+  for (const RecordKind kind : {RecordKind::opening, RecordKind::displacement})
+    if (const auto found = std::ranges::find(records, kind, &RecordParameters::kind); found != records.end())
+      return &*found;
+  return nullptr;
+}
+
+void add_records(const Setup& setup, bool heats, std::vector<Drawn>& drawn) {
+  const DrawnQuantity time{"time", "time_s", &unit::time};
+  const RecordParameters* first = abscissa(setup.records);
+  for (const RecordParameters& record : setup.records) {
+    Drawn one{quantity_of(record), {}, DrawnRows::from_zero};
+    const auto add = [&](const DrawnQuantity& over) {
+      const auto has = std::ranges::find(one.over, over.name, &DrawnQuantity::name) != one.over.end();
+      if (!has && over.name != record.name) one.over.push_back(over);
+    };
+    if (record.kind == RecordKind::temperature && heats) add(heating_time());
+    if (setup.motion) {
+      if (first != nullptr) add(quantity_of(*first));
+      add(time);
+      for (const RecordParameters& other : setup.records) add(quantity_of(other));
+      if (heats) add(heating_time());
+    }
+    drawn.push_back(std::move(one));
+  }
+}
+
+/// As figures.py chooses its figures.
+std::vector<Drawn> drawn_by_figures(const Setup& setup) {
+  const auto needs = [](const auto& stage) { return stage->needs().exchanges; };
+  const auto heated = std::ranges::find_if(setup.stages, needs);
+  const bool exchanges = heated != setup.stages.end();
+  const bool has_platens =
+      setup.motion && std::ranges::any_of(setup.motion->bearings, [](const Bearing& bearing) {
+        return bearing.name == "top_platen";
+      });
+  const DrawnQuantity stress{"stress", "stress_MPa", &unit::stress, 1.0 / kMega};
+  std::vector<Drawn> drawn;
+  if (has_platens && !needs(setup.stages.back()))
+    drawn.push_back({stress, {{"strain", "strain"}}, DrawnRows::compressed});
+  if (has_platens && exchanges) {
+    const DrawnQuantity over = setup.heat.uniform ? mean_temperature() : heating_time();
+    if ((*heated)->heating().is_restrained)
+      drawn.push_back({stress, {over}, DrawnRows::heated});
+    else
+      drawn.push_back(
+          {{"total_strain", "specimen_strain", &unit::dimensionless, 1.0, -1.0}, {over}, DrawnRows::heated});
+  }
+  if (!setup.heat.uniform) {
+    drawn.push_back({mean_temperature(), {heating_time()}, DrawnRows::all});
+    for (const ProbePosition& probe : setup.probes)
+      drawn.push_back({{probe.name, fmt::format("probe_{}_degC", probe.name), &unit::temperature},
+                       {heating_time()},
+                       DrawnRows::all});
+  }
+  add_records(setup, exchanges || !setup.heat.uniform, drawn);
+  return drawn;
+}
+
+std::string list_of(const std::vector<Drawn>& drawn) {
+  std::vector<std::string> list;
+  for (const Drawn& one : drawn)
+    list.push_back(fmt::format("\"{}\" over {}", one.of.name, one.over.front().name));
+  return list.empty() ? "the figures of this run draw no reference"
+                      : fmt::format("the figures of this run draw {}", fmt::join(list, ", "));
+}
+
+/// Those that are drawn at all.
+std::vector<Drawn> with_abscissa(std::vector<Drawn> drawn) {
+  std::erase_if(drawn, [](const Drawn& one) { return one.over.empty(); });
+  return drawn;
+}
+
+/// Throws Error where a word names nothing that is drawn, or two things.
+Drawn find_drawn(const std::string& of, const std::string& over, const std::vector<Drawn>& drawn) {
+  std::vector<std::string> names;
+  std::vector<Drawn> found;
+  for (const Drawn& one : drawn) {
+    names.push_back(one.of.name);
+    if (one.of.name == of) found.push_back(one);
+  }
+  if (found.empty())
+    throw Error(fmt::format("has no effect: no figure of this run draws it; {}{}", list_of(drawn),
+                            did_you_mean(of, names, "; ")));
+  if (std::ranges::any_of(found, [&](const Drawn& one) { return one.of.column != found[0].of.column; }))
+    throw Error("is the name of two quantities of this run: give the record or the probe another name");
+  if (over.empty()) return found.front();
+  std::vector<std::string> allowed;
+  for (Drawn& one : found)
+    for (const DrawnQuantity& each : one.over) {
+      allowed.push_back(each.name);
+      if (each.name == over) return {one.of, {each}, one.rows};
+    }
+  throw Error(fmt::format("\"{}\" has no effect: no figure of this run draws \"{}\" over it, but over {}",
+                          over, of, quoted_list(allowed)));
+}
+
+/// 1 or -1 for each column; empty where nothing is said.
+std::vector<double> read_signs(const Section& s) {
+  const auto list = nlohmann::json::parse(
+      s.json("sign", "list of 1 and -1", "[]",
+             "of each column: -1 where the file counts as positive what the run counts as negative"));
+  std::vector<double> signs;
+  for (const auto& item : list.is_array() ? list : nlohmann::json::array())
+    if (item.is_number() && std::abs(item.get<double>()) == 1.0) signs.push_back(item.get<double>());
+  if (!list.is_array() || signs.size() != list.size())
+    s.error("sign", "must be a list of numbers, one for each column, each 1 or -1");
+  return signs;
+}
+
+std::size_t count_of(const ColumnChoice& choice, const MeasuredTable& table) {
+  if (!choice.columns.empty()) return choice.columns.size();
+  if (!choice.units.empty()) return choice.units.size();
+  const std::size_t count = table.columns().size();
+  const bool is_range = count == kRangeColumns + (count > kCurveColumns && table.is_index(0) ? 1 : 0);
+  return is_range ? kRangeColumns : kCurveColumns;
+}
+
+void warn_of_magnitude(const Section& s, const DrawnQuantity& of, const std::vector<double>& values,
+                       std::string_view sign_to_write) {
+  const auto [least, greatest] = std::ranges::minmax(values);
+  const bool is_stress = *of.unit == unit::stress;
+  const auto say = [&](double value, std::string_view what) {
+    s.warn("file", fmt::format("the {} reaches {:.6g}{}; {}", of.name, value * of.written,
+                               is_stress ? " MPa" : " (no unit)", what));
+  };
+  const double size = std::max(std::abs(least), std::abs(greatest));
+  if (of.column == "stress_MPa" && -least > greatest)
+    say(least,
+        fmt::format("figures draw compression as positive, so that little or nothing of it shows; where "
+                    "the file counts it as negative, write sign = {}",
+                    sign_to_write));
+  else if ((is_stress && size > kMostStress) || (*of.unit == unit::dimensionless && size > kMostStrain))
+    say(size, "it is most likely in another unit, which the header of its column must say");
+}
+
+/// Throws Error.
+void read_table(const Section& s, const std::filesystem::path& path, const ColumnChoice& choice,
+                std::vector<double> signs, Reference& reference) {
+  const MeasuredTable table = MeasuredTable::load(path, kCurveColumns);
+  std::vector<AskedColumn> asked{{reference.over.name, *reference.over.unit}};
+  const std::string least = fmt::format("least {}", reference.of.name);
+  const std::string greatest = fmt::format("greatest {}", reference.of.name);
+  const std::size_t count = count_of(choice, table);
+  asked.push_back({count == kCurveColumns ? std::string_view(reference.of.name) : least, *reference.of.unit});
+  if (count == kRangeColumns) asked.push_back({greatest, *reference.of.unit});
+  if (signs.empty()) signs.assign(count, 1.0);
+  if (signs.size() != count)
+    s.error("sign", fmt::format("must be a list of {} numbers, one for each column, each 1 or -1", count));
+  if (!s.ok()) return;
+  const std::vector<ChosenColumn> columns = table.choose(choice, asked);
+  if (table.rows() < kLeastRows)
+    throw Error(fmt::format("{}: has {} rows of numbers; {} or more are needed", path.string(), table.rows(),
+                            kLeastRows));
+  const bool has_negative_strain = reference.over.name == "strain" && signs[0] > 0.0 &&
+                                   std::ranges::min(table.values(columns[0], asked[0].unit)) < 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const DrawnQuantity& of = i == 0 ? reference.over : reference.of;
+    std::vector<double> values = table.values(columns[i], *of.unit);
+    for (double& value : values) value *= signs[i];
+    warn_of_magnitude(s, of, values, has_negative_strain ? "[-1, -1]" : "[1, -1]");
+    // A quotient gives 20 MPa for 2e7 Pa, where a product with 1e-6 is off by its last bit.
+    for (double& value : values) value /= 1.0 / of.written;
+    (i == 0 ? reference.x : i == 1 ? reference.low : reference.high) = std::move(values);
+  }
+  if (count == kCurveColumns) reference.high = reference.low;
+}
+
+Reference read_builtin(const Section& s, const std::vector<Drawn>& drawn) {
+  Reference reference;
+  reference.is_builtin = true;
+  const auto [name, of, over] = s.choice<std::array<const char*, 3>>(
+      "builtin",
+      {{"compression",
+        {"compression", "stress", "strain"},
+        "compression at 20 °C: Anderberg and Thelandersson's law, and the peaks and moduli of the paper's "
+        "Table 3"},
+       {"transient_strain",
+        {"transient_strain", "total_strain", "temperature"},
+        "total strain while heated under load: the range of models that were calibrated on Anderberg and "
+        "Thelandersson's tests, for the load levels 0, 0.225, 0.445 and 0.675"}},
+      "a reference that the program has, in the place of a file");
+  reference.name = name;
+  try {
+    find_drawn(of, over, drawn);
+  } catch (const Error& error) {
+    if (s.ok()) s.error("builtin", error.what());
+  }
+  return reference;
+}
+
+/// A name becomes a part of the path of a result, which dots divide.
+std::string read_reference_name(const Section& s, const std::filesystem::path& file) {
+  std::string stem = file.stem().string();
+  std::ranges::replace(stem, '.', '_');
+  std::string name = s.text("name", "",
+                            "in the legend, and of its distances in summary.json; without one "
+                            "the file's");
+  if (name.find_first_of(".\"\n") != name.npos) s.error("name", "may hold no dot, quote or end of line");
+  return name.empty() ? stem : name;
+}
+
+Reference read_reference(const Section& s, const std::filesystem::path& folder,
+                         const std::vector<Drawn>& drawn) {
+  s.know({"file", "columns", "units", "of", "over", "sign", "name"});
+  if (s.has("builtin")) return read_builtin(s, drawn);
+  Reference reference;
+  const std::string file =
+      s.text("file",
+             "a [measured table](deck.md#measured-tables) beside the deck, in any units: the columns "
+             "of `over` and `of`, or of `over` and the least and greatest of `of`");
+  const std::string of = s.text(
+      "of", "what it is of: `stress`, `total_strain`, `temperature`, or the name of a [[record]] or a probe");
+  const std::string over =
+      s.text("over", "",
+             "what it is drawn over: `strain`, `temperature`, `heating_time`, `time` or the name of a "
+             "[[record]]; without it what the figure of `of` has there");
+  reference.name = read_reference_name(s, file);
+  ColumnChoice choice = read_column_choice(s, file, kCurveColumns, kRangeColumns);
+  choice.key = "file";
+  const std::vector<double> signs = read_signs(s);
+  if (!s.ok()) return reference;
+  const char* wrong = "of";
+  try {
+    Drawn found = find_drawn(of, "", drawn);
+    wrong = over.empty() ? "of" : "over";
+    found = find_drawn(of, over, drawn);
+    reference.of = found.of;
+    reference.over = found.over.front();
+    reference.rows = found.rows;
+    wrong = "file";
+    read_table(s, folder / file, choice, signs, reference);
+    s.names_file("file", folder / file);
+  } catch (const Error& error) {
+    s.error(wrong, error.what());
+  }
+  return reference;
+}
+
+}  // namespace
+
+std::vector<Reference> read_references(const Section& output, const std::filesystem::path& folder,
+                                       const Setup& setup) {
+  const auto sections = output.optional_sections("references",
+                                                 "curves that figures draw beside the results, any number; "
+                                                 "see [deck.md](deck.md#references-in-figures)");
+  if (sections.empty()) return {};
+  const std::vector<Drawn> drawn = with_abscissa(drawn_by_figures(setup));
+  std::vector<Reference> references;
+  for (const Section& s : sections) {
+    Reference reference = read_reference(s, folder, drawn);
+    const auto same = std::ranges::find(references, reference.name, &Reference::name);
+    if (s.ok() && same != references.end())
+      s.error("name", fmt::format("\"{}\" is the name of another reference: choose another", reference.name));
+    references.push_back(std::move(reference));
+  }
+  return references;
+}
+
+std::string json_of(const std::vector<Reference>& references) {
+  if (references.empty()) return {};
+  auto json = nlohmann::ordered_json::array();
+  for (const Reference& reference : references) {
+    if (reference.is_builtin) {
+      json.push_back({{"builtin", reference.name}});
+      continue;
+    }
+    json.push_back({{"name", reference.name},
+                    {"of", reference.of.name},
+                    {"of_column", reference.of.column},
+                    {"over", reference.over.name},
+                    {"over_column", reference.over.column},
+                    {"x", reference.x},
+                    {"low", reference.low},
+                    {"high", reference.high}});
+  }
+  return json.dump(1) + "\n";
+}
+
+}  // namespace pyroclast
