@@ -41,7 +41,7 @@ class Specimen:
     @classmethod
     def from_arrays(cls, vertices: ArrayLike, cells: Sequence[ArrayLike] | NDArray[Any],
                     labels: Sequence[Label] | NDArray[Any], phases: Mapping[Any, str] | None = None, *,
-                    unit: str | Quantity, join: str | Quantity | None = None) -> Specimen:
+                    unit: str | Quantity | None = None, join: str | Quantity | None = None) -> Specimen:
         """A specimen of cells that are made elsewhere.
 
         vertices: (n, 2), in `unit`.
@@ -49,7 +49,7 @@ class Specimen:
         labels: of each cell, the name of its phase, or what `phases` has the name for; an array may have any shape
             that has one label for each cell, such as (cells, 1).
         phases: the name of each label's phase, in the order that `phase` counts in; None: labels are names.
-        unit: of the vertices: "m", "mm", ...
+        unit: of the vertices: "m", "mm", ...; None: they are taken in m, with a warning.
         join: vertices nearer to each other than this length become one, and those nearer to an edge of a cell that
             does not have them become corners of it ("1 um"); None: cells share the vertices that they name.
 
@@ -60,13 +60,14 @@ class Specimen:
         Raises Error, naming the cell, where one is not convex, names a vertex that there is not, has a label without a
         name or does not fit together with its neighbours; and where the cells are not one piece.
         """
+        unit = _stated(unit, "the vertices")
         made = _from_cells(vertices, cells, labels, phases, unit, join)
         _warn_of_size(made, f"the vertices are in {_unit_name(unit)}")
         return cls(made)
 
     @classmethod
     def from_meshio(cls, mesh: meshio.Mesh, data: str | None = None, phases: Mapping[Any, str] | None = None, *,
-                    unit: str | Quantity, join: str | Quantity | None = None) -> Specimen:
+                    unit: str | Quantity | None = None, join: str | Quantity | None = None) -> Specimen:
         """A specimen of the triangles, quads and polygons of a mesh; its lines and vertices are left out. Of triangles
         and quads of a higher order the corners count, so that their sides are straight.
 
@@ -75,7 +76,7 @@ class Specimen:
         phases: the name of each label's phase; a label is a value of the cell data, the name of a cell set or that of
             a physical group. None: cell sets and physical groups are called as their phases are. Of cell sets those
             count that are named here.
-        unit: of the points: "m", "mm", ...; a mesh does not say it.
+        unit: of the points: "m", "mm", ...; a mesh does not say it. None: they are taken in m, with a warning.
         join: as for `from_arrays`: joins parts of a mesh that do not share points.
 
         Messages count from 0 the cells that are taken, in their order.
@@ -100,6 +101,7 @@ class Specimen:
             raise Error(f"the mesh has no cells that can be blocks: {', '.join(mesh_cells.KINDS)}")
         used, numbers = np.unique(np.concatenate(cells), return_inverse=True)
         ends = np.cumsum([len(cell) for cell in cells])[:-1]
+        unit = _stated(unit, "the points of the mesh")
         made = _from_cells(points[used.astype(int), :2], np.split(numbers, ends), labels, names, unit, join)
         _warn_of_size(made, f"the points of the mesh are in {_unit_name(unit)}")
         return cls(made)
@@ -306,6 +308,13 @@ def _length(name: str, value: str | Quantity, example: str) -> float:
 
 def _join(join: str | Quantity | None) -> float:
     return 0.0 if join is None else _length("join", join, "1 um")
+
+
+def _stated(unit: str | Quantity | None, what: str) -> str | Quantity:
+    """What is taken where nobody says it."""
+    if unit is None:
+        warnings.warn(f"{what} are taken in m, as no unit is stated; say unit=\"m\", or which it is", stacklevel=3)
+    return unit or "m"
 
 
 def _unit_name(unit: str | Quantity) -> str:

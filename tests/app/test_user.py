@@ -447,6 +447,21 @@ class ReferencesOfTheDeck(UserTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads((self.folder / "run" / "summary.json").read_text())
 
+    def test_the_short_form_is_told_by_the_units_of_the_columns(self):
+        self.write("﻿eps [%]; sigma [psi]\n0; 0\n0,1; 3000\n", "tests.csv")
+        self.write("time [s],T [degC]\n0,20\n60,30\n", "fire.csv")
+        summary = self.run_it(self.write(small_deck().replace("[output]\n", '[output]\nreference = "tests.csv"\n', 1)))
+        self.assertEqual(list(summary["references"]), ["tests"])
+        kept = json.loads((self.folder / "run" / "references.json").read_text())[0]
+        self.assertEqual((kept["of"], kept["over"], kept["x"]), ("stress", "strain", [0.0, 0.001]))
+        self.assertAlmostEqual(kept["low"][1], 3000 * 6.894757e-3, places=4)  # MPa
+        for name, part in (("fire.csv", 'draw the columns 1 "time" [s]'), ("compresion", 'did you mean "compression"?')):
+            deck = self.write(small_deck().replace("[output]\n", f'[output]\nreference = "{name}"\n', 1))
+            done = self.pyroclast("check", deck)
+            self.assertEqual(done.returncode, 1)
+            self.assertRegex(done.stderr, r":\d+:\d+: output.reference = ")
+            self.assertIn(part, done.stderr)
+
     def test_what_is_wrong_is_told_at_its_place(self):
         self.write("strain,force\n0,0\n1,2\n", "columns.csv")
         self.write("a,b,c,d\n5,0,0,0\n", "four.csv")

@@ -168,13 +168,13 @@ std::size_t count_of(const ColumnChoice& choice, const MeasuredTable& table) {
   return is_range ? kRangeColumns : kCurveColumns;
 }
 
-void warn_of_magnitude(const Section& s, const DrawnQuantity& of, const std::vector<double>& values,
-                       std::string_view sign_to_write) {
+void warn_of_magnitude(const Section& s, std::string_view key, const DrawnQuantity& of,
+                       const std::vector<double>& values, std::string_view sign_to_write) {
   const auto [least, greatest] = std::ranges::minmax(values);
   const bool is_stress = *of.unit == unit::stress;
   const auto say = [&](double value, std::string_view what) {
-    s.warn("file", fmt::format("the {} reaches {:.6g}{}; {}", of.name, value * of.written,
-                               is_stress ? " MPa" : " (no unit)", what));
+    s.warn(key, fmt::format("the {} reaches {:.6g}{}; {}", of.name, value * of.written,
+                            is_stress ? " MPa" : " (no unit)", what));
   };
   const double size = std::max(std::abs(least), std::abs(greatest));
   if (of.column == "stress_MPa" && -least > greatest)
@@ -187,9 +187,9 @@ void warn_of_magnitude(const Section& s, const DrawnQuantity& of, const std::vec
 }
 
 /// Throws Error.
-void read_table(const Section& s, const std::filesystem::path& path, const ColumnChoice& choice,
-                std::vector<double> signs, Reference& reference) {
-  const MeasuredTable table = MeasuredTable::load(path, kCurveColumns);
+/// \param key  that names the file
+void read_table(const Section& s, std::string_view key, const MeasuredTable& table,
+                const ColumnChoice& choice, std::vector<double> signs, Reference& reference) {
   std::vector<AskedColumn> asked{{reference.over.name, *reference.over.unit}};
   const std::string least = fmt::format("least {}", reference.of.name);
   const std::string greatest = fmt::format("greatest {}", reference.of.name);
@@ -202,15 +202,15 @@ void read_table(const Section& s, const std::filesystem::path& path, const Colum
   if (!s.ok()) return;
   const std::vector<ChosenColumn> columns = table.choose(choice, asked);
   if (table.rows() < kLeastRows)
-    throw Error(fmt::format("{}: has {} rows of numbers; {} or more are needed", path.string(), table.rows(),
-                            kLeastRows));
+    throw Error(fmt::format("{}: has {} rows of numbers; {} or more are needed", table.path().string(),
+                            table.rows(), kLeastRows));
   const bool has_negative_strain = reference.over.name == "strain" && signs[0] > 0.0 &&
                                    std::ranges::min(table.values(columns[0], asked[0].unit)) < 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     const DrawnQuantity& of = i == 0 ? reference.over : reference.of;
     std::vector<double> values = table.values(columns[i], *of.unit);
     for (double& value : values) value *= signs[i];
-    warn_of_magnitude(s, of, values, has_negative_strain ? "[-1, -1]" : "[1, -1]");
+    warn_of_magnitude(s, key, of, values, has_negative_strain ? "[-1, -1]" : "[1, -1]");
     // A quotient gives 20 MPa for 2e7 Pa, where a product with 1e-6 is off by its last bit.
     for (double& value : values) value /= 1.0 / of.written;
     (i == 0 ? reference.x : i == 1 ? reference.low : reference.high) = std::move(values);
@@ -218,44 +218,58 @@ void read_table(const Section& s, const std::filesystem::path& path, const Colum
   if (count == kCurveColumns) reference.high = reference.low;
 }
 
-Reference read_builtin(const Section& s, const std::vector<Drawn>& drawn) {
+using Builtin = std::array<const char*, 3>;  ///< name, of, over
+
+const std::vector<Choice<Builtin>>& builtins() {
+  static const std::vector<Choice<Builtin>> all{
+      {"compression",
+       {"compression", "stress", "strain"},
+       "compression at 20 °C: Anderberg and Thelandersson's law, and the peaks and moduli of the paper's "
+       "Table 3"},
+      {"transient_strain",
+       {"transient_strain", "total_strain", "temperature"},
+       "total strain while heated under load: the range of models that were calibrated on Anderberg and "
+       "Thelandersson's tests, for the load levels 0, 0.225, 0.445 and 0.675"}};
+  return all;
+}
+
+Reference builtin(const Section& s, std::string_view key, const Builtin& chosen,
+                  const std::vector<Drawn>& drawn) {
   Reference reference;
   reference.is_builtin = true;
-  const auto [name, of, over] = s.choice<std::array<const char*, 3>>(
-      "builtin",
-      {{"compression",
-        {"compression", "stress", "strain"},
-        "compression at 20 °C: Anderberg and Thelandersson's law, and the peaks and moduli of the paper's "
-        "Table 3"},
-       {"transient_strain",
-        {"transient_strain", "total_strain", "temperature"},
-        "total strain while heated under load: the range of models that were calibrated on Anderberg and "
-        "Thelandersson's tests, for the load levels 0, 0.225, 0.445 and 0.675"}},
-      "a reference that the program has, in the place of a file");
+  const auto [name, of, over] = chosen;
   reference.name = name;
   try {
     find_drawn(of, over, drawn);
   } catch (const Error& error) {
-    if (s.ok()) s.error("builtin", error.what());
+    if (s.ok()) s.error(key, error.what());
   }
   return reference;
 }
 
 /// A name becomes a part of the path of a result, which dots divide.
-std::string read_reference_name(const Section& s, const std::filesystem::path& file) {
+std::string name_of_file(const std::filesystem::path& file) {
   std::string stem = file.stem().string();
   std::ranges::replace(stem, '.', '_');
+  return stem;
+}
+
+std::string read_reference_name(const Section& s, const std::filesystem::path& file) {
   std::string name = s.text("name", "",
                             "in the legend, and of its distances in summary.json; without one "
                             "the file's");
   if (name.find_first_of(".\"\n") != name.npos) s.error("name", "may hold no dot, quote or end of line");
-  return name.empty() ? stem : name;
+  return name.empty() ? name_of_file(file) : name;
 }
 
 Reference read_reference(const Section& s, const std::filesystem::path& folder,
                          const std::vector<Drawn>& drawn) {
   s.know({"file", "columns", "units", "of", "over", "sign", "name"});
-  if (s.has("builtin")) return read_builtin(s, drawn);
+  if (s.has("builtin"))
+    return builtin(
+        s, "builtin",
+        s.choice<Builtin>("builtin", builtins(), "a reference that the program has, in the place of a file"),
+        drawn);
   Reference reference;
   const std::string file =
       s.text("file",
@@ -281,10 +295,60 @@ Reference read_reference(const Section& s, const std::filesystem::path& folder,
     reference.over = found.over.front();
     reference.rows = found.rows;
     wrong = "file";
-    read_table(s, folder / file, choice, signs, reference);
+    read_table(s, "file", MeasuredTable::load(folder / file, kCurveColumns), choice, signs, reference);
     s.names_file("file", folder / file);
   } catch (const Error& error) {
     s.error(wrong, error.what());
+  }
+  return reference;
+}
+
+/// What the columns of a table are of, by their units: the first that figures draw. Throws Error where they
+/// draw none such.
+Drawn told_by_units(const MeasuredTable& table, const std::vector<Drawn>& drawn) {
+  const std::size_t first = table.columns().size() > kCurveColumns && table.is_index(0) ? 1 : 0;
+  const std::size_t count = table.columns().size() - first;
+  for (const Drawn& one : drawn)
+    for (const DrawnQuantity& over : one.over) {
+      bool fits = count == kCurveColumns || count == kRangeColumns;
+      for (std::size_t i = 0; fits && i < count; ++i)
+        fits = table.fits(first + i, "", i == 0 ? *over.unit : *one.of.unit);
+      if (fits) return {one.of, {over}, one.rows};
+    }
+  throw Error(fmt::format("has no effect: no figure of this run draws the columns {} of {}; {}",
+                          table.list_of_columns(), table.path().string(), list_of(drawn)));
+}
+
+/// The short form: a word, or a file whose columns tell by their units what it is of.
+Reference read_short(const Section& output, const std::filesystem::path& folder,
+                     const std::vector<Drawn>& drawn) {
+  const std::string name = output.text(
+      "reference",
+      "one of [[output.references]] in short: the name of a builtin one, or a file whose columns tell by "
+      "their units what it is of");
+  const auto& words = builtins();
+  if (const auto word = std::ranges::find(words, name, &Choice<Builtin>::word); word != words.end())
+    return builtin(output, "reference", word->value, drawn);
+  Reference reference;
+  reference.name = name_of_file(name);
+  if (!output.ok()) return reference;
+  if (!name.ends_with(".csv")) {
+    std::vector<std::string> known;
+    for (const auto& word : words) known.emplace_back(word.word);
+    output.error("reference", fmt::format("is none of {}, and no file whose name ends in .csv{}",
+                                          quoted_list(known), did_you_mean(name, known, "; ")));
+    return reference;
+  }
+  try {
+    const MeasuredTable table = MeasuredTable::load(folder / name, kCurveColumns);
+    const Drawn found = told_by_units(table, drawn);
+    reference.of = found.of;
+    reference.over = found.over.front();
+    reference.rows = found.rows;
+    read_table(output, "reference", table, {name, {}, {}, "reference"}, {}, reference);
+    output.names_file("reference", folder / name);
+  } catch (const Error& error) {
+    output.error("reference", error.what());
   }
   return reference;
 }
@@ -296,9 +360,11 @@ std::vector<Reference> read_references(const Section& output, const std::filesys
   const auto sections = output.optional_sections("references",
                                                  "curves that figures draw beside the results, any number; "
                                                  "see [deck.md](deck.md#references-in-figures)");
-  if (sections.empty()) return {};
+  output.know({"reference"});
+  if (sections.empty() && !output.has("reference")) return {};
   const std::vector<Drawn> drawn = with_abscissa(drawn_by_figures(setup));
   std::vector<Reference> references;
+  if (output.has("reference")) references.push_back(read_short(output, folder, drawn));
   for (const Section& s : sections) {
     Reference reference = read_reference(s, folder, drawn);
     const auto same = std::ranges::find(references, reference.name, &Reference::name);
