@@ -22,11 +22,10 @@ double share_at(const GradingCurve& curve, double size) {
   return curve.shares[next - 1] + part * (curve.shares[next] - curve.shares[next - 1]);
 }
 
-/// Integral of 1 - 3/2 u + 1/2 u^3 over D, with cos(angle) = s / D, so that u =
-/// sin(angle).
+/// Integral of 1 - 3/2 u + 1/2 u^3 over D, with u = sqrt(1 - (s / D)^2).
 double integral_to(double diameter, double s) {
-  const double angle = std::acos(std::min(1.0, s / diameter));
-  return diameter - s * std::tan(angle) + 0.75 * s * angle + 0.25 * s * std::sin(angle) * std::cos(angle);
+  const double part = std::min(1.0, s / diameter), u = std::sqrt((1.0 - part) * (1.0 + part));
+  return diameter * (1.0 - u) + 0.75 * s * std::acos(part) + 0.25 * s * part * u;
 }
 
 }  // namespace
