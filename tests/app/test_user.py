@@ -455,7 +455,8 @@ class ReferencesOfTheDeck(UserTest):
         kept = json.loads((self.folder / "run" / "references.json").read_text())[0]
         self.assertEqual((kept["of"], kept["over"], kept["x"]), ("stress", "strain", [0.0, 0.001]))
         self.assertAlmostEqual(kept["low"][1], 3000 * 6.894757e-3, places=4)  # MPa
-        for name, part in (("fire.csv", 'draws the columns 1 "time" [s]'), ("compresion", 'did you mean "compression"?')):
+        for name, part in (("fire.csv", 'draws the columns 1 "time" [s]'),
+                           ("compresion", 'did you mean "compression"?')):
             deck = self.write(small_deck().replace("[output]\n", f'[output]\nreference = "{name}"\n', 1))
             done = self.pyroclast("check", deck)
             self.assertEqual(done.returncode, 1)
