@@ -28,7 +28,7 @@ sys.path[:0] = [str(HERE), str(PACKAGE)]
 import synthetic_run  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
 from test_figures import png_size  # noqa: E402
-from pyroclast import files, style  # noqa: E402
+from pyroclast import style  # noqa: E402
 from pyroclast.files import GrowingTable, Lock, RunError, Writer  # noqa: E402
 from pyroclast.run import Run  # noqa: E402
 from pyroclast.textplot import curve  # noqa: E402
@@ -535,25 +535,6 @@ class Long(WatchTest):
             self.assertTrue((np.diff(thin_x) > 0.0).all())
         short = x[:100], y[:100]
         np.testing.assert_array_equal(style.thinned(*short), short)
-
-
-class Tables(WatchTest):
-    """Rows that are read many at once are those that are read cell by cell."""
-
-    def test_all_ways_agree(self):
-        random = np.random.default_rng(2)
-        rows = [[*map(repr, map(float, random.normal(size=3) * 10.0 ** random.integers(-12, 12))),
-                 "" if i % 7 == 0 else "3", str(i), ""] for i in range(2000)]
-        text = "".join(",".join(row) + "\n" for row in rows).encode()
-        wanted = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows]).T
-        np.testing.assert_array_equal(files.read_rows(text, 6), wanted)
-
-    def test_what_is_no_grid_of_numbers_is_left_to_the_slow_way(self):
-        for lines in (b"1,2\n3\n", b"1,2,3\n", b"1,x\n", b"1,2", b"1,inf\n", b"1,nan\n", b"1,1e31\n", b'"1",2\n',
-                      b"1,2\r\n", b"1, 2\n", b"\n", b"1-2,3\n", b"1,2\n\n", b"1_0,2\n", b"\xff,1\n",
-                      b"1,2\n3,4,5\n6\n", b"e,1\n", b""):
-            with self.subTest(lines):
-                self.assertIsNone(files.read_rows(lines, 2))
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import Error
+from ..writing import write_text
 
 
 def function_at(place: str) -> Callable[..., Any]:
@@ -50,7 +51,7 @@ def main(words: list[str]) -> int:
     function = function_at(words[0])
     if len(words) > 1:
         outputs = answer(function, json.loads(words[1]), int(words[2]))
-        Path(words[3]).write_text(json.dumps({"outcome": "completed", **_finite(outputs)}), encoding="utf-8")
+        write_text(Path(words[3]), json.dumps({"outcome": "completed", **_finite(outputs)}))
         return 0
     answers.write('"ready"\n')
     answers.flush()

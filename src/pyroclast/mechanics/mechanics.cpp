@@ -72,11 +72,11 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
   place_model();
   place_histories();
   place_properties();
-  compute_stiffness();
-  set_masses(densities);
   mean_height_ =
       chunked_sum(layout_->chunks.zones, [&](int z) { return 1.0 / norm(geometry_.gradient[z][0]); }) /
       static_cast<double>(model.zones.size());
+  compute_stiffness();
+  set_masses(densities);
   sweep(1, Pass::measure);
   // nothing has acted yet
   std::fill(storage_.force.begin(), storage_.force.end(), VectorRow<Dim>{});
@@ -323,6 +323,14 @@ void Mechanics<Dim>::compute_stiffness() {
     const Vec<Dim> row = vector_at<Dim>(state_.stiffness, layout_->gridpoint_slot[g]);
     stiffness_[g] = *std::max_element(row.c.begin(), row.c.end());
   }
+  set_least_force();
+}
+
+/// What a strain that counts as none puts on all gridpoints.
+template <int Dim>
+void Mechanics<Dim>::set_least_force() {
+  least_force_ = kNoStrain * mean_height_ *
+                 chunked_sum(layout_->chunks.gridpoints, [&](int g) { return stiffness_[g]; });
 }
 
 template <int Dim>
@@ -697,6 +705,7 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   require_constraints(visitor);
   visit_properties(visitor);
   if (!visitor.replaces()) return;
+  set_least_force();
   place_properties();
   if (parameters_.mass == MassChoice::scaled)
     set_moving_mass();
@@ -1233,10 +1242,7 @@ double Mechanics<Dim>::unbalanced_ratio() const {
   const double applied =
       chunked_sum(layout_->chunks.bundles, [&](int b) { return state_.bundle_sums[b].applied; }) +
       chunked_sum(layout_->chunks.face_rows, [&](int row) { return state_.face_sums[row].applied; });
-  const double least = kNoStrain * mean_height_ * chunked_sum(layout_->chunks.gridpoints, [&](int gridpoint) {
-                         return stiffness_[gridpoint];
-                       });
-  return unbalanced / std::max(applied, least);
+  return unbalanced / std::max(applied, least_force_);
 }
 
 template <int Dim>

@@ -306,6 +306,7 @@ class Mechanics {
   }
   FlatArray<double> make_scratch() const;
   void compute_stiffness();
+  void set_least_force();
   void set_masses(const std::vector<double>& densities);
   double scaled_mass(int gridpoint) const;
   void scale_masses();
@@ -357,6 +358,7 @@ class Mechanics {
   std::vector<double> mass_;          ///< mass that moves, kg
   std::vector<double> stiffness_;     ///< k_gp, N/m
   double mean_height_ = 0.0;          ///< of zones, m
+  double least_force_ = 0.0;          ///< of all gridpoints, N: forces that add up to less are none
   double real_mass_ = 0.0, moving_mass_ = 0.0;
 
   std::int64_t steps_ = 0;

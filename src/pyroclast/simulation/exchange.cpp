@@ -33,8 +33,7 @@ double shortening(const Simulation& simulation) {
 /// What the body as a whole is out of equilibrium by, as a stress on its section, Pa.
 double imbalance(const Simulation& simulation) {
   if (!simulation.has_press()) {
-    const double size = std::sqrt(simulation.specimen().region.area());
-    return norm(simulation.mechanics().net_force()) / (size * simulation.model().thickness);
+    return norm(simulation.mechanics().net_force()) / (simulation.body_size() * simulation.model().thickness);
   }
   const Press<2>& press = simulation.press();
   return std::abs(press.stress_top() - press.stress_bottom());
@@ -123,9 +122,8 @@ bool Exchange::is_still(const Simulation& simulation) const {
   // A body that expands freely bears nothing to compare with. What is out of balance at each block alike, as
   // where all of it still grows, adds up over the body.
   const double block = specimen::block_size(simulation.specimen());
-  const double size = std::sqrt(simulation.specimen().region.area());
   return !simulation.has_press() &&
-         mechanics.mean_unbalanced_force() * (size / block) <
+         mechanics.mean_unbalanced_force() * (simulation.body_size() / block) <
              kAsGoodAsNone * coupling_.platen_difference * block * simulation.model().thickness;
 }
 

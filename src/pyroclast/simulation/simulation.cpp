@@ -131,7 +131,7 @@ Simulation::Simulation(specimen::Specimen specimen, double thickness,
         }
   show_cracks_to_heat();
   supports_ = std::make_unique<Supports<2>>(model_);
-  loads_ = std::make_unique<Loads<2>>(*mechanics_, std::sqrt(specimen_.region.area()));
+  loads_ = std::make_unique<Loads<2>>(*mechanics_, body_size());
   for (const RecordParameters& record : records) records_.emplace_back(model_, mechanics_.get(), record);
   if (std::ranges::find(motion->bearings, kUpperPlaten, &Bearing::name) == motion->bearings.end()) return;
   const specimen::Box& box = specimen_.region.box();

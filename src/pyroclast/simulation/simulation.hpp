@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -66,6 +67,8 @@ class Simulation {
   /// May change in number between two batches.
   Team& team() { return *team_; }
   const specimen::Specimen& specimen() const { return specimen_; }
+  /// Side of the square of its area, m: what lengths of the body are measured by.
+  double body_size() const { return std::sqrt(specimen_.region.area()); }
   const Model<2>& model() const { return model_; }
   const ConcreteMaterials& materials() const { return materials_; }
   /// Other properties from now on, at the temperatures that there are: as an exchange of temperatures, see

@@ -468,7 +468,7 @@ void Drive::begin(Simulation& simulation) {
   for (const Action& action : keys_.actions)
     if (!is_motion(action)) first_loads_.push_back(simulation.loads().on(action.set));
   // what is there already has to be surpassed before it counts as driving on
-  const auto loads = loads_at(0.0, [&](const std::string& set) { return first_load(set); });
+  const auto loads = loads_at(0.0);
   for (std::size_t i = 0; i < keys_.actions.size(); ++i) farthest_[i] = std::abs(came(i, loads, 0.0));
 }
 
@@ -523,6 +523,11 @@ std::map<std::string, SetLoad<2>> Drive::loads_at(double time, Before before) co
   return loads;
 }
 
+/// From what was there when the stage began.
+std::map<std::string, SetLoad<2>> Drive::loads_at(double time) const {
+  return loads_at(time, [&](const std::string& set) { return first_load(set); });
+}
+
 /// Of the loads of one sort on a set.
 const Drive::Action& Drive::longest_ramp(const std::string& set, ActionKind kind) const {
   const Action* longest = nullptr;
@@ -575,8 +580,7 @@ void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads
   const double behind = first_opening_ + control.rate * time - opening;
   pair_force_ = control.stiffness * behind;
   const double whole = std::abs(control.rate) * keys_.duration;
-  is_lost_ =
-      std::abs(behind) > (whole > 0.0 ? whole : kLost * std::sqrt(simulation.specimen().region.area()));
+  is_lost_ = std::abs(behind) > (whole > 0.0 ? whole : kLost * simulation.body_size());
   const double step = static_cast<double>(kStepsPerControl) * simulation.mechanics().time_step();
   // what bears the load now bears the pair beside it
   largest_with_pair_ = std::max(largest_with_pair_, total_load(load_factor_) + std::abs(pair_force_));
@@ -618,8 +622,7 @@ std::int64_t Drive::steps_per_adjustment() const {
   return keys_.control ? kStepsPerControl : kStepsPerAdjustment;
 }
 
-/// The duration in whole steps.
-std::int64_t Drive::most_steps(const Simulation& simulation) const {
+std::int64_t Drive::duration_in_steps(const Simulation& simulation) const {
   return std::max<std::int64_t>(
       1, static_cast<std::int64_t>(whole_above(keys_.duration / simulation.mechanics().time_step())));
 }
@@ -627,22 +630,21 @@ std::int64_t Drive::most_steps(const Simulation& simulation) const {
 /// For how many steps what acts now does so.
 std::int64_t Drive::steps_to_come(const Simulation& simulation) const {
   const std::int64_t interval = steps_per_adjustment();
-  return std::min(interval, most_steps(simulation) - (steps_ - steps_ % interval));
+  return std::min(interval, duration_in_steps(simulation) - (steps_ - steps_ % interval));
 }
 
 /// As what acts in the middle of the steps to come.
 void Drive::act(Simulation& simulation) {
   const double interval = static_cast<double>(steps_to_come(simulation)) * simulation.mechanics().time_step();
-  const double time = this->time(simulation) + 0.5 * interval;
+  const double middle = time(simulation) + 0.5 * interval;
   ChangedLoads loads;
-  if (keys_.control) steer(simulation, time, loads);
+  if (keys_.control) steer(simulation, middle, loads);
   is_driven_ = keys_.control && keys_.control->rate != 0.0;
-  for (const auto& [set, load] : loads_at(time, [&](const std::string& of) { return first_load(of); }))
-    loads[set] = load;
+  for (const auto& [set, load] : loads_at(middle)) loads[set] = load;
   for (std::size_t i = 0; i < keys_.actions.size(); ++i) {
     const Action& action = keys_.actions[i];
     if (action.kind == ActionKind::velocity) {
-      velocity_[i] = part(action, time);
+      velocity_[i] = part(action, middle);
       simulation.drive(action.set, action.components.front(), velocity_[i]);
     }
     came_[i] = came(i, loads, interval);
@@ -682,7 +684,7 @@ bool Drive::advance(Simulation& simulation, int most_steps) {
   steps_ += steps;
   if (steps_ % kStepsPerPoint == 0) take_peaks(simulation);
   return steps_ % steps_in(simulation, keys_.look_interval) == 0 || is_lost_ ||
-         steps_ >= this->most_steps(simulation);
+         steps_ >= duration_in_steps(simulation);
 }
 
 /// Whether noise is below this share of what records show of the stage. Forces go with the root of an energy;
@@ -728,7 +730,7 @@ bool Drive::has_fallen(const Simulation& simulation) {
 
 /// Loads stay as they are at the end, what was moved stays where it is, and no pair is left.
 void Drive::halt(Simulation& simulation) {
-  ChangedLoads loads = loads_at(time(simulation), [&](const std::string& set) { return first_load(set); });
+  ChangedLoads loads = loads_at(time(simulation));
   if (keys_.control) {
     const RecordParameters& record = simulation.record(keys_.control->record).parameters();
     loads[record.set] = loads[record.other] = {};
@@ -758,7 +760,7 @@ Verdict Drive::judge(Simulation& simulation) {
   if (keys_.unbalanced_ratio && ramps_are_over &&
       simulation.mechanics().unbalanced_ratio() < *keys_.unbalanced_ratio)
     verdict.over = true;
-  if (!verdict.over && steps_ >= most_steps(simulation)) {
+  if (!verdict.over && steps_ >= duration_in_steps(simulation)) {
     verdict.over = true;
     if (keys_.unbalanced_ratio) {
       verdict.last = true;

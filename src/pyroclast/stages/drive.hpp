@@ -94,6 +94,7 @@ class Drive : public Stage {
   double part(const Action& action, double time) const;
   template <class Before>
   ChangedLoads loads_at(double time, Before before) const;
+  ChangedLoads loads_at(double time) const;
   ChangedLoads loads_at_end(const Simulation& simulation, const Acting<2>& acting) const;
   const Action& longest_ramp(const std::string& set, ActionKind kind) const;
   SetLoad<2> first_load(const std::string& set) const;
@@ -102,7 +103,7 @@ class Drive : public Stage {
   double unit_force() const;
   double total_load(double factor) const;
   std::int64_t steps_per_adjustment() const;
-  std::int64_t most_steps(const Simulation& simulation) const;
+  std::int64_t duration_in_steps(const Simulation& simulation) const;
   std::int64_t steps_to_come(const Simulation& simulation) const;
   void act(Simulation& simulation);
   void take_peaks(const Simulation& simulation);

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ...writing import make_folder
+from ...writing import make_folder, write_text
 from ..outputs import read_summary
 from ..store import Result
 from ..work import Job, collected
@@ -33,5 +33,5 @@ class Commands:
             else:
                 make_folder(folder)
                 lines.append(shlex.join(job.line(folder)))
-        self.file.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+        write_text(self.file, "".join(f"{line}\n" for line in lines))
         self.written = len(lines)
