@@ -158,6 +158,34 @@ TEST_F(DeckFile, ChangesAddKeysThatAreMissing) {
 }
 
 // Promise: a change that cannot be made says why.
+// Promise: a place is that in the file which the user wrote, also where a change before it adds lines.
+TEST(DeckText, OfTwoFilesNamesTheOneThatIsWrong) {
+  const auto wrong = [](const std::string& own, const std::string& more,
+                        const std::vector<std::string>& changes) {
+    return failure_of([&] {
+      const Deck deck = Deck::parse(own, "deck.toml", changes, {more, "more.toml"});
+      deck.root().text("title", "of the run");
+      for (const Section& stage : deck.root().sections("stages")) stage.text("kind", "what the stage does");
+      deck.root().section_or_none("output").text("folder", "", "where");
+      deck.finish();
+    });
+  };
+  const std::string own = "title = \"x\"\n[[stages]]\nkind = \"settle\"\n", more = "# more\n[[stages]]\n";
+  for (const std::vector<std::string>& changes :
+       {std::vector<std::string>(), std::vector<std::string>{"output.folder=\"f\""}}) {
+    const Diagnostic later = wrong(own, more + "kind = 3\n", changes);
+    EXPECT_EQ(later.file, "more.toml");
+    EXPECT_EQ(later.line, 3);
+    EXPECT_EQ(later.key, "stages[1].kind");
+  }
+  const Diagnostic earlier = wrong("title = \"x\"\n[[stages]]\nkind = 3\n", more + "kind = \"heat\"", {});
+  EXPECT_EQ(earlier.file, "deck.toml");
+  EXPECT_EQ(earlier.line, 3);
+  const Diagnostic syntax = wrong(own, more + "kind = \n", {});
+  EXPECT_EQ(syntax.file, "more.toml");
+  EXPECT_EQ(syntax.line, 3);
+}
+
 TEST_F(DeckFile, ChangesThatHaveNoPlaceAreRefused) {
   const auto file = write("[a]\nlength = \"3 mm\"\n[[stages]]\nto = 1\n");
   for (const char* change : {"a=1", "stages[1].to=1", "a.length.unit=1", "length", "a..b=1", "=1"}) {

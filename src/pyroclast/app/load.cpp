@@ -114,9 +114,12 @@ std::string describe(const Team& team) {
 }
 
 std::string describe_unused(const Setup& setup) {
-  if (setup.unused_sets.empty()) return {};
-  return fmt::format("{:<16}{}: no table names {}, so for Python and ParaView alone\n", "sets",
-                     fmt::join(setup.unused_sets, ", "), setup.unused_sets.size() == 1 ? "it" : "them");
+  std::string text;
+  if (!setup.unused_sets.empty())
+    text = fmt::format("{:<16}{}: no table names {}, so for Python and ParaView alone\n", "sets",
+                       fmt::join(setup.unused_sets, ", "), setup.unused_sets.size() == 1 ? "it" : "them");
+  for (const std::string& line : setup.unused_properties) text += fmt::format("{:<16}{}\n", "unused", line);
+  return text;
 }
 
 std::string describe_warnings(const std::vector<std::string>& warnings) {

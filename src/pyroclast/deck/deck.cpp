@@ -1,5 +1,6 @@
 #include "pyroclast/deck/deck.hpp"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -49,7 +50,7 @@ std::unique_ptr<DeckRecord> with_change(const DeckRecord& deck, const std::strin
   changed.push_back(trimmed(change.substr(0, equals)));
   std::string text = deck.with_value(changed.back(), trimmed(change.substr(equals + 1)));
   try {
-    return std::make_unique<DeckRecord>(std::move(text), deck.name(), changed);
+    return std::make_unique<DeckRecord>(std::move(text), deck.from(), changed);
   } catch (const DeckError& error) {
     throw Error(fmt::format("--set {}: {}", printable(change), error.diagnostics().front().message));
   }
@@ -58,15 +59,20 @@ std::unique_ptr<DeckRecord> with_change(const DeckRecord& deck, const std::strin
 }  // namespace
 
 Deck Deck::load(const std::filesystem::path& file, const std::vector<std::string>& changes,
-                const std::string& more) {
-  std::string text = text_of(file);
-  if (!more.empty()) text += "\n" + more;
-  return parse(std::move(text), file.string(), changes);
+                const Appendix& more) {
+  return parse(text_of(file), file.string(), changes, more);
 }
 
-Deck Deck::parse(std::string text, std::string name, const std::vector<std::string>& changes) {
+Deck Deck::parse(std::string text, std::string name, const std::vector<std::string>& changes,
+                 const Appendix& more) {
+  DeckSource from{.name = std::move(name)};
+  if (!more.text.empty()) {
+    from.appended_name = more.name;
+    from.appended_lines = 1 + static_cast<int>(std::ranges::count(more.text, '\n'));
+    text += "\n" + more.text;
+  }
   std::vector<std::string> changed;
-  auto record = std::make_unique<DeckRecord>(std::move(text), std::move(name));
+  auto record = std::make_unique<DeckRecord>(std::move(text), std::move(from));
   for (const std::string& change : changes) record = with_change(*record, change, changed);
   return Deck(std::move(record));
 }
@@ -88,7 +94,7 @@ const std::vector<DeckFile>& Deck::files() const {
 std::string Deck::with(const std::vector<std::pair<std::string, std::string>>& values) const {
   std::string changed = text();
   for (const auto& [key, value] : values)
-    changed = DeckRecord(std::move(changed), name()).with_value(key, value);
+    changed = DeckRecord(std::move(changed), DeckSource{name()}).with_value(key, value);
   return changed;
 }
 Section Deck::root() const {

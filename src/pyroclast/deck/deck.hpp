@@ -251,6 +251,11 @@ class Section {
   std::string_view defaults_of_;  ///< see with_defaults_of
 };
 
+/// Text that is appended to a deck, and the file that it comes from, for messages.
+struct Appendix {
+  std::string text, name;
+};
+
 /// A TOML file in which every dimensional value is a string with its unit. Its reader asks for the keys it
 /// knows and calls `finish`, which reports every error at once, keys that nobody asked for among them.
 class Deck {
@@ -262,9 +267,10 @@ class Deck {
   ///                 Throws Error for one that cannot be made.
   /// @param more  is appended before them
   static Deck load(const std::filesystem::path& file, const std::vector<std::string>& changes = {},
-                   const std::string& more = "");
+                   const Appendix& more = {});
   /// The same for a text; `name` takes the file's place in messages.
-  static Deck parse(std::string text, std::string name, const std::vector<std::string>& changes = {});
+  static Deck parse(std::string text, std::string name, const std::vector<std::string>& changes = {},
+                    const Appendix& more = {});
 
   Deck(Deck&&) noexcept;
   Deck& operator=(Deck&&) noexcept;

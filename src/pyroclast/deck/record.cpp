@@ -38,10 +38,23 @@ bool has_unquoted_quantity(std::string_view line) {
   return !line.empty() && std::string_view("#,]\"'0123456789_=").find(line[0]) == std::string_view::npos;
 }
 
-toml::table parse_toml(const SourceText& source, const std::string& name) {
+/// A line of one of the files that a deck's text comes from.
+struct FileLine {
+  const std::string& file;
+  int line;
+};
+
+FileLine in_file(const DeckSource& from, const SourceText& source, int line) {
+  const int own = source.line_count() - from.appended_lines;
+  if (from.appended_name.empty() || line <= own) return {from.name, line};
+  return {from.appended_name, line - own};
+}
+
+toml::table parse_toml(const SourceText& source, const DeckSource& from) {
   const auto fail = [&](SourcePosition at, std::string message, std::string hint) {
-    throw DeckError({Diagnostic{.file = name,
-                                .line = at.line,
+    const auto [file, line] = in_file(from, source, at.line);
+    throw DeckError({Diagnostic{.file = file,
+                                .line = line,
                                 .column = at.column,
                                 .message = std::move(message),
                                 .hint = std::move(hint)}});
@@ -117,13 +130,13 @@ std::string TableRecord::path_of(std::string_view key) const {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-DeckRecord::DeckRecord(std::string text, std::string name, std::vector<std::string> changed)
-    : name_(std::move(name)),
+DeckRecord::DeckRecord(std::string text, DeckSource from, std::vector<std::string> changed)
+    : from_(std::move(from)),
       changed_(std::move(changed)),
       source_(std::move(text)),
-      root_(parse_toml(source_, name_)) {}
+      root_(parse_toml(source_, from_)) {}
 
-DeckRecord::DeckRecord(SurveyRun& survey) : name_("survey"), source_(""), survey_(&survey) {}
+DeckRecord::DeckRecord(SurveyRun& survey) : from_{"survey"}, source_(""), survey_(&survey) {}
 
 TableRecord& DeckRecord::root() {
   return survey_ ? survey_->table("", false, "") : table(root_, "");
@@ -175,7 +188,7 @@ std::string DeckRecord::with_value(std::string_view path, const std::string& val
   const auto* table = node.as_table();
   if (node.is_array_of_tables() || (table && !table->is_inline()))
     throw Error(
-        fmt::format("--set {}={}: {} is a table of {}; name one of its keys", path, value, path, name_));
+        fmt::format("--set {}={}: {} is a table of {}; name one of its keys", path, value, path, name()));
   const auto& region = node.node()->source();
   return source_.replaced(position(region.begin), position(region.end), written);
 }
@@ -206,7 +219,7 @@ std::string DeckRecord::with_new_key(std::string_view path, const std::string& v
       if (fits(text)) return text;
   }
   if (const auto text = fmt::format("{} = {}\n{}", path, value, source_.text()); fits(text)) return text;
-  throw Error(fmt::format("--set {}={}: there is no place for this key in {}", path, value, name_));
+  throw Error(fmt::format("--set {}={}: there is no place for this key in {}", path, value, name()));
 }
 
 bool DeckRecord::is_clean(std::string_view path) const {
@@ -281,8 +294,9 @@ Diagnostic DeckRecord::at_value(const std::string& path, const toml::node& node,
 
 Diagnostic DeckRecord::locate(const std::string& path, const toml::source_region& region) const {
   const SourcePosition at = position(region.begin);
-  return {.file = is_changed(path) ? "--set" : name_,
-          .line = at.line,
+  const auto [file, line] = in_file(from_, source_, at.line);
+  return {.file = is_changed(path) ? "--set" : file,
+          .line = line,
           .column = at.column,
           .is_changed = is_changed(path),
           .key = path};

@@ -40,18 +40,26 @@ struct TableRecord {
   Asked& ask(std::string_view key);
 };
 
+/// The files that a deck's text comes from, for messages.
+struct DeckSource {
+  std::string name = {};           ///< of the deck
+  std::string appended_name = {};  ///< of the file whose text ends the deck's; empty where there is none
+  int appended_lines = 0;
+};
+
 /// A deck while it is read: the text, its tree, and the errors so far. Private to this module.
 class DeckRecord {
  public:
   /// @throws DeckError
   /// \param changed  keys whose values come from the command line: what is said of them names --set
-  DeckRecord(std::string text, std::string name, std::vector<std::string> changed = {});
+  DeckRecord(std::string text, DeckSource from, std::vector<std::string> changed = {});
   /// A deck without text; `survey` answers what its reader asks, and no error is kept.
   explicit DeckRecord(SurveyRun& survey);
 
   /// Null but for a survey.
   SurveyRun* survey() const { return survey_; }
-  const std::string& name() const { return name_; }
+  const std::string& name() const { return from_.name; }
+  const DeckSource& from() const { return from_; }
   const std::string& text() const { return source_.text(); }
 
   TableRecord& root();
@@ -98,7 +106,7 @@ class DeckRecord {
   /// The table that knows the key, as a hint; empty if none does.
   std::string misplaced_hint(const TableRecord& table, std::string_view key) const;
 
-  std::string name_;
+  DeckSource from_;
   std::vector<std::string> changed_;
   SourceText source_;
   toml::table root_;

@@ -211,8 +211,7 @@ void Session::take_over(Deck deck, Setup setup) {
 
 void Session::change_stages(const std::vector<std::string>& changes, const std::string& more) {
   for (const std::string& change : changes) require_later(change, run_.last_begun_stage());
-  Deck deck = Deck::parse(more.empty() ? loaded_.deck.text() : loaded_.deck.text() + "\n" + more,
-                          loaded_.deck.name(), changes);
+  Deck deck = Deck::parse(loaded_.deck.text(), loaded_.deck.name(), changes, {more, "the appended stages"});
   Setup setup = read(deck);
   run_.change_later_stages(std::move(setup.stages));
   take_over(std::move(deck), std::move(setup));

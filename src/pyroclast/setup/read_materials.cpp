@@ -217,8 +217,9 @@ SolidMaterial read_phase(const Section& s, const MaterialRules& rules, const Rea
       "1 at 20 °C; E falls to it evenly on cooling; see [deck.md](deck.md#cooling)",
       curves);
   m.thermal_strain = read_thermal_strain(s, rules.expansion_reading, curves);
-  if (const auto step = read_quartz_step(s, concrete))
-    m.thermal_strain = with_quartz_step(m.thermal_strain, *step, strain_range(curves.needed()))
+  m.quartz_step = read_quartz_step(s, concrete);
+  if (m.quartz_step)
+    m.thermal_strain = with_quartz_step(m.thermal_strain, *m.quartz_step, strain_range(curves.needed()))
                            .named(s.path() + ".thermal_strain");
   for (const char* key : {"expansion", "thermal_strain"})
     if (concrete.of_phases && s.has(key))
