@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from .errors import Error as Error
     from .functions import Function as Function
     from .laws import Law as Law
+    from .session import Fields as Fields
     from .session import History as History
     from .session import Recorder as Recorder
     from .session import Run as Run
@@ -68,7 +69,7 @@ else:
         "errors": ("DeckError", "Diagnostic", "Error"),
         "functions": ("Function",),
         "laws": ("Law",),
-        "session": ("History", "Recorder", "Run", "Sets", "State", "Views"),
+        "session": ("Fields", "History", "Recorder", "Run", "Sets", "State", "Views"),
         "specimen": ("Specimen",),
         "stages": ("Key", "Stage", "Verdict"),
         "study.study": ("Study",),

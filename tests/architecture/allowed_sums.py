@@ -23,6 +23,7 @@ ALLOWED = [
     Allowed("base/team.cpp", "", "times that threads waited, in whole nanoseconds"),
     Allowed("session/law_point.cpp", "LawPoint::dissipated()", "over the losses of one contact point"),
     Allowed("mechanics/mechanics.cpp", "Dissipation::total()", "over the energies of one ledger, each a chunked sum"),
+    Allowed("mechanics/energy_ledger.hpp", "EnergyLedger::sum()", "over the entries of one ledger, each a chunked sum"),
     Allowed("*", "exposure()", "durations of the stages of a deck"),
     Allowed("*response.cpp", "fit()", "over the rows of a history"),
     Allowed("results/field_files.cpp", "frame_times()", "over the frames of a run"),

@@ -42,6 +42,40 @@ TEST(Arrays, EachIsInTheListThatMemoryCheckpointsAndViewsFollow) {
   expect_each_tells_of_all<StateArrays<3, FlatArray>>();
 }
 
+/// That each array has an entry of each of what it counts per, or none at all.
+template <int Dim>
+void expect_counts(const Mechanics<Dim>& body) {
+  const auto expect_count = [&](const ArrayInfo& info, const auto& array) {
+    const auto count = body.layout().count_of(info.per);
+    if (info.per == Per::zone_row_or_bundle)
+      EXPECT_TRUE(array.size() == body.layout().bundles.size() ||
+                  static_cast<int>(array.size()) == body.layout().zone_rows)
+          << info.name;
+    else if (count && !array.empty())
+      EXPECT_EQ(array.size(), *count) << info.name;
+  };
+  for_each_array(expect_count, static_cast<const LayoutArrays<Dim, FlatArray>&>(body.layout()));
+  for_each_array(expect_count, body.storage());
+}
+
+/// The same of a body that moves, and turns, and is held.
+template <int Dim>
+void expect_counts(const Model<Dim>& model, Kinematics kinematics) {
+  auto parameters = bodies::quasi_static<Dim>();
+  parameters.kinematics = kinematics;
+  parameters.gravity[Dim - 1] = -9.81;
+  auto body = bodies::mechanics(model, mortar_contact(), parameters);
+  body.prescribe_velocity(0, 0, 0.0);
+  body.advance(1);
+  expect_counts(body);
+}
+
+TEST(Arrays, HaveAnEntryOfEachOfWhatTheyCountPer) {
+  for (const Kinematics kinematics : {Kinematics::small, Kinematics::finite})
+    expect_counts(bodies::tessellated(200, 0.1, 0.1, 1), kinematics);
+  expect_counts(bodies::cubes(5, 0.1), Kinematics::small);
+}
+
 // Every gridpoint, zone and contact has one place, and no two share one.
 TEST(Layout, GivesEverythingAPlaceOfItsOwn) {
   const Model<2> model = small_concrete();

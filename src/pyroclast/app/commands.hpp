@@ -85,7 +85,7 @@ int verify_laws(const VerifyOptions& options);
 int plot_properties(const PropertiesOptions& options);
 /// \param from  a case, see kCases
 int make_deck(const std::string& name, const std::string& from);
-/// \param what  curves, fires, units, keys, cases or laws
+/// \param what  curves, fields, fires, units, keys, cases or laws
 int print_list(const std::string& what);
 int print_keys();
 int print_laws();

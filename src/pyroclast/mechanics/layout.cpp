@@ -424,6 +424,40 @@ Layout<Dim>::Layout(const Model<Dim>& model, const LayoutParameters& parameters)
   builder.gather_contacts();
 }
 
+template <int Dim>
+std::optional<std::size_t> Layout<Dim>::count_of(Per per) const {
+  switch (per) {
+    case Per::block:
+      return this->bundle_of_block.size();
+    case Per::bundle:
+      return this->bundles.size();
+    case Per::gridpoint:
+      return this->gridpoint_slot.size();
+    case Per::gridpoint_row:
+      return gridpoint_rows;
+    case Per::gridpoint_slot:
+      return kLanes * gridpoint_rows;
+    case Per::zone:
+      return this->zone_slot.size();
+    case Per::zone_row:
+      return zone_rows;
+    case Per::face_row:
+      return this->faces.size();
+    case Per::face_row_end:
+      return this->faces.size() + 1;
+    case Per::point_row:
+      return point_rows;
+    case Per::point_slot:
+      return kLanes * point_rows;
+    case Per::contact:
+      return this->contact_slot.size();
+    case Per::zone_row_or_bundle:
+    case Per::entry:
+      break;
+  }
+  return std::nullopt;
+}
+
 template struct Layout<2>;
 template struct Layout<3>;
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -109,11 +110,38 @@ enum class Lasts : std::uint8_t {
   a_step,  ///< is worked out anew by each step
 };
 
+/// What an array has an entry of each of; with `_end`, and one more behind the last.
+enum class Per : std::uint8_t {
+  block,
+  bundle,
+  gridpoint,
+  gridpoint_row,
+  gridpoint_slot,
+  zone,
+  zone_row,
+  zone_row_or_bundle,  ///< zones of a bundle may have one entry together
+  face_row,
+  face_row_end,
+  point_row,
+  point_slot,
+  contact,
+  entry  ///< of a list of its own, whose entries others name
+};
+
+/// Who has the entries where chunks have several owners, such as the ranks of a cluster.
+enum class HeldBy : std::uint8_t {
+  owner,           ///< of the chunk
+  owner_and_halo,  ///< and those whose chunks touch it: they read its gridpoints, or owe it forces
+  all              ///< few, and the same everywhere
+};
+
 /// What an array is for. Memory, traffic, checkpoints and copies of a body follow from the lists of arrays.
 struct ArrayInfo {
   const char* name;
+  Per per;
   Touched read = Touched::none, written = Touched::none;
   Lasts lasts = Lasts::made;
+  HeldBy held_by = HeldBy::owner;
 };
 
 /// Calls `f(ArrayInfo, array...)` for each array of a list; several lists of the same kind go side by side.
@@ -159,23 +187,23 @@ struct LayoutArrays {
 
   template <class F, class... L>
   static void each(F&& f, L&... l) {
-    f(ArrayInfo{"bundles", Touched::all}, l.bundles...);
-    f(ArrayInfo{"shape_zones"}, l.shape_zones...);  // few, and always near
-    f(ArrayInfo{"spread_zones", Touched::all}, l.spread_zones...);
-    f(ArrayInfo{"faces", Touched::all}, l.faces...);
-    f(ArrayInfo{"first_point", Dim == 2 ? Touched::none : Touched::all}, l.first_point...);
-    f(ArrayInfo{"points", Touched::all}, l.points...);
-    f(ArrayInfo{"rows_reached", Touched::all}, l.rows_reached...);
-    f(ArrayInfo{"between_chunks", Touched::all}, l.between_chunks...);
-    f(ArrayInfo{"contacts_of_row", Touched::all}, l.contacts_of_row...);
-    f(ArrayInfo{"acting", Touched::all}, l.acting...);
-    f(ArrayInfo{"gridpoint_slot"}, l.gridpoint_slot...);
-    f(ArrayInfo{"zone_slot"}, l.zone_slot...);
-    f(ArrayInfo{"contact_slot"}, l.contact_slot...);
-    f(ArrayInfo{"bundle_of_block"}, l.bundle_of_block...);
-    f(ArrayInfo{"blocks"}, l.blocks...);
-    f(ArrayInfo{"face_row_of_point"}, l.face_row_of_point...);
-    f(ArrayInfo{"contacts_by_chunk"}, l.contacts_by_chunk...);
+    f(ArrayInfo{"bundles", Per::bundle, Touched::all}, l.bundles...);
+    f(ArrayInfo{"shape_zones", Per::entry}, l.shape_zones...);  // few, and always near
+    f(ArrayInfo{"spread_zones", Per::entry, Touched::all}, l.spread_zones...);
+    f(ArrayInfo{"faces", Per::face_row, Touched::all}, l.faces...);
+    f(ArrayInfo{"first_point", Per::face_row_end, Dim == 2 ? Touched::none : Touched::all}, l.first_point...);
+    f(ArrayInfo{"points", Per::point_row, Touched::all}, l.points...);
+    f(ArrayInfo{"rows_reached", Per::face_row_end, Touched::all}, l.rows_reached...);
+    f(ArrayInfo{"between_chunks", Per::face_row, Touched::all}, l.between_chunks...);
+    f(ArrayInfo{"contacts_of_row", Per::gridpoint_row, Touched::all}, l.contacts_of_row...);
+    f(ArrayInfo{"acting", Per::entry, Touched::all}, l.acting...);
+    f(ArrayInfo{"gridpoint_slot", Per::gridpoint}, l.gridpoint_slot...);
+    f(ArrayInfo{"zone_slot", Per::zone}, l.zone_slot...);
+    f(ArrayInfo{"contact_slot", Per::contact}, l.contact_slot...);
+    f(ArrayInfo{"bundle_of_block", Per::block}, l.bundle_of_block...);
+    f(ArrayInfo{"blocks", Per::bundle}, l.blocks...);
+    f(ArrayInfo{"face_row_of_point", Per::entry}, l.face_row_of_point...);
+    f(ArrayInfo{"contacts_by_chunk", Per::contact}, l.contacts_by_chunk...);
   }
 
   /// First row of points of a row of faces, and of the one after it.
@@ -216,6 +244,8 @@ struct Layout : LayoutArrays<Dim, FlatArray> {
   int most_rows = 0;   ///< of gridpoints, in one bundle
 
   int face_rows() const { return static_cast<int>(this->faces.size()); }
+  /// Of an array that has an entry of each; none for lists of their own.
+  std::optional<std::size_t> count_of(Per per) const;
   int block_in(int bundle, int lane) const { return this->blocks[bundle][lane]; }
 };
 

@@ -11,6 +11,7 @@
 #include "pyroclast/laws/contact_properties.hpp"
 #include "pyroclast/material/creep.hpp"
 #include "pyroclast/mechanics/compiled_step.hpp"
+#include "pyroclast/mechanics/energy_ledger.hpp"
 #include "pyroclast/mechanics/state.hpp"
 #include "pyroclast/mechanics/sweep.hpp"
 #include "pyroclast/model/model.hpp"
@@ -38,54 +39,6 @@ struct MechanicsParameters {
   // these change speed, not results
   LayoutParameters layout;
   int zones_for_a_thread = 500;  ///< with fewer a thread waits longer at barriers than it saves
-};
-
-/// What the energy that zones lose by creep is called.
-inline constexpr std::string_view kCreep = "creep";
-
-/// Energies lost for good, J: at contacts, by what their laws call them, and by creep of zones.
-struct Dissipation {
-  std::vector<std::string_view> names;
-  std::vector<double> energies;  ///< likewise
-
-  /// 0 where no law has that name.
-  double of(std::string_view name) const;
-  double total() const;
-};
-
-/// Where the energy of a body went since the start, J. Work in = everything else; the rest is the ledger's
-/// error.
-struct EnergyLedger {
-  // put in
-  double loading = 0.0;  ///< work of prescribed motion and applied forces
-  double gravity = 0.0;
-  /// Change of stored and dissipated energy when properties or thermal strains change.
-  double property_change = 0.0;
-  double mass_scaling = 0.0;  ///< change of kinetic energy when scaled masses follow the stiffness
-  // held
-  double zones = 0.0;     ///< elastic, in zones
-  double contacts = 0.0;  ///< elastic, in contacts
-  double kinetic = 0.0;
-  // lost
-  Dissipation dissipated;
-  double local_damping = 0.0;
-  double viscous_damping = 0.0;
-
-  double work_in() const { return loading + gravity + property_change + mass_scaling; }
-  double accounted() const {
-    return zones + contacts + kinetic + dissipated.total() + local_damping + viscous_damping;
-  }
-  double error() const { return work_in() - accounted(); }
-  /// 0 where nothing is strained.
-  double kinetic_over_elastic() const {
-    const double elastic = zones + contacts;
-    return elastic > 0.0 ? std::abs(kinetic) / elastic : 0.0;
-  }
-  /// What the error is measured by: all that was put in or taken out, each by its size. A change of
-  /// properties takes stored energy out where a body softens, so that work_in alone may be near zero.
-  double turnover() const {
-    return std::abs(loading) + std::abs(gravity) + std::abs(property_change) + std::abs(mass_scaling);
-  }
 };
 
 /// State of one contact point at the displacements that the last forces belong to.

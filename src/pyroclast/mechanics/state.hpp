@@ -129,39 +129,47 @@ struct StateArrays {
 
   template <class F, class... S>
   static void each(F&& f, S&... s) {
-    f(ArrayInfo{"position", Touched::alike}, s.position...);
-    f(ArrayInfo{"velocity", Touched::all, Touched::all, Lasts::kept}, s.velocity...);
-    f(ArrayInfo{"force", Touched::combined, Touched::all, Lasts::kept}, s.force...);
-    f(ArrayInfo{"stiffness"}, s.stiffness...);
-    f(ArrayInfo{"gathered_position", Touched::gathered}, s.gathered_position...);
-    f(ArrayInfo{"displacement", Touched::all, Touched::all, Lasts::kept}, s.displacement...);
-    f(ArrayInfo{"step_over_mass", Touched::all}, s.step_over_mass...);
-    f(ArrayInfo{"real_mass", Touched::all}, s.real_mass...);
-    f(ArrayInfo{"zone_properties", Touched::all}, s.zone_properties...);
-    f(ArrayInfo{"creep_strain", Touched::all}, s.creep_strain...);
-    f(ArrayInfo{"law_of_faces", Touched::all}, s.law_of_faces...);
-    f(ArrayInfo{"history", Touched::all, Touched::held, Lasts::kept}, s.history...);
-    f(ArrayInfo{"loss", Touched::none, Touched::none, Lasts::kept}, s.loss...);
-    f(ArrayInfo{"first_history", Touched::all}, s.first_history...);
-    f(ArrayInfo{"first_loss", Touched::all}, s.first_loss...);
-    f(ArrayInfo{"losing", Touched::none, Touched::all, Lasts::a_step}, s.losing...);
-    f(ArrayInfo{"contact_force", Touched::all, Touched::all, Lasts::a_step},
+    f(ArrayInfo{"position", Per::gridpoint_row, Touched::alike}, s.position...);
+    f(ArrayInfo{"velocity", Per::gridpoint_row, Touched::all, Touched::all, Lasts::kept}, s.velocity...);
+    f(ArrayInfo{"force", Per::gridpoint_row, Touched::combined, Touched::all, Lasts::kept}, s.force...);
+    f(ArrayInfo{"stiffness", Per::gridpoint_row}, s.stiffness...);
+    f(ArrayInfo{"gathered_position", Per::gridpoint_slot, Touched::gathered}, s.gathered_position...);
+    f(ArrayInfo{"displacement", Per::gridpoint_slot, Touched::all, Touched::all, Lasts::kept,
+                HeldBy::owner_and_halo},
+      s.displacement...);
+    f(ArrayInfo{"step_over_mass", Per::gridpoint_slot, Touched::all}, s.step_over_mass...);
+    f(ArrayInfo{"real_mass", Per::gridpoint_slot, Touched::all}, s.real_mass...);
+    f(ArrayInfo{"zone_properties", Per::zone_row_or_bundle, Touched::all}, s.zone_properties...);
+    f(ArrayInfo{"creep_strain", Per::zone_row, Touched::all}, s.creep_strain...);
+    f(ArrayInfo{"law_of_faces", Per::face_row, Touched::all}, s.law_of_faces...);
+    f(ArrayInfo{"history", Per::entry, Touched::all, Touched::held, Lasts::kept}, s.history...);
+    f(ArrayInfo{"loss", Per::entry, Touched::none, Touched::none, Lasts::kept}, s.loss...);
+    f(ArrayInfo{"first_history", Per::face_row_end, Touched::all}, s.first_history...);
+    f(ArrayInfo{"first_loss", Per::face_row_end, Touched::all}, s.first_loss...);
+    f(ArrayInfo{"losing", Per::point_row, Touched::none, Touched::all, Lasts::a_step}, s.losing...);
+    f(ArrayInfo{"contact_force", Per::point_slot, Touched::all, Touched::all, Lasts::a_step,
+                HeldBy::owner_and_halo},
       s.contact_force...);  // read where it is summed
-    f(ArrayInfo{"turning_force", Touched::all, Touched::all, Lasts::a_step}, s.turning_force...);
-    f(ArrayInfo{"contact_constants"}, s.contact_constants...);  // few, and always near
-    f(ArrayInfo{"first_constant"}, s.first_constant...);
-    f(ArrayInfo{"set_of_faces", Touched::all}, s.set_of_faces...);
-    f(ArrayInfo{"one_set", Touched::all}, s.one_set...);
-    f(ArrayInfo{"own_constants", Touched::all}, s.own_constants...);
-    f(ArrayInfo{"first_own_constant", Touched::all}, s.first_own_constant...);
-    f(ArrayInfo{"constraints_of_bundle", Touched::all, Touched::none, Lasts::kept},
+    f(ArrayInfo{"turning_force", Per::point_slot, Touched::all, Touched::all, Lasts::a_step,
+                HeldBy::owner_and_halo},
+      s.turning_force...);
+    f(ArrayInfo{"contact_constants", Per::entry, Touched::none, Touched::none, Lasts::made, HeldBy::all},
+      s.contact_constants...);  // few, and always near
+    f(ArrayInfo{"first_constant", Per::entry, Touched::none, Touched::none, Lasts::made, HeldBy::all},
+      s.first_constant...);
+    f(ArrayInfo{"set_of_faces", Per::face_row, Touched::all}, s.set_of_faces...);
+    f(ArrayInfo{"one_set", Per::face_row, Touched::all}, s.one_set...);
+    f(ArrayInfo{"own_constants", Per::entry, Touched::all}, s.own_constants...);
+    f(ArrayInfo{"first_own_constant", Per::face_row_end, Touched::all}, s.first_own_constant...);
+    f(ArrayInfo{"constraints_of_bundle", Per::bundle, Touched::all, Touched::none, Lasts::kept},
       s.constraints_of_bundle...);
-    f(ArrayInfo{"constraints", Touched::all, Touched::all, Lasts::kept}, s.constraints...);
-    f(ArrayInfo{"constraint_rows", Touched::all, Touched::none, Lasts::kept}, s.constraint_rows...);
-    f(ArrayInfo{"ties", Touched::all, Touched::none, Lasts::kept}, s.ties...);
-    f(ArrayInfo{"tied_slots", Touched::all, Touched::none, Lasts::kept}, s.tied_slots...);
-    f(ArrayInfo{"bundle_sums", Touched::all, Touched::all, Lasts::kept}, s.bundle_sums...);
-    f(ArrayInfo{"face_sums", Touched::none, Touched::none, Lasts::kept}, s.face_sums...);
+    f(ArrayInfo{"constraints", Per::entry, Touched::all, Touched::all, Lasts::kept}, s.constraints...);
+    f(ArrayInfo{"constraint_rows", Per::entry, Touched::all, Touched::none, Lasts::kept},
+      s.constraint_rows...);
+    f(ArrayInfo{"ties", Per::entry, Touched::all, Touched::none, Lasts::kept}, s.ties...);
+    f(ArrayInfo{"tied_slots", Per::entry, Touched::all, Touched::none, Lasts::kept}, s.tied_slots...);
+    f(ArrayInfo{"bundle_sums", Per::bundle, Touched::all, Touched::all, Lasts::kept}, s.bundle_sums...);
+    f(ArrayInfo{"face_sums", Per::face_row, Touched::none, Touched::none, Lasts::kept}, s.face_sums...);
   }
 };
 

@@ -260,6 +260,18 @@ void Session::drive(const std::string& drives) {
   depart({fmt::format("{} from step {} on", told(drives), simulation_->mechanics().steps())});
 }
 
+void Session::end_stage() {
+  run_.end_stage();
+  depart({fmt::format("stage {} was ended at row {}", run_.stage_number(), run_.history().row_count() - 1)});
+}
+
+void Session::set_temperature(double temperature) {
+  simulation_->field().set_uniform(temperature);
+  if (simulation_->moves()) simulation_->hand_over();
+  depart({fmt::format("the temperature was set to {:g} degC at row {}", temperature,
+                      run_.history().row_count() - 1)});
+}
+
 void Session::depart(const Departure& departure) {
   if (std::ranges::find(departures_, departure) != departures_.end()) return;
   departures_.push_back(departure);

@@ -20,7 +20,7 @@ namespace pyroclast {
 struct RunOutput {
   std::filesystem::path folder;
   bool overwrite = false;
-  std::string command;
+  std::string command = {};
 };
 
 /// What a run is forked from.
@@ -90,6 +90,11 @@ class Session {
   /// contradicts a support or the stage under way, or would let the body fly away; then nothing is changed.
   /// \param drives  tables [[drives]] of such a stage
   void drive(const std::string& drives);
+  /// Ends the stage under way after the last look. The run departs from its deck.
+  void end_stage();
+  /// Gives the whole body one temperature, °C, which reaches the mechanics where there are any. The run
+  /// departs from its deck. Throws Error where the temperature is computed.
+  void set_temperature(double temperature);
   /// Notes that from now on the run is not the one that its deck describes: in summary and manifest.
   void depart(const Departure& departure);
 

@@ -227,7 +227,7 @@ void Compress::choose_velocity(const Simulation& simulation) {
 double Compress::excess(const Simulation& simulation, double time) {
   const VelocityControl& control = *keys_.control;
   const EnergyLedger energy = simulation.mechanics().energy();
-  const double elastic = energy.zones + energy.contacts;
+  const double elastic = energy.elastic();
   const double power =
       (energy.dissipated.total() - std::exchange(dissipated_, energy.dissipated.total())) / time;
   const double top = simulation.press().stress_top(), bottom = simulation.press().stress_bottom();
