@@ -12,7 +12,7 @@ int main(int argc, char** argv) try {
 
   const std::filesystem::path deck = argv[1];
   const auto session =
-      Session::begin({Deck::load(deck), deck.parent_path(), {}}, RunOutput{.folder = argv[2]});
+      Session::begin({Deck::open(deck), deck.parent_path(), {}}, RunOutput{.folder = argv[2]});
   while (session->next()) {
   }  // each time the run stands at a look: simulation() and run() have what there is
   session->finish();

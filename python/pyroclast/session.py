@@ -160,7 +160,7 @@ class Views:
     """Arrays of the mechanics as they lie in memory: no copies, and read-only.
 
     They change as the run steps, so read them at looks. Each keeps the memory of its run alive, also after `del run`.
-    They stand by slot, or in rows of eight slots: slot i is [i // 8, :, i % 8]. `run.slot` says where a gridpoint of
+    They stand by slot, or in packs of eight slots: slot i is [i // 8, :, i % 8]. `run.slot` says where a gridpoint of
     the model stands.
     """
 
@@ -174,20 +174,20 @@ class Views:
 
     @property
     def velocity(self) -> Array:
-        """(rows, 2, 8), m/s."""
+        """(packs, 2, 8), m/s."""
         return self._core.view("velocity")
 
     @property
     def force(self) -> Array:
-        """(rows, 2, 8), N: sums of all forces."""
+        """(packs, 2, 8), N: sums of all forces."""
         return self._core.view("force")
 
     @property
-    def history(self) -> Array:
-        """(lines, 8): what contact points remember, a line for each number of eight of them, in the order of the
-        layout. `run.contacts()` has it by name and contact.
+    def internals(self) -> Array:
+        """(lines, 8): internal variables of contact points, a line for each number of eight of them, in the order of
+        the layout. `run.contacts()` has them by name and contact.
         """
-        return self._core.view("history")
+        return self._core.view("internals")
 
 
 class Fields(Mapping[str, Array]):

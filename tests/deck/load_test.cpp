@@ -51,7 +51,7 @@ Diagnostic syntax_error_of(const std::string& text) {
 TEST_F(DeckFile, IsKeptAsReadForTheManifest) {
   const std::string text = "# a comment\r\ntitle = \"x\"  \n";
   const fs::path file = write(text);
-  const Deck deck = Deck::load(file);
+  const Deck deck = Deck::open(file);
   EXPECT_EQ(deck.text(), text);
   EXPECT_EQ(deck.name(), file.string());
   EXPECT_EQ(deck.root().text("title", ""), "x");
@@ -60,20 +60,20 @@ TEST_F(DeckFile, IsKeptAsReadForTheManifest) {
 
 TEST_F(DeckFile, ThatDoesNotExistIsNamed) {
   const fs::path file = directory_ / "absent.toml";
-  const Diagnostic diagnostic = failure_of([&] { Deck::load(file); });
+  const Diagnostic diagnostic = failure_of([&] { Deck::open(file); });
   EXPECT_EQ(diagnostic.file, file.string());
   EXPECT_TRUE(mentions(diagnostic.message, "no such file"));
   EXPECT_EQ(to_string(diagnostic), file.string() + ": no such file");
 }
 
 TEST_F(DeckFile, ThatIsADirectoryIsRefused) {
-  const Diagnostic diagnostic = failure_of([&] { Deck::load(directory_); });
+  const Diagnostic diagnostic = failure_of([&] { Deck::open(directory_); });
   EXPECT_EQ(diagnostic.file, directory_.string());
   EXPECT_TRUE(mentions(diagnostic.message, "directory"));
 }
 
 TEST_F(DeckFile, ThatIsEmptyIsRefused) {
-  const Diagnostic diagnostic = failure_of([&] { Deck::load(write("")); });
+  const Diagnostic diagnostic = failure_of([&] { Deck::open(write("")); });
   EXPECT_TRUE(mentions(diagnostic.message, "empty"));
 }
 
@@ -134,7 +134,7 @@ TEST(DeckText, MayBeginWithAByteOrderMark) {
 TEST_F(DeckFile, ChangesReplaceValuesInTheText) {
   const auto file = write(
       "[a]\nlength = \"3 mm\"  # note\nE = { value = \"1 GPa\" }\n[[stages]]\nto = 1\n[[stages]]\nto = 2\n");
-  const Deck deck = Deck::load(file, {"a.length=5 mm", "stages[1].to = 7", "a.E=\"2 GPa\""});
+  const Deck deck = Deck::open(file, {"a.length=5 mm", "stages[1].to = 7", "a.E=\"2 GPa\""});
   EXPECT_EQ(deck.text(),
             "[a]\nlength = \"5 mm\"  # note\nE = \"2 GPa\"\n[[stages]]\nto = 1\n[[stages]]\nto = 7\n");
   EXPECT_DOUBLE_EQ(deck.root().section("a").quantity("length", unit::length, Range::positive(), ""), 5e-3);
@@ -145,14 +145,14 @@ TEST_F(DeckFile, ChangesAddKeysThatAreMissing) {
   const std::string text =
       "title = \"a\"\n[a]  # of a\nlength = \"3 mm\"\n[[stages]]\nto = 1\n[[stages]]\nto = 2\n";
   const auto changed = [&](const std::vector<std::string>& changes) {
-    return Deck::load(write(text), changes).text();
+    return Deck::open(write(text), changes).text();
   };
   EXPECT_EQ(changed({"a.width=5 mm"}), with(text, "# of a\n", "# of a\nwidth = \"5 mm\"\n"));
   EXPECT_EQ(changed({"stages[1].rate=2"}), with(text, "to = 2", "rate = 2\nto = 2"));
   EXPECT_EQ(changed({"stages[0].b.c=2", "stages[0].b.d=3"}),
             with(text, "to = 1", "b.d = 3\nb.c = 2\nto = 1"));
   EXPECT_EQ(changed({"seed=2"}), "seed = 2\n" + text);
-  const Deck deck = Deck::load(write(text), {"new.table.key=true", "new.table.other=1"});
+  const Deck deck = Deck::open(write(text), {"new.table.key=true", "new.table.other=1"});
   EXPECT_TRUE(deck.root().section("new").section("table").flag("key", ""));
   EXPECT_EQ(deck.root().section("new").section("table").integer("other", Range::any(), ""), 1);
 }
@@ -190,7 +190,7 @@ TEST_F(DeckFile, ChangesThatHaveNoPlaceAreRefused) {
   const auto file = write("[a]\nlength = \"3 mm\"\n[[stages]]\nto = 1\n");
   for (const char* change : {"a=1", "stages[1].to=1", "a.length.unit=1", "length", "a..b=1", "=1"}) {
     try {
-      Deck::load(file, {change});
+      Deck::open(file, {change});
       ADD_FAILURE() << change;
     } catch (const Error& e) {
       EXPECT_NE(std::string(e.what()).find(change), std::string::npos) << e.what();

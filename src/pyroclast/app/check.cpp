@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include "pyroclast/app/load.hpp"
+#include "pyroclast/app/open.hpp"
 #include "pyroclast/app/progress.hpp"
 #include "pyroclast/base/shown.hpp"
 #include "pyroclast/results/frame_series.hpp"
@@ -89,10 +89,10 @@ void print_mechanics(const Simulation& simulation, MassChoice mass) {
 }
 
 /// What is known of a deck without the code that it names.
-int say_unchecked(const Loaded& loaded) {
-  fmt::print("deck            {} holds no other error: {}\n{}", shown(loaded.deck.name()),
-             shown(loaded.setup.title), describe_warnings(loaded.warnings));
-  for (const std::string& code : loaded.setup.code_not_allowed)
+int say_unchecked(const Opened& opened) {
+  fmt::print("deck            {} holds no other error: {}\n{}", shown(opened.deck.name()),
+             shown(opened.setup.title), describe_warnings(opened.warnings));
+  for (const std::string& code : opened.setup.code_not_allowed)
     fmt::print("not checked     the keys of its law: {}\n", shown(code, true));
   return kCodeNotAllowed;
 }
@@ -100,14 +100,14 @@ int say_unchecked(const Loaded& loaded) {
 }  // namespace
 
 int check(const RunOptions& options) {
-  Loaded loaded = load(options, false);
-  Setup& setup = loaded.setup;
-  if (!setup.code_not_allowed.empty()) return say_unchecked(loaded);
-  loaded.choices.before_making(loaded);
-  const auto simulation = make_simulation(setup, loaded.team);
+  Opened opened = open_deck(options, false);
+  Setup& setup = opened.setup;
+  if (!setup.code_not_allowed.empty()) return say_unchecked(opened);
+  opened.choices.before_making(opened);
+  const auto simulation = make_simulation(setup, opened.team);
   const Model<2>& model = simulation->model();
-  fmt::print("deck            {} is valid: {}\n", shown(loaded.deck.name()), shown(setup.title));
-  fmt::print("{}{}{}{}", describe_warnings(loaded.warnings), describe_unused(setup), describe_own_laws(),
+  fmt::print("deck            {} is valid: {}\n", shown(opened.deck.name()), shown(setup.title));
+  fmt::print("{}{}{}{}", describe_warnings(opened.warnings), describe_unused(setup), describe_own_laws(),
              describe(simulation->specimen()));
   fmt::print("model           {} blocks{}, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
              simulation->moves() ? " with the platens" : "", model.zone_count(), model.gridpoint_count(),
@@ -126,8 +126,8 @@ int check(const RunOptions& options) {
   if (expected.steps > 0.0) fmt::print(", about {:.2g} steps", expected.steps);
   if (expected.heating_duration > 0.0) fmt::print(", heat flows for {}", duration(expected.heating_duration));
   fmt::print("; about {}\n", duration(seconds));
-  fmt::print("                on {} with {} instructions, {:.0f} MB of memory\n", describe(*loaded.team),
-             name(loaded.instructions), peak_memory() * 1e-6);
+  fmt::print("                on {} with {} instructions, {:.0f} MB of memory\n", describe(*opened.team),
+             name(opened.instructions), peak_memory() * 1e-6);
   return 0;
 }
 

@@ -31,7 +31,7 @@ struct RunOptions {
   int threads = 0;                   ///< at most; 0: as many as processors are free
   std::string instructions;          ///< instruction set of the step; empty: the best that there is
   std::optional<std::int64_t> seed;  ///< instead of the deck's
-  std::vector<std::string> changes;  ///< "key=value", see Deck::load
+  std::vector<std::string> changes;  ///< "key=value", see Deck::open
   std::optional<double> checkpoint;  ///< wall time between two checkpoints instead of the deck's, s
   OwnLawOptions laws;
   Speech speech = Speech::usual;

@@ -45,7 +45,7 @@ struct MechanicsParameters {
 template <int Dim>
 struct ContactState {
   const LawTable* law = nullptr;
-  std::vector<double> history;        ///< in the order of `law->history(Dim)`
+  std::vector<double> internals;      ///< in the order of `law->internals(Dim)`
   std::vector<double> losses;         ///< since the start, in the order of `law->losses`
   double opening = 0.0;               ///< u_n, m
   Tangential<Dim> tangential_jump{};  ///< u_s, m
@@ -177,7 +177,7 @@ class Mechanics {
   const LawTable& law_of(int contact) const {
     return properties_.contacts.law(properties_.of_contact[contact]);
   }
-  /// Of a contact's history; 0 where its law remembers no such thing.
+  /// Of a contact's internal variables; 0 where its law remembers no such thing.
   double remembered(int contact, Remembers what) const;
   /// What the laws of this body call the energies that they lose.
   const std::vector<std::string_view>& dissipations() const { return dissipations_; }
@@ -245,7 +245,7 @@ class Mechanics {
 
   void list_laws();
   void place_model();
-  void place_histories();
+  void place_internals();
   void place_properties();
   void place_creep_strain();
   void name_dissipations();
@@ -278,11 +278,11 @@ class Mechanics {
   void require_constraints(const StateVisitor& visitor) const;
   int constraints_of(int gridpoint);
   void drop_if_free(int bundle);
-  ConstraintRow<Dim>& constraint_row(int constraints, int gridpoint);
+  ConstraintPack<Dim>& constraint_pack(int constraints, int gridpoint);
   int slot_in_bundle(int gridpoint) const;
   int bundle_of(int gridpoint) const;
   void sweep(int steps, Pass pass);
-  const LawTable& law_of_row(int face_row) const { return *laws_[storage_.law_of_faces[face_row]]; }
+  const LawTable& law_of_pack(int face_pack) const { return *laws_[storage_.law_of_faces[face_pack]]; }
   Vec<Dim> jump_of_forces(int contact) const;
   Vec<Dim> displacement_of_force(int gridpoint) const;
   Dissipation dissipated() const;
@@ -300,8 +300,8 @@ class Mechanics {
   State<Dim> state_;  ///< sees layout and storage
   StepFunctions<Dim> step_;
   std::vector<const LawTable*> laws_;
-  std::vector<RowFunctions<Dim>> law_functions_;  ///< of each law, by step_; the state sees them
-  std::vector<Worker> workers_;                   ///< by thread
+  std::vector<PackFunctions<Dim>> law_functions_;  ///< of each law, by step_; the state sees them
+  std::vector<Worker> workers_;                    ///< by thread
   std::vector<std::string_view> dissipations_;
 
   std::vector<int> made_constraints_;  ///< of each bundle that was ever held, driven or loaded; else -1

@@ -59,7 +59,8 @@ const std::map<std::string, ViewOf>& views() {
        [](const auto& s, const py::object& owner) {
          return seen(s.force, {2, kLanes}, owner);
        }},
-      {"history", [](const auto& s, const py::object& owner) { return seen(s.history, {kLanes}, owner); }}};
+      {"internals",
+       [](const auto& s, const py::object& owner) { return seen(s.internals, {kLanes}, owner); }}};
   return all;
 }
 

@@ -12,7 +12,7 @@ namespace pyroclast::python {
 namespace py = pybind11;
 
 /// An array of the mechanics as it lies in memory, read-only.
-/// \param what  displacement, velocity, force or history
+/// \param what  displacement, velocity, force or internals
 /// \param owner  that the array keeps alive
 py::array view(const Simulation& simulation, const std::string& what, const py::object& owner);
 

@@ -168,7 +168,7 @@ std::unique_ptr<Held> held(Make make) {
 
 /// A stage of a run.
 py::tuple stage_info(const Run& run, std::size_t i) {
-  const StageRecord& record = run.records()[i];
+  const StageCourse& record = run.courses()[i];
   return py::make_tuple(run.stages()[i]->kind(), describe(record.outcome), record.rows.first,
                         record.rows.last);
 }
@@ -193,9 +193,9 @@ void bind_sessions(py::module_& m) {
       [](const DeckText& deck, std::optional<std::uint64_t> seed) {
         auto chosen = choices(seed, 1, "", {}, deck.laws, deck.stages);
         chosen.laws = law_sources(deck);
-        Loaded loaded(parse(deck), deck.folder, chosen);
-        const auto simulation = make_simulation(loaded.setup, loaded.team);
-        return rehearse(std::move(loaded.setup), *simulation).seconds;
+        Opened opened(parse(deck), deck.folder, chosen);
+        const auto simulation = make_simulation(opened.setup, opened.team);
+        return rehearse(std::move(opened.setup), *simulation).seconds;
       },
       arg("deck"), arg("seed"),
       "Wall time that a run of one thread will probably take, s, by its first steps.");
@@ -331,10 +331,10 @@ void bind_sessions(py::module_& m) {
       .def_property_readonly("moves", [](const Held& h) { return h.get().simulation().moves(); })
       .def_property_readonly("thickness",
                              [](const Held& h) { return h.get().simulation().model().thickness; })
-      .def_property_readonly("title", read([](const Session& s) { return s.loaded().setup.title; }))
-      .def_property_readonly("seed", read([](const Session& s) { return s.loaded().setup.specimen.seed; }))
-      .def_property_readonly("deck_text", read([](const Session& s) { return s.loaded().deck.text(); }))
-      .def_property_readonly("warnings", read([](const Session& s) { return s.loaded().warnings; }))
+      .def_property_readonly("title", read([](const Session& s) { return s.opened().setup.title; }))
+      .def_property_readonly("seed", read([](const Session& s) { return s.opened().setup.specimen.seed; }))
+      .def_property_readonly("deck_text", read([](const Session& s) { return s.opened().deck.text(); }))
+      .def_property_readonly("warnings", read([](const Session& s) { return s.opened().warnings; }))
       .def_property_readonly("folder", read([](const Session& s) { return s.folder().string(); }))
       .def_property(
           "threads", [](const Held& h) { return h.get().simulation().team().size(); },
@@ -383,7 +383,7 @@ void bind_sessions(py::module_& m) {
       .def_property_readonly(
           "specimen",
           [](const Held& h) { return std::make_shared<specimen::Specimen>(h.get().simulation().specimen()); })
-      .def_property_readonly("deck_folder", read([](const Session& s) { return s.loaded().folder.string(); }))
+      .def_property_readonly("deck_folder", read([](const Session& s) { return s.opened().folder.string(); }))
       .def("contact_points", [](const Held& h) { return contact_points(h.get().simulation()); });
 }
 

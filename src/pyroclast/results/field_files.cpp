@@ -88,7 +88,7 @@ std::string frame_line(const History& history, const std::vector<std::string>& c
 
 /// Of frames.csv.
 std::string text_of(const History& history, const std::vector<std::string>& columns,
-                    const FrameRecords& frames) {
+                    const FrameRows& frames) {
   std::string text = fmt::format("frame,{}\n", fmt::join(columns, ","));
   for (std::size_t i = 0; i < frames.rows.size(); ++i)
     text += frame_line(history, columns, i, frames.rows[i]) + "\n";
@@ -97,7 +97,7 @@ std::string text_of(const History& history, const std::vector<std::string>& colu
 
 /// Of frames on a common axis, s: 0 when heating begins, and the real heating time while it lasts. Before and
 /// after it, and in runs that do not heat, the time of the mechanics goes on.
-std::vector<double> frame_times(const History& history, const FrameRecords& frames) {
+std::vector<double> frame_times(const History& history, const FrameRows& frames) {
   const auto cell = [&](std::int64_t row, const char* name, double otherwise) {
     if (!history.has(name)) return otherwise;
     return history.cell(static_cast<std::size_t>(row), name).value_or(otherwise);
@@ -119,7 +119,7 @@ std::vector<double> frame_times(const History& history, const FrameRecords& fram
 }  // namespace
 
 FieldFiles::FieldFiles(const std::filesystem::path& folder, const Simulation& simulation,
-                       const History& history, const FrameRecords& frames)
+                       const History& history, const FrameRows& frames)
     : columns_(frame_columns(history)),
       frames_(created(folder) / "frames.csv", text_of(history, columns_, frames)),
       blocks_(folder, MeshPart::blocks, frame_times(history, frames)) {
@@ -133,9 +133,9 @@ std::vector<std::string> FieldFiles::lost() const {
   return names;
 }
 
-void FieldFiles::write(const Simulation& simulation, const History& history, FrameRecords& frames) {
+void FieldFiles::write(const Simulation& simulation, const History& history, FrameRows& frames) {
   const auto row = static_cast<std::int64_t>(history.row_count()) - 1;
-  FrameRecords with_this = frames;
+  FrameRows with_this = frames;
   with_this.rows.push_back(row);
   const auto times = frame_times(history, with_this);
   blocks_.write(times, [&](Hdf5File& file) {

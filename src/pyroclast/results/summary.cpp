@@ -140,7 +140,7 @@ std::optional<double> exchange_stress(const Run& run, const Summary& s) {
     const auto& results = s.stages[i].report.results;
     const auto increment = std::ranges::find(results, "largest_exchange_increment_K", &Result::name);
     if (increment == results.end() || run.simulation().field().is_uniform()) continue;
-    const RowRange rows = run.records()[i].rows;
+    const RowRange rows = run.courses()[i].rows;
     double low = run.simulation().field().mean(), high = low;
     for (std::size_t row = rows.first; row < rows.last; ++row) {
       low = std::min(low, run.history().cell(row, "temperature_min_degC").value_or(low));
@@ -157,8 +157,8 @@ std::optional<double> exchange_stress(const Run& run, const Summary& s) {
 /// The first row at which a jump exceeds what small kinematics bear, of those that results rest on.
 std::optional<std::size_t> large_jump(const Run& run, const Summary& s) {
   const History& history = run.history();
-  for (std::size_t i = 0; i < run.records().size(); ++i) {
-    const RowRange rows = run.records()[i].rows;
+  for (std::size_t i = 0; i < run.courses().size(); ++i) {
+    const RowRange rows = run.courses()[i].rows;
     const auto decided_at = s.stages[i].report.decided_at;
     const std::size_t end = decided_at ? rows.first + *decided_at + 1 : rows.last;
     for (std::size_t row = rows.first; row < end; ++row)
@@ -316,7 +316,7 @@ Summary summarize(const Run& run, std::span<const Reference> references) {
   s.outcome = run.outcome();
   for (std::size_t i = 0; i < run.stages().size(); ++i) {
     const Stage& stage = *run.stages()[i];
-    const StageRecord& record = run.records()[i];
+    const StageCourse& record = run.courses()[i];
     s.stages.push_back({stage.kind(), record.outcome, {}});
     if (record.outcome == Outcome::not_begun) continue;
     StageReport& report = s.stages.back().report;

@@ -180,7 +180,7 @@ FieldInfo info_of(const KnownField& f) {
 
 /// Adds what the contact points of a law remember, but what another law calls the same.
 void add_memory(const LawTable& law, std::vector<FieldInfo>& all) {
-  for (const HistoryInfo& info : law.history(2))
+  for (const InternalInfo& info : law.internals(2))
     if (std::ranges::find(all, std::string(info.name), &FieldInfo::name) == all.end())
       all.push_back({info.name, info.unit, Item::contact, ValueKind::number, info.meaning, info.in_files});
 }

@@ -71,11 +71,11 @@ void Press<Dim>::control_by_motion(double velocity) {
   is_driven_ = true;
   mechanics_.untie();
   hold(0.0);
-  drive(velocity);
+  move_platen(velocity);
 }
 
 template <int Dim>
-void Press<Dim>::drive(double velocity) {
+void Press<Dim>::move_platen(double velocity) {
   for (int g : set("top_platen_support")) mechanics_.prescribe_velocity(g, axis_, -velocity);
 }
 

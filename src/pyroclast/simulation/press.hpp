@@ -48,7 +48,7 @@ class Press {
   /// Moves it down at a velocity, m/s; the force on it ends.
   void control_by_motion(double velocity);
   /// Another velocity while it is controlled by motion, m/s downwards.
-  void drive(double velocity);
+  void move_platen(double velocity);
   /// The force on it over the area of the specimen, Pa, from the next step on.
   void hold(double stress);
   double stress_held() const { return stress_held_; }

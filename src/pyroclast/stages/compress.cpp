@@ -173,7 +173,7 @@ bool Compress::move_at_velocity(Simulation& simulation, int most_steps) {
                              ? static_cast<double>(steps_to_point_) * mechanics.time_step() / keys_.ramp_time
                              : 0.0;
     const double share = ramp_share(steps_, mechanics.time_step(), keys_.ramp_time);
-    simulation.press().drive(direction() * keys_.velocity * std::min(1.0, share + ahead));
+    simulation.press().move_platen(direction() * keys_.velocity * std::min(1.0, share + ahead));
   }
   const auto steps = std::min<std::int64_t>({steps_left_, steps_to_point_, most_steps});
   mechanics.advance(static_cast<int>(steps));
@@ -190,7 +190,7 @@ bool Compress::move_controlled(Simulation& simulation, int most_steps) {
   Mechanics<2>& mechanics = simulation.mechanics();
   if (steps_left_ == 0) {
     choose_velocity(simulation);
-    simulation.press().drive(direction() * velocity_);
+    simulation.press().move_platen(direction() * velocity_);
     steps_left_ = kStepsPerChoice;
   }
   const auto steps = std::min<std::int64_t>(steps_left_, most_steps);
