@@ -526,7 +526,7 @@ void expect_lanes_alike() {
     RandomPath path(seed);
     MixedMode::Internals<Dim, Real> internals;
     MixedMode::Losses<LaneSum> losses;
-    Internals<Dim> internals[kLanes];
+    Internals<Dim> of_lane_alone[kLanes];
     Losses lost[kLanes]{};
     for (int i = 0; i < 50; ++i) {
       const auto c = MixedMode::derive(path.properties());
@@ -541,7 +541,8 @@ void expect_lanes_alike() {
       for (int lane = 0; lane < kLanes; ++lane) {
         Tangential<Dim> shear;
         for (int k = 1; k < Dim; ++k) shear[k - 1] = jump[k][lane];
-        const auto one = MixedMode::update<Dim, double>(c, jump[0][lane], shear, internals[lane], lost[lane]);
+        const auto one =
+            MixedMode::update<Dim, double>(c, jump[0][lane], shear, of_lane_alone[lane], lost[lane]);
         const auto of_lane = [&](const Real& number) {
           alignas(64) double all[kLanes];
           number.store(all);
@@ -560,7 +561,7 @@ void expect_lanes_alike() {
         MixedMode::Losses<LaneSum>::each([&](const auto&, const LaneSum& n) { dissipated.push_back(n.sum); },
                                          losses);
         auto next = remembered.begin();
-        Internals<Dim>::each([&](const auto&, double n) { expect_same(n, *next++); }, internals[lane]);
+        Internals<Dim>::each([&](const auto&, double n) { expect_same(n, *next++); }, of_lane_alone[lane]);
         next = dissipated.begin();
         Losses::each([&](const auto&, double n) { expect_same(n, *next++); }, lost[lane]);
       }

@@ -154,9 +154,9 @@ TEST(AnyLayout, GivesTheSameBits) {
         ASSERT_TRUE(m.contact(c).internals == expected.contact(c).internals) << what << ", contact " << c;
       }
       const EnergyLedger a = m.energy(), b = expected.energy();
-      EXPECT_NEAR(a.loading, b.loading, 1e-12 * b.turnover()) << what;
-      EXPECT_NEAR(a.zones, b.zones, 1e-12 * b.turnover()) << what;
-      EXPECT_NEAR(a.local_damping, b.local_damping, 1e-12 * b.turnover()) << what;
+      EXPECT_NEAR(a.loading, b.loading, 1e-12 * turnover(b)) << what;
+      EXPECT_NEAR(a.zones, b.zones, 1e-12 * turnover(b)) << what;
+      EXPECT_NEAR(a.local_damping, b.local_damping, 1e-12 * turnover(b)) << what;
     }
   }
 }

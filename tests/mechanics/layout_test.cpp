@@ -47,12 +47,13 @@ template <int Dim>
 void expect_counts(const Mechanics<Dim>& body) {
   const auto expect_count = [&](const ArrayInfo& info, const auto& array) {
     const auto count = body.layout().count_of(info.per);
-    if (info.per == Per::zone_pack_or_bundle)
+    if (info.per == Per::zone_pack_or_bundle) {
       EXPECT_TRUE(array.size() == body.layout().bundles.size() ||
                   static_cast<int>(array.size()) == body.layout().zone_packs)
           << info.name;
-    else if (count && !array.empty())
+    } else if (count && !array.empty()) {
       EXPECT_EQ(array.size(), *count) << info.name;
+    }
   };
   for_each_array(expect_count, static_cast<const LayoutArrays<Dim, FlatArray>&>(body.layout()));
   for_each_array(expect_count, body.storage());

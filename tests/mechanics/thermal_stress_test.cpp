@@ -66,13 +66,6 @@ double largest_traction(const Mechanics<Dim>& m) {
   return largest;
 }
 
-/// Sum of the absolute entries of a ledger, to measure its error by.
-double turnover(const EnergyLedger& e) {
-  return std::abs(e.loading) + std::abs(e.gravity) + std::abs(e.property_change) + std::abs(e.mass_scaling) +
-         e.zones + e.contacts + std::abs(e.kinetic) + e.dissipated.total() + e.local_damping +
-         e.viscous_damping;
-}
-
 // ---- Free expansion
 
 template <int Dim>

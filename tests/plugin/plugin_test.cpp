@@ -145,9 +145,9 @@ std::unique_ptr<Simulation> creeping_body(const std::string& law, const LawSourc
   Run run(*simulation, std::move(setup.stages));
   run.run();
   EXPECT_EQ(run.outcome(), Outcome::completed);
-  EXPECT_GT(run.internals().last("dissipated_creep_J").value(), 0.0);
-  EXPECT_LT(std::abs(run.internals().last("energy_error_J").value()),
-            1e-3 * run.internals().last("energy_loading_J").value());
+  EXPECT_GT(run.history().last("dissipated_creep_J").value(), 0.0);
+  EXPECT_LT(std::abs(run.history().last("energy_error_J").value()),
+            1e-3 * run.history().last("energy_loading_J").value());
   return simulation;
 }
 

@@ -174,7 +174,7 @@ TEST(HeatStageVerification, AnEvenBodyExpandsFreely) {
   EXPECT_DOUBLE_EQ(r.last("temperature_degC"), 220.0);
   EXPECT_NEAR(r.last("heating_time_s"), 200.0 / (5.0 / 60.0), 1e-9);
   const double softening = 1.0 - 0.8 * 200.0 / 800.0;
-  const double opened = r.end_of(1, "specimen_strain") / softening;
+  const double loaded = r.end_of(1, "specimen_strain") / softening;
   EXPECT_NEAR(r.last("specimen_strain"), loaded - 2e-3, 1e-5);  // 0.5 % of the expansion: what motion is left
   // and Poisson's part of the load
   expect_known({"Lateral strain of an even body that is heated under a small load", "alpha dT", "1"},

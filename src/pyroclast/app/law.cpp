@@ -34,7 +34,7 @@ ContactMaterial material_of_command(const LawOptions& options) {
 }
 
 LawPoint point_of_deck(const LawOptions& options) {
-  const Deck deck = Deck::open_deck(options.deck);
+  const Deck deck = Deck::open(options.deck);
   const Setup setup = read_setup(deck, options.deck.parent_path(), {}, sources_of(options.sources));
   require_code(setup);
   if (!setup.motion)

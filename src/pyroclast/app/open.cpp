@@ -23,7 +23,7 @@ constexpr int kManyBlocks = 20'000;
 Opened open_deck(const RunOptions& options, bool needs_code) {
   RunChoices choices = choices_of(options);
   choices.needs_code = needs_code;
-  return {Deck::open_deck(options.deck, options.changes), options.deck.parent_path(), std::move(choices)};
+  return {Deck::open(options.deck, options.changes), options.deck.parent_path(), std::move(choices)};
 }
 
 RunChoices choices_of(const RunOptions& options) {

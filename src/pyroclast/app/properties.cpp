@@ -100,7 +100,7 @@ void print(const std::vector<ReadCurve>& curves) {
 }  // namespace
 
 int plot_properties(const PropertiesOptions& options) {
-  const Deck deck = Deck::open_deck(options.deck);
+  const Deck deck = Deck::open(options.deck);
   const Setup setup = read_setup(deck, options.deck.parent_path());
   require_code(setup);
   std::string csv = "property,unit,temperature_degC,value,ratio_to_20_degC\n";

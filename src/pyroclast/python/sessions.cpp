@@ -14,6 +14,7 @@
 #include "pyroclast/python/arrays.hpp"
 #include "pyroclast/python/bindings.hpp"
 #include "pyroclast/python/decks.hpp"
+#include "pyroclast/session/rehearsal.hpp"
 #include "pyroclast/simulation/coupling.hpp"
 
 namespace pyroclast::python {

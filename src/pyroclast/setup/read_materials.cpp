@@ -441,7 +441,7 @@ class InterfaceReader {
         s.word_or_text("law", words, "a law of your own, see [laws.md](laws.md)", "contact law");
     try {
       const LawTable& law = find_law_(stated, s.is_changed("law"));
-      for (const OpenedLaw* loaded : opened_laws())
+      for (const OpenedLaw* opened : opened_laws())
         if (&opened->table == &law) name_file(s, *opened, stated);
       return law;
     } catch (const CodeNotAllowed& error) {
