@@ -788,7 +788,7 @@ class Run:
         block = self.zone_block
         points = {name: _in_space(values) if values.ndim > 1 else values
                   for name, values in self._core.fields("gridpoint", []).items()}
-        cells = {"block": block, "material": self.block_material[block], **self._core.fields("zone", [])}
+        cells: dict[str, Any] = {"block": block, "material": self.block_material[block], **self._core.fields("zone", [])}
         names = {name: np.array([number, 2]) for number, name in enumerate(self.material_names)}
         return meshio.Mesh(_in_space(self.position), [("triangle", self.zones)], point_data=points,
                            cell_data={name: [values] for name, values in cells.items()}, field_data=names)

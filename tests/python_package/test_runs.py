@@ -401,18 +401,18 @@ class Arrays(Case):
                                ("force", lambda v: v[slot // 8, :, slot % 8])):
             view = getattr(run.views, name)
             self.assertTrue(np.shares_memory(view, getattr(run.views, name)), name)
-            np.testing.assert_array_equal(in_order(view), getattr(run, name), name)
-            self.assertFalse(np.shares_memory(view, getattr(run, name)))
+            np.testing.assert_array_equal(in_order(view), getattr(run.fields, name), name)
+            self.assertFalse(np.shares_memory(view, getattr(run.fields, name)))
             with self.assertRaises(ValueError):
                 view[0] = 1.0
             self.assertGreater(np.abs(view).max(), 0.0, name)
-        self.assertEqual(run.views.history.shape[1], 8)
+        self.assertEqual(run.views.internals.shape[1], 8)
 
     def test_no_view_is_a_copy_or_can_be_written(self):
         run = pyroclast.Run(deck(), threads=1)
         run.until(strain=1e-4)
         names = [name for name in dir(pyroclast.Views) if not name.startswith("_")]
-        self.assertEqual(names, ["displacement", "force", "history", "velocity"])
+        self.assertEqual(names, ["displacement", "force", "internals", "velocity"])
         for name in names:
             view = getattr(run.views, name)
             self.assertTrue(np.shares_memory(view, getattr(run.views, name)), name)
@@ -426,7 +426,7 @@ class Arrays(Case):
     def test_views_can_be_read_when_nothing_else_of_the_run_is_left(self):
         run = pyroclast.Run(deck(), threads=1)
         run.until(strain=1e-4)
-        views = [run.views.displacement, run.views.velocity, run.views.force, run.views.history]
+        views = [run.views.displacement, run.views.velocity, run.views.force, run.views.internals]
         sums = [float(view.sum()) for view in views]
         del run
         gc.collect()

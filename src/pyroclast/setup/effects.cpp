@@ -69,6 +69,7 @@ void check_flow(const Section& root, const Setup& setup) {
 void warn_of_first_strain(const Section& root, const Setup& setup) {
   if (!setup.motion) return;
   const auto& stress_free = setup.motion->stress_free;
+  const auto coupling = root.optional_section("coupling");
   if (!expands(setup)) {
     if (stress_free)
       root.section("coupling")
@@ -86,8 +87,8 @@ void warn_of_first_strain(const Section& root, const Setup& setup) {
     heat->warn("initial", strained + (stress_free ? ""
                                                   : ": a stage that heats it does so gradually; "
                                                     "coupling.stress_free says another temperature"));
-  else
-    root.section("coupling").warn(kStressFree, strained);
+  else if (coupling)
+    coupling->warn(kStressFree, strained);
 }
 
 void warn_of_even_temperatures(const Section& root, const Setup& setup) {
