@@ -48,10 +48,10 @@ struct LawTable {
   void (*numbers_of)(const void* constants, double* numbers);
   Objection (*check)(const double* properties, const int* choices);
   ContactStiffness<double> (*stiffness)(const void* constants);
-  /// Takes a point to a jump (opening, tangential components) and adds to the losses.
+  /// Takes a point to a jump (opening, tangential components) and adds to the losses. One function for 2D and
+  /// one for 3D; null where the law is not made for the dimension.
   std::array<PointResponse (*)(const void* constants, const double* jump, double* internals, double* losses),
              2>
-      /// One function for 2D and one for 3D; null where the law is not made for the dimension.
       update_of;
   const CompiledForSets* compiled;  ///< functions of the step; null where none are part of the program
 
