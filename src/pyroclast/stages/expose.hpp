@@ -7,7 +7,7 @@
 
 namespace pyroclast {
 
-/// Lets heat flow through the specimen by its boundary conditions.
+/// Stage that lets heat flow through the specimen by its boundary conditions.
 class Expose : public ExchangeStage {
  public:
   struct Keys {
@@ -35,8 +35,8 @@ class Expose : public ExchangeStage {
 
   Keys keys_;
   HeatFlow flow_;
-  double began_ = 0.0;       ///< heating time, s
-  double next_frame_ = 0.0;  ///< likewise
+  double began_ = 0.0;       ///< heating time at the beginning, s
+  double next_frame_ = 0.0;  ///< heating time of the next frame, s
 };
 
 StageKind expose_kind();
