@@ -33,7 +33,7 @@ struct Coupling {
   std::int64_t least_cycles = 0;
   /// Most steps for one exchange; an exchange that did not come to rest by then is flagged.
   std::int64_t most_cycles = 0;
-  /// true: moves the body to where the last exchange foretells it to rest; uniform fields only.
+  /// Choice to move the body first to where its last exchange foretells it to rest; uniform fields only.
   bool predictor = false;
   PlatenControl platen = PlatenControl::force;
   /// Share of the height by which the platen sinks at one temperature when the specimen has failed. Without
