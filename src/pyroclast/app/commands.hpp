@@ -13,9 +13,9 @@ constexpr int kMostThreads = 1024;
 
 /// Sources of contact laws that are not part of the program.
 struct OwnLawOptions {
-  std::vector<std::filesystem::path> folders;  ///< see LawSources
+  std::vector<std::filesystem::path> folders;  ///< folders of laws, see LawSources
   bool may_compile = true;
-  bool allow_code = false;  ///< see CodePermission
+  bool allow_code = false;  ///< permission for code met now, see CodePermission
   bool of_study = false;    ///< true where the values of --set come from a study file
 };
 
@@ -41,8 +41,8 @@ struct RunOptions {
 struct ResumeOptions {
   std::filesystem::path run;         ///< folder of a run
   std::filesystem::path checkpoint;  ///< checkpoint to go on from; empty: the newest
-  std::string from_stage;            ///< for a fork: number or name of the last stage in common
-  std::filesystem::path more;        ///< for a fork: a file with stages to append
+  std::string from_stage;            ///< number or name of the last stage in common, for a fork
+  std::filesystem::path more;        ///< file with stages to append, for a fork
   RunOptions as;                     ///< options of the run; `deck` and `seed` come from the run itself
 };
 
