@@ -125,7 +125,7 @@ struct Portable {
   static Truth from_bits(unsigned bits) {
     return Truth{-static_cast<Bits>(bits & 1U), -static_cast<Bits>((bits >> 1U) & 1U)};
   }
-  /// Loads consecutive pairs and puts their first numbers into x and their second into y.
+  /// Reads consecutive pairs and puts their first numbers into x and their second into y.
   static void load_pairs(const double* p, Value& x, Value& y) {
     part_pairs(load(p), load(p + 2), x, y);
   }
@@ -133,11 +133,11 @@ struct Portable {
     store(p, __builtin_shufflevector(x, y, 0, 2));
     store(p + 2, __builtin_shufflevector(x, y, 1, 3));
   }
-  /// Loads pairs that stand at offsets and puts their first numbers into x and their second into y.
+  /// Reads pairs that stand at offsets and puts their first numbers into x and their second into y.
   static void gather_pairs(const double* p, const int* offset, Value& x, Value& y) {
     part_pairs(load(p + offset[0]), load(p + offset[1]), x, y);
   }
-  /// Loads pairs less the pairs at other offsets and puts the differences apart into x and y.
+  /// Reads pairs less the pairs at other offsets and puts the differences apart into x and y.
   static void gather_differences(const double* p, const int* offset, const int* less, Value& x, Value& y) {
     part_pairs(load(p + offset[0]) - load(p + less[0]), load(p + offset[1]) - load(p + less[1]), x, y);
   }
@@ -210,7 +210,7 @@ struct Avx2 {
     x = _mm256_unpacklo_pd(even, odd);
     y = _mm256_unpackhi_pd(even, odd);
   }
-  /// Loads two pairs by single loads, which cost less than the gather instruction.
+  /// Reads two pairs by single loads, which cost less than the gather instruction.
   static Value two_pairs(const double* p, int i, int j) {
     return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + i)), _mm_load_pd(p + j), 1);
   }
@@ -265,7 +265,7 @@ struct Avx512 {
     x = _mm512_unpacklo_pd(even, odd);
     y = _mm512_unpackhi_pd(even, odd);
   }
-  /// Loads every other pair by single loads and a few shuffles, which cost less than the gather instruction.
+  /// Reads every other pair by single loads and a few shuffles, which cost less than the gather instruction.
   static Value every_other_pair(const double* p, const int* offset) {
     const auto two = [&](int i, int j) {
       return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + offset[i])),
@@ -340,7 +340,7 @@ struct Lanes {
     for_each_part<kParts>([&](auto i) { r.part[i] = f(i); });
     return r;
   }
-  /// Loads eight numbers.
+  /// Reads eight numbers.
   /// \param p  the numbers, aligned to 64 bytes
   static Lanes load(const double* p) {
     return of_parts([&](auto i) { return Set::load(p + i * Set::kWidth); });

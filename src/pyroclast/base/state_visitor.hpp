@@ -160,7 +160,8 @@ class StateVisitor {
     std::size_t item;  ///< bytes of one item
     std::size_t count;
     std::byte* data;
-    /// Makes room for another number of items and returns their new place; empty where the number is fixed.
+    /// Function that makes room for another number of items and returns their new place; empty where the
+    /// number is fixed.
     std::function<std::byte*(std::size_t)> resize;
   };
   virtual void visit_piece(const std::string& name, const Piece& piece) = 0;
