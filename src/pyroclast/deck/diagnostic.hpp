@@ -16,7 +16,7 @@ struct Diagnostic {
       false;  ///< true for a value of the command line; its place is then in the changed deck, not the file
   std::string key =
       {};  ///< full path, such as "contacts.mortar_mortar.f_t" or "stages[0].rate"; may be empty
-  std::string value = {};    ///< as written in the deck; may be empty
+  std::string value = {};    ///< value as written in the deck; may be empty
   std::string message = {};  ///< text that says what is wrong and what is allowed
   std::string hint = {};     ///< text that says what is probably meant; may be empty
   bool is_missing = false;   ///< true for a key or table that is needed and not there

@@ -22,9 +22,9 @@ struct KeyCondition {
 
   std::string table, key;  ///< table and key of the setting
   Kind kind = Kind::value;
-  /// For Kind::value: values, as written in a deck, with which the key is read.
+  /// Values, as written in a deck, with which the key is read; for Kind::value.
   std::vector<std::string> with;
-  std::vector<std::string> without;  ///< for Kind::value: values with which the key is not read
+  std::vector<std::string> without;  ///< values with which the key is not read; for Kind::value
 
   bool operator==(const KeyCondition&) const = default;
 };
