@@ -269,7 +269,7 @@ struct Cohesive {
     const Real softening_slip = excess / (c.shear_stiffness - drop * per_slip);
     const Real damage = h.shear_damage + softening_slip * per_slip;
     const auto partly = softens & follows & (damage < 1.0);
-    // the full way to the residual line where the point softens to the end
+    // The way leads to the residual line where the point softens to the end.
     Real length = select(softens, held - residual * c.shear_compliance, excess * c.shear_compliance);
     length = select(partly, softening_slip, length);
     length = select(slips, length, Real(0.0));

@@ -14,7 +14,7 @@ namespace pyroclast {
 /// Parameters of a contact at one temperature, for any law.
 struct ContactProperties {
   const LawTable* law = nullptr;
-  std::vector<double> numbers;  ///< in the order of LawTable::properties
+  std::vector<double> numbers;  ///< numbers in the order of LawTable::properties
   std::vector<int> choices;     ///< options chosen, in the order of LawTable::choices
 
   ContactProperties() = default;
