@@ -72,7 +72,7 @@ struct SolidMaterial {
 /// Parameters of a contact as functions of temperature (paper, Table 2 and §4.1), for any law.
 struct ContactMaterial {
   const LawTable* law = nullptr;
-  std::vector<Curve> numbers;  ///< in the order of LawTable::properties
+  std::vector<Curve> numbers;  ///< numbers in the order of LawTable::properties
   /// Residual ratios, see share_left, of the properties that do not follow the temperature back on cooling;
   /// in the order of LawTable::properties.
   std::vector<std::optional<Curve>> residual_ratios;
