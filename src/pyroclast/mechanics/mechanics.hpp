@@ -185,7 +185,7 @@ class Mechanics {
   double remembered(int contact, Remembers what) const;
   /// Returns the names that the laws of this body give the energies that they lose.
   const std::vector<std::string_view>& dissipations() const { return dissipations_; }
-  double opening(int contact) const;  ///< u_n at the displacements of the last forces, m
+  double opening(int contact) const;  ///< Returns u_n at the displacements of the last forces, m.
   /// Returns the directions of a contact at the displacements of the last forces.
   ContactFrame<Dim> frame_of_forces(int contact) const;
   /// Returns the properties of a zone; until creep is committed, they include the compliance that it adds.

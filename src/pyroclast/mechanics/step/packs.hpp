@@ -35,7 +35,7 @@ struct Packs {
   static void store(const Vector& v, double (&c)[Dim][kLanes]) {
     for (int i = 0; i < Dim; ++i) v[i].store(c[i]);
   }
-  /// Loads eight consecutive vectors.
+  /// Reads eight consecutive vectors.
   static Vector load(const Vec<Dim>* p) {
     Vector v;
     if constexpr (Dim == 2) {
