@@ -39,8 +39,8 @@ struct LawSources {
 /// Relative paths are taken from the folder of the deck. The law lives as long as the process. Throws
 /// CodeNotAllowed where the law is code that the user did not allow, and Error when there is no such law, or
 /// it is refused (open_law, compile_law).
-/// \param named  true where the command line or a script names the law, and no file; it then names any law
-///               that lies in the folders
+/// \param named  true where the command line or a script, and no file, names the law: its code may then run.
+///               Code in the folders may run in any case, because the user named them
 PYROCLAST_LASTING const LawTable& find_law(std::string_view stated, const std::filesystem::path& deck_folder,
                                            const LawSources& sources, bool named = false);
 

@@ -24,14 +24,14 @@ struct OpenedLaw {
   std::string compiler;  ///< compiler as the shared object names it
 };
 
-/// Loads a shared object that pyroclast_add_law made, for the rest of the process; the same file once. Throws
+/// Opens a shared object that pyroclast_add_law made, for the rest of the process; the same file once. Throws
 /// Error where the file is no such object, was made for another version or layout, or does not compute by
 /// IEEE 754: with contraction, fast-math or flush to zero.
 /// \param header  header from which this program compiled it
 PYROCLAST_LASTING const OpenedLaw& open_law(const std::filesystem::path& shared_object,
                                             LawHeader header = {});
 
-/// Returns the laws that were loaded so far, in the order of loading.
+/// Returns the laws that were opened so far, in that order.
 std::vector<const OpenedLaw*> opened_laws();
 
 }  // namespace pyroclast
