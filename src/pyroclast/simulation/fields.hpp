@@ -73,7 +73,7 @@ class FieldReader {
 };
 
 struct Field : FieldInfo {
-  /// Writes the components of one item.
+  /// Function that writes the components of one item.
   std::function<void(FieldReader&, int item, double* to)> read;
 };
 

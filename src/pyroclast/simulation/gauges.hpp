@@ -11,7 +11,7 @@ namespace pyroclast {
 /// Gauge: reads some columns of the history at each look.
 struct Gauge {
   std::vector<Column> columns;
-  /// Returns the values in the order of the columns.
+  /// Function that returns the values in the order of the columns.
   std::function<std::vector<double>(const Simulation&)> read;
   bool of_motion = false;  ///< true where there is nothing to read in a stage that does not move the body
 };

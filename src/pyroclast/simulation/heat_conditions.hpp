@@ -55,7 +55,7 @@ struct HeatConditions {
   double initial = kReferenceTemperature;  ///< initial temperature, °C
   // The members from here on are for conduction only.
   HeatScheme scheme = HeatScheme::super_time_stepping;
-  double safety = 0.0;  ///< see HeatParameters
+  double safety = 0.0;  ///< fraction of the stable step, see HeatParameters
   /// Largest change of any temperature in one step of the solver, K.
   double largest_change = 0.0;
   double largest_step = 0.0;                  ///< s

@@ -51,7 +51,7 @@ const Unit& rate_unit_of(RecordKind kind);
 /// Returns a value of the column over the same value in SI: 1e-6 where the column is in MPa.
 double column_over_si(RecordKind kind);
 
-/// Quantity that a run records. Displacements and openings count from the last zero.
+/// Record of a deck: a quantity that a run measures. Displacements and openings count from the last zero.
 class Record {
  public:
   /// Throws Error, with the record's place, when a set is missing, the set of a stress holds no zone, or
