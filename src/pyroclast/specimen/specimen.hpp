@@ -139,7 +139,7 @@ std::vector<std::string> phases(const SpecimenParameters& parameters);
 struct Edge {
   int v0, v1;
   int left;
-  int right;  ///< the other cell, or -1 on the outline
+  int right;  ///< other cell, or -1 on the outline
 };
 
 /// Returns the edges of a tessellation, each once, in the order in which the cells meet them. Throws Error
@@ -173,7 +173,7 @@ struct Specimen {
   double fraction_asked, fraction_placed, fraction_superposed;
   double fraction_of_circles;    ///< superposed fraction before fibres were superposed
   double covered_fraction;       ///< fraction of a block above which it became aggregate
-  std::vector<double> fraction;  ///< by phase: area of its blocks over that of the specimen
+  std::vector<double> fraction;  ///< area of the blocks of each phase over that of the specimen
   BlockMetrics metrics;
 };
 
