@@ -38,8 +38,8 @@ class Compress : public Stage {
     double stop_strain = 0.0;
     /// Share of f_c below which the stress must fall to end the stage; 0: never.
     double stop_fraction = 0.0;
-    double history_strain = 0.0;  ///< see OutputIntervals
-    double frame_strain = 0.0;    ///< see OutputIntervals
+    double history_strain = 0.0;  ///< strain between looks, see OutputIntervals
+    double frame_strain = 0.0;    ///< strain between frames, see OutputIntervals
   };
 
   explicit Compress(const Keys& keys) : keys_(keys) {}

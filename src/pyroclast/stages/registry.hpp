@@ -40,7 +40,7 @@ struct StageKind {
   std::string name;
   std::string meaning;  ///< meaning of the kind, for the deck reference
   StageNeeds needs;
-  /// Reads a stage of this kind. Errors are recorded in the deck.
+  /// Function that reads a stage of this kind. Errors are recorded in the deck.
   /// \param own  the stage's own table of [[stages]]
   std::function<std::unique_ptr<Stage>(const Section& own, const StageTables& tables)> read;
 };
