@@ -93,7 +93,7 @@ struct CompressionAim {
   bool is_upwards = false;  ///< true where the platen was moved up, to unload
   /// True where the stage ends at a stress or a strain; then a missing peak is no reason to warn.
   bool to_a_value = false;
-  double waves_until = 0.0;  ///< see compression_response
+  double waves_until = 0.0;  ///< time of the first wave, see compression_response
 };
 
 /// Reports all results of a compression as the report of a stage.

@@ -20,7 +20,7 @@ class Conduct : public Stage {
     /// the interval, s; no change makes the stage miss one.
     double change = std::numeric_limits<double>::infinity();
     double interval = std::numeric_limits<double>::infinity();
-    double frame_interval = std::numeric_limits<double>::infinity();  ///< see OutputIntervals
+    double frame_interval = std::numeric_limits<double>::infinity();  ///< interval, see OutputIntervals
     /// L2 norm of the temperature's rate (Conduction::rate) below which the stage ends, K/s. It does not end
     /// before the boundary values have become constant, because a fire that starts slowly is no steady state.
     std::optional<double> steady_rate{};

@@ -14,7 +14,7 @@ class ExchangeStage : public Stage {
  public:
   struct Keys {
     Coupling coupling;
-    double frame_temperature = 0.0;  ///< see OutputIntervals
+    double frame_temperature = 0.0;  ///< interval, see OutputIntervals
   };
 
   void begin(Simulation& simulation) final;

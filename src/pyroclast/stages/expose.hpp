@@ -12,7 +12,7 @@ class Expose : public ExchangeStage {
  public:
   struct Keys {
     double duration = 0.0;                                            ///< s
-    double frame_interval = std::numeric_limits<double>::infinity();  ///< see OutputIntervals
+    double frame_interval = std::numeric_limits<double>::infinity();  ///< interval, see OutputIntervals
     ExchangeStage::Keys exchange;
   };
 
