@@ -166,7 +166,7 @@ struct Specimen {
   Tessellation tessellation;
   std::vector<std::string> phases;    ///< phases that blocks can have
   int matrix = -1;                    ///< index into `phases`; -1: not known
-  std::vector<int> phase;             ///< per cell, index into `phases`
+  std::vector<int> phase;             ///< phase of each cell, index into `phases`
   std::vector<Aggregate> aggregates;  ///< circles as placed, those of each kind largest first
   std::vector<Fibre> fibres;          ///< fibres as placed
   /// Area of circles asked for and placed, and of blocks that are not matrix, over that of the specimen.
