@@ -261,7 +261,7 @@ class Conduction {
     double below = 0.0, above = 0.0;
     HeatLedger heat;                                    ///< ledger without `stored`
     std::vector<double> temperature;                    ///< °C
-    std::vector<double> increment, before, first_rate;  ///< see TimeStage
+    std::vector<double> increment, before, first_rate;  ///< terms of a stage, see TimeStage
   };
   /// Values of the state that the beginning of a run changed, until its first step is completed.
   struct BeforeRun {
