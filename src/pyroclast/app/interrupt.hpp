@@ -6,8 +6,9 @@
 
 namespace pyroclast::app {
 
-/// While one is there, the first SIGINT, SIGTERM or SIGHUP asks for a clean end, and the second one to skip
-/// what can be made later; the third has its usual effect. One at a time.
+/// Handler of interrupts while the object lives: the first SIGINT, SIGTERM or SIGHUP asks for a clean end,
+/// the second one also to skip work that can be done later; the third has its usual effect. Only one object
+/// at a time.
 class Interrupt {
  public:
   Interrupt() {

@@ -7,41 +7,41 @@
 
 namespace pyroclast::app {
 
-/// The deck of the options, and what it says, with what the command line says in place and the threads set.
-/// \param needs_code  else what the deck names and may not run is in its setup
+/// Opens the deck of the options, with the changes of the command line applied and the threads set.
+/// \param needs_code  false: code that the deck names and that may not run is listed in its setup
 Opened open_deck(const RunOptions& options, bool needs_code = true);
-/// Of a run; of many blocks it says first that making them takes a while.
+/// Returns the choices for a run. With many blocks it first says that making them takes a while.
 RunChoices choices_of(const RunOptions& options);
 
-/// Where the results shall be.
+/// Returns the folder for the results.
 std::filesystem::path output_folder(const RunOptions& options);
 
-/// Names what was in a folder and stays there.
+/// Prints the names of files that were in a folder and stay there.
 void print_kept(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& foreign);
 
-/// Where laws come from as environment and command line say; the command that compiles one is printed.
+/// Returns the sources of laws from environment and command line; the command that compiles a law is printed.
 LawSources sources_of(const OwnLawOptions& options);
 
-/// The contact laws that are not part of the program and that it was asked to run, for the screen; empty
-/// without any.
+/// Describes, for the screen, the contact laws outside the program that it was asked to run; empty without
+/// any.
 std::string describe_own_laws();
 
-/// What came of the specimen, for the screen.
+/// Describes, for the screen, the specimen as it was made.
 std::string describe(const specimen::Specimen& specimen);
 
-/// How many threads a run takes at most, for the screen.
+/// Describes, for the screen, how many threads a run takes at most.
 std::string describe(const Team& team);
 
-/// A line each, for the screen; empty without any.
+/// Returns the warnings as lines for the screen; empty without any.
 std::string describe_warnings(const std::vector<std::string>& warnings);
-/// What of a deck is there for others than the program; empty where nothing is.
+/// Describes the parts of a deck that are there for others than the program; empty where there are none.
 std::string describe_unused(const Setup& setup);
 
-/// What the heat solver is about to do, for the screen.
-/// \param temperatures  that the run may come to, °C
+/// Describes, for the screen, the work that lies before the heat solver.
+/// \param temperatures  temperatures to which the run may come, °C
 std::string describe(const Conduction<2>& conduction, const Model<2>& model, const Interval& temperatures);
 
-/// A duration as one reads it, e.g. "3 min 20 s".
+/// Returns a duration for readers, e.g. "3 min 20 s".
 std::string duration(double seconds);
 
 }  // namespace pyroclast::app

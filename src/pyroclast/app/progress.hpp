@@ -9,16 +9,17 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start);
 
-/// When to tell how far a run is, and how long it will still take.
+/// Clock that decides when to report the progress of a run, and the time left.
 class Progress {
  public:
-  /// Whether the last line was long enough ago; then the next one is counted from now.
+  /// Tells whether the last line was long enough ago; the next one then counts from now.
   bool line_is_due();
-  /// Whether nothing was told for some time, as where no look is taken; then that is counted from now.
+  /// Tells whether nothing was reported for some time, as where no look is taken; this time then counts from
+  /// now.
   bool is_long_silent();
-  /// What follows is foreseen from here on.
+  /// Foresees the time left from now on.
   void begin_stage() { stage_start_ = Clock::now(); }
-  /// Time left of the stage, for the screen; empty where that is too early to say.
+  /// Returns the time left of the stage, for the screen; empty where it is too early to say.
   /// \param done  share of the stage, 0 to 1
   std::string left(double done) const;
 

@@ -12,27 +12,27 @@
 
 namespace pyroclast::app {
 
-/// What a run says: on the screen, and in `run.log` of its folder.
+/// Messages of a run: on the screen, and in `run.log` of its folder.
 class RunLog {
  public:
-  /// \param kept  bytes that stay of a log that is there
+  /// \param kept  number of bytes to keep of a log that is there
   RunLog(std::filesystem::path file, Speech speech, std::uint64_t kept = 0);
 
   Speech speech() const { return speech_; }
 
-  /// A text of one or more lines, without the last line's end.
+  /// Writes a text of one or more lines, without the last line's end.
   void say(const std::string& text);
-  /// A line with the time of day before it.
+  /// Writes a line with the time of day before it.
   void say_now(const std::string& text);
-  /// Whether lines with the time of day go to the file alone.
+  /// Sets whether lines with the time of day go to the file alone.
   void keep_progress_off_screen(bool kept);
-  /// Of the file.
+  /// Returns the length of the file in bytes.
   std::uint64_t bytes() const;
 
  private:
   std::filesystem::path file_;
   Speech speech_;
-  spdlog::sink_ptr screen_;  ///< none where nothing is said
+  spdlog::sink_ptr screen_;  ///< sink of the screen; none where nothing is printed
   std::unique_ptr<spdlog::logger> logger_;
 };
 

@@ -6,10 +6,10 @@
 
 namespace pyroclast::app {
 
-/// What a run will be, for the screen.
+/// Describes, for the screen, the run that is about to start.
 std::string describe_start(Session& session);
 
-/// Takes a run to its end, or to where the user stops it, and writes what comes. Returns the exit code.
+/// Takes a run to its end, or until the user stops it, and writes its results. Returns the exit code.
 int run_to_end(Session& session, RunLog& log, const RunOptions& options);
 
 }  // namespace pyroclast::app

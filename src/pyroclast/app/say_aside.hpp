@@ -7,8 +7,8 @@
 
 namespace pyroclast::app {
 
-/// Writes to stderr; what acts on a terminal is written out. Where stderr is full or gone, nobody can be
-/// told, and nothing ends for it.
+/// Writes to stderr, with characters that act on a terminal written out. Where stderr is full or gone, nobody
+/// can be told, and the program goes on.
 inline void say_aside(const std::string& text) {
   std::fputs(shown(text, true).c_str(), stderr);
 }

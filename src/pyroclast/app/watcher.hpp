@@ -10,24 +10,24 @@
 
 namespace pyroclast::app {
 
-/// Shows a run while it is computed, by a process that reads the run's folder. Whatever becomes of that
-/// process, the run goes on.
+/// Process that shows a run while it is computed, from the run's folder. Whatever becomes of this process,
+/// the run goes on.
 ///
-/// With a display it opens a window, which may outlive the run. Without one it draws a curve in the terminal;
-/// then the run's lines of progress go to `run.log` alone, as long as it lives.
+/// With a display the process opens a window, which may outlive the run. Without a display it draws a curve
+/// in the terminal; the run's lines of progress then go to `run.log` alone, as long as the process lives.
 class Watcher {
  public:
-  /// \param log  kept by reference
+  /// \param log  log of the run, kept by reference
   Watcher(std::filesystem::path folder, RunLog& log);
-  /// Ends it unless it has a window.
+  /// Ends the process unless it has a window.
   ~Watcher();
   Watcher(const Watcher&) = delete;
   Watcher& operator=(const Watcher&) = delete;
 
-  /// Notices that it has ended, and tells if it did not mean to.
+  /// Notices that the process has ended, and reports an end that was not intended.
   void look_after();
-  /// Where it prints, waits until it has shown the run that is over.
-  /// \param skip  asked while it is waited for; true ends it
+  /// Waits, where the process prints, until it has shown the run that is over.
+  /// \param skip  asked during the wait; true ends the process
   void see_out(const std::function<bool()>& skip);
 
  private:
@@ -36,10 +36,11 @@ class Watcher {
   std::filesystem::path folder_;
   RunLog& log_;
   bool has_window_;
-  std::optional<pid_t> process_;  ///< as long as it lives
+  std::optional<pid_t> process_;  ///< id of the process as long as it lives
 };
 
-/// Goes on as the watcher of a run, see the Python package. \param words  as typed
+/// Goes on as the watcher of a run, see the Python package.
+/// \param words  as typed
 [[noreturn]] void watch(const std::vector<std::string>& words);
 
 }  // namespace pyroclast::app

@@ -6,15 +6,16 @@
 
 namespace pyroclast {
 
-/// Where the chunks of a list begin: chunk i holds items [i] to [i + 1].
+/// Begins of the chunks of a list, and its end: chunk i holds the items from [i] up to [i + 1].
 using ChunkBegins = std::span<const int>;
 
-/// Places in a chunk of a list that is cut evenly: about the nodes or zones of a thousand blocks. They are
-/// numbered in the order of the blocks, so those of a chunk lie together.
+/// Number of places in a chunk of a list that is cut evenly: about the nodes or zones of a thousand blocks.
+/// Places are numbered in the order of the blocks, so the places of a chunk lie together.
 inline constexpr int kPlacesPerChunk = 4096;
 
 /// Cuts a list into chunks of kPlacesPerChunk places.
-/// \param place  of an item, 0 or more, ascending; a list of some nodes is cut where that of all nodes is
+/// \param place  returns the place of an item: 0 or more, ascending. A list of some of the nodes is cut at
+///               the same places as the list of all nodes
 template <class Place>
 std::vector<int> chunk_begins(int count, Place place) {
   std::vector<int> begins{0};
@@ -24,17 +25,18 @@ std::vector<int> chunk_begins(int count, Place place) {
   return begins;
 }
 
-/// The same of a list whose items are places themselves.
+/// Cuts a list whose items are the places themselves.
 inline std::vector<int> chunk_begins(int count) {
   return chunk_begins(count, [](int item) { return item; });
 }
 
-/// Every sum over a body is one of these. It is taken chunk by chunk, item by item within a chunk, and then
-/// over the chunks, in that one order; so it depends on how the body is cut into chunks, but neither on the
-/// number of threads or ranks nor on how blocks are bundled within a chunk of gridpoints, zones or contacts.
+/// Sums over the items of a body: every sum over a body is taken by this function. It adds item by item
+/// within a chunk and then chunk by chunk, always in this order. So the sum depends on how the body is cut
+/// into chunks, but neither on the number of threads or ranks nor on how blocks are bundled within a chunk of
+/// gridpoints, zones or contacts.
 ///
-/// \tparam Sum  a number, or anything that starts as {} and takes += of its own kind
-/// \param add   called as `add(item, sum)`; adds what an item brings to the sum of its chunk
+/// \tparam Sum  a number, or any type that starts as {} and takes += of its own kind
+/// \param add   called as `add(item, sum)`; adds the contribution of an item to the sum of its chunk
 template <class Sum, class Add>
 Sum chunked_sum(ChunkBegins chunks, Add add) {
   Sum total{};
@@ -46,7 +48,7 @@ Sum chunked_sum(ChunkBegins chunks, Add add) {
   return total;
 }
 
-/// Sum of the values of the items.
+/// Sums the values of the items.
 template <class Value>
 double chunked_sum(ChunkBegins chunks, Value value) {
   return chunked_sum<double>(chunks, [&](int item, double& sum) { sum += value(item); });

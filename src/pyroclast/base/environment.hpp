@@ -5,7 +5,7 @@
 
 namespace pyroclast {
 
-/// A variable of the environment; empty where it is not set.
+/// Returns a variable of the environment; empty where the variable is not set.
 inline std::string environment(const char* name) {
   const char* const value = std::getenv(name);
   return value ? value : "";

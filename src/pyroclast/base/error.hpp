@@ -4,8 +4,8 @@
 
 namespace pyroclast {
 
-/// Anything that is wrong with the input or the environment, worded for the user: it names the thing,
-/// its value and what is allowed. The application prints it and exits with a non-zero status.
+/// Error of the input or the environment, worded for the user: it names the thing, its value and what is
+/// allowed. The application prints the error and exits with a non-zero status.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

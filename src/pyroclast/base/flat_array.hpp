@@ -17,10 +17,10 @@
 
 namespace pyroclast {
 
-/// Array of plain data that starts on a cache line, filled with zero bytes.
+/// Array of plain data that starts on a cache line and is filled with zero bytes.
 ///
-/// On a machine with several memories a page stands near the thread that first touches it: with a team each
-/// of its threads touches an even share.
+/// On a machine with several memories the system puts a page near the thread that touches it first. Where a
+/// team is given, each of its threads touches an even share of the array.
 template <class T>
 class FlatArray {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -37,7 +37,7 @@ class FlatArray {
     if (!base) throw std::bad_alloc();
     data_ = {reinterpret_cast<T*>(base + shift), Free{base}};
 #ifdef MADV_HUGEPAGE
-    // gathers all over a large array would miss most translations of small pages; a refusal costs only time
+    // Gathers all over a large array would miss most translations of small pages; a refusal costs only time.
     if (alignment == kHugePage) madvise(base, bytes, MADV_HUGEPAGE);
 #endif
     const auto touch = [&](std::ptrdiff_t first, std::ptrdiff_t last) {
@@ -70,8 +70,8 @@ class FlatArray {
   }
   ~FlatArray() = default;
 
-  /// Another number of elements; new ones are zero bytes. Elements move when there is no room left, and then
-  /// room for twice as many is made.
+  /// Changes the number of elements; new ones are zero bytes. The elements move when there is no room left;
+  /// the new place then has room for twice as many.
   void resize(std::size_t size) {
     if (size > capacity_) {
       FlatArray bigger(std::max(size, 2 * capacity_));
@@ -121,8 +121,9 @@ class FlatArray {
     void* base = nullptr;
     void operator()(T*) const { std::free(base); }
   };
-  /// Large arrays begin apart in the sets of a cache: those that are walked through side by side would
-  /// otherwise all want the same ones, and drive out the program that walks.
+  /// Returns the bytes by which the next large array is shifted, so that large arrays begin apart in the sets
+  /// of a cache. Arrays that are walked through side by side would otherwise compete for the same sets, and
+  /// drive out the program that walks through them.
   static std::size_t next_shift() {
     static std::atomic<unsigned> made = 0;
     return (made++ % 16) * (kPage + 5 * 64);
@@ -131,7 +132,7 @@ class FlatArray {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-/// Bytes that the elements of an array take.
+/// Returns the bytes that the elements of an array take.
 template <class Array>
 std::size_t bytes_of(const Array& array) {
   return array.size() * sizeof(*array.begin());

@@ -15,13 +15,13 @@
 
 /// Lanes: eight numbers that go through the same arithmetic together, one cache line of doubles.
 ///
-/// A law is written once as a template of its number type `Real`. With Real = double it is the law of one
-/// point; with Real = Lanes<...> of eight. What differs between them is only this: a condition is a mask, so
-/// that both ways are computed and `select` takes one of them lane by lane, and `any` tells whether a way is
+/// A law is written once as a template of its number type `Real`. With Real = double the law computes one
+/// point, with Real = Lanes<...> eight points. Only conditions differ: for lanes a condition is a mask. Both
+/// branches are then computed and `select` takes one of them lane by lane; `any` tells whether a branch is
 /// needed at all.
 ///
-/// The arithmetic of a lane is that of a double, IEEE 754, operation by operation: every instruction set
-/// gives the same bits.
+/// Each lane computes as a double does, IEEE 754, operation by operation: every instruction set gives the
+/// same bits.
 namespace pyroclast {
 
 inline constexpr int kLanes = 8;
@@ -41,24 +41,25 @@ inline double larger(double a, double b) {
   return a < b ? b : a;
 }
 
-/// v, not negative, with the sign of s; zero where s is zero.
+/// Returns v, which is not negative, with the sign of s; zero where s is zero.
 inline double signed_like(double v, double s) {
   return s > 0.0 ? v : s < 0.0 ? -v : 0.0;
 }
 
-/// Added to a whole number n in [-1022, 1023] it leaves n + 1023, which is how a double writes the exponent
-/// of 2^n, in the lowest bits of the sum.
+/// Number that, added to a whole number n in [-1022, 1023], leaves n + 1023 in the lowest bits of the sum. A
+/// double writes the exponent of 2^n as n + 1023.
 inline constexpr double kToExponent = 0x1.8p52 + 1023.0;
 
-/// 2^n of a whole number n in [-1022, 1023].
+/// Returns 2^n for a whole number n in [-1022, 1023].
 inline double power_of_two(double n) {
   return std::bit_cast<double>(std::bit_cast<std::uint64_t>(n + kToExponent) << 52);
 }
 
 // Instruction sets. A file that names one other than Portable is compiled with that set's options.
 
-/// Two lanes in a vector of the compiler: SSE2 on x86-64, NEON on aarch64, elsewhere what the compiler makes
-/// of it. Conditions are vectors of all ones and all zeros, so that choices are bits.
+/// Instruction set with two lanes in a vector of the compiler: SSE2 on x86-64, NEON on aarch64, elsewhere
+/// whatever the compiler makes of the vector. Conditions are vectors of all ones and all zeros, so that
+/// choices are bits.
 struct Portable {
   static constexpr int kWidth = 2;
   using Value = double __attribute__((vector_size(16)));
@@ -120,11 +121,11 @@ struct Portable {
   static Value select(Truth c, Value yes, Value no) {
     return reinterpret_cast<Value>((c & bits_of(yes)) | (~c & bits_of(no)));
   }
-  /// Lanes whose bit is set, the lowest bit first.
+  /// Returns a condition that is true in the lanes whose bit is set, the lowest bit first.
   static Truth from_bits(unsigned bits) {
     return Truth{-static_cast<Bits>(bits & 1U), -static_cast<Bits>((bits >> 1U) & 1U)};
   }
-  /// Pairs that stand one after the other, apart.
+  /// Reads consecutive pairs and puts their first numbers into x and their second into y.
   static void load_pairs(const double* p, Value& x, Value& y) {
     part_pairs(load(p), load(p + 2), x, y);
   }
@@ -132,11 +133,11 @@ struct Portable {
     store(p, __builtin_shufflevector(x, y, 0, 2));
     store(p + 2, __builtin_shufflevector(x, y, 1, 3));
   }
-  /// Pairs that stand at offsets, apart.
+  /// Reads pairs that stand at offsets and puts their first numbers into x and their second into y.
   static void gather_pairs(const double* p, const int* offset, Value& x, Value& y) {
     part_pairs(load(p + offset[0]), load(p + offset[1]), x, y);
   }
-  /// Pairs less those that stand at other offsets, apart.
+  /// Reads pairs less the pairs at other offsets and puts the differences apart into x and y.
   static void gather_differences(const double* p, const int* offset, const int* less, Value& x, Value& y) {
     part_pairs(load(p + offset[0]) - load(p + less[0]), load(p + offset[1]) - load(p + less[1]), x, y);
   }
@@ -209,7 +210,7 @@ struct Avx2 {
     x = _mm256_unpacklo_pd(even, odd);
     y = _mm256_unpackhi_pd(even, odd);
   }
-  /// Single loads cost less than the gather instruction.
+  /// Reads two pairs by single loads, which cost less than the gather instruction.
   static Value two_pairs(const double* p, int i, int j) {
     return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + i)), _mm_load_pd(p + j), 1);
   }
@@ -264,7 +265,7 @@ struct Avx512 {
     x = _mm512_unpacklo_pd(even, odd);
     y = _mm512_unpackhi_pd(even, odd);
   }
-  /// Single loads and a few shuffles cost less than the gather instruction.
+  /// Reads every other pair by single loads and a few shuffles, which cost less than the gather instruction.
   static Value every_other_pair(const double* p, const int* offset) {
     const auto two = [&](int i, int j) {
       return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + offset[i])),
@@ -277,28 +278,28 @@ struct Avx512 {
 
 // Eight numbers
 
-/// Calls `f(i)` for the parts of eight lanes, each i a constant. A loop would leave the parts in memory until
-/// the compiler unrolls it, late, and double its time for the rows of a law.
+/// Calls `f(i)` for the parts of eight lanes, with a constant i in each call. With a loop the compiler would
+/// unroll late and leave the parts in memory until then, which doubles the time of a law on lanes.
 template <int kParts, class F>
 [[gnu::always_inline]] inline void for_each_part(F&& f) {
   if constexpr (kParts > 1) for_each_part<kParts - 1>(f);
   f(std::integral_constant<int, kParts - 1>());
 }
 
-/// A condition in each lane.
+/// Condition in each lane.
 template <class Set>
 struct Mask {
   static constexpr int kParts = kLanes / Set::kWidth;
   typename Set::Truth part[kParts];
 
-  /// Part i is f(i).
+  /// Returns the mask whose part i is f(i).
   template <class F>
   [[gnu::always_inline]] static Mask of_parts(F f) {
     Mask m;
     for_each_part<kParts>([&](auto i) { m.part[i] = f(i); });
     return m;
   }
-  /// Lanes whose bit is set, the lowest bit first.
+  /// Returns the mask that is true in the lanes whose bit is set, the lowest bit first.
   static Mask from_bits(unsigned bits) {
     return of_parts(
         [&](auto i) { return Set::from_bits((bits >> (i * Set::kWidth)) & ((1U << Set::kWidth) - 1U)); });
@@ -328,18 +329,19 @@ struct Lanes {
   typename Set::Value part[kParts];
 
   Lanes() = default;
-  /// The same number in every lane.
+  /// Puts the same number into every lane.
   Lanes(double v) {  // NOLINT(google-explicit-constructor): a number is a number
     for_each_part<kParts>([&](auto i) { part[i] = Set::all(v); });
   }
-  /// Part i is f(i).
+  /// Returns the lanes whose part i is f(i).
   template <class F>
   [[gnu::always_inline]] static Lanes of_parts(F f) {
     Lanes r;
     for_each_part<kParts>([&](auto i) { r.part[i] = f(i); });
     return r;
   }
-  /// \param p  eight numbers, aligned to 64 bytes
+  /// Reads eight numbers.
+  /// \param p  the numbers, aligned to 64 bytes
   static Lanes load(const double* p) {
     return of_parts([&](auto i) { return Set::load(p + i * Set::kWidth); });
   }
@@ -383,22 +385,22 @@ struct Lanes {
   friend Lanes abs(const Lanes& a) {
     return of_parts([&](auto i) { return Set::abs(a.part[i]); });
   }
-  /// v, not negative, with the sign of s; zero where s is zero.
+  /// Returns v, which is not negative, with the sign of s; zero where s is zero.
   friend Lanes signed_like(const Lanes& v, const Lanes& s) {
     return of_parts([&](auto i) { return Set::signed_like(v.part[i], s.part[i]); });
   }
-  /// b where it is smaller, else a: also where they cannot be compared.
+  /// Returns b where it is smaller, else a: also where the two cannot be compared.
   friend Lanes smaller(const Lanes& a, const Lanes& b) {
     return of_parts([&](auto i) { return Set::smaller(a.part[i], b.part[i]); });
   }
   friend Lanes larger(const Lanes& a, const Lanes& b) {
     return of_parts([&](auto i) { return Set::larger(a.part[i], b.part[i]); });
   }
-  /// 2^n of whole numbers n in [-1022, 1023].
+  /// Returns 2^n for whole numbers n in [-1022, 1023].
   friend Lanes power_of_two(const Lanes& n) {
     return of_parts([&](auto i) { return Set::power_of_two(n.part[i]); });
   }
-  /// Of all lanes, added in the order of a tree that does not depend on the instruction set.
+  /// Sums all lanes in the order of a tree that does not depend on the instruction set.
   friend double sum(const Lanes& a) {
     alignas(64) double v[kLanes];
     a.store(v);

@@ -4,21 +4,22 @@
 
 namespace pyroclast {
 
-/// What an entry of a ledger is to the others: what is put in is held, lost, or the ledger's error.
+/// Side of the ledger on which an entry stands: the amount put in equals the amount held, the amount lost and
+/// the error of the ledger.
 enum class LedgerSide : std::uint8_t { put_in, held, lost, error };
 
-/// One entry of a ledger of energy or heat, J. The history, the summary and the ledger's own sums follow from
-/// the list of its entries.
+/// One entry of a ledger of energy or heat, J. The list of entries determines the columns of the history, the
+/// values in the summary and the sums of the ledger.
 template <class Ledger>
 struct LedgerEntry {
-  const char* name;    ///< in summary.json
-  const char* column;  ///< of the history
+  const char* name;    ///< name in summary.json
+  const char* column;  ///< column of the history
   LedgerSide side;
   const char* meaning;
   double (*value)(const Ledger&);
 };
 
-/// The column of the ledger's error.
+/// Returns the column of the ledger's error.
 template <class Entries>
 constexpr const char* error_column(const Entries& entries) {
   const char* column = nullptr;

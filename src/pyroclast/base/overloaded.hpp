@@ -2,12 +2,12 @@
 
 namespace pyroclast {
 
-/// One function made of several, for std::visit.
+/// One function made of several functions, for std::visit.
 template <class... F>
 struct Overloaded : F... {
   using F::operator()...;
 };
 template <class... F>
-Overloaded(F...) -> Overloaded<F...>;  // Clang before 17 does not deduce it by itself
+Overloaded(F...) -> Overloaded<F...>;  // Clang before 17 does not deduce the arguments by itself
 
 }  // namespace pyroclast

@@ -5,27 +5,29 @@
 
 namespace pyroclast {
 
-/// Share of the machine that the control groups of this process leave it, in processors: 1.5 where it may use
-/// 150 ms of processor time in each 100 ms. The smallest of its own group and of all above it that it can
-/// see, of both versions of control groups. None where nothing bounds it; a file that is missing or makes no
-/// sense bounds nothing.
+/// Returns the share of the machine, in processors, that the control groups of this process leave it: 1.5
+/// where the process may use 150 ms of processor time in each 100 ms. The smallest quota counts among the
+/// process's own group and all groups above it that it can see, of both versions of control groups. Returns
+/// none where no quota holds; a file that is missing or makes no sense sets no quota.
 ///
-/// \param root  of the file system whose `/proc/self` and mount points are read
+/// \param root  root of the file system whose `/proc/self` and mount points are read
 std::optional<double> processor_quota(const std::filesystem::path& root = "/");
 
-/// Threads that `allowed` processors and a quota can keep going all the time; at least 1.
+/// Returns the number of threads that `allowed` processors and a quota can keep going all the time; at least
+/// 1.
 ///
 /// The quota is rounded down. The system stops a group that has used up its quota for the rest of the period,
-/// wherever its threads stand, and all wait for one that is stopped at a barrier. What is left over serves
-/// the rest of the group.
+/// wherever the threads of the group stand. If one stops, all others wait for it at a barrier. The remainder
+/// of the quota serves the rest of the group.
 int whole_processors(int allowed, std::optional<double> quota);
 
-/// Processors that are free for this process: those that it may run on, as far as the quota of its control
-/// groups goes. At least 1.
+/// Returns the number of processors that are free for this process: those on which it may run, limited by the
+/// quota of its control groups. At least 1.
 int free_processors();
 
-/// Threads for a run of which at most `most` were asked for, 0 for as many as there are: no more than
-/// processors are free for this process. Throws Error for a negative number.
+/// Returns the number of threads for a run that asks for at most `most`, where 0 asks for as many as
+/// possible: never more than the processors that are free for this process. Throws Error for a negative
+/// number.
 int usable_threads(int most);
 
 }  // namespace pyroclast

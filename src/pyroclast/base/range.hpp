@@ -6,13 +6,14 @@
 
 namespace pyroclast {
 
-/// The values a key may have, in the unit it is read in.
+/// Range of the values that a key may have, in the unit in which the key is read.
 struct Range {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   bool lower_inclusive = true;
   bool upper_inclusive = true;
-  /// What values usually are, both ends included; another one is allowed, but most likely a slip.
+  /// Lower end of the usual values; both ends are included. A value beyond them is allowed, but most likely a
+  /// slip.
   double usual_lower = -std::numeric_limits<double>::infinity();
   double usual_upper = std::numeric_limits<double>::infinity();
 
@@ -23,14 +24,14 @@ struct Range {
   static constexpr Range at_least(double bound) { return {.lower = bound}; }
   static constexpr Range below(double bound) { return {.upper = bound, .upper_inclusive = false}; }
   static constexpr Range at_most(double bound) { return {.upper = bound}; }
-  /// Both ends allowed.
+  /// Returns the range from low to high, both included.
   static constexpr Range between(double low, double high) { return {.lower = low, .upper = high}; }
-  /// Both ends excluded.
+  /// Returns the range from low to high, both excluded.
   static constexpr Range inside(double low, double high) { return {low, high, false, false}; }
-  /// From 0 to 1, both allowed.
+  /// Returns the range from 0 to 1, both included.
   static constexpr Range fraction() { return between(0.0, 1.0); }
 
-  /// The same range with what is usual in it.
+  /// Returns this range with other usual values.
   constexpr Range usually(double low, double high) const {
     Range range = *this;
     range.usual_lower = low;
@@ -38,17 +39,18 @@ struct Range {
     return range;
   }
 
-  /// False for NaN.
+  /// Tells whether the value is in the range; false for NaN.
   bool contains(double value) const;
-  /// The value; of one that lies beyond an end by rounding alone, that end.
+  /// Returns the value; where it lies beyond an end by rounding alone, returns that end.
   double but_for_rounding(double value) const;
   bool is_usual(double value) const { return value >= usual_lower && value <= usual_upper; }
-  /// Some value of the range, a whole number where there is one; the stand-in for a value that could not be
-  /// read.
+  /// Returns some value of the range, a whole number where there is one. It stands in for a value that could
+  /// not be read.
   double any_value() const;
-  /// In words, such as "greater than 0 m" or "between 0 and 1"; empty if everything is allowed.
+  /// Describes the range in words, such as "greater than 0 m" or "between 0 and 1"; empty if everything is
+  /// allowed.
   std::string describe(std::string_view unit = {}) const;
-  /// The same of what is usual.
+  /// Describes the usual values in the same way.
   std::string describe_usual(std::string_view unit = {}) const;
 };
 

@@ -6,19 +6,20 @@
 
 namespace pyroclast {
 
-/// Throws Error, which names it, for a device, a pipe or a folder: reading one may never end.
+/// Throws Error, which names the path, for a device, a pipe or a folder: reading one may never end.
 void require_regular_file(const std::filesystem::path& file);
 
-/// How a path with backslashes is written in a deck.
+/// Advice on how to write a path with backslashes in a deck.
 inline constexpr std::string_view kPathsInToml =
     "in double quotes \"\\\" begins an escape: write \"/\" in paths, or set them in single quotes";
-/// What to do about a path that holds control characters, as "sub\furnace.csv" in double quotes does; else
-/// empty. To end a message with.
+/// Returns advice for a path that holds control characters, as "sub\furnace.csv" in double quotes does; else
+/// empty. The advice ends a message.
 std::string remedy_of_path(std::string_view path);
 
-/// All bytes of a regular file. Throws Error, which names it, when it is none or cannot be read.
+/// Returns all bytes of a regular file. Throws Error, which names the path, when it is no regular file or
+/// cannot be read.
 std::string read_file(const std::filesystem::path& file);
-/// The same of what the user names, which may be a pipe.
+/// Returns all bytes of a file that the user names, which may also be a pipe.
 std::string read_named_file(const std::filesystem::path& file);
 
 }  // namespace pyroclast

@@ -4,7 +4,7 @@
 
 namespace pyroclast {
 
-/// SHA-256 of a text, in hexadecimal, as `sha256sum` prints it.
+/// Returns the SHA-256 of a text in hexadecimal, as `sha256sum` prints it.
 std::string sha256(const std::string& text);
 
 }  // namespace pyroclast

@@ -5,7 +5,7 @@
 
 namespace pyroclast {
 
-/// Ascending, each value once.
+/// Sorts the values in ascending order and keeps each value once.
 template <class T>
 void sort_unique(std::vector<T>& values) {
   std::ranges::sort(values);

@@ -10,14 +10,14 @@
 
 namespace pyroclast {
 
-/// All that is shown to a visitor, kept in memory: takes it from one thing and puts it into another that was
-/// made alike.
+/// Copy in memory of everything that a thing shows to a visitor. It takes the state of one thing and puts it
+/// into another that was made alike.
 class StateCopy {
  public:
   using Visit = std::function<void(StateVisitor&)>;
 
   void take(const Visit& visit);
-  /// Throws Error when what is shown has other names or sizes than what was taken.
+  /// Writes the copy back. Throws Error when the names or sizes that are shown differ from those taken.
   void put(const Visit& visit) const;
 
  private:

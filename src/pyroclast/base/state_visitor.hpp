@@ -16,10 +16,10 @@
 
 namespace pyroclast {
 
-/// What numbers of a state can be. NaN is never one.
+/// Values that the numbers of a state may have. NaN is never allowed.
 struct StateRule {
   double least = -std::numeric_limits<double>::max(), most = std::numeric_limits<double>::max();
-  std::optional<std::size_t> size = std::nullopt;  ///< how many there are, where that is known
+  std::optional<std::size_t> size = std::nullopt;  ///< number of values, where it is known
 
   StateRule of(std::size_t count) const { return {least, most, count}; }
 };
@@ -27,13 +27,13 @@ struct StateRule {
 namespace state {
 
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
-/// More than anything is counted to; sums of two counts are still whole numbers.
+/// Bound above every count; sums of two counts are still whole numbers.
 inline constexpr double kMostCounted = 1e15;
 
 constexpr StateRule finite() {
   return {};
 }
-/// A number that may be infinite.
+/// Allows any number, also an infinite one.
 constexpr StateRule number() {
   return {-kInfinite, kInfinite};
 }
@@ -43,19 +43,20 @@ constexpr StateRule within(double least, double most) {
 constexpr StateRule at_least(double least) {
   return {least, std::numeric_limits<double>::max()};
 }
-/// Of things that are counted.
+/// Allows counts of things.
 constexpr StateRule count() {
   return {0.0, kMostCounted};
 }
-/// Of a list of so many.
+/// Allows indices into a list of this size.
 constexpr StateRule index(std::size_t size) {
   return {0.0, static_cast<double>(size) - 1.0};
 }
 
 }  // namespace state
 
-/// Is shown, under its name, all that a moving thing keeps from one batch of steps to the next. It reads it,
-/// or replaces it by what the same thing kept elsewhere; the thing then works out what follows.
+/// Visitor to which a moving thing shows, under its name, everything that the thing keeps from one batch of
+/// steps to the next. The visitor reads each value, or replaces it by the value that an equal thing kept
+/// elsewhere. The thing then computes whatever depends on the values.
 class StateVisitor {
  public:
   StateVisitor() = default;
@@ -63,13 +64,13 @@ class StateVisitor {
   StateVisitor& operator=(const StateVisitor&) = delete;
   virtual ~StateVisitor() = default;
 
-  /// Whether what is shown is replaced.
+  /// Tells whether the visitor replaces the values that it is shown.
   virtual bool replaces() const = 0;
 
-  /// Whether what replaces it comes from outside: it is then looked at before anything is made of it.
+  /// Tells whether the new values come from outside the program; they are then checked before they are used.
   virtual bool checks() const { return false; }
 
-  /// A number, by default a finite one; whole numbers need a rule.
+  /// Visits a number, by default a finite one; whole numbers need a rule.
   template <class T>
   requires std::is_same_v<T, double>
   void visit(std::string_view name, T& value) { visit(name, value, state::finite()); }
@@ -85,7 +86,7 @@ class StateVisitor {
     visit(name, byte, state::within(0, 1));
     value = byte != 0;
   }
-  /// A list.
+  /// Visits a list of numbers.
   template <class Array>
   requires std::is_same_v < std::decay_t<decltype(*std::declval<Array&>().data())>,
   double > void visit(std::string_view name, Array& values) { visit(name, values, state::finite()); }
@@ -96,7 +97,7 @@ class StateVisitor {
     visit_array(full, values);
     if (checks()) check(full, values.data(), values.size(), rule);
   }
-  /// A plain thing, or a list of them, that is made of nothing but `double`; a rule counts things, not
+  /// Visits a plain object, or a list of them, made of nothing but `double`; a rule counts objects, not
   /// numbers.
   template <class T>
   void visit_numbers(std::string_view name, T& value, const StateRule& rule = {}) {
@@ -109,20 +110,20 @@ class StateVisitor {
       if (checks()) check_numbers(full, &value, 1, rule);
     }
   }
-  /// Plain things that whoever shows them looks at, see `require`.
+  /// Visits plain objects whose values the caller checks with `require`.
   template <class Array>
   void visit_plain(std::string_view name, Array& values, std::optional<std::size_t> size = std::nullopt) {
     const std::string full = scope_ + std::string(name);
     visit_array(full, values);
     if (checks()) check_size(full, values.size(), size);
   }
-  /// Refuses what came from outside where a promise about it does not hold.
+  /// Refuses a value from outside where a promise about the value does not hold.
   void require(bool holds, std::string_view name, std::string_view what) const {
     if (!holds && checks()) refuse(scope_ + std::string(name), std::string(what));
   }
 
   void visit(std::string_view name, std::string& text) { visit_array(scope_ + std::string(name), text); }
-  /// A list of words, none of which may hold a line's end.
+  /// Visits a list of words, none of which may hold a line's end.
   void visit(std::string_view name, std::vector<std::string>& words) {
     std::string lines;
     for (const std::string& word : words) lines += word + '\n';
@@ -137,7 +138,7 @@ class StateVisitor {
     }
   }
 
-  /// Puts "name." before all names while it is there.
+  /// Prefix "name." of all names while the object lives.
   class Scope {
    public:
     Scope(StateVisitor& visitor, std::string_view name) : visitor_(visitor), outer_(visitor.scope_) {
@@ -154,16 +155,17 @@ class StateVisitor {
   };
 
  protected:
-  /// Plain data of one kind, side by side.
+  /// Consecutive plain data of one kind.
   struct Piece {
-    std::size_t item;  ///< bytes of one
+    std::size_t item;  ///< bytes of one item
     std::size_t count;
     std::byte* data;
-    /// Makes room for another number of them and returns where they stand; empty where the number is fixed.
+    /// Function that makes room for another number of items and returns their new place; empty where the
+    /// number is fixed.
     std::function<std::byte*(std::size_t)> resize;
   };
   virtual void visit_piece(const std::string& name, const Piece& piece) = 0;
-  /// Throws an Error that says what is wrong of what stands under a name.
+  /// Throws an Error that says what is wrong with the value of a name.
   virtual void refuse(const std::string& name, const std::string& what) const;
 
  private:
@@ -187,7 +189,7 @@ class StateVisitor {
     }
   }
   void check_size(const std::string& name, std::size_t count, const std::optional<std::size_t>& wanted) const;
-  /// \param place  in its list; -1 for a number of its own
+  /// \param place  index in the list; -1 for a single number
   void check_number(const std::string& name, double value, std::int64_t place, const StateRule& rule) const {
     if (!(value >= rule.least && value <= rule.most)) refuse_number(name, value, place, rule);
   }

@@ -4,17 +4,17 @@
 
 namespace pyroclast {
 
-/// A kind of physical quantity, by the unit in which the program computes with it.
+/// Kind of physical quantity, given by the unit in which the program computes with it.
 struct Unit {
   const char* si;       ///< the unit of the value inside, in the notation of UDUNITS-2
-  const char* name;     ///< what the quantity is called in messages
+  const char* name;     ///< name of the quantity in messages
   const char* example;  ///< a quantity of this kind as a user would write it
 
-  /// Whether values of both are in the same unit.
+  /// Tells whether the values of both kinds are in the same unit.
   friend constexpr bool operator==(const Unit& a, const Unit& b) { return std::string_view(a.si) == b.si; }
 };
 
-/// The kinds of quantity that decks hold. Values are SI, except that a temperature is in °C.
+/// Kinds of quantity that decks hold. Values are SI, except that a temperature is in °C.
 namespace unit {
 inline constexpr Unit dimensionless{"1", "dimensionless number", "31 %"};
 inline constexpr Unit length{"m", "length", "150 mm"};
@@ -34,9 +34,9 @@ inline constexpr Unit stiffness{"N/m", "stiffness", "2 GN/m"};
 /// Stiffness of a contact per unit of its area.
 inline constexpr Unit stiffness_per_area{"Pa/m", "contact stiffness", "18400 GPa/m"};
 inline constexpr Unit fracture_energy{"J/m2", "fracture energy", "40 N/m"};
-/// A temperature, in °C.
+/// Temperature, in °C.
 inline constexpr Unit temperature{"degC", "temperature", "20 degC"};
-/// A difference of two temperatures, in K; a quantity in degC is refused here, because it is a temperature.
+/// Difference of two temperatures, in K; a quantity in degC is refused here, because it is a temperature.
 inline constexpr Unit temperature_difference{"K", "temperature difference", "5 K"};
 inline constexpr Unit heating_rate{"K/s", "heating rate", "5 K/min"};
 inline constexpr Unit conductivity{"W/m/K", "thermal conductivity", "1.6 W/m/K"};

@@ -5,7 +5,8 @@
 
 namespace pyroclast {
 
-/// Bytes of the character that a text begins with; 0 if that is not UTF-8 (Unicode 15.0, table 3-7).
+/// Returns the number of bytes of the character with which a text begins; 0 if it is not UTF-8 (Unicode 15.0,
+/// table 3-7).
 std::size_t utf8_length(std::string_view text);
 
 }  // namespace pyroclast

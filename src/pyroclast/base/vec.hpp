@@ -54,7 +54,7 @@ Real norm(const Vec<Dim, Real>& a) {
     return sqrt(dot(a, a));
 }
 
-/// z component of the cross product; twice the signed area of the triangle (0, a, b).
+/// Returns the z component of the cross product: twice the signed area of the triangle (0, a, b).
 template <class Real>
 constexpr Real cross(const Vec<2, Real>& a, const Vec<2, Real>& b) {
   return a[0] * b[1] - a[1] * b[0];

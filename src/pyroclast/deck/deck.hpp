@@ -24,8 +24,8 @@ struct DeckKey;
 struct DeckSchema;
 struct TableReading;
 
-/// What a key, a word or a table means, for the deck reference; empty where another place says it. A literal,
-/// so that no number is taken for one.
+/// Meaning of a key, a word or a table, for the deck reference; empty where another place gives it. The type
+/// takes only a literal, so that no number is taken for a meaning.
 class Meaning {
  public:
   template <std::size_t N>
@@ -38,7 +38,7 @@ class Meaning {
   std::string_view text_;
 };
 
-/// One of the words that a key may hold, and what it stands for.
+/// Word that a key may hold, and its value.
 template <class E>
 struct Choice {
   std::string_view word;
@@ -46,77 +46,82 @@ struct Choice {
   Meaning meaning;
 };
 
-/// How the deck reference describes a key that is read in several forms.
+/// Description, for the deck reference, of a key that is read in several forms.
 struct KeyForms {
-  std::string value;                       ///< what is written, such as "curve over the temperature: stress"
-  const Unit& unit = unit::dimensionless;  ///< of the range and the fallback
+  /// Written form of the value, such as "curve over the temperature: stress".
+  std::string value;
+  const Unit& unit = unit::dimensionless;  ///< unit of the range and the fallback
   Range range = Range::any();
   std::optional<double> fallback = {};
-  /// Name under which the tables at and below the key are described, once for all keys; empty if there are
-  /// none.
+  /// Name under which the tables at and below the key are described, once for all keys; empty if there are no
+  /// such tables.
   std::string name = {};
 };
 
-/// A file that a deck names.
+/// File that a deck names.
 struct DeckFile {
-  std::string key;  ///< full path of the key that names it; empty where it stands beside such a file
-  std::filesystem::path file;  ///< where it was found
-  std::string rest;            ///< of the value, behind the file's name
+  /// Full path of the key that names the file; empty for a file that must stand beside such a file.
+  std::string key;
+  std::filesystem::path file;  ///< place where the file was found
+  std::string rest;            ///< rest of the value, behind the file's name
 };
 
-/// One table of a deck: a cheap handle, valid as long as its Deck.
+/// Table of a deck: a cheap handle, valid as long as its Deck.
 ///
-/// Nothing in the deck makes reading throw. What cannot be read is recorded, and a value that is allowed is
-/// returned in its place, so that the reader goes on and the user sees every error at once; `Deck::finish`
-/// throws them. A table that is missing is one error: what is read from it records no more.
+/// The content of the deck never makes reading throw. A value that cannot be read is recorded as an error,
+/// and an allowed value is returned in its place. So the reader goes on and the user sees every error at
+/// once; `Deck::finish` throws them. A table that is missing is one error: reading from it records no more.
 ///
 /// Every key that is read, or asked for with `has`, is a known key of its table. The reading functions with a
 /// `fallback` return it if the key is absent. The `meaning` of a key goes into the deck reference (see
-/// `survey_deck`); that of a table may be given at any one of the places that ask for it.
+/// `survey_deck`); the meaning of a table may be given at any one of the places that ask for the table.
 class Section {
  public:
-  /// A table that must be there.
+  /// Returns a table that must be there.
   Section section(std::string_view key, Meaning meaning = "") const;
-  /// A table that may be there; empty also if the key is not a table, which is recorded.
+  /// Returns a table that may be there; empty also if the key is not a table, which is recorded as an error.
   std::optional<Section> optional_section(std::string_view key, Meaning meaning = "") const;
-  /// The same where what is read from a table that is absent is its fallbacks.
+  /// Returns a table that may be there; reading from an absent table returns the fallbacks.
   Section section_or_none(std::string_view key, Meaning meaning = "") const;
-  /// An array of tables ([[key]]) of at least one; empty also after an error.
+  /// Returns an array of tables ([[key]]) with at least one element; empty also after an error.
   std::vector<Section> sections(std::string_view key, Meaning meaning = "") const;
-  /// An array of tables that may be absent.
+  /// Returns an array of tables that may be absent.
   std::vector<Section> optional_sections(std::string_view key, Meaning meaning = "") const;
 
-  /// Every table in this one, with its name, in the order of the names.
-  /// \param placeholder  stands for the names in the deck reference
+  /// Returns every table in this one, with its name, in the order of the names.
+  /// \param placeholder  word that stands for the names in the deck reference
   std::vector<std::pair<std::string, Section>> named_sections(std::string_view placeholder,
                                                               Meaning meaning = "") const;
 
-  /// The same table, whose fallbacks are what another table says: the deck reference names it in their place.
+  /// Returns the same table with fallbacks that another table states: the deck reference names that table in
+  /// their place.
   Section with_defaults_of(std::string_view table) const;
 
-  /// A quantity, written as a string with its unit, in `unit.si`; `range` is in that unit.
+  /// Reads a quantity, written as a string with its unit, and returns it in `unit.si`; `range` is in that
+  /// unit.
   double quantity(std::string_view key, const Unit& unit, const Range& range, Meaning meaning) const;
   double quantity(std::string_view key, const Unit& unit, const Range& range, double fallback,
                   Meaning meaning) const;
-  /// A list of at least one quantity; empty after an error.
+  /// Reads a list of at least one quantity; empty after an error.
   std::vector<double> quantities(std::string_view key, const Unit& unit, const Range& range,
                                  Meaning meaning) const;
-  /// The same for a list that may be absent, or hold nothing.
+  /// Reads a list of quantities that may be absent or empty.
   std::vector<double> optional_quantities(std::string_view key, const Unit& unit, const Range& range,
                                           Meaning meaning) const;
 
-  /// A dimensionless number, written as a number or as a string such as "31 %".
+  /// Reads a dimensionless number, written as a number or as a string such as "31 %".
   double number(std::string_view key, const Range& range, Meaning meaning) const;
   double number(std::string_view key, const Range& range, double fallback, Meaning meaning) const;
-  /// A list of at least one dimensionless number; empty after an error.
+  /// Reads a list of at least one dimensionless number; empty after an error.
   std::vector<double> numbers(std::string_view key, const Range& range, Meaning meaning) const;
 
-  /// A list of two or more points, `[[x, y], ...]`, in `x_unit.si` and `y_unit.si`, x ascending strictly;
-  /// empty after an error, which names the element.
+  /// Reads a list of two or more points, `[[x, y], ...]`, in `x_unit.si` and `y_unit.si`, with x strictly
+  /// ascending; empty after an error, which names the element.
   std::vector<std::pair<double, double>> points(std::string_view key, const Unit& x_unit, const Unit& y_unit,
                                                 Meaning meaning) const;
 
-  /// A place `[x, y]`, or a list of at least so many places; empty after an error, which names the element.
+  /// Reads a place `[x, y]`, or a list of at least `least` places; empty after an error, which names the
+  /// element.
   std::optional<std::pair<double, double>> place(std::string_view key, const Unit& unit,
                                                  Meaning meaning) const;
   std::vector<std::pair<double, double>> places(std::string_view key, const Unit& unit, std::size_t least,
@@ -130,14 +135,13 @@ class Section {
   bool flag(std::string_view key, Bool fallback, Meaning meaning) const {
     return flag_or(key, fallback, meaning);
   }
-  /// A string that is not empty.
+  /// Reads a string that is not empty.
   std::string text(std::string_view key, Meaning meaning) const;
   std::string text(std::string_view key, std::string fallback, Meaning meaning) const;
 
-  /// One of several words: `choice<Mass>("mass", {{"scaled", Mass::scaled}, {"real", Mass::real}})`. A
-  /// misspelt word is read as the nearest one. If there is none, the first choice stands in, and keys of this
-  /// table that are missing or unknown are not reported from then on, since which ones are needed depends on
-  /// the choice.
+  /// Reads one of several words: `choice<Mass>("mass", {{"scaled", Mass::scaled}, {"real", Mass::real}})`. A
+  /// misspelt word is read as the nearest word. If no word is near, the first choice stands in. From then on
+  /// missing or unknown keys of this table are not reported, since the choice decides which keys are needed.
   template <class E>
   E choice(std::string_view key, std::initializer_list<Choice<E>> options, Meaning meaning) const {
     return std::data(options)[choice_index(key, words(options), std::nullopt, {}, meaning)].value;
@@ -152,12 +156,12 @@ class Section {
     const std::size_t index = choice_index(key, words(options), options.size(), word, meaning);
     return index < options.size() ? std::data(options)[index].value : fallback;
   }
-  /// The same for words that are known only when the deck is read, at least one.
+  /// Reads one of several words, at least one, that are known only when the deck is read.
   template <class E>
   E choice(std::string_view key, const std::vector<Choice<E>>& options, Meaning meaning) const {
     return options[choice_index(key, words(options), std::nullopt, {}, meaning)].value;
   }
-  /// The first of them stands where the deck says nothing.
+  /// Reads one of several words; where the key is absent, returns the value of the first word.
   template <class E>
   E choice_or_first(std::string_view key, const std::vector<Choice<E>>& options, Meaning meaning) const {
     const std::size_t index =
@@ -165,40 +169,40 @@ class Section {
     return options[index < options.size() ? index : 0].value;
   }
 
-  /// One of several words, or any other text that `other` explains; the first word where the deck says
-  /// nothing.
+  /// Reads one of several words, or any other text, which `other` explains; returns the first word where the
+  /// key is absent.
   std::string word_or_text(std::string_view key, const std::vector<Choice<int>>& words, Meaning other,
                            Meaning meaning) const;
-  /// A list of strings that must be there; empty after an error.
+  /// Reads a list of strings that must be there; empty after an error.
   std::vector<std::string> texts(std::string_view key, Meaning meaning) const;
-  /// A list of strings; empty if the key is absent.
+  /// Reads a list of strings; empty if the key is absent.
   std::vector<std::string> optional_texts(std::string_view key, Meaning meaning) const;
 
-  /// Whatever stands at a key that must be there, as JSON; a date is a text.
-  /// \param value  what is written, for the deck reference
+  /// Returns the value of a key that must be there, whatever it is, as JSON; a date is a text.
+  /// \param value  written form of the value, for the deck reference
   std::string json(std::string_view key, std::string_view value, Meaning meaning) const;
-  /// The same for a key that may be absent; `fallback`, itself JSON, is then what it says.
+  /// Returns the value as JSON; for an absent key returns `fallback`, which is itself JSON.
   std::string json(std::string_view key, std::string_view value, const std::string& fallback,
                    Meaning meaning) const;
-  /// The keys that are written, in the order of their names. None of them counts as read.
+  /// Returns the keys that are written, in the order of their names. None of them counts as read.
   std::vector<std::string> keys() const;
 
-  /// Whether the key is written. A key that is found here but never read, nor named in `error`, is reported
-  /// as one that has no effect.
+  /// Tells whether the key is written. A key that is found here, but is never read nor named in `error`, is
+  /// reported as a key without effect.
   bool has(std::string_view key) const;
-  /// Makes keys known that are read with other settings only: a deck that holds one is told that it has no
-  /// effect, and not that there is no such key.
+  /// Makes keys known that are read with other settings only: a deck that holds one is told that the key has
+  /// no effect, and not that there is no such key.
   void know(std::initializer_list<std::string_view> keys) const;
-  /// Whether the key is written and holds a table; otherwise like `has`.
+  /// Tells whether the key is written and holds a table; otherwise works like `has`.
   bool is_table(std::string_view key) const;
-  /// Says for the deck reference what a key holds that is read in several forms, before it is read: then
-  /// nothing that the reading functions are told of the key counts.
+  /// Describes, for the deck reference, a key that is read in several forms. The call comes before the key is
+  /// read; the reading functions then add nothing to the description.
   void describe(std::string_view key, const KeyForms& forms, Meaning meaning) const;
-  /// Which keys belong here depends on a value that could not be read: from now on those of this table that
-  /// are missing or unknown are not reported.
+  /// Stops reports of missing or unknown keys in this table, from now on. Call it where a value that could
+  /// not be read decides which keys belong here.
   void leave_open() const;
-  /// Whether no error was recorded so far in this table and the tables below: guards a check between values
-  /// against reporting the stand-in of a value that could not be read.
+  /// Tells whether no error was recorded so far in this table and the tables below. The answer guards a check
+  /// between values against the stand-in of a value that could not be read.
   bool ok() const;
 
   /// Records a contradiction found by the caller, at the key (or at the table, if the key is absent).
@@ -206,22 +210,23 @@ class Section {
   /// Records a contradiction of the table as a whole.
   void error(std::string message) const;
 
-  /// Records what is allowed at the key, but most likely not meant; the deck stays valid.
+  /// Records a warning of a value that is allowed but most likely not meant; the deck stays valid.
   void warn(std::string_view key, std::string message) const;
-  /// The same where a value, in `unit.si`, is not what is usual in its range.
+  /// Records such a warning where a value, in `unit.si`, is not among the usual values of its range.
   void warn_if_unusual(std::string_view key, double value, const Unit& unit, const Range& range) const;
 
-  /// Says that the key's value is the name of a file, followed by `rest`.
+  /// Records that the key's value is the name of a file, followed by `rest`.
   void names_file(std::string_view key, std::filesystem::path file, std::string rest = {}) const;
 
-  /// Says that a file belongs to one that a key names, and must stand beside it.
+  /// Records a file that belongs to a file that a key names, and must stand beside it.
   void needs_file(std::filesystem::path file) const;
 
-  /// Where the key stands (or its table, if the key is absent), as "file:line"; "--set" where that stated it.
+  /// Returns the place of the key (of its table, if the key is absent) as "file:line", or "--set" where the
+  /// key was stated there.
   std::string where(std::string_view key) const;
-  /// Whether the command line, or a script, states the key.
+  /// Tells whether the command line, or a script, states the key.
   bool is_changed(std::string_view key) const;
-  /// Full path of the table, such as "contacts.mortar_mortar"; empty for the root.
+  /// Returns the full path of the table, such as "contacts.mortar_mortar"; empty for the root.
   std::string path() const;
 
  private:
@@ -238,37 +243,39 @@ class Section {
     for (const auto& option : options) result.push_back({std::string(option.word), option.meaning});
     return result;
   }
-  /// Index of the word chosen; `fallback` is returned if the key is absent, which is an error without one.
+  /// Returns the index of the word chosen, or `fallback` if the key is absent. Without a fallback an absent
+  /// key is an error.
   std::size_t choice_index(std::string_view key, const std::vector<Word>& words,
                            std::optional<std::size_t> fallback, std::string_view fallback_word,
                            Meaning meaning) const;
   bool flag_or(std::string_view key, bool fallback, Meaning meaning) const;
-  /// In a survey, keeps that the key was read.
+  /// Notes, in a survey, that the key was read.
   void note(DeckKey key, Meaning meaning) const;
 
   DeckReading* deck_;
   TableReading* table_;           ///< null for a table that is missing
-  std::string_view defaults_of_;  ///< see with_defaults_of
+  std::string_view defaults_of_;  ///< name of the table that states the fallbacks, see with_defaults_of
 };
 
-/// Text that is appended to a deck, and the file that it comes from, for messages.
+/// Text that is appended to a deck, and the name of its file, for messages.
 struct Appendix {
   std::string text, name;
 };
 
-/// A TOML file in which every dimensional value is a string with its unit. Its reader asks for the keys it
-/// knows and calls `finish`, which reports every error at once, keys that nobody asked for among them.
+/// TOML file in which every dimensional value is a string with its unit. Its reader asks for the keys it
+/// knows and calls `finish`, which reports every error at once, also each key that nobody asked for.
 class Deck {
  public:
+  /// Opens a deck and applies changes to it.
   /// @throws DeckError if the file cannot be read, is empty or is not TOML.
-  /// @param changes  as "key=value" with the full path of a key ("stages[1].rate=10 K/min"); one that the
-  /// deck does
-  ///                 not have is added. `text` and places in messages are then those of the changed deck.
-  ///                 Throws Error for one that cannot be made.
-  /// @param more  is appended before them
+  /// @throws Error for a change that cannot be made.
+  /// @param changes  as "key=value" with the full path of a key ("stages[1].rate=10 K/min"). A key that the
+  ///                 deck does not have is added. `text` and the places in messages are those of the changed
+  ///                 deck.
+  /// @param more     text that is appended before the changes are made
   static Deck open(const std::filesystem::path& file, const std::vector<std::string>& changes = {},
                    const Appendix& more = {});
-  /// The same for a text; `name` takes the file's place in messages.
+  /// Parses a deck from a text; `name` takes the file's place in messages.
   static Deck parse(std::string text, std::string name, const std::vector<std::string>& changes = {},
                     const Appendix& more = {});
 
@@ -276,21 +283,22 @@ class Deck {
   Deck& operator=(Deck&&) noexcept;
   ~Deck();
 
-  /// The file's name as given to `open`.
+  /// Returns the file's name as given to `open`.
   const std::string& name() const;
-  /// The deck as it was read, byte by byte.
+  /// Returns the text of the deck as it was read, byte by byte.
   const std::string& text() const;
 
   Section root() const;
 
-  /// What was warned of, in the order of the file.
+  /// Returns the warnings, in the order of the file.
   std::vector<Diagnostic> warnings() const;
-  /// Files that the deck names, in the order of reading.
+  /// Returns the files that the deck names, in the order of reading.
   const std::vector<DeckFile>& files() const;
-  /// The text with other values, by the full paths of their keys; a key that is missing is added.
+  /// Returns the text with other values, given by the full paths of their keys; a key that is missing is
+  /// added.
   std::string with(const std::vector<std::pair<std::string, std::string>>& values) const;
 
-  /// Call once everything is read.
+  /// Ends the reading; call it once everything is read.
   /// @throws DeckError with every error recorded, and every key that was not read.
   void finish() const;
 

@@ -16,71 +16,74 @@ struct DeckWord {
   bool operator==(const DeckWord&) const = default;
 };
 
-/// A setting elsewhere in the deck that decides whether a key is read.
+/// Setting elsewhere in the deck that decides whether a key is read.
 struct KeyCondition {
   enum class Kind : std::uint8_t { present, absent, value };
 
-  std::string table, key;  ///< of the setting
+  std::string table, key;  ///< table and key of the setting
   Kind kind = Kind::value;
-  std::vector<std::string> with;     ///< Kind::value: as written in a deck; the key is read with these ...
-  std::vector<std::string> without;  ///< ... and not with these
+  /// Values, as written in a deck, with which the key is read; for Kind::value.
+  std::vector<std::string> with;
+  std::vector<std::string> without;  ///< values with which the key is not read; for Kind::value
 
   bool operator==(const KeyCondition&) const = default;
 };
 
-/// What a deck may say under one key.
+/// Contents that a deck may have under one key.
 struct DeckKey {
   std::string key;
-  std::string value;      ///< what is written, such as "length"
-  std::string unit;       ///< unit of `allowed` and `fallback`; may be empty
-  std::string allowed;    ///< range in words; empty if everything is allowed
-  std::string fallback;   ///< what holds if the key is left out; empty if it has to be there, or is optional
-  bool optional = false;  ///< may be left out, and nothing takes its place
+  std::string value;    ///< written form of the value, such as "length"
+  std::string unit;     ///< unit of `allowed` and `fallback`; may be empty
+  std::string allowed;  ///< allowed range in words; empty if everything is allowed
+  /// Value of a key that is left out; empty if the key has to be there, or is optional.
+  std::string fallback;
+  bool optional = false;  ///< true for a key that may be left out and has no fallback
   std::vector<DeckWord> words;
   std::string meaning;
-  std::vector<KeyCondition> conditions;  ///< all of which must hold
+  std::vector<KeyCondition> conditions;  ///< conditions, all of which must hold
 
   bool operator==(const DeckKey&) const = default;
 };
 
-/// What a deck may say in one table, or in each of an array of tables.
+/// Contents that a deck may have in one table, or in each table of an array.
 struct DeckTable {
-  std::string path;       ///< such as "materials.mortar", or "stages[]" for an array; empty for the root
-  bool is_form = false;   ///< forms of a value that keys of several tables take; `path` is then a name
-  bool optional = false;  ///< may be left out
+  std::string path;  ///< path such as "materials.mortar", or "stages[]" for an array; empty for the root
+  /// True for forms of a value that keys of several tables take; `path` is then a name.
+  bool is_form = false;
+  bool optional = false;  ///< true for a table that may be left out
   std::string meaning;
-  /// In the order of reading; a key that is read in two ways, or under either of two conditions, stands
+  /// Keys in the order of reading; a key that is read in two ways, or under either of two conditions, stands
   /// twice.
   std::vector<DeckKey> keys;
-  std::vector<KeyCondition> conditions;  ///< of all its keys
+  std::vector<KeyCondition> conditions;  ///< conditions of all keys of the table
 };
 
 /// Everything that a reader asks of a deck.
 struct DeckSchema {
-  std::vector<DeckTable> tables;  ///< in the order of reading, without tables that hold tables only
+  std::vector<DeckTable> tables;  ///< tables in the order of reading, without tables that hold tables only
 
-  /// Full paths of keys, words and tables that no meaning was given for, and of keys that are known
+  /// Returns the full paths of keys, words and tables without a meaning, and of keys that are known
   /// (`Section::know`, `has`) but read with no settings.
   std::vector<std::string> undocumented() const;
 
-  std::vector<std::string> never_read;  ///< full paths of the latter
+  std::vector<std::string> never_read;  ///< full paths of keys that are known but read with no settings
 };
 
-/// Reads a deck; what it makes of it is its own affair.
+/// Function that reads a deck.
 using DeckReader = std::function<void(const Deck&)>;
 
-/// What `read` asks of a deck under any settings.
+/// Finds all keys that `read` asks of a deck under any settings.
 ///
-/// It is called many times, each time with a deck that has no text and answers otherwise: which word a choice
-/// holds, whether a flag is set, whether an optional key or table is there. Where an answer leads to a key or
-/// a question not met before, every other answer of that call is changed in turn. So keys are found that
-/// depend on words, flags and the presence of keys, one behind the other, and for each what it depends on.
-/// Two sorts are missed: keys that depend on the value of a number or a text, and keys that two answers open
-/// only together, neither of which changes alone what is asked. A reader asks for such keys always, or makes
-/// them known (`Section::know`), and `never_read` tells.
+/// The survey calls `read` many times, each time with a deck that has no text. The deck answers otherwise
+/// each time: which word a choice holds, whether a flag is set, whether an optional key or table is there.
+/// Where an answer leads to a key or a question not met before, every other answer of that call is changed in
+/// turn. So the survey finds keys that depend on words, flags and the presence of keys, one behind the other,
+/// and the conditions of each key. Two sorts of keys are missed: keys that depend on the value of a number or
+/// a text, and keys that two answers open only together, where neither answer alone changes the questions. A
+/// reader asks for such keys always, or makes them known (`Section::know`); `never_read` lists them.
 ///
 /// Values are stand-ins that their ranges allow, and `Section::ok` is false, as after an error: a reader asks
-/// for all keys before it looks whether their values go together. `Deck::finish` does not throw.
+/// for all keys before it checks whether their values go together. `Deck::finish` does not throw.
 DeckSchema survey_deck(const DeckReader& read);
 
 }  // namespace pyroclast

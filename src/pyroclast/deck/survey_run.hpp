@@ -14,7 +14,7 @@
 
 namespace pyroclast {
 
-/// A question that a reader asks of a deck, and whose answer may decide what it asks next.
+/// Question that a reader asks of a deck, and whose answer may decide the next questions.
 struct SurveyQuestion {
   enum class Kind : std::uint8_t { present, is_table, word, flag };
 
@@ -24,20 +24,20 @@ struct SurveyQuestion {
   auto operator<=>(const SurveyQuestion&) const = default;
 };
 
-/// Answers by question, as indices into the possible ones.
+/// Answers by question, as indices into the possible answers.
 using SurveyAnswers = std::map<SurveyQuestion, std::size_t>;
 
-/// One call of a reader with a deck that has no text: answers what it asks, and keeps it. Private to this
-/// module.
+/// One call of a reader with a deck that has no text: answers the reader's questions and keeps them. Private
+/// to this module.
 class SurveyRun {
  public:
-  /// What was asked: a question, its answer and all possible ones as a deck has them.
+  /// Question, its answer, and all possible answers as a deck has them.
   struct Answered {
     SurveyQuestion question;
     std::size_t answer = 0;
     std::vector<std::string> possible;
   };
-  /// A key that was read, after so many answers.
+  /// Key that was read, and the number of answers given before.
   struct Read {
     std::string table;
     DeckKey key;
@@ -53,10 +53,10 @@ class SurveyRun {
 
   void know(const std::string& table, std::string_view key);
   void read(const std::string& table, DeckKey key);
-  /// The same for a key that is read in several forms, which the calls of `read` that follow would describe.
+  /// Notes a key that is read in several forms, in place of the calls of `read` that follow.
   /// \param forms  name under which the tables at and below the key are described; may be empty
   void read_in_forms(const std::string& table, DeckKey key, const std::string& forms);
-  /// The table at a path; array elements have the path of their array with "[]".
+  /// Returns the table at a path; array elements have the path of their array with "[]".
   TableReading& table(const std::string& path, bool optional, std::string_view meaning);
 
   const std::vector<Answered>& answered() const { return answered_; }
@@ -65,18 +65,18 @@ class SurveyRun {
   const std::vector<std::pair<std::string, std::string>>& known() const { return known_; }
 
  private:
-  /// \param usual  the answer where none was given
+  /// \param usual  answer where none was given
   std::size_t answer(const std::string& table, std::string_view key, SurveyQuestion::Kind kind,
                      std::vector<std::string> possible, std::size_t usual);
-  /// The path under which a table is described.
+  /// Returns the path under which a table is described.
   std::string described(const std::string& path) const;
 
   SurveyAnswers given_;
   std::vector<Answered> answered_;
   std::vector<Read> read_;
   std::vector<DeckTable> tables_;
-  std::vector<std::pair<std::string, std::string>> known_;  ///< table and key
-  std::map<std::string, std::string> forms_;                ///< path of a key in forms: their name
+  std::vector<std::pair<std::string, std::string>> known_;  ///< table and key of each known key
+  std::map<std::string, std::string> forms_;                ///< name of the forms, by the path of the key
   std::map<std::string, std::unique_ptr<TableReading>> readings_;
 };
 

@@ -12,7 +12,7 @@ struct LawList {
   static constexpr int count = sizeof...(Laws);
 };
 
-/// The laws that are part of the program: one line for each.
+/// Laws that are part of the program, one line for each.
 using BuiltInLaws = LawList<Cohesive,    //
                             Elastic,     //
                             Frictional,  //

@@ -4,14 +4,14 @@
 
 namespace pyroclast {
 
-/// The contact law of the paper, Eqs. (10)-(15): linear softening in tension, softening Mohr-Coulomb friction
-/// in shear, bilinear compression.
+/// Contact law of the paper, Eqs. (10)-(15): linear softening in tension, softening Mohr-Coulomb friction in
+/// shear, bilinear compression.
 ///
-/// Along one axis (opening alone, or sliding at a steady opening) the result does not depend on how the way
-/// to the jump is cut into steps. On combined ways friction is that of the pressure at the end of each step,
-/// so it converges with the number of steps. Energies are closed forms of the internal variables, not
-/// quadratures. At the jump that it was last taken to, the law gives the same tractions again and loses
-/// nothing.
+/// Along one axis (opening alone, or sliding at a steady opening) the result does not depend on how the path
+/// to the jump is cut into steps. On combined paths friction follows the pressure at the end of each step, so
+/// the result converges with the number of steps. Energies are closed forms of the internal variables, not
+/// quadratures. When the law is taken again to the jump of its last update, it gives the same tractions and
+/// loses nothing.
 struct Cohesive {
   static constexpr const char* name = "cohesive";
   static constexpr const char* meaning = "softens in tension and shear, yields in compression (the paper's)";
@@ -36,7 +36,7 @@ struct Cohesive {
     Real residual_friction_angle{};  ///< phi_res, rad
     Real mode_2_energy{};            ///< G_f2, J/m²
     Compression compression = Compression::irreversible;
-    bool coupled = false;  ///< cohesion also scaled by 1 - D_t
+    bool coupled = false;  ///< true: the factor 1 - D_t also scales the cohesion
 
     template <class F, class... P>
     static constexpr void each(F&& f, P&... p) {
@@ -63,13 +63,13 @@ struct Cohesive {
         p.coupled...);
     }
 
-    /// u_e = f_t / K_n, opening at which softening begins, m.
+    /// Returns u_e = f_t / K_n, the opening at which softening begins, m.
     Real elastic_opening() const { return tensile_strength / normal_stiffness; }
-    /// u_f = 2 G_f1 / f_t, opening at which nothing is left, m.
+    /// Returns u_f = 2 G_f1 / f_t, the opening at which no strength is left, m.
     Real ultimate_opening() const { return 2.0 * mode_1_energy / tensile_strength; }
   };
 
-  /// What follows from the parameters.
+  /// Constants that follow from the parameters.
   template <class Real>
   struct Constants {
     Real normal_stiffness, shear_stiffness;        ///< Pa/m
@@ -79,8 +79,8 @@ struct Cohesive {
     Real softening_range, over_softening_range;    ///< u_f - u_e, m; 1/m
     Real compressive_limit;                        ///< Pa
     Real closure_at_limit;                         ///< f_cm / K_n, m
-    Real share_left;                               ///< of a closure beyond the limit, as u_p: 1 - beta
-    Real hardening_slope;                          ///< of the yield stress over u_p, Pa/m
+    Real share_left;                               ///< share of closure past the limit kept as u_p: 1 - beta
+    Real hardening_slope;                          ///< slope of the yield stress over u_p, Pa/m
     Real cohesion, residual_cohesion;              ///< Pa
     Real friction, residual_friction;              ///< tan(phi), tan(phi_res)
     Real mode_2_energy, over_twice_mode_2_energy;  ///< J/m², m²/J
@@ -128,7 +128,7 @@ struct Cohesive {
     c.compressive_limit = p.compressive_limit;
     c.closure_at_limit = p.compressive_limit / p.normal_stiffness;
     c.share_left = 1.0 - p.hardening;
-    // on monotone loading exactly Eq. (15)
+    // gives exactly Eq. (15) on monotone loading
     c.hardening_slope = p.hardening * p.normal_stiffness / (1.0 - p.hardening);
     c.cohesion = p.cohesion;
     c.residual_cohesion = p.residual_cohesion;
@@ -141,7 +141,8 @@ struct Cohesive {
     return c;
   }
 
-  /// A softening branch may not be steeper than the elastic one: it would snap back.
+  /// Objects to residual values above the initial ones, and to a softening branch that is steeper than the
+  /// elastic one: it would snap back.
   static Objection check(const Properties<double>& p) {
     if (p.residual_cohesion > p.cohesion) return {"c_res", "between 0 and c_o = %g", p.cohesion};
     if (p.residual_friction_angle > p.friction_angle)
@@ -149,9 +150,9 @@ struct Cohesive {
     const double snap_1 = p.tensile_strength * p.tensile_strength / (2.0 * p.normal_stiffness);
     if (!(p.mode_1_energy > snap_1))
       return {"G_f1", "greater than f_t^2 / (2 K_n) = %g, else softening snaps back", snap_1};
-    // Where friction does not drop, tau_max - tau_res is largest at c_o - c_res; a drop in friction adds p
-    // times it, which the limit f_cm bounds in the elastic range. Beyond it the law falls to the residual
-    // line.
+    // Where friction does not drop, tau_max - tau_res is at most c_o - c_res. A drop in friction adds the
+    // pressure times the drop, and f_cm bounds the pressure of the elastic range. Beyond f_cm the law falls
+    // to the residual line.
     double drop = p.cohesion - p.residual_cohesion;
     const double friction_drop = std::tan(p.friction_angle) - std::tan(p.residual_friction_angle);
     if (friction_drop > 0.0 && std::isfinite(p.compressive_limit))
@@ -167,7 +168,7 @@ struct Cohesive {
     return {c.normal_stiffness, c.shear_stiffness};
   }
 
-  /// What a contact point remembers.
+  /// Internal variables of a contact point.
   template <int Dim, class Real>
   struct Internals {
     Real tension_damage{};         ///< D_t = 1 - delta_t of the paper
@@ -190,7 +191,7 @@ struct Cohesive {
     }
   };
 
-  /// What it lost for good. Nothing is added while nothing is lost.
+  /// Losses of a contact point, which are final. An update that loses nothing adds nothing.
   template <class Sum>
   struct Losses {
     Sum slip_path, tension, shear, friction, compression;
@@ -217,13 +218,13 @@ struct Cohesive {
   }
 
  private:
-  /// Linear tension softening with unloading to the origin.
+  /// Computes linear tension softening with unloading to the origin.
   /// \param elastic  opening beyond the closure left behind, m
   template <int Dim, class Real, class Constants, class Losses>
   static void update_tension(const Constants& c, const Real& elastic, Internals<Dim, Real>& h,
                              ContactResponse<Dim, Real>& r, Losses& losses) {
     const auto open = elastic > 0.0;
-    // In this order a contact without any strength, 0 / 0, breaks.
+    // This order of the arguments breaks a contact without any strength, for which the damage is 0 / 0.
     const Real damage = smaller(Real(1.0), (elastic - c.elastic_opening) * c.over_softening_range);
     const auto grows = open & (damage > h.tension_damage);
     if (any(grows)) {
@@ -240,7 +241,8 @@ struct Cohesive {
     r.stored += 0.5 * traction * elastic;
   }
 
-  /// Normal part: bilinear compression and linear tension softening over the elastic opening u_n + u_p.
+  /// Computes the normal part: bilinear compression and linear tension softening over the elastic opening
+  /// u_n + u_p.
   template <int Dim, class Real, class Constants, class Losses>
   static void update_normal(const Constants& c, const Real& opening, Internals<Dim, Real>& h,
                             ContactResponse<Dim, Real>& r, Losses& losses) {
@@ -248,13 +250,13 @@ struct Cohesive {
     if (any((elastic > 0.0) & (h.tension_damage < 1.0))) update_tension<Dim>(c, elastic, h, r, losses);
   }
 
-  /// Exact return of the elastic predictor to the softening envelope.
+  /// Returns the elastic predictor exactly to the softening envelope.
   ///
-  /// Where the envelope falls more steeply than K_s, as under pressures beyond f_cm where friction drops, no
-  /// softening branch can be followed: the point falls to the residual line at once, and what that releases
-  /// beyond G_f2 is booked as shear loss too.
+  /// No softening branch can be followed where the envelope falls more steeply than K_s, as under pressures
+  /// beyond f_cm where friction drops. The point then falls to the residual line at once, and the energy
+  /// released beyond G_f2 is booked as shear loss too.
   /// \param elastic  in and out: elastic part of the tangential jump, m
-  /// \param held     in and out: its length
+  /// \param held     in and out: length of the elastic part, m
   template <int Dim, class Real, class Constants, class Truth, class Losses>
   static void return_to_envelope(const Constants& c, const Truth& slips, const Real& excess,
                                  const Real& residual, const Real& drop, Tangential<Dim, Real>& elastic,
@@ -267,7 +269,7 @@ struct Cohesive {
     const Real softening_slip = excess / (c.shear_stiffness - drop * per_slip);
     const Real damage = h.shear_damage + softening_slip * per_slip;
     const auto partly = softens & follows & (damage < 1.0);
-    // all the way down to the residual line where it softens to the end
+    // The way leads to the residual line where the point softens to the end.
     Real length = select(softens, held - residual * c.shear_compliance, excess * c.shear_compliance);
     length = select(partly, softening_slip, length);
     length = select(slips, length, Real(0.0));
@@ -285,7 +287,7 @@ struct Cohesive {
     r.changed |= info::kSlid;
   }
 
-  /// Shear part: elastic predictor and exact return to the softening Mohr-Coulomb envelope.
+  /// Computes the shear part: elastic predictor and exact return to the softening Mohr-Coulomb envelope.
   template <int Dim, class Real, class Constants, class Losses>
   static void update_shear(const Constants& c, const Tangential<Dim, Real>& jump, const Real& opening,
                            Internals<Dim, Real>& h, ContactResponse<Dim, Real>& r, Losses& losses) {
@@ -304,8 +306,8 @@ struct Cohesive {
     const auto slips = (excess > 0.0) & !open_and_broken;
     if (any(slips)) return_to_envelope<Dim>(c, slips, excess, residual, drop, elastic, held, h, r, losses);
     if (any(open_and_broken)) {
-      // The bond lets go of the shear it still carried. That energy was held by cohesion, so it is booked
-      // there.
+      // The bond lets go of the shear that it still carried. Cohesion held this energy, so it is booked as a
+      // loss in shear.
       let_go<Dim>(open_and_broken, k, jump, h.held_jump, h.slip, elastic, held, losses.shear);
       r.changed |= info::kSlid;
     }

@@ -2,7 +2,7 @@
 
 #include "pyroclast/laws/law.hpp"
 
-/// What several laws have in common: infos of numbers, and parts of an update.
+/// Parts that several laws share: infos of numbers, and parts of an update.
 namespace pyroclast {
 
 namespace info {
@@ -28,15 +28,15 @@ inline constexpr PropertyInfo friction_angle{"phi", "friction angle", unit::angl
 inline constexpr PropertyInfo mode_2_energy{"G_f2", "mode II fracture energy", unit::fracture_energy,
                                             Range::positive().usually(0.1, 1e5), Role::energy};
 
-/// Of Compression.
+/// Choice of a Compression.
 inline constexpr ChoiceInfo compression{"compression",
                                         "how contacts unload from compression",
                                         {{"irreversible", "unloading has slope K_n and leaves a closure"},
                                          {"reversible", "unloading retraces the bilinear curve"}}};
 
 // Bits of ContactResponse::changed.
-inline constexpr unsigned kSlid = 1;     ///< the slip
-inline constexpr unsigned kDamaged = 2;  ///< a damage or the closure
+inline constexpr unsigned kSlid = 1;     ///< the slip changed
+inline constexpr unsigned kDamaged = 2;  ///< a damage or the closure changed
 
 inline constexpr InternalInfo closure{"closure", "irreversible, in compression; never decreases",
                                       unit::length, Remembers::closure, kDamaged};
@@ -51,18 +51,18 @@ inline constexpr LossInfo lost_in_compression{"compression", "irreversible closu
 
 }  // namespace info
 
-/// The reading of the compression law, Eq. (15).
+/// Reading of the compression law, Eq. (15).
 enum class Compression : std::uint8_t {
   irreversible,  ///< unloading has slope K_n and leaves a closure
   reversible     ///< unloading retraces the bilinear curve
 };
 
-/// Compression with unloading along K_n, which leaves a closure: yield stress f_cm + H u_p.
+/// Computes compression with unloading along K_n, which leaves a closure; the yield stress is f_cm + H u_p.
 /// \return the opening beyond the closure left behind, m
 template <int Dim, class Real, class Constants, class Sum>
 Real yield_in_compression(const Constants& c, const Real& opening, Real& closure,
                           ContactResponse<Dim, Real>& r, Sum& loss) {
-  Real elastic = opening + closure;  // zero traction at zero
+  Real elastic = opening + closure;  // the traction is zero where the elastic opening is zero
   const Real yielded = c.share_left * (-opening - c.closure_at_limit);
   const auto yields = yielded > closure;
   if (any(yields)) {
@@ -79,7 +79,7 @@ Real yield_in_compression(const Constants& c, const Real& opening, Real& closure
   return elastic;
 }
 
-/// Compression that retraces the bilinear curve (15).
+/// Computes compression that retraces the bilinear curve (15).
 template <int Dim, class Real, class Constants>
 void follow_compression(const Constants& c, const Real& opening, ContactResponse<Dim, Real>& r) {
   const auto k = c.normal_stiffness;
@@ -91,9 +91,9 @@ void follow_compression(const Constants& c, const Real& opening, ContactResponse
   r.stored = 0.5 * k * within * within + select(beyond > 0.0, yielded, Real(0.0));  // f_cm may be infinite
 }
 
-/// Bilinear compression, Eq. (15): sets the normal traction and the stored energy.
-/// \param closure  in and out: left behind, m
-/// \param loss     gains what yielding dissipates, J/m²
+/// Computes bilinear compression, Eq. (15): sets the normal traction and the stored energy.
+/// \param closure  in and out: closure left behind, m
+/// \param loss     gains the energy that yielding dissipates, J/m²
 /// \return the opening beyond the closure left behind, m
 template <int Dim, class Real, class Constants, class Sum>
 Real compress(const Constants& c, const Real& opening, Real& closure, ContactResponse<Dim, Real>& r,
@@ -105,9 +105,9 @@ Real compress(const Constants& c, const Real& opening, Real& closure, ContactRes
 }
 
 /// Slides a point by a length along the elastic part of its tangential jump.
-/// \param slips    where it slides; elsewhere `length` is zero
+/// \param slips    true where the point slides; elsewhere `length` is zero
 /// \param elastic  in and out, m
-/// \param held     in and out: length of `elastic`
+/// \param held     in and out: length of `elastic`, m
 template <int Dim, class Truth, class Real>
 void slide(const Truth& slips, const Real& length, Tangential<Dim, Real>& slip,
            Tangential<Dim, Real>& elastic, Real& held) {
@@ -121,8 +121,8 @@ void slide(const Truth& slips, const Real& length, Tangential<Dim, Real>& slip,
   held = norm(elastic);
 }
 
-/// Where a point is open, lets go of the shear that it still carried: the slip follows the jump.
-/// \param stiffness  of that shear, Pa/m
+/// Lets go of the shear that a point still carried, where it is open: the slip follows the jump.
+/// \param stiffness  stiffness of the shear that was carried, Pa/m
 /// \param held_jump  length of `elastic` after the last update, m
 /// \param loss       gains the energy that was held, J/m²
 template <int Dim, class Truth, class Real, class Number, class Sum>

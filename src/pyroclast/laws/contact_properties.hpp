@@ -11,15 +11,15 @@
 
 namespace pyroclast {
 
-/// Parameters of a contact at one temperature, of any law.
+/// Parameters of a contact at one temperature, for any law.
 struct ContactProperties {
   const LawTable* law = nullptr;
-  std::vector<double> numbers;  ///< in the order of LawTable::properties
-  std::vector<int> choices;     ///< likewise
+  std::vector<double> numbers;  ///< numbers in the order of LawTable::properties
+  std::vector<int> choices;     ///< options chosen, in the order of LawTable::choices
 
   ContactProperties() = default;
   ContactProperties(const LawTable& of, std::vector<double> with, std::vector<int> chosen);
-  /// Of a law's own struct.
+  /// Converts the parameters from a law's own struct.
   template <class P>
   requires std::same_as<P, typename P::Law::template Properties<double>> ContactProperties(const P& p)
       : law(&table_of<typename P::Law>()),
@@ -29,14 +29,14 @@ struct ContactProperties {
     put_choices(p, choices.data());
   }
 
-  /// As the struct of its law. Throws Error when it is of another one.
+  /// Returns the parameters as the struct of their law. Throws Error when they are of another law.
   template <class Law>
   typename Law::template Properties<double> as() const {
     require(table_of<Law>());
     return law_table::properties<Law>(numbers.data(), choices.data());
   }
 
-  /// What the law works with.
+  /// Returns the constants of the law, derived from the parameters.
   std::vector<std::byte> constants() const;
   ContactStiffness<double> stiffness() const { return law->stiffness(constants().data()); }
 
@@ -44,17 +44,17 @@ struct ContactProperties {
   void require(const LawTable& wanted) const;
 };
 
-/// A property that cannot be as it is.
+/// Error of a property whose value is not allowed.
 class PropertyError : public Error {
  public:
   PropertyError(const std::string& message, std::string of, std::string as)
       : Error(message), key(std::move(of)), wanted(std::move(as)) {}
-  std::string key;     ///< of the property
-  std::string wanted;  ///< what it must be, in words
+  std::string key;     ///< key of the property
+  std::string wanted;  ///< allowed values in words
 };
 
 /// Throws PropertyError when a parameter is out of its range or the law objects.
-/// \param name  of the contact, for the message
+/// \param name  name of the contact, for the message
 void validate(const ContactProperties& properties, const std::string& name);
 
 /// Parameters of many contacts, one set after the other.

@@ -4,7 +4,7 @@
 
 namespace pyroclast {
 
-/// A contact that never fails and remembers nothing, as between two blocks of aggregate (paper §3.1).
+/// Contact that never fails and has no internal variables, as between two blocks of aggregate (paper §3.1).
 struct Elastic {
   static constexpr const char* name = "elastic";
   static constexpr const char* meaning = "never fails";

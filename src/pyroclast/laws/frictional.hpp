@@ -4,8 +4,8 @@
 
 namespace pyroclast {
 
-/// A contact that holds no tension and no cohesion: pressure along K_n, Coulomb friction along K_s, as
-/// between a platen and the specimen. What it still carried in shear when it opens goes into friction.
+/// Contact without tension and cohesion: pressure along K_n, Coulomb friction along K_s, as between a platen
+/// and the specimen. When the contact opens, the shear energy that it still held is lost as friction.
 struct Frictional {
   static constexpr const char* name = "frictional";
   static constexpr const char* meaning = "presses and rubs, never held";

@@ -8,48 +8,48 @@
 #include "pyroclast/base/unit.hpp"
 #include "pyroclast/base/vec.hpp"
 
-/// What a contact law is, and how it names its numbers.
+/// Interface of a contact law, and the infos that name its numbers.
 ///
 /// A law is a struct that takes one contact point from jump to traction. It holds
 ///
-///     Properties<Real>    what a deck gives, at one temperature      each(f, p...), each_choice(f, p...)
-///     Constants<Real>     what follows from them, worked out once    each(f, c...), each_choice(f, c...)
-///     Internals<Dim, Real>  what a contact point remembers             each(f, h...)
-///     Losses<Sum>         what it lost for good                      each(f, l...)
-///     derive, update, stiffness, check                               see laws/cohesive.hpp
+///     Properties<Real>      parameters of a deck, at one temperature   each(f, p...), each_choice(f, p...)
+///     Constants<Real>       constants derived from them, once          each(f, c...), each_choice(f, c...)
+///     Internals<Dim, Real>  internal variables of a contact point      each(f, h...)
+///     Losses<Sum>           final losses of a contact point            each(f, l...)
+///     derive, update, stiffness, check                                 see laws/cohesive.hpp
 ///
-/// Opening alone gives the same however it is cut into steps; so does sliding at a steady opening, unless the
-/// law says `static constexpr bool exact_in_shear = false`. Elsewhere a law converges with the number of
-/// steps. What else a law must hold, laws/kit.cpp tries.
+/// Opening alone gives the same result however it is cut into steps; so does sliding at a steady opening,
+/// unless the law says `static constexpr bool exact_in_shear = false`. On other paths a law converges with
+/// the number of steps. laws/kit.cpp tries all other properties that a law must hold.
 ///
 /// Each list calls `f(info, number...)` for one number after the other; several objects of the same kind go
-/// side by side. The info says once what the number is called, its unit and its meaning: decks, docs, memory,
-/// fields and columns follow from it.
+/// side by side. The info gives the number's name, unit and meaning once: decks, docs, memory, fields and
+/// columns follow from it.
 ///
-/// Real is a double for one point, or lanes for eight (base/lanes.hpp). Sign: tension and opening are
+/// Real is a double for one point, or lanes for eight points (base/lanes.hpp). Sign: tension and opening are
 /// positive. All energies are per unit of contact area, J/m².
 namespace pyroclast {
 
-/// What the step compiles of a law (mechanics/compiled_for_sets.hpp); a law that is part of the program
-/// declares its own as `static const CompiledForSets compiled`.
+/// Functions that the step compiles for a law (mechanics/compiled_for_sets.hpp); a law that is part of the
+/// program declares its own as `static const CompiledForSets compiled`.
 struct CompiledForSets;
 
 /// Components of a contact's tangential jump and traction: 1 in 2D, 2 in 3D.
 template <int Dim, class Real = double>
 using Tangential = Vec<Dim - 1, Real>;
 
-/// What a property is, to factors of an interface, ratios over temperature and K = E / t_b.
+/// Role of a property, on which factors of an interface, ratios over temperature and K = E / t_b act.
 enum class Role : std::uint8_t {
-  plain,             ///< nothing acts on it
+  plain,             ///< property on which none of them acts
   normal_stiffness,  ///< E / t_b where a deck says nothing, Eq. (17)
-  shear_stiffness,   ///< G / t_b, likewise
+  shear_stiffness,   ///< G / t_b where a deck says nothing, Eq. (17)
   strength,
   energy
 };
 
 struct PropertyInfo {
-  const char* key;      ///< in decks
-  const char* meaning;  ///< for people
+  const char* key;      ///< key in decks
+  const char* meaning;  ///< meaning for people
   Unit unit;
   Range range;
   Role role = Role::plain;
@@ -60,22 +60,22 @@ struct OptionInfo {
   const char* meaning;
 };
 
-/// One of few ways, the same at every temperature. The first option is the default.
+/// Choice among few options, the same at every temperature. The first option is the default.
 struct ChoiceInfo {
   static constexpr int kMostOptions = 4;
 
   const char* key;
   const char* meaning;
-  OptionInfo options[kMostOptions];  ///< the last ones may be empty
+  OptionInfo options[kMostOptions];  ///< options; the last ones may be empty
 };
 
-/// What a remembered number is, to cracks, columns and figures.
+/// Meaning of an internal variable to cracks, columns and figures.
 enum class Remembers : std::uint8_t {
   other,
   tension_damage,  ///< 0 intact, 1 broken; never decreases
-  shear_damage,    ///< likewise
-  mixed_damage,    ///< of tension and shear together
-  closure          ///< added to the opening it gives that of the crack, m
+  shear_damage,    ///< 0 intact, 1 broken; never decreases
+  mixed_damage,    ///< one damage of tension and shear together
+  closure          ///< length, m, that added to the opening gives the opening of the crack
 };
 
 struct InternalInfo {
@@ -83,9 +83,10 @@ struct InternalInfo {
   const char* meaning;
   Unit unit;
   Remembers what = Remembers::other;
-  /// Bit of ContactResponse::changed that says that it may have changed; 0: it changes in every update.
+  /// Bit of ContactResponse::changed that tells that the variable may have changed; 0: it changes in every
+  /// update.
   unsigned when = 0;
-  bool in_files = true;  ///< a field of the results
+  bool in_files = true;  ///< true for a field of the results
 };
 
 struct LossInfo {
@@ -93,17 +94,18 @@ struct LossInfo {
   const char* meaning;
   Unit unit;
 
-  /// Energies are counted in the ledger.
+  /// Tells whether the loss is an energy, which the ledger counts.
   constexpr bool is_energy() const { return unit == unit::fracture_energy; }
 };
 
-/// What a contact point answers to a jump.
+/// Answer of a contact point to a jump.
 template <int Dim, class Real = double>
 struct ContactResponse {
   Real normal_traction = 0.0;              ///< sigma, Pa, tension positive
   Tangential<Dim, Real> shear_traction{};  ///< tau, Pa
-  Real stored = 0.0;                       ///< elastic energy now held, J/m²
-  unsigned changed = 0;                    ///< InternalInfo::when of what changed in any lane
+  Real stored = 0.0;                       ///< elastic energy held after the update, J/m²
+  /// InternalInfo::when of every internal variable that changed in any lane.
+  unsigned changed = 0;
 };
 
 /// Bounds of a contact's stiffness over all its states at one temperature, Pa/m.
@@ -112,14 +114,14 @@ struct ContactStiffness {
   Real normal{}, shear{};
 };
 
-/// Why properties cannot make a law: `key = value, but it must be <wanted>`.
+/// Reason why properties cannot make a law: `key = value, but it must be <wanted>`.
 struct Objection {
   const char* key = nullptr;
-  const char* wanted = nullptr;  ///< in words, may hold one %g for `bound`
+  const char* wanted = nullptr;  ///< wanted values in words; may hold one %g for `bound`
   double bound = 0.0;
 };
 
-/// Numbers of a list.
+/// Returns how many numbers a list has.
 template <class List>
 constexpr int count_of() {
   List list{};
@@ -128,7 +130,7 @@ constexpr int count_of() {
   return count;
 }
 
-/// Choices of properties or constants.
+/// Returns how many choices properties or constants have.
 template <class List>
 constexpr int choices_of() {
   List list{};
@@ -137,7 +139,7 @@ constexpr int choices_of() {
   return count;
 }
 
-/// Takes the numbers of a list from where they follow one another, and puts them there.
+/// Takes the numbers of a list from consecutive places; `put` writes them there.
 template <class List>
 constexpr void take(List& list, const double* from) {
   List::each([&](const auto&, auto& number) { number = *from++; }, list);
@@ -146,7 +148,7 @@ template <class List>
 constexpr void put(const List& list, double* to) {
   List::each([&](const auto&, const auto& number) { *to++ = number; }, list);
 }
-/// The same for choices.
+/// Takes the choices of a list from consecutive places; `put_choices` writes them there.
 template <class List>
 constexpr void take_choices(List& list, const int* from) {
   List::each_choice(
@@ -158,7 +160,7 @@ constexpr void put_choices(const List& list, int* to) {
   List::each_choice([&](const auto&, const auto& choice) { *to++ = static_cast<int>(choice); }, list);
 }
 
-/// A list without numbers. Also the info of a number that has none.
+/// List without numbers. Also the info of a number that has none.
 struct Nothing {
   template <class F, class... N>
   static constexpr void each(F&&, N&...) {}

@@ -5,29 +5,30 @@
 
 namespace pyroclast {
 
-/// One damage for tension and shear, with friction that stays and dilatancy (docs/method.md, "Mixed mode").
+/// Contact law with one damage for tension and shear, with friction that stays and dilatancy (docs/method.md,
+/// "Mixed mode").
 ///
 /// A share of the contact is broken. The rest holds along secants to the origin, K_n S / (1 + q_n D) for
-/// tension and K_s S / (1 + q_s D) for shear, with S(D) the strength left, D the damage and q = u_f / u_0 - 1
-/// from the end u_f and the beginning u_0 of softening in the pure mode. What is broken rubs (Alfano & Sacco
-/// 2006, doi:10.1002/nme.1728). Damage grows with the elastic opening u_n and with u_s, the part of the
-/// tangential jump that friction could not hold, |jump| - p tan(phi) / K_s. It begins where
-/// (u_n / u_0n)^2 + (u_s / u_0s)^2 = 1, that is (sigma / f_t)^2 + (tau / (c_o + p tan(phi)))^2 = 1, and ends
-/// at D = 1 where (u_n / u_fn)^2 + (u_s / u_fs)^2 = 1.
+/// tension and K_s S / (1 + q_s D) for shear. S(D) is the strength left, D the damage and q = u_f / u_0 - 1,
+/// with the end u_f and the beginning u_0 of softening in the pure mode. The broken share rubs (Alfano &
+/// Sacco 2006, doi:10.1002/nme.1728). Damage grows with the elastic opening u_n and with u_s, the part of the
+/// tangential jump that friction could not hold, |jump| - p tan(phi) / K_s. Damage begins where
+/// (u_n / u_0n)^2 + (u_s / u_0s)^2 = 1, that is (sigma / f_t)^2 + (tau / (c_o + p tan(phi)))^2 = 1, and
+/// reaches D = 1 where (u_n / u_fn)^2 + (u_s / u_fs)^2 = 1.
 ///
-/// Both secants fall with D, so damage never wins energy back, on whatever way. G_f1 and G_f2 are exact in
-/// the pure modes in any number of steps. On combined ways energies converge with the number of steps.
+/// Both secants fall with D, so damage never wins energy back, on any path. G_f1 and G_f2 are exact in the
+/// pure modes in any number of steps. On combined paths energies converge with the number of steps.
 struct MixedMode {
   static const CompiledForSets compiled;
   static constexpr const char* name = "mixed_mode";
-  static constexpr bool exact_in_shear = false;  // dilatancy turns sliding into a combined way
+  static constexpr bool exact_in_shear = false;  // dilatancy turns sliding into a combined path
   static constexpr const char* meaning =
       "one damage for tension and shear; what is broken rubs and dilates; yields in compression";
 
-  /// How the strength falls from the beginning of softening to its end.
+  /// Form of the strength's fall from the beginning of softening to its end.
   enum class Softening : std::uint8_t {
     bilinear,     ///< Petersson (1981): a third of the strength is left at 2/9 of the way
-    exponential,  ///< e^(-7 D) less its last value, so that it ends
+    exponential,  ///< e^(-7 D) less its last value, so that the strength ends at 0
     linear
   };
   using Compression = pyroclast::Compression;
@@ -46,7 +47,7 @@ struct MixedMode {
     Real cohesion{};           ///< c_o, Pa
     Real friction_angle{};     ///< phi, rad
     Real mode_2_energy{};      ///< G_f2, J/m²
-    Real dilatancy_angle{};    ///< psi, of the first slip, rad
+    Real dilatancy_angle{};    ///< psi, dilatancy angle of the first slip, rad
     Real fading_slip{};        ///< u_r, slip over which tan(psi) falls by the factor e, m
     Softening softening = Softening::bilinear;
     Compression compression = Compression::irreversible;
@@ -79,7 +80,7 @@ struct MixedMode {
       f(info::compression, p.compression...);
     }
 
-    /// Area under S(D), D from 0 to 1.
+    /// Returns the area under S(D), D from 0 to 1.
     double softening_area() const {
       switch (softening) {
         case Softening::bilinear:
@@ -91,30 +92,31 @@ struct MixedMode {
       }
       return 0.5;
     }
-    /// u_0n = f_t / K_n, opening at which softening begins in tension, m.
+    /// Returns u_0n = f_t / K_n, the opening at which softening begins in tension, m.
     Real first_opening() const { return tensile_strength / normal_stiffness; }
-    /// u_0s = c_o / K_s, likewise in shear without pressure, m.
+    /// Returns u_0s = c_o / K_s, the tangential jump at which softening begins in shear without pressure, m.
     Real first_slip() const { return cohesion / shear_stiffness; }
-    /// u_fn, opening at which nothing is left in tension, m.
+    /// Returns u_fn, the opening at which no strength is left in tension, m.
     Real last_opening() const { return end(first_opening(), tensile_strength, mode_1_energy); }
-    /// u_fs, likewise in shear without pressure, m.
+    /// Returns u_fs, the tangential jump at which no strength is left in shear without pressure, m.
     Real last_slip() const { return end(first_slip(), cohesion, mode_2_energy); }
 
    private:
-    /// The area under the whole curve, the elastic branch included, is the fracture energy.
+    /// Returns the jump at which softening ends: the area under the whole curve, the elastic branch included,
+    /// is the fracture energy.
     Real end(Real first, Real strength, Real energy) const {
       return first + (energy / strength - 0.5 * first) / softening_area();
     }
   };
 
-  /// What follows from the parameters.
+  /// Constants that follow from the parameters.
   template <class Real>
   struct Constants {
     Real normal_stiffness, shear_stiffness;     ///< Pa/m
     Real compressive_limit;                     ///< Pa
     Real closure_at_limit;                      ///< f_cm / K_n, m
-    Real share_left;                            ///< of a closure beyond the limit, as u_p: 1 - beta
-    Real hardening_slope;                       ///< of the yield stress over u_p, Pa/m
+    Real share_left;                            ///< share of closure past the limit kept as u_p: 1 - beta
+    Real hardening_slope;                       ///< slope of the yield stress over u_p, Pa/m
     Real over_first_opening, over_first_slip;   ///< 1 / u_0n, 1 / u_0s, 1/m
     Real tension_range, shear_range;            ///< q = u_f / u_0 - 1 of the pure modes
     Real first_over_last_opening;               ///< u_0n / u_fn
@@ -122,9 +124,10 @@ struct MixedMode {
     Real first_tension_energy, tension_energy;  ///< f_t u_0n, f_t (u_fn - u_0n), J/m²
     Real first_shear_energy, shear_energy;      ///< c_o u_0s, c_o (u_fs - u_0s), J/m²
     Real friction;                              ///< tan(phi)
-    Real reach_of_pressure;                     ///< tan(phi) / K_s, jump that friction holds, m/Pa
-    Real last_dilation;                         ///< u_r tan(psi), m
-    Real over_fading_slip;                      ///< 1 / u_r, 1/m
+    /// tan(phi) / K_s, jump that friction holds for each pascal of pressure, m/Pa.
+    Real reach_of_pressure;
+    Real last_dilation;     ///< u_r tan(psi), m
+    Real over_fading_slip;  ///< 1 / u_r, 1/m
     Softening softening = Softening::bilinear;
     Compression compression = Compression::irreversible;
 
@@ -201,20 +204,20 @@ struct MixedMode {
     return {};
   }
 
-  /// Where slip dilates, pressure and shear raise each other, but no mode of both is stiffer for it
-  /// (docs/method.md, "Mixed mode").
+  /// Returns the bounds K_n and K_s. Slip that dilates lets pressure and shear raise each other, but makes no
+  /// mode of both stiffer (docs/method.md, "Mixed mode").
   template <class Real>
   static ContactStiffness<Real> stiffness(const Constants<Real>& c) {
     return {c.normal_stiffness, c.shear_stiffness};
   }
 
-  /// What a contact point remembers.
+  /// Internal variables of a contact point.
   template <int Dim, class Real>
   struct Internals {
     Real damage{};                 ///< D
     Real closure{};                ///< u_p, m
     Real dilation{};               ///< m
-    Tangential<Dim, Real> slip{};  ///< of what is broken, m
+    Tangential<Dim, Real> slip{};  ///< slip of the broken share, m
     Real held_jump{};              ///< m
 
     template <class F, class... H>
@@ -231,7 +234,7 @@ struct MixedMode {
     }
   };
 
-  /// What it lost for good. Nothing is added while nothing is lost.
+  /// Losses of a contact point, which are final. An update that loses nothing adds nothing.
   template <class Sum>
   struct Losses {
     Sum slip_path, tension, shear, friction, compression;
@@ -264,7 +267,7 @@ struct MixedMode {
       rub<Dim>(c, opening, tangential, jump, bond, elastic, held, h, r, losses);
     }
     const Real reach = (0.0 - r.normal_traction) * c.reach_of_pressure;
-    const Real above = larger(jump - reach, Real(0.0));  // what friction could not hold
+    const Real above = larger(jump - reach, Real(0.0));  // part of the jump that friction could not hold
     const Real opened = larger(elastic, Real(0.0));
     const Real in_tension = opened * c.over_first_opening, in_shear = above * c.over_first_slip;
     const Real from_first = in_tension * in_tension + in_shear * in_shear;
@@ -288,16 +291,17 @@ struct MixedMode {
   /// Share of the jumps below which an excess over friction is round-off.
   static constexpr double kRoundOff = 1e-12;
 
-  /// What is left of a bond.
+  /// Rest of a bond that is partly broken.
   template <class Real>
   struct Bond {
     Real tension = 1.0, shear = 1.0;         ///< secants over K_n and K_s
     Real per_opening = 1.0, per_slip = 1.0;  ///< 1 / (1 + q D)
-    Real lost_first = 0.0, lost = 0.0;       ///< of `first_..._energy` and of `..._energy`
+    Real lost_first = 0.0, lost = 0.0;       ///< loss as a share of `first_..._energy` and of `..._energy`
   };
 
-  /// The loss of energy between beginning and D is that below the curve less that below the secant,
-  /// f ((u_f - u_0) (int S dD - S D / 2) + u_0 (1 - S) / 2).
+  /// Returns the rest of a bond at a damage. The energy lost between the beginning of softening and D is the
+  /// area below the curve less the area below the secant, f ((u_f - u_0) (int S dD - S D / 2) + u_0 (1 - S) /
+  /// 2).
   template <class Real, class Constants>
   static Bond<Real> bond_at(const Constants& c, const Real& damage) {
     Bond<Real> b;
@@ -329,7 +333,7 @@ struct MixedMode {
     return b;
   }
 
-  /// Friction and dilatancy of what is broken; where it is open it carries nothing.
+  /// Computes friction and dilatancy of the broken share, which carries nothing where it is open.
   /// \param jump     length of `tangential`, m
   /// \param elastic  in and out: opening beyond the dilation and the closure left behind, m
   /// \param held     out: length of the jump that friction holds, m
@@ -348,7 +352,7 @@ struct MixedMode {
     const auto slides = is_broken & !(elastic > 0.0) & (held - reach > round_off);
     if (any(slides)) {
       Real length = select(slides, held - reach, Real(0.0));
-      Real pressures = 2.0 * pressure;  // before and after the slip
+      Real pressures = 2.0 * pressure;  // pressure before the slip plus pressure after it
       Real lifted = 0.0;
       if (any(slides & (h.dilation < c.last_dilation))) {
         const Real dilation =
@@ -362,10 +366,10 @@ struct MixedMode {
       losses.friction +=
           select(slides, 0.5 * pressures * larger(c.friction * path - lifted, Real(0.0)), Real(0.0));
       losses.slip_path += path;
-      const Real stays = (held - length) / held;  // share of the elastic jump
+      const Real stays = (held - length) / held;  // share of the elastic jump that stays
       for (int i = 0; i + 1 < Dim; ++i)
         h.slip[i] = select(slides, tangential[i] - elastic_jump[i] * stays, h.slip[i]);
-      // as the next update at this jump finds it, to the bit
+      // computes the elastic jump as the next update at this jump does, to the bit
       elastic_jump = tangential - h.slip;
       held = norm(elastic_jump);
       r.changed |= info::kSlid;
@@ -378,11 +382,11 @@ struct MixedMode {
     held = select(is_broken, held, Real(0.0));
   }
 
-  /// Slip raises the pressure by what it dilates, and with it the friction. The excess over friction is a
-  /// falling convex function of the slip, so Newton's method comes to its root from below. A lane that has
-  /// arrived stays where it is.
-  /// \param length  out: how far it slides, m
-  /// \return the dilation then, m
+  /// Finds the slip and its dilation. Slip dilates, which raises the pressure and with it the friction. The
+  /// excess over friction is a falling convex function of the slip, so Newton's method comes to its root from
+  /// below. A lane that has arrived stays where it is.
+  /// \param length  out: length of the slip, m
+  /// \return the dilation after the slip, m
   template <class Real, class Constants, class Truth>
   static Real dilate(const Constants& c, const Real& opening, const Truth& slides, const Real& held,
                      const Real& reach, const Real& round_off, const Real& broken, const Real& dilation,
@@ -390,7 +394,8 @@ struct MixedMode {
     const Real left = larger(c.last_dilation - dilation, Real(0.0));
     const Real fading = broken * c.over_fading_slip;
     const auto k = c.normal_stiffness * c.reach_of_pressure;
-    Real slope = 1.0 + k * left * fading;  // of the excess; too steep beyond f_cm, so still from below
+    // Slope of the excess; too steep beyond f_cm, so the root is still approached from below.
+    Real slope = 1.0 + k * left * fading;
     length = select(slides, (held - reach) / slope, Real(0.0));
     Real after = dilation;
     constexpr int kMostRounds = 60;
@@ -409,18 +414,19 @@ struct MixedMode {
     return after;
   }
 
-  /// What drives the damage.
+  /// Quantities that make the damage grow.
   template <class Real>
   struct Growth {
     const Real& in_tension;  ///< elastic opening over u_0n
     const Real& in_shear;    ///< u_s over u_0s
-    const Real& from_first;  ///< sum of their squares
+    const Real& from_first;  ///< sum of the squares of in_tension and in_shear
     const Real& jump;        ///< length of the tangential jump, m
     const Real& above;       ///< u_s, m
     const Real& reach;       ///< jump that friction can hold, m
   };
 
-  /// The way from the beginning to the end of softening at this ratio of u_n to u_s, and what that costs.
+  /// Raises the damage to the share that the jump has gone of the way from the beginning to the end of
+  /// softening, at its ratio of u_n to u_s, and adds the energy that is lost.
   template <int Dim, class Real, class Constants, class Losses>
   static void break_bond(const Constants& c, const Growth<Real>& g, const Tangential<Dim, Real>& tangential,
                          Bond<Real>& bond, Real& held, Internals<Dim, Real>& h, ContactResponse<Dim, Real>& r,
@@ -434,8 +440,8 @@ struct MixedMode {
     const auto grows = (g.from_first > 1.0) & (way > h.damage);
     if (!any(grows)) return;
     const Bond<Real> left = bond_at(c, way);
-    // Energy per unit of D is that of a pure mode times the square of the jump over that of the pure mode.
-    // Beyond the end of softening only the ratio of the modes counts.
+    // The energy of each mode per unit of D is the energy of the pure mode, times the square of the jump over
+    // the jump of the pure mode. Beyond the end of softening only the ratio of the modes counts.
     const Real scale = 1.0 / larger(to_last, Real(1.0));
     const Real opened = g.in_tension * left.per_opening, sheared = g.in_shear * left.per_slip;
     const Real lost = larger(left.lost - bond.lost, Real(0.0));
@@ -445,7 +451,7 @@ struct MixedMode {
     };
     losses.tension += spent(opened, c.tension_energy, c.first_tension_energy);
     losses.shear += spent(sheared, c.shear_energy, c.first_shear_energy);
-    // What breaks under pressure rubs from then on: at first with all the friction that there is.
+    // The share that breaks under pressure rubs from then on: at first with all the friction that there is.
     const auto begins = grows & !(h.damage > 0.0);
     held = select(begins, g.reach, held);
     const Real rubbed = larger(g.reach * (g.above + g.jump) - held * held, Real(0.0)) *

@@ -6,10 +6,11 @@
 
 namespace pyroclast {
 
-/// The laws that are part of the program, in the order of BuiltInLaws. Who calls this links all of them.
+/// Returns the laws that are part of the program, in the order of BuiltInLaws. A program that calls this
+/// function links all of them.
 std::span<const LawTable* const> built_in_laws();
 
-/// Its place among them. Throws Error when it is not one of them.
+/// Returns the place of a law among the built-in laws. Throws Error when the law is none of them.
 int index_of(const LawTable& law);
 
 }  // namespace pyroclast

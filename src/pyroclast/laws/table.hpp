@@ -10,47 +10,50 @@
 
 #include "pyroclast/laws/law.hpp"
 
-/// A law behind pointers: what decks, files and the driver of one point know of it. The step is compiled with
-/// the law itself, see mechanics/step/contacts.hpp.
+/// Law behind pointers: all that decks, files and the driver of one point know of a law. The step is compiled
+/// with the law itself, see mechanics/step/contacts.hpp.
 namespace pyroclast {
 
-/// What a single contact point answers; of a plane body the second shear component is zero.
+/// Answer of a single contact point; in a plane body the second shear component is zero.
 struct PointResponse {
   double normal_traction = 0.0;            ///< Pa, tension positive
   std::array<double, 2> shear_traction{};  ///< Pa
   double stored = 0.0;                     ///< J/m²
 };
 
-/// Those of the bodies' dimensions that a law is made for.
+/// Dimensions of bodies for which a law is made.
 enum class Dimensions : std::uint8_t { plane = 1, space = 2, both = 3 };
 
 constexpr bool includes(Dimensions dimensions, int dim) {
   return (static_cast<int>(dimensions) & (dim == 2 ? 1 : 2)) != 0;
 }
 
-/// Plain data of standard layout: a law from outside the program hands over its own (plugin/plugin.hpp).
+/// Table of a law. It is plain data of standard layout, because a law from outside the program hands over its
+/// own table (plugin/plugin.hpp).
 struct LawTable {
   const char* name;
   const char* meaning;
   std::span<const PropertyInfo> properties;
   std::span<const ChoiceInfo> choices;
-  std::array<std::span<const InternalInfo>, 2> internals_of;  ///< in 2D and 3D
+  std::array<std::span<const InternalInfo>, 2> internals_of;  ///< internal variables in 2D and 3D
   std::span<const LossInfo> losses;
-  std::size_t size;     ///< of its constants, bytes
-  int constants;        ///< numbers among them
-  bool exact_in_shear;  ///< sliding at a steady opening does not depend on how it is cut into steps
+  std::size_t size;  ///< size of the constants, bytes
+  int constants;     ///< count of numbers among the constants
+  /// True where the result of sliding at a steady opening does not depend on its cuts into steps.
+  bool exact_in_shear;
 
   /// Makes the constants, in memory that is aligned for doubles.
   void (*derive)(const double* properties, const int* choices, void* constants);
-  /// Puts their numbers one after the other.
+  /// Writes the numbers of the constants one after the other.
   void (*numbers_of)(const void* constants, double* numbers);
   Objection (*check)(const double* properties, const int* choices);
   ContactStiffness<double> (*stiffness)(const void* constants);
-  /// Takes a point to a jump: opening, tangential components. Adds to the losses.
+  /// Takes a point to a jump (opening, tangential components) and adds to the losses. One function for 2D and
+  /// one for 3D; null where the law is not made for the dimension.
   std::array<PointResponse (*)(const void* constants, const double* jump, double* internals, double* losses),
              2>
-      update_of;                    ///< in 2D and 3D; null where the law is not made for them
-  const CompiledForSets* compiled;  ///< null where none are part of the program
+      update_of;
+  const CompiledForSets* compiled;  ///< functions of the step; null where none are part of the program
 
   std::span<const InternalInfo> internals(int dim) const { return internals_of[dim - 2]; }
   auto update(int dim) const { return update_of[dim - 2]; }
@@ -67,7 +70,7 @@ constexpr void for_each(F f, List& list) {
     List::each(f, list);
 }
 
-/// The infos of a list, or of its choices, one after the other.
+/// Returns the infos of a list's numbers, or of its choices, one after the other.
 template <class Info, class List>
 constexpr auto infos() {
   constexpr auto kCount = [] {
@@ -131,10 +134,10 @@ constexpr auto update_or_null() {
   else
     return nullptr;
 }
-/// `Law::compiled` of a law that is part of the program.
+/// Returns `Law::compiled` of a law that is part of the program; null for any other law.
 template <class Law>
 constexpr const CompiledForSets* functions_of() {
-  // a law made from another one inherits its packs, but they are not its own
+  // a law that derives from another one inherits its `compiled`, but these functions are not its own
   if constexpr (requires {
                   requires std::is_same_v<typename Law::template Properties<double>::Law, Law>;
                   &Law::compiled;

@@ -17,147 +17,162 @@
 
 namespace pyroclast {
 
-/// What a strain for each unit of stress is one of.
+/// Body to which a creep strain for each unit of stress refers.
 enum class CreepLevel : std::uint8_t {
-  concrete,  ///< of the whole, of which its one phase that creeps gives way more
-  phase      ///< of the phase itself
+  concrete,  ///< the concrete as a whole; its one phase that creeps must creep more
+  phase      ///< the phase itself
 };
 
-/// How a phase creeps when it is heated under stress, see material/creep.hpp.
+/// Creep of a phase that is heated under stress, see material/creep.hpp.
 struct CreepMaterial {
   Curve strain = Curve::constant(0.0);  ///< B since the reference temperature: strain at a stress of f_c
   CreepLevel level = CreepLevel::concrete;
-  std::optional<double> share;  ///< R of the concrete's strain in that of the phase; else of the specimen
-  double strength = 0.0;        ///< f_c, Pa: what B's stresses are counted by
-  CreepIncrement choices;       ///< but for its compliance
+  /// R, creep of the concrete over creep of the phase; without it the value follows from the specimen.
+  std::optional<double> share;
+  double strength = 0.0;   ///< f_c, Pa, by which stresses are divided for B
+  CreepIncrement choices;  ///< parameters of the increment except its compliance
 
-  /// Of being heated for the first time from one temperature to another, °C; none where it is not hotter.
+  /// Returns the creep of heating for the first time from one temperature to another, °C; none where the
+  /// second is not higher.
   CreepIncrement between(double from, double to) const;
 };
 
-/// What a block is made of: the zones' parameters as functions of temperature.
+/// Material of a block: the zones' parameters as functions of temperature.
 struct SolidMaterial {
-  std::string name;                             ///< as in [materials]
-  Curve young = Curve::constant(0.0);           ///< E, Pa
-  double poisson = 0.0;                         ///< nu
-  Curve density = Curve::constant(0.0);         ///< kg/m³; mass is that at the reference temperature
+  std::string name;                    ///< name in [materials]
+  Curve young = Curve::constant(0.0);  ///< E, Pa
+  double poisson = 0.0;                ///< nu
+  /// Density, kg/m³; the mass is computed at the reference temperature.
+  Curve density = Curve::constant(0.0);
   Curve thermal_strain = Curve::constant(0.0);  ///< free strain since the reference temperature
-  std::optional<QuartzStep> quartz_step;        ///< that thermal_strain holds, of a phase alone
-  std::optional<CreepMaterial> creep;           ///< of a phase alone
-  /// Of a phase: expansion coefficient where it is colder than it was, 1/K; else back along thermal_strain.
+  /// Quartz step that thermal_strain includes, for a phase only.
+  std::optional<QuartzStep> quartz_step;
+  std::optional<CreepMaterial> creep;  ///< creep, for a phase only
+  /// Expansion coefficient of a phase that is colder than it was, 1/K; without it the strain goes back along
+  /// thermal_strain.
   std::optional<double> contraction;
-  std::optional<Curve> residual_ratio;  ///< of E, see share_left; only where cooling is irreversible
-  std::optional<Curve> conductivity;    ///< gamma, W/(m K); only for heat conduction
-  std::optional<Curve> specific_heat;   ///< c, J/(kg K); likewise
-  bool is_of_bearing = false;           ///< not of the specimen: at 20 °C in every run
-  double first_strain = 0.0;  ///< thermal strain at the temperature without stress, see set_stress_free
+  /// Residual ratio of E, see share_left; only where cooling is irreversible.
+  std::optional<Curve> residual_ratio;
+  std::optional<Curve> conductivity;   ///< gamma, W/(m K); only for heat conduction
+  std::optional<Curve> specific_heat;  ///< c, J/(kg K); only for heat conduction
+  bool is_of_bearing = false;          ///< true for a bearing, which is at 20 °C in every run
+  /// Thermal strain at the temperature without stress, see set_stress_free.
+  double first_strain = 0.0;
 
-  /// Free strain, since the temperature without stress, at one of what was at the hottest one before, °C.
+  /// Returns the free strain, since the temperature without stress, at a temperature, °C.
+  /// \param hottest  highest temperature so far, °C
   double free_strain(double temperature, double hottest) const;
-  /// E, Pa, at a temperature.
-  /// \param marked  that it is that of, see OnCooling
+  /// Returns E, Pa, at a temperature, °C.
+  /// \param marked  temperature on whose value of the curve E is based, °C, see OnCooling
   double young_at(double temperature, double marked) const {
     return young(marked) * share_left(residual_ratio, temperature, marked);
   }
 };
 
-/// A contact's parameters as functions of temperature (paper, Table 2 and §4.1), of any law.
+/// Parameters of a contact as functions of temperature (paper, Table 2 and §4.1), for any law.
 struct ContactMaterial {
   const LawTable* law = nullptr;
-  std::vector<Curve> numbers;  ///< in the order of LawTable::properties
-  /// Of those that do not follow the temperature back on cooling, see share_left; likewise.
+  std::vector<Curve> numbers;  ///< numbers in the order of LawTable::properties
+  /// Residual ratios, see share_left, of the properties that do not follow the temperature back on cooling;
+  /// in the order of LawTable::properties.
   std::vector<std::optional<Curve>> residual_ratios;
-  std::vector<int> choices;  ///< likewise
+  std::vector<int> choices;  ///< options chosen, in the order of LawTable::choices
 
   ContactMaterial() = default;
-  /// All zero, with the first option of each choice.
+  /// Makes a contact whose numbers are all zero, with the first option of each choice.
   explicit ContactMaterial(const LawTable& of);
 
-  /// The property of that key. Throws Error when the law has none.
+  /// Returns the property of a key. Throws Error when the law has none of this key.
   Curve& operator[](std::string_view key);
   const Curve& operator[](std::string_view key) const;
   /// Sets every property of a role.
   void set(Role role, const Curve& curve, const std::optional<Curve>& residual_ratio = std::nullopt);
-  /// The property of a role, where there is one alone.
+  /// Returns the first property of a role. Throws Error when the law has none.
   const Curve& of(Role role) const;
-  /// With every property of a role multiplied.
+  /// Returns the same contact with every property of a role multiplied.
   ContactMaterial times(Role role, double factor) const;
 
-  /// Parameters at a temperature, °C. Throws Error when a curve is not defined there.
+  /// Returns the parameters at a temperature, °C. Throws Error when a curve is not defined there.
   ContactProperties at(double temperature) const { return at(temperature, temperature); }
-  /// \param marked  that strengths, energies and stiffnesses are those of, see OnCooling
+  /// \param marked  temperature on whose values strengths, energies and stiffnesses are based, °C, see
+  ///                OnCooling
   ContactProperties at(double temperature, double marked) const;
 };
 
-/// What holds the blocks of two phases together, as a deck says it.
+/// Interface between blocks of two phases, as a deck states it.
 struct InterfaceParameters {
   std::string name;
   std::vector<std::array<std::string, 2>> between;  ///< pairs of phases, in any order
-  ContactMaterial contact;                          ///< its stiffnesses are filled in by make_concrete
-  std::optional<double> normal_stiffness;  ///< K_n at the reference temperature, Pa/m; else see below
-  std::optional<double> shear_stiffness;   ///< K_s, likewise
-  std::optional<std::string> like;         ///< interface whose stiffness it has, times the factor;
-                                           ///< without one E / t_b of the phase, Eq. (17)
+  ContactMaterial contact;                          ///< contact law; make_concrete fills in its stiffnesses
+  /// K_n at the reference temperature, Pa/m; else from `like` or E / t_b.
+  std::optional<double> normal_stiffness;
+  /// K_s at the reference temperature, Pa/m; else from `like` or G / t_b.
+  std::optional<double> shear_stiffness;
+  /// Interface whose stiffness is taken, times the factor; without it E / t_b of the softest phase, Eq. (17).
+  std::optional<std::string> like;
   double stiffness_factor = 1.0;
 };
 
-/// Free thermal strain of the concrete as a whole, which those of its two phases make together:
+/// Free thermal strain of the concrete as a whole, from which the strains of its two phases follow:
 /// inclusions kappa eps_c, matrix (1 - w kappa) / (1 - w) eps_c.
 struct StrainOfConcrete {
   Curve strain = Curve::constant(0.0);  ///< eps_c since the reference temperature
   double ratio = 1.0;                   ///< kappa: strain of the inclusions over that of the concrete
-  std::optional<double> weight;         ///< w of the inclusions; else of the specimen
+  /// w of the inclusions; without it the value follows from the specimen.
+  std::optional<double> weight;
 };
 
-/// How a bearing and the specimen meet.
+/// Kind of contact between a bearing and the specimen.
 enum class BearingContact : std::uint8_t {
   frictional,  ///< no tension; slips by Coulomb's law
   glued        ///< elastic, and never parts
 };
 
-/// What is between a bearing and the specimen.
+/// Interface between a bearing and the specimen.
 struct BearingInterface {
   std::string name;
   BearingContact contact = BearingContact::frictional;
-  double friction = 0.0;  ///< tan(phi), of one that is frictional
-  /// K_n and K_s, Pa/m: of a layer between them; without one those of the matrix's own contacts.
+  double friction = 0.0;  ///< tan(phi), for a frictional contact
+  /// K_n and K_s, Pa/m, of a layer between bearing and specimen; without a layer those of the matrix's own
+  /// contacts.
   std::optional<std::array<double, 2>> stiffness = {};
 };
 
-/// The contacts of a concrete.
+/// Contacts of a concrete.
 struct ContactParameters {
   std::vector<InterfaceParameters> interfaces;
   double fracture_zone = 0.0;  ///< t_b, m, Eq. (17)
-  /// Block size at which t_b and the stated stiffnesses hold, m; they scale with the size; else fixed.
+  /// Block size at which t_b and the stated stiffnesses hold, m; they scale with the size. Without it they
+  /// are fixed.
   std::optional<double> fracture_zone_size;
   std::vector<BearingInterface> bearings;
-  std::string matrix;  ///< phase whose own contacts' stiffness those of the bearings have
+  std::string matrix;  ///< phase whose own contacts give the bearings' contacts their stiffness
 };
 
-/// What the phases of a specimen are as a whole.
+/// Properties of the specimen's phases as a whole.
 struct Composition {
   double inclusions = 0.0;  ///< share of the volume that is not matrix
-  /// R, creep of the whole over that of its matrix, when the matrix has crept as much as it gives way
-  /// elastically, and ten times as much; the same where a deck states it.
+  /// R, creep of the whole over creep of its matrix, when the matrix has crept once and ten times its elastic
+  /// strain; both are the same where a deck states R.
   std::optional<std::array<double, 2>> creep_share;
-  std::optional<double> strain_weight;  ///< w that its strains got
+  std::optional<double> strain_weight;  ///< weight w that the thermal strains of the phases got
 };
 
-/// Which interface blocks of two phases have.
+/// Table of the interface that blocks of two phases have.
 class InterfaceTable {
  public:
   InterfaceTable() = default;
-  /// Without a word of the deck each pair of phases has an interface of its own, named `a_b`; so have two
-  /// blocks of one phase that no interface of the deck is for.
-  /// \param phases      of the specimen
-  /// \param interfaces  of the deck; none where nothing moves
+  /// Gives each pair of phases an interface: the one that the deck states for the pair, else an interface of
+  /// the pair's own, named `a_b`. The same holds for two blocks of one phase.
+  /// \param phases      phases of the specimen
+  /// \param interfaces  interfaces of the deck; none where nothing moves
   explicit InterfaceTable(const std::vector<std::string>& phases,
                           const std::vector<InterfaceParameters>& interfaces = {});
 
   const std::vector<std::string>& names() const { return names_; }
   int between(int phase, int other) const { return of_pair_.at(phase * phases_ + other); }
   int count() const { return static_cast<int>(names_.size()); }
-  /// A pair of phases that has the interface, the first one.
+  /// Returns the first pair of phases that has the interface.
   std::array<int, 2> pair_of(int interface) const;
 
  private:
@@ -166,62 +181,65 @@ class InterfaceTable {
   std::vector<int> of_pair_;
 };
 
-/// What a body that cools does with E of its phases, and strengths, fracture energies and stiffnesses of its
-/// contacts. Free thermal strains go back along their curves in any case, or by SolidMaterial::contraction.
+/// Behaviour, when a body cools, of E of its phases and of strengths, fracture energies and stiffnesses of
+/// its contacts. Free thermal strains go back along their curves in any case, or by
+/// SolidMaterial::contraction.
 enum class OnCooling : std::uint8_t {
-  irreversible,  ///< they stay those of the highest temperature that was there
-  reversible     ///< they come back along their curves
+  irreversible,  ///< values stay those of the highest temperature so far
+  reversible     ///< values come back along their curves
 };
 
-/// Whether any of them does.
+/// Tells whether any of the solids creeps.
 bool any_creeps(const std::vector<SolidMaterial>& solids);
 
-/// What E, strengths, energies and stiffnesses are those of, °C.
+/// Returns the temperature on whose values E, strengths, energies and stiffnesses are based, °C.
 inline double marked_by(OnCooling on_cooling, double temperature, double hottest) {
   return on_cooling == OnCooling::irreversible ? hottest : temperature;
 }
 
-/// Everything a concrete specimen is made of.
+/// Materials, interfaces and contacts of a concrete specimen.
 struct ConcreteMaterials {
-  std::vector<SolidMaterial> solids;      ///< by phase, then those of bearings
-  std::vector<std::string> interfaces;    ///< see InterfaceTable, then those of bearings
-  std::vector<ContactMaterial> contacts;  ///< likewise
-  double fracture_zone = 0.0;             ///< t_b as it came out, m
+  std::vector<SolidMaterial> solids;      ///< materials by phase, then those of bearings
+  std::vector<std::string> interfaces;    ///< names as in InterfaceTable, then those of bearings
+  std::vector<ContactMaterial> contacts;  ///< contacts in the order of `interfaces`
+  double fracture_zone = 0.0;             ///< t_b that results, m
   OnCooling on_cooling = OnCooling::irreversible;
-  std::optional<Composition> composition;  ///< where `follow_composition` was asked
-  std::optional<double> stress_free;       ///< where `set_stress_free` was asked, °C
+  std::optional<Composition> composition;  ///< composition, where `follow_composition` was called
+  std::optional<double> stress_free;       ///< temperature of `set_stress_free`, where it was called, °C
 
   bool creeps() const { return any_creeps(solids); }
-  bool asks_for_hottest() const;  ///< whether anything follows the highest temperature that was there
-  /// That E, strengths, energies and stiffnesses are those of, see OnCooling, °C.
+  bool asks_for_hottest() const;  ///< Tells whether any property depends on the highest temperature so far.
+  /// Returns the temperature on whose values E, strengths, energies and stiffnesses are based, see OnCooling,
+  /// °C.
   double marked(double temperature, double hottest) const {
     return marked_by(on_cooling, temperature, hottest);
   }
 };
 
-/// Names of the solids that are not of bearings.
+/// Returns the names of the solids, without those of bearings.
 std::vector<std::string> phases_of(const std::vector<SolidMaterial>& solids);
 
-/// \param solids      by phase, then those of bearings
+/// Makes the materials of a concrete. Throws Error when blocks of two phases would have no interface.
+/// \param solids      materials by phase, then those of bearings
 /// \param block_size  square root of the mean block area, m: t_b scales with it
-/// \param foreseen    that size as a deck foresees it, sqrt(area / count); else the same. Stated stiffnesses
-///                    scale with it: they are as printed, to the last bit, where it is fracture_zone_size.
-/// Throws Error when blocks of two phases would have no interface.
+/// \param foreseen    block size that a deck foresees, sqrt(area / count), m; without it block_size. Stated
+///                    stiffnesses scale with it: where it is fracture_zone_size, they are as printed, to the
+///                    last bit.
 ConcreteMaterials make_concrete(const std::vector<SolidMaterial>& solids, const ContactParameters& parameters,
                                 double block_size, std::optional<double> foreseen = std::nullopt);
 
-/// Lets the thermal strain of every phase count from a temperature, °C, at which the body was put together
-/// without stress, and where it was once; else it counts from the reference temperature. Comes after all that
-/// changes thermal strains. Throws Error where one is not defined there.
+/// Counts the thermal strain of every phase from a temperature, °C, at which the body was put together
+/// without stress; without this call it counts from the reference temperature. Call it after everything that
+/// changes thermal strains. Throws Error where a thermal strain is not defined at the temperature.
 void set_stress_free(ConcreteMaterials& concrete, double temperature);
 
-/// Gives the phases of this specimen what follows from its share of inclusions: the creep that makes the
-/// concrete's (see CreepLevel), and the thermal strains that make the concrete's. Both by Mixture<2>, with
-/// phases as soft as their blocks are with the contacts between them: 1 / E + 1 / (K_n block size).
-/// \param contacts    that `concrete` was made with
-/// \param fraction    of each phase, of the volume
+/// Gives the phases of this specimen the creep (see CreepLevel) and the thermal strains that together make
+/// those of the concrete. Both follow from the share of inclusions by Mixture<2>; phases are as soft as their
+/// blocks with the contacts between them: 1 / E + 1 / (K_n block size). Throws Error when inclusions creep
+/// too, or when strains of phases are asked for and there are more than two phases.
+/// \param contacts    parameters with which `concrete` was made
+/// \param fraction    share of each phase in the volume
 /// \param block_size  square root of the mean block area, m
-/// Throws Error when inclusions creep too, or strains of phases are asked for and not two phases are there.
 void follow_composition(ConcreteMaterials& concrete, const ContactParameters& contacts,
                         const std::optional<StrainOfConcrete>& strain, const std::vector<double>& fraction,
                         double block_size);

@@ -2,8 +2,8 @@
 
 #include "pyroclast/material/zone_law.hpp"
 
-/// Load-induced thermal strain of a zone (transient creep): what concrete under stress is shorter by when it
-/// is heated for the first time, beyond what it strains elastically. Thelandersson 1987, with the choices of
+/// Load-induced thermal strain of a zone (transient creep): strain by which concrete under stress is shorter
+/// when it is heated for the first time, beyond its elastic strain. Thelandersson 1987, with the choices of
 /// Pearce, Nielsen and Bicanic 2004 (tension) and of Torelli et al. 2018 (confinement):
 ///
 ///     d(eps_L) = (dB / f_c) eta Q(s),    Q(s) = (1 + nu_L) s - nu_L tr(s) I,    s = sigma⁻ + chi_t sigma⁺
@@ -11,7 +11,7 @@
 /// with sigma⁻ and sigma⁺ the compressive and the tensile part of the stress, by its principal stresses.
 namespace pyroclast {
 
-/// What a zone creeps by in one exchange of temperature, for each unit of its stress.
+/// Creep of a zone in one exchange of temperature, for each unit of its stress.
 struct CreepIncrement {
   double compliance = 0.0;   ///< rise of B over f_c, 1/Pa; 0 where the zone is not heated for the first time
   double poisson = 0.0;      ///< nu_L, in (-1, 1/2]
@@ -19,30 +19,32 @@ struct CreepIncrement {
   double confinement = 0.0;  ///< gamma of eta = 1 + (C - 1) gamma, C = -tr(s⁻) / |s⁻|; 1 under one stress
 };
 
-/// Q of a stress, Pa.
+/// Returns Q of a stress, Pa.
 template <int Dim>
 SymmetricTensor<Dim> creep_direction(const SymmetricTensor<Dim>& stress, double poisson);
 
-/// How an exchange splits what a zone creeps: half with the stress at its beginning, which is known; half
-/// with that at its end, which acts as a compliance until then. Split by sign and eta are those of the
-/// beginning.
+/// Split of a zone's creep in an exchange: half with the stress at its beginning, which is known, and half
+/// with the stress at its end, for which the split acts as a compliance. The signs of the principal stresses
+/// and eta are those of the beginning.
 template <int Dim>
 struct CreepSplit {
   SymmetricTensor<Dim> known{};  ///< strain at the end = known + compliance Q(stress at the end)
   double compliance = 0.0;       ///< 1/Pa
 };
 
-/// \param stress  at the beginning of the exchange, in the zone's own frame, Pa
+/// Splits the creep of an exchange.
+/// \param stress  stress at the beginning of the exchange, in the zone's own frame, Pa
 template <int Dim>
 CreepSplit<Dim> creep_split(const CreepIncrement& increment, const SymmetricTensor<Dim>& stress);
 
-/// A zone whose stress adds a strain compliance Q(stress): isotropic again.
+/// Returns the properties of a zone whose stress adds a strain compliance Q(stress), which are isotropic
+/// again.
 /// \param compliance  1/Pa
 template <int Dim>
 ZoneProperties with_compliance(const ZoneProperties& zone, double compliance, double poisson);
 
-/// Creep strain across the plane of a zone in plane stress, which acts on nothing: that of its own plane says
-/// it. With nu_L as throughout.
+/// Returns the creep strain across the plane of a zone in plane stress. It follows from the strain in the
+/// plane and has no effect on the motion. nu_L is taken as constant.
 inline double creep_across(const SymmetricTensor<2>& strain, double poisson) {
   return -poisson / (1.0 - poisson) * (strain[0] + strain[1]);
 }

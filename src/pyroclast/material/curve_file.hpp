@@ -9,8 +9,8 @@ namespace pyroclast {
 /// Columns of a curve in a file: the abscissa and the value.
 inline constexpr std::size_t kCurveColumns = 2;
 
-/// Curve from two columns of a table, in the units of the axis and of the value. Throws Error naming file and
-/// line when a unit does not convert, or the points do not make a curve.
+/// Makes a curve from two columns of a table, in the units of the axis and of the value. Throws Error naming
+/// file and line when a unit does not convert, or the points do not make a curve.
 Curve curve_of_table(const MeasuredTable& table, const ColumnChoice& choice, const CurveAxis& axis,
                      const Unit& value);
 

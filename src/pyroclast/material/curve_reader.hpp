@@ -12,17 +12,18 @@
 
 namespace pyroclast {
 
-/// How far a ratio to the value at the reference temperature may be off 1 there: published fits are a little.
+/// Largest deviation from 1 of a ratio at the reference temperature, to whose value it refers: published fits
+/// are off a little.
 inline constexpr double kRatioTolerance = 0.01;
 
-/// A curve as a deck gave it, for plots and the manifest.
+/// Curve as a deck gave it, for plots and the manifest.
 struct ReadCurve {
-  std::string path;  ///< such as "materials.mortar.E"
+  std::string path;  ///< path such as "materials.mortar.E"
   std::string unit;  ///< SI unit of the values
   Curve curve;
 };
 
-/// Reads curves from a deck: properties over the temperature, or boundary values over the time. A key holds
+/// Reader of curves in a deck: properties over the temperature, or boundary values over the time. A key holds
 /// one of
 ///
 ///     E = "70 GPa"
@@ -36,26 +37,26 @@ struct ReadCurve {
 /// and a temperature over the time also `{ from = "20 degC", rate = "5 K/min", to = "800 degC" }`, constant
 /// once `to` is reached. `times` is a name of the catalogue or any form that is a table, without dimension;
 /// over the temperature it must be 1 at 20 °C (to 1 %), where the value holds. `scale` and `shift` beside any
-/// form of a curve over the temperature change it as a whole.
+/// form of a curve over the temperature change the curve as a whole.
 ///
 /// An error is recorded in the deck, never thrown, and a constant that is allowed stands in for the curve.
 class CurveReader {
  public:
-  /// \param folder    of the deck, from which names of CSV files are taken
+  /// \param folder    folder of the deck, to which names of CSV files are relative
   /// \param axis      temperature_axis() or time_axis()
   /// \param needed    finite interval that the run will read; a curve that does not cover it is an error
-  /// \param builtins  for `builtin` and `times`; must outlive the reader
+  /// \param builtins  curves for `builtin` and `times`; must outlive the reader
   CurveReader(std::filesystem::path folder, CurveAxis axis, Interval needed, const CurveCatalogue& builtins);
 
-  /// The curve in `unit.si`, named by its path in the deck. `range` holds over the needed interval.
+  /// Returns the curve in `unit.si`, named by its path in the deck. `range` holds over the needed interval.
   Curve read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
              Meaning meaning);
-  /// The same for a key that may be absent; `fallback` is then the value.
+  /// Returns the curve of a key that may be absent; without the key the value is `fallback`.
   Curve read(const Section& section, std::string_view key, const Unit& unit, const Range& range,
              double fallback, Meaning meaning);
 
   Interval needed() const { return needed_; }
-  /// All that was read from keys that are there, in order of reading.
+  /// Returns all curves that were read from keys that are there, in order of reading.
   const std::vector<ReadCurve>& curves() const { return curves_; }
 
  private:
@@ -73,9 +74,9 @@ class CurveReader {
   bool within(const Section& section, std::string_view key, const Curve& curve, const Unit& unit,
               const Range& range) const;
   const Unit& abscissa() const;
-  /// Name of the forms of a curve in the deck reference.
+  /// Returns the name of the forms of a curve in the deck reference.
   std::string forms_name() const;
-  /// What a key that may hold a curve holds, in words.
+  /// Describes in words the content of a key that may hold a curve.
   std::string or_curve(const Unit& unit) const;
 
   std::filesystem::path folder_;

@@ -4,18 +4,18 @@
 
 namespace pyroclast {
 
-/// A phase of a composite.
+/// Phase of a composite.
 struct MixedPhase {
-  double fraction = 0.0;  ///< of the volume
-  double young = 0.0;     ///< E, Pa; with what lies in series with it, such as contacts
+  double fraction = 0.0;  ///< fraction of the volume
+  double young = 0.0;     ///< E, Pa, including whatever lies in series with the phase, such as contacts
   double poisson = 0.0;   ///< nu
 };
 
-/// What a matrix with round inclusions is as a whole: discs in plane stress (2D), spheres (3D).
+/// Properties as a whole of a matrix with round inclusions: discs in plane stress (2D), spheres (3D).
 ///
-/// Elasticity and free strain by Mori and Tanaka 1973 in the form of Benveniste 1987. Creep by the
-/// self-consistent scheme (Hill 1965, Budiansky 1965): inclusions that hardly give way, in a matrix that
-/// creeps to many times its elastic strain, bear on one another, which the former does not see.
+/// Elasticity and free strain follow Mori and Tanaka 1973 in the form of Benveniste 1987. Creep follows the
+/// self-consistent scheme (Hill 1965, Budiansky 1965): stiff inclusions in a matrix that creeps to many times
+/// its elastic strain bear on one another, which the scheme of Mori and Tanaka does not capture.
 template <int Dim>
 class Mixture {
  public:
@@ -23,16 +23,18 @@ class Mixture {
 
   double young() const;  ///< Pa
 
-  /// w of: free strain of the whole = w (that of the inclusions) + (1 - w) (that of the matrix). Levin 1967;
-  /// with one kind of inclusions. Throws Error with several.
+  /// Returns w of: free strain of the whole = w (free strain of the inclusions) + (1 - w) (free strain of the
+  /// matrix). Levin 1967, for one kind of inclusions. Throws Error with several.
   double inclusion_weight() const;
 
-  /// What the whole creeps by under a stress along one axis, 1/Pa, when its matrix creeps by `of_matrix`,
-  /// 1/Pa, after loading. By the correspondence principle. \param poisson  of the creep, nu_L
+  /// Returns the creep of the whole under a stress along one axis after loading, 1/Pa, by the correspondence
+  /// principle.
+  /// \param of_matrix  creep of the matrix, 1/Pa
+  /// \param poisson    nu_L, Poisson's ratio of the creep
   double creep(double of_matrix, double poisson) const;
 
-  /// R: the creep of the whole over that of its matrix, when the latter is `ratio` times what the matrix
-  /// gives way by elastically.
+  /// Returns R, the creep of the whole over the creep of its matrix, when the matrix has crept by `ratio`
+  /// times its elastic strain.
   double creep_share(double ratio, double poisson) const;
 
  private:

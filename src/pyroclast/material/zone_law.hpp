@@ -6,14 +6,14 @@
 
 #include "pyroclast/base/vec.hpp"
 
-/// The zone law, paper Eq. (5): sigma = D_T (eps - eps_th), isotropic, small strain, total form.
+/// Zone law, paper Eq. (5): sigma = D_T (eps - eps_th), isotropic, small strain, total form.
 namespace pyroclast {
 
-/// What displacements do to the geometry.
+/// Effect of displacements on the geometry.
 enum class Kinematics : std::uint8_t {
-  small,  ///< zones and contact frames keep their first orientation; exact while rotations and jumps are
-          ///< small
-  finite  ///< zones strain in a frame that turns with them and contact frames turn with their faces (2D only)
+  small,  ///< zones and contact frames keep their first orientation; exact for small rotations and jumps
+  /// Zones strain in a frame that turns with them, and contact frames turn with their faces (2D only).
+  finite
 };
 
 /// Symmetric tensor: 2D (xx, yy, xy), 3D (xx, yy, zz, xy, yz, zx); shear components are tensor, not
@@ -30,7 +30,7 @@ struct ZonePropertiesOf {
 };
 using ZoneProperties = ZonePropertiesOf<double>;
 
-/// 2D: true plane stress. `young` in Pa.
+/// Returns the elastic constants from `young`, Pa, and Poisson's ratio; in 2D for true plane stress.
 template <int Dim>
 constexpr ZoneProperties zone_properties(double young, double poisson, double thermal_strain = 0.0) {
   const double denominator = Dim == 2 ? 1.0 - poisson * poisson : (1.0 + poisson) * (1.0 - 2.0 * poisson);
@@ -43,7 +43,7 @@ struct Rotation {
   Real cosine{1.0}, sine{0.0};
 };
 
-/// A vector of the zone's own frame in the frame of the model.
+/// Turns a vector of the zone's own frame into the frame of the model.
 template <int Dim, class Real>
 inline Vec<Dim, Real> rotated(const Rotation<Real>& r, const Vec<Dim, Real>& v) {
   if constexpr (Dim == 2)
@@ -52,7 +52,7 @@ inline Vec<Dim, Real> rotated(const Rotation<Real>& r, const Vec<Dim, Real>& v) 
     return v;
 }
 
-/// A stress of the zone's own frame in the frame of the model.
+/// Turns a stress of the zone's own frame into the frame of the model.
 template <int Dim, class Real>
 inline SymmetricTensor<Dim, Real> rotated(const Rotation<Real>& r, const SymmetricTensor<Dim, Real>& s) {
   if constexpr (Dim == 2) {
@@ -64,14 +64,14 @@ inline SymmetricTensor<Dim, Real> rotated(const Rotation<Real>& r, const Symmetr
   }
 }
 
-/// Mechanical strain (total minus thermal) of a zone, in the zone's own frame.
+/// Returns the mechanical strain (total minus thermal) of a zone, in the zone's own frame.
 ///
 /// Finite kinematics take the rotation R out of the deformation gradient F = R U (polar decomposition) and
 /// return U - I, so that a zone may turn freely; small kinematics take the symmetric part of F - I.
 ///
-/// \param vectors   times `scale`, the gradients of the first Dim shape functions, 1/m
+/// \param vectors   gradients of the first Dim shape functions, 1/m, once multiplied by `scale`
 /// \param u         displacements of the zone's Dim + 1 gridpoints, m
-/// \param rotation  out
+/// \param rotation  out: turn of the zone
 template <int Dim, class Real>
 inline SymmetricTensor<Dim, Real> mechanical_strain(const std::array<Vec<Dim, Real>, Dim>& vectors,
                                                     const Real& scale,
@@ -102,7 +102,7 @@ inline SymmetricTensor<Dim, Real> mechanical_strain(const std::array<Vec<Dim, Re
   }
 }
 
-/// Stress, Pa, tension positive, from the mechanical strain.
+/// Returns the stress, Pa, tension positive, from the mechanical strain.
 template <int Dim, class Real>
 inline SymmetricTensor<Dim, Real> zone_stress(const ZonePropertiesOf<Real>& p,
                                               const SymmetricTensor<Dim, Real>& strain) {
@@ -116,7 +116,7 @@ inline SymmetricTensor<Dim, Real> zone_stress(const ZonePropertiesOf<Real>& p,
   return stress;
 }
 
-/// Stress applied to a vector: the traction on a plane with that normal.
+/// Applies a stress to a vector, which gives the traction on a plane with that normal.
 template <int Dim, class Real>
 inline Vec<Dim, Real> apply(const SymmetricTensor<Dim, Real>& s, const Vec<Dim, Real>& n) {
   if constexpr (Dim == 2) {
@@ -127,7 +127,7 @@ inline Vec<Dim, Real> apply(const SymmetricTensor<Dim, Real>& s, const Vec<Dim, 
   }
 }
 
-/// Elastic energy density of a strain under its stress, J/m³.
+/// Returns the elastic energy density of a strain under its stress, J/m³.
 template <int Dim, class Real>
 inline Real energy_density(const SymmetricTensor<Dim, Real>& stress,
                            const SymmetricTensor<Dim, Real>& strain) {

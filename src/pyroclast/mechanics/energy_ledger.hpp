@@ -9,21 +9,21 @@
 
 namespace pyroclast {
 
-/// What the energy that zones lose by creep is called.
+/// Name of the energy that zones lose by creep.
 inline constexpr std::string_view kCreep = "creep";
 
-/// Energies lost for good, J: at contacts, by what their laws call them, and by creep of zones.
+/// Energies lost for good, J: at contacts, named by their laws, and by creep of zones.
 struct Dissipation {
   std::vector<std::string_view> names;
-  std::vector<double> energies;  ///< likewise
+  std::vector<double> energies;  ///< energies in the order of `names`
 
-  /// 0 where no law has that name.
+  /// Returns the energy of a name; 0 where no law has that name.
   double of(std::string_view name) const;
   double total() const;
 };
 
-/// Where the energy of a body went since the start, J. Work in = everything else; the rest is the ledger's
-/// error.
+/// Energies of a body since the start, J. The work put in equals all other entries; the remainder is the
+/// ledger's error.
 struct EnergyLedger {
   // put in
   double loading = 0.0, gravity = 0.0, property_change = 0.0, mass_scaling = 0.0;
@@ -33,17 +33,17 @@ struct EnergyLedger {
   Dissipation dissipated;
   double local_damping = 0.0, viscous_damping = 0.0;
 
-  /// Sum of the entries of one side, without what is dissipated.
+  /// Sums the entries of one side, without those of `dissipated`.
   double sum(LedgerSide side, double from = 0.0) const;
   double work_in() const { return sum(LedgerSide::put_in); }
   double accounted() const { return sum(LedgerSide::lost, sum(LedgerSide::held) + dissipated.total()); }
   double error() const { return work_in() - accounted(); }
   double elastic() const { return zones + contacts; }
-  /// 0 where nothing is strained.
+  /// Returns kinetic over elastic energy; 0 where nothing is strained.
   double kinetic_over_elastic() const { return elastic() > 0.0 ? std::abs(kinetic) / elastic() : 0.0; }
 };
 
-/// In the order of the history's columns; those of what is dissipated stand before what else is lost.
+/// Entries in the order of the history's columns; the columns of `dissipated` stand before the other losses.
 inline constexpr auto kEnergies = std::to_array<LedgerEntry<EnergyLedger>>({
     {"loading", "energy_loading_J", LedgerSide::put_in, "work of prescribed motion and applied forces",
      [](const EnergyLedger& e) { return e.loading; }},

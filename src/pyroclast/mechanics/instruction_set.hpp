@@ -7,7 +7,7 @@
 
 namespace pyroclast {
 
-/// What the step is compiled for. Results are the same, bit by bit.
+/// Instruction set for which the step is compiled. Results are the same, bit by bit.
 enum class InstructionSet : std::uint8_t {
   portable,  ///< any processor: 2 lanes an instruction where it has vectors at all
   avx2,      ///< 4 lanes an instruction
@@ -15,26 +15,26 @@ enum class InstructionSet : std::uint8_t {
 };
 inline constexpr int kInstructionSets = 3;
 
-// so that a file without their options can name them (base/lanes.hpp)
+// declared so that a file without the options of a set can name it (base/lanes.hpp)
 struct Portable;
 struct Avx2;
 struct Avx512;
 
 const char* name(InstructionSet set);
 
-/// Those that this build holds (cmake -DPYROCLAST_SETS), the fastest last; at least one.
+/// Returns the sets that this build holds (cmake -DPYROCLAST_SETS), the fastest last; at least one.
 std::vector<InstructionSet> built_instruction_sets();
-/// The same for people, "portable, avx2, avx512".
+/// Lists the sets that this build holds for people, "portable, avx2, avx512".
 std::string describe_built_instruction_sets();
 
-/// Those that this build holds and this processor has, the fastest last. May be empty.
+/// Returns the sets that this build holds and this processor has, the fastest last. May be empty.
 std::vector<InstructionSet> usable_instruction_sets();
 
-/// The fastest of them. Throws Error when there is none: this build is for other processors.
+/// Returns the fastest usable set. Throws Error when there is none: this build is for other processors.
 InstructionSet best_instruction_set();
 
-/// The one of that name. Throws Error when there is none, this build does not hold it or this processor does
-/// not have it.
+/// Returns the set of a name. Throws Error when there is no set of this name, this build does not hold it or
+/// this processor does not have it.
 InstructionSet instruction_set(std::string_view name);
 
 }  // namespace pyroclast

@@ -12,13 +12,12 @@
 #include "pyroclast/base/lanes.hpp"
 #include "pyroclast/model/model.hpp"
 
-/// Where everything of a model stands while it moves.
+/// Layout of a model while it moves: the place of each block, zone, gridpoint, face and contact.
 ///
-///     body    chunk 0                              | chunk 1          | ...   runs of the model's blocks
-///     chunk   bundle  bundle  bundle  ...                                     blocks that go through a step
-///     together
+///     body    chunk 0                              | chunk 1          | ...   consecutive blocks
+///     chunk   bundle  bundle  bundle  ...                                     blocks that step together
 ///
-///     alike   lane 0   1   2   3   4   5   6   7        spread                one block over all lanes
+///     alike    lane 0   1   2   3   4   5   6   7       spread                one block over all lanes
 ///     pack 0   gridpoint 0 of eight blocks               0  1  2  3  4  5  6  7
 ///     pack 1   gridpoint 1 of the same blocks            8  9 10  .  .  .  .  .      . idle
 ///     ...
@@ -27,14 +26,14 @@
 ///     packs of points   contact point 0 of the eight faces, then point 1, ... (2 in 2D, 3 to 8 in 3D)
 ///
 /// lane     one of the eight numbers that go through the same arithmetic together
-/// pack      eight gridpoints, zones, faces or contact points side by side, one a lane
+/// pack     eight gridpoints, zones, faces or contact points side by side, one a lane
 /// slot     a place in a pack: slot = 8 pack + lane
-/// offset   where the vector of a slot begins in an array of numbers: Dim slot
+/// offset   place where the vector of a slot begins in an array of numbers: Dim slot
 /// idle     a place that nothing fills; nothing acts on it
 /// bundle   blocks that go through a step together: `alike` or `spread`
-/// shape    the zones of a block, as its own gridpoints; alike blocks have the same
+/// shape    the zones of a block, as numbers of its own gridpoints; alike blocks have the same shape
 /// fan      a shape whose zones go round the last gridpoint, in the order of the others
-/// chunk    a run of the model's blocks with bundles and packs of its own: the unit of sums, files and ranks
+/// chunk    consecutive blocks with bundles and packs of their own: the unit of sums, files and ranks
 namespace pyroclast {
 
 inline constexpr int slot_of(int pack, int lane) {
@@ -54,13 +53,14 @@ enum class BundleKind : std::uint8_t {
 /// Blocks that go through a step together.
 struct Bundle {
   BundleKind kind = BundleKind::alike;
-  bool fan = false;         ///< alike: see above
-  int first_pack = 0;       ///< of gridpoints
-  int packs = 0;            ///< of gridpoints
-  int first_zone_pack = 0;  ///< of zones
-  int zones = 0;            ///< alike: of each block, a pack each; spread: of the block, eight a pack
+  bool fan = false;         ///< alike: true where the shape is a fan
+  int first_pack = 0;       ///< first pack of gridpoints
+  int packs = 0;            ///< number of packs of gridpoints
+  int first_zone_pack = 0;  ///< first pack of zones
+  /// alike: zones of each block, a pack each; spread: zones of the block, eight a pack.
+  int zones = 0;
   int first_corners = 0;    ///< alike: entry of `shape_zones`; spread: entry of `spread_zones`
-  int last_face_pack = -1;  ///< no pack of faces above it touches the bundle; non-decreasing over bundles
+  int last_face_pack = -1;  ///< last pack of faces that touches the bundle or one before it
 
   int zone_packs() const { return kind == BundleKind::alike ? zones : (zones + kLanes - 1) / kLanes; }
 };
@@ -74,43 +74,43 @@ struct ZoneCorners {
 /// Frames of eight faces.
 template <int Dim>
 struct alignas(64) FacePack {
-  double tangent[Dim - 1][Dim][kLanes];  ///< the normal follows from them
+  double tangent[Dim - 1][Dim][kLanes];  ///< unit tangents; the normal follows from them
 };
 
-/// One contact point of each of eight faces.
+/// Contact points of eight faces, one of each.
 struct alignas(64) PointPack {
-  double area[kLanes];           ///< m²; 0 where idle
-  std::array<int, kLanes> a, b;  ///< offsets of its gridpoints
+  double area[kLanes];           ///< area, m²; 0 where idle
+  std::array<int, kLanes> a, b;  ///< offsets of the two gridpoints
 };
 
-/// Which contact points act on the gridpoints of a pack. In 2D a corner of a block has two, one of each edge.
+/// Contact points that act on the gridpoints of a pack. In 2D a corner of a block has two, one of each edge.
 struct ContactsOfPack {
   int begin = 0, end = 0;  ///< entries of `acting`
 };
 
 struct ActingContacts {
-  std::array<int, kLanes> contact;  ///< offset; that of an idle contact where a lane has none
-  std::uint32_t side_b = 0;         ///< bit per lane: the gridpoint is on side b
+  std::array<int, kLanes> contact;  ///< offset of each contact; of an idle contact where a lane has none
+  std::uint32_t side_b = 0;         ///< bit of each lane: 1 where the gridpoint is on side b
 };
 
-/// Share of an array that a step touches which damages nothing.
+/// Part of an array that a step touches if it damages nothing.
 enum class Touched : std::uint8_t {
   none,
   all,
   alike,     ///< packs of alike bundles
-  gathered,  ///< packs of spread bundles; with finite kinematics all
-  held,      ///< of internal variables that which is always written: the held jump
-  combined   ///< all with combined damping, else none
+  gathered,  ///< packs of spread bundles; with finite kinematics all packs
+  held,      ///< internal variables that are always written: the held jump
+  combined   ///< all packs with combined damping, else none
 };
 
-/// How long the contents of an array last.
+/// Time for which the contents of an array last.
 enum class Lasts : std::uint8_t {
-  made,    ///< follows from the model and its properties
-  kept,    ///< from one step to the next: part of a checkpoint
-  a_step,  ///< is worked out anew by each step
+  made,    ///< contents that follow from the model and its properties
+  kept,    ///< contents that last from one step to the next: part of a checkpoint
+  a_step,  ///< contents that each step computes anew
 };
 
-/// What an array has an entry of each of; with `_end`, and one more behind the last.
+/// Things of which an array has one entry each; with `_end`, it has one more entry behind the last.
 enum class Per : std::uint8_t {
   block,
   bundle,
@@ -119,23 +119,25 @@ enum class Per : std::uint8_t {
   gridpoint_slot,
   zone,
   zone_pack,
-  zone_pack_or_bundle,  ///< zones of a bundle may have one entry together
+  zone_pack_or_bundle,  ///< pack of zones, or a bundle where all its zones share one entry
   face_pack,
   face_pack_end,
   point_pack,
   point_slot,
   contact,
-  entry  ///< of a list of its own, whose entries others name
+  entry  ///< entry of the array's own list; other arrays name the entries
 };
 
-/// Who has the entries where chunks have several owners, such as the ranks of a cluster.
+/// Owners that hold the entries where chunks have several owners, such as the ranks of a cluster.
 enum class HeldBy : std::uint8_t {
-  owner,           ///< of the chunk
-  owner_and_halo,  ///< and those whose chunks touch it: they read its gridpoints, or owe it forces
-  all              ///< few, and the same everywhere
+  owner,  ///< owner of the chunk
+  /// Owner of the chunk, and owners of chunks that touch it: they read its gridpoints, or owe it forces.
+  owner_and_halo,
+  all  ///< every owner: the entries are few, and the same everywhere
 };
 
-/// What an array is for. Memory, traffic, checkpoints and copies of a body follow from the lists of arrays.
+/// Description of an array. Memory, traffic, checkpoints and copies of a body follow from the lists of
+/// arrays.
 struct ArrayInfo {
   const char* name;
   Per per;
@@ -150,7 +152,7 @@ void for_each_array(F&& f, List& list, Others&... others) {
   std::remove_const_t<List>::each(f, list, others...);
 }
 
-/// Bytes of all arrays of a list.
+/// Returns the bytes of all arrays of a list.
 template <class List>
 std::size_t memory(const List& list) {
   std::size_t bytes = 0;
@@ -167,23 +169,24 @@ using ConstView = std::span<const T>;
 template <int Dim, template <class> class Array>
 struct LayoutArrays {
   Array<Bundle> bundles;
-  Array<std::array<int, Dim + 1>> shape_zones;  ///< of each shape in turn, as gridpoints of a block
-  Array<ZoneCorners<Dim>> spread_zones;         ///< by pack of zones of spread blocks
+  Array<std::array<int, Dim + 1>> shape_zones;  ///< zones of each shape in turn, as gridpoints of a block
+  Array<ZoneCorners<Dim>> spread_zones;         ///< packs of zones of spread blocks
   Array<FacePack<Dim>> faces;
-  Array<int> first_point;   ///< of each pack of faces, and one more: its first pack of points
-  Array<PointPack> points;  ///< by pack of points; the last one idles
-  /// Of each pack of faces, and one more: number of leading packs of gridpoints that the packs of faces
-  /// before it read, as far as they are of its own chunk.
+  Array<int> first_point;   ///< first pack of points of each pack of faces, and of one more
+  Array<PointPack> points;  ///< packs of points; the last one idles
+  /// Number of leading packs of gridpoints of its own chunk that the packs of faces before it read, for each
+  /// pack of faces and one more.
   Array<int> packs_reached;
-  Array<bool> between_chunks;              ///< of each pack of faces: they join two chunks
-  Array<ContactsOfPack> contacts_of_pack;  ///< of each pack of gridpoints
+  Array<bool> between_chunks;              ///< true for a pack of faces that join two chunks
+  Array<ContactsOfPack> contacts_of_pack;  ///< contacts of each pack of gridpoints
   Array<ActingContacts> acting;
 
-  Array<int> gridpoint_slot, zone_slot, contact_slot;  ///< of each one of the model
+  /// Slot of each gridpoint, zone and contact of the model.
+  Array<int> gridpoint_slot, zone_slot, contact_slot;
   Array<int> bundle_of_block;
-  Array<std::array<int, kLanes>> blocks;  ///< of each bundle, by lane; -1 where the lane idles
-  Array<int> face_pack_of_point;          ///< of each pack of points but the last
-  Array<int> contacts_by_chunk;           ///< of the model, those of the first chunk first
+  Array<std::array<int, kLanes>> blocks;  ///< blocks of each bundle, by lane; -1 where the lane idles
+  Array<int> face_pack_of_point;          ///< pack of faces of each pack of points but the last
+  Array<int> contacts_by_chunk;           ///< contacts of the model, chunk by chunk
 
   template <class F, class... L>
   static void each(F&& f, L&... l) {
@@ -207,7 +210,8 @@ struct LayoutArrays {
     f(ArrayInfo{"contacts_by_chunk", Per::contact}, l.contacts_by_chunk...);
   }
 
-  /// First pack of points of a pack of faces, and of the one after it.
+  /// Returns the first pack of points of a pack of faces; the packs of points end at the first of the next
+  /// one.
   int first_point_of(int face_pack) const {
     if constexpr (Dim == 2)
       return 2 * face_pack;
@@ -216,24 +220,25 @@ struct LayoutArrays {
   }
 };
 
-/// Where chunks begin, in each list of a body: chunk i holds items [i] to [i + 1].
+/// Begins of the chunks in each list of a body: chunk i holds the items from [i] up to [i + 1].
 struct Chunks {
-  std::vector<int> blocks, gridpoints, zones;  ///< of the model
+  std::vector<int> blocks, gridpoints, zones;  ///< items of the model
   std::vector<int> contacts;                   ///< entries of contacts_by_chunk
-  std::vector<int> bundles, face_packs;        ///< of the layout
+  std::vector<int> bundles, face_packs;        ///< items of the layout
 };
 
-/// How a body is laid out. Speed depends on it; no force does.
+/// Parameters of the layout of a body. Speed depends on them; no force does.
 struct LayoutParameters {
-  int fewest_blocks = 4;    ///< a bundle of fewer leaves too many lanes idle: its blocks are spread
-  int chunk_blocks = 1024;  ///< of a chunk, at most
+  /// Least blocks of a bundle: fewer would leave too many lanes idle, so they are spread.
+  int fewest_blocks = 4;
+  int chunk_blocks = 1024;  ///< largest number of blocks in a chunk
 };
 
-/// Blocks are taken in the order of the model, chunk by chunk. Within a chunk they are ordered in layers, so
-/// that what touches stands near in memory; those with the same zones share lanes. A face
-/// between two chunks belongs to the earlier one. In a chunk packs of such faces come first, then those of
-/// its own faces by the later of their two bundles, so that one sweep can take a pack of faces and, soon
-/// after, move the bundles whose faces are all done.
+/// Layout of a model. Blocks are taken in the order of the model, chunk by chunk. Within a chunk they are
+/// ordered in layers, so that blocks that touch stand near each other in memory; blocks with the same zones
+/// share lanes. A face between two chunks belongs to the earlier one. In a chunk packs of such faces come
+/// first, then packs of the chunk's own faces by the later of their two bundles. So one sweep can take a pack
+/// of faces and, soon after, move the bundles whose faces are all done.
 template <int Dim>
 struct Layout : LayoutArrays<Dim, FlatArray> {
   explicit Layout(const Model<Dim>& model, const LayoutParameters& parameters = {});
@@ -241,11 +246,12 @@ struct Layout : LayoutArrays<Dim, FlatArray> {
   Chunks chunks;
   int gridpoint_packs = 0;
   int zone_packs = 0;
-  int point_packs = 0;  ///< with the one that idles
-  int most_packs = 0;   ///< of gridpoints, in one bundle
+  int point_packs = 0;  ///< number of packs of points, with the one that idles
+  int most_packs = 0;   ///< largest number of packs of gridpoints in one bundle
 
   int face_packs() const { return static_cast<int>(this->faces.size()); }
-  /// Of an array that has an entry of each; none for lists of their own.
+  /// Returns the number of entries of an array, by what it has one entry each of; none for lists of their
+  /// own.
   std::optional<std::size_t> count_of(Per per) const;
   int block_in(int bundle, int lane) const { return this->blocks[bundle][lane]; }
 };

@@ -11,10 +11,10 @@ namespace pyroclast {
 
 /// Form of the local damping. The force opposing motion is lambda |F| times a sign.
 enum class DampingForm : std::uint8_t {
-  local,  ///< sgn(v), Eq. (8). A body in steady motion keeps vibrating, since v does not change sign, and is
-          ///< dragged.
-  combined  ///< (sgn(v) - sgn(dF/dt)) / 2: damps vibration about a steady motion too (Itasca's combined
-            ///< damping)
+  /// sgn(v), Eq. (8). A body in steady motion keeps vibrating, since v does not change sign, and is dragged.
+  local,
+  /// (sgn(v) - sgn(dF/dt)) / 2: damps vibration about a steady motion too (Itasca's combined damping).
+  combined
 };
 
 /// Vectors of the gridpoints of a pack, component by component.
@@ -23,7 +23,7 @@ struct alignas(64) VectorPack {
   double c[Dim][kLanes];
 };
 
-/// The vector of a slot in an array of packs.
+/// Returns the vector of a slot in an array of packs.
 template <int Dim>
 Vec<Dim> vector_at(ConstView<VectorPack<Dim>> packs, int slot) {
   Vec<Dim> v;
@@ -50,12 +50,13 @@ struct alignas(64) Line {
   double number[kLanes];
 };
 
-/// What holds, drives or loads the gridpoints of a pack.
+/// Constraints that hold, drive or load the gridpoints of a pack.
 template <int Dim>
 struct alignas(64) ConstraintPack {
-  double prescribed_velocity[Dim][kLanes];   ///< m/s
-  double applied[Dim][kLanes];               ///< N
-  std::array<std::uint8_t, Dim> prescribed;  ///< by component, a bit a lane
+  double prescribed_velocity[Dim][kLanes];  ///< m/s
+  double applied[Dim][kLanes];              ///< applied force, N
+  /// Bits by component, one a lane: 1 where the velocity is prescribed.
+  std::array<std::uint8_t, Dim> prescribed;
 };
 
 /// Gridpoints of one block that share one component of their motion.
@@ -64,61 +65,69 @@ struct Tie {
   int begin = 0, end = 0;  ///< entries of tied_slots
 };
 
-/// What holds, drives or loads a bundle.
+/// Constraints that hold, drive or load a bundle.
 struct BundleConstraints {
   int first_pack = 0;               ///< entry of constraint_packs, one for each pack of gridpoints
   int first_tie = 0, last_tie = 0;  ///< entries of ties: [first, last)
-  double loading_work = 0.0;        ///< of the reactions and applied forces, J
+  double loading_work = 0.0;        ///< work of the reactions and applied forces, J
 };
 
-/// Sums over a bundle, taken when a step is measured but for the work, which every step adds to.
+/// Sums over a bundle. They are taken when a step is measured, except the works, to which every step adds.
 struct BundleSums {
-  double damping_work = 0.0, viscous_work = 0.0;  ///< with the whole of the last step, J
-  double begun_damping = 0.0, begun_viscous = 0.0, begun_loading = 0.0;  ///< second half of the last step, J
-  double stored = 0.0;                                                   ///< J
-  double kinetic = 0.0;                                                  ///< J
-  double applied = 0.0;     ///< sum of the magnitudes of zone forces, weights and applied forces, N
-  double unbalanced = 0.0;  ///< of the magnitudes of the sums of forces, N
+  double damping_work = 0.0, viscous_work = 0.0;  ///< works including the whole last step, J
+  /// Works of the second half of the last step, J.
+  double begun_damping = 0.0, begun_viscous = 0.0, begun_loading = 0.0;
+  double stored = 0.0;   ///< J
+  double kinetic = 0.0;  ///< J
+  /// Sum of the magnitudes of zone forces, weights and applied forces, N.
+  double applied = 0.0;
+  /// Sum of the magnitudes of the sums of forces, N.
+  double unbalanced = 0.0;
 };
 
 /// Sums over a pack of faces.
 struct FaceSums {
   double stored = 0.0;   ///< J
   double applied = 0.0;  ///< sum of the magnitudes of contact forces, N
-  double jump = 0.0;     ///< largest, over the length of its face
+  double jump = 0.0;     ///< largest jump over the length of its face
 };
 
-/// Every array of a state, owned (FlatArray) or seen (View).
+/// Arrays of a state, owned (FlatArray) or seen (View).
 template <int Dim, template <class> class Array>
 struct StateArrays {
   Array<VectorPack<Dim>> position, velocity;
-  Array<VectorPack<Dim>> force;             ///< sum at the last step, N
-  Array<VectorPack<Dim>> stiffness;          ///< sum of |stiffness| over each row of the assembled matrix, N/m
-  Array<Vec<Dim>> gathered_position;        ///< by slot: zones of spread blocks gather from it, m
-  Array<Vec<Dim>> displacement;             ///< by slot: faces gather from it
-  Array<double> step_over_mass;             ///< by slot, s/kg; where idle any finite number
-  Array<double> real_mass;                  ///< by slot, which gravity acts on, kg; empty where there is none
-  Array<ZonePropertyPack> zone_properties;  ///< by pack of zones, or by bundle
-  /// By pack of zones, in the zones' own frames: free strain beside the thermal one. Empty where none creeps.
+  Array<VectorPack<Dim>> force;       ///< sum of forces at the last step, N
+  Array<VectorPack<Dim>> stiffness;   ///< sum of |stiffness| over each row of the assembled matrix, N/m
+  Array<Vec<Dim>> gathered_position;  ///< positions by slot, from which zones of spread blocks gather, m
+  Array<Vec<Dim>> displacement;       ///< displacements by slot, from which faces gather, m
+  /// Time step over moving mass by slot, s/kg; any finite number where idle.
+  Array<double> step_over_mass;
+  Array<double> real_mass;                  ///< mass by slot on which gravity acts, kg; empty without gravity
+  Array<ZonePropertyPack> zone_properties;  ///< properties by pack of zones, or by bundle
+  /// Free strain beside the thermal strain, by pack of zones, in the zones' own frames. Empty where none
+  /// creeps.
   Array<TensorPack<Dim>> creep_strain;
 
-  // Contact points. Those of a pack of faces have one law; each list holds what that law has, a line for
-  // eight points, and nothing for a law that has none. A step touches losses only where something is lost.
-  Array<std::uint8_t> law_of_faces;    ///< by pack of faces: entry of `State::laws`
-  Array<Line> internals, loss;         ///< of each pack of points in turn
-  Array<int> first_internal;           ///< of each pack of faces, and one more: its first line
-  Array<int> first_loss;               ///< likewise
-  Array<bool> losing;                  ///< by pack of points: something was lost in the last step
-  Array<Vec<Dim>> contact_force;       ///< on side a, by slot: gridpoints gather from it, N
-  Array<Vec<Dim>> turning_force;       ///< on both sides, by slot; finite kinematics only, N
-  Array<std::byte> contact_constants;  ///< of each set in turn
-  Array<int> first_constant;           ///< of each set, a byte
-  Array<int> set_of_faces;             ///< by pack of faces; where lanes differ its choices only
-  Array<bool> one_set;                 ///< by pack of faces: all its points share one set
-  Array<Line> own_constants;      ///< of each pack of points in turn, if any pack of faces has no one set
-  Array<int> first_own_constant;  ///< of each pack of faces: its first line
+  // Contact points. All points of a pack of faces have one law. Each list holds the numbers that this law
+  // has, one line for eight points; a law without such numbers has no lines. A step touches losses only where
+  // something is lost.
+  Array<std::uint8_t> law_of_faces;    ///< entry of `State::laws`, by pack of faces
+  Array<Line> internals, loss;         ///< lines of each pack of points in turn
+  Array<int> first_internal;           ///< first line of each pack of faces, and of one more
+  Array<int> first_loss;               ///< first line of each pack of faces, and of one more
+  Array<bool> losing;                  ///< true for a pack of points that lost something in the last step
+  Array<Vec<Dim>> contact_force;       ///< force on side a by slot, from which gridpoints gather, N
+  Array<Vec<Dim>> turning_force;       ///< force on both sides by slot; finite kinematics only, N
+  Array<std::byte> contact_constants;  ///< constants of each set in turn
+  Array<int> first_constant;           ///< first byte of each set
+  /// Set of each pack of faces; where lanes differ only its choices count.
+  Array<int> set_of_faces;
+  Array<bool> one_set;  ///< true for a pack of faces whose points all share one set
+  /// Constants of each pack of points in turn, if lanes of any pack of faces differ.
+  Array<Line> own_constants;
+  Array<int> first_own_constant;  ///< first line of each pack of faces, and of one more
 
-  Array<int> constraints_of_bundle;  ///< -1 where nothing holds, drives or loads it now
+  Array<int> constraints_of_bundle;  ///< -1 for a bundle that nothing holds, drives or loads now
   Array<BundleConstraints> constraints;
   Array<ConstraintPack<Dim>> constraint_packs;
   Array<Tie> ties;
@@ -173,7 +182,7 @@ struct StateArrays {
   }
 };
 
-/// What a step of the whole body has in common.
+/// Parameters that all parts of the body share in a step.
 template <int Dim>
 struct StepParameters {
   Vec<Dim> gravity;  ///< m/s²
@@ -181,7 +190,7 @@ struct StepParameters {
   DampingForm damping_form = DampingForm::local;
   Kinematics kinematics = Kinematics::small;
   double thickness = 1.0;  ///< m
-  bool by_bundle = false;  ///< every zone of a block has the same properties
+  bool by_bundle = false;  ///< true where all zones of a block have the same properties
 };
 
 template <int Dim>
@@ -189,25 +198,25 @@ struct State;
 
 struct LawTable;
 
-/// What a law does to packs of faces that have it, compiled for one instruction set.
+/// Functions of a law for packs of faces that have it, compiled for one instruction set.
 template <int Dim>
 struct PackFunctions {
-  /// Takes their contact points through the law, from jumps to forces.
+  /// Takes the contact points of packs through the law, from jumps to forces.
   void (*update)(State<Dim>&, int first, int last, bool measure);
-  /// Puts the sums of |stiffness| over the rows of the contacts' matrix where their forces stand, N/m.
+  /// Writes the sums of |stiffness| over the rows of the contacts' matrix in the place of their forces, N/m.
   void (*place_stiffness)(State<Dim>&, int first, int last);
 };
 
-/// All that a step sees: numbers, and views of arrays that stand elsewhere.
+/// State as a step sees it: numbers, and views of arrays that stand elsewhere.
 template <int Dim>
 struct State : StepParameters<Dim>, StateArrays<Dim, View> {
   LayoutArrays<Dim, ConstView> layout;
-  const PackFunctions<Dim>* laws = nullptr;  ///< of the body
+  const PackFunctions<Dim>* laws = nullptr;  ///< functions of the laws of the body
 
   bool weighs() const { return !this->real_mass.empty(); }
 };
 
-/// Lets one list of arrays see another.
+/// Lets the views of one list of arrays see the arrays of another.
 template <class Views, class Owners>
 void see(Views& views, Owners& owners) {
   for_each_array(
@@ -217,24 +226,24 @@ void see(Views& views, Owners& owners) {
       views, owners);
 }
 
-/// What a pass over bundles does.
+/// Work of a pass over bundles.
 enum class Pass : std::uint8_t {
   move,              ///< a step
   move_and_measure,  ///< a step whose sums are taken
   measure            ///< forces and their sums, without motion
 };
 
-/// The passes of the step, compiled for one instruction set; packs of faces are compiled with their law.
+/// Passes of the step, compiled for one instruction set; packs of faces are compiled with their law.
 template <int Dim>
 struct StepPasses {
   /// Sums the forces of bundles and moves their gridpoints.
   /// \param scratch  2 Dim kLanes numbers for every pack of the largest bundle, aligned to 64 bytes
   void (*move_bundles)(State<Dim>&, int first, int last, Pass, double* scratch);
-  /// Works out `State::stiffness`; leaves the contact forces unset until faces are updated.
+  /// Computes `State::stiffness`; leaves the contact forces unset until faces are updated.
   void (*sum_stiffness)(State<Dim>&, double* scratch);
 };
 
-/// What is compiled for one instruction set, for bodies in 2D and in 3D.
+/// Functions compiled for one instruction set, for bodies in 2D and in 3D.
 template <template <int> class Functions>
 struct ByDimension {
   Functions<2> in_2d;
@@ -249,7 +258,7 @@ struct ByDimension {
   }
 };
 
-/// Calls `f(functions, first, last)` for runs of packs of faces that have one law.
+/// Calls `f(functions, first, last)` for consecutive packs of faces that have one law.
 template <int Dim, class F>
 void for_each_law(const State<Dim>& s, int first, int last, F f) {
   for (int pack = first; pack < last;) {

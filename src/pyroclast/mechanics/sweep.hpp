@@ -10,19 +10,20 @@ struct IndexRange {
   int first = 0, last = 0;  ///< [first, last)
 };
 
-/// What one thread does in a step.
+/// Work of one thread in a step.
 ///
-/// Threads share the bundles out along the body. Faces between bundles of two threads are done first; once
-/// they all are, each thread sweeps through its own: packs of faces, then the bundles whose faces are all
-/// done, while they are still near in the cache.
+/// Threads share the bundles out along the body. Faces between bundles of two threads are done first. Then
+/// each thread sweeps through its own part: packs of faces, then the bundles whose faces are all done, while
+/// they are still in the cache.
 struct Share {
   struct Stride {
     IndexRange faces, bundles;
   };
-  std::vector<IndexRange> crossing;  ///< packs of faces at other threads' bundles
+  std::vector<IndexRange> crossing;  ///< packs of faces that touch bundles of other threads
   std::vector<Stride> strides;
 };
 
+/// Shares a step out to threads.
 /// \param threads  at least 1
 template <int Dim>
 std::vector<Share> share_out(const Layout<Dim>& layout, int threads);

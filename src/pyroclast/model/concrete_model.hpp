@@ -9,39 +9,40 @@
 
 namespace pyroclast {
 
-/// A block beside the specimen by which it is loaded or held: a platen, a roller's bearing, a glued end. It
-/// follows the outline, and its face there is zoned to meet the specimen's gridpoints.
+/// Block beside the specimen by which it is loaded or held: a platen, a roller's bearing, a glued end. Its
+/// face follows the outline and is zoned to meet the specimen's gridpoints.
 struct Bearing {
   std::string name;
-  std::string side;        ///< or patch of the specimen that it covers
+  std::string side;        ///< side or patch of the specimen that the bearing covers
   double thickness = 0.0;  ///< m
-  std::string material;    ///< as in [materials]
-  std::string interface;   ///< see BearingInterface
-  bool has_pivot = true;   ///< with a gridpoint in the very middle of its outer face, about which it may turn
+  std::string material;    ///< name in [materials]
+  std::string interface;   ///< name of the interface, see BearingInterface
+  /// True for a gridpoint in the very middle of the outer face, about which the bearing may turn.
+  bool has_pivot = true;
 };
 
-/// Two bearings, `bottom_platen` and `top_platen`, over these sides of a rectangle.
+/// Returns two bearings, `bottom_platen` and `top_platen`, over these sides of a rectangle.
 std::vector<Bearing> platens(double thickness);
 
-/// A specimen as a model, with what bears on it. Materials are the phases of the specimen, then those of the
-/// bearings; interfaces those between phases, then those of the bearings. Sets of gridpoints:
+/// Makes a specimen and its bearings into a model. Throws Error, naming the bearing, when a bearing has no
+/// side to lie on. Materials are the phases of the specimen, then those of the bearings; interfaces are those
+/// between phases, then those of the bearings. Sets of gridpoints:
 ///
-/// | set | holds |
+/// | set | gridpoints |
 /// |---|---|
-/// | `specimen` | all of the specimen |
-/// | by the name of a phase | all blocks of it |
-/// | by the name of a side or patch | of the specimen, `left` or `notch_1`: each edge's two gridpoints |
-/// | by the name of a bearing | all of the bearing |
-/// | `<bearing>_face` | its face at the specimen, from left to right, or upwards where it stands |
-/// | `<bearing>_support` | its outer face, likewise |
-/// | `<bearing>_pivot` | the gridpoint nearest to the middle of its outer face |
-/// | `<notch>_left`, `<notch>_right` | the two sides of a notch without width, seen from its mouth |
+/// | `specimen` | of the whole specimen |
+/// | name of a phase | of all blocks of the phase |
+/// | name of a side or patch, `left` or `notch_1` | of the specimen: the two gridpoints of each edge |
+/// | name of a bearing | of the whole bearing |
+/// | `<bearing>_face` | of its face at the specimen, from left to right, or upwards on an upright side |
+/// | `<bearing>_support` | of its outer face, in the same order |
+/// | `<bearing>_pivot` | nearest to the middle of its outer face |
+/// | `<notch>_left`, `<notch>_right` | of the two sides of a notch without width, seen from its mouth |
 ///
-/// Sets of contacts: by the name of a notch that has no width, those that it parts.
+/// Sets of contacts: under the name of a notch without width, the contacts that the notch parts.
 ///
-/// \param thickness   of the specimen, out of plane, m
-/// \param interfaces  of the deck, see InterfaceTable
-/// Throws Error, naming the bearing, when it has no side to lie on.
+/// \param thickness   thickness of the specimen, out of plane, m
+/// \param interfaces  interfaces of the deck, see InterfaceTable
 Model<2> make_concrete_model(const specimen::Specimen& specimen, double thickness,
                              const std::vector<InterfaceParameters>& interfaces = {},
                              const std::vector<Bearing>& bearings = {});

@@ -8,36 +8,37 @@
 
 namespace pyroclast {
 
-/// Face on the outline of a body: neither shared by two zones nor joined by contacts to another block of it.
+/// Face on the outline of a body: neither shared by two zones nor joined by contacts to another block of the
+/// body.
 template <int Dim>
 struct OutlineFace {
-  std::array<int, Dim> gridpoints;  ///< in the order that makes the normal right-handed
+  std::array<int, Dim> gridpoints;  ///< gridpoints in the order that makes the normal right-handed
   int zone;
   Vec<Dim> centre;  ///< m
-  Vec<Dim> normal;  ///< unit, outward
+  Vec<Dim> normal;  ///< unit normal, outward
   double area;      ///< m² (2D: length times thickness)
 };
 
-/// All such faces, in the order of their zones.
-/// \param takes_part  whether blocks of a material belong to the body, by material of the model
+/// Returns all faces on the outline of a body, in the order of their zones.
+/// \param takes_part  true where blocks of a material belong to the body, by material of the model
 template <int Dim>
 std::vector<OutlineFace<Dim>> outline(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry,
                                       const std::vector<bool>& takes_part);
 
-/// Whether each gridpoint belongs to a block of a material that takes part.
+/// Tells for each gridpoint whether it belongs to a block of a material that takes part.
 template <int Dim>
 std::vector<bool> gridpoints_of(const Model<Dim>& model, const std::vector<bool>& takes_part);
 
-/// Choice of outline faces whose centres lie in a plane (2D: on a line) perpendicular to an axis.
+/// Returns a choice of outline faces whose centres lie in a plane (2D: on a line) perpendicular to an axis.
 /// \param axis        0, 1 or 2 for x, y, z
-/// \param coordinate  of the plane, m
-/// \param tolerance   m
+/// \param coordinate  coordinate of the plane, m
+/// \param tolerance   largest distance from the plane, m
 template <int Dim>
 auto on_plane(int axis, double coordinate, double tolerance) {
   return [=](const OutlineFace<Dim>& face) { return std::abs(face.centre[axis] - coordinate) <= tolerance; };
 }
 
-/// Choice of outline faces whose centres lie in a box, bounds included.
+/// Returns a choice of outline faces whose centres lie in a box, bounds included.
 template <int Dim>
 auto in_box(const Vec<Dim>& low, const Vec<Dim>& high) {
   return [=](const OutlineFace<Dim>& face) {

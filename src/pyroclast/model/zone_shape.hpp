@@ -6,10 +6,10 @@
 
 namespace pyroclast {
 
-/// Determinant of a zone's edge matrix and, times it, the gradients of the first Dim shape functions; that of
-/// the last is minus their sum.
-/// \param x  corners, m
-/// \param vectors  out, m (2D), m² (3D)
+/// Returns the determinant of a zone's edge matrix and computes the gradients of the first Dim shape
+/// functions times the determinant. The gradient of the last function is minus their sum.
+/// \param x        corners, m
+/// \param vectors  out: gradients times the determinant, m (2D), m² (3D)
 template <class Real>
 inline Real shape_vectors(const std::array<Vec<2, Real>, 3>& x, std::array<Vec<2, Real>, 2>& vectors) {
   const Vec<2, Real> e0 = x[0] - x[2];
@@ -35,7 +35,7 @@ inline Real shape_vectors(const std::array<Vec<3, Real>, 4>& x, std::array<Vec<3
 template <int Dim>
 inline constexpr double volume_over_determinant = Dim == 2 ? 0.5 : -1.0 / 6.0;
 
-/// Gradients of the first Dim shape functions of a zone, 1/m.
+/// Computes the gradients of the first Dim shape functions of a zone, 1/m.
 /// \return area (2D, m²) or volume (3D, m³), negative for a zone turned inside out
 template <int Dim, class Real>
 inline Real shape_gradients(const std::array<Vec<Dim, Real>, Dim + 1>& x,

@@ -8,30 +8,31 @@
 
 namespace pyroclast {
 
-/// How a law's header becomes a shared object.
+/// Compiler that makes a law's header into a shared object.
 struct LawCompiler {
   std::string program = "c++";  ///< the system's compiler
   /// Folder of the shared objects that were compiled before; only its owner may read and write it.
   std::filesystem::path cache;
-  /// That the packs are compiled for.
+  /// Instruction set for which the packs are compiled.
   InstructionSet instructions = best_instruction_set();
-  int dimension = 2;  ///< of the bodies that it is compiled for
-  /// Is shown the command before it is run.
+  int dimension = 2;  ///< dimension of the bodies for which the law is compiled
+  /// Function that is shown the command before the command runs.
   std::function<void(const std::string& command)> tell = [](const std::string&) {};
-  /// Called many times a second while the compiler runs; what it throws ends the compiler.
+  /// Function that is called many times a second while the compiler runs; an exception from it ends the
+  /// compiler.
   std::function<void()> poll = [] {};
 };
 
-/// The type of the law in a header, such as "mine::Law": the struct that holds `static constexpr const char*
-/// name`. Throws Error when there is none, or more than one.
-/// \param file  that the text is of
+/// Returns the type of the law in a header, such as "mine::Law": the struct that holds `static constexpr
+/// const char* name`. Throws Error when there is none, or more than one.
+/// \param file  file of the text
 std::string law_type(const std::filesystem::path& file, const std::string& text);
 
-/// The shared object of a law, from the cache where the same was compiled before: the same text of all its
-/// headers, wherever they lie, compiler, flags and layout. Throws Error with the compiler's words where it
-/// does not compile.
+/// Returns the shared object of a law, from the cache where the same law was compiled before: the same text
+/// of all its headers, wherever they lie, compiler, flags and layout. Throws Error with the compiler's words
+/// where the law does not compile.
 ///
-/// \param type  of the law, as C++ names it
+/// \param type  type of the law, as C++ names it
 std::filesystem::path compile_law(const std::filesystem::path& header, const std::string& type,
                                   const LawCompiler& compiler);
 

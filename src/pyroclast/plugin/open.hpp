@@ -9,29 +9,29 @@
 
 namespace pyroclast {
 
-/// A header that this program compiled.
+/// Header that this program compiled.
 struct LawHeader {
-  std::filesystem::path file;  ///< empty where there is none
+  std::filesystem::path file;  ///< path of the header; empty where there is none
   std::string text;
 };
 
-/// A contact law that is not part of the program: code that it was asked to run.
+/// Contact law that is not part of the program: code that the program was asked to run.
 struct OpenedLaw {
   LawTable table;
   Dimensions dimensions = Dimensions::both;
   std::filesystem::path shared_object;
-  LawHeader header;      ///< that it was compiled from by this program
-  std::string compiler;  ///< as the shared object names it
+  LawHeader header;      ///< header from which this program compiled the law
+  std::string compiler;  ///< compiler as the shared object names it
 };
 
-/// Loads a shared object that pyroclast_add_law made, for the rest of the process; the same file once.
-/// Throws Error where it is none, was made for another version or layout, or takes numbers for anything but
+/// Opens a shared object that pyroclast_add_law made, for the rest of the process; the same file once. Throws
+/// Error where the file is no such object, was made for another version or layout, or does not compute by
 /// IEEE 754: with contraction, fast-math or flush to zero.
-/// \param header  that it was compiled from by this program
+/// \param header  header from which this program compiled it
 PYROCLAST_LASTING const OpenedLaw& open_law(const std::filesystem::path& shared_object,
                                             LawHeader header = {});
 
-/// Those that were loaded so far, in that order.
+/// Returns the laws that were opened so far, in that order.
 std::vector<const OpenedLaw*> opened_laws();
 
 }  // namespace pyroclast

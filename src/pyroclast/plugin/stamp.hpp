@@ -9,28 +9,28 @@
 #include "pyroclast/mechanics/compiled_for_sets.hpp"
 #include "pyroclast/mechanics/state.hpp"
 
-/// What a shared object with a contact law hands over, seen from both sides. Only plain data and functions
-/// cross; the stamp says whether both sides mean the same by them.
+/// Interface of a shared object with a contact law, seen from both sides. Only plain data and functions
+/// cross; the stamp tells whether both sides mean the same by them.
 extern "C" {
 
 struct pyroclast_law {
   // the stamp: read before anything else is believed
   char magic[16];
   std::uint32_t table_version;
-  std::uint32_t size;    ///< of this struct, bytes
-  const char* version;   ///< of pyroclast
-  std::uint64_t layout;  ///< hash of what crosses
+  std::uint32_t size;    ///< size of this struct, bytes
+  const char* version;   ///< version of pyroclast
+  std::uint64_t layout;  ///< hash of the data that cross
   std::uint32_t lanes;
-  const char* compiler;  ///< recorded, not compared
+  const char* compiler;  ///< compiler, recorded, not compared
 
   pyroclast::Dimensions dimensions;
-  const pyroclast::LawTable* table;  ///< its packs are those below
+  const pyroclast::LawTable* table;  ///< table, whose packs are those of `compiled`
   pyroclast::CompiledForSets compiled;
-  pyroclast::ArithmeticProbe probe;  ///< of what is compiled for any processor
-  const void* device;                ///< for a compilation for other processors; null so far
+  pyroclast::ArithmeticProbe probe;  ///< probe that is compiled for any processor
+  const void* device;                ///< place for a compilation for other processors; null so far
 };
 
-/// The one symbol of a shared object with a law.
+/// Function type of the one symbol of a shared object with a law.
 using pyroclast_law_function = const pyroclast_law* (*)();
 
 }  // extern "C"
@@ -41,7 +41,7 @@ inline constexpr char kLawMagic[16] = "pyroclast law";
 inline constexpr std::uint32_t kLawTableVersion = 1;
 inline constexpr const char* kLawSymbol = "pyroclast_law_v1";
 
-/// FNV-1a over sizes, places and names.
+/// FNV-1a hash over sizes, places and names.
 class LayoutHash {
  public:
   template <class... N>
@@ -54,7 +54,7 @@ class LayoutHash {
   std::uint64_t value() const { return hash_; }
 
  private:
-  // not inline: unrolled for each of some hundred numbers it takes a compiler ten seconds
+  // not inline: unrolled for each of some hundred numbers it would take a compiler ten seconds
   [[gnu::noinline]] void add_number(std::uint64_t number) {
     for (int byte = 0; byte < 8; ++byte) hash_ = (hash_ ^ ((number >> (8 * byte)) & 0xff)) * 0x100000001b3U;
   }
@@ -62,8 +62,9 @@ class LayoutHash {
   std::uint64_t hash_ = 0xcbf29ce484222325U;
 };
 
-/// What the packs of a law see of a body: the place of every array and number, and the size of their items.
-/// \tparam S  what they see, another than the state in tests
+/// Adds the view that the packs of a law have of a body: the place of every array and number, and the size of
+/// their items.
+/// \tparam S  the state; in tests another type
 template <int Dim, class S = State<Dim>>
 void add_state(LayoutHash& hash) {
   static_assert(std::is_trivially_copyable_v<S>);
@@ -84,7 +85,7 @@ void add_state(LayoutHash& hash) {
   hash.add(sizeof(Faces), offsetof(Faces, tangent), sizeof(VectorPack<Dim>), sizeof(Vec<Dim>));
 }
 
-/// Differs where the two sides of a shared object would read each other's data wrongly.
+/// Returns a hash that differs where the two sides of a shared object would read each other's data wrongly.
 inline std::uint64_t layout_hash() {
   LayoutHash hash;
   add_state<2>(hash);
@@ -122,8 +123,8 @@ inline std::uint64_t layout_hash() {
   return hash.value();
 }
 
-/// What a shared object hands over.
-/// \param packs  by instruction set
+/// Returns the data that a shared object hands over.
+/// \param compiled  functions of the law by instruction set
 template <class Law, Dimensions kDimensions>
 pyroclast_law describe_law(const char* version, const CompiledForSets& compiled) {
   struct ForAnyProcessor;

@@ -7,8 +7,8 @@
 #include "pyroclast/session/session.hpp"
 #include "pyroclast/stages/registry.hpp"
 
-/// The module _core: what Python needs of the library. The package's own files make it pleasant; here it is
-/// only reached.
+/// The module _core: the parts of the library that Python needs. The package's own files make them pleasant
+/// to use; here they are only reached.
 namespace pyroclast::python {
 
 namespace py = pybind11;
@@ -22,10 +22,10 @@ void bind_specimens(py::module_& module);
 void bind_stages(py::module_& module);
 void bind_tables(py::module_& module);
 
-/// A Python object that threads without the interpreter's lock may hold and let go.
+/// Returns a Python object that threads without the interpreter's lock may hold and let go.
 std::shared_ptr<py::object> shared(py::object object);
 
-/// The kinds of stages of the library, and one for each of these classes.
+/// Returns the kinds of stages of the library, and one for each of these classes.
 StageRegistry kinds_with(const py::list& classes);
 
 }  // namespace pyroclast::python

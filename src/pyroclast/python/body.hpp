@@ -6,7 +6,7 @@
 
 namespace pyroclast::python {
 
-/// The body and its press, lent to a stage that is written in Python for the time of one call.
+/// Body and press, lent to a stage that is written in Python for the time of one call.
 struct Body {
   Simulation* simulation = nullptr;  ///< null when the call is over
 

@@ -10,14 +10,14 @@
 
 namespace pyroclast::python {
 
-/// A deck as it is written, and what belongs to reading it.
+/// Deck as it is written, and the settings for reading it.
 struct DeckText {
   std::string text, name;
-  std::string folder;                             ///< that its file names are taken from
-  std::vector<std::string> changes;               ///< "key=value"
-  std::vector<std::string> laws;                  ///< folders
-  pybind11::list stages;                          ///< classes
-  bool deck_names = false, changes_name = false;  ///< laws, see LawSources
+  std::string folder;                             ///< folder from which its file names are taken
+  std::vector<std::string> changes;               ///< changes, "key=value"
+  std::vector<std::string> laws;                  ///< folders of laws
+  pybind11::list stages;                          ///< classes of stages
+  bool deck_names = false, changes_name = false;  ///< true where deck and changes name laws, see LawSources
 };
 
 Deck parse(const DeckText& text);

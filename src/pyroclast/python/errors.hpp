@@ -8,7 +8,7 @@
 
 namespace pyroclast::python {
 
-/// As objects of pyroclast/errors.py.
+/// Returns diagnostics as objects of pyroclast/errors.py.
 pybind11::list diagnostics(const std::vector<Diagnostic>& list);
 
 }  // namespace pyroclast::python

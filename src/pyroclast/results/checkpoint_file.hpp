@@ -11,20 +11,20 @@
 
 namespace pyroclast {
 
-/// What a checkpoint says of itself, for those who choose between some and for messages.
+/// Description of a checkpoint, for choosing among several and for messages.
 struct CheckpointInfo {
-  std::int64_t number = 0;  ///< in the order in which a run writes them, from 1
-  std::string version;      ///< of pyroclast
+  std::int64_t number = 0;  ///< number in the order in which a run writes checkpoints, from 1
+  std::string version;      ///< version of pyroclast
   std::string commit;
   int physics_version = 0;
-  std::string inputs;                    ///< hash of all that the run is made from
-  std::string body;                      ///< hash of model and laws, as they were made of it
-  std::vector<std::string> stage_kinds;  ///< of all stages
-  std::int64_t stage = 0;                ///< from 0
+  std::string inputs;                    ///< hash of all inputs of the run
+  std::string body;                      ///< hash of model and laws, as they were made from the inputs
+  std::vector<std::string> stage_kinds;  ///< kinds of all stages
+  std::int64_t stage = 0;                ///< number of the stage, from 0
   bool stage_is_over = false;
-  std::int64_t step = 0;        ///< of the mechanics
-  double wall_time = 0.0;       ///< of the run so far, s
-  std::uint64_t log_bytes = 0;  ///< length of the run's log then
+  std::int64_t step = 0;        ///< step of the mechanics
+  double wall_time = 0.0;       ///< wall time of the run so far, s
+  std::uint64_t log_bytes = 0;  ///< length of the run's log at the checkpoint
 
   /// Shows each entry of an info by its name in the file.
   template <class Info, class F>
@@ -51,11 +51,13 @@ struct CheckpointInfo {
 ///     where the table begins, its length, its hash (XXH3), "t-state1"
 ///
 /// The table has name, place, size and hash (XXH3) of each piece. Numbers are as the processor has them,
-/// little end first. \param visit  shows all that there is \return its length, bytes
+/// little end first.
+/// \param visit  shows the whole state
+/// \return the length of the checkpoint, bytes
 std::uint64_t write_checkpoint(const std::filesystem::path& path, const CheckpointInfo& info,
                                const std::function<void(StateVisitor&)>& visit);
 
-/// A checkpoint to be read. All errors are Errors that name the file and what is wrong.
+/// Checkpoint to be read. All its errors are Errors that name the file and the fault.
 class CheckpointFile {
  public:
   /// Reads the info. Throws Error when the file is cut short, damaged there, or none of this program.
@@ -64,10 +66,10 @@ class CheckpointFile {
   const std::filesystem::path& path() const { return path_; }
   const CheckpointInfo& info() const { return info_; }
 
-  /// Replaces all that is shown by what the file holds. Throws Error when a piece is damaged, or of another
-  /// size, or when the file lacks one, or holds one that is not asked for.
+  /// Replaces everything that `visit` shows by the contents of the file. Throws Error when a piece is
+  /// damaged, or of another size, or when the file lacks one, or holds one that is not asked for.
   void restore(const std::function<void(StateVisitor&)>& visit) const;
-  /// Reads all pieces and compares their hashes. Throws Error for the first that is damaged.
+  /// Reads all pieces and compares their hashes. Throws Error for the first piece that is damaged.
   void verify() const;
 
  private:

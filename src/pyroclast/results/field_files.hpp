@@ -15,26 +15,27 @@ namespace pyroclast {
 
 /// Frames of the fields that were written so far.
 struct FrameRows {
-  std::vector<std::int64_t> rows;  ///< of the history, at which they were taken
+  std::vector<std::int64_t> rows;  ///< rows of the history at which they were taken
 };
 
-/// The fields of a run: `mesh.h5`, frames of the blocks and, where the body moves, of the contacts, see
-/// FrameSeries, and `frames.csv`, which lists them with some columns of the history.
+/// Files of a run's fields: `mesh.h5`, frames of the blocks and, where the body moves, of the contacts, see
+/// FrameSeries, and `frames.csv`, which lists the frames with some columns of the history.
 class FieldFiles {
  public:
   /// Creates the folder, writes the mesh and lists the frames that are there.
   FieldFiles(const std::filesystem::path& folder, const Simulation& simulation, const History& history,
              const FrameRows& frames);
 
-  /// A frame of the fields now, at the row that the history has last. Its time is the heating time while
-  /// heated, and before and after it that of the mechanics. Adds it to `frames` once all of it is written.
+  /// Writes a frame of the present fields, at the last row of the history. The time of the frame is the
+  /// heating time during heating, and before and after it the time of the mechanics. The frame is added to
+  /// `frames` once it is written whole.
   void write(const Simulation& simulation, const History& history, FrameRows& frames);
 
-  /// Names of the files of earlier frames that are missing or broken.
+  /// Returns the names of the files of earlier frames that are missing or broken.
   std::vector<std::string> lost() const;
 
  private:
-  std::vector<std::string> columns_;  ///< of the history, that frames.csv has
+  std::vector<std::string> columns_;  ///< columns of the history in frames.csv
   LineFile frames_;
   FrameSeries blocks_;
   std::optional<FrameSeries> contacts_;

@@ -5,13 +5,13 @@
 
 namespace pyroclast {
 
-/// Holds a folder for one process at a time, as long as it is there, by a lock on the file `lock` in it; when
-/// the process dies in any way, the system gives it back.
+/// Lock on a folder for one process at a time, while the object lives, by a lock on the file `lock` in the
+/// folder. When the process dies in any way, the system gives the folder back.
 class FolderLock {
  public:
   /// Makes the folder where it is missing. Throws Error when another process holds it, or it cannot be made.
   explicit FolderLock(std::filesystem::path folder);
-  /// Takes the file away, and folders that it made and that are still empty.
+  /// Removes the file, and folders that the lock made and that are still empty.
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
@@ -23,7 +23,7 @@ class FolderLock {
 };
 
 /// Makes a folder and those above it that are missing. Throws Error when that is not possible.
-/// \return those that were not there, the outermost first
+/// \return the folders that were missing, the outermost first
 std::vector<std::filesystem::path> make_folders(const std::filesystem::path& path);
 
 }  // namespace pyroclast

@@ -17,25 +17,27 @@ enum class MeshPart : std::uint8_t { blocks, contacts };
 /// Writes `mesh.h5`, which holds blocks and contacts once for all frames: zones as triangles with block and
 /// material, contact points as lines to the middle of their face with interface and length.
 void write_mesh(const std::filesystem::path& folder, const Model<2>& model);
-/// Takes the memory that this takes, and writes nothing: a run needs most there.
+/// Takes the memory that writing the mesh takes, and writes nothing: a run needs most memory there.
 void rehearse_mesh(const Model<2>& model);
 
-/// Frames of a part of the mesh as VTKHDF files, which ParaView and VTK read: each frame k is a file
-/// `blocks_<k>.hdf` or `contacts_<k>.hdf` that links to `mesh.h5` beside it, and `blocks.hdf.series` or
-/// `contacts.hdf.series` opens all as a time series.
+/// Frames of a part of the mesh as VTKHDF files, which ParaView and VTK read. Each frame k is a file
+/// `blocks_<k>.hdf` or `contacts_<k>.hdf` that links to `mesh.h5` beside it; `blocks.hdf.series` or
+/// `contacts.hdf.series` opens all of them as a time series.
 class FrameSeries {
  public:
-  /// \param times  of the frames that are there, s; later ones that a run broken off left are removed
+  /// \param times  times of the frames that are there, s; later frames left by a run that was broken off are
+  ///               removed
   FrameSeries(std::filesystem::path folder, MeshPart part, std::vector<double> times = {});
 
-  /// \param times   of all frames so far and this one, s
+  /// Writes a frame.
+  /// \param times   times of all frames so far and of this one, s
   /// \param fields  adds the frame's datasets below /VTKHDF/PointData and /VTKHDF/CellData
   void write(std::vector<double> times, const std::function<void(Hdf5File&)>& fields);
 
   int count() const { return static_cast<int>(times_.size()); }
-  /// Names of the files of frames that are counted, but are missing or broken.
+  /// Returns the names of the files of frames that are counted, but are missing or broken.
   std::vector<std::string> lost() const;
-  /// Name of a frame's file.
+  /// Returns the name of a frame's file.
   static std::string file_name(MeshPart part, int frame);
 
  private:

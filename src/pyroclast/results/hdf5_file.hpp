@@ -7,18 +7,18 @@
 
 namespace pyroclast {
 
-/// An HDF5 file being made, in memory. It appears under its name only when `close` succeeded, so a reader
-/// never meets a half-written one. Every failure (a full disk, say) is an Error that names the file.
+/// HDF5 file being made, in memory. It appears under its name only when `close` succeeded, so a reader never
+/// meets a half-written file. Every failure (a full disk, say) is an Error that names the file.
 class Hdf5File {
  public:
-  /// \param path  empty: it is made, and goes nowhere
+  /// \param path  empty: the file is made, and written nowhere
   explicit Hdf5File(std::filesystem::path path);
   ~Hdf5File();
   Hdf5File(const Hdf5File&) = delete;
   Hdf5File& operator=(const Hdf5File&) = delete;
 
   void group(const std::string& name);
-  /// Row-major; `columns` 0 gives a one-dimensional dataset.
+  /// Writes a dataset, row-major; `columns` 0 gives a one-dimensional dataset.
   void dataset(const std::string& name, const std::vector<double>& values, int columns = 0);
   void dataset(const std::string& name, const std::vector<float>& values, int columns = 0);
   void dataset(const std::string& name, const std::vector<std::int64_t>& values, int columns = 0);
@@ -28,12 +28,12 @@ class Hdf5File {
   void attribute(const std::string& object, const std::string& name, const std::string& text);
   void attribute(const std::string& object, const std::string& name, double value);
   void attribute(const std::string& object, const std::string& name, const std::vector<std::int64_t>& values);
-  /// Link to an object of another file of the same folder.
+  /// Links to an object of another file of the same folder.
   void external_link(const std::string& name, const std::string& file, const std::string& object);
 
   void close();
 
-  /// Whether a file is there, and was written to its end.
+  /// Tells whether a file is there, and was written to its end.
   static bool is_whole(const std::filesystem::path& path);
 
  private:

@@ -10,11 +10,11 @@
 
 namespace pyroclast {
 
-/// `history.csv`: a row for each look; the column names carry the units, and a cell is empty where the stage
-/// of its row does not have the quantity.
+/// File `history.csv`: a row for each look. The column names carry the units, and a cell is empty where the
+/// stage of its row does not have the quantity.
 class HistoryFile {
  public:
-  /// Writes the names of the columns, and the rows that there are.
+  /// Writes the names of the columns, and the present rows.
   HistoryFile(const std::filesystem::path& path, const History& history);
   /// Writes the last row.
   void write(const History& history);
@@ -23,10 +23,10 @@ class HistoryFile {
   LineFile file_;
 };
 
-/// A line of a CSV file of some cells of a row.
+/// Returns some cells of a row as a line of a CSV file.
 std::string printed_row(const std::vector<std::optional<double>>& cells);
 
-/// A value as the result files have it; nothing where there is none.
+/// Returns a value as the result files have it; empty where there is none.
 std::string printed(const std::optional<double>& value);
 
 }  // namespace pyroclast

@@ -8,26 +8,27 @@
 
 namespace pyroclast {
 
-/// A file that a deck names: a table, a tessellation, a law.
+/// File that a deck names: a table, a tessellation, a law.
 struct InputFile {
   std::filesystem::path source;
-  std::string name;  ///< in the folder of a run: "inputs/..."
+  std::string name;  ///< name in the folder of a run: "inputs/..."
   std::string contents;
 };
 
-/// All that a run is made from, as its folder keeps it.
+/// Inputs of a run, as its folder keeps them.
 struct Inputs {
-  /// The deck, with the seed of the run, and files by their names in the folder: run there it gives the same.
+  /// Text of the deck, with the seed of the run, and files by their names in the folder: run there it gives
+  /// the same results.
   std::string deck_text;
   std::vector<InputFile> files;
-  std::string references = {};  ///< for figures, see json_of; may be empty
+  std::string references = {};  ///< references for figures, see json_of; may be empty
 
-  /// Of the deck and its files.
+  /// Returns the hash of the deck and its files.
   std::string hash() const;
 };
 
 /// Reads the files that a deck names. Throws Error when one cannot be read.
-/// \param setup  as read from the deck, perhaps with another seed
+/// \param setup  setup as read from the deck, perhaps with another seed
 Inputs inputs_of(const Deck& deck, const Setup& setup);
 
 }  // namespace pyroclast

@@ -10,37 +10,41 @@
 
 namespace pyroclast {
 
-/// Points of a curve, in their order. Between two of them it is straight.
+/// Points of a curve, in their order. Between two points the curve is straight.
 struct PlainCurve {
   std::vector<double> x, y;
 };
 
-/// How far a curve is from a reference; docs/method.md has the formulas. Each is empty where it cannot be
-/// told.
+/// Distances of a curve from a reference; docs/method.md has the formulas. Each is empty where it cannot be
+/// computed.
 struct CurveDistances {
-  std::optional<double> rms;      ///< over the common range, over the reference's greatest size
-  std::optional<double> at_peak;  ///< greatest of the curve in the reference's range over that of it, less 1
-  std::optional<double> area;     ///< between both, over the common range, in the unit of y times that of x
-  std::optional<double> covered;  ///< common range over that of the reference
+  std::optional<double> rms;  ///< root mean square over the common range, over the reference's greatest size
+  /// Greatest size of the curve in the reference's range over the reference's, less 1.
+  std::optional<double> at_peak;
+  /// Area between both, over the common range, in the unit of y times the unit of x.
+  std::optional<double> area;
+  std::optional<double> covered;  ///< common range over the range of the reference
 };
 
-/// Of both curves only points whose x exceeds all before make the line that ranges, distance and area are of.
+/// Computes the distances of two curves. Only points whose x exceeds all before count for ranges, distance
+/// and area.
 CurveDistances distances(const PlainCurve& curve, const PlainCurve& reference);
 
-/// What a run has in the place of a reference, in the units of the history: the rows that figures draw.
+/// Returns the results of a run in the place of a reference, in the units of the history: the rows that
+/// figures draw.
 PlainCurve curve_beside(const Reference& reference, const Run& run);
-/// The values of a reference; of a range those midway between both ends.
+/// Returns the values of a reference; of a range the values midway between both ends.
 PlainCurve curve_of(const Reference& reference);
 
-/// What a run comes to beside one of its references.
+/// Distances of a run from one of its references.
 struct ReferenceDistances {
   std::string name;
-  std::string area_unit;  ///< as names of results have it: "N_m"
+  std::string area_unit;  ///< unit of the area as names of results have it: "N_m"
   CurveDistances distances;
-  std::vector<std::string> warnings;  ///< where it is most likely of another sign or unit
+  std::vector<std::string> warnings;  ///< warnings where the reference is most likely of another sign or unit
 };
 
-/// Of all references but those that the program has.
+/// Returns the distances from all references except those that the program has.
 std::vector<ReferenceDistances> reference_distances(std::span<const Reference> references, const Run& run);
 
 }  // namespace pyroclast

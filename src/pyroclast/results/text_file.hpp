@@ -10,11 +10,11 @@ namespace pyroclast {
 /// file.
 void write_text_file(const std::filesystem::path& path, const std::string& text);
 
-/// A text file that grows line by line, each line handed to the system before the next. Throws Error naming
+/// Text file that grows line by line; each line is handed to the system before the next. Throws Error naming
 /// the file when a line cannot be written.
 class LineFile {
  public:
-  /// \param text  with which it begins: in place of what stands there, whole or not at all
+  /// \param text  first text of the file, which replaces an earlier file, whole or not at all
   LineFile(std::filesystem::path path, const std::string& text);
   void line(const std::string& text);
 

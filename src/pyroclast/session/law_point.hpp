@@ -12,24 +12,24 @@
 
 namespace pyroclast {
 
-/// A contact law with all its properties, as "key=value" states them. Throws Error for one that is missing or
-/// cannot be.
+/// Returns a contact law with all its properties, as "key=value" states them. Throws Error for a property
+/// that is missing or not allowed.
 ContactMaterial stated_material(const LawTable& law, const std::vector<std::string>& values);
 
-/// One contact point on its way along a path of jumps, with its energies added up. As in a run it has the
-/// strengths of the highest temperature that it came to, and loses what the material loses on cooling.
+/// Contact point that is taken along a path of jumps, with its energies added up. As in a run it has the
+/// strengths of the highest temperature so far, and loses what the material loses on cooling.
 class LawPoint {
  public:
-  /// \param temperature  at which it begins, °C
-  /// \param hottest      no less than which it was so far, °C
+  /// \param temperature  temperature at the beginning, °C
+  /// \param hottest      least value of the highest temperature so far, °C
   ///
-  /// Throws Error, here and in `go`, for a temperature at which the law cannot be, or that a curve does not
-  /// hold.
+  /// Throws Error, here and in `go`, for a temperature at which the law's properties are not allowed or a
+  /// curve is not defined.
   explicit LawPoint(ContactMaterial material, OnCooling on_cooling = OnCooling::irreversible,
                     double temperature = kReferenceTemperature, double hottest = absolute_zero);
 
   void go(const JumpPathPoint& to);
-  /// In `steps` equal parts; after each of them `look` is called.
+  /// Goes to a point in `steps` equal parts and calls `look` after each of them.
   template <class Look>
   void go(const JumpPathPoint& to, int steps, Look look) {
     const JumpPathPoint from = at_;
@@ -42,7 +42,7 @@ class LawPoint {
     }
   }
 
-  /// What `values` are: names with their units at the end, all SI and degC.
+  /// Returns the columns of `values`: names with their units at the end, all SI and degC.
   std::vector<Column> columns() const;
   std::vector<double> values() const;
   double temperature() const { return at_.temperature; }  ///< °C
@@ -54,7 +54,7 @@ class LawPoint {
 
   ContactMaterial material_;
   OnCooling on_cooling_;
-  double hottest_;  ///< so far, °C
+  double hottest_;  ///< highest temperature so far, °C
   const LawTable& law_;
   std::vector<std::byte> constants_;
   std::vector<double> internals_, losses_;

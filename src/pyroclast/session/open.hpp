@@ -15,23 +15,23 @@ namespace pyroclast {
 
 struct Opened;
 
-/// What a user says beside a deck.
+/// Choices of a user beside a deck.
 struct RunChoices {
-  std::optional<std::uint64_t> seed;  ///< instead of the deck's
-  int threads = 0;                    ///< at most; 0: as many as processors are free
-  std::string instructions;           ///< instruction set of the step; empty: the best that there is
-  std::optional<double> checkpoint;   ///< wall time between two checkpoints instead of the deck's, s
+  std::optional<std::uint64_t> seed;  ///< seed in place of the deck's
+  int threads = 0;                    ///< most threads; 0: as many as processors are free
+  std::string instructions;           ///< instruction set of the step; empty: the best available
+  std::optional<double> checkpoint;   ///< wall time between two checkpoints in place of the deck's, s
   StageRegistry kinds;
   LawSources laws = LawSources::of_environment();
-  bool needs_code = true;  ///< else what the deck names and may not run is in its setup
-  /// Called before the specimen is made, which may take long.
+  bool needs_code = true;  ///< false: code that the deck names and that may not run is listed in its setup
+  /// Function that is called before the specimen is made, which may take long.
   std::function<void(const Opened&)> before_making = [](const Opened&) {};
 };
 
-/// A deck, and what it says with the choices in place of it, and the threads of its run.
+/// Deck as it was read, with the choices applied, and the threads of its run.
 struct Opened {
-  /// Throws DeckError, or Error for a choice that cannot be.
-  /// \param folder  of the deck
+  /// Reads a deck. Throws DeckError, or Error for a choice that is not allowed.
+  /// \param folder  folder of the deck
   Opened(Deck deck, std::filesystem::path folder, RunChoices choices);
 
   RunChoices choices;
@@ -40,10 +40,10 @@ struct Opened {
   InstructionSet instructions;
   Setup setup;
   std::shared_ptr<Team> team;
-  std::vector<std::string> warnings;  ///< of deck and choices, a line each
+  std::vector<std::string> warnings;  ///< warnings of deck and choices, one line each
 };
 
-/// The contact laws that are not part of the program and that this process opened.
+/// Returns the contact laws that are not part of the program and that this process opened.
 std::vector<OwnLaw> own_laws();
 
 }  // namespace pyroclast

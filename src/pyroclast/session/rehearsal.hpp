@@ -5,13 +5,13 @@
 
 namespace pyroclast {
 
-/// What a run will probably cost.
+/// Probable cost of a run.
 struct Rehearsal {
   Forecast forecast;
-  double seconds = 0.0;  ///< of wall time, as the first steps take it on this machine
+  double seconds = 0.0;  ///< wall time, s, from the speed of the first steps on this machine
 };
 
-/// Tries what a run does, a moment of each. The simulation is then no longer that of the run's beginning.
+/// Tries each action of a run for a moment. The simulation then no longer stands at the run's beginning.
 Rehearsal rehearse(Setup setup, Simulation& simulation);
 
 }  // namespace pyroclast

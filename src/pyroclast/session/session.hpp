@@ -16,61 +16,63 @@
 
 namespace pyroclast {
 
-/// Where a run writes, and what its manifest says of it.
+/// Folder of a run, and entries of its manifest.
 struct RunOutput {
   std::filesystem::path folder;
   bool overwrite = false;
   std::string command = {};
 };
 
-/// What a run is forked from.
+/// Run from which another one is forked.
 struct ForkOf {
   std::filesystem::path run;         ///< folder of a run
   std::string from_stage;            ///< number or name of the last stage in common; empty: the last of all
-  std::filesystem::path more;        ///< a file with stages to append; may be empty
-  std::vector<std::string> changes;  ///< "key=value", of later stages
+  std::filesystem::path more;        ///< file with stages to append; may be empty
+  std::vector<std::string> changes;  ///< changes of later stages, "key=value"
 };
 
-/// A run with all that belongs to it: its deck, its simulation, and, where it has a folder, the files of
-/// that.
+/// Run with all that belongs to it: its deck, its simulation, and, where it has a folder, the files of the
+/// folder.
 ///
 ///     while (session.next()) look_at(session.run());
 ///     session.finish();
 class Session {
  public:
-  /// A run from its beginning. Throws Error where it cannot be made, or its folder may not be written.
+  /// Makes a run from its beginning. Throws Error where it cannot be made, or its folder may not be written.
   /// \param output  empty: nothing is written
   static std::unique_ptr<Session> begin(Opened opened, const std::optional<RunOutput>& output);
-  /// A run that was broken off goes on in its folder. Throws Error where it is over, or the checkpoint is not
-  /// of this program, these inputs and this body.
-  /// \param checkpoint  to go on from; empty: the newest
+  /// Goes on with a run that was broken off, in its folder. Throws Error where the run is over, or the
+  /// checkpoint is not of this program, these inputs and this body.
+  /// \param checkpoint  checkpoint to go on from; empty: the newest
   static std::unique_ptr<Session> resume(const std::filesystem::path& folder,
                                          const std::filesystem::path& checkpoint, const RunChoices& choices);
-  /// A new run that has its first stages in common with another one, which is only read. Throws Error as
-  /// `resume`, and for a change that would act earlier.
+  /// Makes a new run that has its first stages in common with another one, which is only read. Throws Error
+  /// as `resume` does, and for a change that would act earlier.
   static std::unique_ptr<Session> fork(const ForkOf& of, const RunOutput& output, const RunChoices& choices);
 
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Goes on to the next look and writes what is due. False when the run is over, or was stopped.
+  /// Goes on to the next look and writes the files that are due. Returns false when the run is over, or was
+  /// stopped.
   bool next();
-  /// What came of the rows so far; written, where there is a folder.
+  /// Returns the summary of the rows so far, and writes it where there is a folder.
   Summary finish();
-  /// The same, not written.
+  /// Returns the summary of the rows so far without writing it.
   Summary summary() const { return recorder_.summary(run_); }
-  /// Names of the numbers that it has when the run is over.
+  /// Returns the names of the numbers that the summary has when the run is over.
   std::vector<std::string> summary_numbers() const { return recorder_.numbers(run_); }
 
-  /// Asked before every batch; true stops the run, after a checkpoint where there is a folder.
+  /// Sets a function that is asked before every batch; true stops the run, after a checkpoint where there is
+  /// a folder.
   void stop_when(const std::function<bool()>& asked);
-  /// Called between batches, after what was to be written.
+  /// Sets a function that is called between batches, after all files that are due were written.
   void between_batches(std::function<void()> call) { between_batches_ = std::move(call); }
-  /// Says how long the log of the run is, for checkpoints.
+  /// Sets the function that returns the length of the run's log, for checkpoints.
   void log_bytes_by(std::function<std::uint64_t()> bytes) { log_bytes_ = std::move(bytes); }
 
-  /// A new run that stands where this one does, between two batches or after a look.
-  /// \param changes  "key=value", of what acts later; see `fork`
+  /// Makes a new run that stands where this one does, between two batches or after a look.
+  /// \param changes  "key=value", of keys that act later; see `fork`
   std::unique_ptr<Session> copy(const std::vector<std::string>& changes,
                                 const std::optional<RunOutput>& output);
   /// Gives the folder back, so that another process may write there; the run writes no more.
@@ -78,37 +80,37 @@ class Session {
   /// Writes a checkpoint now. Throws Error without a folder.
   void write_checkpoint();
 
-  /// Other keys for stages that have not begun, and stages behind the last one. The run is then that of the
-  /// changed deck. Throws Error for a change that would act earlier.
+  /// Changes keys of stages that have not begun, and adds stages behind the last one. The run is then that of
+  /// the changed deck. Throws Error for a change that would act earlier.
   /// \param more  text that is appended to the deck
   void change_stages(const std::vector<std::string>& changes, const std::string& more);
-  /// Other keys of materials and contacts from now on, as if the temperature had changed. Throws Error for
-  /// what cannot change in a run. The run departs from its deck.
+  /// Changes keys of materials and contacts from now on, as if the temperature had changed. Throws Error for
+  /// a key that cannot change in a run. The run departs from its deck.
   void change_materials(const std::vector<std::string>& changes);
   /// Holds, moves or loads sets from now on, as a stage of kind "drive" without ramps does at its beginning.
-  /// The run departs from its deck. Throws DeckError for what is wrong with the drives, Error for what
+  /// The run departs from its deck. Throws DeckError for errors in the drives, Error for a drive that
   /// contradicts a support or the stage under way, or would let the body fly away; then nothing is changed.
   /// \param drives  tables [[drives]] of such a stage
   void drive(const std::string& drives);
   /// Ends the stage under way after the last look. The run departs from its deck.
   void end_stage();
-  /// Gives the whole body one temperature, °C, which reaches the mechanics where there are any. The run
-  /// departs from its deck. Throws Error where the temperature is computed.
+  /// Gives the whole body one temperature, °C, and hands it over to the mechanics where there are any. The
+  /// run departs from its deck. Throws Error where the temperature is computed.
   void set_temperature(double temperature);
-  /// Notes that from now on the run is not the one that its deck describes: in summary and manifest.
+  /// Notes in summary and manifest that from now on the run is not the one that its deck describes.
   void depart(const Departure& departure);
 
   Run& run() { return run_; }
   const Run& run() const { return run_; }
   Simulation& simulation() { return *simulation_; }
   const Opened& opened() const { return opened_; }
-  /// Empty where nothing is written.
+  /// Returns the folder; empty where nothing is written.
   const std::filesystem::path& folder() const { return folder_; }
-  /// What was in the folder and no run writes.
+  /// Returns the files that were in the folder and that no run writes.
   const std::vector<std::filesystem::path>& foreign() const { return foreign_; }
-  /// See Recorder.
+  /// Returns lines about lost frames, see Recorder.
   const std::vector<std::string>& lost_frames() const { return recorder_.lost_frames(); }
-  /// That a run goes on from which was broken off, or forked.
+  /// Returns the checkpoint from which a run goes on that was broken off, or forked.
   const std::optional<CheckpointInfo>& goes_on_from() const { return goes_on_from_; }
   const std::filesystem::path& last_checkpoint() const { return last_checkpoint_; }
 
@@ -138,7 +140,7 @@ class Session {
   std::filesystem::path last_checkpoint_;
   std::vector<std::filesystem::path> foreign_;
   std::vector<Departure> departures_;
-  bool checkpoint_is_due_ = false;  ///< of a fork: its first
+  bool checkpoint_is_due_ = false;  ///< true where a fork has yet to write its first checkpoint
   std::function<bool()> stop_asked_ = [] { return false; };
   std::function<void()> between_batches_ = [] {};
   std::function<std::uint64_t()> log_bytes_ = [] { return std::uint64_t{0}; };

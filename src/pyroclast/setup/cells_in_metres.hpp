@@ -7,13 +7,13 @@
 
 namespace pyroclast {
 
-/// Reads a file of cells (`specimen::read_cells`) whose list of vertices says its unit.
-/// \param join  joins vertices nearer to each other than this, m (`specimen::joined`); 0: none
-/// \return in m
-/// Throws Error, with the file, also for a unit that is not one of length.
+/// Reads a file of cells (`specimen::read_cells`) whose list of vertices states its unit. Throws Error, with
+/// the file, also for a unit that is not one of length.
+/// \param join  distance below which vertices are joined, m (`specimen::joined`); 0: none
+/// \return the cells in m
 specimen::Cells cells_in_metres(const std::filesystem::path& file, double join = 0.0);
 
-/// Metres of a unit of length, such as "mm". Throws Error, with the unit, for another one.
+/// Returns the metres of a unit of length, such as "mm". Throws Error, with the unit, for another unit.
 double metres_of(std::string_view unit);
 
 }  // namespace pyroclast

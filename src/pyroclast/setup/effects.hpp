@@ -8,8 +8,8 @@
 
 namespace pyroclast {
 
-// What a deck states acts on something: else it is refused, or told where a run without it may be meant, such
-// as the first of a series of temperatures.
+// Every statement of a deck acts on something. A statement that does not is refused; or the user is told,
+// where a run without its effect may be meant, such as the first of a series of temperatures.
 
 /// Records an error where the deck has boundaries of heat and no stage lets heat flow.
 void check_flow(const Section& root, const Setup& setup);
@@ -18,14 +18,14 @@ void check_flow(const Section& root, const Setup& setup);
 /// and of a temperature without stress where nothing expands.
 void warn_of_first_strain(const Section& root, const Setup& setup);
 
-/// Warns of stages and boundaries that leave the specimen at the temperature that it has.
+/// Warns of stages and boundaries that leave the specimen at its present temperature.
 void warn_of_even_temperatures(const Section& root, const Setup& setup);
 
-/// Sets that no stage, record, heat boundary or other set names.
+/// Returns the sets that no stage, record, heat boundary or other set names.
 std::vector<std::string> unused_sets(const Setup& setup);
 
-/// Lines about what the deck says of materials that are heated or cooled, where the run does neither, and
-/// about steps of the free strain that it stays below.
+/// Returns lines about properties for heated or cooled materials, where the run neither heats nor cools, and
+/// about steps of the free strain above the temperatures of the run.
 std::vector<std::string> unused_properties(const Section& root, const Setup& setup);
 
 }  // namespace pyroclast

@@ -10,13 +10,14 @@
 
 namespace pyroclast {
 
-/// A bearing that a deck asks for.
+/// Bearing that a deck asks for.
 struct ReadBearing {
   Section section;
   Bearing bearing;
   BearingInterface interface;
-  std::optional<Vec<2>> at;  ///< middle of its seat, on the outline, m; without one it covers a side
-  double width = 0.0;        ///< of the seat, straight from end to end, m
+  /// Middle of the bearing's seat, on the outline, m; without it the bearing covers a side.
+  std::optional<Vec<2>> at;
+  double width = 0.0;  ///< width of the seat, straight from end to end, m
 };
 
 /// Reads [[bearings]]. A bearing that covers no whole side lies on the patch `<name>_seat`.

@@ -9,8 +9,9 @@ namespace pyroclast {
 /// Array of a frame with the temperature of each gridpoint, below /VTKHDF.
 inline constexpr const char* kFrameTemperature = "PointData/temperature [degC]";
 
-/// Temperatures at the gridpoints of the specimen, bearings left aside, from a frame `blocks_<k>.hdf` of a
-/// run's fields and the `mesh.h5` beside it. Throws Error where the file is none, or its mesh is missing.
+/// Reads the temperatures at the gridpoints of the specimen, without bearings, from a frame `blocks_<k>.hdf`
+/// of a run's fields and the `mesh.h5` beside it. Throws Error where the file is no frame, or its mesh is
+/// missing.
 StressFree read_frame_temperatures(const std::filesystem::path& frame);
 
 }  // namespace pyroclast

@@ -8,11 +8,11 @@
 
 namespace pyroclast {
 
-/// Reads [heat] (docs/heat.md); empty if the deck has none. What is wrong is recorded in the deck.
+/// Reads [heat] (docs/heat.md); empty if the deck has none. Errors are recorded in the deck.
 /// \param time_curves  reader of curves of the time from the start of heating
 std::optional<HeatConditions> read_heat(const Section& root, CurveReader& time_curves);
 
-/// Reads [heat.cracks]; empty if the deck has none. What is wrong is recorded in the deck.
+/// Reads [heat.cracks]; empty if the deck has none. Errors are recorded in the deck.
 /// \param curves  reader of curves of the temperature
 std::optional<CrackHeat> read_crack_heat(const Section& root, CurveReader& curves);
 

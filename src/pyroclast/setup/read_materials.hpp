@@ -11,7 +11,7 @@
 
 namespace pyroclast {
 
-/// What [materials] says of all solids.
+/// Rules of [materials] for all solids.
 struct MaterialRules {
   ExpansionReading expansion_reading = ExpansionReading::secant;
   OnCooling on_cooling = OnCooling::irreversible;
@@ -19,11 +19,11 @@ struct MaterialRules {
 
 MaterialRules read_material_rules(const Section& root);
 
-/// What [concrete] says of the concrete as a whole.
+/// Content of [concrete] on the concrete as a whole.
 struct ReadConcrete {
   std::optional<Curve> thermal_strain;        ///< eps_c
-  std::string place;                          ///< where it stands, for messages
-  std::optional<StrainOfConcrete> of_phases;  ///< where those of the phases follow from it
+  std::string place;                          ///< place of the strain in the deck, for messages
+  std::optional<StrainOfConcrete> of_phases;  ///< strain, where the strains of the phases follow from it
 };
 
 /// Reads [concrete], which may be absent. Errors are recorded in the deck.
@@ -37,18 +37,20 @@ std::vector<SolidMaterial> read_solids(const Section& root, const std::vector<st
                                        const MaterialRules& rules, const ReadConcrete& concrete,
                                        CurveReader& curves);
 
-/// The same for heat conduction alone: of the phases only density, conductivity and specific heat; other
-/// properties have no effect.
+/// Reads [materials] for heat conduction alone: of the phases only density, conductivity and specific heat;
+/// other properties have no effect.
 std::vector<SolidMaterial> read_conducting_solids(const Section& root, const std::vector<std::string>& phases,
                                                   CurveReader& curves);
 
-/// Finds the contact law that a deck names. Throws CodeNotAllowed where it may not run, and Error when there
-/// is none. \param named  the command line states it
+/// Function that finds the contact law that a deck names. It throws CodeNotAllowed where the law may not run,
+/// and Error when there is none.
+/// \param named  true where the command line states the law
 using LawFinder = std::function<const LawTable&(const std::string& name, bool named)>;
 
 /// Reads [contacts]. A property that is a plain constant follows the `temperature_ratio` of its interface.
-/// \param matrix       phase whose own interface there must be
-/// \param has_platens  whether there is a contact with platens, which then comes first of those of bearings
+/// \param matrix       phase that must have an interface with itself
+/// \param has_platens  true where there is a contact with platens, which then comes first of those of
+///                     bearings
 ContactParameters read_contacts(const Section& root, const std::vector<std::string>& phases,
                                 const std::string& matrix, bool has_platens, OnCooling on_cooling,
                                 const LawFinder& find_law, CurveReader& curves);

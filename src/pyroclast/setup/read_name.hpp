@@ -6,7 +6,8 @@
 
 namespace pyroclast {
 
-/// The key `name` of something that becomes a part of a column's name in history.csv: letters, digits and _.
+/// Reads the key `name` of a thing whose name becomes a part of a column's name in history.csv: letters,
+/// digits and _.
 std::string read_name(const Section& s, Meaning meaning);
 
 }  // namespace pyroclast

@@ -8,7 +8,7 @@
 
 namespace pyroclast {
 
-/// Reads [[probes]], which may be absent. What is wrong is recorded in the deck.
+/// Reads [[probes]], which may be absent. Errors are recorded in the deck.
 /// \param region  the specimen; no probe may lie outside
 std::vector<ProbePosition> read_probes(const Section& root, const specimen::Region& region);
 

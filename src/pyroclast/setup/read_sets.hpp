@@ -11,7 +11,7 @@ namespace pyroclast {
 /// Reads [[sets]], which every run may have.
 std::vector<SetParameters<2>> read_sets(const Section& root);
 
-/// Reads [[record]], likewise.
+/// Reads [[record]], which every run may have.
 std::vector<RecordParameters> read_records(const Section& root);
 
 }  // namespace pyroclast

@@ -9,10 +9,10 @@
 
 namespace pyroclast {
 
-/// Reads [specimen], [aggregates], [blocks] and [superposition], but for the thickness. What is wrong is
-/// recorded in the deck.
-/// \param folder    from which a relative name of a tessellation's file is taken
-/// \param bearings  that lie on the specimen
+/// Reads [specimen], [aggregates], [blocks] and [superposition], without the thickness. Errors are recorded
+/// in the deck.
+/// \param folder    folder to which the name of a tessellation's file is relative
+/// \param bearings  bearings on the specimen
 specimen::SpecimenParameters read_specimen(const Section& root, const std::filesystem::path& folder,
                                            std::span<const ReadBearing> bearings = {});
 

@@ -11,15 +11,15 @@ namespace pyroclast {
 
 struct ReadStages {
   std::vector<std::unique_ptr<Stage>> stages;
-  std::vector<std::string> names;         ///< of the stages
-  std::optional<StressFree> stress_free;  ///< as [coupling] says
-  bool any_moves = false;                 ///< the body
+  std::vector<std::string> names;         ///< names of the stages
+  std::optional<StressFree> stress_free;  ///< temperature without stress of [coupling]
+  bool any_moves = false;                 ///< true where any stage moves the body
 };
 
-/// Reads [[stages]], and [output] and [coupling] as far as their kinds need them. What is wrong is recorded
+/// Reads [[stages]], and [output] and [coupling] as far as the kinds of stages need them. Errors are recorded
 /// in the deck.
-/// \param records  that stages may name
-/// \param folder   of the deck
+/// \param records  records that stages may name
+/// \param folder   folder of the deck
 ReadStages read_stages(const Section& root, const StageRegistry& kinds,
                        const std::vector<RecordParameters>& records, const std::filesystem::path& folder);
 

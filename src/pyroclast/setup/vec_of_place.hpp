@@ -6,7 +6,7 @@
 
 namespace pyroclast {
 
-/// A place of a deck as a vector, m.
+/// Returns a place of a deck as a vector, m.
 inline Vec<2> vec_of(const std::pair<double, double>& place) {
   return {{place.first, place.second}};
 }

@@ -8,22 +8,22 @@
 
 namespace pyroclast {
 
-/// A load that lasts, as far as it can be foreseen, and the place in the deck that stated it last.
+/// Load that lasts, as far as it can be foreseen, and the place in the deck that stated it last.
 template <int Dim>
 struct LastingLoad {
   SetLoad<Dim> load;
   std::string place;
 };
 
-/// What holds, drives and loads the body before a stage, as far as it can be foreseen, so that decks are
-/// checked before they run.
+/// Supports and loads of the body before a stage, as far as they can be foreseen, so that decks are checked
+/// before they run.
 template <int Dim>
 struct Acting {
   Supports<Dim> supports;
-  std::map<std::string, LastingLoad<Dim>> loads;  ///< by set
+  std::map<std::string, LastingLoad<Dim>> loads;  ///< loads by set
 };
 
-/// What acts now.
+/// Returns the supports and loads that act now.
 Acting<2> acting_on(const Simulation& simulation);
 
 }  // namespace pyroclast

@@ -8,16 +8,16 @@
 
 namespace pyroclast {
 
-/// Contacts that stand apart from the start, for heat: no bridge holds them, and to this width comes what the
-/// motion opens them by.
+/// Contacts that stand apart from the start, for heat: no bridge joins their faces, and the motion adds its
+/// opening to the stated width.
 struct StatedGap {
-  std::string contacts;  ///< name of a set of them
-  double width = 0.0;    ///< m
-  std::string place;     ///< where it is stated, for messages
+  std::string contacts;  ///< name of a set of contacts
+  double width = 0.0;    ///< width, m
+  std::string place;     ///< place that states the gap, for messages
 };
 
-/// What is left of each contact of a body for heat: of what is stated, and of its damage and opening now. The
-/// damage is that in tension or mixed mode.
+/// Returns the gap of each contact of a body for heat, from the stated gaps and the present damage and
+/// opening. The damage is the damage in tension or mixed mode.
 /// \param mechanics  null where nothing moves
 ///
 /// Throws Error, with the gap's place, when its set is missing, or holds a contact that another gap has.

@@ -8,38 +8,40 @@
 
 namespace pyroclast {
 
-/// What the upper platen does while the temperature changes.
+/// Control of the upper platen while the temperature changes.
 enum class PlatenControl : std::uint8_t {
-  force,  ///< its force stays (none but its weight where no load was applied)
-  fixed   ///< its height stays
+  force,  ///< force of the platen stays (none but its weight where no load was applied)
+  fixed   ///< height of the platen stays
 };
 
 const char* name(PlatenControl control);
 
-/// Staggered coupling (paper, Fig. 2): heat to the next exchange, then mechanics at that temperature field,
-/// stepped until it rests. Where cracks hinder heat, it is two-way: the heat of the next exchange meets the
-/// cracks that this one left.
+/// Staggered coupling (paper, Fig. 2): heat flows to the next exchange, then the mechanics takes steps at
+/// that temperature field until the body rests. Where cracks hinder heat, the coupling is two-way: the heat
+/// of the next exchange meets the cracks that this one left.
 struct Coupling {
   double increment = 0.0;  ///< change of temperature between two exchanges, K
-  // The mechanics is at rest when both are below these. The ratio does not see a small force that acts on all
-  // gridpoints alike, such as the inertia of a specimen that expands; the platens do.
+  // The body is at rest when both measures are below these limits. The ratio does not see a small force that
+  // acts on all gridpoints alike, such as the inertia of a specimen that expands; the platens do.
   double unbalanced_ratio = 0.0;
-  /// Between the stresses on the platens; without platens the sum of weight, loads and reactions over the
-  /// section of a square body of the same area, Pa.
+  /// Difference of the stresses on the platens, Pa; without platens the sum of weight, loads and reactions
+  /// over the section of a square body of the same area.
   double platen_difference = 0.0;
-  // Both do not see weight, which is small beside loads: the lower platen must carry what rests on it.
-  /// Steps for one exchange at least: a force out of balance needs time to move a body of that size.
+  // Neither measure sees the weight, which is small beside loads: so the lower platen must also carry what
+  // rests on it.
+  /// Least steps for one exchange: a force out of balance needs time to move a body of that size.
   std::int64_t least_cycles = 0;
-  /// And at most; an exchange that did not come to rest by then is flagged.
+  /// Most steps for one exchange; an exchange that did not come to rest by then is flagged.
   std::int64_t most_cycles = 0;
-  bool predictor = false;  ///< moves the body to where its last exchange foretells it to rest; uniform fields
+  /// Choice to move the body first to where its last exchange foretells it to rest; uniform fields only.
+  bool predictor = false;
   PlatenControl platen = PlatenControl::force;
-  /// The specimen has failed when the platen sinks by this share of the height at one temperature; without
-  /// platens when what is loaded gives way by this share of the body's size, the square root of its area.
+  /// Share of the height by which the platen sinks at one temperature when the specimen has failed. Without
+  /// platens it is the share of the body's size, the square root of its area, by which loaded sets give way.
   double failure_strain = 0.0;
 };
 
-/// Hands temperatures over to the mechanics and lets the body come to rest at them.
+/// Exchange of temperatures: hands them over to the mechanics and lets the body come to rest at them.
 class Exchange {
  public:
   explicit Exchange(const Coupling& coupling) : coupling_(coupling) {}
@@ -50,22 +52,24 @@ class Exchange {
   void begin(Simulation& simulation) const;
   /// Hands the field's temperatures over; `advance` does the rest.
   void hand_over(Simulation& simulation);
-  /// Then moves the body first to where it will probably rest. Takes two steps and leaves the body at rest:
-  /// without this it would have to push itself to its new size, and its inertia would press on the lower
-  /// platen.
+  /// Lets `advance` first move the body to where it will probably rest. This takes two steps and leaves the
+  /// body at rest. Otherwise the body would have to push itself to its new size, and its inertia would press
+  /// on the lower platen.
   void move_evenly_first(const Press<2>::EvenMotion& motion);
-  /// One batch of steps; true when the body rests, has failed, or has used up its cycles. A specimen that is
-  /// being crushed then gets more of them, until it stops or the platen has run away. The specimen's own ends
-  /// tell, for a platen without load may have left them. A body without load that hovers, for it shrank away
-  /// from the lower platen, is set down: its weight would take long to move the mass that is scaled.
+  /// Takes one batch of steps; returns true when the body rests, has failed, or has used up its cycles. A
+  /// specimen that is being crushed then gets more cycles, until it stops or the platen has run away. The
+  /// specimen's own ends tell this, for a platen without load may have left them. A body without load hovers
+  /// where it shrank away from the lower platen. It is then set down: its weight would take long to move the
+  /// scaled mass.
   bool advance(Simulation& simulation, int most_steps);
 
   bool ran_away() const { return kept_.ran_away; }
 
-  /// `exchange`, counted over the run from 1; `cycles` in steps; `converged`, 1 where the body came to rest.
+  /// Returns the columns `exchange`, counted over the run from 1; `cycles` in steps; `converged`, 1 where the
+  /// body came to rest.
   static std::vector<Column> columns();
   std::vector<double> values() const;
-  /// Steps that one exchange will probably take.
+  /// Returns the steps that one exchange will probably take.
   double expected_cycles() const;
 
   void visit_state(StateVisitor& visitor);
@@ -83,10 +87,11 @@ class Exchange {
     std::int64_t cycles = 0;
     bool converged = true;
     bool ran_away = false;
-    bool is_handed_over = false;             ///< and not a step done since
-    std::int64_t even_steps_left = 0;        ///< of moving evenly, and of the halt
-    Press<2>::EvenMotion even_motion;        ///< to come
-    double strain_before = 0.0, last = 0.0;  ///< of the specimen: at the exchange; when cycles were added
+    bool is_handed_over = false;       ///< true from handing over to the first step after it
+    std::int64_t even_steps_left = 0;  ///< steps left of moving evenly and of the halt after it
+    Press<2>::EvenMotion even_motion;  ///< motion to come
+    /// Strains of the specimen: at the exchange, and when cycles were last added.
+    double strain_before = 0.0, last = 0.0;
   } kept_;
 };
 

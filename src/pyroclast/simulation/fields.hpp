@@ -11,46 +11,47 @@
 
 namespace pyroclast {
 
-/// What a field has a value of each of.
+/// Kind of items of which a field has one value each.
 enum class Item : std::uint8_t {
   gridpoint,
   zone,
-  contact,     ///< a contact point
-  contact_end  ///< ends of the line by which files show a contact point: there, and towards the face's middle
+  contact,  ///< contact point
+  /// Ends of the line by which files show a contact point: the point, and an end towards the face's middle.
+  contact_end
 };
 
-/// "gridpoint".
+/// Returns the name of an item, such as "gridpoint".
 const char* name_of(Item item);
-/// Throws Error for another name.
+/// Returns the item of a name. Throws Error for another name.
 Item item_of(std::string_view name);
 int count_of(Item item, const Model<2>& model);
 
-/// What a value of a field is.
+/// Kind of a field's values.
 enum class ValueKind : std::uint8_t {
   number,
   vector,  ///< x, y
   tensor   ///< symmetric: XX, YY, ZZ, XY, YZ, XZ, the order of VTK; shears are those of tensors
 };
-/// Numbers of a value.
+/// Returns the count of numbers in a value.
 int components_of(ValueKind kind);
 
-/// A field of the body: what it is called and means.
+/// Field of the body: its name, unit and meaning.
 struct FieldInfo {
-  std::string name;  ///< without unit
+  std::string name;  ///< name without unit
   Unit unit;
   Item item;
   ValueKind kind;
   std::string meaning;
-  bool in_files = true;  ///< frames of a run hold it; else it is for scripts alone
+  bool in_files = true;  ///< true for a field in the frames of a run; else it is for scripts alone
 };
 
-/// A unit as a product, "W m-2 K-1": a slash would part the name of an array in files.
+/// Returns a unit as a product, "W m-2 K-1": a slash would split the name of an array in files.
 std::string product_of(const Unit& unit);
-/// "stress_Pa", as in the history.
+/// Returns the name with the unit, "stress_Pa", as in the history.
 std::string name_with_unit(const FieldInfo& field);
 
-/// A simulation while its fields are read, item by item. What several fields need of an item is worked out
-/// once.
+/// Simulation while its fields are read, item by item. A value that several fields need of an item is
+/// computed once.
 class FieldReader {
  public:
   explicit FieldReader(const Simulation& simulation) : simulation_(simulation) {}
@@ -60,7 +61,7 @@ class FieldReader {
   const Mechanics<2>& mechanics() const { return simulation_.mechanics(); }
   const ContactState<2>& contact(int contact);
   const SymmetricTensor<2>& stress(int zone);
-  /// Conductance of each contact to heat, W/(m2 K).
+  /// Returns the conductance of each contact to heat, W/(m2 K).
   const std::vector<double>& heat_conductances();
 
  private:
@@ -72,16 +73,17 @@ class FieldReader {
 };
 
 struct Field : FieldInfo {
-  /// Writes the components of one item.
+  /// Function that writes the components of one item.
   std::function<void(FieldReader&, int item, double* to)> read;
 };
 
-/// All fields that a simulation has, in the order of the files. Files, Python and docs follow this list.
+/// Returns all fields that a simulation has, in the order of the files. Files, Python and docs follow this
+/// list.
 std::vector<Field> fields_of(const Simulation& simulation);
-/// All fields that simulations of the laws in this program may have.
+/// Returns all fields that simulations of the laws in this program may have.
 std::vector<FieldInfo> possible_fields();
 
-/// Values of fields of one item, of each field item by item and component by component.
+/// Returns the values of fields of one item, of each field item by item and component by component.
 /// \tparam T  float, as in files, or double
 template <class T>
 std::vector<std::vector<T>> values_of(const std::vector<Field>& fields, const Simulation& simulation);

@@ -19,16 +19,16 @@ namespace pyroclast {
 struct HeatedFaces {
   static constexpr const char *kOutline = "outline", *kBox = "box";
 
-  std::string part = kOutline;   ///< all of it, those in a box, or else the name of a side or patch
-  Vec<2> box_low{}, box_high{};  ///< faces whose centres lie in it, bounds included, m
+  std::string part = kOutline;   ///< whole outline, the faces in a box, or else the name of a side or patch
+  Vec<2> box_low{}, box_high{};  ///< corners of the box, m; faces whose centres lie in it or on its bounds
 };
 
-/// Holds the temperature of faces.
+/// Condition that holds the temperature of faces.
 struct PrescribedTemperature {
-  Curve temperature;  ///< °C, of the time in s
+  Curve temperature;  ///< temperature, °C, over the time in s
 };
 
-/// Says that no heat crosses the faces, as is so where nothing is said.
+/// Condition that lets no heat cross the faces, as where nothing is stated.
 struct Adiabatic {};
 
 using HeatCondition = std::variant<PrescribedTemperature, HeatFlux, Convection, Radiation, Adiabatic>;
@@ -40,58 +40,62 @@ struct HeatBoundaryCondition {
   std::string place;  ///< file, line and key, for messages
 };
 
-/// How cracks hinder heat.
+/// Hindrance of heat by cracks.
 struct CrackHeat {
   GapHeat law;
-  bool splits_by_block_size = false;  ///< law.split_below is still to come, see with_specimen
-  std::vector<StatedGap> gaps;        ///< that are there from the start
+  /// True while law.split_below is still to be computed, see with_specimen.
+  bool splits_by_block_size = false;
+  std::vector<StatedGap> gaps;  ///< gaps that are there from the start
 };
 
-/// What a deck says of heat. Times run from the start of heating.
+/// Statements of a deck on heat. Times count from the start of heating.
 struct HeatConditions {
-  bool uniform = true;                     ///< the whole specimen has one temperature (paper, section 4)
-  double initial = kReferenceTemperature;  ///< °C
-  // conduction only
+  /// True where the whole specimen has one temperature (paper, section 4).
+  bool uniform = true;
+  double initial = kReferenceTemperature;  ///< initial temperature, °C
+  // The members from here on are for conduction only.
   HeatScheme scheme = HeatScheme::super_time_stepping;
-  double safety = 0.0;                        ///< see HeatParameters
-  double largest_change = 0.0;                ///< of any temperature in one step of the solver, K
+  double safety = 0.0;  ///< fraction of the stable step, see HeatParameters
+  /// Largest change of any temperature in one step of the solver, K.
+  double largest_change = 0.0;
   double largest_step = 0.0;                  ///< s
-  std::optional<Interval> temperature_range;  ///< that the user states, °C
+  std::optional<Interval> temperature_range;  ///< range that the user states, °C
   std::vector<HeatBoundaryCondition> boundaries;
-  std::optional<CrackHeat> cracks;  ///< empty: they do not hinder heat
+  std::optional<CrackHeat> cracks;  ///< cracks that hinder heat; empty where none do
 };
 
-/// Fills in what follows from the specimen: where cracks split by the block size l, they do so below 20
-/// lambda / l, with the mean conductivity of its area at 20 °C. What that leaves out is less than 5 % of a
-/// block's resistance.
+/// Fills in values that depend on the specimen. Where cracks split temperatures by the block size l, they do
+/// so below 20 lambda / l, with the mean conductivity of the specimen's area at 20 °C. The resistances left
+/// out are less than 5 % of a block's.
 HeatConditions with_specimen(HeatConditions heat, const std::vector<SolidMaterial>& solids,
                              const specimen::Specimen& specimen);
 
-/// Whether two conditions on one face contradict each other: a prescribed temperature and an adiabatic face
-/// allow nothing beside them, and no kind acts twice.
+/// Tells whether two conditions on one face contradict each other: a prescribed temperature and an adiabatic
+/// face allow nothing beside them, and no kind may act twice.
 bool contradict(const HeatCondition& a, const HeatCondition& b);
 
-/// What a deck calls the condition.
+/// Returns the name of the condition in decks.
 const char* kind_name(const HeatCondition& condition);
 
-/// Bounds of the temperatures that conduction may reach within `duration` s from the start: those stated,
-/// else the extremes of the initial, the prescribed and the gas temperatures. Throws Error when there is a
-/// given flux, which has no such bound, and no range is stated.
+/// Returns bounds of the temperatures that conduction may reach within `duration` s from the start: the
+/// stated ones, else the extremes of the initial, the prescribed and the gas temperatures. Throws Error when
+/// a given flux, which has no such bound, acts and no range is stated.
 Interval temperature_range(const HeatConditions& heat, double duration);
 
-/// Whether a boundary makes any temperature another than that at the start within `duration` s.
+/// Tells whether a boundary takes any temperature away from its value at the start within `duration` s.
 bool heats_or_cools(const HeatConditions& heat, double duration);
 
-/// Time from which no boundary value changes any more up to `duration`, s; `duration` when there is none.
+/// Returns the time from which no boundary value changes any more up to `duration`, s; `duration` when there
+/// is no such time.
 double constant_from(const HeatConditions& heat, double duration);
 
-/// The heat solver of a specimen; the platens conduct no heat. `model` must outlive it.
-/// \param range  of temperatures that it stays within until it is widened, °C, see temperature_range; the
+/// Makes the heat solver of a specimen; the platens conduct no heat. `model` must outlive the solver.
+/// \param range  range of temperatures for the solver until it is widened, °C, see temperature_range; the
 ///               materials' curves must cover it
-/// \param team   the threads of the run; one alone where there is none
+/// \param team   threads of the run; without a team the calling thread works alone
 ///
 /// Throws Error when a material has no conductivity or specific heat, a boundary condition meets no face, or
-/// two contradict each other on one.
+/// two contradict each other on one face.
 std::unique_ptr<Conduction<2>> make_conduction(const Model<2>& model,
                                                const std::vector<SolidMaterial>& solids,
                                                const HeatConditions& heat, const Interval& range,

@@ -8,16 +8,16 @@
 
 namespace pyroclast {
 
-/// The first multiple of an interval after a heating time, s; never for an infinite interval.
+/// Returns the first multiple of an interval after a heating time, s; infinite for an infinite interval.
 inline double next_multiple(double interval, double time) {
   if (interval == std::numeric_limits<double>::infinity()) return interval;
   return interval * (whole_below(time / interval) + 1.0);
 }
 
-/// Conducts heat through a computed field in batches.
+/// Heat flow: conducts heat through a computed field in batches.
 class HeatFlow {
  public:
-  /// What to conduct until, see TemperatureField::advance.
+  /// Begins to conduct until one of these limits is met, see TemperatureField::advance.
   void begin(double largest_change, double until, double steady_rate = 0.0) {
     largest_change_ = largest_change;
     until_ = until;
@@ -25,7 +25,7 @@ class HeatFlow {
     flows_ = true;
   }
   bool flows() const { return flows_; }
-  /// One batch; true when it has arrived.
+  /// Conducts heat for one batch; returns true when a limit is met.
   bool advance(TemperatureField& field) {
     if (!advances_) field.begin_advance(largest_change_, until_, steady_rate_);
     advances_ = !field.advance(field.conduction()->stages_per_batch());
@@ -46,7 +46,7 @@ class HeatFlow {
   double until_ = 0.0;           ///< s
   double steady_rate_ = 0.0;     ///< K/s
   bool flows_ = false;
-  bool advances_ = false;  ///< the field is on its way
+  bool advances_ = false;  ///< true while an advance of the field is under way
 };
 
 }  // namespace pyroclast

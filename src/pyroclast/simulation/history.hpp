@@ -11,15 +11,15 @@
 
 namespace pyroclast {
 
-/// A column of the history. The unit is also the end of the name, where it has one: "stress_MPa".
+/// Column of the history. The unit is also the end of the name, where the column has a unit: "stress_MPa".
 struct Column {
   std::string name;
-  std::string unit;  ///< "1" for a number
+  std::string unit;  ///< unit; "1" for a number
 
   bool operator==(const Column&) const = default;
 };
 
-/// Of a quantity of a law, in SI: with the unit behind its name, where it has one.
+/// Returns the column of a law's quantity, in SI, with the unit behind its name, where it has one.
 Column column_with_unit(const std::string& name, const Unit& unit);
 
 /// Rows of a history, from `first` up to but without `last`.
@@ -29,44 +29,45 @@ struct RowRange {
   bool empty() const { return first == last; }
 };
 
-/// What a run measured: a row for each look, in full precision. A cell is empty where the stage of its row
+/// Measurements of a run: a row for each look, in full precision. A cell is empty where the stage of its row
 /// does not have the quantity.
 class History {
  public:
-  /// Adds a column after those that are there, unless there is the same one already. To be called before the
-  /// first row. Throws Error when a column of this name has another unit.
+  /// Adds a column after the present ones, unless the same column is there already. Call it before the first
+  /// row. Throws Error when a column of this name has another unit.
   void add_column(const Column& column);
   void add_row();
-  /// A row with all its cells, in the order of the columns.
+  /// Adds a row with all its cells, in the order of the columns.
   void add_row(std::vector<std::optional<double>> cells);
-  /// Adds the rows of another history; its columns that are not here are left out.
+  /// Adds the rows of another history, without columns that this history does not have.
   void take_rows(const History& other);
   /// Sets a cell of the last row. Throws Error when there is no such column.
   void set(std::string_view column, double value);
 
   const std::vector<Column>& columns() const { return columns_; }
   bool has(std::string_view column) const;
-  /// Throws Error when there is no such column.
+  /// Returns the index of a column. Throws Error when there is no such column.
   std::size_t index(std::string_view column) const;
   std::size_t row_count() const { return cells_.size(); }
-  /// By column, in their order.
+  /// Returns the cells of a row in the order of the columns.
   const std::vector<std::optional<double>>& row(std::size_t row) const { return cells_.at(row); }
-  /// Empty also where there is no such column.
+  /// Returns a cell; empty also where there is no such column.
   std::optional<double> cell(std::size_t row, std::string_view column) const;
-  /// The same of the last row.
+  /// Returns a cell of the last row; empty also where there is no such column.
   std::optional<double> last(std::string_view column) const;
-  /// Values of a column over some rows. Throws Error when there is no such column, or a cell is empty.
+  /// Returns the values of a column over some rows. Throws Error when there is no such column, or a cell is
+  /// empty.
   std::vector<double> values(std::string_view column, RowRange rows) const;
 
-  /// All rows. What replaces them may have its columns in another order, or lack some: those cells are empty.
-  /// Throws Error when it has a value in a column that is not here.
+  /// Shows all rows. Rows that replace them may have their columns in another order, or lack some: those
+  /// cells are then empty. Throws Error when the new rows have a value in a column that is not here.
   void visit_state(StateVisitor& visitor);
 
  private:
   std::optional<std::size_t> find(std::string_view column) const;
 
   std::vector<Column> columns_;
-  std::vector<std::vector<std::optional<double>>> cells_;  ///< by row
+  std::vector<std::vector<std::optional<double>>> cells_;  ///< cells by row
 };
 
 }  // namespace pyroclast

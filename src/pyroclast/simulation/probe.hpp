@@ -8,13 +8,13 @@
 
 namespace pyroclast {
 
-/// A point of the specimen at which a run watches the temperature.
+/// Point of the specimen at which a run watches the temperature.
 struct ProbePosition {
   std::string name;
-  Vec<2> position{};  ///< from the specimen's lower left corner, m
+  Vec<2> position{};  ///< position from the specimen's lower left corner, m
 };
 
-/// Reads a field of the gridpoints at a point, linearly within the zone that holds it.
+/// Probe: reads a field of the gridpoints at a point, linearly within the zone that holds the point.
 class Probe {
  public:
   /// Throws Error when the point lies outside the specimen.
@@ -22,7 +22,7 @@ class Probe {
 
   const std::string& name() const { return name_; }
 
-  /// \param gridpoints  a value for each
+  /// \param gridpoints  value of each gridpoint
   double read(const std::vector<double>& gridpoints) const;
 
  private:

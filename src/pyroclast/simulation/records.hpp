@@ -13,58 +13,60 @@ namespace pyroclast {
 
 class Simulation;
 
-/// What a record measures.
+/// Quantity that a record measures.
 enum class RecordKind : std::uint8_t {
-  displacement,   ///< mean of a set along a direction, m
-  opening,        ///< the same of a second set minus that of the first, m
-  force,          ///< on the body by a set that loads, holds or drives it, or at one that does not, N
-  stress,         ///< mean over the zones of a set, normal to planes across a direction, tension positive, Pa
-  temperature,    ///< mean of a set, °C
-  crack_length,   ///< of the damaged contact points of a set, m
-  crack_opening,  ///< mean over the contact points of a set, by length, m
+  displacement,  ///< mean displacement of a set along a direction, m
+  opening,       ///< mean displacement of a second set less that of the first along a direction, m
+  force,         ///< force on the body by a set that loads, holds or drives it, or at a set that does not, N
+  /// Mean stress over the zones of a set, normal to planes across a direction, tension positive, Pa.
+  stress,
+  temperature,    ///< mean temperature of a set, °C
+  crack_length,   ///< length of the damaged contact points of a set, m
+  crack_opening,  ///< mean opening over the contact points of a set, by length, m
 };
 
-/// What the mean of a set of gridpoints is taken over.
+/// Weights of the mean over a set of gridpoints.
 enum class MeanOver : std::uint8_t {
-  size,  ///< the zones that lie wholly in the set, by area; without any its faces, by length; else gridpoints
-  gridpoints,  ///< each counts alike
+  /// Area of the zones that lie wholly in the set; without any, length of its faces; else gridpoints alike.
+  size,
+  gridpoints,  ///< equal weights of all gridpoints
 };
 
 struct RecordParameters {
   std::string name;
   RecordKind kind{};
-  std::string set;         ///< of contacts where it is of cracks, else of gridpoints
-  std::string other = "";  ///< the second set of an opening
-  Vec<2> direction{};      ///< unit
-  std::string place = "";  ///< where it is asked for, for messages
+  std::string set;         ///< set of contacts for a record of cracks, else set of gridpoints
+  std::string other = "";  ///< second set of an opening
+  Vec<2> direction{};      ///< unit vector
+  std::string place = "";  ///< place in the deck that asks for the record, for messages
   MeanOver over = MeanOver::size;
 };
 
-/// Column of a record in the history: its name and unit.
+/// Returns the column of a record in the history: its name and unit.
 Column column_of(const RecordParameters& record);
-/// In which decks state it.
+/// Returns the unit in which decks state a record.
 const Unit& unit_of(RecordKind kind);
-/// Of its change over time.
+/// Returns the unit of a record's change over time.
 const Unit& rate_unit_of(RecordKind kind);
-/// A value of the column over the same in SI: 1e-6 where it is in MPa.
+/// Returns a value of the column over the same value in SI: 1e-6 where the column is in MPa.
 double column_over_si(RecordKind kind);
 
-/// A quantity that a run records. Displacements and openings count from the last zero.
+/// Record of a deck: a quantity that a run measures. Displacements and openings count from the last zero.
 class Record {
  public:
   /// Throws Error, with the record's place, when a set is missing, the set of a stress holds no zone, or
-  /// nothing moves and it is of another kind than temperature.
+  /// nothing moves and the record is of another kind than temperature.
   ///
   /// \param mechanics  null where nothing moves
   Record(const Model<2>& model, const Mechanics<2>* mechanics, RecordParameters parameters);
 
   const RecordParameters& parameters() const { return parameters_; }
-  /// Now, in SI; temperatures in °C.
+  /// Returns the present value, in SI; temperatures in °C.
   double read(const Simulation& simulation) const;
   void set_zero(const Simulation& simulation) {
     if (counts_from_zero()) zero_ += read(simulation);
   }
-  /// Sets of an opening, which a control pulls apart; the first alone of others.
+  /// Returns the first set; of an opening, `other` returns the second, and a control pulls both apart.
   const GridpointSet& set() const { return mean_.set; }
   const GridpointSet& other() const { return mean_of_other_.set; }
 
@@ -74,7 +76,7 @@ class Record {
   bool counts_from_zero() const {
     return parameters_.kind == RecordKind::displacement || parameters_.kind == RecordKind::opening;
   }
-  /// A mean over a set: gridpoints and their weights, whose sum is 1.
+  /// Mean over a set: gridpoints and their weights, whose sum is 1.
   struct Mean {
     GridpointSet set;
     std::vector<double> weights;
@@ -89,9 +91,9 @@ class Record {
   RecordParameters parameters_;
   Mean mean_, mean_of_other_;
   std::vector<int> items_;    ///< zones or contacts, ascending
-  std::vector<int> chunks_;   ///< where those of each chunk begin
-  std::vector<double> size_;  ///< of each, m³ or m
-  double whole_ = 0.0;        ///< of all
+  std::vector<int> chunks_;   ///< begin of the items of each chunk
+  std::vector<double> size_;  ///< size of each item, m³ or m
+  double whole_ = 0.0;        ///< size of all items
   double zero_ = 0.0;
 };
 

@@ -15,142 +15,149 @@ namespace pyroclast {
 
 class Simulation;
 
-/// How a stage or a run ended, or where it stands.
+/// End of a stage or a run, or its present state.
 enum class Outcome : std::uint8_t {
   not_begun,
   running,
   completed,
   steady,         ///< temperatures no longer changed
-  not_reached,    ///< what a stage should come to
-  stress_fallen,  ///< below the stated fraction of the peak
+  not_reached,    ///< the stage did not come to its goal
+  stress_fallen,  ///< the stress fell below the stated fraction of the peak
   ran_away,       ///< the specimen failed under its load
-  crushed,        ///< it failed while it was being loaded
-  not_settled,    ///< did not come to rest within the stated steps
-  control_lost,   ///< a controlled opening left its course
+  crushed,        ///< the specimen failed while it was being loaded
+  not_settled,    ///< the body did not come to rest within the stated steps
+  control_lost,   ///< a controlled opening could not follow its prescribed values
   unstable,       ///< a result is not finite
-  stopped         ///< from outside
+  stopped         ///< the run was stopped from outside
 };
 
-/// In words, for people.
+/// Describes an outcome in words, for people.
 const char* describe(Outcome outcome);
-/// For programs: "not_settled".
+/// Returns the word of an outcome for programs: "not_settled".
 const char* id_of(Outcome outcome);
-/// Whether a run that ended so did what its deck asks, so that its results may be taken for such.
+/// Tells whether a run with this outcome did what its deck asks, so that its results may be used.
 bool is_good(Outcome outcome);
 
-/// What a stage says of the look that was just taken.
+/// Verdict of a stage on the look that was just taken.
 struct Verdict {
-  bool over = false;   ///< the stage is over
-  bool last = false;   ///< and the run with it
-  bool frame = false;  ///< the fields are worth keeping; they are kept at the end of a stage anyhow
+  bool over = false;  ///< true where the stage is over
+  bool last = false;  ///< true where the run is over with the stage
+  /// True where the fields are worth keeping; they are kept at the end of a stage anyhow.
+  bool frame = false;
   Outcome outcome = Outcome::completed;
 };
 
-/// What the temperatures of a stage are.
+/// Kind of temperatures that a stage needs.
 enum class FieldChoice : std::uint8_t { any, uniform, computed };
 
-/// Whether the deck says at which even heating times a stage keeps frames.
+/// Need for even heating times at which a stage keeps frames, stated in the deck.
 enum class FramesInTime : std::uint8_t { none, optional, needed };
 
-/// What stages of a kind need of a simulation.
+/// Needs of stages of a kind.
 struct StageNeeds {
-  bool mechanics = true;                 ///< moves the body
-  bool press = false;                    ///< by platens
-  bool exchanges = false;                ///< hands temperatures over to the mechanics
-  FieldChoice field = FieldChoice::any;  ///< of temperatures
+  bool mechanics = true;                 ///< true for a stage that moves the body
+  bool press = false;                    ///< true for a stage that moves the body by platens
+  bool exchanges = false;                ///< true for a stage that hands temperatures over to the mechanics
+  FieldChoice field = FieldChoice::any;  ///< kind of temperatures
   FramesInTime frames_in_time = FramesInTime::none;
 };
 
-/// How a stage heats.
+/// Heating by a stage.
 struct HeatingPlan {
-  double duration = 0.0;          ///< for which boundaries act, s
-  std::optional<double> to = {};  ///< temperature of a uniform field at its end, °C
-  bool is_restrained = false;     ///< between platens that are held in place
+  double duration = 0.0;          ///< time for which boundaries act, s
+  std::optional<double> to = {};  ///< temperature of a uniform field at the end, °C
+  bool is_restrained = false;     ///< true where platens that are held in place restrain the specimen
 };
 
-/// What a stage will probably cost.
+/// Probable cost of a stage.
 struct Forecast {
-  double steps = 0.0;             ///< of the mechanics
+  double steps = 0.0;             ///< steps of the mechanics
   double looks = 0.0;             ///< rows of the history
-  double frames = 0.0;            ///< of the fields
-  double exchanges = 0.0;         ///< of temperatures with the mechanics
-  double heating_duration = 0.0;  ///< of conduction, s
+  double frames = 0.0;            ///< frames of the fields
+  double exchanges = 0.0;         ///< exchanges of temperatures with the mechanics
+  double heating_duration = 0.0;  ///< duration of conduction, s
 
   Forecast& operator+=(const Forecast& other);
 };
 
-/// Where the simulation stands when a stage begins, as far as it can be foreseen.
+/// Temperatures when a stage begins, as far as they can be foreseen.
 struct Foreseen {
-  double temperature = 0.0;  ///< mean, °C
-  double hottest = 0.0;      ///< that boundaries may bring about, °C
+  double temperature = 0.0;  ///< mean temperature, °C
+  double hottest = 0.0;      ///< highest temperature that boundaries may bring about, °C
 };
 
-/// A result with its unit in the name: "f_c_MPa".
+/// Result with its unit in the name: "f_c_MPa".
 struct Result {
   using Value = std::variant<std::monostate, double, std::int64_t, bool, std::string>;
 
   std::string name;
-  Value value;  ///< monostate: there is none
+  Value value;  ///< value; monostate where there is none
 };
 
-/// The value where it is there, else none.
+/// Returns the value where it is there, else none.
 Result::Value value_if(bool is_there, double value);
 
-/// Of a column at the last of some rows; none where there are no rows.
+/// Returns the last value of a column in some rows; none where there are no rows.
 Result::Value last_value(const History& history, std::string_view column, RowRange rows);
 
-/// What came of a stage.
+/// Report on a stage.
 struct StageReport {
   std::vector<Result> results;
-  std::vector<std::string> lines;     ///< for people
-  std::vector<std::string> warnings;  ///< each keeps the results from being taken at face value
-  /// Row of the stage, from 0, after which nothing changed the results; empty: its last.
+  std::vector<std::string> lines;  ///< lines for people
+  /// Warnings, each of which keeps the results from being taken at face value.
+  std::vector<std::string> warnings;
+  /// Row of the stage, from 0, after which nothing changed the results; empty: the last row.
   std::optional<std::size_t> decided_at = {};
 };
 
-/// Something that is done to a simulation until its verdict says that it is over.
+/// Stage: an operation on a simulation that goes on until its verdict says that it is over.
 ///
-/// A run calls `begin`, and then again and again `advance` until a look is due, takes the look, and asks
-/// `judge`. All that a stage keeps between two batches are the numbers that it shows to `visit_state`.
+/// A run calls `begin`, and then repeatedly calls `advance` until a look is due, takes the look, and asks
+/// `judge`. All numbers that a stage keeps between two batches are shown to `visit_state`.
 class Stage {
  public:
   virtual ~Stage() = default;
 
-  /// The name by which a deck asks for it.
+  /// Returns the name by which a deck asks for the stage.
   virtual const char* kind() const = 0;
   virtual StageNeeds needs() const = 0;
-  /// Where the deck asks for it, "deck.toml:40: stages[0]"; empty where no deck does.
+  /// Returns the place where the deck asks for the stage, "deck.toml:40: stages[0]"; empty where no deck
+  /// does.
   const std::string& place() const { return place_; }
   void set_place(std::string place) { place_ = std::move(place); }
-  /// What goes on between two looks where that may take long, "moving the platen down"; may be empty.
+  /// Describes what goes on between two looks where that may take long, "moving the platen down"; may be
+  /// empty.
   virtual std::string doing() const { return {}; }
   virtual HeatingPlan heating() const { return {}; }
-  /// Names of the sets that it acts on.
+  /// Returns the names of the sets on which the stage acts.
   virtual std::vector<std::string> sets() const { return {}; }
 
   /// Throws Error where the stage cannot be done, before any stage is begun.
-  /// \param acting  before the stage, which changes it to what it leaves
+  /// \param acting  supports and loads before the stage, which changes them to those that it leaves
   virtual void check(const Simulation&, Acting<2>&) const {}
-  /// Whether it loads the body from outside.
+  /// Tells whether the stage loads the body from outside.
   virtual bool loads() const { return false; }
-  /// Prepares what acts on the body; moves nothing.
+  /// Prepares supports and loads of the body; moves nothing.
   virtual void begin(Simulation& simulation) = 0;
-  /// Moves on by one batch: at most so many steps of the mechanics, or evaluations of the heat solver. True
-  /// when a look is due. Where batches end changes no result.
+  /// Moves on by one batch: at most `most_steps` steps of the mechanics, or evaluations of the heat solver.
+  /// Returns true when a look is due. Where batches end changes no result.
   virtual bool advance(Simulation& simulation, int most_steps) = 0;
-  /// Called after each look that `advance` asked for.
+  /// Judges each look that `advance` asked for.
   virtual Verdict judge(Simulation& simulation) = 0;
-  /// Share that is done, 0 to 1, as far as it can be foreseen.
+  /// Returns the share that is done, 0 to 1, as far as it can be foreseen.
   virtual double progress(const Simulation& simulation) const = 0;
 
-  /// Columns of its own in the history, and at each look of the stage their values, in the same order.
+  /// Returns the stage's own columns in the history; at each look of the stage `values` returns their values,
+  /// in the same order.
   virtual std::vector<Column> columns() const { return {}; }
   virtual std::vector<double> values() const { return {}; }
 
-  /// Names all results that the stage can have, whatever became of it; those that it does not have are empty.
-  /// \param rows  of the stage, in the history; none before its first look
+  /// Names all results that the stage can have, whatever became of it; results that the stage does not have
+  /// are empty.
+  /// \param rows  rows of the stage in the history; none before its first look
   virtual StageReport report(const History& history, RowRange rows, Outcome outcome) const = 0;
-  /// \param foreseen  at the beginning of the stage; the stage changes it to what it leaves
+  /// Forecasts the cost of the stage.
+  /// \param foreseen  temperatures at the beginning of the stage, which changes them to those that it leaves
   virtual Forecast forecast(const Simulation& simulation, Foreseen& foreseen) const = 0;
 
   virtual void visit_state(StateVisitor& visitor) = 0;

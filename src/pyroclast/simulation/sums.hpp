@@ -5,7 +5,7 @@
 
 namespace pyroclast {
 
-/// Mean of one component of the positions of a set in the reference configuration, m.
+/// Returns the mean of one component of the positions of a set in the reference configuration, m.
 template <int Dim>
 double mean_position(const Model<Dim>& model, const GridpointSet& set, int axis) {
   const double sum = chunked_sum(set.chunks, [&](int i) { return model.position[set.gridpoints[i]][axis]; });

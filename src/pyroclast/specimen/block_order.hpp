@@ -7,10 +7,10 @@
 
 namespace pyroclast::specimen {
 
-/// Numbers cells along a Hilbert curve over a box, and vertices in the order in which
-/// the cells meet them. Geometry and each cell's own order stay. Blocks that lie together then stand together
-/// in memory, which is what the time of a step depends on once a specimen has outgrown the caches.
-/// Returns of each cell, in the new order, the number that it had.
+/// Numbers cells along a Hilbert curve over a box, and vertices in the order in which the cells meet them.
+/// Geometry and each cell's own order stay. Blocks that lie together then stand together in memory; the time
+/// of a step depends on this once a specimen has outgrown the caches. Returns the former number of each cell,
+/// in the new order.
 std::vector<std::size_t> number_along_curve(Tessellation& tessellation, const Box& box);
 
 }  // namespace pyroclast::specimen

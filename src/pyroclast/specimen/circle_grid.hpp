@@ -6,18 +6,18 @@
 
 namespace pyroclast::specimen {
 
-/// Circles in a box, found by place: each is listed in every bin that its bounding box touches.
+/// Circles in a box, found by place: each circle is listed in every bin that its bounding box touches.
 class CircleGrid {
  public:
-  /// A grid over the box with square bins of about `bin` (m).
+  /// Makes a grid over the box with square bins of about `bin` (m).
   CircleGrid(const Box& box, double bin);
 
   void insert(const Aggregate& circle);
 
-  /// True when a circle comes closer than `gap` to this one (m).
+  /// Tells whether a circle comes closer than `gap` to this one (m).
   bool overlaps(const Aggregate& circle, double gap) const;
 
-  /// The circles whose bins touch the box, each once, in the order of insertion.
+  /// Collects the circles whose bins touch the box, each once, in the order of insertion.
   void collect(const Vec<2>& lower, const Vec<2>& upper, std::vector<Aggregate>& found) const;
 
   const std::vector<Aggregate>& circles() const { return circles_; }

@@ -4,7 +4,7 @@
 
 namespace pyroclast::specimen {
 
-/// Measures edges, zones and sizes of the blocks; the counts of regularisation are left at zero.
+/// Measures edges, zones and sizes of the blocks; leaves the counts of regularisation at zero.
 BlockMetrics measure(const Tessellation& tessellation);
 
 }  // namespace pyroclast::specimen

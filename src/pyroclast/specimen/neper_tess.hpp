@@ -9,17 +9,17 @@
 
 namespace pyroclast::specimen {
 
-/// Cells of a Neper tessellation, and the groups that its file puts them into.
+/// Cells of a Neper tessellation, and the groups into which its file puts them.
 struct NeperTess {
   Tessellation tessellation;
-  std::vector<int> group;  ///< of each cell, as the file has it (*group); empty where it has none
-  int group_line = 0;      ///< of the file, on which *group stands
+  std::vector<int> group;  ///< group of each cell in the file (*group); empty where it has none
+  int group_line = 0;      ///< line of the file with *group
 };
 
-/// How large a tessellation becomes: one of the two.
+/// Size of a tessellation: one of the two members.
 struct TessSize {
-  double width = 0.0;  ///< of the box around it, m
-  double unit = 0.0;   ///< of the file's coordinates, m
+  double width = 0.0;  ///< width of the box around the tessellation, m
+  double unit = 0.0;   ///< unit of the file's coordinates, m
 };
 
 /// Reads a two-dimensional Neper tessellation (.tess, format 2.0 to 3.x; Quey et al., CMAME 200, 2011) and
@@ -27,14 +27,14 @@ struct TessSize {
 /// ratio (to 1e-6). Cells come in the file's order, counter-clockwise; vertices that no cell uses are
 /// dropped, and so are cells without vertices. A cell that bends inwards, as Neper's regularisation leaves
 /// some, is cut into convex parts. A tessellation in any plane of space is laid flat: x stays the file's x as
-/// far as that lies in the plane, or else its y; y points to where the file's y does, or else its z.
-/// Throws Error, with file and line, when the file does not follow the format, when it is periodic, and when
-/// the cells do not lie in a plane or do not tile the domain; messages count cells from 1, as the file does.
+/// far as this lies in the plane, or else its y; y points to where the file's y does, or else its z. Throws
+/// Error, with file and line, when the file does not follow the format, when it is periodic, and when the
+/// cells do not lie in a plane or do not tile the domain; messages count cells from 1, as the file does.
 NeperTess read_neper_tess(const std::filesystem::path& file, double width, double height);
-/// The same from a stream; `name` takes the file's place in messages.
+/// Reads a Neper tessellation from a stream; `name` takes the file's place in messages.
 NeperTess read_neper_tess(std::istream& stream, const std::string& name, double width, double height);
-/// The same for a domain of any outline, which becomes that of the specimen (`outline_of`). The box around it
-/// begins at [0, 0].
+/// Reads a Neper tessellation with a domain of any outline, which becomes the specimen's outline
+/// (`outline_of`). The box around it begins at [0, 0].
 NeperTess read_neper_tess(const std::filesystem::path& file, const TessSize& size);
 NeperTess read_neper_tess(std::istream& stream, const std::string& name, const TessSize& size);
 

@@ -6,27 +6,27 @@
 
 namespace pyroclast::specimen {
 
-/// How long the point of a slot must be (Notch::point) for blocks of a size; all of its length where it is
-/// short, m.
+/// Returns the length that the point of a slot (Notch::point) must have for blocks of a size, m; all of the
+/// slot's length where it is short.
 double slot_point(double length, double width, double spacing);
 
-/// Where seeds of a tessellation must stand so that its edges follow an outline.
+/// Seeds of a tessellation that make its edges follow an outline.
 ///
-/// Cells are clipped at the outline. That alone leaves a corner that juts into the body (above 180 degrees)
-/// within a cell, which would not be convex; a cell would reach through a hole or a notch; and nothing would
-/// part the body at a slit. So seeds stand at the same distance from such a corner, so that an edge runs into
-/// it, and in mirrored pairs along the walls of notches and slits; an arc has one at each of its pieces. All
-/// other seeds keep away from these.
+/// Cells are clipped at the outline. Clipping alone is not enough. It leaves a corner that juts into the body
+/// (above 180 degrees) within a cell, which would not be convex. A cell would reach through a hole or a
+/// notch, and nothing would part the body at a slit. So seeds stand at the same distance from such a corner,
+/// so that an edge runs into it, and in mirrored pairs along the walls of notches and slits; an arc has one
+/// seed at each of its pieces. All other seeds keep away from these.
 class OutlineSeeds {
  public:
+  /// Places the seeds. Throws Error, naming the side, where the outline is too fine for blocks of that size.
   /// \param spacing  mean distance of seeds: the block size, m
-  /// Throws Error, naming the side, where the outline is too fine for blocks of that size.
   OutlineSeeds(const Region& region, double spacing);
 
   const std::vector<Vec<2>>& positions() const { return positions_; }
-  const std::vector<double>& radii() const { return radii_; }  ///< Laguerre radii, m
-  /// Whether another seed may stand there: in the body, and not so near to these that it would take their
-  /// place.
+  const std::vector<double>& radii() const { return radii_; }  ///< Returns the Laguerre radii, m.
+  /// Tells whether another seed may stand at a point: in the body, and not so near to these seeds that it
+  /// would take their place.
   bool leave_room_at(const Vec<2>& point) const;
 
  private:
@@ -43,7 +43,7 @@ class OutlineSeeds {
   struct Guarded {
     Vec<2> from, to;
   };
-  std::vector<Guarded> guarded_;  ///< lines that other seeds keep away from
+  std::vector<Guarded> guarded_;  ///< lines from which other seeds keep away
 };
 
 }  // namespace pyroclast::specimen

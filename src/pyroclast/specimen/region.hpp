@@ -13,7 +13,7 @@
 namespace pyroclast::specimen {
 
 /// Lines of a region on which a point lies, ascending: pieces of the outline, then notches without a width,
-/// then tips of these.
+/// then tips of these notches.
 struct LineSet {
   static constexpr int kMost = 4;
   std::array<int, kMost> line;
@@ -25,13 +25,13 @@ struct LineSet {
   }
 };
 
-/// The first line from `begin` to before `end` that both have; -1: none.
+/// Returns the first line from `begin` to before `end` that both sets have; -1 where there is none.
 int shared_line(const LineSet& a, const LineSet& b, int begin, int end);
 
-/// All lines of both; empty where they are more than a set holds.
+/// Returns all lines of both sets; empty where they are more than a set holds.
 std::optional<LineSet> both(const LineSet& a, const LineSet& b);
 
-/// Smallest box along the axes around something, m.
+/// Smallest box along the axes around an object, m.
 struct Box {
   Vec<2> low, high;
 
@@ -48,9 +48,9 @@ Box box_of(std::span<const Vec<2>> points);
 /// Part of an outline that has a name: a straight side, all of a circle, the walls of a notch.
 struct Side {
   std::string name;
-  bool is_round = false;  ///< its pieces stand for an arc
-  bool is_cut = false;    ///< of a notch
-  int part_of = -1;       ///< the side that it is a stretch of, see Patch
+  bool is_round = false;  ///< true where the side's pieces stand for an arc
+  bool is_cut = false;    ///< true for a side of a notch
+  int part_of = -1;       ///< side of which it is a stretch, see Patch
 };
 
 /// Straight piece of an outline, walked with the body on its left.
@@ -59,58 +59,59 @@ struct Piece {
   int side;         ///< index into Region::sides
 };
 
-/// A closed line without crossings, walked with the body on its left: counter-clockwise around a body,
+/// Closed line without crossings, walked with the body on its left: counter-clockwise around a body,
 /// clockwise around a hole.
 struct Loop {
   std::vector<Vec<2>> corners;  ///< m
-  std::vector<int> side;        ///< of the piece from each corner to the next
+  std::vector<int> side;        ///< side of the piece from each corner to the next
 };
 
-/// A notch. Where it has no width it is a slit: the blocks on both of its sides are parted from the start.
+/// Notch. A notch without width is a slit: the blocks on both of its sides are parted from the start.
 struct Notch {
   std::string name;
-  Vec<2> mouth;            ///< on the outline, m
-  Vec<2> tip;              ///< in the body, m
-  double width = 0.0;      ///< m; 0: a slit; else a slot that ends in a point
+  Vec<2> mouth;            ///< mouth on the outline, m
+  Vec<2> tip;              ///< tip in the body, m
+  double width = 0.0;      ///< width, m; 0: a slit; else a slot that ends in a point
   double point = 0.0;      ///< length over which the walls of a slot run together, m; all of it: a wedge
-  std::string place = {};  ///< in a deck, to begin messages with: "deck.toml:12: specimen.notches[0]"
+  std::string place = {};  ///< place in a deck, which begins messages: "deck.toml:12: specimen.notches[0]"
 
   double length() const { return norm(tip - mouth); }
 };
 
-/// Stretch of a side with a name of its own, on which something may lie. Its ends are corners of blocks.
+/// Stretch of a side with a name of its own, on which a bearing may lie. Its ends are corners of blocks.
 struct Patch {
   std::string name;
   Vec<2> from,
-      to;  ///< on the outline, walked with the body on the left; of a round side two of its corners, m
+      to;  ///< ends on the outline, walked with the body on the left; of a round side two of its corners, m
 };
 
-/// A hole asked for.
+/// Hole that is asked for.
 struct Hole {
   std::string name;
-  std::vector<Vec<2>> corners;  ///< in either sense, m
-  bool is_round = false;        ///< the corners stand for a circle
+  std::vector<Vec<2>> corners;  ///< corners in either sense, m
+  bool is_round = false;        ///< true where the corners stand for a circle
 };
 
-/// A body in the plane: its outline, the holes in it, and the notches cut into it.
+/// Body in the plane: its outline, the holes in it, and the notches cut into it.
 class Region {
  public:
   Region() = default;
-  /// [0, width] x [0, height] (m), with the sides `bottom`, `right`, `top`, `left`.
+  /// Returns [0, width] x [0, height] (m), with the sides `bottom`, `right`, `top`, `left`.
   static Region rectangle(double width, double height);
-  /// A polygon (corners in either sense, m).
-  /// \param names  of the sides, from each corner to the next; one name for all where the corners are round
-  /// Throws Error when corners are too few, sides cross or meet, or have no length.
+  /// Returns a polygon (corners in either sense, m). Throws Error when corners are too few, sides cross or
+  /// meet, or have no length.
+  /// \param names  names of the sides, from each corner to the next; one name for all where the corners are
+  ///               round
   static Region polygon(std::vector<Vec<2>> corners, const std::vector<std::string>& names,
                         bool is_round = false);
 
-  /// Takes holes out. Throws Error, naming it, when one does not lie within the body, or they meet.
+  /// Takes holes out. Throws Error, naming the hole, when one does not lie within the body, or holes meet.
   Region with_holes(std::span<const Hole> holes) const;
-  /// Cuts notches. Throws Error, naming it, when one does not begin on the outline, its tip is not in the
-  /// body, or it parts the body.
+  /// Cuts notches. Throws Error, naming the notch, when one does not begin on the outline, its tip is not in
+  /// the body, or it parts the body.
   Region with_notches(std::span<const Notch> notches) const;
-  /// Names stretches of sides; the last of all, for notches and holes move no patch. Throws Error, naming it,
-  /// when an end is not on the outline, it goes over more than one side, or meets another.
+  /// Names stretches of sides. Call it last, for notches and holes move no patch. Throws Error, naming the
+  /// patch, when an end is not on the outline, or a patch goes over more than one side or meets another.
   Region with_patches(std::span<const Patch> patches) const;
 
   const std::vector<Side>& sides() const { return sides_; }
@@ -118,24 +119,26 @@ class Region {
   const std::vector<Piece>& pieces() const { return pieces_; }
   const std::vector<Notch>& notches() const { return notches_; }
   const Box& box() const { return box_; }
-  double area() const { return area_; }  ///< m²
-  /// Whether it is a rectangle along the axes without holes or notches, with its lower left corner at 0.
+  double area() const { return area_; }  ///< Returns the area, m².
+  /// Tells whether the region is a rectangle along the axes without holes or notches, with its lower left
+  /// corner at 0.
   bool is_rectangle() const { return is_rectangle_; }
 
-  /// The lines on which a point lies.
+  /// Returns the lines on which a point lies.
   LineSet lines_at(const Vec<2>& point) const;
-  /// Whether an edge between two points lies on the outline.
+  /// Tells whether an edge between two points lies on the outline.
   bool is_outline(const LineSet& from, const LineSet& to) const {
     return shared_line(from, to, 0, static_cast<int>(pieces_.size())) >= 0;
   }
-  /// The side or patch on which an edge lies, index into `sides`; empty inside of the body.
+  /// Returns the side or patch on which an edge lies, index into `sides`; empty inside of the body.
   std::optional<int> side_of(const Vec<2>& from, const Vec<2>& to) const;
-  /// The notch without a width on which an edge lies, index into `notches`.
+  /// Returns the notch without a width on which an edge lies, index into `notches`.
   std::optional<int> slit_of(const Vec<2>& from, const Vec<2>& to) const;
 
-  /// Distance from the outline, m: negative inside of the body, positive outside. Slits do not count.
+  /// Returns the distance from the outline, m: negative inside of the body, positive outside. Slits do not
+  /// count.
   double distance(const Vec<2>& point) const;
-  /// The same as if no notch had been cut: where aggregates may be, which a saw goes through.
+  /// Returns the distance as if no notch had been cut: aggregates may lie there, for a saw goes through them.
   double distance_before_cuts(const Vec<2>& point) const;
 
  private:
@@ -144,21 +147,21 @@ class Region {
 
   std::vector<Side> sides_;
   std::vector<Loop> loops_;
-  std::vector<Piece> pieces_;  ///< of all loops, in turn
+  std::vector<Piece> pieces_;  ///< pieces of all loops, in turn
   std::vector<Notch> notches_;
-  std::vector<Piece> before_cuts_;  ///< empty: as they are
+  std::vector<Piece> before_cuts_;  ///< pieces before cuts; empty where they are the same
   Box box_{};
   double area_ = 0.0;
   bool is_rectangle_ = false;
 };
 
-/// Corners of a polygon that has the area of a circle, counter-clockwise.
-/// \param side    of about this length, m; 12 sides at least
-/// \param angles  at which it must have corners, radians
+/// Returns the corners of a polygon that has the area of a circle, counter-clockwise.
+/// \param side    length of a side, approximately, m; 12 sides at least
+/// \param angles  angles at which the polygon must have corners, radians
 std::vector<Vec<2>> circle_corners(const Vec<2>& centre, double diameter, double side,
                                    std::vector<double> angles = {0.0});
 
-/// Of a point from the segment between two others, m.
+/// Returns the distance of a point from the segment between two others, m.
 double distance_from_segment(const Vec<2>& point, const Vec<2>& from, const Vec<2>& to);
 
 }  // namespace pyroclast::specimen

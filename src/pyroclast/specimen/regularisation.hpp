@@ -6,27 +6,27 @@
 
 namespace pyroclast::specimen {
 
-/// Largest interior angle of a block that regularisation leaves alone, degrees. A flatter corner is hardly
-/// a corner, and half a degree is far above rounding.
+/// Largest interior angle of a block that regularisation leaves alone, degrees. A flatter corner is hardly a
+/// corner, and half a degree is far above rounding.
 inline constexpr double largest_block_angle = 179.5;
 
-/// A zone is a sliver when its smallest altitude is below this share of the shortest edge allowed. The
+/// Share of the shortest edge allowed below which the smallest altitude of a zone makes it a sliver. The
 /// altitude sets the zone's stable time step as the edge does, so a bound on edges alone would not bound it.
 inline constexpr double sliver_share = 0.5;
 
-/// What regularisation did.
+/// Result of regularisation.
 struct Regularisation {
   int edges_removed;
-  int edges_left_short;    ///< shorter than asked for, and no removal leaves the blocks around it fit
-  std::vector<int> unfit;  ///< ascending: cells that stand in the way: with a sliver, beside a flat corner,
-                           ///< at an edge left short
+  /// Edges shorter than asked for that cannot be removed without making a block around them unfit.
+  int edges_left_short;
+  std::vector<int> unfit;  ///< cells with a sliver, beside a flat corner, or at an edge left short, ascending
 };
 
-/// Removes edges shorter than `shortest_edge` times the mean edge (mean of what is left) by merging their
+/// Removes edges shorter than `shortest_edge` times the mean edge (mean of the edges left) by merging their
 /// two ends, shortest first. A merge is made only when every block that it touches keeps at least three
-/// corners and gets neither a corner above `largest_block_angle` nor a sliver zone that it had not before.
-/// Vertices on the outline or a slit stay on it, its corners and tips stay. The tessellation must be valid
-/// and remains so.
+/// corners and gets neither a corner above `largest_block_angle` nor a sliver zone that it did not have
+/// before. Vertices on the outline or a slit stay on it; its corners and tips stay. The tessellation must be
+/// valid and remains so.
 Regularisation regularise(Tessellation& tessellation, const Region& region, double shortest_edge);
 
 }  // namespace pyroclast::specimen

@@ -13,7 +13,7 @@
 
 namespace pyroclast::specimen {
 
-/// Of the random numbers of a specimen; decks and the command line take 0 and up.
+/// Largest seed of the random numbers of a specimen; decks and the command line take 0 and up.
 inline constexpr std::int64_t kLargestSeed = 9'000'000'000'000'000;
 
 /// Circular aggregate as placed, before superposition on the blocks.
@@ -21,7 +21,7 @@ struct Aggregate {
   Vec<2> centre;    ///< m
   double diameter;  ///< m
   int phase = 0;    ///< index into Specimen::phases
-  int kind = 0;     ///< 0 of the first aggregates, then of the inclusions that are circles, in turn
+  int kind = 0;     ///< 0 for the first aggregates, then counting the inclusions that are circles, in turn
 };
 
 /// Straight fibre as placed: the blocks that it crosses become its phase.
@@ -30,17 +30,16 @@ struct Fibre {
   int phase = 0;    ///< index into Specimen::phases
 };
 
-/// A stone that is known: a circle at a place, read from a list.
+/// Stone that is known: a circle at a place, read from a list.
 struct Stone {
   Vec<2> centre;      ///< m
   double diameter;    ///< m
-  std::string phase;  ///< what it is made of
-  std::string place;  ///< where it is stated, "stones.csv:7", for errors
+  std::string phase;  ///< phase of the stone
+  std::string place;  ///< place that states the stone, "stones.csv:7", for errors
 };
 
 /// Coarse aggregate asked for: Fuller's curve P(d) = (d/d_max)^nf between d_min and d_max (paper, Eq. 16), a
-/// measured grading curve, or the stones themselves.
-/// With a fraction of 0 the other members are not looked at.
+/// measured grading curve, or the stones themselves. With a fraction of 0 the other members are not read.
 struct AggregateParameters {
   std::string phase = "aggregate";
   double fraction = 0.0;         ///< area fraction of coarse aggregate asked for, in [0, 1)
@@ -48,13 +47,13 @@ struct AggregateParameters {
   double d_max = 0.0;            ///< largest diameter, m
   double fuller_exponent = 0.0;  ///< nf
   std::vector<double> sieves;    ///< ascending bounds of the size intervals, m; first d_min, last d_max
-  /// Share of the area that passes each sieve, from 0 to 1; empty: by Fuller's curve. With it nf is 1, for
-  /// which a curve is straight between sieves.
+  /// Share of the area that passes each sieve, from 0 to 1; empty: by Fuller's curve. With these shares nf is
+  /// 1, for which a curve is straight between sieves.
   std::vector<double> passing = {};
-  std::vector<Stone> stones = {};  ///< as they lie; then nothing is drawn or placed
+  std::vector<Stone> stones = {};  ///< stones as they lie; then nothing is drawn or placed
   double minimum_gap = 0.0;        ///< smallest distance between aggregates and to the outline, m
   int attempts = 0;                ///< random centres tried for one aggregate before placing fails
-  std::string place = "";          ///< where they are asked for, "mine.toml:12: aggregates", for errors
+  std::string place = "";          ///< place that asks for them, "mine.toml:12: aggregates", for errors
 };
 
 /// Fibres asked for: each at a random place, in a random direction.
@@ -64,16 +63,16 @@ struct FibreParameters {
   double length = 0.0;       ///< m
   double minimum_gap = 0.0;  ///< smallest distance of a fibre to aggregates and to the outline, m
   int attempts = 0;          ///< random places tried for one fibre before placing fails
-  std::string place = "";    ///< where they are asked for, for errors
+  std::string place = "";    ///< place that asks for them, for errors
 };
 
-/// What stands in the matrix beside the first aggregates.
+/// Inclusions in the matrix beside the first aggregates.
 using Inclusions = std::variant<AggregateParameters, FibreParameters>;
 
 enum class Superposition : std::uint8_t {
-  area,     ///< a block is of the aggregates where circles cover more than a stated fraction of it
-  fit,      ///< the same with the fraction by which the blocks take the area of the circles
-  centroid  ///< a block is of the aggregate whose circle its centroid lies in
+  area,     ///< a block is aggregate where circles cover more than a stated fraction of it
+  fit,      ///< a block is aggregate above the fraction by which the blocks take the area of the circles
+  centroid  ///< a block is of the aggregate in whose circle its centroid lies
 };
 
 /// Convex cells that tile a region exactly; neighbours share vertices.
@@ -82,42 +81,45 @@ struct Tessellation {
   std::vector<std::vector<int>> cells;  ///< vertex indices of each cell, counter-clockwise
 };
 
-/// How messages number the cells of a tessellation.
+/// Numbering of the cells of a tessellation in messages.
 struct Numbering {
   std::vector<int>
-      in_file;  ///< of each cell its number in a file that counts from 1; empty: from 0, as they stand
+      in_file;  ///< number of each cell in a file that counts from 1; empty: numbers from 0, as they stand
 
-  /// "cell 3 (from 0)", "cell 4 (from 1)".
+  /// Returns the name of a cell, "cell 3 (from 0)", "cell 4 (from 1)".
   std::string cell(std::size_t number) const;
 };
 
 /// Tessellation asked for.
 struct BlockParameters {
   int count = 0;  ///< number of blocks
-  /// Laguerre radii are uniform in [1 - spread, 1 + spread] x mean spacing / 2; in [0, 1), 0: plain Voronoi.
+  /// Spread of the Laguerre radii, which are uniform in [1 - spread, 1 + spread] x mean spacing / 2; in [0,
+  /// 1), 0: plain Voronoi.
   double radius_spread = 0.0;
   int relaxation = 0;          ///< Lloyd iterations; 0 leaves the seeds at random
   double shortest_edge = 0.0;  ///< edges below this fraction of the mean edge are removed, in [0, 0.5]
-  /// Of the region, made elsewhere and still to be regularised; then only `shortest_edge` counts.
+  /// Tessellation of the region, made elsewhere and still to be regularised; then only `shortest_edge`
+  /// counts.
   std::optional<Tessellation> tessellation;
-  /// What the cells of `tessellation` are of, where that is known: names, and of each cell an index into
-  /// them. Then nothing is superposed.
+  /// Names of the phases of the cells of `tessellation`, where they are known; `phase` holds the index of
+  /// each cell into them. Then nothing is superposed.
   std::vector<std::string> phases = {};
   std::vector<int> phase = {};
-  std::string place = {};  ///< in a deck, to begin messages with: "deck.toml:12: blocks"; may be empty
+  std::string place = {};  ///< place in a deck, which begins messages: "deck.toml:12: blocks"; may be empty
 };
 
 /// Blocks that are made elsewhere.
 struct Cells {
   Tessellation tessellation;
-  std::vector<std::string> phases;  ///< what they can be made of
-  std::vector<int> phase;           ///< of each, index into `phases`
-  std::string origin = {};          ///< what messages begin with, such as the name of a file; may be empty
+  std::vector<std::string> phases;  ///< phases that the blocks can have
+  std::vector<int> phase;           ///< phase of each block, index into `phases`
+  std::string origin = {};          ///< text that begins messages, such as the name of a file; may be empty
 };
 
 struct SpecimenParameters {
   Region region;
-  /// All of the specimen, whose outline is the region; then nothing below counts but the matrix.
+  /// Cells of the whole specimen, whose outline is the region; then only the matrix counts of the members
+  /// below.
   std::optional<Cells> cells;
   std::uint64_t seed = 0;
   std::string matrix = "mortar";  ///< phase of the blocks that nothing else covers
@@ -125,75 +127,79 @@ struct SpecimenParameters {
   std::vector<Inclusions> inclusions;  ///< placed after the aggregates, in turn; none overlap
   BlockParameters blocks;
   Superposition superposition = Superposition::area;
-  double covered_fraction = 0.5;  ///< of a block above which it is aggregate, for Superposition::area
+  /// Fraction of a block above which it is aggregate, for Superposition::area.
+  double covered_fraction = 0.5;
 };
 
-/// Names of what the blocks can be made of: those of cells, of the blocks' own phases, or aggregates,
-/// inclusions, matrix; each once.
+/// Returns the names of the phases that the blocks can have: those of cells, of the blocks' own phases, or
+/// aggregates, inclusions, matrix; each once.
 std::vector<std::string> phases(const SpecimenParameters& parameters);
 
 /// Edge of a tessellation. `left` is the cell that sees it counter-clockwise from `v0` to `v1`.
 struct Edge {
   int v0, v1;
   int left;
-  int right;  ///< the other cell, or -1 on the outline
+  int right;  ///< other cell, or -1 on the outline
 };
 
-/// The edges of a tessellation, each once, in the order in which the cells meet them.
-/// Throws Error when an edge belongs to more than two cells or two cells see it in the same sense.
+/// Returns the edges of a tessellation, each once, in the order in which the cells meet them. Throws Error
+/// when an edge belongs to more than two cells or two cells see it in the same sense.
 std::vector<Edge> edges(const Tessellation& tessellation, const Numbering& numbering = {});
 
-/// How good the blocks are; lengths in m.
+/// Quality of the blocks; lengths in m.
 struct BlockMetrics {
   double mean_edge, shortest_edge;
   int shortest_edge_cell;
   Vec<2> shortest_edge_at;
-  int edges_removed, edges_left_short;  ///< by regularisation; left: shorter than asked for
-  int seeds_redrawn;                    ///< seeds drawn anew because their cell could not be made valid
-  double smallest_angle;                ///< of any zone, degrees
+  /// Edges removed by regularisation, and edges left that are shorter than asked for.
+  int edges_removed, edges_left_short;
+  int seeds_redrawn;      ///< seeds drawn anew because their cell could not be made valid
+  double smallest_angle;  ///< smallest angle of any zone, degrees
   int smallest_angle_cell;
   double mean_size;        ///< sqrt(mean area), the block size
-  double zones_per_block;  ///< mean
+  double zones_per_block;  ///< mean number of zones
 };
 
-/// A meso-scale specimen: blocks, what each is made of, and what came of the request.
+/// Meso-scale specimen: blocks, their phases, and the outcome of the request.
 struct Specimen {
   Region region;
   Tessellation tessellation;
-  std::vector<std::string> phases;    ///< what blocks can be made of
+  std::vector<std::string> phases;    ///< phases that blocks can have
   int matrix = -1;                    ///< index into `phases`; -1: not known
-  std::vector<int> phase;             ///< per cell, index into `phases`
+  std::vector<int> phase;             ///< phase of each cell, index into `phases`
   std::vector<Aggregate> aggregates;  ///< circles as placed, those of each kind largest first
-  std::vector<Fibre> fibres;          ///< as placed
+  std::vector<Fibre> fibres;          ///< fibres as placed
   /// Area of circles asked for and placed, and of blocks that are not matrix, over that of the specimen.
   double fraction_asked, fraction_placed, fraction_superposed;
-  double fraction_of_circles;    ///< the last of these before fibres were superposed
-  double covered_fraction;       ///< of a block above which it became aggregate
-  std::vector<double> fraction;  ///< by phase: area of its blocks over that of the specimen
+  double fraction_of_circles;    ///< superposed fraction before fibres were superposed
+  double covered_fraction;       ///< fraction of a block above which it became aggregate
+  std::vector<double> fraction;  ///< area of the blocks of each phase over that of the specimen
   BlockMetrics metrics;
 };
 
-/// Of cells as they are, or by gradation, placement, tessellation, regularisation and superposition, in this
-/// order. The same parameters
-/// give the same specimen; aggregates and blocks draw from streams of their own, so neither depends on the
-/// other's parameters. Throws Error when a parameter is out of range, the aggregates do not fit, the placed
-/// fraction is off by more than 0.01, or no valid tessellation comes about.
-/// \param team  shares the cells of the tessellation out; one thread alone where there is none
+/// Makes a specimen of cells as they are, or by gradation, placement, tessellation, regularisation and
+/// superposition, in this order. The same parameters give the same specimen; aggregates and blocks draw from
+/// streams of their own, so neither depends on the other's parameters. Throws Error when a parameter is out
+/// of range, the aggregates do not fit, the placed fraction is off by more than 0.01, or no valid
+/// tessellation can be made.
+/// \param team  team that shares the cells of the tessellation out; without a team the calling thread works
+///              alone
 Specimen make_specimen(const SpecimenParameters& parameters, Team* team = nullptr);
 
-/// What a user should know of a specimen that is not as it was asked for, a line each.
+/// Returns what a user should know of a specimen that differs from the request, one line each.
 std::vector<std::string> warnings(const Specimen& specimen);
 
-/// Block size as a deck foresees it: square root of the specimen's area over the number of blocks, m.
+/// Returns the block size as a deck foresees it: square root of the specimen's area over the number of
+/// blocks, m.
 double block_size(const Specimen& specimen);
 
-/// A block cut into zones.
+/// Block cut into zones.
 struct ZonedBlock {
   std::vector<Vec<2>> gridpoints;         ///< the cell's vertices in its order, then interior points; m
   std::vector<std::array<int, 3>> zones;  ///< counter-clockwise gridpoint indices
 };
 
-/// Cuts a convex cell (corners counter-clockwise, m) into triangles around its centroid, one per edge.
+/// Cuts a convex cell (corners counter-clockwise, m) into triangles around its centroid, one for each edge.
 ZonedBlock zone_block(const std::vector<Vec<2>>& corners);
 
 }  // namespace pyroclast::specimen

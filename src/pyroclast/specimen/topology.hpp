@@ -7,12 +7,12 @@
 
 namespace pyroclast::specimen {
 
-/// The corners of a cell in its order, m.
+/// Returns the corners of a cell in its order, m.
 void corners(const Tessellation& tessellation, std::size_t cell, std::vector<Vec<2>>& result);
 
-/// Cells, ascending, with fewer than three vertices or an edge that has neither a partner running the other
-/// way nor lies on the outline. When there are none and all areas are positive, the cells tile the region
-/// without gap or overlap.
+/// Returns the cells, ascending, with fewer than three vertices or an edge that has neither a partner running
+/// the other way nor lies on the outline. When there are none and all areas are positive, the cells tile the
+/// region without gap or overlap.
 std::vector<int> mismatched_cells(const Tessellation& tessellation, const Region& region);
 
 /// Throws Error when the cells do not tile the region, or when a cell is not convex or has a zone without

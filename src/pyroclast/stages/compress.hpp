@@ -5,39 +5,41 @@
 
 namespace pyroclast {
 
-/// A platen velocity as high as three measures of inertia and one of cracking allow.
+/// Control that keeps the platen's velocity as high as three measures of inertia and one of cracking allow.
 struct VelocityControl {
-  double fastest = 0.0;              ///< m/s; the stage's velocity is the lowest
-  double unbalanced_ratio = 0.0;     ///< tolerance
+  double fastest = 0.0;              ///< fastest velocity, m/s; the stage's velocity is the slowest
+  double unbalanced_ratio = 0.0;     ///< tolerance of the unbalanced ratio
   double kinetic_over_strain = 0.0;  ///< tolerance of kinetic over elastic energy
   /// Tolerance of the difference between the stresses on the platens, over the largest stress so far.
   double platen_difference = 0.0;
   double dissipation_rate = 0.0;  ///< tolerance of the power that contacts dissipate over elastic energy, 1/s
 };
 
-/// Where a compression stage ends.
+/// Condition that ends a compression stage.
 enum class CompressUntil : std::uint8_t {
-  stop_strain,  ///< at a strain since its beginning
-  strain,       ///< at a strain of the test, up or down
-  stress        ///< at a stress on the upper platen, up or down
+  stop_strain,  ///< strain since the beginning of the stage
+  strain,       ///< strain of the test, up or down
+  stress        ///< stress on the upper platen, up or down
 };
 
-/// Drives the upper platen, the lower one fixed: down, or up to unload. First brings it back to ends that it
-/// left, or that left it, while the temperature changed.
+/// Stage that drives the upper platen, with the lower one fixed: down, or up to unload. The stage first
+/// brings the upper platen back to the specimen's end where the two parted while the temperature changed.
 class Compress : public Stage {
  public:
   struct Keys {
     double velocity = 0.0;  ///< m/s
-    /// Time over which the velocity is brought up, s. A controlled velocity then rises by no more than a
-    /// factor e in as much time.
+    /// Time over which the velocity is brought up, s. A controlled velocity then rises by a factor of at most
+    /// e in this time.
     double ramp_time = 0.0;
     std::optional<VelocityControl> control = {};
     CompressUntil until = CompressUntil::stop_strain;
-    double to = 0.0;              ///< strain, or stress in Pa, where the stage ends by one of these
-    double stop_strain = 0.0;     ///< ends at this axial strain up or down, from the beginning of the stage
-    double stop_fraction = 0.0;   ///< ends when the stress has fallen below this fraction of f_c; 0: never
-    double history_strain = 0.0;  ///< see OutputIntervals
-    double frame_strain = 0.0;    ///< see OutputIntervals
+    double to = 0.0;  ///< strain, or stress in Pa, at which the stage ends by `until`
+    /// Axial strain up or down, from the beginning of the stage, at which the stage ends.
+    double stop_strain = 0.0;
+    /// Share of f_c below which the stress must fall to end the stage; 0: never.
+    double stop_fraction = 0.0;
+    double history_strain = 0.0;  ///< strain between looks, see OutputIntervals
+    double frame_strain = 0.0;    ///< strain between frames, see OutputIntervals
   };
 
   explicit Compress(const Keys& keys) : keys_(keys) {}
@@ -73,21 +75,23 @@ class Compress : public Stage {
   /// All that lasts from one batch to the next.
   struct Kept {
     std::int64_t gap_steps_left = 0;
-    bool is_loading = false;          ///< the gap is closed
-    bool is_upwards = false;          ///< unloads
-    double first_left = 0.0;          ///< from where it began to where it ends, strain or Pa
-    double wave_time = 0.0;           ///< in which a stress wave runs through the specimen once, s
-    std::int64_t steps = 0;           ///< since loading began
-    std::int64_t steps_left = 0;      ///< to the next look, or to the next choice of a controlled velocity
-    std::int64_t steps_to_point = 0;  ///< of the curve
-    double velocity = 0.0;            ///< where it is controlled, m/s
-    double way = 0.0;                 ///< since the last look, where the velocity is controlled, m
-    double way_to_point = 0.0;        ///< since the last point of the curve, likewise, m
-    double dissipated = 0.0;          ///< at the last choice of the velocity, J
+    bool is_loading = false;  ///< true once the gap is closed
+    bool is_upwards = false;  ///< true while the stage unloads
+    double first_left = 0.0;  ///< distance from the beginning to the end of the stage, strain or Pa
+    double wave_time = 0.0;   ///< time in which a stress wave runs through the specimen once, s
+    std::int64_t steps = 0;   ///< steps since loading began
+    /// Steps to the next look, or to the next choice of a controlled velocity.
+    std::int64_t steps_left = 0;
+    std::int64_t steps_to_point = 0;  ///< steps to the next point of the curve
+    double velocity = 0.0;            ///< controlled velocity, m/s
+    double way = 0.0;                 ///< way since the last look, where the velocity is controlled, m
+    /// Way since the last point of the curve, where the velocity is controlled, m.
+    double way_to_point = 0.0;
+    double dissipated = 0.0;  ///< energy dissipated at the last choice of the velocity, J
     CompressionCurve curve;
-    Peak peak;                    ///< of the curve behind the first wave
-    double largest_stress = 0.0;  ///< likewise, Pa
-    double next_frame = 0.0;      ///< strain of the stage
+    Peak peak;                    ///< peak of the curve after the first wave
+    double largest_stress = 0.0;  ///< largest stress after the first wave, Pa
+    double next_frame = 0.0;      ///< strain of the stage at the next frame
   } kept_;
 };
 

@@ -7,21 +7,22 @@
 
 namespace pyroclast {
 
-/// Conducts heat alone: the body does not move. An exchange in a later stage hands the temperatures over.
+/// Stage that conducts heat alone: the body does not move. An exchange in a later stage hands the
+/// temperatures over.
 ///
 /// There is a look at multiples of the interval, at each frame, at the end, and, with a steady rate, when the
-/// boundary values become constant; frames are at multiples of their interval and at the end.
+/// boundary values become constant. Frames are at multiples of their interval and at the end.
 class Conduct : public Stage {
  public:
   struct Keys {
     double duration = 0.0;  ///< s
-    /// Looks come when a temperature has changed by so much since the last one, K, and at multiples of the
-    /// interval, s. No interval is missed for the sake of a change.
+    /// Change of temperature since the last look at which a look comes, K. Looks also come at multiples of
+    /// the interval, s; no change makes the stage miss one.
     double change = std::numeric_limits<double>::infinity();
     double interval = std::numeric_limits<double>::infinity();
-    double frame_interval = std::numeric_limits<double>::infinity();  ///< see OutputIntervals
-    /// Ends when the L2 norm of the temperature's rate (Conduction::rate) falls below, K/s. Not before the
-    /// boundary values have become constant, because a fire that starts slowly is no steady state.
+    double frame_interval = std::numeric_limits<double>::infinity();  ///< interval, see OutputIntervals
+    /// L2 norm of the temperature's rate (Conduction::rate) below which the stage ends, K/s. It does not end
+    /// before the boundary values have become constant, because a fire that starts slowly is no steady state.
     std::optional<double> steady_rate{};
   };
 
@@ -40,7 +41,7 @@ class Conduct : public Stage {
 
  private:
   double end() const { return kept_.began + keys_.duration; }
-  /// Rate below which the field is steady now, K/s; 0: none is.
+  /// Returns the rate below which the field is steady now, K/s; 0 where no field counts as steady.
   double steady_rate(const Simulation& simulation) const;
   void begin_flow(const Simulation& simulation);
 
@@ -48,10 +49,10 @@ class Conduct : public Stage {
   HeatFlow flow_;
   /// All that lasts from one batch to the next.
   struct Kept {
-    double began = 0.0;        ///< heating time, s
-    double steady_from = 0.0;  ///< boundary values are constant, s
+    double began = 0.0;        ///< heating time at the beginning, s
+    double steady_from = 0.0;  ///< heating time from which boundary values are constant, s
     double flow_steady = 0.0;  ///< steady rate of the present flow, K/s
-    double next_frame = 0.0;   ///< s
+    double next_frame = 0.0;   ///< heating time of the next frame, s
   } kept_;
 };
 

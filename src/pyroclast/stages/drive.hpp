@@ -12,55 +12,56 @@
 
 namespace pyroclast {
 
-/// What a drive does to a set of gridpoints.
+/// Action of a drive on a set of gridpoints.
 enum class ActionKind : std::uint8_t { hold, release, velocity, force, pressure };
 
-/// Holds, moves or loads sets of gridpoints. What it holds or loads stays so after it, until another drive
-/// changes it; what it moved is held where it came to.
+/// Stage that holds, moves or loads sets of gridpoints. Sets that it holds or loads stay so after the stage,
+/// until another drive changes them; sets that it moved are held where they came to.
 class Drive : public Stage {
  public:
   struct Action {
     std::string set;
     ActionKind kind = ActionKind::hold;
-    std::vector<int> components = {};  ///< held, released or moved
-    double amount = 0.0;               ///< m/s, N or Pa
-    Vec<2> direction{};                ///< of a force, unit
-    bool is_follower = false;          ///< of a pressure
-    double ramp_time = 0.0;            ///< in which the amount comes to its value, evenly, s
-    std::optional<Curve> factor = {};  ///< of the amount, over the time since the stage began, s
-    std::string place = "";            ///< in the deck, for messages
+    std::vector<int> components = {};  ///< components that are held, released or moved
+    double amount = 0.0;               ///< velocity, m/s, force, N, or pressure, Pa
+    Vec<2> direction{};                ///< unit direction of a force
+    bool is_follower = false;          ///< true for a pressure that follows the faces
+    double ramp_time = 0.0;            ///< time in which the amount comes evenly to its value, s
+    std::optional<Curve> factor = {};  ///< factor of the amount, over the time since the stage began, s
+    std::string place = "";            ///< place in the deck, for messages
 
     const std::vector<int>& set_of(const Model<2>& model) const { return model.set(set); }
   };
-  /// A condition on a record that ends the stage.
+  /// Condition on a record that ends the stage.
   struct Until {
-    /// Rates are sizes of the mean change since the look before.
+    /// Kind of condition. A rate is the size of the mean change since the look before.
     enum class Kind : std::uint8_t { above, below, share_of_peak, rate_above, rate_below };
     std::string record;
     Kind kind = Kind::above;
-    double value = 0.0;                     ///< in SI, or a share
-    std::optional<double> least_peak = {};  ///< of share_of_peak, above which a peak counts, SI
+    double value = 0.0;                     ///< value in SI, or a share
+    std::optional<double> least_peak = {};  ///< size above which a peak counts for share_of_peak, SI
     std::string place = "";
   };
-  /// Makes an opening grow at a rate, whatever the load must do for that: also where the load must go back,
-  /// and what it drives with it. A pair of forces across the opening, stiffer than the body softens there,
-  /// holds it to its course, and the loads of the stage follow so that the pair has nothing left to do.
+  /// Control that makes an opening grow at a rate, whatever load this needs: also where the load, and
+  /// everything it drives, must go back. A pair of forces across the opening keeps it at its prescribed
+  /// value; the pair is stiffer than the body softens there. The loads of the stage follow so that the pair
+  /// has nothing left to do.
   struct Control {
-    std::string record;          ///< an opening
+    std::string record;          ///< record of an opening
     double rate = 0.0;           ///< m/s
-    double stiffness = 0.0;      ///< of the pair, N/m
-    double response_time = 0.0;  ///< in which the loads take over what the pair does, s
+    double stiffness = 0.0;      ///< stiffness of the pair, N/m
+    double response_time = 0.0;  ///< time in which the loads take over from the pair, s
     std::string place = "";
   };
   struct Keys {
-    double duration = 0.0;  ///< s, at the latest
+    double duration = 0.0;  ///< longest duration, s
     std::vector<Action> actions;
     std::vector<Until> until;
     std::optional<Control> control = {};
-    /// The stage ends when the body rests at this ratio, once all ramps have ended.
+    /// Unbalanced ratio at which the body rests and the stage ends, once all ramps have ended.
     std::optional<double> unbalanced_ratio;
     double look_interval = 0.0, frame_interval = 0.0;  ///< s
-    std::vector<RecordParameters> records = {};        ///< of the run
+    std::vector<RecordParameters> records = {};        ///< records of the run
     std::vector<RecordResult> results = {};
   };
 
@@ -71,7 +72,8 @@ class Drive : public Stage {
   void check(const Simulation& simulation, Acting<2>& acting) const override;
   bool loads() const override;
   std::vector<std::string> sets() const override;
-  /// Throws Error where it would act on what another one, which is under way, moves or loads again and again.
+  /// Throws Error where the drive would act on a set that another drive, which is under way, keeps moving or
+  /// loading.
   void check_beside(const Drive& under_way, const Simulation& simulation) const;
   void begin(Simulation& simulation) override;
   bool advance(Simulation& simulation, int most_steps) override;
@@ -84,7 +86,7 @@ class Drive : public Stage {
   void visit_state(StateVisitor& visitor) override;
 
  private:
-  using ChangedLoads = std::map<std::string, SetLoad<2>>;  ///< by set
+  using ChangedLoads = std::map<std::string, SetLoad<2>>;  ///< loads by set
   static bool is_motion(const Action& a) {
     return a.kind != ActionKind::force && a.kind != ActionKind::pressure;
   }
@@ -122,27 +124,33 @@ class Drive : public Stage {
   struct Kept {
     std::int64_t steps = 0;
     std::int64_t frames = 0;
-    std::vector<SetLoad<2>> first_loads;  ///< of the set of each load, when the stage began
-    std::vector<double> velocity;         ///< of each action now, m/s
-    // What drives the body on: how far each action came, m, N or Pa, and how far at most; for how long, s.
+    std::vector<SetLoad<2>> first_loads;  ///< loads on the set of each action, when the stage began
+    std::vector<double> velocity;         ///< present velocity of each action, m/s
+    // Progress of what drives the body: how far each action came, m, N or Pa, and how far at most; for how
+    // long, s.
     std::vector<double> came, farthest;
     double driven = 0.0;
-    bool is_driven = false;                        ///< now
-    bool is_lost = false;                          ///< the controlled opening left its course
-    bool is_beyond_noise = false;                  ///< since when peaks count
-    std::vector<RecordPeak> record_peaks;          ///< of each record
-    std::vector<Peak> peaks;                       ///< of the records of `until`
-    std::vector<double> last;                      ///< likewise: value at the last look
-    double leading_peak = 0.0, framed_peak = 0.0;  ///< of the leading record: greatest size; with a frame, SI
-    double last_look = 0.0;                        ///< s
-    double first_opening = 0.0, last_opening = 0.0;   ///< controlled, when the stage began, m
-    double load_factor = 0.0, pair_force = 0.0;       ///< of the control; N, opening it
-    double largest_pair = 0.0, largest_factor = 0.0;  ///< at looks
-    double largest_with_pair = 0.0;                   ///< of the loads and the pair beside them, N
-    double largest_load = 0.0;                        ///< of the loads alone, N
-    double pair_work = 0.0;                           ///< J
-    double first_work = 0.0;                          ///< of loads, when the stage began, J
-    double most_kinetic = 0.0;                        ///< energy, while peaks do not count yet, J
+    bool is_driven = false;                ///< true while the body is driven on
+    bool is_lost = false;                  ///< true where the controlled opening left its prescribed value
+    bool is_beyond_noise = false;          ///< true once the motion is no noise, so that peaks count
+    std::vector<RecordPeak> record_peaks;  ///< peak of each record
+    std::vector<Peak> peaks;               ///< peaks of the records of `until`
+    std::vector<double> last;              ///< value of each record of `until` at the last look
+    /// Greatest size of the leading record, and the greatest at a frame, SI.
+    double leading_peak = 0.0, framed_peak = 0.0;
+    double last_look = 0.0;  ///< time of the last look, s
+    /// Controlled opening when the stage began and at the last look, m.
+    double first_opening = 0.0, last_opening = 0.0;
+    /// Factor of the loads by the control; force of the pair, N, positive where it opens.
+    double load_factor = 0.0, pair_force = 0.0;
+    double largest_pair = 0.0, largest_factor = 0.0;  ///< largest values at looks
+    /// Largest sum of the loads and the pair beside them, N.
+    double largest_with_pair = 0.0;
+    double largest_load = 0.0;  ///< largest load without the pair, N
+    double pair_work = 0.0;     ///< work of the pair, J
+    double first_work = 0.0;    ///< work of the loads when the stage began, J
+    /// Largest kinetic energy while peaks do not count yet, J.
+    double most_kinetic = 0.0;
     BodyFigures body;
   } kept_;
 };

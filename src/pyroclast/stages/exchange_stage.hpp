@@ -6,15 +6,15 @@
 
 namespace pyroclast {
 
-/// Temperatures that differ by less are the same, K.
+/// Difference below which temperatures are the same, K.
 inline constexpr double kSameTemperature = 1e-6;
 
-/// A stage that changes temperatures and hands them over to the mechanics: a look follows each exchange.
+/// Stage that changes temperatures and hands them over to the mechanics: a look follows each exchange.
 class ExchangeStage : public Stage {
  public:
   struct Keys {
     Coupling coupling;
-    double frame_temperature = 0.0;  ///< see OutputIntervals
+    double frame_temperature = 0.0;  ///< interval, see OutputIntervals
   };
 
   void begin(Simulation& simulation) final;
@@ -31,16 +31,21 @@ class ExchangeStage : public Stage {
 
   const Coupling& coupling() const { return keys_.coupling; }
   bool is_restrained() const { return keys_.coupling.platen == PlatenControl::fixed; }
-  double first_temperature() const { return kept_.first_temperature; }  ///< mean at the beginning, °C
+  double first_temperature() const {
+    return kept_.first_temperature;
+  }  ///< Returns the mean at the beginning, °C.
 
   virtual void begin_change(Simulation& simulation) = 0;
-  /// One batch of changing the temperatures to the next exchange, and hands them over; true when done.
+  /// Changes the temperatures towards the next exchange by one batch, and hands them over at the end; returns
+  /// true when done.
   virtual bool change(Simulation& simulation, Exchange& exchange, int most_evaluations) = 0;
-  /// Change of temperature to come as far as it can be foreseen, K, and where it ends.
+  /// Returns the change of temperature to come as far as it can be foreseen, K, and sets the temperature at
+  /// its end.
   virtual double foreseen_change(Foreseen& foreseen) const = 0;
-  /// Frames to come where the heating time says when they are due; empty where the temperature says it.
+  /// Returns the frames to come where the heating time decides when they are due; empty where the temperature
+  /// decides.
   virtual std::optional<double> frames_in_time() const { return std::nullopt; }
-  /// Whether such a frame is due; told once.
+  /// Tells, once, whether such a frame is due.
   virtual bool frame_time_came(const Simulation&) { return false; }
   virtual void visit_change(StateVisitor& visitor) = 0;
 
@@ -51,15 +56,16 @@ class ExchangeStage : public Stage {
   Exchange exchange_;
   /// All that lasts from one batch to the next.
   struct Kept {
-    bool is_settling = false;  ///< the temperatures are handed over, and the body still moves
+    bool is_settling =
+        false;  ///< true from handing the temperatures over until the body has come to rest at them
     bool has_press = false;
-    double load_stress = 0.0;  ///< held at the beginning, Pa
+    double load_stress = 0.0;  ///< stress held at the beginning, Pa
     double first_temperature = 0.0;
-    double last_interval = 0.0;  ///< of temperature, in which the last row lay
+    double last_interval = 0.0;  ///< interval of temperature in which the last row of the history lay
   } kept_;
 };
 
-/// Reads the keys that stages of this sort share. What is wrong is recorded in the deck.
+/// Reads the keys that stages with exchanges share. Errors are recorded in the deck.
 ExchangeStage::Keys read_exchange(const Section& own, const StageTables& tables);
 
 /// Reads [coupling].

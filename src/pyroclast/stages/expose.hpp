@@ -7,12 +7,12 @@
 
 namespace pyroclast {
 
-/// Lets heat flow through the specimen by its boundary conditions.
+/// Stage that lets heat flow through the specimen by its boundary conditions.
 class Expose : public ExchangeStage {
  public:
   struct Keys {
     double duration = 0.0;                                            ///< s
-    double frame_interval = std::numeric_limits<double>::infinity();  ///< see OutputIntervals
+    double frame_interval = std::numeric_limits<double>::infinity();  ///< interval, see OutputIntervals
     ExchangeStage::Keys exchange;
   };
 
@@ -35,8 +35,8 @@ class Expose : public ExchangeStage {
 
   Keys keys_;
   HeatFlow flow_;
-  double began_ = 0.0;       ///< heating time, s
-  double next_frame_ = 0.0;  ///< likewise
+  double began_ = 0.0;       ///< heating time at the beginning, s
+  double next_frame_ = 0.0;  ///< heating time of the next frame, s
 };
 
 StageKind expose_kind();

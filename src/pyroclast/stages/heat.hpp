@@ -4,12 +4,12 @@
 
 namespace pyroclast {
 
-/// Changes the temperature of the whole specimen evenly (paper, section 4).
+/// Stage that changes the temperature of the whole specimen evenly (paper, section 4).
 class Heat : public ExchangeStage {
  public:
   struct Keys {
-    double to = 0.0;    ///< °C
-    double rate = 0.0;  ///< K/s, positive; heating or cooling follows from `to`
+    double to = 0.0;    ///< temperature at the end, °C
+    double rate = 0.0;  ///< rate, K/s, positive; heating or cooling follows from `to`
     ExchangeStage::Keys exchange;
   };
 
@@ -27,8 +27,8 @@ class Heat : public ExchangeStage {
   void visit_change(StateVisitor& visitor) override;
 
   Keys keys_;
-  Press<2>::EvenMotion last_strain_;  ///< before the last exchange
-  double last_change_ = 0.0;          ///< of temperature at the last exchange, K; 0 at none yet
+  Press<2>::EvenMotion last_strain_;  ///< even motion before the last exchange
+  double last_change_ = 0.0;          ///< change of temperature at the last exchange, K; 0 before any
 };
 
 StageKind heat_kind();

@@ -4,20 +4,20 @@
 
 namespace pyroclast {
 
-/// Brings the force on the upper platen to a value and lets the body come to rest under it. The platen does
-/// not tilt; its force is held from then on until a stage drives or fixes it.
+/// Stage that brings the force on the upper platen to a value and lets the body come to rest under it. The
+/// platen does not tilt; its force is held from then on until a stage drives or fixes it.
 class Load : public Stage {
  public:
   struct Keys {
     double stress = 0.0;            ///< force over the specimen's area, Pa, compression positive
     std::optional<double> level;    ///< stress over f_c, where the deck gives it so
-    double strength = 0.0;          ///< that f_c, Pa
-    std::string strength_of;        ///< whose it is
+    double strength = 0.0;          ///< f_c of `level`, Pa
+    std::string strength_of;        ///< owner of that f_c
     double ramp_time = 0.0;         ///< time over which the force is brought up, s
-    double unbalanced_ratio = 0.0;  ///< at rest when below
-    std::int64_t most_steps = 0;    ///< after the ramp; gives up, and says so, after as many
-    /// The specimen is crushed when its ends have come nearer by this share of its height since the stage
-    /// began.
+    double unbalanced_ratio = 0.0;  ///< unbalanced ratio below which the body is at rest
+    std::int64_t most_steps = 0;    ///< most steps after the ramp; then the stage gives up, and says so
+    /// Share of the specimen's height by which its ends have come nearer since the stage began when the
+    /// specimen counts as crushed.
     double failure_strain = 0.0;
   };
 
@@ -35,22 +35,22 @@ class Load : public Stage {
 
  private:
   void adjust_force(Simulation& simulation) const;
-  /// Share of the change of force that is held for kStepsPerForce steps from one on.
+  /// Returns the share of the change of force that is held for kStepsPerForce steps from a given step on.
   double share_held_from(std::int64_t steps, double time_step) const;
 
   Keys keys_;
   /// All that lasts from one batch to the next.
   struct Kept {
-    std::int64_t steps = 0;     ///< since the stage began
-    double first_stress = 0.0;  ///< held before, Pa
-    double first_strain = 0.0;  ///< of the specimen, before
+    std::int64_t steps = 0;     ///< steps since the stage began
+    double first_stress = 0.0;  ///< stress held before the stage, Pa
+    double first_strain = 0.0;  ///< strain of the specimen before the stage
   } kept_;
 };
 
 StageKind load_kind();
 
-/// Share of a ramp that is over, 0 to 1.
-/// \param ramp_time  s; 0: there is none
+/// Returns the share of a ramp that is over, 0 to 1.
+/// \param ramp_time  s; 0: there is no ramp
 double ramp_share(std::int64_t steps, double time_step, double ramp_time);
 
 }  // namespace pyroclast

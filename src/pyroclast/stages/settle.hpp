@@ -4,12 +4,13 @@
 
 namespace pyroclast {
 
-/// Lets the body come to rest under its weight, the upper platen lying on it; then strains count from there.
+/// Stage that lets the body come to rest under its weight, with the upper platen lying on it; then strains
+/// count from there.
 class Settle : public Stage {
  public:
   struct Keys {
-    double unbalanced_ratio = 0.0;  ///< at rest when below
-    std::int64_t most_steps = 0;    ///< gives up, and says so, after as many
+    double unbalanced_ratio = 0.0;  ///< unbalanced ratio below which the body is at rest
+    std::int64_t most_steps = 0;    ///< most steps; then the stage gives up, and says so
   };
 
   explicit Settle(const Keys& keys) : keys_(keys) {}
@@ -28,18 +29,18 @@ class Settle : public Stage {
   Keys keys_;
   /// All that lasts from one batch to the next.
   struct Kept {
-    std::int64_t steps = 0;  ///< since the stage began
+    std::int64_t steps = 0;  ///< steps since the stage began
     std::int64_t steps_to_look = 0;
   } kept_;
 };
 
 StageKind settle_kind();
 
-/// What `unbalanced_ratio` means in stages that bring the body to rest.
+/// Meaning of `unbalanced_ratio` in stages that bring the body to rest.
 inline constexpr Meaning kAtRest = "the body is at rest when unbalanced over applied forces are below this";
 
-/// Steps that a body will probably need to come to rest when its load has changed at once.
-/// \param unbalanced_ratio  at which it counts as at rest
+/// Returns the steps that a body will probably need to come to rest when its load has changed at once.
+/// \param unbalanced_ratio  ratio at which the body counts as at rest
 double steps_to_rest(double unbalanced_ratio);
 
 }  // namespace pyroclast

@@ -8,15 +8,15 @@ namespace pyroclast {
 
 enum class DecimalSign { point, comma };
 
-/// What a cell may be. A number counts as one whatever its decimal sign.
+/// Kind of a cell. A number counts as a number whatever its decimal sign.
 enum class CellKind { empty, text, number, clock, date };
 CellKind kind_of_cell(std::string_view cell);
 
-/// A number with a decimal point and without other signs, as `std::from_chars` reads it; empty where the cell
-/// is no number with that decimal sign. The other sign may stand between thousands.
+/// Returns a number with a decimal point and without other signs, as `std::from_chars` reads it; empty where
+/// the cell is no number with the given decimal sign. The other sign may stand between thousands.
 std::optional<std::string> plain_number(std::string_view cell, DecimalSign sign);
 
-/// What a number says of the decimal sign of its file.
+/// Evidence that a number gives of the decimal sign of its file.
 enum class SignEvidence {
   none,             ///< "12"
   point,            ///< "12.5", "1e3"
@@ -28,13 +28,13 @@ enum class SignEvidence {
 };
 SignEvidence sign_evidence(std::string_view number);
 
-/// What the parts of a time such as 01:30 are; of three parts they are hours, minutes and seconds.
+/// Meaning of the two parts of a time such as 01:30; three parts are hours, minutes and seconds.
 enum class ClockForm { unknown, minutes_seconds, hours_minutes };
-/// Of a unit such as "hh:mm:ss" or "mm:ss"; empty where it is no form of a time.
+/// Returns the form that a unit such as "hh:mm:ss" or "mm:ss" means; empty where it is no form of a time.
 std::optional<ClockForm> clock_form(std::string_view unit);
-/// Number of parts of a time.
+/// Returns the number of parts of a time.
 int clock_parts(std::string_view clock);
-/// The seconds of a time as a plain number.
+/// Returns the seconds of a time as a plain number.
 std::string clock_seconds(std::string_view clock, ClockForm form);
 
 }  // namespace pyroclast

@@ -9,22 +9,22 @@
 
 namespace pyroclast {
 
-/// A line of a table cut into its cells, each without quotes and blanks around it.
+/// Line of a table cut into its cells, each without quotes and blanks around it.
 struct TableRow {
-  int line;  ///< in the file, from 1
+  int line;  ///< line number in the file, from 1
   std::vector<std::string> cells;
 };
 
-/// A table cut into cells: all rows have as many.
+/// Table cut into cells; all its rows have equally many.
 struct TableGrid {
-  std::vector<TableRow> header;  ///< none, one or two rows without numbers
-  std::vector<TableRow> rows;    ///< at least one
+  std::vector<TableRow> header;  ///< header: none, one or two rows without numbers
+  std::vector<TableRow> rows;    ///< rows with numbers, at least one
   DecimalSign decimal_sign = DecimalSign::point;
-  std::string delimiter;  ///< in words
+  std::string delimiter;  ///< name of the delimiter in words
 };
 
 /// Finds the delimiter, the decimal sign and the lines of the header. Throws Error naming file and line where
-/// there is none of them, or more than one reading.
+/// the table cannot be read in any way, or in more than one.
 /// \param least  number of columns that the table must have
 TableGrid table_grid(const TableLines& lines, std::size_t least, const std::filesystem::path& path);
 

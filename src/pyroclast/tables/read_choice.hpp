@@ -8,9 +8,9 @@
 
 namespace pyroclast {
 
-/// Reads `columns` and `units`, which say what of a file is meant.
-/// \param file         as the deck names it
-/// \param least, most  of the quantities that are read, how many
+/// Reads `columns` and `units`, by which a deck chooses columns of a file.
+/// \param file         file as the deck names it
+/// \param least, most  bounds on the number of quantities that are read
 ColumnChoice read_column_choice(const Section& section, const std::string& file, std::size_t least,
                                 std::size_t most);
 

@@ -8,26 +8,27 @@
 
 namespace pyroclast {
 
-/// A line of a table that says something.
+/// Line of a table that is neither blank nor a comment.
 struct TableLine {
-  int number;  ///< in the file, from 1
+  int number;  ///< line number in the file, from 1
   std::string_view text;
 };
 
-/// The lines of a table but for blank ones and comments (#, %, !, //).
+/// Lines of a table without blank lines and comments (#, %, !, //).
 struct TableLines {
   std::vector<TableLine> lines;
-  std::optional<char> delimiter;  ///< of a first line "sep=;"
+  std::optional<char> delimiter;  ///< delimiter that a first line "sep=;" states
 };
 
-/// Lines end with LF, CRLF or CR. Throws Error, naming the file, for bytes that are not UTF-8.
-/// \param bytes  of the file; must outlive the lines
+/// Splits a table into lines, which end with LF, CRLF or CR. Throws Error, naming the file, for bytes that
+/// are not UTF-8.
+/// \param bytes  bytes of the file; must outlive the lines
 TableLines table_lines(std::string_view bytes, const std::filesystem::path& path);
 
-/// Without blanks at both ends, among them those that do not break a line.
+/// Returns a text without blanks at both ends, also without blanks that do not break a line.
 std::string_view without_blanks(std::string_view text);
 
-/// What stands in a file, for a message: in quotes, on one line, not long.
+/// Returns a text of a file for a message: in quotes, on one line, not long.
 std::string as_written(std::string_view text);
 
 /// Throws Error that names the file and the line, 0 for the file as a whole.

@@ -20,21 +20,22 @@
 namespace pyroclast {
 
 struct HeatParameters {
-  Interval temperature_range;        ///< that the run stays within until it is widened, °C
+  Interval temperature_range;        ///< range for the temperatures of the run until it is widened, °C
   double initial_temperature = 0.0;  ///< °C
   HeatScheme scheme = HeatScheme::super_time_stepping;
-  double safety = 0.0;            ///< fraction of the stable step that is taken, in (0, 1]
-  double largest_change = 0.0;    ///< of any temperature in one step, K
-  double largest_step = 0.0;      ///< s
-  std::optional<GapHeat> gaps{};  ///< empty: heat crosses all contacts without resistance
-  bool always_limits = false;     ///< limits flows in every step, needed or not: for tests
+  double safety = 0.0;          ///< fraction of the stable step that is taken, in (0, 1]
+  double largest_change = 0.0;  ///< largest change of any temperature in one step, K
+  double largest_step = 0.0;    ///< s
+  /// Resistance of contacts; empty: heat crosses all contacts without resistance.
+  std::optional<GapHeat> gaps{};
+  bool always_limits = false;  ///< true: limits flows in every step, needed or not, for tests
 };
 
-/// Where the heat of a body came from since the start, J. What came in is what is stored; the rest is the
+/// Heat of a body since the start, J. The heat that came in equals the heat stored; the remainder is the
 /// ledger's error.
 struct HeatLedger {
   HeatByKind boundary;
-  double prescribed = 0.0;  ///< needed to hold the prescribed temperatures
+  double prescribed = 0.0;  ///< heat needed to hold the prescribed temperatures
   double source = 0.0;
   double stored = 0.0;
 
@@ -43,7 +44,7 @@ struct HeatLedger {
   bool operator==(const HeatLedger&) const = default;
 };
 
-/// In the order of the history's columns. No deck has a source.
+/// Entries in the order of the history's columns. No deck has a source.
 inline constexpr auto kHeats = std::to_array<LedgerEntry<HeatLedger>>({
     {"stored", "heat_stored_J", LedgerSide::held, "in the body",
      [](const HeatLedger& h) { return h.stored; }},
@@ -59,73 +60,75 @@ inline constexpr auto kHeats = std::to_array<LedgerEntry<HeatLedger>>({
      [](const HeatLedger& h) { return h.error(); }},
 });
 
-/// The stable step of forward Euler and the node that sets it.
+/// Stable step of forward Euler and the node that sets it.
 struct HeatStepLimit {
   double step = 0.0;  ///< s
   int node = 0;
 };
 
-/// How a run towards a steady state ended.
+/// End of a run towards a steady state.
 struct SteadyState {
   bool reached = false;
   double rate = 0.0;  ///< L2 norm of the temperature's change, K/s, see Conduction::rate
 };
 
-/// Temperatures of a state, °C: with room for rounding, and hotter than any concrete. Tables of properties
-/// are as wide.
+/// Range of the temperatures of a state, °C: with room for rounding, and hotter than any concrete. Tables of
+/// properties are as wide.
 inline constexpr StateRule kTemperatures = state::within(absolute_zero - 1.0, 1e5);
 
-/// What a conduction that runs has come to at the end of its last completed step. This and what it was set up
-/// with are all that it needs to go on bitwise as before.
+/// State of a conduction at the end of its last completed step. The state and the parameters of the
+/// conduction are all that it needs to go on bitwise as before.
 struct HeatState {
-  Interval temperature_range;      ///< as widened so far, °C
+  Interval temperature_range;      ///< range as widened so far, °C
   double time = 0.0;               ///< s
-  double next_step = 0.0;          ///< to try next, s
+  double next_step = 0.0;          ///< step to try next, s
   double rate = 0.0;               ///< K/s, see Conduction::rate
   double largest_change = 0.0;     ///< K, see Conduction::largest_change
   double largest_overshoot = 0.0;  ///< K
   Interval bounds;                 ///< °C, see Conduction::bounds
-  bool limits = false;             ///< whether the next step begins with limited flows
+  bool limits = false;             ///< true where the next step begins with limited flows
   std::int64_t steps = 0, retries = 0, stages = 0, limited_steps = 0;
-  HeatLedger ledger;                          ///< without what is stored
+  HeatLedger ledger;                          ///< ledger without `stored`
   double stored_at_start = 0.0;               ///< J
-  std::vector<double> temperature, enthalpy;  ///< of each node, °C, J
+  std::vector<double> temperature, enthalpy;  ///< temperature, °C, and enthalpy, J, of each node
 
   bool operator==(const HeatState&) const = default;
 };
 
 /// Transient conduction of heat in a body of blocks, paper Eqs. (1) and (2).
 ///
-/// Linear zones with lumped capacity; gridpoints that contacts join are one node. Contacts that conduct badly
-/// may part them, see GapConduction. The enthalpy of the nodes
-/// is what is advanced, and temperatures follow from it, so heat is conserved to rounding whatever the
-/// curves. A step is explicit: as many stages as the step needs to be stable, with bounds of the properties
-/// that hold while no temperature changes by more than `largest_change`; a step in which one does is taken
+/// Zones are linear with lumped capacity; gridpoints that contacts join are one node. Contacts that conduct
+/// badly may part them, see GapConduction. The method advances the enthalpy of the nodes, and temperatures
+/// follow from it, so heat is conserved to rounding whatever the curves. A step is explicit and has as many
+/// stages as it needs to be stable. Stability rests on bounds of the properties that hold while no
+/// temperature changes by more than `largest_change`. A step in which a temperature changes by more is taken
 /// back and halved, down to the step that is stable whatever the temperatures.
 ///
-/// **Bounds.** Heat flows from hot to cold, so no temperature leaves those that the body had, that are
+/// **Bounds.** Heat flows from hot to cold. So no temperature leaves those that the body had, that are
 /// prescribed and that the gases have (`bounds`), unless a given flux or a source takes it there. Zones with
-/// obtuse angles conduct some heat from cold to hot; next to a sharp front that takes a temperature beyond
-/// its neighbours. A step that takes one there is done again with limited flows: those from cold to hot flow
-/// as far only as they bring nobody beyond its neighbours (flux correction: Zalesak 1979; Kuzmin 2012). Any
-/// other step is linear, of second order, and the same to the bit as if there were no limits.
+/// obtuse angles conduct some heat from cold to hot; next to a sharp front this takes a temperature beyond
+/// its neighbours. Such a step is done again with limited flows: flows from cold to hot are cut so that they
+/// bring no node beyond its neighbours (flux correction: Zalesak 1979; Kuzmin 2012). Any other step is
+/// linear, of second order, and the same to the bit as if there were no limits.
 ///
 /// At an end of the temperature range the temperature stays there while the node's heat waits, see
 /// `largest_overshoot`; so no curve is ever read outside the range. Where a given flux, a source or a gas
 /// beyond the range could truly take the body out of that end, an excess of more than 1 % of the range is an
 /// Error.
 ///
-/// Heat is gathered by the node that it flows to and every sum has one order, so results are bitwise the same
+/// Each node gathers the heat that flows to it, and every sum has one order, so results are bitwise the same
 /// for any number of threads.
 template <int Dim>
 class Conduction {
  public:
-  /// Heat generated at a point and time (s), W/m³. Called by several threads at once; must not throw.
+  /// Function for the heat generated at a point and time (s), W/m³. Several threads call it at once; it must
+  /// not throw.
   using Source = std::function<double(const Vec<Dim>& position, double time)>;
 
-  /// \param model      kept by reference; must outlive this
-  /// \param materials  by material of the model; one without conducts no heat, and its blocks are left out
-  /// \param team       the threads of the run; one alone where there is none
+  /// \param model      model, kept by reference; must outlive this object
+  /// \param materials  by material of the model; blocks of a material without entry conduct no heat and are
+  ///                   left out
+  /// \param team       threads of the run; without a team the calling thread works alone
   ///
   /// Throws Error naming the parameter, material or curve that is out of range.
   Conduction(const Model<Dim>& model, const std::vector<std::optional<HeatMaterial>>& materials,
@@ -134,9 +137,9 @@ class Conduction {
   Conduction(const Conduction&) = delete;
   Conduction& operator=(const Conduction&) = delete;
 
-  /// Outline of the conducting body, adiabatic unless something else is applied.
+  /// Returns the outline of the conducting body, adiabatic unless something else is applied.
   const std::vector<OutlineFace<Dim>>& outline() const { return outline_; }
-  /// Indices of the outline's faces that a predicate chooses, such as on_plane or in_box.
+  /// Returns the indices of the outline's faces that a predicate chooses, such as on_plane or in_box.
   template <class Predicate>
   std::vector<int> faces(Predicate predicate) const {
     std::vector<int> chosen;
@@ -145,10 +148,10 @@ class Conduction {
     return chosen;
   }
 
-  /// Lets heat in through faces of the outline, in addition to what acts there already.
+  /// Lets heat in through faces of the outline, in addition to conditions that act there already.
   void apply(const std::vector<int>& faces, const BoundaryCondition& condition);
-  /// Prescribes the temperature (°C, of the time in s) of the nodes of faces; where two meet, the later
-  /// holds.
+  /// Prescribes the temperature (°C, over the time in s) of the nodes of faces; where two prescriptions meet,
+  /// the later one holds.
   void prescribe_temperature(const std::vector<int>& faces, const Curve& temperature);
   /// Prescribes the temperature of a node.
   void prescribe_node(int node, const Curve& temperature);
@@ -157,113 +160,120 @@ class Conduction {
     source_ = std::move(source);
   }
 
-  /// Lets temperatures from now on come to the given range, °C, as well as to the present one. What was
-  /// computed before does not depend on it. Throws Error when a material's curve does not cover it.
+  /// Lets temperatures from now on come to the given range, °C, as well as to the present one. Earlier
+  /// results do not depend on it. Throws Error when a material's curve does not cover the range.
   void widen_temperature_range(const Interval& range);
 
-  /// Takes what is left of each contact for heat; needs HeatParameters::gaps. Where contacts come to part or
-  /// to join gridpoints, nodes are numbered anew, and no heat is lost: a part takes its share along, and what
-  /// joins has one temperature, the mean by capacity. Throws Error as GapConduction::set_gaps does.
+  /// Sets the gap of each contact; needs HeatParameters::gaps. Where contacts come to part or to join
+  /// gridpoints, nodes are numbered anew, and no heat is lost: a part takes its share along, and joined parts
+  /// have one temperature, the mean by capacity. Throws Error as GapConduction::set_gaps does.
   void set_gaps(std::vector<ContactGap> gaps);
-  /// Null where heat crosses all contacts without resistance.
+  /// Returns the conduction through gaps; null where heat crosses all contacts without resistance.
   const GapConduction<Dim>* gaps() const { return gaps_ ? &*gaps_ : nullptr; }
 
   /// Sets the temperature of every node, °C, and starts the ledger anew.
   void set_temperature(const std::vector<double>& temperature);
 
-  /// The same temperature everywhere, °C.
+  /// Sets the same temperature everywhere, °C.
   void set_uniform_temperature(double temperature);
 
-  /// Runs to a time, s. Throws Error when a temperature leaves the range, naming the place.
+  /// Conducts heat to a time, s. Throws Error when a temperature leaves the range, naming the place.
   void advance_to(double time);
-  /// Takes one step towards a time, s, or goes on with the one that was begun, by at most `stages` stages,
-  /// which it counts down. Returns whether the step is completed; until then `state` is as it was when
-  /// the step began. Where it is broken off changes no bit. Throws Error as advance_to does, and when a step
-  /// towards another time is under way.
+  /// Takes one step towards a time, s, or goes on with the step that was begun, by at most `stages` stages,
+  /// which it counts down. Returns whether the step is completed; until then `state` is as it was when the
+  /// step began. Where a call breaks a step off changes no bit. Throws Error as advance_to does, and when a
+  /// step towards another time is under way.
   bool advance_step(double end, std::int64_t& stages);
-  /// Forgets what was done of a step that is not completed; the next one does it again.
+  /// Forgets the stages done of a step that is not completed; the next step does them again.
   void drop_trial();
-  /// Stages that take some tenths of a second on one thread, by the number of zones.
+  /// Returns the stages that take some tenths of a second on one thread, by the number of zones.
   std::int64_t stages_per_batch() const;
 
-  /// Runs until the rate falls below a tolerance, K/s, or to the latest time, s.
+  /// Conducts heat until the rate falls below a tolerance, K/s, or to the latest time, s.
   SteadyState advance_to_steady(double tolerance, double latest);
 
   HeatState state() const;
-  /// Of `state`, of the same body under the same conditions. What is replaced goes on as if nothing was; a
-  /// step under way is done again from its beginning.
+  /// Shows `state` to a visitor. A new state must come from the same body under the same conditions. The
+  /// conduction goes on from it as if nothing had been replaced; a step under way is done again from its
+  /// beginning.
   void visit_state(StateVisitor& visitor);
   double time() const { return state_.time; }
   const ThermalNodes& nodes() const { return nodes_; }
-  /// Of each node, °C.
+  /// Returns the temperature of each node, °C.
   const std::vector<double>& temperature() const { return state_.temperature; }
-  /// Of each gridpoint, °C; `elsewhere` for those of blocks that are left out.
+  /// Returns the temperature of each gridpoint, °C; `elsewhere` for gridpoints of blocks that are left out.
   std::vector<double> gridpoint_temperatures(double elsewhere) const;
 
   HeatLedger ledger() const;
-  /// L2 norm of the temperature's change per time in the last step, sqrt(mean over the volume of (dT/dt)²),
-  /// K/s.
+  /// Returns the L2 norm of the temperature's change per time in the last step, sqrt(mean over the volume of
+  /// (dT/dt)²), K/s.
   double rate() const { return state_.rate; }
-  /// Of any temperature in the last step, with the jumps of prescribed ones at its beginning, K.
+  /// Returns the largest change of any temperature in the last step, with the jumps of prescribed ones at its
+  /// beginning, K.
   double largest_change() const { return state_.largest_change; }
-  /// Stable step of forward Euler at the present temperatures, safety included.
+  /// Returns the stable step of forward Euler at the present temperatures, safety included.
   HeatStepLimit step_limit() const;
-  /// Farthest that heat would have taken a node beyond the temperature range had it not been held there, K.
+  /// Returns the farthest that heat would have taken a node beyond the temperature range had the node not
+  /// been held there, K.
   double largest_overshoot() const { return state_.largest_overshoot; }
-  /// Temperatures that the body had at first, that were prescribed since then and that the gases had, °C; any
-  /// above or below where a given flux or a source could take it there. Temperatures stay within them to
-  /// `kAllowedBeyond`.
+  /// Returns the range of the temperatures that the body had at first, that were prescribed since then and
+  /// that the gases had, °C; an end is infinite where a given flux or a source could take the body beyond it.
+  /// Temperatures stay within the range to `kAllowedBeyond`.
   const Interval& bounds() const { return state_.bounds; }
 
-  std::int64_t steps() const { return state_.steps; }  ///< completed
-  /// Taken back because a temperature changed too much.
+  std::int64_t steps() const { return state_.steps; }  ///< Returns the steps completed.
+  /// Returns the steps taken back because a temperature changed too much.
   std::int64_t retries() const { return state_.retries; }
-  std::int64_t stages() const { return state_.stages; }  ///< evaluations of Eq. (1), what a run costs
-  /// Steps whose flows were limited.
+  /// Returns the evaluations of Eq. (1), the cost of a run.
+  std::int64_t stages() const { return state_.stages; }
+  /// Returns the steps whose flows were limited.
   std::int64_t limited_steps() const { return state_.limited_steps; }
 
-  /// Beyond the bounds, and beyond its neighbours in a step, a temperature comes by less than this, K.
+  /// Bound of how far a temperature comes beyond the bounds, and beyond its neighbours in a step, K.
   static constexpr double kAllowedBeyond = 0.1;
 
  private:
-  /// What flows in, W; `held` flows into nodes whose temperature is prescribed.
+  /// Inflow of heat, W; `held` flows into nodes whose temperature is prescribed.
   struct Inflow {
     HeatByKind boundary;
     double source = 0.0, held = 0.0;
   };
-  /// How a step is kept within the bounds of heat.
+  /// Limits that keep a step within the bounds of heat.
   enum class Limits : std::uint8_t {
     none,
-    flows,   ///< those from cold to hot are limited; the scheme of time may still overshoot a little
-    strict,  ///< likewise, by forward Euler, which does not
+    flows,   ///< flows from cold to hot are limited; the scheme of time may still overshoot a little
+    strict,  ///< the same flows are limited, by forward Euler, which does not overshoot
   };
-  /// A step that is being tried. The state stays at its start until the step is accepted.
+  /// Step that is being tried. The state stays at its start until the step is accepted.
   struct Trial {
     bool under_way = false;
-    double end = 0.0;    ///< time that it leads towards, s
+    double end = 0.0;    ///< time towards which it leads, s
     double step = 0.0;   ///< s
     double limit = 0.0;  ///< stable step of Euler while no temperature changes by more than is allowed, s
     Limits limits = Limits::none;
-    double left_out = 0.0;  ///< fastest change of a temperature by what limits took of flows, K/s
+    double left_out = 0.0;  ///< fastest change of a temperature by the flows that limits took away, K/s
     TimeStages stages;
     std::int64_t next_stage = 0;
-    std::int64_t stages_done = 0, retries = 0;  ///< with longer steps that were tried before
-    double change = 0.0;                        ///< largest of any temperature at any stage, held or not, K
-    double below = 0.0, above = 0.0;            ///< largest beyond the temperature range at the end, K
-    HeatLedger heat;                            ///< without what is stored
-    std::vector<double> temperature;            ///< °C
-    std::vector<double> increment, before, first_rate;  ///< see TimeStage
+    std::int64_t stages_done = 0, retries = 0;  ///< counts, with longer steps that were tried before
+    /// Largest change of any temperature at any stage, held or not, K.
+    double change = 0.0;
+    /// Largest excess beyond the temperature range at the end, K.
+    double below = 0.0, above = 0.0;
+    HeatLedger heat;                                    ///< ledger without `stored`
+    std::vector<double> temperature;                    ///< °C
+    std::vector<double> increment, before, first_rate;  ///< terms of a stage, see TimeStage
   };
-  /// What the beginning of a run changed of the state, until its first step is completed.
+  /// Values of the state that the beginning of a run changed, until its first step is completed.
   struct BeforeRun {
     bool holds = false;
-    double next_step = 0.0;                     ///< s
-    double prescribed = 0.0;                    ///< in the ledger, J
-    Interval bounds;                            ///< °C
-    std::vector<double> temperature, enthalpy;  ///< of the prescribed nodes, in the order of `prescribed_`
+    double next_step = 0.0;   ///< s
+    double prescribed = 0.0;  ///< entry in the ledger, J
+    Interval bounds;          ///< °C
+    /// Temperature, °C, and enthalpy, J, of the prescribed nodes, in the order of `prescribed_`.
+    std::vector<double> temperature, enthalpy;
   };
 
-  /// A boundary condition on faces of the outline.
+  /// Boundary condition on faces of the outline.
   struct Applied {
     std::vector<int> faces;
     BoundaryCondition condition;
@@ -305,7 +315,7 @@ class Conduction {
   HeatParameters parameters_;
   std::shared_ptr<Team> team_;
   TemperatureGrid grid_;
-  std::vector<bool> conducts_;          ///< by material
+  std::vector<bool> conducts_;          ///< true for a material that conducts
   std::vector<int> table_of_material_;  ///< -1: does not conduct
   std::vector<HeatTable> tables_;
   ZoneGeometry<Dim> geometry_;
@@ -313,32 +323,34 @@ class Conduction {
   ZoneConduction<Dim> zones_;
   std::optional<GapConduction<Dim>> gaps_;
 
-  // These follow from which gridpoints share a node, see set_nodes.
+  // The next members depend on which gridpoints share a node, see set_nodes.
   ThermalNodes nodes_;
   NodeEnthalpy store_;
-  std::vector<double> volume_;  ///< of each node, m³
+  std::vector<double> volume_;  ///< volume of each node, m³
   std::vector<int> node_chunks_;
   double total_volume_ = 0.0;  ///< m³
 
   HeatBoundary boundary_;
-  std::vector<int> prescription_;  ///< of each node, -1: free
+  std::vector<int> prescription_;  ///< prescription of each node, -1: free
 
   std::vector<Applied> applied_;
   Source source_;
   std::vector<Curve> prescriptions_;
-  std::vector<int> prescription_of_gridpoint_;  ///< -1: free
-  std::vector<int> prescribed_;                 ///< nodes, ascending
+  std::vector<int> prescription_of_gridpoint_;  ///< prescription of each gridpoint, -1: free
+  std::vector<int> prescribed_;                 ///< prescribed nodes, ascending
   std::vector<int> prescribed_chunks_;
-  std::vector<double> held_at_;  ///< by prescription, °C
+  std::vector<double> held_at_;  ///< temperatures by prescription, °C
 
   HeatState state_;
   Trial trial_;
   BeforeRun before_run_;
-  double safe_step_ = 0.0;                            ///< of the run: stable whatever the temperatures, s
-  double allowed_below_ = 0.0, allowed_above_ = 0.0;  ///< of the run: beyond the temperature range, K
-  std::vector<Interval> reach_;  ///< of each node: what may take it beyond its neighbours
+  double safe_step_ = 0.0;  ///< step that is stable in this run whatever the temperatures, s
+  /// Allowed excess of this run beyond the temperature range, K.
+  double allowed_below_ = 0.0, allowed_above_ = 0.0;
+  /// Range of each node to which something may take it beyond its neighbours.
+  std::vector<Interval> reach_;
   std::vector<typename ZoneConduction<Dim>::Uphill> shares_;
-  std::vector<double> boundary_heat_, source_heat_;  ///< into each node, W
+  std::vector<double> boundary_heat_, source_heat_;  ///< heat into each node, W
 };
 
 extern template class Conduction<2>;

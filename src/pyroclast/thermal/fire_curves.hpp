@@ -4,7 +4,7 @@
 
 namespace pyroclast {
 
-/// Standard fires by name: gas temperature in degC as a function of the time since ignition in s.
+/// Returns standard fires by name: gas temperature in degC as a function of the time since ignition in s.
 /// Each entry states source and range. `fire_curves().at("iso834").curve`.
 const CurveCatalogue& fire_curves();
 

@@ -12,16 +12,15 @@
 
 namespace pyroclast {
 
-/// Heat that crosses contacts with a resistance. Gridpoints share a node as long as contacts that conduct
+/// Conduction through contacts with a resistance. Gridpoints share a node as long as contacts that conduct
 /// well join them; between nodes heat flows through the contacts that conduct badly. At the tip of a crack
-/// both faces meet in one node, for intact contacts lead around it.
+/// both faces meet in one node, for intact contacts lead around the tip.
 template <int Dim>
 class GapConduction {
  public:
-  /// \param conducts  whether a material takes part, by material of the model; contacts with another one,
-  /// such
-  ///                  as a bearing's, are closed to heat
-  /// \param model     kept by reference, and so is the team
+  /// \param model     model, kept by reference, as is the team
+  /// \param conducts  true where a material takes part, by material of the model; contacts with another
+  ///                  material, such as a bearing's, are closed to heat
   ///
   /// Throws Error naming the number of `law` that is out of range, and as set_grid does.
   GapConduction(const Model<Dim>& model, const std::vector<bool>& conducts, const GapHeat& law,
@@ -29,23 +28,23 @@ class GapConduction {
 
   const GapHeat& law() const { return law_; }
   /// Changes the range of temperatures. Throws Error when the conductivity of the gas is not known or not
-  /// positive at one of them.
+  /// positive somewhere in the range.
   void set_grid(const TemperatureGrid& grid);
 
-  /// Takes what is left of each contact. Returns whether contacts came to part or to join their sides.
-  /// \param temperature  of each gridpoint, °C
+  /// Sets the gap of each contact. Returns whether contacts came to part or to join their sides.
+  /// \param temperature  temperature of each gridpoint, °C
   ///
-  /// Throws Error for another number of gaps than of contacts, a damage not between 0 and 1, and a negative
-  /// opening.
+  /// Throws Error when the numbers of gaps and contacts differ, for a damage not between 0 and 1, and for a
+  /// negative opening.
   bool set_gaps(std::vector<ContactGap> gaps, const std::vector<double>& temperature);
-  /// Whether each contact parts its sides.
+  /// Tells of each contact whether it parts its sides.
   const std::vector<std::uint8_t>& parts() const { return parts_; }
   /// Lists the contacts that lie between two nodes.
   void set_nodes(const ThermalNodes& nodes);
 
   /// Computes the heat flow through every contact between two nodes, for `inflow`.
   void update(const std::vector<double>& temperature);
-  /// Heat that flows into a node from others through contacts, W.
+  /// Returns the heat that flows into a node from others through contacts, W.
   double inflow(int node) const;
 
   /// Widens a range by the temperatures from which heat flows into a node through contacts.
@@ -56,10 +55,10 @@ class GapConduction {
   /// \param hottest  bound of each node's temperature, °C
   void add_row_bound(double coldest, const std::vector<double>& hottest, std::vector<double>& rows) const;
 
-  /// Conductance of each contact, W/(m² K), at temperatures of the gridpoints, °C; 0 where it is closed to
-  /// heat.
+  /// Returns the conductance of each contact, W/(m² K), at temperatures of the gridpoints, °C; 0 where the
+  /// contact is closed to heat.
   std::vector<double> conductances(const std::vector<double>& temperature) const;
-  /// Area of the contacts between two nodes, m².
+  /// Returns the area of the contacts between two nodes, m².
   double area() const;
 
   void visit_state(StateVisitor& visitor);
@@ -81,12 +80,12 @@ class GapConduction {
   TemperatureGrid grid_;
   std::vector<double> gas_;  ///< conductivity at the knots of the range, W/(m K); linear between them
   Team& team_;
-  std::vector<bool> open_to_heat_;   ///< of each contact: both sides conduct
-  std::vector<ContactGap> gaps_;     ///< of each contact
-  std::vector<std::uint8_t> parts_;  ///< likewise
-  std::vector<Crossing> crossings_;  ///< in the order of the contacts
-  std::vector<int> chunks_;          ///< of the crossings
-  std::vector<double> heat_;         ///< of each crossing, from a to b, W
+  std::vector<bool> open_to_heat_;   ///< true for a contact whose two sides conduct
+  std::vector<ContactGap> gaps_;     ///< gap of each contact
+  std::vector<std::uint8_t> parts_;  ///< true for a contact that parts its sides
+  std::vector<Crossing> crossings_;  ///< contacts between two nodes, in the order of the contacts
+  std::vector<int> chunks_;          ///< chunks of the crossings
+  std::vector<double> heat_;         ///< heat flow of each crossing, from a to b, W
   std::vector<int> begin_;           ///< crossings at node i: [i] to [i + 1]
   std::vector<int> sides_;           ///< twice the crossing's index, plus one on side b
 };

@@ -27,25 +27,26 @@ struct BoundaryPatch {
   double area;  ///< m²
 };
 
-/// The boundary conditions of a body. Their integrals over the faces are taken by the values at the nodes
-/// (trapezoidal rule: second order, and exact for a given flux).
+/// Boundary conditions of a body. Their integrals over the faces use the values at the nodes (trapezoidal
+/// rule: second order, and exact for a given flux).
 class HeatBoundary {
  public:
+  /// Adds a condition.
   /// \param patches  ascending by node
   ///
   /// Throws Error naming the quantity when its curve is not one of time, a coefficient is negative, or an
   /// emissivity not between 0 and 1.
   void add(const BoundaryCondition& condition, std::vector<BoundaryPatch> patches);
-  /// Takes all of them away.
+  /// Takes all conditions away.
   void clear() { entries_.clear(); }
 
   /// Throws Error naming the curve that is not defined from `begin` to `end`, s.
   void require_defined(double begin, double end) const;
 
-  /// Temperatures to which the conditions can draw between two times, s: those of gases, and any above or
-  /// below where a given flux flows in or out.
+  /// Returns the range of temperatures to which the conditions can draw between two times, s: those of gases,
+  /// and an infinite end where a given flux flows in or out.
   Interval reach(double begin, double end) const;
-  /// Widens the range of each boundary node by the same at one time.
+  /// Widens the range of each boundary node by the reach of its conditions at one time.
   void add_reach(double time, std::vector<Interval>& ranges) const;
 
   /// Writes the heat that flows into each boundary node, W; leaves the other entries as they are.
@@ -62,7 +63,7 @@ class HeatBoundary {
   struct Entry {
     BoundaryCondition condition;
     std::vector<BoundaryPatch> patches;
-    std::vector<int> chunks;  ///< of the patches
+    std::vector<int> chunks;  ///< chunks of the patches
   };
   std::vector<Entry> entries_;
 };

@@ -9,8 +9,8 @@
 namespace pyroclast {
 
 /// Throws Error where a number is not allowed.
-/// \param of      what the number belongs to, such as "heat conduction"
-/// \param wanted  what it must be, in words
+/// \param of      owner of the number, such as "heat conduction"
+/// \param wanted  allowed values in words
 inline void require(bool allowed, std::string_view of, std::string_view quantity, double value,
                     std::string_view wanted) {
   if (!allowed) throw Error(fmt::format("{}: {} is {}, but it must be {}", of, quantity, value, wanted));

@@ -11,17 +11,17 @@
 
 namespace pyroclast {
 
-/// Gridpoints between which the temperature of each contact point lies: its two, at a bearing twice the
-/// specimen's.
+/// Returns the two gridpoints of each contact point between whose temperatures its own lies; at a bearing
+/// both are the specimen's.
 std::vector<std::array<int, 2>> contact_gridpoints(const Model<2>& model);
 
-/// The temperatures of a specimen during a run: one for the whole specimen, or the computed field. The
-/// platens are at the reference temperature throughout.
+/// Temperatures of a specimen during a run: one for the whole specimen, or the computed field. The platens
+/// are at the reference temperature throughout.
 class TemperatureField {
  public:
-  /// One temperature for the whole specimen, °C. `model` must outlive the field.
+  /// Sets one temperature for the whole specimen, °C. `model` must outlive the field.
   TemperatureField(const Model<2>& model, double temperature);
-  /// The field that conduction computes, see make_conduction. `model` must outlive the field.
+  /// Takes the field that conduction computes, see make_conduction. `model` must outlive the field.
   TemperatureField(const Model<2>& model, std::unique_ptr<Conduction<2>> conduction);
 
   bool is_uniform() const { return !conduction_; }
@@ -29,13 +29,13 @@ class TemperatureField {
   /// Sets the specimen's temperature, °C. Throws Error for a computed field.
   void set_uniform(double temperature);
 
-  /// Says to which temperatures, °C, the specimen may come by the end of what it is exposed to next, beside
-  /// those of earlier exposures; before the first one it stays at its initial temperature. So no result
-  /// depends on a later, hotter exposure. Throws Error for a uniform field.
+  /// Widens the range of temperatures, °C, to those that the specimen may reach by the end of the next
+  /// exposure; the ranges of earlier exposures stay, and before the first one the specimen stays at its
+  /// initial temperature. So no result depends on a later, hotter exposure. Throws Error for a uniform field.
   void begin_exposure(const Interval& temperatures);
 
-  /// Takes what is left of each contact for heat, see Conduction::set_gaps. Throws Error for a uniform field
-  /// and while an advance is under way.
+  /// Sets the gap of each contact for heat, see Conduction::set_gaps. Throws Error for a uniform field and
+  /// while an advance is under way.
   void set_gaps(std::vector<ContactGap> gaps);
 
   /// Conducts heat until some gridpoint of the specimen has changed by `largest_change`, K, since the call,
@@ -43,13 +43,13 @@ class TemperatureField {
   /// time reached.
   ///
   /// The solver is stopped where the rates of its last step foresee the change, and asked after every step:
-  /// the change ends between 95 % of what is asked for and that plus one step's largest change
+  /// the change ends between 95 % of the wanted one and the wanted one plus one step's largest change
   /// (HeatConditions::largest_change). It ends beyond only where a prescribed temperature jumps, or where
   /// less than one stable step brings more. Throws Error for a uniform field.
   double advance(double largest_change, double until, double steady_rate = 0.0);
 
-  /// The same in batches: begin, then call `advance` until it returns true. Until then all that can be read
-  /// here is as it was at the beginning; where batches end changes no bit.
+  /// Begins an advance in batches; then call `advance` until it returns true. Until then all values that can
+  /// be read here are those of the beginning; where batches end changes no bit.
   void begin_advance(double largest_change, double until, double steady_rate = 0.0);
   /// Goes on by at most `stages` stages of the solver (Conduction::stages_per_batch), 1 or more. Returns
   /// whether the advance is over.
@@ -57,32 +57,34 @@ class TemperatureField {
   /// Ends an advance that is under way after the last step that the solver completed.
   void end_advance();
 
-  /// Temperatures, °C: of each gridpoint; of each zone, the mean of its gridpoints; of each contact point
-  /// the mean of its gridpoints, at a platen that of the specimen.
+  /// Returns the temperature of each gridpoint, °C; `zones` and `contacts` return the means over the
+  /// gridpoints of each zone and contact point, at a platen the temperature of the specimen's gridpoint.
   const std::vector<double>& gridpoints() const { return gridpoints_; }
   const std::vector<double>& zones() const { return zones_; }
   const std::vector<double>& contacts() const { return contacts_; }
 
-  /// Over the specimen, °C; the mean is one over the volume.
+  /// Returns the mean over the specimen's volume, °C; `minimum` and `maximum` return the extremes.
   double mean() const { return mean_; }
   double minimum() const { return minimum_; }
   double maximum() const { return maximum_; }
 
-  /// Of these temperatures from the start of heating, s; 0 for a uniform field, which knows no time.
+  /// Returns the time of these temperatures from the start of heating, s; 0 for a uniform field, which knows
+  /// no time.
   double time() const { return time_; }
 
-  /// The solver, with its ledger and rates; null for a uniform field.
+  /// Returns the solver, with its ledger and rates; null for a uniform field.
   const Conduction<2>* conduction() const { return conduction_.get(); }
 
   void visit_state(StateVisitor& visitor);
 
  private:
-  /// How far an advance has come.
+  /// Progress of an advance.
   struct Advance {
     bool under_way = false;
-    double largest_change = 0.0, until = 0.0, steady_rate = 0.0;  ///< as asked for, K, s, K/s
-    double change = 0.0;                                          ///< so far, K
-    std::vector<double> begin;                                    ///< temperatures of the nodes then, °C
+    double largest_change = 0.0, until = 0.0, steady_rate = 0.0;  ///< limits as asked for, K, s, K/s
+    double change = 0.0;                                          ///< change so far, K
+    /// Temperatures of the nodes at the beginning, °C.
+    std::vector<double> begin;
   };
 
   explicit TemperatureField(const Model<2>& model);
@@ -93,13 +95,14 @@ class TemperatureField {
   const Model<2>& model_;
   std::unique_ptr<Conduction<2>> conduction_;
   std::vector<int> specimen_gridpoints_;
-  std::vector<std::array<int, 2>> contact_gridpoints_;  ///< of each contact; at a platen twice the specimen's
-  std::vector<double> specimen_volume_;                 ///< of each zone, m³; 0 in the platens
+  /// Gridpoints of each contact; at a platen twice the specimen's.
+  std::vector<std::array<int, 2>> contact_gridpoints_;
+  std::vector<double> specimen_volume_;  ///< volume of each zone, m³; 0 in the platens
   std::vector<int> zone_chunks_;
-  double volume_ = 0.0;  ///< of the specimen, m³
+  double volume_ = 0.0;  ///< volume of the specimen, m³
 
   Advance advance_;
-  double fastest_ = 0.0;  ///< rate of any temperature in the last step, K/s
+  double fastest_ = 0.0;  ///< fastest rate of any temperature in the last step, K/s
 
   double time_ = 0.0;
   std::vector<double> gridpoints_, zones_, contacts_;

@@ -11,16 +11,17 @@ namespace pyroclast {
 /// Gridpoints that share one temperature.
 struct ThermalNodes {
   std::vector<int> of_gridpoint;  ///< node of each gridpoint; -1 where the block conducts no heat
-  std::vector<int> gridpoint;     ///< of each node the first of its gridpoints
+  std::vector<int> gridpoint;     ///< first gridpoint of each node
 
   int count() const { return static_cast<int>(gridpoint.size()); }
 };
 
-/// Nodes for heat that crosses contacts without resistance (paper, 2.1): gridpoints that contacts join are
-/// one.
+/// Makes the nodes for heat that crosses contacts without resistance (paper, 2.1): gridpoints that contacts
+/// join are one node.
 ///
-/// \param conducts  whether a material takes part, by material of the model
-/// \param parts     whether each contact has a resistance, see GapConduction, and joins nothing; empty: none
+/// \param conducts  true where a material takes part, by material of the model
+/// \param parts     true where a contact has a resistance, see GapConduction, and joins nothing; empty: no
+///                  contact
 ///
 /// Throws Error when a contact joins gridpoints that do not coincide, or a gridpoint belongs to no zone.
 template <int Dim>

@@ -5,8 +5,8 @@
 
 namespace pyroclast {
 
-/// How heat conduction is advanced in time. Both are explicit and safe up to the stable step of the mesh
-/// times a factor that grows with the number of stages.
+/// Scheme by which heat conduction advances in time. Both schemes are explicit and safe up to the stable step
+/// of the mesh times a factor that grows with the number of stages.
 enum class HeatScheme : std::uint8_t {
   euler,  ///< forward Euler, first order: n stages for n stable steps
   /// Runge-Kutta-Legendre super-time-stepping, second order: about 2 sqrt(n) stages for n stable steps.
@@ -19,17 +19,17 @@ enum class HeatScheme : std::uint8_t {
 struct TimeStage {
   double previous, before, rate, first_rate;
   double begin, end;  ///< times of y_(j-1) and y_j since t, over the step
-  double weight;      ///< of M(y_(j-1)) in the increment of the whole step, over the step
+  double weight;      ///< weight of M(y_(j-1)) in the increment of the whole step, over the step
 };
 
-/// Fewest stages that are stable for a step of `ratio` stable steps of forward Euler.
+/// Returns the fewest stages that are stable for a step of `ratio` stable steps of forward Euler.
 std::int64_t fewest_stages(HeatScheme scheme, double ratio);
 
-/// The stages of one step. Those of Euler are worked out as they are read: there may be very many.
+/// Stages of one step. Those of Euler are computed as they are read: there may be very many.
 class TimeStages {
  public:
   TimeStages() = default;
-  /// \param count  as from `fewest_stages`
+  /// \param count  number of stages, from `fewest_stages`
   TimeStages(HeatScheme scheme, std::int64_t count);
 
   std::int64_t count() const { return count_; }
@@ -37,7 +37,7 @@ class TimeStages {
 
  private:
   std::int64_t count_ = 0;
-  std::vector<TimeStage> legendre_;  ///< empty for Euler
+  std::vector<TimeStage> legendre_;  ///< stages of the Legendre scheme; empty for Euler
 };
 
 }  // namespace pyroclast

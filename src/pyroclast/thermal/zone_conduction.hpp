@@ -14,7 +14,7 @@
 
 namespace pyroclast {
 
-/// Nodes or zones that a thread gets at least: for fewer the threads would take longer to meet.
+/// Least nodes or zones of a thread: with fewer the threads would take longer to meet.
 inline constexpr int fewest_for_threads = 5000;
 
 /// Makes a maximum that threads share at least as large as a value.
@@ -29,64 +29,66 @@ inline void raise(std::atomic<double>& maximum, double value) {
 template <int Dim>
 class ZoneConduction {
  public:
-  /// \param table_of_material  index into the tables of each material of the model, -1 where none conducts
+  /// \param table_of_material  index into the tables of each material of the model, -1 where it conducts no
+  ///                           heat
   /// \param tables             kept by reference
-  /// \param team               shares zones and nodes; kept by reference
+  /// \param team               team that shares zones and nodes; kept by reference
   ZoneConduction(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry,
                  const std::vector<int>& table_of_material, const std::vector<HeatTable>& tables, Team& team);
 
-  /// Says which node stands at each gridpoint; needed before all that follows.
+  /// Sets the node at each gridpoint; needed before all other calls.
   void set_nodes(const ThermalNodes& nodes);
 
   std::int64_t zone_count() const { return static_cast<std::int64_t>(zones_.size()); }
 
   /// Computes the heat flow to the corners of every zone, for `inflow`.
   void update(const std::vector<double>& temperature);
-  /// Heat that flows into a node from its zones, W.
+  /// Returns the heat that flows into a node from its zones, W.
   double inflow(int node) const;
 
-  /// The same flows in two parts: those from hot to cold, for `inflow`, and those that zones with obtuse
-  /// angles have from cold to hot, for `uphill` and `add_uphill`.
+  /// Computes the same flows in two parts: flows from hot to cold, for `inflow`, and flows from cold to hot
+  /// in zones with obtuse angles, for `uphill` and `add_uphill`.
   void update_apart(const std::vector<double>& temperature);
-  /// Heat from cold to hot, W: what would flow into a node, and out of it.
+  /// Heat from cold to hot, W, that would flow into a node, and out of it.
   struct Uphill {
     double in = 0.0, out = 0.0;
   };
   Uphill uphill(int node) const;
-  /// Adds the flows from cold to hot to the others, each by the smaller of what the hot node may take in and
-  /// the cold one give.
-  /// \param shares    of each node: of what flows in, and of what flows out, from 0 to 1
-  /// \param capacity  of a node, J/K
-  ///
-  /// Returns the greatest speed by which what is left out would have changed a node's temperature, K/s.
+  /// Adds the flows from cold to hot to the others, each by the smaller of the shares that the hot node may
+  /// take in and that the cold node may give. Returns the greatest speed by which the flows left out would
+  /// have changed a node's temperature, K/s.
+  /// \param shares    shares of each node, of its flows in and of its flows out, from 0 to 1
+  /// \param capacity  capacity of a node, J/K
   template <class Capacity>
   double add_uphill(const std::vector<Uphill>& shares, Capacity capacity);
 
-  /// Least and greatest temperature of the nodes with which a node shares a zone, without its own.
+  /// Returns the least and greatest temperature of the nodes with which a node shares a zone, without its
+  /// own.
   Interval around(int node, const std::vector<double>& temperature) const;
 
-  /// Bound of the sum of |conductance| over a node's row of the assembled matrix, W/K, wherever the
+  /// Returns a bound of the sum of |conductance| over a node's row of the assembled matrix, W/K, wherever the
   /// temperatures may be after changing by up to the tables' window.
   std::vector<double> row_bound(const std::vector<double>& temperature) const;
-  /// The same over the whole temperature range.
+  /// Returns the same bound over the whole temperature range.
   std::vector<double> row_bound() const;
 
-  /// Volume that each node has of each material, as index of the tables: an equal share of every zone.
+  /// Returns the volume that each node has of each material, as index of the tables: an equal share of every
+  /// zone.
   std::vector<std::vector<NodeShare>> shares() const;
 
  private:
-  static constexpr int kPairs = Dim * (Dim + 1) / 2;  ///< of corners of a zone
+  static constexpr int kPairs = Dim * (Dim + 1) / 2;  ///< pairs of corners of a zone
 
   struct Zone {
     std::array<int, Dim + 1> node;
     int table;
     double volume;                       ///< m³
-    std::array<Vec<Dim>, Dim> gradient;  ///< of the first Dim shape functions, 1/m
+    std::array<Vec<Dim>, Dim> gradient;  ///< gradients of the first Dim shape functions, 1/m
   };
 
   template <class Visit>
   static void for_each_pair(Visit visit);
-  /// Of all shape functions, 1/m.
+  /// Returns the gradients of all shape functions, 1/m.
   static std::array<Vec<Dim>, Dim + 1> gradients(const Zone& zone);
   double mean_temperature(const Zone& zone, const std::vector<double>& temperature) const;
   template <class Conductivity>
@@ -96,12 +98,12 @@ class ZoneConduction {
   Team& team_;
   int node_count_ = 0;
   std::vector<Zone> zones_;
-  std::vector<std::array<int, Dim + 1>> gridpoints_;  ///< of each zone
+  std::vector<std::array<int, Dim + 1>> gridpoints_;  ///< gridpoints of each zone
   std::vector<std::array<double, Dim + 1>> row_;      ///< sums of |conductance| at unit conductivity, m
-  std::vector<std::array<double, Dim + 1>> heat_;     ///< into each corner, W
-  std::vector<std::array<double, kPairs>> uphill_;    ///< into the first corner of each pair, W
+  std::vector<std::array<double, Dim + 1>> heat_;     ///< heat into each corner, W
+  std::vector<std::array<double, kPairs>> uphill_;    ///< heat into the first corner of each pair, W
   std::vector<int> begin_;                            ///< corners at node i: [i] to [i + 1]
-  std::vector<std::array<int, 2>> corners_;           ///< zone and its corner
+  std::vector<std::array<int, 2>> corners_;           ///< zone and corner
 };
 
 template <int Dim>

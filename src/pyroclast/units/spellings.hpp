@@ -6,8 +6,8 @@
 
 namespace pyroclast {
 
-/// The unit of a kind that a text most likely means and does not spell: "W/(m K)" for "W/m·K", "MPa" for
-/// "Mpa", "kgf/cm2" for "kp/cm2". Empty where none is near.
+/// Returns the unit that a text most likely means but does not spell: "W/(m K)" for "W/m·K", "MPa" for "Mpa",
+/// "kgf/cm2" for "kp/cm2". Empty where no unit is near.
 std::string_view meant_spelling(std::string_view given, const Unit& unit);
 
 }  // namespace pyroclast

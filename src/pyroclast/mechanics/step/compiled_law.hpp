@@ -3,7 +3,7 @@
 #include "pyroclast/mechanics/compiled_for_sets.hpp"
 #include "pyroclast/mechanics/step/contacts.hpp"
 
-/// What a file that compiles the packs of a law for one instruction set includes.
+/// Header of every file that compiles the packs of a law for one instruction set.
 namespace pyroclast {
 
 template <int Dim, class Set, class Law, Dimensions kDimensions>

@@ -13,8 +13,8 @@ struct ContactForces {
   using Real = typename R::Real;
   using Vector = typename R::Vector;
 
-  /// Adds to the weight of a pack of gridpoints what the contact points on it exert: with opposite signs on
-  /// the two sides, or alike.
+  /// Adds to the weight of a pack of gridpoints the forces of the contact points on it: with opposite signs
+  /// on the two sides, or with equal signs.
   template <Kinematics kKinematics, bool kOpposite>
   static Vector add_forces(const State<Dim>& s, int pack, Vector total) {
     const ContactsOfPack range = s.layout.contacts_of_pack[pack];
@@ -47,7 +47,7 @@ struct Contacts {
   static constexpr int kLosses = count_of<typename Law::template Losses<double>>();
   static constexpr int kConstants = count_of<OneForAll>();
 
-  /// As of PackFunctions.
+  /// Implements PackFunctions::update.
   static void update(State<Dim>& s, int first, int last, bool measure) {
     with_kinematics(s, [&](auto kinematics) {
       if (measure)
@@ -57,12 +57,12 @@ struct Contacts {
     });
   }
 
-  /// As of PackFunctions.
+  /// Implements PackFunctions::place_stiffness.
   static void place_stiffness(State<Dim>& s, int first, int last) {
     with_kinematics(s, [&](auto kinematics) { place_stiffness_of<kinematics()>(s, first, last); });
   }
 
-  // flatten: lanes that cross a call go through memory
+  // flatten, because lanes that cross a call go through memory
   template <Kinematics kKinematics, bool kMeasure>
   [[gnu::flatten, gnu::noinline]] static void update_packs(State<Dim>& __restrict s, int first, int last) {
     for (int pack = first; pack < last; ++pack) {
@@ -147,7 +147,7 @@ struct Contacts {
         turning += response.shear_traction[0] * opening - response.normal_traction * tangential[0];
       if constexpr (kMeasure) {
         stored += response.stored * area;
-        applied += 2.0 * norm(force);  // on both sides
+        applied += 2.0 * norm(force);  // counts both sides
         widest = larger(widest, norm(jump));
       }
     }
@@ -162,7 +162,7 @@ struct Contacts {
     }
   }
 
-  /// Of the edge in 2D; in 3D the root of twice the area of a face.
+  /// Returns the length of the edge in 2D; in 3D the root of twice the area of a face.
   static Real length(const State<Dim>& s, int first, int last) {
     if constexpr (Dim == 2) return Real::load(s.layout.points[first].area) * (Dim / s.thickness);
     Real area = 0.0;
@@ -174,7 +174,7 @@ struct Contacts {
     return *reinterpret_cast<const OneForAll*>(&s.contact_constants[s.first_constant[set]]);
   }
 
-  /// Constants of points that have each their own temperature.
+  /// Returns the constants of points that each have their own temperature.
   static ForEach own_constants(const State<Dim>& s, int pack, int point) {
     ForEach c;
     ForEach::each_choice([](const auto&, auto& mine, const auto& of_set) { mine = of_set; }, c,
@@ -213,35 +213,36 @@ struct Contacts {
     return response;
   }
 
-  /// Adds to eight numbers in an array.
+  /// Sum that adds to eight numbers in an array.
   struct LineSum {
     double* number = nullptr;
     void operator+=(const Real& more) const { (Real::load(number) + more).store(number); }
   };
 
-  /// Where the frame turns with the edge, so do the components of a jump. The forces that do the work of the
-  /// tractions on that part keep moments in balance: minus the derivative of the jump's components by the
-  /// edge's gridpoints.
+  /// Adds forces that keep moments in balance where the frame turns with the edge. The components of a jump
+  /// turn with the frame, and these forces do the work of the tractions on that part: they are minus the
+  /// derivative of the jump's components by the edge's gridpoints.
   static void add_turning_forces(State<Dim>& s, int first_point, const Frame& frame, const Real& turning) {
     const Vector force = frame.normal * (0.5 * turning / frame.edge);
     R::store(force, &s.turning_force[slot_of(first_point, 0)]);
     R::store(-force, &s.turning_force[slot_of(first_point + 1, 0)]);
   }
 
-  /// Once for the gridpoint itself, once for the one across.
+  /// Sums |stiffness| over the rows of a contact's matrix. The factor 2 counts the gridpoint itself and the
+  /// one across.
   template <class Constants>
   static Vector stiffness(const Constants& constants, const Vector& normal, const Real& area) {
     const auto k = Law::stiffness(constants);
-    Vector pack;
+    Vector row;
     for (int i = 0; i < Dim; ++i) {
       Real sum = 0.0;
       for (int j = 0; j < Dim; ++j) {
         const Real nn = normal[i] * normal[j];
         sum += abs(k.normal * nn + k.shear * ((i == j ? 1.0 : 0.0) - nn));
       }
-      pack[i] = 2.0 * sum * area;
+      row[i] = 2.0 * sum * area;
     }
-    return pack;
+    return row;
   }
 };
 

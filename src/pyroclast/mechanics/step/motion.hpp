@@ -2,7 +2,7 @@
 
 #include "pyroclast/mechanics/step/packs.hpp"
 
-/// Motion of gridpoints under the sums of forces, Eqs. (6)-(8), held, driven and loaded as asked.
+/// Motion of gridpoints under the sums of forces, Eqs. (6)-(8), held, driven and loaded as prescribed.
 namespace pyroclast {
 
 template <int Dim, class Set>
@@ -80,7 +80,8 @@ struct Motion {
   }
 
  private:
-  /// As the motion needs them. A copy: otherwise aliasing forces reloads after every store.
+  /// Parameters as the motion needs them. This is a copy: otherwise aliasing forces reloads after every
+  /// store.
   struct Parameters {
     explicit Parameters(const StepParameters<Dim>& p)
         : dt(p.time_step),

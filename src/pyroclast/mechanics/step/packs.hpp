@@ -2,7 +2,7 @@
 
 #include "pyroclast/mechanics/state.hpp"
 
-/// Packs of eight: how lanes are loaded, stored and gathered, and how memory is asked for ahead.
+/// Packs of eight: functions that load, store and gather lanes, and ask for memory ahead.
 namespace pyroclast {
 
 /// Calls `f` with the body's kinematics as a constant.
@@ -14,7 +14,7 @@ void with_kinematics(const State<Dim>& s, F f) {
   f(std::integral_constant<Kinematics, Kinematics::small>());
 }
 
-/// Calls `f` with whether zones of the body have crept as a constant.
+/// Calls `f` with a constant that tells whether zones of the body creep.
 template <int Dim, class F>
 void with_creep(const State<Dim>& s, F f) {
   if (s.creep_strain.empty()) return f(std::false_type());
@@ -35,7 +35,7 @@ struct Packs {
   static void store(const Vector& v, double (&c)[Dim][kLanes]) {
     for (int i = 0; i < Dim; ++i) v[i].store(c[i]);
   }
-  /// Eight vectors that follow one another.
+  /// Reads eight consecutive vectors.
   static Vector load(const Vec<Dim>* p) {
     Vector v;
     if constexpr (Dim == 2) {
@@ -91,13 +91,13 @@ struct Packs {
     }
   }
 
-  // Processors foresee streams badly between so much arithmetic; lines come best a few at a time, all through
-  // the step.
+  // Processors do not foresee streams well among so much arithmetic; lines come best a few at a time, all
+  // through the step.
 
-  static constexpr int kPacksAhead = 16;     ///< of gridpoints
-  static constexpr int kFacePacksAhead = 8;  ///< about as far
-  /// Of faces between chunks, whose gridpoints stand anywhere: they are asked for one by one, once the pack
-  /// of points itself has come.
+  static constexpr int kPacksAhead = 16;     ///< packs of gridpoints
+  static constexpr int kFacePacksAhead = 8;  ///< about as far, in packs of faces
+  /// Number of packs ahead for faces between chunks, whose gridpoints stand anywhere: gridpoints are asked
+  /// for one by one, once the pack of points itself has come.
   static constexpr int kScatteredPacksAhead = 4;
 
   template <int kLines>
@@ -124,7 +124,7 @@ struct Packs {
         __builtin_prefetch(&s.displacement[points.b[lane] / offset_of<Dim>(1)]);
       }
   }
-  /// Of any law.
+  /// Asks for the internal variables and losses of a pack of faces of any law.
   [[gnu::noinline]] static void fetch_internals(const State<Dim>& s, int pack) {
     for (int i = s.first_internal[pack]; i < s.first_internal[pack + 1]; ++i) fetch(s.internals[i]);
     const int first = s.layout.first_point_of(pack), points = s.layout.first_point_of(pack + 1) - first;
@@ -133,9 +133,9 @@ struct Packs {
       for (int i = 0; i < losses && s.losing[first + point]; ++i)
         fetch(s.loss[s.first_loss[pack] + point * losses + i]);
   }
-  /// What a pack of faces needs, and the displacements that none before it reads.
-  /// \tparam kInternals, kLosses  lines of a point of the pack in hand; in runs of one law those ahead have
-  /// as many
+  /// Asks for all that a pack of faces needs, and for the displacements that no pack before it reads.
+  /// \tparam kInternals, kLosses  lines of a point of the present pack; later packs of the same law have as
+  ///                              many
   template <int kInternals, int kLosses>
   static void fetch_faces_ahead(const State<Dim>& s, int pack) {
     const auto& layout = s.layout;
@@ -149,7 +149,7 @@ struct Packs {
     const int first = layout.first_point_of(ahead), last = layout.first_point_of(ahead + 1);
     for (int point = first; point < last; ++point) {
       fetch(layout.points[point]);
-      if (!same) continue;  // below
+      if (!same) continue;  // fetched below
       if constexpr (kInternals > 0)
         fetch<kInternals>(&s.internals[s.first_internal[ahead] + (point - first) * kInternals]);
       if constexpr (kLosses > 0)
@@ -160,18 +160,18 @@ struct Packs {
       fetch<Dim>(&s.displacement[slot_of(r, 0)]);
   }
 
-  /// Displacements and sums of forces of a bundle while it is in hand, a pack for each of its packs.
+  /// Displacements and sums of forces of a bundle during its step, one pack for each of its packs.
   struct Scratch {
     VectorPack<Dim>* displacement;
     VectorPack<Dim>* sum;
   };
-  /// \param memory  as of StepPasses::move_bundles
+  /// \param memory  scratch of StepPasses::move_bundles
   static Scratch scratch_of(const Bundle& bundle, double* memory) {
     auto* packs = reinterpret_cast<VectorPack<Dim>*>(memory);
     return {packs, packs + bundle.packs};
   }
 
-  /// What a step of a bundle books, still lane by lane; see BundleSums.
+  /// Sums that a step of a bundle books, still lane by lane; see BundleSums.
   struct Sums {
     Real stored = 0.0, kinetic = 0.0, applied = 0.0, unbalanced = 0.0;
     Real damping = 0.0, viscous = 0.0, begun_damping = 0.0, begun_viscous = 0.0;

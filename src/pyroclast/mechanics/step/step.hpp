@@ -14,11 +14,10 @@
 ///                      |                                          |
 ///                      +--------------- motion <------------------+            Eqs. (6)-(8)    motion.hpp
 ///
-/// mechanics/layout.hpp draws where everything stands and explains its words; packs.hpp loads, stores and
-/// gathers; base/lanes.hpp says what a lane is; the laws stand in laws/. sweep.hpp shares a step out to
-/// threads: it takes packs of faces and, soon after, the bundles whose faces are all done. Forces are
-/// gathered by the gridpoint that they act on, never scattered. This header is compiled once for each
-/// instruction set.
+/// mechanics/layout.hpp draws the place of every item and explains the words; packs.hpp loads, stores and
+/// gathers; base/lanes.hpp explains lanes; the laws stand in laws/. sweep.hpp shares a step out to threads:
+/// it takes packs of faces and, soon after, the bundles whose faces are all done. Each gridpoint gathers the
+/// forces that act on it; no force is scattered. This header is compiled once for each instruction set.
 namespace pyroclast {
 
 /// \tparam Set  an instruction set of base/lanes.hpp
@@ -33,7 +32,7 @@ class Step {
   using Scratch = typename R::Scratch;
   using Sums = typename R::Sums;
 
-  /// Second half: bundles whose faces are all done.
+  /// Does the second half of a step, for bundles whose faces are all done.
   static void move_bundles(State<Dim>& s, int first, int last, Pass pass, double* memory) {
     with_kinematics(s, [&](auto kinematics) {
       with_creep(s, [&](auto creeps) {
@@ -50,7 +49,7 @@ class Step {
     });
   }
 
-  /// Sums of |stiffness| over the rows of the assembled matrix, zones and contacts, N/m.
+  /// Sums |stiffness| over the rows of the assembled matrix, zones and contacts, N/m.
   static void sum_stiffness(State<Dim>& s, double* memory) {
     for_each_law(
         s, 0, static_cast<int>(s.layout.faces.size()),
@@ -58,7 +57,7 @@ class Step {
     with_kinematics(s, [&](auto kinematics) { stiffness<kinematics()>(s, memory); });
   }
 
-  // flatten: lanes that cross a call go through memory
+  // flatten, because lanes that cross a call go through memory
   template <Kinematics kKinematics, Pass kPass, bool kCreeps>
   [[gnu::flatten]] static void bundle(State<Dim>& s, int index, double* memory) {
     const Bundle& bundle = s.layout.bundles[index];
@@ -74,14 +73,14 @@ class Step {
     M::template keep<kPass>(s, index, sums);
   }
 
-  // The parts of a bundle's step, open so that each can be timed alone.
+  // Parts of a bundle's step, public so that each can be timed alone.
 
   static void take_displacements(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch) {
     for (int i = 0; i < bundle.packs; ++i)
       R::store(R::load(&s.displacement[slot_of(bundle.first_pack + i, 0)]), scratch.displacement[i].c);
   }
 
-  /// Begins the sums of forces of a bundle.
+  /// Begins the sums of forces of a bundle with its weights and contact forces.
   template <Kinematics kKinematics, bool kMeasure>
   static void sum_weights_and_contacts(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch,
                                        Sums& sums) {

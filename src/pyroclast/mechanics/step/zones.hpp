@@ -16,7 +16,7 @@ struct Zones {
   using Corners = std::array<Vector, Dim + 1>;
 
   /// Adds the forces of a bundle's zones.
-  /// \tparam kCreeps  whether zones of the body have crept
+  /// \tparam kCreeps  true where zones of the body creep
   template <Kinematics kKinematics, bool kMeasure, bool kCreeps>
   static void add_forces(const State<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
     const double thickness = s.thickness;
@@ -29,7 +29,7 @@ struct Zones {
         });
   }
 
-  /// Adds the sums of |stiffness| over the packs of the zones' matrices, N/m.
+  /// Adds the sums of |stiffness| over the rows of the zones' matrices, N/m.
   static void add_stiffness(const State<Dim>& s, int index, const Scratch& scratch) {
     add_over_zones(s, index, scratch, [&](const Corners& x, const Corners&, int zone_pack, const auto&) {
       return stiffness(s, x, properties(s, index, zone_pack));
@@ -42,15 +42,15 @@ struct Zones {
     return {Real::load(pack.lambda), Real::load(pack.mu), Real::load(pack.thermal_strain)};
   }
 
-  /// Forces of eight zones on their gridpoints.
-  /// \param creep_strain  read where kCreeps
+  /// Returns the forces of eight zones on their gridpoints.
+  /// \param creep_strain  creep strains, read where kCreeps
   /// \param used          lanes that are not idle
   template <Kinematics kKinematics, bool kMeasure, bool kCreeps>
   static Corners forces(double thickness, const Corners& x, const Corners& u, const ZonePropertiesOf<Real>& p,
                         [[maybe_unused]] const TensorPack<Dim>* creep_strain,
                         const typename Real::Truth& used, Sums& sums) {
-    // Shape gradients times the determinant; the volume is a constant share of the determinant, which leaves
-    // the division by it out of the way of the forces.
+    // Shape gradients times the determinant. The volume is a constant share of the determinant, so the forces
+    // need not wait for the division by it.
     std::array<Vector, Dim> vectors;
     const Real determinant = shape_vectors(x, vectors);
     const double share = volume_over_determinant<Dim> * thickness;
@@ -77,7 +77,7 @@ struct Zones {
     return force;
   }
 
-  /// Of eight zones.
+  /// Sums |stiffness| over the rows of the matrices of eight zones, N/m.
   static Corners stiffness(const State<Dim>& s, const Corners& x, const ZonePropertiesOf<Real>& p) {
     std::array<Vector, Dim> vectors;
     const Real determinant = shape_vectors(x, vectors);
@@ -101,9 +101,9 @@ struct Zones {
     return pack;
   }
 
-  // Forces are added zone by zone in every kind of bundle, so that none depends on how blocks are bundled.
+  // Forces are added zone by zone in every kind of bundle, so that no sum depends on how blocks are bundled.
 
-  /// Adds what `zone(x, u, zone_pack, used)` gives for the corners of zones, for all of a bundle.
+  /// Adds the result of `zone(x, u, zone_pack, used)` at the corners of all zones of a bundle.
   template <class Zone>
   static void add_over_zones(const State<Dim>& s, int index, const Scratch& scratch, Zone zone) {
     const Bundle& bundle = s.layout.bundles[index];
@@ -113,7 +113,8 @@ struct Zones {
     add_over_alike(s, bundle, scratch, zone);
   }
 
-  /// Each zone shares an edge with the one before, so that its corners and the sum at one are at hand.
+  /// Adds over the zones of a fan. Each zone shares an edge with the one before, so that its corners and the
+  /// sum at one corner are at hand.
   template <class Zone>
   static void add_over_fan(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch, Zone zone) {
     Corners x, u;
@@ -171,7 +172,7 @@ struct Zones {
         u[n] = R::gather(s.displacement, corner[n]);
       }
       const Corners more = zone(x, u, bundle.first_zone_pack + z, Real::Truth::from_bits((1U << used) - 1U));
-      // one lane after the other: zones of a pack may share gridpoints
+      // Lanes are added one after the other: zones of a pack may share gridpoints.
       alignas(64) double c[Dim + 1][Dim][kLanes];
       for (int n = 0; n <= Dim; ++n) R::store(more[n], c[n]);
       for (int lane = 0; lane < used; ++lane)
