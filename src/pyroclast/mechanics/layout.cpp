@@ -446,8 +446,10 @@ std::optional<std::size_t> Layout<Dim>::count_of(Per per) const {
     case Per::face_pack_end:
       return this->faces.size() + 1;
     case Per::point_pack:
+      return this->points.size();
+    case Per::point_pack_or_idle:
       return point_packs;
-    case Per::point_slot:
+    case Per::point_slot_or_idle:
       return kLanes * point_packs;
     case Per::contact:
       return this->contact_slot.size();

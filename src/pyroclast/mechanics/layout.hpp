@@ -123,7 +123,8 @@ enum class Per : std::uint8_t {
   face_pack,
   face_pack_end,
   point_pack,
-  point_slot,
+  point_pack_or_idle,  ///< and the pack that idles, behind the last
+  point_slot_or_idle,
   contact,
   entry  ///< entry of the array's own list; other arrays name the entries
 };
@@ -173,7 +174,7 @@ struct LayoutArrays {
   Array<ZoneCorners<Dim>> spread_zones;         ///< packs of zones of spread blocks
   Array<FacePack<Dim>> faces;
   Array<int> first_point;   ///< first pack of points of each pack of faces, and of one more
-  Array<PointPack> points;  ///< packs of points; the last one idles
+  Array<PointPack> points;  ///< contact points of each pack of faces in turn
   /// Number of leading packs of gridpoints of its own chunk that the packs of faces before it read, for each
   /// pack of faces and one more.
   Array<int> packs_reached;
@@ -206,7 +207,7 @@ struct LayoutArrays {
     f(ArrayInfo{"contact_slot", Per::contact}, l.contact_slot...);
     f(ArrayInfo{"bundle_of_block", Per::block}, l.bundle_of_block...);
     f(ArrayInfo{"blocks", Per::bundle}, l.blocks...);
-    f(ArrayInfo{"face_pack_of_point", Per::entry}, l.face_pack_of_point...);
+    f(ArrayInfo{"face_pack_of_point", Per::point_pack}, l.face_pack_of_point...);
     f(ArrayInfo{"contacts_by_chunk", Per::contact}, l.contacts_by_chunk...);
   }
 

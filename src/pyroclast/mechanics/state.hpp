@@ -155,11 +155,11 @@ struct StateArrays {
     f(ArrayInfo{"loss", Per::entry, Touched::none, Touched::none, Lasts::kept}, s.loss...);
     f(ArrayInfo{"first_internal", Per::face_pack_end, Touched::all}, s.first_internal...);
     f(ArrayInfo{"first_loss", Per::face_pack_end, Touched::all}, s.first_loss...);
-    f(ArrayInfo{"losing", Per::point_pack, Touched::none, Touched::all, Lasts::a_step}, s.losing...);
-    f(ArrayInfo{"contact_force", Per::point_slot, Touched::all, Touched::all, Lasts::a_step,
+    f(ArrayInfo{"losing", Per::point_pack_or_idle, Touched::none, Touched::all, Lasts::a_step}, s.losing...);
+    f(ArrayInfo{"contact_force", Per::point_slot_or_idle, Touched::all, Touched::all, Lasts::a_step,
                 HeldBy::owner_and_halo},
       s.contact_force...);  // read where it is summed
-    f(ArrayInfo{"turning_force", Per::point_slot, Touched::all, Touched::all, Lasts::a_step,
+    f(ArrayInfo{"turning_force", Per::point_slot_or_idle, Touched::all, Touched::all, Lasts::a_step,
                 HeldBy::owner_and_halo},
       s.turning_force...);
     f(ArrayInfo{"contact_constants", Per::entry, Touched::none, Touched::none, Lasts::made, HeldBy::all},
