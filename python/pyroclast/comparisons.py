@@ -15,9 +15,10 @@ from matplotlib.patches import Patch
 
 from . import reference, style
 from .curves import MANY, compare, draw_spread, draw_tables, mean_of, names_apart
+from .errors import Error
 from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL, draw_band, over_minutes, strain_limits
 from .progress import MINUTES_LABEL, heating_course, heating_minutes, loading_course, temperature_label
-from .run import Run, RunError
+from .run import Run
 
 _LEVEL_COLOURS = {0.0: style.BLUE, 0.225: style.GREEN, 0.445: style.ORANGE, 0.675: style.VERMILLION}
 _OTHER_COLOURS = (style.PURPLE, style.BLACK, style.SKY)
@@ -28,10 +29,10 @@ _BAND_LABEL = (f"range of models calibrated\non Anderberg & Thelandersson's\ntes
 def compare_runs(runs: Sequence[Run], what: str | None = None) -> Figure:
     """What the runs have in common: total strain or thrust when all end heated, stress-strain when none does.
 
-    what: one of KINDS, to choose oneself. Throws RunError when a run does not have it.
+    what: one of KINDS, to choose oneself. Raises Error when a run does not have it.
     """
     if not runs:
-        raise RunError("compare: no runs were given")
+        raise Error("compare: no runs were given")
     return KINDS[what or _common_kind(runs)](runs)
 
 
@@ -39,7 +40,7 @@ def _common_kind(runs: Sequence[Run]) -> str:
     first = _kind(runs[0])
     for run in runs:
         if _kind(run) != first:
-            raise RunError(f"compare: {run.folder} would be compared by {_kind(run)}, but {runs[0].folder} "
+            raise Error(f"compare: {run.folder} would be compared by {_kind(run)}, but {runs[0].folder} "
                            f"by {first}; choose with --what")
     return first
 
@@ -145,10 +146,10 @@ def _draw_thrusts(axes: Axes, runs: Sequence[Run], over: Callable[[Run], np.ndar
 def compare_cracks(runs: Sequence[Run]) -> Figure:
     """Broken contact points by mode and the mean opening while heated, or over strain if none ends heated."""
     if len({run.ends_heated for run in runs}) > 1:
-        raise RunError("compare: cracks of runs that end heated and of others have no common axis")
+        raise Error("compare: cracks of runs that end heated and of others have no common axis")
     courses = [heating_course(run) if run.ends_heated else loading_course(run) for run in runs]
     if len({course.ordered for course in courses}) > 1:
-        raise RunError("compare: cracks of runs that cool and of runs that do not have no common axis")
+        raise Error("compare: cracks of runs that cool and of runs that do not have no common axis")
     figure = style.new_figure(5.4)
     grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 0.42])
     panels = [figure.add_subplot(grid[row, 0]) for row in range(3)]
@@ -199,7 +200,7 @@ def _draw_group(axes: Axes, group: _Group, over: Callable[[Run], np.ndarray]) ->
 def _demand_heated(runs: Sequence[Run]) -> None:
     for run in runs:
         if not run.exchanged.any():
-            raise RunError(f"{run.folder}: was never heated")
+            raise Error(f"{run.folder}: was never heated")
 
 
 def _timed(runs: Sequence[Run]) -> bool:

@@ -13,7 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import reference, style
-from .run import Frame, Run, RunError
+from .errors import Error
+from .run import Frame, Run
 
 _MEAN_POINTS = 400
 _LEAST_STRAIN_SHOWN = 0.004
@@ -135,9 +136,9 @@ def compare(runs: Sequence[Run]) -> Figure:
     is drawn but does not enter the mean of the peaks.
     """
     if not runs:
-        raise RunError("compare: no runs were given")
+        raise Error("compare: no runs were given")
     if heated := [run for run in runs if run.ends_heated]:
-        raise RunError(f"{heated[0].folder}: ends with heating, so it has no stress-strain curve")
+        raise Error(f"{heated[0].folder}: ends with heating, so it has no stress-strain curve")
     figure = style.new_figure(4.2)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
     curves = [(style.PER_MILLE * strain, stress) for strain, stress in map(_curve, runs)]
@@ -222,7 +223,7 @@ def _advancing(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The finite points of a curve whose x exceeds all before."""
     rows = np.isfinite(x) & np.isfinite(y)
     if not rows.any():
-        raise RunError("compare: a run has no finite value of what is compared")
+        raise Error("compare: a run has no finite value of what is compared")
     x, y = x[rows], y[rows]
     rows = np.concatenate([[True], x[1:] > np.maximum.accumulate(x)[:-1]])
     return x[rows], y[rows]

@@ -30,6 +30,7 @@ from matplotlib.figure import Figure
 
 from .comparisons import KINDS, compare_runs
 from .curves import stress_strain
+from .errors import Error
 from .files import GapWarning
 from .heated_sections import LEVEL_TEMPERATURES, heating_fracture, levels, temperature_field
 from .heating import convergence, temperature_history, thrust, total_strain
@@ -37,7 +38,7 @@ from .profiles import isotherm, read_profile, temperature_profile, write_profile
 from .progress import cracks, energy, heating_course, heating_cracks, loading_course
 from .properties import properties, read_properties
 from .records import record_course, record_fracture, records, records_of
-from .run import Run, RunError, Specimen
+from .run import Run, Specimen
 from .sections import fracture, gradation, morphology, select_frames
 from .style import save
 from .writing import make_folder
@@ -49,14 +50,14 @@ def figures_of(run: Run, magnification: float | None = None,
                temperatures: Sequence[float] | None = None) -> Iterator[tuple[str, Callable[[], Figure]]]:
     """Name of each figure that a run has, and what makes it; the arguments are those of `draw_run`."""
     if temperatures is not None and not run.has_fields:
-        raise RunError(f"{run.folder}: keeps no fields, so --temperatures asks for nothing")
+        raise Error(f"{run.folder}: keeps no fields, so --temperatures asks for nothing")
     if not run.only_conducts and not run.has_platens:
         yield from _of_records(run, magnification)
         return
     if run.exchanged.any():
         yield from _of_heating(run, magnification, temperatures)
     elif temperatures is not None:
-        raise RunError(f"{run.folder}: was never heated with mechanics, so --temperatures asks for nothing")
+        raise Error(f"{run.folder}: was never heated with mechanics, so --temperatures asks for nothing")
     if run.only_conducts:
         yield from _of_conduction(run)
     elif not run.ends_heated:
@@ -112,7 +113,7 @@ def _of_compression(run: Run, magnification: float | None) -> Iterator[tuple[str
         return
     if not marks:
         path = run.folder / "fields" / "frames.csv"
-        raise RunError(f"{path}: no frame of the loading stage; fracture cannot be drawn")
+        raise Error(f"{path}: no frame of the loading stage; fracture cannot be drawn")
     yield "fracture", lambda: fracture(run, marks, magnification)
 
 
@@ -167,7 +168,7 @@ def draw_levels(folders: Sequence[Path], out: Path, temperatures: Sequence[float
 
 def _check_ending(out: Path) -> None:
     if out.suffix.lower().lstrip(".") not in _FORMATS:
-        raise RunError(f"{out}: the file's ending must be one of {', '.join('.' + f for f in _FORMATS)}")
+        raise Error(f"{out}: the file's ending must be one of {', '.join('.' + f for f in _FORMATS)}")
 
 
 def _positive(text: str) -> float:
@@ -235,7 +236,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         try:
             for path in asked.draw(asked):
                 print(path)
-        except (RunError, OSError) as problem:
+        except (Error, OSError) as problem:
             _tell(problem)
             return 1
     return 0

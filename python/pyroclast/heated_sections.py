@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
 from . import style
-from .run import Frame, Run, RunError
+from .errors import Error
+from .run import Frame, Run
 from .sections import Panel, count_cracks, draw_scale_bar, fracture_panels, frame_section, height_over_width
 
 TEMPERATURES = (300.0, 400.0, 500.0, 600.0, 800.0)
@@ -56,7 +57,7 @@ def heating_fracture(run: Run, temperatures: Sequence[float] | None = None,
                      magnification: float | None = None) -> Figure:
     """The deformed specimen with its cracks while heated (paper, Figures 13 to 16).
 
-    temperatures [°C]: the frames nearest to them are drawn, and RunError is thrown when none is within 25 K;
+    temperatures [°C]: the frames nearest to them are drawn, and Error is raised when none is within 25 K;
     when None, as `select_heated_frames` has it. magnification: as `fracture_panels` takes it.
     """
     frames = run.heated_frames
@@ -74,7 +75,7 @@ def _frame_asked_for(run: Run, frames: Sequence[Frame], temperature: float) -> F
     if frame is None:
         reach = [frame.temperature for frame in frames]
         path = run.folder / "fields" / "frames.csv"
-        raise RunError(f"{path}: no frame within {_NEAR:g} K of {temperature:g} °C; "
+        raise Error(f"{path}: no frame within {_NEAR:g} K of {temperature:g} °C; "
                        f"frames of the heating are from {min(reach):.0f} to {max(reach):.0f} °C")
     return frame
 
@@ -87,7 +88,7 @@ def levels(runs: Sequence[Run], temperatures: Sequence[float] = LEVEL_TEMPERATUR
     magnification: the same in all panels, as `fracture_panels` takes it.
     """
     if not runs:
-        raise RunError("levels: no runs were given")
+        raise Error("levels: no runs were given")
     ordered = sorted(runs, key=lambda run: (run.load_level is None, run.load_level or 0.0))
     rows = [(label, _row(run, temperatures)) for run, label in zip(ordered, _row_labels(ordered))]
     return fracture_panels(rows, "", magnification, _NOTE)

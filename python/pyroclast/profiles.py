@@ -12,8 +12,9 @@ from matplotlib import colormaps
 from matplotlib.figure import Figure
 
 from . import style
+from .errors import Error
 from .mesh import BlockMesh
-from .run import Run, RunError
+from .run import Run
 from .sections import specimen_box
 from .writing import whole
 
@@ -51,13 +52,13 @@ def _depth(depth: np.ndarray, temperature: np.ndarray) -> float:
 
 
 def read_profile(run: Run) -> Profile:
-    """Of all frames of the heating. Throws RunError when a frame has no temperatures."""
+    """Of all frames of the heating. Raises Error when a frame has no temperatures."""
     blocks = run.mesh.blocks
     low, high = specimen_box(blocks)
     frames = [frame for frame in run.heated_frames
               if frame.heating_time is not None and np.isfinite(frame.heating_time)]
     if not frames:
-        raise RunError(f"{run.folder / 'fields' / 'frames.csv'}: no frame of a heating stage has a time")
+        raise Error(f"{run.folder / 'fields' / 'frames.csv'}: no frame of a heating stage has a time")
     fields = [run.gridpoint_temperature(frame) for frame in frames]
     lines = {}
     for axis in (0, 1):

@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
-from .run import Run, RunError
+from .errors import Error
+from .run import Run
 
 _ENERGY_IN = ("energy_loading_J", "energy_gravity_J", "energy_property_change_J",
               "energy_mass_scaling_J")
@@ -172,7 +173,7 @@ def energy(course: Course) -> Figure:
     work_in = sum(parts)
     turned_over = sum(map(np.abs, parts))
     if not (np.isfinite(turned_over) & np.isfinite(course.over)).any():
-        raise RunError(f"{course.run.history.path}: no row has all energies that were put in")
+        raise Error(f"{course.run.history.path}: no row has all energies that were put in")
     turnover = np.nanmax(turned_over) or 1.0  # heat takes out what a softening body stores
     _draw_stack(upper, course, turnover)
     upper.plot(course.over, work_in, color=style.BLACK, linewidth=1.4, linestyle=(0, (4, 2)),

@@ -12,8 +12,9 @@ from matplotlib.figure import Figure
 
 from . import style
 from .curves import draw_tables
+from .errors import Error
 from .progress import MINUTES_LABEL, Course
-from .run import Frame, Run, RunError
+from .run import Frame, Run
 from .sections import Panel, count_cracks, fracture_panels
 
 _SHOWN = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "MPa": ("MPa", 1.0), "degC": ("°C", 1.0)}
@@ -146,7 +147,7 @@ def records(run: Run) -> Figure:
     """
     panels = _panels(run)
     if not panels:
-        raise RunError(f"{run.folder / 'deck.toml'}: has no [[record]] to draw")
+        raise Error(f"{run.folder / 'deck.toml'}: has no [[record]] to draw")
     figure = style.new_figure(0.9 + 2.2 * len(panels))
     all_axes = figure.subplots(len(panels), 1, squeeze=False)[:, 0]
     figure.suptitle(style.title_of(run), fontsize=9.0)
@@ -175,7 +176,7 @@ def _colours() -> Iterator[str]:
 def record_fracture(run: Run, magnification: float | None = None) -> Figure:
     """The specimen where the first force, else the first stress, was largest, and at the end."""
     if not run.frames:
-        raise RunError(f"{run.folder / 'fields' / 'frames.csv'}: no frame; fracture cannot be drawn")
+        raise Error(f"{run.folder / 'fields' / 'frames.csv'}: no frame; fracture cannot be drawn")
     found = records_of(run)
     loaded = _first(found, ("force", "stress"))
     marks = {"end": run.frames[-1]}

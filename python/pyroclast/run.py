@@ -14,7 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .files import LARGEST, GrowingTable, RunError, Table, dataset, open_hdf, read_json
+from .errors import Error
+from .files import LARGEST, GrowingTable, Table, dataset, open_hdf, read_json
 from .mesh import Mesh, read_mesh
 from .reference import References, read_references
 
@@ -36,14 +37,14 @@ class Frame:
 
 
 class Run:
-    """One run folder. Files are read when first asked for; what is missing or malformed throws RunError."""
+    """One run folder. Files are read when first asked for; what is missing or malformed raises Error."""
 
     _table = Table
 
     def __init__(self, folder: str | Path):
         self.folder = Path(folder)
         if not self.folder.is_dir():
-            raise RunError(f"{self.folder}: is not a folder")
+            raise Error(f"{self.folder}: is not a folder")
 
     @cached_property
     def history(self) -> Table:
@@ -76,7 +77,7 @@ class Run:
             return None
         folder = parent.get("folder") if isinstance(parent, dict) else None
         if not isinstance(folder, str) or "\0" in folder:
-            raise RunError(f"{path}: 'parent' has no 'folder' that is a path")
+            raise Error(f"{path}: 'parent' has no 'folder' that is a path")
         return Run(folder) if (Path(folder) / "history.csv").exists() else None
 
     @cached_property
@@ -88,7 +89,7 @@ class Run:
         try:
             return tomllib.loads(path.read_text(encoding="utf-8"))
         except (OSError, ValueError, RecursionError) as error:
-            raise RunError(f"{path}: cannot be read: {' '.join(str(error).split())}") from error
+            raise Error(f"{path}: cannot be read: {' '.join(str(error).split())}") from error
 
     @property
     def deck_stages(self) -> list[dict]:
@@ -112,10 +113,10 @@ class Run:
         path = self.folder / "summary.json"
         stages = self.summary.get("stages")
         if not isinstance(stages, list):
-            raise RunError(f"{path}: 'stages' is missing or not a list")
+            raise Error(f"{path}: 'stages' is missing or not a list")
         results = [stage.get("results", {}) if isinstance(stage, dict) else None for stage in stages]
         if not all(isinstance(values, dict) for values in results):
-            raise RunError(f"{path}: 'stages' holds something without 'results'")
+            raise Error(f"{path}: 'stages' holds something without 'results'")
         return results
 
     def _results_with(self, name: str) -> list[dict]:
@@ -155,7 +156,7 @@ class Run:
         if value is None:
             return None
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= LARGEST:
-            raise RunError(f"{self.folder / 'summary.json'}: '{name}' is neither a finite number nor null")
+            raise Error(f"{self.folder / 'summary.json'}: '{name}' is neither a finite number nor null")
         return float(value)
 
     @property
@@ -266,7 +267,7 @@ class Run:
         """`total_strain` when the frame was saved."""
         row = int(np.searchsorted(self.history["step"], frame.step))
         if row == len(self.history) or self.history["step"][row] != frame.step:
-            raise RunError(f"{self.history.path}: has no row of step {frame.step}, at which a frame was saved")
+            raise Error(f"{self.history.path}: has no row of step {frame.step}, at which a frame was saved")
         return -float(self.history["specimen_strain"][row])
 
     @property
@@ -350,7 +351,7 @@ class Run:
         """`loaded_strain` and stress [MPa] at f_c of the test, as the summary has it. Where that has none,
         those where the history's stress is largest, even if it ended there.
 
-        Throws RunError when the specimen was never compressed.
+        Raises Error when the specimen was never compressed.
         """
         strength, at = self._tested("f_c_MPa"), self._tested("strain_at_peak")
         if strength is not None and at is not None:
@@ -363,7 +364,7 @@ class Run:
         row = int(np.where(np.isfinite(strain), stress, -np.inf).argmax())
         if stress[row] <= 0.0:
             path = self.history.path
-            raise RunError(f"{path}: column 'stress_MPa' is never positive; the specimen was not compressed")
+            raise Error(f"{path}: column 'stress_MPa' is never positive; the specimen was not compressed")
         return float(strain[row]), float(stress[row])
 
     @property
@@ -405,19 +406,19 @@ class Run:
 
     @property
     def heated_frames(self) -> list[Frame]:
-        """Frames of all stages that heat, not those of unknown temperature; throws RunError when there is none."""
+        """Frames of all stages that heat, not those of unknown temperature; raises Error when there is none."""
         path = self.folder / "fields" / "frames.csv"
         frames = self.frames
         if not self.only_conducts:
             stages = set(self.history["stage"][self.exchanged])
             frames = [frame for frame in frames if frame.stage in stages]
         if not frames:
-            raise RunError(f"{path}: no frame of a heating stage")
+            raise Error(f"{path}: no frame of a heating stage")
         if frames[0].temperature is None:
-            raise RunError(f"{path}: has no column 'temperature_degC'")
+            raise Error(f"{path}: has no column 'temperature_degC'")
         frames = [frame for frame in frames if np.isfinite(frame.temperature)]
         if not frames:
-            raise RunError(f"{path}: column 'temperature_degC' has no finite value")
+            raise Error(f"{path}: column 'temperature_degC' has no finite value")
         return frames
 
     @cached_property
@@ -447,7 +448,7 @@ class Run:
         with open_hdf(path) as file:
             values = dataset(file, f"VTKHDF/{name}")
         if values.shape != shape:
-            raise RunError(f"{path}: /VTKHDF/{name} has shape {values.shape}, but the mesh asks for {shape}")
+            raise Error(f"{path}: /VTKHDF/{name} has shape {values.shape}, but the mesh asks for {shape}")
         return values
 
 
@@ -473,7 +474,7 @@ class Specimen:
     def __init__(self, folder: str | Path):
         self.folder = Path(folder)
         if not self.folder.is_dir():
-            raise RunError(f"{self.folder}: is not a folder")
+            raise Error(f"{self.folder}: is not a folder")
         inner = self.folder / "specimen"
         self._tables = inner if inner.is_dir() else self.folder
 
@@ -485,7 +486,7 @@ class Specimen:
     def fact(self, name: str) -> float:
         value = self.facts.get(name)
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= LARGEST:
-            raise RunError(f"{self._tables / 'specimen.json'}: '{name}' is missing or not a finite number")
+            raise Error(f"{self._tables / 'specimen.json'}: '{name}' is missing or not a finite number")
         return value
 
     @property
@@ -494,7 +495,7 @@ class Specimen:
         shares = self.facts.get("fraction")
         if not isinstance(shares, dict) or not all(isinstance(v, (int, float)) and 0.0 <= v <= 1.0
                                                    for v in shares.values()):
-            raise RunError(f"{self._tables / 'specimen.json'}: 'fraction' is missing or no table of shares")
+            raise Error(f"{self._tables / 'specimen.json'}: 'fraction' is missing or no table of shares")
         return shares
 
     @cached_property

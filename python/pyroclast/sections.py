@@ -15,8 +15,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from . import style
+from .errors import Error
 from .mesh import BlockMesh, ContactMesh
-from .run import Frame, Run, RunError, Specimen
+from .run import Frame, Run, Specimen
 
 _BEFORE_PEAK = 0.85  # strain of frame A over that of the peak: the first cracks have opened
 _AFTER_PEAK = 0.8  # stress of frame C over that of the peak
@@ -170,7 +171,7 @@ def specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
     """Lower left and upper right corner of the specimen without bearings, m."""
     points = blocks.points[blocks.triangles[~blocks.of_bearing].ravel()]
     if not len(points):
-        raise RunError(f"{blocks.path}: /blocks/material has bearings only")
+        raise Error(f"{blocks.path}: /blocks/material has bearings only")
     return points.min(axis=0), points.max(axis=0)
 
 

@@ -45,7 +45,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
-from .files import GapWarning, Lock, RunError, Writer, read_json
+from .errors import Error
+from .files import GapWarning, Lock, Writer, read_json
 from .heated_sections import draw_temperature
 from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL
 from .interrupts import hear_ctrl_c
@@ -112,7 +113,7 @@ def _curve_of(run: GrowingRun) -> _Curve:
 class Watch:
     """A run as far as it has come; `update` reads on. Shows itself in a notebook.
 
-    Throws RunError when the folder holds no run.
+    Raises Error when the folder holds no run.
     """
 
     def __init__(self, folder: str | Path, picture: str | Path | None = None):
@@ -122,7 +123,7 @@ class Watch:
         self._lock = Lock(self.run.folder)
         self._seen: tuple | None = None
         if not self.is_running and not any((self.folder / name).exists() for name in ("history.csv", "manifest.json")):
-            raise RunError(f"{self.folder}: holds no run")
+            raise Error(f"{self.folder}: holds no run")
         self.update()
 
     @property
@@ -146,7 +147,7 @@ class Watch:
         try:
             is_new = self.run.refresh()
             rows, frames = len(self.run.history), len(self.run.frames)
-        except RunError:
+        except Error:
             is_new, rows, frames = False, 0, 0
         seen = (self._state(), rows, frames)
         is_new = is_new or seen != self._seen
@@ -157,11 +158,11 @@ class Watch:
         """What the run is, how far it has come, and the latest numbers; a line each."""
         try:
             title = " ".join(self.run.title.split())
-        except RunError:
+        except Error:
             title = self.folder.resolve().name
         try:
             numbers = ", ".join(self._numbers())
-        except (RunError, ValueError):
+        except (Error, ValueError):
             numbers = ""
         return [line for line in (title, self._state(), numbers) if line]
 
@@ -169,7 +170,7 @@ class Watch:
         if self._is_over:
             try:
                 outcome = str(read_json(self.folder / "summary.json").get("outcome", "over"))
-            except RunError:
+            except Error:
                 outcome = "over"
             return f"run ended: {outcome}"
         stage = self._stage()
@@ -187,7 +188,7 @@ class Watch:
         try:
             stages = self.run.deck_stages
             now = int(self.run.history["stage"][-1])
-        except (RunError, IndexError):
+        except (Error, IndexError):
             return f"stage {number} ({kind})" if said else ""
         if str(now + 1) != number:
             share = left = ""
@@ -235,12 +236,12 @@ class Watch:
         try:
             frame = self.run.frames[-1] if self.run.frames else None
             self._draw_curve(axes, frame)
-        except (RunError, ValueError):
+        except (Error, ValueError):
             _say_in(axes, "nothing to draw yet")
             frame = None
         try:
             self._draw_section(section, below, frame)
-        except RunError:
+        except Error:
             _say_in(section, "the newest frame cannot be read")
         return style.thin(figure)
 
@@ -290,7 +291,7 @@ class Watch:
             drawn = _curve_of(self.run)
             size = (columns, max(rows - len(lines), 0))
             lines += curve(drawn.course.over, drawn.values, drawn.course.label, drawn.label, size)
-        except (RunError, ValueError):
+        except (Error, ValueError):
             lines.append("nothing to draw yet")
         return [line[:columns] for line in lines[:rows]]
 
@@ -529,7 +530,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # who read it has gone
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
-    except (RunError, OSError) as problem:
+    except (Error, OSError) as problem:
         _tell(problem)
         return 1
     return 0

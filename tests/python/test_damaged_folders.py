@@ -27,7 +27,8 @@ import synthetic_run  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
 from pyroclast import figures, style  # noqa: E402
 from pyroclast.comparisons import compare_runs  # noqa: E402
-from pyroclast.files import GapWarning, RunError  # noqa: E402
+from pyroclast.errors import Error  # noqa: E402
+from pyroclast.files import GapWarning  # noqa: E402
 from pyroclast.heated_sections import levels  # noqa: E402
 from pyroclast.run import Run  # noqa: E402
 from pyroclast.watch import Watch  # noqa: E402
@@ -205,7 +206,7 @@ class Damaged(unittest.TestCase):
                                   seed % RENDERED_EVERY == 0, random)
                     drawn += 1
                     gaps += bool(noted)
-                except RunError as error:
+                except Error as error:
                     told += 1
                     self.assertEqual(len(str(error).splitlines()), 1, str(error))
                     self.assertIn(str(self.root), str(error))

@@ -28,13 +28,14 @@ from synthetic_run import Heating  # noqa: E402
 from pyroclast import figures, reference, style  # noqa: E402
 from pyroclast.comparisons import compare_cracks, compare_thrust, compare_total_strain  # noqa: E402
 from pyroclast.curves import compare, mean_curve, mean_of, names_apart, stress_strain  # noqa: E402
+from pyroclast.errors import Error  # noqa: E402
 from pyroclast.heated_sections import frame_near, levels, select_heated_frames  # noqa: E402
 from pyroclast.heating import strain_limits, total_strain  # noqa: E402
 from pyroclast.profiles import read_profile  # noqa: E402
 from pyroclast.progress import heating_course  # noqa: E402
 from pyroclast.properties import read_properties  # noqa: E402
 from pyroclast.records import record_fracture, records  # noqa: E402
-from pyroclast.run import Frame, Run, RunError, Specimen, Table  # noqa: E402
+from pyroclast.run import Frame, Run, Specimen, Table  # noqa: E402
 from pyroclast.sections import count_cracks, fracture, morphology, select_frames, specimen_box  # noqa: E402
 
 
@@ -979,7 +980,7 @@ class Reader(FolderTest):
     def test_block_in_two_pieces_is_refused(self):
         with h5py.File(self.run_folder / "fields" / "mesh.h5", "a") as file:
             file["blocks/block"][6:12] = 0
-        with self.assertRaisesRegex(RunError, "mesh.h5.*simple polygon"):
+        with self.assertRaisesRegex(Error, "mesh.h5.*simple polygon"):
             _ = Run(self.run_folder).mesh.blocks.outlines
 
     def test_platen_contacts_are_not_counted_as_cracks(self):

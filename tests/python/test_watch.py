@@ -29,7 +29,8 @@ import synthetic_run  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
 from test_figures import png_size  # noqa: E402
 from pyroclast import style  # noqa: E402
-from pyroclast.files import GrowingTable, Lock, RunError, Writer  # noqa: E402
+from pyroclast.errors import Error  # noqa: E402
+from pyroclast.files import GrowingTable, Lock, Writer  # noqa: E402
 from pyroclast.run import Run  # noqa: E402
 from pyroclast.textplot import curve  # noqa: E402
 from pyroclast.watch import PICTURE, Watch  # noqa: E402
@@ -341,7 +342,7 @@ class Command(WatchTest):
     def test_what_is_no_run_is_refused_in_a_line(self):
         self.assertIn("is not a folder", self.refused(self.root / "nowhere"))
         self.folder.mkdir()
-        with self.assertRaisesRegex(RunError, "holds no run"):
+        with self.assertRaisesRegex(Error, "holds no run"):
             Watch(self.folder)
         (self.folder / "notes.txt").write_text("mine")
         self.assertIn("holds no run", self.refused(self.folder))
