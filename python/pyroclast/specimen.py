@@ -17,8 +17,6 @@ from .units import Quantity
 if TYPE_CHECKING:
     import meshio
 
-    from .decks import Deck
-
 Label = Union[int, str]
 
 _FLAT = 1e-9  # of the size of a mesh
@@ -163,13 +161,6 @@ class Specimen:
                               f"its share is 0. Take more blocks, or another phase for its label", stacklevel=2)
         _warn_of_size(whole, f"{source}the image has {columns} x {rows} pixels of {pixel}")
         return cls(whole, alike)
-
-    @classmethod
-    def of(cls, deck: Deck | str | Path, seed: int | None = None) -> Specimen:
-        """The specimen that a run of a deck has, with this seed or the deck's. Raises as `Run`."""
-        from .decks import as_deck
-        from .functions import Scratch
-        return cls(_core.Specimen.of_deck(as_deck(deck)._resolved(Scratch()), seed))
 
     @classmethod
     def read(cls, file: str | Path, join: str | Quantity | None = None) -> Specimen:
