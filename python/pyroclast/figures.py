@@ -38,7 +38,7 @@ from .profiles import isotherm, read_profile, temperature_profile, write_profile
 from .progress import cracks, energy, heating_course, heating_cracks, loading_course
 from .properties import properties, read_properties
 from .records import record_course, record_fracture, records, records_of
-from .run import Run, Specimen
+from .results import Results, SpecimenFolder
 from .sections import fracture, gradation, morphology, select_frames
 from .style import save
 from .writing import make_folder
@@ -46,27 +46,27 @@ from .writing import make_folder
 _FORMATS = ("png", "svg", "pdf")
 
 
-def figures_of(run: Run, magnification: float | None = None,
+def figures_of(run: Results, magnification: float | None = None,
                temperatures: Sequence[float] | None = None) -> Iterator[tuple[str, Callable[[], Figure]]]:
     """Name of each figure that a run has, and what makes it; the arguments are those of `draw_run`."""
     if temperatures is not None and not run.has_fields:
         raise Error(f"{run.folder}: keeps no fields, so --temperatures asks for nothing")
-    if not run.only_conducts and not run.has_platens:
+    if run.moves and not run.has_platens:
         yield from _of_records(run, magnification)
         return
     if run.exchanged.any():
         yield from _of_heating(run, magnification, temperatures)
     elif temperatures is not None:
         raise Error(f"{run.folder}: was never heated with mechanics, so --temperatures asks for nothing")
-    if run.only_conducts:
+    if not run.moves:
         yield from _of_conduction(run)
     elif not run.ends_heated:
         yield from _of_compression(run, magnification)
-    if not run.only_conducts and records_of(run):
+    if run.moves and records_of(run):
         yield "records", lambda: records(run)
 
 
-def _of_heating(run: Run, magnification: float | None,
+def _of_heating(run: Results, magnification: float | None,
                 temperatures: Sequence[float] | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
     if run.restrained:
         yield "thrust", lambda: thrust(run)
@@ -81,7 +81,7 @@ def _of_heating(run: Run, magnification: float | None,
         yield "heating_fracture", lambda: heating_fracture(run, temperatures, magnification)
 
 
-def _of_records(run: Run, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+def _of_records(run: Results, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
     if records_of(run):
         yield "records", lambda: records(run)
         yield "energy", lambda: energy(record_course(run))
@@ -93,7 +93,7 @@ def _of_records(run: Run, magnification: float | None) -> Iterator[tuple[str, Ca
         yield "fracture", lambda: record_fracture(run, magnification)
 
 
-def _of_conduction(run: Run) -> Iterator[tuple[str, Callable[[], Figure]]]:
+def _of_conduction(run: Results) -> Iterator[tuple[str, Callable[[], Figure]]]:
     yield "temperature_history", lambda: temperature_history(run)
     if not run.has_fields:
         return
@@ -104,7 +104,7 @@ def _of_conduction(run: Run) -> Iterator[tuple[str, Callable[[], Figure]]]:
         yield "isotherm", lambda: isotherm(run, profile)
 
 
-def _of_compression(run: Run, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+def _of_compression(run: Results, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
     marks = select_frames(run.loaded_frames, *run.peak) if run.loaded_frames else {}
     yield "stress_strain", lambda: stress_strain(run, marks)
     yield "cracks", lambda: cracks(run)
@@ -126,7 +126,7 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
 
     temperatures [°C]: of the fracture patterns of a heated run, see `heating_fracture`.
     """
-    run = Run(folder)
+    run = Results(folder)
     for name, draw in figures_of(run, magnification, temperatures):
         if name == "temperature_profile":
             if out is not None:
@@ -146,9 +146,9 @@ def draw_specimen(folder: Path, file_format: str = "png") -> Iterator[Path]:
     """Draws the figures of a specimen into its figures/ folder; yields each path once written. A specimen without
     circles has no gradation.
     """
-    specimen = Specimen(folder)
+    specimen = SpecimenFolder(folder)
     place = make_folder(specimen.folder / "figures")
-    if len(specimen.aggregates):
+    if specimen.aggregates.rows:
         yield save(gradation(specimen), place / f"gradation.{file_format}")
     yield save(morphology(specimen), place / f"morphology.{file_format}")
 
@@ -156,14 +156,14 @@ def draw_specimen(folder: Path, file_format: str = "png") -> Iterator[Path]:
 def draw_comparison(folders: Sequence[Path], out: Path, what: str | None = None) -> Iterator[Path]:
     """Draws the curves of several runs into one file, its format by its ending; what: see `compare_runs`."""
     _check_ending(out)
-    yield save(compare_runs([Run(folder) for folder in folders], what), out)
+    yield save(compare_runs([Results(folder) for folder in folders], what), out)
 
 
 def draw_levels(folders: Sequence[Path], out: Path, temperatures: Sequence[float] = LEVEL_TEMPERATURES,
                 magnification: float | None = None) -> Iterator[Path]:
     """Draws the fracture patterns of several heated runs into one file, its format by its ending."""
     _check_ending(out)
-    yield save(levels([Run(folder) for folder in folders], temperatures, magnification), out)
+    yield save(levels([Results(folder) for folder in folders], temperatures, magnification), out)
 
 
 def _check_ending(out: Path) -> None:

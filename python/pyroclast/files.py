@@ -16,6 +16,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from .columns import ColumnNames, Columns
 from .errors import Error
 
 _PIECE = 1 << 24  # bytes of a table that are read at once
@@ -33,19 +34,20 @@ class GapWarning(UserWarning):
     """A table has cells that are not finite; they are drawn as gaps."""
 
 
-class Table:
-    """Columns of numbers of a csv file, by name: `table["strain"]` is a (rows,) float64 array.
+class Table(Columns):
+    """Columns of numbers of a csv file, by name: `table["strain"]` is a (rows,) read-only array.
 
+    Under the name of the header ("stress_MPa") a column is in the unit of its name; without it ("stress") in SI.
     An empty cell is NaN: the stage of its row does not have the quantity. So is a cell that is inf or NaN, of
-    which a GapWarning tells.
+    which a GapWarning tells. A name that there is not raises Error, which names the file.
     """
 
     _takes_torn = True  #: a last line that does not end, but has all its cells
 
     def __init__(self, path: Path, may_be_empty: bool = False):
         """Raises Error when the file is missing, holds something that is not a number, or has no rows."""
+        super().__init__(ColumnNames.of_header([]))
         self.path = path
-        self.names: list[str] = []
         self._gaps: tuple[int, int, str, str] | None = None  # how many, and line, column and cell of the first
         self._values = np.empty((0, 0))  # (columns, room for rows)
         self._count = 0
@@ -55,7 +57,7 @@ class Table:
         self._take_added()
         if not self.names:
             raise Error(f"{path}: is empty; a header line is expected")
-        if not len(self) and not may_be_empty:
+        if not self.rows and not may_be_empty:
             raise Error(f"{path}: has a header but no rows")
 
     def _take_added(self) -> bool:
@@ -101,7 +103,7 @@ class Table:
         return rest
 
     def _take_header(self, lines: list[list[str]]) -> None:
-        self.names = [name.strip() for name in lines.pop(0)]
+        self._names = ColumnNames.of_header([name.strip() for name in lines.pop(0)])
         self._next_line += 1
         self._values = np.empty((len(self.names), 0))
 
@@ -167,12 +169,21 @@ class Table:
             numbers.append(number)
         return numbers
 
+    def _cells(self, column: int) -> np.ndarray:
+        return self._values[column, :self._count]
+
+    @property
+    def rows(self) -> int:
+        """That were read by now."""
+        return self._count
+
     def __getitem__(self, name: str) -> np.ndarray:
-        """Raises Error naming file and column when there is no such column."""
-        if name not in self.names:
+        """Raises Error naming file and column when there is no such column. Of names that are there twice the last
+        one counts.
+        """
+        if name not in self:
             raise Error(f"{self.path}: has no column '{name}'")
-        # of names that are there twice the last one counts
-        return self._values[len(self.names) - 1 - self.names[::-1].index(name), :self._count]
+        return super().__getitem__(name)
 
     def whole(self, name: str, none: int | None = None) -> np.ndarray:
         """(rows,) int64, a column of whole numbers from zero. none: what an empty cell stands for.
@@ -193,12 +204,6 @@ class Table:
         if not len(values):
             raise Error(f"{self.path}: column '{name}' has no finite value in the rows that are drawn")
         return values
-
-    def __contains__(self, name: str) -> bool:
-        return name in self.names
-
-    def __len__(self) -> int:
-        return self._count
 
 
 class GrowingTable(Table):
@@ -293,6 +298,15 @@ def dataset(file: h5py.File, name: str) -> np.ndarray:
     if numbers.dtype.kind == "f" and not (np.abs(numbers) <= LARGEST).all():
         raise Error(f"{file.filename}: /{name} has a value that is not finite")
     return numbers
+
+
+def read_array(path: Path, name: str, shape: tuple[int, ...]) -> np.ndarray:
+    """All of a dataset of an HDF5 file. Raises Error as `open_hdf` and `dataset`, and where it has another shape."""
+    with open_hdf(path) as file:
+        values = dataset(file, name)
+    if values.shape != shape:
+        raise Error(f"{path}: /{name} has shape {values.shape}, but the mesh asks for {shape}")
+    return values
 
 
 def read_json(path: Path) -> dict:

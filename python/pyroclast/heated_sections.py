@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import matplotlib
 import numpy as np
@@ -14,8 +15,10 @@ from matplotlib.tri import Triangulation
 
 from . import style
 from .errors import Error
-from .run import Frame, Run
 from .sections import Panel, count_cracks, draw_scale_bar, fracture_panels, frame_section, height_over_width
+
+if TYPE_CHECKING:
+    from .results import Frame, Results
 
 TEMPERATURES = (300.0, 400.0, 500.0, 600.0, 800.0)
 """°C, near which fracture is drawn unless others are asked for."""
@@ -53,7 +56,7 @@ def select_heated_frames(frames: Sequence[Frame], failed: bool) -> list[Frame]:
     return [selected[step] for step in sorted(selected)][-_MOST_PANELS:]
 
 
-def heating_fracture(run: Run, temperatures: Sequence[float] | None = None,
+def heating_fracture(run: Results, temperatures: Sequence[float] | None = None,
                      magnification: float | None = None) -> Figure:
     """The deformed specimen with its cracks while heated (paper, Figures 13 to 16).
 
@@ -70,7 +73,7 @@ def heating_fracture(run: Run, temperatures: Sequence[float] | None = None,
     return fracture_panels([("", panels)], style.title_of(run), magnification, _NOTE)
 
 
-def _frame_asked_for(run: Run, frames: Sequence[Frame], temperature: float) -> Frame:
+def _frame_asked_for(run: Results, frames: Sequence[Frame], temperature: float) -> Frame:
     frame = frame_near(frames, temperature)
     if frame is None:
         reach = [frame.temperature for frame in frames]
@@ -80,7 +83,7 @@ def _frame_asked_for(run: Run, frames: Sequence[Frame], temperature: float) -> F
     return frame
 
 
-def levels(runs: Sequence[Run], temperatures: Sequence[float] = LEVEL_TEMPERATURES,
+def levels(runs: Sequence[Results], temperatures: Sequence[float] = LEVEL_TEMPERATURES,
            magnification: float | None = None) -> Figure:
     """Fracture patterns, a row for each run, lowest load first; columns are temperatures and the last frame.
 
@@ -94,7 +97,7 @@ def levels(runs: Sequence[Run], temperatures: Sequence[float] = LEVEL_TEMPERATUR
     return fracture_panels(rows, "", magnification, _NOTE)
 
 
-def _row_labels(runs: Sequence[Run]) -> list[str]:
+def _row_labels(runs: Sequence[Results]) -> list[str]:
     """Load, and where that does not tell the runs apart also the folder; then warnings."""
     loads = [style.load_label(run) for run in runs]
     labels = []
@@ -105,13 +108,13 @@ def _row_labels(runs: Sequence[Run]) -> list[str]:
     return labels
 
 
-def _row(run: Run, temperatures: Sequence[float]) -> list[Panel]:
+def _row(run: Results, temperatures: Sequence[float]) -> list[Panel]:
     frames, failed = run.heated_frames, run.critical_temperature is not None
     choice = frames[:-1] if failed else frames
     return [*(_panel_near(run, choice, temperature) for temperature in temperatures), _panel(run, frames[-1])]
 
 
-def _panel_near(run: Run, frames: Sequence[Frame], temperature: float) -> Panel:
+def _panel_near(run: Results, frames: Sequence[Frame], temperature: float) -> Panel:
     if frames and (frame := frame_near(frames, temperature)):
         return _panel(run, frame)
     missing = f"no frame within\n{_NEAR:g} K"
@@ -120,7 +123,7 @@ def _panel_near(run: Run, frames: Sequence[Frame], temperature: float) -> Panel:
     return Panel(run, None, f"{temperature:g} °C", missing)
 
 
-def _panel(run: Run, frame: Frame) -> Panel:
+def _panel(run: Results, frame: Frame) -> Panel:
     last = frame.step == run.heated_frames[-1].step
     title, mean = f"{frame.temperature:.0f} °C", ""
     if not run.uniform and frame.heating_time is not None and np.isfinite(frame.heating_time):
@@ -130,7 +133,7 @@ def _panel(run: Run, frame: Frame) -> Panel:
     elif last:
         title = f"end, {title}"
     counts = count_cracks(run, frame)
-    stress = f"$\\sigma$ = {frame.stress:.1f} MPa\n" if run.restrained else ""
+    stress = f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n" if run.restrained else ""
     strain = f"{style.PER_MILLE * run.total_strain_at(frame):.2f}\\times 10^{{-3}}"
     modes = "\n".join(f"{mode}: {counts[mode, True]} | {counts[mode, False]}" for mode in run.crack_modes)
     caption = f"{mean}$\\varepsilon_{{\\mathrm{{tot}}}} = {strain}$\n{stress}{modes}"
@@ -138,7 +141,7 @@ def _panel(run: Run, frame: Frame) -> Panel:
 
 
 @matplotlib.rc_context(style.STYLE)
-def temperature_field(run: Run) -> Figure:
+def temperature_field(run: Results) -> Figure:
     """Temperature of the specimen at up to four times while heated, one colour scale for all."""
     frames = _spread(run.heated_frames)
     fields = [run.gridpoint_temperature(frame) for frame in frames]
@@ -160,7 +163,7 @@ def temperature_field(run: Run) -> Figure:
     return figure
 
 
-def draw_temperature(axes: Axes, run: Run, frame: Frame) -> TriMesh:
+def draw_temperature(axes: Axes, run: Results, frame: Frame) -> TriMesh:
     """The temperature of the specimen, alone in its axes, coloured over its own range. Returns what has the colours."""
     blocks = run.mesh.blocks
     field = run.gridpoint_temperature(frame)
@@ -184,7 +187,7 @@ def _spread(frames: Sequence[Frame]) -> list[Frame]:
     return [different[round(step)] for step in steps]
 
 
-def _draw_temperature(axes: Axes, run: Run, field: np.ndarray, scale: Normalize) -> TriMesh:
+def _draw_temperature(axes: Axes, run: Results, field: np.ndarray, scale: Normalize) -> TriMesh:
     blocks = run.mesh.blocks
     x, y = style.MILLI * blocks.points.T
     platens = style.MILLI * blocks.points[blocks.triangles[blocks.of_bearing]]

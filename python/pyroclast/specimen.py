@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core, label_image, mesh_cells
 from .errors import Error
+from .libraries import library
 from .units import Quantity
 
 if TYPE_CHECKING:
@@ -222,13 +223,14 @@ class Specimen:
 
     def to_meshio(self) -> meshio.Mesh:
         """As polygons in space, z = 0, with the cell data `phase`."""
-        import meshio
         phase, cells = self.phase, self.cells
         size = np.array([len(cell) for cell in cells])
         of_size = [np.flatnonzero(size == n) for n in np.unique(size)]
         points = np.column_stack([self.vertices, np.zeros(len(self.vertices))])
-        return meshio.Mesh(points, [("polygon", np.array([cells[i] for i in some])) for some in of_size],
-                           cell_data={"phase": [phase[some] for some in of_size]})
+        polygons = [("polygon", np.array([cells[i] for i in some])) for some in of_size]
+        mesh: meshio.Mesh = library("meshio", "to_meshio").Mesh(
+            points, polygons, cell_data={"phase": [phase[some] for some in of_size]})
+        return mesh
 
     def __repr__(self) -> str:
         shares = ", ".join(f"{name} {share:.3f}" for name, share in self.shares.items())

@@ -52,7 +52,7 @@ from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL
 from .interrupts import hear_ctrl_c
 from .progress import MINUTES_LABEL, Course, heating_course, loading_course
 from .records import leading, record_course, records_of
-from .run import Frame, GrowingRun
+from .results import Frame, GrowingResults
 from .sections import draw_specimen, fracture_legend
 from .style import save
 from .textplot import curve, plain_label
@@ -85,7 +85,7 @@ class _Curve:
     has_peak: bool = False  #: the largest value says something
 
 
-def _record_curve(run: GrowingRun) -> _Curve:
+def _record_curve(run: GrowingResults) -> _Curve:
     """Of a body without platens."""
     course = heating_course(run) if run.ends_heated else record_course(run)
     record = leading(records_of(run))
@@ -94,9 +94,9 @@ def _record_curve(run: GrowingRun) -> _Curve:
     return _Curve(course, record.of(run)[course.rows], record.title, record.name, f" {record.unit}", has_peak=True)
 
 
-def _curve_of(run: GrowingRun) -> _Curve:
-    if run.only_conducts:
-        rows = np.ones(len(run.history), dtype=bool)
+def _curve_of(run: GrowingResults) -> _Curve:
+    if not run.moves:
+        rows = np.ones(run.history.rows, dtype=bool)
         course = Course(run, rows, run.history["heating_time_s"] / 60.0, MINUTES_LABEL, start=0.0)
         return _Curve(course, course["temperature_degC"], "Mean temperature [°C]", "mean temperature", " °C")
     if not run.has_platens:
@@ -118,7 +118,7 @@ class Watch:
 
     def __init__(self, folder: str | Path, picture: str | Path | None = None):
         """picture: the file that `save` writes, its format by its ending; None: PICTURE in the folder."""
-        self.run = GrowingRun(folder)
+        self.run = GrowingResults(folder)
         self.picture = Path(picture) if picture is not None else None
         self._lock = Lock(self.run.folder)
         self._seen: tuple | None = None
@@ -146,7 +146,7 @@ class Watch:
         """
         try:
             is_new = self.run.refresh()
-            rows, frames = len(self.run.history), len(self.run.frames)
+            rows, frames = self.run.history.rows, len(self.run.frames)
         except Error:
             is_new, rows, frames = False, 0, 0
         seen = (self._state(), rows, frames)
@@ -208,7 +208,7 @@ class Watch:
         drawn = _curve_of(self.run)
         parts = []
         known = drawn.values[np.isfinite(drawn.values)]
-        if len(known) and not self.run.only_conducts:
+        if len(known) and self.run.moves:
             parts.append(f"{drawn.name} {known[-1]:.3g}{drawn.unit}")
             if drawn.has_peak:
                 parts[-1] += f" (largest {known.max():.3g})"
@@ -266,7 +266,7 @@ class Watch:
     def _draw_section(self, axes: Axes, below: Axes, frame: Frame | None) -> None:
         if frame is None:
             _say_in(axes, "no frame of the fields yet")
-        elif self.run.only_conducts:
+        elif not self.run.moves:
             colours = draw_temperature(axes, self.run, frame)
             axes.figure.colorbar(colours, ax=axes, label="Temperature [°C]", shrink=0.8)
             axes.set_title(f"mean {frame.temperature:.0f} °C")

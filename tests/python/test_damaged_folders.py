@@ -30,7 +30,7 @@ from pyroclast.comparisons import compare_runs  # noqa: E402
 from pyroclast.errors import Error  # noqa: E402
 from pyroclast.files import GapWarning  # noqa: E402
 from pyroclast.heated_sections import levels  # noqa: E402
-from pyroclast.run import Run  # noqa: E402
+from pyroclast.results import Results  # noqa: E402
 from pyroclast.watch import Watch  # noqa: E402
 
 DAMAGED = int(os.environ.get("PYROCLAST_DAMAGED", "200"))  # 500 in a longer try
@@ -176,14 +176,14 @@ class Damaged(unittest.TestCase):
         kind(path, random)
         return kind.__name__, [path]
 
-    def draw(self, run: Run, whole: Path, of_fields: bool, rendered: bool, random) -> None:
+    def draw(self, run: Results, whole: Path, of_fields: bool, rendered: bool, random) -> None:
         """Makes some of the figures that the damage can spoil."""
         choice = [make for name, make in figures.figures_of(run)
                   if not of_fields or name.endswith("fracture") or name == "temperature"]
-        if not of_fields and not run.only_conducts:
-            choice.append(lambda: compare_runs([run, Run(whole)]))
+        if not of_fields and run.moves:
+            choice.append(lambda: compare_runs([run, Results(whole)]))
         if run.ends_heated:
-            choice.append(lambda: levels([run, Run(whole)]))
+            choice.append(lambda: levels([run, Results(whole)]))
         for make in random.permutation(np.array(choice, dtype=object))[:FIGURES]:
             figure = make()
             if rendered:
@@ -201,7 +201,7 @@ class Damaged(unittest.TestCase):
                     with warnings.catch_warnings(record=True) as noted:
                         warnings.simplefilter("error")
                         warnings.simplefilter("always", GapWarning)
-                        self.draw(Run(folder), self.root / f"{folder.name}_whole",
+                        self.draw(Results(folder), self.root / f"{folder.name}_whole",
                                   all(path.suffix in (".h5", ".hdf") for path in paths),
                                   seed % RENDERED_EVERY == 0, random)
                     drawn += 1
@@ -296,7 +296,7 @@ class CommandLine(unittest.TestCase):
             with self.subTest(title):
                 synthetic_run.write_summary(self.folder, title, [("settle", {}), ("compress", {})])
                 marks = {}
-                figures.stress_strain(Run(self.folder), marks).savefig(io.BytesIO(), format="svg")
+                figures.stress_strain(Results(self.folder), marks).savefig(io.BytesIO(), format="svg")
 
 
 if __name__ == "__main__":

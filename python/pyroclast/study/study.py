@@ -53,7 +53,7 @@ class Study:
         """
         file: a study file. With tables, it is written from these first: `study={"deck": "starter.toml"}`, ...
         program: pyroclast itself; None: that on the PATH.
-        functions: further outputs, by names of their own: of a `pyroclast.run.Run`, called once for each run. What they
+        functions: further outputs, by names of their own: of a `pyroclast.Results`, called once for each run. What they
             need of the run has to be kept (`keep`).
         """
         self._is_own = bool(tables)  # the script's, not a file's: what it names, the script names
