@@ -17,11 +17,13 @@ import numpy as np
 
 from .errors import Error
 from .files import LARGEST, GrowingTable, Lock, Table, Writer, read_array, read_json
+from .libraries import library
 from .mesh import Mesh, read_mesh
 from .reference import References, read_references
 
 if TYPE_CHECKING:
     import pandas
+    import xarray
 
 _UNIFORM = 1.0  # K
 
@@ -521,6 +523,41 @@ class Results:
 
     def _field(self, kind: str, frame: Frame, name: str, shape: tuple[int, ...]) -> np.ndarray:
         return read_array(self.folder / "fields" / f"{kind}_{frame.number:04d}.hdf", f"VTKHDF/{name}", shape)
+
+    @cached_property
+    def fields(self) -> xarray.Dataset:
+        """The fields of all frames: an array for each of the files' (docs/fields.md), by its name without the unit,
+        which stands in its `attrs["units"]`. Stress and strain are positive in tension.
+
+        A frame is read when values of it are asked for, and nothing is kept: `fields["stress"].isel(frame=-1)` takes
+        the memory of a frame. `fields.load()` reads all of them, which takes `fields.nbytes`.
+
+        Dimensions are `frame` and `gridpoint`, `zone` or `contact`; of vectors `component` (x, y), and of tensors
+        `tensor` (xx, yy, zz, xy). Displacements of contacts have the `end` of its line too: `corner`, `middle`. Fields
+        of contacts that blocks have too begin with `contact_`. Where a stage has no such field, it is NaN.
+
+        Coordinates of frames: `stage`, `step`, `time` and `heating_time` [s], `test_strain` and `test_stress` [Pa],
+        positive in compression, and `mean_temperature` [degC]. Of gridpoints: `position` [m]. Of zones: `zones` (their
+        gridpoints), `block`, `material`, `bearing` (whether they are of one), `area` [m²]. Of contacts:
+        `contact_position` [m], `interface`, `length` [m].
+
+        Raises Error where the run keeps no frames, or xarray is not installed.
+        """
+        library("xarray", "Results.fields")
+        from .fields import fields_of
+        return fields_of(self)
+
+    @cached_property
+    def block_fields(self) -> xarray.Dataset:
+        """The fields of blocks, each the mean over a block's zones by area: dimensions `frame`, `block`, and
+        `component` or `tensor`.
+
+        Coordinates of frames as of `fields`. Of blocks: `material`, `bearing`, `area` [m²], `position` [m] of the
+        centre. It is read as `fields` are, a frame at a time.
+        """
+        library("xarray", "Results.block_fields")
+        from .fields import block_fields_of
+        return block_fields_of(self)
 
     def _repr_png_(self) -> bytes:
         from .notebook import draw_last_frame, png_of
