@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import html
 import io
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
@@ -42,7 +41,7 @@ class RunOrResults(Protocol):
     @property
     def history(self) -> Columns: ...
     @property
-    def deck_text(self) -> str: ...
+    def deck(self) -> Mapping[str, Any]: ...
     @property
     def stages(self) -> Sequence[Mapping[str, Any]]: ...
 
@@ -73,7 +72,7 @@ def _draw_curve(axes: Axes, run: RunOrResults) -> None:
         axes.plot(style.PER_MILLE * history["strain"], history["stress_MPa"], color=style.BLUE)
         axes.set_xlabel(style.STRAIN_LABEL)
         axes.set_ylabel(style.STRESS_LABEL)
-    elif record := leading(records := records_in(tomllib.loads(run.deck_text), history.names)):
+    elif record := leading(records := records_in(run.deck, history.names)):
         _, over, label = abscissa(run, records)
         axes.plot(over, record.of(run), color=style.BLUE)
         axes.set_xlabel(label)

@@ -575,7 +575,7 @@ class GrowingResults(Results):
     """A run that another process still writes: what is there by now, rows that are whole. `refresh` takes in more."""
 
     _table = GrowingTable
-    _LASTING = frozenset({"folder", "history", "mesh", "deck", "references", "parent"})
+    _LASTING = frozenset({"folder", "history", "mesh", "deck_text", "deck", "references", "parent"})
 
     def refresh(self) -> bool:
         """Takes in what was written since; returns whether the rows that were there are others or have become more."""

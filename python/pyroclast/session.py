@@ -11,6 +11,7 @@ wrong with a deck.
 from __future__ import annotations
 
 import json
+import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -597,6 +598,11 @@ class Run:
     def deck_text(self) -> str:
         """The deck as it stands, with what was changed since."""
         return self._core.deck_text
+
+    @property
+    def deck(self) -> dict[str, Any]:
+        """The same as tables."""
+        return tomllib.loads(self.deck_text)
 
     @property
     def warnings(self) -> list[str]:

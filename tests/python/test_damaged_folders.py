@@ -36,6 +36,7 @@ from pyroclast.watch import Watch  # noqa: E402
 DAMAGED = int(os.environ.get("PYROCLAST_DAMAGED", "200"))  # 500 in a longer try
 RENDERED_EVERY = int(os.environ.get("PYROCLAST_RENDERED_EVERY", "25"))  # also rendered, not only made; this is slow
 WATCHED_EVERY = 10
+READ_EVERY = 5
 FIGURES = 1  # of a damaged folder, drawn by lot
 DRAWN = ("strain", "stress_MPa", "temperature_degC", "heating_time_s", "specimen_strain", "lateral_strain",
          "energy_loading_J", "exchange", "stage", "converged")
@@ -216,6 +217,31 @@ class Damaged(unittest.TestCase):
         self.assertGreater(told, 0.2 * DAMAGED)
         self.assertGreater(drawn, 0.2 * DAMAGED)
         self.assertGreater(gaps, 0.02 * DAMAGED)
+
+    def test_fields_and_notebooks_have_all_or_tell_it_in_one_line(self):
+        names = ("compressed", "failed", "cooled", "restrained", "wall")
+        read = told = 0
+        for seed in range(0, DAMAGED, READ_EVERY):
+            random = np.random.default_rng(seed)
+            folder = self.root / names[seed // READ_EVERY % len(names)]
+            what, paths = self.damage(folder, random)
+            with self.subTest(seed=seed, what=what, of=[path.name for path in paths]), warnings.catch_warnings():
+                warnings.simplefilter("error")
+                warnings.simplefilter("ignore", GapWarning)
+                try:
+                    results = Results(folder)
+                    results.fields.isel(frame=slice(None, None, 5)).load()
+                    results.block_fields.isel(frame=-1).load()
+                    read += 1
+                except Error as error:
+                    told += 1
+                    self.assertEqual(len(str(error).splitlines()), 1, str(error))
+                    self.assertIn(str(self.root), str(error))
+                self.assertTrue(Results(folder)._repr_html_())
+            for path in paths:
+                path.write_bytes(self.content[path])
+        self.assertGreater(told, 0.2 * DAMAGED / READ_EVERY)
+        self.assertGreater(read, 0.2 * DAMAGED / READ_EVERY)
 
     def test_a_damaged_run_is_watched_as_far_as_it_can_be_read(self):
         names = ("compressed", "failed", "cooled", "restrained", "wall")

@@ -352,6 +352,9 @@ class InANotebook(Case):
         self.assertIn("<td>f_c_MPa</td><td>34</td>", shown)
         (self.folder / "summary.json").write_text("[]")
         self.assertIn("summary.json", Results(self.folder)._repr_html_())
+        synthetic_run.write_conduction(self.root / "wall")
+        (self.root / "wall" / "deck.toml").write_text("=")
+        self.assertIn("deck.toml: cannot be read", pyroclast.read(self.root / "wall")._repr_html_())
 
 
 if __name__ == "__main__":

@@ -381,7 +381,7 @@ class Command(WatchTest):
         text = shown.decode()
         self.assertGreaterEqual(text.count("Axial stress"), 2)
         self.assertRegex(text, r"\x1b\[20F\x1b\[J")  # back to where the last one began
-        self.assertIn("run ended: over", text.split("\x1b[J")[-1])
+        self.assertIn("run ended: completed", text.split("\x1b[J")[-1])
         self.assertTrue(pictures)
         self.assertNotIn((self.folder / PICTURE).read_bytes(), pictures)  # the last one is of the whole run
 

@@ -8,7 +8,7 @@ from small import CASES, COMPRESSED, PROGRAM, Case, deck, plate
 
 import pyroclast
 
-ALIKE = ("title", "outcome", "stages", "results", "deck_text", "moves", "folder")
+ALIKE = ("title", "outcome", "stages", "results", "deck_text", "deck", "moves", "folder")
 
 
 class ResultsOfRuns(Case):
