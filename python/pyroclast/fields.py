@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from .results import Frame, Results
 
 _NAME = re.compile(r"(.+) \[(.+)\]")  # of an array in a file
-_COMPONENTS = {3: ("component", ["x", "y"], [0, 1]), 6: ("tensor", ["xx", "yy", "zz", "xy"], [0, 1, 2, 3])}
-"""By the length of an array's rows: a dimension, and what is taken, which is all that is not zero in the plane."""
+_COMPONENTS = {3: ("component", ["x", "y"]), 6: ("tensor", ["xx", "yy", "zz", "xy", "yz", "xz"])}
+"""By the length of an array's rows: a dimension and its labels. The third of a vector is out of the plane and zero."""
 _OF_CONTACTS = "contact_"  # before the names of contacts' fields that blocks have too
 _PA = 1e6  # from MPa
 
@@ -63,16 +63,16 @@ class _Field:
     @property
     def components(self) -> dict[str, int]:
         """The dimension along a row with its size, where it is one."""
-        return {name: len(labels) for name, labels, _ in (_COMPONENTS[n] for n in self.shape[1:])}
+        return {name: len(labels) for name, labels in (_COMPONENTS[n] for n in self.shape[1:])}
 
     def read(self, folder: Path, frame: int) -> Array:
-        """(rows, components) of a frame, without what is zero in the plane."""
+        """(rows, components) of a frame."""
         path = folder / f"{self.part}_{frame:04d}.hdf"
         if self.is_optional and not _has(path, self.path):
             values: Array = np.full(self.shape, np.nan, self.dtype)
         else:
             values = read_array(path, self.path, self.shape)
-        return values if len(self.shape) == 1 else values[:, _COMPONENTS[self.shape[1]][2]]
+        return values if len(self.shape) == 1 else values[:, :len(_COMPONENTS[self.shape[1]][1])]
 
 
 class _OfFrames(BackendArray):
@@ -233,7 +233,7 @@ def _of_frames(results: Results) -> dict[str, Variable]:
 
 def _of_components(fields: list[_Field]) -> dict[str, Variable]:
     there = {3, *(n for field in fields for n in field.shape[1:])}  # positions have components
-    return {name: ((name,), labels, {}) for name, labels, _ in (_COMPONENTS[n] for n in sorted(there))}
+    return {name: ((name,), labels, {}) for name, labels in (_COMPONENTS[n] for n in sorted(there))}
 
 
 def _of_zones(mesh: Mesh) -> dict[str, Variable]:
