@@ -28,13 +28,13 @@ StepCost step_cost(pyroclast::Mechanics<2>& body) {
   const Operations done = operations();
   const auto& model = body.model();
   const auto& layout = body.layout();
-  const auto in_use = [](int items, int rows) {
-    return static_cast<double>(items) / (static_cast<double>(rows) * pyroclast::kLanes);
+  const auto in_use = [](int items, int packs) {
+    return static_cast<double>(items) / (static_cast<double>(packs) * pyroclast::kLanes);
   };
   const Traffic arrays = traffic(body);
   StepCost cost;
-  cost.flops = static_cast<double>(done.faces) * in_use(model.contact_count() / 2, layout.face_rows()) +
-               static_cast<double>(done.bundles) * in_use(model.zone_count(), layout.zone_rows);
+  cost.flops = static_cast<double>(done.faces) * in_use(model.contact_count() / 2, layout.face_packs()) +
+               static_cast<double>(done.bundles) * in_use(model.zone_count(), layout.zone_packs);
   cost.bytes = arrays.moved;
   cost.working_set = arrays.working_set;
   cost.memory = static_cast<double>(body.memory());

@@ -24,7 +24,7 @@ constexpr int kIntactSteps = 100, kCrackedSteps = 400;
 constexpr int kStepsAtRest = 100;
 
 Setup read(const std::filesystem::path& deck) {
-  return pyroclast::read_setup(pyroclast::Deck::load(deck), deck.parent_path());
+  return pyroclast::read_setup(pyroclast::Deck::open(deck), deck.parent_path());
 }
 
 pyroclast::specimen::Specimen make(pyroclast::specimen::SpecimenParameters parameters, int blocks) {

@@ -29,14 +29,14 @@ void update_faces(State<2>& s, int first, int last, bool measure) {
 }
 
 template <class... Laws>
-pyroclast::RowFunctions<2> rows(pyroclast::LawList<Laws...>, int law) {
-  static constexpr std::array<pyroclast::RowFunctions<2>, sizeof...(Laws)> kRows{
+pyroclast::PackFunctions<2> packs(pyroclast::LawList<Laws...>, int law) {
+  static constexpr std::array<pyroclast::PackFunctions<2>, sizeof...(Laws)> kPacks{
       {{update_faces<Laws>, pyroclast::Contacts<2, Counting, Laws>::place_stiffness}...}};
-  return kRows[static_cast<std::size_t>(law)];
+  return kPacks[static_cast<std::size_t>(law)];
 }
 
-pyroclast::RowFunctions<2> rows_of(const pyroclast::LawTable& law) {
-  return rows(pyroclast::BuiltInLaws(), pyroclast::index_of(law));
+pyroclast::PackFunctions<2> functions_of(const pyroclast::LawTable& law) {
+  return packs(pyroclast::BuiltInLaws(), pyroclast::index_of(law));
 }
 
 void move_bundles(State<2>& s, int first, int last, Pass pass, double* scratch) {
@@ -50,10 +50,10 @@ class Shares {
  public:
   Shares(const State<2>& s, const std::vector<const pyroclast::LawTable*>& laws)
       : held_(held_share(s, laws)), combined_(s.damping_form == pyroclast::DampingForm::combined) {
-    int spread_rows = 0;
+    int spread_packs = 0;
     for (const Bundle& bundle : s.layout.bundles)
-      if (bundle.kind == BundleKind::spread) spread_rows += bundle.rows;
-    const double spread = static_cast<double>(spread_rows) / static_cast<double>(s.velocity.size());
+      if (bundle.kind == BundleKind::spread) spread_packs += bundle.packs;
+    const double spread = static_cast<double>(spread_packs) / static_cast<double>(s.velocity.size());
     alike_ = 1.0 - spread;
     gathered_ = s.kinematics == pyroclast::Kinematics::finite ? 1.0 : spread;
   }
@@ -77,11 +77,11 @@ class Shares {
   }
 
  private:
-  /// Share of the history that is always written.
+  /// Share of the internal variables that is always written.
   static double held_share(const State<2>& s, const std::vector<const pyroclast::LawTable*>& laws) {
     double all = 0.0, always = 0.0;
-    for (int row = 0; row < static_cast<int>(s.layout.faces.size()); ++row)
-      for (const auto& info : laws[s.law_of_faces[row]]->history(2)) {
+    for (int pack = 0; pack < static_cast<int>(s.layout.faces.size()); ++pack)
+      for (const auto& info : laws[s.law_of_faces[pack]]->internals(2)) {
         all += 1.0;
         always += info.when == 0;
       }
@@ -95,7 +95,7 @@ class Shares {
 }  // namespace
 
 pyroclast::StepFunctions<2> counting_step() {
-  return {{move_bundles, CountingStep::sum_stiffness}, rows_of};
+  return {{move_bundles, CountingStep::sum_stiffness}, functions_of};
 }
 
 Operations operations() {

@@ -98,9 +98,9 @@ void reset_operations();
 /// Bytes that a step which nothing damages moves at least, each array that it reads counted once and each
 /// that it writes once more, as long as they are, idle lanes with the rest.
 ///
-/// Of the history only the held slip is written always; writes of damages, closures and slips, and losses
-/// altogether, which concern only rows where something breaks, yields or slides, are left out, and so are
-/// scratch memory and the constants shared by many.
+/// Of the internal variables only the held slip is written always; writes of damages, closures and slips, and
+/// losses altogether, which concern only packs where something breaks, yields or slides, are left out, and so
+/// are scratch memory and the constants shared by many.
 struct Traffic {
   double moved = 0.0;        ///< read plus written
   double working_set = 0.0;  ///< all that is read or written, once

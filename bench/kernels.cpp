@@ -13,22 +13,22 @@ namespace bench {
 namespace {
 
 /// Times one part of the step of a body, over and over on a copy of its state. Contacts begin each time with
-/// the history of the copy, so that they break and slip as in the body's next step; where motion drifts to,
-/// no other part looks.
+/// the internal variables of the copy, so that they break and slip as in the body's next step; where motion
+/// drifts to, no other part looks.
 void time_part(benchmark::State& state, const pyroclast::Mechanics<2>& body, const Part& part) {
   auto storage = body.storage();
   pyroclast::State<2> copy = body.state();
   pyroclast::see(copy, storage);
-  std::vector<pyroclast::RowFunctions<2>> laws;
+  std::vector<pyroclast::PackFunctions<2>> laws;
   for (const auto* law : body.laws())
     laws.push_back(kNativeLaws[static_cast<std::size_t>(pyroclast::index_of(*law))]);
   copy.laws = laws.data();
-  const auto& history = body.storage().history;
+  const auto& internals = body.storage().internals;
   pyroclast::FlatArray<double> scratch(static_cast<std::size_t>(4 * pyroclast::kLanes) *
-                                       body.layout().most_rows);
+                                       body.layout().most_packs);
   for (auto _ : state) {
     state.PauseTiming();
-    std::copy(history.begin(), history.end(), copy.history.begin());
+    std::copy(internals.begin(), internals.end(), copy.internals.begin());
     state.ResumeTiming();
     part.run(copy, scratch.data());
     benchmark::ClobberMemory();

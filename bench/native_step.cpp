@@ -28,15 +28,16 @@ int bundles(const State<2>& s) {
 }
 
 template <class... Laws>
-constexpr NativeLaws rows(pyroclast::LawList<Laws...>) {
+constexpr NativeLaws packs(pyroclast::LawList<Laws...>) {
   return {{{pyroclast::Contacts<2, Native, Laws>::update,
             pyroclast::Contacts<2, Native, Laws>::place_stiffness}...}};
 }
 
 void contacts(State<2>& s, double*) {
-  pyroclast::for_each_law(
-      s, 0, static_cast<int>(s.layout.faces.size()),
-      [&](const pyroclast::RowFunctions<2>& law, int first, int last) { law.update(s, first, last, false); });
+  pyroclast::for_each_law(s, 0, static_cast<int>(s.layout.faces.size()),
+                          [&](const pyroclast::PackFunctions<2>& law, int first, int last) {
+                            law.update(s, first, last, false);
+                          });
 }
 
 [[gnu::flatten]] void gather(State<2>& s, double* memory) {
@@ -61,16 +62,16 @@ void contacts(State<2>& s, double*) {
     const Bundle& bundle = s.layout.bundles[b];
     const auto scratch = NativeStep::R::scratch_of(bundle, memory);
     NativeStep::take_displacements(s, bundle, scratch);
-    for (int i = 0; i < bundle.rows; ++i) scratch.sum[i] = s.force[bundle.first_row + i];
+    for (int i = 0; i < bundle.packs; ++i) scratch.sum[i] = s.force[bundle.first_pack + i];
     NativeStep::Sums sums;
-    NativeStep::M::move_rows<Pass::move>(s, b, scratch, sums);
+    NativeStep::M::move_packs<Pass::move>(s, b, scratch, sums);
     NativeStep::M::keep<Pass::move>(s, b, sums);
   }
 }
 
 }  // namespace
 
-const NativeLaws kNativeLaws = rows(pyroclast::BuiltInLaws());
+const NativeLaws kNativeLaws = packs(pyroclast::BuiltInLaws());
 const Part kParts[4] = {{"contacts", contacts}, {"gather", gather}, {"zones", zones}, {"motion", motion}};
 
 }  // namespace bench

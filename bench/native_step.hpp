@@ -7,8 +7,8 @@
 
 namespace bench {
 
-/// The rows of the program's laws, in the order of BuiltInLaws, as the parts are compiled.
-using NativeLaws = std::array<pyroclast::RowFunctions<2>, pyroclast::BuiltInLaws::count>;
+/// The packs of the program's laws, in the order of BuiltInLaws, as the parts are compiled.
+using NativeLaws = std::array<pyroclast::PackFunctions<2>, pyroclast::BuiltInLaws::count>;
 extern const NativeLaws kNativeLaws;
 
 /// One part of the step over a whole body, the fastest compilation for this machine.

@@ -16,4 +16,4 @@ configure_package_config_file(cmake/pyroclastConfig.cmake.in ${PROJECT_BINARY_DI
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/pyroclastConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/pyroclastConfig.cmake ${PROJECT_BINARY_DIR}/pyroclastConfigVersion.cmake
               cmake/Dependencies.cmake cmake/InstructionSets.cmake cmake/AddLaw.cmake cmake/law.cpp.in
-              cmake/law_rows.cpp.in DESTINATION ${package_folder})
+              cmake/law_packs.cpp.in DESTINATION ${package_folder})

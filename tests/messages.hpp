@@ -23,4 +23,8 @@ inline void expect_in(const std::string& part, const std::string& text) {
   EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 
+inline void expect_out(const std::string& part, const std::string& text) {
+  EXPECT_EQ(text.find(part), std::string::npos) << text;
+}
+
 }  // namespace pyroclast

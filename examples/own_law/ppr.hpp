@@ -137,7 +137,7 @@ struct Law {
   static constexpr unsigned kDamaged = 1, kSlid = 2;
 
   template <int Dim, class Real>
-  struct History {
+  struct Internals {
     Real opened{}, sheared{};               ///< the largest jumps, m
     Real tension_damage{}, shear_damage{};  ///< 1 - secant over first stiffness
     Tangential<Dim, Real> slip{};           ///< of friction, m
@@ -146,17 +146,17 @@ struct Law {
     template <class F, class... H>
     static constexpr void each(F&& f, H&... h) {
       using enum Remembers;
-      f(HistoryInfo{"opened", "largest opening", unit::length, other, kDamaged}, h.opened...);
-      f(HistoryInfo{"sheared", "largest tangential jump", unit::length, other, kDamaged}, h.sheared...);
-      f(HistoryInfo{"tension_damage", "0 intact, 1 broken", unit::dimensionless, Remembers::tension_damage,
-                    kDamaged},
+      f(InternalInfo{"opened", "largest opening", unit::length, other, kDamaged}, h.opened...);
+      f(InternalInfo{"sheared", "largest tangential jump", unit::length, other, kDamaged}, h.sheared...);
+      f(InternalInfo{"tension_damage", "0 intact, 1 broken", unit::dimensionless, Remembers::tension_damage,
+                     kDamaged},
         h.tension_damage...);
-      f(HistoryInfo{"shear_damage", "0 intact, 1 broken", unit::dimensionless, Remembers::shear_damage,
-                    kDamaged},
+      f(InternalInfo{"shear_damage", "0 intact, 1 broken", unit::dimensionless, Remembers::shear_damage,
+                     kDamaged},
         h.shear_damage...);
       for (int i = 0; i + 1 < Dim; ++i)
-        f(HistoryInfo{"slip", "of friction", unit::length, other, kSlid, false}, h.slip[i]...);
-      f(HistoryInfo{"held", "stretch of friction's spring", unit::length, other, 0, false}, h.held...);
+        f(InternalInfo{"slip", "of friction", unit::length, other, kSlid, false}, h.slip[i]...);
+      f(InternalInfo{"held", "stretch of friction's spring", unit::length, other, 0, false}, h.held...);
     }
   };
 
@@ -190,7 +190,7 @@ struct Law {
 
   template <int Dim, class Real, class Number, class Sum>
   static ContactResponse<Dim, Real> update(const Constants<Number>& c, const Real& opening,
-                                           const Tangential<Dim, Real>& jump, History<Dim, Real>& h,
+                                           const Tangential<Dim, Real>& jump, Internals<Dim, Real>& h,
                                            Losses<Sum>& losses) {
     ContactResponse<Dim, Real> r;
     const Real none = 0.0, open = larger(opening, none), pressed = smaller(opening, none),
@@ -230,7 +230,7 @@ struct Law {
   /// Takes the largest jumps on. Along one axis the loss is exact: work by the potential less what is stored.
   template <int Dim, class Real, class Number, class Losses>
   static void separate(const Constants<Number>& c, const Real& open, const Real& sheared,
-                       History<Dim, Real>& h, Losses& losses, unsigned& changed) {
+                       Internals<Dim, Real>& h, Losses& losses, unsigned& changed) {
     const Real none = 0.0, opened = larger(h.opened, open), slid = larger(h.sheared, sheared);
     const auto n0 = factor<Real>(c.normal, h.opened), n1 = factor<Real>(c.normal, opened);
     const auto t0 = factor<Real>(c.shear, h.sheared), t1 = factor<Real>(c.shear, slid);

@@ -42,7 +42,7 @@ struct Point {
       const double share = static_cast<double>(i) / steps;
       const std::array<double, 2> to{from_n + share * (opening - from_n),
                                      from_s + share * (sheared - from_s)};
-      const auto r = Law::update<2, double>(constants, to[0], {{to[1]}}, history, losses);
+      const auto r = Law::update<2, double>(constants, to[0], {{to[1]}}, internals, losses);
       const std::array<double, 2> traction{r.normal_traction, r.shear_traction[0]};
       for (int k : {0, 1}) {
         work += 0.5 * (traction[k] + last[k]) * (to[k] - at[k]);
@@ -55,7 +55,7 @@ struct Point {
   }
 
   Law::Constants<double> constants;
-  Law::History<2, double> history;
+  Law::Internals<2, double> internals;
   Law::Losses<double> losses{};
   std::array<double, 2> at{}, last{}, peak{};
   double work = 0.0, stored = 0.0;
@@ -70,7 +70,7 @@ void check(double normal_energy, double shear_energy) {
   expect("work of separation in tension", tension.losses.separation, normal_energy, 1e-10);
   expect("area below the curve in tension", tension.work, normal_energy, 1e-5);
   expect("strength in tension", tension.peak[0], p.normal_strength, 1e-4);
-  expect("damage in tension", tension.history.tension_damage, 1.0, 0.0);
+  expect("damage in tension", tension.internals.tension_damage, 1.0, 0.0);
 
   Point shear(p);
   shear.go(0.0, 1.01 * shear.constants.shear.last, kSteps);

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from .results import Results as Results
     from .results import SpecimenFolder as SpecimenFolder
     from .results import read as read
+    from .session import Fields as Fields
     from .session import History as History
     from .session import Recorder as Recorder
     from .session import Run as Run
@@ -71,7 +72,7 @@ else:
         "functions": ("Function",),
         "laws": ("Law",),
         "results": ("Results", "SpecimenFolder", "read"),
-        "session": ("History", "Recorder", "Run", "Sets", "State", "Views"),
+        "session": ("Fields", "History", "Recorder", "Run", "Sets", "State", "Views"),
         "specimen": ("Specimen",),
         "stages": ("Key", "Stage", "Verdict"),
         "study.study": ("Study",),

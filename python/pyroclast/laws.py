@@ -51,7 +51,7 @@ class Law:
         """
         path = np.column_stack(np.broadcast_arrays(np.atleast_1d(np.asarray(opening, float)),
                                                    np.asarray(slip, float), np.asarray(temperature, float)))
-        return _core.drive_law(self._law, "", self._folders, self._values, path, steps)
+        return _core.law_along_path(self._law, "", self._folders, self._values, path, steps)
 
     def __repr__(self) -> str:
         return f"<Law {self.name}>"

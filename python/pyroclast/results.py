@@ -533,8 +533,9 @@ class Results:
         the memory of a frame. `fields.load()` reads all of them, which takes `fields.nbytes`.
 
         Dimensions are `frame` and `gridpoint`, `zone` or `contact`; of vectors `component` (x, y), and of tensors
-        `tensor` (xx, yy, zz, xy, yz, xz). Displacements of contacts have the `end` of its line too: `corner`, `middle`. Fields
-        of contacts that blocks have too begin with `contact_`. Where a stage has no such field, it is NaN.
+        `tensor` (xx, yy, zz, xy, yz, xz). Displacements of contacts have the `end` of their lines too: `corner`,
+        `middle`. Fields of contacts that blocks have too begin with `contact_`. Where a stage has no such field, it is
+        NaN.
 
         Coordinates of frames: `stage`, `step`, `time` and `heating_time` [s], `test_strain` and `test_stress` [Pa],
         positive in compression, and `mean_temperature` [degC]. Of gridpoints: `position` [m]. Of zones: `zones` (their

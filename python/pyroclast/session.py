@@ -113,7 +113,7 @@ class Views:
     """Arrays of the mechanics as they lie in memory: no copies, and read-only.
 
     They change as the run steps, so read them at looks. Each keeps the memory of its run alive, also after `del run`.
-    They stand by slot, or in rows of eight slots: slot i is [i // 8, :, i % 8]. `run.slot` says where a gridpoint of
+    They stand by slot, or in packs of eight slots: slot i is [i // 8, :, i % 8]. `run.slot` says where a gridpoint of
     the model stands.
     """
 
@@ -127,25 +127,62 @@ class Views:
 
     @property
     def velocity(self) -> Array:
-        """(rows, 2, 8), m/s."""
+        """(packs, 2, 8), m/s."""
         return self._core.view("velocity")
 
     @property
     def force(self) -> Array:
-        """(rows, 2, 8), N: sums of all forces."""
+        """(packs, 2, 8), N: sums of all forces."""
         return self._core.view("force")
 
     @property
-    def history(self) -> Array:
-        """(lines, 8): what contact points remember, a line for each number of eight of them, in the order of the
-        layout. `run.contacts()` has it by name and contact.
+    def internals(self) -> Array:
+        """(lines, 8): internal variables of contact points, a line for each number of eight of them, in the order of
+        the layout. `run.contacts()` has them by name and contact.
         """
-        return self._core.view("history")
+        return self._core.view("internals")
+
+
+class Fields(Mapping[str, Array]):
+    """Fields of gridpoints and zones now, by name with unit, `run.fields["stress_Pa"]`, or without,
+    `run.fields.stress`: (items,) numbers, (items, 2) vectors x and y, (items, 6) symmetric tensors xx, yy, zz, xy, yz,
+    xz. Each is a copy. A name that there is not raises KeyError, or AttributeError. docs/fields.md lists them.
+    """
+
+    def __init__(self, core: _core.Session):
+        self._core = core
+        self._items = {name: (bare, item) for name, bare, _, item, *_ in core.field_infos()
+                       if item in ("gridpoint", "zone")}
+        self._bare = {bare: name for name, (bare, _) in self._items.items()}
+
+    def __getitem__(self, name: str) -> Array:
+        bare, item = self._items[self._bare.get(name, name)]
+        return next(iter(self._core.fields(item, [bare]).values()))
+
+    def __getattr__(self, name: str) -> Array:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"this run has no field {name!r}; it has {', '.join(self._bare)}") from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._bare]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def __repr__(self) -> str:
+        return f"<Fields {', '.join(self)}>"
 
 
 class Sets(Mapping[str, Indices]):
     """Named parts of the body, fixed when it was made: (members,) each, ascending. They are indices:
-    `run.displacement[run.sets["left"]]`. A name that there is not raises KeyError.
+    `run.fields.displacement[run.sets["left"]]`. A name that there is not raises KeyError.
     """
 
     def __init__(self, core: _core.Session, of_contacts: bool):
@@ -686,42 +723,17 @@ class Run:
         return self._core.material_names
 
     @property
-    def displacement(self) -> Array:
-        """(gridpoints, 2), m."""
-        return self._core.copied("displacement")
-
-    @property
-    def velocity(self) -> Array:
-        """(gridpoints, 2), m/s."""
-        return self._core.copied("velocity")
-
-    @property
-    def force(self) -> Array:
-        """(gridpoints, 2), N: sums of all forces."""
-        return self._core.copied("force")
-
-    @property
-    def stress(self) -> Array:
-        """(zones, 3), Pa: xx, yy, xy."""
-        return self._core.copied("stress")
-
-    @property
-    def creep_strain(self) -> Array:
-        """(zones, 3): xx, yy, xy of what each zone has crept under load while it was heated; 0 where nothing creeps."""
-        return self._core.copied("creep_strain")
-
-    @property
-    def temperature(self) -> Array:
-        """(gridpoints,), degC."""
-        return self._core.copied("temperature")
+    def fields(self) -> Fields:
+        """Fields of gridpoints and zones now."""
+        return Fields(self._core)
 
     def contacts(self) -> pandas.DataFrame:
         """State of all contact points, a row each: `interface` and `law` (names), `x_m` and `y_m`, the number of the
-        `face`, `area_m2`, `normal_x` and `normal_y`, `opening_m` and `slip_m`, `normal_traction_Pa` and
-        `shear_traction_Pa`, `stored_J_m2`, what their laws remember (`closure_m`), and what they lost
-        (`lost_tension_J_m2`).
+        `face`, `area_m2`, `normal_x` and `normal_y`, and the fields of contacts that are numbers (docs/fields.md):
+        `opening_m`, what their laws remember (`closure_m`), what they lost (`lost_tension_J_m2`), ...
         """
-        table: pandas.DataFrame = library("pandas", "contacts").DataFrame(self._core.contacts())
+        columns = {**self._core.contact_points(), **_of_item(self._core, "contact", components=1)}
+        table: pandas.DataFrame = library("pandas", "contacts").DataFrame(columns)
         return table.astype({"face": int})
 
     def to_pandas(self) -> pandas.DataFrame:
@@ -729,20 +741,18 @@ class Run:
         return self.history.to_pandas()
 
     def to_meshio(self) -> meshio.Mesh:
-        """The body now as a mesh of triangles in space, z = 0, in m, with the data `displacement_m`, `velocity_m_s` and
-        `temperature_degC` of gridpoints, `stress_Pa`, `block` and `material` of zones. `field_data` has the names of
-        the materials: their number and the dimension of their zones, as meshes of gmsh do.
+        """The body now as a mesh of triangles in space, z = 0, in m, with its fields (`displacement_m`, `stress_Pa`,
+        ...), and `block` and `material` of zones. `field_data` has the names of the materials: their number and the
+        dimension of their zones, as meshes of gmsh do.
         """
         block = self.zone_block
-        points = {"temperature_degC": self.temperature}
-        cells: dict[str, list[Any]] = {"block": [block], "material": [self.block_material[block]]}
-        if self._core.moves:
-            points |= {"displacement_m": _in_space(self.displacement),
-                       "velocity_m_s": _in_space(self.velocity)}
-            cells["stress_Pa"] = [self.stress]
+        points = {name: _in_space(values) if values.ndim > 1 else values
+                  for name, values in self._core.fields("gridpoint", []).items()}
+        cells: dict[str, Any] = {"block": block, "material": self.block_material[block], **self._core.fields("zone", [])}
         names = {name: np.array([number, 2]) for number, name in enumerate(self.material_names)}
         mesh: meshio.Mesh = library("meshio", "to_meshio").Mesh(
-            _in_space(self.position), [("triangle", self.zones)], point_data=points, cell_data=cells, field_data=names)
+            _in_space(self.position), [("triangle", self.zones)], point_data=points,
+            cell_data={name: [values] for name, values in cells.items()}, field_data=names)
         return mesh
 
     # In a notebook
@@ -757,6 +767,12 @@ class Run:
 
     def __repr__(self) -> str:
         return f"<Run {self.title!r}: {self.outcome}, {self._core.rows} rows>"
+
+
+def _of_item(core: _core.Session, item: str, components: int) -> dict[str, Array]:
+    """Its fields of so many components, by name with unit."""
+    names = [bare for _, bare, _, of, count, _ in core.field_infos() if of == item and count == components]
+    return core.fields(item, names) if names else {}
 
 
 def _in_space(vectors: Array) -> Array:

@@ -196,7 +196,7 @@ class Values(unittest.TestCase):
             state.write(scratch / "checkpoints" / newest.name, self.hash_of, **changes)
             outcome = self.resumed(scratch, newest.name)
             came[outcome.split(":")[0]] += 1
-            if "nan" in what and outcome != "refused" and not what.startswith("records:"):  # which holds no reals
+            if "nan" in what and outcome != "refused" and not what.startswith("courses:"):  # which holds no reals
                 wrong.append(f"{what}: a NaN is taken ({outcome})")
             elif outcome not in ("refused", "ended", "goes on") and not outcome.startswith("told: "):
                 wrong.append(f"{what}: {outcome}")
@@ -226,7 +226,7 @@ class Values(unittest.TestCase):
         whole = {name: data for name, (_, data) in state.rows.items()}
         minus, many, large = struct.pack("<i", -1), struct.pack("<i", 1000), struct.pack("<q", 1 << 31)
         for name, data, says in (
-                ("records", 3 * whole["records"], "entries"),
+                ("courses", 3 * whole["courses"], "entries"),
                 ("history.is_there", whole["history.is_there"][1:], "entries"),
                 ("history.columns", whole["history.columns"][:-1], "line's end"),
                 ("mechanics.ties_of_bundles", struct.pack("<3i", 0, 0, -3), "must be"),

@@ -21,7 +21,7 @@ class RunDeck(unittest.TestCase):
                            capture_output=True, timeout=100, check=True)
             self.assertIn("completed", example.stdout)
             names = {path.relative_to(folder / "its") for path in (folder / "its").rglob("*.*")
-                     if path.suffix != ".state" and path.name != "run.log"}  # the example keeps no state, and is silent
+                     if path.name != "run.log"}  # the example is silent
             self.assertEqual({path.relative_to(folder / "mine") for path in (folder / "mine").rglob("*.*")}, names)
             for path in ("history.csv", "fields/frames.csv", "specimen/specimen.json", "deck.toml"):
                 self.assertEqual((folder / "mine" / path).read_bytes(), (folder / "its" / path).read_bytes())

@@ -225,6 +225,13 @@ class Forking(RestartTest):
         self.pyroclast("run", "long.toml", "--out", "whole", "--no-figures")
         self.assert_same("fork", "whole")
         self.pyroclast("resume", "fork", code=1)
+        (self.folder / "more.toml").write_text("\n" + more.replace("1 K/min", "1 mm"))
+        said = self.pyroclast("resume", "parent", "--stages", "more.toml", "--out", "no", code=1).stderr
+        self.assertIn("more.toml:5:8: stages[3].rate", said)
+        (self.folder / "more.toml").write_text("# later\n")
+        said = self.pyroclast("resume", "parent", "--stages", "more.toml", "--out", "no", code=1).stderr
+        self.assertIn("more.toml: has no [[stages]]", said)
+        self.assertFalse((self.folder / "no").exists())
 
 
 if __name__ == "__main__":

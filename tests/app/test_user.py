@@ -1171,7 +1171,7 @@ struct Law {
   template <class Real>
   using Constants = Properties<Real>;
   template <int Dim, class Real>
-  struct History : pyroclast::Nothing {};
+  struct Internals : pyroclast::Nothing {};
   template <class Sum>
   struct Losses : pyroclast::Nothing {};
   static Constants<double> derive(const Properties<double>& p) { return p; }
@@ -1181,7 +1181,7 @@ struct Law {
   template <int Dim, class Real, class Number, class Sum>
   static pyroclast::ContactResponse<Dim, Real> update(const Constants<Number>& c, const Real& opening,
                                                       const pyroclast::Tangential<Dim, Real>& tangential,
-                                                      History<Dim, Real>&, Losses<Sum>&) {
+                                                      Internals<Dim, Real>&, Losses<Sum>&) {
     pyroclast::ContactResponse<Dim, Real> r;
     r.normal_traction = c.stiffness * opening;
     r.shear_traction = tangential * Real(c.stiffness);

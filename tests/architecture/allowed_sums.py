@@ -12,7 +12,7 @@ _TIE = "over the gridpoints of one tie, in the order that it was made with"
 
 ALLOWED = [
     # Not over a body
-    Allowed("app/check.cpp", "", "over the stages of a deck"),
+    Allowed("session/rehearsal.cpp", "forecast()", "over the stages of a deck"),
     Allowed("base/chunked_sum.hpp", "total += sum;", "chunked_sum itself"),
     Allowed("base/vec.hpp", "", "components of one vector"),
     Allowed("tables/header.cpp", "words_of()", "characters of one word"),
@@ -23,6 +23,7 @@ ALLOWED = [
     Allowed("base/team.cpp", "", "times that threads waited, in whole nanoseconds"),
     Allowed("session/law_point.cpp", "LawPoint::dissipated()", "over the losses of one contact point"),
     Allowed("mechanics/mechanics.cpp", "Dissipation::total()", "over the energies of one ledger, each a chunked sum"),
+    Allowed("mechanics/energy_ledger.hpp", "EnergyLedger::sum()", "over the entries of one ledger, each a chunked sum"),
     Allowed("*", "exposure()", "durations of the stages of a deck"),
     Allowed("*response.cpp", "fit()", "over the rows of a history"),
     Allowed("results/field_files.cpp", "frame_times()", "over the frames of a run"),
@@ -51,7 +52,7 @@ ALLOWED = [
     Allowed("simulation/loads.cpp", "Loads::forces()", _GRIDPOINT),
     Allowed("simulation/loads.cpp", "Loads::apply()", "at one gridpoint, over the sets that are loaded, by their names"),
     Allowed("stages/drive.cpp", "Drive::loads_at()", "on one set, over the drives of a stage"),
-    Allowed("stages/compress.cpp", "way += velocity_ *", "over time"),
+    Allowed("stages/compress.cpp", "way += kept_.velocity *", "over time"),
     Allowed("simulation/records.cpp", "mean.weights[", _GRIDPOINT),
     Allowed("stages/drive.cpp", "Drive::unit_force()", "over the drives of a stage"),
     Allowed("model/model.cpp", "face_frame()", "corners of one face"),
@@ -99,7 +100,7 @@ ALLOWED = [
     Allowed("mechanics/step/*", "sums.applied += norm(", _BUNDLE),
     Allowed("mechanics/step/*", "sums.stored -=", _BUNDLE),
     Allowed("mechanics/step/*", "sums.applied += select(", _BUNDLE),
-    Allowed("mechanics/step/*", "move_row()", _BUNDLE),
+    Allowed("mechanics/step/*", "move_pack()", _BUNDLE),
     Allowed("mechanics/step/*", "loading_work +=", _BUNDLE),
     Allowed("mechanics/step/*", "total += force(slot)", _TIE),
     Allowed("mechanics/step/*", "mass += s.time_step / s.step_over_mass[slot]", _TIE),

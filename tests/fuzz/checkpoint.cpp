@@ -40,17 +40,17 @@ class Rows : public StateVisitor {
   std::map<std::string, Kept> all;
 
  protected:
-  void visit_row(const std::string& name, const Row& row) override {
+  void visit_piece(const std::string& name, const Piece& piece) override {
     if (!shows) {
-      all[name] = {row.item, row.count, {row.data, row.data + row.item * row.count}};
+      all[name] = {piece.item, piece.count, {piece.data, piece.data + piece.item * piece.count}};
       return;
     }
     const auto found = all.find(name);
     if (found == all.end()) throw Error("does not hold " + name);
     const Kept& kept = found->second;
-    if (kept.item != row.item || (!row.resize && kept.count != row.count))
+    if (kept.item != piece.item || (!piece.resize && kept.count != piece.count))
       throw Error("another size of " + name);
-    std::byte* to = row.resize ? row.resize(kept.count) : row.data;
+    std::byte* to = piece.resize ? piece.resize(kept.count) : piece.data;
     if (!kept.bytes.empty()) std::memcpy(to, kept.bytes.data(), kept.bytes.size());
   }
 };
@@ -118,21 +118,22 @@ bool number(std::string_view text, T& value) {
 }
 
 template <class T>
-void put(Kept& row, std::uint64_t place, std::string_view text) {
+void put(Kept& piece, std::uint64_t place, std::string_view text) {
   T value{};
-  if (row.bytes.size() < sizeof(T) || !number(text, value)) return;
-  std::memcpy(row.bytes.data() + place % (row.bytes.size() / sizeof(T)) * sizeof(T), &value, sizeof(T));
+  if (piece.bytes.size() < sizeof(T) || !number(text, value)) return;
+  std::memcpy(piece.bytes.data() + place % (piece.bytes.size() / sizeof(T)) * sizeof(T), &value, sizeof(T));
 }
 
-/// "ROW PLACE KIND VALUE". Row: its name or its number; kind: double, long, int, byte, or count, of the row.
+/// "ROW PLACE KIND VALUE". Row: its name or its number; kind: double, long, int, byte, or count, of the
+/// piece.
 void edit(std::map<std::string, Kept>& state, std::string_view line) {
   const auto words = split(line, ' ');
-  std::uint64_t row = 0, place = 0;
+  std::uint64_t piece = 0, place = 0;
   if (words.size() != 4 || !number(words[1], place)) return;
   auto at = state.find(std::string(words[0]));
   if (at == state.end()) {
-    if (!number(words[0], row)) return;
-    at = std::next(state.begin(), static_cast<std::ptrdiff_t>(row % state.size()));
+    if (!number(words[0], piece)) return;
+    at = std::next(state.begin(), static_cast<std::ptrdiff_t>(piece % state.size()));
   }
   Kept& kept = at->second;
   if (words[2] == "double") put<double>(kept, place, words[3]);
@@ -157,8 +158,8 @@ void go_on(const Base& base, std::vector<std::string_view> edits) {
   trial.run.between_batches([](Run&) {});
   trial.run.stop_when([&] { return ++batches > kBatches; });
   while (trial.run.next()) continue;
-  for (std::size_t i = 0; i < trial.run.records().size(); ++i) {
-    const StageRecord& record = trial.run.records()[i];
+  for (std::size_t i = 0; i < trial.run.courses().size(); ++i) {
+    const StageCourse& record = trial.run.courses()[i];
     if (record.outcome != Outcome::not_begun)
       trial.run.stages()[i]->report(trial.run.history(), record.rows, record.outcome);
   }

@@ -17,8 +17,8 @@ int main() {
   p.cohesion = 3.8e6;
   p.mode_2_energy = 240.0;
   pyroclast::validate(p, "contact");
-  Cohesive::History<2, double> history;
+  Cohesive::Internals<2, double> internals;
   Cohesive::Losses<double> lost{};
-  Cohesive::update<2, double>(Cohesive::derive(p), 1e-4, {}, history, lost);
+  Cohesive::update<2, double>(Cohesive::derive(p), 1e-4, {}, internals, lost);
   return std::abs(lost.tension - 60.0) < 1e-9 ? 0 : 1;
 }

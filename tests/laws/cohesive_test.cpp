@@ -18,7 +18,7 @@ namespace {
 
 using Properties = Cohesive::Properties<double>;
 template <int Dim>
-using History = Cohesive::History<Dim, double>;
+using Internals = Cohesive::Internals<Dim, double>;
 
 /// What one update loses.
 struct Dissipated {
@@ -42,17 +42,17 @@ struct Response : ContactResponse<Dim> {
 
 template <int Dim>
 Response<Dim> update_contact(const Properties& properties, double opening, const Tangential<Dim>& tangential,
-                             History<Dim>& history) {
+                             Internals<Dim>& internals) {
   Cohesive::Losses<double> lost{};
   const auto response =
-      Cohesive::update<Dim, double>(Cohesive::derive(properties), opening, tangential, history, lost);
+      Cohesive::update<Dim, double>(Cohesive::derive(properties), opening, tangential, internals, lost);
   return {response, lost.slip_path, {lost.tension, lost.shear, lost.friction, lost.compression}};
 }
 
 template <int Dim>
 struct Path {
   Properties properties = mortar_contact();
-  History<Dim> history;
+  Internals<Dim> internals;
   Response<Dim> response;
   Dissipated dissipated;
   double work = 0.0;
@@ -66,7 +66,7 @@ struct Path {
       const double next_opening = from_opening + share * (opening - from_opening);
       const Tangential<Dim> next = from + share * (tangential - from);
       const auto before = response;
-      response = update_contact<Dim>(properties, next_opening, next, history);
+      response = update_contact<Dim>(properties, next_opening, next, internals);
       work += 0.5 * (before.normal_traction + response.normal_traction) * (next_opening - at_opening) +
               0.5 * dot(before.shear_traction + response.shear_traction, next - at_tangential);
       dissipated += response.dissipated;
@@ -136,13 +136,13 @@ TEST_P(CohesiveVerification, CompressionIsBilinearAndIrreversible) {
   const double expected = -(31e6 + 0.05 * 18400e9 * 4.0 * u_limit);  // Eq. (15)
   expect_known({"Law cohesive: traction of crushing", "the paper, Eq. (15)", "Pa"},
                path.response.normal_traction, expected, 1e-12 * std::abs(expected));
-  const double closure = path.history.closure;
+  const double closure = path.internals.closure;
   const double spent = path.dissipated.compression;
   EXPECT_NEAR(spent + path.response.stored, 0.5 * 31e6 * u_limit + 0.5 * (31e6 - expected) * 4.0 * u_limit,
               1e-12 * spent);
   path.go(-closure, {}, GetParam());
   EXPECT_NEAR(path.response.normal_traction, 0.0, 1e-6);  // Pa, round-off of 18400 GPa/m times 1e-21 m
-  EXPECT_EQ(path.history.closure, closure);
+  EXPECT_EQ(path.internals.closure, closure);
   path.go(-5.0 * u_limit, {}, GetParam());
   EXPECT_NEAR(path.dissipated.compression, spent, 1e-12 * spent);
 }
@@ -187,55 +187,55 @@ TEST(ContactLaw, WorkGoesIntoStoredAndDissipatedEnergy) {
 
 TEST(ContactLaw, TensionLowersTheShearStrengthAndNeverBelowZero) {
   Properties p = mortar_contact();
-  History<2> history;
+  Internals<2> internals;
   const double opening = 0.5 * p.elastic_opening();
-  auto r = update_contact<2>(p, opening, {{1e-6}}, history);
+  auto r = update_contact<2>(p, opening, {{1e-6}}, internals);
   EXPECT_NEAR(r.shear_traction[0], p.cohesion - 0.5 * p.tensile_strength * std::tan(p.friction_angle),
               0.02 * p.cohesion);  // softened by less than 2 % over 1 um of slip
   p.cohesion = 0.1e6;
-  history = {};
-  r = update_contact<2>(p, opening, {{1e-6}}, history);
+  internals = {};
+  r = update_contact<2>(p, opening, {{1e-6}}, internals);
   EXPECT_EQ(r.shear_traction[0], 0.0);
 }
 
 TEST(ContactLaw, BrokenAndOpenCarriesNothingAndClosedCarriesFriction) {
   const Properties p = mortar_contact();
-  History<2> history;
-  update_contact<2>(p, 0.0, {{0.3e-6}}, history);
-  auto r = update_contact<2>(p, 60e-6, {{0.3e-6}}, history);
+  Internals<2> internals;
+  update_contact<2>(p, 0.0, {{0.3e-6}}, internals);
+  auto r = update_contact<2>(p, 60e-6, {{0.3e-6}}, internals);
   EXPECT_EQ(r.normal_traction, 0.0);
   EXPECT_EQ(r.shear_traction[0], 0.0);
   EXPECT_EQ(r.stored, 0.0);
-  r = update_contact<2>(p, -1e-6, {{0.3e-6}}, history);
+  r = update_contact<2>(p, -1e-6, {{0.3e-6}}, internals);
   EXPECT_NEAR(r.normal_traction, -1e-6 * p.normal_stiffness, 1.0);
-  EXPECT_EQ(history.tension_damage, 1.0);
+  EXPECT_EQ(internals.tension_damage, 1.0);
 }
 
 // The bond that tears releases the shear it held, once; an open crack that goes on moving costs nothing.
 TEST(ContactLaw, TearingUnderShearReleasesTheShearHeldAndNothingMore) {
   const Properties p = mortar_contact();
-  History<2> history;
-  const double before = update_contact<2>(p, 0.0, {{0.3e-6}}, history).stored;
-  const auto torn = update_contact<2>(p, 60e-6, {{0.3e-6}}, history);
+  Internals<2> internals;
+  const double before = update_contact<2>(p, 0.0, {{0.3e-6}}, internals).stored;
+  const auto torn = update_contact<2>(p, 60e-6, {{0.3e-6}}, internals);
   EXPECT_NEAR(torn.dissipated.shear, before, 1e-12 * before);
   for (double slip : {1e-6, 50e-6, -80e-6})
-    EXPECT_EQ(update_contact<2>(p, 60e-6, {{slip}}, history).dissipated.total(), 0.0);
+    EXPECT_EQ(update_contact<2>(p, 60e-6, {{slip}}, internals).dissipated.total(), 0.0);
 }
 
 TEST(ContactLaw, DamageNeverHealsAlongARandomPath) {
   const Properties p = mortar_contact();
-  History<2> history;
+  Internals<2> internals;
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   double opening = 0.0, slip = 0.0;
   for (int i = 0; i < 20000; ++i) {
-    const auto before = history;
+    const auto before = internals;
     opening += 0.3e-6 * normal(random) - 0.02 * opening;
     slip += 1e-6 * normal(random);
-    const auto r = update_contact<2>(p, opening, {{slip}}, history);
-    ASSERT_GE(history.tension_damage, before.tension_damage);
-    ASSERT_GE(history.shear_damage, before.shear_damage);
-    ASSERT_GE(history.closure, before.closure);
+    const auto r = update_contact<2>(p, opening, {{slip}}, internals);
+    ASSERT_GE(internals.tension_damage, before.tension_damage);
+    ASSERT_GE(internals.shear_damage, before.shear_damage);
+    ASSERT_GE(internals.closure, before.closure);
     ASSERT_GE(r.dissipated.tension, 0.0);
     ASSERT_GE(r.dissipated.shear, 0.0);
     ASSERT_GE(r.dissipated.friction, 0.0);
@@ -254,9 +254,9 @@ TEST(ContactLaw, ADropTooSteepToFollowFallsToTheResidualLineAtOnce) {
     Properties p = mortar_contact();
     p.residual_friction_angle = residual_angle * std::numbers::pi / 180.0;
     ASSERT_NO_THROW(validate(p, "mortar"));
-    History<2> history;
+    Internals<2> internals;
     const double opening = -100e-6;
-    const auto pressed = update_contact<2>(p, opening, {}, history);
+    const auto pressed = update_contact<2>(p, opening, {}, internals);
     const double pressure = -pressed.normal_traction;
     const double residual = p.residual_cohesion + pressure * std::tan(p.residual_friction_angle);
     const double peak = p.cohesion + pressure * std::tan(p.friction_angle);
@@ -265,9 +265,9 @@ TEST(ContactLaw, ADropTooSteepToFollowFallsToTheResidualLineAtOnce) {
     const double end = 1.2 * peak / k;
     double shear = 0.0, friction = 0.0, stored = 0.0;
     for (int i = 1; i <= 100; ++i) {
-      const auto r = update_contact<2>(p, opening, {{end * i / 100}}, history);
-      ASSERT_GE(history.shear_damage, 0.0);
-      ASSERT_LE(history.shear_damage, 1.0);
+      const auto r = update_contact<2>(p, opening, {{end * i / 100}}, internals);
+      ASSERT_GE(internals.shear_damage, 0.0);
+      ASSERT_LE(internals.shear_damage, 1.0);
       ASSERT_LE(std::abs(r.shear_traction[0]), peak * (1.0 + 1e-12));
       ASSERT_GE(r.dissipated.shear, 0.0);
       ASSERT_GE(r.dissipated.friction, 0.0);
@@ -275,7 +275,7 @@ TEST(ContactLaw, ADropTooSteepToFollowFallsToTheResidualLineAtOnce) {
       friction += r.dissipated.friction;
       stored = r.stored;
     }
-    EXPECT_EQ(history.shear_damage, 1.0);
+    EXPECT_EQ(internals.shear_damage, 1.0);
     EXPECT_NEAR(shear, (peak - residual) * (peak - residual) / (2.0 * k), 1e-9 * shear);
     const double work = 0.5 * peak * peak / k + residual * (end - peak / k);
     EXPECT_NEAR(stored - pressed.stored + shear + friction, work, 1e-9 * work);
@@ -291,15 +291,15 @@ TEST(ContactLaw, DamageStaysInBoundsUnderAnyPressure) {
     Properties p = mortar_contact();
     p.friction_angle = std::atan(uniform(random));
     p.residual_friction_angle = p.friction_angle * uniform(random);
-    History<2> history;
+    Internals<2> internals;
     double opening = 0.0, slip = 0.0;
     for (int i = 0; i < 200; ++i) {
-      const auto before = history;
+      const auto before = internals;
       opening = 2e-6 - 200e-6 * uniform(random);
       slip += 100e-6 * (uniform(random) - 0.5);
-      const auto r = update_contact<2>(p, opening, {{slip}}, history);
-      ASSERT_GE(history.shear_damage, before.shear_damage);
-      ASSERT_LE(history.shear_damage, 1.0);
+      const auto r = update_contact<2>(p, opening, {{slip}}, internals);
+      ASSERT_GE(internals.shear_damage, before.shear_damage);
+      ASSERT_LE(internals.shear_damage, 1.0);
       ASSERT_GE(r.dissipated.shear, 0.0);
       ASSERT_GE(r.dissipated.friction, 0.0);
     }
@@ -308,8 +308,8 @@ TEST(ContactLaw, DamageStaysInBoundsUnderAnyPressure) {
 
 TEST(ContactLaw, IsIsotropicInTheContactPlane) {
   const Properties p = mortar_contact();
-  History<2> flat;
-  History<3> solid;
+  Internals<2> flat;
+  Internals<3> solid;
   const double angle = 0.7;
   for (double slip : {0.3e-6, 5e-6, 30e-6, 20e-6, -4e-6, 150e-6}) {
     const auto a = update_contact<2>(p, -0.4e-6, {{slip}}, flat);
@@ -325,9 +325,9 @@ TEST(ContactLaw, IsIsotropicInTheContactPlane) {
 
 TEST(ContactLaw, ElasticContactNeverFails) {
   const Elastic::Properties<double> p{18400e9, 7660e9};
-  Elastic::History<2, double> history;
+  Elastic::Internals<2, double> internals;
   Elastic::Losses<double> lost;
-  const auto r = Elastic::update<2, double>(Elastic::derive(p), 1e-3, {{-2e-3}}, history, lost);
+  const auto r = Elastic::update<2, double>(Elastic::derive(p), 1e-3, {{-2e-3}}, internals, lost);
   EXPECT_DOUBLE_EQ(r.normal_traction, p.normal_stiffness * 1e-3);
   EXPECT_DOUBLE_EQ(r.shear_traction[0], p.shear_stiffness * -2e-3);
 }
@@ -350,9 +350,9 @@ TEST(ContactLaw, CoupledCohesionFallsWithTensionDamage) {
   Properties p = mortar_contact();
   const auto sheared_after_opening = [&](bool coupled) {
     p.coupled = coupled;
-    History<2> history;
-    update_contact<2>(p, 24e-6, {}, history);  // D_t about one half
-    return update_contact<2>(p, 0.0, {{0.45e-6}}, history).shear_traction[0];
+    Internals<2> internals;
+    update_contact<2>(p, 24e-6, {}, internals);  // D_t about one half
+    return update_contact<2>(p, 0.0, {{0.45e-6}}, internals).shear_traction[0];
   };
   EXPECT_LT(sheared_after_opening(true), 0.7 * sheared_after_opening(false));
 }

@@ -13,11 +13,11 @@ using Properties = Frictional::Properties<double>;
 constexpr Properties kPlaten{18400e9, 7660e9, 0.3};
 
 struct Point {
-  Frictional::History<2, double> history{};
+  Frictional::Internals<2, double> internals{};
   Frictional::Losses<double> lost{};
 
   ContactResponse<2> go(double opening, double slip) {
-    return Frictional::update<2, double>(Frictional::derive(kPlaten), opening, {{slip}}, history, lost);
+    return Frictional::update<2, double>(Frictional::derive(kPlaten), opening, {{slip}}, internals, lost);
   }
 };
 

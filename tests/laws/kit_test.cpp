@@ -10,7 +10,7 @@
 #include "pyroclast/laws/cohesive.hpp"
 #include "pyroclast/laws/elastic.hpp"
 #include "pyroclast/laws/registry.hpp"
-#include "pyroclast/mechanics/law_row.hpp"
+#include "pyroclast/mechanics/law_pack.hpp"
 
 namespace pyroclast {
 namespace {
@@ -75,10 +75,10 @@ struct Cohesively : Cohesive {
   template <int Dim, class Real, class Number, class Sum>
   static ContactResponse<Dim, Real> update(const Constants<Number>& constants, const Real& opening,
                                            const Tangential<Dim, Real>& tangential,
-                                           History<Dim, Real>& history, Losses<Sum>& losses) {
-    const History<Dim, Real> before = history;
-    auto response = Cohesive::update<Dim, Real>(constants, opening, tangential, history, losses);
-    Spoilt::template spoil<Dim>(constants, opening, tangential, before, history, losses, response);
+                                           Internals<Dim, Real>& internals, Losses<Sum>& losses) {
+    const Internals<Dim, Real> before = internals;
+    auto response = Cohesive::update<Dim, Real>(constants, opening, tangential, internals, losses);
+    Spoilt::template spoil<Dim>(constants, opening, tangential, before, internals, losses, response);
     return response;
   }
 };
@@ -107,9 +107,9 @@ TEST(Kit, FindsANumberThatIsNotFinite) {
 
 struct Heals : Cohesively<Heals> {
   template <int Dim>
-  static void spoil(const auto&, const auto& opening, const auto&, const auto&, auto& history, auto&,
+  static void spoil(const auto&, const auto& opening, const auto&, const auto&, auto& internals, auto&,
                     auto& response) {
-    history.tension_damage *= select(opening < 0.0, 0.999 + 0.0 * opening, 1.0 + 0.0 * opening);
+    internals.tension_damage *= select(opening < 0.0, 0.999 + 0.0 * opening, 1.0 + 0.0 * opening);
     response.changed |= info::kDamaged;
   }
 };
@@ -119,9 +119,9 @@ TEST(Kit, FindsADamageThatHeals) {
 
 struct BreaksTwice : Cohesively<BreaksTwice> {
   template <int Dim>
-  static void spoil(const auto&, const auto&, const auto&, const auto&, auto& history, auto&, auto&) {
-    history.tension_damage =
-        select(history.tension_damage > 0.9, history.tension_damage + 0.2, history.tension_damage);
+  static void spoil(const auto&, const auto&, const auto&, const auto&, auto& internals, auto&, auto&) {
+    internals.tension_damage =
+        select(internals.tension_damage > 0.9, internals.tension_damage + 0.2, internals.tension_damage);
   }
 };
 TEST(Kit, FindsADamageBeyondOne) {
@@ -150,9 +150,9 @@ TEST(Kit, FindsNegativeStoredEnergy) {
 
 struct Creeps : Cohesively<Creeps> {
   template <int Dim>
-  static void spoil(const auto&, const auto& opening, const auto&, const auto&, auto& history, auto&,
+  static void spoil(const auto&, const auto& opening, const auto&, const auto&, auto& internals, auto&,
                     auto& response) {
-    history.closure += select(opening < 0.0, 1e-9 + 0.0 * opening, 0.0 * opening);
+    internals.closure += select(opening < 0.0, 1e-9 + 0.0 * opening, 0.0 * opening);
     response.changed |= info::kDamaged;
   }
 };
@@ -186,8 +186,8 @@ TEST(Kit, FindsAnInstructionSetThatGivesOtherBits) {
   const auto right = lanes.front().update_of;
   for (std::size_t i = 0; i < 2; ++i)
     lanes.front().update_of[i] = [&right, i](const void* constants, const double* own, const double* jump,
-                                             double* history, double* losses) {
-      LanesResponse r = right[i](constants, own, jump, history, losses);
+                                             double* internals, double* losses) {
+      LanesResponse r = right[i](constants, own, jump, internals, losses);
       r.normal_traction[3] *= 1.0 + 1e-15;
       return r;
     };
@@ -209,9 +209,9 @@ TEST(Kit, FindsALawThatKnowsLeftFromRight) {
 
 struct LosesTooLittle : Cohesively<LosesTooLittle> {
   template <int Dim>
-  static void spoil(const auto& c, const auto&, const auto&, const auto& before, auto& history, auto& losses,
-                    auto&) {
-    losses.tension += 1e-4 * c.mode_1_energy * (history.tension_damage - before.tension_damage);
+  static void spoil(const auto& c, const auto&, const auto&, const auto& before, auto& internals,
+                    auto& losses, auto&) {
+    losses.tension += 1e-4 * c.mode_1_energy * (internals.tension_damage - before.tension_damage);
   }
 };
 TEST(Kit, FindsALossThatIsOffByAPartInTenThousand) {
@@ -225,7 +225,7 @@ struct NotOfAPotential : Elastic {
 
   template <int Dim, class Real, class Number, class Sum>
   static ContactResponse<Dim, Real> update(const Constants<Number>& c, const Real& opening,
-                                           const Tangential<Dim, Real>& tangential, History<Dim, Real>& h,
+                                           const Tangential<Dim, Real>& tangential, Internals<Dim, Real>& h,
                                            Losses<Sum>& losses) {
     auto r = Elastic::update<Dim, Real>(c, opening, tangential, h, losses);
     const Real share = smaller(abs_of(opening) * 1e4, Real(0.5));
@@ -246,8 +246,9 @@ TEST(Kit, FindsWorkThatDependsOnTheWay) {
 /// Books the damage before the step over the whole of it.
 struct LagsBehind : Cohesively<LagsBehind> {
   template <int Dim>
-  static void spoil(const auto&, const auto&, const auto&, const auto& before, auto& history, auto&, auto&) {
-    history.tension_damage = 0.5 * (before.tension_damage + history.tension_damage);
+  static void spoil(const auto&, const auto&, const auto&, const auto& before, auto& internals, auto&,
+                    auto&) {
+    internals.tension_damage = 0.5 * (before.tension_damage + internals.tension_damage);
   }
 };
 TEST(Kit, FindsAnAnswerThatDependsOnTheSteps) {
@@ -257,10 +258,10 @@ TEST(Kit, FindsAnAnswerThatDependsOnTheSteps) {
 /// Loses with the root of a step, so that more cuts lose more.
 struct NeverConverges : Cohesively<NeverConverges> {
   template <int Dim>
-  static void spoil(const auto& c, const auto&, const auto&, const auto& before, auto& history, auto& losses,
-                    auto&) {
+  static void spoil(const auto& c, const auto&, const auto&, const auto& before, auto& internals,
+                    auto& losses, auto&) {
     using std::sqrt;
-    const auto slid = history.slip[0] - before.slip[0];
+    const auto slid = internals.slip[0] - before.slip[0];
     losses.friction += 1e-3 * c.mode_2_energy * sqrt(larger(slid, 0.0 - slid) * 1e6);
   }
 };
@@ -289,7 +290,7 @@ struct Coupled : Elastic {
   static constexpr const char* name = "coupled";
   template <int Dim, class Real, class Number, class Sum>
   static ContactResponse<Dim, Real> update(const Constants<Number>& c, const Real& opening,
-                                           const Tangential<Dim, Real>& tangential, History<Dim, Real>& h,
+                                           const Tangential<Dim, Real>& tangential, Internals<Dim, Real>& h,
                                            Losses<Sum>& losses) {
     auto r = Elastic::update<Dim, Real>(c, opening, tangential, h, losses);
     r.normal_traction += 0.5 * c.normal_stiffness * tangential[0];

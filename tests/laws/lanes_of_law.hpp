@@ -8,7 +8,7 @@ namespace pyroclast {
 
 /// A law through portable lanes, without the step: of a law whose rows are not compiled.
 template <class Law, int Dim>
-LanesResponse update_lanes(const void* constants, const double* own, const double* jump, double* history,
+LanesResponse update_lanes(const void* constants, const double* own, const double* jump, double* internals,
                            double* losses) {
   using Real = Lanes<Portable>;
   using ForEach = typename Law::template Constants<Real>;
@@ -29,9 +29,9 @@ LanesResponse update_lanes(const void* constants, const double* own, const doubl
     number.store(line.number);
     std::copy_n(line.number, kLanes, to);
   };
-  typename Law::template History<Dim, Real> h;
+  typename Law::template Internals<Dim, Real> h;
   int at = 0;
-  h.each([&](const auto&, Real& number) { number = load(history + kLanes * at++); }, h);
+  h.each([&](const auto&, Real& number) { number = load(internals + kLanes * at++); }, h);
   typename Law::template Losses<Sum> l;
   at = 0;
   l.each([&](const auto&, Sum& sum) { sum.number = load(losses + kLanes * at++); }, l);
@@ -50,8 +50,8 @@ LanesResponse update_lanes(const void* constants, const double* own, const doubl
   }
   at = 0;
   h.each(
-      [&](const HistoryInfo& info, const Real& number) {
-        if (info.when == 0 || (r.changed & info.when) != 0) store(number, history + kLanes * at);
+      [&](const InternalInfo& info, const Real& number) {
+        if (info.when == 0 || (r.changed & info.when) != 0) store(number, internals + kLanes * at);
         ++at;
       },
       h);

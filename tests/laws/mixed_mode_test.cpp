@@ -20,7 +20,7 @@ namespace {
 using Properties = MixedMode::Properties<double>;
 using Softening = MixedMode::Softening;
 template <int Dim>
-using History = MixedMode::History<Dim, double>;
+using Internals = MixedMode::Internals<Dim, double>;
 using Losses = MixedMode::Losses<double>;
 
 constexpr auto kSoftenings = {Softening::bilinear, Softening::exponential, Softening::linear};
@@ -41,7 +41,7 @@ double dissipated(const Losses& lost) {
 template <int Dim>
 struct Point {
   Properties properties;
-  History<Dim> history;
+  Internals<Dim> internals;
   Losses lost{};
   ContactResponse<Dim> response;
   double opening = 0.0, work = 0.0;
@@ -51,7 +51,7 @@ struct Point {
 
   const ContactResponse<Dim>& take_to(double to, const Tangential<Dim>& shear) {
     const auto before = response;
-    response = MixedMode::update<Dim, double>(MixedMode::derive(properties), to, shear, history, lost);
+    response = MixedMode::update<Dim, double>(MixedMode::derive(properties), to, shear, internals, lost);
     work += 0.5 * (before.normal_traction + response.normal_traction) * (to - opening) +
             0.5 * dot(before.shear_traction + response.shear_traction, shear - tangential);
     opening = to;
@@ -82,7 +82,7 @@ TEST_P(MixedModeVerification, TearingApartDissipatesTheModeOneEnergy) {
     expect_known({"Law mixed_mode: energy of tearing apart", "G_f1", "J/m2"}, point.lost.tension, 60.0,
                  60.0 * 1e-12);
     EXPECT_EQ(dissipated(point.lost), point.lost.tension);
-    EXPECT_EQ(point.history.damage, 1.0);
+    EXPECT_EQ(point.internals.damage, 1.0);
     EXPECT_EQ(point.response.normal_traction, 0.0);
     EXPECT_EQ(point.response.stored, 0.0);
   }
@@ -109,12 +109,12 @@ TEST_P(MixedModeVerification, ShearingOffUnderPressureDissipatesTheModeTwoEnergy
       point.go(opening, {{end}}, GetParam());
       const double friction = pressure * std::tan(point.properties.friction_angle);
       const double slip = end - friction / point.properties.shear_stiffness;
-      EXPECT_EQ(point.history.damage, 1.0);
+      EXPECT_EQ(point.internals.damage, 1.0);
       expect_known({"Law mixed_mode: energy of shearing off under pressure, above friction", "G_f2", "J/m2"},
                    point.lost.shear, 240.0, 240.0 * 1e-12);
       EXPECT_NEAR(point.lost.friction, friction * slip, 1e-12 * friction * slip);
       EXPECT_NEAR(point.response.shear_traction[0], friction, 1e-9 * friction);
-      EXPECT_NEAR(point.history.slip[0], slip, 1e-12 * slip);
+      EXPECT_NEAR(point.internals.slip[0], slip, 1e-12 * slip);
     }
   }
 }
@@ -133,7 +133,7 @@ TEST_P(MixedModeVerification, ReversedShearDissipatesTheModeTwoEnergyOnce) {
 double left_in_tension(const Properties& p, double way) {
   Point<2> point(p);
   point.go(p.first_opening() + way * (p.last_opening() - p.first_opening()), {}, 3);
-  EXPECT_NEAR(point.history.damage, way, 1e-12);
+  EXPECT_NEAR(point.internals.damage, way, 1e-12);
   return point.response.normal_traction / p.tensile_strength;
 }
 double left_in_shear(const Properties& p, double way, double pressure) {
@@ -142,7 +142,7 @@ double left_in_shear(const Properties& p, double way, double pressure) {
   point.go(opening, {}, 1);
   const double slip = p.first_slip() + way * (p.last_slip() - p.first_slip());
   point.go(opening, {{slip + friction / p.shear_stiffness}}, 3);
-  EXPECT_NEAR(point.history.damage, way, 1e-12);
+  EXPECT_NEAR(point.internals.damage, way, 1e-12);
   return (point.response.shear_traction[0] - friction) / p.cohesion;
 }
 
@@ -179,16 +179,16 @@ TEST(MixedModeCurvesVerification, ExponentialSofteningEndsAfterSevenFoldDecay) {
 TEST(MixedMode, LinearSofteningInTensionIsThatOfTheCohesiveLaw) {
   Point<2> point(without_dilatancy(Softening::linear));
   const auto cohesive = Cohesive::derive(mortar_contact());
-  Cohesive::History<2, double> history;
+  Cohesive::Internals<2, double> internals;
   Cohesive::Losses<double> lost{};
   for (double opening : {0.1e-6, 1e-6, 20e-6, 3e-6, -3e-6, 40e-6, 47e-6, 60e-6}) {
-    const auto expected = Cohesive::update<2, double>(cohesive, opening, {}, history, lost);
+    const auto expected = Cohesive::update<2, double>(cohesive, opening, {}, internals, lost);
     point.take_to(opening, {});
     EXPECT_NEAR(point.response.normal_traction, expected.normal_traction,
                 1e-12 * point.properties.tensile_strength);
     EXPECT_NEAR(point.lost.tension, lost.tension, 60.0 * 1e-12);
     EXPECT_EQ(point.lost.compression, lost.compression);
-    EXPECT_EQ(point.history.closure, history.closure);
+    EXPECT_EQ(point.internals.closure, internals.closure);
   }
 }
 
@@ -200,7 +200,7 @@ TEST(MixedMode, DamageBeginsOnTheQuadraticCriterion) {
     point.take_to(sigma / p.normal_stiffness, {{tau / p.shear_stiffness}});
     EXPECT_NEAR(point.response.normal_traction, sigma, 1e-5 * p.tensile_strength);
     EXPECT_NEAR(point.response.shear_traction[0], tau, 1e-5 * p.cohesion);
-    return point.history.damage;
+    return point.internals.damage;
   };
   for (const double angle : {0.0, 0.3, 0.8, 1.2, 1.57}) {
     const double sigma = std::cos(angle) * p.tensile_strength, tau = std::sin(angle) * p.cohesion;
@@ -222,9 +222,9 @@ TEST(MixedMode, DamageEndsOnTheQuadraticCriterion) {
       const double opening = std::cos(angle) * p.last_opening(), slip = std::sin(angle) * p.last_slip();
       Point<2> point(p);
       point.go((1.0 - 1e-9) * opening, {{(1.0 - 1e-9) * slip}}, 10);
-      EXPECT_LT(point.history.damage, 1.0);
+      EXPECT_LT(point.internals.damage, 1.0);
       point.go((1.0 + 1e-9) * opening, {{(1.0 + 1e-9) * slip}}, 1);
-      EXPECT_EQ(point.history.damage, 1.0);
+      EXPECT_EQ(point.internals.damage, 1.0);
     }
   }
 }
@@ -239,7 +239,7 @@ TEST_P(MixedModeVerification, AStraightWayFollowsTheLinearEnergyCriterion) {
     ASSERT_NEAR(p.last_slip() / p.first_slip(), p.last_opening() / p.first_opening(), 1e-9);
     Point<2> point(p);
     point.go(0.9 * p.last_opening(), {{0.6 * p.last_slip()}}, GetParam());
-    ASSERT_EQ(point.history.damage, 1.0);
+    ASSERT_EQ(point.internals.damage, 1.0);
     EXPECT_NEAR(point.lost.tension / p.mode_1_energy, 0.81 / (0.81 + 0.36), 1e-11);
     EXPECT_NEAR(point.lost.shear / p.mode_2_energy, 0.36 / (0.81 + 0.36), 1e-11);
   }
@@ -252,7 +252,7 @@ TEST(MixedModeCurvesVerification, AStraightWayStaysNearTheLinearEnergyCriterion)
       Point<2> point(without_dilatancy(softening));
       const Properties& p = point.properties;
       point.go(1.1 * std::cos(angle) * p.last_opening(), {{1.1 * std::sin(angle) * p.last_slip()}}, 20000);
-      ASSERT_EQ(point.history.damage, 1.0);
+      ASSERT_EQ(point.internals.damage, 1.0);
       expect_known(
           {"Law mixed_mode: G_I / G_f1 + G_II / G_f2 on a straight way", "linear energy criterion", "1"},
           point.lost.tension / 60.0 + point.lost.shear / 240.0, 1.0, 0.0012);
@@ -268,7 +268,7 @@ TEST(MixedMode, UnloadsToTheOriginAndLoadsBackTheSameWay) {
     point.go(opening, {{slip}}, 100);
     const auto loaded = point.response;
     const Losses lost = point.lost;
-    const double damage = point.history.damage;
+    const double damage = point.internals.damage;
     ASSERT_GT(loaded.normal_traction, 1e3);
     ASSERT_GT(loaded.shear_traction[0], 1e3);
     for (const double share : {0.75, 0.25, 0.0, 0.5, 1.0}) {
@@ -278,7 +278,7 @@ TEST(MixedMode, UnloadsToTheOriginAndLoadsBackTheSameWay) {
       EXPECT_NEAR(point.response.shear_traction[0], share * loaded.shear_traction[0],
                   1e-12 * loaded.shear_traction[0]);
       EXPECT_EQ(dissipated(point.lost), dissipated(lost));
-      EXPECT_EQ(point.history.damage, damage);
+      EXPECT_EQ(point.internals.damage, damage);
     }
   }
 }
@@ -311,13 +311,13 @@ TEST(MixedMode, FrictionActsOnTheShareThatIsBroken) {
   const Properties p = without_dilatancy();
   Point<2> point(p);
   point.take_to(0.2 * p.last_opening(), {});
-  const double damage = point.history.damage;
+  const double damage = point.internals.damage;
   const double strength = std::max(1.0 - 3.0 * damage, 3.0 / 7.0 * (1.0 - damage));
   const double bond = strength / (1.0 + (p.last_slip() / p.first_slip() - 1.0) * damage);
   const double opening = -0.2e-6, slip = 2e-6;
   point.take_to(opening, {});
   point.take_to(opening, {{slip}});
-  ASSERT_EQ(point.history.damage, damage);
+  ASSERT_EQ(point.internals.damage, damage);
   const double friction = 0.2e-6 * p.normal_stiffness * std::tan(p.friction_angle);
   const double expected = bond * p.shear_stiffness * slip + (1.0 - bond) * friction;
   EXPECT_NEAR(point.response.shear_traction[0], expected, 1e-11 * expected);
@@ -327,8 +327,8 @@ TEST(MixedMode, OpenAfterSlipCarriesNoShearAndForgetsWhereItSlid) {
   Point<2> point(mixed_mode_contact());
   point.go(-1e-6, {}, 1);
   point.go(-1e-6, {{800e-6}}, 100);
-  ASSERT_EQ(point.history.damage, 1.0);
-  const double touches = point.history.dilation - point.history.closure;
+  ASSERT_EQ(point.internals.damage, 1.0);
+  const double touches = point.internals.dilation - point.internals.closure;
   ASSERT_GT(touches, 1e-6);
   point.take_to(touches + 1e-6, {{800e-6}});
   EXPECT_EQ(point.response.normal_traction, 0.0);
@@ -337,7 +337,7 @@ TEST(MixedMode, OpenAfterSlipCarriesNoShearAndForgetsWhereItSlid) {
   const Losses lost = point.lost;
   for (const double slip : {300e-6, -500e-6, 10e-6}) point.take_to(touches + 1e-6, {{slip}});
   EXPECT_EQ(dissipated(point.lost), dissipated(lost));
-  EXPECT_EQ(point.history.dilation - point.history.closure, touches);
+  EXPECT_EQ(point.internals.dilation - point.internals.closure, touches);
   point.take_to(touches - 1e-6, {{10e-6}});  // closes where dilation left it
   EXPECT_NEAR(point.response.normal_traction, -1e-6 * point.properties.normal_stiffness, 1.0);
   EXPECT_EQ(point.response.shear_traction[0], 0.0);
@@ -355,9 +355,9 @@ TEST_P(MixedModeVerification, DilatancyFadesWithTheSlip) {
     point.take_to(-0.1e-6, {});
     point.go(-0.1e-6, {{end}}, GetParam());
     const double path = point.lost.slip_path;
-    EXPECT_NEAR(std::abs(point.history.slip[0]), path, 1e-12 * path);
+    EXPECT_NEAR(std::abs(point.internals.slip[0]), path, 1e-12 * path);
     const double dilation = p.fading_slip * tan_psi * (1.0 - std::exp(-path / p.fading_slip));
-    EXPECT_NEAR(point.history.dilation, dilation, 1e-12 * dilation);
+    EXPECT_NEAR(point.internals.dilation, dilation, 1e-12 * dilation);
     const double pressure = p.normal_stiffness * (0.1e-6 + dilation);
     EXPECT_NEAR(point.response.normal_traction, -pressure, 1e-9 * pressure);
     EXPECT_NEAR(std::abs(point.response.shear_traction[0]), pressure * std::tan(p.friction_angle),
@@ -374,9 +374,9 @@ TEST(MixedMode, DilatancyBeginsWithPsiAndFallsByTheFactorE) {
   const double pressed = 0.5e-6, friction = pressed * p.normal_stiffness * std::tan(p.friction_angle);
   const auto dilation_at = [&](double slip) {
     for (int round = 0; round < 60; ++round)  // the pressure settles
-      point.take_to(point.history.dilation - pressed, {{friction / p.shear_stiffness + slip}});
-    EXPECT_NEAR(point.history.slip[0], slip, 1e-12 * p.fading_slip);
-    return point.history.dilation;
+      point.take_to(point.internals.dilation - pressed, {{friction / p.shear_stiffness + slip}});
+    EXPECT_NEAR(point.internals.slip[0], slip, 1e-12 * p.fading_slip);
+    return point.internals.dilation;
   };
   // 1e-4: the slope is a difference over 1 nm, 1e-5 of u_r
   for (const double slip : {0.0, p.fading_slip}) {
@@ -467,9 +467,9 @@ class RandomPath {
 };
 
 template <int Dim>
-auto numbers(const ContactResponse<Dim>& r, const History<Dim>& h, const Losses& l) {
+auto numbers(const ContactResponse<Dim>& r, const Internals<Dim>& h, const Losses& l) {
   std::vector<double> all{r.normal_traction, r.stored, r.shear_traction[0], r.shear_traction[Dim - 2]};
-  History<Dim>::each([&](const auto&, double number) { all.push_back(number); }, h);
+  Internals<Dim>::each([&](const auto&, double number) { all.push_back(number); }, h);
   Losses::each([&](const auto&, double number) { all.push_back(number); }, l);
   return all;
 }
@@ -480,7 +480,7 @@ template <int Dim>
 void expect_no_gain() {
   for (unsigned seed = 0; seed < 2000; ++seed) {
     RandomPath path(seed);
-    History<Dim> history;
+    Internals<Dim> internals;
     Losses lost{};
     for (int i = 0; i < 50; ++i) {
       const Properties p = path.properties();
@@ -489,20 +489,20 @@ void expect_no_gain() {
       const double opening = path.opening();
       Tangential<Dim> shear;
       for (int k = 0; k + 1 < Dim; ++k) shear[k] = path.shear();
-      const auto before = history;
+      const auto before = internals;
       const auto lost_before = lost;
-      const auto r = MixedMode::update<Dim, double>(c, opening, shear, history, lost);
-      ASSERT_GE(history.damage, before.damage);
-      ASSERT_LE(history.damage, 1.0);
-      ASSERT_GE(history.closure, before.closure);
-      ASSERT_GE(history.dilation, before.dilation);
+      const auto r = MixedMode::update<Dim, double>(c, opening, shear, internals, lost);
+      ASSERT_GE(internals.damage, before.damage);
+      ASSERT_LE(internals.damage, 1.0);
+      ASSERT_GE(internals.closure, before.closure);
+      ASSERT_GE(internals.dilation, before.dilation);
       Losses::each([](const LossInfo& info, double now, double was) { ASSERT_GE(now, was) << info.name; },
                    lost, lost_before);
       ASSERT_GE(r.stored, 0.0);
       ASSERT_LE(r.normal_traction, p.tensile_strength * (1.0 + 1e-12));
-      const auto once = numbers<Dim>(r, history, lost);
-      const auto again = MixedMode::update<Dim, double>(c, opening, shear, history, lost);
-      ASSERT_EQ(numbers<Dim>(again, history, lost), once) << "path " << seed << ", step " << i;
+      const auto once = numbers<Dim>(r, internals, lost);
+      const auto again = MixedMode::update<Dim, double>(c, opening, shear, internals, lost);
+      ASSERT_EQ(numbers<Dim>(again, internals, lost), once) << "path " << seed << ", step " << i;
     }
   }
 }
@@ -524,9 +524,9 @@ template <int Dim>
 void expect_lanes_alike() {
   for (unsigned seed = 0; seed < 400; ++seed) {
     RandomPath path(seed);
-    MixedMode::History<Dim, Real> histories;
+    MixedMode::Internals<Dim, Real> internals;
     MixedMode::Losses<LaneSum> losses;
-    History<Dim> history[kLanes];
+    Internals<Dim> of_lane_alone[kLanes];
     Losses lost[kLanes]{};
     for (int i = 0; i < 50; ++i) {
       const auto c = MixedMode::derive(path.properties());
@@ -537,11 +537,12 @@ void expect_lanes_alike() {
       }
       Tangential<Dim, Real> shears;
       for (int k = 1; k < Dim; ++k) shears[k - 1] = Real::load(jump[k]);
-      const auto r = MixedMode::update<Dim>(c, Real::load(jump[0]), shears, histories, losses);
+      const auto r = MixedMode::update<Dim>(c, Real::load(jump[0]), shears, internals, losses);
       for (int lane = 0; lane < kLanes; ++lane) {
         Tangential<Dim> shear;
         for (int k = 1; k < Dim; ++k) shear[k - 1] = jump[k][lane];
-        const auto one = MixedMode::update<Dim, double>(c, jump[0][lane], shear, history[lane], lost[lane]);
+        const auto one =
+            MixedMode::update<Dim, double>(c, jump[0][lane], shear, of_lane_alone[lane], lost[lane]);
         const auto of_lane = [&](const Real& number) {
           alignas(64) double all[kLanes];
           number.store(all);
@@ -555,12 +556,12 @@ void expect_lanes_alike() {
         for (int k = 0; k + 1 < Dim; ++k) expect_same(one.shear_traction[k], r.shear_traction[k]);
         expect_same(one.stored, r.stored);
         std::vector<Real> remembered, dissipated;
-        MixedMode::History<Dim, Real>::each([&](const auto&, const Real& n) { remembered.push_back(n); },
-                                            histories);
+        MixedMode::Internals<Dim, Real>::each([&](const auto&, const Real& n) { remembered.push_back(n); },
+                                              internals);
         MixedMode::Losses<LaneSum>::each([&](const auto&, const LaneSum& n) { dissipated.push_back(n.sum); },
                                          losses);
         auto next = remembered.begin();
-        History<Dim>::each([&](const auto&, double n) { expect_same(n, *next++); }, history[lane]);
+        Internals<Dim>::each([&](const auto&, double n) { expect_same(n, *next++); }, of_lane_alone[lane]);
         next = dissipated.begin();
         Losses::each([&](const auto&, double n) { expect_same(n, *next++); }, lost[lane]);
       }
@@ -591,8 +592,8 @@ TEST(MixedMode, IsIsotropicInTheContactPlane) {
     EXPECT_NEAR(a.shear_traction[0], along, 1e-4);
     EXPECT_NEAR(across, 0.0, 1e-4);
     EXPECT_NEAR(a.normal_traction, b.normal_traction, 1e-4);
-    EXPECT_NEAR(flat.history.damage, solid.history.damage, 1e-12);
-    EXPECT_NEAR(flat.history.dilation, solid.history.dilation, 1e-12 * p.fading_slip);
+    EXPECT_NEAR(flat.internals.damage, solid.internals.damage, 1e-12);
+    EXPECT_NEAR(flat.internals.dilation, solid.internals.dilation, 1e-12 * p.fading_slip);
   }
 }
 
@@ -620,7 +621,7 @@ TEST(MixedMode, RefusesParametersThatCannotMakeALaw) {
 
 TEST(MixedMode, ItsDamageIsKnownAsMixed) {
   int mixed = 0;
-  for (const HistoryInfo& info : table_of<MixedMode>().history(2))
+  for (const InternalInfo& info : table_of<MixedMode>().internals(2))
     mixed += info.what == Remembers::mixed_damage;
   EXPECT_EQ(mixed, 1);
 }

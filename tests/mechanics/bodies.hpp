@@ -187,6 +187,14 @@ Mechanics<Dim> mechanics(const Model<Dim>& model, const ContactProperties& conta
       parameters, std::move(team));
 }
 
+/// Sum of the sizes of a ledger's entries, to measure its error by.
+inline double turnover(const EnergyLedger& e) {
+  double sum = e.dissipated.total();
+  for (const auto& entry : kEnergies)
+    if (entry.side != LedgerSide::error) sum += std::abs(entry.value(e));
+  return sum;
+}
+
 /// Moves every gridpoint at a steady velocity to a displacement given by its position, in a number of steps,
 /// and takes one more step so that forces belong to it.
 template <int Dim, class Field>

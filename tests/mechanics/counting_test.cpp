@@ -66,7 +66,7 @@ TEST(Counting, AnElasticContactPointCostsWhatItsEquationsSay) {
   m.advance(2);
   const int a_point = 2 + 2 * 3 + 2 + 5 + (2 * 3 + 2);
   const int normal = 1;  // one component of a face's normal is minus one of its tangent
-  EXPECT_EQ(bench::operations().faces, kLanes * m.layout().face_rows() * (2 * a_point + normal));
+  EXPECT_EQ(bench::operations().faces, kLanes * m.layout().face_packs() * (2 * a_point + normal));
 }
 
 TEST(Counting, CombinedDampingReadsTheForcesOfTheLastStep) {

@@ -90,11 +90,6 @@ std::array<double, N> times(double factor, std::array<double, N> t) {
   return t;
 }
 
-double turnover(const EnergyLedger& e) {
-  return e.turnover() + e.zones + e.contacts + std::abs(e.kinetic) + e.dissipated.total() + e.local_damping +
-         e.viscous_damping;
-}
-
 // ---- Stress that is held
 
 constexpr double kCompliance = 16.3e-3 / 35e6;  ///< of all increments, 1/Pa: that of concrete at 500 degC

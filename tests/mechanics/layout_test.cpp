@@ -42,30 +42,65 @@ TEST(Arrays, EachIsInTheListThatMemoryCheckpointsAndViewsFollow) {
   expect_each_tells_of_all<StateArrays<3, FlatArray>>();
 }
 
+/// That each array has an entry of each of what it counts per, or none at all.
+template <int Dim>
+void expect_counts(const Mechanics<Dim>& body) {
+  const auto expect_count = [&](const ArrayInfo& info, const auto& array) {
+    const auto count = body.layout().count_of(info.per);
+    if (info.per == Per::zone_pack_or_bundle) {
+      EXPECT_TRUE(array.size() == body.layout().bundles.size() ||
+                  static_cast<int>(array.size()) == body.layout().zone_packs)
+          << info.name;
+    } else if (count && !array.empty()) {
+      EXPECT_EQ(array.size(), *count) << info.name;
+    }
+  };
+  for_each_array(expect_count, static_cast<const LayoutArrays<Dim, FlatArray>&>(body.layout()));
+  for_each_array(expect_count, body.storage());
+}
+
+/// The same of a body that moves, and turns, and is held.
+template <int Dim>
+void expect_counts(const Model<Dim>& model, Kinematics kinematics) {
+  auto parameters = bodies::quasi_static<Dim>();
+  parameters.kinematics = kinematics;
+  parameters.gravity[Dim - 1] = -9.81;
+  auto body = bodies::mechanics(model, mortar_contact(), parameters);
+  body.prescribe_velocity(0, 0, 0.0);
+  body.advance(1);
+  expect_counts(body);
+}
+
+TEST(Arrays, HaveAnEntryOfEachOfWhatTheyCountPer) {
+  for (const Kinematics kinematics : {Kinematics::small, Kinematics::finite})
+    expect_counts(bodies::tessellated(200, 0.1, 0.1, 1), kinematics);
+  expect_counts(bodies::cubes(5, 0.1), Kinematics::small);
+}
+
 // Every gridpoint, zone and contact has one place, and no two share one.
 TEST(Layout, GivesEverythingAPlaceOfItsOwn) {
   const Model<2> model = small_concrete();
   const Layout<2> layout(model);
-  const auto distinct = [](const FlatArray<int>& slots, int rows) {
+  const auto distinct = [](const FlatArray<int>& slots, int packs) {
     const std::set<int> set(slots.begin(), slots.end());
     EXPECT_EQ(set.size(), slots.size());
     EXPECT_GE(*set.begin(), 0);
-    EXPECT_LT(*set.rbegin(), kLanes * rows);
+    EXPECT_LT(*set.rbegin(), kLanes * packs);
   };
   ASSERT_EQ(layout.gridpoint_slot.size(), model.position.size());
   ASSERT_EQ(layout.zone_slot.size(), model.zones.size());
   ASSERT_EQ(layout.contact_slot.size(), model.contacts.size());
-  distinct(layout.gridpoint_slot, layout.gridpoint_rows);
-  distinct(layout.zone_slot, layout.zone_rows);
-  distinct(layout.contact_slot, layout.point_rows - 1);
+  distinct(layout.gridpoint_slot, layout.gridpoint_packs);
+  distinct(layout.zone_slot, layout.zone_packs);
+  distinct(layout.contact_slot, layout.point_packs - 1);
 }
 
 // The promise of lanes: few of them idle. A 5 % loss is what blocks of rare shapes may cost.
 TEST(Layout, LeavesFewLanesIdle) {
   const Model<2> model = small_concrete();
   const Layout<2> layout(model);
-  EXPECT_LT(kLanes * layout.zone_rows, 1.05 * model.zone_count() + 8 * kLanes);
-  EXPECT_LT(kLanes * 2 * layout.face_rows(), 1.05 * model.contact_count() + 8 * kLanes);
+  EXPECT_LT(kLanes * layout.zone_packs, 1.05 * model.zone_count() + 8 * kLanes);
+  EXPECT_LT(kLanes * 2 * layout.face_packs(), 1.05 * model.contact_count() + 8 * kLanes);
 }
 
 // What lanes of a bundle share must be the same in the model.
@@ -83,8 +118,8 @@ TEST(Layout, BlocksThatShareLanesHaveTheSameZones) {
       ASSERT_EQ(model.block_zones[b + 1] - first, bundle.zones);
       for (int z = 0; z < bundle.zones; ++z)
         for (int n = 0; n < 3; ++n) {
-          const int row = bundle.first_row + layout.shape_zones[bundle.first_corners + z][n];
-          EXPECT_EQ(layout.gridpoint_slot[model.zones[first + z][n]], slot_of(row, lane));
+          const int pack = bundle.first_pack + layout.shape_zones[bundle.first_corners + z][n];
+          EXPECT_EQ(layout.gridpoint_slot[model.zones[first + z][n]], slot_of(pack, lane));
         }
       ++alike;
     }
@@ -96,35 +131,35 @@ TEST(Layout, BlocksThatShareLanesHaveTheSameZones) {
 /// taken, none is taken after one of its bundles moved, and all of them once.
 void play(const Layout<2>& layout, int threads) {
   const auto shares = share_out(layout, threads);
-  std::vector<int> bundle_of_row(layout.gridpoint_rows);
+  std::vector<int> bundle_of_pack(layout.gridpoint_packs);
   for (std::size_t b = 0; b < layout.bundles.size(); ++b)
-    for (int i = 0; i < layout.bundles[b].rows; ++i)
-      bundle_of_row[layout.bundles[b].first_row + i] = static_cast<int>(b);
-  const auto touched = [&](int row) {
+    for (int i = 0; i < layout.bundles[b].packs; ++i)
+      bundle_of_pack[layout.bundles[b].first_pack + i] = static_cast<int>(b);
+  const auto touched = [&](int pack) {
     std::set<int> bundles;
     for (int lane = 0; lane < kLanes; ++lane)
-      for (int offset : {layout.points[2 * row].a[lane], layout.points[2 * row].b[lane]})
-        bundles.insert(bundle_of_row[offset / offset_of<2>(kLanes)]);
+      for (int offset : {layout.points[2 * pack].a[lane], layout.points[2 * pack].b[lane]})
+        bundles.insert(bundle_of_pack[offset / offset_of<2>(kLanes)]);
     return bundles;
   };
   std::vector<int> taken(layout.faces.size()), moved(layout.bundles.size());
-  const auto take = [&](const IndexRange& rows) {
-    for (int row = rows.first; row < rows.last; ++row) {
-      ++taken[row];
-      for (int b : touched(row)) EXPECT_EQ(moved[b], 0) << "face row " << row << " after bundle " << b;
+  const auto take = [&](const IndexRange& packs) {
+    for (int pack = packs.first; pack < packs.last; ++pack) {
+      ++taken[pack];
+      for (int b : touched(pack)) EXPECT_EQ(moved[b], 0) << "face pack " << pack << " after bundle " << b;
     }
   };
   for (const Share& share : shares)
-    for (const auto& rows : share.crossing) take(rows);
+    for (const auto& packs : share.crossing) take(packs);
   // A thread may be ahead of the others by any amount: the worst is one after the other, either way round.
   for (std::size_t t = 0; t < shares.size(); ++t)
     for (const auto& stride : shares[shares.size() - 1 - t].strides) {
       take(stride.faces);
       for (int b = stride.bundles.first; b < stride.bundles.last; ++b) {
         ++moved[b];
-        for (std::size_t row = 0; row < layout.faces.size(); ++row)
-          if (touched(static_cast<int>(row)).count(b) != 0) {
-            EXPECT_EQ(taken[row], 1) << "bundle " << b << " before face row " << row;
+        for (std::size_t pack = 0; pack < layout.faces.size(); ++pack)
+          if (touched(static_cast<int>(pack)).count(b) != 0) {
+            EXPECT_EQ(taken[pack], 1) << "bundle " << b << " before face pack " << pack;
           }
       }
     }

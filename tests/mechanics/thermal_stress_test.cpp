@@ -66,13 +66,6 @@ double largest_traction(const Mechanics<Dim>& m) {
   return largest;
 }
 
-/// Sum of the absolute entries of a ledger, to measure its error by.
-double turnover(const EnergyLedger& e) {
-  return std::abs(e.loading) + std::abs(e.gravity) + std::abs(e.property_change) + std::abs(e.mass_scaling) +
-         e.zones + e.contacts + std::abs(e.kinetic) + e.dissipated.total() + e.local_damping +
-         e.viscous_damping;
-}
-
 // ---- Free expansion
 
 template <int Dim>
@@ -247,13 +240,13 @@ TEST(CoolingVerification, AHeldBodyTakesTheStressOfItsOwnSlope) {
 // ---- Thick cylinder
 
 /// Hoop stress at the inner and outer radius of a quarter of a ring, hotter inside, steady, plane stress:
-/// means over each row of blocks at one radius, continued linearly from the two rows next to a surface.
-std::array<double, 2> surface_hoop_stress(double a, double b, int rows, int columns, double modulus,
+/// means over each pack of blocks at one radius, continued linearly from the two packs next to a surface.
+std::array<double, 2> surface_hoop_stress(double a, double b, int packs, int columns, double modulus,
                                           double thermal_strain, double softness) {
-  const Model<2> model = lattice(rows, columns, [&](double s, double t) {
+  const Model<2> model = lattice(packs, columns, [&](double s, double t) {
     return turned({{a + (b - a) * s, 0.0}}, 0.5 * std::numbers::pi * t);
   });
-  const auto contact = stiff_contact(softness, (b - a) / rows, modulus);
+  const auto contact = stiff_contact(softness, (b - a) / packs, modulus);
   auto m = mechanics(model, contact, settling<2>(800), modulus, poisson);
   for (int i : {0, 1}) hold(m, i, {0.0});  // symmetry
   auto properties = uniform(model, contact, 0.0, modulus);
@@ -267,18 +260,18 @@ std::array<double, 2> surface_hoop_stress(double a, double b, int rows, int colu
 
   const auto volume = zone_geometry(model).volume;
   const auto block = zone_blocks(model);
-  std::vector<double> hoop(rows), radius(rows), weight(rows);
+  std::vector<double> hoop(packs), radius(packs), weight(packs);
   for (int z = 0; z < model.zone_count(); ++z) {
     Vec<2> centre{};
     for (int g : model.zones[z]) centre += model.position[g] * (1.0 / 3.0);
     const double r = norm(centre);
     const auto polar = rotated<2>({centre[0] / r, -centre[1] / r}, m.stresses()[z]);
-    const int row = block[z] % rows;
-    hoop[row] += volume[z] * polar[1];
-    radius[row] += volume[z] * r;
-    weight[row] += volume[z];
+    const int pack = block[z] % packs;
+    hoop[pack] += volume[z] * polar[1];
+    radius[pack] += volume[z] * r;
+    weight[pack] += volume[z];
   }
-  for (int i = 0; i < rows; ++i) {
+  for (int i = 0; i < packs; ++i) {
     hoop[i] /= weight[i];
     radius[i] /= weight[i];
   }
@@ -286,7 +279,7 @@ std::array<double, 2> surface_hoop_stress(double a, double b, int rows, int colu
     return hoop[nearest] +
            (hoop[next] - hoop[nearest]) * (r - radius[nearest]) / (radius[next] - radius[nearest]);
   };
-  return {continued(a, 0, 1), continued(b, rows - 1, rows - 2)};
+  return {continued(a, 0, 1), continued(b, packs - 1, packs - 2)};
 }
 
 // Timoshenko and Goodier, Theory of Elasticity, art. 151 (long cylinder) with plane stress for plane strain.
@@ -300,7 +293,7 @@ TEST(ThickCylinderVerification, TakesTheHoopStressesOfALogarithmicTemperature) {
   EXPECT_NEAR(exact(a), -12.24e6, 0.01e6);
   EXPECT_NEAR(exact(b), 7.76e6, 0.01e6);
   const auto [inner, outer] = surface_hoop_stress(a, b, 16, 14, modulus, thermal_strain, 3e-3);
-  // 2 %: linear continuation over half of a row of sixteen (a curved line), contacts that give way by 0.3 %
+  // 2 %: linear continuation over half of a pack of sixteen (a curved line), contacts that give way by 0.3 %
   const std::string source = "Timoshenko and Goodier, Theory of Elasticity, art. 151";
   expect_known({"Hoop stress inside a ring, hotter inside", source, "Pa"}, inner, exact(a),
                0.02 * std::abs(exact(a)));

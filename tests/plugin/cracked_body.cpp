@@ -10,7 +10,7 @@
 
 #include "mechanics/bodies.hpp"
 #include "pyroclast/base/sha256.hpp"
-#include "pyroclast/plugin/load.hpp"
+#include "pyroclast/plugin/open.hpp"
 
 namespace pyroclast {
 namespace {
@@ -40,7 +40,7 @@ std::string bits(const Mechanics<2>& body) {
   for (const auto& v : body.velocities()) add(v[0]), add(v[1]);
   for (const auto& c : body.contacts()) {
     add(c.normal_traction), add(c.shear_traction[0]), add(c.stored);
-    for (int i = 0; i < count_of<Cohesive::History<2, double>>(); ++i) add(c.history[i]);
+    for (int i = 0; i < count_of<Cohesive::Internals<2, double>>(); ++i) add(c.internals[i]);
     for (int i = 0; i < count_of<Cohesive::Losses<double>>(); ++i) add(c.losses[i]);
   }
   const auto energy = body.energy();
@@ -50,7 +50,7 @@ std::string bits(const Mechanics<2>& body) {
 
 int drive(int argc, char** argv) {
 #ifdef OWN_LAW
-  const LawTable& law = load_law(argv[1]).table;
+  const LawTable& law = open_law(argv[1]).table;
 #else
   const LawTable& law = table_of<Cohesive>();
 #endif

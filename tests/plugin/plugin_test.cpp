@@ -15,7 +15,7 @@
 #include "messages.hpp"
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/plugin/find_law.hpp"
-#include "pyroclast/plugin/load.hpp"
+#include "pyroclast/plugin/open.hpp"
 #include "pyroclast/plugin/stamp.hpp"
 #include "stages/small_runs.hpp"
 
@@ -37,13 +37,13 @@ fs::path law_file(const std::string& name) {
 }
 
 std::string refusal_of(const std::string& name) {
-  return message([&] { load_law(law_file("refused_" + name)); });
+  return message([&] { open_law(law_file("refused_" + name)); });
 }
 
 TEST(Plugin, ASharedObjectThatIsNoLawIsRefused) {
   EXPECT_TRUE(says(refusal_of("symbol"), {"refused_symbol.so", "no symbol pyroclast_law_v1"}));
   EXPECT_TRUE(says(refusal_of("magic"), {"does not give a contact law"}));
-  EXPECT_TRUE(says(message([] { load_law(fs::path(HEADERS) / "small.hpp"); }),
+  EXPECT_TRUE(says(message([] { open_law(fs::path(HEADERS) / "small.hpp"); }),
                    {"small.hpp", "cannot be loaded as a contact law"}));
 }
 
@@ -106,7 +106,7 @@ TEST(Plugin, TheLayoutTellsWhereNumbersOfAStateStand) {
 }
 
 TEST(Plugin, ALoadedLawIsATableLikeAnyOther) {
-  const LoadedLaw& law = load_law(law_file("renamed"));
+  const OpenedLaw& law = open_law(law_file("renamed"));
   EXPECT_STREQ(law.table.name, "renamed");
   EXPECT_EQ(law.dimensions, Dimensions::both);
   EXPECT_FALSE(law.compiler.empty());
@@ -114,9 +114,9 @@ TEST(Plugin, ALoadedLawIsATableLikeAnyOther) {
   const int own = count_of<Cohesive::Properties<double>>();
   ASSERT_EQ(law.table.properties.size(), own + 1);
   EXPECT_STREQ(law.table.properties[own].key, "u_mark");
-  EXPECT_EQ(law.table.history(2).size(), (count_of<Cohesive::History<2, double>>()) + 1);
+  EXPECT_EQ(law.table.internals(2).size(), (count_of<Cohesive::Internals<2, double>>()) + 1);
   EXPECT_EQ(law.table.losses.size(), count_of<Cohesive::Losses<double>>() + 1);
-  EXPECT_EQ(&load_law(law_file("renamed")), &law) << "a file is loaded once";
+  EXPECT_EQ(&open_law(law_file("renamed")), &law) << "a file is loaded once";
 
   // torn apart in one go
   std::vector<double> numbers(own + 1);
@@ -126,11 +126,11 @@ TEST(Plugin, ALoadedLawIsATableLikeAnyOther) {
   p.numbers[own] = -1.0;
   EXPECT_TRUE(says(message([&] { validate(p, "contact"); }), {"u_mark (m) = -1"}));
   const auto constants = p.constants();
-  std::vector<double> history(law.table.history(2).size()), losses(law.table.losses.size());
+  std::vector<double> internals(law.table.internals(2).size()), losses(law.table.losses.size());
   const std::array jump{1e-4, 0.0};
-  law.table.update(2)(constants.data(), jump.data(), history.data(), losses.data());
+  law.table.update(2)(constants.data(), jump.data(), internals.data(), losses.data());
   EXPECT_DOUBLE_EQ(losses[1], paper.mode_1_energy);
-  EXPECT_EQ(history.back(), 1e-4);
+  EXPECT_EQ(internals.back(), 1e-4);
   EXPECT_EQ(losses.back(), 1.0);
 }
 
@@ -176,7 +176,7 @@ TEST(Plugin, ALawForPlaneBodiesIsRefusedInSpace) {
       says(message([&] { find_law("small", "", sources, true); }), {"made for bodies in 2D, not in 3D"}));
 
   const auto model = bodies::five_tetrahedra();
-  const LawTable& law = load_law(law_file("small")).table;
+  const LawTable& law = open_law(law_file("small")).table;
   BodyProperties properties;
   properties.zones.assign(model.zones.size(), zone_properties<3>(30e9, 0.2));
   properties.contacts.add({law, {1e12}, {}});
@@ -248,7 +248,7 @@ TEST_F(LawInAHeader, AHeaderIsCompiledOnceForEachText) {
   ASSERT_EQ(commands_.size(), 1U);
   EXPECT_TRUE(says(commands_[0], {"-ffp-contract=off", "-O3"}));
   EXPECT_EQ(commands_[0].find("march=native"), std::string::npos);
-  EXPECT_EQ(loaded_laws().back()->header.file, fs::canonical(folder_ / "mine.hpp"));
+  EXPECT_EQ(opened_laws().back()->header.file, fs::canonical(folder_ / "mine.hpp"));
   struct stat cache {};
   ASSERT_EQ(stat(sources_.compiler.cache.c_str(), &cache), 0);
   EXPECT_EQ(cache.st_mode & 0777, 0700U);

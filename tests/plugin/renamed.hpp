@@ -2,7 +2,7 @@
 
 #include <pyroclast/laws/cohesive.hpp>
 
-/// The law of the paper under another name, with one more property, history value and loss.
+/// The law of the paper under another name, with one more property, internal variables and loss.
 namespace renamed {
 
 struct Law {
@@ -38,14 +38,14 @@ struct Law {
   };
 
   template <int Dim, class Real>
-  struct History : Paper::History<Dim, Real> {
+  struct Internals : Paper::Internals<Dim, Real> {
     Real torn_at{};  ///< m
 
     template <class F, class... H>
     static constexpr void each(F&& f, H&... h) {
-      Paper::History<Dim, Real>::each(f, h...);
-      f(pyroclast::HistoryInfo{"torn_at", "opening at which damage last grew", pyroclast::unit::length,
-                               pyroclast::Remembers::other, pyroclast::info::kDamaged},
+      Paper::Internals<Dim, Real>::each(f, h...);
+      f(pyroclast::InternalInfo{"torn_at", "opening at which damage last grew", pyroclast::unit::length,
+                                pyroclast::Remembers::other, pyroclast::info::kDamaged},
         h.torn_at...);
     }
   };
@@ -73,7 +73,7 @@ struct Law {
   template <int Dim, class Real, class Number, class Sum>
   static pyroclast::ContactResponse<Dim, Real> update(const Constants<Number>& c, const Real& opening,
                                                       const pyroclast::Tangential<Dim, Real>& tangential,
-                                                      History<Dim, Real>& h, Losses<Sum>& losses) {
+                                                      Internals<Dim, Real>& h, Losses<Sum>& losses) {
     using pyroclast::select;  // for one number; of lanes it is found by itself
     const Real before = h.tension_damage;
     const auto response = Paper::update<Dim, Real, Number, Sum>(c, opening, tangential, h, losses);

@@ -45,7 +45,7 @@ struct Law {
   };
 
   template <int Dim, class Real>
-  struct History : pyroclast::Nothing {};
+  struct Internals : pyroclast::Nothing {};
   template <class Sum>
   struct Losses : pyroclast::Nothing {};
 
@@ -60,7 +60,7 @@ struct Law {
   template <int Dim, class Real, class Number, class Sum>
   static pyroclast::ContactResponse<Dim, Real> update(const Constants<Number>& c, const Real& opening,
                                                       const pyroclast::Tangential<Dim, Real>& tangential,
-                                                      History<Dim, Real>&, Losses<Sum>&) {
+                                                      Internals<Dim, Real>&, Losses<Sum>&) {
     static_assert(Dim == 2);
     const Real half = doubled(0.25);
     pyroclast::ContactResponse<Dim, Real> r;

@@ -40,7 +40,7 @@ class Bodies(Case):
         np.testing.assert_array_equal(run.position[right, 0], 60e-3)
         self.assertEqual(run.sets["specimen"].size, len(run.position))
         self.assertEqual(len(np.unique(left)), len(left))
-        moved = run.displacement[:, 0]
+        moved = run.fields.displacement[:, 0]
         self.assertAlmostEqual(state.stretch / (moved[right].mean() - moved[left].mean()), 1.0, delta=0.01)
         self.assertAlmostEqual(state.pull / (state.across * 40e-3 * 0.1), 1.0, delta=0.05)
         self.assertEqual(run.history.units["pull_N"], "N")
@@ -111,10 +111,10 @@ class Drives(Case):
         run = self.run_(stages=[{"kind": "drive", "duration": "4 ms", "look_interval": "0.5 ms",
                                  "drives": [{"set": "left", "hold": ["x", "y"]}]}])
         run.drive("right", velocity=1 * mm / s, direction="x")
-        before = run.displacement[run.sets["right"], 0].mean()
+        before = run.fields.displacement[run.sets["right"], 0].mean()
         steps = run.step
         run.until(steps=100)
-        self.assertAlmostEqual(run.displacement[run.sets["right"], 0].mean() - before,
+        self.assertAlmostEqual(run.fields.displacement[run.sets["right"], 0].mean() - before,
                                1e-3 * 1e-6 * (run.step - steps), places=12)
 
     def test_supports_are_taken_and_given_back(self):
@@ -160,7 +160,7 @@ class Drives(Case):
             run.drive("top_platen", hold=["x"])
         run.drive("left", hold=["x"])
         run.until(strain=5e-5)
-        np.testing.assert_array_equal(run.displacement[run.sets["left"], 0], 0.0)
+        np.testing.assert_array_equal(run.fields.displacement[run.sets["left"], 0], 0.0)
 
     def test_a_run_that_was_driven_is_only_the_script_s(self):
         out = self.folder() / "run"

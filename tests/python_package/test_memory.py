@@ -18,7 +18,7 @@ from small import deck
 run = pyroclast.Run(deck(blocks__count=60), threads=1)
 run.until(steps=50)
 copied = run.copy()
-views = [run.views.displacement, run.views.velocity, run.views.force, run.views.history]
+views = [run.views.displacement, run.views.velocity, run.views.force, run.views.internals]
 del run
 gc.collect()
 copied.until(steps=50)

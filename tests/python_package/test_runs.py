@@ -357,7 +357,7 @@ class Changing(Case):
         before = run.history["temperature"][-1]
         run.set_temperature("30 degC")
         self.assertEqual((before, run.measure().temperature), (20.0, 30.0))
-        self.assertAlmostEqual(float(run.temperature.max()), 30.0)
+        self.assertAlmostEqual(float(run.fields.temperature.max()), 30.0)
         run.next()
 
     def test_a_run_that_is_closed_leaves_its_folder(self):
@@ -368,7 +368,7 @@ class Changing(Case):
         self.assertEqual(json.loads((out / "summary.json").read_text())["outcome"], "running")
         with self.assertRaisesRegex(pyroclast.Error, "closed"):
             run.next()
-        np.testing.assert_array_equal(view[run.slot], run.displacement)
+        np.testing.assert_array_equal(view[run.slot], run.fields.displacement)
         pyroclast.Run.resume(out, threads=1).finish()
 
     def test_checkpoints_resume_and_fork(self):
@@ -401,18 +401,18 @@ class Arrays(Case):
                                ("force", lambda v: v[slot // 8, :, slot % 8])):
             view = getattr(run.views, name)
             self.assertTrue(np.shares_memory(view, getattr(run.views, name)), name)
-            np.testing.assert_array_equal(in_order(view), getattr(run, name), name)
-            self.assertFalse(np.shares_memory(view, getattr(run, name)))
+            np.testing.assert_array_equal(in_order(view), getattr(run.fields, name), name)
+            self.assertFalse(np.shares_memory(view, getattr(run.fields, name)))
             with self.assertRaises(ValueError):
                 view[0] = 1.0
             self.assertGreater(np.abs(view).max(), 0.0, name)
-        self.assertEqual(run.views.history.shape[1], 8)
+        self.assertEqual(run.views.internals.shape[1], 8)
 
     def test_no_view_is_a_copy_or_can_be_written(self):
         run = pyroclast.Run(deck(), threads=1)
         run.until(strain=1e-4)
         names = [name for name in dir(pyroclast.Views) if not name.startswith("_")]
-        self.assertEqual(names, ["displacement", "force", "history", "velocity"])
+        self.assertEqual(names, ["displacement", "force", "internals", "velocity"])
         for name in names:
             view = getattr(run.views, name)
             self.assertTrue(np.shares_memory(view, getattr(run.views, name)), name)
@@ -426,7 +426,7 @@ class Arrays(Case):
     def test_views_can_be_read_when_nothing_else_of_the_run_is_left(self):
         run = pyroclast.Run(deck(), threads=1)
         run.until(strain=1e-4)
-        views = [run.views.displacement, run.views.velocity, run.views.force, run.views.history]
+        views = [run.views.displacement, run.views.velocity, run.views.force, run.views.internals]
         sums = [float(view.sum()) for view in views]
         del run
         gc.collect()
@@ -455,7 +455,14 @@ class Arrays(Case):
         area = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
         of_specimen = run.block_material[run.zone_block] < len(run.material_names) - 1
         self.assertAlmostEqual(area[of_specimen].sum(), 0.15 * 0.3, places=9)
-        self.assertEqual(run.stress.shape, (len(run.zones), 3))
+        self.assertEqual(run.fields.stress.shape, (len(run.zones), 6))
+        self.assertEqual(run.fields["displacement_m"].shape, run.position.shape)
+        self.assertEqual(list(run.fields), ["displacement_m", "velocity_m_s", "force_N", "stress_Pa", "strain",
+                                            "temperature_degC"])
+        with self.assertRaisesRegex(AttributeError, "no field 'stres'; it has displacement, .* temperature"):
+            run.fields.stres
+        with self.assertRaises(KeyError):
+            run.fields["stress_MPa"]
 
     def test_zone_stresses_and_contacts_carry_the_load(self):
         run = pyroclast.Run(deck(), threads=1)
@@ -464,7 +471,7 @@ class Arrays(Case):
         a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         area = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
         of_specimen = run.block_material[run.zone_block] < len(run.material_names) - 1
-        mean = (run.stress[of_specimen, 1] * area[of_specimen]).sum() / area[of_specimen].sum()
+        mean = (run.fields.stress[of_specimen, 1] * area[of_specimen]).sum() / area[of_specimen].sum()
         self.assertAlmostEqual(-mean / state.stress, 1.0, delta=0.02)
         contacts = run.contacts()
         self.assertEqual(set(contacts["law"]), {"cohesive", "elastic", "frictional"})
@@ -492,11 +499,10 @@ class Arrays(Case):
         run = pyroclast.Run(wall, threads=1)
         self.assertTrue(run._repr_png_().startswith(b"\x89PNG"))
         run.finish()
-        self.assertGreater(run.temperature.max(), 100.0)
+        self.assertGreater(run.fields.temperature.max(), 100.0)
         self.assertIn("temperature_degC", run.to_meshio().point_data)
         self.assertIn("data:image/png", run._repr_html_())
-        with self.assertRaisesRegex(pyroclast.Error, "nothing moves"):
-            run.displacement
+        self.assertEqual(list(run.fields), ["temperature_degC"])
         with self.assertRaisesRegex(pyroclast.Error, "nothing moves"):
             run.call_at(10, print)
 
@@ -532,28 +538,26 @@ class Creep(Case):
         whole.finish()
         run = pyroclast.Run(self.creeping(), out=folder / "run", threads=1)
         run.until(temperature=40.0)
-        half = run.creep_strain
+        half = run.fields.creep_strain
         run.checkpoint()
         run.close()
         run = pyroclast.Run.resume(folder / "run", threads=1)
-        np.testing.assert_array_equal(run.creep_strain, half)
+        np.testing.assert_array_equal(run.fields.creep_strain, half)
         run.finish()
-        np.testing.assert_array_equal(run.creep_strain, whole.creep_strain)
+        np.testing.assert_array_equal(run.fields.creep_strain, whole.fields.creep_strain)
         # each stress creeps by the same law, so the mean creeps by the mean stress
         along = -0.1 * 33.9e6 / self.F_C * self.STRAIN
-        np.testing.assert_allclose(self.mean(whole, whole.creep_strain), [-self.NU * along, along, 0.0],
-                                   atol=0.02 * abs(along))
-        self.assertEqual(np.abs(whole.creep_strain[whole.block_material[whole.zone_block] == 2]).max(), 0.0)
+        np.testing.assert_allclose(self.mean(whole, whole.fields.creep_strain), [-self.NU * along, along, -self.NU * along,
+                                                                              0.0, 0.0, 0.0], atol=0.02 * abs(along))
+        self.assertEqual(np.abs(whole.fields.creep_strain[whole.block_material[whole.zone_block] == 2]).max(), 0.0)
         for name in ("whole", "run"):
             last = sorted((folder / name / "fields").glob("blocks_*.hdf"))[-1]
             with h5py.File(last) as file:
                 field = file["VTKHDF/CellData/creep_strain [1]"][:]
-            np.testing.assert_allclose(field[:, [0, 1, 3]], whole.creep_strain, rtol=1e-6)
-            np.testing.assert_allclose(self.mean(whole, field)[[2, 4, 5]], [-self.NU * along, 0.0, 0.0],
-                                       atol=0.02 * abs(along))
+            np.testing.assert_allclose(field, whole.fields.creep_strain, rtol=1e-6)
 
-    def test_where_nothing_creeps_it_is_zero(self):
-        self.assertFalse(pyroclast.Run(deck(), threads=1).creep_strain.any())
+    def test_where_nothing_creeps_there_is_no_such_field(self):
+        self.assertNotIn("creep_strain", pyroclast.Run(deck(), threads=1).fields)
 
 
 class Threads(Case):

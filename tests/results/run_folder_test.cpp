@@ -130,7 +130,7 @@ TEST_F(Results, AFolderKeepsWhatGivesTheSameRunAgain) {
     const RunFolder run(folder_ / "run", false, manifest);
   }
   fs::remove_all(folder_ / "tables");
-  const Deck kept = Deck::load(folder_ / "run" / "deck.toml");
+  const Deck kept = Deck::open(folder_ / "run" / "deck.toml");
   const pyroclast::Setup again = read_setup(kept, folder_ / "run");
   EXPECT_EQ(again.specimen.seed, 77U);
   EXPECT_EQ(inputs_of(kept, again).hash(), inputs.hash());

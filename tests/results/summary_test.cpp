@@ -38,7 +38,7 @@ struct Made : Finished {
   void put(std::string_view column, std::optional<double> value) {
     put({0, run.history().row_count()}, column, value);
   }
-  RowRange rows_of(int stage) const { return run.records().at(stage).rows; }
+  RowRange rows_of(int stage) const { return run.courses().at(stage).rows; }
 
   /// A ledger in which 10 J were turned over, of which the sum with signs is -2 J.
   void turn_over_ten_joules() {

@@ -17,14 +17,14 @@ const std::string kUnload =
     "[[stages]]\nkind = \"compress\"\nvelocity = \"0.5 mm/s\"\nramp_time = \"20 ms\"\nto_stress = \"1 "
     "MPa\"\n";
 
-Loaded loaded(const std::string& stages) {
+Opened opened(const std::string& stages) {
   RunChoices choices;
   choices.threads = 1;
   return {Deck::parse(deck(kUniform + kSettle + stages), "deck.toml"), ".", choices};
 }
 
 std::unique_ptr<Session> session(const std::string& stages) {
-  return Session::begin(loaded(stages), std::nullopt);
+  return Session::begin(opened(stages), std::nullopt);
 }
 
 void finish(Session& session) {
@@ -41,31 +41,31 @@ std::vector<std::string> cells(const Session& session) {
   return all;
 }
 
-TEST(Loaded, TakesNoMoreThreadsThanProcessorsAreFreeAndSaysSo) {
+TEST(Opened, TakesNoMoreThreadsThanProcessorsAreFreeAndSaysSo) {
   const auto with_threads = [](int threads) {
     RunChoices choices;
     choices.threads = threads;
-    return Loaded(Deck::parse(deck(kUniform + kSettle), "deck.toml"), ".", choices);
+    return Opened(Deck::parse(deck(kUniform + kSettle), "deck.toml"), ".", choices);
   };
-  const auto says_so = [](const Loaded& loaded) {
-    return std::ranges::count_if(loaded.warnings, [](const std::string& warning) {
+  const auto says_so = [](const Opened& opened) {
+    return std::ranges::count_if(opened.warnings, [](const std::string& warning) {
       return warning.find("were asked for") != std::string::npos;
     });
   };
   const int free = free_processors();
   for (const int threads : {0, 1, free}) {
-    const Loaded loaded = with_threads(threads);
-    EXPECT_EQ(loaded.team->size(), threads == 0 ? free : threads);
-    EXPECT_EQ(says_so(loaded), 0);
+    const Opened opened = with_threads(threads);
+    EXPECT_EQ(opened.team->size(), threads == 0 ? free : threads);
+    EXPECT_EQ(says_so(opened), 0);
   }
-  const Loaded more = with_threads(free + 6);
+  const Opened more = with_threads(free + 6);
   EXPECT_EQ(more.team->size(), free);
   EXPECT_EQ(says_so(more), 1);
   EXPECT_THROW(with_threads(-1), Error);
 }
 
 TEST_F(Results, ASessionWritesWhatItsHistoryHas) {
-  const auto written = Session::begin(loaded(kCompress), RunOutput{folder_ / "run", false, "test"});
+  const auto written = Session::begin(opened(kCompress), RunOutput{folder_ / "run", false, "test"});
   finish(*written);
   const std::string csv = content(folder_ / "run" / "history.csv");
   EXPECT_EQ(std::ranges::count(csv, '\n'),
@@ -143,8 +143,8 @@ TEST(Session, ACopyWithOtherLaterStagesIsTheRunOfThatDeck) {
 }
 
 TEST_F(Results, AnAppendedStageGivesTheRunOfTheWholeDeck) {
-  const auto run = Session::begin(loaded(kCompress), RunOutput{folder_ / "run", false, "test"});
-  const auto whole = Session::begin(loaded(kCompress + kUnload), RunOutput{folder_ / "whole", false, "test"});
+  const auto run = Session::begin(opened(kCompress), RunOutput{folder_ / "run", false, "test"});
+  const auto whole = Session::begin(opened(kCompress + kUnload), RunOutput{folder_ / "whole", false, "test"});
   finish(*run);
   run->change_stages({}, kUnload);
   EXPECT_EQ(run->run().outcome(), Outcome::running);
@@ -160,7 +160,7 @@ TEST_F(Results, AnAppendedStageGivesTheRunOfTheWholeDeck) {
 }
 
 TEST_F(Results, WhatAScriptDidIsSaidAndKeepsARunFromBeingResumed) {
-  const auto run = Session::begin(loaded(kCompress), RunOutput{folder_ / "run", false, "test"});
+  const auto run = Session::begin(opened(kCompress), RunOutput{folder_ / "run", false, "test"});
   while (run->run().stage_number() < 1) run->next();
   run->change_materials({"materials.mortar.E=15 GPa"});
   run->next();
@@ -175,7 +175,7 @@ TEST_F(Results, WhatAScriptDidIsSaidAndKeepsARunFromBeingResumed) {
 
 TEST_F(Results, ARunThatAScriptChangedIsNotResumed) {
   {
-    const auto run = Session::begin(loaded(kCompress), RunOutput{folder_ / "run", false, "test"});
+    const auto run = Session::begin(opened(kCompress), RunOutput{folder_ / "run", false, "test"});
     run->next();
     run->depart({"mine"});
     run->depart({"mine"});
@@ -203,8 +203,8 @@ TEST(Session, AStageCanBeEndedAtALook) {
   for (int look = 0; look < 4; ++look) run->next();
   run->run().end_stage();
   finish(*run);
-  EXPECT_EQ(run->run().records()[1].outcome, Outcome::completed);
-  EXPECT_EQ(run->run().records()[1].rows.last - run->run().records()[1].rows.first, 5u);
+  EXPECT_EQ(run->run().courses()[1].outcome, Outcome::completed);
+  EXPECT_EQ(run->run().courses()[1].rows.last - run->run().courses()[1].rows.first, 5u);
   EXPECT_EQ(run->run().outcome(), Outcome::completed);
 }
 

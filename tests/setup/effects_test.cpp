@@ -55,6 +55,101 @@ TEST(Effects, HeatThatCannotFlowIsRefused) {
   expect_contains(refused(conducting(kSettle + kCompress)), {"heat.boundaries", "no stage lets heat flow"});
 }
 
+TEST(Effects, ABoundaryThatLetsNoHeatThroughIsRefused) {
+  const auto boundary = [](const std::string& keys) {
+    return refused(conducting(kSettle + kExpose) + "[[heat.boundaries]]\nfaces = \"right\"\n" + keys);
+  };
+  const std::string gas = "gas_temperature = \"300 degC\"\n";
+  const std::string none_through = "lets no heat through";
+  expect_contains(boundary("kind = \"convection\"\ncoefficient = \"0 W/(m2 K)\"\n" + gas),
+                  {"deck.toml:", "heat.boundaries[1].coefficient", none_through, "\"adiabatic\""});
+  expect_contains(boundary("kind = \"radiation\"\nemissivity = 0\n" + gas),
+                  {"deck.toml:", "heat.boundaries[1].emissivity", none_through});
+  expect_contains(boundary("kind = \"convection\"\ncoefficient = { table = [[\"0 s\", \"0 W/(m2 K)\"], "
+                           "[\"1 h\", \"0 W/(m2 K)\"]] }\n" +
+                           gas),
+                  {"heat.boundaries[1].coefficient", none_through});
+  EXPECT_EQ(boundary("kind = \"convection\"\ncoefficient = { table = [[\"0 s\", \"0 W/(m2 K)\"], "
+                     "[\"1 h\", \"9 W/(m2 K)\"]] }\n" +
+                     gas),
+            "no Error was thrown");
+  expect_contains(
+      refused(with(conducting(kSettle + kExpose), kHeatedFace,
+                   "[heat]\nfield = \"conduction\"\ntemperature_range = [\"20 degC\", \"90 degC\"]\n"
+                   "[[heat.boundaries]]\nfaces = \"left\"\nkind = \"flux\"\nflux = \"0 W/m2\"\n")),
+      {"heat.boundaries[0].flux", none_through});
+}
+
+/// Warnings of a deck, a line each.
+std::string warnings_of(const std::string& text) {
+  std::string lines;
+  for (const Diagnostic& warning : read(text).warnings) lines += to_string(warning) + "\n";
+  return lines;
+}
+
+// Promise: a temperature that changes nothing is told; the first of a series of temperatures may be such.
+TEST(Effects, TemperaturesThatStayAreTold) {
+  const std::string face =
+      "[heat]\nfield = \"conduction\"\ninitial = \"70 degC\"\n[[heat.boundaries]]\n"
+      "faces = \"left\"\n";
+  const auto only = [&](const std::string& keys) {
+    return warnings_of(with(conducting(kSettle + kExpose), kHeatedFace, face + keys));
+  };
+  const std::string stays = "leave the specimen at 70 degC";
+  expect_contains(only("kind = \"adiabatic\"\n"), {"deck.toml:", "heat.boundaries", stays});
+  expect_contains(only("kind = \"temperature\"\ntemperature = \"70 degC\"\n"), {"heat.boundaries", stays});
+  expect_out(stays, only("kind = \"temperature\"\ntemperature = \"71 degC\"\n"));
+  const std::string twice =
+      warnings_of(deck(kUniform + kSettle + heat("20 degC") + heat("50 degC") + heat("50 degC")));
+  expect_contains(twice, {"stages[1].to = \"20 degC\": is the temperature that the specimen has already",
+                          "stages[3].to = \"50 degC\""});
+  expect_out("stages[2]", twice);
+}
+
+TEST(Effects, PropertiesThatNoTemperatureCallsForAreTold) {
+  const std::string creeps =
+      "[materials.mortar.creep]\nstrain = { table = [[\"20 degC\", 0], [\"800 degC\", "
+      "0.01]] }\n";
+  const auto told = [&](const std::string& stages) {
+    return read(with(deck(kUniform + kSettle + stages + creeps), "expansion = \"1e-5 1/K\"\n",
+                     "expansion = \"1e-5 1/K\"\ncontraction = \"5e-6 1/K\"\nquartz_step = 0.004\n"))
+        .unused_properties;
+  };
+  const std::string quartz = "materials.aggregate.quartz_step begins at 550 degC, and the run comes to ";
+  EXPECT_EQ(told(kCompress), (std::vector<std::string>{
+                                 quartz + "20 degC at most, so that it has no effect",
+                                 "materials.aggregate.contraction, materials.mortar.creep: no temperature "
+                                 "changes in this run, so that they have no effect"}));
+  EXPECT_EQ(told(heat("500 degC")),
+            std::vector<std::string>{quartz + "500 degC at most, so that it has no effect"});
+  EXPECT_EQ(told(heat("560 degC")), std::vector<std::string>());
+}
+
+TEST(Effects, ATemperatureWithoutStressOfABodyThatDoesNotExpandIsTold) {
+  const auto of = [](const std::string& expansion, const std::string& heat) {
+    std::string text = with(deck(heat + kSettle, "\"" + expansion + "\""), "failure_strain = 0.005\n",
+                            "failure_strain = 0.005\nstress_free = \"35 degC\"\n");
+    return warnings_of(with(text, "expansion = \"1e-5 1/K\"\n", "expansion = \"" + expansion + "\"\n"));
+  };
+  const std::string nothing = of("0 1/K", kUniform);
+  expect_contains(nothing, {"deck.toml:", "coupling.stress_free = \"35 degC\": strains nothing"});
+  expect_out("acts at once", nothing);
+  expect_contains(of("1e-5 1/K", kUniform),
+                  {"heat.initial", "unstrained at 35 degC", "to 20 degC acts at once"});
+  expect_contains(of("1e-5 1/K", ""),
+                  {"deck.toml:", "coupling.stress_free = \"35 degC\": the body is unstrained"});
+}
+
+TEST(Effects, TheGasOfCracksIsKnownAtAllTemperatures) {
+  const std::string hot = with(conducting(kSettle + kExpose), "to = \"70 degC\"", "to = \"69 degC\"");
+  const std::string cracks = "[heat.cracks]\n";
+  EXPECT_EQ(refused(hot + cracks), "no Error was thrown");
+  expect_contains(refused(with(hot, "field = \"conduction\"\n",
+                               "field = \"conduction\"\ntemperature_range = [\"-260 degC\", \"90 degC\"]\n") +
+                          cracks),
+                  {"deck.toml:", "heat.cracks.gas_conductivity", "is needed", "-260"});
+}
+
 TEST(Effects, ABoundaryWithoutAFaceIsRefused) {
   const std::string inside =
       "[[sets]]\nname = \"inside\"\nbox = [[\"20 mm\", \"40 mm\"], [\"40 mm\", \"80 mm\"]]\n"

@@ -204,8 +204,8 @@ TEST(Simulation, EstimatedModulusIsALowerBoundNearTheMeasuredOne) {
   const auto simulation = make_simulation(setup);
   pyroclast::Run run(*simulation, std::move(setup.stages));
   EXPECT_EQ(run.run(), Outcome::completed);
-  const auto strain = run.history().values("strain", run.records()[0].rows),
-             stress = run.history().values("stress_MPa", run.records()[0].rows);
+  const auto strain = run.history().values("strain", run.courses()[0].rows),
+             stress = run.history().values("stress_MPa", run.courses()[0].rows);
   const std::size_t middle = strain.size() / 2;
   const double measured = 1e6 * (stress.back() - stress[middle]) / (strain.back() - strain[middle]);
   const double estimate = estimate_modulus(simulation->model(), simulation->materials());

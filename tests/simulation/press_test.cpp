@@ -120,7 +120,7 @@ void carries_what_it_is_loaded_with(const Model<Dim>& model) {
   const double before = press.strain(), time = 100.0 * mechanics.time_step();
   mechanics.advance(100);
   EXPECT_NEAR(press.strain() - before, 1e-4 * time, 1e-9 * time);
-  press.drive(0.0);
+  press.move_platen(0.0);
   mechanics.advance(20000);
   expect_known({Dim == 2 ? "Stress of an elastic body between platens, after a motion, 2D"
                          : "Stress of an elastic body between platens, after a motion, 3D",

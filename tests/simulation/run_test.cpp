@@ -79,7 +79,7 @@ void expect_same(const History& a, const History& b) {
 
 /// What people are told of a stage once the run is over.
 StageReport report_of(const Trial& trial, std::size_t stage) {
-  const StageRecord& record = trial.run.records()[stage];
+  const StageCourse& record = trial.run.courses()[stage];
   return trial.run.stages()[stage]->report(trial.run.history(), record.rows, record.outcome);
 }
 
@@ -109,16 +109,16 @@ TEST(Run, GoesFromLookToLook) {
   EXPECT_TRUE(run.frame_is_due());
   EXPECT_EQ(run.history().row_count(), 1U);
   EXPECT_EQ(run.history().last("step"), 0.0);
-  EXPECT_EQ(run.records()[0].outcome, Outcome::not_begun);
+  EXPECT_EQ(run.courses()[0].outcome, Outcome::not_begun);
   std::size_t rows = 1;
   while (run.next()) EXPECT_EQ(run.history().row_count(), ++rows);
   EXPECT_EQ(run.outcome(), Outcome::completed);
   EXPECT_TRUE(run.frame_is_due());
   EXPECT_FALSE(run.next());
   EXPECT_EQ(run.history().row_count(), rows);
-  EXPECT_EQ(run.records()[0].rows.first, 1U);
-  EXPECT_EQ(run.records()[0].rows.last, run.records()[1].rows.first);
-  EXPECT_EQ(run.records()[1].rows.last, rows);
+  EXPECT_EQ(run.courses()[0].rows.first, 1U);
+  EXPECT_EQ(run.courses()[0].rows.last, run.courses()[1].rows.first);
+  EXPECT_EQ(run.courses()[1].rows.last, rows);
 }
 
 /// Stops a run at a step of the mechanics.
@@ -132,7 +132,7 @@ TEST(Run, AStopInsideAnExchangeLeavesNoTraceOfIt) {
   const std::string text = deck(kUniform + kSettle + load("stress = \"0.5 MPa\"") + heat("120 degC"));
   Trial whole(text);
   whole.run.run();
-  const RowRange heated = whole.run.records()[2].rows;
+  const RowRange heated = whole.run.courses()[2].rows;
   const auto steps = whole.run.history().values("step", heated);
   Trial stopped(text);
   stop_at(stopped.run, static_cast<std::int64_t>(steps[4]) + 60);
@@ -140,7 +140,7 @@ TEST(Run, AStopInsideAnExchangeLeavesNoTraceOfIt) {
   while (stopped.run.next()) frames += stopped.run.frame_is_due() ? 1 : 0;
   EXPECT_EQ(stopped.run.outcome(), Outcome::stopped);
   EXPECT_EQ(frames, 3);  // at the start, after settling and after loading
-  const StageRecord& record = stopped.run.records()[2];
+  const StageCourse& record = stopped.run.courses()[2];
   EXPECT_EQ(record.outcome, Outcome::stopped);
   EXPECT_EQ(stopped.run.history().values("step", record.rows),
             std::vector<double>(steps.begin(), steps.begin() + 5));
@@ -184,15 +184,15 @@ class Copy : public StateVisitor {
   bool puts = false;
 
  protected:
-  void visit_row(const std::string& name, const Row& row) override {
+  void visit_piece(const std::string& name, const Piece& piece) override {
     auto& kept = rows_[name];
     EXPECT_EQ(puts, kept.has_value()) << "the name stands for two things: " << name;
     if (!puts) {
-      kept.emplace(row.data, row.data + row.item * row.count);
+      kept.emplace(piece.data, piece.data + piece.item * piece.count);
       return;
     }
-    ASSERT_TRUE(row.resize || kept->size() == row.item * row.count) << name;
-    std::byte* to = row.resize ? row.resize(kept->size() / row.item) : row.data;
+    ASSERT_TRUE(piece.resize || kept->size() == piece.item * piece.count) << name;
+    std::byte* to = piece.resize ? piece.resize(kept->size() / piece.item) : piece.data;
     std::ranges::copy(*kept, to);
     kept.reset();
   }
@@ -209,7 +209,7 @@ TEST(Run, AnotherBodyWithItsStateGoesOnAlike) {
     Trial whole(text);
     whole.run.run();
     const auto all = whole.run.history().values("step", {0, whole.run.history().row_count()});
-    for (const StageRecord& record : whole.run.records()) {
+    for (const StageCourse& record : whole.run.courses()) {
       const std::size_t middle = (record.rows.first + record.rows.last) / 2;
       const auto step = static_cast<std::int64_t>(0.5 * (all[middle - 1] + all[middle]));
       Trial broken_off(text), resumed(text);
@@ -230,7 +230,7 @@ TEST(Run, AnotherBodyWithItsStateGoesOnAlike) {
       for (int z = 0; z < whole.simulation->model().zone_count(); ++z)
         ASSERT_EQ(whole.simulation->mechanics().creep_strain(z),
                   resumed.simulation->mechanics().creep_strain(z));
-      for (std::size_t stage = 0; stage < whole.run.records().size(); ++stage)
+      for (std::size_t stage = 0; stage < whole.run.courses().size(); ++stage)
         EXPECT_EQ(report_of(whole, stage).lines, report_of(resumed, stage).lines);
     }
   }

@@ -140,7 +140,7 @@ TEST(Conduct, SaysWhenTheSteadyStateWasNotReached) {
   c.go_on();
   EXPECT_EQ(c.run.outcome(), Outcome::completed);
   EXPECT_EQ(c.simulation.field().time(), 60.0);
-  const StageRecord& record = c.run.records()[0];
+  const StageCourse& record = c.run.courses()[0];
   const auto warnings = c.run.stages()[0]->report(c.run.history(), record.rows, record.outcome).warnings;
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("no steady state"), std::string::npos);
@@ -173,8 +173,8 @@ TEST(Conduct, AmongOtherStagesItLeavesTheBodyAtRest) {
                                 "frame_strain = 1e-3\nframe_interval = \"2 min\"")));
   EXPECT_EQ(r.run.outcome(), Outcome::completed);
   const History& history = r.run.history();
-  const RowRange settled = r.run.records()[0].rows, conducted = r.run.records()[1].rows,
-                 exposed = r.run.records()[2].rows;
+  const RowRange settled = r.run.courses()[0].rows, conducted = r.run.courses()[1].rows,
+                 exposed = r.run.courses()[2].rows;
   EXPECT_EQ(history.values("heating_time_s", conducted), (std::vector<double>{60, 120, 180, 240, 300}));
   for (std::size_t row = conducted.first; row < conducted.last; ++row)
     EXPECT_FALSE(history.cell(row, "strain"));

@@ -149,7 +149,7 @@ TEST(ControlVerification, ABarSnapsBackAlongItsClosedForm) {
   pyroclast::Run run(*simulation, std::move(setup.stages));
   EXPECT_EQ(run.run(), Outcome::completed);
   const History& history = run.history();
-  const RowRange rows = run.records()[0].rows;
+  const RowRange rows = run.courses()[0].rows;
   const auto load = history.values("load_N", rows), grip = history.values("grip_m", rows),
              work = history.values("energy_loading_J", rows), stretch = history.values("stretch_m", rows);
   const auto peak = std::ranges::max_element(load) - load.begin();
@@ -179,7 +179,7 @@ TEST(Control, WarnsWhereThePairBearsTheTest) {
   pyroclast::Run run(*simulation, std::move(setup.stages));
   EXPECT_EQ(run.run(), Outcome::completed);
   const StageReport report =
-      run.stages()[0]->report(run.history(), run.records()[0].rows, Outcome::completed);
+      run.stages()[0]->report(run.history(), run.courses()[0].rows, Outcome::completed);
   ASSERT_EQ(report.warnings.size(), 1U);
   EXPECT_NE(report.warnings[0].find("control of stretch: the largest load is"), std::string::npos);
 }
@@ -192,12 +192,12 @@ TEST(Control, OfTheWrongSenseEndsTheRun) {
   pyroclast::Run run(*simulation, std::move(setup.stages));
   EXPECT_EQ(run.run(), Outcome::control_lost);
   const StageReport report =
-      run.stages()[0]->report(run.history(), run.records()[0].rows, Outcome::control_lost);
+      run.stages()[0]->report(run.history(), run.courses()[0].rows, Outcome::control_lost);
   EXPECT_TRUE(std::ranges::any_of(report.warnings, [](const std::string& warning) {
     return warning.find("the control of stretch ran away") != std::string::npos;
   }));
   // the opening that ends it is that of the whole stage, 60 um
-  const auto stretch = run.history().values("stretch_m", run.records()[0].rows);
+  const auto stretch = run.history().values("stretch_m", run.courses()[0].rows);
   EXPECT_LT(std::abs(stretch.back()), 1e-3);
 }
 
@@ -209,7 +209,7 @@ TEST(Control, TheStrengthLiesBetweenTheLoadAndTheLoadWithThePair) {
     pyroclast::Run run(*simulation, std::move(setup.stages));
     run.run();
     const StageReport report =
-        run.stages()[0]->report(run.history(), run.records()[0].rows, Outcome::completed);
+        run.stages()[0]->report(run.history(), run.courses()[0].rows, Outcome::completed);
     const auto number = [&](const std::string& name) {
       return std::get<double>(std::ranges::find(report.results, name, &Result::name)->value);
     };
@@ -227,7 +227,7 @@ TEST(Control, TheReportTellsThePairsPart) {
     const auto simulation = make_simulation(setup, grid(kLength, kDepth, 20, 1));
     pyroclast::Run run(*simulation, std::move(setup.stages));
     run.run();
-    const RowRange rows = run.records()[0].rows;
+    const RowRange rows = run.courses()[0].rows;
     const StageReport report = run.stages()[0]->report(run.history(), rows, Outcome::completed);
     const auto number = [&](const std::string& name) {
       return std::get<double>(std::ranges::find(report.results, name, &Result::name)->value);
@@ -322,7 +322,7 @@ above = "4.8 mm"
   pyroclast::Run run(*simulation, std::move(setup.stages));
   EXPECT_EQ(run.run(), Outcome::completed);
   const History& history = run.history();
-  const RowRange rows = run.records()[0].rows;
+  const RowRange rows = run.courses()[0].rows;
   const auto load = history.values("load_N", rows), deflection = history.values("deflection_m", rows),
              ledger = history.values("energy_loading_J", rows);
   double work = 0.0;

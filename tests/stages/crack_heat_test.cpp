@@ -45,7 +45,7 @@ TEST(CrackHeat, CracksThatAFireOpensHoldItsHeatBack) {
   EXPECT_NEAR(with_cracks.last("heat_error_J"), 0.0, 1e-9 * with_cracks.last("heat_stored_J"));
   // the body opens them at an exchange, and the heat before the next one is the first that meets them
   const History& history = with_cracks.run.history();
-  const RowRange rows = with_cracks.run.records()[1].rows;
+  const RowRange rows = with_cracks.run.courses()[1].rows;
   EXPECT_EQ(history.cell(rows.first, "heat_gap_length_m"), 0.0);
   const auto& field = with_cracks.simulation->field();
   const auto gaps =

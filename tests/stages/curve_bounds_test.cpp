@@ -162,7 +162,7 @@ TEST(QuasiStaticBounds, AModulusNeedsPlatensThatAgreeUpToAThird) {
   EXPECT_TRUE(has_modulus(0.9, 0.0, 0.5));
 }
 
-// Promise: nothing was loaded, so nothing is quasi-static.
+// Promise: nothing was opened, so nothing is quasi-static.
 TEST(QuasiStaticBounds, NothingIsNotQuasiStatic) {
   const auto r = quasi_static_report({}, 0);
   EXPECT_FALSE(r.to_peak || r.after_peak || r.in_modulus);

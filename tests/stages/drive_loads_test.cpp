@@ -266,7 +266,7 @@ TEST(DriveControl, GoesOnFromWhatIsThere) {
            controlled("0 mm/s", does("right", pull))));
   const double before = r.end_of(0, "middle_m");
   ASSERT_GT(before, 3e-7);
-  for (const double opening : r.run.history().values("middle_m", r.run.records()[1].rows))
+  for (const double opening : r.run.history().values("middle_m", r.run.courses()[1].rows))
     EXPECT_NEAR(opening, before, 0.02 * before);
   EXPECT_NEAR(r.end_of(1, "grip_N"), -60e3, 2e3);
   EXPECT_LT(std::abs(r.end_of(1, "load_factor")), 0.05);
@@ -320,7 +320,7 @@ TEST(DriveControl, AStateHoldsWhatIsReported) {
                                          "[[stages.until]]\nrecord = \"middle\"\nrate_above = \"1 m/s\"\n"));
   const auto told = [](Trial& trial) {
     trial.run.run();
-    const StageRecord& record = trial.run.records()[0];
+    const StageCourse& record = trial.run.courses()[0];
     StageReport report = trial.run.stages()[0]->report(trial.run.history(), record.rows, record.outcome);
     return std::pair(report.results, report.lines);
   };

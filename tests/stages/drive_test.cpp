@@ -334,7 +334,7 @@ TEST(Drive, APeakLastsForATenthOfTheTimeToIt) {
   const Finished whole = run(0.1);
   const double peak = whole.result(0, "peak_grip_N").value(),
                time = whole.result(0, "peak_grip_time_s").value();
-  const auto rows = whole.run.records()[0].rows;
+  const auto rows = whole.run.courses()[0].rows;
   const auto grip = whole.run.history().values("grip_N", rows),
              at = whole.run.history().values("time_s", rows);
   const auto fallen =

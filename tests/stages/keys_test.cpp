@@ -188,7 +188,7 @@ Finished controlled(const std::string& ratio, const std::string& kinetic, const 
 // the lowest to the highest, and stays there.
 TEST(ControlledVelocity, GrowsByAFactorEInTheTimeOfItsRamp) {
   const Finished r = controlled("1e9", "1e9", "1e9", "0.002");
-  const RowRange rows = r.run.records()[1].rows;
+  const RowRange rows = r.run.courses()[1].rows;
   const auto time = r.run.history().values("time_s", rows), strain = r.run.history().values("strain", rows);
   const double begin = r.run.history().cell(rows.first - 1, "time_s").value();
   // way: half of the ramp, then (e^x - 1) ramps at the lowest, up to ln 16 ramps, then at the highest
@@ -206,7 +206,7 @@ TEST(ControlledVelocity, GrowsByAFactorEInTheTimeOfItsRamp) {
 
 /// Velocities of the platen between the rows of a stage, m/s, and the times between their middles.
 std::pair<std::vector<double>, std::vector<double>> velocities(const Finished& r, int stage) {
-  const RowRange rows = r.run.records()[static_cast<std::size_t>(stage)].rows;
+  const RowRange rows = r.run.courses()[static_cast<std::size_t>(stage)].rows;
   const auto time = r.run.history().values("time_s", rows), strain = r.run.history().values("strain", rows);
   std::vector<double> velocity, between;
   for (std::size_t i = 1; i < time.size(); ++i) {
@@ -254,7 +254,7 @@ TEST(ControlledVelocity, EachToleranceBindsAlone) {
 // Promise: the velocity settles where the one tolerance that binds is just met.
 TEST(ControlledVelocity, SettlesWhereItsToleranceIsMet) {
   const Finished kinetic = controlled("1e9", "2e-4", "1e9", "0.0006");
-  const RowRange rows = kinetic.run.records()[1].rows;
+  const RowRange rows = kinetic.run.courses()[1].rows;
   const auto value = [&](const char* column, std::size_t row) {
     return kinetic.run.history().cell(row, column).value();
   };

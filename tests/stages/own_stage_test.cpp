@@ -19,7 +19,7 @@ class Shake : public Stage {
   StageNeeds needs() const override { return {}; }
   void begin(Simulation& simulation) override { simulation.press().control_by_motion(0.0); }
   bool advance(Simulation& simulation, int most_steps) override {
-    if (steps_ % half_period_ == 0) simulation.press().drive(turn() % 2 == 0 ? velocity_ : -velocity_);
+    if (steps_ % half_period_ == 0) simulation.press().move_platen(turn() % 2 == 0 ? velocity_ : -velocity_);
     const auto steps = std::min<std::int64_t>(half_period_ - steps_ % half_period_, most_steps);
     simulation.mechanics().advance(static_cast<int>(steps));
     steps_ += steps;
@@ -73,7 +73,7 @@ TEST(OwnStage, IsReadFromADeckAndRun) {
   Trial trial(deck(kUniform + kSettle + kShake + kCompress), with_shake());
   EXPECT_EQ(trial.run.run(), Outcome::completed);
   const History& history = trial.run.history();
-  const StageRecord& record = trial.run.records()[1];
+  const StageCourse& record = trial.run.courses()[1];
   EXPECT_EQ(history.values("turn", record.rows), (std::vector<double>{1, 2, 3, 4}));
   EXPECT_FALSE(history.last("turn"));  // the compression has none
   const auto strain = history.values("stage_strain", record.rows);

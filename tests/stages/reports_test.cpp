@@ -71,12 +71,12 @@ TEST(NotSettled, SettlingGivesUpAfterItsSteps) {
         "\n";
     const Finished r(deck(kUniform + settle + kCompress));
     EXPECT_EQ(r.run.outcome(), Outcome::not_settled);
-    EXPECT_EQ(r.run.records()[0].outcome, Outcome::not_settled);
-    EXPECT_EQ(r.run.records()[1].outcome, Outcome::not_begun);
+    EXPECT_EQ(r.run.courses()[0].outcome, Outcome::not_settled);
+    EXPECT_EQ(r.run.courses()[1].outcome, Outcome::not_begun);
     EXPECT_EQ(r.result(0, "steps"), most);
     EXPECT_EQ(r.last("step"), most);
     EXPECT_EQ(r.result(0, "unbalanced_ratio"), r.last("unbalanced_ratio"));
-    const RowRange rows = r.run.records()[0].rows;
+    const RowRange rows = r.run.courses()[0].rows;
     EXPECT_EQ(rows.last - rows.first, static_cast<std::size_t>((most + 199) / 200));
   }
 }
@@ -84,7 +84,7 @@ TEST(NotSettled, SettlingGivesUpAfterItsSteps) {
 // Promise: rest is below the stated ratio, and only then; strains count from there.
 TEST(NotSettled, RestIsBelowTheStatedRatio) {
   const Finished r(deck(kUniform + kSettle + kCompress));
-  const RowRange rows = r.run.records()[0].rows;
+  const RowRange rows = r.run.courses()[0].rows;
   const auto ratio = r.run.history().values("unbalanced_ratio", rows);
   for (std::size_t i = 0; i + 1 < ratio.size(); ++i) EXPECT_GE(ratio[i], 1e-6);
   EXPECT_LT(ratio.back(), 1e-6);
@@ -101,7 +101,7 @@ TEST(NotSettled, LoadingGivesUpAfterItsStepsBehindTheRamp) {
                                 "unbalanced_ratio = 1e-14\nmost_steps = 500");
   const Finished r(deck(kUniform + kSettle + text + kCompress));
   EXPECT_EQ(r.run.outcome(), Outcome::not_settled);
-  EXPECT_EQ(r.run.records()[2].outcome, Outcome::not_begun);
+  EXPECT_EQ(r.run.courses()[2].outcome, Outcome::not_begun);
   const double ramp = 0.02 / step;
   EXPECT_GE(r.result(1, "steps").value(), ramp + 500.0);
   EXPECT_LT(r.result(1, "steps").value(), ramp + 500.0 + 200.0);
@@ -130,7 +130,7 @@ TEST(NotSettled, ADriveTellsWhatWasNotMet) {
       until("record = \"pull\"\nrate_below = \"2 Pa/s\"");
   const Finished r(
       free_deck(kUniform + corner + records + drive("duration = \"3 ms\"", held + conditions) + next));
-  EXPECT_EQ(r.run.records()[0].outcome, Outcome::not_reached);
+  EXPECT_EQ(r.run.courses()[0].outcome, Outcome::not_reached);
   const std::vector<std::string> warnings = r.report(0).warnings;
   ASSERT_EQ(warnings.size(), 5u);
   const auto last = [&](const char* column) {
@@ -151,7 +151,7 @@ TEST(NotSettled, ADriveTellsWhatWasNotMet) {
                                    held + until("record = \"end\"\nabove = \"1 m\"")) +
                              next));
   EXPECT_EQ(s.run.outcome(), Outcome::not_settled);
-  EXPECT_EQ(s.run.records()[1].outcome, Outcome::not_begun);
+  EXPECT_EQ(s.run.courses()[1].outcome, Outcome::not_begun);
   ASSERT_EQ(s.report(0).warnings.size(), 2u);
   EXPECT_EQ(s.report(0).warnings[1], not_met + "the unbalanced ratio is not below 1e-09");
 }
@@ -247,7 +247,7 @@ TEST(ExchangeReports, TellsTheLoadOrTheThrust) {
   EXPECT_EQ(free.report(2).lines.back(), "load 0.50 MPa: no failure");
   EXPECT_EQ(free.report(2).lines.front().find("20 to 30 degC in 2 exchanges of up to 5 K"), 0u);
   const Finished fixed(deck(kUniform + kSettle + heat("30 degC", "fixed")));
-  const auto stress = fixed.run.history().values("stress_MPa", fixed.run.records()[1].rows);
+  const auto stress = fixed.run.history().values("stress_MPa", fixed.run.courses()[1].rows);
   const double thrust = *std::ranges::max_element(stress);
   EXPECT_GT(thrust, 0.1);
   EXPECT_DOUBLE_EQ(number(fixed.report(1), "largest_thrust_MPa"), thrust);
@@ -259,8 +259,8 @@ TEST(ExchangeReports, TellsTheLoadOrTheThrust) {
 TEST(ExchangeReports, HeatingTakesItsTime) {
   const Finished r(deck(kUniform + kSettle + heat("32 degC") + heat("25 degC")));
   const History& history = r.run.history();
-  EXPECT_EQ(history.values("temperature_degC", r.run.records()[1].rows), (std::vector<double>{25, 30, 32}));
-  EXPECT_EQ(history.values("temperature_degC", r.run.records()[2].rows), (std::vector<double>{27, 25}));
+  EXPECT_EQ(history.values("temperature_degC", r.run.courses()[1].rows), (std::vector<double>{25, 30, 32}));
+  EXPECT_EQ(history.values("temperature_degC", r.run.courses()[2].rows), (std::vector<double>{27, 25}));
   EXPECT_NEAR(r.end_of(1, "heating_time_s"), 12.0 / (5.0 / 60.0), 1e-9);
   EXPECT_NEAR(r.end_of(2, "heating_time_s"), 19.0 / (5.0 / 60.0), 1e-9);
   const Finished nothing(deck(kUniform + kSettle + heat("20 degC")));
@@ -526,7 +526,7 @@ TEST(CompressReports, TheVelocityRisesOverItsRamp) {
     const Finished r(deck(kUniform + kSettle +
                           with(kCompress, "ramp_time = \"20 ms\"",
                                ramp > 0.0 ? "ramp_time = \"20 ms\"" : "ramp_time = \"0 s\"")));
-    const RowRange rows = r.run.records()[1].rows;
+    const RowRange rows = r.run.courses()[1].rows;
     const double begin = r.run.history().cell(rows.first - 1, "time_s").value();
     const auto strain = r.run.history().values("stage_strain", rows),
                time = r.run.history().values("time_s", rows);
@@ -540,7 +540,7 @@ TEST(CompressReports, TheVelocityRisesOverItsRamp) {
 
 TEST(CompressReports, TheRowOfThePeakDecided) {
   const Finished r(deck(kUniform + kSettle + kFailure));
-  const RowRange rows = r.run.records()[1].rows;
+  const RowRange rows = r.run.courses()[1].rows;
   const auto strain = r.run.history().values("stage_strain", rows);
   const double peak = r.result(1, "strain_at_peak").value();
   const auto decided = r.report(1).decided_at;
@@ -604,7 +604,7 @@ Told tell(Trial& trial, std::size_t from) {
     told.progress.push_back(trial.run.progress());
   }
   for (std::size_t i = 0; i < trial.run.stages().size(); ++i) {
-    const StageRecord& record = trial.run.records()[i];
+    const StageCourse& record = trial.run.courses()[i];
     const StageReport report =
         trial.run.stages()[i]->report(trial.run.history(), record.rows, record.outcome);
     told.lines.insert(told.lines.end(), report.lines.begin(), report.lines.end());

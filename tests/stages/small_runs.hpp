@@ -152,7 +152,7 @@ struct Finished : Trial {
   double last(const char* column) const { return run.history().last(column).value(); }
   /// In the last row of a stage.
   double end_of(int stage, const char* column) const {
-    return run.history().cell(run.records()[stage].rows.last - 1, column).value();
+    return run.history().cell(run.courses()[stage].rows.last - 1, column).value();
   }
   double energy_error_over_turnover() const {
     double turnover = 0.0;
@@ -162,7 +162,7 @@ struct Finished : Trial {
     return std::abs(last("energy_error_J")) / turnover;
   }
   StageReport report(int stage) const {
-    const StageRecord& record = run.records()[stage];
+    const StageCourse& record = run.courses()[stage];
     return run.stages()[stage]->report(run.history(), record.rows, record.outcome);
   }
   /// A result of a stage; empty where the report has none, or has nothing in its place.

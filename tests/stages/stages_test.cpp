@@ -115,7 +115,7 @@ TEST(CompressStage, SaysWhenAStressIsNotReached) {
   const Finished r(
       deck(kUniform + kSettle + compress("to_stress = \"90 MPa\"\nstop_strain = 0.004") + kCompress));
   EXPECT_EQ(r.run.outcome(), Outcome::not_reached);
-  EXPECT_EQ(r.run.records()[2].outcome, Outcome::not_begun);
+  EXPECT_EQ(r.run.courses()[2].outcome, Outcome::not_begun);
 }
 
 // Promise: a body that shrinks under nothing but its weight goes on resting on the lower platen; it does not
@@ -124,7 +124,7 @@ TEST(HeatStage, ABodyThatShrinksStaysOnThePlaten) {
   const Finished r(deck(kUniform + kSettle + heat("320 degC") + heat("20 degC")));
   const double weight =
       2200.0 * 9.81 * 0.12 * 1e-6;  // MPa, of the specimen; the lower platen's is 0.29 of it
-  for (std::size_t row = r.run.records()[2].rows.first; row < r.run.history().row_count(); ++row)
+  for (std::size_t row = r.run.courses()[2].rows.first; row < r.run.history().row_count(); ++row)
     if (r.run.history().cell(row, "converged") == 1.0) {
       EXPECT_GT(*r.run.history().cell(row, "stress_bottom_MPa"), (0.79 + 0.29) * weight) << "row " << row;
     }
@@ -316,7 +316,7 @@ TEST(CompressStage, AControlledVelocityStaysWithinItsBounds) {
   for (const auto* tolerance : {"unbalanced_ratio = 1e-12", "unbalanced_ratio = 1"}) {
     const Finished r(deck(kUniform + kSettle + with(kFailure, "0.004", "0.0005") +
                           with(kControl, "unbalanced_ratio = 2e-4", tolerance)));
-    const RowRange rows = r.run.records()[1].rows;
+    const RowRange rows = r.run.courses()[1].rows;
     const auto strain = r.run.history().values("strain", rows), time = r.run.history().values("time_s", rows),
                stage_strain = r.run.history().values("stage_strain", rows);
     for (std::size_t i = 1; i < strain.size(); ++i) {

@@ -711,6 +711,8 @@ class Judgements(unittest.TestCase):
         self.assertEqual(judge({"outcome_id": "unstable", "outcome": "so"}), ("crashed", "so"))
         stages = [{"outcome_id": "not_settled", "outcome": "why"}]
         self.assertEqual(judge({"outcome_id": "completed", "stages": stages}), ("not settled", "why"))
+        stages = [{"is_good": True}, {"kind": "drive", "is_good": False, "outcome_id": "not_reached", "outcome": "why"}]
+        self.assertEqual(judge({"outcome_id": "completed", "stages": stages}), ("done", "stage 2 (drive): why"))
 
     def test_numbers_of_a_summary(self) -> None:
         summary = {"steps": 5, "energy_J": {"kinetic": 2.5}, "stages": [

@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   command->add_option("--threads");
   CLI11_PARSE(cli, argc, argv);
 
-  Setup setup = read_setup(Deck::load(deck, changes), deck.parent_path());
+  Setup setup = read_setup(Deck::open(deck, changes), deck.parent_path());
   auto& layout = setup.motion->mechanics.layout;
   layout.fewest_blocks = std::stoi(std::getenv("FEWEST_BLOCKS"));
   layout.chunk_blocks = std::stoi(std::getenv("CHUNK_BLOCKS"));

@@ -42,8 +42,8 @@ def shared_objects(folder):
         compile_to(objects[-1], "-O2", "-c", ROOT / source)
     # The kit needs no rows of the step, but the tables of laws point at them.
     rows = folder / "no_rows.cpp"
-    rows.write_text('#include "pyroclast/laws/built_in.hpp"\n#include "pyroclast/mechanics/law_rows.hpp"\n' +
-                    "".join(f"const pyroclast::LawRows pyroclast::{name}::rows{{}};\n" for name in laws()))
+    rows.write_text('#include "pyroclast/laws/built_in.hpp"\n#include "pyroclast/mechanics/compiled_for_sets.hpp"\n' +
+                    "".join(f"const pyroclast::CompiledForSets pyroclast::{name}::compiled{{}};\n" for name in laws()))
     objects.append(folder / "no_rows.o")
     compile_to(objects[-1], "-O2", "-c", rows)
     return objects

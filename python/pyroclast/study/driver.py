@@ -257,7 +257,8 @@ class Driver:
             value, why = self._call(output.name, folder) if output.is_function else output.of(folder, summary)
             found[output.what] = (None if math.isnan(value) else value, why)
         missing = [f"{what}: {why}" for what, (value, why) in found.items() if value is None]
-        result = replace(result, outputs=found, state=NO_VALUE if missing else DONE, reason="; ".join(missing))
+        result = replace(result, outputs=found, state=NO_VALUE if missing else DONE,
+                         reason="; ".join(missing) or result.reason)
         self.store.put([result])
         return result
 

@@ -224,7 +224,7 @@ def _concluded(result: Result, reason: str, job: Job, runs: Path, summary: dict[
 
 
 def judge(summary: dict[str, Any]) -> tuple[str, str]:
-    """State of a run that came to its end, and why it gives no value."""
+    """State of a run that came to its end, and why it gives no value, or a value to be looked at."""
     stages = [s for s in summary.get("stages", []) if isinstance(s, dict)]
     for ended in (summary, *stages):
         if (state := _STATES.get(str(ended.get("outcome_id", "")))) is not None:
@@ -232,7 +232,12 @@ def judge(summary: dict[str, Any]) -> tuple[str, str]:
     for number, stage in enumerate(stages, start=1):
         if stage.get("results", {}).get("quasi_static") is False:
             return NOT_QUASI_STATIC, f"stage {number} ({stage.get('kind')}) was not quasi-static"
-    return (CRASHED, "stopped") if was_stopped(summary) else (DONE, "")
+    if was_stopped(summary):
+        return CRASHED, "stopped"
+    for number, stage in enumerate(stages, start=1):
+        if stage.get("is_good") is False:
+            return DONE, f"stage {number} ({stage.get('kind')}): {stage.get('outcome')}"
+    return DONE, ""
 
 
 def was_stopped(summary: dict[str, Any]) -> bool:

@@ -6,84 +6,15 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include "pyroclast/app/load.hpp"
+#include "pyroclast/app/open.hpp"
 #include "pyroclast/app/progress.hpp"
 #include "pyroclast/base/shown.hpp"
 #include "pyroclast/results/frame_series.hpp"
-#include "pyroclast/simulation/run.hpp"
-#include "pyroclast/thermal/time_stages.hpp"
+#include "pyroclast/session/rehearsal.hpp"
 
 namespace pyroclast::app {
 
 namespace {
-
-constexpr int kWarmUpSteps = 10, kMostTimedSteps = 2000;
-constexpr double kSecondsOfTiming = 0.5;
-/// A frame takes about as long as so many rows of the history: it computes and writes every contact.
-constexpr double kRowsPerFrame = 4.0;
-/// Part of the largest change of a temperature that the heat solver's steps aim at, see Conduction.
-constexpr double kAimedChange = 0.8;
-
-template <class Action>
-double seconds_of(Action action) {
-  const auto start = Clock::now();
-  action();
-  return seconds_since(start);
-}
-
-/// Timed over many steps in one go, as a run takes them: the last of a batch costs more, for it is measured.
-double seconds_per_step(Mechanics<2>& mechanics) {
-  const auto time = [&](int steps) { return seconds_of([&] { mechanics.advance(steps); }) / steps; };
-  const double steps = kSecondsOfTiming / time(kWarmUpSteps);
-  return time(static_cast<int>(std::clamp<double>(steps, kWarmUpSteps, kMostTimedSteps)));
-}
-
-double seconds_per_exchange(Simulation& simulation) {
-  return seconds_of([&] { simulation.hand_over(); });
-}
-
-/// Evaluations of the heat solver: while temperatures change fast they bound its steps, later the longest
-/// step does. \param rise  of temperature that boundaries may bring about, K
-double expected_evaluations(const HeatConditions& heat, double stable_step, double rise, double duration) {
-  const double steps = rise / (kAimedChange * heat.largest_change) + duration / heat.largest_step;
-  return steps * fewest_stages(heat.scheme, std::max(1.0, duration / steps / stable_step));
-}
-
-/// Timed over what the solver does in a moment. Heats the field.
-double seconds_per_evaluation(TemperatureField& field, double duration, double largest_change) {
-  const auto start = Clock::now();
-  const std::int64_t before = field.conduction()->stages();
-  while (field.time() < duration && seconds_since(start) < kSecondsOfTiming)
-    field.advance(largest_change, duration);
-  return seconds_since(start) / static_cast<double>(field.conduction()->stages() - before);
-}
-
-Forecast forecast(const std::vector<std::unique_ptr<Stage>>& stages, const Simulation& simulation,
-                  const Interval& temperatures) {
-  Foreseen foreseen{simulation.field().mean(), temperatures.upper};
-  Forecast sum;
-  for (const auto& stage : stages) sum += stage->forecast(simulation, foreseen);
-  return sum;
-}
-
-/// What the forecast takes, s. Moves and heats the simulation.
-/// \param hottest  temperature that the run may come to, °C
-double seconds_of_run(const Forecast& forecast, double hottest, Simulation& simulation, Run& run) {
-  double seconds = 0.0;
-  if (simulation.moves()) seconds += forecast.steps * seconds_per_step(simulation.mechanics());
-  const double row = seconds_of([&] { run.next(); });
-  seconds += (forecast.looks + kRowsPerFrame * forecast.frames) * row;
-  if (forecast.exchanges > 0.0) seconds += forecast.exchanges * seconds_per_exchange(simulation);
-  if (forecast.heating_duration > 0.0) {
-    TemperatureField& field = simulation.field();
-    const HeatConditions& heat = simulation.heat();
-    field.begin_exposure(temperature_range(heat, forecast.heating_duration));
-    const double evaluations = expected_evaluations(heat, field.conduction()->step_limit().step,
-                                                    hottest - field.mean(), forecast.heating_duration);
-    seconds += evaluations * seconds_per_evaluation(field, forecast.heating_duration, heat.largest_change);
-  }
-  return seconds;
-}
 
 /// Of compressed specimens, by the size of their blocks over d_max: how many fell clearly, and the scatter of
 /// f_c from seed to seed (validation/peaks.md).
@@ -158,10 +89,10 @@ void print_mechanics(const Simulation& simulation, MassChoice mass) {
 }
 
 /// What is known of a deck without the code that it names.
-int say_unchecked(const Loaded& loaded) {
-  fmt::print("deck            {} holds no other error: {}\n{}", shown(loaded.deck.name()),
-             shown(loaded.setup.title), describe_warnings(loaded.warnings));
-  for (const std::string& code : loaded.setup.code_not_allowed)
+int say_unchecked(const Opened& opened) {
+  fmt::print("deck            {} holds no other error: {}\n{}", shown(opened.deck.name()),
+             shown(opened.setup.title), describe_warnings(opened.warnings));
+  for (const std::string& code : opened.setup.code_not_allowed)
     fmt::print("not checked     the keys of its law: {}\n", shown(code, true));
   return kCodeNotAllowed;
 }
@@ -169,14 +100,14 @@ int say_unchecked(const Loaded& loaded) {
 }  // namespace
 
 int check(const RunOptions& options) {
-  Loaded loaded = load(options, false);
-  Setup& setup = loaded.setup;
-  if (!setup.code_not_allowed.empty()) return say_unchecked(loaded);
-  loaded.choices.before_making(loaded);
-  const auto simulation = make_simulation(setup, loaded.team);
+  Opened opened = open_deck(options, false);
+  Setup& setup = opened.setup;
+  if (!setup.code_not_allowed.empty()) return say_unchecked(opened);
+  opened.choices.before_making(opened);
+  const auto simulation = make_simulation(setup, opened.team);
   const Model<2>& model = simulation->model();
-  fmt::print("deck            {} is valid: {}\n", shown(loaded.deck.name()), shown(setup.title));
-  fmt::print("{}{}{}{}", describe_warnings(loaded.warnings), describe_unused(setup), describe_own_laws(),
+  fmt::print("deck            {} is valid: {}\n", shown(opened.deck.name()), shown(setup.title));
+  fmt::print("{}{}{}{}", describe_warnings(opened.warnings), describe_unused(setup), describe_own_laws(),
              describe(simulation->specimen()));
   fmt::print("model           {} blocks{}, {} zones, {} gridpoints, {} contacts\n", model.block_count(),
              simulation->moves() ? " with the platens" : "", model.zone_count(), model.gridpoint_count(),
@@ -188,16 +119,15 @@ int check(const RunOptions& options) {
     fmt::print("                {}\n", simulation->coupling_of_heat());
 
   print_strength(setup);
-  const Forecast expected = forecast(setup.stages, *simulation, setup.temperatures);
-  Run run(*simulation, std::move(setup.stages));
+  const std::size_t stages = setup.stages.size();
   if (setup.has_fields) rehearse_mesh(model);
-  const double seconds = seconds_of_run(expected, setup.temperatures.upper, *simulation, run);
-  fmt::print("run             {} stages", run.stages().size());
+  const auto [expected, seconds] = rehearse(std::move(setup), *simulation);
+  fmt::print("run             {} stages", stages);
   if (expected.steps > 0.0) fmt::print(", about {:.2g} steps", expected.steps);
   if (expected.heating_duration > 0.0) fmt::print(", heat flows for {}", duration(expected.heating_duration));
   fmt::print("; about {}\n", duration(seconds));
-  fmt::print("                on {} with {} instructions, {:.0f} MB of memory\n", describe(*loaded.team),
-             name(loaded.instructions), peak_memory() * 1e-6);
+  fmt::print("                on {} with {} instructions, {:.0f} MB of memory\n", describe(*opened.team),
+             name(opened.instructions), peak_memory() * 1e-6);
   return 0;
 }
 

@@ -31,7 +31,7 @@ struct RunOptions {
   int threads = 0;                   ///< at most; 0: as many as processors are free
   std::string instructions;          ///< instruction set of the step; empty: the best that there is
   std::optional<std::int64_t> seed;  ///< instead of the deck's
-  std::vector<std::string> changes;  ///< "key=value", see Deck::load
+  std::vector<std::string> changes;  ///< "key=value", see Deck::open
   std::optional<double> checkpoint;  ///< wall time between two checkpoints instead of the deck's, s
   OwnLawOptions laws;
   Speech speech = Speech::usual;
@@ -85,7 +85,7 @@ int verify_laws(const VerifyOptions& options);
 int plot_properties(const PropertiesOptions& options);
 /// \param from  a case, see kCases
 int make_deck(const std::string& name, const std::string& from);
-/// \param what  curves, fires, units, keys, cases or laws
+/// \param what  curves, fields, fires, units, keys, cases or laws
 int print_list(const std::string& what);
 int print_keys();
 int print_laws();

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "pyroclast/app/load.hpp"
+#include "pyroclast/app/open.hpp"
 #include "pyroclast/app/say_aside.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/kit.hpp"
 #include "pyroclast/laws/registry.hpp"
-#include "pyroclast/mechanics/law_row.hpp"
+#include "pyroclast/mechanics/law_pack.hpp"
 #include "pyroclast/plugin/find_law.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/session/law_point.hpp"
@@ -34,7 +34,7 @@ ContactMaterial material_of_command(const LawOptions& options) {
 }
 
 LawPoint point_of_deck(const LawOptions& options) {
-  const Deck deck = Deck::load(options.deck);
+  const Deck deck = Deck::open(options.deck);
   const Setup setup = read_setup(deck, options.deck.parent_path(), {}, sources_of(options.sources));
   require_code(setup);
   if (!setup.motion)

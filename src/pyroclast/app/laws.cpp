@@ -75,9 +75,9 @@ std::string page_of(const LawTable& law) {
         options += fmt::format("{}`{}`: {}", options.empty() ? "" : "; ", option.name, option.meaning);
     text += fmt::format("| `{}` | {} | {} |\n", c.key, c.meaning, options);
   }
-  if (!law.history(3).empty())
+  if (!law.internals(3).empty())
     text += "\n| remembered | meaning | unit | to cracks | in files |\n|---|---|---|---|---|\n";
-  for (const HistoryInfo& h : law.history(2))
+  for (const InternalInfo& h : law.internals(2))
     text += fmt::format("| `{}` | {} | {} | {} | {} |\n", h.name, h.meaning, h.unit.si, name_of(h.what),
                         h.in_files ? "yes" : "no");
   if (!law.losses.empty()) text += "\n| lost | meaning | unit |\n|---|---|---|\n";

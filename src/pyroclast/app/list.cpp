@@ -11,6 +11,7 @@
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
 #include "pyroclast/setup/setup.hpp"
+#include "pyroclast/simulation/fields.hpp"
 #include "pyroclast/thermal/fire_curves.hpp"
 
 namespace pyroclast::app {
@@ -47,11 +48,17 @@ void print_law_names() {
   for (const LawTable* law : built_in_laws()) fmt::print("{:<20} {}\n", law->name, law->meaning);
 }
 
+void print_fields() {
+  for (const FieldInfo& field : possible_fields())
+    fmt::print("{:<24} {:<8} {:<12} {}\n", field.name, field.unit.si, name_of(field.item), field.meaning);
+}
+
 }  // namespace
 
 int print_list(const std::string& what) {
   const std::map<std::string, std::function<void()>> lists = {
       {"curves", [] { print_curves(builtin_curves()); }},
+      {"fields", print_fields},
       {"fires", [] { print_curves(fire_curves()); }},
       {"units", print_units},
       {"keys", print_key_paths},

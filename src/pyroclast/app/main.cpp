@@ -239,7 +239,7 @@ int command_line(int argc, char** argv) {
 
   std::string list_of;
   auto* list = cli.add_subcommand("list", "List what a deck may name, a line each");
-  list->add_option("WHAT", list_of, "curves, fires, units, keys, cases or laws")->required();
+  list->add_option("WHAT", list_of, "curves, fields, fires, units, keys, cases or laws")->required();
 
   auto* manual = cli.add_subcommand("manual", "Print the manual page, for man");
   auto* completion = cli.add_subcommand("completion", "Print the completion of bash for this program");

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pyroclast/app/load.hpp"
+#include "pyroclast/app/open.hpp"
 
 namespace pyroclast::app {
 

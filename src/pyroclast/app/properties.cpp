@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "pyroclast/app/load.hpp"
+#include "pyroclast/app/open.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 
@@ -100,7 +100,7 @@ void print(const std::vector<ReadCurve>& curves) {
 }  // namespace
 
 int plot_properties(const PropertiesOptions& options) {
-  const Deck deck = Deck::load(options.deck);
+  const Deck deck = Deck::open(options.deck);
   const Setup setup = read_setup(deck, options.deck.parent_path());
   require_code(setup);
   std::string csv = "property,unit,temperature_degC,value,ratio_to_20_degC\n";

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "pyroclast/app/drive.hpp"
+#include "pyroclast/app/run_to_end.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/version.hpp"
 
@@ -23,7 +23,7 @@ int go_on(const ResumeOptions& options) {
   if (from.commit != kCommit)
     log.say(fmt::format("                it was written by another build, of commit {}", from.commit));
   say_lost_frames(log, *session);
-  return drive(*session, log, options.as);
+  return run_to_end(*session, log, options.as);
 }
 
 int fork(const ResumeOptions& options) {
@@ -36,7 +36,7 @@ int fork(const ResumeOptions& options) {
                       session->run().last_begun_stage()));
   log.say(describe_start(*session));
   say_lost_frames(log, *session);
-  return drive(*session, log, options.as);
+  return run_to_end(*session, log, options.as);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "pyroclast/app/load.hpp"
+#include "pyroclast/app/open.hpp"
 #include "pyroclast/results/folder_lock.hpp"
 #include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/results/specimen_files.hpp"
@@ -10,21 +10,21 @@ namespace pyroclast::app {
 int make_specimen(const RunOptions& asked) {
   RunOptions options = asked;
   if (options.out.empty()) options.out = output_folder(asked).string() + "-specimen";
-  const Loaded loaded = load(options, false);
-  const Setup& setup = loaded.setup;
+  const Opened opened = open_deck(options, false);
+  const Setup& setup = opened.setup;
   const FolderLock lock(output_folder(options));
   RunFolder::check(output_folder(options), options.overwrite);
-  const specimen::Specimen specimen = make_checked_specimen(setup.specimen, loaded.team.get());
+  const specimen::Specimen specimen = make_checked_specimen(setup.specimen, opened.team.get());
   const Model<2> model = setup.motion
                              ? make_concrete_model(specimen, setup.thickness,
                                                    setup.motion->contacts.interfaces, setup.motion->bearings)
                              : make_concrete_model(specimen, setup.thickness);
   const RunFolder folder(output_folder(options), options.overwrite,
-                         {loaded.deck.name(),
-                          inputs_of(loaded.deck, setup),
+                         {opened.deck.name(),
+                          inputs_of(opened.deck, setup),
                           setup.specimen.seed,
-                          loaded.team->size(),
-                          name(loaded.instructions),
+                          opened.team->size(),
+                          name(opened.instructions),
                           options.command,
                           own_laws(),
                           {}});
@@ -32,7 +32,7 @@ int make_specimen(const RunOptions& asked) {
   std::filesystem::create_directories(folder.path() / "fields");
   write_mesh(folder.path() / "fields", model);
   write_specimen_files(folder.path() / "specimen", specimen, setup.specimen);
-  fmt::print("{}{}results         {}\n", describe_warnings(loaded.warnings), describe(specimen),
+  fmt::print("{}{}results         {}\n", describe_warnings(opened.warnings), describe(specimen),
              folder.path().string());
   if (options.figures) draw_figures("specimen", folder.path());
   return 0;

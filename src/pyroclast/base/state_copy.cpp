@@ -14,8 +14,8 @@ class StateCopy::Taker : public StateVisitor {
   bool replaces() const override { return false; }
 
  private:
-  void visit_row(const std::string& name, const Row& row) override {
-    copy_.rows_[name] = {row.item, row.count, {row.data, row.data + row.item * row.count}};
+  void visit_piece(const std::string& name, const Piece& piece) override {
+    copy_.pieces_[name] = {piece.item, piece.count, {piece.data, piece.data + piece.item * piece.count}};
   }
 
   StateCopy& copy_;
@@ -28,13 +28,14 @@ class StateCopy::Putter : public StateVisitor {
   std::size_t count() const { return count_; }
 
  private:
-  void visit_row(const std::string& name, const Row& row) override {
-    const auto found = copy_.rows_.find(name);
-    if (found == copy_.rows_.end()) throw Error(fmt::format("the state that is copied has no \"{}\"", name));
+  void visit_piece(const std::string& name, const Piece& piece) override {
+    const auto found = copy_.pieces_.find(name);
+    if (found == copy_.pieces_.end())
+      throw Error(fmt::format("the state that is copied has no \"{}\"", name));
     const auto& [item, count, bytes] = found->second;
-    if (item != row.item || (!row.resize && count != row.count))
+    if (item != piece.item || (!piece.resize && count != piece.count))
       throw Error(fmt::format("the state that is copied has another size of \"{}\"", name));
-    std::byte* const to = row.resize ? row.resize(count) : row.data;
+    std::byte* const to = piece.resize ? piece.resize(count) : piece.data;
     if (!bytes.empty()) std::memcpy(to, bytes.data(), bytes.size());
     ++count_;
   }
@@ -44,7 +45,7 @@ class StateCopy::Putter : public StateVisitor {
 };
 
 void StateCopy::take(const Visit& visit) {
-  rows_.clear();
+  pieces_.clear();
   Taker taker(*this);
   visit(taker);
 }
@@ -52,7 +53,7 @@ void StateCopy::take(const Visit& visit) {
 void StateCopy::put(const Visit& visit) const {
   Putter putter(*this);
   visit(putter);
-  if (putter.count() != rows_.size())
+  if (putter.count() != pieces_.size())
     throw Error("the state that is copied holds more than there is a place for");
 }
 

@@ -21,14 +21,14 @@ class StateCopy {
   void put(const Visit& visit) const;
 
  private:
-  struct Row {
+  struct Piece {
     std::size_t item = 0, count = 0;
     std::vector<std::byte> bytes;
   };
   class Taker;
   class Putter;
 
-  std::map<std::string, Row> rows_;
+  std::map<std::string, Piece> pieces_;
 };
 
 }  // namespace pyroclast

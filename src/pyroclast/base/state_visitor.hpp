@@ -77,7 +77,7 @@ class StateVisitor {
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void visit(std::string_view name, T& value, const StateRule& rule) {
     const std::string full = scope_ + std::string(name);
-    visit_row(full, {sizeof(T), 1, reinterpret_cast<std::byte*>(&value), {}});
+    visit_piece(full, {sizeof(T), 1, reinterpret_cast<std::byte*>(&value), {}});
     if (checks()) check(full, &value, 1, rule);
   }
   void visit(std::string_view name, bool& value) {
@@ -105,7 +105,7 @@ class StateVisitor {
       visit_array(full, value);
       if (checks()) check_numbers(full, value.data(), value.size(), rule);
     } else {
-      visit_row(full, {sizeof(T), 1, reinterpret_cast<std::byte*>(&value), {}});
+      visit_piece(full, {sizeof(T), 1, reinterpret_cast<std::byte*>(&value), {}});
       if (checks()) check_numbers(full, &value, 1, rule);
     }
   }
@@ -155,14 +155,14 @@ class StateVisitor {
 
  protected:
   /// Plain data of one kind, side by side.
-  struct Row {
+  struct Piece {
     std::size_t item;  ///< bytes of one
     std::size_t count;
     std::byte* data;
     /// Makes room for another number of them and returns where they stand; empty where the number is fixed.
     std::function<std::byte*(std::size_t)> resize;
   };
-  virtual void visit_row(const std::string& name, const Row& row) = 0;
+  virtual void visit_piece(const std::string& name, const Piece& piece) = 0;
   /// Throws an Error that says what is wrong of what stands under a name.
   virtual void refuse(const std::string& name, const std::string& what) const;
 
@@ -197,8 +197,8 @@ class StateVisitor {
   void visit_array(const std::string& name, Array& values) {
     using T = std::decay_t<decltype(*values.data())>;
     static_assert(std::is_trivially_copyable_v<T> && !std::is_same_v<T, bool>);
-    visit_row(name,
-              {sizeof(T), values.size(), reinterpret_cast<std::byte*>(values.data()), [&](std::size_t count) {
+    visit_piece(
+        name, {sizeof(T), values.size(), reinterpret_cast<std::byte*>(values.data()), [&](std::size_t count) {
                  values.resize(count);
                  return reinterpret_cast<std::byte*>(values.data());
                }});

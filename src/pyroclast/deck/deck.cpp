@@ -1,12 +1,13 @@
 #include "pyroclast/deck/deck.hpp"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pyroclast/base/read_file.hpp"
-#include "pyroclast/deck/record.hpp"
+#include "pyroclast/deck/reading.hpp"
 
 namespace pyroclast {
 namespace {
@@ -41,15 +42,15 @@ std::string trimmed(const std::string& text) {
 
 /// A deck with one more of its values changed, as `--set` has it.
 /// \param changed  keys whose values are changed already; takes in the key of this one
-std::unique_ptr<DeckRecord> with_change(const DeckRecord& deck, const std::string& change,
-                                        std::vector<std::string>& changed) {
+std::unique_ptr<DeckReading> with_change(const DeckReading& deck, const std::string& change,
+                                         std::vector<std::string>& changed) {
   const auto equals = change.find('=');
   if (equals == std::string::npos)
     throw Error("--set " + change + ": write it as key=value, e.g. specimen.seed=2");
   changed.push_back(trimmed(change.substr(0, equals)));
   std::string text = deck.with_value(changed.back(), trimmed(change.substr(equals + 1)));
   try {
-    return std::make_unique<DeckRecord>(std::move(text), deck.name(), changed);
+    return std::make_unique<DeckReading>(std::move(text), deck.from(), changed);
   } catch (const DeckError& error) {
     throw Error(fmt::format("--set {}: {}", printable(change), error.diagnostics().front().message));
   }
@@ -57,51 +58,56 @@ std::unique_ptr<DeckRecord> with_change(const DeckRecord& deck, const std::strin
 
 }  // namespace
 
-Deck Deck::load(const std::filesystem::path& file, const std::vector<std::string>& changes,
-                const std::string& more) {
-  std::string text = text_of(file);
-  if (!more.empty()) text += "\n" + more;
-  return parse(std::move(text), file.string(), changes);
+Deck Deck::open(const std::filesystem::path& file, const std::vector<std::string>& changes,
+                const Appendix& more) {
+  return parse(text_of(file), file.string(), changes, more);
 }
 
-Deck Deck::parse(std::string text, std::string name, const std::vector<std::string>& changes) {
+Deck Deck::parse(std::string text, std::string name, const std::vector<std::string>& changes,
+                 const Appendix& more) {
+  DeckSource from{.name = std::move(name)};
+  if (!more.text.empty()) {
+    from.appended_name = more.name;
+    from.appended_lines = 1 + static_cast<int>(std::ranges::count(more.text, '\n'));
+    text += "\n" + more.text;
+  }
   std::vector<std::string> changed;
-  auto record = std::make_unique<DeckRecord>(std::move(text), std::move(name));
-  for (const std::string& change : changes) record = with_change(*record, change, changed);
-  return Deck(std::move(record));
+  auto reading = std::make_unique<DeckReading>(std::move(text), std::move(from));
+  for (const std::string& change : changes) reading = with_change(*reading, change, changed);
+  return Deck(std::move(reading));
 }
 
-Deck::Deck(std::unique_ptr<DeckRecord> record) : record_(std::move(record)) {}
+Deck::Deck(std::unique_ptr<DeckReading> reading) : reading_(std::move(reading)) {}
 Deck::Deck(Deck&&) noexcept = default;
 Deck& Deck::operator=(Deck&&) noexcept = default;
 Deck::~Deck() = default;
 
 const std::string& Deck::name() const {
-  return record_->name();
+  return reading_->name();
 }
 const std::string& Deck::text() const {
-  return record_->text();
+  return reading_->text();
 }
 const std::vector<DeckFile>& Deck::files() const {
-  return record_->files();
+  return reading_->files();
 }
 std::string Deck::with(const std::vector<std::pair<std::string, std::string>>& values) const {
   std::string changed = text();
   for (const auto& [key, value] : values)
-    changed = DeckRecord(std::move(changed), name()).with_value(key, value);
+    changed = DeckReading(std::move(changed), DeckSource{name()}).with_value(key, value);
   return changed;
 }
 Section Deck::root() const {
-  return {*record_, &record_->root()};
+  return {*reading_, &reading_->root()};
 }
 
 std::vector<Diagnostic> Deck::warnings() const {
-  return in_file_order(record_->warnings());
+  return in_file_order(reading_->warnings());
 }
 
 void Deck::finish() const {
-  record_->root();  // so that a deck of which nothing was read is not taken for a good one
-  std::vector<Diagnostic> diagnostics = record_->diagnostics();
+  reading_->root();  // so that a deck of which nothing was read is not taken for a good one
+  std::vector<Diagnostic> diagnostics = reading_->diagnostics();
   if (!diagnostics.empty()) throw DeckError(std::move(diagnostics));
 }
 

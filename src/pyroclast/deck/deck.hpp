@@ -19,10 +19,10 @@
 namespace pyroclast {
 
 class Deck;
-class DeckRecord;
+class DeckReading;
 struct DeckKey;
 struct DeckSchema;
-struct TableRecord;
+struct TableReading;
 
 /// What a key, a word or a table means, for the deck reference; empty where another place says it. A literal,
 /// so that no number is taken for one.
@@ -226,7 +226,7 @@ class Section {
 
  private:
   friend class Deck;
-  Section(DeckRecord& deck, TableRecord* table) : deck_(&deck), table_(table) {}
+  Section(DeckReading& deck, TableReading* table) : deck_(&deck), table_(table) {}
 
   struct Word {
     std::string word;
@@ -246,9 +246,14 @@ class Section {
   /// In a survey, keeps that the key was read.
   void note(DeckKey key, Meaning meaning) const;
 
-  DeckRecord* deck_;
-  TableRecord* table_;            ///< null for a table that is missing
+  DeckReading* deck_;
+  TableReading* table_;           ///< null for a table that is missing
   std::string_view defaults_of_;  ///< see with_defaults_of
+};
+
+/// Text that is appended to a deck, and the file that it comes from, for messages.
+struct Appendix {
+  std::string text, name;
 };
 
 /// A TOML file in which every dimensional value is a string with its unit. Its reader asks for the keys it
@@ -261,16 +266,17 @@ class Deck {
   ///                 not have is added. `text` and places in messages are then those of the changed deck.
   ///                 Throws Error for one that cannot be made.
   /// @param more  is appended before them
-  static Deck load(const std::filesystem::path& file, const std::vector<std::string>& changes = {},
-                   const std::string& more = "");
+  static Deck open(const std::filesystem::path& file, const std::vector<std::string>& changes = {},
+                   const Appendix& more = {});
   /// The same for a text; `name` takes the file's place in messages.
-  static Deck parse(std::string text, std::string name, const std::vector<std::string>& changes = {});
+  static Deck parse(std::string text, std::string name, const std::vector<std::string>& changes = {},
+                    const Appendix& more = {});
 
   Deck(Deck&&) noexcept;
   Deck& operator=(Deck&&) noexcept;
   ~Deck();
 
-  /// The file's name as given to `load`.
+  /// The file's name as given to `open`.
   const std::string& name() const;
   /// The deck as it was read, byte by byte.
   const std::string& text() const;
@@ -290,9 +296,9 @@ class Deck {
 
  private:
   friend DeckSchema survey_deck(const std::function<void(const Deck&)>& read);
-  explicit Deck(std::unique_ptr<DeckRecord> record);
+  explicit Deck(std::unique_ptr<DeckReading> reading);
 
-  std::unique_ptr<DeckRecord> record_;
+  std::unique_ptr<DeckReading> reading_;
 };
 
 }  // namespace pyroclast

@@ -11,7 +11,7 @@
 
 #include "pyroclast/base/nearest.hpp"
 #include "pyroclast/deck/deck.hpp"
-#include "pyroclast/deck/record.hpp"
+#include "pyroclast/deck/reading.hpp"
 #include "pyroclast/deck/survey_run.hpp"
 
 namespace pyroclast {
@@ -19,7 +19,7 @@ namespace {
 
 /// A value of the deck, its full path and the record that takes its errors.
 struct Entry {
-  DeckRecord& deck;
+  DeckReading& deck;
   std::string path;
   const toml::node& node;
 
@@ -235,14 +235,14 @@ std::optional<std::size_t> read_choice(const Entry& entry, const std::vector<std
 }
 
 /// A key of a table that its reader takes now; none if the key or the whole table is absent.
-std::optional<Entry> read(DeckRecord& deck, TableRecord* table, std::string_view key) {
+std::optional<Entry> read(DeckReading& deck, TableReading* table, std::string_view key) {
   const toml::node* node = table ? table->read(key) : nullptr;
   if (!node) return std::nullopt;
   return Entry{deck, table->path_of(key), *node};
 }
 
 /// The same for a key that must be there; `needed` says what is missing.
-std::optional<Entry> require(DeckRecord& deck, TableRecord* table, std::string_view key,
+std::optional<Entry> require(DeckReading& deck, TableReading* table, std::string_view key,
                              const std::string& needed) {
   auto entry = read(deck, table, key);
   if (!entry && table && !table->undecided) deck.report_missing(*table, key, needed);
@@ -293,22 +293,22 @@ DeckKey with_fallback(DeckKey key, std::string fallback) {
   return key;
 }
 
-std::string header(const TableRecord* table, std::string_view key, std::string_view form) {
+std::string header(const TableReading* table, std::string_view key, std::string_view form) {
   return table ? fmt::format(fmt::runtime(form), table->path_of(key)) : "";
 }
 
-TableRecord* read_table(const Entry& entry) {
+TableReading* read_table(const Entry& entry) {
   if (const toml::table* table = entry.node.as_table()) return &entry.deck.table(*table, entry.path);
   wrong_type(entry, fmt::format("a table, [{}],", entry.path));
   return nullptr;
 }
 
-std::vector<TableRecord*> read_tables(const Entry& entry) {
+std::vector<TableReading*> read_tables(const Entry& entry) {
   if (!entry.node.is_array_of_tables()) {
     wrong_type(entry, fmt::format("an array of tables, [[{}]],", entry.path));
     return {};
   }
-  std::vector<TableRecord*> tables;
+  std::vector<TableReading*> tables;
   const toml::array& list = *entry.node.as_array();
   for (std::size_t i = 0; i < list.size(); ++i) {
     tables.push_back(&entry.deck.table(*list.get_as<toml::table>(i), fmt::format("{}[{}]", entry.path, i)));
@@ -331,7 +331,7 @@ std::optional<Section> Section::optional_section(std::string_view key, Meaning m
     return Section(*deck_, &survey->table(table_->path_of(key), true, meaning.text()));
   }
   const auto entry = read(*deck_, table_, key);
-  TableRecord* table = entry ? read_table(*entry) : nullptr;
+  TableReading* table = entry ? read_table(*entry) : nullptr;
   if (!table) return std::nullopt;
   return Section(*deck_, table);
 }
@@ -359,7 +359,7 @@ std::vector<Section> Section::optional_sections(std::string_view key, Meaning me
   const auto entry = read(*deck_, table_, key);
   std::vector<Section> result;
   if (!entry) return result;
-  for (TableRecord* table : read_tables(*entry)) result.push_back(Section(*deck_, table));
+  for (TableReading* table : read_tables(*entry)) result.push_back(Section(*deck_, table));
   return result;
 }
 

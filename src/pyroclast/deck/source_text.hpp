@@ -19,6 +19,7 @@ class SourceText {
   explicit SourceText(std::string text);
 
   const std::string& text() const { return text_; }
+  int line_count() const { return static_cast<int>(line_starts_.size()); }
   /// The line without its end; empty outside the text.
   std::string_view line(int number) const;
   /// The text from `begin` up to `end`; of several lines only the first, with "..." behind it.

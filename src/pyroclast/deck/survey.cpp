@@ -395,7 +395,7 @@ void SurveyRun::read_in_forms(const std::string& table, DeckKey key, const std::
   forms_.emplace(path, forms.empty() ? path : forms);
 }
 
-TableRecord& SurveyRun::table(const std::string& path, bool optional, std::string_view meaning) {
+TableReading& SurveyRun::table(const std::string& path, bool optional, std::string_view meaning) {
   DeckTable table{.path = described(path),
                   .optional = optional,
                   .meaning = std::string(meaning),
@@ -403,9 +403,9 @@ TableRecord& SurveyRun::table(const std::string& path, bool optional, std::strin
                   .conditions = {}};
   table.is_form = table.path != path;
   tables_.push_back(std::move(table));
-  auto& record = records_[path];
-  if (!record) record.reset(new TableRecord{.table = no_table(), .path = path, .asked = {}});
-  return *record;
+  auto& reading = readings_[path];
+  if (!reading) reading.reset(new TableReading{.table = no_table(), .path = path, .asked = {}});
+  return *reading;
 }
 
 std::string SurveyRun::described(const std::string& path) const {
@@ -415,7 +415,7 @@ std::string SurveyRun::described(const std::string& path) const {
 }
 
 DeckSchema survey_deck(const DeckReader& read) {
-  return Surveyor([&](SurveyRun& run) { read(Deck(std::make_unique<DeckRecord>(run))); }).schema();
+  return Surveyor([&](SurveyRun& run) { read(Deck(std::make_unique<DeckReading>(run))); }).schema();
 }
 
 std::vector<std::string> DeckSchema::undocumented() const {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "pyroclast/deck/record.hpp"
+#include "pyroclast/deck/reading.hpp"
 #include "pyroclast/deck/survey.hpp"
 
 namespace pyroclast {
@@ -57,7 +57,7 @@ class SurveyRun {
   /// \param forms  name under which the tables at and below the key are described; may be empty
   void read_in_forms(const std::string& table, DeckKey key, const std::string& forms);
   /// The table at a path; array elements have the path of their array with "[]".
-  TableRecord& table(const std::string& path, bool optional, std::string_view meaning);
+  TableReading& table(const std::string& path, bool optional, std::string_view meaning);
 
   const std::vector<Answered>& answered() const { return answered_; }
   const std::vector<Read>& keys_read() const { return read_; }
@@ -77,7 +77,7 @@ class SurveyRun {
   std::vector<DeckTable> tables_;
   std::vector<std::pair<std::string, std::string>> known_;  ///< table and key
   std::map<std::string, std::string> forms_;                ///< path of a key in forms: their name
-  std::map<std::string, std::unique_ptr<TableRecord>> records_;
+  std::map<std::string, std::unique_ptr<TableReading>> readings_;
 };
 
 }  // namespace pyroclast

@@ -9,12 +9,13 @@ namespace pyroclast {
 ///
 /// Along one axis (opening alone, or sliding at a steady opening) the result does not depend on how the way
 /// to the jump is cut into steps. On combined ways friction is that of the pressure at the end of each step,
-/// so it converges with the number of steps. Energies are closed forms of the history, not quadratures. At
-/// the jump that it was last taken to, the law gives the same tractions again and loses nothing.
+/// so it converges with the number of steps. Energies are closed forms of the internal variables, not
+/// quadratures. At the jump that it was last taken to, the law gives the same tractions again and loses
+/// nothing.
 struct Cohesive {
   static constexpr const char* name = "cohesive";
   static constexpr const char* meaning = "softens in tension and shear, yields in compression (the paper's)";
-  static const LawRows rows;
+  static const CompiledForSets compiled;
 
   using Compression = pyroclast::Compression;
 
@@ -168,7 +169,7 @@ struct Cohesive {
 
   /// What a contact point remembers.
   template <int Dim, class Real>
-  struct History {
+  struct Internals {
     Real tension_damage{};         ///< D_t = 1 - delta_t of the paper
     Real shear_damage{};           ///< D_s = 1 - delta_s
     Real closure{};                ///< u_p, m
@@ -177,11 +178,11 @@ struct Cohesive {
 
     template <class F, class... H>
     static constexpr void each(F&& f, H&... h) {
-      f(HistoryInfo{"tension_damage", "0 intact, 1 broken; never decreases", unit::dimensionless,
-                    Remembers::tension_damage, info::kDamaged},
+      f(InternalInfo{"tension_damage", "0 intact, 1 broken; never decreases", unit::dimensionless,
+                     Remembers::tension_damage, info::kDamaged},
         h.tension_damage...);
-      f(HistoryInfo{"shear_damage", "0 intact, 1 broken; never decreases", unit::dimensionless,
-                    Remembers::shear_damage, info::kDamaged},
+      f(InternalInfo{"shear_damage", "0 intact, 1 broken; never decreases", unit::dimensionless,
+                     Remembers::shear_damage, info::kDamaged},
         h.shear_damage...);
       f(info::closure, h.closure...);
       for (int i = 0; i + 1 < Dim; ++i) f(info::slip, h.slip[i]...);
@@ -208,10 +209,10 @@ struct Cohesive {
   template <int Dim, class Real, class Number, class Sum>
   static ContactResponse<Dim, Real> update(const Constants<Number>& constants, const Real& opening,
                                            const Tangential<Dim, Real>& tangential,
-                                           History<Dim, Real>& history, Losses<Sum>& losses) {
+                                           Internals<Dim, Real>& internals, Losses<Sum>& losses) {
     ContactResponse<Dim, Real> response;
-    update_normal<Dim>(constants, opening, history, response, losses);
-    update_shear<Dim>(constants, tangential, opening, history, response, losses);
+    update_normal<Dim>(constants, opening, internals, response, losses);
+    update_shear<Dim>(constants, tangential, opening, internals, response, losses);
     return response;
   }
 
@@ -219,7 +220,7 @@ struct Cohesive {
   /// Linear tension softening with unloading to the origin.
   /// \param elastic  opening beyond the closure left behind, m
   template <int Dim, class Real, class Constants, class Losses>
-  static void update_tension(const Constants& c, const Real& elastic, History<Dim, Real>& h,
+  static void update_tension(const Constants& c, const Real& elastic, Internals<Dim, Real>& h,
                              ContactResponse<Dim, Real>& r, Losses& losses) {
     const auto open = elastic > 0.0;
     // In this order a contact without any strength, 0 / 0, breaks.
@@ -241,7 +242,7 @@ struct Cohesive {
 
   /// Normal part: bilinear compression and linear tension softening over the elastic opening u_n + u_p.
   template <int Dim, class Real, class Constants, class Losses>
-  static void update_normal(const Constants& c, const Real& opening, History<Dim, Real>& h,
+  static void update_normal(const Constants& c, const Real& opening, Internals<Dim, Real>& h,
                             ContactResponse<Dim, Real>& r, Losses& losses) {
     const Real elastic = compress<Dim, Real>(c, opening, h.closure, r, losses.compression);
     if (any((elastic > 0.0) & (h.tension_damage < 1.0))) update_tension<Dim>(c, elastic, h, r, losses);
@@ -257,7 +258,7 @@ struct Cohesive {
   template <int Dim, class Real, class Constants, class Truth, class Losses>
   static void return_to_envelope(const Constants& c, const Truth& slips, const Real& excess,
                                  const Real& residual, const Real& drop, Tangential<Dim, Real>& elastic,
-                                 Real& held, History<Dim, Real>& h, ContactResponse<Dim, Real>& r,
+                                 Real& held, Internals<Dim, Real>& h, ContactResponse<Dim, Real>& r,
                                  Losses& losses) {
     const auto softens = slips & (h.shear_damage < 1.0) & (drop > 0.0);
     const Real remaining = 1.0 - h.shear_damage;
@@ -287,7 +288,7 @@ struct Cohesive {
   /// Shear part: elastic predictor and exact return to the softening Mohr-Coulomb envelope.
   template <int Dim, class Real, class Constants, class Losses>
   static void update_shear(const Constants& c, const Tangential<Dim, Real>& jump, const Real& opening,
-                           History<Dim, Real>& h, ContactResponse<Dim, Real>& r, Losses& losses) {
+                           Internals<Dim, Real>& h, ContactResponse<Dim, Real>& r, Losses& losses) {
     const auto k = c.shear_stiffness;
     Tangential<Dim, Real> elastic = jump - h.slip;
     Real held = norm(elastic);

@@ -38,11 +38,11 @@ inline constexpr ChoiceInfo compression{"compression",
 inline constexpr unsigned kSlid = 1;     ///< the slip
 inline constexpr unsigned kDamaged = 2;  ///< a damage or the closure
 
-inline constexpr HistoryInfo closure{"closure", "irreversible, in compression; never decreases", unit::length,
-                                     Remembers::closure, kDamaged};
-inline constexpr HistoryInfo slip{
+inline constexpr InternalInfo closure{"closure", "irreversible, in compression; never decreases",
+                                      unit::length, Remembers::closure, kDamaged};
+inline constexpr InternalInfo slip{
     "slip", "irreversible part of the tangential jump", unit::length, Remembers::other, kSlid, false};
-inline constexpr HistoryInfo held_jump{
+inline constexpr InternalInfo held_jump{
     "held_jump", "length of the elastic part of the tangential jump", unit::length, Remembers::other, 0,
     false};
 

@@ -8,7 +8,7 @@ namespace pyroclast {
 struct Elastic {
   static constexpr const char* name = "elastic";
   static constexpr const char* meaning = "never fails";
-  static const LawRows rows;
+  static const CompiledForSets compiled;
 
   template <class Real>
   struct Properties {
@@ -30,7 +30,7 @@ struct Elastic {
   using Constants = Properties<Real>;
 
   template <int Dim, class Real>
-  struct History : Nothing {};
+  struct Internals : Nothing {};
   template <class Sum>
   struct Losses : Nothing {};
 
@@ -44,7 +44,7 @@ struct Elastic {
 
   template <int Dim, class Real, class Number, class Sum>
   static ContactResponse<Dim, Real> update(const Constants<Number>& c, const Real& opening,
-                                           const Tangential<Dim, Real>& tangential, History<Dim, Real>&,
+                                           const Tangential<Dim, Real>& tangential, Internals<Dim, Real>&,
                                            Losses<Sum>&) {
     ContactResponse<Dim, Real> r;
     const auto k_n = c.normal_stiffness;

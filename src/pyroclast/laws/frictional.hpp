@@ -9,7 +9,7 @@ namespace pyroclast {
 struct Frictional {
   static constexpr const char* name = "frictional";
   static constexpr const char* meaning = "presses and rubs, never held";
-  static const LawRows rows;
+  static const CompiledForSets compiled;
 
   template <class Real>
   struct Properties {
@@ -48,7 +48,7 @@ struct Frictional {
   };
 
   template <int Dim, class Real>
-  struct History {
+  struct Internals {
     Tangential<Dim, Real> slip{};  ///< m
     Real held_jump{};              ///< m
 
@@ -82,7 +82,7 @@ struct Frictional {
 
   template <int Dim, class Real, class Number, class Sum>
   static ContactResponse<Dim, Real> update(const Constants<Number>& c, const Real& opening,
-                                           const Tangential<Dim, Real>& tangential, History<Dim, Real>& h,
+                                           const Tangential<Dim, Real>& tangential, Internals<Dim, Real>& h,
                                            Losses<Sum>& losses) {
     ContactResponse<Dim, Real> r;
     const auto k = c.shear_stiffness;

@@ -54,7 +54,7 @@ const std::array<KitFinding, property_count> kProperties{{
     {"damages", "a damage stays from 0 to 1 and never falls"},
     {"losses", "no loss is negative, each is added to what is there"},
     {"stored", "stored energy is not negative"},
-    {"repeated", "the same jump again: same traction, same history, nothing lost", 0, 0, 0.0, kRoundOff},
+    {"repeated", "the same jump again: same traction, same internals, nothing lost", 0, 0, 0.0, kRoundOff},
     {"lanes", "eight lanes give the bits of eight numbers (but for the sign of zero), and say what changed"},
     {"frame", "turning the jump turns the answer; a plane path gives the same in 3D", 0, 0, 0.0, kRoundOff},
     {"balance, one axis", "work = change of stored energy + losses", 0, 0, 0.0, kBalance},
@@ -73,7 +73,7 @@ using Jump = std::array<double, 3>;
 
 struct Point {
   Jump jump{};
-  std::vector<double> history;
+  std::vector<double> internals;
   PointResponse response;
 };
 
@@ -323,7 +323,7 @@ class Kit {
       p = new_point(dim_);
       p.jump = {opening, 0.0, 0.0};
       std::vector<double> lost(law_.losses.size());
-      p.response = law_.update(dim_)(m.constants.data(), p.jump.data(), p.history.data(), lost.data());
+      p.response = law_.update(dim_)(m.constants.data(), p.jump.data(), p.internals.data(), lost.data());
       if (-p.response.normal_traction >= 0.99 * pressure) break;
       opening *= 1.5;
     }
@@ -332,7 +332,7 @@ class Kit {
 
   // -- one update --------------------------------------------------------------------------------
 
-  Point new_point(int dim) const { return {{}, std::vector<double>(law_.history(dim).size()), {}}; }
+  Point new_point(int dim) const { return {{}, std::vector<double>(law_.internals(dim).size()), {}}; }
 
   double energy(const std::vector<double>& lost) const {
     double sum = 0.0;
@@ -347,7 +347,7 @@ class Kit {
     before_ = p;
     lost_.assign(law_.losses.size(), 0.0);
     p.jump = to;
-    p.response = law_.update(dim)(m.constants.data(), to.data(), p.history.data(), lost_.data());
+    p.response = law_.update(dim)(m.constants.data(), to.data(), p.internals.data(), lost_.data());
     path.traction = std::max(path.traction, length(traction(p.response)));
     path.jump = std::max(path.jump, length(to));
     path.energy = std::max({path.energy, p.response.stored, energy(lost_)});
@@ -356,17 +356,17 @@ class Kit {
     const PointResponse& r = p.response;
     bool all_finite = std::isfinite(r.normal_traction) && std::isfinite(r.shear_traction[0]) &&
                       std::isfinite(r.shear_traction[1]) && std::isfinite(r.stored);
-    for (const double v : p.history) all_finite = all_finite && std::isfinite(v);
+    for (const double v : p.internals) all_finite = all_finite && std::isfinite(v);
     for (const double v : lost_) all_finite = all_finite && std::isfinite(v);
     note(finite, all_finite, [&] { return step_text(path, p); });
     note(stored_energy, r.stored >= -kRoundOff * energies(path), [&] { return step_text(path, p); });
     bool grow = true;
-    const auto infos = law_.history(dim);
+    const auto infos = law_.internals(dim);
     for (std::size_t i = 0; i < infos.size(); ++i) {
       const Remembers what = infos[i].what;
       if (what == Remembers::tension_damage || what == Remembers::shear_damage ||
           what == Remembers::mixed_damage)
-        grow = grow && p.history[i] >= before_.history[i] && p.history[i] <= 1.0;
+        grow = grow && p.internals[i] >= before_.internals[i] && p.internals[i] <= 1.0;
     }
     note(damages, grow, [&] { return step_text(path, p); });
     bool positive = true;
@@ -382,9 +382,9 @@ class Kit {
     const double u = path.jump;
     double most = over(length(difference(traction(a.response), traction(b.response))), k * u);
     most = larger_or_nan(most, over(a.response.stored - b.response.stored, energies(path)));
-    const auto infos = law_.history(dim);
+    const auto infos = law_.internals(dim);
     for (std::size_t i = 0; i < infos.size(); ++i)
-      most = larger_or_nan(most, over(a.history[i] - b.history[i], scale(path, infos[i].unit, k)));
+      most = larger_or_nan(most, over(a.internals[i] - b.internals[i], scale(path, infos[i].unit, k)));
     return most;
   }
   double apart(const Path& path, const std::vector<double>& lost_a, const std::vector<double>& lost_b) const {
@@ -416,7 +416,7 @@ class Kit {
         Point p = new_point(dim_);
         const auto& lost = go(path, p, {zero, zero, zero}, dim_);
         bool nothing = length(traction(p.response)) == 0.0 && p.response.stored == 0.0;
-        for (const double v : p.history) nothing = nothing && v == 0.0;
+        for (const double v : p.internals) nothing = nothing && v == 0.0;
         for (const double v : lost) nothing = nothing && v == 0.0;
         note(at_rest, nothing, [&] { return step_text(path, p); });
       }
@@ -448,7 +448,7 @@ class Kit {
     const Material& m = path.materials[path.material];
     Point p = from;
     std::vector<double> sum(lost.size(), 1.0);
-    law_.update(dim_)(m.constants.data(), path.point.jump.data(), p.history.data(), sum.data());
+    law_.update(dim_)(m.constants.data(), path.point.jump.data(), p.internals.data(), sum.data());
     bool added = true;
     for (std::size_t i = 0; i < lost.size(); ++i)
       added = added && std::abs(sum[i] - (1.0 + lost[i])) <= 1e-12 * (1.0 + lost[i]);
@@ -589,19 +589,19 @@ class Kit {
   void check_lanes(const KitLanes& set, const std::array<Path, kLanes>& paths,
                    const std::array<Point, kLanes>& from, const std::array<std::vector<double>, kLanes>& lost,
                    bool one_set) {
-    const auto infos = law_.history(dim_);
-    std::vector<double> jump(kLanes * dim_), history(kLanes * infos.size()),
+    const auto infos = law_.internals(dim_);
+    std::vector<double> jump(kLanes * dim_), internals(kLanes * infos.size()),
         losses_of(kLanes * law_.losses.size()), own(kLanes * law_.constants), mine(law_.constants);
     for (int l = 0; l < kLanes; ++l) {
       const Path& path = paths[l];
       for (int i = 0; i < dim_; ++i) jump[i * kLanes + l] = path.point.jump[i];
-      for (std::size_t i = 0; i < infos.size(); ++i) history[i * kLanes + l] = from[l].history[i];
+      for (std::size_t i = 0; i < infos.size(); ++i) internals[i * kLanes + l] = from[l].internals[i];
       law_.numbers_of(path.materials[path.material].constants.data(), mine.data());
       for (int i = 0; i < law_.constants; ++i) own[i * kLanes + l] = mine[i];
     }
     const auto& constants = paths[0].materials[paths[0].material].constants;
     const LanesResponse r = set.update_of[dim_ - 2](constants.data(), one_set ? nullptr : own.data(),
-                                                    jump.data(), history.data(), losses_of.data());
+                                                    jump.data(), internals.data(), losses_of.data());
     for (int l = 0; l < kLanes; ++l) {
       const PointResponse& one = paths[l].point.response;
       bool same =
@@ -609,7 +609,7 @@ class Kit {
       for (int i = 0; i + 1 < dim_; ++i)
         same = same && same_number(r.shear_traction[i][l], one.shear_traction[i]);
       for (std::size_t i = 0; i < infos.size(); ++i)
-        same = same && same_number(history[i * kLanes + l], paths[l].point.history[i]);
+        same = same && same_number(internals[i * kLanes + l], paths[l].point.internals[i]);
       for (std::size_t i = 0; i < lost[l].size(); ++i)
         same = same && same_number(losses_of[i * kLanes + l], lost[l][i]) &&
                (r.changed != 0 || lost[l][i] == 0.0);
@@ -936,13 +936,13 @@ class Kit {
     return text;
   }
   static std::string point_text(const Point& p) {
-    return fmt::format("jump ({:.17g}) m, history ({:.17g})", fmt::join(p.jump, ", "),
-                       fmt::join(p.history, ", "));
+    return fmt::format("jump ({:.17g}) m, internals ({:.17g})", fmt::join(p.jump, ", "),
+                       fmt::join(p.internals, ", "));
   }
   static std::string answer_text(const Point& p, const std::vector<double>& lost) {
-    return fmt::format("sigma {:.9g}, tau ({:.9g}) Pa, stored {:.9g} J/m2, history ({:.9g}), lost ({:.9g})",
+    return fmt::format("sigma {:.9g}, tau ({:.9g}) Pa, stored {:.9g} J/m2, internals ({:.9g}), lost ({:.9g})",
                        p.response.normal_traction, fmt::join(p.response.shear_traction, ", "),
-                       p.response.stored, fmt::join(p.history, ", "), fmt::join(lost, ", "));
+                       p.response.stored, fmt::join(p.internals, ", "), fmt::join(lost, ", "));
   }
   /// Of the last update.
   std::string step_text(const Path& path, const Point& to) const {

@@ -20,17 +20,17 @@ struct LanesResponse {
   std::array<double, kLanes> normal_traction{};                ///< Pa
   std::array<std::array<double, kLanes>, 2> shear_traction{};  ///< Pa
   std::array<double, kLanes> stored{};                         ///< J/m²
-  unsigned changed = 0;  ///< HistoryInfo::when of what changed in any lane; 0: nothing was lost
+  unsigned changed = 0;  ///< InternalInfo::when of what changed in any lane; 0: nothing was lost
 };
 
 /// Takes eight points to eight jumps. Number i of lane l stands at [i * kLanes + l].
 /// \param constants  of all eight; of their choices only where each has its own numbers
 /// \param own        numbers of their own constants, or null
-/// \param history    changes only where the law says that it did, as in the step
+/// \param internals  changes only where the law says that it did, as in the step
 using LanesUpdate = std::function<LanesResponse(const void* constants, const double* own, const double* jump,
-                                                double* history, double* losses)>;
+                                                double* internals, double* losses)>;
 
-/// A way to take eight points through the law, such as that of the step (mechanics/law_row.hpp).
+/// A way to take eight points through the law, such as that of the step (mechanics/law_pack.hpp).
 struct KitLanes {
   std::string name;                      ///< for messages
   std::array<LanesUpdate, 2> update_of;  ///< in 2D and 3D; empty where the law is not made for them

@@ -14,7 +14,7 @@
 ///
 ///     Properties<Real>    what a deck gives, at one temperature      each(f, p...), each_choice(f, p...)
 ///     Constants<Real>     what follows from them, worked out once    each(f, c...), each_choice(f, c...)
-///     History<Dim, Real>  what a contact point remembers             each(f, h...)
+///     Internals<Dim, Real>  what a contact point remembers             each(f, h...)
 ///     Losses<Sum>         what it lost for good                      each(f, l...)
 ///     derive, update, stiffness, check                               see laws/cohesive.hpp
 ///
@@ -30,9 +30,9 @@
 /// positive. All energies are per unit of contact area, J/m².
 namespace pyroclast {
 
-/// What the step compiles of a law (mechanics/law_rows.hpp); a law that is part of the program declares its
-/// own as `static const LawRows rows`.
-struct LawRows;
+/// What the step compiles of a law (mechanics/compiled_for_sets.hpp); a law that is part of the program
+/// declares its own as `static const CompiledForSets compiled`.
+struct CompiledForSets;
 
 /// Components of a contact's tangential jump and traction: 1 in 2D, 2 in 3D.
 template <int Dim, class Real = double>
@@ -78,7 +78,7 @@ enum class Remembers : std::uint8_t {
   closure          ///< added to the opening it gives that of the crack, m
 };
 
-struct HistoryInfo {
+struct InternalInfo {
   const char* name;
   const char* meaning;
   Unit unit;
@@ -103,7 +103,7 @@ struct ContactResponse {
   Real normal_traction = 0.0;              ///< sigma, Pa, tension positive
   Tangential<Dim, Real> shear_traction{};  ///< tau, Pa
   Real stored = 0.0;                       ///< elastic energy now held, J/m²
-  unsigned changed = 0;                    ///< HistoryInfo::when of what changed in any lane
+  unsigned changed = 0;                    ///< InternalInfo::when of what changed in any lane
 };
 
 /// Bounds of a contact's stiffness over all its states at one temperature, Pa/m.

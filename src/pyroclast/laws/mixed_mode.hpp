@@ -18,7 +18,7 @@ namespace pyroclast {
 /// Both secants fall with D, so damage never wins energy back, on whatever way. G_f1 and G_f2 are exact in
 /// the pure modes in any number of steps. On combined ways energies converge with the number of steps.
 struct MixedMode {
-  static const LawRows rows;
+  static const CompiledForSets compiled;
   static constexpr const char* name = "mixed_mode";
   static constexpr bool exact_in_shear = false;  // dilatancy turns sliding into a combined way
   static constexpr const char* meaning =
@@ -210,7 +210,7 @@ struct MixedMode {
 
   /// What a contact point remembers.
   template <int Dim, class Real>
-  struct History {
+  struct Internals {
     Real damage{};                 ///< D
     Real closure{};                ///< u_p, m
     Real dilation{};               ///< m
@@ -219,12 +219,12 @@ struct MixedMode {
 
     template <class F, class... H>
     static constexpr void each(F&& f, H&... h) {
-      f(HistoryInfo{"mixed_damage", "of tension and shear: 0 intact, 1 broken; never decreases",
-                    unit::dimensionless, Remembers::mixed_damage, info::kDamaged},
+      f(InternalInfo{"mixed_damage", "of tension and shear: 0 intact, 1 broken; never decreases",
+                     unit::dimensionless, Remembers::mixed_damage, info::kDamaged},
         h.damage...);
       f(info::closure, h.closure...);
-      f(HistoryInfo{"dilation", "opening that slip has forced; never decreases", unit::length,
-                    Remembers::other, info::kSlid},
+      f(InternalInfo{"dilation", "opening that slip has forced; never decreases", unit::length,
+                     Remembers::other, info::kSlid},
         h.dilation...);
       for (int i = 0; i + 1 < Dim; ++i) f(info::slip, h.slip[i]...);
       f(info::held_jump, h.held_jump...);
@@ -252,7 +252,7 @@ struct MixedMode {
 
   template <int Dim, class Real, class Number, class Sum>
   static ContactResponse<Dim, Real> update(const Constants<Number>& c, const Real& opening,
-                                           const Tangential<Dim, Real>& tangential, History<Dim, Real>& h,
+                                           const Tangential<Dim, Real>& tangential, Internals<Dim, Real>& h,
                                            Losses<Sum>& losses) {
     ContactResponse<Dim, Real> r;
     Real elastic = compress<Dim, Real>(c, opening - h.dilation, h.closure, r, losses.compression);
@@ -335,8 +335,8 @@ struct MixedMode {
   /// \param held     out: length of the jump that friction holds, m
   template <int Dim, class Real, class Constants, class Losses>
   static void rub(const Constants& c, const Real& opening, const Tangential<Dim, Real>& tangential,
-                  const Real& jump, const Bond<Real>& bond, Real& elastic, Real& held, History<Dim, Real>& h,
-                  ContactResponse<Dim, Real>& r, Losses& losses) {
+                  const Real& jump, const Bond<Real>& bond, Real& elastic, Real& held,
+                  Internals<Dim, Real>& h, ContactResponse<Dim, Real>& r, Losses& losses) {
     const auto is_broken = h.damage > 0.0;
     const auto open = is_broken & (elastic > 0.0);
     const Real broken = 1.0 - bond.shear;
@@ -423,7 +423,7 @@ struct MixedMode {
   /// The way from the beginning to the end of softening at this ratio of u_n to u_s, and what that costs.
   template <int Dim, class Real, class Constants, class Losses>
   static void break_bond(const Constants& c, const Growth<Real>& g, const Tangential<Dim, Real>& tangential,
-                         Bond<Real>& bond, Real& held, History<Dim, Real>& h, ContactResponse<Dim, Real>& r,
+                         Bond<Real>& bond, Real& held, Internals<Dim, Real>& h, ContactResponse<Dim, Real>& r,
                          Losses& losses) {
     using std::sqrt;
     const Real to_last_opening = g.in_tension * c.first_over_last_opening;

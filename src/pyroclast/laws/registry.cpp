@@ -12,7 +12,7 @@ namespace pyroclast {
 namespace {
 
 template <class... Laws>
-requires(requires { &Laws::rows; } && ...) std::span<const LawTable* const> tables_of(LawList<Laws...>) {
+requires(requires { &Laws::compiled; } && ...) std::span<const LawTable* const> tables_of(LawList<Laws...>) {
   static const std::array<const LawTable*, sizeof...(Laws)> tables{&table_of<Laws>()...};
   return tables;
 }

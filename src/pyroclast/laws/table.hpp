@@ -34,7 +34,7 @@ struct LawTable {
   const char* meaning;
   std::span<const PropertyInfo> properties;
   std::span<const ChoiceInfo> choices;
-  std::array<std::span<const HistoryInfo>, 2> history_of;  ///< in 2D and 3D
+  std::array<std::span<const InternalInfo>, 2> internals_of;  ///< in 2D and 3D
   std::span<const LossInfo> losses;
   std::size_t size;     ///< of its constants, bytes
   int constants;        ///< numbers among them
@@ -47,11 +47,12 @@ struct LawTable {
   Objection (*check)(const double* properties, const int* choices);
   ContactStiffness<double> (*stiffness)(const void* constants);
   /// Takes a point to a jump: opening, tangential components. Adds to the losses.
-  std::array<PointResponse (*)(const void* constants, const double* jump, double* history, double* losses), 2>
-      update_of;        ///< in 2D and 3D; null where the law is not made for them
-  const LawRows* rows;  ///< null where none are part of the program
+  std::array<PointResponse (*)(const void* constants, const double* jump, double* internals, double* losses),
+             2>
+      update_of;                    ///< in 2D and 3D; null where the law is not made for them
+  const CompiledForSets* compiled;  ///< null where none are part of the program
 
-  std::span<const HistoryInfo> history(int dim) const { return history_of[dim - 2]; }
+  std::span<const InternalInfo> internals(int dim) const { return internals_of[dim - 2]; }
   auto update(int dim) const { return update_of[dim - 2]; }
 };
 
@@ -91,16 +92,16 @@ typename Law::template Properties<double> properties(const double* numbers, cons
 }
 
 template <class Law, int Dim>
-PointResponse update(const void* constants, const double* jump, double* history, double* losses) {
+PointResponse update(const void* constants, const double* jump, double* internals, double* losses) {
   const auto& c = *static_cast<const typename Law::template Constants<double>*>(constants);
-  typename Law::template History<Dim, double> h;
-  take(h, history);
+  typename Law::template Internals<Dim, double> h;
+  take(h, internals);
   typename Law::template Losses<double> l;
   take(l, losses);
   Tangential<Dim> tangential;
   for (int i = 0; i + 1 < Dim; ++i) tangential[i] = jump[i + 1];
   const auto r = Law::template update<Dim, double>(c, jump[0], tangential, h, l);
-  put(h, history);
+  put(h, internals);
   put(l, losses);
   PointResponse response{r.normal_traction, {}, r.stored};
   for (int i = 0; i + 1 < Dim; ++i) response.shear_traction[i] = r.shear_traction[i];
@@ -116,11 +117,11 @@ constexpr bool exact_in_shear() {
 }
 
 template <class Law, int Dim, Dimensions kDimensions>
-constexpr auto history() {
+constexpr auto internals() {
   if constexpr (includes(kDimensions, Dim))
-    return infos<HistoryInfo, typename Law::template History<Dim, double>>();
+    return infos<InternalInfo, typename Law::template Internals<Dim, double>>();
   else
-    return std::array<HistoryInfo, 0>{};
+    return std::array<InternalInfo, 0>{};
 }
 
 template <class Law, int Dim, Dimensions kDimensions>
@@ -130,15 +131,15 @@ constexpr auto update_or_null() {
   else
     return nullptr;
 }
-/// `Law::rows` of a law that is part of the program.
+/// `Law::compiled` of a law that is part of the program.
 template <class Law>
-constexpr const LawRows* rows_of() {
-  // a law made from another one inherits its rows, but they are not its own
+constexpr const CompiledForSets* functions_of() {
+  // a law made from another one inherits its packs, but they are not its own
   if constexpr (requires {
                   requires std::is_same_v<typename Law::template Properties<double>::Law, Law>;
-                  &Law::rows;
+                  &Law::compiled;
                 })
-    return &Law::rows;
+    return &Law::compiled;
   else
     return nullptr;
 }
@@ -152,15 +153,15 @@ const LawTable& table_of() {
   static_assert(std::is_trivially_copyable_v<Constants>);
   static constexpr auto kProperties = law_table::infos<PropertyInfo, Properties>();
   static constexpr auto kChoices = law_table::infos<ChoiceInfo, Properties>();
-  static constexpr auto kHistory2 = law_table::history<Law, 2, kDimensions>();
-  static constexpr auto kHistory3 = law_table::history<Law, 3, kDimensions>();
+  static constexpr auto kInternals2 = law_table::internals<Law, 2, kDimensions>();
+  static constexpr auto kInternals3 = law_table::internals<Law, 3, kDimensions>();
   static constexpr auto kLosses = law_table::infos<LossInfo, typename Law::template Losses<double>>();
   static constexpr LawTable table{
       Law::name,
       Law::meaning,
       kProperties,
       kChoices,
-      {kHistory2, kHistory3},
+      {kInternals2, kInternals3},
       kLosses,
       sizeof(Constants),
       count_of<Constants>(),
@@ -174,7 +175,7 @@ const LawTable& table_of() {
       },
       [](const void* constants) { return Law::stiffness(*static_cast<const Constants*>(constants)); },
       {law_table::update_or_null<Law, 2, kDimensions>(), law_table::update_or_null<Law, 3, kDimensions>()},
-      law_table::rows_of<Law>()};
+      law_table::functions_of<Law>()};
   static_assert(std::is_standard_layout_v<LawTable> && std::is_trivially_copyable_v<LawTable>);
   return table;
 }

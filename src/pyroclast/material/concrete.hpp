@@ -12,6 +12,7 @@
 #include "pyroclast/material/cooling.hpp"
 #include "pyroclast/material/creep.hpp"
 #include "pyroclast/material/curve.hpp"
+#include "pyroclast/material/thermal_strain.hpp"
 #include "pyroclast/material/zone_law.hpp"
 
 namespace pyroclast {
@@ -41,6 +42,7 @@ struct SolidMaterial {
   double poisson = 0.0;                         ///< nu
   Curve density = Curve::constant(0.0);         ///< kg/m³; mass is that at the reference temperature
   Curve thermal_strain = Curve::constant(0.0);  ///< free strain since the reference temperature
+  std::optional<QuartzStep> quartz_step;        ///< that thermal_strain holds, of a phase alone
   std::optional<CreepMaterial> creep;           ///< of a phase alone
   /// Of a phase: expansion coefficient where it is colder than it was, 1/K; else back along thermal_strain.
   std::optional<double> contraction;

@@ -183,7 +183,7 @@ std::optional<Curve> CurveReader::read_csv(const Section& forms, const Unit& uni
   if (file.empty() || !forms.ok()) return std::nullopt;
   forms.names_file("csv", folder_ / file);
   return try_at(forms, "csv", [&] {
-    return curve_of_table(MeasuredTable::load(folder_ / file, kCurveColumns), choice, axis_, unit);
+    return curve_of_table(MeasuredTable::open(folder_ / file, kCurveColumns), choice, axis_, unit);
   });
 }
 

@@ -13,7 +13,7 @@ namespace pyroclast {
 template <int Dim>
 struct StepFunctions {
   StepPasses<Dim> passes;
-  std::function<RowFunctions<Dim>(const LawTable& law)> rows_of;
+  std::function<PackFunctions<Dim>(const LawTable& law)> functions_of;
 };
 
 /// Throws Error when this build does not hold the step for that set.

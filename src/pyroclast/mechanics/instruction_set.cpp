@@ -7,8 +7,8 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/mechanics/compiled_for_sets.hpp"
 #include "pyroclast/mechanics/compiled_step.hpp"
-#include "pyroclast/mechanics/law_rows.hpp"
 
 namespace pyroclast {
 
@@ -119,21 +119,21 @@ std::string other_sets_of(const LawTable& law) {
 }  // namespace
 
 template <int Dim>
-RowFunctions<Dim> rows_of(const LawTable& law, InstructionSet set) {
+PackFunctions<Dim> functions_of(const LawTable& law, InstructionSet set) {
   if (!law.update(Dim))
     throw Error(fmt::format("the contact law \"{}\" is made for bodies in {}D, not in {}D", law.name,
                             Dim == 2 ? 3 : 2, Dim));
   if (!is_compiled(law, set))
     throw Error(fmt::format("the contact law \"{}\" is not compiled for the instruction set {}{}", law.name,
                             name(set), other_sets_of(law)));
-  return law.rows->of_set[static_cast<std::size_t>(set)]->rows.of<Dim>();
+  return law.compiled->of_set[static_cast<std::size_t>(set)]->packs.of<Dim>();
 }
 
-template RowFunctions<2> rows_of(const LawTable&, InstructionSet);
-template RowFunctions<3> rows_of(const LawTable&, InstructionSet);
+template PackFunctions<2> functions_of(const LawTable&, InstructionSet);
+template PackFunctions<3> functions_of(const LawTable&, InstructionSet);
 
 bool is_compiled(const LawTable& law, InstructionSet set) {
-  return law.rows && law.rows->of_set[static_cast<std::size_t>(set)];
+  return law.compiled && law.compiled->of_set[static_cast<std::size_t>(set)];
 }
 
 template <int Dim>
@@ -142,7 +142,7 @@ StepFunctions<Dim> step_functions(InstructionSet set) {
   if (!step)
     throw Error(
         fmt::format("there is no step for the instruction set {} in this build{}", name(set), remedy()));
-  return {step->of<Dim>(), [set](const LawTable& law) { return rows_of<Dim>(law, set); }};
+  return {step->of<Dim>(), [set](const LawTable& law) { return functions_of<Dim>(law, set); }};
 }
 
 template StepFunctions<2> step_functions(InstructionSet);

@@ -135,14 +135,14 @@ class LayoutBuilder {
     std::vector<int> reached{0};
     auto next = faces.begin();
     for (int chunk = 0; chunk < chunks; ++chunk) {
-      layout_.chunks.face_rows.push_back(static_cast<int>(faces_.size()));
+      layout_.chunks.face_packs.push_back(static_cast<int>(faces_.size()));
       layout_.chunks.contacts.push_back(static_cast<int>(contacts_by_chunk_.size()));
       const auto end =
           std::find_if(next, faces.end(), [&](const FaceToPlace& f) { return f.chunk != chunk; });
       place_faces_of_chunk(next, end);
       next = end;
     }
-    layout_.chunks.face_rows.push_back(static_cast<int>(faces_.size()));
+    layout_.chunks.face_packs.push_back(static_cast<int>(faces_.size()));
     layout_.chunks.contacts.push_back(static_cast<int>(contacts_by_chunk_.size()));
     finish_faces(block_of);
   }
@@ -150,22 +150,22 @@ class LayoutBuilder {
   /// Contacts of a gridpoint in the order of their numbers, so that their sum has one order.
   void gather_contacts() {
     const auto of_gridpoint = gridpoint_contacts(model_);
-    const int idle = kLanes * (layout_.point_rows - 1);
-    std::vector<int> gridpoint(static_cast<std::size_t>(layout_.gridpoint_rows) * kLanes, -1);
+    const int idle = kLanes * (layout_.point_packs - 1);
+    std::vector<int> gridpoint(static_cast<std::size_t>(layout_.gridpoint_packs) * kLanes, -1);
     for (int g = 0; g < model_.gridpoint_count(); ++g) gridpoint[layout_.gridpoint_slot[g]] = g;
-    std::vector<ContactsOfRow> ranges(layout_.gridpoint_rows);
+    std::vector<ContactsOfPack> ranges(layout_.gridpoint_packs);
     std::vector<ActingContacts> all;
-    for (int row = 0; row < layout_.gridpoint_rows; ++row) {
+    for (int pack = 0; pack < layout_.gridpoint_packs; ++pack) {
       const int begin = static_cast<int>(all.size());
       int most = 0;
       for (int lane = 0; lane < kLanes; ++lane)
-        if (const int g = gridpoint[slot_of(row, lane)]; g >= 0)
+        if (const int g = gridpoint[slot_of(pack, lane)]; g >= 0)
           most = std::max(most, of_gridpoint.begin[g + 1] - of_gridpoint.begin[g]);
       for (int k = 0; k < most; ++k) {
         ActingContacts acting;
         for (int lane = 0; lane < kLanes; ++lane) {
           acting.contact[lane] = offset_of<Dim>(idle);
-          const int g = gridpoint[slot_of(row, lane)];
+          const int g = gridpoint[slot_of(pack, lane)];
           if (g < 0 || of_gridpoint.begin[g] + k >= of_gridpoint.begin[g + 1]) continue;
           const int side = of_gridpoint.contact_side[of_gridpoint.begin[g] + k];
           acting.contact[lane] = offset_of<Dim>(layout_.contact_slot[side / 2]);
@@ -173,9 +173,9 @@ class LayoutBuilder {
         }
         all.push_back(acting);
       }
-      ranges[row] = {begin, static_cast<int>(all.size())};
+      ranges[pack] = {begin, static_cast<int>(all.size())};
     }
-    layout_.contacts_of_row = FlatArray<ContactsOfRow>(ranges);
+    layout_.contacts_of_pack = FlatArray<ContactsOfPack>(ranges);
     layout_.acting = FlatArray<ActingContacts>(all);
   }
 
@@ -240,15 +240,15 @@ class LayoutBuilder {
     bundle.first_corners = shapes_[shape].first_corners;
     bundle.fan = shapes_[shape].fan;
     const int block = blocks.front();
-    bundle.rows = model_.block_gridpoints[block + 1] - model_.block_gridpoints[block];
+    bundle.packs = model_.block_gridpoints[block + 1] - model_.block_gridpoints[block];
     bundle.zones = model_.block_zones[block + 1] - model_.block_zones[block];
     start(bundle);
     for (int lane = 0; lane < static_cast<int>(blocks.size()); ++lane) {
       const int b = blocks[lane];
-      for (int i = 0; i < bundle.rows; ++i)
-        layout_.gridpoint_slot[model_.block_gridpoints[b] + i] = slot_of(bundle.first_row + i, lane);
+      for (int i = 0; i < bundle.packs; ++i)
+        layout_.gridpoint_slot[model_.block_gridpoints[b] + i] = slot_of(bundle.first_pack + i, lane);
       for (int i = 0; i < bundle.zones; ++i)
-        layout_.zone_slot[model_.block_zones[b] + i] = slot_of(bundle.first_zone_row + i, lane);
+        layout_.zone_slot[model_.block_zones[b] + i] = slot_of(bundle.first_zone_pack + i, lane);
     }
     std::array<int, kLanes> lanes;
     lanes.fill(-1);
@@ -260,19 +260,19 @@ class LayoutBuilder {
     Bundle bundle;
     bundle.kind = BundleKind::spread;
     const int gridpoints = model_.block_gridpoints[block + 1] - model_.block_gridpoints[block];
-    bundle.rows = (gridpoints + kLanes - 1) / kLanes;
+    bundle.packs = (gridpoints + kLanes - 1) / kLanes;
     bundle.zones = model_.block_zones[block + 1] - model_.block_zones[block];
     start(bundle);
     for (int i = 0; i < gridpoints; ++i)
-      layout_.gridpoint_slot[model_.block_gridpoints[block] + i] = slot_of(bundle.first_row, i);
+      layout_.gridpoint_slot[model_.block_gridpoints[block] + i] = slot_of(bundle.first_pack, i);
     for (int i = 0; i < bundle.zones; ++i)
-      layout_.zone_slot[model_.block_zones[block] + i] = slot_of(bundle.first_zone_row, i);
+      layout_.zone_slot[model_.block_zones[block] + i] = slot_of(bundle.first_zone_pack, i);
     bundle.first_corners = static_cast<int>(spread_zones_.size());
-    // an idle lane repeats the row's first zone, whose forces are then left out
-    for (int row = 0; row < bundle.zone_rows(); ++row) {
+    // an idle lane repeats the pack's first zone, whose forces are then left out
+    for (int pack = 0; pack < bundle.zone_packs(); ++pack) {
       ZoneCorners<Dim> corners;
       for (int lane = 0; lane < kLanes; ++lane) {
-        const int zone = kLanes * row + lane < bundle.zones ? kLanes * row + lane : kLanes * row;
+        const int zone = kLanes * pack + lane < bundle.zones ? kLanes * pack + lane : kLanes * pack;
         for (int n = 0; n <= Dim; ++n)
           corners.offset[n][lane] =
               offset_of<Dim>(layout_.gridpoint_slot[model_.zones[model_.block_zones[block] + zone][n]]);
@@ -285,11 +285,11 @@ class LayoutBuilder {
   }
 
   void start(Bundle& bundle) {
-    bundle.first_row = layout_.gridpoint_rows;
-    bundle.first_zone_row = layout_.zone_rows;
-    layout_.gridpoint_rows += bundle.rows;
-    layout_.zone_rows += bundle.zone_rows();
-    layout_.most_rows = std::max(layout_.most_rows, bundle.rows);
+    bundle.first_pack = layout_.gridpoint_packs;
+    bundle.first_zone_pack = layout_.zone_packs;
+    layout_.gridpoint_packs += bundle.packs;
+    layout_.zone_packs += bundle.zone_packs();
+    layout_.most_packs = std::max(layout_.most_packs, bundle.packs);
   }
 
   void finish(const Bundle& bundle, const std::array<int, kLanes>& lanes) {
@@ -299,13 +299,13 @@ class LayoutBuilder {
     blocks_.push_back(lanes);
   }
 
-  /// Faces that share a row have one interface, one number of points and one pair of chunks.
+  /// Faces that share a pack have one interface, one number of points and one pair of chunks.
   void place_faces_of_chunk(FaceIterator first, FaceIterator last) {
     using Key = std::tuple<int, int, int>;  // other chunk, interface, points
     std::map<Key, std::vector<FaceToPlace>> waiting;
     for (auto f = first; f != last; ++f) {
       const bool own = f->chunk == f->other;
-      // rows between chunks are through before the first of its own
+      // packs between chunks are through before the first of its own
       if (own && f != first && std::prev(f)->other != f->chunk) flush(waiting);
       auto& group = waiting[{f->other, f->interface, f->points}];
       group.push_back(*f);
@@ -337,10 +337,10 @@ class LayoutBuilder {
   }
 
   void add_faces(const std::vector<FaceToPlace>& faces) {
-    FaceRow<Dim> row{};
+    FacePack<Dim> pack{};
     const int first_point = static_cast<int>(points_.size());
     for (int point = 0; point < faces.front().points; ++point) {
-      PointRow points{};
+      PointPack points{};
       for (int lane = 0; lane < kLanes; ++lane) {
         const bool idle = lane >= static_cast<int>(faces.size());
         const int contact = model_.face_contacts[(idle ? faces.front() : faces[lane]).face] + point;
@@ -350,48 +350,48 @@ class LayoutBuilder {
         points.b[lane] = offset_of<Dim>(layout_.gridpoint_slot[idle ? c.a : c.b]);
         points.area[lane] = idle ? 0.0 : c.area;
         for (int i = 0; i < Dim; ++i)
-          for (int t = 0; t + 1 < Dim; ++t) row.tangent[t][i][lane] = c.tangents[t][i];
+          for (int t = 0; t + 1 < Dim; ++t) pack.tangent[t][i][lane] = c.tangents[t][i];
         if (!idle) layout_.contact_slot[contact] = slot_of(first_point + point, lane);
       }
       points_.push_back(points);
-      face_row_of_point_.push_back(static_cast<int>(faces_.size()));
+      face_pack_of_point_.push_back(static_cast<int>(faces_.size()));
     }
-    faces_.push_back(row);
+    faces_.push_back(pack);
     first_point_.push_back(first_point);
-    // within its own chunk a row reaches as far as the later bundles of its faces
+    // within its own chunk a pack reaches as far as the later bundles of its faces
     int reached = 0;
     for (const FaceToPlace& f : faces)
       if (f.chunk == f.other)
-        reached = std::max(reached, bundles_[f.later_bundle].first_row + bundles_[f.later_bundle].rows);
-    reached_by_row_.push_back(reached);
+        reached = std::max(reached, bundles_[f.later_bundle].first_pack + bundles_[f.later_bundle].packs);
+    reached_by_pack_.push_back(reached);
     between_chunks_.push_back(faces.front().chunk != faces.front().other);
-    faces_of_row_.push_back(faces);
+    faces_of_pack_.push_back(faces);
   }
 
   void finish_faces(const std::vector<int>& block_of) {
-    for (std::size_t r = 0; r < faces_of_row_.size(); ++r)
-      for (const FaceToPlace& f : faces_of_row_[r]) {
+    for (std::size_t r = 0; r < faces_of_pack_.size(); ++r)
+      for (const FaceToPlace& f : faces_of_pack_[r]) {
         const auto& c = model_.contacts[model_.face_contacts[f.face]];
         for (int g : {c.a, c.b}) {
-          int& last = bundles_[layout_.bundle_of_block[block_of[g]]].last_face_row;
+          int& last = bundles_[layout_.bundle_of_block[block_of[g]]].last_face_pack;
           last = std::max(last, static_cast<int>(r));
         }
       }
     for (std::size_t i = 1; i < bundles_.size(); ++i)
-      bundles_[i].last_face_row = std::max(bundles_[i].last_face_row, bundles_[i - 1].last_face_row);
-    std::vector<int> rows_reached{0};
-    for (int reached : reached_by_row_) rows_reached.push_back(std::max(rows_reached.back(), reached));
+      bundles_[i].last_face_pack = std::max(bundles_[i].last_face_pack, bundles_[i - 1].last_face_pack);
+    std::vector<int> packs_reached{0};
+    for (int reached : reached_by_pack_) packs_reached.push_back(std::max(packs_reached.back(), reached));
 
-    layout_.point_rows = static_cast<int>(points_.size()) + 1;
+    layout_.point_packs = static_cast<int>(points_.size()) + 1;
     first_point_.push_back(static_cast<int>(points_.size()));
     layout_.bundles = FlatArray<Bundle>(bundles_);
-    layout_.faces = FlatArray<FaceRow<Dim>>(faces_);
+    layout_.faces = FlatArray<FacePack<Dim>>(faces_);
     layout_.first_point = FlatArray<int>(first_point_);
-    layout_.points = FlatArray<PointRow>(points_);
-    layout_.rows_reached = FlatArray<int>(rows_reached);
+    layout_.points = FlatArray<PointPack>(points_);
+    layout_.packs_reached = FlatArray<int>(packs_reached);
     layout_.between_chunks = FlatArray<bool>(between_chunks_.size());
     std::copy(between_chunks_.begin(), between_chunks_.end(), layout_.between_chunks.begin());
-    layout_.face_row_of_point = FlatArray<int>(face_row_of_point_);
+    layout_.face_pack_of_point = FlatArray<int>(face_pack_of_point_);
     layout_.contacts_by_chunk = FlatArray<int>(contacts_by_chunk_);
   }
 
@@ -406,11 +406,11 @@ class LayoutBuilder {
   std::vector<ZoneCorners<Dim>> spread_zones_;
   std::vector<Bundle> bundles_;
   std::vector<std::array<int, kLanes>> blocks_;
-  std::vector<FaceRow<Dim>> faces_;
-  std::vector<PointRow> points_;
-  std::vector<int> first_point_, face_row_of_point_, reached_by_row_, contacts_by_chunk_;
-  std::vector<bool> between_chunks_;  // by row of faces
-  std::vector<std::vector<FaceToPlace>> faces_of_row_;
+  std::vector<FacePack<Dim>> faces_;
+  std::vector<PointPack> points_;
+  std::vector<int> first_point_, face_pack_of_point_, reached_by_pack_, contacts_by_chunk_;
+  std::vector<bool> between_chunks_;  // by pack of faces
+  std::vector<std::vector<FaceToPlace>> faces_of_pack_;
 };
 
 }  // namespace
@@ -422,6 +422,40 @@ Layout<Dim>::Layout(const Model<Dim>& model, const LayoutParameters& parameters)
   builder.place_blocks();
   builder.place_faces();
   builder.gather_contacts();
+}
+
+template <int Dim>
+std::optional<std::size_t> Layout<Dim>::count_of(Per per) const {
+  switch (per) {
+    case Per::block:
+      return this->bundle_of_block.size();
+    case Per::bundle:
+      return this->bundles.size();
+    case Per::gridpoint:
+      return this->gridpoint_slot.size();
+    case Per::gridpoint_pack:
+      return gridpoint_packs;
+    case Per::gridpoint_slot:
+      return kLanes * gridpoint_packs;
+    case Per::zone:
+      return this->zone_slot.size();
+    case Per::zone_pack:
+      return zone_packs;
+    case Per::face_pack:
+      return this->faces.size();
+    case Per::face_pack_end:
+      return this->faces.size() + 1;
+    case Per::point_pack:
+      return point_packs;
+    case Per::point_slot:
+      return kLanes * point_packs;
+    case Per::contact:
+      return this->contact_slot.size();
+    case Per::zone_pack_or_bundle:
+    case Per::entry:
+      break;
+  }
+  return std::nullopt;
 }
 
 template struct Layout<2>;

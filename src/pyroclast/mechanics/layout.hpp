@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,26 +19,26 @@
 ///     together
 ///
 ///     alike   lane 0   1   2   3   4   5   6   7        spread                one block over all lanes
-///     row 0   gridpoint 0 of eight blocks               0  1  2  3  4  5  6  7
-///     row 1   gridpoint 1 of the same blocks            8  9 10  .  .  .  .  .      . idle
+///     pack 0   gridpoint 0 of eight blocks               0  1  2  3  4  5  6  7
+///     pack 1   gridpoint 1 of the same blocks            8  9 10  .  .  .  .  .      . idle
 ///     ...
 ///
-///     row of faces     eight faces between the blocks of one pair of chunks, with one interface
-///     rows of points   contact point 0 of the eight faces, then point 1, ... (2 in 2D, 3 to 8 in 3D)
+///     pack of faces     eight faces between the blocks of one pair of chunks, with one interface
+///     packs of points   contact point 0 of the eight faces, then point 1, ... (2 in 2D, 3 to 8 in 3D)
 ///
 /// lane     one of the eight numbers that go through the same arithmetic together
-/// row      eight gridpoints, zones, faces or contact points side by side, one a lane
-/// slot     a place in a row: slot = 8 row + lane
+/// pack      eight gridpoints, zones, faces or contact points side by side, one a lane
+/// slot     a place in a pack: slot = 8 pack + lane
 /// offset   where the vector of a slot begins in an array of numbers: Dim slot
 /// idle     a place that nothing fills; nothing acts on it
 /// bundle   blocks that go through a step together: `alike` or `spread`
 /// shape    the zones of a block, as its own gridpoints; alike blocks have the same
 /// fan      a shape whose zones go round the last gridpoint, in the order of the others
-/// chunk    a run of the model's blocks with bundles and rows of its own: the unit of sums, files and ranks
+/// chunk    a run of the model's blocks with bundles and packs of its own: the unit of sums, files and ranks
 namespace pyroclast {
 
-inline constexpr int slot_of(int row, int lane) {
-  return kLanes * row + lane;
+inline constexpr int slot_of(int pack, int lane) {
+  return kLanes * pack + lane;
 }
 
 template <int Dim>
@@ -46,22 +47,22 @@ inline constexpr int offset_of(int slot) {
 }
 
 enum class BundleKind : std::uint8_t {
-  alike,  ///< up to eight blocks with the same zones, one a lane: row i holds the i-th gridpoint of each
-  spread  ///< one block over all lanes: its gridpoints and zones follow one another through the rows
+  alike,  ///< up to eight blocks with the same zones, one a lane: pack i holds the i-th gridpoint of each
+  spread  ///< one block over all lanes: its gridpoints and zones follow one another through the packs
 };
 
 /// Blocks that go through a step together.
 struct Bundle {
   BundleKind kind = BundleKind::alike;
-  bool fan = false;        ///< alike: see above
-  int first_row = 0;       ///< of gridpoints
-  int rows = 0;            ///< of gridpoints
-  int first_zone_row = 0;  ///< of zones
-  int zones = 0;           ///< alike: of each block, a row each; spread: of the block, eight a row
-  int first_corners = 0;   ///< alike: entry of `shape_zones`; spread: entry of `spread_zones`
-  int last_face_row = -1;  ///< no row of faces above it touches the bundle; non-decreasing over bundles
+  bool fan = false;         ///< alike: see above
+  int first_pack = 0;       ///< of gridpoints
+  int packs = 0;            ///< of gridpoints
+  int first_zone_pack = 0;  ///< of zones
+  int zones = 0;            ///< alike: of each block, a pack each; spread: of the block, eight a pack
+  int first_corners = 0;    ///< alike: entry of `shape_zones`; spread: entry of `spread_zones`
+  int last_face_pack = -1;  ///< no pack of faces above it touches the bundle; non-decreasing over bundles
 
-  int zone_rows() const { return kind == BundleKind::alike ? zones : (zones + kLanes - 1) / kLanes; }
+  int zone_packs() const { return kind == BundleKind::alike ? zones : (zones + kLanes - 1) / kLanes; }
 };
 
 /// Gridpoints of eight zones of a spread block, as offsets.
@@ -72,18 +73,18 @@ struct ZoneCorners {
 
 /// Frames of eight faces.
 template <int Dim>
-struct alignas(64) FaceRow {
+struct alignas(64) FacePack {
   double tangent[Dim - 1][Dim][kLanes];  ///< the normal follows from them
 };
 
 /// One contact point of each of eight faces.
-struct alignas(64) PointRow {
+struct alignas(64) PointPack {
   double area[kLanes];           ///< m²; 0 where idle
   std::array<int, kLanes> a, b;  ///< offsets of its gridpoints
 };
 
-/// Which contact points act on the gridpoints of a row. In 2D a corner of a block has two, one of each edge.
-struct ContactsOfRow {
+/// Which contact points act on the gridpoints of a pack. In 2D a corner of a block has two, one of each edge.
+struct ContactsOfPack {
   int begin = 0, end = 0;  ///< entries of `acting`
 };
 
@@ -96,9 +97,9 @@ struct ActingContacts {
 enum class Touched : std::uint8_t {
   none,
   all,
-  alike,     ///< rows of alike bundles
-  gathered,  ///< rows of spread bundles; with finite kinematics all
-  held,      ///< of a history what is always written: the held jump
+  alike,     ///< packs of alike bundles
+  gathered,  ///< packs of spread bundles; with finite kinematics all
+  held,      ///< of internal variables that which is always written: the held jump
   combined   ///< all with combined damping, else none
 };
 
@@ -109,11 +110,38 @@ enum class Lasts : std::uint8_t {
   a_step,  ///< is worked out anew by each step
 };
 
+/// What an array has an entry of each of; with `_end`, and one more behind the last.
+enum class Per : std::uint8_t {
+  block,
+  bundle,
+  gridpoint,
+  gridpoint_pack,
+  gridpoint_slot,
+  zone,
+  zone_pack,
+  zone_pack_or_bundle,  ///< zones of a bundle may have one entry together
+  face_pack,
+  face_pack_end,
+  point_pack,
+  point_slot,
+  contact,
+  entry  ///< of a list of its own, whose entries others name
+};
+
+/// Who has the entries where chunks have several owners, such as the ranks of a cluster.
+enum class HeldBy : std::uint8_t {
+  owner,           ///< of the chunk
+  owner_and_halo,  ///< and those whose chunks touch it: they read its gridpoints, or owe it forces
+  all              ///< few, and the same everywhere
+};
+
 /// What an array is for. Memory, traffic, checkpoints and copies of a body follow from the lists of arrays.
 struct ArrayInfo {
   const char* name;
+  Per per;
   Touched read = Touched::none, written = Touched::none;
   Lasts lasts = Lasts::made;
+  HeldBy held_by = HeldBy::owner;
 };
 
 /// Calls `f(ArrayInfo, array...)` for each array of a list; several lists of the same kind go side by side.
@@ -140,50 +168,51 @@ template <int Dim, template <class> class Array>
 struct LayoutArrays {
   Array<Bundle> bundles;
   Array<std::array<int, Dim + 1>> shape_zones;  ///< of each shape in turn, as gridpoints of a block
-  Array<ZoneCorners<Dim>> spread_zones;         ///< by row of zones of spread blocks
-  Array<FaceRow<Dim>> faces;
-  Array<int> first_point;  ///< of each row of faces, and one more: its first row of points
-  Array<PointRow> points;  ///< by row of points; the last one idles
-  /// Of each row of faces, and one more: number of leading rows of gridpoints that the rows of faces before
-  /// it read, as far as they are of its own chunk.
-  Array<int> rows_reached;
-  Array<bool> between_chunks;            ///< of each row of faces: they join two chunks
-  Array<ContactsOfRow> contacts_of_row;  ///< of each row of gridpoints
+  Array<ZoneCorners<Dim>> spread_zones;         ///< by pack of zones of spread blocks
+  Array<FacePack<Dim>> faces;
+  Array<int> first_point;   ///< of each pack of faces, and one more: its first pack of points
+  Array<PointPack> points;  ///< by pack of points; the last one idles
+  /// Of each pack of faces, and one more: number of leading packs of gridpoints that the packs of faces
+  /// before it read, as far as they are of its own chunk.
+  Array<int> packs_reached;
+  Array<bool> between_chunks;              ///< of each pack of faces: they join two chunks
+  Array<ContactsOfPack> contacts_of_pack;  ///< of each pack of gridpoints
   Array<ActingContacts> acting;
 
   Array<int> gridpoint_slot, zone_slot, contact_slot;  ///< of each one of the model
   Array<int> bundle_of_block;
   Array<std::array<int, kLanes>> blocks;  ///< of each bundle, by lane; -1 where the lane idles
-  Array<int> face_row_of_point;           ///< of each row of points but the last
+  Array<int> face_pack_of_point;          ///< of each pack of points but the last
   Array<int> contacts_by_chunk;           ///< of the model, those of the first chunk first
 
   template <class F, class... L>
   static void each(F&& f, L&... l) {
-    f(ArrayInfo{"bundles", Touched::all}, l.bundles...);
-    f(ArrayInfo{"shape_zones"}, l.shape_zones...);  // few, and always near
-    f(ArrayInfo{"spread_zones", Touched::all}, l.spread_zones...);
-    f(ArrayInfo{"faces", Touched::all}, l.faces...);
-    f(ArrayInfo{"first_point", Dim == 2 ? Touched::none : Touched::all}, l.first_point...);
-    f(ArrayInfo{"points", Touched::all}, l.points...);
-    f(ArrayInfo{"rows_reached", Touched::all}, l.rows_reached...);
-    f(ArrayInfo{"between_chunks", Touched::all}, l.between_chunks...);
-    f(ArrayInfo{"contacts_of_row", Touched::all}, l.contacts_of_row...);
-    f(ArrayInfo{"acting", Touched::all}, l.acting...);
-    f(ArrayInfo{"gridpoint_slot"}, l.gridpoint_slot...);
-    f(ArrayInfo{"zone_slot"}, l.zone_slot...);
-    f(ArrayInfo{"contact_slot"}, l.contact_slot...);
-    f(ArrayInfo{"bundle_of_block"}, l.bundle_of_block...);
-    f(ArrayInfo{"blocks"}, l.blocks...);
-    f(ArrayInfo{"face_row_of_point"}, l.face_row_of_point...);
-    f(ArrayInfo{"contacts_by_chunk"}, l.contacts_by_chunk...);
+    f(ArrayInfo{"bundles", Per::bundle, Touched::all}, l.bundles...);
+    f(ArrayInfo{"shape_zones", Per::entry}, l.shape_zones...);  // few, and always near
+    f(ArrayInfo{"spread_zones", Per::entry, Touched::all}, l.spread_zones...);
+    f(ArrayInfo{"faces", Per::face_pack, Touched::all}, l.faces...);
+    f(ArrayInfo{"first_point", Per::face_pack_end, Dim == 2 ? Touched::none : Touched::all},
+      l.first_point...);
+    f(ArrayInfo{"points", Per::point_pack, Touched::all}, l.points...);
+    f(ArrayInfo{"packs_reached", Per::face_pack_end, Touched::all}, l.packs_reached...);
+    f(ArrayInfo{"between_chunks", Per::face_pack, Touched::all}, l.between_chunks...);
+    f(ArrayInfo{"contacts_of_pack", Per::gridpoint_pack, Touched::all}, l.contacts_of_pack...);
+    f(ArrayInfo{"acting", Per::entry, Touched::all}, l.acting...);
+    f(ArrayInfo{"gridpoint_slot", Per::gridpoint}, l.gridpoint_slot...);
+    f(ArrayInfo{"zone_slot", Per::zone}, l.zone_slot...);
+    f(ArrayInfo{"contact_slot", Per::contact}, l.contact_slot...);
+    f(ArrayInfo{"bundle_of_block", Per::block}, l.bundle_of_block...);
+    f(ArrayInfo{"blocks", Per::bundle}, l.blocks...);
+    f(ArrayInfo{"face_pack_of_point", Per::entry}, l.face_pack_of_point...);
+    f(ArrayInfo{"contacts_by_chunk", Per::contact}, l.contacts_by_chunk...);
   }
 
-  /// First row of points of a row of faces, and of the one after it.
-  int first_point_of(int face_row) const {
+  /// First pack of points of a pack of faces, and of the one after it.
+  int first_point_of(int face_pack) const {
     if constexpr (Dim == 2)
-      return 2 * face_row;
+      return 2 * face_pack;
     else
-      return first_point[face_row];
+      return first_point[face_pack];
   }
 };
 
@@ -191,7 +220,7 @@ struct LayoutArrays {
 struct Chunks {
   std::vector<int> blocks, gridpoints, zones;  ///< of the model
   std::vector<int> contacts;                   ///< entries of contacts_by_chunk
-  std::vector<int> bundles, face_rows;         ///< of the layout
+  std::vector<int> bundles, face_packs;        ///< of the layout
 };
 
 /// How a body is laid out. Speed depends on it; no force does.
@@ -202,20 +231,22 @@ struct LayoutParameters {
 
 /// Blocks are taken in the order of the model, chunk by chunk. Within a chunk they are ordered in layers, so
 /// that what touches stands near in memory; those with the same zones share lanes. A face
-/// between two chunks belongs to the earlier one. In a chunk rows of such faces come first, then those of its
-/// own faces by the later of their two bundles, so that one sweep can take a row of faces and, soon after,
-/// move the bundles whose faces are all done.
+/// between two chunks belongs to the earlier one. In a chunk packs of such faces come first, then those of
+/// its own faces by the later of their two bundles, so that one sweep can take a pack of faces and, soon
+/// after, move the bundles whose faces are all done.
 template <int Dim>
 struct Layout : LayoutArrays<Dim, FlatArray> {
   explicit Layout(const Model<Dim>& model, const LayoutParameters& parameters = {});
 
   Chunks chunks;
-  int gridpoint_rows = 0;
-  int zone_rows = 0;
-  int point_rows = 0;  ///< with the one that idles
-  int most_rows = 0;   ///< of gridpoints, in one bundle
+  int gridpoint_packs = 0;
+  int zone_packs = 0;
+  int point_packs = 0;  ///< with the one that idles
+  int most_packs = 0;   ///< of gridpoints, in one bundle
 
-  int face_rows() const { return static_cast<int>(this->faces.size()); }
+  int face_packs() const { return static_cast<int>(this->faces.size()); }
+  /// Of an array that has an entry of each; none for lists of their own.
+  std::optional<std::size_t> count_of(Per per) const;
   int block_in(int bundle, int lane) const { return this->blocks[bundle][lane]; }
 };
 

@@ -16,13 +16,12 @@ namespace pyroclast {
 
 namespace {
 
-/// Lines of the point of a contact in the history or the losses, from the first of its row of faces on.
-/// \param first  of each row of faces, its first line
-/// \param count  of lines of a point
+/// Lines of the point of a contact in the internal variables or the losses, from the first of its pack of
+/// faces on. \param first  of each pack of faces, its first line \param count  of lines of a point
 template <int Dim, class Lines, class First>
 auto lines_of(const Layout<Dim>& layout, Lines& lines, const First& first, int contact, std::size_t count) {
-  const int point = layout.contact_slot[contact] / kLanes, row = layout.face_row_of_point[point];
-  return lines.data() + first[row] + static_cast<std::size_t>(point - layout.first_point_of(row)) * count;
+  const int point = layout.contact_slot[contact] / kLanes, pack = layout.face_pack_of_point[point];
+  return lines.data() + first[pack] + static_cast<std::size_t>(point - layout.first_point_of(pack)) * count;
 }
 
 /// What was made alike before has time steps that differ by less than this factor.
@@ -33,14 +32,14 @@ constexpr double kNoStrain = 1e-10;
 constexpr double kMostOfAKind = std::numeric_limits<int>::max();
 
 bool is_slot_of(int slot, const Bundle& bundle) {
-  const int first = slot_of(bundle.first_row, 0);
-  return first <= slot && slot < first + bundle.rows * kLanes;
+  const int first = slot_of(bundle.first_pack, 0);
+  return first <= slot && slot < first + bundle.packs * kLanes;
 }
 
 int place_of(const LawTable& law, Remembers what, int dim) {
-  const auto history = law.history(dim);
-  const auto found = std::ranges::find(history, what, &HistoryInfo::what);
-  return found == history.end() ? -1 : static_cast<int>(found - history.begin());
+  const auto internals = law.internals(dim);
+  const auto found = std::ranges::find(internals, what, &InternalInfo::what);
+  return found == internals.end() ? -1 : static_cast<int>(found - internals.begin());
 }
 
 }  // namespace
@@ -70,7 +69,7 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
   if (!properties_.creep.empty()) creep_strain_.resize(model_.zones.size());
   list_laws();
   place_model();
-  place_histories();
+  place_internals();
   place_properties();
   mean_height_ =
       chunked_sum(layout_->chunks.zones, [&](int z) { return 1.0 / norm(geometry_.gradient[z][0]); }) /
@@ -79,7 +78,7 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
   set_masses(densities);
   sweep(1, Pass::measure);
   // nothing has acted yet
-  std::fill(storage_.force.begin(), storage_.force.end(), VectorRow<Dim>{});
+  std::fill(storage_.force.begin(), storage_.force.end(), VectorPack<Dim>{});
   property_change_ = energy().zones;  // of a body that begins at another temperature
 }
 
@@ -92,7 +91,7 @@ void Mechanics<Dim>::refresh_views() {
 /// Working memory of one thread for a step.
 template <int Dim>
 FlatArray<double> Mechanics<Dim>::make_scratch() const {
-  return FlatArray<double>(2 * Dim * kLanes * static_cast<std::size_t>(layout_->most_rows));
+  return FlatArray<double>(2 * Dim * kLanes * static_cast<std::size_t>(layout_->most_packs));
 }
 
 /// Puts what does not change in its places.
@@ -106,25 +105,25 @@ void Mechanics<Dim>::place_model() {
   state_.kinematics = parameters_.kinematics;
   state_.thickness = model_.thickness;
   auto& s = storage_;
-  const auto rows = static_cast<std::size_t>(layout_->gridpoint_rows);
-  s.position = made<VectorRow<Dim>>(rows);
-  s.velocity = made<VectorRow<Dim>>(rows);
-  s.force = made<VectorRow<Dim>>(rows);
-  s.stiffness = made<VectorRow<Dim>>(rows);
-  s.displacement = made<Vec<Dim>>(rows * kLanes);
-  s.gathered_position = made<Vec<Dim>>(rows * kLanes);
-  s.step_over_mass = made<double>(rows * kLanes);
-  const auto point_rows = static_cast<std::size_t>(layout_->point_rows);
-  s.losing = made<bool>(point_rows);
-  s.contact_force = made<Vec<Dim>>(point_rows * kLanes);
-  if (parameters_.kinematics == Kinematics::finite) s.turning_force = made<Vec<Dim>>(point_rows * kLanes);
+  const auto packs = static_cast<std::size_t>(layout_->gridpoint_packs);
+  s.position = made<VectorPack<Dim>>(packs);
+  s.velocity = made<VectorPack<Dim>>(packs);
+  s.force = made<VectorPack<Dim>>(packs);
+  s.stiffness = made<VectorPack<Dim>>(packs);
+  s.displacement = made<Vec<Dim>>(packs * kLanes);
+  s.gathered_position = made<Vec<Dim>>(packs * kLanes);
+  s.step_over_mass = made<double>(packs * kLanes);
+  const auto point_packs = static_cast<std::size_t>(layout_->point_packs);
+  s.losing = made<bool>(point_packs);
+  s.contact_force = made<Vec<Dim>>(point_packs * kLanes);
+  if (parameters_.kinematics == Kinematics::finite) s.turning_force = made<Vec<Dim>>(point_packs * kLanes);
   s.constraints_of_bundle = FlatArray<int>(layout_->bundles.size());
   std::fill(s.constraints_of_bundle.begin(), s.constraints_of_bundle.end(), -1);
   made_constraints_.assign(layout_->bundles.size(), -1);
   s.bundle_sums = made<BundleSums>(layout_->bundles.size());
   s.face_sums = made<FaceSums>(layout_->faces.size());
 
-  const View<VectorRow<Dim>> position(s.position.data(), s.position.size());
+  const View<VectorPack<Dim>> position(s.position.data(), s.position.size());
   for (int g = 0; g < model_.gridpoint_count(); ++g) {
     set_vector<Dim>(position, layout_->gridpoint_slot[g], model_.position[g]);
     s.gathered_position[layout_->gridpoint_slot[g]] = model_.position[g];
@@ -134,9 +133,9 @@ void Mechanics<Dim>::place_model() {
       if (layout_->block_in(b, lane) >= 0) continue;
       // the shape of the first, without stiffness
       const Bundle& bundle = layout_->bundles[b];
-      for (int i = 0; i < bundle.rows; ++i)
-        set_vector<Dim>(position, slot_of(bundle.first_row + i, lane),
-                        vector_at<Dim>(position, slot_of(bundle.first_row + i, 0)));
+      for (int i = 0; i < bundle.packs; ++i)
+        set_vector<Dim>(position, slot_of(bundle.first_pack + i, lane),
+                        vector_at<Dim>(position, slot_of(bundle.first_pack + i, 0)));
     }
   refresh_views();
 }
@@ -157,29 +156,30 @@ template <int Dim>
 void Mechanics<Dim>::use(const StepFunctions<Dim>& step) {
   step_ = step;
   law_functions_.clear();
-  for (const LawTable* law : laws_) law_functions_.push_back(step_.rows_of(*law));
+  for (const LawTable* law : laws_) law_functions_.push_back(step_.functions_of(*law));
   state_.laws = law_functions_.data();
 }
 
-/// Gives every row of faces its law, and the part of the histories and losses that it takes.
+/// Gives every pack of faces its law, and the part of the internal variables and losses that it takes.
 template <int Dim>
-void Mechanics<Dim>::place_histories() {
+void Mechanics<Dim>::place_internals() {
   auto& s = storage_;
-  const auto rows = static_cast<std::size_t>(layout_->face_rows());
-  s.law_of_faces = FlatArray<std::uint8_t>(rows);
+  const auto packs = static_cast<std::size_t>(layout_->face_packs());
+  s.law_of_faces = FlatArray<std::uint8_t>(packs);
   for (int c = 0; c < model_.contact_count(); ++c)
-    s.law_of_faces[layout_->face_row_of_point[layout_->contact_slot[c] / kLanes]] =
+    s.law_of_faces[layout_->face_pack_of_point[layout_->contact_slot[c] / kLanes]] =
         static_cast<std::uint8_t>(std::ranges::find(laws_, &law_of(c)) - laws_.begin());
-  s.first_history = FlatArray<int>(rows + 1);
-  s.first_loss = FlatArray<int>(rows + 1);
-  for (int row = 0; row < layout_->face_rows(); ++row) {
-    const LawTable& law = law_of_row(row);
-    const int points = layout_->first_point_of(row + 1) - layout_->first_point_of(row);
-    s.first_history[row + 1] = s.first_history[row] + points * static_cast<int>(law.history(Dim).size());
-    s.first_loss[row + 1] = s.first_loss[row] + points * static_cast<int>(law.losses.size());
+  s.first_internal = FlatArray<int>(packs + 1);
+  s.first_loss = FlatArray<int>(packs + 1);
+  for (int pack = 0; pack < layout_->face_packs(); ++pack) {
+    const LawTable& law = law_of_pack(pack);
+    const int points = layout_->first_point_of(pack + 1) - layout_->first_point_of(pack);
+    s.first_internal[pack + 1] =
+        s.first_internal[pack] + points * static_cast<int>(law.internals(Dim).size());
+    s.first_loss[pack + 1] = s.first_loss[pack] + points * static_cast<int>(law.losses.size());
   }
-  s.history = made<Line>(static_cast<std::size_t>(s.first_history[rows]));
-  s.loss = made<Line>(static_cast<std::size_t>(s.first_loss[rows]));
+  s.internals = made<Line>(static_cast<std::size_t>(s.first_internal[packs]));
+  s.loss = made<Line>(static_cast<std::size_t>(s.first_loss[packs]));
   name_dissipations();
   refresh_views();
 }
@@ -203,7 +203,7 @@ void Mechanics<Dim>::name_dissipations() {
 /// Puts zone and contact parameters in their places.
 template <int Dim>
 void Mechanics<Dim>::place_properties() {
-  auto& rows = storage_.zone_properties;
+  auto& packs = storage_.zone_properties;
   std::vector<ZoneProperties> softened;
   if (!creep_under_way_.empty())
     for (int z = 0; z < model_.zone_count(); ++z) softened.push_back(properties_of_zone(z));
@@ -217,12 +217,12 @@ void Mechanics<Dim>::place_properties() {
       by_bundle = by_bundle && same(zones[z], zones[model_.block_zones[b]]);
   state_.by_bundle = by_bundle;
   const std::size_t count =
-      by_bundle ? layout_->bundles.size() : static_cast<std::size_t>(layout_->zone_rows);
-  if (rows.size() != count) rows = made<ZonePropertyRow>(count);
-  const auto place = [&](std::size_t row, int lane, const ZoneProperties& p) {
-    rows[row].lambda[lane] = p.lambda;
-    rows[row].mu[lane] = p.mu;
-    rows[row].thermal_strain[lane] = p.thermal_strain;
+      by_bundle ? layout_->bundles.size() : static_cast<std::size_t>(layout_->zone_packs);
+  if (packs.size() != count) packs = made<ZonePropertyPack>(count);
+  const auto place = [&](std::size_t pack, int lane, const ZoneProperties& p) {
+    packs[pack].lambda[lane] = p.lambda;
+    packs[pack].mu[lane] = p.mu;
+    packs[pack].thermal_strain[lane] = p.thermal_strain;
   };
   if (by_bundle) {
     for (std::size_t b = 0; b < count; ++b)
@@ -239,13 +239,13 @@ void Mechanics<Dim>::place_properties() {
 
 template <int Dim>
 void Mechanics<Dim>::place_creep_strain() {
-  auto& rows = storage_.creep_strain;
-  const std::size_t count = creeps() ? static_cast<std::size_t>(layout_->zone_rows) : 0;
-  if (rows.size() != count) rows = made<TensorRow<Dim>>(count);
+  auto& packs = storage_.creep_strain;
+  const std::size_t count = creeps() ? static_cast<std::size_t>(layout_->zone_packs) : 0;
+  if (packs.size() != count) packs = made<TensorPack<Dim>>(count);
   for (std::size_t z = 0; z < creep_strain_.size(); ++z) {
     const int slot = layout_->zone_slot[z];
     for (std::size_t i = 0; i < creep_strain_[z].size(); ++i)
-      rows[slot / kLanes].component[i][slot % kLanes] = creep_strain_[z][i];
+      packs[slot / kLanes].component[i][slot % kLanes] = creep_strain_[z][i];
   }
 }
 
@@ -267,46 +267,49 @@ void Mechanics<Dim>::place_contact_properties() {
   std::fill(s.one_set.begin(), s.one_set.end(), true);
   bool one_set = true;
   for (int c = 0; c < model_.contact_count(); ++c) {
-    const int row = layout_->face_row_of_point[layout_->contact_slot[c] / kLanes];
+    const int pack = layout_->face_pack_of_point[layout_->contact_slot[c] / kLanes];
     const int set = properties_.of_contact[c];
-    if (&sets.law(set) != &law_of_row(row))
+    if (&sets.law(set) != &law_of_pack(pack))
       throw Error(fmt::format(
           "contact {} of interface \"{}\" has the law \"{}\", others of it have \"{}\": contacts of "
           "one interface have one law, from the start of a run to its end",
-          c, model_.interface_names[model_.contacts[c].interface], sets.law(set).name, law_of_row(row).name));
-    if (s.set_of_faces[row] < 0) s.set_of_faces[row] = set;
-    if (s.set_of_faces[row] != set) s.one_set[row] = false;
-    one_set = one_set && s.one_set[row];
+          c, model_.interface_names[model_.contacts[c].interface], sets.law(set).name,
+          law_of_pack(pack).name));
+    if (s.set_of_faces[pack] < 0) s.set_of_faces[pack] = set;
+    if (s.set_of_faces[pack] != set) s.one_set[pack] = false;
+    one_set = one_set && s.one_set[pack];
   }
   if (!one_set) place_own_constants();
   refresh_views();
 }
 
-/// Constants of each contact point, for rows of faces that have no one set.
+/// Constants of each contact point, for packs of faces that have no one set.
 template <int Dim>
 void Mechanics<Dim>::place_own_constants() {
   auto& s = storage_;
-  const auto constants = [&](int row) { return law_of_row(row).constants; };
+  const auto constants = [&](int pack) { return law_of_pack(pack).constants; };
   if (s.own_constants.empty()) {
     s.first_own_constant = FlatArray<int>(layout_->faces.size() + 1);
-    for (int row = 0; row < layout_->face_rows(); ++row)
-      s.first_own_constant[row + 1] =
-          s.first_own_constant[row] +
-          (layout_->first_point_of(row + 1) - layout_->first_point_of(row)) * constants(row);
-    s.own_constants = made<Line>(static_cast<std::size_t>(s.first_own_constant[layout_->face_rows()]));
+    for (int pack = 0; pack < layout_->face_packs(); ++pack)
+      s.first_own_constant[pack + 1] =
+          s.first_own_constant[pack] +
+          (layout_->first_point_of(pack + 1) - layout_->first_point_of(pack)) * constants(pack);
+    s.own_constants = made<Line>(static_cast<std::size_t>(s.first_own_constant[layout_->face_packs()]));
   }
   std::vector<double> numbers;
-  const auto place = [&](int row, Line* line, int lane, int set) {
-    numbers.resize(static_cast<std::size_t>(constants(row)));
-    law_of_row(row).numbers_of(s.contact_constants.data() + s.first_constant[set], numbers.data());
+  const auto place = [&](int pack, Line* line, int lane, int set) {
+    numbers.resize(static_cast<std::size_t>(constants(pack)));
+    law_of_pack(pack).numbers_of(s.contact_constants.data() + s.first_constant[set], numbers.data());
     for (const double number : numbers) line++->number[lane] = number;
   };
-  for (int row = 0; row < layout_->face_rows(); ++row)  // for idle lanes
-    for (int line = s.first_own_constant[row]; line < s.first_own_constant[row + 1]; line += constants(row))
-      for (int lane = 0; lane < kLanes; ++lane) place(row, &s.own_constants[line], lane, s.set_of_faces[row]);
+  for (int pack = 0; pack < layout_->face_packs(); ++pack)  // for idle lanes
+    for (int line = s.first_own_constant[pack]; line < s.first_own_constant[pack + 1];
+         line += constants(pack))
+      for (int lane = 0; lane < kLanes; ++lane)
+        place(pack, &s.own_constants[line], lane, s.set_of_faces[pack]);
   for (int c = 0; c < model_.contact_count(); ++c) {
-    const int slot = layout_->contact_slot[c], row = layout_->face_row_of_point[slot / kLanes];
-    place(row, lines_of(*layout_, s.own_constants, s.first_own_constant, c, constants(row)), slot % kLanes,
+    const int slot = layout_->contact_slot[c], pack = layout_->face_pack_of_point[slot / kLanes];
+    place(pack, lines_of(*layout_, s.own_constants, s.first_own_constant, c, constants(pack)), slot % kLanes,
           properties_.of_contact[c]);
   }
 }
@@ -320,8 +323,8 @@ void Mechanics<Dim>::compute_stiffness() {
   step_.passes.sum_stiffness(state_, scratch.data());
   stiffness_.resize(model_.position.size());
   for (int g = 0; g < model_.gridpoint_count(); ++g) {
-    const Vec<Dim> row = vector_at<Dim>(state_.stiffness, layout_->gridpoint_slot[g]);
-    stiffness_[g] = *std::max_element(row.c.begin(), row.c.end());
+    const Vec<Dim> pack = vector_at<Dim>(state_.stiffness, layout_->gridpoint_slot[g]);
+    stiffness_[g] = *std::max_element(pack.c.begin(), pack.c.end());
   }
   set_least_force();
 }
@@ -511,7 +514,7 @@ int Mechanics<Dim>::bundle_of(int gridpoint) const {
 template <int Dim>
 int Mechanics<Dim>::slot_in_bundle(int gridpoint) const {
   const Bundle& bundle = layout_->bundles[bundle_of(gridpoint)];
-  return layout_->gridpoint_slot[gridpoint] - slot_of(bundle.first_row, 0);
+  return layout_->gridpoint_slot[gridpoint] - slot_of(bundle.first_pack, 0);
 }
 
 /// Index of those of the gridpoint's bundle, made when there are none yet; they act from now on.
@@ -521,10 +524,10 @@ int Mechanics<Dim>::constraints_of(int gridpoint) {
   int& index = made_constraints_[b];
   if (index < 0) {
     index = static_cast<int>(storage_.constraints.size());
-    const auto first_row = storage_.constraint_rows.size();
+    const auto first_pack = storage_.constraint_packs.size();
     storage_.constraints.resize(storage_.constraints.size() + 1);
-    storage_.constraints[index].first_row = static_cast<int>(first_row);
-    storage_.constraint_rows.resize(first_row + static_cast<std::size_t>(layout_->bundles[b].rows));
+    storage_.constraints[index].first_pack = static_cast<int>(first_pack);
+    storage_.constraint_packs.resize(first_pack + static_cast<std::size_t>(layout_->bundles[b].packs));
     refresh_views();
   }
   storage_.constraints_of_bundle[b] = index;
@@ -532,9 +535,9 @@ int Mechanics<Dim>::constraints_of(int gridpoint) {
 }
 
 template <int Dim>
-ConstraintRow<Dim>& Mechanics<Dim>::constraint_row(int constraints, int gridpoint) {
+ConstraintPack<Dim>& Mechanics<Dim>::constraint_pack(int constraints, int gridpoint) {
   return storage_
-      .constraint_rows[storage_.constraints[constraints].first_row + slot_in_bundle(gridpoint) / kLanes];
+      .constraint_packs[storage_.constraints[constraints].first_pack + slot_in_bundle(gridpoint) / kLanes];
 }
 
 /// A bundle that nothing holds, drives or loads any more takes the shorter way through a step.
@@ -544,9 +547,9 @@ void Mechanics<Dim>::drop_if_free(int b) {
   if (index < 0) return;
   const BundleConstraints& constraints = storage_.constraints[index];
   if (constraints.first_tie != constraints.last_tie) return;
-  for (int row = 0; row < layout_->bundles[b].rows; ++row)
+  for (int pack = 0; pack < layout_->bundles[b].packs; ++pack)
     for (int i = 0; i < Dim; ++i) {
-      const ConstraintRow<Dim>& held = storage_.constraint_rows[constraints.first_row + row];
+      const ConstraintPack<Dim>& held = storage_.constraint_packs[constraints.first_pack + pack];
       if (held.prescribed[i] != 0) return;
       for (double force : held.applied[i])
         if (force != 0.0) return;
@@ -556,10 +559,10 @@ void Mechanics<Dim>::drop_if_free(int b) {
 
 template <int Dim>
 void Mechanics<Dim>::prescribe_velocity(int gridpoint, int component, double velocity) {
-  auto& row = constraint_row(constraints_of(gridpoint), gridpoint);
+  auto& pack = constraint_pack(constraints_of(gridpoint), gridpoint);
   const int lane = layout_->gridpoint_slot[gridpoint] % kLanes;
-  row.prescribed[component] = static_cast<std::uint8_t>(row.prescribed[component] | (1U << lane));
-  row.prescribed_velocity[component][lane] = velocity;
+  pack.prescribed[component] = static_cast<std::uint8_t>(pack.prescribed[component] | (1U << lane));
+  pack.prescribed_velocity[component][lane] = velocity;
 }
 
 template <int Dim>
@@ -567,16 +570,16 @@ bool Mechanics<Dim>::is_prescribed(int gridpoint, int component) const {
   const int index = made_constraints_[bundle_of(gridpoint)];
   if (index < 0) return false;
   const int slot = slot_in_bundle(gridpoint);
-  const auto& row = state_.constraint_rows[state_.constraints[index].first_row + slot / kLanes];
-  return (row.prescribed[component] >> (slot % kLanes) & 1U) != 0;
+  const auto& pack = state_.constraint_packs[state_.constraints[index].first_pack + slot / kLanes];
+  return (pack.prescribed[component] >> (slot % kLanes) & 1U) != 0;
 }
 
 template <int Dim>
 void Mechanics<Dim>::release(int gridpoint, int component) {
   if (made_constraints_[bundle_of(gridpoint)] < 0) return;
-  auto& row = constraint_row(constraints_of(gridpoint), gridpoint);
+  auto& pack = constraint_pack(constraints_of(gridpoint), gridpoint);
   const int lane = layout_->gridpoint_slot[gridpoint] % kLanes;
-  row.prescribed[component] = static_cast<std::uint8_t>(row.prescribed[component] & ~(1U << lane));
+  pack.prescribed[component] = static_cast<std::uint8_t>(pack.prescribed[component] & ~(1U << lane));
   drop_if_free(bundle_of(gridpoint));
 }
 
@@ -626,9 +629,9 @@ void Mechanics<Dim>::place_ties() {
 
 template <int Dim>
 void Mechanics<Dim>::apply_force(int gridpoint, const Vec<Dim>& force) {
-  auto& row = constraint_row(constraints_of(gridpoint), gridpoint);
+  auto& pack = constraint_pack(constraints_of(gridpoint), gridpoint);
   const int lane = layout_->gridpoint_slot[gridpoint] % kLanes;
-  for (int i = 0; i < Dim; ++i) row.applied[i][lane] = force[i];
+  for (int i = 0; i < Dim; ++i) pack.applied[i][lane] = force[i];
   drop_if_free(bundle_of(gridpoint));
 }
 
@@ -638,7 +641,8 @@ bool Mechanics<Dim>::break_contact(int contact) {
   bool breaks = false;
   for (const auto what : {Remembers::tension_damage, Remembers::shear_damage, Remembers::mixed_damage})
     if (const int place = place_of(law, what, Dim); place >= 0) {
-      lines_of(*layout_, storage_.history, storage_.first_history, contact, law.history(Dim).size())[place]
+      lines_of(*layout_, storage_.internals, storage_.first_internal, contact,
+               law.internals(Dim).size())[place]
           .number[layout_->contact_slot[contact] % kLanes] = 1.0;
       breaks = true;
     }
@@ -725,7 +729,7 @@ void Mechanics<Dim>::visit_array(StateVisitor& visitor, const char* name, Array&
         name, array,
         is_of_bundles ? state::within(-1, kMostOfAKind).of(array.size()) : state::within(0, kMostOfAKind));
   } else if constexpr (std::is_same_v<T, BundleConstraints> || std::is_same_v<T, Tie> ||
-                       std::is_same_v<T, ConstraintRow<Dim>>) {
+                       std::is_same_v<T, ConstraintPack<Dim>>) {
     visitor.visit_plain(name, array);
   } else if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, std::uint8_t> ||
                        std::is_same_v<T, std::byte>) {
@@ -742,19 +746,19 @@ template <int Dim>
 void Mechanics<Dim>::require_constraints(const StateVisitor& visitor) const {
   if (!visitor.checks()) return;
   const auto& s = storage_;
-  const auto rows = static_cast<std::int64_t>(s.constraint_rows.size());
+  const auto packs = static_cast<std::int64_t>(s.constraint_packs.size());
   const auto within = [](std::int64_t first, std::int64_t last, std::size_t size) {
     return 0 <= first && first <= last && last <= static_cast<std::int64_t>(size);
   };
-  std::size_t made = 0, rows_of_made = 0, tied = 0;
+  std::size_t made = 0, functions_of_made = 0, tied = 0;
   for (std::size_t b = 0; b < made_constraints_.size(); ++b)
     if (made_constraints_[b] >= 0) {
       ++made;
-      rows_of_made += static_cast<std::size_t>(layout_->bundles[b].rows);
+      functions_of_made += static_cast<std::size_t>(layout_->bundles[b].packs);
     }
   for (const TieOfBundle& tie : ties_) tied += tie.slots.size();
   visitor.require(s.constraints.size() == made, "constraints", "are not those of the bundles that have some");
-  visitor.require(s.constraint_rows.size() == rows_of_made, "constraint_rows",
+  visitor.require(s.constraint_packs.size() == functions_of_made, "constraint_packs",
                   "are not those of the bundles that have some");
   visitor.require(s.ties.size() == ties_.size(), "ties", "are not as many as those of the bundles");
   visitor.require(s.tied_slots.size() == tied, "tied_slots", "are not as many as those of the bundles");
@@ -767,8 +771,8 @@ void Mechanics<Dim>::require_constraints(const StateVisitor& visitor) const {
     visitor.require(index < static_cast<int>(s.constraints.size()), "made_constraints",
                     "names one that is not there");
     const BundleConstraints& own = s.constraints[index];
-    visitor.require(own.first_row >= 0 && own.first_row + static_cast<std::int64_t>(bundle.rows) <= rows,
-                    "constraints", "names rows that are not there");
+    visitor.require(own.first_pack >= 0 && own.first_pack + static_cast<std::int64_t>(bundle.packs) <= packs,
+                    "constraints", "names packs that are not there");
     visitor.require(within(own.first_tie, own.last_tie, s.ties.size()), "constraints",
                     "names ties that are not there");
     visitor.require(std::isfinite(own.loading_work), "constraints", "has a work that is not finite");
@@ -781,12 +785,12 @@ void Mechanics<Dim>::require_constraints(const StateVisitor& visitor) const {
         visitor.require(is_slot_of(s.tied_slots[j], bundle), "tied_slots", "names a slot of another bundle");
     }
   }
-  for (const auto& row : s.constraint_rows)
+  for (const auto& pack : s.constraint_packs)
     for (int i = 0; i < Dim; ++i)
       for (int lane = 0; lane < kLanes; ++lane)
         visitor.require(
-            std::isfinite(row.prescribed_velocity[i][lane]) && std::isfinite(row.applied[i][lane]),
-            "constraint_rows", "has a velocity or a force that is not finite");
+            std::isfinite(pack.prescribed_velocity[i][lane]) && std::isfinite(pack.applied[i][lane]),
+            "constraint_packs", "has a velocity or a force that is not finite");
   for (const TieOfBundle& tie : ties_) {
     visitor.require(made_constraints_[tie.bundle] >= 0, "ties_of_bundles",
                     "ties a bundle without constraints");
@@ -872,7 +876,7 @@ template <int Dim>
 void Mechanics<Dim>::sweep(int steps, Pass pass) {
   const bool measure = pass != Pass::move;
   const auto update_faces = [](State<Dim>& s, int first, int last, bool measured) {
-    for_each_law(s, first, last, [&](const RowFunctions<Dim>& law, int begin, int end) {
+    for_each_law(s, first, last, [&](const PackFunctions<Dim>& law, int begin, int end) {
       law.update(s, begin, end, measured);
     });
   };
@@ -925,9 +929,9 @@ Vec<Dim> Mechanics<Dim>::applied_force(int gridpoint) const {
   const int index = made_constraints_[bundle_of(gridpoint)];
   if (index < 0) return {};
   const int slot = slot_in_bundle(gridpoint);
-  const auto& row = state_.constraint_rows[state_.constraints[index].first_row + slot / kLanes];
+  const auto& pack = state_.constraint_packs[state_.constraints[index].first_pack + slot / kLanes];
   Vec<Dim> force;
-  for (int i = 0; i < Dim; ++i) force[i] = row.applied[i][slot % kLanes];
+  for (int i = 0; i < Dim; ++i) force[i] = pack.applied[i][slot % kLanes];
   return force;
 }
 
@@ -1005,7 +1009,8 @@ double Mechanics<Dim>::remembered(int contact, Remembers what) const {
   const LawTable& law = law_of(contact);
   const int place = place_of(law, what, Dim);
   if (place < 0) return 0.0;
-  return lines_of(*layout_, state_.history, state_.first_history, contact, law.history(Dim).size())[place]
+  return lines_of(*layout_, state_.internals, state_.first_internal, contact,
+                  law.internals(Dim).size())[place]
       .number[layout_->contact_slot[contact] % kLanes];
 }
 
@@ -1020,7 +1025,7 @@ ContactState<Dim> Mechanics<Dim>::contact(int contact) const {
     for (double& number : numbers) number = line++->number[lane];
     return numbers;
   };
-  state.history = values(state_.history, state_.first_history, state.law->history(Dim).size());
+  state.internals = values(state_.internals, state_.first_internal, state.law->internals(Dim).size());
   state.losses = values(state_.loss, state_.first_loss, state.law->losses.size());
   const auto frame = frame_of_forces(contact);
   const Vec<Dim> u = jump_of_forces(contact);
@@ -1029,10 +1034,10 @@ ContactState<Dim> Mechanics<Dim>::contact(int contact) const {
   // the law at the jump that it was last taken to gives the tractions again
   std::array<double, Dim> jump{state.opening};
   for (int i = 0; i + 1 < Dim; ++i) jump[i + 1] = state.tangential_jump[i];
-  auto history = state.history, losses = state.losses;
+  auto internals = state.internals, losses = state.losses;
   const PointResponse response =
       state.law->update(Dim)(state_.contact_constants.data() + state_.first_constant[set], jump.data(),
-                             history.data(), losses.data());
+                             internals.data(), losses.data());
   state.normal_traction = response.normal_traction;
   for (int i = 0; i + 1 < Dim; ++i) state.shear_traction[i] = response.shear_traction[i];
   state.stored = response.stored;
@@ -1042,14 +1047,14 @@ ContactState<Dim> Mechanics<Dim>::contact(int contact) const {
 template <int Dim>
 double ContactState<Dim>::remembered(Remembers what) const {
   const int place = place_of(*law, what, Dim);
-  return place < 0 ? 0.0 : history[place];
+  return place < 0 ? 0.0 : internals[place];
 }
 
 template <int Dim>
 double ContactState<Dim>::remembered(std::string_view name) const {
-  const auto infos = law->history(Dim);
+  const auto infos = law->internals(Dim);
   for (std::size_t i = 0; i < infos.size(); ++i)
-    if (infos[i].name == name) return history[i];
+    if (infos[i].name == name) return internals[i];
   return 0.0;
 }
 
@@ -1163,11 +1168,11 @@ Dissipation Mechanics<Dim>::dissipated() const {
       const auto found = std::ranges::find(dissipations_, std::string_view(loss.name));
       of_law.push_back(found == dissipations_.end() ? -1 : static_cast<int>(found - dissipations_.begin()));
     }
-  const Sums sums = chunked_sum<Sums>(layout_->chunks.face_rows, [&](int row, Sums& sum) {
-    const Line* line = state_.loss.data() + state_.first_loss[row];
-    for (int point = layout_->first_point_of(row); point < layout_->first_point_of(row + 1); ++point) {
+  const Sums sums = chunked_sum<Sums>(layout_->chunks.face_packs, [&](int pack, Sums& sum) {
+    const Line* line = state_.loss.data() + state_.first_loss[pack];
+    for (int point = layout_->first_point_of(pack); point < layout_->first_point_of(pack + 1); ++point) {
       const double* const area = layout_->points[point].area;
-      for (const int place : places[state_.law_of_faces[row]]) {
+      for (const int place : places[state_.law_of_faces[pack]]) {
         if (place >= 0)
           for (int lane = 0; lane < kLanes; ++lane) sum.energy[place] += line->number[lane] * area[lane];
         ++line;
@@ -1219,7 +1224,8 @@ EnergyLedger Mechanics<Dim>::energy() const {
   e.local_damping = sums.local_damping;
   e.viscous_damping = sums.viscous_damping;
   e.loading = sums.loading;
-  e.contacts = chunked_sum(layout_->chunks.face_rows, [&](int row) { return state_.face_sums[row].stored; });
+  e.contacts =
+      chunked_sum(layout_->chunks.face_packs, [&](int pack) { return state_.face_sums[pack].stored; });
   e.dissipated = dissipated();
   // weights are constant, so their work follows from the way made
   if (state_.weighs())
@@ -1241,7 +1247,7 @@ double Mechanics<Dim>::unbalanced_ratio() const {
       chunked_sum(layout_->chunks.bundles, [&](int b) { return state_.bundle_sums[b].unbalanced; });
   const double applied =
       chunked_sum(layout_->chunks.bundles, [&](int b) { return state_.bundle_sums[b].applied; }) +
-      chunked_sum(layout_->chunks.face_rows, [&](int row) { return state_.face_sums[row].applied; });
+      chunked_sum(layout_->chunks.face_packs, [&](int pack) { return state_.face_sums[pack].applied; });
   return unbalanced / std::max(applied, least_force_);
 }
 

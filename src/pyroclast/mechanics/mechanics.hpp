@@ -11,6 +11,7 @@
 #include "pyroclast/laws/contact_properties.hpp"
 #include "pyroclast/material/creep.hpp"
 #include "pyroclast/mechanics/compiled_step.hpp"
+#include "pyroclast/mechanics/energy_ledger.hpp"
 #include "pyroclast/mechanics/state.hpp"
 #include "pyroclast/mechanics/sweep.hpp"
 #include "pyroclast/model/model.hpp"
@@ -40,59 +41,11 @@ struct MechanicsParameters {
   int zones_for_a_thread = 500;  ///< with fewer a thread waits longer at barriers than it saves
 };
 
-/// What the energy that zones lose by creep is called.
-inline constexpr std::string_view kCreep = "creep";
-
-/// Energies lost for good, J: at contacts, by what their laws call them, and by creep of zones.
-struct Dissipation {
-  std::vector<std::string_view> names;
-  std::vector<double> energies;  ///< likewise
-
-  /// 0 where no law has that name.
-  double of(std::string_view name) const;
-  double total() const;
-};
-
-/// Where the energy of a body went since the start, J. Work in = everything else; the rest is the ledger's
-/// error.
-struct EnergyLedger {
-  // put in
-  double loading = 0.0;  ///< work of prescribed motion and applied forces
-  double gravity = 0.0;
-  /// Change of stored and dissipated energy when properties or thermal strains change.
-  double property_change = 0.0;
-  double mass_scaling = 0.0;  ///< change of kinetic energy when scaled masses follow the stiffness
-  // held
-  double zones = 0.0;     ///< elastic, in zones
-  double contacts = 0.0;  ///< elastic, in contacts
-  double kinetic = 0.0;
-  // lost
-  Dissipation dissipated;
-  double local_damping = 0.0;
-  double viscous_damping = 0.0;
-
-  double work_in() const { return loading + gravity + property_change + mass_scaling; }
-  double accounted() const {
-    return zones + contacts + kinetic + dissipated.total() + local_damping + viscous_damping;
-  }
-  double error() const { return work_in() - accounted(); }
-  /// 0 where nothing is strained.
-  double kinetic_over_elastic() const {
-    const double elastic = zones + contacts;
-    return elastic > 0.0 ? std::abs(kinetic) / elastic : 0.0;
-  }
-  /// What the error is measured by: all that was put in or taken out, each by its size. A change of
-  /// properties takes stored energy out where a body softens, so that work_in alone may be near zero.
-  double turnover() const {
-    return std::abs(loading) + std::abs(gravity) + std::abs(property_change) + std::abs(mass_scaling);
-  }
-};
-
 /// State of one contact point at the displacements that the last forces belong to.
 template <int Dim>
 struct ContactState {
   const LawTable* law = nullptr;
-  std::vector<double> history;        ///< in the order of `law->history(Dim)`
+  std::vector<double> internals;      ///< in the order of `law->internals(Dim)`
   std::vector<double> losses;         ///< since the start, in the order of `law->losses`
   double opening = 0.0;               ///< u_n, m
   Tangential<Dim> tangential_jump{};  ///< u_s, m
@@ -224,7 +177,7 @@ class Mechanics {
   const LawTable& law_of(int contact) const {
     return properties_.contacts.law(properties_.of_contact[contact]);
   }
-  /// Of a contact's history; 0 where its law remembers no such thing.
+  /// Of a contact's internal variables; 0 where its law remembers no such thing.
   double remembered(int contact, Remembers what) const;
   /// What the laws of this body call the energies that they lose.
   const std::vector<std::string_view>& dissipations() const { return dissipations_; }
@@ -292,7 +245,7 @@ class Mechanics {
 
   void list_laws();
   void place_model();
-  void place_histories();
+  void place_internals();
   void place_properties();
   void place_creep_strain();
   void name_dissipations();
@@ -325,11 +278,11 @@ class Mechanics {
   void require_constraints(const StateVisitor& visitor) const;
   int constraints_of(int gridpoint);
   void drop_if_free(int bundle);
-  ConstraintRow<Dim>& constraint_row(int constraints, int gridpoint);
+  ConstraintPack<Dim>& constraint_pack(int constraints, int gridpoint);
   int slot_in_bundle(int gridpoint) const;
   int bundle_of(int gridpoint) const;
   void sweep(int steps, Pass pass);
-  const LawTable& law_of_row(int face_row) const { return *laws_[storage_.law_of_faces[face_row]]; }
+  const LawTable& law_of_pack(int face_pack) const { return *laws_[storage_.law_of_faces[face_pack]]; }
   Vec<Dim> jump_of_forces(int contact) const;
   Vec<Dim> displacement_of_force(int gridpoint) const;
   Dissipation dissipated() const;
@@ -347,8 +300,8 @@ class Mechanics {
   State<Dim> state_;  ///< sees layout and storage
   StepFunctions<Dim> step_;
   std::vector<const LawTable*> laws_;
-  std::vector<RowFunctions<Dim>> law_functions_;  ///< of each law, by step_; the state sees them
-  std::vector<Worker> workers_;                   ///< by thread
+  std::vector<PackFunctions<Dim>> law_functions_;  ///< of each law, by step_; the state sees them
+  std::vector<Worker> workers_;                    ///< by thread
   std::vector<std::string_view> dissipations_;
 
   std::vector<int> made_constraints_;  ///< of each bundle that was ever held, driven or loaded; else -1

@@ -17,31 +17,31 @@ enum class DampingForm : std::uint8_t {
             ///< damping)
 };
 
-/// Vectors of the gridpoints of a row, component by component.
+/// Vectors of the gridpoints of a pack, component by component.
 template <int Dim>
-struct alignas(64) VectorRow {
+struct alignas(64) VectorPack {
   double c[Dim][kLanes];
 };
 
-/// The vector of a slot in an array of rows.
+/// The vector of a slot in an array of packs.
 template <int Dim>
-Vec<Dim> vector_at(ConstView<VectorRow<Dim>> rows, int slot) {
+Vec<Dim> vector_at(ConstView<VectorPack<Dim>> packs, int slot) {
   Vec<Dim> v;
-  for (int i = 0; i < Dim; ++i) v[i] = rows[slot / kLanes].c[i][slot % kLanes];
+  for (int i = 0; i < Dim; ++i) v[i] = packs[slot / kLanes].c[i][slot % kLanes];
   return v;
 }
 template <int Dim>
-void set_vector(View<VectorRow<Dim>> rows, int slot, const Vec<Dim>& v) {
-  for (int i = 0; i < Dim; ++i) rows[slot / kLanes].c[i][slot % kLanes] = v[i];
+void set_vector(View<VectorPack<Dim>> packs, int slot, const Vec<Dim>& v) {
+  for (int i = 0; i < Dim; ++i) packs[slot / kLanes].c[i][slot % kLanes] = v[i];
 }
 
-struct alignas(64) ZonePropertyRow {
+struct alignas(64) ZonePropertyPack {
   double lambda[kLanes], mu[kLanes], thermal_strain[kLanes];
 };
 
 /// Symmetric tensors of eight zones, component by component.
 template <int Dim>
-struct alignas(64) TensorRow {
+struct alignas(64) TensorPack {
   double component[std::tuple_size_v<SymmetricTensor<Dim>>][kLanes];
 };
 
@@ -50,9 +50,9 @@ struct alignas(64) Line {
   double number[kLanes];
 };
 
-/// What holds, drives or loads the gridpoints of a row.
+/// What holds, drives or loads the gridpoints of a pack.
 template <int Dim>
-struct alignas(64) ConstraintRow {
+struct alignas(64) ConstraintPack {
   double prescribed_velocity[Dim][kLanes];   ///< m/s
   double applied[Dim][kLanes];               ///< N
   std::array<std::uint8_t, Dim> prescribed;  ///< by component, a bit a lane
@@ -66,7 +66,7 @@ struct Tie {
 
 /// What holds, drives or loads a bundle.
 struct BundleConstraints {
-  int first_row = 0;                ///< entry of constraint_rows, one for each row of gridpoints
+  int first_pack = 0;               ///< entry of constraint_packs, one for each pack of gridpoints
   int first_tie = 0, last_tie = 0;  ///< entries of ties: [first, last)
   double loading_work = 0.0;        ///< of the reactions and applied forces, J
 };
@@ -81,7 +81,7 @@ struct BundleSums {
   double unbalanced = 0.0;  ///< of the magnitudes of the sums of forces, N
 };
 
-/// Sums over a row of faces.
+/// Sums over a pack of faces.
 struct FaceSums {
   double stored = 0.0;   ///< J
   double applied = 0.0;  ///< sum of the magnitudes of contact forces, N
@@ -91,36 +91,36 @@ struct FaceSums {
 /// Every array of a state, owned (FlatArray) or seen (View).
 template <int Dim, template <class> class Array>
 struct StateArrays {
-  Array<VectorRow<Dim>> position, velocity;
-  Array<VectorRow<Dim>> force;             ///< sum at the last step, N
-  Array<VectorRow<Dim>> stiffness;         ///< sum of |stiffness| over each row of the assembled matrix, N/m
-  Array<Vec<Dim>> gathered_position;       ///< by slot: zones of spread blocks gather from it, m
-  Array<Vec<Dim>> displacement;            ///< by slot: faces gather from it
-  Array<double> step_over_mass;            ///< by slot, s/kg; where idle any finite number
-  Array<double> real_mass;                 ///< by slot, which gravity acts on, kg; empty where there is none
-  Array<ZonePropertyRow> zone_properties;  ///< by row of zones, or by bundle
-  /// By row of zones, in the zones' own frames: free strain beside the thermal one. Empty where none creeps.
-  Array<TensorRow<Dim>> creep_strain;
+  Array<VectorPack<Dim>> position, velocity;
+  Array<VectorPack<Dim>> force;             ///< sum at the last step, N
+  Array<VectorPack<Dim>> stiffness;          ///< sum of |stiffness| over each row of the assembled matrix, N/m
+  Array<Vec<Dim>> gathered_position;        ///< by slot: zones of spread blocks gather from it, m
+  Array<Vec<Dim>> displacement;             ///< by slot: faces gather from it
+  Array<double> step_over_mass;             ///< by slot, s/kg; where idle any finite number
+  Array<double> real_mass;                  ///< by slot, which gravity acts on, kg; empty where there is none
+  Array<ZonePropertyPack> zone_properties;  ///< by pack of zones, or by bundle
+  /// By pack of zones, in the zones' own frames: free strain beside the thermal one. Empty where none creeps.
+  Array<TensorPack<Dim>> creep_strain;
 
-  // Contact points. Those of a row of faces have one law; each list holds what that law has, a line for eight
-  // points, and nothing for a law that has none. A step touches losses only where something is lost.
-  Array<std::uint8_t> law_of_faces;    ///< by row of faces: entry of `State::laws`
-  Array<Line> history, loss;           ///< of each row of points in turn
-  Array<int> first_history;            ///< of each row of faces, and one more: its first line
+  // Contact points. Those of a pack of faces have one law; each list holds what that law has, a line for
+  // eight points, and nothing for a law that has none. A step touches losses only where something is lost.
+  Array<std::uint8_t> law_of_faces;    ///< by pack of faces: entry of `State::laws`
+  Array<Line> internals, loss;         ///< of each pack of points in turn
+  Array<int> first_internal;           ///< of each pack of faces, and one more: its first line
   Array<int> first_loss;               ///< likewise
-  Array<bool> losing;                  ///< by row of points: something was lost in the last step
+  Array<bool> losing;                  ///< by pack of points: something was lost in the last step
   Array<Vec<Dim>> contact_force;       ///< on side a, by slot: gridpoints gather from it, N
   Array<Vec<Dim>> turning_force;       ///< on both sides, by slot; finite kinematics only, N
   Array<std::byte> contact_constants;  ///< of each set in turn
   Array<int> first_constant;           ///< of each set, a byte
-  Array<int> set_of_faces;             ///< by row of faces; where lanes differ its choices only
-  Array<bool> one_set;                 ///< by row of faces: all its points share one set
-  Array<Line> own_constants;           ///< of each row of points in turn, if any row of faces has no one set
-  Array<int> first_own_constant;       ///< of each row of faces: its first line
+  Array<int> set_of_faces;             ///< by pack of faces; where lanes differ its choices only
+  Array<bool> one_set;                 ///< by pack of faces: all its points share one set
+  Array<Line> own_constants;      ///< of each pack of points in turn, if any pack of faces has no one set
+  Array<int> first_own_constant;  ///< of each pack of faces: its first line
 
   Array<int> constraints_of_bundle;  ///< -1 where nothing holds, drives or loads it now
   Array<BundleConstraints> constraints;
-  Array<ConstraintRow<Dim>> constraint_rows;
+  Array<ConstraintPack<Dim>> constraint_packs;
   Array<Tie> ties;
   Array<int> tied_slots;
 
@@ -129,39 +129,47 @@ struct StateArrays {
 
   template <class F, class... S>
   static void each(F&& f, S&... s) {
-    f(ArrayInfo{"position", Touched::alike}, s.position...);
-    f(ArrayInfo{"velocity", Touched::all, Touched::all, Lasts::kept}, s.velocity...);
-    f(ArrayInfo{"force", Touched::combined, Touched::all, Lasts::kept}, s.force...);
-    f(ArrayInfo{"stiffness"}, s.stiffness...);
-    f(ArrayInfo{"gathered_position", Touched::gathered}, s.gathered_position...);
-    f(ArrayInfo{"displacement", Touched::all, Touched::all, Lasts::kept}, s.displacement...);
-    f(ArrayInfo{"step_over_mass", Touched::all}, s.step_over_mass...);
-    f(ArrayInfo{"real_mass", Touched::all}, s.real_mass...);
-    f(ArrayInfo{"zone_properties", Touched::all}, s.zone_properties...);
-    f(ArrayInfo{"creep_strain", Touched::all}, s.creep_strain...);
-    f(ArrayInfo{"law_of_faces", Touched::all}, s.law_of_faces...);
-    f(ArrayInfo{"history", Touched::all, Touched::held, Lasts::kept}, s.history...);
-    f(ArrayInfo{"loss", Touched::none, Touched::none, Lasts::kept}, s.loss...);
-    f(ArrayInfo{"first_history", Touched::all}, s.first_history...);
-    f(ArrayInfo{"first_loss", Touched::all}, s.first_loss...);
-    f(ArrayInfo{"losing", Touched::none, Touched::all, Lasts::a_step}, s.losing...);
-    f(ArrayInfo{"contact_force", Touched::all, Touched::all, Lasts::a_step},
+    f(ArrayInfo{"position", Per::gridpoint_pack, Touched::alike}, s.position...);
+    f(ArrayInfo{"velocity", Per::gridpoint_pack, Touched::all, Touched::all, Lasts::kept}, s.velocity...);
+    f(ArrayInfo{"force", Per::gridpoint_pack, Touched::combined, Touched::all, Lasts::kept}, s.force...);
+    f(ArrayInfo{"stiffness", Per::gridpoint_pack}, s.stiffness...);
+    f(ArrayInfo{"gathered_position", Per::gridpoint_slot, Touched::gathered}, s.gathered_position...);
+    f(ArrayInfo{"displacement", Per::gridpoint_slot, Touched::all, Touched::all, Lasts::kept,
+                HeldBy::owner_and_halo},
+      s.displacement...);
+    f(ArrayInfo{"step_over_mass", Per::gridpoint_slot, Touched::all}, s.step_over_mass...);
+    f(ArrayInfo{"real_mass", Per::gridpoint_slot, Touched::all}, s.real_mass...);
+    f(ArrayInfo{"zone_properties", Per::zone_pack_or_bundle, Touched::all}, s.zone_properties...);
+    f(ArrayInfo{"creep_strain", Per::zone_pack, Touched::all}, s.creep_strain...);
+    f(ArrayInfo{"law_of_faces", Per::face_pack, Touched::all}, s.law_of_faces...);
+    f(ArrayInfo{"internals", Per::entry, Touched::all, Touched::held, Lasts::kept}, s.internals...);
+    f(ArrayInfo{"loss", Per::entry, Touched::none, Touched::none, Lasts::kept}, s.loss...);
+    f(ArrayInfo{"first_internal", Per::face_pack_end, Touched::all}, s.first_internal...);
+    f(ArrayInfo{"first_loss", Per::face_pack_end, Touched::all}, s.first_loss...);
+    f(ArrayInfo{"losing", Per::point_pack, Touched::none, Touched::all, Lasts::a_step}, s.losing...);
+    f(ArrayInfo{"contact_force", Per::point_slot, Touched::all, Touched::all, Lasts::a_step,
+                HeldBy::owner_and_halo},
       s.contact_force...);  // read where it is summed
-    f(ArrayInfo{"turning_force", Touched::all, Touched::all, Lasts::a_step}, s.turning_force...);
-    f(ArrayInfo{"contact_constants"}, s.contact_constants...);  // few, and always near
-    f(ArrayInfo{"first_constant"}, s.first_constant...);
-    f(ArrayInfo{"set_of_faces", Touched::all}, s.set_of_faces...);
-    f(ArrayInfo{"one_set", Touched::all}, s.one_set...);
-    f(ArrayInfo{"own_constants", Touched::all}, s.own_constants...);
-    f(ArrayInfo{"first_own_constant", Touched::all}, s.first_own_constant...);
-    f(ArrayInfo{"constraints_of_bundle", Touched::all, Touched::none, Lasts::kept},
+    f(ArrayInfo{"turning_force", Per::point_slot, Touched::all, Touched::all, Lasts::a_step,
+                HeldBy::owner_and_halo},
+      s.turning_force...);
+    f(ArrayInfo{"contact_constants", Per::entry, Touched::none, Touched::none, Lasts::made, HeldBy::all},
+      s.contact_constants...);  // few, and always near
+    f(ArrayInfo{"first_constant", Per::entry, Touched::none, Touched::none, Lasts::made, HeldBy::all},
+      s.first_constant...);
+    f(ArrayInfo{"set_of_faces", Per::face_pack, Touched::all}, s.set_of_faces...);
+    f(ArrayInfo{"one_set", Per::face_pack, Touched::all}, s.one_set...);
+    f(ArrayInfo{"own_constants", Per::entry, Touched::all}, s.own_constants...);
+    f(ArrayInfo{"first_own_constant", Per::face_pack_end, Touched::all}, s.first_own_constant...);
+    f(ArrayInfo{"constraints_of_bundle", Per::bundle, Touched::all, Touched::none, Lasts::kept},
       s.constraints_of_bundle...);
-    f(ArrayInfo{"constraints", Touched::all, Touched::all, Lasts::kept}, s.constraints...);
-    f(ArrayInfo{"constraint_rows", Touched::all, Touched::none, Lasts::kept}, s.constraint_rows...);
-    f(ArrayInfo{"ties", Touched::all, Touched::none, Lasts::kept}, s.ties...);
-    f(ArrayInfo{"tied_slots", Touched::all, Touched::none, Lasts::kept}, s.tied_slots...);
-    f(ArrayInfo{"bundle_sums", Touched::all, Touched::all, Lasts::kept}, s.bundle_sums...);
-    f(ArrayInfo{"face_sums", Touched::none, Touched::none, Lasts::kept}, s.face_sums...);
+    f(ArrayInfo{"constraints", Per::entry, Touched::all, Touched::all, Lasts::kept}, s.constraints...);
+    f(ArrayInfo{"constraint_packs", Per::entry, Touched::all, Touched::none, Lasts::kept},
+      s.constraint_packs...);
+    f(ArrayInfo{"ties", Per::entry, Touched::all, Touched::none, Lasts::kept}, s.ties...);
+    f(ArrayInfo{"tied_slots", Per::entry, Touched::all, Touched::none, Lasts::kept}, s.tied_slots...);
+    f(ArrayInfo{"bundle_sums", Per::bundle, Touched::all, Touched::all, Lasts::kept}, s.bundle_sums...);
+    f(ArrayInfo{"face_sums", Per::face_pack, Touched::none, Touched::none, Lasts::kept}, s.face_sums...);
   }
 };
 
@@ -181,9 +189,9 @@ struct State;
 
 struct LawTable;
 
-/// What a law does to rows of faces that have it, compiled for one instruction set.
+/// What a law does to packs of faces that have it, compiled for one instruction set.
 template <int Dim>
-struct RowFunctions {
+struct PackFunctions {
   /// Takes their contact points through the law, from jumps to forces.
   void (*update)(State<Dim>&, int first, int last, bool measure);
   /// Puts the sums of |stiffness| over the rows of the contacts' matrix where their forces stand, N/m.
@@ -194,7 +202,7 @@ struct RowFunctions {
 template <int Dim>
 struct State : StepParameters<Dim>, StateArrays<Dim, View> {
   LayoutArrays<Dim, ConstView> layout;
-  const RowFunctions<Dim>* laws = nullptr;  ///< of the body
+  const PackFunctions<Dim>* laws = nullptr;  ///< of the body
 
   bool weighs() const { return !this->real_mass.empty(); }
 };
@@ -216,11 +224,11 @@ enum class Pass : std::uint8_t {
   measure            ///< forces and their sums, without motion
 };
 
-/// The passes of the step, compiled for one instruction set; rows of faces are compiled with their law.
+/// The passes of the step, compiled for one instruction set; packs of faces are compiled with their law.
 template <int Dim>
 struct StepPasses {
   /// Sums the forces of bundles and moves their gridpoints.
-  /// \param scratch  2 Dim kLanes numbers for every row of the largest bundle, aligned to 64 bytes
+  /// \param scratch  2 Dim kLanes numbers for every pack of the largest bundle, aligned to 64 bytes
   void (*move_bundles)(State<Dim>&, int first, int last, Pass, double* scratch);
   /// Works out `State::stiffness`; leaves the contact forces unset until faces are updated.
   void (*sum_stiffness)(State<Dim>&, double* scratch);
@@ -241,15 +249,15 @@ struct ByDimension {
   }
 };
 
-/// Calls `f(functions, first, last)` for runs of rows of faces that have one law.
+/// Calls `f(functions, first, last)` for runs of packs of faces that have one law.
 template <int Dim, class F>
 void for_each_law(const State<Dim>& s, int first, int last, F f) {
-  for (int row = first; row < last;) {
-    const auto law = s.law_of_faces[row];
-    int end = row + 1;
+  for (int pack = first; pack < last;) {
+    const auto law = s.law_of_faces[pack];
+    int end = pack + 1;
     while (end < last && s.law_of_faces[end] == law) ++end;
-    f(s.laws[law], row, end);
-    row = end;
+    f(s.laws[law], pack, end);
+    pack = end;
   }
 }
 

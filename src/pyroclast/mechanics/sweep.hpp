@@ -13,13 +13,13 @@ struct IndexRange {
 /// What one thread does in a step.
 ///
 /// Threads share the bundles out along the body. Faces between bundles of two threads are done first; once
-/// they all are, each thread sweeps through its own: rows of faces, then the bundles whose faces are all
+/// they all are, each thread sweeps through its own: packs of faces, then the bundles whose faces are all
 /// done, while they are still near in the cache.
 struct Share {
   struct Stride {
     IndexRange faces, bundles;
   };
-  std::vector<IndexRange> crossing;  ///< rows of faces at other threads' bundles
+  std::vector<IndexRange> crossing;  ///< packs of faces at other threads' bundles
   std::vector<Stride> strides;
 };
 

@@ -168,9 +168,9 @@ std::vector<std::string> flags_of(InstructionSet set) {
 std::string source_of(const fs::path& header, const std::string& type, const LawCompiler& compiler) {
   const auto set = static_cast<std::size_t>(compiler.instructions);
   const auto dimensions = compiler.dimension == 2 ? "plane" : "space";
-  std::string rows[kInstructionSets]{"nullptr", "nullptr", "nullptr"};
-  rows[set] = fmt::format("&pyroclast::Compiled<pyroclast::{}, {}, pyroclast::Dimensions::{}>::law",
-                          build_settings::kTypeOfSet[set], type, dimensions);
+  std::string packs[kInstructionSets]{"nullptr", "nullptr", "nullptr"};
+  packs[set] = fmt::format("&pyroclast::Compiled<pyroclast::{}, {}, pyroclast::Dimensions::{}>::law",
+                           build_settings::kTypeOfSet[set], type, dimensions);
   return fmt::format(R"(// Written by pyroclast to compile a contact law.
 #include {0}
 
@@ -179,12 +179,12 @@ std::string source_of(const fs::path& header, const std::string& type, const Law
 
 extern "C" [[gnu::visibility("default")]] const pyroclast_law* pyroclast_law_v1() {{
   static const pyroclast_law law = pyroclast::describe_law<{1}, pyroclast::Dimensions::{2}>(
-      "{3}", pyroclast::LawRows{{{{{4}, {5}, {6}}}}});
+      "{3}", pyroclast::CompiledForSets{{{{{4}, {5}, {6}}}}});
   return &law;
 }}
 )",
                      fmt::format("\"{}\"", header.string()), type, dimensions, build_settings::kVersion,
-                     rows[0], rows[1], rows[2]);
+                     packs[0], packs[1], packs[2]);
 }
 
 }  // namespace

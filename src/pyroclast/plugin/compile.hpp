@@ -13,7 +13,7 @@ struct LawCompiler {
   std::string program = "c++";  ///< the system's compiler
   /// Folder of the shared objects that were compiled before; only its owner may read and write it.
   std::filesystem::path cache;
-  /// That the rows are compiled for.
+  /// That the packs are compiled for.
   InstructionSet instructions = best_instruction_set();
   int dimension = 2;  ///< of the bodies that it is compiled for
   /// Is shown the command before it is run.

@@ -13,7 +13,7 @@
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/shown.hpp"
 #include "pyroclast/laws/registry.hpp"
-#include "pyroclast/plugin/load.hpp"
+#include "pyroclast/plugin/open.hpp"
 
 namespace pyroclast {
 
@@ -31,7 +31,7 @@ fs::path cache_folder() {
 }
 
 /// A law of one's own that bears the name of one of the program would be taken for that.
-const LawTable& with_own_name(const LoadedLaw& law) {
+const LawTable& with_own_name(const OpenedLaw& law) {
   for (const LawTable* own : built_in_laws())
     if (std::string_view(own->name) == law.table.name)
       throw Error(fmt::format(
@@ -78,14 +78,14 @@ const LawTable& law_of_header(const fs::path& header, std::string type, const La
   require_type(header, type);
   require_code(header, files_of_header(header), sources, named);
   return with_own_name(
-      load_law(compile_law(header, type, sources.compiler), {fs::canonical(header), std::move(text)}));
+      open_law(compile_law(header, type, sources.compiler), {fs::canonical(header), std::move(text)}));
 }
 
 const LawTable& law_of_object(const fs::path& file, const LawSources& sources, bool named) {
   if (!fs::exists(file))
     throw Error(fmt::format("{}: there is no such shared object of a contact law", file.string()));
   require_code(file, {file}, sources, named);
-  const LoadedLaw& law = load_law(file);
+  const OpenedLaw& law = open_law(file);
   if (const int dim = sources.compiler.dimension; !includes(law.dimensions, dim))
     throw Error(fmt::format("{}: the contact law \"{}\" is made for bodies in {}D, not in {}D", file.string(),
                             law.table.name, dim == 2 ? 3 : 2, dim));

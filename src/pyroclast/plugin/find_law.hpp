@@ -38,7 +38,7 @@ struct LawSources {
 ///
 /// Relative paths are taken from the folder of the deck. The law lives as long as the process.
 /// Throws CodeNotAllowed where it is code that the user did not allow, and Error when there is no such law,
-/// or it is refused (load_law, compile_law). \param named  the command line or a script names it, and no
+/// or it is refused (open_law, compile_law). \param named  the command line or a script names it, and no
 /// file; so it does what lies in the folders
 PYROCLAST_LASTING const LawTable& find_law(std::string_view stated, const std::filesystem::path& deck_folder,
                                            const LawSources& sources, bool named = false);

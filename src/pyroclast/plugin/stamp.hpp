@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "pyroclast/laws/table.hpp"
-#include "pyroclast/mechanics/law_rows.hpp"
+#include "pyroclast/mechanics/compiled_for_sets.hpp"
 #include "pyroclast/mechanics/state.hpp"
 
 /// What a shared object with a contact law hands over, seen from both sides. Only plain data and functions
@@ -24,8 +24,8 @@ struct pyroclast_law {
   const char* compiler;  ///< recorded, not compared
 
   pyroclast::Dimensions dimensions;
-  const pyroclast::LawTable* table;  ///< its rows are those below
-  pyroclast::LawRows rows;
+  const pyroclast::LawTable* table;  ///< its packs are those below
+  pyroclast::CompiledForSets compiled;
   pyroclast::ArithmeticProbe probe;  ///< of what is compiled for any processor
   const void* device;                ///< for a compilation for other processors; null so far
 };
@@ -62,7 +62,7 @@ class LayoutHash {
   std::uint64_t hash_ = 0xcbf29ce484222325U;
 };
 
-/// What the rows of a law see of a body: the place of every array and number, and the size of their items.
+/// What the packs of a law see of a body: the place of every array and number, and the size of their items.
 /// \tparam S  what they see, another than the state in tests
 template <int Dim, class S = State<Dim>>
 void add_state(LayoutHash& hash) {
@@ -80,8 +80,8 @@ void add_state(LayoutHash& hash) {
            place(s.thickness), place(s.laws), sizeof(Kinematics), static_cast<int>(Kinematics::finite));
   for_each_array(add_array, s);
   for_each_array(add_array, s.layout);
-  using Faces = FaceRow<Dim>;
-  hash.add(sizeof(Faces), offsetof(Faces, tangent), sizeof(VectorRow<Dim>), sizeof(Vec<Dim>));
+  using Faces = FacePack<Dim>;
+  hash.add(sizeof(Faces), offsetof(Faces, tangent), sizeof(VectorPack<Dim>), sizeof(Vec<Dim>));
 }
 
 /// Differs where the two sides of a shared object would read each other's data wrongly.
@@ -89,19 +89,19 @@ inline std::uint64_t layout_hash() {
   LayoutHash hash;
   add_state<2>(hash);
   add_state<3>(hash);
-  hash.add(sizeof(PointRow), offsetof(PointRow, area), offsetof(PointRow, a), offsetof(PointRow, b));
+  hash.add(sizeof(PointPack), offsetof(PointPack, area), offsetof(PointPack, a), offsetof(PointPack, b));
   hash.add(sizeof(FaceSums), offsetof(FaceSums, stored), offsetof(FaceSums, applied),
            offsetof(FaceSums, jump));
   hash.add(sizeof(Line), kLanes, kInstructionSets);
-  hash.add(sizeof(RowFunctions<2>), offsetof(RowFunctions<2>, update),
-           offsetof(RowFunctions<2>, place_stiffness), sizeof(CompiledLaw), offsetof(CompiledLaw, rows),
-           offsetof(ByDimension<RowFunctions>, in_2d), offsetof(ByDimension<RowFunctions>, in_3d),
-           offsetof(CompiledLaw, probe), sizeof(LawRows));
+  hash.add(sizeof(PackFunctions<2>), offsetof(PackFunctions<2>, update),
+           offsetof(PackFunctions<2>, place_stiffness), sizeof(CompiledLaw), offsetof(CompiledLaw, packs),
+           offsetof(ByDimension<PackFunctions>, in_2d), offsetof(ByDimension<PackFunctions>, in_3d),
+           offsetof(CompiledLaw, probe), sizeof(CompiledForSets));
   hash.add(sizeof(LawTable), offsetof(LawTable, name), offsetof(LawTable, meaning),
-           offsetof(LawTable, properties), offsetof(LawTable, choices), offsetof(LawTable, history_of),
+           offsetof(LawTable, properties), offsetof(LawTable, choices), offsetof(LawTable, internals_of),
            offsetof(LawTable, losses), offsetof(LawTable, size), offsetof(LawTable, constants),
            offsetof(LawTable, derive), offsetof(LawTable, numbers_of), offsetof(LawTable, check),
-           offsetof(LawTable, stiffness), offsetof(LawTable, update_of), offsetof(LawTable, rows));
+           offsetof(LawTable, stiffness), offsetof(LawTable, update_of), offsetof(LawTable, compiled));
   hash.add(sizeof(Unit), offsetof(Unit, si), offsetof(Unit, name), offsetof(Unit, example));
   hash.add(sizeof(Range), offsetof(Range, lower), offsetof(Range, upper), offsetof(Range, lower_inclusive),
            offsetof(Range, upper_inclusive));
@@ -110,9 +110,9 @@ inline std::uint64_t layout_hash() {
            static_cast<int>(Role::energy));
   hash.add(sizeof(ChoiceInfo), offsetof(ChoiceInfo, key), offsetof(ChoiceInfo, meaning),
            offsetof(ChoiceInfo, options), sizeof(OptionInfo), ChoiceInfo::kMostOptions);
-  hash.add(sizeof(HistoryInfo), offsetof(HistoryInfo, name), offsetof(HistoryInfo, meaning),
-           offsetof(HistoryInfo, unit), offsetof(HistoryInfo, what), offsetof(HistoryInfo, when),
-           offsetof(HistoryInfo, in_files), static_cast<int>(Remembers::closure));
+  hash.add(sizeof(InternalInfo), offsetof(InternalInfo, name), offsetof(InternalInfo, meaning),
+           offsetof(InternalInfo, unit), offsetof(InternalInfo, what), offsetof(InternalInfo, when),
+           offsetof(InternalInfo, in_files), static_cast<int>(Remembers::closure));
   hash.add(sizeof(LossInfo), offsetof(LossInfo, name), offsetof(LossInfo, meaning), offsetof(LossInfo, unit));
   hash.add(sizeof(Objection), offsetof(Objection, key), offsetof(Objection, wanted),
            offsetof(Objection, bound));
@@ -123,9 +123,9 @@ inline std::uint64_t layout_hash() {
 }
 
 /// What a shared object hands over.
-/// \param rows  by instruction set
+/// \param packs  by instruction set
 template <class Law, Dimensions kDimensions>
-pyroclast_law describe_law(const char* version, const LawRows& rows) {
+pyroclast_law describe_law(const char* version, const CompiledForSets& compiled) {
   struct ForAnyProcessor;
   using P = Probes<ForAnyProcessor>;
   pyroclast_law law{};
@@ -138,7 +138,7 @@ pyroclast_law describe_law(const char* version, const LawRows& rows) {
   law.compiler = __VERSION__;
   law.dimensions = kDimensions;
   law.table = &table_of<Law, kDimensions>();
-  law.rows = rows;
+  law.compiled = compiled;
   law.probe = P::functions();
   return law;
 }

@@ -12,6 +12,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/sort_unique.hpp"
+#include "pyroclast/simulation/fields.hpp"
 
 namespace pyroclast::python {
 
@@ -58,7 +59,8 @@ const std::map<std::string, ViewOf>& views() {
        [](const auto& s, const py::object& owner) {
          return seen(s.force, {2, kLanes}, owner);
        }},
-      {"history", [](const auto& s, const py::object& owner) { return seen(s.history, {kLanes}, owner); }}};
+      {"internals",
+       [](const auto& s, const py::object& owner) { return seen(s.internals, {kLanes}, owner); }}};
   return all;
 }
 
@@ -71,15 +73,6 @@ py::array filled(const List& list, py::ssize_t columns, Number number) {
   for (const auto& item : list)
     for (py::ssize_t i = 0; i < std::max<py::ssize_t>(columns, 1); ++i) *to++ = number(item, i);
   return array;
-}
-
-py::array numbers(const std::vector<double>& list) {
-  return filled<double>(list, 0, [](double v, py::ssize_t) { return v; });
-}
-
-py::array tensors(const std::vector<SymmetricTensor<2>>& list) {
-  return filled<double>(
-      list, 3, [](const SymmetricTensor<2>& t, py::ssize_t i) { return t[static_cast<std::size_t>(i)]; });
 }
 
 using CopyOf = py::array (*)(const Simulation&);
@@ -101,22 +94,9 @@ const std::map<std::string, CopyOf>& copies() {
        [](const Simulation& s) {
          return filled<int>(s.model().block_material, 0, [](int material, py::ssize_t) { return material; });
        }},
-      {"temperature", [](const Simulation& s) { return numbers(s.field().gridpoints()); }},
-      {"zone_temperature", [](const Simulation& s) { return numbers(s.field().zones()); }},
-      {"slot",
-       [](const Simulation& s) {
+      {"slot", [](const Simulation& s) {
          return filled<int>(mechanics_of(s).layout().gridpoint_slot, 0,
                             [](int slot, py::ssize_t) { return slot; });
-       }},
-      {"displacement", [](const Simulation& s) { return vectors(mechanics_of(s).displacements()); }},
-      {"velocity", [](const Simulation& s) { return vectors(mechanics_of(s).velocities()); }},
-      {"force", [](const Simulation& s) { return vectors(mechanics_of(s).forces()); }},
-      {"stress", [](const Simulation& s) { return tensors(mechanics_of(s).stresses()); }},
-      {"creep_strain", [](const Simulation& s) {
-         const Mechanics<2>& mechanics = mechanics_of(s);
-         std::vector<SymmetricTensor<2>> strains;
-         for (int z = 0; z < s.model().zone_count(); ++z) strains.push_back(mechanics.creep_strain(z));
-         return tensors(strains);
        }}};
   return all;
 }
@@ -143,44 +123,50 @@ py::array copied(const Simulation& simulation, const std::string& what) {
   return of(copies(), what)(simulation);
 }
 
-py::dict contacts(const Simulation& simulation) {
+std::vector<FieldInfo> field_infos(const Simulation& simulation) {
+  std::vector<FieldInfo> infos;
+  for (const Field& field : fields_of(simulation)) infos.push_back(field);
+  return infos;
+}
+
+py::dict fields(const Simulation& simulation, Item item, const std::vector<std::string>& names) {
+  auto chosen = fields_of(simulation);
+  std::erase_if(chosen, [&](const Field& field) {
+    return field.item != item || (!names.empty() && std::ranges::find(names, field.name) == names.end());
+  });
+  const auto values = values_of<double>(chosen, simulation);
+  py::dict all;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const py::ssize_t components = components_of(chosen[i].kind);
+    const auto items = static_cast<py::ssize_t>(values[i].size()) / components;
+    std::vector<py::ssize_t> shape{items};
+    if (components > 1) shape.push_back(components);
+    all[py::str(name_with_unit(chosen[i]))] = py::array_t<double>(shape, values[i].data());
+  }
+  return all;
+}
+
+py::dict contact_points(const Simulation& simulation) {
   const Mechanics<2>& mechanics = mechanics_of(simulation);
   const Model<2>& model = simulation.model();
-  const auto states = mechanics.contacts();
   py::list interface, law;
-  for (std::size_t i = 0; i < states.size(); ++i) {
+  for (int i = 0; i < model.contact_count(); ++i) {
     interface.append(model.interface_names[static_cast<std::size_t>(model.contacts[i].interface)]);
-    law.append(states[i].law->name);
+    law.append(mechanics.law_of(i).name);
   }
   py::dict all;
   all["interface"] = interface;
   all["law"] = law;
-  const auto add = [&](const std::string& name, auto number) {
-    py::array_t<double> column(static_cast<py::ssize_t>(states.size()));
-    double* to = column.mutable_data();
-    for (std::size_t i = 0; i < states.size(); ++i) to[i] = number(i);
-    all[py::str(name)] = column;
+  const auto add = [&](const char* name, auto number) {
+    all[name] =
+        filled<double>(model.contacts, 0, [&](const auto& contact, py::ssize_t) { return number(contact); });
   };
-  add("x_m", [&](std::size_t i) { return model.position[model.contacts[i].a][0]; });
-  add("y_m", [&](std::size_t i) { return model.position[model.contacts[i].a][1]; });
-  add("face", [&](std::size_t i) { return static_cast<double>(model.contacts[i].face); });
-  add("area_m2", [&](std::size_t i) { return model.contacts[i].area; });
-  add("normal_x", [&](std::size_t i) { return model.contacts[i].normal[0]; });
-  add("normal_y", [&](std::size_t i) { return model.contacts[i].normal[1]; });
-  add("opening_m", [&](std::size_t i) { return states[i].opening; });
-  add("slip_m", [&](std::size_t i) { return states[i].tangential_jump[0]; });
-  add("normal_traction_Pa", [&](std::size_t i) { return states[i].normal_traction; });
-  add("shear_traction_Pa", [&](std::size_t i) { return states[i].shear_traction[0]; });
-  add("stored_J_m2", [&](std::size_t i) { return states[i].stored; });
-  for (const LawTable* table : mechanics.laws()) {
-    for (const HistoryInfo& info : table->history(2))
-      if (const std::string name = column_with_unit(info.name, info.unit).name; !all.contains(py::str(name)))
-        add(name, [&](std::size_t i) { return states[i].remembered(std::string_view(info.name)); });
-    for (const LossInfo& info : table->losses)
-      if (const std::string name = column_with_unit(fmt::format("lost_{}", info.name), info.unit).name;
-          !all.contains(py::str(name)))
-        add(name, [&](std::size_t i) { return states[i].lost(info.name); });
-  }
+  add("x_m", [&](const auto& c) { return model.position[c.a][0]; });
+  add("y_m", [&](const auto& c) { return model.position[c.a][1]; });
+  add("face", [](const auto& c) { return static_cast<double>(c.face); });
+  add("area_m2", [](const auto& c) { return c.area; });
+  add("normal_x", [](const auto& c) { return c.normal[0]; });
+  add("normal_y", [](const auto& c) { return c.normal[1]; });
   return all;
 }
 

@@ -141,7 +141,7 @@ void bind_decks(py::module_& m) {
       "names, and "
       "what it warns of.");
   m.def(
-      "read", [](const std::string& file) { return Deck::load(file).text(); }, py::arg("file"),
+      "read", [](const std::string& file) { return Deck::open(file).text(); }, py::arg("file"),
       "The text of a file that is a deck.");
   m.def("needed_unit", &needed_unit, py::arg("deck"), py::arg("key"),
         "The SI unit that the value at a key lacks; empty where it lacks none.");

@@ -12,9 +12,9 @@ namespace pyroclast::python {
 namespace {
 
 /// A path of (opening, slip, temperature), each leg in so many steps: values by column.
-py::dict drive(const std::string& law, const std::string& folder, const std::vector<std::string>& sources,
-               const std::vector<std::string>& values,
-               const py::array_t<double, py::array::c_style | py::array::forcecast>& path, int steps) {
+py::dict along_path(const std::string& law, const std::string& folder,
+                    const std::vector<std::string>& sources, const std::vector<std::string>& values,
+                    const py::array_t<double, py::array::c_style | py::array::forcecast>& path, int steps) {
   if (path.ndim() != 2 || path.shape(1) != 3) throw Error("a path is an array of (points, 3)");
   if (steps < 1) throw Error("each leg of a path has at least one step");
   LawPoint point(stated_material(find_law(law, folder, law_sources(sources), true), values));
@@ -54,7 +54,7 @@ void bind_laws(py::module_& m) {
       "Finds, loads or compiles a law; returns what it calls itself.");
   m.def("law_properties", &properties, arg("law"), arg("folder"), arg("sources"),
         "Key, unit and meaning of each property of a law.");
-  m.def("drive_law", &drive, arg("law"), arg("folder"), arg("sources"), arg("values"), arg("path"),
+  m.def("law_along_path", &along_path, arg("law"), arg("folder"), arg("sources"), arg("values"), arg("path"),
         arg("steps"), "Takes a contact point along a path; what it answers, by column.");
 }
 

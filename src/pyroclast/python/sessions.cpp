@@ -14,6 +14,7 @@
 #include "pyroclast/python/arrays.hpp"
 #include "pyroclast/python/bindings.hpp"
 #include "pyroclast/python/decks.hpp"
+#include "pyroclast/session/rehearsal.hpp"
 #include "pyroclast/simulation/coupling.hpp"
 
 namespace pyroclast::python {
@@ -168,7 +169,7 @@ std::unique_ptr<Held> held(Make make) {
 
 /// A stage of a run.
 py::tuple stage_info(const Run& run, std::size_t i) {
-  const StageRecord& record = run.records()[i];
+  const StageCourse& record = run.courses()[i];
   return py::make_tuple(run.stages()[i]->kind(), describe(record.outcome), record.rows.first,
                         record.rows.last);
 }
@@ -178,6 +179,27 @@ py::tuple stage_info(const Run& run, std::size_t i) {
 void bind_sessions(py::module_& m) {
   using py::arg;
   const auto read = [](auto f) { return [f](const Held& h) { return f(h.get()); }; };
+  m.def(
+      "possible_fields",
+      [] {
+        std::vector<py::tuple> all;
+        for (const FieldInfo& f : possible_fields())
+          all.push_back(py::make_tuple(f.name, product_of(f.unit), name_of(f.item), components_of(f.kind),
+                                       f.meaning, f.in_files));
+        return all;
+      },
+      "Fields that runs may have: name, unit as in files, item, components, meaning, whether files hold it.");
+  m.def(
+      "seconds_of_run",
+      [](const DeckText& deck, std::optional<std::uint64_t> seed) {
+        auto chosen = choices(seed, 1, "", {}, deck.laws, deck.stages);
+        chosen.laws = law_sources(deck);
+        Opened opened(parse(deck), deck.folder, chosen);
+        const auto simulation = make_simulation(opened.setup, opened.team);
+        return rehearse(std::move(opened.setup), *simulation).seconds;
+      },
+      arg("deck"), arg("seed"),
+      "Wall time that a run of one thread will probably take, s, by its first steps.");
   py::class_<Held>(m, "Session", "A run with its deck, its simulation and, where it has one, its folder.")
       .def_static(
           "begin",
@@ -256,23 +278,10 @@ void bind_sessions(py::module_& m) {
             h.resting().change_materials(changes);
           },
           arg("changes"))
-      .def("end_stage",
-           [](const Held& h) {
-             Run& run = h.resting().run();
-             run.end_stage();
-             h.resting().depart({fmt::format("stage {} was ended at row {}", run.stage_number(),
-                                             run.history().row_count() - 1)});
-           })
+      .def("end_stage", [](const Held& h) { h.resting().end_stage(); })
       .def(
           "set_temperature",
-          [](const Held& h, double temperature) {
-            Session& session = h.resting();
-            Simulation& simulation = session.simulation();
-            simulation.field().set_uniform(temperature);
-            if (simulation.moves()) simulation.hand_over();
-            session.depart({fmt::format("the temperature was set to {:g} degC at row {}", temperature,
-                                        session.run().history().row_count() - 1)});
-          },
+          [](const Held& h, double temperature) { h.resting().set_temperature(temperature); },
           arg("temperature"))
       .def(
           "drive", [](const Held& h, const std::string& drives) { h.resting().drive(drives); }, arg("drives"),
@@ -323,10 +332,10 @@ void bind_sessions(py::module_& m) {
       .def_property_readonly("moves", [](const Held& h) { return h.get().simulation().moves(); })
       .def_property_readonly("thickness",
                              [](const Held& h) { return h.get().simulation().model().thickness; })
-      .def_property_readonly("title", read([](const Session& s) { return s.loaded().setup.title; }))
-      .def_property_readonly("seed", read([](const Session& s) { return s.loaded().setup.specimen.seed; }))
-      .def_property_readonly("deck_text", read([](const Session& s) { return s.loaded().deck.text(); }))
-      .def_property_readonly("warnings", read([](const Session& s) { return s.loaded().warnings; }))
+      .def_property_readonly("title", read([](const Session& s) { return s.opened().setup.title; }))
+      .def_property_readonly("seed", read([](const Session& s) { return s.opened().setup.specimen.seed; }))
+      .def_property_readonly("deck_text", read([](const Session& s) { return s.opened().deck.text(); }))
+      .def_property_readonly("warnings", read([](const Session& s) { return s.opened().warnings; }))
       .def_property_readonly("folder", read([](const Session& s) { return s.folder().string(); }))
       .def_property(
           "threads", [](const Held& h) { return h.get().simulation().team().size(); },
@@ -341,7 +350,21 @@ void bind_sessions(py::module_& m) {
           arg("what"), "An array as it lies in memory, read-only; keeps the run alive.")
       .def(
           "copied", [](const Held& h, const std::string& what) { return copied(h.get().simulation(), what); },
-          arg("what"), "An array in the order of the model, as a copy.")
+          arg("what"), "An array of the mesh in the order of the model, as a copy.")
+      .def("field_infos",
+           [](const Held& h) {
+             std::vector<py::tuple> all;
+             for (const FieldInfo& f : field_infos(h.get().simulation()))
+               all.push_back(py::make_tuple(name_with_unit(f), f.name, f.unit.si, name_of(f.item),
+                                            components_of(f.kind), f.meaning));
+             return all;
+           })
+      .def(
+          "fields",
+          [](const Held& h, const std::string& item, const std::vector<std::string>& names) {
+            return fields(h.get().simulation(), item_of(item), names);
+          },
+          arg("item"), arg("names"), "Fields of one item now, by their names with units.")
       .def(
           "set_names",
           [](const Held& h, bool of_contacts) {
@@ -361,8 +384,8 @@ void bind_sessions(py::module_& m) {
       .def_property_readonly(
           "specimen",
           [](const Held& h) { return std::make_shared<specimen::Specimen>(h.get().simulation().specimen()); })
-      .def_property_readonly("deck_folder", read([](const Session& s) { return s.loaded().folder.string(); }))
-      .def("contacts", [](const Held& h) { return contacts(h.get().simulation()); });
+      .def_property_readonly("deck_folder", read([](const Session& s) { return s.opened().folder.string(); }))
+      .def("contact_points", [](const Held& h) { return contact_points(h.get().simulation()); });
 }
 
 }  // namespace pyroclast::python

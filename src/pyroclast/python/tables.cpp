@@ -211,7 +211,7 @@ void bind_tables(py::module_& m) {
   };
   py::class_<TomlFile>(m, "TomlFile", "A TOML file whose reader asks for the keys that it knows.")
       .def(py::init([](const std::string& file) {
-             return TomlFile{std::make_shared<const Deck>(Deck::load(file))};
+             return TomlFile{std::make_shared<const Deck>(Deck::open(file))};
            }),
            py::arg("file"))
       .def("root",

@@ -117,7 +117,7 @@ class CheckpointWriter : public StateVisitor {
   std::uint64_t finish(const CheckpointInfo& info) {
     Json json;
     CheckpointInfo::each(info, [&](const char* name, const auto& value) { json[name] = value; });
-    json["rows"] = std::move(rows_);
+    json["rows"] = std::move(pieces_);
     const std::string table = json.dump();
     const Trailer trailer{end_, table.size(), XXH3_64bits(table.data(), table.size()), kEnd};
     file_.write(table.data(), table.size());
@@ -126,25 +126,25 @@ class CheckpointWriter : public StateVisitor {
   }
 
  protected:
-  void visit_row(const std::string& name, const Row& row) override {
+  void visit_piece(const std::string& name, const Piece& piece) override {
     if (!names_.insert(name).second)
       throw Error(fmt::format("the state names \"{}\" twice", name));  // a fault of the program
-    const std::uint64_t bytes = row.item * row.count;
-    rows_.push_back({name, end_, row.item, row.count, XXH3_64bits(row.data, bytes)});
-    file_.write(row.data, bytes);
+    const std::uint64_t bytes = piece.item * piece.count;
+    pieces_.push_back({name, end_, piece.item, piece.count, XXH3_64bits(piece.data, bytes)});
+    file_.write(piece.data, bytes);
     end_ += bytes;
   }
 
  private:
   File& file_;
-  Json rows_ = Json::array();
+  Json pieces_ = Json::array();
   std::set<std::string> names_;
   std::uint64_t end_ = 0;
 };
 
 }  // namespace
 
-/// Shows rows of a file to what they are restored to.
+/// Shows pieces of a file to what they are restored to.
 class CheckpointReader : public StateVisitor {
  public:
   explicit CheckpointReader(const CheckpointFile& checkpoint)
@@ -153,27 +153,27 @@ class CheckpointReader : public StateVisitor {
   bool checks() const override { return true; }
 
   void finish() const {
-    for (const auto& [name, row] : checkpoint_.rows_)
+    for (const auto& [name, piece] : checkpoint_.pieces_)
       if (!taken_.contains(name)) fail(fmt::format("holds \"{}\", which this run does not have", name));
   }
-  /// Where a row does not fit.
+  /// Where a piece does not fit.
   void verify() {
     std::vector<std::byte> data;
-    for (const auto& [name, row] : checkpoint_.rows_) {
-      data.resize(row.bytes());
-      read(name, row, data.data());
+    for (const auto& [name, piece] : checkpoint_.pieces_) {
+      data.resize(piece.bytes());
+      read(name, piece, data.data());
     }
   }
 
  protected:
-  void visit_row(const std::string& name, const Row& row) override {
-    const auto found = checkpoint_.rows_.find(name);
-    if (found == checkpoint_.rows_.end()) fail(fmt::format("does not hold \"{}\"", name));
-    const CheckpointFile::Row& kept = found->second;
-    if (kept.item != row.item || (!row.resize && kept.count != row.count))
+  void visit_piece(const std::string& name, const Piece& piece) override {
+    const auto found = checkpoint_.pieces_.find(name);
+    if (found == checkpoint_.pieces_.end()) fail(fmt::format("does not hold \"{}\"", name));
+    const CheckpointFile::Piece& kept = found->second;
+    if (kept.item != piece.item || (!piece.resize && kept.count != piece.count))
       fail(fmt::format("holds {} x {} bytes of \"{}\", but this run has {} x {}", kept.count, kept.item, name,
-                       row.count, row.item));
-    read(name, kept, row.resize ? row.resize(kept.count) : row.data);
+                       piece.count, piece.item));
+    read(name, kept, piece.resize ? piece.resize(kept.count) : piece.data);
     taken_.insert(name);
   }
   void refuse(const std::string& name, const std::string& what) const override {
@@ -181,9 +181,9 @@ class CheckpointReader : public StateVisitor {
   }
 
  private:
-  void read(const std::string& name, const CheckpointFile::Row& row, std::byte* data) const {
-    if ((row.bytes() > 0 && !file_.read(row.begin, data, row.bytes())) ||
-        XXH3_64bits(data, row.bytes()) != row.hash)
+  void read(const std::string& name, const CheckpointFile::Piece& piece, std::byte* data) const {
+    if ((piece.bytes() > 0 && !file_.read(piece.begin, data, piece.bytes())) ||
+        XXH3_64bits(data, piece.bytes()) != piece.hash)
       fail(fmt::format("is damaged: \"{}\" is not what was written", name));
   }
   [[noreturn]] void fail(const std::string& what) const {
@@ -237,15 +237,15 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
   try {
     const Json json = Json::parse(table);
     CheckpointInfo::each(info_, [&](const char* name, auto& value) { read_entry(json.at(name), value); });
-    for (const Json& row : json.at("rows")) {
-      Row r;
-      read_entry(row.at(1), r.begin);
-      read_entry(row.at(2), r.item);
-      read_entry(row.at(3), r.count);
-      read_entry(row.at(4), r.hash);
+    for (const Json& piece : json.at("rows")) {
+      Piece r;
+      read_entry(piece.at(1), r.begin);
+      read_entry(piece.at(2), r.item);
+      read_entry(piece.at(3), r.count);
+      read_entry(piece.at(4), r.hash);
       if (r.begin > size || r.item == 0 || r.count > (size - r.begin) / r.item)
         fail("is damaged in its table");
-      rows_[row.at(0).get<std::string>()] = r;
+      pieces_[piece.at(0).get<std::string>()] = r;
     }
   } catch (const Json::exception&) {
     fail("is of another version of pyroclast: its table has another form");

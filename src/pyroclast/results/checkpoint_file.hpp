@@ -47,11 +47,11 @@ struct CheckpointInfo {
 /// Writes a checkpoint: whole under its name and on disk, or not at all. Throws Error when it cannot be
 /// written.
 ///
-///     "pyroclas"  rows of plain data, one after the other  table of the rows and the info (JSON)
+///     "pyroclas"  pieces of plain data, one after the other  table of the pieces and the info (JSON)
 ///     where the table begins, its length, its hash (XXH3), "t-state1"
 ///
-/// The table has name, place, size and hash (XXH3) of each row. Numbers are as the processor has them, little
-/// end first. \param visit  shows all that there is \return its length, bytes
+/// The table has name, place, size and hash (XXH3) of each piece. Numbers are as the processor has them,
+/// little end first. \param visit  shows all that there is \return its length, bytes
 std::uint64_t write_checkpoint(const std::filesystem::path& path, const CheckpointInfo& info,
                                const std::function<void(StateVisitor&)>& visit);
 
@@ -64,22 +64,22 @@ class CheckpointFile {
   const std::filesystem::path& path() const { return path_; }
   const CheckpointInfo& info() const { return info_; }
 
-  /// Replaces all that is shown by what the file holds. Throws Error when a row is damaged, or of another
+  /// Replaces all that is shown by what the file holds. Throws Error when a piece is damaged, or of another
   /// size, or when the file lacks one, or holds one that is not asked for.
   void restore(const std::function<void(StateVisitor&)>& visit) const;
-  /// Reads all rows and compares their hashes. Throws Error for the first that is damaged.
+  /// Reads all pieces and compares their hashes. Throws Error for the first that is damaged.
   void verify() const;
 
  private:
   friend class CheckpointReader;
-  struct Row {
+  struct Piece {
     std::uint64_t begin = 0, item = 0, count = 0, hash = 0;
     std::uint64_t bytes() const { return item * count; }
   };
 
   std::filesystem::path path_;
   CheckpointInfo info_;
-  std::map<std::string, Row, std::less<>> rows_;
+  std::map<std::string, Piece, std::less<>> pieces_;
 };
 
 }  // namespace pyroclast

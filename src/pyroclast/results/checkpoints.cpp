@@ -97,7 +97,7 @@ std::string body_hash(const Simulation& simulation) {
   if (simulation.moves())
     for (const LawTable* law : simulation.mechanics().laws()) {
       hash.add(std::string(law->name));
-      for (const HistoryInfo& number : law->history(2)) hash.add(std::string(number.name));
+      for (const InternalInfo& number : law->internals(2)) hash.add(std::string(number.name));
       for (const LossInfo& loss : law->losses) hash.add(std::string(loss.name));
     }
   return hash.text();

@@ -14,7 +14,7 @@
 namespace pyroclast {
 
 /// Frames of the fields that were written so far.
-struct FrameRecords {
+struct FrameRows {
   std::vector<std::int64_t> rows;  ///< of the history, at which they were taken
 };
 
@@ -24,11 +24,11 @@ class FieldFiles {
  public:
   /// Creates the folder, writes the mesh and lists the frames that are there.
   FieldFiles(const std::filesystem::path& folder, const Simulation& simulation, const History& history,
-             const FrameRecords& frames);
+             const FrameRows& frames);
 
   /// A frame of the fields now, at the row that the history has last. Its time is the heating time while
   /// heated, and before and after it that of the mechanics. Adds it to `frames` once all of it is written.
-  void write(const Simulation& simulation, const History& history, FrameRecords& frames);
+  void write(const Simulation& simulation, const History& history, FrameRows& frames);
 
   /// Names of the files of earlier frames that are missing or broken.
   std::vector<std::string> lost() const;

@@ -46,7 +46,7 @@ class Recorder {
 
   /// Of the run, with those parts of it that other processes did, s.
   double wall_time() const;
-  const FrameRecords& frames() const { return frames_; }
+  const FrameRows& frames() const { return frames_; }
   /// \param rows  of the history
   void visit_state(StateVisitor& visitor, std::size_t rows);
 
@@ -61,7 +61,7 @@ class Recorder {
   bool has_fields_;  ///< whether they are written
   std::optional<HistoryFile> history_;
   std::optional<FieldFiles> fields_;
-  FrameRecords frames_;
+  FrameRows frames_;
   double earlier_ = 0.0;  ///< wall time of earlier processes, s
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

@@ -71,10 +71,10 @@ std::vector<std::size_t> rows_from(std::size_t first, const Run& run) {
 
 std::vector<std::size_t> rows_from_zero(const Run& run) {
   std::size_t first = 0;
-  for (std::size_t i = 0; i < run.records().size(); ++i) {
-    const std::size_t end = run.records()[i].rows.last;
+  for (std::size_t i = 0; i < run.courses().size(); ++i) {
+    const std::size_t end = run.courses()[i].rows.last;
     const bool settled = run.stages()[i]->kind() == std::string_view("settle") &&
-                         run.records()[i].outcome == Outcome::completed;
+                         run.courses()[i].outcome == Outcome::completed;
     if (settled && end < run.history().row_count()) first = end;
   }
   return rows_from(first, run);
@@ -82,8 +82,8 @@ std::vector<std::size_t> rows_from_zero(const Run& run) {
 
 std::vector<std::size_t> heated_rows(const Run& run) {
   std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < run.records().size(); ++i) {
-    const StageRecord& record = run.records()[i];
+  for (std::size_t i = 0; i < run.courses().size(); ++i) {
+    const StageCourse& record = run.courses()[i];
     for (std::size_t row = record.rows.first; row < record.rows.last; ++row) {
       const bool fails = record.outcome == Outcome::ran_away && row + 1 == record.rows.last;
       if (!is_exchange(run.history(), row) || fails) continue;
@@ -98,12 +98,12 @@ std::vector<std::size_t> heated_rows(const Run& run) {
 PlainCurve compressed(const Run& run) {
   const History& history = run.history();
   std::optional<std::size_t> test;
-  for (std::size_t i = 0; i < run.records().size(); ++i)
-    if (const RowRange rows = run.records()[i].rows;
+  for (std::size_t i = 0; i < run.courses().size(); ++i)
+    if (const RowRange rows = run.courses()[i].rows;
         !rows.empty() && run.stages()[i]->needs().mechanics && history.cell(rows.last - 1, "stress_MPa"))
       test = i;
   if (!test) return {};
-  const RowRange of_test = run.records()[*test].rows;
+  const RowRange of_test = run.courses()[*test].rows;
   std::size_t since = 0;  // heat last changed the body
   for (std::size_t row = 0; row < of_test.first; ++row)
     if (is_exchange(history, row)) since = row + 1;
@@ -122,7 +122,7 @@ PlainCurve compressed(const Run& run) {
     curve.y.push_back(0.0);
   }
   for (std::size_t i = 0; i < *test; ++i)
-    if (const RowRange rows = run.records()[i].rows;
+    if (const RowRange rows = run.courses()[i].rows;
         rows.first >= since && run.stages()[i]->kind() == std::string_view("compress"))
       add(rows);
   add(of_test);

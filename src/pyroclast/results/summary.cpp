@@ -36,38 +36,6 @@ constexpr double kHeatTolerance = 1e-6;
 /// End of the names of texts that say why a result is missing.
 constexpr const char* kReason = "none_because";
 
-/// An entry of the summary and the column of the history that it is the last value of.
-struct Entry {
-  const char* name;
-  const char* column;
-};
-
-/// Beside what the contact laws lose.
-constexpr auto kEnergy = std::to_array<Entry>({
-    {"loading", "energy_loading_J"},
-    {"gravity", "energy_gravity_J"},
-    {"property_change", "energy_property_change_J"},
-    {"mass_scaling", "energy_mass_scaling_J"},
-    {"elastic_zones", "energy_zones_J"},
-    {"elastic_contacts", "energy_contacts_J"},
-    {"kinetic", "energy_kinetic_J"},
-    {"local_damping", "energy_local_damping_J"},
-    {"viscous_damping", "energy_viscous_damping_J"},
-    {"error", "energy_error_J"},
-});
-/// What was put in; the error of the ledger is measured by the sum of their sizes.
-constexpr std::array kPutIn{"energy_loading_J", "energy_gravity_J", "energy_property_change_J",
-                            "energy_mass_scaling_J"};
-
-constexpr auto kHeat = std::to_array<Entry>({
-    {"stored", "heat_stored_J"},
-    {"prescribed", "heat_prescribed_J"},
-    {"flux", "heat_flux_J"},
-    {"convection", "heat_convection_J"},
-    {"radiation", "heat_radiation_J"},
-    {"error", "heat_error_J"},
-});
-
 /// The last value of a column in the first rows; what a stage without it left stands in earlier rows.
 std::optional<double> last_of(const History& history, const char* column, std::size_t rows) {
   for (std::size_t row = rows; row-- > 0;)
@@ -82,14 +50,15 @@ std::optional<double> last_of(const History& history, const char* column) {
 /// Energy that was put in, in all ways that there are, after the first rows, J.
 double turned_over(const History& history, std::size_t rows) {
   double sum = 0.0;
-  for (const char* column : kPutIn) sum += std::abs(last_of(history, column, rows).value_or(0.0));
+  for (const auto& entry : kEnergies)
+    if (entry.side == LedgerSide::put_in) sum += std::abs(last_of(history, entry.column, rows).value_or(0.0));
   return sum;
 }
 
 /// Error of the energy ledger over the energy turned over, after the first rows; none where nothing moves, or
 /// nothing was turned over.
 std::optional<double> energy_error(const History& history, std::size_t rows) {
-  const auto error = last_of(history, "energy_error_J", rows);
+  const auto error = last_of(history, error_column(kEnergies), rows);
   if (!error) return std::nullopt;
   const double turnover = turned_over(history, rows);
   return turnover > 0.0 ? *error / turnover : 0.0;
@@ -107,7 +76,7 @@ std::optional<double> error_over_dissipated(const History& history, const Simula
   for (const std::string& name : names)
     dissipated += last_of(history, fmt::format("dissipated_{}_J", name).c_str()).value_or(0.0);
   if (!(dissipated > kRounding * turned_over(history, history.row_count()))) return std::nullopt;
-  return std::abs(*of_turnover) <= kRounding ? 0.0 : *last_of(history, "energy_error_J") / dissipated;
+  return std::abs(*of_turnover) <= kRounding ? 0.0 : *last_of(history, error_column(kEnergies)) / dissipated;
 }
 
 /// A report whose results must not be taken for any.
@@ -127,12 +96,12 @@ OrderedJson json_of(const std::optional<double>& value) {
 }
 
 std::optional<double> heat_error(const History& history) {
-  const auto error = last_of(history, "heat_error_J");
+  const auto error = last_of(history, error_column(kHeats));
   if (!error) return std::nullopt;
   // Over the whole run: what flowed in may have flowed out again.
   double largest = 0.0;
-  for (const Entry& entry : kHeat)
-    if (entry.name != std::string("error"))
+  for (const auto& entry : kHeats)
+    if (entry.side != LedgerSide::error)
       for (std::size_t row = 0; row < history.row_count(); ++row)
         largest = std::max(largest, std::abs(history.cell(row, entry.column).value_or(0.0)));
   return largest > 0.0 ? std::abs(*error) / largest : 0.0;
@@ -171,7 +140,7 @@ std::optional<double> exchange_stress(const Run& run, const Summary& s) {
     const auto& results = s.stages[i].report.results;
     const auto increment = std::ranges::find(results, "largest_exchange_increment_K", &Result::name);
     if (increment == results.end() || run.simulation().field().is_uniform()) continue;
-    const RowRange rows = run.records()[i].rows;
+    const RowRange rows = run.courses()[i].rows;
     double low = run.simulation().field().mean(), high = low;
     for (std::size_t row = rows.first; row < rows.last; ++row) {
       low = std::min(low, run.history().cell(row, "temperature_min_degC").value_or(low));
@@ -188,8 +157,8 @@ std::optional<double> exchange_stress(const Run& run, const Summary& s) {
 /// The first row at which a jump exceeds what small kinematics bear, of those that results rest on.
 std::optional<std::size_t> large_jump(const Run& run, const Summary& s) {
   const History& history = run.history();
-  for (std::size_t i = 0; i < run.records().size(); ++i) {
-    const RowRange rows = run.records()[i].rows;
+  for (std::size_t i = 0; i < run.courses().size(); ++i) {
+    const RowRange rows = run.courses()[i].rows;
     const auto decided_at = s.stages[i].report.decided_at;
     const std::size_t end = decided_at ? rows.first + *decided_at + 1 : rows.last;
     for (std::size_t row = rows.first; row < end; ++row)
@@ -198,10 +167,11 @@ std::optional<std::size_t> large_jump(const Run& run, const Summary& s) {
   return std::nullopt;
 }
 
-template <std::size_t N>
-OrderedJson json_of(const std::array<Entry, N>& entries, const History& history) {
+/// Of each entry of a ledger.
+template <class Entries>
+OrderedJson last_values(const Entries& entries, const History& history) {
   OrderedJson json;
-  for (const Entry& entry : entries)
+  for (const auto& entry : entries)
     if (history.has(entry.column)) json[entry.name] = json_of(last_of(history, entry.column));
   return json;
 }
@@ -242,7 +212,7 @@ OrderedJson crack_json(const History& history, const std::string& crack) {
 void add_motion(OrderedJson& json, const Summary& summary, const Run& run) {
   const Simulation& simulation = run.simulation();
   const History& history = run.history();
-  json["energy_J"] = json_of(kEnergy, history);
+  json["energy_J"] = last_values(kEnergies, history);
   for (const auto& name : simulation.mechanics().dissipations())
     json["energy_J"][fmt::format("dissipated_{}", name)] =
         json_of(last_of(history, fmt::format("dissipated_{}_J", name).c_str()));
@@ -262,7 +232,7 @@ void add_motion(OrderedJson& json, const Summary& summary, const Run& run) {
 
 void add_heat(OrderedJson& json, const Summary& summary, const Run& run) {
   const Conduction<2>& conduction = *run.simulation().field().conduction();
-  json["heat_J"] = json_of(kHeat, run.history());
+  json["heat_J"] = last_values(kHeats, run.history());
   json["heat_J"]["error_over_largest"] = json_of(summary.heat_error);
   json["heat_solver"] = {{"steps", conduction.steps()},
                          {"steps_taken_back", conduction.retries()},
@@ -346,7 +316,7 @@ Summary summarize(const Run& run, std::span<const Reference> references) {
   s.outcome = run.outcome();
   for (std::size_t i = 0; i < run.stages().size(); ++i) {
     const Stage& stage = *run.stages()[i];
-    const StageRecord& record = run.records()[i];
+    const StageCourse& record = run.courses()[i];
     s.stages.push_back({stage.kind(), record.outcome, {}});
     if (record.outcome == Outcome::not_begun) continue;
     StageReport& report = s.stages.back().report;

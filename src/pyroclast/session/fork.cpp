@@ -40,10 +40,10 @@ void require_same(const CheckpointFile& checkpoint, const std::string& inputs, c
     refuse("belongs to another body: specimen or laws of this program differ from those that the run had");
 }
 
-Loaded load_from(const fs::path& run, const std::vector<std::string>& changes, const std::string& more,
+Opened open_from(const fs::path& run, const std::vector<std::string>& changes, const Appendix& more,
                  RunChoices choices) {
   choices.seed.reset();  // the folder's deck has it
-  return {Deck::load(run / kDeck, changes, more), run, std::move(choices)};
+  return {Deck::open(run / kDeck, changes, more), run, std::move(choices)};
 }
 
 /// The stage with this number or name.
@@ -109,7 +109,7 @@ std::unique_ptr<Session> Session::resume(const fs::path& folder, const fs::path&
   auto lock = std::make_unique<FolderLock>(folder);
   require_deck_alone(folder);
   const CheckpointFile checkpoint = stated.empty() ? newest_checkpoint(folder) : CheckpointFile(stated);
-  std::unique_ptr<Session> session(new Session(load_from(folder, {}, "", choices), std::move(lock), folder));
+  std::unique_ptr<Session> session(new Session(open_from(folder, {}, {}, choices), std::move(lock), folder));
   require_same(checkpoint, session->inputs_.hash(), *session->simulation_);
   session->restore(checkpoint);
   const Run& run = session->run_;
@@ -127,22 +127,24 @@ std::unique_ptr<Session> Session::fork(const ForkOf& of, const RunOutput& output
   // the parent is only read: it may still run
   RunFolder::require(of.run);
   require_deck_alone(of.run);
-  Loaded parent = load_from(of.run, {}, "", choices);
+  Opened parent = open_from(of.run, {}, {}, choices);
   const std::int64_t stage = of.from_stage.empty() ? static_cast<std::int64_t>(parent.setup.stages.size()) - 1
                                                    : stage_of(of.from_stage, parent.setup);
   for (const std::string& change : of.changes) require_later(change, stage);
   const CheckpointFile checkpoint(stage_checkpoint(of.run, stage));
 
-  const std::string more = of.more.empty() ? "" : read_file(of.more);
-  Loaded loaded = load_from(of.run, of.changes, more, choices);
-  std::unique_ptr<Session> session(new Session(std::move(loaded), lock(output), output.folder));
+  const Appendix more = of.more.empty() ? Appendix() : Appendix{read_file(of.more), of.more.string()};
+  Opened opened = open_from(of.run, of.changes, more, choices);
+  if (!of.more.empty() && opened.setup.stages.size() == parent.setup.stages.size())
+    throw Error(fmt::format("{}: has no [[stages]], so that nothing follows", of.more.string()));
+  std::unique_ptr<Session> session(new Session(std::move(opened), lock(output), output.folder));
   require_same(checkpoint, inputs_of(parent.deck, parent.setup).hash(), *session->simulation_);
   session->restore(checkpoint);
   if (session->run_.outcome() != Outcome::running)
     throw Error(fmt::format("{}: no stage can follow stage {}, which ended the run ({})", of.run.string(),
                             stage, describe(session->run_.outcome())));
   std::vector<std::string> changes = of.changes;
-  if (!more.empty()) changes.push_back(of.more.string());
+  if (!of.more.empty()) changes.push_back(of.more.string());
   session->make_folder(output, Parent{of.run, stage, changes});
   copy_frames(of.run, output.folder, static_cast<int>(session->recorder_.frames().rows.size()));
   session->open(checkpoint.info().number);

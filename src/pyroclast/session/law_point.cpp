@@ -80,7 +80,7 @@ LawPoint::LawPoint(ContactMaterial material, OnCooling on_cooling, double temper
       on_cooling_(on_cooling),
       hottest_(std::max(temperature, hottest)),
       law_(*material_.law),
-      history_(law_.history(2).size()),
+      internals_(law_.internals(2).size()),
       losses_(law_.losses.size()),
       at_{.temperature = temperature} {
   warm_to(temperature);
@@ -114,7 +114,8 @@ std::vector<Column> LawPoint::columns() const {
                               {"tau_Pa", "Pa"},
                               {"stored_J_m2", "J/m2"},
                               {"property_change_J_m2", "J/m2"}};
-  for (const HistoryInfo& info : law_.history(2)) columns.push_back(column_with_unit(info.name, info.unit));
+  for (const InternalInfo& info : law_.internals(2))
+    columns.push_back(column_with_unit(info.name, info.unit));
   for (const LossInfo& info : law_.losses)
     columns.push_back(
         column_with_unit(fmt::format("{}{}", info.is_energy() ? "dissipated_" : "", info.name), info.unit));
@@ -129,14 +130,14 @@ std::vector<double> LawPoint::values() const {
                              response_.shear_traction[0],
                              response_.stored,
                              property_change_};
-  values.insert(values.end(), history_.begin(), history_.end());
+  values.insert(values.end(), internals_.begin(), internals_.end());
   values.insert(values.end(), losses_.begin(), losses_.end());
   return values;
 }
 
 void LawPoint::update(const JumpPathPoint& point) {
   const std::array jump{point.opening, point.slip};
-  response_ = law_.update(2)(constants_.data(), jump.data(), history_.data(), losses_.data());
+  response_ = law_.update(2)(constants_.data(), jump.data(), internals_.data(), losses_.data());
 }
 
 double LawPoint::dissipated() const {

@@ -57,7 +57,7 @@ class LawPoint {
   double hottest_;  ///< so far, °C
   const LawTable& law_;
   std::vector<std::byte> constants_;
-  std::vector<double> history_, losses_;
+  std::vector<double> internals_, losses_;
   PointResponse response_;
   JumpPathPoint at_;
   double property_change_ = 0.0;

@@ -16,11 +16,11 @@ namespace pyroclast {
 
 namespace {
 
-std::unique_ptr<Simulation> make_simulation_of(const Loaded& loaded,
+std::unique_ptr<Simulation> make_simulation_of(const Opened& opened,
                                                std::optional<specimen::Specimen> specimen) {
-  if (specimen) return make_simulation(loaded.setup, *std::move(specimen), loaded.team);
-  loaded.choices.before_making(loaded);
-  return make_simulation(loaded.setup, loaded.team);
+  if (specimen) return make_simulation(opened.setup, *std::move(specimen), opened.team);
+  opened.choices.before_making(opened);
+  return make_simulation(opened.setup, opened.team);
 }
 
 std::string key_of(const std::string& change) {
@@ -55,15 +55,15 @@ void require_same_body(const ConcreteMaterials& old, const ConcreteMaterials& ch
 
 }  // namespace
 
-Session::Session(Loaded loaded, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
+Session::Session(Opened opened, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
                  std::optional<specimen::Specimen> specimen)
     : lock_(std::move(lock)),
       folder_(std::move(folder)),
-      loaded_(std::move(loaded)),
-      inputs_(inputs_of(loaded_.deck, loaded_.setup)),
-      simulation_(make_simulation_of(loaded_, std::move(specimen))),
-      recorder_(folder_, loaded_.setup),
-      run_(*simulation_, std::move(loaded_.setup.stages)) {
+      opened_(std::move(opened)),
+      inputs_(inputs_of(opened_.deck, opened_.setup)),
+      simulation_(make_simulation_of(opened_, std::move(specimen))),
+      recorder_(folder_, opened_.setup),
+      run_(*simulation_, std::move(opened_.setup.stages)) {
   run_.stop_when([this] { return stop_asked_(); });
   run_.between_batches([this](Run& run) {
     if (checkpoints_) {
@@ -81,10 +81,10 @@ std::unique_ptr<FolderLock> Session::lock(const RunOutput& output) {
   return held;
 }
 
-std::unique_ptr<Session> Session::begin(Loaded loaded, const std::optional<RunOutput>& output) {
+std::unique_ptr<Session> Session::begin(Opened opened, const std::optional<RunOutput>& output) {
   auto held = output ? lock(*output) : nullptr;
   std::unique_ptr<Session> session(
-      new Session(std::move(loaded), std::move(held), output ? output->folder : std::filesystem::path()));
+      new Session(std::move(opened), std::move(held), output ? output->folder : std::filesystem::path()));
   if (!output) return session;
   session->make_folder(*output, std::nullopt);
   session->open(0);
@@ -93,8 +93,8 @@ std::unique_ptr<Session> Session::begin(Loaded loaded, const std::optional<RunOu
 
 void Session::make_folder(const RunOutput& output, std::optional<Parent> parent) {
   const RunFolder made(folder_, output.overwrite,
-                       {loaded_.deck.name(), inputs_, loaded_.setup.specimen.seed, loaded_.team->size(),
-                        name(loaded_.instructions), output.command, own_laws(), std::move(parent)});
+                       {opened_.deck.name(), inputs_, opened_.setup.specimen.seed, opened_.team->size(),
+                        name(opened_.instructions), output.command, own_laws(), std::move(parent)});
   foreign_ = made.foreign();
   for (const Departure& departure : departures_) RunFolder::note_departure(folder_, departure);
 }
@@ -102,7 +102,7 @@ void Session::make_folder(const RunOutput& output, std::optional<Parent> parent)
 /// \param last_checkpoint  number of the checkpoint that the run goes on from; 0 where it begins
 void Session::open(std::int64_t last_checkpoint) {
   checkpoints_.emplace(
-      folder_, loaded_.setup.checkpoints,
+      folder_, opened_.setup.checkpoints,
       Checkpoints::Sources{inputs_.hash(), body_hash(*simulation_),
                            [this](StateVisitor& visitor) { visit_state(visitor); },
                            [this] { return recorder_.wall_time(); }, [this] { return log_bytes_(); }},
@@ -160,10 +160,10 @@ std::unique_ptr<Session> Session::copy(const std::vector<std::string>& changes,
                                        const std::optional<RunOutput>& output) {
   for (const std::string& change : changes) require_later(change, run_.last_begun_stage());
   auto held = output ? lock(*output) : nullptr;
-  Loaded loaded(Deck::parse(loaded_.deck.text(), loaded_.deck.name(), changes), loaded_.folder,
-                loaded_.choices);
-  loaded.team->resize(loaded_.team->size());
-  std::unique_ptr<Session> copied(new Session(std::move(loaded), std::move(held),
+  Opened opened(Deck::parse(opened_.deck.text(), opened_.deck.name(), changes), opened_.folder,
+                opened_.choices);
+  opened.team->resize(opened_.team->size());
+  std::unique_ptr<Session> copied(new Session(std::move(opened), std::move(held),
                                               output ? output->folder : std::filesystem::path(),
                                               simulation_->specimen()));
   StateCopy state;
@@ -192,18 +192,18 @@ void Session::write_checkpoint() {
 }
 
 Setup Session::read(const Deck& deck) const {
-  Setup setup = read_setup(deck, loaded_.folder, loaded_.choices.kinds, loaded_.choices.laws);
-  setup.specimen.seed = loaded_.setup.specimen.seed;
-  setup.checkpoints = loaded_.setup.checkpoints;
+  Setup setup = read_setup(deck, opened_.folder, opened_.choices.kinds, opened_.choices.laws);
+  setup.specimen.seed = opened_.setup.specimen.seed;
+  setup.checkpoints = opened_.setup.checkpoints;
   return setup;
 }
 
 /// The deck of what is to come; what the folder says of it follows.
 void Session::take_over(Deck deck, Setup setup) {
-  loaded_.deck = std::move(deck);
-  loaded_.setup = std::move(setup);
+  opened_.deck = std::move(deck);
+  opened_.setup = std::move(setup);
   if (!checkpoints_) return;
-  inputs_ = inputs_of(loaded_.deck, loaded_.setup);
+  inputs_ = inputs_of(opened_.deck, opened_.setup);
   checkpoints_->set_inputs(inputs_.hash());
   RunFolder::replace_inputs(folder_, inputs_);
   recorder_.begin(run_);
@@ -211,8 +211,7 @@ void Session::take_over(Deck deck, Setup setup) {
 
 void Session::change_stages(const std::vector<std::string>& changes, const std::string& more) {
   for (const std::string& change : changes) require_later(change, run_.last_begun_stage());
-  Deck deck = Deck::parse(more.empty() ? loaded_.deck.text() : loaded_.deck.text() + "\n" + more,
-                          loaded_.deck.name(), changes);
+  Deck deck = Deck::parse(opened_.deck.text(), opened_.deck.name(), changes, {more, "the appended stages"});
   Setup setup = read(deck);
   run_.change_later_stages(std::move(setup.stages));
   take_over(std::move(deck), std::move(setup));
@@ -226,7 +225,7 @@ void Session::change_materials(const std::vector<std::string>& changes) {
                       "stages",
                       key_of(change)));
   if (!simulation_->moves()) throw Error("nothing moves in this run, so its materials have no properties");
-  Deck deck = Deck::parse(loaded_.deck.text(), loaded_.deck.name(), changes);
+  Deck deck = Deck::parse(opened_.deck.text(), opened_.deck.name(), changes);
   Setup setup = read(deck);
   const specimen::Specimen& specimen = simulation_->specimen();
   auto materials = make_materials(setup.solids, *setup.motion, specimen);
@@ -242,7 +241,7 @@ void Session::drive(const std::string& drives) {
   if (run_.history().row_count() == 0) throw Error("the run has not begun: go on to its first look");
   Deck deck = Deck::parse("duration = \"1 s\"\n" + drives, "drive");
   StageTables tables;
-  tables.folder = loaded_.folder;
+  tables.folder = opened_.folder;
   const auto stage = drive_kind().read(deck.root(), tables);
   deck.finish();
   const auto& drive = dynamic_cast<const Drive&>(*stage);
@@ -259,6 +258,18 @@ void Session::drive(const std::string& drives) {
   stage->begin(*simulation_);
   stage->advance(*simulation_, 0);
   depart({fmt::format("{} from step {} on", told(drives), simulation_->mechanics().steps())});
+}
+
+void Session::end_stage() {
+  run_.end_stage();
+  depart({fmt::format("stage {} was ended at row {}", run_.stage_number(), run_.history().row_count() - 1)});
+}
+
+void Session::set_temperature(double temperature) {
+  simulation_->field().set_uniform(temperature);
+  if (simulation_->moves()) simulation_->hand_over();
+  depart({fmt::format("the temperature was set to {:g} degC at row {}", temperature,
+                      run_.history().row_count() - 1)});
 }
 
 void Session::depart(const Departure& departure) {

@@ -11,7 +11,7 @@
 #include "pyroclast/results/folder_lock.hpp"
 #include "pyroclast/results/inputs.hpp"
 #include "pyroclast/results/recorder.hpp"
-#include "pyroclast/session/load.hpp"
+#include "pyroclast/session/open.hpp"
 #include "pyroclast/simulation/run.hpp"
 
 namespace pyroclast {
@@ -20,7 +20,7 @@ namespace pyroclast {
 struct RunOutput {
   std::filesystem::path folder;
   bool overwrite = false;
-  std::string command;
+  std::string command = {};
 };
 
 /// What a run is forked from.
@@ -40,7 +40,7 @@ class Session {
  public:
   /// A run from its beginning. Throws Error where it cannot be made, or its folder may not be written.
   /// \param output  empty: nothing is written
-  static std::unique_ptr<Session> begin(Loaded loaded, const std::optional<RunOutput>& output);
+  static std::unique_ptr<Session> begin(Opened opened, const std::optional<RunOutput>& output);
   /// A run that was broken off goes on in its folder. Throws Error where it is over, or the checkpoint is not
   /// of this program, these inputs and this body.
   /// \param checkpoint  to go on from; empty: the newest
@@ -90,13 +90,18 @@ class Session {
   /// contradicts a support or the stage under way, or would let the body fly away; then nothing is changed.
   /// \param drives  tables [[drives]] of such a stage
   void drive(const std::string& drives);
+  /// Ends the stage under way after the last look. The run departs from its deck.
+  void end_stage();
+  /// Gives the whole body one temperature, °C, which reaches the mechanics where there are any. The run
+  /// departs from its deck. Throws Error where the temperature is computed.
+  void set_temperature(double temperature);
   /// Notes that from now on the run is not the one that its deck describes: in summary and manifest.
   void depart(const Departure& departure);
 
   Run& run() { return run_; }
   const Run& run() const { return run_; }
   Simulation& simulation() { return *simulation_; }
-  const Loaded& loaded() const { return loaded_; }
+  const Opened& opened() const { return opened_; }
   /// Empty where nothing is written.
   const std::filesystem::path& folder() const { return folder_; }
   /// What was in the folder and no run writes.
@@ -108,7 +113,7 @@ class Session {
   const std::filesystem::path& last_checkpoint() const { return last_checkpoint_; }
 
  private:
-  Session(Loaded loaded, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
+  Session(Opened opened, std::unique_ptr<FolderLock> lock, std::filesystem::path folder,
           std::optional<specimen::Specimen> specimen = std::nullopt);
 
   static std::unique_ptr<FolderLock> lock(const RunOutput& output);
@@ -123,7 +128,7 @@ class Session {
 
   std::unique_ptr<FolderLock> lock_;
   std::filesystem::path folder_;
-  Loaded loaded_;
+  Opened opened_;
   Inputs inputs_;
   std::unique_ptr<Simulation> simulation_;
   Recorder recorder_;

@@ -58,6 +58,16 @@ HeatedFaces read_faces(const Section& s) {
   return faces;
 }
 
+/// A factor of the heat that flows through a boundary: one that is 0 all the time lets none through.
+Curve read_factor(const Section& s, std::string_view key, const Unit& unit, const Range& range,
+                  Meaning meaning, CurveReader& curves) {
+  Curve factor = curves.read(s, key, unit, range, meaning);
+  const auto [begin, end] = curves.needed();
+  if (s.ok() && factor.minimum(begin, end) == 0.0 && factor.maximum(begin, end) == 0.0)
+    s.error(key, "lets no heat through, so that the boundary has no effect; kind = \"adiabatic\" says so");
+  return factor;
+}
+
 HeatCondition read_condition(const Section& s, CurveReader& curves) {
   enum class Kind { temperature, flux, convection, radiation, adiabatic };
   s.know({"temperature", "flux", "coefficient", "emissivity", "gas_temperature"});
@@ -76,15 +86,16 @@ HeatCondition read_condition(const Section& s, CurveReader& curves) {
       return PrescribedTemperature{
           curves.read(s, "temperature", unit::temperature, kTemperature, "of the faces")};
     case Kind::flux:
-      return HeatFlux{curves.read(s, "flux", unit::heat_flux, Range::any(), "positive into the specimen")};
+      return HeatFlux{
+          read_factor(s, "flux", unit::heat_flux, Range::any(), "positive into the specimen", curves)};
     case Kind::convection:
-      return Convection{curves.read(s, "coefficient", unit::heat_transfer, Range::non_negative(),
-                                    "coefficient h of heat transfer"),
+      return Convection{read_factor(s, "coefficient", unit::heat_transfer, Range::non_negative(),
+                                    "coefficient h of heat transfer", curves),
                         gas()};
     case Kind::radiation:
-      return Radiation{
-          curves.read(s, "emissivity", unit::dimensionless, Range::fraction(), "resultant emissivity ε"),
-          gas()};
+      return Radiation{read_factor(s, "emissivity", unit::dimensionless, Range::fraction(),
+                                   "resultant emissivity ε", curves),
+                       gas()};
     case Kind::adiabatic:
       break;
   }
@@ -187,10 +198,18 @@ GapHeat read_gap_heat(const Section& s, CurveReader& curves) {
         "split_below", unit::heat_transfer, Range::positive().usually(1e3, 1e5),
         "conductance below which a contact parts the temperatures of its sides; above twice that it "
         "joins them; without it 20 λ / ℓ of the specimen; see [heat.md](heat.md#cracks)");
+  const Interval needed = curves.needed();
   if (s.has("gas_conductivity"))
     law.gas_conductivity =
         curves.read(s, "gas_conductivity", unit::conductivity, Range::positive(),
                     "of the gas in cracks; without it that of air, the builtin air_conductivity");
+  else if (!law.gas_conductivity.holds(needed))
+    s.error("gas_conductivity",
+            fmt::format(
+                "is needed: without it that of air is taken, which is given for {:.6g} to {:.6g} degC, but "
+                "the run may come to {:.6g} to {:.6g} degC",
+                law.gas_conductivity.range().lower, law.gas_conductivity.range().upper, needed.lower,
+                needed.upper));
   return law;
 }
 

@@ -16,7 +16,7 @@
 #include "pyroclast/laws/registry.hpp"
 #include "pyroclast/material/thermal_strain.hpp"
 #include "pyroclast/plugin/code_permission.hpp"
-#include "pyroclast/plugin/load.hpp"
+#include "pyroclast/plugin/open.hpp"
 
 namespace pyroclast {
 
@@ -217,8 +217,9 @@ SolidMaterial read_phase(const Section& s, const MaterialRules& rules, const Rea
       "1 at 20 °C; E falls to it evenly on cooling; see [deck.md](deck.md#cooling)",
       curves);
   m.thermal_strain = read_thermal_strain(s, rules.expansion_reading, curves);
-  if (const auto step = read_quartz_step(s, concrete))
-    m.thermal_strain = with_quartz_step(m.thermal_strain, *step, strain_range(curves.needed()))
+  m.quartz_step = read_quartz_step(s, concrete);
+  if (m.quartz_step)
+    m.thermal_strain = with_quartz_step(m.thermal_strain, *m.quartz_step, strain_range(curves.needed()))
                            .named(s.path() + ".thermal_strain");
   for (const char* key : {"expansion", "thermal_strain"})
     if (concrete.of_phases && s.has(key))
@@ -440,8 +441,8 @@ class InterfaceReader {
         s.word_or_text("law", words, "a law of your own, see [laws.md](laws.md)", "contact law");
     try {
       const LawTable& law = find_law_(stated, s.is_changed("law"));
-      for (const LoadedLaw* loaded : loaded_laws())
-        if (&loaded->table == &law) name_file(s, *loaded, stated);
+      for (const OpenedLaw* opened : opened_laws())
+        if (&opened->table == &law) name_file(s, *opened, stated);
       return law;
     } catch (const CodeNotAllowed& error) {
       name_file(s, error.code(), stated);
@@ -467,7 +468,7 @@ class InterfaceReader {
   }
 
   /// Of a law that is not part of the program: mine.so, or mine.hpp with or without ":Type".
-  static void name_file(const Section& s, const LoadedLaw& law, const std::string& stated) {
+  static void name_file(const Section& s, const OpenedLaw& law, const std::string& stated) {
     name_file(s, law.header.file.empty() ? law.shared_object : law.header.file, stated);
   }
 

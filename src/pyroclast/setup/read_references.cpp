@@ -295,7 +295,7 @@ Reference read_reference(const Section& s, const std::filesystem::path& folder,
     reference.over = found.over.front();
     reference.rows = found.rows;
     wrong = "file";
-    read_table(s, "file", MeasuredTable::load(folder / file, kCurveColumns), choice, signs, reference);
+    read_table(s, "file", MeasuredTable::open(folder / file, kCurveColumns), choice, signs, reference);
     s.names_file("file", folder / file);
   } catch (const Error& error) {
     s.error(wrong, error.what());
@@ -340,7 +340,7 @@ Reference read_short(const Section& output, const std::filesystem::path& folder,
     return reference;
   }
   try {
-    const MeasuredTable table = MeasuredTable::load(folder / name, kCurveColumns);
+    const MeasuredTable table = MeasuredTable::open(folder / name, kCurveColumns);
     const Drawn found = told_by_units(table, drawn);
     reference.of = found.of;
     reference.over = found.over.front();

@@ -61,7 +61,7 @@ std::optional<NamedTable> read_named_table(const Section& s, const std::filesyst
   const ColumnChoice choice = read_column_choice(s, file, least, asked.size());
   if (!s.ok() || !s.has("csv")) return std::nullopt;
   try {
-    MeasuredTable table = MeasuredTable::load(folder / file, least);
+    MeasuredTable table = MeasuredTable::open(folder / file, least);
     const std::size_t stated = choice.columns.empty() ? table.columns().size() : choice.columns.size();
     auto columns = table.choose(choice, asked.first(std::clamp(stated, least, asked.size())));
     s.names_file("csv", folder / file);

@@ -10,6 +10,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/rounding.hpp"
 #include "pyroclast/material/builtin_curves.hpp"
+#include "pyroclast/setup/effects.hpp"
 #include "pyroclast/setup/read_bearings.hpp"
 #include "pyroclast/setup/read_heat.hpp"
 #include "pyroclast/setup/read_materials.hpp"
@@ -96,16 +97,6 @@ void check_heat(const Section& root, const HeatConditions& conditions,
   }
 }
 
-/// That heat which may flow does.
-void check_flow(const Section& root, const HeatConditions& conditions,
-                const std::vector<std::unique_ptr<Stage>>& stages) {
-  const auto heat = root.optional_section("heat");
-  const auto lets_flow = [](const auto& stage) { return stage->heating().duration > 0.0; };
-  if (!root.ok() || !heat || conditions.boundaries.empty() || std::ranges::any_of(stages, lets_flow)) return;
-  heat->error("boundaries",
-              "have no effect: no stage lets heat flow, as those of kind \"expose\" and \"conduct\" do");
-}
-
 /// A stage that moves the body takes it as the last exchange left it: what `conduct` did since then would
 /// have no effect on it.
 void check_hand_over(const Section& root, const std::vector<std::unique_ptr<Stage>>& stages) {
@@ -189,21 +180,6 @@ void warn_of_healing(const Section& root, const Setup& setup) {
     }
     temperature = *to;
   }
-}
-
-/// A body that is not at the temperature at which nothing is strained.
-void warn_of_first_strain(const Section& root, const Setup& setup) {
-  if (!setup.motion) return;
-  const auto& stress_free = setup.motion->stress_free;
-  if (stress_free && stress_free->is_field()) return;
-  const double unstrained = stress_free ? stress_free->temperatures.front() : kReferenceTemperature;
-  if (same(setup.heat.initial, unstrained, absolute_zero)) return;
-  root.section("heat").warn(
-      "initial",
-      fmt::format("the body is unstrained at {:.6g} degC, and its expansion from there on acts at once "
-                  "at the first step, which can crack it: a stage that heats it does so gradually; "
-                  "coupling.stress_free says another temperature",
-                  unstrained));
 }
 
 /// All temperatures that a run may come to, and the reference temperature, at which masses and stated
@@ -297,20 +273,6 @@ std::vector<std::string> materials_of(const std::vector<Bearing>& bearings) {
   return names;
 }
 
-/// Sets that no stage, record, heat boundary or other set names.
-std::vector<std::string> unused_sets(const Setup& setup) {
-  std::vector<std::string> used;
-  for (const auto& stage : setup.stages)
-    for (const std::string& set : stage->sets()) used.push_back(set);
-  for (const RecordParameters& record : setup.records) used.insert(used.end(), {record.set, record.other});
-  for (const HeatBoundaryCondition& boundary : setup.heat.boundaries) used.push_back(boundary.faces.part);
-  for (const auto& set : setup.sets) used.push_back(set.within);
-  std::vector<std::string> unused;
-  for (const auto& set : setup.sets)
-    if (std::ranges::find(used, set.name) == used.end()) unused.push_back(set.name);
-  return unused;
-}
-
 /// Materials, and what moves, where a stage moves the body.
 void read_moving(const Section& root, const std::vector<ReadBearing>& bearings, CurveReader& curves,
                  const LawFinder& find_law, Setup& setup) {
@@ -355,7 +317,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   if (auto heat = read_heat(root, time_curves)) setup.heat = std::move(*heat);
   check_heat(root, setup.heat, setup.stages);
   check_hand_over(root, setup.stages);
-  check_flow(root, setup.heat, setup.stages);
+  if (root.ok()) check_flow(root, setup);
   setup.temperatures = run_temperatures(root, setup.heat, read.stress_free, setup.stages);
   const auto bearings = read.any_moves ? read_bearings(root) : std::vector<ReadBearing>();
   setup.specimen = read_specimen(root, folder, bearings);
@@ -389,6 +351,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
   setup.curves = curves.curves();
   warn_of_healing(root, setup);
   warn_of_first_strain(root, setup);
+  if (root.ok()) warn_of_even_temperatures(root, setup);
   if (root.ok()) warn_of_coarse_blocks(root, setup);
   const Section output = root.section_or_none("output");
   setup.has_fields =
@@ -401,6 +364,7 @@ Setup read_setup(const Deck& deck, const std::filesystem::path& folder, const St
       output.flag("keep_stage_checkpoints", true,
                   "whether the state at the end of each stage is kept, for [forks](restart.md#forks)");
   setup.unused_sets = unused_sets(setup);
+  setup.unused_properties = unused_properties(root, setup);
   setup.references = read_references(output, folder, setup);
   deck.finish();
   setup.warnings = deck.warnings();

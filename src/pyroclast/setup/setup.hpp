@@ -36,7 +36,9 @@ struct Setup {
   std::optional<MotionParameters> motion;  ///< empty where no stage moves the body
   std::vector<SetParameters<2>> sets;      ///< beside those that every model has
   std::vector<std::string> unused_sets;    ///< those of them that no table names: for scripts and ParaView
-  HeatConditions heat;                     ///< uniform at the reference temperature without [heat]
+  /// What the deck says of materials and no temperature of the run calls for, a line each.
+  std::vector<std::string> unused_properties;
+  HeatConditions heat;  ///< uniform at the reference temperature without [heat]
   std::vector<ProbePosition> probes;
   std::vector<RecordParameters> records;
   std::vector<std::unique_ptr<Stage>> stages;

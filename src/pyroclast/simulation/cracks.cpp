@@ -44,27 +44,27 @@ bool all_zero(const double* lanes) {
   return bits == 0;
 }
 
-/// The bits of the contact point of each slot. It goes over the histories as they stand: most points have no
-/// damage, and to ask one by one costs more than all else of a look.
+/// The bits of the contact point of each slot. It goes over the internal variables as they stand: most points
+/// have no damage, and to ask one by one costs more than all else of a look.
 std::vector<std::uint8_t> damages(const Mechanics<2>& mechanics) {
   const auto& layout = mechanics.layout();
   const auto& state = mechanics.state();
   struct Place {
     std::size_t line, mode;
   };
-  std::vector<std::vector<Place>> places;  // of each law, where a point's history has its damages
+  std::vector<std::vector<Place>> places;  // of each law, where a point's internal variables has its damages
   for (const LawTable* law : mechanics.laws())
-    for (auto& of_law = places.emplace_back(); const HistoryInfo& info : law->history(2))
+    for (auto& of_law = places.emplace_back(); const InternalInfo& info : law->internals(2))
       if (const std::size_t mode = mode_of(info.what); mode < std::size(kCrackModes))
-        of_law.push_back({static_cast<std::size_t>(&info - law->history(2).data()), mode});
-  std::vector<std::uint8_t> bits(static_cast<std::size_t>(layout.first_point_of(layout.face_rows())) *
+        of_law.push_back({static_cast<std::size_t>(&info - law->internals(2).data()), mode});
+  std::vector<std::uint8_t> bits(static_cast<std::size_t>(layout.first_point_of(layout.face_packs())) *
                                  kLanes);
-  for (int row = 0; row < layout.face_rows(); ++row) {
-    const std::uint8_t law = state.law_of_faces[row];
-    const std::size_t lines_of_point = mechanics.laws()[law]->history(2).size();
-    const Line* const lines = state.history.data() + state.first_history[row];
-    const int first = layout.first_point_of(row);
-    for (int point = first; point < layout.first_point_of(row + 1); ++point) {
+  for (int pack = 0; pack < layout.face_packs(); ++pack) {
+    const std::uint8_t law = state.law_of_faces[pack];
+    const std::size_t lines_of_point = mechanics.laws()[law]->internals(2).size();
+    const Line* const lines = state.internals.data() + state.first_internal[pack];
+    const int first = layout.first_point_of(pack);
+    for (int point = first; point < layout.first_point_of(pack + 1); ++point) {
       const Line* const line = lines + static_cast<std::size_t>(point - first) * lines_of_point;
       std::uint8_t* const of_point = bits.data() + static_cast<std::size_t>(point) * kLanes;
       for (const auto [place, mode] : places[law]) {
@@ -112,7 +112,7 @@ std::vector<CrackKind> crack_kinds(const Mechanics<2>& mechanics) {
   std::vector<CrackKind> kinds;
   for (const Remembers damage : kCrackModes)
     for (int i = 0; i < static_cast<int>(names.size()); ++i)
-      if (laws[i] && std::ranges::count(laws[i]->history(2), damage, &HistoryInfo::what) > 0)
+      if (laws[i] && std::ranges::count(laws[i]->internals(2), damage, &InternalInfo::what) > 0)
         kinds.push_back({damage, i, fmt::format("{}_{}", name_of(damage), names[i])});
   return kinds;
 }

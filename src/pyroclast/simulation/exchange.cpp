@@ -56,25 +56,25 @@ void Exchange::begin(Simulation& simulation) const {
 }
 
 void Exchange::hand_over(Simulation& simulation) {
-  number_ = simulation.count_exchange();
-  cycles_ = 0;
-  converged_ = false;
-  is_handed_over_ = true;
+  kept_.number = simulation.count_exchange();
+  kept_.cycles = 0;
+  kept_.converged = false;
+  kept_.is_handed_over = true;
   simulation.hand_over();
 }
 
 void Exchange::move_evenly_first(const Press<2>::EvenMotion& motion) {
-  even_motion_ = motion;
-  even_steps_left_ = kEvenSteps;
+  kept_.even_motion = motion;
+  kept_.even_steps_left = kEvenSteps;
 }
 
 /// One step of it; true when there was none left.
 bool Exchange::move_evenly(Simulation& simulation) {
-  if (even_steps_left_ == 0) return true;
+  if (kept_.even_steps_left == 0) return true;
   Press<2>& press = simulation.press();
-  press.move_evenly(even_motion_, even_steps_left_ == kEvenSteps ? 1.0 : 0.0, platen_follows());
+  press.move_evenly(kept_.even_motion, kept_.even_steps_left == kEvenSteps ? 1.0 : 0.0, platen_follows());
   simulation.mechanics().advance(1);
-  if (--even_steps_left_ == 0) press.end_even_motion(platen_follows());
+  if (--kept_.even_steps_left == 0) press.end_even_motion(platen_follows());
   return false;
 }
 
@@ -88,30 +88,30 @@ void Exchange::set_down(const Press<2>& press) {
 bool Exchange::advance(Simulation& simulation, int most_steps) {
   if (!move_evenly(simulation)) return false;
   const bool may_fail = platen_follows();
-  if (is_handed_over_) {
+  if (kept_.is_handed_over) {
     simulation.loads().mark();
-    strain_before_ = last_ = shortening(simulation);
+    kept_.strain_before = kept_.last = shortening(simulation);
   }
-  is_handed_over_ = false;
-  const std::int64_t done = cycles_ % coupling_.most_cycles;
+  kept_.is_handed_over = false;
+  const std::int64_t done = kept_.cycles % coupling_.most_cycles;
   const std::int64_t to_check =
       std::min(coupling_.most_cycles - done, kCyclesPerCheck - done % kCyclesPerCheck);
   const auto steps = std::min<std::int64_t>(to_check, most_steps);
   simulation.mechanics().advance(static_cast<int>(steps));
-  cycles_ += steps;
+  kept_.cycles += steps;
   if (steps < to_check) return false;
   const double now = shortening(simulation);
-  ran_away_ = may_fail && now - strain_before_ > coupling_.failure_strain;
-  if (ran_away_) return true;
-  if (cycles_ >= coupling_.least_cycles) {
+  kept_.ran_away = may_fail && now - kept_.strain_before > coupling_.failure_strain;
+  if (kept_.ran_away) return true;
+  if (kept_.cycles >= coupling_.least_cycles) {
     const bool is_supported = !simulation.has_press() || simulation.press().is_supported();
-    converged_ = is_supported && is_still(simulation);
-    if (converged_) return true;
+    kept_.converged = is_supported && is_still(simulation);
+    if (kept_.converged) return true;
     if (!is_supported && platen_follows()) set_down(simulation.press());
   }
-  if (cycles_ % coupling_.most_cycles != 0) return false;
-  if (!may_fail || !(now - last_ > kSlowSinking * coupling_.failure_strain)) return true;
-  last_ = now;
+  if (kept_.cycles % coupling_.most_cycles != 0) return false;
+  if (!may_fail || !(now - kept_.last > kSlowSinking * coupling_.failure_strain)) return true;
+  kept_.last = now;
   return false;
 }
 
@@ -132,7 +132,7 @@ std::vector<Column> Exchange::columns() {
 }
 
 std::vector<double> Exchange::values() const {
-  return {static_cast<double>(number_), static_cast<double>(cycles_), converged_ ? 1.0 : 0.0};
+  return {static_cast<double>(kept_.number), static_cast<double>(kept_.cycles), kept_.converged ? 1.0 : 0.0};
 }
 
 double Exchange::expected_cycles() const {
@@ -141,19 +141,21 @@ double Exchange::expected_cycles() const {
 }
 
 void Exchange::visit_state(StateVisitor& visitor) {
-  visitor.visit("exchange", number_, state::count());
-  visitor.visit("cycles", cycles_, state::count());
-  visitor.visit("converged", converged_);
-  visitor.visit("ran_away", ran_away_);
-  visitor.visit("is_handed_over", is_handed_over_);
-  visitor.visit("even_steps_left", even_steps_left_, state::within(0, kEvenSteps));
-  visitor.visit("even_axial", even_motion_.axial);
-  visitor.visit("even_lateral", even_motion_.lateral);
-  visitor.visit("even_lift", even_motion_.lift);
-  visitor.visit("even_tilt", even_motion_.tilt);
-  visitor.visit("even_platen_lift", even_motion_.platen_lift);
-  visitor.visit("strain_before", strain_before_);
-  visitor.visit("last_strain", last_);
+  auto& [number, cycles, converged, ran_away, is_handed_over, even_steps_left, even_motion, strain_before,
+         last] = kept_;  // another member does not compile until it has a name here
+  visitor.visit("exchange", number, state::count());
+  visitor.visit("cycles", cycles, state::count());
+  visitor.visit("converged", converged);
+  visitor.visit("ran_away", ran_away);
+  visitor.visit("is_handed_over", is_handed_over);
+  visitor.visit("even_steps_left", even_steps_left, state::within(0, kEvenSteps));
+  visitor.visit("even_axial", even_motion.axial);
+  visitor.visit("even_lateral", even_motion.lateral);
+  visitor.visit("even_lift", even_motion.lift);
+  visitor.visit("even_tilt", even_motion.tilt);
+  visitor.visit("even_platen_lift", even_motion.platen_lift);
+  visitor.visit("strain_before", strain_before);
+  visitor.visit("last_strain", last);
 }
 
 }  // namespace pyroclast

@@ -60,7 +60,7 @@ class Exchange {
   /// from the lower platen, is set down: its weight would take long to move the mass that is scaled.
   bool advance(Simulation& simulation, int most_steps);
 
-  bool ran_away() const { return ran_away_; }
+  bool ran_away() const { return kept_.ran_away; }
 
   /// `exchange`, counted over the run from 1; `cycles` in steps; `converged`, 1 where the body came to rest.
   static std::vector<Column> columns();
@@ -77,14 +77,17 @@ class Exchange {
   bool platen_follows() const { return coupling_.platen == PlatenControl::force; }
 
   Coupling coupling_;
-  std::int64_t number_ = 0;
-  std::int64_t cycles_ = 0;
-  bool converged_ = true;
-  bool ran_away_ = false;
-  bool is_handed_over_ = false;              ///< and not a step done since
-  std::int64_t even_steps_left_ = 0;         ///< of moving evenly, and of the halt
-  Press<2>::EvenMotion even_motion_;         ///< to come
-  double strain_before_ = 0.0, last_ = 0.0;  ///< of the specimen: at the exchange; when cycles were added
+  /// All that lasts from one batch to the next.
+  struct Kept {
+    std::int64_t number = 0;
+    std::int64_t cycles = 0;
+    bool converged = true;
+    bool ran_away = false;
+    bool is_handed_over = false;             ///< and not a step done since
+    std::int64_t even_steps_left = 0;        ///< of moving evenly, and of the halt
+    Press<2>::EvenMotion even_motion;        ///< to come
+    double strain_before = 0.0, last = 0.0;  ///< of the specimen: at the exchange; when cycles were added
+  } kept_;
 };
 
 }  // namespace pyroclast

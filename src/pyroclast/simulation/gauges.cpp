@@ -76,39 +76,6 @@ constexpr auto kMotion = std::to_array<ColumnOf<Motion>>({
     {"unbalanced_ratio", "1", [](const Motion& m) { return m.unbalanced_ratio; }},
     {"kinetic_over_strain", "1", [](const Motion& m) { return m.energy.kinetic_over_elastic(); }},
     {"largest_jump", "1", [](const Motion& m) { return m.largest_jump; }},
-    {"energy_loading_J", "J", [](const Motion& m) { return m.energy.loading; }},
-    {"energy_gravity_J", "J", [](const Motion& m) { return m.energy.gravity; }},
-    {"energy_property_change_J", "J", [](const Motion& m) { return m.energy.property_change; }},
-    {"energy_mass_scaling_J", "J", [](const Motion& m) { return m.energy.mass_scaling; }},
-    {"energy_zones_J", "J", [](const Motion& m) { return m.energy.zones; }},
-    {"energy_contacts_J", "J", [](const Motion& m) { return m.energy.contacts; }},
-    {"energy_kinetic_J", "J", [](const Motion& m) { return m.energy.kinetic; }},
-});
-constexpr auto kLost = std::to_array<ColumnOf<Motion>>({
-    {"energy_local_damping_J", "J", [](const Motion& m) { return m.energy.local_damping; }},
-    {"energy_viscous_damping_J", "J", [](const Motion& m) { return m.energy.viscous_damping; }},
-    {"energy_error_J", "J", [](const Motion& m) { return m.energy.error(); }},
-});
-
-/// What is measured of a computed field.
-struct Transport {
-  double rate = 0.0;
-  HeatLedger heat;
-};
-
-Transport measure_transport(const Conduction<2>& conduction) {
-  return {conduction.rate(), conduction.ledger()};
-}
-
-using T = Transport;
-constexpr auto kTransport = std::to_array<ColumnOf<T>>({
-    {"rate_K_s", "K/s", [](const T& t) { return t.rate; }},
-    {"heat_stored_J", "J", [](const T& t) { return t.heat.stored; }},
-    {"heat_prescribed_J", "J", [](const T& t) { return t.heat.prescribed; }},
-    {"heat_flux_J", "J", [](const T& t) { return t.heat.boundary.flux; }},
-    {"heat_convection_J", "J", [](const T& t) { return t.heat.boundary.convection; }},
-    {"heat_radiation_J", "J", [](const T& t) { return t.heat.boundary.radiation; }},
-    {"heat_error_J", "J", [](const T& t) { return t.heat.error(); }},
 });
 
 /// Of contacts whose sides have temperatures of their own.
@@ -117,25 +84,57 @@ constexpr auto kGaps = std::to_array<ColumnOf<S>>({
      [](const S& s) { return s.field().conduction()->gaps()->area() / s.model().thickness; }},
 });
 
-/// With a column for each energy that the contact laws of the body lose.
+/// Calls one of two functions for each energy of the ledger, in the order of the columns: for an entry, and
+/// for one that the contact laws of the body or its creep dissipate, by its number.
+template <class OfEntry, class OfDissipated>
+void for_each_energy(std::size_t dissipations, OfEntry of_entry, OfDissipated of_dissipated) {
+  bool are_told = false;
+  for (const auto& entry : kEnergies) {
+    const bool follows = entry.side == LedgerSide::lost || entry.side == LedgerSide::error;
+    if (follows && !std::exchange(are_told, true))
+      for (std::size_t i = 0; i < dissipations; ++i) of_dissipated(i);
+    of_entry(entry);
+  }
+}
+
 Gauge motion_gauge(const Mechanics<2>& mechanics) {
   Gauge gauge;
-  const auto add = [&](const auto& table) {
-    for (const auto& column : table) gauge.columns.push_back({column.name, column.unit});
-  };
-  add(kMotion);
-  for (const auto& name : mechanics.dissipations())
-    gauge.columns.push_back({fmt::format("dissipated_{}_J", name), "J"});
-  add(kLost);
+  for (const auto& column : kMotion) gauge.columns.push_back({column.name, column.unit});
+  const auto names = mechanics.dissipations();
+  for_each_energy(
+      names.size(),
+      [&](const auto& entry) {
+        gauge.columns.push_back({entry.column, "J"});
+      },
+      [&](std::size_t i) {
+        gauge.columns.push_back({fmt::format("dissipated_{}_J", names[i]), "J"});
+      });
   gauge.read = [](const Simulation& simulation) {
     const Motion measured = measure_motion(simulation.mechanics());
     std::vector<double> values;
     for (const auto& column : kMotion) values.push_back(column.value(measured));
-    for (double energy : measured.energy.dissipated.energies) values.push_back(energy);
-    for (const auto& column : kLost) values.push_back(column.value(measured));
+    const auto& dissipated = measured.energy.dissipated.energies;
+    for_each_energy(
+        dissipated.size(), [&](const auto& entry) { values.push_back(entry.value(measured.energy)); },
+        [&](std::size_t i) { values.push_back(dissipated[i]); });
     return values;
   };
   gauge.of_motion = true;
+  return gauge;
+}
+
+/// Rate and heat of a computed field.
+Gauge transport_gauge() {
+  Gauge gauge;
+  gauge.columns.push_back({"rate_K_s", "K/s"});
+  for (const auto& entry : kHeats) gauge.columns.push_back({entry.column, "J"});
+  gauge.read = [](const Simulation& simulation) {
+    const Conduction<2>& conduction = *simulation.field().conduction();
+    const HeatLedger heat = conduction.ledger();
+    std::vector<double> values{conduction.rate()};
+    for (const auto& entry : kHeats) values.push_back(entry.value(heat));
+    return values;
+  };
   return gauge;
 }
 
@@ -214,8 +213,7 @@ std::vector<Gauge> record_gauges(const Simulation& simulation) {
 
 std::vector<Gauge> transport_gauges(const Simulation& simulation) {
   if (simulation.field().is_uniform()) return {};
-  std::vector<Gauge> gauges{make_gauge(
-      kTransport, [](const Simulation& s) { return measure_transport(*s.field().conduction()); }, false)};
+  std::vector<Gauge> gauges{transport_gauge()};
   if (simulation.cracks_hinder_heat())
     gauges.push_back(make_gauge(
         kGaps, [](const Simulation& s) -> const Simulation& { return s; }, false));

@@ -7,6 +7,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/overloaded.hpp"
+#include "pyroclast/base/rounding.hpp"
 
 namespace pyroclast {
 
@@ -188,6 +189,15 @@ Interval temperature_range(const HeatConditions& heat, double duration) {
     }
   }
   return range;
+}
+
+bool heats_or_cools(const HeatConditions& heat, double duration) {
+  return std::ranges::any_of(heat.boundaries, [&](const HeatBoundaryCondition& boundary) {
+    if (std::holds_alternative<HeatFlux>(boundary.condition)) return true;
+    const Curve* temperature = curves_of(boundary.condition).temperature;
+    return temperature && !(same(temperature->minimum(0.0, duration), heat.initial, absolute_zero) &&
+                            same(temperature->maximum(0.0, duration), heat.initial, absolute_zero));
+  });
 }
 
 double constant_from(const HeatConditions& heat, double duration) {

@@ -79,6 +79,9 @@ const char* kind_name(const HeatCondition& condition);
 /// given flux, which has no such bound, and no range is stated.
 Interval temperature_range(const HeatConditions& heat, double duration);
 
+/// Whether a boundary makes any temperature another than that at the start within `duration` s.
+bool heats_or_cools(const HeatConditions& heat, double duration);
+
 /// Time from which no boundary value changes any more up to `duration`, s; `duration` when there is none.
 double constant_from(const HeatConditions& heat, double duration);
 

@@ -54,12 +54,12 @@ Press<Dim>::Press(Mechanics<Dim>& mechanics, int axis, double height,
 template <int Dim>
 void Press<Dim>::let_go() {
   for (int g : set("top_platen_support")) mechanics_.release(g, axis_);
-  is_driven_ = false;
+  kept_.is_driven = false;
 }
 
 template <int Dim>
 void Press<Dim>::control_by_force() {
-  const double borne = is_driven_ ? std::max(0.0, stress_top()) : stress_held_;
+  const double borne = kept_.is_driven ? std::max(0.0, stress_top()) : kept_.stress_held;
   mechanics_.untie();
   let_go();
   mechanics_.tie(set("top_platen_support"), axis_);
@@ -68,14 +68,14 @@ void Press<Dim>::control_by_force() {
 
 template <int Dim>
 void Press<Dim>::control_by_motion(double velocity) {
-  is_driven_ = true;
+  kept_.is_driven = true;
   mechanics_.untie();
   hold(0.0);
-  drive(velocity);
+  move_platen(velocity);
 }
 
 template <int Dim>
-void Press<Dim>::drive(double velocity) {
+void Press<Dim>::move_platen(double velocity) {
   for (int g : set("top_platen_support")) mechanics_.prescribe_velocity(g, axis_, -velocity);
 }
 
@@ -88,14 +88,14 @@ void Press<Dim>::hold(double stress) {
   Vec<Dim> share{};
   share[axis_] = -force / static_cast<double>(support.size());
   for (int g : support) mechanics_.apply_force(g, share);
-  stress_held_ = stress;
+  kept_.stress_held = stress;
 }
 
 template <int Dim>
 bool Press<Dim>::is_supported() const {
   const auto weight = [&](const GridpointSet& of) { return -mechanics_.total_weight(of)[axis_] / area(); };
   const double carries = stress_bottom() - weight(summed("bottom_platen"));
-  return carries >= kCarried * (weight(specimen()) + stress_held_);
+  return carries >= kCarried * (weight(specimen()) + kept_.stress_held);
 }
 
 template <int Dim>
@@ -184,31 +184,31 @@ double Press<Dim>::widening(int direction) const {
 
 template <int Dim>
 void Press<Dim>::set_zero() {
-  shortening_at_zero_ += strain() * height_;
-  specimen_shortening_at_zero_ += specimen_strain() * height_;
+  kept_.shortening_at_zero += strain() * height_;
+  kept_.specimen_shortening_at_zero += specimen_strain() * height_;
   for (int d = 0; d < Dim - 1; ++d)
-    widening_at_zero_[d] += (widening(d) - widening_at_zero_[d]) / widths_[d] * widths_[d];
+    kept_.widening_at_zero[d] += (widening(d) - kept_.widening_at_zero[d]) / widths_[d] * widths_[d];
 }
 
 template <int Dim>
 void Press<Dim>::begin_stage() {
-  stage_first_strain_ = strain();
+  kept_.stage_first_strain = strain();
 }
 
 template <int Dim>
 double Press<Dim>::strain() const {
-  return (shortening("top_platen_face", "bottom_platen_face") - shortening_at_zero_) / height_;
+  return (shortening("top_platen_face", "bottom_platen_face") - kept_.shortening_at_zero) / height_;
 }
 
 template <int Dim>
 double Press<Dim>::specimen_strain() const {
-  return (shortening("top", "bottom") - specimen_shortening_at_zero_) / height_;
+  return (shortening("top", "bottom") - kept_.specimen_shortening_at_zero) / height_;
 }
 
 template <int Dim>
 double Press<Dim>::lateral_strain() const {
   double sum = 0.0;
-  for (int d = 0; d < Dim - 1; ++d) sum += (widening(d) - widening_at_zero_[d]) / widths_[d];
+  for (int d = 0; d < Dim - 1; ++d) sum += (widening(d) - kept_.widening_at_zero[d]) / widths_[d];
   return sum / (Dim - 1);
 }
 
@@ -259,13 +259,15 @@ void Press<Dim>::end_even_motion(bool platen_follows) {
 
 template <int Dim>
 void Press<Dim>::visit_state(StateVisitor& visitor) {
-  visitor.visit("is_driven", is_driven_);
-  visitor.visit("stress_held", stress_held_);
-  visitor.visit("shortening_at_zero", shortening_at_zero_);
-  visitor.visit("specimen_shortening_at_zero", specimen_shortening_at_zero_);
+  auto& [is_driven, stress_held, shortening_at_zero, specimen_shortening_at_zero, widening_at_zero,
+         stage_first_strain] = kept_;  // another member does not compile until it has a name here
+  visitor.visit("is_driven", is_driven);
+  visitor.visit("stress_held", stress_held);
+  visitor.visit("shortening_at_zero", shortening_at_zero);
+  visitor.visit("specimen_shortening_at_zero", specimen_shortening_at_zero);
   for (int d = 0; d < Dim - 1; ++d)
-    visitor.visit(fmt::format("widening_at_zero_{}", kSides[d][1]), widening_at_zero_[d]);
-  visitor.visit("stage_first_strain", stage_first_strain_);
+    visitor.visit(fmt::format("widening_at_zero{}", kSides[d][1]), widening_at_zero[d]);
+  visitor.visit("stage_first_strain", stage_first_strain);
 }
 
 template class Press<2>;

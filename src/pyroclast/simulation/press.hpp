@@ -48,10 +48,10 @@ class Press {
   /// Moves it down at a velocity, m/s; the force on it ends.
   void control_by_motion(double velocity);
   /// Another velocity while it is controlled by motion, m/s downwards.
-  void drive(double velocity);
+  void move_platen(double velocity);
   /// The force on it over the area of the specimen, Pa, from the next step on.
   void hold(double stress);
-  double stress_held() const { return stress_held_; }
+  double stress_held() const { return kept_.stress_held; }
 
   // Readings at the displacements and forces of the last step.
 
@@ -62,7 +62,7 @@ class Press {
   /// Approach of the platens' inner faces since the zero over the height.
   double strain() const;
   /// The same since `begin_stage`.
-  double stage_strain() const { return strain() - stage_first_strain_; }
+  double stage_strain() const { return strain() - kept_.stage_first_strain; }
   /// Approach of the specimen's own ends since the zero over the height.
   double specimen_strain() const;
   /// Mean widening since the zero over the width, mean of all directions across the axis.
@@ -118,12 +118,15 @@ class Press {
   std::array<int, Dim - 1> across_;                          ///< components across the axis
   std::map<std::string, GridpointSet, std::less<>> summed_;  ///< sets that are read, in the order of sums
 
-  bool is_driven_ = true;                           ///< controlled by motion
-  double stress_held_ = 0.0;                        ///< Pa
-  double shortening_at_zero_ = 0.0;                 ///< of the distance of the platens, m
-  double specimen_shortening_at_zero_ = 0.0;        ///< m
-  std::array<double, Dim - 1> widening_at_zero_{};  ///< m
-  double stage_first_strain_ = 0.0;
+  /// All that lasts from one batch to the next.
+  struct Kept {
+    bool is_driven = true;                           ///< controlled by motion
+    double stress_held = 0.0;                        ///< Pa
+    double shortening_at_zero = 0.0;                 ///< of the distance of the platens, m
+    double specimen_shortening_at_zero = 0.0;        ///< m
+    std::array<double, Dim - 1> widening_at_zero{};  ///< m
+    double stage_first_strain = 0.0;
+  } kept_;
 };
 
 extern template class Press<2>;

@@ -36,7 +36,7 @@ void append(std::vector<Gauge>& all, std::vector<Gauge> more) {
 Run::Run(Simulation& simulation, std::vector<std::unique_ptr<Stage>> stages)
     : simulation_(simulation),
       stages_(std::move(stages)),
-      records_(stages_.size()),
+      courses_(stages_.size()),
       most_steps_(most_steps(simulation)) {
   if (stages_.empty()) throw Error("a run needs at least one stage");
   if (simulation.moves()) check(stages_, 0, acting_on(simulation));
@@ -117,7 +117,7 @@ bool Run::next() {
   if (!move_to_look()) return false;
   if (simulation_.moves()) simulation_.mechanics().commit_creep();  // what is looked at has crept
   add_row();
-  records_[stage_].rows.last = history_.row_count();
+  courses_[stage_].rows.last = history_.row_count();
   const auto& row = history_.row(history_.row_count() - 1);
   const bool finite =
       std::all_of(row.begin(), row.end(), [](const auto& cell) { return !cell || std::isfinite(*cell); });
@@ -131,7 +131,7 @@ bool Run::next() {
 void Run::go_on() {
   if (outcome_ != Outcome::stopped) return;
   outcome_ = Outcome::running;
-  records_[stage_].outcome = Outcome::running;
+  courses_[stage_].outcome = Outcome::running;
 }
 
 void Run::change_later_stages(std::vector<std::unique_ptr<Stage>> stages) {
@@ -141,7 +141,7 @@ void Run::change_later_stages(std::vector<std::unique_ptr<Stage>> stages) {
   if (simulation_.moves()) check(stages, kept, acting_on(simulation_));
   for (std::size_t i = 0; i < kept; ++i) stages[i] = std::move(stages_[i]);
   stages_ = std::move(stages);
-  records_.resize(stages_.size());
+  courses_.resize(stages_.size());
   const History old = std::exchange(history_, {});
   name_columns();
   history_.take_rows(old);  // a column that only a stage had which is no more is empty
@@ -157,7 +157,7 @@ void Run::end_stage() {
   go_on();
   if (!stage_is_under_way() || outcome_ != Outcome::running)
     throw Error("no stage is under way that could be ended");
-  if (records_[stage_].rows.empty())
+  if (courses_[stage_].rows.empty())
     throw Error("the stage has not come to a look yet, so it cannot be ended");
   end_stage(Verdict{.over = true});
 }
@@ -170,7 +170,7 @@ Outcome Run::run() {
 void Run::begin_stage() {
   stage_is_begun_ = true;
   stage_is_over_ = false;
-  records_[stage_] = {Outcome::running, {history_.row_count(), history_.row_count()}};
+  courses_[stage_] = {Outcome::running, {history_.row_count(), history_.row_count()}};
   if (simulation_.moves() && simulation_.has_press()) simulation_.press().begin_stage();
   stages_[stage_]->begin(simulation_);
 }
@@ -180,7 +180,7 @@ bool Run::move_to_look() {
   for (bool there = false; !there;) {
     between_batches_(*this);
     if (stop_asked_()) {
-      records_[stage_].outcome = Outcome::stopped;
+      courses_[stage_].outcome = Outcome::stopped;
       outcome_ = Outcome::stopped;
       return false;
     }
@@ -241,7 +241,7 @@ void Run::add_row() {
 void Run::end_stage(const Verdict& verdict) {
   stage_is_over_ = true;
   stage_ends_run_ = verdict.last;
-  records_[stage_].outcome = verdict.outcome;
+  courses_[stage_].outcome = verdict.outcome;
   if (verdict.last || stage_ + 1 == static_cast<std::int64_t>(stages_.size())) outcome_ = verdict.outcome;
 }
 
@@ -253,14 +253,14 @@ void Run::visit_state(StateVisitor& visitor) {
   visitor.visit("stage_is_begun", stage_is_begun_);
   visitor.visit("stage_is_over", stage_is_over_);
   visitor.visit("stage_ends_run", stage_ends_run_);
-  visit_records(visitor);
+  visit_courses(visitor);
   {
     const StateVisitor::Scope scope(visitor, "history");
     history_.visit_state(visitor);
   }
-  for (const StageRecord& record : records_)
-    visitor.require(record.rows.first <= record.rows.last && record.rows.last <= history_.row_count(),
-                    "records", "names rows that the history does not have");
+  for (const StageCourse& course : courses_)
+    visitor.require(course.rows.first <= course.rows.last && course.rows.last <= history_.row_count(),
+                    "courses", "names rows that the history does not have");
   simulation_.visit_state(visitor);
   for (std::int64_t i = 0; i <= stage_; ++i) {
     const StateVisitor::Scope scope(visitor, fmt::format("stages[{}]", i));
@@ -269,16 +269,16 @@ void Run::visit_state(StateVisitor& visitor) {
 }
 
 /// Of the stages up to the present one; later ones have not begun.
-void Run::visit_records(StateVisitor& visitor) {
-  std::vector<StageRecord> records(records_.begin(), records_.begin() + stage_ + 1);
-  if (outcome_ == Outcome::stopped) records.back().outcome = Outcome::running;
-  visitor.visit_plain("records", records, static_cast<std::size_t>(stage_) + 1);
-  for (const StageRecord& record : records)
-    visitor.require(record.outcome <= Outcome::stopped, "records", "has an outcome that there is none of");
+void Run::visit_courses(StateVisitor& visitor) {
+  std::vector<StageCourse> courses(courses_.begin(), courses_.begin() + stage_ + 1);
+  if (outcome_ == Outcome::stopped) courses.back().outcome = Outcome::running;
+  visitor.visit_plain("courses", courses, static_cast<std::size_t>(stage_) + 1);
+  for (const StageCourse& course : courses)
+    visitor.require(course.outcome <= Outcome::stopped, "courses", "has an outcome that there is none of");
   Outcome outcome = outcome_ == Outcome::stopped ? Outcome::running : outcome_;
   visitor.visit("outcome", outcome, state::within(0, static_cast<double>(Outcome::stopped)));
   if (!visitor.replaces()) return;
-  std::ranges::copy(records, records_.begin());
+  std::ranges::copy(courses, courses_.begin());
   const bool has_more = stage_ + 1 < static_cast<std::int64_t>(stages_.size());
   outcome_ = stage_is_over_ && !stage_ends_run_ && has_more ? Outcome::running : outcome;
   visitor.require(outcome_ != Outcome::running || !stage_is_over_ || has_more, "outcome",

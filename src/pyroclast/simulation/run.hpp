@@ -16,7 +16,7 @@
 namespace pyroclast {
 
 /// How a stage of a run went.
-struct StageRecord {
+struct StageCourse {
   Outcome outcome = Outcome::not_begun;
   RowRange rows;  ///< in the history; the row at the start of the run belongs to no stage
 };
@@ -85,7 +85,7 @@ class Run {
   /// Whether it has come to an end, or was stopped.
   bool has_ended() const { return outcome_ != Outcome::running; }
   const std::vector<std::unique_ptr<Stage>>& stages() const { return stages_; }
-  const std::vector<StageRecord>& records() const { return records_; }
+  const std::vector<StageCourse>& courses() const { return courses_; }
   const History& history() const { return history_; }
   const Simulation& simulation() const { return simulation_; }
 
@@ -100,7 +100,7 @@ class Run {
   bool move_to_look();
   int batch() const;
   void call_back();
-  void visit_records(StateVisitor& visitor);
+  void visit_courses(StateVisitor& visitor);
   void add_row();
   void end_stage(const Verdict& verdict);
   void name_columns();
@@ -109,7 +109,7 @@ class Run {
 
   Simulation& simulation_;
   std::vector<std::unique_ptr<Stage>> stages_;
-  std::vector<StageRecord> records_;
+  std::vector<StageCourse> courses_;
   std::vector<Gauge> gauges_;
   std::size_t stages_columns_ = 0;  ///< the stages' own columns stand before those of this gauge
   History history_;

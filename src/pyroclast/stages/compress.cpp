@@ -110,33 +110,33 @@ StageKind compress_kind() {
 
 void Compress::begin(Simulation& simulation) {
   Press<2>& press = simulation.press();
-  first_left_ = left(simulation);
-  is_upwards_ = first_left_ < 0.0;
-  wave_time_ = wave_time(simulation);
+  kept_.first_left = left(simulation);
+  kept_.is_upwards = kept_.first_left < 0.0;
+  kept_.wave_time = wave_time(simulation);
   const double gap = press.gap();
-  if (is_upwards_ || gap < kNoGap * press.height()) {
+  if (kept_.is_upwards || gap < kNoGap * press.height()) {
     begin_loading(simulation);
     return;
   }
   press.control_by_motion(keys_.velocity);
-  gap_steps_left_ =
+  kept_.gap_steps_left =
       static_cast<std::int64_t>(whole_below(gap / (keys_.velocity * simulation.mechanics().time_step())));
-  if (gap_steps_left_ == 0) begin_loading(simulation);
+  if (kept_.gap_steps_left == 0) begin_loading(simulation);
 }
 
 void Compress::close_gap(Simulation& simulation, int most_steps) {
-  const auto steps = std::min<std::int64_t>(gap_steps_left_, most_steps);
+  const auto steps = std::min<std::int64_t>(kept_.gap_steps_left, most_steps);
   simulation.mechanics().advance(static_cast<int>(steps));
-  gap_steps_left_ -= steps;
-  if (gap_steps_left_ == 0) begin_loading(simulation);
+  kept_.gap_steps_left -= steps;
+  if (kept_.gap_steps_left == 0) begin_loading(simulation);
 }
 
 void Compress::begin_loading(Simulation& simulation) {
   simulation.press().begin_stage();
   simulation.press().control_by_motion(0.0);
-  is_loading_ = true;
-  next_frame_ = keys_.frame_strain;
-  dissipated_ = simulation.mechanics().energy().dissipated.total();
+  kept_.is_loading = true;
+  kept_.next_frame = keys_.frame_strain;
+  kept_.dissipated = simulation.mechanics().energy().dissipated.total();
   take_point(simulation);
 }
 
@@ -148,15 +148,15 @@ std::int64_t Compress::steps_in(const Simulation& simulation, double strain) con
 }
 
 void Compress::take_point(Simulation& simulation) {
-  curve_.add(simulation.press(), simulation.mechanics());
-  const double time = static_cast<double>(steps_) * simulation.mechanics().time_step();
-  if (time < kPassages * wave_time_) return;
-  peak_.take(curve_.strain.back(), curve_.stress.back(), kStrengthRule);
-  largest_stress_ = std::max(largest_stress_, curve_.stress.back());
+  kept_.curve.add(simulation.press(), simulation.mechanics());
+  const double time = static_cast<double>(kept_.steps) * simulation.mechanics().time_step();
+  if (time < kPassages * kept_.wave_time) return;
+  kept_.peak.take(kept_.curve.strain.back(), kept_.curve.stress.back(), kStrengthRule);
+  kept_.largest_stress = std::max(kept_.largest_stress, kept_.curve.stress.back());
 }
 
 bool Compress::advance(Simulation& simulation, int most_steps) {
-  if (!is_loading_) {
+  if (!kept_.is_loading) {
     close_gap(simulation, most_steps);
     return false;
   }
@@ -165,60 +165,60 @@ bool Compress::advance(Simulation& simulation, int most_steps) {
 
 bool Compress::move_at_velocity(Simulation& simulation, int most_steps) {
   Mechanics<2>& mechanics = simulation.mechanics();
-  if (steps_left_ == 0) steps_left_ = steps_in(simulation, keys_.history_strain);
-  if (steps_to_point_ == 0) {
-    steps_to_point_ = steps_in(simulation, kPointStrain);
+  if (kept_.steps_left == 0) kept_.steps_left = steps_in(simulation, keys_.history_strain);
+  if (kept_.steps_to_point == 0) {
+    kept_.steps_to_point = steps_in(simulation, kPointStrain);
     // one point of ramp ahead, so that the ramp leaves zero
-    const double ahead = keys_.ramp_time > 0.0
-                             ? static_cast<double>(steps_to_point_) * mechanics.time_step() / keys_.ramp_time
-                             : 0.0;
-    const double share = ramp_share(steps_, mechanics.time_step(), keys_.ramp_time);
-    simulation.press().drive(direction() * keys_.velocity * std::min(1.0, share + ahead));
+    const double ahead = keys_.ramp_time > 0.0 ? static_cast<double>(kept_.steps_to_point) *
+                                                     mechanics.time_step() / keys_.ramp_time
+                                               : 0.0;
+    const double share = ramp_share(kept_.steps, mechanics.time_step(), keys_.ramp_time);
+    simulation.press().move_platen(direction() * keys_.velocity * std::min(1.0, share + ahead));
   }
-  const auto steps = std::min<std::int64_t>({steps_left_, steps_to_point_, most_steps});
+  const auto steps = std::min<std::int64_t>({kept_.steps_left, kept_.steps_to_point, most_steps});
   mechanics.advance(static_cast<int>(steps));
-  steps_ += steps;
-  steps_left_ -= steps;
-  steps_to_point_ -= steps;
-  if (steps_to_point_ == 0) take_point(simulation);
-  return steps_left_ == 0;
+  kept_.steps += steps;
+  kept_.steps_left -= steps;
+  kept_.steps_to_point -= steps;
+  if (kept_.steps_to_point == 0) take_point(simulation);
+  return kept_.steps_left == 0;
 }
 
 /// Moves by the strain between two looks, as fast as the tolerances bear. A velocity that changes shakes the
 /// body, so it does that gently.
 bool Compress::move_controlled(Simulation& simulation, int most_steps) {
   Mechanics<2>& mechanics = simulation.mechanics();
-  if (steps_left_ == 0) {
+  if (kept_.steps_left == 0) {
     choose_velocity(simulation);
-    simulation.press().drive(direction() * velocity_);
-    steps_left_ = kStepsPerChoice;
+    simulation.press().move_platen(direction() * kept_.velocity);
+    kept_.steps_left = kStepsPerChoice;
   }
-  const auto steps = std::min<std::int64_t>(steps_left_, most_steps);
+  const auto steps = std::min<std::int64_t>(kept_.steps_left, most_steps);
   mechanics.advance(static_cast<int>(steps));
-  steps_ += steps;
-  steps_left_ -= steps;
-  if (steps_left_ > 0) return false;
+  kept_.steps += steps;
+  kept_.steps_left -= steps;
+  if (kept_.steps_left > 0) return false;
   const auto came_by = [&](double& way, double strain) {
-    way += velocity_ * (kStepsPerChoice * mechanics.time_step());
+    way += kept_.velocity * (kStepsPerChoice * mechanics.time_step());
     if (way < strain * simulation.press().height()) return false;
     way = 0.0;
     return true;
   };
-  if (came_by(way_to_point_, kPointStrain)) take_point(simulation);
-  return came_by(way_, keys_.history_strain);
+  if (came_by(kept_.way_to_point, kPointStrain)) take_point(simulation);
+  return came_by(kept_.way, keys_.history_strain);
 }
 
 void Compress::choose_velocity(const Simulation& simulation) {
   const double time_step = simulation.mechanics().time_step();
   const double time = kStepsPerChoice * time_step;
   const double most = time / keys_.ramp_time;
-  const double share = ramp_share(steps_, time_step, keys_.ramp_time);
+  const double share = ramp_share(kept_.steps, time_step, keys_.ramp_time);
   if (share < 1.0) {
-    velocity_ = keys_.velocity * std::min(1.0, share + 0.5 * most);
+    kept_.velocity = keys_.velocity * std::min(1.0, share + 0.5 * most);
     return;
   }
   const double change = std::clamp(-kGain * std::log(excess(simulation, time)), -kSlowDown * most, most);
-  velocity_ = std::clamp(velocity_ * std::exp(change), keys_.velocity, keys_.control->fastest);
+  kept_.velocity = std::clamp(kept_.velocity * std::exp(change), keys_.velocity, keys_.control->fastest);
 }
 
 /// How far the motion is from the tolerances: above 1, out of them. Forces out of balance go with the
@@ -227,11 +227,11 @@ void Compress::choose_velocity(const Simulation& simulation) {
 double Compress::excess(const Simulation& simulation, double time) {
   const VelocityControl& control = *keys_.control;
   const EnergyLedger energy = simulation.mechanics().energy();
-  const double elastic = energy.zones + energy.contacts;
+  const double elastic = energy.elastic();
   const double power =
-      (energy.dissipated.total() - std::exchange(dissipated_, energy.dissipated.total())) / time;
+      (energy.dissipated.total() - std::exchange(kept_.dissipated, energy.dissipated.total())) / time;
   const double top = simulation.press().stress_top(), bottom = simulation.press().stress_bottom();
-  const double largest = std::max(largest_stress_, 0.5 * (top + bottom));
+  const double largest = std::max(kept_.largest_stress, 0.5 * (top + bottom));
   if (!(elastic > 0.0 && largest > 0.0)) return 1.0;  // the platen has not met the specimen yet
   return std::max({simulation.mechanics().unbalanced_ratio() / control.unbalanced_ratio,
                    std::sqrt(std::abs(energy.kinetic) / elastic / control.kinetic_over_strain),
@@ -258,22 +258,22 @@ Verdict Compress::judge(Simulation& simulation) {
   if (direction() * left(simulation) <= 0.0) return {.over = true};
   if (std::abs(strain) >= keys_.stop_strain)
     return {.over = true, .last = true, .outcome = Outcome::not_reached};
-  if (peak_.is_found() && simulation.press().stress() < keys_.stop_fraction * peak_.size())
+  if (kept_.peak.is_found() && simulation.press().stress() < keys_.stop_fraction * kept_.peak.size())
     return {.over = true, .last = true, .outcome = Outcome::stress_fallen};
-  if (std::abs(strain) < next_frame_) return {};
-  next_frame_ += keys_.frame_strain;
+  if (std::abs(strain) < kept_.next_frame) return {};
+  kept_.next_frame += keys_.frame_strain;
   return {.frame = true};
 }
 
 double Compress::progress(const Simulation& simulation) const {
-  return is_loading_ ? std::clamp(1.0 - left(simulation) / first_left_, 0.0, 1.0) : 0.0;
+  return kept_.is_loading ? std::clamp(1.0 - left(simulation) / kept_.first_left, 0.0, 1.0) : 0.0;
 }
 
 /// The first row of the stage that is not before the peak.
 std::optional<std::size_t> Compress::row_of_peak(const History& history, RowRange rows) const {
-  if (!peak_.is_found()) return std::nullopt;
+  if (!kept_.peak.is_found()) return std::nullopt;
   const auto strain = history.values("stage_strain", rows);
-  const auto row = std::ranges::find_if(strain, [&](double s) { return s >= peak_.driven(); });
+  const auto row = std::ranges::find_if(strain, [&](double s) { return s >= kept_.peak.driven(); });
   return row == strain.end() ? std::nullopt : std::optional<std::size_t>(row - strain.begin());
 }
 
@@ -281,12 +281,13 @@ StageReport Compress::report(const History& history, RowRange rows, Outcome) con
   const bool to_a_value = keys_.until != CompressUntil::stop_strain;
   const auto report_of = [&](bool is_upwards) {
     return compression_report(
-        curve_, {.is_upwards = is_upwards, .to_a_value = to_a_value, .waves_until = kPassages * wave_time_});
+        kept_.curve,
+        {.is_upwards = is_upwards, .to_a_value = to_a_value, .waves_until = kPassages * kept_.wave_time});
   };
-  StageReport report = report_of(is_upwards_);
+  StageReport report = report_of(kept_.is_upwards);
   report.decided_at = row_of_peak(history, rows);
-  if (to_a_value && curve_.count() == 0) {  // which way it will go is not known
-    const auto others = report_of(!is_upwards_).results;
+  if (to_a_value && kept_.curve.count() == 0) {  // which way it will go is not known
+    const auto others = report_of(!kept_.is_upwards).results;
     report.results.insert(report.results.end(), others.begin(), others.end());
   }
   return report;
@@ -315,28 +316,31 @@ Forecast Compress::forecast(const Simulation& simulation, Foreseen&) const {
 }
 
 void Compress::visit_state(StateVisitor& visitor) {
-  visitor.visit("gap_steps_left", gap_steps_left_, state::within(0, kMostSteps));
-  visitor.visit("is_loading", is_loading_);
-  visitor.visit("is_upwards", is_upwards_);
-  visitor.visit("first_left", first_left_);
-  visitor.visit("wave_time", wave_time_);
-  visitor.visit("steps", steps_, state::count());
-  visitor.visit("steps_left", steps_left_, state::within(0, kMostSteps));
-  visitor.visit("velocity", velocity_);
-  visitor.visit("way", way_);
-  visitor.visit("dissipated", dissipated_);
-  visitor.visit("steps_to_point", steps_to_point_, state::within(0, kMostSteps));
-  visitor.visit("way_to_point", way_to_point_);
-  visitor.visit("largest_stress", largest_stress_);
+  auto& [gap_steps_left, is_loading, is_upwards, first_left, wave_time, steps, steps_left, steps_to_point,
+         velocity, way, way_to_point, dissipated, curve, peak, largest_stress, next_frame] =
+      kept_;  // another member does not compile until it has a name here
+  visitor.visit("gap_steps_left", gap_steps_left, state::within(0, kMostSteps));
+  visitor.visit("is_loading", is_loading);
+  visitor.visit("is_upwards", is_upwards);
+  visitor.visit("first_left", first_left);
+  visitor.visit("wave_time", wave_time);
+  visitor.visit("steps", steps, state::count());
+  visitor.visit("steps_left", steps_left, state::within(0, kMostSteps));
+  visitor.visit("velocity", velocity);
+  visitor.visit("way", way);
+  visitor.visit("dissipated", dissipated);
+  visitor.visit("steps_to_point", steps_to_point, state::within(0, kMostSteps));
+  visitor.visit("way_to_point", way_to_point);
+  visitor.visit("largest_stress", largest_stress);
   {
     const StateVisitor::Scope scope(visitor, "curve");
-    curve_.visit_state(visitor);
+    curve.visit_state(visitor);
   }
   {
     const StateVisitor::Scope scope(visitor, "peak");
-    peak_.visit_state(visitor);
+    peak.visit_state(visitor);
   }
-  visitor.visit("next_frame", next_frame_, state::number());
+  visitor.visit("next_frame", next_frame, state::number());
 }
 
 }  // namespace pyroclast

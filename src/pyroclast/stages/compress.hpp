@@ -44,7 +44,7 @@ class Compress : public Stage {
 
   const char* kind() const override { return "compress"; }
   StageNeeds needs() const override { return {.press = true}; }
-  std::string doing() const override { return is_loading_ ? "" : "moving the platen to the specimen"; }
+  std::string doing() const override { return kept_.is_loading ? "" : "moving the platen to the specimen"; }
   void begin(Simulation& simulation) override;
   bool advance(Simulation& simulation, int most_steps) override;
   Verdict judge(Simulation& simulation) override;
@@ -66,26 +66,29 @@ class Compress : public Stage {
   void take_point(Simulation& simulation);
   std::optional<std::size_t> row_of_peak(const History& history, RowRange rows) const;
   double left(const Simulation& simulation) const;
-  double direction() const { return is_upwards_ ? -1.0 : 1.0; }
+  double direction() const { return kept_.is_upwards ? -1.0 : 1.0; }
   std::int64_t steps_in(const Simulation& simulation, double strain) const;
 
   Keys keys_;
-  std::int64_t gap_steps_left_ = 0;
-  bool is_loading_ = false;          ///< the gap is closed
-  bool is_upwards_ = false;          ///< unloads
-  double first_left_ = 0.0;          ///< from where it began to where it ends, strain or Pa
-  double wave_time_ = 0.0;           ///< in which a stress wave runs through the specimen once, s
-  std::int64_t steps_ = 0;           ///< since loading began
-  std::int64_t steps_left_ = 0;      ///< to the next look, or to the next choice of a controlled velocity
-  std::int64_t steps_to_point_ = 0;  ///< of the curve
-  double velocity_ = 0.0;            ///< where it is controlled, m/s
-  double way_ = 0.0;                 ///< since the last look, where the velocity is controlled, m
-  double way_to_point_ = 0.0;        ///< since the last point of the curve, likewise, m
-  double dissipated_ = 0.0;          ///< at the last choice of the velocity, J
-  CompressionCurve curve_;
-  Peak peak_;                    ///< of the curve behind the first wave
-  double largest_stress_ = 0.0;  ///< likewise, Pa
-  double next_frame_ = 0.0;      ///< strain of the stage
+  /// All that lasts from one batch to the next.
+  struct Kept {
+    std::int64_t gap_steps_left = 0;
+    bool is_loading = false;          ///< the gap is closed
+    bool is_upwards = false;          ///< unloads
+    double first_left = 0.0;          ///< from where it began to where it ends, strain or Pa
+    double wave_time = 0.0;           ///< in which a stress wave runs through the specimen once, s
+    std::int64_t steps = 0;           ///< since loading began
+    std::int64_t steps_left = 0;      ///< to the next look, or to the next choice of a controlled velocity
+    std::int64_t steps_to_point = 0;  ///< of the curve
+    double velocity = 0.0;            ///< where it is controlled, m/s
+    double way = 0.0;                 ///< since the last look, where the velocity is controlled, m
+    double way_to_point = 0.0;        ///< since the last point of the curve, likewise, m
+    double dissipated = 0.0;          ///< at the last choice of the velocity, J
+    CompressionCurve curve;
+    Peak peak;                    ///< of the curve behind the first wave
+    double largest_stress = 0.0;  ///< likewise, Pa
+    double next_frame = 0.0;      ///< strain of the stage
+  } kept_;
 };
 
 StageKind compress_kind();

@@ -43,23 +43,23 @@ StageNeeds Conduct::needs() const {
 }
 
 void Conduct::begin(Simulation& simulation) {
-  began_ = simulation.field().time();
+  kept_.began = simulation.field().time();
   simulation.show_cracks_to_heat();
   simulation.field().begin_exposure(temperature_range(simulation.heat(), end()));
-  steady_from_ = keys_.steady_rate ? constant_from(simulation.heat(), end()) : kNever;
-  next_frame_ = next_multiple(keys_.frame_interval, began_);
+  kept_.steady_from = keys_.steady_rate ? constant_from(simulation.heat(), end()) : kNever;
+  kept_.next_frame = next_multiple(keys_.frame_interval, kept_.began);
 }
 
 double Conduct::steady_rate(const Simulation& simulation) const {
-  return simulation.field().time() >= steady_from_ ? *keys_.steady_rate : 0.0;
+  return simulation.field().time() >= kept_.steady_from ? *keys_.steady_rate : 0.0;
 }
 
 void Conduct::begin_flow(const Simulation& simulation) {
   const double time = simulation.field().time();
-  flow_steady_ = steady_rate(simulation);
-  double until = earliest({end(), next_frame_, next_multiple(keys_.interval, time)});
-  if (flow_steady_ == 0.0) until = earliest({until, steady_from_});
-  flow_.begin(keys_.change, until, flow_steady_);
+  kept_.flow_steady = steady_rate(simulation);
+  double until = earliest({end(), kept_.next_frame, next_multiple(keys_.interval, time)});
+  if (kept_.flow_steady == 0.0) until = earliest({until, kept_.steady_from});
+  flow_.begin(keys_.change, until, kept_.flow_steady);
 }
 
 bool Conduct::advance(Simulation& simulation, int) {
@@ -72,16 +72,16 @@ bool Conduct::advance(Simulation& simulation, int) {
 
 Verdict Conduct::judge(Simulation& simulation) {
   const double time = simulation.field().time();
-  if (simulation.field().conduction()->rate() < flow_steady_)
+  if (simulation.field().conduction()->rate() < kept_.flow_steady)
     return {.over = true, .outcome = Outcome::steady};
   if (time >= end()) return {.over = true};
-  if (time < next_frame_) return {};
-  next_frame_ = next_multiple(keys_.frame_interval, time);
+  if (time < kept_.next_frame) return {};
+  kept_.next_frame = next_multiple(keys_.frame_interval, time);
   return {.frame = true};
 }
 
 double Conduct::progress(const Simulation& simulation) const {
-  return std::clamp((simulation.field().time() - began_) / keys_.duration, 0.0, 1.0);
+  return std::clamp((simulation.field().time() - kept_.began) / keys_.duration, 0.0, 1.0);
 }
 
 StageReport Conduct::report(const History& history, RowRange rows, Outcome outcome) const {
@@ -116,10 +116,12 @@ Forecast Conduct::forecast(const Simulation&, Foreseen& foreseen) const {
 }
 
 void Conduct::visit_state(StateVisitor& visitor) {
-  visitor.visit("began", began_);
-  visitor.visit("steady_from", steady_from_, state::number());
-  visitor.visit("flow_steady", flow_steady_);
-  visitor.visit("next_frame", next_frame_, state::number());
+  auto& [began, steady_from, flow_steady, next_frame] =
+      kept_;  // another member does not compile until it has a name here
+  visitor.visit("began", began);
+  visitor.visit("steady_from", steady_from, state::number());
+  visitor.visit("flow_steady", flow_steady);
+  visitor.visit("next_frame", next_frame, state::number());
   flow_.visit_state(visitor);
 }
 

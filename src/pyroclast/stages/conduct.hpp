@@ -39,17 +39,20 @@ class Conduct : public Stage {
   void visit_state(StateVisitor& visitor) override;
 
  private:
-  double end() const { return began_ + keys_.duration; }
+  double end() const { return kept_.began + keys_.duration; }
   /// Rate below which the field is steady now, K/s; 0: none is.
   double steady_rate(const Simulation& simulation) const;
   void begin_flow(const Simulation& simulation);
 
   Keys keys_;
   HeatFlow flow_;
-  double began_ = 0.0;        ///< heating time, s
-  double steady_from_ = 0.0;  ///< boundary values are constant, s
-  double flow_steady_ = 0.0;  ///< steady rate of the present flow, K/s
-  double next_frame_ = 0.0;   ///< s
+  /// All that lasts from one batch to the next.
+  struct Kept {
+    double began = 0.0;        ///< heating time, s
+    double steady_from = 0.0;  ///< boundary values are constant, s
+    double flow_steady = 0.0;  ///< steady rate of the present flow, K/s
+    double next_frame = 0.0;   ///< s
+  } kept_;
 };
 
 StageKind conduct_kind();

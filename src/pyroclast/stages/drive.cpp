@@ -260,12 +260,13 @@ StageKind drive_kind() {
 
 Drive::Drive(Keys keys) : keys_(std::move(keys)) {
   // as many as the keys ask for, from before it begins: a state is taken into it
-  for (auto* of_action : {&velocity_, &came_, &farthest_}) of_action->resize(keys_.actions.size());
-  last_.resize(keys_.until.size());
-  peaks_.resize(keys_.until.size());
-  record_peaks_.resize(keys_.records.size());
+  for (auto* of_action : {&kept_.velocity, &kept_.came, &kept_.farthest})
+    of_action->resize(keys_.actions.size());
+  kept_.last.resize(keys_.until.size());
+  kept_.peaks.resize(keys_.until.size());
+  kept_.record_peaks.resize(keys_.records.size());
   for (const Action& action : keys_.actions)
-    if (!is_motion(action)) first_loads_.emplace_back();
+    if (!is_motion(action)) kept_.first_loads.emplace_back();
   for (const RecordKind kind : {RecordKind::force, RecordKind::stress})
     if (const auto first = std::ranges::find(keys_.records, kind, &RecordParameters::kind);
         !leading_ && first != keys_.records.end())
@@ -434,7 +435,7 @@ bool Drive::loads() const {
 }
 
 double Drive::time(const Simulation& simulation) const {
-  return static_cast<double>(steps_) * simulation.mechanics().time_step();
+  return static_cast<double>(kept_.steps) * simulation.mechanics().time_step();
 }
 
 std::int64_t Drive::steps_in(const Simulation& simulation, double interval) const {
@@ -444,32 +445,33 @@ std::int64_t Drive::steps_in(const Simulation& simulation, double interval) cons
 
 void Drive::begin(Simulation& simulation) {
   Mechanics<2>& mechanics = simulation.mechanics();
-  velocity_.assign(keys_.actions.size(), 0.0);
+  kept_.velocity.assign(keys_.actions.size(), 0.0);
   if (keys_.control)
-    first_opening_ = last_opening_ = simulation.record(keys_.control->record).read(simulation);
-  came_.assign(keys_.actions.size(), 0.0);
-  farthest_.assign(keys_.actions.size(), 0.0);
-  record_peaks_.assign(keys_.records.size(), {});
-  peaks_.assign(keys_.until.size(), {});
-  last_.clear();
-  for (const Until& until : keys_.until) last_.push_back(simulation.record(until.record).read(simulation));
+    kept_.first_opening = kept_.last_opening = simulation.record(keys_.control->record).read(simulation);
+  kept_.came.assign(keys_.actions.size(), 0.0);
+  kept_.farthest.assign(keys_.actions.size(), 0.0);
+  kept_.record_peaks.assign(keys_.records.size(), {});
+  kept_.peaks.assign(keys_.until.size(), {});
+  kept_.last.clear();
+  for (const Until& until : keys_.until)
+    kept_.last.push_back(simulation.record(until.record).read(simulation));
   const EnergyLedger energy = mechanics.energy();
-  first_work_ = energy.loading;
-  most_kinetic_ = std::abs(energy.kinetic);
+  kept_.first_work = energy.loading;
+  kept_.most_kinetic = std::abs(energy.kinetic);
   const Vec<2> weight = mechanics.total_weight(mechanics.set_of(simulation.model().set("specimen")));
-  body_ = {simulation.model().thickness, norm(weight)};
+  kept_.body = {simulation.model().thickness, norm(weight)};
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::release)
       for (int c : action.components) simulation.release(action.set, c, action.place);
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::hold || action.kind == ActionKind::velocity)
       for (int c : action.components) simulation.hold(action.set, c, motion_of(action), action.place);
-  first_loads_.clear();
+  kept_.first_loads.clear();
   for (const Action& action : keys_.actions)
-    if (!is_motion(action)) first_loads_.push_back(simulation.loads().on(action.set));
+    if (!is_motion(action)) kept_.first_loads.push_back(simulation.loads().on(action.set));
   // what is there already has to be surpassed before it counts as driving on
   const auto loads = loads_at(0.0);
-  for (std::size_t i = 0; i < keys_.actions.size(); ++i) farthest_[i] = std::abs(came(i, loads, 0.0));
+  for (std::size_t i = 0; i < keys_.actions.size(); ++i) kept_.farthest[i] = std::abs(came(i, loads, 0.0));
 }
 
 /// Share of the way of an action from what was there to its amount.
@@ -479,7 +481,7 @@ double Drive::share(const Action& action, double time) const {
 
 /// What an action adds now to what was there; a controlled force is added to what was there as a whole.
 double Drive::part(const Action& action, double time) const {
-  if (keys_.control && action.kind == ActionKind::force) return load_factor_ * action.amount;
+  if (keys_.control && action.kind == ActionKind::force) return kept_.load_factor * action.amount;
   const double factor = action.factor ? (*action.factor)(std::min(time, keys_.duration)) : 1.0;
   return share(action, time) * factor * action.amount;
 }
@@ -549,7 +551,7 @@ SetLoad<2> Drive::first_load(const std::string& set) const {
   std::size_t i = 0;
   for (const Action& action : keys_.actions) {
     if (is_motion(action)) continue;
-    if (action.set == set) return first_loads_[i];
+    if (action.set == set) return kept_.first_loads[i];
     ++i;
   }
   return {};
@@ -560,7 +562,7 @@ double Drive::came(std::size_t i, const std::map<std::string, SetLoad<2>>& loads
   const Action& action = keys_.actions[i];
   switch (action.kind) {
     case ActionKind::velocity:
-      return came_[i] + velocity_[i] * interval;
+      return kept_.came[i] + kept_.velocity[i] * interval;
     case ActionKind::force:
       return dot(loads.at(action.set).force, action.direction);
     case ActionKind::pressure:
@@ -575,21 +577,22 @@ void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads
   const Control& control = *keys_.control;
   const Record& record = simulation.record(control.record);
   const double opening = record.read(simulation);
-  pair_work_ += pair_force_ * (opening - last_opening_);
-  last_opening_ = opening;
-  const double behind = first_opening_ + control.rate * time - opening;
-  pair_force_ = control.stiffness * behind;
+  kept_.pair_work += kept_.pair_force * (opening - kept_.last_opening);
+  kept_.last_opening = opening;
+  const double behind = kept_.first_opening + control.rate * time - opening;
+  kept_.pair_force = control.stiffness * behind;
   const double whole = std::abs(control.rate) * keys_.duration;
-  is_lost_ = std::abs(behind) > (whole > 0.0 ? whole : kLost * simulation.body_size());
+  kept_.is_lost = std::abs(behind) > (whole > 0.0 ? whole : kLost * simulation.body_size());
   const double step = static_cast<double>(kStepsPerControl) * simulation.mechanics().time_step();
   // what bears the load now bears the pair beside it
-  largest_with_pair_ = std::max(largest_with_pair_, total_load(load_factor_) + std::abs(pair_force_));
-  load_factor_ += pair_force_ / unit_force() * step / control.response_time;
-  largest_factor_ = std::max(largest_factor_, std::abs(load_factor_));
-  largest_load_ = std::max(largest_load_, total_load(load_factor_));
+  kept_.largest_with_pair =
+      std::max(kept_.largest_with_pair, total_load(kept_.load_factor) + std::abs(kept_.pair_force));
+  kept_.load_factor += kept_.pair_force / unit_force() * step / control.response_time;
+  kept_.largest_factor = std::max(kept_.largest_factor, std::abs(kept_.load_factor));
+  kept_.largest_load = std::max(kept_.largest_load, total_load(kept_.load_factor));
   const RecordParameters& of = record.parameters();
-  loads[of.other] = {.force = pair_force_ * of.direction};
-  loads[of.set] = {.force = -pair_force_ * of.direction};
+  loads[of.other] = {.force = kept_.pair_force * of.direction};
+  loads[of.set] = {.force = -kept_.pair_force * of.direction};
 }
 
 /// What the loaded sets bear together at a factor of the controlled forces, with what was there before: the
@@ -630,7 +633,7 @@ std::int64_t Drive::duration_in_steps(const Simulation& simulation) const {
 /// For how many steps what acts now does so.
 std::int64_t Drive::steps_to_come(const Simulation& simulation) const {
   const std::int64_t interval = steps_per_adjustment();
-  return std::min(interval, duration_in_steps(simulation) - (steps_ - steps_ % interval));
+  return std::min(interval, duration_in_steps(simulation) - (kept_.steps - kept_.steps % interval));
 }
 
 /// As what acts in the middle of the steps to come.
@@ -639,52 +642,53 @@ void Drive::act(Simulation& simulation) {
   const double middle = time(simulation) + 0.5 * interval;
   ChangedLoads loads;
   if (keys_.control) steer(simulation, middle, loads);
-  is_driven_ = keys_.control && keys_.control->rate != 0.0;
+  kept_.is_driven = keys_.control && keys_.control->rate != 0.0;
   for (const auto& [set, load] : loads_at(middle)) loads[set] = load;
   for (std::size_t i = 0; i < keys_.actions.size(); ++i) {
     const Action& action = keys_.actions[i];
     if (action.kind == ActionKind::velocity) {
-      velocity_[i] = part(action, middle);
-      simulation.drive(action.set, action.components.front(), velocity_[i]);
+      kept_.velocity[i] = part(action, middle);
+      simulation.drive(action.set, action.components.front(), kept_.velocity[i]);
     }
-    came_[i] = came(i, loads, interval);
-    if (std::abs(came_[i]) <= farthest_[i]) continue;
-    farthest_[i] = std::abs(came_[i]);
-    is_driven_ = true;
+    kept_.came[i] = came(i, loads, interval);
+    if (std::abs(kept_.came[i]) <= kept_.farthest[i]) continue;
+    kept_.farthest[i] = std::abs(kept_.came[i]);
+    kept_.is_driven = true;
   }
   simulation.loads().set(loads);
-  if (is_driven_) driven_ += interval;
+  if (kept_.is_driven) kept_.driven += interval;
 }
 
 /// What unloads the body by command is no fall from a peak: nothing counts until it is driven farther than
 /// ever.
 void Drive::take_peaks(const Simulation& simulation) {
-  is_beyond_noise_ = is_beyond_noise_ || is_beyond_noise(kMostNoise, simulation);
+  kept_.is_beyond_noise = kept_.is_beyond_noise || is_beyond_noise(kMostNoise, simulation);
   std::vector<double> values;
   for (const RecordParameters& record : keys_.records)
     values.push_back(simulation.record(record.name).read(simulation));
   for (std::size_t i = 0; i < values.size(); ++i)
-    record_peaks_[i].take(i, driven_, is_driven_ && is_beyond_noise_, simulation.mechanics().time(), values);
+    kept_.record_peaks[i].take(i, kept_.driven, kept_.is_driven && kept_.is_beyond_noise,
+                               simulation.mechanics().time(), values);
   for (std::size_t i = 0; i < keys_.until.size(); ++i) {
     const Until& until = keys_.until[i];
-    if (until.kind != Until::Kind::share_of_peak || !is_driven_) continue;
+    if (until.kind != Until::Kind::share_of_peak || !kept_.is_driven) continue;
     const double size = std::abs(simulation.record(until.record).read(simulation));
     const double most_noise = std::min(kMostNoise, 1.0 - until.value);
-    if (peaks_[i].size() > 0.0 ||
+    if (kept_.peaks[i].size() > 0.0 ||
         (until.least_peak ? size > *until.least_peak : is_beyond_noise(most_noise, simulation)))
-      peaks_[i].take(driven_, size, rule_of_records(peaks_[i]));
+      kept_.peaks[i].take(kept_.driven, size, rule_of_records(kept_.peaks[i]));
   }
 }
 
 bool Drive::advance(Simulation& simulation, int most_steps) {
   const std::int64_t interval = steps_per_adjustment();
-  if (steps_ % interval == 0) act(simulation);
-  const auto steps = std::min<std::int64_t>(steps_to_come(simulation) - steps_ % interval, most_steps);
+  if (kept_.steps % interval == 0) act(simulation);
+  const auto steps = std::min<std::int64_t>(steps_to_come(simulation) - kept_.steps % interval, most_steps);
   simulation.mechanics().advance(static_cast<int>(steps));
-  steps_ += steps;
-  if (steps_ % kStepsPerPoint == 0) take_peaks(simulation);
-  return steps_ % steps_in(simulation, keys_.look_interval) == 0 || is_lost_ ||
-         steps_ >= duration_in_steps(simulation);
+  kept_.steps += steps;
+  if (kept_.steps % kStepsPerPoint == 0) take_peaks(simulation);
+  return kept_.steps % steps_in(simulation, keys_.look_interval) == 0 || kept_.is_lost ||
+         kept_.steps >= duration_in_steps(simulation);
 }
 
 /// Whether noise is below this share of what records show of the stage. Forces go with the root of an energy;
@@ -692,15 +696,15 @@ bool Drive::advance(Simulation& simulation, int most_steps) {
 /// the loads did. Who loads nothing shakes nothing.
 bool Drive::is_beyond_noise(double share, const Simulation& simulation) {
   const EnergyLedger energy = simulation.mechanics().energy();
-  most_kinetic_ = std::max(most_kinetic_, std::abs(energy.kinetic));
-  return !loads() || most_kinetic_ <= share * share * std::abs(energy.loading - first_work_);
+  kept_.most_kinetic = std::max(kept_.most_kinetic, std::abs(energy.kinetic));
+  return !loads() || kept_.most_kinetic <= share * share * std::abs(energy.loading - kept_.first_work);
 }
 
 bool Drive::is_met(std::size_t condition, const Simulation& simulation) {
   const Until& until = keys_.until[condition];
-  double& last = last_[condition];
+  double& last = kept_.last[condition];
   const double value = simulation.record(until.record).read(simulation);
-  const double rate = std::abs(value - last) / (time(simulation) - last_look_);
+  const double rate = std::abs(value - last) / (time(simulation) - kept_.last_look);
   last = value;
   switch (until.kind) {
     case Until::Kind::above:
@@ -708,7 +712,8 @@ bool Drive::is_met(std::size_t condition, const Simulation& simulation) {
     case Until::Kind::below:
       return value < until.value;
     case Until::Kind::share_of_peak:
-      return peaks_[condition].is_found() && std::abs(value) < until.value * peaks_[condition].size();
+      return kept_.peaks[condition].is_found() &&
+             std::abs(value) < until.value * kept_.peaks[condition].size();
     case Until::Kind::rate_above:
       return rate > until.value;
     case Until::Kind::rate_below:
@@ -721,10 +726,11 @@ bool Drive::is_met(std::size_t condition, const Simulation& simulation) {
 bool Drive::has_fallen(const Simulation& simulation) {
   if (!leading_) return false;
   const double size = std::abs(simulation.record(*leading_).read(simulation));
-  if (leading_peak_ == 0.0 && !is_beyond_noise(kMostNoise, simulation)) return false;
-  leading_peak_ = std::max(leading_peak_, size);
-  if (size >= kBehindPeak * leading_peak_ || framed_peak_ >= kBehindPeak * leading_peak_) return false;
-  framed_peak_ = leading_peak_;
+  if (kept_.leading_peak == 0.0 && !is_beyond_noise(kMostNoise, simulation)) return false;
+  kept_.leading_peak = std::max(kept_.leading_peak, size);
+  if (size >= kBehindPeak * kept_.leading_peak || kept_.framed_peak >= kBehindPeak * kept_.leading_peak)
+    return false;
+  kept_.framed_peak = kept_.leading_peak;
   return true;
 }
 
@@ -742,25 +748,26 @@ void Drive::halt(Simulation& simulation) {
 
 Verdict Drive::judge(Simulation& simulation) {
   Verdict verdict;
-  largest_pair_ = std::max(largest_pair_, std::abs(pair_force_));
+  kept_.largest_pair = std::max(kept_.largest_pair, std::abs(kept_.pair_force));
   const double now = time(simulation);
   for (std::size_t i = 0; i < keys_.until.size(); ++i)
     if (is_met(i, simulation)) {
       verdict.over = true;
       if (keys_.until[i].kind == Until::Kind::share_of_peak)
-        for (RecordPeak& peak : record_peaks_) peak.end();
+        for (RecordPeak& peak : kept_.record_peaks) peak.end();
     }
-  last_look_ = now;
+  kept_.last_look = now;
   // What acts is that of the middle of the last steps, so a ramp may end before all of it acts.
   const double acted =
       now - 0.5 * static_cast<double>(steps_per_adjustment()) * simulation.mechanics().time_step();
-  if (is_lost_ && !verdict.over) verdict = {.over = true, .last = true, .outcome = Outcome::control_lost};
+  if (kept_.is_lost && !verdict.over)
+    verdict = {.over = true, .last = true, .outcome = Outcome::control_lost};
   const bool ramps_are_over =
       std::ranges::all_of(keys_.actions, [&](const Action& a) { return at_most(a.ramp_time, acted); });
   if (keys_.unbalanced_ratio && ramps_are_over &&
       simulation.mechanics().unbalanced_ratio() < *keys_.unbalanced_ratio)
     verdict.over = true;
-  if (!verdict.over && steps_ >= duration_in_steps(simulation)) {
+  if (!verdict.over && kept_.steps >= duration_in_steps(simulation)) {
     verdict.over = true;
     if (keys_.unbalanced_ratio) {
       verdict.last = true;
@@ -771,8 +778,8 @@ Verdict Drive::judge(Simulation& simulation) {
   }
   if (verdict.over) halt(simulation);
   const auto frames = static_cast<std::int64_t>(whole_below(now / keys_.frame_interval));
-  verdict.frame = has_fallen(simulation) || frames > frames_;
-  frames_ = std::max(frames_, frames);
+  verdict.frame = has_fallen(simulation) || frames > kept_.frames;
+  kept_.frames = std::max(kept_.frames, frames);
   return verdict;
 }
 
@@ -786,17 +793,17 @@ std::string Drive::describe_unmet(std::size_t condition) const {
   const auto record = std::ranges::find(keys_.records, until.record, &RecordParameters::name);
   const double factor = column_over_si(record->kind);
   const std::string unit = column_of(*record).unit;
-  const double last = factor * last_[condition];
+  const double last = factor * kept_.last[condition];
   switch (until.kind) {
     case Until::Kind::above:
       return fmt::format("{} is {:.4g} {}, not above {:.4g}", until.record, last, unit, factor * until.value);
     case Until::Kind::below:
       return fmt::format("{} is {:.4g} {}, not below {:.4g}", until.record, last, unit, factor * until.value);
     case Until::Kind::share_of_peak:
-      if (!peaks_[condition].is_found())
+      if (!kept_.peaks[condition].is_found())
         return fmt::format("{} had no peak; it is {:.4g} {}", until.record, last, unit);
       return fmt::format("{} is {:.4g} {}, not below {:g} of its peak, {:.4g}", until.record, last, unit,
-                         until.value, factor * peaks_[condition].size());
+                         until.value, factor * kept_.peaks[condition].size());
     case Until::Kind::rate_above:
       return fmt::format("{} did not change faster than {:.4g} {}/s", until.record, factor * until.value,
                          unit);
@@ -810,14 +817,15 @@ std::string Drive::describe_unmet(std::size_t condition) const {
 StageReport Drive::report(const History& history, RowRange rows, Outcome outcome) const {
   StageReport report;
   const bool has_rows = !rows.empty();
-  const double work = has_rows ? history.values("energy_loading_J", rows).back() - first_work_ : 0.0;
-  report.results = {{"steps", steps_},
+  const double work = has_rows ? history.values("energy_loading_J", rows).back() - kept_.first_work : 0.0;
+  report.results = {{"steps", kept_.steps},
                     {"unbalanced_ratio", last_value(history, "unbalanced_ratio", rows)},
                     {"loading_work_J", value_if(has_rows, work)}};
-  const auto of_records = record_results(keys_.records, record_peaks_, keys_.results, body_, history, rows);
+  const auto of_records =
+      record_results(keys_.records, kept_.record_peaks, keys_.results, kept_.body, history, rows);
   report.results.insert(report.results.end(), of_records.begin(), of_records.end());
   if (has_rows) report.lines = lines_of(keys_.results, of_records);
-  report.warnings = missing_peaks(keys_.records, record_peaks_, keys_.results);
+  report.warnings = missing_peaks(keys_.records, kept_.record_peaks, keys_.results);
   if (keys_.control) add_control(report, work);
   if (outcome == Outcome::control_lost)
     report.warnings.push_back(
@@ -844,20 +852,20 @@ StageReport Drive::report(const History& history, RowRange rows, Outcome outcome
 /// \param work  of the stage's loads, J
 void Drive::add_control(StageReport& report, double work) const {
   const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
-  const double peak = largest_load_;
-  const double of_peak = std::max(0.0, share(largest_with_pair_, peak) - 1.0);
-  const double of_work = share(std::abs(pair_work_), std::abs(work));
-  report.results.push_back({"largest_load_factor", largest_factor_});
-  report.results.push_back({"control_force_over_peak", share(largest_pair_, peak)});
-  report.results.push_back({"largest_load_with_control_N", largest_with_pair_});
+  const double peak = kept_.largest_load;
+  const double of_peak = std::max(0.0, share(kept_.largest_with_pair, peak) - 1.0);
+  const double of_work = share(std::abs(kept_.pair_work), std::abs(work));
+  report.results.push_back({"largest_load_factor", kept_.largest_factor});
+  report.results.push_back({"control_force_over_peak", share(kept_.largest_pair, peak)});
+  report.results.push_back({"largest_load_with_control_N", kept_.largest_with_pair});
   report.results.push_back({"control_error_of_largest_load", of_peak});
   report.results.push_back({"control_work_over_loading_work", of_work});
   report.lines.push_back(
       fmt::format("control of {}: the largest load is {:.4g} N, and {:.4g} N with what the pair bore beside "
                   "it ({:+.2g} %); the pair "
                   "bore up to {:.2g} % of it, and did {:.2g} % of the work",
-                  keys_.control->record, peak, largest_with_pair_, 100.0 * of_peak,
-                  100.0 * share(largest_pair_, peak), 100.0 * of_work));
+                  keys_.control->record, peak, kept_.largest_with_pair, 100.0 * of_peak,
+                  100.0 * share(kept_.largest_pair, peak), 100.0 * of_work));
   if (std::max(of_peak, of_work) > kLeftToPair)
     report.warnings.push_back(report.lines.back() + ": a slower rate leaves it less");
 }
@@ -876,57 +884,61 @@ std::vector<Column> Drive::columns() const {
 
 std::vector<double> Drive::values() const {
   if (!keys_.control) return {};
-  return {load_factor_, pair_force_};
+  return {kept_.load_factor, kept_.pair_force};
 }
 
 void Drive::visit_state(StateVisitor& visitor) {
-  visitor.visit("first_opening", first_opening_);
-  visitor.visit("load_factor", load_factor_);
-  visitor.visit("pair_force", pair_force_);
-  visitor.visit("largest_pair", largest_pair_);
-  visitor.visit("largest_factor", largest_factor_);
-  visitor.visit("largest_load", largest_load_);
-  visitor.visit("largest_with_pair", largest_with_pair_);
-  visitor.visit("pair_work", pair_work_);
-  visitor.visit("last_opening", last_opening_);
-  visitor.visit("steps", steps_, state::count());
-  visitor.visit("frames", frames_, state::count());
+  auto& [steps, frames, first_loads, velocity, came, farthest, driven, is_driven, is_lost, is_beyond_noise,
+         record_peaks, peaks, last, leading_peak, framed_peak, last_look, first_opening, last_opening,
+         load_factor, pair_force, largest_pair, largest_factor, largest_with_pair, largest_load, pair_work,
+         first_work, most_kinetic, body] = kept_;  // another member does not compile until it has a name here
+  visitor.visit("first_opening", first_opening);
+  visitor.visit("load_factor", load_factor);
+  visitor.visit("pair_force", pair_force);
+  visitor.visit("largest_pair", largest_pair);
+  visitor.visit("largest_factor", largest_factor);
+  visitor.visit("largest_load", largest_load);
+  visitor.visit("largest_with_pair", largest_with_pair);
+  visitor.visit("pair_work", pair_work);
+  visitor.visit("last_opening", last_opening);
+  visitor.visit("steps", steps, state::count());
+  visitor.visit("frames", frames, state::count());
   {
     std::vector<double> numbers;
-    for (const SetLoad<2>& load : first_loads_)
+    for (const SetLoad<2>& load : first_loads)
       numbers.insert(numbers.end(),
                      {load.force[0], load.force[1], load.pressure, load.is_follower ? 1.0 : 0.0});
     const auto loads = std::ranges::count_if(keys_.actions, [](const Action& a) { return !is_motion(a); });
     visitor.visit("first_loads", numbers, state::finite().of(4 * static_cast<std::size_t>(loads)));
     if (visitor.replaces()) {
-      first_loads_.clear();
+      first_loads.clear();
       for (std::size_t i = 0; i + 3 < numbers.size(); i += 4)
-        first_loads_.push_back({Vec<2>{{numbers[i], numbers[i + 1]}}, numbers[i + 2], numbers[i + 3] != 0.0});
+        first_loads.push_back({Vec<2>{{numbers[i], numbers[i + 1]}}, numbers[i + 2], numbers[i + 3] != 0.0});
     }
   }
   const StateRule of_each_action = state::finite().of(keys_.actions.size());
-  visitor.visit("velocity", velocity_, of_each_action);
-  visitor.visit("last", last_, state::finite().of(keys_.until.size()));
-  visitor.visit("came", came_, of_each_action);
-  visitor.visit("farthest", farthest_, of_each_action);
-  visitor.visit("driven", driven_);
-  visitor.visit("is_driven", is_driven_);
-  visitor.visit("is_lost", is_lost_);
-  visitor.visit("is_beyond_noise", is_beyond_noise_);
+  visitor.visit("velocity", velocity, of_each_action);
+  visitor.visit("last", last, state::finite().of(keys_.until.size()));
+  visitor.visit("came", came, of_each_action);
+  visitor.visit("farthest", farthest, of_each_action);
+  visitor.visit("driven", driven);
+  visitor.visit("is_driven", is_driven);
+  visitor.visit("is_lost", is_lost);
+  visitor.visit("is_beyond_noise", is_beyond_noise);
   const auto visit_all = [&](const char* name, auto& all, auto... more) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const StateVisitor::Scope scope(visitor, fmt::format("{}[{}]", name, i));
       all[i].visit_state(visitor, more...);
     }
   };
-  visit_all("record_peaks", record_peaks_, keys_.records.size());
-  visit_all("peaks", peaks_);
-  visitor.visit("leading_peak", leading_peak_);
-  visitor.visit("framed_peak", framed_peak_);
-  visitor.visit("last_look", last_look_);
-  visitor.visit("first_work", first_work_);
-  visitor.visit("most_kinetic", most_kinetic_);
-  body_.visit_state(visitor);
+  visit_all("record_peaks", record_peaks, keys_.records.size());
+  visit_all("peaks", peaks);
+  visitor.visit("leading_peak", leading_peak);
+  visitor.visit("framed_peak", framed_peak);
+  visitor.visit("last_look", last_look);
+  visitor.visit("first_work", first_work);
+  visitor.visit("most_kinetic", most_kinetic);
+  body.visit_state(visitor);
 }
 
 }  // namespace pyroclast

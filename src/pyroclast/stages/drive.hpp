@@ -118,30 +118,33 @@ class Drive : public Stage {
 
   Keys keys_;
   std::optional<std::string> leading_;  ///< record that the test is about: the first force, else stress
-  std::int64_t steps_ = 0;
-  std::int64_t frames_ = 0;
-  std::vector<SetLoad<2>> first_loads_;  ///< of the set of each load, when the stage began
-  std::vector<double> velocity_;         ///< of each action now, m/s
-  // What drives the body on: how far each action came, m, N or Pa, and how far at most; for how long, s.
-  std::vector<double> came_, farthest_;
-  double driven_ = 0.0;
-  bool is_driven_ = false;                         ///< now
-  bool is_lost_ = false;                           ///< the controlled opening left its course
-  bool is_beyond_noise_ = false;                   ///< since when peaks count
-  std::vector<RecordPeak> record_peaks_;           ///< of each record
-  std::vector<Peak> peaks_;                        ///< of the records of `until`
-  std::vector<double> last_;                       ///< likewise: value at the last look
-  double leading_peak_ = 0.0, framed_peak_ = 0.0;  ///< of the leading record: greatest size; with a frame, SI
-  double last_look_ = 0.0;                         ///< s
-  double first_opening_ = 0.0, last_opening_ = 0.0;   ///< controlled, when the stage began, m
-  double load_factor_ = 0.0, pair_force_ = 0.0;       ///< of the control; N, opening it
-  double largest_pair_ = 0.0, largest_factor_ = 0.0;  ///< at looks
-  double largest_with_pair_ = 0.0;                    ///< of the loads and the pair beside them, N
-  double largest_load_ = 0.0;                         ///< of the loads alone, N
-  double pair_work_ = 0.0;                            ///< J
-  double first_work_ = 0.0;                           ///< of loads, when the stage began, J
-  double most_kinetic_ = 0.0;                         ///< energy, while peaks do not count yet, J
-  BodyFigures body_;
+  /// All that lasts from one batch to the next.
+  struct Kept {
+    std::int64_t steps = 0;
+    std::int64_t frames = 0;
+    std::vector<SetLoad<2>> first_loads;  ///< of the set of each load, when the stage began
+    std::vector<double> velocity;         ///< of each action now, m/s
+    // What drives the body on: how far each action came, m, N or Pa, and how far at most; for how long, s.
+    std::vector<double> came, farthest;
+    double driven = 0.0;
+    bool is_driven = false;                        ///< now
+    bool is_lost = false;                          ///< the controlled opening left its course
+    bool is_beyond_noise = false;                  ///< since when peaks count
+    std::vector<RecordPeak> record_peaks;          ///< of each record
+    std::vector<Peak> peaks;                       ///< of the records of `until`
+    std::vector<double> last;                      ///< likewise: value at the last look
+    double leading_peak = 0.0, framed_peak = 0.0;  ///< of the leading record: greatest size; with a frame, SI
+    double last_look = 0.0;                        ///< s
+    double first_opening = 0.0, last_opening = 0.0;   ///< controlled, when the stage began, m
+    double load_factor = 0.0, pair_force = 0.0;       ///< of the control; N, opening it
+    double largest_pair = 0.0, largest_factor = 0.0;  ///< at looks
+    double largest_with_pair = 0.0;                   ///< of the loads and the pair beside them, N
+    double largest_load = 0.0;                        ///< of the loads alone, N
+    double pair_work = 0.0;                           ///< J
+    double first_work = 0.0;                          ///< of loads, when the stage began, J
+    double most_kinetic = 0.0;                        ///< energy, while peaks do not count yet, J
+    BodyFigures body;
+  } kept_;
 };
 
 StageKind drive_kind();

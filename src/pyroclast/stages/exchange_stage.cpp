@@ -120,21 +120,21 @@ ExchangeStage::Keys read_exchange(const Section& own, const StageTables& tables)
 }
 
 void ExchangeStage::begin(Simulation& simulation) {
-  has_press_ = simulation.has_press();
-  load_stress_ = has_press_ ? simulation.press().stress_held() : 0.0;
-  first_temperature_ = simulation.field().mean();
+  kept_.has_press = simulation.has_press();
+  kept_.load_stress = kept_.has_press ? simulation.press().stress_held() : 0.0;
+  kept_.first_temperature = simulation.field().mean();
   begin_change(simulation);
   exchange_.begin(simulation);
-  last_interval_ = interval_of(simulation.field().mean());
+  kept_.last_interval = interval_of(simulation.field().mean());
 }
 
 bool ExchangeStage::advance(Simulation& simulation, int most_steps) {
-  if (!rests_) {
-    rests_ = change(simulation, exchange_, most_steps);
+  if (!kept_.is_settling) {
+    kept_.is_settling = change(simulation, exchange_, most_steps);
     return false;
   }
   if (!exchange_.advance(simulation, most_steps)) return false;
-  rests_ = false;
+  kept_.is_settling = false;
   return true;
 }
 
@@ -142,8 +142,8 @@ Verdict ExchangeStage::judge(Simulation& simulation) {
   if (exchange_.ran_away()) return {.over = true, .last = true, .outcome = Outcome::ran_away};
   if (progress(simulation) >= 1.0) return {.over = true};
   const double interval = interval_of(simulation.field().mean());
-  const bool is_new = interval != last_interval_;
-  last_interval_ = interval;
+  const bool is_new = interval != kept_.last_interval;
+  kept_.last_interval = interval;
   const bool came = frame_time_came(simulation);
   return {.frame = frames_in_time() ? came : is_new};
 }
@@ -159,8 +159,8 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
   const bool has_rows = !rows.empty(), failed = r.critical_temperature.has_value();
   report.results = {
       {"field", needs().field == FieldChoice::uniform ? "uniform" : "conduction"},
-      {"platen", has_press_ ? Result::Value(name(coupling().platen)) : Result::Value()},
-      {"load_stress_MPa", value_if(has_press_, load_stress_ * 1e-6)},
+      {"platen", kept_.has_press ? Result::Value(name(coupling().platen)) : Result::Value()},
+      {"load_stress_MPa", value_if(kept_.has_press, kept_.load_stress * 1e-6)},
       {"critical_temperature_degC", value_if(failed, r.critical_temperature.value_or(0.0))},
       {"critical_time_s", value_if(failed, r.critical_time)},
       {"highest_temperature_degC", value_if(has_rows, r.highest)},
@@ -169,24 +169,24 @@ StageReport ExchangeStage::report(const History& history, RowRange rows, Outcome
       {"exchanges_not_converged", r.not_converged},
       {"worst_unbalanced_ratio", value_if(has_rows, r.worst_ratio)},
       {"cycles", static_cast<std::int64_t>(r.cycles)},
-      {"largest_thrust_MPa", value_if(has_rows && has_press_, r.largest_thrust)},
+      {"largest_thrust_MPa", value_if(has_rows && kept_.has_press, r.largest_thrust)},
   };
   if (!has_rows) return report;
   report.lines.push_back(fmt::format(
       "{:.0f} to {:.0f} degC{} in {} exchanges of up to {:g} K, {:.0f} cycles; {} did not come to rest",
-      first_temperature_, r.last_mean,
-      r.highest > std::max(first_temperature_, r.last_mean) + 1.0
+      kept_.first_temperature, r.last_mean,
+      r.highest > std::max(kept_.first_temperature, r.last_mean) + 1.0
           ? fmt::format(" in the mean, {:.0f} degC where it is hottest,", r.highest)
           : "",
       r.exchanges, coupling().increment, r.cycles, r.not_converged));
   const std::string how =
       failed ? fmt::format("critical temperature {:.0f} degC", *r.critical_temperature) : "no failure";
-  if (!has_press_)
+  if (!kept_.has_press)
     report.lines.push_back(how);
   else if (coupling().platen == PlatenControl::fixed)
     report.lines.push_back(fmt::format("thrust up to {:.2f} MPa", r.largest_thrust));
   else
-    report.lines.push_back(fmt::format("load {:.2f} MPa: {}", load_stress_ * 1e-6, how));
+    report.lines.push_back(fmt::format("load {:.2f} MPa: {}", kept_.load_stress * 1e-6, how));
   if (r.not_converged > 0)
     report.warnings.push_back(
         fmt::format("{} of {} exchanges of temperature did not come to rest within the stated cycles "
@@ -208,11 +208,13 @@ Forecast ExchangeStage::forecast(const Simulation&, Foreseen& foreseen) const {
 }
 
 void ExchangeStage::visit_state(StateVisitor& visitor) {
-  visitor.visit("rests", rests_);
-  visitor.visit("has_press", has_press_);
-  visitor.visit("load_stress", load_stress_);
-  visitor.visit("first_temperature", first_temperature_);
-  visitor.visit("last_interval", last_interval_);
+  auto& [is_settling, has_press, load_stress, first_temperature, last_interval] =
+      kept_;  // another member does not compile until it has a name here
+  visitor.visit("is_settling", is_settling);
+  visitor.visit("has_press", has_press);
+  visitor.visit("load_stress", load_stress);
+  visitor.visit("first_temperature", first_temperature);
+  visitor.visit("last_interval", last_interval);
   exchange_.visit_state(visitor);
   visit_change(visitor);
 }

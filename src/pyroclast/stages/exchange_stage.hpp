@@ -31,7 +31,7 @@ class ExchangeStage : public Stage {
 
   const Coupling& coupling() const { return keys_.coupling; }
   bool is_restrained() const { return keys_.coupling.platen == PlatenControl::fixed; }
-  double first_temperature() const { return first_temperature_; }  ///< mean at the beginning, °C
+  double first_temperature() const { return kept_.first_temperature; }  ///< mean at the beginning, °C
 
   virtual void begin_change(Simulation& simulation) = 0;
   /// One batch of changing the temperatures to the next exchange, and hands them over; true when done.
@@ -49,11 +49,14 @@ class ExchangeStage : public Stage {
 
   Keys keys_;
   Exchange exchange_;
-  bool rests_ = false;  ///< the temperatures are handed over, and the body comes to rest
-  bool has_press_ = false;
-  double load_stress_ = 0.0;  ///< held at the beginning, Pa
-  double first_temperature_ = 0.0;
-  double last_interval_ = 0.0;  ///< of temperature, in which the last row lay
+  /// All that lasts from one batch to the next.
+  struct Kept {
+    bool is_settling = false;  ///< the temperatures are handed over, and the body still moves
+    bool has_press = false;
+    double load_stress = 0.0;  ///< held at the beginning, Pa
+    double first_temperature = 0.0;
+    double last_interval = 0.0;  ///< of temperature, in which the last row lay
+  } kept_;
 };
 
 /// Reads the keys that stages of this sort share. What is wrong is recorded in the deck.

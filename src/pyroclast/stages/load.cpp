@@ -62,14 +62,14 @@ double ramp_share(std::int64_t steps, double time_step, double ramp_time) {
 
 void Load::begin(Simulation& simulation) {
   simulation.press().control_by_force();
-  first_stress_ = simulation.press().stress_held();
-  first_strain_ = simulation.press().specimen_strain();
+  kept_.first_stress = simulation.press().stress_held();
+  kept_.first_strain = simulation.press().specimen_strain();
 }
 
 /// To what the ramp has in the middle of the steps to come.
 void Load::adjust_force(Simulation& simulation) const {
-  const double share = share_held_from(steps_, simulation.mechanics().time_step());
-  simulation.press().hold(first_stress_ + share * (keys_.stress - first_stress_));
+  const double share = share_held_from(kept_.steps, simulation.mechanics().time_step());
+  simulation.press().hold(kept_.first_stress + share * (keys_.stress - kept_.first_stress));
 }
 
 double Load::share_held_from(std::int64_t steps, double time_step) const {
@@ -78,28 +78,28 @@ double Load::share_held_from(std::int64_t steps, double time_step) const {
 }
 
 bool Load::advance(Simulation& simulation, int most_steps) {
-  if (steps_ % kStepsPerForce == 0) adjust_force(simulation);
-  const auto steps = std::min<std::int64_t>(kStepsPerForce - steps_ % kStepsPerForce, most_steps);
+  if (kept_.steps % kStepsPerForce == 0) adjust_force(simulation);
+  const auto steps = std::min<std::int64_t>(kStepsPerForce - kept_.steps % kStepsPerForce, most_steps);
   simulation.mechanics().advance(static_cast<int>(steps));
-  steps_ += steps;
-  return steps_ % kLoadStepsPerLook == 0;
+  kept_.steps += steps;
+  return kept_.steps % kLoadStepsPerLook == 0;
 }
 
 Verdict Load::judge(Simulation& simulation) {
-  if (simulation.press().specimen_strain() - first_strain_ > keys_.failure_strain)
+  if (simulation.press().specimen_strain() - kept_.first_strain > keys_.failure_strain)
     return {.over = true, .last = true, .outcome = Outcome::crushed};
   const Mechanics<2>& mechanics = simulation.mechanics();
   // The ramp may end before the force is adjusted to all of it.
-  if (share_held_from(steps_ - kStepsPerForce, mechanics.time_step()) < 1.0) return {};
+  if (share_held_from(kept_.steps - kStepsPerForce, mechanics.time_step()) < 1.0) return {};
   if (mechanics.unbalanced_ratio() < keys_.unbalanced_ratio) return {.over = true};
-  const double after_ramp = static_cast<double>(steps_) - keys_.ramp_time / mechanics.time_step();
+  const double after_ramp = static_cast<double>(kept_.steps) - keys_.ramp_time / mechanics.time_step();
   if (after_ramp >= static_cast<double>(keys_.most_steps))
     return {.over = true, .last = true, .outcome = Outcome::not_settled};
   return {};
 }
 
 double Load::progress(const Simulation& simulation) const {
-  return ramp_share(steps_, simulation.mechanics().time_step(), keys_.ramp_time);
+  return ramp_share(kept_.steps, simulation.mechanics().time_step(), keys_.ramp_time);
 }
 
 StageReport Load::report(const History& history, RowRange rows, Outcome outcome) const {
@@ -115,7 +115,7 @@ StageReport Load::report(const History& history, RowRange rows, Outcome outcome)
   const auto stress = history.values("stress_MPa", rows);
   const double borne = stress.empty() ? 0.0 : *std::ranges::max_element(stress);
   report.results.push_back({"largest_stress_MPa", value_if(!rows.empty(), borne)});
-  report.results.push_back({"steps", steps_});
+  report.results.push_back({"steps", kept_.steps});
   report.results.push_back({"strain", last_value(history, "strain", rows)});
   if (outcome == Outcome::crushed) {
     report.lines.push_back(fmt::format("crushed: it bore {:.2f} MPa at most of the {:.2f} MPa of the load",
@@ -135,9 +135,11 @@ Forecast Load::forecast(const Simulation& simulation, Foreseen&) const {
 }
 
 void Load::visit_state(StateVisitor& visitor) {
-  visitor.visit("steps", steps_, state::count());
-  visitor.visit("first_stress", first_stress_);
-  visitor.visit("first_strain", first_strain_);
+  auto& [steps, first_stress, first_strain] =
+      kept_;  // another member does not compile until it has a name here
+  visitor.visit("steps", steps, state::count());
+  visitor.visit("first_stress", first_stress);
+  visitor.visit("first_strain", first_strain);
 }
 
 }  // namespace pyroclast

@@ -39,9 +39,12 @@ class Load : public Stage {
   double share_held_from(std::int64_t steps, double time_step) const;
 
   Keys keys_;
-  std::int64_t steps_ = 0;     ///< since the stage began
-  double first_stress_ = 0.0;  ///< held before, Pa
-  double first_strain_ = 0.0;  ///< of the specimen, before
+  /// All that lasts from one batch to the next.
+  struct Kept {
+    std::int64_t steps = 0;     ///< since the stage began
+    double first_stress = 0.0;  ///< held before, Pa
+    double first_strain = 0.0;  ///< of the specimen, before
+  } kept_;
 };
 
 StageKind load_kind();

@@ -39,13 +39,13 @@ void Settle::begin(Simulation& simulation) {
 }
 
 bool Settle::advance(Simulation& simulation, int most_steps) {
-  if (steps_to_look_ == 0)
-    steps_to_look_ = std::clamp<std::int64_t>(keys_.most_steps - steps_, 1, kSettleStepsPerLook);
-  const auto steps = std::min<std::int64_t>(steps_to_look_, most_steps);
+  if (kept_.steps_to_look == 0)
+    kept_.steps_to_look = std::clamp<std::int64_t>(keys_.most_steps - kept_.steps, 1, kSettleStepsPerLook);
+  const auto steps = std::min<std::int64_t>(kept_.steps_to_look, most_steps);
   simulation.mechanics().advance(static_cast<int>(steps));
-  steps_ += steps;
-  steps_to_look_ -= steps;
-  return steps_to_look_ == 0;
+  kept_.steps += steps;
+  kept_.steps_to_look -= steps;
+  return kept_.steps_to_look == 0;
 }
 
 Verdict Settle::judge(Simulation& simulation) {
@@ -53,13 +53,14 @@ Verdict Settle::judge(Simulation& simulation) {
     simulation.set_zero();
     return {.over = true};
   }
-  if (steps_ >= keys_.most_steps) return {.over = true, .last = true, .outcome = Outcome::not_settled};
+  if (kept_.steps >= keys_.most_steps) return {.over = true, .last = true, .outcome = Outcome::not_settled};
   return {};
 }
 
 StageReport Settle::report(const History& history, RowRange rows, Outcome) const {
   StageReport report;
-  report.results = {{"steps", steps_}, {"unbalanced_ratio", last_value(history, "unbalanced_ratio", rows)}};
+  report.results = {{"steps", kept_.steps},
+                    {"unbalanced_ratio", last_value(history, "unbalanced_ratio", rows)}};
   return report;
 }
 
@@ -69,8 +70,9 @@ Forecast Settle::forecast(const Simulation&, Foreseen&) const {
 }
 
 void Settle::visit_state(StateVisitor& visitor) {
-  visitor.visit("steps", steps_, state::count());
-  visitor.visit("steps_to_look", steps_to_look_, state::within(0, kSettleStepsPerLook));
+  auto& [steps, steps_to_look] = kept_;  // another member does not compile until it has a name here
+  visitor.visit("steps", steps, state::count());
+  visitor.visit("steps_to_look", steps_to_look, state::within(0, kSettleStepsPerLook));
 }
 
 double steps_to_rest(double unbalanced_ratio) {

@@ -26,8 +26,11 @@ class Settle : public Stage {
 
  private:
   Keys keys_;
-  std::int64_t steps_ = 0;  ///< since the stage began
-  std::int64_t steps_to_look_ = 0;
+  /// All that lasts from one batch to the next.
+  struct Kept {
+    std::int64_t steps = 0;  ///< since the stage began
+    std::int64_t steps_to_look = 0;
+  } kept_;
 };
 
 StageKind settle_kind();

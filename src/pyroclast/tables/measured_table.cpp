@@ -40,7 +40,7 @@ bool counts(const TableRow& row, std::size_t column, std::size_t from, std::size
 
 }  // namespace
 
-MeasuredTable MeasuredTable::load(const std::filesystem::path& path, std::size_t least) {
+MeasuredTable MeasuredTable::open(const std::filesystem::path& path, std::size_t least) {
   if (std::filesystem::is_directory(path)) throw Error(fmt::format("{}: is a folder", path.string()));
   return parse(read_file(path), path, least);
 }
@@ -146,7 +146,7 @@ bool MeasuredTable::is_index(std::size_t column) const {
   return true;
 }
 
-std::size_t MeasuredTable::find(const ColumnChoice::Column& wanted) const {
+std::size_t MeasuredTable::find(const ColumnChoice::TableColumn& wanted) const {
   if (wanted.number > 0) {
     if (wanted.number > columns_.size())
       refuse(path_, header_line_,

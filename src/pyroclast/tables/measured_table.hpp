@@ -23,14 +23,14 @@ struct AskedColumn {
 /// Which columns of a file are meant, and in which units, as a deck says it.
 struct ColumnChoice {
   /// A column by its name, or by its number from 1 where that is not 0.
-  struct Column {
+  struct TableColumn {
     std::string name;
     std::size_t number = 0;
   };
-  std::string file;                ///< as the deck names it
-  std::vector<Column> columns;     ///< of each quantity; empty where the table has no others
-  std::vector<std::string> units;  ///< of each quantity, "" where the file says it; may be empty
-  std::string key = "csv";         ///< by which the deck names the file
+  std::string file;                  ///< as the deck names it
+  std::vector<TableColumn> columns;  ///< of each quantity; empty where the table has no others
+  std::vector<std::string> units;    ///< of each quantity, "" where the file says it; may be empty
+  std::string key = "csv";           ///< by which the deck names the file
 };
 
 /// A column that was chosen, and the unit of its numbers.
@@ -48,7 +48,7 @@ struct ChosenColumn {
 class MeasuredTable {
  public:
   /// \param least  number of columns that the table must have
-  static MeasuredTable load(const std::filesystem::path& path, std::size_t least);
+  static MeasuredTable open(const std::filesystem::path& path, std::size_t least);
   /// The same from the bytes of a file; `path` names it in messages.
   static MeasuredTable parse(std::string_view bytes, const std::filesystem::path& path, std::size_t least);
 
@@ -85,7 +85,7 @@ class MeasuredTable {
   ClockForm clock_form_of(const ChosenColumn& column) const;
   std::function<double(std::string_view)> reader(const ChosenColumn& column, std::string_view given,
                                                  const Unit& unit) const;
-  std::size_t find(const ColumnChoice::Column& column) const;
+  std::size_t find(const ColumnChoice::TableColumn& column) const;
   std::vector<std::size_t> chosen(const ColumnChoice& choice, std::span<const AskedColumn> asked) const;
   std::string chosen_unit(std::size_t column, const std::string& stated, const AskedColumn& asked) const;
   /// The table of the deck that names columns, and units where the file does not say them.

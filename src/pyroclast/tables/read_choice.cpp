@@ -16,11 +16,11 @@ struct Counts {
 };
 
 /// Empty after an error.
-std::vector<ColumnChoice::Column> read_columns(const Section& section, const Counts& counts) {
+std::vector<ColumnChoice::TableColumn> read_columns(const Section& section, const Counts& counts) {
   const auto list = nlohmann::json::parse(section.json("columns", "list of names or numbers", "[]",
                                                        "columns by their names, or by their numbers from 1"));
   if (list.is_array() && list.empty()) return {};
-  std::vector<ColumnChoice::Column> columns;
+  std::vector<ColumnChoice::TableColumn> columns;
   bool is_good = true;
   for (const auto& item : list.is_array() ? list : nlohmann::json::array()) {
     if (item.is_string())

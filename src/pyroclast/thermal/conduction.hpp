@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "pyroclast/base/ledger.hpp"
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/thermal/gap_conduction.hpp"
@@ -40,6 +42,22 @@ struct HeatLedger {
   double error() const { return heat_in() - stored; }
   bool operator==(const HeatLedger&) const = default;
 };
+
+/// In the order of the history's columns. No deck has a source.
+inline constexpr auto kHeats = std::to_array<LedgerEntry<HeatLedger>>({
+    {"stored", "heat_stored_J", LedgerSide::held, "in the body",
+     [](const HeatLedger& h) { return h.stored; }},
+    {"prescribed", "heat_prescribed_J", LedgerSide::put_in, "to hold prescribed temperatures",
+     [](const HeatLedger& h) { return h.prescribed; }},
+    {"flux", "heat_flux_J", LedgerSide::put_in, "by given fluxes",
+     [](const HeatLedger& h) { return h.boundary.flux; }},
+    {"convection", "heat_convection_J", LedgerSide::put_in, "by convection",
+     [](const HeatLedger& h) { return h.boundary.convection; }},
+    {"radiation", "heat_radiation_J", LedgerSide::put_in, "by radiation",
+     [](const HeatLedger& h) { return h.boundary.radiation; }},
+    {"error", "heat_error_J", LedgerSide::error, "what came in less what is stored",
+     [](const HeatLedger& h) { return h.error(); }},
+});
 
 /// The stable step of forward Euler and the node that sets it.
 struct HeatStepLimit {

@@ -175,14 +175,14 @@ def _varied(seen: Seen) -> Markup:
 
 
 def _failures(seen: Seen) -> Markup:
-    states = Counter(row["state"] for row in seen.rows)
-    if set(states) <= {DONE}:
+    said = [(row["state"], row["reason"]) for row in seen.rows]
+    found = Counter((state, reason) for state, reason in said if state != DONE or reason)
+    if not found:
         return element("p", "All runs gave a value.")
-    found = Counter((row["state"], row["reason"]) for row in seen.rows if row["state"] != DONE)
     rows = [[state, str(count), reason] for (state, reason), count in found.most_common(_MOST_REASONS)]
     left = len(found) - len(rows)
     note = f"{left} more reasons stand in the table." if left > 0 else ""
-    return _table(Table(["state", "runs", "reason"], [[DONE, str(states[DONE]), ""], *rows], note))
+    return _table(Table(["state", "runs", "reason"], [[DONE, str(said.count((DONE, ""))), ""], *rows], note))
 
 
 def _again(seen: Seen) -> Markup:

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "pyroclast/mechanics/law_rows.hpp"
+#include "pyroclast/mechanics/compiled_for_sets.hpp"
 #include "pyroclast/mechanics/step/contacts.hpp"
 
-/// What a file that compiles the rows of a law for one instruction set includes.
+/// What a file that compiles the packs of a law for one instruction set includes.
 namespace pyroclast {
 
 template <int Dim, class Set, class Law, Dimensions kDimensions>
-constexpr RowFunctions<Dim> compiled_rows() {
+constexpr PackFunctions<Dim> compiled_functions() {
   if constexpr (includes(kDimensions, Dim))
     return {Contacts<Dim, Set, Law>::update, Contacts<Dim, Set, Law>::place_stiffness};
   else
@@ -16,7 +16,7 @@ constexpr RowFunctions<Dim> compiled_rows() {
 
 template <class Set, class Law, Dimensions kDimensions>
 const CompiledLaw Compiled<Set, Law, kDimensions>::law{
-    {compiled_rows<2, Set, Law, kDimensions>(), compiled_rows<3, Set, Law, kDimensions>()},
+    {compiled_functions<2, Set, Law, kDimensions>(), compiled_functions<3, Set, Law, kDimensions>()},
     Probes<Set>::functions()};
 
 }  // namespace pyroclast

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "pyroclast/laws/law.hpp"
-#include "pyroclast/mechanics/step/rows.hpp"
+#include "pyroclast/mechanics/step/packs.hpp"
 
 /// Contact points: jumps to tractions to forces, Eqs. (10)-(15), and their sums at the gridpoints.
 namespace pyroclast {
@@ -9,15 +9,15 @@ namespace pyroclast {
 /// Sums of contact forces at gridpoints.
 template <int Dim, class Set>
 struct ContactForces {
-  using R = Rows<Dim, Set>;
+  using R = Packs<Dim, Set>;
   using Real = typename R::Real;
   using Vector = typename R::Vector;
 
-  /// Adds to the weight of a row of gridpoints what the contact points on it exert: with opposite signs on
+  /// Adds to the weight of a pack of gridpoints what the contact points on it exert: with opposite signs on
   /// the two sides, or alike.
   template <Kinematics kKinematics, bool kOpposite>
-  static Vector add_forces(const State<Dim>& s, int row, Vector total) {
-    const ContactsOfRow range = s.layout.contacts_of_row[row];
+  static Vector add_forces(const State<Dim>& s, int pack, Vector total) {
+    const ContactsOfPack range = s.layout.contacts_of_pack[pack];
     for (int k = range.begin; k < range.end; ++k) {
       const ActingContacts& acting = s.layout.acting[k];
       const Vector force = R::gather(s.contact_force, acting.contact);
@@ -33,50 +33,50 @@ struct ContactForces {
   }
 };
 
-/// Rows of faces that have one law.
+/// Packs of faces that have one law.
 template <int Dim, class Set, class Law>
 struct Contacts {
-  using R = Rows<Dim, Set>;
+  using R = Packs<Dim, Set>;
   using Real = typename R::Real;
   using Vector = typename R::Vector;
   using OneForAll = typename Law::template Constants<double>;
   using ForEach = typename Law::template Constants<Real>;
-  using History = typename Law::template History<Dim, Real>;
+  using Internals = typename Law::template Internals<Dim, Real>;
 
-  static constexpr int kHistory = count_of<History>();
+  static constexpr int kInternals = count_of<Internals>();
   static constexpr int kLosses = count_of<typename Law::template Losses<double>>();
   static constexpr int kConstants = count_of<OneForAll>();
 
-  /// As of RowFunctions.
+  /// As of PackFunctions.
   static void update(State<Dim>& s, int first, int last, bool measure) {
     with_kinematics(s, [&](auto kinematics) {
       if (measure)
-        update_rows<kinematics(), true>(s, first, last);
+        update_packs<kinematics(), true>(s, first, last);
       else
-        update_rows<kinematics(), false>(s, first, last);
+        update_packs<kinematics(), false>(s, first, last);
     });
   }
 
-  /// As of RowFunctions.
+  /// As of PackFunctions.
   static void place_stiffness(State<Dim>& s, int first, int last) {
     with_kinematics(s, [&](auto kinematics) { place_stiffness_of<kinematics()>(s, first, last); });
   }
 
   // flatten: lanes that cross a call go through memory
   template <Kinematics kKinematics, bool kMeasure>
-  [[gnu::flatten, gnu::noinline]] static void update_rows(State<Dim>& __restrict s, int first, int last) {
-    for (int row = first; row < last; ++row) {
-      R::template fetch_faces_ahead<kHistory, kLosses>(s, row);
-      if (s.one_set[row]) {
-        const OneForAll& constants = constants_of_set(s, s.set_of_faces[row]);
-        update_row<kKinematics, kMeasure>(
-            s, row, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
-              return update_point(s, row, point, constants, opening, tangential);
+  [[gnu::flatten, gnu::noinline]] static void update_packs(State<Dim>& __restrict s, int first, int last) {
+    for (int pack = first; pack < last; ++pack) {
+      R::template fetch_faces_ahead<kInternals, kLosses>(s, pack);
+      if (s.one_set[pack]) {
+        const OneForAll& constants = constants_of_set(s, s.set_of_faces[pack]);
+        update_pack<kKinematics, kMeasure>(
+            s, pack, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
+              return update_point(s, pack, point, constants, opening, tangential);
             });
       } else {
-        update_row<kKinematics, kMeasure>(
-            s, row, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
-              return update_point(s, row, point, own_constants(s, row, point), opening, tangential);
+        update_pack<kKinematics, kMeasure>(
+            s, pack, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
+              return update_point(s, pack, point, own_constants(s, pack, point), opening, tangential);
             });
       }
     }
@@ -84,14 +84,14 @@ struct Contacts {
 
  private:
   template <Kinematics kKinematics>
-  [[gnu::flatten]] static void place_stiffness_of(State<Dim>& s, int first_row, int last_row) {
-    for (int row = first_row; row < last_row; ++row) {
-      const Frame frame = frame_of<kKinematics>(s, row);
-      const int first = s.layout.first_point_of(row), last = s.layout.first_point_of(row + 1);
+  [[gnu::flatten]] static void place_stiffness_of(State<Dim>& s, int first_pack, int last_pack) {
+    for (int pack = first_pack; pack < last_pack; ++pack) {
+      const Frame frame = frame_of<kKinematics>(s, pack);
+      const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
       for (int at = first; at < last; ++at) {
         const Real area = Real::load(s.layout.points[at].area);
-        R::store(s.one_set[row] ? stiffness(constants_of_set(s, s.set_of_faces[row]), frame.normal, area)
-                                : stiffness(own_constants(s, row, at - first), frame.normal, area),
+        R::store(s.one_set[pack] ? stiffness(constants_of_set(s, s.set_of_faces[pack]), frame.normal, area)
+                                 : stiffness(own_constants(s, pack, at - first), frame.normal, area),
                  &s.contact_force[slot_of(at, 0)]);
       }
     }
@@ -104,12 +104,12 @@ struct Contacts {
   };
 
   template <Kinematics kKinematics>
-  static Frame frame_of(const State<Dim>& s, int row) {
+  static Frame frame_of(const State<Dim>& s, int pack) {
     Frame frame;
-    for (int t = 0; t + 1 < Dim; ++t) frame.tangents[t] = R::load(s.layout.faces[row].tangent[t]);
+    for (int t = 0; t + 1 < Dim; ++t) frame.tangents[t] = R::load(s.layout.faces[pack].tangent[t]);
     if constexpr (kKinematics == Kinematics::finite) {
       // mean edge of the two sides
-      const PointRow* const point = &s.layout.points[s.layout.first_point_of(row)];
+      const PointPack* const point = &s.layout.points[s.layout.first_point_of(pack)];
       const auto at = [&](const std::array<int, kLanes>& offset) {
         return R::gather(s.gathered_position, offset) + R::gather(s.displacement, offset);
       };
@@ -127,13 +127,13 @@ struct Contacts {
 
   /// \param respond  takes (point, opening, tangential jump) to a ContactResponse
   template <Kinematics kKinematics, bool kMeasure, class Respond>
-  static void update_row(State<Dim>& s, int row, Respond respond) {
-    const Frame frame = frame_of<kKinematics>(s, row);
-    const int first = s.layout.first_point_of(row), last = s.layout.first_point_of(row + 1);
+  static void update_pack(State<Dim>& s, int pack, Respond respond) {
+    const Frame frame = frame_of<kKinematics>(s, pack);
+    const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
     Real turning = 0.0;
     Real stored = 0.0, applied = 0.0, widest = 0.0;
     for (int at = first; at < last; ++at) {
-      const PointRow& point = s.layout.points[at];
+      const PointPack& point = s.layout.points[at];
       const Real area = Real::load(point.area);
       const Vector jump = R::gather_differences(s.displacement, point.b, point.a);
       const Real opening = dot(jump, frame.normal);
@@ -154,7 +154,7 @@ struct Contacts {
     if constexpr (kKinematics == Kinematics::finite)
       add_turning_forces(s, first, frame, turning * Real::load(s.layout.points[first].area));
     if constexpr (kMeasure) {
-      FaceSums& sums = s.face_sums[row];
+      FaceSums& sums = s.face_sums[pack];
       sums.stored = sum(stored);
       sums.applied = sum(applied);
       sums.jump = largest(
@@ -175,41 +175,41 @@ struct Contacts {
   }
 
   /// Constants of points that have each their own temperature.
-  static ForEach own_constants(const State<Dim>& s, int row, int point) {
+  static ForEach own_constants(const State<Dim>& s, int pack, int point) {
     ForEach c;
     ForEach::each_choice([](const auto&, auto& mine, const auto& of_set) { mine = of_set; }, c,
-                         constants_of_set(s, s.set_of_faces[row]));
-    const Line* line = &s.own_constants[s.first_own_constant[row] + point * kConstants];
+                         constants_of_set(s, s.set_of_faces[pack]));
+    const Line* line = &s.own_constants[s.first_own_constant[pack] + point * kConstants];
     ForEach::each([&](const auto&, Real& number) { number = Real::load(line++->number); }, c);
     return c;
   }
 
   template <class Constants>
-  static ContactResponse<Dim, Real> update_point(State<Dim>& s, int row, int point,
+  static ContactResponse<Dim, Real> update_point(State<Dim>& s, int pack, int point,
                                                  const Constants& constants, const Real& opening,
                                                  const Tangential<Dim, Real>& tangential) {
-    History h;
+    Internals h;
     typename Law::template Losses<LineSum> losses;
-    if constexpr (kHistory > 0) {
-      const Line* line = &s.history[s.first_history[row] + point * kHistory];
-      History::each([&](const auto&, Real& number) { number = Real::load(line++->number); }, h);
+    if constexpr (kInternals > 0) {
+      const Line* line = &s.internals[s.first_internal[pack] + point * kInternals];
+      Internals::each([&](const auto&, Real& number) { number = Real::load(line++->number); }, h);
     }
     if constexpr (kLosses > 0) {
-      Line* line = &s.loss[s.first_loss[row] + point * kLosses];
+      Line* line = &s.loss[s.first_loss[pack] + point * kLosses];
       Law::template Losses<LineSum>::each([&](const auto&, LineSum& sum) { sum.number = line++->number; },
                                           losses);
     }
     const auto response = Law::template update<Dim>(constants, opening, tangential, h, losses);
-    if constexpr (kHistory > 0) {
-      Line* line = &s.history[s.first_history[row] + point * kHistory];
-      History::each(
-          [&](const HistoryInfo& info, const Real& number) {
+    if constexpr (kInternals > 0) {
+      Line* line = &s.internals[s.first_internal[pack] + point * kInternals];
+      Internals::each(
+          [&](const InternalInfo& info, const Real& number) {
             if (info.when == 0 || (response.changed & info.when) != 0) number.store(line->number);
             ++line;
           },
           h);
     }
-    if constexpr (kLosses > 0) s.losing[s.layout.first_point_of(row) + point] = response.changed != 0;
+    if constexpr (kLosses > 0) s.losing[s.layout.first_point_of(pack) + point] = response.changed != 0;
     return response;
   }
 
@@ -232,16 +232,16 @@ struct Contacts {
   template <class Constants>
   static Vector stiffness(const Constants& constants, const Vector& normal, const Real& area) {
     const auto k = Law::stiffness(constants);
-    Vector row;
+    Vector pack;
     for (int i = 0; i < Dim; ++i) {
       Real sum = 0.0;
       for (int j = 0; j < Dim; ++j) {
         const Real nn = normal[i] * normal[j];
         sum += abs(k.normal * nn + k.shear * ((i == j ? 1.0 : 0.0) - nn));
       }
-      row[i] = 2.0 * sum * area;
+      pack[i] = 2.0 * sum * area;
     }
-    return row;
+    return pack;
   }
 };
 

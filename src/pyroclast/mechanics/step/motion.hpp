@@ -1,13 +1,13 @@
 #pragma once
 
-#include "pyroclast/mechanics/step/rows.hpp"
+#include "pyroclast/mechanics/step/packs.hpp"
 
 /// Motion of gridpoints under the sums of forces, Eqs. (6)-(8), held, driven and loaded as asked.
 namespace pyroclast {
 
 template <int Dim, class Set>
 struct Motion {
-  using R = Rows<Dim, Set>;
+  using R = Packs<Dim, Set>;
   using Real = typename R::Real;
   using Vector = typename R::Vector;
   using Scratch = typename R::Scratch;
@@ -17,15 +17,15 @@ struct Motion {
   template <bool kMeasure>
   static void hold_and_load(const State<Dim>& s, const Bundle& bundle, const BundleConstraints& constraints,
                             const Scratch& scratch, Sums& sums) {
-    for (int i = 0; i < bundle.rows; ++i) {
-      const Vector applied = R::load(s.constraint_rows[constraints.first_row + i].applied);
+    for (int i = 0; i < bundle.packs; ++i) {
+      const Vector applied = R::load(s.constraint_packs[constraints.first_pack + i].applied);
       R::store(R::load(scratch.sum[i].c) + applied, scratch.sum[i].c);
       if constexpr (kMeasure) sums.applied += norm(applied);
     }
     for (int t = constraints.first_tie; t < constraints.last_tie; ++t) {
       const Tie& tie = s.ties[t];
       const auto force = [&](int slot) -> double& {
-        const int own = slot - slot_of(bundle.first_row, 0);
+        const int own = slot - slot_of(bundle.first_pack, 0);
         return scratch.sum[own / kLanes].c[tie.component][own % kLanes];
       };
       double total = 0.0, mass = 0.0;
@@ -43,16 +43,16 @@ struct Motion {
 
   /// Moves the gridpoints of a bundle.
   template <Pass kPass>
-  static void move_rows(State<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
+  static void move_packs(State<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
     const Bundle& bundle = s.layout.bundles[index];
     const Parameters parameters(s);
     if (const int c = s.constraints_of_bundle[index]; c >= 0) {
-      const ConstraintRow<Dim>* const rows = &s.constraint_rows[s.constraints[c].first_row];
-      for (int i = 0; i < bundle.rows; ++i)
-        move_row<kPass, true>(s, parameters, bundle, i, &rows[i], scratch, sums);
+      const ConstraintPack<Dim>* const packs = &s.constraint_packs[s.constraints[c].first_pack];
+      for (int i = 0; i < bundle.packs; ++i)
+        move_pack<kPass, true>(s, parameters, bundle, i, &packs[i], scratch, sums);
     } else {
-      for (int i = 0; i < bundle.rows; ++i)
-        move_row<kPass, false>(s, parameters, bundle, i, nullptr, scratch, sums);
+      for (int i = 0; i < bundle.packs; ++i)
+        move_pack<kPass, false>(s, parameters, bundle, i, nullptr, scratch, sums);
     }
   }
 
@@ -98,10 +98,10 @@ struct Motion {
 
   /// Damps the sum of forces (8) and integrates velocity and displacement (6), (7).
   template <Pass kPass, bool kConstrained>
-  static void move_row(State<Dim>& s, const Parameters& m, const Bundle& bundle, int i,
-                       const ConstraintRow<Dim>* constraints, const Scratch& scratch, Sums& sums) {
+  static void move_pack(State<Dim>& s, const Parameters& m, const Bundle& bundle, int i,
+                        const ConstraintPack<Dim>* constraints, const Scratch& scratch, Sums& sums) {
     constexpr bool kMeasure = kPass != Pass::move;
-    const int row = bundle.first_row + i;
+    const int pack = bundle.first_pack + i;
     const Vector force = R::load(scratch.sum[i].c);
     if constexpr (kMeasure) {
       Vector free = force;
@@ -111,18 +111,18 @@ struct Motion {
       sums.unbalanced += norm(free);
     }
     if constexpr (kPass == Pass::measure) {
-      R::store(force, s.force[row].c);
+      R::store(force, s.force[pack].c);
       return;
     }
-    R::fetch_ahead(s.velocity, row);
-    R::fetch_ahead(s.step_over_mass, row);
-    const Real step_over_mass = Real::load(&s.step_over_mass[slot_of(row, 0)]);
-    const Vector before = R::load(s.velocity[row].c);
+    R::fetch_ahead(s.velocity, pack);
+    R::fetch_ahead(s.step_over_mass, pack);
+    const Real step_over_mass = Real::load(&s.step_over_mass[slot_of(pack, 0)]);
+    const Vector before = R::load(s.velocity[pack].c);
     Vector after;
     for (int j = 0; j < Dim; ++j) {
       const Real magnitude = abs(force[j]) * m.lambda;
       Real damping = signed_like(magnitude, before[j]);
-      if (m.combined) damping -= signed_like(magnitude, force[j] - Real::load(s.force[row].c[j]));
+      if (m.combined) damping -= signed_like(magnitude, force[j] - Real::load(s.force[pack].c[j]));
       after[j] = before[j] + (force[j] - damping) * step_over_mass;
       if (m.viscous) after[j] = (m.kept * before[j] + (force[j] - damping) * step_over_mass) * m.over;
       if constexpr (kConstrained) {
@@ -145,9 +145,9 @@ struct Motion {
       }
     }
     if constexpr (kMeasure) sums.kinetic += dot(before, after) * m.half_dt / step_over_mass;
-    R::store(force, s.force[row].c);
-    R::store(after, s.velocity[row].c);
-    R::store(R::load(scratch.displacement[i].c) + after * m.dt, &s.displacement[slot_of(row, 0)]);
+    R::store(force, s.force[pack].c);
+    R::store(after, s.velocity[pack].c);
+    R::store(R::load(scratch.displacement[i].c) + after * m.dt, &s.displacement[slot_of(pack, 0)]);
   }
 };
 

@@ -14,17 +14,18 @@
 ///                      |                                          |
 ///                      +--------------- motion <------------------+            Eqs. (6)-(8)    motion.hpp
 ///
-/// mechanics/layout.hpp draws where everything stands and explains its words; rows.hpp loads, stores and
+/// mechanics/layout.hpp draws where everything stands and explains its words; packs.hpp loads, stores and
 /// gathers; base/lanes.hpp says what a lane is; the laws stand in laws/. sweep.hpp shares a step out to
-/// threads: it takes rows of faces and, soon after, the bundles whose faces are all done. Forces are gathered
-/// by the gridpoint that they act on, never scattered. This header is compiled once for each instruction set.
+/// threads: it takes packs of faces and, soon after, the bundles whose faces are all done. Forces are
+/// gathered by the gridpoint that they act on, never scattered. This header is compiled once for each
+/// instruction set.
 namespace pyroclast {
 
 /// \tparam Set  an instruction set of base/lanes.hpp
 template <int Dim, class Set>
 class Step {
  public:
-  using R = Rows<Dim, Set>;
+  using R = Packs<Dim, Set>;
   using C = ContactForces<Dim, Set>;
   using Z = Zones<Dim, Set>;
   using M = Motion<Dim, Set>;
@@ -53,7 +54,7 @@ class Step {
   static void sum_stiffness(State<Dim>& s, double* memory) {
     for_each_law(
         s, 0, static_cast<int>(s.layout.faces.size()),
-        [&](const RowFunctions<Dim>& law, int first, int last) { law.place_stiffness(s, first, last); });
+        [&](const PackFunctions<Dim>& law, int first, int last) { law.place_stiffness(s, first, last); });
     with_kinematics(s, [&](auto kinematics) { stiffness<kinematics()>(s, memory); });
   }
 
@@ -69,15 +70,15 @@ class Step {
     Z::template add_forces<kKinematics, kMeasure, kCreeps>(s, index, scratch, sums);
     if (const int c = s.constraints_of_bundle[index]; c >= 0)
       M::template hold_and_load<kMeasure>(s, bundle, s.constraints[c], scratch, sums);
-    M::template move_rows<kPass>(s, index, scratch, sums);
+    M::template move_packs<kPass>(s, index, scratch, sums);
     M::template keep<kPass>(s, index, sums);
   }
 
   // The parts of a bundle's step, open so that each can be timed alone.
 
   static void take_displacements(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch) {
-    for (int i = 0; i < bundle.rows; ++i)
-      R::store(R::load(&s.displacement[slot_of(bundle.first_row + i, 0)]), scratch.displacement[i].c);
+    for (int i = 0; i < bundle.packs; ++i)
+      R::store(R::load(&s.displacement[slot_of(bundle.first_pack + i, 0)]), scratch.displacement[i].c);
   }
 
   /// Begins the sums of forces of a bundle.
@@ -86,16 +87,16 @@ class Step {
                                        Sums& sums) {
     const bool weighs = s.weighs();
     const Vec<Dim> gravity = s.gravity;
-    for (int i = 0; i < bundle.rows; ++i) {
-      const int row = bundle.first_row + i;
-      R::fetch_ahead(s.force, row);
+    for (int i = 0; i < bundle.packs; ++i) {
+      const int pack = bundle.first_pack + i;
+      R::fetch_ahead(s.force, pack);
       Vector total{};
       if (weighs) {
-        const auto mass = R::Real::load(&s.real_mass[slot_of(row, 0)]);
+        const auto mass = R::Real::load(&s.real_mass[slot_of(pack, 0)]);
         for (int j = 0; j < Dim; ++j) total[j] = mass * gravity[j];
         if constexpr (kMeasure) sums.applied += norm(total);
       }
-      R::store(C::template add_forces<kKinematics, true>(s, row, total), scratch.sum[i].c);
+      R::store(C::template add_forces<kKinematics, true>(s, pack, total), scratch.sum[i].c);
     }
   }
 
@@ -105,12 +106,12 @@ class Step {
     for (int index = 0; index < static_cast<int>(s.layout.bundles.size()); ++index) {
       const Bundle& bundle = s.layout.bundles[index];
       const Scratch scratch = R::scratch_of(bundle, memory);
-      for (int i = 0; i < bundle.rows; ++i)
-        R::store(C::template add_forces<kKinematics, false>(s, bundle.first_row + i, Vector{}),
+      for (int i = 0; i < bundle.packs; ++i)
+        R::store(C::template add_forces<kKinematics, false>(s, bundle.first_pack + i, Vector{}),
                  scratch.sum[i].c);
       Z::add_stiffness(s, index, scratch);
-      for (int i = 0; i < bundle.rows; ++i)
-        R::store(R::load(scratch.sum[i].c), s.stiffness[bundle.first_row + i].c);
+      for (int i = 0; i < bundle.packs; ++i)
+        R::store(R::load(scratch.sum[i].c), s.stiffness[bundle.first_pack + i].c);
     }
   }
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pyroclast/mechanics/step/rows.hpp"
+#include "pyroclast/mechanics/step/packs.hpp"
 #include "pyroclast/model/zone_shape.hpp"
 
 /// Zones: displacements to strain to stress to forces, Eqs. (4) and (5).
@@ -8,7 +8,7 @@ namespace pyroclast {
 
 template <int Dim, class Set>
 struct Zones {
-  using R = Rows<Dim, Set>;
+  using R = Packs<Dim, Set>;
   using Real = typename R::Real;
   using Vector = typename R::Vector;
   using Scratch = typename R::Scratch;
@@ -20,26 +20,26 @@ struct Zones {
   template <Kinematics kKinematics, bool kMeasure, bool kCreeps>
   static void add_forces(const State<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
     const double thickness = s.thickness;
-    const TensorRow<Dim>* const creep_strain = s.creep_strain.data();
+    const TensorPack<Dim>* const creep_strain = s.creep_strain.data();
     add_over_zones(
-        s, index, scratch, [&](const Corners& x, const Corners& u, int zone_row, const auto& used) {
-          return forces<kKinematics, kMeasure, kCreeps>(thickness, x, u, properties(s, index, zone_row),
-                                                        kCreeps ? creep_strain + zone_row : nullptr, used,
+        s, index, scratch, [&](const Corners& x, const Corners& u, int zone_pack, const auto& used) {
+          return forces<kKinematics, kMeasure, kCreeps>(thickness, x, u, properties(s, index, zone_pack),
+                                                        kCreeps ? creep_strain + zone_pack : nullptr, used,
                                                         sums);
         });
   }
 
-  /// Adds the sums of |stiffness| over the rows of the zones' matrices, N/m.
+  /// Adds the sums of |stiffness| over the packs of the zones' matrices, N/m.
   static void add_stiffness(const State<Dim>& s, int index, const Scratch& scratch) {
-    add_over_zones(s, index, scratch, [&](const Corners& x, const Corners&, int zone_row, const auto&) {
-      return stiffness(s, x, properties(s, index, zone_row));
+    add_over_zones(s, index, scratch, [&](const Corners& x, const Corners&, int zone_pack, const auto&) {
+      return stiffness(s, x, properties(s, index, zone_pack));
     });
   }
 
  private:
-  static ZonePropertiesOf<Real> properties(const State<Dim>& s, int index, int zone_row) {
-    const ZonePropertyRow& row = s.zone_properties[s.by_bundle ? index : zone_row];
-    return {Real::load(row.lambda), Real::load(row.mu), Real::load(row.thermal_strain)};
+  static ZonePropertiesOf<Real> properties(const State<Dim>& s, int index, int zone_pack) {
+    const ZonePropertyPack& pack = s.zone_properties[s.by_bundle ? index : zone_pack];
+    return {Real::load(pack.lambda), Real::load(pack.mu), Real::load(pack.thermal_strain)};
   }
 
   /// Forces of eight zones on their gridpoints.
@@ -47,8 +47,8 @@ struct Zones {
   /// \param used          lanes that are not idle
   template <Kinematics kKinematics, bool kMeasure, bool kCreeps>
   static Corners forces(double thickness, const Corners& x, const Corners& u, const ZonePropertiesOf<Real>& p,
-                        [[maybe_unused]] const TensorRow<Dim>* creep_strain, const typename Real::Truth& used,
-                        Sums& sums) {
+                        [[maybe_unused]] const TensorPack<Dim>* creep_strain,
+                        const typename Real::Truth& used, Sums& sums) {
     // Shape gradients times the determinant; the volume is a constant share of the determinant, which leaves
     // the division by it out of the way of the forces.
     std::array<Vector, Dim> vectors;
@@ -81,7 +81,7 @@ struct Zones {
   static Corners stiffness(const State<Dim>& s, const Corners& x, const ZonePropertiesOf<Real>& p) {
     std::array<Vector, Dim> vectors;
     const Real determinant = shape_vectors(x, vectors);
-    Corners g, row;
+    Corners g, pack;
     for (int n = 0; n < Dim; ++n) {
       g[n] = vectors[n];
       g[Dim] = n == 0 ? -vectors[n] : g[Dim] - vectors[n];
@@ -96,14 +96,14 @@ struct Zones {
             if (i == j) k += p.mu * dot(g[m], g[n]);
             sum += abs(k);
           }
-        row[m][i] = sum * over;
+        pack[m][i] = sum * over;
       }
-    return row;
+    return pack;
   }
 
   // Forces are added zone by zone in every kind of bundle, so that none depends on how blocks are bundled.
 
-  /// Adds what `zone(x, u, zone_row, used)` gives for the corners of zones, for all of a bundle.
+  /// Adds what `zone(x, u, zone_pack, used)` gives for the corners of zones, for all of a bundle.
   template <class Zone>
   static void add_over_zones(const State<Dim>& s, int index, const Scratch& scratch, Zone zone) {
     const Bundle& bundle = s.layout.bundles[index];
@@ -118,19 +118,19 @@ struct Zones {
   static void add_over_fan(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch, Zone zone) {
     Corners x, u;
     const auto take = [&](int n, int gridpoint) {
-      x[n] = R::load(s.position[bundle.first_row + gridpoint].c);
+      x[n] = R::load(s.position[bundle.first_pack + gridpoint].c);
       u[n] = R::load(scratch.displacement[gridpoint].c);
     };
     const int zones = bundle.zones;
     take(0, 0);
     take(2, zones);
-    R::fetch_ahead(s.position, bundle.first_row + zones);
+    R::fetch_ahead(s.position, bundle.first_pack + zones);
     Vector total = R::load(scratch.sum[0].c), middle = R::load(scratch.sum[zones].c);
     for (int z = 0; z < zones; ++z) {
       const int next = z + 1 < zones ? z + 1 : 0;
-      R::fetch_ahead(s.position, bundle.first_row + z);
+      R::fetch_ahead(s.position, bundle.first_pack + z);
       take(1, next);
-      const Corners more = zone(x, u, bundle.first_zone_row + z, Real::Truth::from_bits(0xFF));
+      const Corners more = zone(x, u, bundle.first_zone_pack + z, Real::Truth::from_bits(0xFF));
       R::store(total + more[0], scratch.sum[z].c);
       total = R::load(scratch.sum[next].c) + more[1];
       middle += more[2];
@@ -145,14 +145,14 @@ struct Zones {
   static void add_over_alike(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch, Zone zone) {
     const auto* const zones = &s.layout.shape_zones[bundle.first_corners];
     for (int z = 0; z < bundle.zones; ++z) {
-      if (z < bundle.rows) R::fetch_ahead(s.position, bundle.first_row + z);
+      if (z < bundle.packs) R::fetch_ahead(s.position, bundle.first_pack + z);
       const auto& corner = zones[z];
       Corners x, u;
       for (int n = 0; n <= Dim; ++n) {
-        x[n] = R::load(s.position[bundle.first_row + corner[n]].c);
+        x[n] = R::load(s.position[bundle.first_pack + corner[n]].c);
         u[n] = R::load(scratch.displacement[corner[n]].c);
       }
-      const Corners more = zone(x, u, bundle.first_zone_row + z, Real::Truth::from_bits(0xFF));
+      const Corners more = zone(x, u, bundle.first_zone_pack + z, Real::Truth::from_bits(0xFF));
       for (int n = 0; n <= Dim; ++n) {
         auto& total = scratch.sum[corner[n]].c;
         R::store(R::load(total) + more[n], total);
@@ -162,7 +162,7 @@ struct Zones {
 
   template <class Zone>
   static void add_over_spread(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch, Zone zone) {
-    for (int z = 0; z < bundle.zone_rows(); ++z) {
+    for (int z = 0; z < bundle.zone_packs(); ++z) {
       const int used = bundle.zones - kLanes * z < kLanes ? bundle.zones - kLanes * z : kLanes;
       const auto& corner = s.layout.spread_zones[bundle.first_corners + z].offset;
       Corners x, u;
@@ -170,13 +170,13 @@ struct Zones {
         x[n] = R::gather(s.gathered_position, corner[n]);
         u[n] = R::gather(s.displacement, corner[n]);
       }
-      const Corners more = zone(x, u, bundle.first_zone_row + z, Real::Truth::from_bits((1U << used) - 1U));
-      // one lane after the other: zones of a row may share gridpoints
+      const Corners more = zone(x, u, bundle.first_zone_pack + z, Real::Truth::from_bits((1U << used) - 1U));
+      // one lane after the other: zones of a pack may share gridpoints
       alignas(64) double c[Dim + 1][Dim][kLanes];
       for (int n = 0; n <= Dim; ++n) R::store(more[n], c[n]);
       for (int lane = 0; lane < used; ++lane)
         for (int n = 0; n <= Dim; ++n) {
-          const int slot = corner[n][lane] / offset_of<Dim>(1) - slot_of(bundle.first_row, 0);
+          const int slot = corner[n][lane] / offset_of<Dim>(1) - slot_of(bundle.first_pack, 0);
           for (int i = 0; i < Dim; ++i) scratch.sum[slot / kLanes].c[i][slot % kLanes] += c[n][i][lane];
         }
     }

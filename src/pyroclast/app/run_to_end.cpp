@@ -1,4 +1,4 @@
-#include "pyroclast/app/drive.hpp"
+#include "pyroclast/app/run_to_end.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -93,21 +93,21 @@ int exit_code(const Summary& summary) {
 
 std::string describe_start(Session& session) {
   const Simulation& simulation = session.simulation();
-  const Loaded& loaded = session.loaded();
-  std::string text = describe_warnings(loaded.warnings) + describe_unused(loaded.setup) +
+  const Opened& opened = session.opened();
+  std::string text = describe_warnings(opened.warnings) + describe_unused(opened.setup) +
                      describe_own_laws() + describe(simulation.specimen());
   const Model<2>& model = simulation.model();
   text += fmt::format("model           {} zones, {} contacts\n", model.zone_count(), model.contact_count());
   if (const auto* conduction = simulation.field().conduction())
-    text += describe(*conduction, model, loaded.setup.temperatures);
+    text += describe(*conduction, model, opened.setup.temperatures);
   if (simulation.moves())
     text += fmt::format("mechanics       time step {:.3g} s, moving mass {:.3g} x the real one\n",
                         simulation.mechanics().time_step(), simulation.mechanics().mass_ratio());
-  return text + fmt::format("processor       {}, {} instructions\n", describe(*loaded.team),
-                            name(loaded.instructions));
+  return text + fmt::format("processor       {}, {} instructions\n", describe(*opened.team),
+                            name(opened.instructions));
 }
 
-int drive(Session& session, RunLog& log, const RunOptions& options) {
+int run_to_end(Session& session, RunLog& log, const RunOptions& options) {
   const Interrupt interrupt;
   const Run& run = session.run();
   const std::filesystem::path& folder = session.folder();
@@ -140,11 +140,12 @@ int drive(Session& session, RunLog& log, const RunOptions& options) {
 
 int run(const RunOptions& options) {
   const std::filesystem::path folder = output_folder(options);
-  const auto session = Session::begin(load(options), RunOutput{folder, options.overwrite, options.command});
+  const auto session =
+      Session::begin(open_deck(options), RunOutput{folder, options.overwrite, options.command});
   print_kept(folder, session->foreign());
   RunLog log(folder / "run.log", options.speech);
   log.say(describe_start(*session));
-  return drive(*session, log, options);
+  return run_to_end(*session, log, options);
 }
 
 }  // namespace pyroclast::app

@@ -1,4 +1,4 @@
-#include "pyroclast/deck/record.hpp"
+#include "pyroclast/deck/reading.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -38,10 +38,23 @@ bool has_unquoted_quantity(std::string_view line) {
   return !line.empty() && std::string_view("#,]\"'0123456789_=").find(line[0]) == std::string_view::npos;
 }
 
-toml::table parse_toml(const SourceText& source, const std::string& name) {
+/// A line of one of the files that a deck's text comes from.
+struct FileLine {
+  const std::string& file;
+  int line;
+};
+
+FileLine in_file(const DeckSource& from, const SourceText& source, int line) {
+  const int own = source.line_count() - from.appended_lines;
+  if (from.appended_name.empty() || line <= own) return {from.name, line};
+  return {from.appended_name, line - own};
+}
+
+toml::table parse_toml(const SourceText& source, const DeckSource& from) {
   const auto fail = [&](SourcePosition at, std::string message, std::string hint) {
-    throw DeckError({Diagnostic{.file = name,
-                                .line = at.line,
+    const auto [file, line] = in_file(from, source, at.line);
+    throw DeckError({Diagnostic{.file = file,
+                                .line = line,
                                 .column = at.column,
                                 .message = std::move(message),
                                 .hint = std::move(hint)}});
@@ -92,97 +105,97 @@ std::string in_brackets(const std::string& path) {
 
 }  // namespace
 
-TableRecord::Asked& TableRecord::ask(std::string_view key) {
+TableReading::Asked& TableReading::ask(std::string_view key) {
   const auto found = std::find_if(asked.begin(), asked.end(), [&](const Asked& a) { return a.key == key; });
   return found != asked.end() ? *found : asked.emplace_back(Asked{std::string(key)});
 }
 
-const toml::node* TableRecord::look(std::string_view key) {
+const toml::node* TableReading::look(std::string_view key) {
   ask(key);
   return table.get(key);
 }
 
-const toml::node* TableRecord::read(std::string_view key) {
+const toml::node* TableReading::read(std::string_view key) {
   ask(key).read = true;
   return table.get(key);
 }
 
-std::vector<std::string> TableRecord::known_keys() const {
+std::vector<std::string> TableReading::known_keys() const {
   std::vector<std::string> keys;
   for (const Asked& a : asked) keys.push_back(a.key);
   return keys;
 }
 
-std::string TableRecord::path_of(std::string_view key) const {
+std::string TableReading::path_of(std::string_view key) const {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-DeckRecord::DeckRecord(std::string text, std::string name, std::vector<std::string> changed)
-    : name_(std::move(name)),
+DeckReading::DeckReading(std::string text, DeckSource from, std::vector<std::string> changed)
+    : from_(std::move(from)),
       changed_(std::move(changed)),
       source_(std::move(text)),
-      root_(parse_toml(source_, name_)) {}
+      root_(parse_toml(source_, from_)) {}
 
-DeckRecord::DeckRecord(SurveyRun& survey) : name_("survey"), source_(""), survey_(&survey) {}
+DeckReading::DeckReading(SurveyRun& survey) : from_{"survey"}, source_(""), survey_(&survey) {}
 
-TableRecord& DeckRecord::root() {
+TableReading& DeckReading::root() {
   return survey_ ? survey_->table("", false, "") : table(root_, "");
 }
 
-TableRecord& DeckRecord::table(const toml::table& table, const std::string& path) {
-  auto& record = tables_[&table];
-  if (!record) {
-    record.reset(new TableRecord{.table = table, .path = path, .asked = {}});
-    tables_as_read_.push_back(record.get());
+TableReading& DeckReading::table(const toml::table& table, const std::string& path) {
+  auto& reading = tables_[&table];
+  if (!reading) {
+    reading.reset(new TableReading{.table = table, .path = path, .asked = {}});
+    tables_as_read_.push_back(reading.get());
   }
-  return *record;
+  return *reading;
 }
 
-void DeckRecord::report(const std::string& path, const toml::node& node, std::string message,
-                        std::string hint) {
+void DeckReading::report(const std::string& path, const toml::node& node, std::string message,
+                         std::string hint) {
   if (survey_) return;
   Diagnostic diagnostic = at_value(path, node, std::move(message));
   diagnostic.hint = std::move(hint);
   diagnostics_.push_back(std::move(diagnostic));
 }
 
-void DeckRecord::warn(const std::string& path, const toml::node& node, std::string message) {
+void DeckReading::warn(const std::string& path, const toml::node& node, std::string message) {
   if (!survey_) warnings_.push_back(at_value(path, node, std::move(message)));
 }
 
-void DeckRecord::warn(const TableRecord& table, std::string_view key, std::string message) {
+void DeckReading::warn(const TableReading& table, std::string_view key, std::string message) {
   const toml::node* node = table.table.get(key);
   warn(table.path_of(key), node ? *node : table.table, std::move(message));
 }
 
-void DeckRecord::report(const TableRecord& table, const std::string& path, std::string message) {
+void DeckReading::report(const TableReading& table, const std::string& path, std::string message) {
   if (survey_) return;
   Diagnostic diagnostic = locate(path, table.table.source());
   diagnostic.message = std::move(message);
   diagnostics_.push_back(std::move(diagnostic));
 }
 
-void DeckRecord::report_missing(const TableRecord& table, std::string_view key, const std::string& needed) {
+void DeckReading::report_missing(const TableReading& table, std::string_view key, const std::string& needed) {
   if (survey_) return;
   report(table, table.path_of(key), "missing; " + needed);
   diagnostics_.back().is_missing = true;
 }
 
-std::string DeckRecord::with_value(std::string_view path, const std::string& value) const {
+std::string DeckReading::with_value(std::string_view path, const std::string& value) const {
   const std::string written = as_toml(value);
   const auto node = root_.at_path(path);
   if (!node) return with_new_key(path, written);
   const auto* table = node.as_table();
   if (node.is_array_of_tables() || (table && !table->is_inline()))
     throw Error(
-        fmt::format("--set {}={}: {} is a table of {}; name one of its keys", path, value, path, name_));
+        fmt::format("--set {}={}: {} is a table of {}; name one of its keys", path, value, path, name()));
   const auto& region = node.node()->source();
   return source_.replaced(position(region.begin), position(region.end), written);
 }
 
 /// First in the nearest table that there is, within its braces or below its header; where that has no header
 /// of its own, above all.
-std::string DeckRecord::with_new_key(std::string_view path, const std::string& value) const {
+std::string DeckReading::with_new_key(std::string_view path, const std::string& value) const {
   const auto fits = [&](const std::string& text) {
     const auto table = try_toml(text);
     return table && table->at_path(path);
@@ -206,17 +219,17 @@ std::string DeckRecord::with_new_key(std::string_view path, const std::string& v
       if (fits(text)) return text;
   }
   if (const auto text = fmt::format("{} = {}\n{}", path, value, source_.text()); fits(text)) return text;
-  throw Error(fmt::format("--set {}={}: there is no place for this key in {}", path, value, name_));
+  throw Error(fmt::format("--set {}={}: there is no place for this key in {}", path, value, name()));
 }
 
-bool DeckRecord::is_clean(std::string_view path) const {
+bool DeckReading::is_clean(std::string_view path) const {
   return !survey_ && std::none_of(diagnostics_.begin(), diagnostics_.end(),
                                   [&](const Diagnostic& d) { return is_at_or_below(d.key, path); });
 }
 
-std::vector<Diagnostic> DeckRecord::diagnostics() const {
+std::vector<Diagnostic> DeckReading::diagnostics() const {
   std::vector<Diagnostic> result = diagnostics_;
-  for (const TableRecord* table : tables_as_read_) append_unread(*table, result);
+  for (const TableReading* table : tables_as_read_) append_unread(*table, result);
   std::set<std::string> meant;
   for (const Diagnostic& d : result)
     if (!d.meant.empty()) meant.insert(d.meant);
@@ -227,11 +240,11 @@ std::vector<Diagnostic> DeckRecord::diagnostics() const {
   return result;
 }
 
-void DeckRecord::append_unread(const TableRecord& table, std::vector<Diagnostic>& result) const {
+void DeckReading::append_unread(const TableReading& table, std::vector<Diagnostic>& result) const {
   for (auto&& [key, node] : table.table) {
     const std::string_view name = key.str();
     const bool read = std::any_of(table.asked.begin(), table.asked.end(),
-                                  [&](const TableRecord::Asked& a) { return a.read && a.key == name; });
+                                  [&](const TableReading::Asked& a) { return a.read && a.key == name; });
     if (read) continue;
     Diagnostic diagnostic = not_read(table, key, node);
     if (table.undecided && diagnostic.hint.empty()) continue;
@@ -239,8 +252,8 @@ void DeckRecord::append_unread(const TableRecord& table, std::vector<Diagnostic>
   }
 }
 
-Diagnostic DeckRecord::not_read(const TableRecord& table, const toml::key& key,
-                                const toml::node& node) const {
+Diagnostic DeckReading::not_read(const TableReading& table, const toml::key& key,
+                                 const toml::node& node) const {
   const std::string name(key.str());
   Diagnostic diagnostic = locate(table.path_of(name), key.source());
   diagnostic.value = as_written(node);
@@ -262,8 +275,8 @@ Diagnostic DeckRecord::not_read(const TableRecord& table, const toml::key& key,
   return diagnostic;
 }
 
-std::string DeckRecord::misplaced_hint(const TableRecord& table, std::string_view key) const {
-  for (const TableRecord* other : tables_as_read_) {
+std::string DeckReading::misplaced_hint(const TableReading& table, std::string_view key) const {
+  for (const TableReading* other : tables_as_read_) {
     if (other == &table) continue;
     const std::vector<std::string> known = other->known_keys();
     if (std::find(known.begin(), known.end(), key) == known.end()) continue;
@@ -272,28 +285,30 @@ std::string DeckRecord::misplaced_hint(const TableRecord& table, std::string_vie
   return {};
 }
 
-Diagnostic DeckRecord::at_value(const std::string& path, const toml::node& node, std::string message) const {
+Diagnostic DeckReading::at_value(const std::string& path, const toml::node& node, std::string message) const {
   Diagnostic diagnostic = locate(path, node.source());
   diagnostic.value = as_written(node);
   diagnostic.message = std::move(message);
   return diagnostic;
 }
 
-Diagnostic DeckRecord::locate(const std::string& path, const toml::source_region& region) const {
+Diagnostic DeckReading::locate(const std::string& path, const toml::source_region& region) const {
   const SourcePosition at = position(region.begin);
-  return {.file = is_changed(path) ? "--set" : name_,
-          .line = at.line,
+  const auto [file, line] = in_file(from_, source_, at.line);
+  return {.file = is_changed(path) ? "--set" : file,
+          .line = line,
           .column = at.column,
           .is_changed = is_changed(path),
           .key = path};
 }
 
-std::string DeckRecord::where(const TableRecord& table, std::string_view key, const toml::node& node) const {
+std::string DeckReading::where(const TableReading& table, std::string_view key,
+                               const toml::node& node) const {
   const Diagnostic place = locate(table.path_of(key), node.source());
   return place.is_changed ? place.file : fmt::format("{}:{}", place.file, place.line);
 }
 
-std::string DeckRecord::as_written(const toml::node& node) const {
+std::string DeckReading::as_written(const toml::node& node) const {
   if (is_table_like(node)) return {};
   return source_.excerpt(position(node.source().begin), position(node.source().end));
 }

@@ -5,8 +5,8 @@
 
 namespace pyroclast {
 
-/// The step's own way of a law through lanes, for the kit: a row of faces, in every instruction set that this
-/// build holds and this processor has.
+/// The step's own way of a law through lanes, for the kit: a pack of faces, in every instruction set that
+/// this build holds and this processor has.
 std::vector<KitLanes> lanes_of_step(const LawTable& law);
 
 }  // namespace pyroclast

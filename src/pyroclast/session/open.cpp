@@ -1,4 +1,4 @@
-#include "pyroclast/session/load.hpp"
+#include "pyroclast/session/open.hpp"
 
 #include <utility>
 
@@ -6,7 +6,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/processors.hpp"
-#include "pyroclast/plugin/load.hpp"
+#include "pyroclast/plugin/open.hpp"
 
 namespace pyroclast {
 
@@ -20,7 +20,7 @@ LawSources laws_for(InstructionSet set, LawSources laws) {
 
 }  // namespace
 
-Loaded::Loaded(Deck read, std::filesystem::path folder_of_deck, RunChoices chosen)
+Opened::Opened(Deck read, std::filesystem::path folder_of_deck, RunChoices chosen)
     : choices(std::move(chosen)),
       folder(std::move(folder_of_deck)),
       deck(std::move(read)),
@@ -44,7 +44,7 @@ Loaded::Loaded(Deck read, std::filesystem::path folder_of_deck, RunChoices chose
 
 std::vector<OwnLaw> own_laws() {
   std::vector<OwnLaw> laws;
-  for (const LoadedLaw* law : loaded_laws())
+  for (const OpenedLaw* law : opened_laws())
     laws.push_back({law->table.name, law->shared_object, law->header.file, law->compiler});
   return laws;
 }

@@ -13,7 +13,7 @@
 
 namespace pyroclast {
 
-struct Loaded;
+struct Opened;
 
 /// What a user says beside a deck.
 struct RunChoices {
@@ -25,14 +25,14 @@ struct RunChoices {
   LawSources laws = LawSources::of_environment();
   bool needs_code = true;  ///< else what the deck names and may not run is in its setup
   /// Called before the specimen is made, which may take long.
-  std::function<void(const Loaded&)> before_making = [](const Loaded&) {};
+  std::function<void(const Opened&)> before_making = [](const Opened&) {};
 };
 
 /// A deck, and what it says with the choices in place of it, and the threads of its run.
-struct Loaded {
+struct Opened {
   /// Throws DeckError, or Error for a choice that cannot be.
   /// \param folder  of the deck
-  Loaded(Deck deck, std::filesystem::path folder, RunChoices choices);
+  Opened(Deck deck, std::filesystem::path folder, RunChoices choices);
 
   RunChoices choices;
   std::filesystem::path folder;
@@ -43,7 +43,7 @@ struct Loaded {
   std::vector<std::string> warnings;  ///< of deck and choices, a line each
 };
 
-/// The contact laws that are not part of the program and that this process loaded.
+/// The contact laws that are not part of the program and that this process opened.
 std::vector<OwnLaw> own_laws();
 
 }  // namespace pyroclast

@@ -3,13 +3,13 @@
 #include "pyroclast/app/commands.hpp"
 #include "pyroclast/results/inputs.hpp"
 #include "pyroclast/results/run_folder.hpp"
-#include "pyroclast/session/load.hpp"
+#include "pyroclast/session/open.hpp"
 
 namespace pyroclast::app {
 
 /// The deck of the options, and what it says, with what the command line says in place and the threads set.
 /// \param needs_code  else what the deck names and may not run is in its setup
-Loaded load(const RunOptions& options, bool needs_code = true);
+Opened open_deck(const RunOptions& options, bool needs_code = true);
 /// Of a run; of many blocks it says first that making them takes a while.
 RunChoices choices_of(const RunOptions& options);
 

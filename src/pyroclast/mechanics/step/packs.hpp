@@ -2,7 +2,7 @@
 
 #include "pyroclast/mechanics/state.hpp"
 
-/// Rows of eight: how lanes are loaded, stored and gathered, and how memory is asked for ahead.
+/// Packs of eight: how lanes are loaded, stored and gathered, and how memory is asked for ahead.
 namespace pyroclast {
 
 /// Calls `f` with the body's kinematics as a constant.
@@ -23,7 +23,7 @@ void with_creep(const State<Dim>& s, F f) {
 
 /// \tparam Set  an instruction set of base/lanes.hpp
 template <int Dim, class Set>
-struct Rows {
+struct Packs {
   using Real = Lanes<Set>;
   using Vector = Vec<Dim, Real>;
 
@@ -94,81 +94,81 @@ struct Rows {
   // Processors foresee streams badly between so much arithmetic; lines come best a few at a time, all through
   // the step.
 
-  static constexpr int kRowsAhead = 16;     ///< of gridpoints
-  static constexpr int kFaceRowsAhead = 8;  ///< about as far
-  /// Of faces between chunks, whose gridpoints stand anywhere: they are asked for one by one, once the row of
-  /// points itself has come.
-  static constexpr int kScatteredRowsAhead = 4;
+  static constexpr int kPacksAhead = 16;     ///< of gridpoints
+  static constexpr int kFacePacksAhead = 8;  ///< about as far
+  /// Of faces between chunks, whose gridpoints stand anywhere: they are asked for one by one, once the pack
+  /// of points itself has come.
+  static constexpr int kScatteredPacksAhead = 4;
 
   template <int kLines>
   static void fetch(const void* begin) {
     for (int i = 0; i < kLines; ++i) __builtin_prefetch(static_cast<const char*>(begin) + 64 * i);
   }
-  template <class Row>
-  static void fetch(const Row& row) {
-    fetch<(sizeof(Row) + 63) / 64>(&row);
+  template <class Pack>
+  static void fetch(const Pack& pack) {
+    fetch<(sizeof(Pack) + 63) / 64>(&pack);
   }
-  static void fetch_ahead(ConstView<VectorRow<Dim>> vectors, int row) {
-    const auto ahead = static_cast<std::size_t>(row) + kRowsAhead;
+  static void fetch_ahead(ConstView<VectorPack<Dim>> vectors, int pack) {
+    const auto ahead = static_cast<std::size_t>(pack) + kPacksAhead;
     if (ahead < vectors.size()) fetch(vectors[ahead]);
   }
-  static void fetch_ahead(ConstView<double> numbers, int row) {
-    const auto ahead = static_cast<std::size_t>(slot_of(row + kRowsAhead, 0));
+  static void fetch_ahead(ConstView<double> numbers, int pack) {
+    const auto ahead = static_cast<std::size_t>(slot_of(pack + kPacksAhead, 0));
     if (ahead < numbers.size()) fetch<1>(&numbers[ahead]);
   }
-  static void fetch_scattered(const State<Dim>& s, int row) {
-    for (int point = s.layout.first_point_of(row); point < s.layout.first_point_of(row + 1); ++point)
+  static void fetch_scattered(const State<Dim>& s, int pack) {
+    for (int point = s.layout.first_point_of(pack); point < s.layout.first_point_of(pack + 1); ++point)
       for (int lane = 0; lane < kLanes; ++lane) {
-        const PointRow& points = s.layout.points[point];
+        const PointPack& points = s.layout.points[point];
         __builtin_prefetch(&s.displacement[points.a[lane] / offset_of<Dim>(1)]);
         __builtin_prefetch(&s.displacement[points.b[lane] / offset_of<Dim>(1)]);
       }
   }
   /// Of any law.
-  [[gnu::noinline]] static void fetch_histories(const State<Dim>& s, int row) {
-    for (int i = s.first_history[row]; i < s.first_history[row + 1]; ++i) fetch(s.history[i]);
-    const int first = s.layout.first_point_of(row), points = s.layout.first_point_of(row + 1) - first;
-    const int losses = (s.first_loss[row + 1] - s.first_loss[row]) / points;
+  [[gnu::noinline]] static void fetch_internals(const State<Dim>& s, int pack) {
+    for (int i = s.first_internal[pack]; i < s.first_internal[pack + 1]; ++i) fetch(s.internals[i]);
+    const int first = s.layout.first_point_of(pack), points = s.layout.first_point_of(pack + 1) - first;
+    const int losses = (s.first_loss[pack + 1] - s.first_loss[pack]) / points;
     for (int point = 0; point < points; ++point)
       for (int i = 0; i < losses && s.losing[first + point]; ++i)
-        fetch(s.loss[s.first_loss[row] + point * losses + i]);
+        fetch(s.loss[s.first_loss[pack] + point * losses + i]);
   }
-  /// What a row of faces needs, and the displacements that none before it reads.
-  /// \tparam kHistory, kLosses  lines of a point of the row in hand; in runs of one law those ahead have as
-  /// many
-  template <int kHistory, int kLosses>
-  static void fetch_faces_ahead(const State<Dim>& s, int row) {
+  /// What a pack of faces needs, and the displacements that none before it reads.
+  /// \tparam kInternals, kLosses  lines of a point of the pack in hand; in runs of one law those ahead have
+  /// as many
+  template <int kInternals, int kLosses>
+  static void fetch_faces_ahead(const State<Dim>& s, int pack) {
     const auto& layout = s.layout;
-    if (const int next = row + kScatteredRowsAhead;
+    if (const int next = pack + kScatteredPacksAhead;
         next < static_cast<int>(layout.faces.size()) && layout.between_chunks[next])
       fetch_scattered(s, next);
-    const int ahead = row + kFaceRowsAhead;
+    const int ahead = pack + kFacePacksAhead;
     if (ahead >= static_cast<int>(layout.faces.size())) return;
     fetch(layout.faces[ahead]);
-    const bool same = s.law_of_faces[ahead] == s.law_of_faces[row];
+    const bool same = s.law_of_faces[ahead] == s.law_of_faces[pack];
     const int first = layout.first_point_of(ahead), last = layout.first_point_of(ahead + 1);
     for (int point = first; point < last; ++point) {
       fetch(layout.points[point]);
       if (!same) continue;  // below
-      if constexpr (kHistory > 0)
-        fetch<kHistory>(&s.history[s.first_history[ahead] + (point - first) * kHistory]);
+      if constexpr (kInternals > 0)
+        fetch<kInternals>(&s.internals[s.first_internal[ahead] + (point - first) * kInternals]);
       if constexpr (kLosses > 0)
         if (s.losing[point]) fetch<kLosses>(&s.loss[s.first_loss[ahead] + (point - first) * kLosses]);
     }
-    if (!same) fetch_histories(s, ahead);
-    for (int r = layout.rows_reached[ahead]; r < layout.rows_reached[ahead + 1]; ++r)
+    if (!same) fetch_internals(s, ahead);
+    for (int r = layout.packs_reached[ahead]; r < layout.packs_reached[ahead + 1]; ++r)
       fetch<Dim>(&s.displacement[slot_of(r, 0)]);
   }
 
-  /// Displacements and sums of forces of a bundle while it is in hand, a row for each of its rows.
+  /// Displacements and sums of forces of a bundle while it is in hand, a pack for each of its packs.
   struct Scratch {
-    VectorRow<Dim>* displacement;
-    VectorRow<Dim>* sum;
+    VectorPack<Dim>* displacement;
+    VectorPack<Dim>* sum;
   };
   /// \param memory  as of StepPasses::move_bundles
   static Scratch scratch_of(const Bundle& bundle, double* memory) {
-    auto* rows = reinterpret_cast<VectorRow<Dim>*>(memory);
-    return {rows, rows + bundle.rows};
+    auto* packs = reinterpret_cast<VectorPack<Dim>*>(memory);
+    return {packs, packs + bundle.packs};
   }
 
   /// What a step of a bundle books, still lane by lane; see BundleSums.

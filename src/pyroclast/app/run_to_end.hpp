@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pyroclast/app/load.hpp"
+#include "pyroclast/app/open.hpp"
 #include "pyroclast/app/run_log.hpp"
 #include "pyroclast/session/session.hpp"
 
@@ -10,6 +10,6 @@ namespace pyroclast::app {
 std::string describe_start(Session& session);
 
 /// Takes a run to its end, or to where the user stops it, and writes what comes. Returns the exit code.
-int drive(Session& session, RunLog& log, const RunOptions& options);
+int run_to_end(Session& session, RunLog& log, const RunOptions& options);
 
 }  // namespace pyroclast::app

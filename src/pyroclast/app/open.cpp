@@ -1,4 +1,4 @@
-#include "pyroclast/app/load.hpp"
+#include "pyroclast/app/open.hpp"
 
 #include <cmath>
 
@@ -6,7 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/app/say_aside.hpp"
-#include "pyroclast/plugin/load.hpp"
+#include "pyroclast/plugin/open.hpp"
 #include "pyroclast/specimen/clusters.hpp"
 #include "pyroclast/units/units.hpp"
 
@@ -20,10 +20,10 @@ constexpr int kManyBlocks = 20'000;
 
 }  // namespace
 
-Loaded load(const RunOptions& options, bool needs_code) {
+Opened open_deck(const RunOptions& options, bool needs_code) {
   RunChoices choices = choices_of(options);
   choices.needs_code = needs_code;
-  return {Deck::load(options.deck, options.changes), options.deck.parent_path(), std::move(choices)};
+  return {Deck::open(options.deck, options.changes), options.deck.parent_path(), std::move(choices)};
 }
 
 RunChoices choices_of(const RunOptions& options) {
@@ -33,8 +33,8 @@ RunChoices choices_of(const RunOptions& options) {
   choices.instructions = options.instructions;
   choices.checkpoint = options.checkpoint;
   choices.laws = sources_of(options.laws);
-  choices.before_making = [speech = options.speech](const Loaded& loaded) {
-    const int blocks = loaded.setup.specimen.blocks.count;
+  choices.before_making = [speech = options.speech](const Opened& opened) {
+    const int blocks = opened.setup.specimen.blocks.count;
     if (blocks < kManyBlocks || speech == Speech::quiet) return;
     fmt::print("making the specimen of {} blocks ...\n", blocks);
     std::fflush(stdout);
@@ -71,7 +71,7 @@ LawSources sources_of(const OwnLawOptions& options) {
 
 std::string describe_own_laws() {
   std::string text;
-  for (const LoadedLaw* law : loaded_laws())
+  for (const OpenedLaw* law : opened_laws())
     text +=
         fmt::format("law             \"{}\" is code that is not part of pyroclast: {}{}, compiled by {}\n",
                     law->table.name, law->header.file.empty() ? "" : law->header.file.string() + " in ",
@@ -114,9 +114,12 @@ std::string describe(const Team& team) {
 }
 
 std::string describe_unused(const Setup& setup) {
-  if (setup.unused_sets.empty()) return {};
-  return fmt::format("{:<16}{}: no table names {}, so for Python and ParaView alone\n", "sets",
-                     fmt::join(setup.unused_sets, ", "), setup.unused_sets.size() == 1 ? "it" : "them");
+  std::string text;
+  if (!setup.unused_sets.empty())
+    text = fmt::format("{:<16}{}: no table names {}, so for Python and ParaView alone\n", "sets",
+                       fmt::join(setup.unused_sets, ", "), setup.unused_sets.size() == 1 ? "it" : "them");
+  for (const std::string& line : setup.unused_properties) text += fmt::format("{:<16}{}\n", "unused", line);
+  return text;
 }
 
 std::string describe_warnings(const std::vector<std::string>& warnings) {

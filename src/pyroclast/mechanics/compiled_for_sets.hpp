@@ -6,8 +6,8 @@
 #include "pyroclast/mechanics/instruction_set.hpp"
 #include "pyroclast/mechanics/state.hpp"
 
-/// The rows of a law: what the step is compiled of it, for each instruction set. A program holds those of the
-/// laws that it names; others come from shared objects (plugin/plugin.hpp).
+/// The packs of a law: what the step is compiled of it, for each instruction set. A program holds those of
+/// the laws that it names; others come from shared objects (plugin/plugin.hpp).
 namespace pyroclast {
 
 /// Arithmetic that shows how a compiler was told to treat numbers: the arguments are not known to it.
@@ -31,12 +31,12 @@ struct Probes {
 
 /// A law for one instruction set. Where it is not made for a dimension the functions are null.
 struct CompiledLaw {
-  ByDimension<RowFunctions> rows;
+  ByDimension<PackFunctions> packs;
   ArithmeticProbe probe;
 };
 
 /// By InstructionSet; null where it was not compiled for one.
-struct LawRows {
+struct CompiledForSets {
   std::array<const CompiledLaw*, kInstructionSets> of_set{};
 };
 
@@ -46,12 +46,12 @@ struct Compiled {
   static const CompiledLaw law;
 };
 
-/// Whether the rows of a law for that set are part of the program or of the law's shared object.
+/// Whether the packs of a law for that set are part of the program or of the law's shared object.
 bool is_compiled(const LawTable& law, InstructionSet set);
 
-/// Throws Error when the law is not made for that dimension, or its rows for that set are not part of the
+/// Throws Error when the law is not made for that dimension, or its packs for that set are not part of the
 /// program.
 template <int Dim>
-RowFunctions<Dim> rows_of(const LawTable& law, InstructionSet set);
+PackFunctions<Dim> functions_of(const LawTable& law, InstructionSet set);
 
 }  // namespace pyroclast

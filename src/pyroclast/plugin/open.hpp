@@ -16,7 +16,7 @@ struct LawHeader {
 };
 
 /// A contact law that is not part of the program: code that it was asked to run.
-struct LoadedLaw {
+struct OpenedLaw {
   LawTable table;
   Dimensions dimensions = Dimensions::both;
   std::filesystem::path shared_object;
@@ -28,10 +28,10 @@ struct LoadedLaw {
 /// Throws Error where it is none, was made for another version or layout, or takes numbers for anything but
 /// IEEE 754: with contraction, fast-math or flush to zero.
 /// \param header  that it was compiled from by this program
-PYROCLAST_LASTING const LoadedLaw& load_law(const std::filesystem::path& shared_object,
+PYROCLAST_LASTING const OpenedLaw& open_law(const std::filesystem::path& shared_object,
                                             LawHeader header = {});
 
 /// Those that were loaded so far, in that order.
-std::vector<const LoadedLaw*> loaded_laws();
+std::vector<const OpenedLaw*> opened_laws();
 
 }  // namespace pyroclast

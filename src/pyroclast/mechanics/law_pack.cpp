@@ -1,4 +1,4 @@
-#include "pyroclast/mechanics/law_row.hpp"
+#include "pyroclast/mechanics/law_pack.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -6,20 +6,20 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/flat_array.hpp"
-#include "pyroclast/mechanics/law_rows.hpp"
+#include "pyroclast/mechanics/compiled_for_sets.hpp"
 #include "pyroclast/mechanics/state.hpp"
 
 namespace pyroclast {
 
 namespace {
 
-/// Eight faces of area 1 in one row, normal to the first axis. Only their first contact points move.
+/// Eight faces of area 1 in one pack, normal to the first axis. Only their first contact points move.
 template <int Dim>
-class LawRow {
+class LawPack {
  public:
-  LawRow(const LawTable& law, const RowFunctions<Dim>& functions)
+  LawPack(const LawTable& law, const PackFunctions<Dim>& functions)
       : functions_(functions),
-        numbers_{static_cast<int>(law.history(Dim).size()), static_cast<int>(law.losses.size()),
+        numbers_{static_cast<int>(law.internals(Dim).size()), static_cast<int>(law.losses.size()),
                  law.constants},
         faces_(1),
         points_(kPoints),
@@ -27,7 +27,7 @@ class LawRow {
         between_chunks_(1),
         displacement_(2 * kLanes),
         contact_force_(kPoints * kLanes),
-        history_(kPoints * law.history(Dim).size()),
+        internals_(kPoints * law.internals(Dim).size()),
         loss_(kPoints * law.losses.size()),
         own_constants_(kPoints * static_cast<std::size_t>(law.constants)),
         contact_constants_(law.size),
@@ -49,22 +49,22 @@ class LawRow {
     const auto see = [](auto& view, auto& array) { view = {array.data(), array.size()}; };
     see(state_.displacement, displacement_);
     see(state_.contact_force, contact_force_);
-    see(state_.history, history_);
+    see(state_.internals, internals_);
     see(state_.loss, loss_);
     see(state_.own_constants, own_constants_);
     see(state_.contact_constants, contact_constants_);
-    for (auto* first : {&state_.first_history, &state_.first_loss, &state_.first_constant,
+    for (auto* first : {&state_.first_internal, &state_.first_loss, &state_.first_constant,
                         &state_.set_of_faces, &state_.first_own_constant})
       see(*first, first_);
     see(state_.losing, losing_);
     see(state_.one_set, one_set_);
     see(state_.face_sums, face_sums_);
   }
-  LawRow(const LawRow&) = delete;
-  LawRow& operator=(const LawRow&) = delete;
+  LawPack(const LawPack&) = delete;
+  LawPack& operator=(const LawPack&) = delete;
 
   /// As LanesUpdate.
-  LanesResponse update(const void* constants, const double* own, const double* jump, double* history,
+  LanesResponse update(const void* constants, const double* own, const double* jump, double* internals,
                        double* losses) {
     std::copy_n(static_cast<const std::byte*>(constants), contact_constants_.size(),
                 contact_constants_.begin());
@@ -77,12 +77,13 @@ class LawRow {
     for (int lane = 0; lane < kLanes; ++lane) {
       std::fill_n(points_[0].area, kLanes, 0.0);
       points_[0].area[lane] = 1.0;
-      run(history, losses, true);
+      run(internals, losses, true);
       r.stored[lane] = face_sums_[0].stored;
     }
     std::fill_n(points_[0].area, kLanes, 1.0);
-    run(history, losses, false);
-    for (int i = 0; i < numbers_.history; ++i) std::copy_n(history_[i].number, kLanes, history + i * kLanes);
+    run(internals, losses, false);
+    for (int i = 0; i < numbers_.internals; ++i)
+      std::copy_n(internals_[i].number, kLanes, internals + i * kLanes);
     for (int i = 0; i < numbers_.losses; ++i) std::copy_n(loss_[i].number, kLanes, losses + i * kLanes);
     for (int lane = 0; lane < kLanes; ++lane) {
       r.normal_traction[lane] = contact_force_[lane][0];
@@ -102,23 +103,23 @@ class LawRow {
         if (kPoints == 2) lines[count + i].number[lane] = numbers[i * kLanes + lane];
       }
   }
-  void run(const double* history, const double* losses, bool measure) {
-    put(history, history_, numbers_.history);
+  void run(const double* internals, const double* losses, bool measure) {
+    put(internals, internals_, numbers_.internals);
     put(losses, loss_, numbers_.losses);
     functions_.update(state_, 0, 1, measure);
   }
 
-  RowFunctions<Dim> functions_;
+  PackFunctions<Dim> functions_;
   struct {
-    int history, losses, constants;
+    int internals, losses, constants;
   } numbers_;
-  FlatArray<FaceRow<Dim>> faces_;
-  FlatArray<PointRow> points_;
+  FlatArray<FacePack<Dim>> faces_;
+  FlatArray<PointPack> points_;
   FlatArray<int> first_point_;
   FlatArray<bool> between_chunks_;
   FlatArray<Vec<Dim>> displacement_;  ///< side a at rest, then side b
   FlatArray<Vec<Dim>> contact_force_;
-  FlatArray<Line> history_, loss_, own_constants_;
+  FlatArray<Line> internals_, loss_, own_constants_;
   FlatArray<std::byte> contact_constants_;
   FlatArray<int> first_;  ///< zeros
   FlatArray<bool> losing_, one_set_;
@@ -127,11 +128,11 @@ class LawRow {
 };
 
 template <int Dim>
-LanesUpdate lanes_of_row(const LawTable& law, InstructionSet set) {
+LanesUpdate lanes_of_pack(const LawTable& law, InstructionSet set) {
   if (!law.update(Dim)) return {};
-  const auto row = std::make_shared<LawRow<Dim>>(law, rows_of<Dim>(law, set));
-  return [row](const void* constants, const double* own, const double* jump, double* history,
-               double* losses) { return row->update(constants, own, jump, history, losses); };
+  const auto pack = std::make_shared<LawPack<Dim>>(law, functions_of<Dim>(law, set));
+  return [pack](const void* constants, const double* own, const double* jump, double* internals,
+                double* losses) { return pack->update(constants, own, jump, internals, losses); };
 }
 
 }  // namespace
@@ -140,8 +141,8 @@ std::vector<KitLanes> lanes_of_step(const LawTable& law) {
   std::vector<KitLanes> all;
   for (const InstructionSet set : usable_instruction_sets())
     if (is_compiled(law, set))
-      all.push_back(
-          {fmt::format("the step in {}", name(set)), {lanes_of_row<2>(law, set), lanes_of_row<3>(law, set)}});
+      all.push_back({fmt::format("the step in {}", name(set)),
+                     {lanes_of_pack<2>(law, set), lanes_of_pack<3>(law, set)}});
   return all;
 }
 

@@ -1,4 +1,4 @@
-#include "pyroclast/plugin/load.hpp"
+#include "pyroclast/plugin/open.hpp"
 
 #include <cstring>
 #include <deque>
@@ -40,11 +40,11 @@ void set_control_word([[maybe_unused]] unsigned word) {
 #endif
 }
 
-class Loader {
+class Opener {
  public:
-  explicit Loader(const std::filesystem::path& file) : file_(file) {}
+  explicit Opener(const std::filesystem::path& file) : file_(file) {}
 
-  LoadedLaw load() {
+  OpenedLaw open() {
     const unsigned before = control_word();
     void* const object = dlopen(std::filesystem::absolute(file_).c_str(), RTLD_NOW | RTLD_LOCAL);
     const unsigned after = control_word();
@@ -62,11 +62,11 @@ class Loader {
     compare(law);
     examine(law->probe, "code for any processor");
     for (const InstructionSet set : usable_instruction_sets())
-      if (const CompiledLaw* const compiled = law->rows.of_set[static_cast<std::size_t>(set)])
-        examine(compiled->probe, fmt::format("rows for the instruction set {}", name(set)));
-    LoadedLaw loaded{*law->table, law->dimensions, file_, {}, law->compiler};
-    loaded.table.rows = &law->rows;
-    return loaded;
+      if (const CompiledLaw* const compiled = law->compiled.of_set[static_cast<std::size_t>(set)])
+        examine(compiled->probe, fmt::format("packs for the instruction set {}", name(set)));
+    OpenedLaw opened{*law->table, law->dimensions, file_, {}, law->compiler};
+    opened.table.compiled = &law->compiled;
+    return opened;
   }
 
  private:
@@ -115,34 +115,34 @@ class Loader {
   const std::filesystem::path& file_;
 };
 
-struct Loaded {
+struct Opened {
   std::mutex mutex;
-  std::deque<LoadedLaw> laws;  // never moved: contacts point at their tables
+  std::deque<OpenedLaw> laws;  // never moved: contacts point at their tables
 };
 
-Loaded& loaded() {
-  static Loaded all;
+Opened& opened() {
+  static Opened all;
   return all;
 }
 
 }  // namespace
 
-const LoadedLaw& load_law(const std::filesystem::path& shared_object, LawHeader header) {
+const OpenedLaw& open_law(const std::filesystem::path& shared_object, LawHeader header) {
   const auto file = std::filesystem::weakly_canonical(shared_object);
-  auto& [mutex, laws] = loaded();
+  auto& [mutex, laws] = opened();
   const std::scoped_lock lock(mutex);
-  for (const LoadedLaw& law : laws)
+  for (const OpenedLaw& law : laws)
     if (law.shared_object == file) return law;
-  LoadedLaw law = Loader(file).load();
+  OpenedLaw law = Opener(file).open();
   law.header = std::move(header);
   return laws.emplace_back(std::move(law));
 }
 
-std::vector<const LoadedLaw*> loaded_laws() {
-  auto& [mutex, laws] = loaded();
+std::vector<const OpenedLaw*> opened_laws() {
+  auto& [mutex, laws] = opened();
   const std::scoped_lock lock(mutex);
-  std::vector<const LoadedLaw*> all;
-  for (const LoadedLaw& law : laws) all.push_back(&law);
+  std::vector<const OpenedLaw*> all;
+  for (const OpenedLaw& law : laws) all.push_back(&law);
   return all;
 }
 

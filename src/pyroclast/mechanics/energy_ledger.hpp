@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "pyroclast/base/ledger.hpp"
+
+namespace pyroclast {
+
+/// What the energy that zones lose by creep is called.
+inline constexpr std::string_view kCreep = "creep";
+
+/// Energies lost for good, J: at contacts, by what their laws call them, and by creep of zones.
+struct Dissipation {
+  std::vector<std::string_view> names;
+  std::vector<double> energies;  ///< likewise
+
+  /// 0 where no law has that name.
+  double of(std::string_view name) const;
+  double total() const;
+};
+
+/// Where the energy of a body went since the start, J. Work in = everything else; the rest is the ledger's
+/// error.
+struct EnergyLedger {
+  // put in
+  double loading = 0.0, gravity = 0.0, property_change = 0.0, mass_scaling = 0.0;
+  // held
+  double zones = 0.0, contacts = 0.0, kinetic = 0.0;
+  // lost
+  Dissipation dissipated;
+  double local_damping = 0.0, viscous_damping = 0.0;
+
+  /// Sum of the entries of one side, without what is dissipated.
+  double sum(LedgerSide side, double from = 0.0) const;
+  double work_in() const { return sum(LedgerSide::put_in); }
+  double accounted() const { return sum(LedgerSide::lost, sum(LedgerSide::held) + dissipated.total()); }
+  double error() const { return work_in() - accounted(); }
+  double elastic() const { return zones + contacts; }
+  /// 0 where nothing is strained.
+  double kinetic_over_elastic() const { return elastic() > 0.0 ? std::abs(kinetic) / elastic() : 0.0; }
+};
+
+/// In the order of the history's columns; those of what is dissipated stand before what else is lost.
+inline constexpr auto kEnergies = std::to_array<LedgerEntry<EnergyLedger>>({
+    {"loading", "energy_loading_J", LedgerSide::put_in, "work of prescribed motion and applied forces",
+     [](const EnergyLedger& e) { return e.loading; }},
+    {"gravity", "energy_gravity_J", LedgerSide::put_in, "work of the weight",
+     [](const EnergyLedger& e) { return e.gravity; }},
+    {"property_change", "energy_property_change_J", LedgerSide::put_in,
+     "change of stored and dissipated energy when properties or thermal strains change",
+     [](const EnergyLedger& e) { return e.property_change; }},
+    {"mass_scaling", "energy_mass_scaling_J", LedgerSide::put_in,
+     "change of kinetic energy when scaled masses follow the stiffness",
+     [](const EnergyLedger& e) { return e.mass_scaling; }},
+    {"elastic_zones", "energy_zones_J", LedgerSide::held, "elastic, in zones",
+     [](const EnergyLedger& e) { return e.zones; }},
+    {"elastic_contacts", "energy_contacts_J", LedgerSide::held, "elastic, in contacts",
+     [](const EnergyLedger& e) { return e.contacts; }},
+    {"kinetic", "energy_kinetic_J", LedgerSide::held, "of the masses that move",
+     [](const EnergyLedger& e) { return e.kinetic; }},
+    {"local_damping", "energy_local_damping_J", LedgerSide::lost, "to local damping",
+     [](const EnergyLedger& e) { return e.local_damping; }},
+    {"viscous_damping", "energy_viscous_damping_J", LedgerSide::lost, "to viscous damping",
+     [](const EnergyLedger& e) { return e.viscous_damping; }},
+    {"error", "energy_error_J", LedgerSide::error, "what was put in less what is held and lost",
+     [](const EnergyLedger& e) { return e.error(); }},
+});
+
+inline double EnergyLedger::sum(LedgerSide side, double from) const {
+  for (const auto& entry : kEnergies)
+    if (entry.side == side) from += entry.value(*this);
+  return from;
+}
+
+}  // namespace pyroclast

@@ -1,0 +1,98 @@
+#include "pyroclast/session/rehearsal.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "pyroclast/simulation/run.hpp"
+#include "pyroclast/thermal/time_stages.hpp"
+
+namespace pyroclast {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+constexpr int kWarmUpSteps = 10, kMostTimedSteps = 2000;
+constexpr double kSecondsOfTiming = 0.5;
+/// A frame takes about as long as so many rows of the history: it computes and writes every contact.
+constexpr double kRowsPerFrame = 4.0;
+/// Part of the largest change of a temperature that the heat solver's steps aim at, see Conduction.
+constexpr double kAimedChange = 0.8;
+
+template <class Action>
+double seconds_of(Action action) {
+  const auto start = Clock::now();
+  action();
+  return seconds_since(start);
+}
+
+/// Timed over many steps in one go, as a run takes them: the last of a batch costs more, for it is measured.
+double seconds_per_step(Mechanics<2>& mechanics) {
+  const auto time = [&](int steps) { return seconds_of([&] { mechanics.advance(steps); }) / steps; };
+  const double steps = kSecondsOfTiming / time(kWarmUpSteps);
+  return time(static_cast<int>(std::clamp<double>(steps, kWarmUpSteps, kMostTimedSteps)));
+}
+
+double seconds_per_exchange(Simulation& simulation) {
+  return seconds_of([&] { simulation.hand_over(); });
+}
+
+/// Evaluations of the heat solver: while temperatures change fast they bound its steps, later the longest
+/// step does. \param rise  of temperature that boundaries may bring about, K
+double expected_evaluations(const HeatConditions& heat, double stable_step, double rise, double duration) {
+  const double steps = rise / (kAimedChange * heat.largest_change) + duration / heat.largest_step;
+  return steps * fewest_stages(heat.scheme, std::max(1.0, duration / steps / stable_step));
+}
+
+/// Timed over what the solver does in a moment. Heats the field.
+double seconds_per_evaluation(TemperatureField& field, double duration, double largest_change) {
+  const auto start = Clock::now();
+  const std::int64_t before = field.conduction()->stages();
+  while (field.time() < duration && seconds_since(start) < kSecondsOfTiming)
+    field.advance(largest_change, duration);
+  return seconds_since(start) / static_cast<double>(field.conduction()->stages() - before);
+}
+
+Forecast forecast(const std::vector<std::unique_ptr<Stage>>& stages, const Simulation& simulation,
+                  const Interval& temperatures) {
+  Foreseen foreseen{simulation.field().mean(), temperatures.upper};
+  Forecast sum;
+  for (const auto& stage : stages) sum += stage->forecast(simulation, foreseen);
+  return sum;
+}
+
+/// What the forecast takes, s. Moves and heats the simulation.
+/// \param hottest  temperature that the run may come to, °C
+double seconds_of_run(const Forecast& forecast, double hottest, Simulation& simulation, Run& run) {
+  double seconds = 0.0;
+  if (simulation.moves()) seconds += forecast.steps * seconds_per_step(simulation.mechanics());
+  const double row = seconds_of([&] { run.next(); });
+  seconds += (forecast.looks + kRowsPerFrame * forecast.frames) * row;
+  if (forecast.exchanges > 0.0) seconds += forecast.exchanges * seconds_per_exchange(simulation);
+  if (forecast.heating_duration > 0.0) {
+    TemperatureField& field = simulation.field();
+    const HeatConditions& heat = simulation.heat();
+    field.begin_exposure(temperature_range(heat, forecast.heating_duration));
+    const double evaluations = expected_evaluations(heat, field.conduction()->step_limit().step,
+                                                    hottest - field.mean(), forecast.heating_duration);
+    seconds += evaluations * seconds_per_evaluation(field, forecast.heating_duration, heat.largest_change);
+  }
+  return seconds;
+}
+
+}  // namespace
+
+Rehearsal rehearse(Setup setup, Simulation& simulation) {
+  const Forecast expected = forecast(setup.stages, simulation, setup.temperatures);
+  Run run(simulation, std::move(setup.stages));
+  return {expected, seconds_of_run(expected, setup.temperatures.upper, simulation, run)};
+}
+
+}  // namespace pyroclast
