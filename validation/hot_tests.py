@@ -15,7 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "validation")]
 
 import runs  # noqa: E402
-from pyroclast.run import Run  # noqa: E402
+from pyroclast.results import Results  # noqa: E402
 
 RUNS = ROOT / "runs/hot_concrete"
 HEATED = ROOT / "cases/anderberg_thelandersson.toml"
@@ -54,10 +54,10 @@ class Crushed:
     strain_at_peak: float | None
     failed_at: float | None  # degC, while it was heated or cooled
     quasi_static: bool | None
-    run: Run
+    run: Results
 
 
-def heated(specimen: Specimen, level: float, to: float = 800.0, platen: str = "force") -> Run:
+def heated(specimen: Specimen, level: float, to: float = 800.0, platen: str = "force") -> Results:
     """Heated under a share of its strength, which is held, or with the platens fixed after it was brought up."""
     changes = specimen.settings(3000) + [f"stages[1].level={level:g}", f"stages[2].to={to:g} degC"]
     if platen != "force":
@@ -106,10 +106,10 @@ _locks: dict[str, threading.Lock] = {}
 _lock = threading.Lock()
 
 
-def _run(deck: pathlib.Path, name: str, specimen: Specimen, changes: list[str]) -> Run:
+def _run(deck: pathlib.Path, name: str, specimen: Specimen, changes: list[str]) -> Results:
     folder = RUNS / name
     with _lock:
         own = _locks.setdefault(name, threading.Lock())
     with own:  # two tests may ask for the same strength at once
         runs.run(deck, folder, specimen.seed, changes, again=False)
-    return Run(folder)
+    return Results(folder)

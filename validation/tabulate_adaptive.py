@@ -11,7 +11,7 @@ import sys
 
 from tabulate_heating import strain_at
 
-from pyroclast.run import Run  # tabulate_heating made the package known
+from pyroclast.results import Results  # tabulate_heating made the package known
 
 COLUMNS = ("kind", "variant", "level", "seed", "steps", "E_GPa", "f_c_MPa", "strain_at_peak", "quasi_static",
            "strain_500", "critical_degC", "not_converged", "wall_time_s")
@@ -25,10 +25,10 @@ def row_of(folder: pathlib.Path) -> dict:
                                         "seed": seed,
                                         "steps": summary["steps"], "wall_time_s": round(summary["wall_time_s"])}
     if kind == "compression":
-        result = Run(folder).compression
+        result = Results(folder).compression
         return row | {c: result[c] for c in ("E_GPa", "f_c_MPa", "strain_at_peak", "quasi_static")}
-    heating = Run(folder).heating
-    strain, critical = strain_at(Run(folder), 500), heating["critical_temperature_degC"]
+    heating = Results(folder).heating
+    strain, critical = strain_at(Results(folder), 500), heating["critical_temperature_degC"]
     return row | {"strain_500": "" if math.isnan(strain) else strain,
                   "not_converged": heating["exchanges_not_converged"],
                   "critical_degC": "" if critical is None else critical}

@@ -11,7 +11,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 
 from pyroclast.reference import strain_band  # noqa: E402
-from pyroclast.run import Run  # noqa: E402
+from pyroclast.results import Results  # noqa: E402
 
 TEMPERATURES = (100, 200, 300, 400, 500, 600, 700, 800)
 
@@ -28,7 +28,7 @@ def band(level: float) -> list[str]:
 
 
 def main() -> None:
-    runs = [Run(file.parent) for file in sorted(pathlib.Path(sys.argv[1]).glob("*/summary.json"))]
+    runs = [Results(file.parent) for file in sorted(pathlib.Path(sys.argv[1]).glob("*/summary.json"))]
     names = [f"strain_{t}" for t in TEMPERATURES]
     print("variant,level,seed," + ",".join(names) + ",critical_degC,exchanges,not_converged,worst_ratio,cycles,"
           "ledger_error_percent,wall_time_s")

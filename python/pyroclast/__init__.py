@@ -1,11 +1,11 @@
-"""Runs of pyroclast in this process, and the figures of the folders that it writes.
+"""Runs of pyroclast in this process, and the results and figures of the folders that it writes.
 
     import pyroclast
     run = pyroclast.Run("compression.toml", seed=2)
     for state in run:
         print(state.strain, state.stress)
 
-docs/python.md tells how to script it. The figures need no more than a folder, and not the compiled part of the
+docs/python.md tells how to script it. Results and figures need no more than a folder, and not the compiled part of the
 package:
 
     python3 -m pyroclast.figures run RUN_DIR
@@ -16,9 +16,8 @@ package:
 
 In a script:
 
-    from pyroclast.run import Run
-    run = Run("runs/compression")
-    print(run.peak, run.history["stress_MPa"].max())
+    results = pyroclast.read("runs/compression")
+    print(results.outcome, results.history["stress_MPa"].max())
 """
 
 from typing import TYPE_CHECKING
@@ -36,6 +35,9 @@ if TYPE_CHECKING:
     from .errors import Error as Error
     from .functions import Function as Function
     from .laws import Law as Law
+    from .results import Results as Results
+    from .results import SpecimenFolder as SpecimenFolder
+    from .results import read as read
     from .session import Fields as Fields
     from .session import History as History
     from .session import Recorder as Recorder
@@ -69,6 +71,7 @@ else:
         "errors": ("DeckError", "Diagnostic", "Error"),
         "functions": ("Function",),
         "laws": ("Law",),
+        "results": ("Results", "SpecimenFolder", "read"),
         "session": ("Fields", "History", "Recorder", "Run", "Sets", "State", "Views"),
         "specimen": ("Specimen",),
         "stages": ("Key", "Stage", "Verdict"),

@@ -6,6 +6,7 @@ import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import cycle
+from typing import TYPE_CHECKING
 
 import matplotlib
 import numpy as np
@@ -15,9 +16,12 @@ from matplotlib.patches import Patch
 
 from . import reference, style
 from .curves import MANY, compare, draw_spread, draw_tables, mean_of, names_apart
+from .errors import Error
 from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL, draw_band, over_minutes, strain_limits
 from .progress import MINUTES_LABEL, heating_course, heating_minutes, loading_course, temperature_label
-from .run import Run, RunError
+
+if TYPE_CHECKING:
+    from .results import Results
 
 _LEVEL_COLOURS = {0.0: style.BLUE, 0.225: style.GREEN, 0.445: style.ORANGE, 0.675: style.VERMILLION}
 _OTHER_COLOURS = (style.PURPLE, style.BLACK, style.SKY)
@@ -25,26 +29,26 @@ _BAND_LABEL = (f"range of models calibrated\non Anderberg & Thelandersson's\ntes
                f"dashed: its centre; pale above\n{reference.TRUSTED_TO:g} °C: order only")
 
 
-def compare_runs(runs: Sequence[Run], what: str | None = None) -> Figure:
+def compare_runs(runs: Sequence[Results], what: str | None = None) -> Figure:
     """What the runs have in common: total strain or thrust when all end heated, stress-strain when none does.
 
-    what: one of KINDS, to choose oneself. Throws RunError when a run does not have it.
+    what: one of KINDS, to choose oneself. Raises Error when a run does not have it.
     """
     if not runs:
-        raise RunError("compare: no runs were given")
+        raise Error("compare: no runs were given")
     return KINDS[what or _common_kind(runs)](runs)
 
 
-def _common_kind(runs: Sequence[Run]) -> str:
+def _common_kind(runs: Sequence[Results]) -> str:
     first = _kind(runs[0])
     for run in runs:
         if _kind(run) != first:
-            raise RunError(f"compare: {run.folder} would be compared by {_kind(run)}, but {runs[0].folder} "
+            raise Error(f"compare: {run.folder} would be compared by {_kind(run)}, but {runs[0].folder} "
                            f"by {first}; choose with --what")
     return first
 
 
-def _kind(run: Run) -> str:
+def _kind(run: Results) -> str:
     if not run.ends_heated:
         return "stress-strain"
     return "thrust" if run.restrained else "total-strain"
@@ -56,20 +60,20 @@ class _Group:
 
     label: str
     colour: str
-    runs: list[Run]
+    runs: list[Results]
 
 
-def _by_load(runs: Sequence[Run]) -> list[_Group]:
+def _by_load(runs: Sequence[Results]) -> list[_Group]:
     """Runs of one load level, or of one stress where the level is not known, lowest first; others alone."""
-    together: dict[tuple, list[Run]] = {}
+    together: dict[tuple, list[Results]] = {}
     for run, name in zip(runs, names_apart(runs)):
-        if run.restrained or run.load_stress is None:
+        if run.restrained or run.load_stress_MPa is None:
             key = (2, 0.0, name)
         elif run.load_level is not None:
             band = reference.strain_band(run.load_level)
             key = (0, band.level if band else round(run.load_level, 3), "")
         else:
-            key = (1, round(run.load_stress, 3), "")
+            key = (1, round(run.load_stress_MPa, 3), "")
         together.setdefault(key, []).append(run)
     others = cycle(_OTHER_COLOURS)
     return [_Group(style.load_label(together[key][0]) or key[2],
@@ -91,7 +95,7 @@ def _label(group: _Group) -> str:
 
 
 @matplotlib.rc_context(style.STYLE)
-def compare_total_strain(runs: Sequence[Run]) -> Figure:
+def compare_total_strain(runs: Sequence[Results]) -> Figure:
     """Total strain over temperature, one colour a load level, on the reference bands (paper, Figure 12)."""
     _demand_heated(runs)
     figure = style.new_figure(4.2)
@@ -117,7 +121,7 @@ def compare_total_strain(runs: Sequence[Run]) -> Figure:
 
 
 @matplotlib.rc_context(style.STYLE)
-def compare_thrust(runs: Sequence[Run]) -> Figure:
+def compare_thrust(runs: Sequence[Results]) -> Figure:
     """Axial stress over temperature, or minutes where no run is uniform, each by itself."""
     _demand_heated(runs)
     over, label = _axis(runs)
@@ -134,7 +138,7 @@ def compare_thrust(runs: Sequence[Run]) -> Figure:
     return figure
 
 
-def _draw_thrusts(axes: Axes, runs: Sequence[Run], over: Callable[[Run], np.ndarray]) -> None:
+def _draw_thrusts(axes: Axes, runs: Sequence[Results], over: Callable[[Results], np.ndarray]) -> None:
     for run, name, (colour, dashes) in zip(runs, names_apart(runs), cycle(style.LOOKS)):
         largest = run.history.known("stress_MPa", run.heated).max()
         axes.plot(over(run), run.heated_history("stress_MPa"), color=colour,
@@ -142,13 +146,13 @@ def _draw_thrusts(axes: Axes, runs: Sequence[Run], over: Callable[[Run], np.ndar
 
 
 @matplotlib.rc_context(style.STYLE)
-def compare_cracks(runs: Sequence[Run]) -> Figure:
+def compare_cracks(runs: Sequence[Results]) -> Figure:
     """Broken contact points by mode and the mean opening while heated, or over strain if none ends heated."""
     if len({run.ends_heated for run in runs}) > 1:
-        raise RunError("compare: cracks of runs that end heated and of others have no common axis")
+        raise Error("compare: cracks of runs that end heated and of others have no common axis")
     courses = [heating_course(run) if run.ends_heated else loading_course(run) for run in runs]
     if len({course.ordered for course in courses}) > 1:
-        raise RunError("compare: cracks of runs that cool and of runs that do not have no common axis")
+        raise Error("compare: cracks of runs that cool and of runs that do not have no common axis")
     figure = style.new_figure(5.4)
     grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 0.42])
     panels = [figure.add_subplot(grid[row, 0]) for row in range(3)]
@@ -179,7 +183,7 @@ def _broken(course, mode: str):
     return sum((course[f"{mode}_{name}_broken"] for name in interfaces), np.zeros(len(course.over)))
 
 
-def _draw_group(axes: Axes, group: _Group, over: Callable[[Run], np.ndarray]) -> None:
+def _draw_group(axes: Axes, group: _Group, over: Callable[[Results], np.ndarray]) -> None:
     curves = [(over(run)[rows], style.PER_MILLE * run.total_strain[rows])
               for run in group.runs for rows in [run.standing[run.heated]]]
     if len(curves) == 1:
@@ -196,23 +200,23 @@ def _draw_group(axes: Axes, group: _Group, over: Callable[[Run], np.ndarray]) ->
                       markeredgewidth=0.5, markersize=6.0, zorder=4)
 
 
-def _demand_heated(runs: Sequence[Run]) -> None:
+def _demand_heated(runs: Sequence[Results]) -> None:
     for run in runs:
         if not run.exchanged.any():
-            raise RunError(f"{run.folder}: was never heated")
+            raise Error(f"{run.folder}: was never heated")
 
 
-def _timed(runs: Sequence[Run]) -> bool:
+def _timed(runs: Sequence[Results]) -> bool:
     """Whether the runs are drawn over minutes: all are."""
     return all(run.timed for run in runs)
 
 
-def _over(runs: Sequence[Run]) -> tuple[str, float]:
+def _over(runs: Sequence[Results]) -> tuple[str, float]:
     """The same for references."""
     return over_minutes(_timed(runs))
 
 
-def _axis(runs: Sequence[Run]) -> tuple[Callable[[Run], np.ndarray], str]:
+def _axis(runs: Sequence[Results]) -> tuple[Callable[[Results], np.ndarray], str]:
     """What heated runs are drawn over, and its label."""
     if _timed(runs):
         return heating_minutes, MINUTES_LABEL
@@ -220,7 +224,7 @@ def _axis(runs: Sequence[Run]) -> tuple[Callable[[Run], np.ndarray], str]:
     return lambda run: run.heated_history("temperature_degC"), label
 
 
-KINDS: dict[str, Callable[[Sequence[Run]], Figure]] = {
+KINDS: dict[str, Callable[[Sequence[Results]], Figure]] = {
     "stress-strain": compare,
     "total-strain": compare_total_strain,
     "cracks": compare_cracks,

@@ -6,6 +6,7 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from itertools import cycle
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import matplotlib
 import numpy as np
@@ -13,7 +14,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import reference, style
-from .run import Frame, Run, RunError
+from .errors import Error
+
+if TYPE_CHECKING:
+    from .results import Frame, Results
 
 _MEAN_POINTS = 400
 _LEAST_STRAIN_SHOWN = 0.004
@@ -25,7 +29,7 @@ MANY = 6
 
 
 @matplotlib.rc_context(style.STYLE)
-def stress_strain(run: Run, marks: Mapping[str, Frame]) -> Figure:
+def stress_strain(run: Results, marks: Mapping[str, Frame]) -> Figure:
     """The run's curve beside the reference that its deck asks for (paper, Figure 8).
 
     marks: the frames to point out, by letter, as `select_frames` gives them; may be empty.
@@ -52,7 +56,7 @@ def stress_strain(run: Run, marks: Mapping[str, Frame]) -> Figure:
     return figure
 
 
-def _draw_run(axes: Axes, run: Run) -> None:
+def _draw_run(axes: Axes, run: Results) -> None:
     if (before := run.loaded_before).any():
         axes.plot(style.PER_MILLE * (run.history["strain"][before] - run.strain_before),
                   run.history["stress_MPa"][before], color=style.BLUE, linewidth=0.9, zorder=2.5,
@@ -86,17 +90,17 @@ def _draw_references(axes: Axes, last_strain: float, wrapped: bool = False) -> N
 
 def _draw_marks(axes: Axes, marks: Mapping[str, Frame]) -> None:
     axes.plot([style.PER_MILLE * frame.strain for frame in marks.values()],
-              [frame.stress for frame in marks.values()], "o", color=style.BLUE, markersize=6.5,
+              [frame.stress_MPa for frame in marks.values()], "o", color=style.BLUE, markersize=6.5,
               linestyle="none", zorder=4,
               label=f"frames shown in fracture: {', '.join(marks)}" if marks else None)
     for letter, frame in marks.items():
-        axes.annotate(letter, (style.PER_MILLE * frame.strain, frame.stress), xytext=(-7, -11),
+        axes.annotate(letter, (style.PER_MILLE * frame.strain, frame.stress_MPa), xytext=(-7, -11),
                       textcoords="offset points", ha="center", va="center", fontweight="bold", zorder=3.5,
                       bbox={"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": "none",
                             "alpha": 0.8})
 
 
-def _draw_table(axes: Axes, run: Run) -> None:
+def _draw_table(axes: Axes, run: Results) -> None:
     def shown(key: str, form: str) -> str:
         value = run.compression.get(key)
         if isinstance(value, (int, float)):
@@ -128,16 +132,16 @@ def _draw_table(axes: Axes, run: Run) -> None:
 
 
 @matplotlib.rc_context(style.STYLE)
-def compare(runs: Sequence[Run]) -> Figure:
+def compare(runs: Sequence[Results]) -> Figure:
     """Curves of several runs, their mean as far as all of them go, and the mean of their peaks.
 
     More than MANY runs are drawn as the range that they span. A run without a peak (its summary has no f_c)
     is drawn but does not enter the mean of the peaks.
     """
     if not runs:
-        raise RunError("compare: no runs were given")
+        raise Error("compare: no runs were given")
     if heated := [run for run in runs if run.ends_heated]:
-        raise RunError(f"{heated[0].folder}: ends with heating, so it has no stress-strain curve")
+        raise Error(f"{heated[0].folder}: ends with heating, so it has no stress-strain curve")
     figure = style.new_figure(4.2)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.42])
     curves = [(style.PER_MILLE * strain, stress) for strain, stress in map(_curve, runs)]
@@ -164,7 +168,7 @@ def compare(runs: Sequence[Run]) -> Figure:
     return figure
 
 
-def draw_tables(axes: Axes, runs: Sequence[Run], over: tuple[str, float], *drawn: tuple[str, float]) -> None:
+def draw_tables(axes: Axes, runs: Sequence[Results], over: tuple[str, float], *drawn: tuple[str, float]) -> None:
     """The references of the users' own that the runs' decks ask for, each once.
 
     over, drawn: what they are of, as decks name it, and the factor from the history's unit to the axis'.
@@ -194,12 +198,12 @@ def draw_spread(axes: Axes, curves: Sequence[tuple[np.ndarray, np.ndarray]], col
     axes.plot(*mean_of(curves), color=colour, linewidth=2.0, label=label or "their mean, as far as all go")
 
 
-def mean_curve(runs: Sequence[Run]) -> tuple[np.ndarray, np.ndarray]:
+def mean_curve(runs: Sequence[Results]) -> tuple[np.ndarray, np.ndarray]:
     """Strain from rest to the largest that all runs reach, and the runs' mean stress [MPa] at it."""
     return mean_of([_curve(run) for run in runs])
 
 
-def _curve(run: Run) -> tuple[np.ndarray, np.ndarray]:
+def _curve(run: Results) -> tuple[np.ndarray, np.ndarray]:
     """Strain and stress [MPa]; from rest, unless heat came before."""
     strain, stress = run.loaded_strain, run.loaded_history("stress_MPa")
     run.history.known("strain", run.loaded)
@@ -222,13 +226,13 @@ def _advancing(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The finite points of a curve whose x exceeds all before."""
     rows = np.isfinite(x) & np.isfinite(y)
     if not rows.any():
-        raise RunError("compare: a run has no finite value of what is compared")
+        raise Error("compare: a run has no finite value of what is compared")
     x, y = x[rows], y[rows]
     rows = np.concatenate([[True], x[1:] > np.maximum.accumulate(x)[:-1]])
     return x[rows], y[rows]
 
 
-def _draw_mean_peak(axes: Axes, runs: Sequence[Run]) -> None:
+def _draw_mean_peak(axes: Axes, runs: Sequence[Results]) -> None:
     peaks = np.array([(style.PER_MILLE * run.peak[0], run.peak[1]) for run in runs if run.has_peak])
     if not len(peaks):
         return
@@ -243,7 +247,7 @@ def _draw_mean_peak(axes: Axes, runs: Sequence[Run]) -> None:
                   zorder=5, label=label)
 
 
-def names_apart(runs: Sequence[Run]) -> list[str]:
+def names_apart(runs: Sequence[Results]) -> list[str]:
     """Titles, or the shortest ends of the folders' paths where titles do not tell the runs apart; warnings stay."""
     names = [style.plain(run.title) for run in runs]
     if len(set(names)) < len(names):

@@ -51,7 +51,7 @@ def table_text(name: str, table: Mapping[str, Any], is_listed: bool = False) -> 
     for key, value in table.items():
         if isinstance(value, Mapping):
             below.append(table_text(f"{name}.{_key(key)}", value))
-        elif _is_list_of_tables(value):
+        elif is_list_of_tables(value):
             below += [table_text(f"{name}.{_key(key)}", entry, True) for entry in value]
         else:
             lines.append(f"{_key(key)} = {toml(value)}")
@@ -86,7 +86,8 @@ def _list_at(tables: dict[str, Any], path: str) -> list[Any]:
     return found
 
 
-def _is_list_of_tables(value: object) -> bool:
+def is_list_of_tables(value: object) -> bool:
+    """Whether a deck writes a value as a list of tables, each with a header of its own."""
     return isinstance(value, (list, tuple)) and bool(value) and all(isinstance(entry, Mapping) for entry in value)
 
 
@@ -150,7 +151,7 @@ class Deck:
                 headed.append((name, [{"shape": "cells", "file": _CELLS}], False))
             elif isinstance(value, Mapping):
                 headed.append((name, [value], False))
-            elif _is_list_of_tables(value):
+            elif is_list_of_tables(value):
                 headed.append((name, list(value), True))
             else:
                 plain.append(f"{_key(name)} = {toml(value)}")
@@ -212,7 +213,7 @@ class Deck:
             for name, entry in value.items():
                 self[f"{path}.{_key(name)}"] = entry
             return
-        if _is_list_of_tables(value):
+        if is_list_of_tables(value):
             entries: Any = value
             self._rebuild(lambda tables: _list_at(tables, path).__setitem__(slice(None), entries), path)
             return
@@ -282,7 +283,7 @@ class Deck:
         for name, value in tables.items():
             if isinstance(value, Specimen):
                 self[name] = value
-            elif _is_list_of_tables(value):
+            elif is_list_of_tables(value):
                 for entry in value:
                     self.append(name, **entry)
             elif isinstance(value, Mapping):
@@ -324,6 +325,11 @@ class Deck:
         """Reads all of the deck. Returns what it warns of; raises DeckError with every error."""
         tables = functions.Scratch()
         return _core.check(self._resolved(tables))
+
+    def make_specimen(self, seed: int | None = None) -> Specimen:
+        """The specimen that a run of this deck has, with this seed or the deck's. Raises as `Run`."""
+        tables = functions.Scratch()
+        return Specimen(_core.Specimen.of_deck(self._resolved(tables), seed))
 
     def save(self, file: str | Path) -> None:
         """Writes the deck, and beside it tables of its functions and the blocks of its specimen, as files whose names
@@ -407,7 +413,7 @@ def without_functions(table: Mapping[str, Any], path: str, found: dict[str, func
             found[here] = value if isinstance(value, functions.Function) else functions.Function(value)
         elif isinstance(value, Mapping):
             plain[name] = without_functions(value, here, found)
-        elif _is_list_of_tables(value):
+        elif is_list_of_tables(value):
             plain[name] = [without_functions(entry, f"{here}[{i}]", found) for i, entry in enumerate(value)]
         else:
             plain[name] = value

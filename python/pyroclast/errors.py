@@ -24,7 +24,7 @@ class Diagnostic:
 
 
 class Error(Exception):
-    """Something cannot be done; the text says what and why."""
+    """Something cannot be done, or a file is missing or malformed; the text says what, where and why."""
 
 
 class CodeNotAllowed(Error):

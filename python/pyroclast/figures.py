@@ -30,6 +30,7 @@ from matplotlib.figure import Figure
 
 from .comparisons import KINDS, compare_runs
 from .curves import stress_strain
+from .errors import Error
 from .files import GapWarning
 from .heated_sections import LEVEL_TEMPERATURES, heating_fracture, levels, temperature_field
 from .heating import convergence, temperature_history, thrust, total_strain
@@ -37,7 +38,7 @@ from .profiles import isotherm, read_profile, temperature_profile, write_profile
 from .progress import cracks, energy, heating_course, heating_cracks, loading_course
 from .properties import properties, read_properties
 from .records import record_course, record_fracture, records, records_of
-from .run import Run, RunError, Specimen
+from .results import Results, SpecimenFolder
 from .sections import fracture, gradation, morphology, select_frames
 from .style import save
 from .writing import make_folder
@@ -45,27 +46,27 @@ from .writing import make_folder
 _FORMATS = ("png", "svg", "pdf")
 
 
-def figures_of(run: Run, magnification: float | None = None,
+def figures_of(run: Results, magnification: float | None = None,
                temperatures: Sequence[float] | None = None) -> Iterator[tuple[str, Callable[[], Figure]]]:
     """Name of each figure that a run has, and what makes it; the arguments are those of `draw_run`."""
     if temperatures is not None and not run.has_fields:
-        raise RunError(f"{run.folder}: keeps no fields, so --temperatures asks for nothing")
-    if not run.only_conducts and not run.has_platens:
+        raise Error(f"{run.folder}: keeps no fields, so --temperatures asks for nothing")
+    if run.moves and not run.has_platens:
         yield from _of_records(run, magnification)
         return
     if run.exchanged.any():
         yield from _of_heating(run, magnification, temperatures)
     elif temperatures is not None:
-        raise RunError(f"{run.folder}: was never heated with mechanics, so --temperatures asks for nothing")
-    if run.only_conducts:
+        raise Error(f"{run.folder}: was never heated with mechanics, so --temperatures asks for nothing")
+    if not run.moves:
         yield from _of_conduction(run)
     elif not run.ends_heated:
         yield from _of_compression(run, magnification)
-    if not run.only_conducts and records_of(run):
+    if run.moves and records_of(run):
         yield "records", lambda: records(run)
 
 
-def _of_heating(run: Run, magnification: float | None,
+def _of_heating(run: Results, magnification: float | None,
                 temperatures: Sequence[float] | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
     if run.restrained:
         yield "thrust", lambda: thrust(run)
@@ -80,7 +81,7 @@ def _of_heating(run: Run, magnification: float | None,
         yield "heating_fracture", lambda: heating_fracture(run, temperatures, magnification)
 
 
-def _of_records(run: Run, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+def _of_records(run: Results, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
     if records_of(run):
         yield "records", lambda: records(run)
         yield "energy", lambda: energy(record_course(run))
@@ -92,7 +93,7 @@ def _of_records(run: Run, magnification: float | None) -> Iterator[tuple[str, Ca
         yield "fracture", lambda: record_fracture(run, magnification)
 
 
-def _of_conduction(run: Run) -> Iterator[tuple[str, Callable[[], Figure]]]:
+def _of_conduction(run: Results) -> Iterator[tuple[str, Callable[[], Figure]]]:
     yield "temperature_history", lambda: temperature_history(run)
     if not run.has_fields:
         return
@@ -103,7 +104,7 @@ def _of_conduction(run: Run) -> Iterator[tuple[str, Callable[[], Figure]]]:
         yield "isotherm", lambda: isotherm(run, profile)
 
 
-def _of_compression(run: Run, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
+def _of_compression(run: Results, magnification: float | None) -> Iterator[tuple[str, Callable[[], Figure]]]:
     marks = select_frames(run.loaded_frames, *run.peak) if run.loaded_frames else {}
     yield "stress_strain", lambda: stress_strain(run, marks)
     yield "cracks", lambda: cracks(run)
@@ -112,7 +113,7 @@ def _of_compression(run: Run, magnification: float | None) -> Iterator[tuple[str
         return
     if not marks:
         path = run.folder / "fields" / "frames.csv"
-        raise RunError(f"{path}: no frame of the loading stage; fracture cannot be drawn")
+        raise Error(f"{path}: no frame of the loading stage; fracture cannot be drawn")
     yield "fracture", lambda: fracture(run, marks, magnification)
 
 
@@ -125,7 +126,7 @@ def draw_run(folder: Path, file_format: str = "png", magnification: float | None
 
     temperatures [°C]: of the fracture patterns of a heated run, see `heating_fracture`.
     """
-    run = Run(folder)
+    run = Results(folder)
     for name, draw in figures_of(run, magnification, temperatures):
         if name == "temperature_profile":
             if out is not None:
@@ -145,9 +146,9 @@ def draw_specimen(folder: Path, file_format: str = "png") -> Iterator[Path]:
     """Draws the figures of a specimen into its figures/ folder; yields each path once written. A specimen without
     circles has no gradation.
     """
-    specimen = Specimen(folder)
+    specimen = SpecimenFolder(folder)
     place = make_folder(specimen.folder / "figures")
-    if len(specimen.aggregates):
+    if specimen.aggregates.rows:
         yield save(gradation(specimen), place / f"gradation.{file_format}")
     yield save(morphology(specimen), place / f"morphology.{file_format}")
 
@@ -155,19 +156,19 @@ def draw_specimen(folder: Path, file_format: str = "png") -> Iterator[Path]:
 def draw_comparison(folders: Sequence[Path], out: Path, what: str | None = None) -> Iterator[Path]:
     """Draws the curves of several runs into one file, its format by its ending; what: see `compare_runs`."""
     _check_ending(out)
-    yield save(compare_runs([Run(folder) for folder in folders], what), out)
+    yield save(compare_runs([Results(folder) for folder in folders], what), out)
 
 
 def draw_levels(folders: Sequence[Path], out: Path, temperatures: Sequence[float] = LEVEL_TEMPERATURES,
                 magnification: float | None = None) -> Iterator[Path]:
     """Draws the fracture patterns of several heated runs into one file, its format by its ending."""
     _check_ending(out)
-    yield save(levels([Run(folder) for folder in folders], temperatures, magnification), out)
+    yield save(levels([Results(folder) for folder in folders], temperatures, magnification), out)
 
 
 def _check_ending(out: Path) -> None:
     if out.suffix.lower().lstrip(".") not in _FORMATS:
-        raise RunError(f"{out}: the file's ending must be one of {', '.join('.' + f for f in _FORMATS)}")
+        raise Error(f"{out}: the file's ending must be one of {', '.join('.' + f for f in _FORMATS)}")
 
 
 def _positive(text: str) -> float:
@@ -235,7 +236,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         try:
             for path in asked.draw(asked):
                 print(path)
-        except (RunError, OSError) as problem:
+        except (Error, OSError) as problem:
             _tell(problem)
             return 1
     return 0

@@ -16,6 +16,9 @@ from typing import Any
 import h5py
 import numpy as np
 
+from .columns import ColumnNames, Columns
+from .errors import Error
+
 _PIECE = 1 << 24  # bytes of a table that are read at once
 _FEW = 1 << 18  # bytes for which the compiled part is not loaded
 _NUMBERS = b"0123456789+-.eE,\n"
@@ -27,27 +30,24 @@ LARGEST = 1e30
 """A number beyond it counts as not finite: in no unit is a quantity of a run so large, and drawing would overflow."""
 
 
-class RunError(Exception):
-    """Something in a run or specimen folder is missing or malformed; one line says what and where."""
-
-
 class GapWarning(UserWarning):
     """A table has cells that are not finite; they are drawn as gaps."""
 
 
-class Table:
-    """Columns of numbers of a csv file, by name: `table["strain"]` is a (rows,) float64 array.
+class Table(Columns):
+    """Columns of numbers of a csv file, by name: `table["strain"]` is a (rows,) read-only array.
 
+    Under the name of the header ("stress_MPa") a column is in the unit of its name; without it ("stress") in SI.
     An empty cell is NaN: the stage of its row does not have the quantity. So is a cell that is inf or NaN, of
-    which a GapWarning tells.
+    which a GapWarning tells. A name that there is not raises Error, which names the file.
     """
 
     _takes_torn = True  #: a last line that does not end, but has all its cells
 
     def __init__(self, path: Path, may_be_empty: bool = False):
-        """Throws RunError when the file is missing, holds something that is not a number, or has no rows."""
+        """Raises Error when the file is missing, holds something that is not a number, or has no rows."""
+        super().__init__(ColumnNames.of_header([]))
         self.path = path
-        self.names: list[str] = []
         self._gaps: tuple[int, int, str, str] | None = None  # how many, and line, column and cell of the first
         self._values = np.empty((0, 0))  # (columns, room for rows)
         self._count = 0
@@ -56,9 +56,9 @@ class Table:
         self._left = 0.0  # pieces of the size of the last one
         self._take_added()
         if not self.names:
-            raise RunError(f"{path}: is empty; a header line is expected")
-        if not len(self) and not may_be_empty:
-            raise RunError(f"{path}: has a header but no rows")
+            raise Error(f"{path}: is empty; a header line is expected")
+        if not self.rows and not may_be_empty:
+            raise Error(f"{path}: has a header but no rows")
 
     def _take_added(self) -> bool:
         """The lines that came since, piece by piece, so that a long file is never in memory as a text. Returns whether
@@ -87,7 +87,7 @@ class Table:
                 if rest and self._takes_torn:
                     yield rest
         except OSError as error:
-            raise RunError(f"{self.path}: cannot be read: {_reason(error)}") from error
+            raise Error(f"{self.path}: cannot be read: {_reason(error)}") from error
 
     def _begin(self, piece: bytes) -> bytes:
         """Takes the names; returns what follows their line, unless that was taken too."""
@@ -96,14 +96,14 @@ class Table:
         if b'"' in head or len(lines) > 1:  # a name may hold line ends, and other marks cut lines too
             lines, rest = self._cut(piece), b""
         if not lines or not lines[0]:
-            raise RunError(f"{self.path}: is empty; a header line is expected")
+            raise Error(f"{self.path}: is empty; a header line is expected")
         self._take_header(lines)
         self._drop_torn(lines, piece)
         self._append(self._parsed(lines))
         return rest
 
     def _take_header(self, lines: list[list[str]]) -> None:
-        self.names = [name.strip() for name in lines.pop(0)]
+        self._names = ColumnNames.of_header([name.strip() for name in lines.pop(0)])
         self._next_line += 1
         self._values = np.empty((len(self.names), 0))
 
@@ -125,7 +125,7 @@ class Table:
         try:
             return list(csv.reader(piece.decode("utf-8").splitlines()))
         except (UnicodeDecodeError, csv.Error) as error:
-            raise RunError(f"{self.path}: cannot be read: {_reason(error)}") from error
+            raise Error(f"{self.path}: cannot be read: {_reason(error)}") from error
 
     def _append(self, numbers: np.ndarray) -> None:
         """numbers: (columns, rows)."""
@@ -154,14 +154,14 @@ class Table:
     def _numbers(self, line: int, cells: list[str]) -> list[float]:
         if len(cells) != len(self.names):
             counts = f"{len(cells)} values for the header's {len(self.names)} columns"
-            raise RunError(f"{self.path}, line {line}: {counts}")
+            raise Error(f"{self.path}, line {line}: {counts}")
         numbers = []
         for name, cell in zip(self.names, cells):
             try:
                 number = float(cell) if cell else np.nan
             except ValueError:
                 where = f"{self.path}, line {line}"
-                raise RunError(f"{where}: column {_shown(name)} holds {_shown(cell)}, not a number") from None
+                raise Error(f"{where}: column {_shown(name)} holds {_shown(cell)}, not a number") from None
             if cell and not abs(number) <= LARGEST:
                 first = self._gaps or (0, line, name, cell)
                 self._gaps = (first[0] + 1, *first[1:])
@@ -169,38 +169,41 @@ class Table:
             numbers.append(number)
         return numbers
 
+    def _cells(self, column: int) -> np.ndarray:
+        return self._values[column, :self._count]
+
+    @property
+    def rows(self) -> int:
+        """That were read by now."""
+        return self._count
+
     def __getitem__(self, name: str) -> np.ndarray:
-        """Throws RunError naming file and column when there is no such column."""
-        if name not in self.names:
-            raise RunError(f"{self.path}: has no column '{name}'")
-        # of names that are there twice the last one counts
-        return self._values[len(self.names) - 1 - self.names[::-1].index(name), :self._count]
+        """Raises Error naming file and column when there is no such column. Of names that are there twice the last
+        one counts.
+        """
+        if name not in self:
+            raise Error(f"{self.path}: has no column '{name}'")
+        return super().__getitem__(name)
 
     def whole(self, name: str, none: int | None = None) -> np.ndarray:
         """(rows,) int64, a column of whole numbers from zero. none: what an empty cell stands for.
 
-        Throws RunError naming file and column when a cell holds something else.
+        Raises Error naming file and column when a cell holds something else.
         """
         values = self[name] if none is None else np.where(np.isnan(self[name]), none, self[name])
         wrong = ~((values >= 0.0) & (values == np.floor(values)) & (values < _LARGEST_WHOLE))
         if wrong.any():
-            raise RunError(f"{self.path}: column '{name}' holds {values[wrong][0]:g}; "
+            raise Error(f"{self.path}: column '{name}' holds {values[wrong][0]:g}; "
                            "whole numbers from 0 are expected")
         return values.astype(np.int64)
 
     def known(self, name: str, rows: np.ndarray | slice = slice(None)) -> np.ndarray:
-        """The finite values of a column in some rows; throws RunError when there is none."""
+        """The finite values of a column in some rows; raises Error when there is none."""
         values = self[name][rows]
         values = values[np.isfinite(values)]
         if not len(values):
-            raise RunError(f"{self.path}: column '{name}' has no finite value in the rows that are drawn")
+            raise Error(f"{self.path}: column '{name}' has no finite value in the rows that are drawn")
         return values
-
-    def __contains__(self, name: str) -> bool:
-        return name in self.names
-
-    def __len__(self) -> int:
-        return self._count
 
 
 class GrowingTable(Table):
@@ -222,7 +225,7 @@ class GrowingTable(Table):
         return now.st_ino != self._inode or now.st_size < self._taken
 
     def grow(self) -> bool:
-        """Takes in the rows that came since; returns whether there were any. Throws RunError as at first."""
+        """Takes in the rows that came since; returns whether there were any. Raises Error as at first."""
         return self._take_added()
 
 
@@ -265,51 +268,60 @@ class Lock:
 
 @contextmanager
 def open_hdf(path: Path) -> Iterator[h5py.File]:
-    """Opens to read; throws RunError when the file is missing, or is damaged where it is read."""
+    """Opens to read; raises Error when the file is missing, or is damaged where it is read."""
     if not path.exists():
-        raise RunError(f"{path}: does not exist")
+        raise Error(f"{path}: does not exist")
     try:
         file = h5py.File(path, "r")
     except Exception as error:  # of a damaged file the library throws many kinds, here and below
-        raise RunError(f"{path}: is not a readable HDF5 file") from error
+        raise Error(f"{path}: is not a readable HDF5 file") from error
     try:
         with file:
             yield file
-    except RunError:
+    except Error:
         raise
     except Exception as error:
-        raise RunError(f"{path}: is a damaged HDF5 file: {_reason(error)}") from error
+        raise Error(f"{path}: is a damaged HDF5 file: {_reason(error)}") from error
 
 
 def dataset(file: h5py.File, name: str) -> np.ndarray:
-    """All of a dataset of numbers; throws RunError when there is none of that name, or one is not finite."""
+    """All of a dataset of numbers; raises Error when there is none of that name, or one is not finite."""
     values = file.get(name)
     if not isinstance(values, h5py.Dataset):
-        raise RunError(f"{file.filename}: has no dataset /{name}")
+        raise Error(f"{file.filename}: has no dataset /{name}")
     # A damaged header may ask for more memory than there is.
     if values.nbytes > _TIGHTEST_PACKING * Path(file.filename).stat().st_size:
-        raise RunError(f"{file.filename}: /{name} is larger than the file; the file is damaged")
+        raise Error(f"{file.filename}: /{name} is larger than the file; the file is damaged")
     if values.dtype.kind not in "iuf" or values.shape is None:
-        raise RunError(f"{file.filename}: /{name} does not hold numbers")
+        raise Error(f"{file.filename}: /{name} does not hold numbers")
     numbers = values[()]
     if numbers.dtype.kind == "f" and not (np.abs(numbers) <= LARGEST).all():
-        raise RunError(f"{file.filename}: /{name} has a value that is not finite")
+        raise Error(f"{file.filename}: /{name} has a value that is not finite")
     return numbers
 
 
+def read_array(path: Path, name: str, shape: tuple[int, ...]) -> np.ndarray:
+    """All of a dataset of an HDF5 file. Raises Error as `open_hdf` and `dataset`, and where it has another shape."""
+    with open_hdf(path) as file:
+        values = dataset(file, name)
+    if values.shape != shape:
+        raise Error(f"{path}: /{name} has shape {values.shape}, but the mesh asks for {shape}")
+    return values
+
+
 def read_json(path: Path) -> dict:
-    """The object in a JSON file; throws RunError when it cannot be read or is something else."""
+    """The object in a JSON file; raises Error when it cannot be read or is something else."""
     value = _read_json(path)
     if not isinstance(value, dict):
-        raise RunError(f"{path}: is not a JSON object")
+        raise Error(f"{path}: is not a JSON object")
     return value
 
 
 def read_json_list(path: Path) -> list:
-    """The list in a JSON file; throws RunError when it cannot be read or is something else."""
+    """The list in a JSON file; raises Error when it cannot be read or is something else."""
     value = _read_json(path)
     if not isinstance(value, list):
-        raise RunError(f"{path}: is not a JSON list")
+        raise Error(f"{path}: is not a JSON list")
     return value
 
 
@@ -317,7 +329,7 @@ def _read_json(path: Path) -> Any:
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError) as error:
-        raise RunError(f"{path}: cannot be read: {_reason(error)}") from error
+        raise Error(f"{path}: cannot be read: {_reason(error)}") from error
 
 
 def _read_rows(lines: bytes, columns: int) -> np.ndarray | None:

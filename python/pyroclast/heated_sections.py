@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import matplotlib
 import numpy as np
@@ -13,8 +14,11 @@ from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
 from . import style
-from .run import Frame, Run, RunError
+from .errors import Error
 from .sections import Panel, count_cracks, draw_scale_bar, fracture_panels, frame_section, height_over_width
+
+if TYPE_CHECKING:
+    from .results import Frame, Results
 
 TEMPERATURES = (300.0, 400.0, 500.0, 600.0, 800.0)
 """°C, near which fracture is drawn unless others are asked for."""
@@ -52,11 +56,11 @@ def select_heated_frames(frames: Sequence[Frame], failed: bool) -> list[Frame]:
     return [selected[step] for step in sorted(selected)][-_MOST_PANELS:]
 
 
-def heating_fracture(run: Run, temperatures: Sequence[float] | None = None,
+def heating_fracture(run: Results, temperatures: Sequence[float] | None = None,
                      magnification: float | None = None) -> Figure:
     """The deformed specimen with its cracks while heated (paper, Figures 13 to 16).
 
-    temperatures [°C]: the frames nearest to them are drawn, and RunError is thrown when none is within 25 K;
+    temperatures [°C]: the frames nearest to them are drawn, and Error is raised when none is within 25 K;
     when None, as `select_heated_frames` has it. magnification: as `fracture_panels` takes it.
     """
     frames = run.heated_frames
@@ -69,17 +73,17 @@ def heating_fracture(run: Run, temperatures: Sequence[float] | None = None,
     return fracture_panels([("", panels)], style.title_of(run), magnification, _NOTE)
 
 
-def _frame_asked_for(run: Run, frames: Sequence[Frame], temperature: float) -> Frame:
+def _frame_asked_for(run: Results, frames: Sequence[Frame], temperature: float) -> Frame:
     frame = frame_near(frames, temperature)
     if frame is None:
         reach = [frame.temperature for frame in frames]
         path = run.folder / "fields" / "frames.csv"
-        raise RunError(f"{path}: no frame within {_NEAR:g} K of {temperature:g} °C; "
+        raise Error(f"{path}: no frame within {_NEAR:g} K of {temperature:g} °C; "
                        f"frames of the heating are from {min(reach):.0f} to {max(reach):.0f} °C")
     return frame
 
 
-def levels(runs: Sequence[Run], temperatures: Sequence[float] = LEVEL_TEMPERATURES,
+def levels(runs: Sequence[Results], temperatures: Sequence[float] = LEVEL_TEMPERATURES,
            magnification: float | None = None) -> Figure:
     """Fracture patterns, a row for each run, lowest load first; columns are temperatures and the last frame.
 
@@ -87,13 +91,13 @@ def levels(runs: Sequence[Run], temperatures: Sequence[float] = LEVEL_TEMPERATUR
     magnification: the same in all panels, as `fracture_panels` takes it.
     """
     if not runs:
-        raise RunError("levels: no runs were given")
+        raise Error("levels: no runs were given")
     ordered = sorted(runs, key=lambda run: (run.load_level is None, run.load_level or 0.0))
     rows = [(label, _row(run, temperatures)) for run, label in zip(ordered, _row_labels(ordered))]
     return fracture_panels(rows, "", magnification, _NOTE)
 
 
-def _row_labels(runs: Sequence[Run]) -> list[str]:
+def _row_labels(runs: Sequence[Results]) -> list[str]:
     """Load, and where that does not tell the runs apart also the folder; then warnings."""
     loads = [style.load_label(run) for run in runs]
     labels = []
@@ -104,13 +108,13 @@ def _row_labels(runs: Sequence[Run]) -> list[str]:
     return labels
 
 
-def _row(run: Run, temperatures: Sequence[float]) -> list[Panel]:
+def _row(run: Results, temperatures: Sequence[float]) -> list[Panel]:
     frames, failed = run.heated_frames, run.critical_temperature is not None
     choice = frames[:-1] if failed else frames
     return [*(_panel_near(run, choice, temperature) for temperature in temperatures), _panel(run, frames[-1])]
 
 
-def _panel_near(run: Run, frames: Sequence[Frame], temperature: float) -> Panel:
+def _panel_near(run: Results, frames: Sequence[Frame], temperature: float) -> Panel:
     if frames and (frame := frame_near(frames, temperature)):
         return _panel(run, frame)
     missing = f"no frame within\n{_NEAR:g} K"
@@ -119,7 +123,7 @@ def _panel_near(run: Run, frames: Sequence[Frame], temperature: float) -> Panel:
     return Panel(run, None, f"{temperature:g} °C", missing)
 
 
-def _panel(run: Run, frame: Frame) -> Panel:
+def _panel(run: Results, frame: Frame) -> Panel:
     last = frame.step == run.heated_frames[-1].step
     title, mean = f"{frame.temperature:.0f} °C", ""
     if not run.uniform and frame.heating_time is not None and np.isfinite(frame.heating_time):
@@ -129,7 +133,7 @@ def _panel(run: Run, frame: Frame) -> Panel:
     elif last:
         title = f"end, {title}"
     counts = count_cracks(run, frame)
-    stress = f"$\\sigma$ = {frame.stress:.1f} MPa\n" if run.restrained else ""
+    stress = f"$\\sigma$ = {frame.stress_MPa:.1f} MPa\n" if run.restrained else ""
     strain = f"{style.PER_MILLE * run.total_strain_at(frame):.2f}\\times 10^{{-3}}"
     modes = "\n".join(f"{mode}: {counts[mode, True]} | {counts[mode, False]}" for mode in run.crack_modes)
     caption = f"{mean}$\\varepsilon_{{\\mathrm{{tot}}}} = {strain}$\n{stress}{modes}"
@@ -137,7 +141,7 @@ def _panel(run: Run, frame: Frame) -> Panel:
 
 
 @matplotlib.rc_context(style.STYLE)
-def temperature_field(run: Run) -> Figure:
+def temperature_field(run: Results) -> Figure:
     """Temperature of the specimen at up to four times while heated, one colour scale for all."""
     frames = _spread(run.heated_frames)
     fields = [run.gridpoint_temperature(frame) for frame in frames]
@@ -159,7 +163,7 @@ def temperature_field(run: Run) -> Figure:
     return figure
 
 
-def draw_temperature(axes: Axes, run: Run, frame: Frame) -> TriMesh:
+def draw_temperature(axes: Axes, run: Results, frame: Frame) -> TriMesh:
     """The temperature of the specimen, alone in its axes, coloured over its own range. Returns what has the colours."""
     blocks = run.mesh.blocks
     field = run.gridpoint_temperature(frame)
@@ -183,7 +187,7 @@ def _spread(frames: Sequence[Frame]) -> list[Frame]:
     return [different[round(step)] for step in steps]
 
 
-def _draw_temperature(axes: Axes, run: Run, field: np.ndarray, scale: Normalize) -> TriMesh:
+def _draw_temperature(axes: Axes, run: Results, field: np.ndarray, scale: Normalize) -> TriMesh:
     blocks = run.mesh.blocks
     x, y = style.MILLI * blocks.points.T
     platens = style.MILLI * blocks.points[blocks.triangles[blocks.of_bearing]]

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import cycle
+from typing import TYPE_CHECKING
 
 import matplotlib
 import numpy as np
@@ -15,7 +16,9 @@ from . import reference, style
 from .curves import draw_tables
 from .progress import MINUTES_LABEL, heating_course, heating_minutes, temperature_label
 from .records import records_of
-from .run import Run
+
+if TYPE_CHECKING:
+    from .results import Results
 
 TOTAL_STRAIN_LABEL = "Total axial strain, expansion\npositive, load included [$10^{-3}$]"
 THRUST_LABEL = "Axial stress, compression\npositive [MPa]"
@@ -24,7 +27,7 @@ _BAND_LABEL = ("range of models calibrated on Anderberg &\nThelandersson's tests
 
 
 @matplotlib.rc_context(style.STYLE)
-def total_strain(run: Run) -> Figure:
+def total_strain(run: Results) -> Figure:
     """Total and lateral strain over temperature; the reference's range where it has the run's load level."""
     figure, over, upper, lower, below = _two_while_heated(run)
     strain = style.PER_MILLE * run.total_strain
@@ -48,7 +51,7 @@ def total_strain(run: Run) -> Figure:
 
 
 @matplotlib.rc_context(style.STYLE)
-def thrust(run: Run) -> Figure:
+def thrust(run: Results) -> Figure:
     """Stress that a restrained specimen builds up against its platens, and lateral strain."""
     figure, over, upper, lower, below = _two_while_heated(run)
     stress = run.heated_history("stress_MPa")
@@ -67,7 +70,7 @@ def thrust(run: Run) -> Figure:
     return figure
 
 
-def _draw_heated_parent(axes: Axes, run: Run, column: str, factor: float) -> None:
+def _draw_heated_parent(axes: Axes, run: Results, column: str, factor: float) -> None:
     """A column of the run that this one is a fork of, where that was heated too."""
     if run.parent and run.parent.heated.any():
         history, rows = run.parent.history, run.parent.standing
@@ -75,7 +78,7 @@ def _draw_heated_parent(axes: Axes, run: Run, column: str, factor: float) -> Non
         style.draw_parent(axes, run.parent, over[rows], factor * history[column][rows])
 
 
-def _two_while_heated(run: Run) -> tuple[Figure, np.ndarray, Axes, Axes, Axes]:
+def _two_while_heated(run: Results) -> tuple[Figure, np.ndarray, Axes, Axes, Axes]:
     """Figure with room for a curve, the lateral strain below it, and axes for a legend; and what curves are drawn over:
     the temperature, or minutes where the run is `timed`.
     """
@@ -111,7 +114,7 @@ def draw_band(axes: Axes, band: reference.StrainBand, colour: str, label: str | 
     axes.plot(band.temperature, central, color=colour, linewidth=0.8, linestyle=(0, (4, 2)))
 
 
-def strain_limits(runs: Sequence[Run], bands: Sequence[reference.StrainBand]) -> tuple[float, float]:
+def strain_limits(runs: Sequence[Results], bands: Sequence[reference.StrainBand]) -> tuple[float, float]:
     """Limits [10^-3] that show bands, tables and total strains, but not how far a failing specimen went."""
     tables = [values for run in runs for own in run.references.tables if own.of == "total_strain"
               for values in (own.low, own.high)]
@@ -128,14 +131,14 @@ def _padded(values: np.ndarray) -> tuple[float, float]:
     return float(values.min() - margin), float(values.max() + margin)
 
 
-def _mark_unconverged(axes: Axes, run: Run, over: np.ndarray, values: np.ndarray) -> None:
+def _mark_unconverged(axes: Axes, run: Results, over: np.ndarray, values: np.ndarray) -> None:
     rows = run.unconverged[run.heated]
     if rows.any():
         axes.plot(over[rows], values[rows], "x", color=style.VERMILLION,
                   markersize=4.0, linestyle="none", label=f"not converged ({rows.sum()} exchanges)")
 
 
-def _mark_failure(axes: Axes, run: Run, over: np.ndarray) -> None:
+def _mark_failure(axes: Axes, run: Results, over: np.ndarray) -> None:
     """over: of the rows of the heating, temperatures or minutes; the last is that of the failure."""
     if run.critical_temperature is None or not np.isfinite(over[-1]):
         return
@@ -144,7 +147,7 @@ def _mark_failure(axes: Axes, run: Run, over: np.ndarray) -> None:
 
 
 @matplotlib.rc_context(style.STYLE)
-def convergence(run: Run) -> Figure:
+def convergence(run: Results) -> Figure:
     """Cycles that the mechanics took after each exchange of temperatures, and the unbalanced ratio then."""
     course = heating_course(run)
     exchanged = course["exchange"] > 0
@@ -175,7 +178,7 @@ def convergence(run: Run) -> Figure:
 
 
 @matplotlib.rc_context(style.STYLE)
-def temperature_history(run: Run) -> Figure:
+def temperature_history(run: Results) -> Figure:
     """Least, mean and greatest temperature of the specimen, its probes and records of temperature, over the time."""
     minutes = run.history["heating_time_s"] / 60.0
     figure = style.new_figure(3.8)

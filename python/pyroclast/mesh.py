@@ -9,7 +9,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from .files import RunError, dataset, open_hdf
+from .errors import Error
+from .files import dataset, open_hdf
 
 _VTK_LINE, _VTK_TRIANGLE = 3, 5
 
@@ -35,7 +36,7 @@ class BlockMesh:
     def outlines(self) -> tuple[list[np.ndarray], np.ndarray]:
         """Gridpoints around each block, counter-clockwise, and the blocks' materials.
 
-        Throws RunError when a block's zones do not make one simple polygon.
+        Raises Error when a block's zones do not make one simple polygon.
         """
         return _outlines(self)
 
@@ -58,7 +59,7 @@ class Mesh:
 
 
 def read_mesh(path: Path) -> Mesh:
-    """Reads mesh.h5; throws RunError when it is missing or its groups are not triangles and lines."""
+    """Reads mesh.h5; raises Error when it is missing or its groups are not triangles and lines."""
     with open_hdf(path) as file:
         points, triangles = _cells(file, "blocks", _VTK_TRIANGLE, "triangles")
         blocks = BlockMesh(
@@ -83,13 +84,13 @@ def _names(file: h5py.File, name: str) -> tuple[str, ...]:
     """What the values of a dataset stand for."""
     names = file.get(f"{name}_names")
     if not isinstance(names, h5py.Dataset) or names.dtype.kind != "S" or names.ndim != 1:
-        raise RunError(f"{file.filename}: has no dataset /{name}_names of texts")
+        raise Error(f"{file.filename}: has no dataset /{name}_names of texts")
     try:
         texts = [text.decode() for text in names[()]]
     except UnicodeDecodeError:
         texts = ["\0"]
     if not "".join(texts).isprintable():
-        raise RunError(f"{file.filename}: /{name}_names holds no names")
+        raise Error(f"{file.filename}: /{name}_names holds no names")
     return tuple(texts)
 
 
@@ -97,22 +98,22 @@ def _cells(file: h5py.File, group: str, cell_type: int, name: str) -> tuple[np.n
     """Points (N, 2) and corners of each cell, all cells of one type."""
     points = dataset(file, f"{group}/Points")
     if points.ndim != 2 or points.shape[1] != 3:
-        raise RunError(f"{file.filename}: /{group}/Points has shape {points.shape}; (N, 3) is expected")
+        raise Error(f"{file.filename}: /{group}/Points has shape {points.shape}; (N, 3) is expected")
     types = dataset(file, f"{group}/Types")
     corners = dataset(file, f"{group}/Connectivity")
     sides = {_VTK_LINE: 2, _VTK_TRIANGLE: 3}[cell_type]
     if (types.ndim != 1 or corners.shape != (sides * len(types),) or corners.dtype.kind not in "iu"
             or (types != cell_type).any()):
-        raise RunError(f"{file.filename}: /{group} has cells that are not {name}")
+        raise Error(f"{file.filename}: /{group} has cells that are not {name}")
     if len(corners) and not 0 <= corners.min() <= corners.max() < len(points):
-        raise RunError(f"{file.filename}: /{group}/Connectivity points outside the {len(points)} points")
+        raise Error(f"{file.filename}: /{group}/Connectivity points outside the {len(points)} points")
     return points[:, :2], corners.astype(np.int64).reshape(-1, sides)
 
 
 def _cell_values(file: h5py.File, name: str, cells: int) -> np.ndarray:
     values = dataset(file, name)
     if values.shape != (cells,):
-        raise RunError(f"{file.filename}: /{name} has shape {values.shape} for {cells} cells")
+        raise Error(f"{file.filename}: /{name} has shape {values.shape} for {cells} cells")
     return values
 
 
@@ -120,7 +121,7 @@ def _kinds(file: h5py.File, name: str, cells: int) -> tuple[np.ndarray, tuple[st
     """Of each cell an index into the names, and the names."""
     values, names = _cell_values(file, name, cells), _names(file, name)
     if values.dtype.kind not in "iu" or cells and not 0 <= values.min() <= values.max() < len(names):
-        raise RunError(f"{file.filename}: /{name} holds numbers for which there is no name")
+        raise Error(f"{file.filename}: /{name} holds numbers for which there is no name")
     return values, names
 
 
@@ -132,7 +133,7 @@ def _counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 def _outlines(mesh: BlockMesh) -> tuple[list[np.ndarray], np.ndarray]:
     if not len(mesh.triangles):
-        raise RunError(f"{mesh.path}: /blocks has no zones")
+        raise Error(f"{mesh.path}: /blocks has no zones")
     # A directed zone edge is on the outline when no zone of the block walks it the other way.
     size = len(mesh.points)
     start = mesh.triangles.ravel()
@@ -141,7 +142,7 @@ def _outlines(mesh: BlockMesh) -> tuple[list[np.ndarray], np.ndarray]:
     owner = np.repeat(mesh.block, 3)[outer]
     start, end = start[outer], end[outer]
     if not np.array_equal(np.unique(start), np.sort(end)):  # each gridpoint is left once and reached once
-        raise RunError(f"{mesh.path}: /blocks has a block whose zones do not make one simple polygon")
+        raise Error(f"{mesh.path}: /blocks has a block whose zones do not make one simple polygon")
     following = dict(zip(start.tolist(), end.tolist()))
 
     _, first_edge = np.unique(owner, return_index=True)
@@ -152,6 +153,6 @@ def _outlines(mesh: BlockMesh) -> tuple[list[np.ndarray], np.ndarray]:
             loop.append(gridpoint)
         outlines.append(np.array(loop))
     if sum(map(len, outlines)) != len(start):
-        raise RunError(f"{mesh.path}: /blocks has a block whose zones do not make one simple polygon")
+        raise Error(f"{mesh.path}: /blocks has a block whose zones do not make one simple polygon")
     _, first_zone = np.unique(mesh.block, return_index=True)
     return outlines, mesh.material[first_zone]

@@ -1,13 +1,13 @@
-"""A run as a notebook shows it: its curve and its specimen as they stand."""
+"""A run and its results as a notebook shows them: the curve, the specimen, and what came of each stage."""
 
 from __future__ import annotations
 
 import base64
 import html
 import io
-import tomllib
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import matplotlib
 import numpy as np
@@ -16,37 +16,63 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from . import style
+from .columns import Columns
+from .errors import Error
+from .heated_sections import draw_temperature
 from .mesh import BlockMesh
 from .records import abscissa, leading, records_in
-from .sections import draw_blocks, frame_section
+from .sections import draw_blocks, draw_specimen, frame_section
 
 if TYPE_CHECKING:
+    from .results import Results
     from .session import Run
 
 _DPI = 110
 _OPEN = 0.5  # damage from which a crack is drawn
 
 
+class RunOrResults(Protocol):
+    """What runs and results have in common."""
+
+    @property
+    def title(self) -> str: ...
+    @property
+    def outcome(self) -> str: ...
+    @property
+    def history(self) -> Columns: ...
+    @property
+    def deck(self) -> Mapping[str, Any]: ...
+    @property
+    def stages(self) -> Sequence[Mapping[str, Any]]: ...
+
+
+OfRun = TypeVar("OfRun", bound=RunOrResults)
+
+
 @matplotlib.rc_context(style.STYLE)
-def figure_of(run: Run) -> Figure:
+def figure_of(run: OfRun, draw_section: Callable[[Axes, OfRun], None]) -> Figure:
     """Stress over strain, the first records of a body without platens, or temperature over time where nothing moves,
-    beside the blocks and their open cracks.
+    beside the section.
     """
     figure = style.new_figure(3.6, dpi=_DPI)
     curve, section = figure.subplots(1, 2, width_ratios=[1.5, 1.0])
     _draw_curve(curve, run)
-    _draw_section(section, run)
-    figure.suptitle(style.plain(f"{run.title}: {run.outcome}"))
+    draw_section(section, run)
+    figure.suptitle(style.plain(_headline(run)))
     return figure
 
 
-def _draw_curve(axes: Axes, run: Run) -> None:
+def _headline(run: RunOrResults) -> str:
+    return f"{run.title}: {run.outcome}"
+
+
+def _draw_curve(axes: Axes, run: RunOrResults) -> None:
     history = run.history
-    if "strain" in history:
+    if "strain" in history.names:
         axes.plot(style.PER_MILLE * history["strain"], history["stress_MPa"], color=style.BLUE)
         axes.set_xlabel(style.STRAIN_LABEL)
         axes.set_ylabel(style.STRESS_LABEL)
-    elif record := leading(records := records_in(tomllib.loads(run.deck_text), history)):
+    elif record := leading(records := records_in(run.deck, history.names)):
         _, over, label = abscissa(run, records)
         axes.plot(over, record.of(run), color=style.BLUE)
         axes.set_xlabel(label)
@@ -57,7 +83,8 @@ def _draw_curve(axes: Axes, run: Run) -> None:
         axes.set_ylabel("Mean temperature [°C]")
 
 
-def _draw_section(axes: Axes, run: Run) -> None:
+def draw_body(axes: Axes, run: Run) -> None:
+    """The blocks of a run as it stands, and their open cracks."""
     material = run.block_material[run.zone_block]
     of_bearing = ~np.isin(run.zones[:, 0], run.sets["specimen"])
     blocks = BlockMesh(Path(run.title), run.position, run.zones, run.zone_block, material, tuple(run.material_names),
@@ -66,6 +93,18 @@ def _draw_section(axes: Axes, run: Run) -> None:
     if run.moves:
         axes.add_collection(LineCollection(style.MILLI * _cracks(run), colors=style.VERMILLION, linewidths=0.9))
     frame_section(axes, blocks)
+
+
+def draw_last_frame(axes: Axes, results: Results) -> None:
+    """The specimen at the last frame, with its cracks, or its temperatures where nothing moves; nothing without one."""
+    if not results.frames:
+        axes.axis("off")
+    elif results.moves:
+        magnification = draw_specimen(axes, results, results.frames[-1])
+        axes.set_title(f"displacements ×{magnification:g}", fontsize=8.0)
+    else:
+        colours = draw_temperature(axes, results, results.frames[-1])
+        axes.figure.colorbar(colours, ax=axes, label="Temperature [°C]", shrink=0.8)
 
 
 def _cracks(run: Run) -> np.ndarray:
@@ -79,20 +118,35 @@ def _cracks(run: Run) -> np.ndarray:
     return np.stack([ends, middles], axis=1)[damage >= _OPEN]
 
 
-def png_of(run: Run) -> bytes:
+def png_of(run: OfRun, draw_section: Callable[[Axes, OfRun], None]) -> bytes:
     """The figure as a PNG."""
     picture = io.BytesIO()
     with matplotlib.rc_context(style.STYLE):
-        figure_of(run).savefig(picture, format="png")
+        figure_of(run, draw_section).savefig(picture, format="png")
     return picture.getvalue()
 
 
-def html_of(run: Run) -> str:
-    """The figure and what came of the run so far."""
-    rows = "".join(f"<tr><td>{html.escape(name)}</td><td>{html.escape(_shown(value))}</td></tr>"
-                   for name, value in run.results.items() if value is not None)
-    picture = base64.b64encode(png_of(run)).decode()
-    return f'<img src="data:image/png;base64,{picture}"><table>{rows}</table>'
+def html_of(run: OfRun, draw_section: Callable[[Axes, OfRun], None]) -> str:
+    """The figure, and what came of each stage so far; what cannot be read is told in its place."""
+    try:
+        headline = html.escape(_headline(run), quote=True)
+        rows = "".join(_rows(number, stage) for number, stage in enumerate(run.stages))
+    except Error as error:
+        return f"<p>{html.escape(str(error))}</p>"
+    try:
+        picture = base64.b64encode(png_of(run, draw_section)).decode()
+        shown = f'<img alt="{headline}" src="data:image/png;base64,{picture}">'
+    except Error as error:
+        shown = f"<p>{headline}</p><p>{html.escape(str(error))}</p>"
+    return f"{shown}<table>{rows}</table>"
+
+
+def _rows(number: int, stage: Mapping[str, Any]) -> str:
+    """Of a table: the stage and how it ended, then its results."""
+    told = f"stage {number} ({stage.get('kind', '')}): {stage.get('outcome', '')}"
+    return f'<tr><th colspan="2">{html.escape(told)}</th></tr>' + "".join(
+        f"<tr><td>{html.escape(name)}</td><td>{html.escape(_shown(value))}</td></tr>"
+        for name, value in stage.get("results", {}).items() if value is not None)
 
 
 def _shown(value: object) -> str:

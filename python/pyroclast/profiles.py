@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import matplotlib
 import numpy as np
@@ -12,10 +13,13 @@ from matplotlib import colormaps
 from matplotlib.figure import Figure
 
 from . import style
+from .errors import Error
 from .mesh import BlockMesh
-from .run import Run, RunError
 from .sections import specimen_box
 from .writing import whole
+
+if TYPE_CHECKING:
+    from .results import Results
 
 ISOTHERM = 500.0
 """°C, below which the reduced cross-section of EN 1992-1-2 takes concrete as whole."""
@@ -50,14 +54,14 @@ def _depth(depth: np.ndarray, temperature: np.ndarray) -> float:
     return float(depth[first - 1] + share * (depth[first] - depth[first - 1]))
 
 
-def read_profile(run: Run) -> Profile:
-    """Of all frames of the heating. Throws RunError when a frame has no temperatures."""
+def read_profile(run: Results) -> Profile:
+    """Of all frames of the heating. Raises Error when a frame has no temperatures."""
     blocks = run.mesh.blocks
     low, high = specimen_box(blocks)
     frames = [frame for frame in run.heated_frames
               if frame.heating_time is not None and np.isfinite(frame.heating_time)]
     if not frames:
-        raise RunError(f"{run.folder / 'fields' / 'frames.csv'}: no frame of a heating stage has a time")
+        raise Error(f"{run.folder / 'fields' / 'frames.csv'}: no frame of a heating stage has a time")
     fields = [run.gridpoint_temperature(frame) for frame in frames]
     lines = {}
     for axis in (0, 1):
@@ -111,7 +115,7 @@ def _write(path: Path, header: tuple[str, ...], rows: list[tuple[float, ...]]) -
 
 
 @matplotlib.rc_context(style.STYLE)
-def temperature_profile(run: Run, profile: Profile) -> Figure:
+def temperature_profile(run: Results, profile: Profile) -> Figure:
     """Temperature over the depth at up to eight times, evenly among the frames, the last among them."""
     figure = style.new_figure(3.8)
     axes, beside = figure.subplots(1, 2, width_ratios=[1.0, 0.2])
@@ -129,7 +133,7 @@ def temperature_profile(run: Run, profile: Profile) -> Figure:
 
 
 @matplotlib.rc_context(style.STYLE)
-def isotherm(run: Run, profile: Profile) -> Figure:
+def isotherm(run: Results, profile: Profile) -> Figure:
     """How deep the isotherm of ISOTHERM has come, over the time."""
     figure = style.new_figure(3.2)
     axes = figure.add_subplot()

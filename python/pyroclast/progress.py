@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import cycle
+from typing import TYPE_CHECKING
 
 import matplotlib
 import numpy as np
@@ -11,7 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
-from .run import Run, RunError
+from .errors import Error
+
+if TYPE_CHECKING:
+    from .results import Results
 
 _ENERGY_IN = ("energy_loading_J", "energy_gravity_J", "energy_property_change_J",
               "energy_mass_scaling_J")
@@ -38,7 +42,7 @@ _COOLED = 1.0  # K below the hottest before, from which temperature no longer or
 class Course:
     """Rows of a run's history, and what they are drawn over."""
 
-    run: Run
+    run: Results
     rows: np.ndarray  #: (rows of the history,) bool
     over: np.ndarray  #: (n,) in the unit of the label
     label: str
@@ -50,12 +54,12 @@ class Course:
         return self.run.history[name][self.rows]
 
 
-def loading_course(run: Run) -> Course:
+def loading_course(run: Results) -> Course:
     """The last stage, over strain."""
     return Course(run, run.loaded, style.PER_MILLE * run.loaded_strain, style.STRAIN_LABEL, start=0.0)
 
 
-def heating_course(run: Run) -> Course:
+def heating_course(run: Results) -> Course:
     """The heating, over temperature, or over time when the run is `timed` or also cools."""
     temperature, known = run.heated_history("temperature_degC"), run.history.known("temperature_degC", run.heated)
     if run.timed or (known < np.maximum.accumulate(known) - _COOLED).any():
@@ -64,17 +68,17 @@ def heating_course(run: Run) -> Course:
     return Course(run, run.heated, temperature, temperature_label(run), start=known.min())
 
 
-def heating_minutes(run: Run) -> np.ndarray:
+def heating_minutes(run: Results) -> np.ndarray:
     """Time of heating [min] over the rows of `heated`."""
     return run.heated_history("heating_time_s") / 60.0
 
 
-def temperature_label(run: Run) -> str:
+def temperature_label(run: Results) -> str:
     return "Temperature [°C]" if run.uniform else "Mean temperature of the specimen [°C]"
 
 
 @matplotlib.rc_context(style.STYLE)
-def cracks(run: Run) -> Figure:
+def cracks(run: Results) -> Figure:
     """Cracked contact points by mode and interface over strain, the stress curve behind."""
     modes = list(run.crack_modes) or ["tension"]
     figure = style.new_figure(1.2 + 1.8 * len(modes))
@@ -94,7 +98,7 @@ def cracks(run: Run) -> Figure:
 
 
 @matplotlib.rc_context(style.STYLE)
-def heating_cracks(run: Run) -> Figure:
+def heating_cracks(run: Results) -> Figure:
     """Cracked contact points and crack length by mode and interface, and the mean opening, while heated."""
     figure = style.new_figure(5.4)
     figure.suptitle(style.title_of(run), fontsize=9.0)
@@ -172,7 +176,7 @@ def energy(course: Course) -> Figure:
     work_in = sum(parts)
     turned_over = sum(map(np.abs, parts))
     if not (np.isfinite(turned_over) & np.isfinite(course.over)).any():
-        raise RunError(f"{course.run.history.path}: no row has all energies that were put in")
+        raise Error(f"{course.run.history.path}: no row has all energies that were put in")
     turnover = np.nanmax(turned_over) or 1.0  # heat takes out what a softening body stores
     _draw_stack(upper, course, turnover)
     upper.plot(course.over, work_in, color=style.BLACK, linewidth=1.4, linestyle=(0, (4, 2)),
@@ -196,7 +200,7 @@ def energy(course: Course) -> Figure:
     return figure
 
 
-def _energies(run: Run) -> list[tuple[str, str, str, str | None]]:
+def _energies(run: Results) -> list[tuple[str, str, str, str | None]]:
     """Columns of energies that the run has, with name, colour and hatch: a law may lose others than the paper's."""
     known = [entry for entry in _ENERGY_OUT if entry[0] in run.history]
     others = [name for name in run.history.names

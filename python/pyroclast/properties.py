@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
-from .run import RunError
+from .errors import Error
 
 _COLUMNS = ("property", "unit", "temperature_degC", "value", "ratio_to_20_degC")
 _SOLID_COLOURS = (style.VERMILLION, style.BLUE, style.GREEN, style.PURPLE, style.ORANGE)
@@ -38,7 +38,7 @@ class Property:
 def read_properties(path: Path) -> dict[str, Property]:
     """Reads properties.csv: by path in the deck, such as "materials.mortar.E".
 
-    Throws RunError when the file is missing or malformed.
+    Raises Error when the file is missing or malformed.
     """
     rows: dict[str, list[tuple[str, float, float, float]]] = {}
     try:
@@ -46,16 +46,16 @@ def read_properties(path: Path) -> dict[str, Property]:
             reader = csv.DictReader(file)
             missing = [name for name in _COLUMNS if name not in (reader.fieldnames or [])]
             if missing:
-                raise RunError(f"{path}: has no column '{missing[0]}'")
+                raise Error(f"{path}: has no column '{missing[0]}'")
             for row in reader:
                 numbers = tuple(float(row[name]) for name in _COLUMNS[2:])
                 rows.setdefault(row["property"], []).append((row["unit"], *numbers))
     except (OSError, UnicodeDecodeError) as error:
-        raise RunError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
+        raise Error(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
     except (TypeError, ValueError):
-        raise RunError(f"{path}, line {reader.line_num}: a number is missing or malformed") from None
+        raise Error(f"{path}, line {reader.line_num}: a number is missing or malformed") from None
     if not rows:
-        raise RunError(f"{path}: has a header but no rows")
+        raise Error(f"{path}: has a header but no rows")
     return {name: Property(entries[0][0], *np.array([entry[1:] for entry in entries]).T)
             for name, entries in rows.items()}
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import matplotlib
 import numpy as np
@@ -12,9 +12,12 @@ from matplotlib.figure import Figure
 
 from . import style
 from .curves import draw_tables
+from .errors import Error
 from .progress import MINUTES_LABEL, Course
-from .run import Frame, Run, RunError
 from .sections import Panel, count_cracks, fracture_panels
+
+if TYPE_CHECKING:
+    from .results import Frame, Results
 
 _SHOWN = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "MPa": ("MPa", 1.0), "degC": ("°C", 1.0)}
 """Unit of a column, how it is drawn, and what a value is multiplied by for that."""
@@ -60,9 +63,9 @@ class Record:
         return f"{self.name}: {self.label}"
 
 
-def records_of(run: Run) -> list[Record]:
+def records_of(run: Results) -> list[Record]:
     """The records of the deck that the run keeps, in its order."""
-    return records_in(run.deck, run.history)
+    return records_in(run.deck, run.history.names)
 
 
 def records_in(deck: Mapping[str, Any], columns: Container[str]) -> list[Record]:
@@ -95,7 +98,7 @@ def abscissa(run: HasHistory, records: list[Record]) -> tuple[Record | None, np.
     return record, record.of(run), record.title
 
 
-def record_course(run: Run) -> Course:
+def record_course(run: Results) -> Course:
     """All rows in which the body moved, over what records are drawn over."""
     _, over, label = abscissa(run, records_of(run))
     rows = np.isfinite(over)
@@ -113,7 +116,7 @@ class _Panel:
     factor: float  #: from the history's unit to the label's
 
 
-def _panels(run: Run) -> list[_Panel]:
+def _panels(run: Results) -> list[_Panel]:
     """One for each kind of record, over what all are drawn over; more where a reference asks for something else."""
     found = records_of(run)
     by_name = {record.name: record for record in found}
@@ -140,13 +143,13 @@ def _panels(run: Run) -> list[_Panel]:
 
 
 @matplotlib.rc_context(style.STYLE)
-def records(run: Run) -> Figure:
+def records(run: Results) -> Figure:
     """Each kind of record in a panel of its own, over the first opening or displacement that there is. References
     stand beside them, those over something else in panels of their own.
     """
     panels = _panels(run)
     if not panels:
-        raise RunError(f"{run.folder / 'deck.toml'}: has no [[record]] to draw")
+        raise Error(f"{run.folder / 'deck.toml'}: has no [[record]] to draw")
     figure = style.new_figure(0.9 + 2.2 * len(panels))
     all_axes = figure.subplots(len(panels), 1, squeeze=False)[:, 0]
     figure.suptitle(style.title_of(run), fontsize=9.0)
@@ -172,10 +175,10 @@ def _colours() -> Iterator[str]:
         yield from (style.BLUE, style.VERMILLION, style.ORANGE, style.PURPLE, style.BLACK)
 
 
-def record_fracture(run: Run, magnification: float | None = None) -> Figure:
+def record_fracture(run: Results, magnification: float | None = None) -> Figure:
     """The specimen where the first force, else the first stress, was largest, and at the end."""
     if not run.frames:
-        raise RunError(f"{run.folder / 'fields' / 'frames.csv'}: no frame; fracture cannot be drawn")
+        raise Error(f"{run.folder / 'fields' / 'frames.csv'}: no frame; fracture cannot be drawn")
     found = records_of(run)
     loaded = _first(found, ("force", "stress"))
     marks = {"end": run.frames[-1]}
@@ -192,9 +195,9 @@ def record_fracture(run: Run, magnification: float | None = None) -> Figure:
                            "Counts are contact points (two an edge) of A–M and M–M contacts.")
 
 
-def _caption(run: Run, frame: Frame, found: list[Record]) -> str:
+def _caption(run: Results, frame: Frame, found: list[Record]) -> str:
     row = int(np.searchsorted(run.history["step"], frame.step))
-    told = [f"{record.name} {record.of(run)[row]:.3g} {record.unit}" for record in found if row < len(run.history)]
+    told = [f"{record.name} {record.of(run)[row]:.3g} {record.unit}" for record in found if row < run.history.rows]
     counts = count_cracks(run, frame)
     broken = ", ".join(f"{count} {mode}" for (mode, is_broken), count in counts.items() if is_broken)
     return "\n".join([*told[:4], f"broken: {broken}"])

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from .files import LARGEST, RunError, read_json_list
+from .errors import Error
+from .files import LARGEST, read_json_list
 
 COMPRESSION, TRANSIENT_STRAIN = "compression", "transient_strain"
 """References of the program, as decks name them."""
@@ -56,17 +57,17 @@ class References:
 def read_references(path: Path) -> References:
     """From references.json, which the program leaves in the folder of a run; none without it.
 
-    Throws RunError when it is malformed.
+    Raises Error when it is malformed.
     """
     if not path.exists():
         return References()
     builtin, tables = set(), []
     for number, entry in enumerate(read_json_list(path)):
         if not isinstance(entry, dict):
-            raise RunError(f"{path}: entry {number} is no object")
+            raise Error(f"{path}: entry {number} is no object")
         if "builtin" in entry:
             if entry["builtin"] not in (COMPRESSION, TRANSIENT_STRAIN):
-                raise RunError(f"{path}: entry {number}: 'builtin' is neither {COMPRESSION} nor {TRANSIENT_STRAIN}")
+                raise Error(f"{path}: entry {number}: 'builtin' is neither {COMPRESSION} nor {TRANSIENT_STRAIN}")
             builtin.add(entry["builtin"])
         else:
             tables.append(_table(path, number, entry))
@@ -76,15 +77,15 @@ def read_references(path: Path) -> References:
 def _table(path: Path, number: int, entry: dict[str, Any]) -> Reference:
     words = [entry.get(key) for key in ("name", "of", "over")]
     if not all(isinstance(word, str) for word in words):
-        raise RunError(f"{path}: entry {number}: 'name', 'of' and 'over' are not all texts")
+        raise Error(f"{path}: entry {number}: 'name', 'of' and 'over' are not all texts")
     columns = []
     for key in ("x", "low", "high"):
         values = entry.get(key)
         if not isinstance(values, list) or not all(_is_number(value) for value in values):
-            raise RunError(f"{path}: entry {number}: '{key}' is no list of finite numbers")
+            raise Error(f"{path}: entry {number}: '{key}' is no list of finite numbers")
         columns.append(np.array(values, dtype=float))
     if len({len(column) for column in columns}) != 1 or len(columns[0]) < 2:
-        raise RunError(f"{path}: entry {number}: 'x', 'low' and 'high' are not alike in length, or shorter than 2")
+        raise Error(f"{path}: entry {number}: 'x', 'low' and 'high' are not alike in length, or shorter than 2")
     return Reference(*words, *columns)
 
 

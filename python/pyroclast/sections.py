@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import matplotlib
 import numpy as np
@@ -15,8 +16,11 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from . import style
+from .errors import Error
 from .mesh import BlockMesh, ContactMesh
-from .run import Frame, Run, RunError, Specimen
+
+if TYPE_CHECKING:
+    from .results import Frame, Results, SpecimenFolder
 
 _BEFORE_PEAK = 0.85  # strain of frame A over that of the peak: the first cracks have opened
 _AFTER_PEAK = 0.8  # stress of frame C over that of the peak
@@ -46,9 +50,9 @@ def select_frames(frames: Sequence[Frame], peak_strain: float, peak_stress: floa
     after = [frame for frame in frames[peak + 1:] if frame.step > frames[peak].step]
     if after:
         end = after[-1]
-        wanted = max(_AFTER_PEAK * peak_stress, 0.5 * (peak_stress + end.stress))
+        wanted = max(_AFTER_PEAK * peak_stress, 0.5 * (peak_stress + end.stress_MPa))
         if falling := [frame for frame in after if frame.step < end.step]:
-            selected["C"] = min(falling, key=lambda frame: abs(frame.stress - wanted))
+            selected["C"] = min(falling, key=lambda frame: abs(frame.stress_MPa - wanted))
         selected["D"] = end
     return selected
 
@@ -84,13 +88,13 @@ _CRACKS = (
 class Panel:
     """One fractured specimen in a figure; without a frame only the caption is drawn, in its place."""
 
-    run: Run
+    run: Results
     frame: Frame | None
     title: str
     caption: str
 
 
-def fracture(run: Run, marks: Mapping[str, Frame], magnification: float | None = None) -> Figure:
+def fracture(run: Results, marks: Mapping[str, Frame], magnification: float | None = None) -> Figure:
     """The deformed specimen with its cracks at the marked frames (paper, Figure 9).
 
     marks: as `select_frames` gives them. magnification of displacements: as `fracture_panels` takes it.
@@ -139,7 +143,7 @@ def fracture_panels(rows: Sequence[tuple[str, Sequence[Panel]]], heading: str, m
     return figure
 
 
-def draw_specimen(axes: Axes, run: Run, frame: Frame) -> float:
+def draw_specimen(axes: Axes, run: Results, frame: Frame) -> float:
     """The deformed specimen with its cracks, alone in its axes. Returns the magnification of its displacements."""
     magnification = _visible_magnification(run, frame)
     panel = Panel(run, frame, "", "")
@@ -170,7 +174,7 @@ def specimen_box(blocks: BlockMesh) -> tuple[np.ndarray, np.ndarray]:
     """Lower left and upper right corner of the specimen without bearings, m."""
     points = blocks.points[blocks.triangles[~blocks.of_bearing].ravel()]
     if not len(points):
-        raise RunError(f"{blocks.path}: /blocks/material has bearings only")
+        raise Error(f"{blocks.path}: /blocks/material has bearings only")
     return points.min(axis=0), points.max(axis=0)
 
 
@@ -199,14 +203,14 @@ def _margin(panels: Iterable[tuple[BlockMesh, np.ndarray]]) -> np.ndarray:
     return np.minimum(margin, _LARGEST_MARGIN)
 
 
-def _visible_magnification(run: Run, frame: Frame) -> float:
+def _visible_magnification(run: Results, frame: Frame) -> float:
     low, high = specimen_box(run.mesh.blocks)
     moved = np.percentile(np.linalg.norm(run.gridpoint_displacement(frame), axis=1), 95)
     fitting = [m for m in _MAGNIFICATIONS if m * moved <= _LARGEST_MOVE_DRAWN * (high - low)[1]]
     return fitting[-1] if fitting and moved > 0.0 else 1
 
 
-def _cracked(run: Run, frame: Frame, crack: _CrackStyle) -> np.ndarray:
+def _cracked(run: Results, frame: Frame, crack: _CrackStyle) -> np.ndarray:
     """(C,) bool: contact points that are drawn so."""
     contacts = run.mesh.contacts
     names = run.crack_modes[crack.mode]
@@ -214,12 +218,12 @@ def _cracked(run: Run, frame: Frame, crack: _CrackStyle) -> np.ndarray:
     return can_crack & crack.holds(run.contact_field(frame, f"{crack.mode}_damage [1]"))
 
 
-def count_cracks(run: Run, frame: Frame) -> dict[tuple[str, bool], int]:
-    """Cracked contact points that `fracture` draws, by mode (of `Run.crack_modes`) and whether broken."""
+def count_cracks(run: Results, frame: Frame) -> dict[tuple[str, bool], int]:
+    """Cracked contact points that `fracture` draws, by mode (of `Results.crack_modes`) and whether broken."""
     return {(crack.mode, crack.broken): int(_cracked(run, frame, crack).sum()) for crack in _cracks_of(run)}
 
 
-def _cracks_of(run: Run) -> list[_CrackStyle]:
+def _cracks_of(run: Results) -> list[_CrackStyle]:
     return [crack for crack in _CRACKS if crack.mode in run.crack_modes]
 
 
@@ -229,7 +233,7 @@ def height_over_width(blocks: BlockMesh, margin: np.ndarray = _MARGIN) -> float:
     return (high - low)[1] / (high - low)[0]
 
 
-def _draw_fractured(axes: Axes, run: Run, frame: Frame, points: np.ndarray, magnification: float,
+def _draw_fractured(axes: Axes, run: Results, frame: Frame, points: np.ndarray, magnification: float,
                     columns: int) -> None:
     blocks, contacts = run.mesh.blocks, run.mesh.contacts
     draw_blocks(axes, blocks, points)
@@ -271,11 +275,11 @@ def frame_section(axes: Axes, blocks: BlockMesh, margin: np.ndarray = _MARGIN) -
         spine.set_visible(False)
 
 
-def _caption(run: Run, frame: Frame) -> str:
+def _caption(run: Results, frame: Frame) -> str:
     counts = count_cracks(run, frame)
     return (
         f"$\\varepsilon$ = {style.PER_MILLE * frame.strain:.2f}$\\times 10^{{-3}}$\n"
-        f"$\\sigma$ = {frame.stress:.1f} MPa,\n{100.0 * frame.stress / run.peak[1]:.0f} % of peak\n"
+        f"$\\sigma$ = {frame.stress_MPa:.1f} MPa,\n{100.0 * frame.stress_MPa / run.peak[1]:.0f} % of peak\n"
         f"broken:\n{_listed(counts, True)}\n"
         f"damaged by more than half:\n{_listed(counts, False)}"
     )
@@ -295,7 +299,7 @@ def draw_scale_bar(axes: Axes, blocks: BlockMesh) -> None:
     axes.text(x + length + 0.03 * width, y, f"{length} mm", va="center", fontsize=7.0)
 
 
-def fracture_legend(run: Run) -> list:
+def fracture_legend(run: Results) -> list:
     """Handles of the cracks and materials that `fracture` and `draw_specimen` draw."""
     lines = [Line2D([], [], color=crack.colour, linewidth=crack.width, label=crack.label)
              for crack in _cracks_of(run)]
@@ -309,7 +313,7 @@ def _material_legend(blocks: BlockMesh) -> list[Patch]:
 
 
 @matplotlib.rc_context(style.STYLE)
-def morphology(specimen: Specimen) -> Figure:
+def morphology(specimen: SpecimenFolder) -> Figure:
     """Blocks by material and the circles that were placed (paper, Figure 7)."""
     blocks, circles = specimen.mesh.blocks, specimen.aggregates
     low, high = _panel_box(blocks)
@@ -318,7 +322,7 @@ def morphology(specimen: Specimen) -> Figure:
     draw_blocks(axes, blocks, blocks.points, edge="#7d7d7d")
     diameters = style.MILLI * circles["diameter_m"]
     axes.add_collection(EllipseCollection(
-        diameters, diameters, np.zeros(len(circles)), units="xy", facecolors="none", edgecolors=style.BLUE,
+        diameters, diameters, np.zeros(circles.rows), units="xy", facecolors="none", edgecolors=style.BLUE,
         linewidths=0.9, offsets=style.MILLI * np.column_stack([circles["x_m"], circles["y_m"]]),
         offset_transform=axes.transData))
     axes.set_xlim(style.MILLI * low[0], style.MILLI * high[0])
@@ -329,17 +333,17 @@ def morphology(specimen: Specimen) -> Figure:
     axes.set_ylabel("y [mm]")
     axes.set_title(f"{specimen.fact('blocks'):.0f} blocks{_shares(specimen)}")
     handles: list[Artist] = list(_material_legend(blocks))
-    if len(circles):
+    if circles.rows:
         handles.append(Line2D([], [], color=style.BLUE, marker="o", markerfacecolor="none", linestyle="none",
                               label="placed circle"))
     style.legend_alone(beside, handles, [handle.get_label() for handle in handles], loc="upper left")
     return figure
 
 
-def _shares(specimen: Specimen) -> str:
+def _shares(specimen: SpecimenFolder) -> str:
     """Of the aggregates, where there are circles; else of the materials, where there are several."""
-    if len(specimen.aggregates):
-        return (f", {len(specimen.aggregates)} aggregates; aggregate fraction\n"
+    if specimen.aggregates.rows:
+        return (f", {specimen.aggregates.rows} aggregates; aggregate fraction\n"
                 f"asked {specimen.fact('fraction_asked'):.3f}, placed {specimen.fact('fraction_placed'):.3f}, "
                 f"after superposition {specimen.fact('fraction_superposed'):.3f}")
     shares = {name: share for name, share in specimen.shares.items() if share > 0.0}
@@ -349,7 +353,7 @@ def _shares(specimen: Specimen) -> str:
 
 
 @matplotlib.rc_context(style.STYLE)
-def gradation(specimen: Specimen) -> Figure:
+def gradation(specimen: SpecimenFolder) -> Figure:
     """Cumulative passing in the coarse range: asked and placed (paper, Figure 5)."""
     table = specimen.gradation
     figure = style.new_figure(3.8)

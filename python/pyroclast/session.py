@@ -11,6 +11,7 @@ wrong with a deck.
 from __future__ import annotations
 
 import json
+import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,8 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, functions
+from .columns import Array, ColumnNames, Columns
 from .decks import Deck, Value, as_deck, table_text, toml, without_functions
 from .errors import Error
+from .libraries import library
 from .specimen import Specimen
 from .stages import Stage
 from .units import Quantity, in_si
@@ -29,77 +32,27 @@ if TYPE_CHECKING:
     import meshio
     import pandas
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int32]
 
 
-class Columns:
-    """The columns of a history, by the program's names ("stress_MPa") and without their units ("stress", in SI)."""
-
-    def __init__(self, columns: Sequence[tuple[str, str]]):
-        self.names = [name for name, _ in columns]
-        self.units = dict(columns)
-        self._places: dict[str, tuple[int, float]] = {}
-        for i, (name, unit) in enumerate(columns):
-            ending = "_" + unit.replace("/", "_")
-            if unit != "1" and name.endswith(ending):
-                self._places.setdefault(name.removesuffix(ending), (i, _core.si_factor(unit)))
-        for i, name in enumerate(self.names):
-            self._places[name] = (i, 1.0)
-
-    def place(self, name: str) -> tuple[int, float]:
-        """Number of a column, and by what its values are to be multiplied. Raises KeyError where there is none."""
-        return self._places[name]
-
-    @property
-    def bare(self) -> list[str]:
-        """The names under which values are SI."""
-        return [name for name in self._places if name not in self.units or self.units[name] == "1"]
-
-
-class History(Mapping[str, Array]):
+class History(Columns):
     """All rows of a history so far, a read-only array (rows,) for each column; NaN where a cell is empty.
 
     Under the program's name ("stress_MPa") a column is in the unit of its name; without it ("stress") in SI. A
     snapshot: later rows are not in it. A name that there is not raises KeyError.
     """
 
-    def __init__(self, columns: Columns, cells: Array):
-        self._columns, self._cells = columns, cells
-        self._cells.setflags(write=False)
+    def __init__(self, names: ColumnNames, cells: Array):
+        super().__init__(names)
+        self._rows = cells
 
-    def __getitem__(self, name: str) -> Array:
-        i, factor = self._columns.place(name)
-        column: Array = self._cells[:, i]
-        if factor == 1.0:
-            return column
-        scaled = column * factor
-        scaled.setflags(write=False)
-        return scaled
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._columns.names)
-
-    def __len__(self) -> int:
-        return len(self._columns.names)
+    def _cells(self, column: int) -> Array:
+        return self._rows[:, column]
 
     @property
     def rows(self) -> int:
         """Looks so far, with that at the start."""
-        return len(self._cells)
-
-    @property
-    def units(self) -> dict[str, str]:
-        """Unit of each column; "1" for a number."""
-        return dict(self._columns.units)
-
-    def to_pandas(self) -> pandas.DataFrame:
-        """As a DataFrame, the columns by the program's names."""
-        import pandas
-        return pandas.DataFrame(self._cells, columns=self._columns.names)
-
-    def __repr__(self) -> str:
-        return f"<History of {self.rows} rows, {len(self)} columns>"
+        return len(self._rows)
 
 
 class State:
@@ -112,7 +65,7 @@ class State:
 
     __slots__ = ("_columns", "_lasts", "_look", "_run", "_values")
 
-    def __init__(self, run: Run, columns: Columns, values: Array, look: int):
+    def __init__(self, run: Run, columns: ColumnNames, values: Array, look: int):
         self._run, self._columns, self._values, self._look, self._lasts = run, columns, values, look, False
 
     def __getitem__(self, name: str) -> float:
@@ -309,7 +262,7 @@ class Run:
         self._look = 0
         self._at_looks: list[Callable[[Run], object]] = []
         self._recorders: list[Recorder] = []
-        self._columns = Columns(core.columns)
+        self._columns = ColumnNames(core.columns, _core.si_factor)
         self._finished = False
         known = {stage.kind for stage in classes}
         for kind, *_ in core.stages:
@@ -620,7 +573,7 @@ class Run:
         self._core.write_checkpoint()
 
     def _renewed(self) -> Run:
-        self._columns = Columns(self._core.columns)
+        self._columns = ColumnNames(self._core.columns, _core.si_factor)
         return self
 
     # What came of it
@@ -637,13 +590,16 @@ class Run:
         return summary
 
     @property
+    def stages(self) -> list[dict[str, Any]]:
+        """What the summary says of each stage, in order: `kind`, `outcome`, `results`, `warnings`."""
+        stages: list[dict[str, Any]] = self.summary["stages"]
+        return stages
+
+    @property
     def results(self) -> dict[str, Any]:
         """Results of all stages so far, in the units of their names ("f_c_MPa"); where two have one, that of the later.
         """
-        results: dict[str, Any] = {}
-        for stage in self.summary["stages"]:
-            results |= stage["results"]
-        return results
+        return {name: value for stage in self.stages for name, value in stage["results"].items()}
 
     @property
     def outcome(self) -> str:
@@ -679,6 +635,11 @@ class Run:
     def deck_text(self) -> str:
         """The deck as it stands, with what was changed since."""
         return self._core.deck_text
+
+    @property
+    def deck(self) -> dict[str, Any]:
+        """The same as tables."""
+        return tomllib.loads(self.deck_text)
 
     @property
     def warnings(self) -> list[str]:
@@ -771,12 +732,12 @@ class Run:
         `face`, `area_m2`, `normal_x` and `normal_y`, and the fields of contacts that are numbers (docs/fields.md):
         `opening_m`, what their laws remember (`closure_m`), what they lost (`lost_tension_J_m2`), ...
         """
-        import pandas
-        table = {**self._core.contact_points(), **_of_item(self._core, "contact", components=1)}
-        return pandas.DataFrame(table).astype({"face": int})
+        columns = {**self._core.contact_points(), **_of_item(self._core, "contact", components=1)}
+        table: pandas.DataFrame = library("pandas", "contacts").DataFrame(columns)
+        return table.astype({"face": int})
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The history as a DataFrame."""
+        """The history as a DataFrame, with the units of its columns in `attrs["units"]`."""
         return self.history.to_pandas()
 
     def to_meshio(self) -> meshio.Mesh:
@@ -784,24 +745,25 @@ class Run:
         ...), and `block` and `material` of zones. `field_data` has the names of the materials: their number and the
         dimension of their zones, as meshes of gmsh do.
         """
-        import meshio
         block = self.zone_block
         points = {name: _in_space(values) if values.ndim > 1 else values
                   for name, values in self._core.fields("gridpoint", []).items()}
         cells: dict[str, Any] = {"block": block, "material": self.block_material[block], **self._core.fields("zone", [])}
         names = {name: np.array([number, 2]) for number, name in enumerate(self.material_names)}
-        return meshio.Mesh(_in_space(self.position), [("triangle", self.zones)], point_data=points,
-                           cell_data={name: [values] for name, values in cells.items()}, field_data=names)
+        mesh: meshio.Mesh = library("meshio", "to_meshio").Mesh(
+            _in_space(self.position), [("triangle", self.zones)], point_data=points,
+            cell_data={name: [values] for name, values in cells.items()}, field_data=names)
+        return mesh
 
     # In a notebook
 
     def _repr_png_(self) -> bytes:
-        from .notebook import png_of
-        return png_of(self)
+        from .notebook import draw_body, png_of
+        return png_of(self, draw_body)
 
     def _repr_html_(self) -> str:
-        from .notebook import html_of
-        return html_of(self)
+        from .notebook import draw_body, html_of
+        return html_of(self, draw_body)
 
     def __repr__(self) -> str:
         return f"<Run {self.title!r}: {self.outcome}, {self._core.rows} rows>"

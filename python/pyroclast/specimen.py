@@ -12,12 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core, label_image, mesh_cells
 from .errors import Error
+from .libraries import library
 from .units import Quantity
 
 if TYPE_CHECKING:
     import meshio
-
-    from .decks import Deck
 
 Label = Union[int, str]
 
@@ -165,13 +164,6 @@ class Specimen:
         return cls(whole, alike)
 
     @classmethod
-    def of(cls, deck: Deck | str | Path, seed: int | None = None) -> Specimen:
-        """The specimen that a run of a deck has, with this seed or the deck's. Raises as `Run`."""
-        from .decks import as_deck
-        from .functions import Scratch
-        return cls(_core.Specimen.of_deck(as_deck(deck)._resolved(Scratch()), seed))
-
-    @classmethod
     def read(cls, file: str | Path, join: str | Quantity | None = None) -> Specimen:
         """From a file as `save` writes it, or with another unit in the name of its vertices (`vertices_mm`).
 
@@ -231,13 +223,14 @@ class Specimen:
 
     def to_meshio(self) -> meshio.Mesh:
         """As polygons in space, z = 0, with the cell data `phase`."""
-        import meshio
         phase, cells = self.phase, self.cells
         size = np.array([len(cell) for cell in cells])
         of_size = [np.flatnonzero(size == n) for n in np.unique(size)]
         points = np.column_stack([self.vertices, np.zeros(len(self.vertices))])
-        return meshio.Mesh(points, [("polygon", np.array([cells[i] for i in some])) for some in of_size],
-                           cell_data={"phase": [phase[some] for some in of_size]})
+        polygons = [("polygon", np.array([cells[i] for i in some])) for some in of_size]
+        mesh: meshio.Mesh = library("meshio", "to_meshio").Mesh(
+            points, polygons, cell_data={"phase": [phase[some] for some in of_size]})
+        return mesh
 
     def __repr__(self) -> str:
         shares = ", ".join(f"{name} {share:.3f}" for name, share in self.shares.items())

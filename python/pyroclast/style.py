@@ -106,7 +106,7 @@ def title_of(run) -> str:
 
 def facts_of(run) -> list[str]:
     """Load and temperatures of a heated run, which the deck's title may not tell or may tell wrong."""
-    if run.only_conducts or not run.exchanged.any():
+    if not run.moves or not run.exchanged.any():
         return []
     temperatures = run.history.known("temperature_degC", run.heated)
     mean = "" if run.uniform else "mean "
@@ -139,7 +139,7 @@ def load_label(run) -> str:
         return ""
     if run.load_level is not None:
         return f"$\\sigma/f_c$ = {run.load_level:g}"
-    return "" if run.load_stress is None else f"$\\sigma$ = {run.load_stress:g} MPa"
+    return "" if run.load_stress_MPa is None else f"$\\sigma$ = {run.load_stress_MPa:g} MPa"
 
 
 def kept(x: np.ndarray, *values: np.ndarray, most: int = _MOST_POINTS) -> np.ndarray:

@@ -45,13 +45,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
-from .files import GapWarning, Lock, RunError, Writer, read_json
+from .errors import Error
+from .files import GapWarning, Lock, Writer, read_json
 from .heated_sections import draw_temperature
 from .heating import THRUST_LABEL, TOTAL_STRAIN_LABEL
 from .interrupts import hear_ctrl_c
 from .progress import MINUTES_LABEL, Course, heating_course, loading_course
 from .records import leading, record_course, records_of
-from .run import Frame, GrowingRun
+from .results import Frame, GrowingResults
 from .sections import draw_specimen, fracture_legend
 from .style import save
 from .textplot import curve, plain_label
@@ -84,7 +85,7 @@ class _Curve:
     has_peak: bool = False  #: the largest value says something
 
 
-def _record_curve(run: GrowingRun) -> _Curve:
+def _record_curve(run: GrowingResults) -> _Curve:
     """Of a body without platens."""
     course = heating_course(run) if run.ends_heated else record_course(run)
     record = leading(records_of(run))
@@ -93,9 +94,9 @@ def _record_curve(run: GrowingRun) -> _Curve:
     return _Curve(course, record.of(run)[course.rows], record.title, record.name, f" {record.unit}", has_peak=True)
 
 
-def _curve_of(run: GrowingRun) -> _Curve:
-    if run.only_conducts:
-        rows = np.ones(len(run.history), dtype=bool)
+def _curve_of(run: GrowingResults) -> _Curve:
+    if not run.moves:
+        rows = np.ones(run.history.rows, dtype=bool)
         course = Course(run, rows, run.history["heating_time_s"] / 60.0, MINUTES_LABEL, start=0.0)
         return _Curve(course, course["temperature_degC"], "Mean temperature [°C]", "mean temperature", " °C")
     if not run.has_platens:
@@ -112,17 +113,17 @@ def _curve_of(run: GrowingRun) -> _Curve:
 class Watch:
     """A run as far as it has come; `update` reads on. Shows itself in a notebook.
 
-    Throws RunError when the folder holds no run.
+    Raises Error when the folder holds no run.
     """
 
     def __init__(self, folder: str | Path, picture: str | Path | None = None):
         """picture: the file that `save` writes, its format by its ending; None: PICTURE in the folder."""
-        self.run = GrowingRun(folder)
+        self.run = GrowingResults(folder)
         self.picture = Path(picture) if picture is not None else None
         self._lock = Lock(self.run.folder)
         self._seen: tuple | None = None
         if not self.is_running and not any((self.folder / name).exists() for name in ("history.csv", "manifest.json")):
-            raise RunError(f"{self.folder}: holds no run")
+            raise Error(f"{self.folder}: holds no run")
         self.update()
 
     @property
@@ -145,8 +146,8 @@ class Watch:
         """
         try:
             is_new = self.run.refresh()
-            rows, frames = len(self.run.history), len(self.run.frames)
-        except RunError:
+            rows, frames = self.run.history.rows, len(self.run.frames)
+        except Error:
             is_new, rows, frames = False, 0, 0
         seen = (self._state(), rows, frames)
         is_new = is_new or seen != self._seen
@@ -157,11 +158,11 @@ class Watch:
         """What the run is, how far it has come, and the latest numbers; a line each."""
         try:
             title = " ".join(self.run.title.split())
-        except RunError:
+        except Error:
             title = self.folder.resolve().name
         try:
             numbers = ", ".join(self._numbers())
-        except (RunError, ValueError):
+        except (Error, ValueError):
             numbers = ""
         return [line for line in (title, self._state(), numbers) if line]
 
@@ -169,7 +170,7 @@ class Watch:
         if self._is_over:
             try:
                 outcome = str(read_json(self.folder / "summary.json").get("outcome", "over"))
-            except RunError:
+            except Error:
                 outcome = "over"
             return f"run ended: {outcome}"
         stage = self._stage()
@@ -187,7 +188,7 @@ class Watch:
         try:
             stages = self.run.deck_stages
             now = int(self.run.history["stage"][-1])
-        except (RunError, IndexError):
+        except (Error, IndexError):
             return f"stage {number} ({kind})" if said else ""
         if str(now + 1) != number:
             share = left = ""
@@ -207,7 +208,7 @@ class Watch:
         drawn = _curve_of(self.run)
         parts = []
         known = drawn.values[np.isfinite(drawn.values)]
-        if len(known) and not self.run.only_conducts:
+        if len(known) and self.run.moves:
             parts.append(f"{drawn.name} {known[-1]:.3g}{drawn.unit}")
             if drawn.has_peak:
                 parts[-1] += f" (largest {known.max():.3g})"
@@ -235,12 +236,12 @@ class Watch:
         try:
             frame = self.run.frames[-1] if self.run.frames else None
             self._draw_curve(axes, frame)
-        except (RunError, ValueError):
+        except (Error, ValueError):
             _say_in(axes, "nothing to draw yet")
             frame = None
         try:
             self._draw_section(section, below, frame)
-        except RunError:
+        except Error:
             _say_in(section, "the newest frame cannot be read")
         return style.thin(figure)
 
@@ -265,7 +266,7 @@ class Watch:
     def _draw_section(self, axes: Axes, below: Axes, frame: Frame | None) -> None:
         if frame is None:
             _say_in(axes, "no frame of the fields yet")
-        elif self.run.only_conducts:
+        elif not self.run.moves:
             colours = draw_temperature(axes, self.run, frame)
             axes.figure.colorbar(colours, ax=axes, label="Temperature [°C]", shrink=0.8)
             axes.set_title(f"mean {frame.temperature:.0f} °C")
@@ -290,7 +291,7 @@ class Watch:
             drawn = _curve_of(self.run)
             size = (columns, max(rows - len(lines), 0))
             lines += curve(drawn.course.over, drawn.values, drawn.course.label, drawn.label, size)
-        except (RunError, ValueError):
+        except (Error, ValueError):
             lines.append("nothing to draw yet")
         return [line[:columns] for line in lines[:rows]]
 
@@ -529,7 +530,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # who read it has gone
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
-    except (RunError, OSError) as problem:
+    except (Error, OSError) as problem:
         _tell(problem)
         return 1
     return 0

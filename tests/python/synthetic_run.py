@@ -135,7 +135,8 @@ def write_run(
 def write_summary(folder: Path, title: str, stages: list[tuple[str, dict]]) -> None:
     """`stages` are kinds and results."""
     stages = [{"kind": kind, "outcome": "completed", "results": results} for kind, results in stages]
-    (folder / "summary.json").write_text(json.dumps({"title": title, "stages": stages, "warnings": []}))
+    (folder / "summary.json").write_text(json.dumps(
+        {"title": title, "outcome": "completed", "stages": stages, "warnings": []}))
 
 
 @dataclass

@@ -27,14 +27,16 @@ import synthetic_run  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
 from pyroclast import figures, style  # noqa: E402
 from pyroclast.comparisons import compare_runs  # noqa: E402
-from pyroclast.files import GapWarning, RunError  # noqa: E402
+from pyroclast.errors import Error  # noqa: E402
+from pyroclast.files import GapWarning  # noqa: E402
 from pyroclast.heated_sections import levels  # noqa: E402
-from pyroclast.run import Run  # noqa: E402
+from pyroclast.results import Results  # noqa: E402
 from pyroclast.watch import Watch  # noqa: E402
 
 DAMAGED = int(os.environ.get("PYROCLAST_DAMAGED", "200"))  # 500 in a longer try
 RENDERED_EVERY = int(os.environ.get("PYROCLAST_RENDERED_EVERY", "25"))  # also rendered, not only made; this is slow
 WATCHED_EVERY = 10
+READ_EVERY = 5
 FIGURES = 1  # of a damaged folder, drawn by lot
 DRAWN = ("strain", "stress_MPa", "temperature_degC", "heating_time_s", "specimen_strain", "lateral_strain",
          "energy_loading_J", "exchange", "stage", "converged")
@@ -175,14 +177,14 @@ class Damaged(unittest.TestCase):
         kind(path, random)
         return kind.__name__, [path]
 
-    def draw(self, run: Run, whole: Path, of_fields: bool, rendered: bool, random) -> None:
+    def draw(self, run: Results, whole: Path, of_fields: bool, rendered: bool, random) -> None:
         """Makes some of the figures that the damage can spoil."""
         choice = [make for name, make in figures.figures_of(run)
                   if not of_fields or name.endswith("fracture") or name == "temperature"]
-        if not of_fields and not run.only_conducts:
-            choice.append(lambda: compare_runs([run, Run(whole)]))
+        if not of_fields and run.moves:
+            choice.append(lambda: compare_runs([run, Results(whole)]))
         if run.ends_heated:
-            choice.append(lambda: levels([run, Run(whole)]))
+            choice.append(lambda: levels([run, Results(whole)]))
         for make in random.permutation(np.array(choice, dtype=object))[:FIGURES]:
             figure = make()
             if rendered:
@@ -200,12 +202,12 @@ class Damaged(unittest.TestCase):
                     with warnings.catch_warnings(record=True) as noted:
                         warnings.simplefilter("error")
                         warnings.simplefilter("always", GapWarning)
-                        self.draw(Run(folder), self.root / f"{folder.name}_whole",
+                        self.draw(Results(folder), self.root / f"{folder.name}_whole",
                                   all(path.suffix in (".h5", ".hdf") for path in paths),
                                   seed % RENDERED_EVERY == 0, random)
                     drawn += 1
                     gaps += bool(noted)
-                except RunError as error:
+                except Error as error:
                     told += 1
                     self.assertEqual(len(str(error).splitlines()), 1, str(error))
                     self.assertIn(str(self.root), str(error))
@@ -215,6 +217,31 @@ class Damaged(unittest.TestCase):
         self.assertGreater(told, 0.2 * DAMAGED)
         self.assertGreater(drawn, 0.2 * DAMAGED)
         self.assertGreater(gaps, 0.02 * DAMAGED)
+
+    def test_fields_and_notebooks_have_all_or_tell_it_in_one_line(self):
+        names = ("compressed", "failed", "cooled", "restrained", "wall")
+        read = told = 0
+        for seed in range(0, DAMAGED, READ_EVERY):
+            random = np.random.default_rng(seed)
+            folder = self.root / names[seed // READ_EVERY % len(names)]
+            what, paths = self.damage(folder, random)
+            with self.subTest(seed=seed, what=what, of=[path.name for path in paths]), warnings.catch_warnings():
+                warnings.simplefilter("error")
+                warnings.simplefilter("ignore", GapWarning)
+                try:
+                    results = Results(folder)
+                    results.fields.isel(frame=slice(None, None, 5)).load()
+                    results.block_fields.isel(frame=-1).load()
+                    read += 1
+                except Error as error:
+                    told += 1
+                    self.assertEqual(len(str(error).splitlines()), 1, str(error))
+                    self.assertIn(str(self.root), str(error))
+                self.assertTrue(Results(folder)._repr_html_())
+            for path in paths:
+                path.write_bytes(self.content[path])
+        self.assertGreater(told, 0.2 * DAMAGED / READ_EVERY)
+        self.assertGreater(read, 0.2 * DAMAGED / READ_EVERY)
 
     def test_a_damaged_run_is_watched_as_far_as_it_can_be_read(self):
         names = ("compressed", "failed", "cooled", "restrained", "wall")
@@ -295,7 +322,7 @@ class CommandLine(unittest.TestCase):
             with self.subTest(title):
                 synthetic_run.write_summary(self.folder, title, [("settle", {}), ("compress", {})])
                 marks = {}
-                figures.stress_strain(Run(self.folder), marks).savefig(io.BytesIO(), format="svg")
+                figures.stress_strain(Results(self.folder), marks).savefig(io.BytesIO(), format="svg")
 
 
 if __name__ == "__main__":

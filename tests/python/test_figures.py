@@ -28,13 +28,14 @@ from synthetic_run import Heating  # noqa: E402
 from pyroclast import figures, reference, style  # noqa: E402
 from pyroclast.comparisons import compare_cracks, compare_thrust, compare_total_strain  # noqa: E402
 from pyroclast.curves import compare, mean_curve, mean_of, names_apart, stress_strain  # noqa: E402
+from pyroclast.errors import Error  # noqa: E402
 from pyroclast.heated_sections import frame_near, levels, select_heated_frames  # noqa: E402
 from pyroclast.heating import strain_limits, total_strain  # noqa: E402
 from pyroclast.profiles import read_profile  # noqa: E402
 from pyroclast.progress import heating_course  # noqa: E402
 from pyroclast.properties import read_properties  # noqa: E402
 from pyroclast.records import record_fracture, records  # noqa: E402
-from pyroclast.run import Frame, Run, RunError, Specimen, Table  # noqa: E402
+from pyroclast.results import Frame, Results, SpecimenFolder, Table  # noqa: E402
 from pyroclast.sections import count_cracks, fracture, morphology, select_frames, specimen_box  # noqa: E402
 
 
@@ -96,14 +97,14 @@ class HeatedTest(CommandTest):
         synthetic_run.write_heated_run(folder, heating or Heating())
         return folder
 
-    def summary_of(self, folder: Path, **results) -> Run:
+    def summary_of(self, folder: Path, **results) -> Results:
         """The run, results of those of its stages that have one of the name replaced."""
         path = folder / "summary.json"
         facts = json.loads(path.read_text())
         for stage in facts["stages"]:
             stage["results"] |= {name: value for name, value in results.items() if name in stage["results"]}
         path.write_text(json.dumps(facts))
-        return Run(folder)
+        return Results(folder)
 
 
 class OtherBodies(FolderTest):
@@ -126,7 +127,7 @@ class OtherBodies(FolderTest):
         code, printed, err = self.command("run", self.run_folder)
         self.assertEqual((code, err), (0, ""))
         self.assertEqual([Path(line).name for line in printed], ["records.png", "energy.png", "fracture.png"])
-        run = Run(self.run_folder)
+        run = Results(self.run_folder)
         curve = records(run).axes[0].lines[0]
         np.testing.assert_allclose(curve.get_xdata(), 1e3 * run.history["stretch_m"])
         np.testing.assert_allclose(curve.get_ydata(), 1e-3 * run.history["grip_N"])
@@ -143,7 +144,7 @@ class OtherBodies(FolderTest):
         (self.run_folder / "references.json").write_text(json.dumps(
             [{"name": "beam 3", "of": "grip", "over": "stretch"} | table,
              {"name": "beam 4", "of": "grip", "over": "time"} | table]))
-        first, second = records(Run(self.run_folder)).axes
+        first, second = records(Results(self.run_folder)).axes
         drawn = {line.get_label(): line for line in first.lines}
         np.testing.assert_allclose(drawn["beam 3"].get_xdata(), [0.0, 0.1])  # mm
         np.testing.assert_allclose(drawn["beam 3"].get_ydata(), [0.0, 2.0])  # kN
@@ -177,7 +178,7 @@ class CommandsMakePictures(FolderTest):
         self.assertEqual([Path(path).stem for path in printed], ["stress_strain", "cracks", "energy"])
 
     def test_blocks_that_have_moved_out_are_not_cut_off(self):
-        run = Run(self.run_folder)
+        run = Results(self.run_folder)
         marks = select_frames(run.frames, *run.peak)
         points = run.mesh.blocks.points
 
@@ -218,7 +219,7 @@ class CommandsMakePictures(FolderTest):
         (folder / "gradation.csv").unlink()
         code, printed, _ = self.command("specimen", folder)
         self.assertEqual((code, [Path(line).name for line in printed]), (0, ["morphology.png"]))
-        title = morphology(Specimen(folder)).axes[0].get_title()
+        title = morphology(SpecimenFolder(folder)).axes[0].get_title()
         self.assertTrue(title.endswith("blocks; of the area aggregate 31.2 %, mortar 68.8 %"), title)
 
     def test_compare_writes_the_file_asked_for(self):
@@ -422,7 +423,7 @@ class HeatedRunsMakePictures(HeatedTest):
         folder = self.root / "run"
         synthetic_run.write_conduction(folder)
         self.assertEqual(self.names_drawn(folder), ["temperature_history", "temperature", "temperature_profile"])
-        run = Run(folder)
+        run = Results(folder)
         self.assertEqual(style.title_of(run), run.title)
         self.assertEqual(list(run.probes), ["a", "b"])
 
@@ -626,7 +627,7 @@ class ReferenceBands(unittest.TestCase):
 class HeatedReader(HeatedTest):
     def test_total_strain_is_positive_in_expansion_and_holds_the_loads(self):
         heating = Heating()
-        run = Run(self.heated("run", heating))
+        run = Results(self.heated("run", heating))
         temperature = run.heated_history("temperature_degC")
         expected = [heating.total_strain(t) for t in temperature]
         np.testing.assert_allclose(run.total_strain, expected, rtol=0.0, atol=1e-15)
@@ -636,26 +637,26 @@ class HeatedReader(HeatedTest):
 
     def test_standing_strain_is_that_between_rows_and_none_beyond(self):
         heating = Heating()
-        run = Run(self.heated("run", heating))
+        run = Results(self.heated("run", heating))
         found = run.standing_strain([20.0, 302.5, 900.0])
         between = 0.5 * (heating.total_strain(300.0) + heating.total_strain(305.0))
         np.testing.assert_allclose(found[:2], [heating.total_strain(20.0), between], rtol=0.0, atol=1e-15)
         self.assertTrue(np.isnan(found[2]))
 
     def test_rows_of_the_heating(self):
-        run = Run(self.heated("run"))  # settled and loaded, one row each; 20 to 700 degC in steps of 5 K
-        self.assertEqual((len(run.history), run.exchanged.sum(), run.heated.sum()), (138, 136, 137))
+        run = Results(self.heated("run"))  # settled and loaded, one row each; 20 to 700 degC in steps of 5 K
+        self.assertEqual((run.history.rows, run.exchanged.sum(), run.heated.sum()), (138, 136, 137))
         self.assertTrue(run.ends_heated)
         self.assertEqual({frame.stage for frame in run.heated_frames}, {2})
 
     def test_load_level(self):
         folder = self.heated("run")
-        self.assertEqual(Run(folder).load_level, 0.225)
+        self.assertEqual(Results(folder).load_level, 0.225)
         self.assertIsNone(self.summary_of(folder, load_level=None).load_level)
         self.assertEqual(self.summary_of(folder, load_level=None, load_stress_MPa=0.0).load_level, 0.0)
 
     def test_row_of_the_failure_is_neither_drawn_nor_blamed(self):
-        run = Run(self.heated("run", Heating(critical=505.0, unconverged=(40,))))
+        run = Results(self.heated("run", Heating(critical=505.0, unconverged=(40,))))
         self.assertEqual(run.heated.sum() - run.standing.sum(), 1)
         self.assertEqual(run.history["temperature_degC"][run.standing][-1], 500.0)
         self.assertEqual(run.unconverged.sum(), 1)
@@ -663,11 +664,11 @@ class HeatedReader(HeatedTest):
         self.assertGreater(strain_limits([run], [])[0], -0.6)  # the failure itself goes to -50e-3
 
     def test_run_that_converged_has_no_warning(self):
-        run = Run(self.heated("run"))
+        run = Results(self.heated("run"))
         self.assertEqual(style.warnings_of(run), [])
 
     def test_compression_after_heating_counts_from_its_start(self):
-        run = Run(self.heated("run", Heating(level=0.3, hottest=300.0, compressed=True)))
+        run = Results(self.heated("run", Heating(level=0.3, hottest=300.0, compressed=True)))
         self.assertFalse(run.ends_heated)
         self.assertAlmostEqual(run.peak[0], synthetic_run.PEAK_STRAIN, delta=1e-12)
         self.assertAlmostEqual(run.loaded_frames[-1].strain, synthetic_run.LAST_STRAIN, delta=1e-12)
@@ -677,11 +678,11 @@ class HeatedReader(HeatedTest):
         self.assertEqual(mean_curve([run])[0][0], run.loaded_strain[0])
 
     def test_strength_retained_is_not_guessed(self):
-        run = Run(self.heated("run", Heating(level=0.0, hottest=300.0, compressed=True)))
+        run = Results(self.heated("run", Heating(level=0.0, hottest=300.0, compressed=True)))
         self.assertIsNone(run.strength_retained)
 
     def test_temperatures_of_the_field(self):
-        run = Run(self.heated("run", Heating(spread=100.0)))
+        run = Results(self.heated("run", Heating(spread=100.0)))
         self.assertFalse(run.uniform)
         blocks, temperature = run.mesh.blocks, run.gridpoint_temperature(run.heated_frames[-1])
         platens = np.unique(blocks.triangles[blocks.material == 2])
@@ -689,7 +690,7 @@ class HeatedReader(HeatedTest):
         self.assertAlmostEqual(temperature.max(), 750.0, delta=1e-3)  # 700 in the mean; written as float32
 
     def test_temperature_orders_the_rows_only_while_it_rises(self):
-        rising, cooled = Run(self.heated("a")), Run(self.heated("b", Heating(hottest=300.0, cooled=True)))
+        rising, cooled = Results(self.heated("a")), Results(self.heated("b", Heating(hottest=300.0, cooled=True)))
         self.assertIn("°C", heating_course(rising).label)
         self.assertIn("min", heating_course(cooled).label)
         self.assertEqual(heating_course(cooled).over[-1], 2 * 280.0 / 5.0)  # up and down at 5 K/min
@@ -783,7 +784,7 @@ class ManyRuns(HeatedTest):
     """Many runs are a range with a mean, and few are curves."""
 
     def lines_and_bands(self, make, folders) -> tuple[int, int]:
-        axes = make([Run(folder) for folder in folders]).axes[0]
+        axes = make([Results(folder) for folder in folders]).axes[0]
         return (len([line for line in axes.get_lines() if len(line.get_xdata()) > 2]), len(axes.collections))
 
     def test_twenty_are_a_range_and_a_mean(self):
@@ -797,7 +798,7 @@ class ManyRuns(HeatedTest):
         self.assertEqual(self.lines_and_bands(compare_total_strain, hot), (1, 1))
         self.assertEqual(self.lines_and_bands(compare_cracks, cold), (1, 1))
         self.assertEqual(self.lines_and_bands(compare_thrust, restrained), (1, 1))
-        labels = compare([Run(folder) for folder in cold]).axes[0].get_legend_handles_labels()[1]
+        labels = compare([Results(folder) for folder in cold]).axes[0].get_legend_handles_labels()[1]
         self.assertIn("20 runs:\nleast to greatest", labels)
         self.assertEqual(self.lines_and_bands(compare, cold[:3])[0], 4)
         self.assertEqual(self.lines_and_bands(compare, cold[:1])[0], 1)  # the mean of one is itself
@@ -807,7 +808,7 @@ class ManyRuns(HeatedTest):
         for i in range(8):
             folders.append(self.root / f"run_{i}")
             synthetic_run.write_run(folders[-1], strength_factor=0.8 + 0.05 * i)
-        band = compare([Run(folder) for folder in folders]).axes[0].collections[0]
+        band = compare([Results(folder) for folder in folders]).axes[0].collections[0]
         height = band.get_paths()[0].vertices[:, 1]
         # The band's 400 points pass the peak by at most half their spacing, over which the parabola falls by 6e-5.
         self.assertAlmostEqual(height.max(), 1.15 * synthetic_run.PEAK_STRESS, delta=1e-3)
@@ -816,7 +817,7 @@ class ManyRuns(HeatedTest):
         folders = [self.root / "a" / "seed_1", self.root / "b" / "seed_1", self.root / "b" / "seed_2"]
         for folder in folders:
             synthetic_run.write_run(folder)
-        runs = [Run(folder) for folder in folders]
+        runs = [Results(folder) for folder in folders]
         self.assertEqual(names_apart(runs), ["a/seed_1", "b/seed_1", "seed_2"])
         self.assertEqual(names_apart(runs[:1]), ["Synthetic run"])
         self.assertEqual(names_apart([runs[0], runs[0]]), ["seed_1", "seed_1"])
@@ -858,11 +859,12 @@ class NothingOverlapsOrIsCutOff(HeatedTest):
         after = self.heated("after", Heating(level=0.3, hottest=300.0, cooled=True, compressed=True))
         held = self.heated("held", Heating(restrained=True, spread=60.0))
         for folder in (cold, wall, hot, after, held):
-            for name, make in figures.figures_of(Run(folder)):
+            for name, make in figures.figures_of(Results(folder)):
                 with self.subTest(folder=folder.name, figure=name):
                     self.assert_apart(name, make())
-        for name, figure in (("compare", compare([Run(cold)])), ("total strain", compare_total_strain([Run(hot)])),
-                             ("cracks", compare_cracks([Run(hot)])), ("levels", levels([Run(hot), Run(held)]))):
+        cold, hot, held = map(Results, (cold, hot, held))
+        for name, figure in (("compare", compare([cold])), ("total strain", compare_total_strain([hot])),
+                             ("cracks", compare_cracks([hot])), ("levels", levels([hot, held]))):
             with self.subTest(figure=name):
                 self.assert_apart(name, figure)
 
@@ -870,14 +872,14 @@ class NothingOverlapsOrIsCutOff(HeatedTest):
 class DepthOfTheHeat(HeatedTest):
     """Profiles across the specimen, and figures over minutes where it is not uniform."""
 
-    def wall(self, temperature) -> Run:
+    def wall(self, temperature) -> Results:
         """A run of conduction whose last field is a function of x and y over width and height, 0 to 1."""
         folder = self.root / "wall"
         section = synthetic_run.write_conduction(folder)
         x, y = section.points[:, 0] / section.width, section.points[:, 1] / section.height
         with h5py.File(max((folder / "fields").glob("blocks_*.hdf")), "a") as file:
             file["VTKHDF/PointData/temperature [degC]"][...] = temperature(x, y)
-        return Run(folder)
+        return Results(folder)
 
     def test_linear_field_is_read_exactly_from_its_hottest_face(self):
         for face, temperature in (("left", lambda x, y: 900.0 - 800.0 * x), ("right", lambda x, y: 100.0 + 800.0 * x),
@@ -899,13 +901,13 @@ class DepthOfTheHeat(HeatedTest):
             shutil.rmtree(self.root / "wall")
 
     def test_figures_are_over_minutes(self):
-        run, even = Run(self.heated("a", Heating(spread=80.0))), Run(self.heated("b"))
+        run, even = Results(self.heated("a", Heating(spread=80.0))), Results(self.heated("b"))
         self.assertIn("min", heating_course(run).label)
         for make, panel in ((total_strain, 1), (compare_total_strain, 0)):
             for one, unit in ((run, "[min]"), (even, "[°C]")):
                 figure = make(one) if make is total_strain else make([one])
                 self.assertIn(unit, figure.axes[panel].get_xlabel())
-        failed = Run(self.heated("c", Heating(spread=80.0, critical=505.0)))
+        failed = Results(self.heated("c", Heating(spread=80.0, critical=505.0)))
         marks = [line for line in total_strain(failed).axes[0].lines if str(line.get_label()).startswith("failed")]
         self.assertEqual([line.get_label() for line in marks], ["failed at 97 min"])  # 485 K at 5 K/min
 
@@ -914,18 +916,18 @@ class DepthOfTheHeat(HeatedTest):
         self.assertEqual(self.command("run", folder)[0], 0)
         table, depth = Table(folder / "temperature_profile.csv"), Table(folder / "isotherm.csv")
         self.assertEqual(table.names, ["heating_time_s", "depth_m", "temperature_degC"])
-        self.assertEqual(len(table), 121 * len(depth))
+        self.assertEqual(table.rows, 121 * depth.rows)
         self.assertFalse(list(folder.glob("*.partial")))
 
 
 class Titles(HeatedTest):
     def test_tell_load_and_temperatures_of_the_run(self):
-        failed = Run(self.heated("a", Heating(critical=505.0)))
+        failed = Results(self.heated("a", Heating(critical=505.0)))
         self.assertEqual(style.title_of(failed),
                          "Synthetic heating\n$\\sigma/f_c$ = 0.225, 20 to 505 °C, failed at 505 °C")
-        held = Run(self.heated("b", Heating(restrained=True, spread=80.0)))
+        held = Results(self.heated("b", Heating(restrained=True, spread=80.0)))
         self.assertIn("between fixed platens, mean 20 to 700 °C", style.title_of(held))
-        after = Run(self.heated("c", Heating(level=0.3, hottest=300.0, cooled=True, compressed=True)))
+        after = Results(self.heated("c", Heating(level=0.3, hottest=300.0, cooled=True, compressed=True)))
         self.assertIn("heated to 300 °C, compressed at 20 °C; largest stress", style.title_of(after))
 
     def test_long_ones_are_broken_into_lines_that_fit(self):
@@ -935,15 +937,15 @@ class Titles(HeatedTest):
                              (30 * "long title ", (30 * "long title ")[:200] + "… (329 characters)"),
                              ("a\x1b[31m\u202eb\n c", r"a\x1b[31m\u202eb c")):
             synthetic_run.write_summary(folder, title, [("compress", {"quasi_static": True})])
-            lines = style.title_of(Run(folder)).splitlines()
+            lines = style.title_of(Results(folder)).splitlines()
             self.assertEqual(" ".join(lines), shown)
             self.assertLessEqual(max(map(len, lines)), 100)
 
 
 class Reader(FolderTest):
     def test_settling_is_not_part_of_the_test(self):
-        run = Run(self.run_folder)
-        self.assertEqual(len(run.history), 241)
+        run = Results(self.run_folder)
+        self.assertEqual(run.history.rows, 241)
         self.assertEqual(run.loaded.sum(), 240)
         self.assertEqual([frame.stage for frame in run.frames[:2]], [0, 1])
         self.assertEqual(len(run.loaded_frames), len(run.frames) - 1)
@@ -954,18 +956,18 @@ class Reader(FolderTest):
         path.write_text("\n".join(lines[:121] + [f"2{line[line.index(','):]}" for line in lines[121:]]) + "\n")
         stages = ("settle", "compress", "compress")
         (self.run_folder / "deck.toml").write_text("".join(f'[[stages]]\nkind = "{kind}"\n' for kind in stages))
-        run = Run(self.run_folder)
+        run = Results(self.run_folder)
         np.testing.assert_array_equal(np.flatnonzero(run.loaded_before), np.arange(1, 120))
         curve = stress_strain(run, {}).axes[0].lines[0]
         np.testing.assert_allclose(curve.get_ydata(), run.history["stress_MPa"][1:120])
 
     def test_peak(self):
-        strain, stress = Run(self.run_folder).peak
+        strain, stress = Results(self.run_folder).peak
         self.assertAlmostEqual(strain, synthetic_run.PEAK_STRAIN, delta=1e-12)
         self.assertAlmostEqual(stress, synthetic_run.PEAK_STRESS, delta=1e-9)
 
     def test_outlines_walk_around_each_block(self):
-        blocks = Run(self.run_folder).mesh.blocks
+        blocks = Results(self.run_folder).mesh.blocks
         outlines, material = blocks.outlines
         self.assertEqual([len(outline) for outline in outlines], [6] * 20 + [4] * 2)
         np.testing.assert_array_equal(material, self.section.block_material)
@@ -979,18 +981,18 @@ class Reader(FolderTest):
     def test_block_in_two_pieces_is_refused(self):
         with h5py.File(self.run_folder / "fields" / "mesh.h5", "a") as file:
             file["blocks/block"][6:12] = 0
-        with self.assertRaisesRegex(RunError, "mesh.h5.*simple polygon"):
-            _ = Run(self.run_folder).mesh.blocks.outlines
+        with self.assertRaisesRegex(Error, "mesh.h5.*simple polygon"):
+            _ = Results(self.run_folder).mesh.blocks.outlines
 
     def test_platen_contacts_are_not_counted_as_cracks(self):
-        run = Run(self.run_folder)
+        run = Results(self.run_folder)
         broken_at_start = run.contact_field(run.frames[0], "tension_damage [1]") >= 1.0
         self.assertTrue(broken_at_start.any())
         counts = count_cracks(run, run.frames[0])
         self.assertEqual(set(counts.values()), {0})
 
     def test_counts_are_those_of_the_field(self):
-        run = Run(self.run_folder)
+        run = Results(self.run_folder)
         last = run.frames[-1]
         counts = count_cracks(run, last)
         inner = np.isin(run.mesh.contacts.interface, (1, 2))
@@ -1002,7 +1004,7 @@ class Reader(FolderTest):
     def test_mean_curve_lies_between(self):
         weaker = self.root / "weaker"
         synthetic_run.write_run(weaker, strength_factor=0.8)
-        strain, stress = mean_curve([Run(self.run_folder), Run(weaker)])
+        strain, stress = mean_curve([Results(self.run_folder), Results(weaker)])
         # Between history rows, 2.5e-5 apart, the straight pieces lie under the parabola by at most
         # f_c / eps_peak^2 (2.5e-5)^2 / 4 = 6e-4 MPa.
         expected = [0.9 * synthetic_run.stress(e) for e in strain]
@@ -1013,14 +1015,14 @@ class Reader(FolderTest):
         synthetic_run.write_run(other, quasi_static=False)
         same_title = self.root / "same"
         synthetic_run.write_run(same_title)
-        self.assertEqual(names_apart([Run(self.run_folder), Run(other), Run(same_title)]),
+        self.assertEqual(names_apart([Results(self.run_folder), Results(other), Results(same_title)]),
                          ["run", "other – NOT QUASI-STATIC", "same"])
 
     def test_specimen_table(self):
         folder = self.root / "specimen"
         synthetic_run.write_specimen(folder, self.section)
-        specimen = Specimen(folder)
-        self.assertEqual(len(specimen.aggregates), len(self.section.circles))
+        specimen = SpecimenFolder(folder)
+        self.assertEqual(specimen.aggregates.rows, len(self.section.circles))
         self.assertEqual(specimen.fact("fraction_placed"), 0.338)
 
 

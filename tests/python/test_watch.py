@@ -29,8 +29,9 @@ import synthetic_run  # noqa: E402
 from synthetic_run import Heating  # noqa: E402
 from test_figures import png_size  # noqa: E402
 from pyroclast import style  # noqa: E402
-from pyroclast.files import GrowingTable, Lock, RunError, Writer  # noqa: E402
-from pyroclast.run import Run  # noqa: E402
+from pyroclast.errors import Error  # noqa: E402
+from pyroclast.files import GrowingTable, Lock, Writer  # noqa: E402
+from pyroclast.results import Results  # noqa: E402
 from pyroclast.textplot import curve  # noqa: E402
 from pyroclast.watch import PICTURE, Watch  # noqa: E402
 
@@ -104,15 +105,15 @@ class Reading(WatchTest):
     def test_rows_come_as_they_are_whole(self):
         self.begin(rows=100)
         table = GrowingTable(self.folder / "history.csv")
-        self.assertEqual(len(table), 100)
+        self.assertEqual(table.rows, 100)
         self.assertFalse(table.grow())
         half = self.rows[101][:-5]  # all cells, but the last number is not all there
         self.add(half)
         self.assertFalse(table.grow())
         self.add(self.rows[101][len(half):] + self.rows[102])
         self.assertTrue(table.grow())
-        self.assertEqual(len(table), 102)
-        whole = Run(self.whole).history
+        self.assertEqual(table.rows, 102)
+        whole = Results(self.whole).history
         for name in table.names:
             np.testing.assert_array_equal(table[name], whole[name][:102])
 
@@ -122,11 +123,11 @@ class Reading(WatchTest):
             watch = Watch(self.folder)
             (self.folder / "history.csv").write_text("".join(self.rows[:41]))
             self.assertTrue(watch.update())
-            self.assertEqual(len(watch.run.history), 40)
+            self.assertEqual(watch.run.history.rows, 40)
             (self.folder / "aside").write_text("".join(self.rows[:201]))
             (self.folder / "aside").rename(self.folder / "history.csv")
             self.assertTrue(watch.update())
-            self.assertEqual(len(watch.run.history), 200)
+            self.assertEqual(watch.run.history.rows, 200)
 
     def test_update_tells_whether_there_is_anything_new(self):
         self.begin(rows=100)
@@ -168,14 +169,14 @@ class Reading(WatchTest):
 
     def test_the_deck_tells_what_a_run_without_summary_does_not(self):
         synthetic_run.write_heated_run(self.folder, Heating(restrained=True))
-        self.assertTrue(Run(self.folder).restrained)
+        self.assertTrue(Results(self.folder).restrained)
         (self.folder / "summary.json").unlink()
         stages = '[[stages]]\nkind = "settle"\n[[stages]]\nkind = "load"\n[[stages]]\nkind = "heat"\nplaten = '
         (self.folder / "deck.toml").write_text(f'title = "Of the deck"\n{stages}"fixed"\n')
-        self.assertTrue(Run(self.folder).restrained)
-        self.assertEqual(Run(self.folder).title, "Of the deck")
+        self.assertTrue(Results(self.folder).restrained)
+        self.assertEqual(Results(self.folder).title, "Of the deck")
         (self.folder / "deck.toml").write_text(f'{stages}"force"\n')
-        self.assertFalse(Run(self.folder).restrained)
+        self.assertFalse(Results(self.folder).restrained)
 
 
 class Told(WatchTest):
@@ -191,7 +192,7 @@ class Told(WatchTest):
             title, stage, numbers = Watch(self.folder).headlines()
         self.assertEqual(title, "Watched")
         self.assertEqual(stage, "stage 2 of 2 (compress), 38 %, 1 min 2 s left")
-        last = Run(self.whole).history["stress_MPa"][99]
+        last = Results(self.whole).history["stress_MPa"][99]
         self.assertIn(f"stress {last:.3g} MPa", numbers)
 
     def test_what_the_log_said_of_an_earlier_stage_is_not_said_of_this_one(self):
@@ -273,11 +274,11 @@ class Drawn(WatchTest):
         (self.folder / "fields" / "frames.csv").write_text("".join(frames[:6]) + frames[6][:-4])
         with self.writer():
             watch = Watch(self.folder)
-            strain = 1e3 * Run(self.whole).frames[4].strain
+            strain = 1e3 * Results(self.whole).frames[4].strain
             self.assertIn(f"{strain:.2f}", watch.draw().axes[1].get_title())
             (self.folder / "fields" / "frames.csv").write_text("".join(frames[:7]))
             self.assertTrue(watch.update())
-            self.assertIn(f"{1e3 * Run(self.whole).frames[5].strain:.2f}", watch.draw().axes[1].get_title())
+            self.assertIn(f"{1e3 * Results(self.whole).frames[5].strain:.2f}", watch.draw().axes[1].get_title())
             (self.folder / "fields" / "contacts_0005.hdf").write_bytes(b"half a file")
             self.assertEqual(watch.draw().axes[1].texts[0].get_text(), "the newest frame cannot be read")
 
@@ -341,7 +342,7 @@ class Command(WatchTest):
     def test_what_is_no_run_is_refused_in_a_line(self):
         self.assertIn("is not a folder", self.refused(self.root / "nowhere"))
         self.folder.mkdir()
-        with self.assertRaisesRegex(RunError, "holds no run"):
+        with self.assertRaisesRegex(Error, "holds no run"):
             Watch(self.folder)
         (self.folder / "notes.txt").write_text("mine")
         self.assertIn("holds no run", self.refused(self.folder))
@@ -380,7 +381,7 @@ class Command(WatchTest):
         text = shown.decode()
         self.assertGreaterEqual(text.count("Axial stress"), 2)
         self.assertRegex(text, r"\x1b\[20F\x1b\[J")  # back to where the last one began
-        self.assertIn("run ended: over", text.split("\x1b[J")[-1])
+        self.assertIn("run ended: completed", text.split("\x1b[J")[-1])
         self.assertTrue(pictures)
         self.assertNotIn((self.folder / PICTURE).read_bytes(), pictures)  # the last one is of the whole run
 

@@ -154,7 +154,7 @@ class Arrays(Case):
         (folder / "mm.json").write_text(json.dumps(
             {**corners, "vertices_mm": [[0, 0], [100, 0], [100, 200], [0, 200]]}))
         self.assertEqual(body.check(), [])
-        self.assertAlmostEqual(pyroclast.Specimen.of(body).area, 0.02)
+        self.assertAlmostEqual(body.make_specimen().area, 0.02)
         wide = pyroclast.Deck.from_text(HEATED.format(
             'shape = "polygon"\nseed = 1\ncorners = [["0 m", "0 m"], ["20 m", "0 m"], ["0 m", "1 m"]]\n'
             '[blocks]\ncount = 40\nshortest_edge = 0.2'))
@@ -191,13 +191,14 @@ class Arrays(Case):
         self.refused("cell 0 .* two corners", join="25 mm")
 
     def test_a_run_of_them_is_made_again_from_its_folder(self):
-        made = pyroclast.Specimen.of(plate())
+        made = plate().make_specimen()
         again = pyroclast.Specimen.from_arrays(made.vertices, made.cells, [made.phases[i] for i in made.phase],
                                                  unit="m")
         of_cells = plate()
         of_cells["specimen"] = again
         self.assertEqual(of_cells["specimen"], {"shape": "cells", "file": "cells.json", "thickness": "0.1 m"})
         of_cells.check()
+        np.testing.assert_array_equal(of_cells.make_specimen().vertices, made.vertices)
         folder = self.folder()
         run = pyroclast.Run(of_cells, out=folder / "run", threads=1)
         run.until(steps=700)
@@ -217,7 +218,7 @@ class Arrays(Case):
                          (folder / "run" / "history.csv").read_bytes())
         of_cells.save(folder / "saved.toml")
         self.assertEqual(json.loads((folder / "saved_cells.json").read_text())["phases"], ["mortar"])
-        self.assertEqual(len(pyroclast.Specimen.of(folder / "saved.toml").phase), 40)
+        self.assertEqual(len(pyroclast.Deck(folder / "saved.toml").make_specimen().phase), 40)
         other = of_cells.copy()
         other["title"] = "other"
         other.save(folder / "other.toml")  # into the same folder: neither takes the blocks of the other
@@ -227,7 +228,7 @@ class Arrays(Case):
     def test_platens_and_bearings_lie_on_them(self):
         starter = deck()
         of_cells = deck()
-        made = pyroclast.Specimen.of(starter)
+        made = starter.make_specimen()
         of_cells["specimen"] = pyroclast.Specimen.from_arrays(made.vertices, made.cells, made.phase,
                                                               dict(enumerate(made.phases)), unit="m")
         runs = [pyroclast.Run(d, threads=1).until(strain=1e-4) for d in (starter, of_cells)]
@@ -235,7 +236,7 @@ class Arrays(Case):
         seat = {"name": "seat", "at": ["31 mm", "0 mm"], "width": "23 mm", "thickness": "6 mm", "contact": "glued"}
         on_bearing = plate(bearings=[seat], stages=[{"kind": "drive", "duration": "1 ms", "drives": [
             {"set": "seat_support", "hold": ["x", "y"]}]}])
-        made = pyroclast.Specimen.of(plate())
+        made = plate().make_specimen()
         on_bearing["specimen"] = pyroclast.Specimen.from_arrays(made.vertices, made.cells, ["mortar"] * 40, unit="m")
         on_bearing["materials.platen"] = starter["materials.platen"]
         run = pyroclast.Run(on_bearing, threads=1)
@@ -246,7 +247,7 @@ class Arrays(Case):
 
     def test_what_belongs_to_another_specimen_is_refused(self):
         made = plate()
-        made["specimen"] = pyroclast.Specimen.of(plate())
+        made["specimen"] = plate().make_specimen()
         with self.assertRaisesRegex(pyroclast.DeckError, "blocks.*no effect"):
             made.copy().update(blocks={"count": 9}).check()
         with self.assertRaisesRegex(pyroclast.Error, "seed has no meaning"):
@@ -256,7 +257,7 @@ class Arrays(Case):
         with self.assertRaisesRegex(pyroclast.DeckError, "none is the matrix"):
             other.check()
         with self.assertRaisesRegex(pyroclast.Error, 'belongs to "specimen"'):
-            made["materials"] = pyroclast.Specimen.of(plate())
+            made["materials"] = plate().make_specimen()
 
     def test_a_file_that_holds_no_cells_is_told_with_its_name(self):
         good = {"phases": ["mortar"], "vertices_m": squares().tolist(), "cells": SQUARES, "phase": [0] * 8}
@@ -309,7 +310,7 @@ class Tessellations(Case):
         for x in (2, 1, 0):
             tilted = tilted.replace(f" {x} 1 0 ", f" {x} 0.707106781187 0.707106781187 ")
         self.assertNotEqual(tilted, TESS)
-        made = pyroclast.Specimen.of(self.of(tilted))
+        made = self.of(tilted).make_specimen()
         np.testing.assert_allclose(np.ptp(made.vertices, axis=0), [0.1, 0.05], rtol=1e-11)
 
     def test_groups_are_phases(self):
@@ -319,12 +320,12 @@ class Tessellations(Case):
         self.refused("blocks.groups.*into no groups", TESS, blocks='groups = ["mortar"]')
         self.refused("blocks.groups.*none is the matrix", grouped, blocks='groups = ["paste", "stone"]')
         stone = "[materials.stone]\n" + HEATED.split("[materials.mortar]\n")[1].split("[heat]")[0]
-        made = pyroclast.Specimen.of(self.of(grouped, blocks='groups = ["mortar", "stone"]', more=stone))
+        made = self.of(grouped, blocks='groups = ["mortar", "stone"]', more=stone).make_specimen()
         self.assertEqual(made.phases, ["mortar", "stone"])
         self.assertAlmostEqual(made.shares["stone"], 0.5)
         of_stone = made.cells[made.phase.tolist().index(1)]
         self.assertAlmostEqual(made.vertices[of_stone, 0].min(), 0.05)
-        self.assertEqual(pyroclast.Specimen.of(self.of(grouped, blocks='groups = ["mortar", "mortar"]')).phases,
+        self.assertEqual(self.of(grouped, blocks='groups = ["mortar", "mortar"]').make_specimen().phases,
                          ["mortar"])
         run = pyroclast.Run(self.of(grouped, blocks='groups = ["mortar", "stone"]', more=stone))
         self.assertEqual(len(run.specimen.phase), 2)
@@ -341,11 +342,11 @@ class Tessellations(Case):
         self.refused("a.tess, line 5: .*periodic.*without -periodicity", TESS.replace("standard", "periodic"))
 
     def test_a_byte_order_mark_is_no_part_of_the_file(self):
-        self.assertEqual(len(pyroclast.Specimen.of(self.of("\ufeff" + TESS)).cells), 2)
+        self.assertEqual(len(self.of("\ufeff" + TESS).make_specimen().cells), 2)
 
     def test_a_unit_says_how_large_it_is(self):
         in_cm = 'shape = "tessellation"\nunit = "cm"\nseed = 1'
-        np.testing.assert_allclose(np.ptp(pyroclast.Specimen.of(self.of(TESS, in_cm)).vertices, axis=0), [0.02, 0.01])
+        np.testing.assert_allclose(np.ptp(self.of(TESS, in_cm).make_specimen().vertices, axis=0), [0.02, 0.01])
         self.assertRegex(str(self.of(TESS, in_cm.replace("cm", "mm")).check()[0]), "specimen.unit.*0.002 m wide")
         self.refused("specimen.unit.*length", TESS, in_cm.replace("cm", "s"))
         self.refused("specimen.width.*no effect", TESS, in_cm + '\nwidth = "10 mm"')
@@ -353,7 +354,7 @@ class Tessellations(Case):
 
 class Meshes(Case):
     def test_a_mesh_of_polygons_comes_back(self):
-        made = pyroclast.Specimen.of(plate())
+        made = plate().make_specimen()
         again = pyroclast.Specimen.from_meshio(made.to_meshio(), "phase", dict(enumerate(made.phases)), unit="m")
         self.assertEqual(sorted(map(len, again.cells)), sorted(map(len, made.cells)))
         self.assertAlmostEqual(again.area, made.area, places=12)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..errors import Error
-from ..run import Run
+from ..results import Results
 from ..writing import write_text
 from .executors import Executor
 from .file import FIRST_SEED, Setup
@@ -72,7 +72,7 @@ class Driver:
     """Brings a study to its end, from what its store knows."""
 
     def __init__(self, study: Setup, store: Store, program: str = "pyroclast",
-                 functions: Mapping[str, Callable[[Run], float]] = MappingProxyType({})):
+                 functions: Mapping[str, Callable[[Results], float]] = MappingProxyType({})):
         """
         program: makes the runs, and is what the command line of each names.
         functions: outputs by name that are taken of what is kept of a run.
@@ -264,7 +264,7 @@ class Driver:
 
     def _call(self, name: str, folder: Path) -> tuple[float, str]:
         try:
-            value = float(self.functions[name](Run(folder)))
+            value = float(self.functions[name](Results(folder)))
         except Exception as error:  # of the user's code: whatever it is, it is this run's
             return math.nan, f"{type(error).__name__}: {error}"
         return value, "" if math.isfinite(value) else "is not finite"

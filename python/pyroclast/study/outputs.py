@@ -88,13 +88,13 @@ class Output:
         return math.nan, str(because or f"the summary has no number called {name!r}")
 
     def _of_history(self, folder: Path) -> tuple[float, str]:
-        from ..files import RunError, Table  # numpy and h5py, which a task that takes no history does without
+        from ..files import Table  # numpy and h5py, which a task that takes no history does without
 
         found = _HISTORY.fullmatch(self._place)
         assert found
         try:
             table = Table(folder / "history.csv", may_be_empty=False)
-        except RunError as error:
+        except Error as error:
             return math.nan, str(error)
         for column in self.columns:
             if column not in table.names:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import _core
-from ..decks import _is_list_of_tables, table_text, toml
+from ..decks import is_list_of_tables, table_text, toml
 from ..errors import Diagnostic, Error
 from .code import require_code
 from .driver import Driver, Forecast, free_cores
@@ -53,7 +53,7 @@ class Study:
         """
         file: a study file. With tables, it is written from these first: `study={"deck": "starter.toml"}`, ...
         program: pyroclast itself; None: that on the PATH.
-        functions: further outputs, by names of their own: of a `pyroclast.run.Run`, called once for each run. What they
+        functions: further outputs, by names of their own: of a `pyroclast.Results`, called once for each run. What they
             need of the run has to be kept (`keep`).
         """
         self._is_own = bool(tables)  # the script's, not a file's: what it names, the script names
@@ -182,7 +182,7 @@ def _write(file: Path, tables: Mapping[str, Any]) -> None:
     plain = [f"{key} = {toml(value)}" for key, value in tables.items() if not isinstance(value, (Mapping, list))]
     blocks = []
     for key, value in tables.items():
-        if _is_list_of_tables(value):
+        if is_list_of_tables(value):
             blocks += [table_text(key, entry, True) for entry in value]
         elif isinstance(value, Mapping):
             blocks.append(table_text(key, value))

@@ -1,7 +1,7 @@
-"""Reader of run and specimen folders.
+"""Results of runs, read from their folders, and specimens from theirs. The compiled part is not needed.
 
-SI units, temperature in °C, stress in MPa where a name says so. Strain and stress of the test are positive in
-compression; only `Run.total_strain` is positive in expansion.
+SI units, temperature in °C, stress in MPa where it says so. Strain and stress of the test are positive in compression;
+only `Results.total_strain` is positive in expansion.
 """
 
 from __future__ import annotations
@@ -11,12 +11,19 @@ import tomllib
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .files import LARGEST, GrowingTable, RunError, Table, dataset, open_hdf, read_json
+from .errors import Error
+from .files import LARGEST, GrowingTable, Lock, Table, Writer, read_array, read_json
+from .libraries import library
 from .mesh import Mesh, read_mesh
 from .reference import References, read_references
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 _UNIFORM = 1.0  # K
 
@@ -30,27 +37,65 @@ class Frame:
     step: int
     time: float  #: s
     strain: float  #: NaN where nothing moves
-    stress: float  #: MPa, likewise
+    stress_MPa: float  #: likewise
     temperature: float | None = None  #: °C, mean of the specimen; None when the run did not write it
     heating_time: float | None = None  #: s since heating began; None when the run did not write it
 
 
-class Run:
-    """One run folder. Files are read when first asked for; what is missing or malformed throws RunError."""
+def read(folder: str | Path) -> Results:
+    """The results of a run, from its folder: one that is over, is under way or broke off.
+
+    Raises Error where the folder holds no run, and says what it holds.
+    """
+    place = Path(folder)
+    if _is_of_run(place):
+        return Results(place)
+    if not place.is_dir():
+        raise Error(f"{place}: is not a folder")
+    if any((place / name).exists() for name in ("specimen/specimen.json", "specimen.json")):
+        raise Error(f"{place}: holds a specimen and no run; pyroclast.SpecimenFolder reads it")
+    runs = sorted({path.parent for path in place.glob("*/history.csv")})
+    if runs:
+        raise Error(f"{place}: holds no run, but folders of runs: {runs[0].name}"
+                    + (f" and {len(runs) - 1} more" if len(runs) > 1 else ""))
+    raise Error(f"{place}: holds no run: there is neither history.csv nor summary.json")
+
+
+def _is_of_run(folder: Path) -> bool:
+    return any((folder / name).exists() for name in ("history.csv", "summary.json"))
+
+
+class Results:
+    """What came of a run, as its folder has it: `pyroclast.read` gives it.
+
+        results = pyroclast.read("runs/compression")
+        print(results.outcome, results.results["f_c_MPa"])
+        results.history.to_pandas().plot("strain", "stress_MPa")
+
+    Names are those of `pyroclast.Run`. Files are read when first asked for; what is missing or malformed raises Error,
+    which names the file.
+    """
 
     _table = Table
 
     def __init__(self, folder: str | Path):
         self.folder = Path(folder)
         if not self.folder.is_dir():
-            raise RunError(f"{self.folder}: is not a folder")
+            raise Error(f"{self.folder}: is not a folder")
 
     @cached_property
     def history(self) -> Table:
-        """history.csv, all stages."""
+        """history.csv: all rows, a read-only array (rows,) for each column; NaN where a cell is empty.
+
+        Under the program's name ("stress_MPa") a column is in the unit of its name; without it ("stress") in SI.
+        """
         table = self._table(self.folder / "history.csv")
         table.whole("stage")
         return table
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The history as a DataFrame, with the units of its columns in `attrs["units"]`."""
+        return self.history.to_pandas()
 
     @cached_property
     def crack_modes(self) -> dict[str, list[str]]:
@@ -68,7 +113,7 @@ class Run:
         return read_json(path) if path.exists() else {"stages": []}
 
     @cached_property
-    def parent(self) -> Run | None:
+    def parent(self) -> Results | None:
         """The run that this one is a fork of; None without one, or when its folder is gone."""
         path = self.folder / "manifest.json"
         parent = read_json(path).get("parent") if path.exists() else None
@@ -76,19 +121,26 @@ class Run:
             return None
         folder = parent.get("folder") if isinstance(parent, dict) else None
         if not isinstance(folder, str) or "\0" in folder:
-            raise RunError(f"{path}: 'parent' has no 'folder' that is a path")
-        return Run(folder) if (Path(folder) / "history.csv").exists() else None
+            raise Error(f"{path}: 'parent' has no 'folder' that is a path")
+        return Results(folder) if (Path(folder) / "history.csv").exists() else None
+
+    @cached_property
+    def deck_text(self) -> str:
+        """The deck that the run keeps; empty without one."""
+        path = self.folder / "deck.toml"
+        try:
+            return path.read_text(encoding="utf-8") if path.exists() else ""
+        except (OSError, ValueError) as error:
+            raise Error(f"{path}: cannot be read: {' '.join(str(error).split())}") from error
 
     @cached_property
     def deck(self) -> dict:
-        """The deck that the run keeps, as it stands there; empty without one."""
-        path = self.folder / "deck.toml"
-        if not path.exists():
-            return {}
+        """The same as tables."""
         try:
-            return tomllib.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError, RecursionError) as error:
-            raise RunError(f"{path}: cannot be read: {' '.join(str(error).split())}") from error
+            return tomllib.loads(self.deck_text)
+        except (ValueError, RecursionError) as error:
+            path = self.folder / "deck.toml"
+            raise Error(f"{path}: cannot be read: {' '.join(str(error).split())}") from error
 
     @property
     def deck_stages(self) -> list[dict]:
@@ -106,17 +158,43 @@ class Run:
         """As the summary has it, else the deck, else the folder's name."""
         return str(self.summary.get("title") or self.deck.get("title") or self.folder.resolve().name)
 
+    @property
+    def outcome(self) -> str:
+        """How the run ended; of one without a summary that it is running, or how it broke off."""
+        if (self.folder / "summary.json").exists():
+            return str(self.summary.get("outcome", "over"))
+        return {Writer.THERE: "running", Writer.DIED: "killed", Writer.NONE: "broken off"}[Lock(self.folder).writer]
+
+    @property
+    def warnings(self) -> list[str]:
+        """Of deck and choices, a line each."""
+        told = self.summary.get("warnings", [])
+        if not isinstance(told, list) or not all(isinstance(line, str) for line in told):
+            raise Error(f"{self.folder / 'summary.json'}: 'warnings' is no list of texts")
+        return told
+
+    @property
+    def results(self) -> dict[str, Any]:
+        """Results of all stages, in the units of their names ("f_c_MPa"); where two have one, that of the later. None
+        where a stage has no such value; empty of a run without a summary.
+        """
+        return {name: value for results in self.stage_results for name, value in results.items()}
+
     @cached_property
-    def stage_results(self) -> list[dict]:
-        """What the summary says of each stage, in order: numbers and words by name."""
+    def stages(self) -> list[dict[str, Any]]:
+        """What the summary says of each stage, in order: `kind`, `outcome`, `results`, `warnings`."""
         path = self.folder / "summary.json"
         stages = self.summary.get("stages")
         if not isinstance(stages, list):
-            raise RunError(f"{path}: 'stages' is missing or not a list")
-        results = [stage.get("results", {}) if isinstance(stage, dict) else None for stage in stages]
-        if not all(isinstance(values, dict) for values in results):
-            raise RunError(f"{path}: 'stages' holds something without 'results'")
-        return results
+            raise Error(f"{path}: 'stages' is missing or not a list")
+        if not all(isinstance(stage, dict) and isinstance(stage.get("results", {}), dict) for stage in stages):
+            raise Error(f"{path}: 'stages' holds something without 'results'")
+        return stages
+
+    @property
+    def stage_results(self) -> list[dict]:
+        """The results of each stage, in order."""
+        return [stage.get("results", {}) for stage in self.stages]
 
     def _results_with(self, name: str) -> list[dict]:
         """Results of the stages that have one of this name."""
@@ -155,23 +233,23 @@ class Run:
         if value is None:
             return None
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= LARGEST:
-            raise RunError(f"{self.folder / 'summary.json'}: '{name}' is neither a finite number nor null")
+            raise Error(f"{self.folder / 'summary.json'}: '{name}' is neither a finite number nor null")
         return float(value)
 
     @property
-    def load_stress(self) -> float | None:
-        """Compressive stress [MPa] kept while heated."""
+    def load_stress_MPa(self) -> float | None:
+        """Compressive stress kept while heated."""
         return self._heating_number("load_stress_MPa")
 
     @property
     def load_level(self) -> float | None:
-        """`load_stress` over the strength at 20 °C; None when that strength is not known."""
+        """`load_stress_MPa` over the strength at 20 °C; None when that strength is not known."""
         if not self.heating:
             return None
         first = next(i for i, results in enumerate(self.stage_results) if results.get("exchanges") is not None)
         loads = [results for results in self.stage_results[:first] if "load_level" in results]
         level = self._number(loads[-1], "load_level") if loads else None
-        return 0.0 if level is None and self.load_stress == 0.0 else level
+        return 0.0 if level is None and self.load_stress_MPa == 0.0 else level
 
     @property
     def critical_temperature(self) -> float | None:
@@ -196,8 +274,8 @@ class Run:
     @cached_property
     def exchanged(self) -> np.ndarray:
         """(rows,) bool: rows of the history written after an exchange of temperatures."""
-        if "exchange" not in self.history:
-            return np.zeros(len(self.history), dtype=bool)
+        if "exchange" not in self.history.names:
+            return np.zeros(self.history.rows, dtype=bool)
         return self.history["exchange"] > 0
 
     @cached_property
@@ -215,14 +293,14 @@ class Run:
         return bool(self.exchanged[stage == stage.max()].any())
 
     @property
-    def only_conducts(self) -> bool:
-        """Whether the run is of heat conduction alone: nothing moves."""
-        return "unbalanced_ratio" not in self.history
+    def moves(self) -> bool:
+        """Whether there are mechanics; else the run is of heat conduction alone."""
+        return "unbalanced_ratio" in self.history.names
 
     @property
     def has_platens(self) -> bool:
         """Whether the body stood between platens, so that the test has a stress and a strain."""
-        return "strain" in self.history
+        return "strain" in self.history.names
 
     @property
     def probes(self) -> dict[str, np.ndarray]:
@@ -241,7 +319,7 @@ class Run:
 
     @property
     def _failing(self) -> np.ndarray:
-        rows = np.zeros(len(self.history), dtype=bool)
+        rows = np.zeros(self.history.rows, dtype=bool)
         if self.critical_temperature is not None:
             rows[np.flatnonzero(self.exchanged)[-1:]] = True
             rows &= self.history["converged"] == 0
@@ -265,8 +343,8 @@ class Run:
     def total_strain_at(self, frame: Frame) -> float:
         """`total_strain` when the frame was saved."""
         row = int(np.searchsorted(self.history["step"], frame.step))
-        if row == len(self.history) or self.history["step"][row] != frame.step:
-            raise RunError(f"{self.history.path}: has no row of step {frame.step}, at which a frame was saved")
+        if row == self.history.rows or self.history["step"][row] != frame.step:
+            raise Error(f"{self.history.path}: has no row of step {frame.step}, at which a frame was saved")
         return -float(self.history["specimen_strain"][row])
 
     @property
@@ -350,7 +428,7 @@ class Run:
         """`loaded_strain` and stress [MPa] at f_c of the test, as the summary has it. Where that has none,
         those where the history's stress is largest, even if it ended there.
 
-        Throws RunError when the specimen was never compressed.
+        Raises Error when the specimen was never compressed.
         """
         strength, at = self._tested("f_c_MPa"), self._tested("strain_at_peak")
         if strength is not None and at is not None:
@@ -363,15 +441,15 @@ class Run:
         row = int(np.where(np.isfinite(strain), stress, -np.inf).argmax())
         if stress[row] <= 0.0:
             path = self.history.path
-            raise RunError(f"{path}: column 'stress_MPa' is never positive; the specimen was not compressed")
+            raise Error(f"{path}: column 'stress_MPa' is never positive; the specimen was not compressed")
         return float(strain[row]), float(stress[row])
 
     @property
     def strength_retained(self) -> float | None:
         """Largest stress after heating over the strength before; None when the summary does not tell that."""
-        if self.ends_heated or not self.load_level or not self.load_stress:
+        if self.ends_heated or not self.load_level or not self.load_stress_MPa:
             return None
-        return self.peak[1] * self.load_level / self.load_stress
+        return self.peak[1] * self.load_level / self.load_stress_MPa
 
     @property
     def has_fields(self) -> bool:
@@ -385,13 +463,13 @@ class Run:
         if not path.exists():
             return []
         t = self._table(path, may_be_empty=True)
-        if self.only_conducts:
+        if not self.moves:
             return [Frame(number, stage, 0, time, np.nan, np.nan, temperature, time)
                     for number, stage, time, temperature in zip(t.whole("frame").tolist(), t.whole("stage").tolist(),
                                                                 t["heating_time_s"], t["temperature_degC"])]
-        heat = [t[name] if name in t else [None] * len(t) for name in ("temperature_degC", "heating_time_s")]
+        heat = [t[name] if name in t else [None] * t.rows for name in ("temperature_degC", "heating_time_s")]
         whole = [t.whole(name, none=0).tolist() for name in ("frame", "stage", "step")]
-        pressed = [t[name] if name in t else [np.nan] * len(t) for name in ("strain", "stress_MPa")]
+        pressed = [t[name] if name in t else [np.nan] * t.rows for name in ("strain", "stress_MPa")]
         return [Frame(*values) for values in zip(*whole, t["time_s"], *pressed, *heat)]
 
     @property
@@ -401,27 +479,28 @@ class Run:
         """
         last, before = self.history["stage"][self.loaded].max(), self.strain_before
         return [replace(frame, strain=frame.strain - before) for frame in self.frames
-                if frame.stage == last and np.isfinite([frame.strain, frame.stress]).all()]
+                if frame.stage == last and np.isfinite([frame.strain, frame.stress_MPa]).all()]
 
     @property
     def heated_frames(self) -> list[Frame]:
-        """Frames of all stages that heat, not those of unknown temperature; throws RunError when there is none."""
+        """Frames of all stages that heat, not those of unknown temperature; raises Error when there is none."""
         path = self.folder / "fields" / "frames.csv"
         frames = self.frames
-        if not self.only_conducts:
+        if self.moves:
             stages = set(self.history["stage"][self.exchanged])
             frames = [frame for frame in frames if frame.stage in stages]
         if not frames:
-            raise RunError(f"{path}: no frame of a heating stage")
+            raise Error(f"{path}: no frame of a heating stage")
         if frames[0].temperature is None:
-            raise RunError(f"{path}: has no column 'temperature_degC'")
+            raise Error(f"{path}: has no column 'temperature_degC'")
         frames = [frame for frame in frames if np.isfinite(frame.temperature)]
         if not frames:
-            raise RunError(f"{path}: column 'temperature_degC' has no finite value")
+            raise Error(f"{path}: column 'temperature_degC' has no finite value")
         return frames
 
     @cached_property
     def mesh(self) -> Mesh:
+        """mesh.h5: the zones of all blocks and the contact points, where they were made."""
         return read_mesh(self.folder / "fields" / "mesh.h5")
 
     def gridpoint_displacement(self, frame: Frame) -> np.ndarray:
@@ -443,19 +522,61 @@ class Run:
         return self._field("contacts", frame, f"CellData/{name}", (len(self.mesh.contacts.lines),))
 
     def _field(self, kind: str, frame: Frame, name: str, shape: tuple[int, ...]) -> np.ndarray:
-        path = self.folder / "fields" / f"{kind}_{frame.number:04d}.hdf"
-        with open_hdf(path) as file:
-            values = dataset(file, f"VTKHDF/{name}")
-        if values.shape != shape:
-            raise RunError(f"{path}: /VTKHDF/{name} has shape {values.shape}, but the mesh asks for {shape}")
-        return values
+        return read_array(self.folder / "fields" / f"{kind}_{frame.number:04d}.hdf", f"VTKHDF/{name}", shape)
+
+    @cached_property
+    def fields(self) -> xarray.Dataset:
+        """The fields of all frames: an array for each of the files' (docs/fields.md), by its name without the unit,
+        which stands in its `attrs["units"]`. Stress and strain are positive in tension.
+
+        A frame is read when values of it are asked for, and nothing is kept: `fields["stress"].isel(frame=-1)` takes
+        the memory of a frame. `fields.load()` reads all of them, which takes `fields.nbytes`.
+
+        Dimensions are `frame` and `gridpoint`, `zone` or `contact`; of vectors `component` (x, y), and of tensors
+        `tensor` (xx, yy, zz, xy, yz, xz). Displacements of contacts have the `end` of their lines too: `corner`,
+        `middle`. Fields of contacts that blocks have too begin with `contact_`. Where a stage has no such field, it is
+        NaN.
+
+        Coordinates of frames: `stage`, `step`, `time` and `heating_time` [s], `test_strain` and `test_stress` [Pa],
+        positive in compression, and `mean_temperature` [degC]. Of gridpoints: `position` [m]. Of zones: `zones` (their
+        gridpoints), `block`, `material`, `bearing` (whether they are of one), `area` [m²]. Of contacts:
+        `contact_position` [m], `interface`, `length` [m].
+
+        Raises Error where the run keeps no frames, or xarray is not installed.
+        """
+        library("xarray", "Results.fields")
+        from .fields import fields_of
+        return fields_of(self)
+
+    @cached_property
+    def block_fields(self) -> xarray.Dataset:
+        """The fields of blocks, each the mean over a block's zones by area: dimensions `frame`, `block`, and
+        `component` or `tensor`.
+
+        Coordinates of frames as of `fields`. Of blocks: `material`, `bearing`, `area` [m²], `position` [m] of the
+        centre. It is read as `fields` are, a frame at a time.
+        """
+        library("xarray", "Results.block_fields")
+        from .fields import block_fields_of
+        return block_fields_of(self)
+
+    def _repr_png_(self) -> bytes:
+        from .notebook import draw_last_frame, png_of
+        return png_of(self, draw_last_frame)
+
+    def _repr_html_(self) -> str:
+        from .notebook import draw_last_frame, html_of
+        return html_of(self, draw_last_frame)
+
+    def __repr__(self) -> str:
+        return f"<Results of {self.folder}>"
 
 
-class GrowingRun(Run):
+class GrowingResults(Results):
     """A run that another process still writes: what is there by now, rows that are whole. `refresh` takes in more."""
 
     _table = GrowingTable
-    _LASTING = frozenset({"folder", "history", "mesh", "deck", "references", "parent"})
+    _LASTING = frozenset({"folder", "history", "mesh", "deck_text", "deck", "references", "parent"})
 
     def refresh(self) -> bool:
         """Takes in what was written since; returns whether the rows that were there are others or have become more."""
@@ -467,13 +588,13 @@ class GrowingRun(Run):
         return begun_anew or (history is not None and history.grow())
 
 
-class Specimen:
+class SpecimenFolder:
     """One specimen folder, or a run folder, whose specimen/ subfolder is then read."""
 
     def __init__(self, folder: str | Path):
         self.folder = Path(folder)
         if not self.folder.is_dir():
-            raise RunError(f"{self.folder}: is not a folder")
+            raise Error(f"{self.folder}: is not a folder")
         inner = self.folder / "specimen"
         self._tables = inner if inner.is_dir() else self.folder
 
@@ -483,9 +604,10 @@ class Specimen:
         return read_json(self._tables / "specimen.json")
 
     def fact(self, name: str) -> float:
+        """A number of specimen.json. Raises Error where there is none of that name."""
         value = self.facts.get(name)
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= LARGEST:
-            raise RunError(f"{self._tables / 'specimen.json'}: '{name}' is missing or not a finite number")
+            raise Error(f"{self._tables / 'specimen.json'}: '{name}' is missing or not a finite number")
         return value
 
     @property
@@ -494,7 +616,7 @@ class Specimen:
         shares = self.facts.get("fraction")
         if not isinstance(shares, dict) or not all(isinstance(v, (int, float)) and 0.0 <= v <= 1.0
                                                    for v in shares.values()):
-            raise RunError(f"{self._tables / 'specimen.json'}: 'fraction' is missing or no table of shares")
+            raise Error(f"{self._tables / 'specimen.json'}: 'fraction' is missing or no table of shares")
         return shares
 
     @cached_property
@@ -509,4 +631,5 @@ class Specimen:
 
     @cached_property
     def mesh(self) -> Mesh:
+        """mesh.h5: the zones of all blocks and the contact points."""
         return read_mesh(self.folder / "fields" / "mesh.h5")

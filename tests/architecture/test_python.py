@@ -1,0 +1,133 @@
+"""Imports of the Python package run one way, and a name of a class stands for one thing."""
+
+import ast
+import pathlib
+import tempfile
+import unittest
+
+PACKAGE = pathlib.Path(__file__).parents[2] / "python" / "pyroclast"
+
+# Names that occur twice all the same, with the files that may have them.
+TWICE = {
+    "Curve": ["study/methods/main_effects.py", "study/report/responses.py"],
+    "Slurm": ["study/executors/slurm.py", "study/file.py"],
+    "Table": ["files.py", "study/report/section.py"],
+}
+
+
+def modules(package: pathlib.Path) -> dict[str, pathlib.Path]:
+    """The files of a package, by names such as "study.file"; a package's own is that of its folder, "" at the top."""
+    found = {}
+    for path in sorted(package.rglob("*.py")):
+        parts = path.relative_to(package).with_suffix("").parts
+        found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return found
+
+
+def statements(node: ast.AST) -> list[ast.Import | ast.ImportFrom]:
+    """Imports at any depth, but for those that only a type checker sees."""
+    found = []
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
+            found += [entry for other in child.orelse for entry in statements(ast.Module([other], []))]
+        elif isinstance(child, (ast.Import, ast.ImportFrom)):
+            found.append(child)
+        else:
+            found += statements(child)
+    return found
+
+
+def imports(package: pathlib.Path) -> dict[str, list[str]]:
+    """Which modules of the package each of them imports, in its functions too."""
+    there = modules(package)
+    found = {}
+    for name, path in there.items():
+        own = name.split(".") if name else []
+        folder = own if path.name == "__init__.py" else own[:-1]
+        named = []
+        for statement in statements(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(statement, ast.Import):
+                bases = [alias.name.split(".") for alias in statement.names]
+                named += [".".join(base[1:]) for base in bases if base[0] == package.name]
+                continue
+            module = statement.module.split(".") if statement.module else []
+            if statement.level:
+                module = [*folder[:len(folder) + 1 - statement.level], *module]
+            elif module and module[0] == package.name:
+                module = module[1:]
+            else:
+                continue
+            below = [".".join([*module, alias.name]) for alias in statement.names]
+            named += [entry if entry in there else ".".join(module) for entry in below]
+        found[name] = sorted({entry for entry in named if entry in there})
+    return found
+
+
+def circles(package: pathlib.Path) -> list[str]:
+    """Circles of imports, as "a -> b -> a": for each import that closes one, one of the shortest."""
+    arrows = imports(package)
+    found = set()
+    for start, firsts in arrows.items():
+        before = {first: start for first in firsts}
+        queue = list(firsts)
+        for module in queue:  # grows on the way
+            for following in arrows[module]:
+                if following not in before:
+                    before[following] = module
+                    queue.append(following)
+        if start in before:
+            circle = [before[start]]
+            while circle[-1] != start:
+                circle.append(before[circle[-1]])
+            circle.reverse()
+            least = circle.index(min(circle))
+            circle = circle[least:] + circle[:least]
+            found.add(" -> ".join([*circle, circle[0]]))
+    return sorted(found)
+
+
+def twice(package: pathlib.Path) -> list[str]:
+    """Classes of one name, as "Name: file, file"; what begins with an underscore is its module's own."""
+    files: dict[str, list[str]] = {}
+    for path in modules(package).values():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                files.setdefault(node.name, []).append(path.relative_to(package).as_posix())
+    return [f"{name}: {', '.join(some)}" for name, some in sorted(files.items())
+            if len(some) > 1 and some != TWICE.get(name)]
+
+
+class Package(unittest.TestCase):
+    def package(self, files: dict[str, str]) -> pathlib.Path:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        package = pathlib.Path(folder.name) / "pyroclast"
+        for name, text in files.items():
+            (package / name).parent.mkdir(parents=True, exist_ok=True)
+            (package / name).write_text(text)
+        return package
+
+    def test_there_is_no_circle_of_imports(self):
+        self.assertEqual(circles(PACKAGE), [])
+
+    def test_a_circle_is_found(self):
+        files = {"one.py": "from .two import f\n", "two.py": "def f():\n    from . import three\n",
+                 "three.py": "import pyroclast.one\n", "four.py": "from .five import x\n",
+                 "five.py": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from .four import y\n"
+                            "else:\n    from .part import z\n",
+                 "part/__init__.py": "from . import inner\n", "part/inner.py": "from ..part.other import a\n",
+                 "part/other.py": "from .inner import b\n"}
+        self.assertEqual(circles(self.package(files)),
+                         ["one -> two -> three -> one", "part.inner -> part.other -> part.inner"])
+
+    def test_no_class_has_the_name_of_another(self):
+        self.assertEqual(twice(PACKAGE), [])
+
+    def test_two_of_a_name_are_found(self):
+        files = {"one.py": "class Run:\n    class Part: pass\n", "two.py": "class Run: pass\nclass _Own: pass\n",
+                 "part/three.py": "class Part: pass\nclass _Own: pass\n"}
+        self.assertEqual(twice(self.package(files)), ["Part: one.py, part/three.py", "Run: one.py, two.py"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,361 @@
+"""Results of runs that are read from their folders: names, units, fields of all frames, and what is told when a file is
+missing or broken.
+
+    python3 -m unittest discover -s tests/python -p test_results.py
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import h5py
+import numpy as np
+import xarray
+
+HERE = Path(__file__).resolve().parent
+PACKAGE = HERE.parents[1] / "python"
+sys.path[:0] = [str(HERE), str(PACKAGE)]
+
+import pyroclast  # noqa: E402
+import synthetic_run  # noqa: E402
+from pyroclast import fields  # noqa: E402
+from pyroclast.errors import Error  # noqa: E402
+from pyroclast.results import GrowingResults, Results  # noqa: E402
+from synthetic_run import Heating  # noqa: E402
+
+FRAMES = 14
+
+
+class Case(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.kept = Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, cls.kept)
+        cls.section = synthetic_run.write_run(cls.kept / "run")
+
+    def setUp(self):
+        self.root = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.root)
+        self.folder = self.root / "run"
+        shutil.copytree(self.kept / "run", self.folder)
+        self.results = pyroclast.read(self.folder)
+
+    def count_reads(self):
+        """Counts the arrays that are read from files of frames."""
+        counted = mock.patch.object(fields, "read_array", wraps=fields.read_array)
+        self.addCleanup(counted.stop)
+        return counted.start()
+
+    def refused(self, call, *texts: str) -> None:
+        with self.assertRaises(Error) as caught:
+            call()
+        for text in texts:
+            self.assertIn(text, str(caught.exception))
+        self.assertNotIn("\n", str(caught.exception))
+
+
+class Reading(Case):
+    def test_a_folder_of_a_run_gives_its_results(self):
+        self.assertIsInstance(self.results, pyroclast.Results)
+        self.assertEqual((self.results.title, self.results.outcome), ("Synthetic run", "completed"))
+        self.assertEqual(self.results.results["f_c_MPa"], synthetic_run.PEAK_STRESS)
+        self.assertEqual([stage["kind"] for stage in self.results.stages], ["settle", "compress"])
+        self.assertEqual(self.results.warnings, [])
+
+    def test_where_two_stages_have_a_result_the_later_one_counts(self):
+        stages = [("compress", {"E_GPa": 30.0, "a": 1}), ("heat", {"E_GPa": 9.0})]
+        synthetic_run.write_summary(self.folder, "two", stages)
+        self.assertEqual(pyroclast.read(self.folder).results, {"E_GPa": 9.0, "a": 1})
+
+    def test_another_folder_is_told_for_what_it_is(self):
+        specimen = self.root / "specimen"
+        synthetic_run.write_specimen(specimen, self.section)
+        self.refused(lambda: pyroclast.read(specimen), str(specimen), "holds a specimen", "SpecimenFolder")
+        self.assertEqual(pyroclast.SpecimenFolder(specimen).shares, {"aggregate": 0.312, "mortar": 0.688})
+        (self.root / "several").mkdir()
+        for name in ("a", "b", "c"):
+            shutil.copytree(self.folder, self.root / "several" / name)
+        self.refused(lambda: pyroclast.read(self.root / "several"), "folders of runs: a and 2 more")
+        (self.root / "empty").mkdir()
+        self.refused(lambda: pyroclast.read(self.root / "empty"), "holds no run")
+        self.refused(lambda: pyroclast.read(self.root / "nowhere"), "is not a folder")
+
+    def test_a_run_that_is_not_over_tells_so(self):
+        (self.folder / "summary.json").unlink()
+        self.assertEqual((self.results.outcome, self.results.results, self.results.stages), ("broken off", {}, []))
+        (self.folder / "lock").write_text("1\n")  # that nobody holds
+        self.assertEqual(self.results.outcome, "killed")
+
+
+class HistoryOfResults(Case):
+    def test_names_without_units_are_in_si(self):
+        history = self.results.history
+        np.testing.assert_array_equal(history["stress"], 1e6 * history["stress_MPa"])
+        np.testing.assert_array_equal(history["time"], history["time_s"])
+        self.assertEqual((history.units["stress_MPa"], history.units["strain"]), ("MPa", "1"))
+        self.assertEqual(list(history), synthetic_run.HISTORY_COLUMNS)
+        self.assertEqual(len(history["strain"]), history.rows)
+
+    def test_pandas_keeps_the_units(self):
+        for table in (self.results.to_pandas(), self.results.history.to_pandas()):
+            self.assertEqual(list(table), synthetic_run.HISTORY_COLUMNS)
+            self.assertEqual(table.attrs["units"], self.results.history.units)
+            np.testing.assert_array_equal(table["stress_MPa"], self.results.history["stress_MPa"])
+
+    def test_a_column_is_not_to_be_changed_and_one_that_is_not_there_is_named_with_the_file(self):
+        with self.assertRaisesRegex(ValueError, "read-only"):
+            self.results.history["strain"][0] = 1.0
+        self.refused(lambda: self.results.history["colour"], "history.csv", "'colour'")
+
+    def test_a_record_that_is_called_strain_makes_no_test_between_platens(self):
+        (self.folder / "history.csv").write_text("stage,step,time_s,unbalanced_ratio,strain_m\n0,0,0,0,0.5\n")
+        self.assertFalse(self.results.has_platens)
+        self.assertTrue(self.results.moves)
+
+
+class FieldsOfFrames(Case):
+    def test_they_have_the_names_of_the_files_and_units_beside_them(self):
+        found = self.results.fields
+        self.assertEqual({name: found[name].dims for name in found}, {
+            "displacement": ("frame", "gridpoint", "component"), "stress": ("frame", "zone", "tensor"),
+            "contact_displacement": ("frame", "contact", "end", "component"),
+            "tension_damage": ("frame", "contact"), "shear_damage": ("frame", "contact")})
+        self.assertEqual({name: found[name].attrs["units"] for name in found}, {
+            "displacement": "m", "stress": "Pa", "contact_displacement": "m", "tension_damage": "1",
+            "shear_damage": "1"})
+        self.assertEqual(found["component"].values.tolist(), ["x", "y"])
+        self.assertEqual(found["tensor"].values.tolist(), ["xx", "yy", "zz", "xy", "yz", "xz"])
+
+    def test_coordinates_tell_state_place_and_material(self):
+        found = self.results.fields
+        frames = self.results.frames
+        self.assertEqual(found.sizes["frame"], FRAMES)
+        np.testing.assert_array_equal(found["stage"], [frame.stage for frame in frames])
+        np.testing.assert_array_equal(found["test_strain"], [frame.strain for frame in frames])
+        np.testing.assert_array_equal(found["test_stress"], [1e6 * frame.stress_MPa for frame in frames])
+        self.assertEqual((found["test_stress"].attrs["units"], found["time"].attrs["units"]), ("Pa", "s"))
+        self.assertNotIn("mean_temperature", found.coords)  # the run's frames.csv does not have it
+        np.testing.assert_array_equal(found["position"], self.section.points)
+        np.testing.assert_array_equal(found["block"], self.section.block)
+        names = np.array(["aggregate", "mortar", "platen"])
+        np.testing.assert_array_equal(found["material"], names[self.section.material])
+        np.testing.assert_array_equal(found["bearing"], self.section.material == 2)
+        np.testing.assert_array_equal(found["interface"] == "platen", self.section.interface == 3)
+        self.assertAlmostEqual(float(found["area"].where(~found["bearing"]).groupby("block").sum().max()),
+                               1.5 * 3.0**0.5 * self.side**2, delta=1e-9)
+
+    @property
+    def side(self) -> float:
+        """Of a hexagon of the section, m."""
+        return self.section.width / (3.0**0.5 * 4.5)
+
+    def test_values_are_those_of_the_files(self):
+        found = self.results.fields
+        for frame in self.results.frames:
+            np.testing.assert_array_equal(found["displacement"].isel(frame=frame.number),
+                                          self.results.gridpoint_displacement(frame))
+            np.testing.assert_array_equal(found["tension_damage"].isel(frame=frame.number),
+                                          self.results.contact_field(frame, "tension_damage [1]"))
+            of_ends = self.results.contact_displacement(frame).reshape(-1, 2, 2)
+            np.testing.assert_array_equal(found["contact_displacement"].isel(frame=frame.number), of_ends)
+
+    def test_only_the_frames_that_are_asked_for_are_read(self):
+        reads = self.count_reads()
+        found = self.results.fields
+        self.assertEqual(reads.call_count, 0)
+        one = found["displacement"].isel(frame=5)
+        self.assertEqual(reads.call_count, 0)
+        one.load()
+        self.assertEqual([call.args[0].name for call in reads.call_args_list], ["blocks_0005.hdf"])
+        found["shear_damage"].sel(frame=[2, 7]).load()
+        self.assertEqual([call.args[0].name for call in reads.call_args_list[1:]],
+                         ["contacts_0002.hdf", "contacts_0007.hdf"])
+        self.assertEqual(found.nbytes, found.copy().load().nbytes)  # known before it is read
+
+    def test_any_part_is_what_it_is_of_the_whole(self):
+        lazy, whole = self.results.fields["displacement"], self.results.fields["displacement"].copy().load()
+        points = xarray.DataArray([0, 3, 5], dims="line")
+        for part in ({"frame": -1}, {"frame": slice(None, None, -3)}, {"frame": [4, 1, 1]}, {"gridpoint": 3},
+                     {"frame": 2, "gridpoint": [5, 2], "component": 1}, {"frame": slice(3, 3)},
+                     {"frame": [0, 3], "gridpoint": slice(10, 0, -2), "component": [1]},
+                     {"frame": points, "gridpoint": 2 * points}):
+            with self.subTest(part):
+                taken, wanted = lazy.isel(part), whole.isel(part)
+                self.assertEqual(taken.dims, wanted.dims)
+                np.testing.assert_array_equal(taken.values, wanted.values)
+
+    def test_blocks_have_the_mean_of_their_zones(self):
+        means = self.results.block_fields
+        self.assertEqual(means["displacement"].dims, ("frame", "block", "component"))
+        self.assertEqual(set(means), {"displacement", "stress"})
+        centres = np.array([self.section.points[self.section.triangles[self.section.block == b].ravel()].mean(axis=0)
+                            for b in range(len(self.section.block_material))])
+        for frame in self.results.frames:  # all of a block moves alike
+            moved = np.full(centres.shape, np.nan)
+            moved[self.section.block[np.arange(len(self.section.triangles))]] = self.results.gridpoint_displacement(
+                frame)[self.section.triangles[:, 0]]
+            np.testing.assert_allclose(means["displacement"].isel(frame=frame.number), moved, rtol=1e-12, atol=1e-15)
+        np.testing.assert_allclose(means["position"], centres, atol=1e-12)
+        self.assertEqual(means["material"].values[-1], "platen")
+        self.assertEqual(means["displacement"].attrs["units"], "m")
+
+    def test_the_mean_of_a_block_is_by_area(self):
+        with h5py.File(self.folder / "fields" / "mesh.h5", "a") as file:
+            points = file["blocks/Points"][()]
+            points[self.section.triangles[0, 0]] += (0.3 * self.side, 0.2 * self.side, 0.0)  # the middle of a hexagon
+            file["blocks/Points"][...] = points
+        stress = np.random.default_rng(1).normal(size=(len(self.section.triangles), 6)).astype(np.float32)
+        with h5py.File(self.folder / "fields" / "blocks_0003.hdf", "a") as file:
+            file["VTKHDF/CellData/stress [Pa]"][...] = stress
+        mean = self.results.block_fields["stress"].isel(frame=3, block=0).values
+        of_block = self.section.block == 0
+        corners = points[self.section.triangles[of_block], :2]
+        area = [0.5 * abs(np.linalg.det(np.column_stack([b - a, c - a]))) for a, b, c in corners]
+        self.assertGreater(max(area) / min(area), 2.0)
+        np.testing.assert_allclose(mean, np.average(stress[of_block], axis=0, weights=area), rtol=1e-6)
+
+    def test_a_field_that_only_later_stages_have_is_nan_before(self):
+        values = np.arange(len(self.section.interface), dtype=np.float32)
+        for number in (FRAMES - 2, FRAMES - 1):
+            with h5py.File(self.folder / "fields" / f"contacts_{number:04d}.hdf", "a") as file:
+                file["VTKHDF/CellData/heat_conductance [W m-2 K-1]"] = values
+        conductance = self.results.fields["heat_conductance"]
+        self.assertEqual(conductance.attrs["units"], "W m-2 K-1")
+        self.assertTrue(np.isnan(conductance.isel(frame=slice(0, -2))).all())
+        np.testing.assert_array_equal(conductance.isel(frame=-2), values)
+
+    def test_heat_alone_has_temperatures(self):
+        section = synthetic_run.write_conduction(self.root / "wall")
+        results = pyroclast.read(self.root / "wall")
+        self.assertEqual(set(results.fields), {"temperature"})
+        self.assertEqual(results.fields["mean_temperature"].values.tolist(), [20.0, 40.0, 60.0, 80.0, 100.0, 120.0])
+        self.assertLessEqual({"heating_time", "position"}, set(results.fields.coords))
+        self.assertFalse({"test_strain", "interface", "step"} & set(results.fields.coords))
+        last = results.block_fields["temperature"].isel(frame=-1)
+        corners = results.gridpoint_temperature(results.frames[-1])[section.triangles[section.block == 3]]
+        self.assertAlmostEqual(float(last[3]), float(corners.mean()), delta=1e-4)  # its zones are alike
+
+    def test_a_heated_run_has_its_temperatures_beside_its_stress(self):
+        synthetic_run.write_heated_run(self.root / "hot", Heating(spread=50.0))
+        found = pyroclast.read(self.root / "hot").fields
+        self.assertEqual(found["temperature"].dims, ("frame", "gridpoint"))
+        self.assertEqual(float(found["mean_temperature"].max()), 700.0)
+        self.assertEqual(found["mean_temperature"].attrs["units"], "degC")
+
+    def test_a_run_that_grows_has_the_frames_by_now(self):
+        table = self.folder / "fields" / "frames.csv"
+        lines = table.read_text().splitlines(keepends=True)
+        table.write_text("".join(lines[:4]))
+        growing = GrowingResults(self.folder)
+        self.assertEqual(growing.fields.sizes["frame"], 3)
+        table.write_text("".join(lines))
+        growing.refresh()
+        self.assertEqual(growing.fields.sizes["frame"], FRAMES)
+
+
+class WhatIsMissingOrBrokenIsNamed(Case):
+    def broken(self, name: str, call, *texts: str) -> None:
+        """What is told of a file that is missing, and of one that is cut off."""
+        path = self.folder / name
+        content = path.read_bytes()
+        path.unlink()
+        with self.subTest(missing=name):
+            self.refused(lambda: call(Results(self.folder)), str(path), *texts)
+        path.write_bytes(content[:len(content) // 3])
+        with self.subTest(cut=name):
+            self.refused(lambda: call(Results(self.folder)), str(path))
+        path.write_bytes(content)
+
+    def test_each_file(self):
+        self.broken("fields/blocks_0003.hdf", lambda results: results.fields["stress"].isel(frame=3).load())
+        self.broken("fields/contacts_0000.hdf", lambda results: results.fields)
+        self.broken("fields/mesh.h5", lambda results: results.block_fields)
+        (self.folder / "history.csv").write_text("stage,strain\n0,x\n")
+        self.refused(lambda: Results(self.folder).history, "history.csv, line 2", "'x'")
+        (self.folder / "history.csv").unlink()
+        self.refused(lambda: pyroclast.read(self.folder).to_pandas(), "history.csv")
+
+    def test_other_frames_are_read_beside_one_that_is_missing(self):
+        (self.folder / "fields" / "blocks_0003.hdf").unlink()
+        self.assertEqual(self.results.fields["stress"].isel(frame=[2, 4]).load().sizes["frame"], 2)
+
+    def test_an_array_that_is_missing_or_does_not_fit_the_mesh(self):
+        for number, values in ((2, None), (3, np.zeros((3, 6))), (0, np.zeros((3, 6))), (FRAMES - 1, np.zeros(7))):
+            path = self.folder / "fields" / f"blocks_{number:04d}.hdf"
+            content = path.read_bytes()
+            with h5py.File(path, "a") as file:
+                del file["VTKHDF/CellData/stress [Pa]"]
+                if values is not None:
+                    file["VTKHDF/CellData/stress [Pa]"] = values
+            with self.subTest(frame=number):
+                self.refused(lambda: Results(self.folder).fields["stress"].load(), str(path), "stress [Pa]")
+            path.write_bytes(content)
+
+    def test_a_run_without_frames(self):
+        shutil.rmtree(self.folder / "fields")
+        (self.folder / "fields").mkdir()
+        synthetic_run.write_mesh(self.folder / "fields" / "mesh.h5", self.section)
+        self.refused(lambda: self.results.fields, str(self.folder), "no frame")
+
+    def test_a_summary_that_is_none(self):
+        (self.folder / "summary.json").write_text("[]")
+        self.refused(lambda: Results(self.folder).results, "summary.json")
+        (self.folder / "summary.json").write_text(json.dumps({"stages": [3]}))
+        self.refused(lambda: Results(self.folder).results, "summary.json", "'stages'")
+        (self.folder / "summary.json").write_text(json.dumps({"stages": [], "warnings": [1]}))
+        self.refused(lambda: Results(self.folder).warnings, "summary.json", "'warnings'")
+
+    def test_a_library_that_is_not_there_is_named_with_its_package(self):
+        code = ("import sys; sys.modules['xarray'] = sys.modules['pandas'] = None\n"
+                f"sys.path.insert(0, {str(PACKAGE)!r})\nimport pyroclast\n"
+                f"results = pyroclast.read({str(self.folder)!r})\n"
+                "for ask in (lambda: results.fields, lambda: results.block_fields, lambda: results.to_pandas()):\n"
+                "    try: ask()\n"
+                "    except pyroclast.Error as error: print(error)\n")
+        told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+        self.assertEqual(told.splitlines(), [f"{what} needs {name}: install the Debian package python3-{name}"
+                                             for what, name in (("Results.fields", "xarray"),
+                                                                ("Results.block_fields", "xarray"),
+                                                                ("to_pandas", "pandas"))])
+
+
+class InANotebook(Case):
+    def test_title_outcome_curve_and_results_of_the_stages_are_shown(self):
+        shown = self.results._repr_html_()
+        self.assertIn('<img alt="Synthetic run: completed" src="data:image/png;base64,', shown)
+        self.assertIn("stage 1 (compress): completed", shown)
+        self.assertIn("<td>f_c_MPa</td><td>34</td>", shown)
+        self.assertTrue(self.results._repr_png_().startswith(b"\x89PNG"))
+        self.assertEqual(repr(self.results), f"<Results of {self.folder}>")
+
+    def test_titles_are_texts(self):
+        synthetic_run.write_summary(self.folder, "<b>&", [])
+        self.assertIn('alt="&lt;b&gt;&amp;: completed"', Results(self.folder)._repr_html_())
+
+    def test_heat_alone_and_a_run_without_fields_are_shown(self):
+        synthetic_run.write_conduction(self.root / "wall")
+        shutil.rmtree(self.folder / "fields")
+        for folder in (self.root / "wall", self.folder):
+            self.assertIn("data:image/png", pyroclast.read(folder)._repr_html_())
+
+    def test_what_cannot_be_read_is_told_in_its_place(self):
+        (self.folder / "history.csv").unlink()
+        shown = Results(self.folder)._repr_html_()
+        self.assertIn("history.csv: cannot be read", shown)
+        self.assertIn("<td>f_c_MPa</td><td>34</td>", shown)
+        (self.folder / "summary.json").write_text("[]")
+        self.assertIn("summary.json", Results(self.folder)._repr_html_())
+        synthetic_run.write_conduction(self.root / "wall")
+        (self.root / "wall" / "deck.toml").write_text("=")
+        self.assertIn("deck.toml: cannot be read", pyroclast.read(self.root / "wall")._repr_html_())
+
+
+if __name__ == "__main__":
+    unittest.main()
