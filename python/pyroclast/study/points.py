@@ -16,7 +16,7 @@ from .. import _core
 from ..decks import toml
 from ..errors import CodeNotAllowed, DeckError, Diagnostic, Error
 from .code import words_of
-from .file import Setup
+from .file import StudySetup
 from .outputs import Offer, Output
 from .parameters import Parameter, Value, numbered
 
@@ -42,7 +42,7 @@ class Point:
 class Points:
     """Makes the points of a study. Those whose deck is refused are infeasible."""
 
-    def __init__(self, study: Setup):
+    def __init__(self, study: StudySetup):
         self._study = study
         self._made: dict[tuple[Value, ...], Point] = {}
 
