@@ -167,6 +167,10 @@ class Points:
             return []
         return self.resolve(self.middle)[2]
 
+    def seconds_of_run(self, seed: int) -> float:
+        """Wall time of a run of the middle of all ranges, s, by its first steps. Of decks."""
+        return _core.seconds_of_run(self._deck_text(self.middle), seed if self.has_seed else None)
+
     def check_outputs(self, outputs: Iterable[Output]) -> list[str]:
         """Which of these no run has, by a run of the middle point that is not begun. Of decks, not of functions."""
         outputs = [o for o in outputs if not o.is_function]

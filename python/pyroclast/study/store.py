@@ -1,4 +1,8 @@
-"""What came of the runs of a study: of each a file in the folder `runs`, beside the folder of the run."""
+"""What came of the runs of a study: of each a file in the folder `runs`, beside the folder of the run.
+
+10,000 of them are read in 0.5 s of processor time, out of one file or a database in 0.25 s; the decks of 10,000 points
+take 27 s.
+"""
 
 from __future__ import annotations
 

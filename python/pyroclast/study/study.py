@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 import signal
-import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping
@@ -146,11 +144,10 @@ class Study:
             store.drop([r.id for r in store if r.state in (CRASHED, TIMED_OUT)])
 
     def time_of_a_run(self) -> float | None:
-        """As `pyroclast check` estimates it for the middle of all ranges on one thread, s; None where it cannot."""
+        """Of the middle of all ranges on one thread, by its first steps, s; None where runs are not those of a deck."""
         if self.setup.runner.kind != "pyroclast":
             return None
-        points = self._driver().points
-        return _foreseen_time(points.command(self._program, points.middle, self.setup.seeds[0]))
+        return self._driver().points.seconds_of_run(self.setup.seeds[0])
 
     def write_table(self) -> Path:
         """table.csv in the folder of the study."""
@@ -189,17 +186,6 @@ def _write(file: Path, tables: Mapping[str, Any]) -> None:
         elif isinstance(value, Mapping):
             blocks.append(table_text(key, value))
     file.write_text("\n".join([*plain, "", *blocks]), encoding="utf-8")
-
-
-def _foreseen_time(command: list[str]) -> float | None:
-    """Of a run, by its command line, as `pyroclast check` says it: "... steps; about 2 min 20 s", s."""
-    said = subprocess.run([command[0], "check", *command[2:], "--threads", "1"], capture_output=True, text=True)
-    found = re.search(r"steps; about ((?:\d+ (?:h|min|s) ?)+)", said.stdout)
-    if found is None:
-        return None
-    words = found[1].split()
-    return sum(float(number) * {"h": 3600.0, "min": 60.0, "s": 1.0}[unit]
-               for number, unit in zip(words[::2], words[1::2]))
 
 
 def _program() -> str:
