@@ -9,6 +9,7 @@ import math
 import os
 import pathlib
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -319,7 +320,10 @@ class Again(StudyTest):
         whole = file.read_bytes()
         spoilt = {"garbage": b"not a result" * 100, "cut": whole[:len(whole) // 2], "of zeros": bytes(len(whole)),
                   "empty": b"", "deep": b"[" * 100000, "of another program": b'{"id": 3, "outputs": {}}',
-                  "of another run": other.read_bytes(), "endless": whole.replace(b'"wall": ', b'"wall": 1e999, "x": ')}
+                  "of another run": other.read_bytes(),
+                  "of none that is over": whole.replace(b'"done"', b'"begun"'),
+                  "endless": re.sub(rb'"wall": [0-9.]+', b'"wall": 1e999', whole),
+                  "tried without end": re.sub(rb'"attempts": [0-9]+', b'"attempts": 1e999', whole)}
         for count, (what, content) in enumerate(spoilt.items(), 1):
             with self.subTest(what), contextlib.redirect_stderr(io.StringIO()) as said:
                 store._said.clear()

@@ -80,13 +80,13 @@ def read_result(file: Path) -> RunResult | None:
                    for what, (value, why) in named["outputs"].items()}
         named.update(outputs=outputs, wall=float(named["wall"]), attempts=int(named["attempts"]))
         result = RunResult(**named)
-        is_of_run = result.id == file.stem and result.state in (BEGUN, DONE, *FAILED)
-        if not is_of_run or not math.isfinite(result.wall):
-            raise ValueError("it is that of no run")
+        states = (BEGUN,) if file.suffix == ".begun" else (DONE, *FAILED)
+        if result.id != file.stem or result.state not in states or not math.isfinite(result.wall):
+            raise ValueError("it is not of this run, or not of one that is over")
         return result
     except FileNotFoundError:
         return None
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
         line = f"warning: {file} cannot be read ({error}); its run counts as not made"
         if line not in _said:
             _said.add(line)
@@ -122,7 +122,7 @@ class Store:
             read = list(pool.map(lambda run: read_result(result_file(self.runs, run)), changed))
         for run, result in zip(changed, read):
             self._results.pop(run, None)
-            if result is not None and result.state != BEGUN:
+            if result is not None:
                 self._results[run] = result
         self._stamps = there
 
