@@ -3,6 +3,8 @@
 PYROCLAST_DAMAGED: how many (default 300).
 """
 
+import contextlib
+import io
 import os
 import random
 import re
@@ -11,6 +13,7 @@ import unittest
 from pathlib import Path
 
 from pyroclast.errors import Error
+from pyroclast.study import store
 from pyroclast.study.file import read_setup
 from pyroclast.study.plans import plan_of
 from study_files import StudyTest, of_deck
@@ -65,6 +68,25 @@ class Damaged(StudyTest):
                     self.assertIn("study.toml", str(error))
         self.assertGreater(taken, 0)
         self.assertLess(taken, DAMAGED)
+
+
+class Results(StudyTest):
+    def test_each_is_taken_or_its_run_counts_as_not_made(self) -> None:
+        lot = random.Random(2)
+        study = self.study(self.of_function('kind = "lhs"\nsamples = 2'))
+        study.run(jobs=1)
+        file = min(study.setup.folder.glob("runs/*.json"))
+        whole = file.read_text()
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            for number in range(DAMAGED):
+                store._said.clear()
+                said.truncate(0)
+                content = damaged(whole, lot).encode()
+                file.write_bytes(content)
+                with self.subTest(number=number, content=content):
+                    seen = study.forecast()
+                    self.assertEqual(study.table_text().count("\n"), 3)
+                    self.assertEqual(said.getvalue().count("its run counts as not made"), seen.left)
 
 
 class Bytes(unittest.TestCase):

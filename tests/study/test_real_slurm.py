@@ -16,8 +16,8 @@ import unittest
 from collections.abc import Callable
 
 from pyroclast.study.executors.slurm import Slurm
-from pyroclast.study.file import Slurm as Settings
-from pyroclast.study.store import DONE, Result
+from pyroclast.study.file import SlurmSettings
+from pyroclast.study.store import DONE, RunResult
 from pyroclast.study.work import Job
 
 MODEL = '''
@@ -46,14 +46,14 @@ class RealSlurm(unittest.TestCase):
         self.folder = pathlib.Path(scratch.name)
         (self.folder / "model.sh").write_text(MODEL)
         (self.folder / "study").mkdir()
-        self.results: dict[str, Result] = {}
+        self.results: dict[str, RunResult] = {}
 
     def job(self, i: int, mode: str = "plain") -> Job:
         return Job(f"run-{i}", 1, "command", ("sh", str(self.folder / "model.sh"), str(i), "FOLDER", mode), {"x": i},
                    ("z",), "summary", 3600.0, 1.0, 0)
 
     def run_all(self, jobs: list[Job], stopped: Callable[[], bool] = lambda: False, **settings) -> None:
-        slurm = Slurm(Settings(slots=2, **settings), lambda text: None, (0.5, 2.0), grace=5.0)
+        slurm = Slurm(SlurmSettings(slots=2, **settings), lambda text: None, (0.5, 2.0), grace=5.0)
         slurm.run(jobs, self.folder / "study" / "runs", lambda result: self.results.__setitem__(result.id, result), stopped)
 
     def made(self) -> list[int]:

@@ -16,7 +16,7 @@ from pyroclast.study.executors.local import Local
 from pyroclast.study.report import _SECTIONS, write_report
 from pyroclast.study.report.drawing import NOT_TOLD, SEED
 from pyroclast.study.report.seen import number, percent, seen
-from pyroclast.study.store import Result
+from pyroclast.study.store import RunResult
 from pyroclast.study.study import Study
 from pyroclast.study.work import Job
 from study_files import StudyTest
@@ -66,7 +66,7 @@ class First(Local):
         super().__init__(1)
         self.most = most
 
-    def run(self, jobs: Sequence[Job], runs: pathlib.Path, finished: Callable[[Result], None],
+    def run(self, jobs: Sequence[Job], runs: pathlib.Path, finished: Callable[[RunResult], None],
             stopped: Callable[[], bool]) -> None:
         super().run(jobs[:self.most], runs, finished, stopped)
 

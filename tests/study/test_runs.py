@@ -1,16 +1,17 @@
 """Runs of studies: made once, judged, taken up again after a kill, never left behind."""
 
 import contextlib
-import fcntl
+import dataclasses
+import errno
 import io
 import json
 import math
 import os
 import pathlib
 import random
+import re
 import shutil
 import signal
-import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -18,15 +19,15 @@ import threading
 import time
 import unittest
 import unittest.mock
-from collections.abc import Callable, Iterator
 
 from pyroclast.errors import Error
-from pyroclast.study import work
+from pyroclast.study import store, work
 from pyroclast.study.driver import _cell, _text
 from pyroclast.study.executors.local import Local
 from pyroclast.study.outputs import Output
 from pyroclast.study.report import write_report
-from pyroclast.study.store import DONE, Result, Store, write_record
+from pyroclast.study.store import (CRASHED, DONE, RunResult, Store, begun_file, read_result, result_file,
+                                   write_result)
 from pyroclast.study.study import Study
 from pyroclast.study.work import Job, judge
 from study_files import PROGRAM, StudyTest, of_deck
@@ -40,14 +41,6 @@ def alive(word: str) -> list[str]:
     """Processes with the word in their command line."""
     found = subprocess.run(["pgrep", "-f", word], capture_output=True, text=True).stdout.split()
     return [pid for pid in found if int(pid) != os.getpid()]
-
-
-@contextlib.contextmanager
-def opened_lock(folder: pathlib.Path) -> Iterator[None]:
-    """As another process that runs the study holds it."""
-    with open(folder / "lock", "w", encoding="utf-8") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        yield
 
 
 class States(StudyTest):
@@ -64,13 +57,13 @@ class States(StudyTest):
     def test_crashed_says_why(self) -> None:
         row = self.one("crash")
         self.assertEqual(row["state"], "crashed")
-        self.assertIn("exit code 3: the mortar is missing", row["reason"])
+        self.assertIn("exit code 3: error: the mortar is missing; with mortar: the same again", row["reason"])
         self.assertIsNone(row["z"])
 
     def test_no_cell_of_the_table_is_a_formula(self) -> None:
         made = self.study(self.of_command("formula"))
         self.assertTrue(made.run(jobs=2))
-        self.assertIn('exit code 3: =HYPERLINK("x")', made.rows()[0]["reason"])
+        self.assertIn('exit code 3: error: =HYPERLINK("x")', made.rows()[0]["reason"])
         reasons = ["=1+1", "+1", "-1", "@x", "plain"]
         self.assertEqual([_cell(text) for text in reasons], ["'=1+1", "'+1", "'-1", "'@x", "plain"])
         self.assertEqual([_text(_cell(text)) for text in reasons], reasons)
@@ -171,7 +164,7 @@ pressure = "1 MPa"
 
 
 class Windows(unittest.TestCase):
-    """Between the end of a run and its row in the store a driver may be killed at any place: what is whole is taken."""
+    """Between the end of a run and its result a driver may be killed at any place: what is whole is taken."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -180,7 +173,8 @@ class Windows(unittest.TestCase):
         (self.runs / "r").mkdir()
         self.job = Job("r", 1, "pyroclast", ("pyroclast", "run", "deck.toml"), {"x": 1.0},
                        ("f_c_MPa", "history: strain where stress_MPa is largest"), "summary", 60.0, 1.0, 6)
-        self.begun = Result("r", 1, work.BEGUN, values={"x": 1.0}, version=6, wall=0.0)
+        self.begun = begun_file(self.runs, "r")
+        write_result(self.begun, RunResult("r", 1, work.BEGUN, values={"x": 1.0}, version=6, wall=0.0))
 
     def leave(self, outcome: str = "completed", whole: bool = True) -> None:
         (self.runs / "r/history.csv").write_text("stage,strain,stress_MPa\n0,0,0\n0,0.001,30\n0,0.002,20\n")
@@ -188,7 +182,6 @@ class Windows(unittest.TestCase):
         (self.runs / "r/summary.json").write_text(text if whole else text[:20])
 
     def test_before_the_summary_there_is_nothing_to_take(self):
-        write_record(self.runs, self.begun)
         self.assertIsNone(work.made(self.job, self.runs))
         self.leave(whole=False)
         self.assertIsNone(work.made(self.job, self.runs))
@@ -197,22 +190,40 @@ class Windows(unittest.TestCase):
         self.assertTrue((self.runs / "r/history.csv").exists())
 
     def test_after_the_summary_the_run_counts_with_all_its_numbers(self):
-        write_record(self.runs, self.begun)
         self.leave()
         result = work.made(self.job, self.runs)
         self.assertEqual((result.state, result.wall), ("done", 2.5))
         self.assertEqual([value for value, _ in result.outputs.values()], [30.0, 0.001])
-        self.assertEqual(work.made(self.job, self.runs), result)  # its record is written
+        self.assertFalse(self.begun.exists())
+        self.assertEqual(work.made(self.job, self.runs), result)  # it is written down
         self.assertFalse((self.runs / "r/history.csv").exists())  # and it is thinned
 
-    def test_between_its_record_and_thinning(self):
-        write_record(self.runs, self.begun)
+    def test_between_its_result_and_thinning(self):
         self.leave()
         with unittest.mock.patch.object(work, "thin", side_effect=KeyboardInterrupt), self.assertRaises(KeyboardInterrupt):
             work.made(self.job, self.runs)
         self.assertTrue((self.runs / "r/history.csv").exists())
+        self.assertEqual(read_result(result_file(self.runs, "r")).state, "done")
         self.assertEqual(work.made(self.job, self.runs).state, "done")
-        self.assertFalse((self.runs / "r/history.csv").exists())
+        self.assertFalse((self.runs / "r/history.csv").exists() or self.begun.exists())
+
+    def test_who_comes_second_takes_what_is_written_down(self):
+        """The driver of an array takes a run in that its task is about to, and has thinned its folder."""
+        self.leave()
+        first = work.made(self.job, self.runs)
+        write_result(self.begun, RunResult("r", 1, work.BEGUN))
+        self.assertEqual(work.given_up(self.job, self.runs, "is late"), first)
+        self.assertEqual(read_result(result_file(self.runs, "r")), first)
+
+    def test_what_is_made_again_for_further_outputs_is_not_lost_meanwhile(self):
+        self.leave()
+        work.made(self.job, self.runs)
+        more = dataclasses.replace(self.job, outputs=(*self.job.outputs, "E_GPa"))
+        self.assertIsNone(work.made(more, self.runs))
+        shutil.rmtree(self.runs / "r")
+        write_result(self.begun, RunResult("r", 1, work.BEGUN))
+        self.assertIsNone(work.made(more, self.runs))
+        self.assertEqual(work.known_result(self.job, self.runs).state, "done")
 
 
 class Links(StudyTest):
@@ -229,8 +240,7 @@ class Links(StudyTest):
         self.assertEqual((self.mine.read_text(), list(self.elsewhere.iterdir())), ("precious", []))
 
     def test_what_would_be_written_through_is_refused(self) -> None:
-        for name, target in (("lock", self.mine), ("study.sqlite", self.mine), ("runs", self.elsewhere),
-                             ("report", self.elsewhere)):
+        for name, target in (("lock", self.mine), ("runs", self.elsewhere), ("report", self.elsewhere)):
             with self.subTest(name):
                 study = self.study(self.of_command("plain", 'kind = "grid"', f'folder = "of_{name}"'))
                 study.setup.folder.mkdir()
@@ -302,76 +312,61 @@ class Again(StudyTest):
         self.assertEqual(self.made(fresh), [])
         self.assertEqual([row["z"] for row in fresh.rows()], [row["z"] for row in study.rows()])
 
-    def test_the_records_rebuild_a_damaged_base(self) -> None:
+    def test_a_damaged_result_is_said_once_and_its_run_is_made_again(self) -> None:
         study = self.study(self.of_command("plain"))
         study.run(jobs=2)
-        before = study.rows()
-        (study.setup.folder / "study.sqlite").write_bytes(b"not a database" * 100)
-        study.run(jobs=2)
-        self.assertEqual(study.rows(), before)
-        self.assertEqual(len(self.made(study)), 4)
-
-    def damaged(self, file: pathlib.Path) -> dict[str, Callable[[], object]]:
-        """Ways to spoil a store, by name."""
+        before = [row["z"] for row in study.rows()]
+        file, other = sorted(study.setup.folder.glob("runs/*.json"))[:2]
         whole = file.read_bytes()
+        spoilt = {"garbage": b"not a result" * 100, "cut": whole[:len(whole) // 2], "of zeros": bytes(len(whole)),
+                  "empty": b"", "deep": b"[" * 100000, "of another program": b'{"id": 3, "outputs": {}}',
+                  "of another run": other.read_bytes(),
+                  "of none that is over": whole.replace(b'"done"', b'"begun"'),
+                  "endless": re.sub(rb'"wall": [0-9.]+', b'"wall": 1e999', whole),
+                  "tried without end": re.sub(rb'"attempts": [0-9]+', b'"attempts": 1e999', whole)}
+        for count, (what, content) in enumerate(spoilt.items(), 1):
+            with self.subTest(what), contextlib.redirect_stderr(io.StringIO()) as said:
+                store._said.clear()
+                file.write_bytes(content)
+                self.assertEqual(sorted(states(study)), [*["done"] * 3, "not run"])
+                self.assertEqual(sorted(states(Study(study.setup.file))), [*["done"] * 3, "not run"])
+                self.assertTrue(study.run(jobs=2))
+                self.assertEqual(said.getvalue().count(f"{file} cannot be read"), 1)
+                self.assertEqual([row["z"] for row in study.rows()], before)
+                self.assertEqual(len(self.made(study)), 4 + count)
 
-        def only_read() -> None:
-            file.write_bytes(whole)
-            file.chmod(0)
-
-        def of_another() -> None:
-            file.unlink()
-            with contextlib.closing(sqlite3.connect(file)) as base:
-                base.execute("CREATE TABLE runs (id, other)")
-                base.commit()
-
-        return {"garbage": lambda: file.write_bytes(b"not a database" * 100),
-                "cut": lambda: file.write_bytes(whole[:len(whole) // 2]),
-                "cut in its first page": lambda: file.write_bytes(whole[:1000]),
-                "of zeros": lambda: file.write_bytes(bytes(len(whole))),
-                "empty": lambda: file.write_bytes(b""),
-                "a folder": lambda: (file.unlink(), file.mkdir()),
-                "of another program": of_another} | ({"not to be read": only_read} if os.getuid() else {})
-
-    def test_every_command_makes_a_damaged_base_again_and_says_so(self) -> None:
+    def test_every_command_says_which_result_is_damaged(self) -> None:
         text = self.file(self.of_command("plain"))
         study = self.study(self.of_command("plain"))
         study.run(jobs=2)
-        before = study.rows()
-        file = study.setup.folder / "study.sqlite"
-        for what, spoil in self.damaged(file).items():
-            commands = [("run",), ("status",)]
-            if what == "garbage":
-                commands += [("run", "--dry-run"), ("check",), ("table", "-o", "-"), ("table",), ("report",)]
-            for command, *more in commands:
-                with self.subTest(f"{command} of one that is {what}"):
-                    spoil()
-                    done = subprocess.run([PROGRAM, "study", command, str(text), *more], capture_output=True, text=True)
-                    self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-                    self.assertRegex(done.stderr, r"study\.sqlite could not be read; it is made again from the records "
-                                                  r"of 4 runs")
-                    self.assertEqual(self.study(self.of_command("plain")).rows(), before)
-        self.assertEqual(len(self.made(study)), 4)
-        self.assertTrue(list(study.setup.folder.glob("study.damaged*")))
+        file = min(study.setup.folder.glob("runs/*.json"))
+        file.write_bytes(b"not a result" * 100)
+        for words, code, says in ((("status",), 2, "3 of 4 done"), (("table", "-o", "-"), 0, "not run"),
+                                  (("report",), 0, "report.html"), (("run",), 0, "1 of 1 runs")):
+            done = subprocess.run([PROGRAM, "study", words[0], str(text), *words[1:]], capture_output=True, text=True)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(says, done.stdout)
+            self.assertEqual(done.stderr.count(f"{file} cannot be read"), 1, done.stderr)
 
-    def test_a_base_that_cannot_be_made_again_is_done_without(self) -> None:
+    def test_what_other_processes_write_and_forget_is_seen(self) -> None:
         study = self.study(self.of_command("plain"))
-        study.run(jobs=2)
-        before = study.rows()
-        (study.setup.folder / "study.sqlite").write_bytes(b"not a database" * 100)
-        with opened_lock(study.setup.folder), contextlib.redirect_stderr(io.StringIO()) as said:
-            self.assertEqual(self.study(self.of_command("plain")).rows(), before)
-        self.assertIn("taken from the records of 4 runs", said.getvalue())
+        self.assertEqual(states(study), ["not run"] * 4)
+        driver = study._driver()
+        subprocess.run([PROGRAM, "study", "run", str(study.setup.file), "--quiet"], check=True)
+        self.assertEqual(states(study), ["done"] * 4)
+        file = min(study.setup.folder.glob("runs/*.json"))
+        write_result(file, dataclasses.replace(read_result(file), state=CRASHED))
+        self.assertEqual(sorted(states(study)), ["crashed", *["done"] * 3])
+        study.forget_failures()
+        self.assertEqual(sorted(states(study)), [*["done"] * 3, "not run"])
+        self.assertIs(study._driver(), driver)
 
-    def test_a_journal_of_a_damaged_base_does_not_spoil_the_new_one(self) -> None:
-        study = self.study(self.of_command("plain"))
-        study.run(jobs=2)
-        before = study.rows()
-        file = study.setup.folder / "study.sqlite"
-        file.write_bytes(b"not a database" * 100)
-        file.with_name("study.sqlite-journal").write_bytes(b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7" + bytes(504))
-        self.assertEqual(study.rows(), before)
-        self.assertFalse(file.with_name("study.sqlite-journal").exists())
+    def test_another_model_makes_other_runs(self) -> None:
+        study = self.study(self.of_function('kind = "lhs"\nsamples = 2'))
+        study.run(jobs=1)
+        self.assertEqual(states(study), ["done"] * 2)
+        self.model.write_text(self.model.read_text().replace("2.0 * x", "3.0 * x"))
+        self.assertEqual(states(study), ["not run"] * 2)
 
     def test_before_the_first_run_there_is_no_table(self) -> None:
         text = self.file(self.of_command("plain"))
@@ -480,11 +475,11 @@ class Kills(StudyTest):
 
             def run(self, jobs, runs, finished, stopped) -> None:
                 for job in jobs:
-                    finished(Result(job.id, job.seed, DONE, outputs={"z": (1.0, "")}))
+                    finished(RunResult(job.id, job.seed, DONE, outputs={"z": (1.0, "")}))
                 until = time.monotonic() + 10.0
                 while len(known) < 2 and time.monotonic() < until:
                     stopped()
-                    known[:] = list(Store(study.setup.folder, writes=False))
+                    known[:] = list(Store(study.setup.folder))
                     time.sleep(0.05)
 
         self.assertTrue(study.run(Slow()))
@@ -499,6 +494,39 @@ class Kills(StudyTest):
         (study.setup.folder / "room").touch()
         self.assertTrue(study.run(jobs=2))
         self.assertEqual(states(study), ["done"] * 4)
+
+    def test_a_disk_that_is_full_when_a_result_is_written(self) -> None:
+        study = self.study(self.of_function('kind = "lhs"\nsamples = 20'))
+        write_text, left = store.write_text, 7
+
+        def write(file: pathlib.Path, text: str) -> None:
+            nonlocal left
+            left -= 1
+            if left < 0:
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(file))
+            write_text(file, text)
+
+        with unittest.mock.patch.object(store, "write_text", write), self.assertRaisesRegex(OSError, "No space left"):
+            study.run(jobs=1)
+        self.assertEqual(states(Study(study.setup.file)).count("done"), 7)
+        self.assertTrue(study.run(jobs=1))
+        self.assertEqual(states(study), ["done"] * 20)
+
+    def test_a_killed_driver_has_written_down_what_functions_gave(self) -> None:
+        self.model.write_text("import os, time\ndef line(x, seed):\n    open('called', 'a').write(f'{x}\\n')\n"
+                              "    time.sleep(0.02)\n    return {'z': x}\n")
+        text = self.file(self.of_function('kind = "lhs"\nsamples = 60'))
+        called, words = self.folder / "called", [sys.executable, "-m", "pyroclast.study", "run", str(text), "-j", "2"]
+        for kill_at in (15, 30, 45):
+            driver = subprocess.Popen(words, cwd=self.folder, stdout=subprocess.DEVNULL)
+            until = time.monotonic() + 20.0
+            while time.monotonic() < until and (not called.exists() or called.read_text().count("\n") < kill_at):
+                time.sleep(0.005)
+            driver.kill()
+            driver.wait()
+        subprocess.run(words, cwd=self.folder, stdout=subprocess.DEVNULL, check=True)
+        self.assertEqual(states(Study(text)), ["done"] * 60)
+        self.assertLessEqual(called.read_text().count("\n"), 60 + 3 * 2 * 2)
 
     def test_two_drivers_are_one_too_many(self) -> None:
         study = self.study(self.of_command("brief"))

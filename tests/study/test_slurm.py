@@ -23,9 +23,9 @@ from fake_slurm import FakeSlurm, on_path
 from pyroclast.errors import Error
 from pyroclast.study.executors import slurm
 from pyroclast.study.executors.slurm import MOST_LOST, Slurm, runs_per_task
-from pyroclast.study.file import Slurm as Settings
-from pyroclast.study.store import CRASHED, DONE, Result, opened, read_record
-from pyroclast.study.work import Job, made
+from pyroclast.study.file import SlurmSettings
+from pyroclast.study.store import CRASHED, DONE, RunResult, only_writer, result_file
+from pyroclast.study.work import Job, known_result
 
 PROGRAM = os.environ.get("PYROCLAST", "")
 os.environ["PYROCLAST_CODE"] = "always"  # tests/app/test_code.py tries the others
@@ -69,7 +69,7 @@ class SlurmTest(unittest.TestCase):
         patch.start()
         self.addCleanup(patch.stop)
         self.said: list[str] = []
-        self.results: dict[str, Result] = {}
+        self.results: dict[str, RunResult] = {}
 
     def job(self, i: int, mode: str = "plain") -> Job:
         return Job(f"run-{i}", 1, "command", ("sh", str(self.model), str(i), "FOLDER", mode), {"x": i}, ("z",), "summary",
@@ -80,10 +80,10 @@ class SlurmTest(unittest.TestCase):
 
     def executor(self, **settings) -> Slurm:
         settings = {"slots": 2, "points_per_task": 4, **settings}
-        return Slurm(Settings(**settings), self.said.append, interval=(0.1, 0.2), patience=0.1, grace=0.0)
+        return Slurm(SlurmSettings(**settings), self.said.append, interval=(0.1, 0.2), patience=0.1, grace=0.0)
 
     def run_all(self, jobs: list[Job], stopped: Callable[[], bool] = lambda: False, **settings) -> None:
-        def finished(result: Result) -> None:
+        def finished(result: RunResult) -> None:
             self.assertNotIn(result.id, self.results)
             self.results[result.id] = result
 
@@ -143,7 +143,7 @@ class Ordinary(SlurmTest):
 
     def test_runs_of_a_task(self) -> None:
         def count(expected: float, jobs: int, **settings) -> int:
-            return runs_per_task(Settings(slots=2, **settings), jobs, expected)
+            return runs_per_task(SlurmSettings(slots=2, **settings), jobs, expected)
 
         self.assertEqual(count(0.0, 100), 1)  # not known
         self.assertEqual(count(60.0, 100), 10)
@@ -244,7 +244,7 @@ class Lost(SlurmTest):
         self.assertEqual({r: self.results[r].state for r in self.results}, {f"run-{i}": DONE for i in (0, 2, 3, 4)})
 
     def test_full_disk(self) -> None:
-        with self.assertRaisesRegex(Error, "task 1_. ended: summary.json: .*No space left on device"):
+        with self.assertRaisesRegex(Error, "task 1_. ended: error: summary.json: .*No space left on device"):
             self.run_all(self.jobs(4, "full"))
         self.assertEqual(self.results, {})
         self.assertEqual(self.made(), [0])  # what a task has in its list was not tried
@@ -254,16 +254,16 @@ class Lost(SlurmTest):
             self.run_all(self.jobs(2))
         self.assertEqual(len(self.slurm.jobs), 1 + 1 + 1)
 
-    def test_lost_record(self) -> None:
-        """A run that was made, and whose record is not there, is made again."""
-        def losing(job: Job, runs: pathlib.Path) -> Result | None:
-            result = made(job, runs)
+    def test_lost_result(self) -> None:
+        """A run that was made, and whose result is not there, is made again."""
+        def losing(job: Job, runs: pathlib.Path) -> RunResult | None:
+            result = known_result(job, runs)
             if job.id != "run-0" or result is None or len(self.made()) > 2:
                 return result
-            (runs / "run-0.json").unlink()
+            result_file(runs, "run-0").unlink()
             return None
 
-        with mock.patch.object(slurm, "made", losing):
+        with mock.patch.object(slurm, "made", losing), mock.patch.object(slurm, "known_result", losing):
             self.run_all(self.jobs(2))
         self.assert_all_done(2)
         self.assertEqual(collections.Counter(self.made()), {0: 2, 1: 1})
@@ -376,10 +376,9 @@ points_per_task = 4
             self.run_all(self.jobs(4, "gated"))
 
     def test_failures_are_made_again(self) -> None:
-        """A record that the store has dropped is not taken for a new result."""
+        """A result that the store has dropped is not taken for a new one."""
         self.run_all(self.jobs(1))
-        with opened(self.folder / "study") as store:
-            store.put([read_record(self.runs, "run-0")])
+        with only_writer(self.folder / "study") as store:
             store.drop(["run-0"])
         self.results.clear()
         self.run_all(self.jobs(1))

@@ -23,12 +23,12 @@ from ..errors import Error
 from ..results import Results
 from ..writing import write_text
 from .executors import Executor
-from .file import FIRST_SEED, Setup
+from .file import FIRST_SEED, StudySetup
 from .outputs import Output, read_summary
 from .parameters import Value
 from .plans import Answers, Plan, Proposal, plan_of
 from .points import Point, Points
-from .store import DONE, FAILED, NO_VALUE, Result, Store
+from .store import DONE, FAILED, NO_VALUE, RunResult, Store
 from .work import Job, made
 
 NOT_RUN = "not run"
@@ -52,7 +52,7 @@ class Wanted:
 
 
 @dataclass(frozen=True)
-class Forecast:
+class StudyForecast:
     """What a study asks for, and what is left of it."""
 
     points: int  #: that the method asks for so far, each once
@@ -71,7 +71,7 @@ class Forecast:
 class Driver:
     """Brings a study to its end, from what its store knows."""
 
-    def __init__(self, study: Setup, store: Store, program: str = "pyroclast",
+    def __init__(self, study: StudySetup, store: Store, program: str = "pyroclast",
                  functions: Mapping[str, Callable[[Results], float]] = MappingProxyType({})):
         """
         program: makes the runs, and is what the command line of each names.
@@ -106,13 +106,13 @@ class Driver:
         seen = {what for r in self.store for what, (value, _) in r.outputs.items() if value is not None}
         return [o for o in self.study.outputs if o.what not in seen]
 
-    def forecast(self) -> Forecast:
+    def forecast(self) -> StudyForecast:
         """Of what the method asks for now."""
         proposal = self.plan.propose(self._answers)
         wanted = self._wanted(proposal)
         known = sum(self._result(w) is not None for w in wanted)
         points = set(self._points(proposal.points))
-        return Forecast(len(points), len(wanted), known, sum(bool(p.infeasible) for p in points),
+        return StudyForecast(len(points), len(wanted), known, sum(bool(p.infeasible) for p in points),
                         (len(wanted) - known) * self.expected, proposal.is_complete)
 
     @property
@@ -130,20 +130,12 @@ class Driver:
             missing = self._missing(proposal)
             if missing:
                 progress = _Progress(len(missing), say)
-                results = _Batches(self.store)
 
-                def finished(result: Result, progress: _Progress = progress, results: _Batches = results) -> None:
-                    results.put(result)
+                def finished(result: RunResult, progress: _Progress = progress) -> None:
+                    self.store.put(result)
                     progress.count(result)
 
-                def asked(results: _Batches = results) -> bool:
-                    results.flush_if_due()
-                    return stopped()
-
-                try:
-                    executor.run(self._jobs(missing), self._runs, finished, asked)
-                finally:
-                    results.flush()
+                executor.run(self._jobs(missing), self.store.runs, finished, stopped)
                 progress.end()
             if stopped() or any(self._result(w) is None for w in missing):
                 self.write_table()
@@ -154,15 +146,13 @@ class Driver:
         return True
 
     def _missing(self, proposal: Proposal) -> list[Wanted]:
-        """Runs of which neither the store nor a record knows what came of them; the store then knows the records."""
-        missing = [w for w in self._wanted(proposal) if self._result(w) is None]
-        records = [made(job, self._runs) for job in self._jobs(missing)]
-        self.store.put(record for record in records if record is not None)
-        return [w for w in missing if self._result(w) is None]
-
-    @property
-    def _runs(self) -> Path:
-        return self.store.folder / "runs"
+        """Runs of which it is not known what came of them. What a killed driver left undone is done first."""
+        wanted = self._wanted(proposal)
+        begun = {file.stem for file in self.store.runs.glob("*.begun")}
+        for job in self._jobs(w for w in wanted if w.ids[0] in begun):
+            if (result := made(job, self.store.runs)) is not None:
+                self.store.put(result)
+        return [w for w in wanted if self._result(w) is None]
 
     def count_values(self) -> int:
         """Runs that gave a value of every output."""
@@ -239,7 +229,7 @@ class Driver:
                         y[output.name][i, j] = result.number(output.what)
         return Answers(y, is_known, is_feasible)
 
-    def _result(self, wanted: Wanted) -> Result | None:
+    def _result(self, wanted: Wanted) -> RunResult | None:
         """What is known of a run, with outputs that the study has only now; None where it has to be made for them."""
         result = self.store.get(*wanted.ids)
         if result is None or result.state != DONE:
@@ -247,8 +237,8 @@ class Driver:
         lacking = [o for o in self.study.outputs if o.what not in result.outputs]
         return self._with(result, lacking) if lacking else result
 
-    def _with(self, result: Result, outputs: Sequence[Output]) -> Result | None:
-        folder = self._runs / result.id
+    def _with(self, result: RunResult, outputs: Sequence[Output]) -> RunResult | None:
+        folder = self.store.runs / result.id
         summary = read_summary(folder)
         if summary is None or any(o.of_history for o in outputs) and not (folder / "history.csv").exists():
             return None
@@ -259,7 +249,7 @@ class Driver:
         missing = [f"{what}: {why}" for what, (value, why) in found.items() if value is None]
         result = replace(result, outputs=found, state=NO_VALUE if missing else DONE,
                          reason="; ".join(missing) or result.reason)
-        self.store.put([result])
+        self.store.put(result)
         return result
 
     def _call(self, name: str, folder: Path) -> tuple[float, str]:
@@ -288,35 +278,12 @@ class Driver:
         for file in self.study.earlier:
             try:
                 with open(file, newline="", encoding="utf-8") as text:
-                    rows = list(csv.DictReader(text))
-                self.store.put(_result_of(row, self.study.outputs) for row in rows
-                               if row["state"] in (DONE, *FAILED) and self.store.get(row["run"]) is None)
+                    results = [_result_of(row, self.study.outputs) for row in csv.DictReader(text)
+                               if row["state"] in (DONE, *FAILED) and self.store.get(row["run"]) is None]
             except (OSError, KeyError, ValueError, csv.Error) as error:
                 raise Error(f"{self.study.place('study.earlier')}: {file} is no table of a study: {error!r}") from error
-
-
-class _Batches:
-    """Results on their way into the store, some at a time: a transaction takes longer than a quick run."""
-
-    _INTERVAL = 0.5  # s
-
-    def __init__(self, store: Store):
-        self._store = store
-        self._waiting: list[Result] = []
-        self._last = 0.0
-
-    def put(self, result: Result) -> None:
-        self._waiting.append(result)
-        self.flush_if_due()
-
-    def flush_if_due(self) -> None:
-        if self._waiting and time.monotonic() - self._last > self._INTERVAL:
-            self.flush()
-
-    def flush(self) -> None:
-        self._store.put(self._waiting)
-        self._waiting.clear()
-        self._last = time.monotonic()
+            for result in results:
+                self.store.put(result)
 
 
 class _Progress:
@@ -327,7 +294,7 @@ class _Progress:
         self._done = self._failed = self._said = 0
         self._begun = self._last = time.monotonic()
 
-    def count(self, result: Result) -> None:
+    def count(self, result: RunResult) -> None:
         self._done += 1
         self._failed += result.state in FAILED
         if time.monotonic() - self._last > _PROGRESS:
@@ -353,14 +320,14 @@ def _text(cell: str) -> str:
     return cell[1:] if cell.startswith("'") and cell[1:].startswith(_BEGINS_FORMULA) else cell
 
 
-def _result_of(row: dict[str, str], outputs: Sequence[Output]) -> Result:
+def _result_of(row: dict[str, str], outputs: Sequence[Output]) -> RunResult:
     found: dict[str, tuple[float | None, str]] = {}
     for output in outputs:
         if output.name in row:
             found[output.what] = (float(row[output.name]), "") if row[output.name] else (None, _text(row["reason"]))
     version = row.get("physics_version") or "0"
-    return Result(row["run"], int(row["seed"]), row["state"], _text(row["reason"]), found, {}, row["host"],
-                  wall=float(row["wall_s"] or 0.0), version=int(version))
+    return RunResult(row["run"], int(row["seed"]), row["state"], _text(row["reason"]), found, {}, row["host"],
+                     wall=float(row["wall_s"] or 0.0), version=int(version))
 
 
 def duration(seconds: float) -> str:

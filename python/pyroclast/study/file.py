@@ -50,7 +50,7 @@ class Runner:
 
 
 @dataclass(frozen=True)
-class Slurm:
+class SlurmSettings:
     """How jobs of a study are asked for.
 
     slots: tasks at a time. time: of a task, s. points_per_task: runs that a task makes one after the other; 0: so many
@@ -73,7 +73,7 @@ class Method:
 
 
 @dataclass(frozen=True)
-class Setup:
+class StudySetup:
     """All that a study file says."""
 
     file: Path
@@ -90,7 +90,7 @@ class Setup:
     wall_limit: float = math.inf  #: of a run, s
     accept_version: int | None = None
     earlier: tuple[Path, ...] = ()
-    slurm: Slurm = Slurm()
+    slurm: SlurmSettings = SlurmSettings()
 
     def place(self, key: str) -> str:
         """Where a table or key of the study file stands, as "file:line"."""
@@ -101,7 +101,7 @@ class Setup:
         return node.where(last)
 
 
-def read_setup(file: str | Path, functions: Sequence[str] = ()) -> Setup:
+def read_setup(file: str | Path, functions: Sequence[str] = ()) -> StudySetup:
     """Reads a study file. Raises DeckError with everything that is wrong with it.
 
     functions: names of further outputs, which a script takes of each run.
@@ -117,7 +117,7 @@ def reference() -> str:
     return _core.reference_of(lambda toml: _read(toml, Path("study.toml")))
 
 
-def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> Setup:
+def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> StudySetup:
     root = toml.root()
     title = root.text("title", "What figures and the report are headed with; without it the file's name.", file.stem)
     own = root.table("study", "What is run, how often, and what is kept of it.")
@@ -150,9 +150,9 @@ def _read(toml: _core.TomlFile, file: Path, functions: Sequence[str] = ()) -> Se
     correlations = _correlations(root, [p.name for p in parameters], method.kind)
     slurm = _slurm(root)
     _check_together(root, own, method, parameters, outputs, targets)
-    return Setup(file, title, (file.parent / folder), runner, method, tuple(range(first, first + count)),
-                 tuple(parameters), tuple(outputs), tuple(targets), tuple(correlations), keep,
-                 wall_limit or math.inf, accepted, tuple(file.parent / e for e in earlier), slurm)
+    return StudySetup(file, title, (file.parent / folder), runner, method, tuple(range(first, first + count)),
+                      tuple(parameters), tuple(outputs), tuple(targets), tuple(correlations), keep,
+                      wall_limit or math.inf, accepted, tuple(file.parent / e for e in earlier), slurm)
 
 
 def _runner(own: _core.Table, folder: Path) -> Runner:
@@ -423,15 +423,16 @@ def _correlations(root: _core.Table, names: list[str], method: str) -> list[tupl
     return found
 
 
-def _slurm(root: _core.Table) -> Slurm:
+def _slurm(root: _core.Table) -> SlurmSettings:
     table = root.optional_table("slurm", "Jobs of `--executor slurm`.")
     if table is None:
-        return Slurm()
-    return Slurm(table.integer("slots", "Tasks at a time.", 1, None, 16),
-                 table.quantity("time", "s", "Of a task; runs that it cannot end go on in another.", 60.0, None, 3600.0),
-                 table.integer("points_per_task", "Runs that a task makes one after the other; 0: so many that it lasts "
-                               "some ten minutes.", 0, None, 0),
-                 tuple(table.texts("options", "Further options of sbatch, such as [\"--partition=long\"].", is_optional=True)))
+        return SlurmSettings()
+    return SlurmSettings(
+        table.integer("slots", "Tasks at a time.", 1, None, 16),
+        table.quantity("time", "s", "Of a task; runs that it cannot end go on in another.", 60.0, None, 3600.0),
+        table.integer("points_per_task", "Runs that a task makes one after the other; 0: so many that it lasts some "
+                      "ten minutes.", 0, None, 0),
+        tuple(table.texts("options", "Further options of sbatch, such as [\"--partition=long\"].", is_optional=True)))
 
 
 def _check_together(root: _core.Table, own: _core.Table, method: Method, parameters: list[Parameter],

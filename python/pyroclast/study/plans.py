@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import Error
-from .file import Setup
+from .file import StudySetup
 from .methods import (calibration, ensemble, hsic, main_effects, morris, posterior, sampling, seeds, sobol, surrogate)
 
 Array = NDArray[np.float64]
@@ -59,7 +60,7 @@ class Plan(Protocol):
         """What comes of the answers: numbers, texts, lists and dicts. Raises Error where nothing does yet."""
 
 
-def plan_of(study: Setup) -> Plan:
+def plan_of(study: StudySetup) -> Plan:
     """The plan of the study's method."""
     kinds: dict[str, type[_Plan]] = {"ensemble": _Ensemble, "grid": _Grid, "lhs": _LatinHypercube, "morris": _Morris,
                                      "sobol": _Sobol, "chaos": _Chaos, "calibrate": _Calibrate, "posterior": _Posterior}
@@ -69,7 +70,7 @@ def plan_of(study: Setup) -> Plan:
 class _Plan:
     draws_as_it_goes = False
 
-    def __init__(self, study: Setup):
+    def __init__(self, study: StudySetup):
         self.study = study
         self.k = len(study.parameters)
         self.settings = study.method.settings
@@ -173,6 +174,7 @@ class _Grid(_Sampled):
 
 
 class _LatinHypercube(_Sampled):
+    @functools.cache  # noqa: B019 - a plan lives as long as its study; 10,000 points take seconds
     def points(self) -> Array:
         return self._mixed(sampling.latin_hypercube(int(self.settings["samples"]), self.k, self.seed), True)
 
@@ -319,13 +321,13 @@ class _Calibrate(_ToTargets):
                                         most_generations=int(s["generations"]), least_sigma=float(s["least_step"]),
                                         least_gain=float(s["least_gain"]), patience=int(s["patience"]))
 
-        def outcome(u: Array) -> calibration.Outcome:
+        def answer(u: Array) -> calibration.Answer:
             answers = ask(u[None, :], self.study.seeds)
             if not answers.is_feasible[0]:
                 return calibration.Infeasible()
             return self._of_targets(answers)[0] if answers.has_all() else None
 
-        return calibration.calibrate(self.k, self._targets, settings, outcome)
+        return calibration.calibrate(self.k, self._targets, settings, answer)
 
     def findings(self, ask: Ask) -> dict[str, Any]:
         found = self._search(ask)
@@ -348,7 +350,7 @@ class _Calibrate(_ToTargets):
 class _Posterior(_OnSurrogate, _ToTargets):
     draws_as_it_goes = True
 
-    def __init__(self, study: Setup):
+    def __init__(self, study: StudySetup):
         super().__init__(study)
         self._sampled: tuple[bytes, tuple[posterior.Posterior, Any]] | None = None
 

@@ -16,7 +16,7 @@ from .. import _core
 from ..decks import toml
 from ..errors import CodeNotAllowed, DeckError, Diagnostic, Error
 from .code import words_of
-from .file import Setup
+from .file import StudySetup
 from .outputs import Offer, Output
 from .parameters import Parameter, Value, numbered
 
@@ -42,7 +42,7 @@ class Point:
 class Points:
     """Makes the points of a study. Those whose deck is refused are infeasible."""
 
-    def __init__(self, study: Setup):
+    def __init__(self, study: StudySetup):
         self._study = study
         self._made: dict[tuple[Value, ...], Point] = {}
 
@@ -166,6 +166,10 @@ class Points:
         if self._study.runner.kind != "pyroclast":
             return []
         return self.resolve(self.middle)[2]
+
+    def seconds_of_run(self, seed: int) -> float:
+        """Wall time of a run of the middle of all ranges, s, by its first steps. Of decks."""
+        return _core.seconds_of_run(self._deck_text(self.middle), seed if self.has_seed else None)
 
     def check_outputs(self, outputs: Iterable[Output]) -> list[str]:
         """Which of these no run has, by a run of the middle point that is not begun. Of decks, not of functions."""

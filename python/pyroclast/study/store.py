@@ -1,4 +1,8 @@
-"""What is known of the runs of a study folder: a SQLite database with one writer, which the folders can rebuild."""
+"""What came of the runs of a study: of each a file in the folder `runs`, beside the folder of the run.
+
+10,000 of them are read in 0.5 s of processor time, out of one file or a database in 0.25 s; the decks of 10,000 points
+take 27 s.
+"""
 
 from __future__ import annotations
 
@@ -6,18 +10,18 @@ import fcntl
 import json
 import math
 import os
-import sqlite3
 import sys
-import urllib.parse
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import closing, contextmanager
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 from ..errors import Error
-from ..writing import refuse_link, write_text
+from ..writing import make_folder, refuse_link, write_text
 
+BEGUN = "begun"  # in the place of a state, in `begun_file`
 DONE = "done"
 CRASHED = "crashed"
 TIMED_OUT = "timed out"
@@ -26,9 +30,12 @@ NOT_QUASI_STATIC = "not quasi-static"
 NO_VALUE = "no value"
 FAILED = (CRASHED, TIMED_OUT, NOT_SETTLED, NOT_QUASI_STATIC, NO_VALUE)
 
+_AT_ONCE = 16  # files that are read at a time: on a disk, and more so on a network, one waits for each
+_said: set[str] = set()
+
 
 @dataclass(frozen=True)
-class Result:
+class RunResult:
     """What came of a run.
 
     outputs: by what they were taken from (Output.what): the number, or None and why there is none.
@@ -55,218 +62,118 @@ class Result:
         return math.nan if value is None else value
 
 
-_COLUMNS = tuple(Result.__dataclass_fields__)
-_NAMES = ", ".join(f'"{name}"' for name in _COLUMNS)
-_AS_JSON = ("outputs", "values")
-# what comes of a database that is none, is cut, or holds something else
-_DAMAGE = (sqlite3.Error, ValueError, TypeError, KeyError, AttributeError)
-
-_said: set[str] = set()
-
-
-def _say_once(line: str) -> None:
-    """A command may open a store more than once."""
-    if line not in _said:
-        _said.add(line)
-        print(line, file=sys.stderr)
-
-
-class Store:
-    """Results by the identity of their runs. One process at a time writes; others may read."""
-
-    def __init__(self, folder: Path, writes: bool = True):
-        """writes: False for a reader, which may come while another process writes; what it puts in, it alone sees.
-
-        Raises Error where another process has it open to write.
-        """
-        self.folder = folder
-        self._results: dict[str, Result] = {}
-        self._base: sqlite3.Connection | None = None
-        self._lock: TextIO | None = None
-        if not writes:
-            self._read()
-            return
-        folder.mkdir(parents=True, exist_ok=True)
-        if not self._take_lock():
-            raise Error(f"{folder}: another process runs a study in this folder") from None
-        self._open()
-
-    def _take_lock(self) -> bool:
-        refuse_link(self.folder / "lock")
-        refuse_link(self._file)
-        self._lock = open(self.folder / "lock", "a", encoding="utf-8")
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            self._lock.close()
-            self._lock = None
-            return False
-        return True
-
-    @property
-    def _file(self) -> Path:
-        return self.folder / "study.sqlite"
-
-    def _read(self) -> None:
-        if not self._file.exists():
-            return
-        try:
-            base = sqlite3.connect(f"file:{urllib.parse.quote(str(self._file))}?mode=ro", uri=True)
-            with closing(base):
-                self._take_from(base)
-        except _DAMAGE as error:
-            self._raise_if_busy(error)
-            self._read_records(error)
-
-    def _read_records(self, error: Exception) -> None:
-        """In the place of a database that cannot be read; makes it again where that is possible."""
-        self._results.clear()
-        try:
-            if self._take_lock():
-                self._open()
-                self.close()
-                return
-        except (OSError, Error):  # nothing can be written here, or another process does it
-            self.close()
-        self.put(_records(self.folder / "runs"))
-        _say_once(f"warning: {self._file} cannot be read ({error}) nor made again here; what is known is taken from "
-                  f"the records of {len(self)} runs")
-
-    def _open(self) -> None:
-        is_there = self._file.exists()
-        try:
-            is_new = self._connect()
-        except _DAMAGE as error:
-            self._raise_if_busy(error)
-            if isinstance(error, sqlite3.OperationalError) and not self._is_broken():
-                raise Error(f"{self._file}: {error}") from error  # a full disk, say, and nothing wrong with the file
-            self._set_aside()
-            is_new = self._connect()
-        if is_new:
-            self.put(_records(self.folder / "runs"))
-        if is_new and is_there:
-            _say_once(f"warning: {self._file} could not be read; it is made again from the records of {len(self)} runs")
-
-    def _connect(self) -> bool:
-        """Whether the database was made now."""
-        self._results.clear()
-        if self._file.exists() and not os.access(self._file, os.R_OK | os.W_OK):
-            raise sqlite3.OperationalError("no permission to read and write it")
-        base = sqlite3.connect(self._file)
-        try:
-            is_new = not base.execute("SELECT count(*) FROM sqlite_master WHERE name = 'runs'").fetchone()[0]
-            base.execute(f"CREATE TABLE IF NOT EXISTS runs ({_NAMES}, PRIMARY KEY (id))")
-            self._take_from(base)
-        except _DAMAGE:
-            base.close()
-            raise
-        self._base = base
-        return is_new
-
-    def _is_broken(self) -> bool:
-        """Of an error that can have other causes: whether it is that of the file."""
-        return self._file.is_dir() or not os.access(self._file, os.R_OK | os.W_OK)
-
-    def _set_aside(self) -> None:
-        """With what SQLite keeps beside it, which would be taken for that of the new one."""
-        for ending in ("", "-journal", "-wal", "-shm"):
-            file = self._file.with_name(self._file.name + ending)
-            if os.path.lexists(file):
-                number, aside = 1, file.with_name(f"study.damaged{ending}")
-                while os.path.lexists(aside):
-                    number, aside = number + 1, file.with_name(f"study.damaged.{number}{ending}")
-                file.rename(aside)
-
-    def _raise_if_busy(self, error: Exception) -> None:
-        if isinstance(error, sqlite3.OperationalError) and "locked" in str(error):
-            raise Error(f"{self._file}: {error}") from error
-
-    def _take_from(self, base: sqlite3.Connection) -> None:
-        if [row[1] for row in base.execute("PRAGMA table_info(runs)")] != list(_COLUMNS):
-            raise sqlite3.DatabaseError("holds no table of runs")  # SQLite would take a name for a text
-        for row in base.execute(f"SELECT {_NAMES} FROM runs"):
-            named = dict(zip(_COLUMNS, row))
-            named.update({key: json.loads(named[key]) for key in _AS_JSON})
-            named["outputs"] = {what: (value, why) for what, (value, why) in named["outputs"].items()}
-            self._results[named["id"]] = Result(**named)
-
-    def get(self, *ids: str) -> Result | None:
-        """The result of the first of these runs that there is one of."""
-        return next((self._results[i] for i in ids if i in self._results), None)
-
-    def put(self, results: Iterable[Result]) -> None:
-        """Raises Error where they cannot be written down, as on a full disk; what has a record is found again by it."""
-        rows = []
-        for result in results:
-            self._results[result.id] = result
-            named = asdict(result)
-            rows.append([json.dumps(named[key]) if key in _AS_JSON else named[key] for key in _COLUMNS])
-        if self._base is not None:
-            self._write(f"INSERT OR REPLACE INTO runs VALUES ({', '.join('?' * len(_COLUMNS))})", rows)
-
-    def drop(self, ids: Iterable[str]) -> None:
-        """Forgets runs and their records; they are then run again."""
-        gone = [(i,) for i in ids]
-        for (i,) in gone:
-            self._results.pop(i, None)
-            record_file(self.folder / "runs", i).unlink(missing_ok=True)
-        self._write("DELETE FROM runs WHERE id = ?", gone)
-
-    def _write(self, what: str, rows: Sequence[Sequence[Any]]) -> None:
-        """For each row, all or none. Raises Error where it cannot be written."""
-        assert self._base is not None
-        try:
-            with self._base:
-                self._base.executemany(what, rows)
-        except sqlite3.OperationalError as error:
-            raise Error(f"{self._file}: {error}") from error
-
-    def __iter__(self) -> Iterator[Result]:
-        return iter(self._results.values())
-
-    def __len__(self) -> int:
-        return len(self._results)
-
-    def close(self) -> None:
-        if self._base is not None:
-            self._base.close()
-            self._base = None
-        if self._lock is not None:
-            self._lock.close()
-            self._lock = None
-
-
-@contextmanager
-def opened(folder: Path, writes: bool = True) -> Iterator[Store]:
-    """A store, closed at the end."""
-    store = Store(folder, writes)
-    try:
-        yield store
-    finally:
-        store.close()
-
-
-def record_file(runs: Path, run: str) -> Path:
+def result_file(runs: Path, run: str) -> Path:
     """Beside the folder of a run: what came of it."""
     return runs / f"{run}.json"
 
 
-def write_record(runs: Path, result: Result) -> None:
-    """In the place of an earlier one, which stays whole if this is broken off."""
-    file = record_file(runs, result.id)
-    write_text(file, json.dumps(asdict(result)))
+def begun_file(runs: Path, run: str) -> Path:
+    """Beside the folder of a run that was begun: its attempts so far. It goes last, when nothing is left to do."""
+    return runs / f"{run}.begun"
 
 
-def read_record(runs: Path, run: str) -> Result | None:
-    """None where there is none that is whole."""
+def read_result(file: Path) -> RunResult | None:
+    """None where there is none. None of a damaged one too, which is said once: its run is made again."""
     try:
-        named = json.loads(record_file(runs, run).read_text(encoding="utf-8"))
-        outputs = {what: (value, why) for what, (value, why) in named["outputs"].items()}
-        return replace(Result(**{key: named[key] for key in _COLUMNS}), outputs=outputs)
-    except (OSError, ValueError, KeyError, TypeError):
+        named: dict[str, Any] = json.loads(file.read_bytes())
+        outputs = {what: (None if value is None else float(value), str(why))
+                   for what, (value, why) in named["outputs"].items()}
+        named.update(outputs=outputs, wall=float(named["wall"]), attempts=int(named["attempts"]))
+        result = RunResult(**named)
+        states = (BEGUN,) if file.suffix == ".begun" else (DONE, *FAILED)
+        if result.id != file.stem or result.state not in states or not math.isfinite(result.wall):
+            raise ValueError("it is not of this run, or not of one that is over")
+        return result
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
+        line = f"warning: {file} cannot be read ({error}); its run counts as not made"
+        if line not in _said:
+            _said.add(line)
+            print(line, file=sys.stderr)
         return None
 
 
-def _records(runs: Path) -> list[Result]:
-    found = [read_record(runs, file.stem) for file in sorted(runs.glob("*.json"))]
-    return [record for record in found if record is not None and record.state in (DONE, *FAILED)]
+def write_result(file: Path, result: RunResult) -> None:
+    """In the place of an earlier one, which stays whole if this is broken off; not where it is there already."""
+    if read_result(file) != result:
+        write_text(file, json.dumps(asdict(result)))
+
+
+class Store:
+    """Results by the identity of their runs."""
+
+    def __init__(self, folder: Path):
+        """folder: of the study. What is put in is written down by `only_writer` alone."""
+        self.folder = folder
+        self.runs = folder / "runs"
+        self.is_writer = False
+        self._results: dict[str, RunResult] = {}
+        self._stamps: dict[str, tuple[int, ...]] = {}  # of the files that results were read from, by run
+        self.look()
+
+    def look(self) -> None:
+        """Takes in what was written, replaced and removed since the last look, by whatever process."""
+        there = self._stamps_now()
+        for run in self._stamps.keys() - there.keys():
+            self._results.pop(run, None)
+        changed = [run for run, stamp in there.items() if self._stamps.get(run) != stamp]
+        with ThreadPoolExecutor(_AT_ONCE) as pool:
+            read = list(pool.map(lambda run: read_result(result_file(self.runs, run)), changed))
+        for run, result in zip(changed, read):
+            self._results.pop(run, None)
+            if result is not None:
+                self._results[run] = result
+        self._stamps = there
+
+    def _stamps_now(self) -> dict[str, tuple[int, ...]]:
+        """A file is replaced by another one, so it is changed where its number or its time is."""
+        found: dict[str, tuple[int, ...]] = {}
+        for name in os.listdir(self.runs) if self.runs.exists() else ():
+            if name.endswith(".json"):
+                with suppress(FileNotFoundError):  # another process forgets it now
+                    known = os.stat(f"{self.runs}/{name}")
+                    found[name.removesuffix(".json")] = (known.st_ino, known.st_mtime_ns, known.st_size)
+        return found
+
+    def get(self, *ids: str) -> RunResult | None:
+        """The result of the first of these runs that there is one of."""
+        return next((self._results[i] for i in ids if i in self._results), None)
+
+    def put(self, result: RunResult) -> None:
+        """Raises OSError where it cannot be written down, as on a full disk."""
+        self._results[result.id] = result
+        if self.is_writer:
+            write_result(result_file(self.runs, result.id), result)
+
+    def drop(self, ids: Iterable[str]) -> None:
+        """Forgets results of runs, which are then made again."""
+        for run in ids:
+            self._results.pop(run, None)
+            for file in (result_file(self.runs, run), begun_file(self.runs, run)):
+                file.unlink(missing_ok=True)
+
+    def __iter__(self) -> Iterator[RunResult]:
+        return iter(list(self._results.values()))
+
+
+@contextmanager
+def only_writer(folder: Path) -> Iterator[Store]:
+    """The results of a study, which no other driver writes meanwhile.
+
+    Raises Error where another process runs a study in the folder.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    refuse_link(folder / "lock")
+    with open(folder / "lock", "a", encoding="utf-8") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise Error(f"{folder}: another process runs a study in this folder") from None
+        make_folder(folder / "runs")
+        store = Store(folder)
+        store.is_writer = True
+        try:
+            yield store
+        finally:
+            store.is_writer = False

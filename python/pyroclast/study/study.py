@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 import signal
-import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping
@@ -20,19 +18,16 @@ from .. import _core
 from ..decks import is_list_of_tables, table_text, toml
 from ..errors import Diagnostic, Error
 from .code import require_code
-from .driver import Driver, Forecast, free_cores
+from .driver import Driver, StudyForecast, free_cores
 from .executors import Executor
 from .executors.commands import Commands
 from .executors.local import Local
 from .executors.slurm import Slurm
-from .file import Setup, read_setup
-from .store import CRASHED, TIMED_OUT, opened
+from .file import StudySetup, read_setup
+from .store import CRASHED, TIMED_OUT, Store, only_writer
 
 if TYPE_CHECKING:
     import pandas
-
-_ABOUT = re.compile(r"steps; about ((?:\d+ (?:h|min|s) ?)+)")
-_IN_SECONDS = {"h": 3600.0, "min": 60.0, "s": 1.0}
 
 EXECUTORS = ("local", "slurm", "commands")
 
@@ -45,7 +40,8 @@ class Study:
         study.table.plot.scatter("f_t [MPa]", "f_c")
         print(study.findings["outputs"]["f_c"])
 
-    A study goes on where it stopped: runs that are done are never made again. Raises DeckError for a file that is none.
+    A study goes on where it stopped: runs that are done are never made again. What other processes write in its folder
+    is seen; files that the deck names are read again by `check` and `run`. Raises DeckError for a file that is none.
     """
 
     def __init__(self, file: str | Path, *, program: str | None = None,
@@ -59,10 +55,12 @@ class Study:
         self._is_own = bool(tables)  # the script's, not a file's: what it names, the script names
         if tables:
             _write(Path(file), tables)
-        self.setup: Setup = read_setup(file, list(functions or ()))
+        self.setup: StudySetup = read_setup(file, list(functions or ()))
         self._functions = dict(functions or {})
         needs_program = self.setup.runner.kind == "pyroclast"
         self._program = program or (_program() if needs_program else "")
+        self._held: Driver | None = None
+        self._made_from: tuple[StudySetup, list[int]] | None = None  # and when the deck or the model was written
 
     def check(self) -> list[Diagnostic]:
         """Returns what the check of the deck in the middle of all ranges warns of.
@@ -70,14 +68,14 @@ class Study:
         Raises Error with all that is wrong at the ends of ranges and at points that are known beforehand, and with
         outputs that no run has.
         """
-        with self._driver() as driver:
-            driver.check()
-            return driver.points.warnings()
+        self._held = None  # all that the deck names is read again
+        driver = self._driver()
+        driver.check()
+        return driver.points.warnings()
 
-    def forecast(self) -> Forecast:
+    def forecast(self) -> StudyForecast:
         """What is left to run."""
-        with self._driver() as driver:
-            return driver.forecast()
+        return self._driver().forecast()
 
     def run(self, executor: str | Executor = "local", jobs: int | None = None,
             say: Callable[[str], None] | None = None) -> bool:
@@ -91,8 +89,8 @@ class Study:
         """
         require_code(self.setup.runner, self._is_own)
         chosen = self.executor(executor, jobs) if isinstance(executor, str) else executor
-        with self._driver(writes=True) as driver, _interrupts() as stopped:
-            return driver.run(chosen, stopped, say or (lambda line: None))
+        with only_writer(self.setup.folder) as store, _interrupts() as stopped:
+            return self._hold(store).run(chosen, stopped, say or (lambda line: None))
 
     def executor(self, name: str, jobs: int | None = None) -> Executor:
         """By its name. Raises Error for another one."""
@@ -109,8 +107,7 @@ class Study:
         """A line for each run: parameters in their units, state, outputs, command."""
         import pandas
 
-        with self._driver() as driver:
-            return pandas.DataFrame(driver.rows())
+        return pandas.DataFrame(self.rows())
 
     @property
     def samples(self) -> pandas.DataFrame:
@@ -131,48 +128,50 @@ class Study:
     @property
     def findings(self) -> dict[str, Any]:
         """What the method makes of the results; docs/studies.md tells what stands where."""
-        with self._driver() as driver:
-            return driver.findings()
+        return self._driver().findings()
 
     def count_values(self) -> int:
         """Runs that gave a value of every output."""
-        with self._driver() as driver:
-            return driver.count_values()
+        return self._driver().count_values()
 
     def rows(self) -> list[dict[str, Any]]:
         """The table as it is written: None where there is no value."""
-        with self._driver() as driver:
-            return driver.rows()
+        return self._driver().rows()
 
     def forget_failures(self) -> None:
         """Runs that crashed or timed out are made again."""
-        with opened(self.setup.folder) as store:
+        with only_writer(self.setup.folder) as store:
             store.drop([r.id for r in store if r.state in (CRASHED, TIMED_OUT)])
 
     def time_of_a_run(self) -> float | None:
-        """As `pyroclast check` estimates it for the middle of all ranges on one thread, s; None where it cannot."""
+        """Of the middle of all ranges on one thread, by its first steps, s; None where runs are not those of a deck."""
         if self.setup.runner.kind != "pyroclast":
             return None
-        with self._driver() as driver:
-            command = driver.points.command(self._program, driver.points.middle, self.setup.seeds[0])
-        said = subprocess.run([command[0], "check", *command[2:], "--threads", "1"], capture_output=True, text=True)
-        found = _ABOUT.search(said.stdout)
-        return _seconds(found[1]) if found else None
+        return self._driver().points.seconds_of_run(self.setup.seeds[0])
 
     def write_table(self) -> Path:
         """table.csv in the folder of the study."""
-        with self._driver() as driver:
-            return driver.write_table()
+        return self._driver().write_table()
 
     def table_text(self) -> str:
         """What table.csv would hold now; nothing is written."""
-        with self._driver() as driver:
-            return driver.table_text()
+        return self._driver().table_text()
 
-    @contextmanager
-    def _driver(self, writes: bool = False) -> Iterator[Driver]:
-        with opened(self.setup.folder, writes) as store:
-            yield Driver(self.setup, store, self._program, self._functions)
+    def _driver(self) -> Driver:
+        """That knows what any process has written by now; made anew where the setup, the deck or the model changed."""
+        if self._held is None or self._made_from != self._sources():
+            return self._hold(Store(self.setup.folder))
+        self._held.store.look()
+        return self._held
+
+    def _hold(self, store: Store) -> Driver:
+        sources = self._sources()
+        self._held, self._made_from = Driver(self.setup, store, self._program, self._functions), sources
+        return self._held
+
+    def _sources(self) -> tuple[StudySetup, list[int]]:
+        files = (self.setup.runner.deck, self.setup.runner.file)
+        return self.setup, [file.stat().st_mtime_ns for file in files if file.is_file()]
 
     def __repr__(self) -> str:
         return f"<Study {self.setup.file}: {self.setup.method.kind}>"
@@ -187,12 +186,6 @@ def _write(file: Path, tables: Mapping[str, Any]) -> None:
         elif isinstance(value, Mapping):
             blocks.append(table_text(key, value))
     file.write_text("\n".join([*plain, "", *blocks]), encoding="utf-8")
-
-
-def _seconds(text: str) -> float:
-    """Of "2 min 20 s"."""
-    words = text.split()
-    return sum(float(number) * _IN_SECONDS[unit] for number, unit in zip(words[::2], words[1::2]))
 
 
 def _program() -> str:

@@ -22,11 +22,8 @@ from ..errors import Error
 from ..writing import make_folder, refuse_link
 from .outputs import Output, read_summary
 from .start import python
-from .store import (CRASHED, DONE, NO_VALUE, NOT_QUASI_STATIC, NOT_SETTLED, TIMED_OUT, Result, read_record,
-                    write_record)
-
-BEGUN = "begun"
-"""State of a record whose run has not come to an end."""
+from .store import (BEGUN, CRASHED, DONE, NO_VALUE, NOT_QUASI_STATIC, NOT_SETTLED, TIMED_OUT, RunResult, begun_file,
+                    read_result, result_file, write_result)
 
 MOST_IN_VAIN = 10
 """Attempts, one after the other, that were ended from outside before they kept anything new."""
@@ -38,6 +35,7 @@ _LEAST_ROOM = 1e6  # bytes; with less, a process that fails without a word has p
 _LARGE = ("history.csv", "specimen", "fields", "figures", "checkpoints", "frames.json")
 _PR_SET_PDEATHSIG = 1
 _REASON_LENGTH = 300
+_REASON_LINES = 3  # of what a process wrote last: an error, and what it says of it
 _libc = ctypes.CDLL(None)  # before a fork: a child may not import
 
 _STATES = {"not_settled": NOT_SETTLED, "unstable": CRASHED}
@@ -85,6 +83,11 @@ class Job:
         return [*self.command, "--out", str(folder), "--no-figures", "--threads", "1", "--quiet", *fields]
 
 
+def _log_file(runs: Path, run: str) -> Path:
+    """What a run prints, until it is over."""
+    return runs / f"{run}.log"
+
+
 class Attempt:
     """A process that makes a run, or goes on with one that was broken off.
 
@@ -95,16 +98,15 @@ class Attempt:
         self.job = job
         self._runs = runs
         self.folder = runs / job.id
-        before = read_record(runs, job.id)
-        before = before if before is not None and before.state == BEGUN else None
+        before = read_result(begun_file(runs, job.id))
         self._wall_before = before.wall if before else 0.0
         self.attempts = before.attempts + 1 if before else 1
-        self._log = runs / f"{job.id}.log"
+        self._log = _log_file(runs, job.id)
         self._kept_before = kept(self.folder)
         self._begun = datetime.datetime.now(datetime.timezone.utc)
         self._clock = time.monotonic()  # a limit follows no clock that somebody sets
-        write_record(runs, self._result(BEGUN))
         command = self._command()
+        write_result(begun_file(runs, job.id), self._result(BEGUN))
         make_folder(self.folder)
         refuse_link(self._log)
         with open(self._log, "ab") as log:
@@ -142,7 +144,7 @@ class Attempt:
         elif self._asked is not None and time.monotonic() - self._asked > PATIENCE:
             _signal(self.process, signal.SIGKILL)
 
-    def end(self) -> Result | None:
+    def end(self) -> RunResult | None:
         """What came of the process, which has ended; None where it was ended from outside and another one goes on.
 
         Raises Error where the disk is full: that is no fault of the run, and the next one would fare no better.
@@ -164,7 +166,7 @@ class Attempt:
         if not ended_outside:
             how = f"signal {-code}" if code < 0 else f"exit code {code}" if code else "no summary.json was left"
             return self._finish(CRASHED, f"{how}: {said}" if said else how, None)
-        write_record(self._runs, self._result(BEGUN))
+        write_result(begun_file(self._runs, self.job.id), self._result(BEGUN))
         return None
 
     @property
@@ -172,43 +174,42 @@ class Attempt:
         """Whether it kept something that the attempt before had not."""
         return kept(self.folder) != self._kept_before
 
-    def give_up(self) -> Result:
+    def give_up(self) -> RunResult:
         """The result where one attempt after the other was ended from outside."""
         return self._finish(CRASHED, f"ended from outside {MOST_IN_VAIN} times before anything new was kept; is there "
                             "memory enough?", None)
 
-    def _finish(self, state: str, reason: str, summary: dict[str, Any] | None) -> Result:
-        self._log.unlink(missing_ok=True)
+    def _finish(self, state: str, reason: str, summary: dict[str, Any] | None) -> RunResult:
         return _concluded(self._result(state), reason, self.job, self._runs, summary)
 
-    def _result(self, state: str) -> Result:
-        return Result(self.job.id, self.job.seed, state, values=self.job.values, host=socket.gethostname(),
-                      begun=self._begun.isoformat(timespec="seconds"), wall=round(self._wall_before + self._wall(), 3),
-                      attempts=self.attempts, version=self.job.version)
+    def _result(self, state: str) -> RunResult:
+        return RunResult(self.job.id, self.job.seed, state, values=self.job.values, host=socket.gethostname(),
+                         begun=self._begun.isoformat(timespec="seconds"),
+                         wall=round(self._wall_before + self._wall(), 3), attempts=self.attempts,
+                         version=self.job.version)
 
     def _said(self) -> str:
-        """The last error that the process wrote, else the last line."""
+        """What the process wrote last."""
         try:
             lines = self._log.read_text(encoding="utf-8", errors="replace").split("\n")
         except OSError:
             return ""
-        lines = [line.strip() for line in reversed(lines) if line.strip()]
-        errors = [line.removeprefix("error: ") for line in lines if line.startswith("error: ")]
-        return next(iter(errors + lines), "")
+        return "; ".join([line.strip() for line in lines if line.strip()][-_REASON_LINES:])
 
 
-def collected(job: Job, runs: Path) -> Result:
+def collected(job: Job, runs: Path) -> RunResult:
     """The result of a run that was made by its command line alone; its summary is there."""
     folder = runs / job.id
     summary = read_summary(folder) or {}
     state, reason = judge(summary)
     wall = summary.get("wall_time_s", 0.0)
-    result = Result(job.id, job.seed, state, values=job.values, wall=wall, version=job.version)
+    result = RunResult(job.id, job.seed, state, values=job.values, wall=wall, version=job.version)
+    write_result(begun_file(runs, job.id), replace(result, state=BEGUN))
     return _concluded(result, reason, job, runs, summary)
 
 
-def _concluded(result: Result, reason: str, job: Job, runs: Path, summary: dict[str, Any] | None) -> Result:
-    """With its outputs, its folder thinned, written down."""
+def _concluded(result: RunResult, reason: str, job: Job, runs: Path, summary: dict[str, Any] | None) -> RunResult:
+    """With its outputs, written down, its folder thinned. The result that there is where another process was first."""
     state, outputs = result.state, {}
     if summary is not None and state == DONE:
         for what in job.outputs:
@@ -217,10 +218,19 @@ def _concluded(result: Result, reason: str, job: Job, runs: Path, summary: dict[
         missing = [f"{what}: {why}" for what, (value, why) in outputs.items() if value is None]
         if missing:
             state, reason = NO_VALUE, "; ".join(missing)
-    result = replace(result, state=state, reason=reason[:_REASON_LENGTH], outputs=outputs)
-    write_record(runs, result)  # before what it was taken from is gone
+    known = known_result(job, runs)
+    if known is None:
+        known = replace(result, state=state, reason=reason[:_REASON_LENGTH], outputs=outputs)
+        write_result(result_file(runs, job.id), known)  # before what it was taken from is gone
+    _tidy(job, runs)
+    return known
+
+
+def _tidy(job: Job, runs: Path) -> None:
+    """Once it is written down what came of a run."""
     thin(runs / job.id, job.keep)
-    return result
+    _log_file(runs, job.id).unlink(missing_ok=True)
+    begun_file(runs, job.id).unlink(missing_ok=True)
 
 
 def judge(summary: dict[str, Any]) -> tuple[str, str]:
@@ -256,31 +266,35 @@ def thin(folder: Path, keep: str) -> None:
         shutil.rmtree(path, ignore_errors=True) if path.is_dir() else path.unlink(missing_ok=True)
 
 
-def made(job: Job, runs: Path) -> Result | None:
-    """What came of a run that is over, by its record, or by its folder where its driver was killed before it wrote
-    that; None where it has to be made, be it for further outputs.
-    """
-    record = read_record(runs, job.id)
-    if record is None:
-        return None
-    if record.state == BEGUN:
-        summary = read_summary(runs / job.id)
-        if summary is None or was_stopped(summary):
-            return None
-        wall = max(record.wall, float(summary.get("wall_time_s") or 0.0))
-        state, reason = judge(summary)
-        (runs / f"{job.id}.log").unlink(missing_ok=True)
-        return _concluded(replace(record, state=state, wall=wall), reason, job, runs, summary)
-    if record.state == DONE and not set(job.outputs) <= set(record.outputs):
-        return None
-    thin(runs / job.id, job.keep)  # a driver may have been killed between the two
-    return record
+def known_result(job: Job, runs: Path) -> RunResult | None:
+    """What came of a run; None where it has to be made, be it for further outputs."""
+    result = read_result(result_file(runs, job.id))
+    is_lacking = result is not None and result.state == DONE and not set(job.outputs) <= set(result.outputs)
+    return None if is_lacking else result
 
 
-def given_up(job: Job, runs: Path, reason: str) -> Result:
+def made(job: Job, runs: Path) -> RunResult | None:
+    """`known_result`, also of a run that is whole in its folder as its driver was killed before it wrote that down."""
+    begun = read_result(begun_file(runs, job.id))
+    known = known_result(job, runs)
+    if begun is None:
+        return known
+    if known is not None:
+        _tidy(job, runs)
+        return known
+    summary = read_summary(runs / job.id)
+    if summary is None or was_stopped(summary):
+        return None
+    state, reason = judge(summary)
+    wall = max(begun.wall, float(summary.get("wall_time_s") or 0.0))
+    return _concluded(replace(begun, state=state, wall=wall), reason, job, runs, summary)
+
+
+def given_up(job: Job, runs: Path, reason: str) -> RunResult:
     """The result of a run that is not tried again."""
-    record = read_record(runs, job.id) or Result(job.id, job.seed, CRASHED, values=job.values, version=job.version)
-    return _concluded(replace(record, state=CRASHED), reason, job, runs, None)
+    begun = read_result(begun_file(runs, job.id)) or RunResult(job.id, job.seed, CRASHED, values=job.values,
+                                                               version=job.version)
+    return _concluded(replace(begun, state=CRASHED), reason, job, runs, None)
 
 
 def kept(folder: Path) -> tuple[str, int] | None:

@@ -1,8 +1,8 @@
 """What a task of a Slurm array does: it makes its runs one after the other.
 
 `python3 -m pyroclast.study.worker FILE RUNS COUNT`: FILE has a job on each line, of which task i takes COUNT from line
-i COUNT on; RUNS is the folder of the runs. What came of each run is in its record. At SIGTERM the run that goes on
-keeps its state. The task then goes back into the queue, unless it was cancelled.
+i COUNT on; RUNS is the folder of the runs. What came of each run is in a file of its own. At SIGTERM the run that
+goes on keeps its state. The task then goes back into the queue, unless it was cancelled.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from typing import Any
 
 from ..errors import Error
 from .executors.local import Local
-from .store import Result, read_record, write_record
-from .work import BEGUN, MOST_IN_VAIN, Job, given_up, jobs_of, kept, made
+from .store import RunResult, begun_file, read_result, result_file, write_result
+from .work import MOST_IN_VAIN, Job, given_up, jobs_of, kept, made
 
 _PATIENCE = 60.0  # s, for an answer of Slurm
 
@@ -56,11 +56,9 @@ def main(words: list[str]) -> int:
     signal.signal(signal.SIGTERM, ask)
     left = [job for job in jobs_of_task(file, int(index), count) if made(job, runs) is None]
 
-    def finished(result: Result) -> None:
-        if result.id in functions:
-            write_record(runs, result)
+    def finished(result: RunResult) -> None:
+        write_result(result_file(runs, result.id), result)
 
-    functions = {job.id for job in left if job.kind == "function"}  # others have written theirs
     try:
         Local(1).run(left, runs, finished, asked.is_set)
     except (Error, OSError) as error:
@@ -68,11 +66,9 @@ def main(words: list[str]) -> int:
         return 1
     left = [job for job in left if made(job, runs) is None]
     for job in left:
-        record = read_record(runs, job.id)
-        if record is None or record.state != BEGUN:
-            continue
-        if record.attempts >= MOST_IN_VAIN and kept(runs / job.id) is None:
-            given_up(job, runs, f"was stopped {record.attempts} times, as a task has no more time, and leaves no "
+        begun = read_result(begun_file(runs, job.id))
+        if begun is not None and begun.attempts >= MOST_IN_VAIN and kept(runs / job.id) is None:
+            given_up(job, runs, f"was stopped {begun.attempts} times, as a task has no more time, and leaves no "
                      "checkpoint from which it could go on")
     left = [job for job in left if made(job, runs) is None]
     return 0 if not left or requeue(f"{array}_{index}") else 1

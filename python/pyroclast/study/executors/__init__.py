@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Protocol
 
-from ..store import Result
+from ..store import RunResult
 from ..work import Job
 
 
@@ -20,7 +20,7 @@ class Executor(Protocol):
 
     name: str
 
-    def run(self, jobs: Sequence[Job], runs: Path, finished: Callable[[Result], None],
+    def run(self, jobs: Sequence[Job], runs: Path, finished: Callable[[RunResult], None],
             stopped: Callable[[], bool]) -> None:
         """Makes the jobs; see the module."""
 

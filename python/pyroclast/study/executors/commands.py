@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ...writing import make_folder, write_text
 from ..outputs import read_summary
-from ..store import Result
+from ..store import RunResult
 from ..work import Job, collected
 
 
@@ -21,7 +21,7 @@ class Commands:
     written: int = field(default=0, init=False)
     name: str = field(default="commands", init=False)
 
-    def run(self, jobs: Sequence[Job], runs: Path, finished: Callable[[Result], None],
+    def run(self, jobs: Sequence[Job], runs: Path, finished: Callable[[RunResult], None],
             stopped: Callable[[], bool]) -> None:
         """Takes in what is done and writes the rest; see executors."""
         make_folder(runs)

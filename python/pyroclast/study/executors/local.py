@@ -17,7 +17,7 @@ from pathlib import Path
 from ...errors import Error
 from ...writing import make_folder
 from ..start import python
-from ..store import CRASHED, DONE, NO_VALUE, TIMED_OUT, Result
+from ..store import CRASHED, DONE, NO_VALUE, TIMED_OUT, RunResult
 from ..work import MOST_IN_VAIN, Attempt, Job, die_with_parent
 
 _LOOK = 0.2  # s between two looks at wall limits and at what asks to stop
@@ -30,7 +30,7 @@ class Local:
     slots: int
     name: str = field(default="local", init=False)
 
-    def run(self, jobs: Sequence[Job], runs: Path, finished: Callable[[Result], None],
+    def run(self, jobs: Sequence[Job], runs: Path, finished: Callable[[RunResult], None],
             stopped: Callable[[], bool]) -> None:
         """Makes the jobs; see executors."""
         if jobs and jobs[0].kind == "function":
@@ -40,7 +40,7 @@ class Local:
             _run(jobs, self.slots, runs, finished, stopped)
 
 
-def _run(jobs: Sequence[Job], slots: int, runs: Path, finished: Callable[[Result], None],
+def _run(jobs: Sequence[Job], slots: int, runs: Path, finished: Callable[[RunResult], None],
          stopped: Callable[[], bool]) -> None:
     waiting = deque(jobs)
     in_vain: dict[str, int] = {}
@@ -108,7 +108,7 @@ class _Server:
         except BrokenPipeError:
             pass  # the end of its answers tells
 
-    def hear(self) -> tuple[Result | None, bool]:
+    def hear(self) -> tuple[RunResult | None, bool]:
         """Its answer, where it is whole, and whether the process has ended. Called when there is something to read."""
         piece = os.read(self.descriptor, 65536)
         self._said += piece
@@ -126,7 +126,7 @@ class _Server:
         self.process.communicate()
 
 
-def _result(job: Job, said: dict[str, float | None] | str, wall: float) -> Result:
+def _result(job: Job, said: dict[str, float | None] | str, wall: float) -> RunResult:
     outputs: dict[str, tuple[float | None, str]] = {}
     if isinstance(said, str):
         state, reason = CRASHED, said
@@ -140,11 +140,11 @@ def _result(job: Job, said: dict[str, float | None] | str, wall: float) -> Resul
                 outputs[what] = (value, "")
         missing = [f"{what}: {why}" for what, (value, why) in outputs.items() if value is None]
         state, reason = (NO_VALUE, "; ".join(missing)) if missing else (DONE, "")
-    return Result(job.id, job.seed, state, reason, outputs, job.values, socket.gethostname(),
-                  time.strftime("%Y-%m-%dT%H:%M:%S+00:00", time.gmtime()), round(wall, 6), 1, job.version)
+    return RunResult(job.id, job.seed, state, reason, outputs, job.values, socket.gethostname(),
+                     time.strftime("%Y-%m-%dT%H:%M:%S+00:00", time.gmtime()), round(wall, 6), 1, job.version)
 
 
-def _call(jobs: Sequence[Job], slots: int, finished: Callable[[Result], None], stopped: Callable[[], bool]) -> None:
+def _call(jobs: Sequence[Job], slots: int, finished: Callable[[RunResult], None], stopped: Callable[[], bool]) -> None:
     waiting = deque(jobs)
     in_vain: dict[str, int] = {}
     servers = [_Server(jobs[0].command[0]) for _ in range(slots)]
@@ -179,9 +179,9 @@ def _call(jobs: Sequence[Job], slots: int, finished: Callable[[Result], None], s
                     late = server.job
                     server.close()
                     servers[servers.index(server)] = _Server(late.command[0])
-                    finished(Result(late.id, late.seed, TIMED_OUT, f"wall limit of {late.wall_limit:g} s",
-                                    values=late.values, host=socket.gethostname(), wall=late.wall_limit,
-                                    version=late.version))
+                    finished(RunResult(late.id, late.seed, TIMED_OUT, f"wall limit of {late.wall_limit:g} s",
+                                       values=late.values, host=socket.gethostname(), wall=late.wall_limit,
+                                       version=late.version))
     finally:
         for server in servers:
             server.close()

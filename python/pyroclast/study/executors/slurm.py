@@ -1,8 +1,8 @@
 """Runs as tasks of Slurm arrays.
 
 Beside the folder of the runs are slurm.json, which tells what was submitted, and slurm/, with the jobs of each array
-and what its tasks print. Only records in the folder of the runs tell what came of a run. Jobs go on in the queue when
-the driver has ended, and the next one knows them again.
+and what its tasks print. Only the results in the folder of the runs tell what came of a run. Jobs go on in the queue
+when the driver has ended, and the next one knows them again.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from pathlib import Path
 
 from ...errors import Error
 from ...writing import make_folder, write_text
-from ..file import Slurm as Settings
+from ..file import SlurmSettings
 from ..start import python
-from ..store import Result, read_record
-from ..work import BEGUN, Job, given_up, is_of_full_disk, kept, made
+from ..store import RunResult, begun_file
+from ..work import Job, given_up, is_of_full_disk, kept, known_result, made
 
 MOST_LOST = 3
 """Times, one after the other, that the task of a run ends without a result before the run is given up."""
@@ -129,10 +129,10 @@ class Slurm:
 
     interval: between two questions to Slurm, s, at first and at most. patience: until a job that was refused is
     submitted again, s. grace: until a run counts as lost whose task is not in the queue any more, s; a network file
-    system may show its record that late.
+    system may show its result that late.
     """
 
-    settings: Settings
+    settings: SlurmSettings
     say: Callable[[str], None] = print
     interval: tuple[float, float] = (1.0, 10.0)
     patience: float = 30.0
@@ -143,7 +143,7 @@ class Slurm:
     def slots(self) -> int:
         return self.settings.slots
 
-    def run(self, jobs: Sequence[Job], runs: Path, finished: Callable[[Result], None],
+    def run(self, jobs: Sequence[Job], runs: Path, finished: Callable[[RunResult], None],
             stopped: Callable[[], bool]) -> None:
         """Makes the jobs; see executors. Raises Error with the words of Slurm where it does not take them."""
         for option in self.settings.options:
@@ -158,7 +158,7 @@ class Slurm:
 class _Queue:
     """The jobs of one call, on their way through the queue."""
 
-    def __init__(self, slurm: Slurm, jobs: Sequence[Job], runs: Path, finished: Callable[[Result], None],
+    def __init__(self, slurm: Slurm, jobs: Sequence[Job], runs: Path, finished: Callable[[RunResult], None],
                  stopped: Callable[[], bool]):
         self._slurm, self._runs, self._finished, self._stopped = slurm, runs, finished, stopped
         self._left = {job.id: job for job in jobs}
@@ -200,15 +200,16 @@ class _Queue:
             self._slurm.say(text)
         self._said = text
 
-    def _collect(self, run: str) -> None:
-        """Takes in what came of a run, if it is over."""
+    def _collect(self, run: str, is_in_queue: bool = False) -> None:
+        """Takes in what came of a run, if it is over. is_in_queue: who makes it writes that down."""
         job = self._left.get(run)
-        result = made(job, self._runs) if job else None
+        find = known_result if is_in_queue else made
+        result = find(job, self._runs) if job else None
         if result is not None:
             self._take(result)
             self._has_results = True
 
-    def _take(self, result: Result) -> None:
+    def _take(self, result: RunResult) -> None:
         del self._left[result.id]
         if result.wall > 0.0:
             self._walls.append(result.wall)
@@ -237,7 +238,7 @@ class _Queue:
         return found
 
     def _look(self, states: dict[tuple[str, int], str]) -> None:
-        """Takes in results, and finds what was lost. states: asked for before the records are read."""
+        """Takes in results, and finds what was lost. states: asked for before results are read."""
         now = time.monotonic()
         for array in list(self._book.arrays):
             is_changed = False
@@ -247,7 +248,7 @@ class _Queue:
                     self._gone.pop((array.name, task), None)
                     continue
                 for run in array.of_task(task):
-                    self._collect(run)
+                    self._collect(run, state is not None)
                 if state is not None:
                     self._gone.pop((array.name, task), None)
                     continue
@@ -271,11 +272,8 @@ class _Queue:
         """Counts runs whose task ended without them: those that were going on, or all where none was."""
         if not array.job:
             return  # it never was in the queue
-        records = {run: read_record(self._runs, run) for run in array.of_task(task)}
-        if any(records.values()):
-            suspects = [run for run in missing if (record := records[run]) is not None and record.state == BEGUN]
-        else:
-            suspects = missing
+        begun = [run for run in missing if begun_file(self._runs, run).exists()]
+        suspects = begun if begun or len(missing) < len(array.of_task(task)) else missing
         last = _last_line(self._book.log(array, task))
         if is_of_full_disk(last):
             raise Error(f"task {array.job}_{task} ended: {last}")
@@ -288,7 +286,7 @@ class _Queue:
             self._lost[run] = times, now
             if times < MOST_LOST:
                 continue
-            if records[run] is None and not self._has_results:
+            if run not in begun and not self._has_results:
                 raise Error(f"tasks end before they begin a run, {times} times: {last or 'they say nothing'}; "
                             f"{self._book.log(array, task)} has what the last one said")
             self._take(given_up(self._left[run], self._runs, f"its task ended {times} times before anything new was "
@@ -380,7 +378,7 @@ class _Queue:
                             f"command takes them in (to end them: scancel {jobs})")
 
 
-def runs_per_task(settings: Settings, jobs: int, expected: float) -> int:
+def runs_per_task(settings: SlurmSettings, jobs: int, expected: float) -> int:
     """As the study file says, else by the time that a run will probably take, s; 0: not known."""
     if settings.points_per_task:
         return settings.points_per_task

@@ -36,7 +36,7 @@ class Infeasible:
     by: float = 0.0
 
 
-Outcome = NDArray[np.float64] | Infeasible | None
+Answer = NDArray[np.float64] | Infeasible | None
 """What is known of a point: its outputs (seeds, q) with NaN where a run gave none, infeasible, or not yet known."""
 
 
@@ -101,14 +101,14 @@ class Uncertainty:
     direction_not_determined: NDArray[np.bool_]  #: (k,), direction_ratio > NOT_DETERMINED
 
 
-def seed_covariance(outcomes: Sequence[Array]) -> tuple[Array, int]:
+def seed_covariance(answers: Sequence[Array]) -> tuple[Array, int]:
     """Covariance of single runs between seeds, pooled over points, and its degrees of freedom d.
 
-    outcomes: (seeds, q) each; those with a missing value are left out. Towards its own diagonal it is shrunk by
+    answers: (seeds, q) each; those with a missing value are left out. Towards its own diagonal it is shrunk by
     q/(q + d), as if q observations of independent outputs stood beside. All zero with d = 0.
     """
-    complete = [np.asarray(values, float) for values in outcomes if np.isfinite(values).all()]
-    q = np.shape(outcomes[0])[1]
+    complete = [np.asarray(values, float) for values in answers if np.isfinite(values).all()]
+    q = np.shape(answers[0])[1]
     freedom = sum(len(values) - 1 for values in complete)
     if freedom == 0:
         return np.zeros((q, q)), 0
@@ -118,13 +118,13 @@ def seed_covariance(outcomes: Sequence[Array]) -> tuple[Array, int]:
     return (1.0 - shrinkage) * pooled + shrinkage * np.diag(np.diag(pooled)), freedom
 
 
-def misfit_covariance(outcomes: Sequence[Array], targets: Targets, error: ArrayLike = 0.0) -> Array:
+def misfit_covariance(answers: Sequence[Array], targets: Targets, error: ArrayLike = 0.0) -> Array:
     """Covariance of mean over seeds minus target, (q, q): seeds' + measurement's + surrogate's (error, (q,), its sd).
 
     Raises `Error` where a target has no scatter at all.
     """
-    single, _ = seed_covariance(outcomes)
-    runs = len(outcomes[0])
+    single, _ = seed_covariance(answers)
+    runs = len(answers[0])
     covariance: Array = single / runs + np.diag(targets.sd**2 + np.broadcast_to(error, targets.sd.shape) ** 2)
     for name, variance in zip(targets.names, np.diag(covariance)):
         if not variance > 0.0:
@@ -178,34 +178,34 @@ def search(k: int, settings: Settings, judge: Callable[[Sequence[Array]], tuple[
     return Search(generations, misfits, mean, sigma, finished)
 
 
-def calibrate(k: int, targets: Targets, settings: Settings, outcome: Callable[[Array], Outcome]) -> Calibration:
+def calibrate(k: int, targets: Targets, settings: Settings, answer: Callable[[Array], Answer]) -> Calibration:
     """The search for the targets so far, and its next generation.
 
-    outcome: what is known of a point (k,).
+    answer: what is known of a point (k,).
 
     A generation is judged with the covariance of all points up to it, so that later results change nothing before. A
     point with a missing value counts as infeasible. Infeasible points are worse than all others, by how far they are
     outside.
     """
-    known: dict[bytes, Outcome] = {}
+    known: dict[bytes, Answer] = {}
 
-    def outcomes_of(points: Array) -> list[Outcome]:
+    def answers_of(points: Array) -> list[Answer]:
         for point in points:
             if point.tobytes() not in known:
-                known[point.tobytes()] = outcome(point)
+                known[point.tobytes()] = answer(point)
         return [known[point.tobytes()] for point in points]
 
     def judge(generations: Sequence[Array]) -> tuple[Array, Array] | None:
-        latest = outcomes_of(generations[-1])
+        latest = answers_of(generations[-1])
         if any(entry is None for entry in latest):
             return None
-        covariance = _covariance_of(outcomes_of(np.concatenate(generations)), targets)
+        covariance = _covariance_of(answers_of(np.concatenate(generations)), targets)
         return _misfits_of(latest, targets, covariance), np.array([getattr(entry, "by", 0.0) for entry in latest])
 
     found = search(k, settings, judge)
-    outcomes = outcomes_of(found.points)
-    covariance = _covariance_of(outcomes, targets)
-    misfits = _misfits_of(outcomes, targets, covariance)
+    answers = answers_of(found.points)
+    covariance = _covariance_of(answers, targets)
+    misfits = _misfits_of(answers, targets, covariance)
     best = int(np.nanargmin(misfits)) if np.isfinite(misfits).any() else None
     return Calibration(found, covariance, misfits, best)
 
@@ -267,16 +267,16 @@ def _why_finished(settings: Settings, misfits: Sequence[Array], sigma: Array) ->
     return ""
 
 
-def _covariance_of(outcomes: Sequence[Outcome], targets: Targets) -> Array:
+def _covariance_of(answers: Sequence[Answer], targets: Targets) -> Array:
     """All that is known enters; without any values the measurements' part alone, which then judges nothing."""
-    known = [entry for entry in outcomes if isinstance(entry, np.ndarray) and np.isfinite(entry).all()]
+    known = [entry for entry in answers if isinstance(entry, np.ndarray) and np.isfinite(entry).all()]
     return misfit_covariance(known, targets) if known else np.diag(targets.sd**2)
 
 
-def _misfits_of(outcomes: Sequence[Outcome], targets: Targets, covariance: Array) -> Array:
+def _misfits_of(answers: Sequence[Answer], targets: Targets, covariance: Array) -> Array:
     """Infinite where infeasible or failed, NaN where not yet known."""
-    misfits = np.array([np.nan if entry is None else np.inf for entry in outcomes])
-    means = {row: entry.mean(axis=0) for row, entry in enumerate(outcomes) if isinstance(entry, np.ndarray)}
+    misfits = np.array([np.nan if entry is None else np.inf for entry in answers])
+    means = {row: entry.mean(axis=0) for row, entry in enumerate(answers) if isinstance(entry, np.ndarray)}
     means = {row: values for row, values in means.items() if np.isfinite(values).all()}
     if means:
         misfits[list(means)] = misfit(np.array(list(means.values())), targets, covariance)

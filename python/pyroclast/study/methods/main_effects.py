@@ -15,7 +15,7 @@ _LEAST_IN_CLASS = 5
 
 
 @dataclass(frozen=True)
-class Curve:
+class ClassMeans:
     """Response to one parameter; arrays of shape (classes,)."""
 
     u: Array  #: mean of the parameter in the class
@@ -42,7 +42,7 @@ class RankEffects:
     points: int
 
 
-def curve(u: Array, y: Array, most_classes: int = 10, count: int | None = None) -> Curve:
+def curve(u: Array, y: Array, most_classes: int = 10, count: int | None = None) -> ClassMeans:
     """Mean output by classes of one parameter. u: (n,), y: (n, seeds) or (n,); missing points drop out.
 
     count: values that the parameter has, each an even share of the range; None: any. Each value is a class of its own,
@@ -68,7 +68,7 @@ def curve(u: Array, y: Array, most_classes: int = 10, count: int | None = None) 
     squares = np.bincount(member, (means - mean[member]) ** 2)[several]
     n = points[several]
     half[several] = t.ppf(0.5 * (1.0 + seeds.LEVEL), n - 1) * np.sqrt(squares / (n - 1) / n)
-    return Curve(at, mean, mean - half, mean + half, points)
+    return ClassMeans(at, mean, mean - half, mean + half, points)
 
 
 def rank_effects(u: Array, y: Array, seed: int = 0, resamples: int = 1000) -> RankEffects:

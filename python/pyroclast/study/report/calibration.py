@@ -18,7 +18,7 @@ from ..methods.calibration import NOT_DETERMINED
 from ..parameters import Parameter, Value
 from .drawing import (BAR, NOT_TOLD, along, ends, legend_above, name_bars, no_value_ticks, output_label, panels,
                       parameter_label, places, value_text)
-from .section import Section, Shown, Table, nothing
+from .section import PageTable, Section, Shown, nothing
 from .seen import Array, Seen, listed, number, numbers
 
 _MISFIT = ("The misfit is the sum of squares of what is left to the targets, each in standard deviations: of the mean "
@@ -125,8 +125,8 @@ def _of_targets(seen: Seen, found: dict[str, Any]) -> Section:
     rows = [[labels[name], number(value), number(stated, 3), number(at), number(of_difference, 3), number(residual, 2)]
             for name, value, stated, at, of_difference, residual
             in zip(targets["names"], targets["values"], targets["sd"], best, sd, residuals)]
-    table = Table(["target", "value", "sd of the experiment", "best point", "sd of the difference", "difference in sd"],
-                  rows)
+    table = PageTable(["target", "value", "sd of the experiment", "best point", "sd of the difference",
+                       "difference in sd"], rows)
     far = [name for name, residual in zip(targets["names"], residuals) if abs(residual) > 2.0]
     said = (f"Farther than two standard deviations from its target: {listed(far)}." if far else
             "All targets are met within two standard deviations.")
@@ -162,8 +162,8 @@ def _of_parameters(seen: Seen, found: dict[str, Any], best: Sequence[Value]) -> 
     faint = frozenset(i for i, free in enumerate(told["not_determined"]) if free)
     free = [p.name for p, is_free in zip(parameters, told["not_determined"]) if is_free]
     said = f"Not determined: {listed(free)}." if free else "The targets determine all parameters."
-    table = Table(["parameter", "best", "± one standard deviation", "sd over that of its range", "determined"], rows,
-                  faint=faint)
+    table = PageTable(["parameter", "best", "± one standard deviation", "sd over that of its range", "determined"],
+                      rows, faint=faint)
     ranges = ranges_figure(parameters, u, sd, told["not_determined"])
     made = [Section("Parameters", [f"{said} The form comes from {told['points']} points.", _PARAMETERS],
                     [Shown("parameters", ranges, _PARAMETERS_CAPTION)], [table])]

@@ -14,7 +14,7 @@ from ... import style
 from ..methods import ensemble
 from ..outputs import Output
 from .drawing import output_label
-from .section import Section, Shown, Table, nothing
+from .section import PageTable, Section, Shown, nothing
 from .seen import Array, Seen, between, number, numbers, percent
 
 _MEANING = ("Each run has its own random specimen. The sd is that of single runs; the 95 % interval says where the "
@@ -52,7 +52,7 @@ def _sentence(summary: dict[str, Any]) -> str:
             f"{number(summary['sd'], 3)} (sd), which is {percent(summary['variation'])} of the mean.{missing}")
 
 
-def _table(seen: Seen) -> Table:
+def _table(seen: Seen) -> PageTable:
     rows = []
     names: list[str] = []
     for output in seen.setup.outputs:
@@ -63,8 +63,8 @@ def _table(seen: Seen) -> Table:
         rows.append([output_label(output), str(s["n"]), str(s["missing"]), number(s["mean"]),
                      between(s["low"], s["high"]), number(s["sd"], 3), percent(s["variation"]),
                      *(number(s["percentiles"][p]) for p in names)])
-    return Table(["output", "runs", "without a value", "mean", "95 % interval of the mean", "sd", "cv",
-                  *(f"{float(p):g} % of runs below" for p in names)], rows)
+    return PageTable(["output", "runs", "without a value", "mean", "95 % interval of the mean", "sd", "cv",
+                      *(f"{float(p):g} % of runs below" for p in names)], rows)
 
 
 @matplotlib.rc_context(style.STYLE)

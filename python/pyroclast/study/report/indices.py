@@ -17,8 +17,8 @@ from ..outputs import Output
 from ..parameters import Parameter
 from .drawing import (BAR, NOT_TOLD, Bar, draw_bar, grey_patch, legend_above, name_bars, output_label, parameter_label,
                       seed_bars, seed_patch)
-from .responses import Curve, are_grey, classes, curves_figure, ranked, seed_sentence, told_cell, told_sentence
-from .section import Section, Shown, Table, how_to_read, nothing
+from .responses import ResponseCurve, are_grey, classes, curves_figure, ranked, seed_sentence, told_cell, told_sentence
+from .section import PageTable, Section, Shown, how_to_read, nothing
 from .seen import Seen, between, number, numbers, percent
 
 _FIRST, _TOTAL = style.SKY, style.BLUE
@@ -79,9 +79,9 @@ def _of_morris(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
              number(effects["sigma"][i], 3), number(effects["from_seeds"][i], 2),
              told_cell(effects["told_from_seeds"][i]), f"{effects['used'][i]} of {effects['planned']}"]
             for at, i in enumerate(order)]
-    table = Table(["", "parameter", "μ*", "95 % interval", "μ", "σ", "of seeds alone",
-                   "told from the seeds", "effects used"], rows,
-                  faint=frozenset(np.flatnonzero(are_grey(effects, order))))
+    table = PageTable(["", "parameter", "μ*", "95 % interval", "μ", "σ", "of seeds alone",
+                       "told from the seeds", "effects used"], rows,
+                      faint=frozenset(np.flatnonzero(are_grey(effects, order))))
     shown = Shown(f"{output.name}-morris", morris_figure(output, parameters, effects, share), _MORRIS_CAPTION)
     return Section(title, [" ".join(filter(None, said))], [shown], [table])
 
@@ -155,16 +155,16 @@ def _interactions(indices: dict[str, Any]) -> str:
     return f"The main indices add up to {number(total, 2)}; what is left to 1 are interactions, and their error."
 
 
-def _index_table(parameters: Sequence[Parameter], indices: dict[str, Any], order: Sequence[int]) -> Table:
+def _index_table(parameters: Sequence[Parameter], indices: dict[str, Any], order: Sequence[int]) -> PageTable:
     knows = "told_from_seeds" in indices
     rows = [[parameter_label(parameters[i]),
              *(cell for what in ("first", "total") for cell in (
                  number(indices[what][i], 3), between(indices[f"{what}_low"][i], indices[f"{what}_high"][i], 3))),
              *([number(indices["from_seeds"][i], 2), told_cell(indices["told_from_seeds"][i])] if knows else [])]
             for i in order]
-    return Table(["parameter", "main", "95 % interval", "total", "95 % interval",
-                  *(["total of seeds alone", "told from the seeds"] if knows else [])], rows,
-                 faint=frozenset(np.flatnonzero(are_grey(indices, order))))
+    return PageTable(["parameter", "main", "95 % interval", "total", "95 % interval",
+                      *(["total of seeds alone", "told from the seeds"] if knows else [])], rows,
+                     faint=frozenset(np.flatnonzero(are_grey(indices, order))))
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -210,7 +210,8 @@ def _of_chaos(seen: Seen, output: Output, found: dict[str, Any]) -> Section:
                               "scatter, it says too little."])
     indices = found["indices"]
     error = found["error"]
-    curves = [Curve(numbers(c["u"]), y, y - error, y + error) for c in found["curves"] for y in [numbers(c["y"])]]
+    curves = [ResponseCurve(numbers(c["u"]), y, y - error, y + error)
+              for c in found["curves"] for y in [numbers(c["y"])]]
     figures = [Shown(f"{output.name}-indices", indices_figure(parameters, indices, share), _CHAOS_CAPTION),
                Shown(f"{output.name}-curves", curves_figure(seen, output, curves, is_smooth=True), _CURVES_CHAOS)]
     order = ranked(numbers(indices["total"]))
@@ -225,7 +226,7 @@ def _of_dependence(parameters: Sequence[Parameter], output: Output, found: dict[
              between(dependence["r2_low"][i], dependence["r2_high"][i], 2), number(dependence["p_value"][i], 2)]
             for i in order]
     faint = frozenset(at for at, i in enumerate(order) if not _depends(dependence, i))
-    table = Table(["parameter", "R²", "95 % interval", "p of independence"], rows, faint=faint)
+    table = PageTable(["parameter", "R²", "95 % interval", "p of independence"], rows, faint=faint)
     figure = dependence_figure(parameters, dependence, found["seed_share"])
     return Section(output_label(output), [said],
                    [Shown(f"{output.name}-dependence", figure, _DEPENDENCE_CAPTION)], [table])

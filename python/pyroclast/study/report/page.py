@@ -14,7 +14,7 @@ from ..driver import duration
 from ..store import DONE
 from .drawing import parameter_label, value_text
 from .markup import Markup, element, picture, together
-from .section import Section, Shown, Table
+from .section import PageTable, Section, Shown
 from .seen import Seen, number
 
 _MOST_REASONS = 20
@@ -102,7 +102,7 @@ def _figure(shown: Shown, png: bytes) -> Markup:
     return element("figure", image, element("figcaption", shown.caption, " ", pdf, " ", png_file))
 
 
-def _table(table: Table) -> Markup:
+def _table(table: PageTable) -> Markup:
     head = element("tr", *(element("th", cell) for cell in table.head))
     rows = [element("tr", *(element("td", cell) for cell in row), **({"class_": "faint"} if i in table.faint else {}))
             for i, row in enumerate(table.rows)]
@@ -171,7 +171,7 @@ def _varied(seen: Seen) -> Markup:
         keys = "; ".join(f"{path}{'' if factor == 1.0 else f' × {factor:g}'}" for path, factor in p.keys)
         rows.append([parameter_label(p), how, *([p.how, keys] if p.keys else [])])
     of_deck = ["as", "of the deck"] if seen.setup.runner.kind == "pyroclast" else []
-    return _table(Table(["parameter", "drawn from", *of_deck], rows))
+    return _table(PageTable(["parameter", "drawn from", *of_deck], rows))
 
 
 def _failures(seen: Seen) -> Markup:
@@ -182,7 +182,7 @@ def _failures(seen: Seen) -> Markup:
     rows = [[state, str(count), reason] for (state, reason), count in found.most_common(_MOST_REASONS)]
     left = len(found) - len(rows)
     note = f"{left} more reasons stand in the table." if left > 0 else ""
-    return _table(Table(["state", "runs", "reason"], [[DONE, str(said.count((DONE, ""))), ""], *rows], note))
+    return _table(PageTable(["state", "runs", "reason"], [[DONE, str(said.count((DONE, ""))), ""], *rows], note))
 
 
 def _again(seen: Seen) -> Markup:

@@ -16,7 +16,7 @@ from ..parameters import Parameter
 from .drawing import (BAR, NOT_TOLD, along, ends, grey_patch, legend_above, name_bars, output_label, parameter_label,
                       places, value_text)
 from .responses import ranked
-from .section import Section, Shown, Table
+from .section import PageTable, Section, Shown
 from .seen import Array, Seen, listed, number, numbers, percent
 
 _MOST_PAIRS = 6  # parameters of a pairs plot
@@ -55,7 +55,7 @@ def sections(seen: Seen) -> list[Section]:
     return made
 
 
-def _table(parameters: Sequence[Parameter], posterior: dict[str, Any], chain: Array) -> Table:
+def _table(parameters: Sequence[Parameter], posterior: dict[str, Any], chain: Array) -> PageTable:
     rows = []
     for i, parameter in enumerate(parameters):
         low, middle, high = (value_text(parameter, parameter.distribution.at(float(u)))
@@ -63,17 +63,18 @@ def _table(parameters: Sequence[Parameter], posterior: dict[str, Any], chain: Ar
         rows.append([parameter_label(parameter), middle, f"{low} to {high}", number(posterior["sd_ratio"][i], 2),
                      "no" if posterior["not_determined"][i] else "yes"])
     faint = frozenset(i for i, free in enumerate(posterior["not_determined"]) if free)
-    return Table(["parameter", "median", "95 % of the draws", "sd over the prior's", "determined"], rows, faint=faint)
+    return PageTable(["parameter", "median", "95 % of the draws", "sd over the prior's", "determined"], rows,
+                     faint=faint)
 
 
-def _surrogates(seen: Seen, found: dict[str, Any]) -> Table:
+def _surrogates(seen: Seen, found: dict[str, Any]) -> PageTable:
     labels = {o.name: output_label(o) for o in seen.setup.outputs}
     targets = found["targets"]
     columns = zip(targets["names"], targets["values"], targets["sd"], found["q2"], found["own_q2"], found["error"])
     rows = [[labels[name], number(value), number(sd, 3), number(q2, 3), number(own_q2, 3), number(error, 3)]
             for name, value, sd, q2, own_q2, error in columns]
-    return Table(["target", "value", "sd of the experiment", "Q² of its surrogate", "without the seeds' scatter",
-                  "error of its surrogate"], rows)
+    return PageTable(["target", "value", "sd of the experiment", "Q² of its surrogate", "without the seeds' scatter",
+                      "error of its surrogate"], rows)
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -145,7 +146,7 @@ def spread_figure(parameters: Sequence[Parameter], posterior: dict[str, Any]) ->
 def _of_check(names: Sequence[str], check: dict[str, Any]) -> Section:
     rows = [[name, str(n), number(rms, 2), percent(within)]
             for name, n, rms, within in zip(names, check["points"], check["rms"], check["within_two"])]
-    table = Table(["target", "true runs", "root mean square", "within ± 2"], rows)
+    table = PageTable(["target", "true runs", "root mean square", "within ± 2"], rows)
     figure = check_figure(names, numbers(check["standardised"]))
     return Section("True runs", [_CHECK], [Shown("check", figure, _CHECK_CAPTION)], [table])
 

@@ -19,7 +19,7 @@ from ..outputs import Output
 from ..parameters import Parameter
 from .drawing import (BAR, NOT_TOLD, SEED, SEED_HATCH, Bar, along, draw_bar, draw_scatter, grey_patch, legend_above,
                       name_bars, output_label, panels, parameter_label, places, seed_bars, seed_patch)
-from .section import Section, Shown, Table, how_to_read
+from .section import PageTable, Section, Shown, how_to_read
 from .seen import Array, Seen, between, listed, number, numbers, percent
 
 _MEANING = ("A standardised rank regression coefficient says by how many standard deviations of its ranks the output "
@@ -97,7 +97,7 @@ def ranked(values: Array) -> list[int]:
     return [int(i) for i in np.argsort(-np.nan_to_num(np.abs(values), nan=-1.0), kind="stable")]
 
 
-def _table(parameters: Sequence[Parameter], effects: dict[str, Any]) -> Table:
+def _table(parameters: Sequence[Parameter], effects: dict[str, Any]) -> PageTable:
     rows = []
     share = effects["seed_share"]
     order = ranked(numbers(effects["coefficient"]))
@@ -107,9 +107,9 @@ def _table(parameters: Sequence[Parameter], effects: dict[str, Any]) -> Table:
                          number(effects[what][i], 2),
                          between(effects[f"{what}_low"][i], effects[f"{what}_high"][i], 2))),
                      number(effects["standard_error"][i], 2), told_cell(effects["told_from_seeds"][i])])
-    return Table(["parameter", "coefficient", "95 % interval", "correlation", "95 % interval",
-                  "standard error from the seeds", "told from the seeds"], rows,
-                 faint=frozenset(np.flatnonzero(are_grey(effects, order))))
+    return PageTable(["parameter", "coefficient", "95 % interval", "correlation", "95 % interval",
+                      "standard error from the seeds", "told from the seeds"], rows,
+                     faint=frozenset(np.flatnonzero(are_grey(effects, order))))
 
 
 @matplotlib.rc_context(style.STYLE)
@@ -148,7 +148,7 @@ def _ends(axes: Axes) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class Curve:
+class ResponseCurve:
     """A response to one parameter; arrays of shape (places,), the interval where there is one."""
 
     u: Array
@@ -157,16 +157,16 @@ class Curve:
     high: Array | None = None
 
 
-def classes(seen: Seen, output: Output, points: Any = slice(None)) -> list[Curve]:
+def classes(seen: Seen, output: Output, points: Any = slice(None)) -> list[ResponseCurve]:
     """Means by classes of each parameter, of some points or all."""
     means = seen.means(output.name)[points]
     found = [main_effects.curve(u, means, count=p.distribution.count)
              for u, p in zip(seen.asked[points].T, seen.setup.parameters)]
-    return [Curve(c.u, c.mean, c.low, c.high) for c in found]
+    return [ResponseCurve(c.u, c.mean, c.low, c.high) for c in found]
 
 
 @matplotlib.rc_context(style.STYLE)
-def curves_figure(seen: Seen, output: Output, curves: Sequence[Curve], is_smooth: bool = False) -> Figure:
+def curves_figure(seen: Seen, output: Output, curves: Sequence[ResponseCurve], is_smooth: bool = False) -> Figure:
     """A panel for each parameter, all with the same ordinate. is_smooth: lines alone, of a surrogate."""
     figure, every = panels(len(curves))
     means = seen.means(output.name)

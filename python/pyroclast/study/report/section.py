@@ -18,7 +18,7 @@ class Shown:
 
 
 @dataclass(frozen=True)
-class Table:
+class PageTable:
     """Texts in rows under a head. faint: rows that stand back, by their numbers."""
 
     head: Sequence[str]
@@ -34,7 +34,7 @@ class Section:
     title: str
     texts: Sequence[str] = ()
     figures: Sequence[Shown] = ()
-    tables: Sequence[Table] = ()
+    tables: Sequence[PageTable] = ()
 
 
 def nothing(title: str, why: str) -> Section:

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...errors import Error
-from ..driver import Forecast
-from ..file import Setup
+from ..driver import StudyForecast
+from ..file import StudySetup
 from ..methods import sampling
 from ..study import Study
 
@@ -27,8 +27,8 @@ class Seen:
         the table. findings: None where there are none; `none_because` says why.
     """
 
-    setup: Setup
-    forecast: Forecast
+    setup: StudySetup
+    forecast: StudyForecast
     asked: Array
     rows: list[dict[str, Any]]
     findings: dict[str, Any] | None
@@ -72,10 +72,10 @@ class Seen:
 
 def seen(study: Study) -> Seen:
     """Of one reading of the store, so that all of it belongs together while another process adds runs."""
-    with study._driver() as driver:
-        findings, none_because = _findings(driver.findings)
-        asked = driver.plan.propose(driver._answers).points
-        return Seen(study.setup, driver.forecast(), asked, driver.rows(), findings, none_because)
+    driver = study._driver()
+    findings, none_because = _findings(driver.findings)
+    asked = driver.plan.propose(driver._answers).points
+    return Seen(study.setup, driver.forecast(), asked, driver.rows(), findings, none_because)
 
 
 def _findings(find: Callable[[], dict[str, Any]]) -> tuple[dict[str, Any] | None, str]:
