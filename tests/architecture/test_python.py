@@ -7,13 +7,6 @@ import unittest
 
 PACKAGE = pathlib.Path(__file__).parents[2] / "python" / "pyroclast"
 
-# Names that occur twice all the same, with the files that may have them.
-TWICE = {
-    "Curve": ["study/methods/main_effects.py", "study/report/responses.py"],
-    "Slurm": ["study/executors/slurm.py", "study/file.py"],
-    "Table": ["files.py", "study/report/section.py"],
-}
-
 
 def modules(package: pathlib.Path) -> dict[str, pathlib.Path]:
     """The files of a package, by names such as "study.file"; a package's own is that of its folder, "" at the top."""
@@ -94,7 +87,7 @@ def twice(package: pathlib.Path) -> list[str]:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 files.setdefault(node.name, []).append(path.relative_to(package).as_posix())
     return [f"{name}: {', '.join(some)}" for name, some in sorted(files.items())
-            if len(some) > 1 and some != TWICE.get(name)]
+            if len(some) > 1]
 
 
 class Package(unittest.TestCase):
