@@ -124,7 +124,7 @@ void put(Kept& piece, std::uint64_t place, std::string_view text) {
   std::memcpy(piece.bytes.data() + place % (piece.bytes.size() / sizeof(T)) * sizeof(T), &value, sizeof(T));
 }
 
-/// "ROW PLACE KIND VALUE". Row: its name or its number; kind: double, long, int, byte, or count, of the
+/// "PIECE PLACE KIND VALUE". Piece: its name or its number; kind: double, long, int, byte, or count, of the
 /// piece.
 void edit(std::map<std::string, Kept>& state, std::string_view line) {
   const auto words = split(line, ' ');

@@ -52,7 +52,8 @@ std::vector<std::uint8_t> damages(const Mechanics<2>& mechanics) {
   struct Place {
     std::size_t line, mode;
   };
-  std::vector<std::vector<Place>> places;  // of each law, where the internal variables of a point have its damages
+  std::vector<std::vector<Place>>
+      places;  // of each law, where the internal variables of a point have its damages
   for (const LawTable* law : mechanics.laws())
     for (auto& of_law = places.emplace_back(); const InternalInfo& info : law->internals(2))
       if (const std::size_t mode = mode_of(info.what); mode < std::size(kCrackModes))
