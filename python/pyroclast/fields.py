@@ -51,7 +51,7 @@ class _Field:
 
     @property
     def unit(self) -> str:
-        return _NAME.sub(r"\2", self.path.split("/")[-1]).replace("|", "/")
+        return _NAME.sub(r"\2", self.path.split("/")[-1])
 
     @property
     def on(self) -> str:
@@ -125,7 +125,7 @@ def fields_of(results: Results) -> xarray.Dataset:
 def block_fields_of(results: Results) -> xarray.Dataset:
     """`Results.block_fields`."""
     mesh, folder = results.mesh, results.folder / "fields"
-    triangles, area = mesh.blocks.triangles, _areas(mesh)
+    triangles, area = mesh.blocks.triangles, mesh.blocks.areas
     numbers, first, block = np.unique(mesh.blocks.block, return_index=True, return_inverse=True)
 
     def mean(of_zones: Array) -> Array:
@@ -244,7 +244,7 @@ def _of_zones(mesh: Mesh) -> dict[str, Variable]:
         "block": (("zone",), blocks.block, {}),
         "material": (("zone",), np.array(blocks.materials)[blocks.material], {}),
         "bearing": (("zone",), blocks.of_bearing, {}),
-        "area": (("zone",), _areas(mesh), {"units": "m2"}),
+        "area": (("zone",), blocks.areas, {"units": "m2"}),
     }
 
 
@@ -256,10 +256,3 @@ def _of_contacts(mesh: Mesh) -> dict[str, Variable]:
         "interface": (("contact",), np.array(contacts.interfaces)[contacts.interface], {}),
         "length": (("contact",), contacts.length, {"units": "m"}),
     }
-
-
-def _areas(mesh: Mesh) -> NDArray[np.float64]:
-    """(zones,), m²."""
-    a, b, c = (mesh.blocks.points[mesh.blocks.triangles[:, i]] for i in range(3))
-    area: NDArray[np.float64] = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
-    return area

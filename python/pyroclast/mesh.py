@@ -33,6 +33,11 @@ class BlockMesh:
         return np.unique(self.material[self.of_bearing]).tolist()
 
     @cached_property
+    def areas(self) -> np.ndarray:
+        """(Z,), m²: area of each zone."""
+        return 0.5 * _twice_areas(self.points, self.triangles)
+
+    @cached_property
     def outlines(self) -> tuple[list[np.ndarray], np.ndarray]:
         """Gridpoints around each block, counter-clockwise, and the blocks' materials.
 
@@ -125,10 +130,14 @@ def _kinds(file: h5py.File, name: str, cells: int) -> tuple[np.ndarray, tuple[st
     return values, names
 
 
-def _counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+def _twice_areas(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(Z,), m²: negative where the corners go clockwise."""
     a, b, c = (points[triangles[:, i]] for i in range(3))
-    area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    return np.where((area < 0.0)[:, None], triangles[:, ::-1], triangles)
+    return (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+
+
+def _counter_clockwise(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    return np.where((_twice_areas(points, triangles) < 0.0)[:, None], triangles[:, ::-1], triangles)
 
 
 def _outlines(mesh: BlockMesh) -> tuple[list[np.ndarray], np.ndarray]:

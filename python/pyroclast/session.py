@@ -151,12 +151,12 @@ class Fields(Mapping[str, Array]):
 
     def __init__(self, core: _core.Session):
         self._core = core
-        self._items = {name: (bare, item) for name, bare, _, item, *_ in core.field_infos()
-                       if item in ("gridpoint", "zone")}
-        self._bare = {bare: name for name, (bare, _) in self._items.items()}
+        infos = [info for info in core.field_infos() if info[3] in ("gridpoint", "zone")]
+        self._names = ColumnNames([(name, unit) for name, _, unit, *_ in infos], lambda unit: 1.0)
+        self._fields = [(item, bare) for _, bare, _, item, *_ in infos]
 
     def __getitem__(self, name: str) -> Array:
-        bare, item = self._items[self._bare.get(name, name)]
+        item, bare = self._fields[self._names.place(name)[0]]
         return next(iter(self._core.fields(item, [bare]).values()))
 
     def __getattr__(self, name: str) -> Array:
@@ -165,16 +165,16 @@ class Fields(Mapping[str, Array]):
         try:
             return self[name]
         except KeyError:
-            raise AttributeError(f"this run has no field {name!r}; it has {', '.join(self._bare)}") from None
+            raise AttributeError(f"this run has no field {name!r}; it has {', '.join(self._names.bare)}") from None
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self._bare]
+        return [*super().__dir__(), *self._names.bare]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._items)
+        return iter(self._names.names)
 
     def __len__(self) -> int:
-        return len(self._items)
+        return len(self._fields)
 
     def __repr__(self) -> str:
         return f"<Fields {', '.join(self)}>"

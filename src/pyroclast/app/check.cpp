@@ -7,7 +7,6 @@
 #include <sys/resource.h>
 
 #include "pyroclast/app/open.hpp"
-#include "pyroclast/app/progress.hpp"
 #include "pyroclast/base/shown.hpp"
 #include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/session/rehearsal.hpp"

@@ -14,10 +14,6 @@ constexpr double kLeastProgressToForesee = 1e-3;
 
 }  // namespace
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 bool Progress::line_is_due() {
   if (seconds_since(last_line_) < kSecondsBetweenLines) return false;
   last_line_ = Clock::now();

@@ -1,13 +1,10 @@
 #pragma once
 
-#include <chrono>
 #include <string>
 
+#include "pyroclast/base/clock.hpp"
+
 namespace pyroclast::app {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start);
 
 /// Clock that decides when to report the progress of a run, and the time left.
 class Progress {

@@ -123,12 +123,6 @@ py::array copied(const Simulation& simulation, const std::string& what) {
   return of(copies(), what)(simulation);
 }
 
-std::vector<FieldInfo> field_infos(const Simulation& simulation) {
-  std::vector<FieldInfo> infos;
-  for (const Field& field : fields_of(simulation)) infos.push_back(field);
-  return infos;
-}
-
 py::dict fields(const Simulation& simulation, Item item, const std::vector<std::string>& names) {
   auto chosen = fields_of(simulation);
   std::erase_if(chosen, [&](const Field& field) {

@@ -26,8 +26,6 @@ py::array copied(const Simulation& simulation, const std::string& what);
 /// Error naming the sets of the model.
 py::array members(const Simulation& simulation, const std::string& set, bool of_contacts);
 
-/// Returns the fields of the simulation.
-std::vector<FieldInfo> field_infos(const Simulation& simulation);
 /// Returns the present fields of one item, by their names with units: (items,) or (items, components).
 /// \param names  names without units; none: all fields
 py::dict fields(const Simulation& simulation, Item item, const std::vector<std::string>& names);

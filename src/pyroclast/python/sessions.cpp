@@ -354,7 +354,7 @@ void bind_sessions(py::module_& m) {
       .def("field_infos",
            [](const Held& h) {
              std::vector<py::tuple> all;
-             for (const FieldInfo& f : field_infos(h.get().simulation()))
+             for (const Field& f : fields_of(h.get().simulation()))
                all.push_back(py::make_tuple(name_with_unit(f), f.name, f.unit.si, name_of(f.item),
                                             components_of(f.kind), f.meaning));
              return all;

@@ -154,7 +154,7 @@ Checkpoints::Checkpoints(fs::path run_folder, const CheckpointChoice& choice, So
 bool Checkpoints::is_due() const {
   if (last_.empty() && number_ == 0) return true;
   if (choice_.interval == 0.0) return true;
-  const double age = std::chrono::duration<double>(Clock::now() - written_).count();
+  const double age = seconds_since(written_);
   return age >= std::max(choice_.interval, kLeastRest * took_);
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -8,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "pyroclast/base/clock.hpp"
 #include "pyroclast/results/checkpoint_file.hpp"
 #include "pyroclast/setup/setup.hpp"
 #include "pyroclast/simulation/run.hpp"
@@ -55,8 +55,6 @@ class Checkpoints {
   const std::filesystem::path& last() const { return last_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   bool is_due() const;
   void write(const Run& run, const std::filesystem::path& path);
   std::filesystem::path next_file() const;

@@ -56,7 +56,7 @@ Summary Recorder::summary(const Run& run) const {
 }
 
 double Recorder::wall_time() const {
-  return earlier_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  return earlier_ + seconds_since(start_);
 }
 
 void Recorder::visit_state(StateVisitor& visitor, std::size_t rows) {

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "pyroclast/base/clock.hpp"
 #include "pyroclast/results/field_files.hpp"
 #include "pyroclast/results/history_file.hpp"
 #include "pyroclast/results/summary.hpp"
@@ -63,7 +63,7 @@ class Recorder {
   std::optional<FieldFiles> fields_;
   FrameRows frames_;
   double earlier_ = 0.0;  ///< wall time of earlier processes, s
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Clock::time_point start_ = Clock::now();
 };
 
 }  // namespace pyroclast

@@ -1,23 +1,17 @@
 #include "pyroclast/session/rehearsal.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "pyroclast/base/clock.hpp"
 #include "pyroclast/simulation/run.hpp"
 #include "pyroclast/thermal/time_stages.hpp"
 
 namespace pyroclast {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 constexpr int kWarmUpSteps = 10, kMostTimedSteps = 2000;
 constexpr double kSecondsOfTiming = 0.5;

@@ -208,6 +208,7 @@ std::vector<const LawTable*> laws_in_order(const Mechanics<2>& mechanics) {
   for (int i = 0; i < mechanics.model().contact_count(); ++i) {
     const LawTable* const law = &mechanics.law_of(i);
     if (std::exchange(last, law) != law && std::ranges::find(laws, law) == laws.end()) laws.push_back(law);
+    if (laws.size() == mechanics.laws().size()) break;
   }
   return laws;
 }
