@@ -31,7 +31,8 @@ void update_faces(State<2>& s, int first, int last, bool measure) {
 template <class... Laws>
 pyroclast::PackFunctions<2> packs(pyroclast::LawList<Laws...>, int law) {
   static constexpr std::array<pyroclast::PackFunctions<2>, sizeof...(Laws)> kPacks{
-      {{update_faces<Laws>, pyroclast::Contacts<2, Counting, Laws>::place_stiffness}...}};
+      {{update_faces<Laws>, pyroclast::Contacts<2, Counting, Laws>::place_stiffness,
+        pyroclast::Contacts<2, Counting, Laws>::update_lanes}...}};
   return kPacks[static_cast<std::size_t>(law)];
 }
 

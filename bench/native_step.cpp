@@ -29,8 +29,9 @@ int bundles(const State<2>& s) {
 
 template <class... Laws>
 constexpr NativeLaws packs(pyroclast::LawList<Laws...>) {
-  return {{{pyroclast::Contacts<2, Native, Laws>::update,
-            pyroclast::Contacts<2, Native, Laws>::place_stiffness}...}};
+  return {
+      {{pyroclast::Contacts<2, Native, Laws>::update, pyroclast::Contacts<2, Native, Laws>::place_stiffness,
+        pyroclast::Contacts<2, Native, Laws>::update_lanes}...}};
 }
 
 void contacts(State<2>& s, double*) {

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from .results import read as read
     from .session import Fields as Fields
     from .session import History as History
-    from .session import Recorder as Recorder
+    from .session import Observer as Observer
     from .session import Run as Run
     from .session import Sets as Sets
     from .session import State as State
@@ -72,7 +72,7 @@ else:
         "functions": ("Function",),
         "laws": ("Law",),
         "results": ("Results", "SpecimenFolder", "read"),
-        "session": ("Fields", "History", "Recorder", "Run", "Sets", "State", "Views"),
+        "session": ("Fields", "History", "Observer", "Run", "Sets", "State", "Views"),
         "specimen": ("Specimen",),
         "stages": ("Key", "Stage", "Verdict"),
         "study.study": ("Study",),

@@ -204,15 +204,15 @@ class Sets(Mapping[str, Indices]):
         return f"<Sets {', '.join(self._names)}>"
 
 
-class Recorder:
-    """Keeps what a run gives, as the recorder of the program does in its folder. A run calls `begin` once, `record` at
-    every look after its row is written, and `finish` when it is over or stopped.
+class Observer:
+    """Follows a run. A run calls `begin` once, `look` at every look after its row is written, and `finish` when it is
+    over or stopped.
     """
 
     def begin(self, run: Run) -> None:
         """Before the next look."""
 
-    def record(self, run: Run, state: State) -> None:
+    def look(self, run: Run, state: State) -> None:
         """After a look."""
 
     def finish(self, run: Run) -> None:
@@ -261,7 +261,7 @@ class Run:
         self._kept = list(kept)  # files of functions and blocks, as long as the deck may be read again
         self._look = 0
         self._at_looks: list[Callable[[Run], object]] = []
-        self._recorders: list[Recorder] = []
+        self._observers: list[Observer] = []
         self._columns = ColumnNames(core.columns, _core.si_factor)
         self._finished = False
         known = {stage.kind for stage in classes}
@@ -338,8 +338,8 @@ class Run:
             return None
         self._finished = False
         state = State(self, self._columns, self._core.row(), self._look)
-        for recorder in self._recorders:
-            recorder.record(self, state)
+        for observer in self._observers:
+            observer.look(self, state)
         for call in self._at_looks:
             call(self)
         if self._core.is_over:
@@ -351,8 +351,8 @@ class Run:
             return
         self._finished = True
         self._core.finish()
-        for recorder in self._recorders:
-            recorder.finish(self)
+        for observer in self._observers:
+            observer.finish(self)
 
     def finish(self) -> Run:
         """Goes on to the end of the run; returns it."""
@@ -432,10 +432,10 @@ class Run:
         """
         self._at_looks.append(call)
 
-    def record_with(self, recorder: Recorder) -> None:
-        """Lets a recorder take part from now on."""
-        recorder.begin(self)
-        self._recorders.append(recorder)
+    def add_observer(self, observer: Observer) -> None:
+        """Lets an observer follow the run from now on."""
+        observer.begin(self)
+        self._observers.append(observer)
 
     def call_at(self, step: int, call: Callable[[Run], object]) -> None:
         """Calls back once, when the mechanics has done so many steps since its beginning; a batch ends there.

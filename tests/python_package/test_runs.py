@@ -137,25 +137,25 @@ class Going(Case):
         self.assertEqual(looks, list(range(1, run.history.rows + 1)))
         self.assertEqual(steps, list(range(700, run.step + 1, 700)))
 
-    def test_a_recorder_is_begun_told_of_every_look_and_finished(self):
-        class Keeps(pyroclast.Recorder):
+    def test_an_observer_is_begun_told_of_every_look_and_finished(self):
+        class Keeps(pyroclast.Observer):
             def __init__(self):
                 self.seen = []
 
             def begin(self, run):
                 self.seen.append("begin")
 
-            def record(self, run, state):
+            def look(self, run, state):
                 self.seen.append(state.strain)
 
             def finish(self, run):
                 self.seen.append(run.outcome)
 
-        run, recorder = pyroclast.Run(deck(), threads=1), Keeps()
-        run.record_with(recorder)
+        run, observer = pyroclast.Run(deck(), threads=1), Keeps()
+        run.add_observer(observer)
         run.finish()
-        self.assertEqual((recorder.seen[0], recorder.seen[-1]), ("begin", "completed"))
-        np.testing.assert_array_equal(recorder.seen[1:-1], run.history["strain"])
+        self.assertEqual((observer.seen[0], observer.seen[-1]), ("begin", "completed"))
+        np.testing.assert_array_equal(observer.seen[1:-1], run.history["strain"])
 
     def test_an_exception_of_a_call_back_is_raised_and_the_run_goes_on(self):
         run = pyroclast.Run(deck(), threads=1)

@@ -13,7 +13,7 @@
 #include "messages.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/results/checkpoints.hpp"
-#include "pyroclast/results/recorder.hpp"
+#include "pyroclast/results/results_writer.hpp"
 #include "results/folder.hpp"
 #include "results/system_calls.hpp"
 #include "stages/small_runs.hpp"

@@ -14,7 +14,7 @@
 #include "pyroclast/base/sha256.hpp"
 #include "pyroclast/results/hdf5_file.hpp"
 #include "pyroclast/results/history_file.hpp"
-#include "pyroclast/results/recorder.hpp"
+#include "pyroclast/results/results_writer.hpp"
 #include "pyroclast/results/run_folder.hpp"
 #include "pyroclast/results/summary.hpp"
 #include "pyroclast/results/text_file.hpp"
@@ -129,11 +129,11 @@ std::string wall_deck() {
 Summary record(const std::string& text, const fs::path& folder) {
   Setup setup = read_setup(Deck::parse(text, "deck.toml"), ".");
   const auto simulation = make_simulation(setup);
-  Recorder recorder(folder, setup);
+  ResultsWriter writer(folder, setup);
   Run run(*simulation, std::move(setup.stages));
-  recorder.begin(run);
-  while (run.next()) recorder.record(run);
-  return recorder.finish(run);
+  writer.begin(run);
+  while (run.next()) writer.write(run);
+  return writer.finish(run);
 }
 
 TEST_F(Results, HeatAloneHasProbesALedgerThatClosesAndNoContacts) {

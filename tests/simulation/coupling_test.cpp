@@ -89,7 +89,7 @@ TEST(CreepOfAnExchange, IsThatOfTheFirstHeating) {
     const auto [mortar, others] = compliances(body, properties_at(body, materials, field, hottest));
     EXPECT_EQ(mortar, to > hottest_so_far ? (strain(to) - strain(hottest_so_far)) / 35e6 : 0.0) << to;
     EXPECT_EQ(others, 0.0);
-    hottest.take(field);
+    hottest.note_exchange(field);
     hottest_so_far = std::max(hottest_so_far, to);
   }
   // brought to its first temperature without stress
@@ -124,7 +124,7 @@ TEST(PropertiesOnCooling, StayThoseOfTheHottestOrComeBack) {
     TemperatureField field(body, 20.0);
     const TemperatureField hot(body, 400.0);
     HottestTemperatures hottest(body, materials, field);
-    hottest.take(hot);
+    hottest.note_exchange(hot);
     expect(field, stays ? hot : field, properties_at(body, materials, field, hottest));
 
     auto computed =
@@ -186,7 +186,7 @@ TEST(FreeStrainOnCooling, HasTheSlopeOfItsPhase) {
       hottest_so_far = std::max(hottest_so_far, to);
       expect(field.zones(), std::vector<double>(field.zones().size(), hottest_so_far),
              properties_at(body, materials, field, hottest));
-      hottest.take(field);
+      hottest.note_exchange(field);
     }
     const auto hot = heated_field(body);
     const auto cold = cold_field(body);
@@ -247,7 +247,7 @@ TEST(PropertiesOnCooling, LoseTheirResidualShareEvenly) {
   HottestTemperatures hottest(body, materials, field);
   const TemperatureField hot(body, 420.0);
   expect(hot, hot, properties_at(body, materials, hot, hottest));
-  hottest.take(hot);
+  hottest.note_exchange(hot);
   for (const double T : {220.0, 20.0, 320.0, 420.0}) {
     field.set_uniform(T);
     expect(field, hot, properties_at(body, materials, field, hottest));

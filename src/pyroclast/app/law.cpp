@@ -8,7 +8,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/kit.hpp"
 #include "pyroclast/laws/registry.hpp"
-#include "pyroclast/mechanics/law_pack.hpp"
+#include "pyroclast/mechanics/lanes_of_step.hpp"
 #include "pyroclast/plugin/find_law.hpp"
 #include "pyroclast/results/text_file.hpp"
 #include "pyroclast/session/law_point.hpp"

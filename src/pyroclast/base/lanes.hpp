@@ -26,6 +26,11 @@ namespace pyroclast {
 
 inline constexpr int kLanes = 8;
 
+/// One number of each of eight things, such as contact points, in memory: a cache line.
+struct alignas(64) Line {
+  double number[kLanes];
+};
+
 // One number
 
 inline double select(bool condition, double yes, double no) {

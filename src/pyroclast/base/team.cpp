@@ -34,8 +34,7 @@ void relax() {
 }
 
 /// Returns when the word is no longer `old`: how long that took, or 0 where it did not have to sleep.
-std::chrono::steady_clock::duration wait_while(const std::atomic<std::uint32_t>& word, std::uint32_t old) {
-  using Clock = std::chrono::steady_clock;
+Clock::duration wait_while(const std::atomic<std::uint32_t>& word, std::uint32_t old) {
   const auto changed = [&] { return word.load(std::memory_order_acquire) != old; };
   if (changed()) return {};
   const auto begin = Clock::now();

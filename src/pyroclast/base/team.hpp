@@ -1,13 +1,14 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <thread>
 #include <type_traits>
 #include <vector>
+
+#include "pyroclast/base/clock.hpp"
 
 namespace pyroclast {
 
@@ -83,8 +84,6 @@ class Team {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   struct Job {
     void (*call)(void* function, int thread) = nullptr;
     void* function = nullptr;

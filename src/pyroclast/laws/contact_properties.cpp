@@ -19,7 +19,7 @@ ContactProperties::ContactProperties(const LawTable& of, std::vector<double> wit
 }
 
 std::vector<std::byte> ContactProperties::constants() const {
-  std::vector<std::byte> c(law->size);
+  std::vector<std::byte> c(law->constants_size);
   law->derive(numbers.data(), choices.data(), c.data());
   return c;
 }
@@ -40,27 +40,54 @@ namespace {
       property.key, wanted);
 }
 
-}  // namespace
-
-void validate(const ContactProperties& p, const std::string& name) {
-  const auto& infos = p.law->properties;
+void require_valid(const LawTable& law, std::span<const double> numbers, std::span<const int> choices,
+                   const std::string& name) {
+  const auto& infos = law.properties;
   for (std::size_t i = 0; i < infos.size(); ++i)
-    if (!infos[i].range.contains(p.numbers[i])) fail(name, infos[i], p.numbers[i], infos[i].range.describe());
-  const Objection objection = p.law->check(p.numbers.data(), p.choices.data());
+    if (!infos[i].range.contains(numbers[i])) fail(name, infos[i], numbers[i], infos[i].range.describe());
+  const Objection objection = law.check(numbers.data(), choices.data());
   if (!objection.key) return;
   for (std::size_t i = 0; i < infos.size(); ++i)
     if (infos[i].key == std::string_view(objection.key))
-      fail(name, infos[i], p.numbers[i], fmt::sprintf(objection.wanted, objection.bound));
+      fail(name, infos[i], numbers[i], fmt::sprintf(objection.wanted, objection.bound));
   throw Error(fmt::format("{}: the law \"{}\" objects to \"{}\", which is none of its properties", name,
-                          p.law->name, objection.key));
+                          law.name, objection.key));
+}
+
+}  // namespace
+
+void validate(const ContactProperties& p, const std::string& name) {
+  require_valid(*p.law, p.numbers, p.choices, name);
 }
 
 void ContactSets::add(const ContactProperties& set) {
-  law_.push_back(set.law);
+  std::ranges::copy(set.numbers, add(*set.law, set.choices).begin());
+}
+
+std::span<double> ContactSets::add(const LawTable& law, const std::vector<int>& choices) {
+  auto kind = std::ranges::find_if(
+      kinds_, [&](const Kind& known) { return known.law == &law && known.choices == choices; });
+  if (kind == kinds_.end()) kind = kinds_.insert(kind, {&law, choices});
+  kind_.push_back(static_cast<std::uint16_t>(kind - kinds_.begin()));
   first_number_.push_back(numbers_.size());
-  first_choice_.push_back(choices_.size());
-  numbers_.insert(numbers_.end(), set.numbers.begin(), set.numbers.end());
-  choices_.insert(choices_.end(), set.choices.begin(), set.choices.end());
+  numbers_.resize(numbers_.size() + law.properties.size());
+  return {numbers_.data() + first_number_.back(), law.properties.size()};
+}
+
+void ContactSets::reserve(std::size_t sets, std::size_t numbers) {
+  kind_.reserve(sets);
+  first_number_.reserve(sets);
+  numbers_.reserve(numbers);
+}
+
+void ContactSets::clear() {
+  kind_.clear();
+  first_number_.clear();
+  numbers_.clear();
+}
+
+void ContactSets::validate(int set, const std::string& name) const {
+  require_valid(law(set), numbers(set), choices(set), name);
 }
 
 }  // namespace pyroclast

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
@@ -66,25 +67,39 @@ class ContactSets {
   }
 
   void add(const ContactProperties& set);
-  int size() const { return static_cast<int>(law_.size()); }
-  const LawTable& law(int set) const { return *law_[set]; }
+  /// Adds a set and returns its numbers, which the caller writes before it adds another set.
+  std::span<double> add(const LawTable& law, const std::vector<int>& choices);
+  /// Makes room for so many sets with so many numbers in all.
+  void reserve(std::size_t sets, std::size_t numbers);
+  /// Removes all sets and keeps their memory.
+  void clear();
+  int size() const { return static_cast<int>(kind_.size()); }
+  const LawTable& law(int set) const { return *kinds_[kind_[set]].law; }
   std::span<const double> numbers(int set) const {
     return {numbers_.data() + first_number_[set], law(set).properties.size()};
   }
-  std::span<const int> choices(int set) const {
-    return {choices_.data() + first_choice_[set], law(set).choices.size()};
-  }
+  const std::vector<int>& choices(int set) const { return kinds_[kind_[set]].choices; }
   ContactProperties operator[](int set) const {
     const auto n = numbers(set);
-    const auto c = choices(set);
-    return {law(set), {n.begin(), n.end()}, {c.begin(), c.end()}};
+    return {law(set), {n.begin(), n.end()}, choices(set)};
+  }
+  /// Throws PropertyError as `validate` of a single set does.
+  void validate(int set, const std::string& name) const;
+  /// Makes the constants of a set, see LawTable::derive.
+  void derive(int set, void* constants) const {
+    law(set).derive(numbers(set).data(), choices(set).data(), constants);
   }
 
  private:
-  std::vector<const LawTable*> law_;
-  std::vector<std::size_t> first_number_, first_choice_;
+  struct Kind {
+    const LawTable* law;
+    std::vector<int> choices;
+  };
+
+  std::vector<Kind> kinds_;  ///< kinds that occur, each once: few
+  std::vector<std::uint16_t> kind_;
+  std::vector<std::size_t> first_number_;
   std::vector<double> numbers_;
-  std::vector<int> choices_;
 };
 
 }  // namespace pyroclast

@@ -254,7 +254,7 @@ class Kit {
   template <class Draw>
   Material material(const std::vector<int>& choices, Draw draw_numbers_once) {
     for (int i = 0; i < 10000; ++i) {
-      Material m{draw_numbers_once(), choices, std::vector<std::byte>(law_.size), {}};
+      Material m{draw_numbers_once(), choices, std::vector<std::byte>(law_.constants_size), {}};
       const Objection objection = law_.check(m.numbers.data(), choices.data());
       if (objection.key) {
         check_objection(m, objection);
@@ -590,34 +590,35 @@ class Kit {
                    const std::array<Point, kLanes>& from, const std::array<std::vector<double>, kLanes>& lost,
                    bool one_set) {
     const auto infos = law_.internals(dim_);
-    std::vector<double> jump(kLanes * dim_), internals(kLanes * infos.size()),
-        losses_of(kLanes * law_.losses.size()), own(kLanes * law_.constants), mine(law_.constants);
+    std::vector<Line> jump(dim_), internals(infos.size()), losses_of(law_.losses.size()),
+        own(law_.constant_count);
+    std::vector<double> mine(law_.constant_count);
     for (int l = 0; l < kLanes; ++l) {
       const Path& path = paths[l];
-      for (int i = 0; i < dim_; ++i) jump[i * kLanes + l] = path.point.jump[i];
-      for (std::size_t i = 0; i < infos.size(); ++i) internals[i * kLanes + l] = from[l].internals[i];
-      law_.numbers_of(path.materials[path.material].constants.data(), mine.data());
-      for (int i = 0; i < law_.constants; ++i) own[i * kLanes + l] = mine[i];
+      for (int i = 0; i < dim_; ++i) jump[i].number[l] = path.point.jump[i];
+      for (std::size_t i = 0; i < infos.size(); ++i) internals[i].number[l] = from[l].internals[i];
+      law_.numbers_of(path.materials[path.material].constants.data(), mine.data(), 1);
+      for (int i = 0; i < law_.constant_count; ++i) own[i].number[l] = mine[i];
     }
     const auto& constants = paths[0].materials[paths[0].material].constants;
     const LanesResponse r = set.update_of[dim_ - 2](constants.data(), one_set ? nullptr : own.data(),
                                                     jump.data(), internals.data(), losses_of.data());
     for (int l = 0; l < kLanes; ++l) {
       const PointResponse& one = paths[l].point.response;
-      bool same =
-          same_number(r.normal_traction[l], one.normal_traction) && same_number(r.stored[l], one.stored);
+      bool same = same_number(r.normal_traction.number[l], one.normal_traction) &&
+                  same_number(r.stored.number[l], one.stored);
       for (int i = 0; i + 1 < dim_; ++i)
-        same = same && same_number(r.shear_traction[i][l], one.shear_traction[i]);
+        same = same && same_number(r.shear_traction[i].number[l], one.shear_traction[i]);
       for (std::size_t i = 0; i < infos.size(); ++i)
-        same = same && same_number(internals[i * kLanes + l], paths[l].point.internals[i]);
+        same = same && same_number(internals[i].number[l], paths[l].point.internals[i]);
       for (std::size_t i = 0; i < lost[l].size(); ++i)
-        same = same && same_number(losses_of[i * kLanes + l], lost[l][i]) &&
-               (r.changed != 0 || lost[l][i] == 0.0);
+        same =
+            same && same_number(losses_of[i].number[l], lost[l][i]) && (r.changed != 0 || lost[l][i] == 0.0);
       note(lanes, same, [&] {
         return fmt::format(
             "lane {} of {}: sigma {:.17g}, tau {:.17g}, stored {:.17g}, changed {}; one number: {}", l,
-            set.name, r.normal_traction[l], r.shear_traction[0][l], r.stored[l], r.changed,
-            step_text(paths[l], paths[l].point));
+            set.name, r.normal_traction.number[l], r.shear_traction[0].number[l], r.stored.number[l],
+            r.changed, step_text(paths[l], paths[l].point));
       });
     }
   }

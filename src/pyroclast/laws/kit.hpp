@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "pyroclast/laws/table.hpp"
@@ -15,28 +16,11 @@
 /// strength, 600 MPa where a law has none. Eight paths go side by side, so that lanes differ in what they do.
 namespace pyroclast {
 
-/// Answer of eight contact points in lanes, each number one lane after the other.
-struct LanesResponse {
-  std::array<double, kLanes> normal_traction{};                ///< Pa
-  std::array<std::array<double, kLanes>, 2> shear_traction{};  ///< Pa
-  std::array<double, kLanes> stored{};                         ///< J/m²
-  /// InternalInfo::when of every internal variable that changed in any lane; 0: nothing was lost.
-  unsigned changed = 0;
-};
-
-/// Function that takes eight points to eight jumps. Number i of lane l stands at [i * kLanes + l].
-/// \param constants  constants of all eight points; only their choices count where each point has its own
-///                   numbers
-/// \param own        numbers of the points' own constants, or null
-/// \param internals  internal variables; they change only where the law says so, as in the step
-using LanesUpdate = std::function<LanesResponse(const void* constants, const double* own, const double* jump,
-                                                double* internals, double* losses)>;
-
-/// Way to take eight points through the law, such as the step's own (mechanics/law_pack.hpp).
+/// Way to take eight points through the law, such as the step's own (mechanics/lanes_of_step.hpp).
 struct KitLanes {
   std::string name;  ///< name for messages
   /// Updates in 2D and 3D; empty where the law is not made for the dimension.
-  std::array<LanesUpdate, 2> update_of;
+  std::array<std::function<std::remove_pointer_t<LanesUpdate>>, 2> update_of;
 };
 
 struct KitOptions {

@@ -139,14 +139,19 @@ constexpr int choices_of() {
   return count;
 }
 
-/// Takes the numbers of a list from consecutive places; `put` writes them there.
+/// Takes the numbers of a list from consecutive places; `put` writes them there, or `stride` places apart.
 template <class List>
 constexpr void take(List& list, const double* from) {
   List::each([&](const auto&, auto& number) { number = *from++; }, list);
 }
 template <class List>
-constexpr void put(const List& list, double* to) {
-  List::each([&](const auto&, const auto& number) { *to++ = number; }, list);
+constexpr void put(const List& list, double* to, int stride = 1) {
+  List::each(
+      [&](const auto&, const auto& number) {
+        *to = number;
+        to += stride;
+      },
+      list);
 }
 /// Takes the choices of a list from consecutive places; `put_choices` writes them there.
 template <class List>

@@ -21,6 +21,24 @@ struct PointResponse {
   double stored = 0.0;                     ///< J/m²
 };
 
+/// Answer of eight contact points.
+struct LanesResponse {
+  Line normal_traction{};                ///< Pa
+  std::array<Line, 2> shear_traction{};  ///< Pa
+  Line stored{};                         ///< J/m²
+  /// InternalInfo::when of every internal variable that changed in any lane; 0: nothing was lost.
+  unsigned changed = 0;
+};
+
+/// Function that takes eight points to eight jumps, as the step does.
+/// \param constants  constants of all eight points; only their choices count where each point has its own
+///                   numbers
+/// \param own        numbers of the points' own constants, or null
+/// \param jump       opening and tangential components
+/// \param internals  internal variables; they change only where the law says so
+using LanesUpdate = LanesResponse (*)(const void* constants, const Line* own, const Line* jump,
+                                      Line* internals, Line* losses);
+
 /// Dimensions of bodies for which a law is made.
 enum class Dimensions : std::uint8_t { plane = 1, space = 2, both = 3 };
 
@@ -37,15 +55,15 @@ struct LawTable {
   std::span<const ChoiceInfo> choices;
   std::array<std::span<const InternalInfo>, 2> internals_of;  ///< internal variables in 2D and 3D
   std::span<const LossInfo> losses;
-  std::size_t size;  ///< size of the constants, bytes
-  int constants;     ///< count of numbers among the constants
+  std::size_t constants_size;  ///< size of the constants, bytes
+  int constant_count;          ///< count of numbers among the constants
   /// True where the result of sliding at a steady opening does not depend on its cuts into steps.
   bool exact_in_shear;
 
   /// Makes the constants, in memory that is aligned for doubles.
   void (*derive)(const double* properties, const int* choices, void* constants);
-  /// Writes the numbers of the constants one after the other.
-  void (*numbers_of)(const void* constants, double* numbers);
+  /// Writes the numbers of the constants, each `stride` places after the one before.
+  void (*numbers_of)(const void* constants, double* numbers, int stride);
   Objection (*check)(const double* properties, const int* choices);
   ContactStiffness<double> (*stiffness)(const void* constants);
   /// Takes a point to a jump (opening, tangential components) and adds to the losses. One function for 2D and
@@ -172,7 +190,9 @@ const LawTable& table_of() {
       [](const double* numbers, const int* choices, void* constants) {
         new (constants) Constants(Law::derive(law_table::properties<Law>(numbers, choices)));
       },
-      [](const void* constants, double* numbers) { put(*static_cast<const Constants*>(constants), numbers); },
+      [](const void* constants, double* numbers, int stride) {
+        put(*static_cast<const Constants*>(constants), numbers, stride);
+      },
       [](const double* numbers, const int* choices) {
         return Law::check(law_table::properties<Law>(numbers, choices));
       },

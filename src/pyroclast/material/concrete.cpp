@@ -131,14 +131,18 @@ ContactMaterial ContactMaterial::times(Role role, double factor) const {
   return scaled;
 }
 
-ContactProperties ContactMaterial::at(double temperature, double marked) const {
-  std::vector<double> values;
-  values.reserve(numbers.size());
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    values.push_back(law->properties[i].role == Role::plain
-                         ? numbers[i](temperature)
-                         : numbers[i](marked) * share_left(residual_ratios[i], temperature, marked));
+ContactProperties ContactMaterial::at(double temperature, double property_temperature) const {
+  std::vector<double> values(numbers.size());
+  write_at(temperature, property_temperature, values);
   return {*law, std::move(values), choices};
+}
+
+void ContactMaterial::write_at(double temperature, double property_temperature, std::span<double> to) const {
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    to[i] = law->properties[i].role == Role::plain
+                ? numbers[i](temperature)
+                : numbers[i](property_temperature) *
+                      share_left(residual_ratios[i], temperature, property_temperature);
 }
 
 double SolidMaterial::free_strain(double temperature, double hottest) const {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,9 +64,9 @@ struct SolidMaterial {
   /// \param hottest  highest temperature so far, °C
   double free_strain(double temperature, double hottest) const;
   /// Returns E, Pa, at a temperature, °C.
-  /// \param marked  temperature on whose value of the curve E is based, °C, see OnCooling
-  double young_at(double temperature, double marked) const {
-    return young(marked) * share_left(residual_ratio, temperature, marked);
+  /// \param property_temperature  temperature on whose value of the curve E is based, °C, see OnCooling
+  double young_at(double temperature, double property_temperature) const {
+    return young(property_temperature) * share_left(residual_ratio, temperature, property_temperature);
   }
 };
 
@@ -94,9 +95,12 @@ struct ContactMaterial {
 
   /// Returns the parameters at a temperature, °C. Throws Error when a curve is not defined there.
   ContactProperties at(double temperature) const { return at(temperature, temperature); }
-  /// \param marked  temperature on whose values strengths, energies and stiffnesses are based, °C, see
+  /// \param property_temperature  temperature on whose values strengths, energies and stiffnesses are based,
+  /// °C, see
   ///                OnCooling
-  ContactProperties at(double temperature, double marked) const;
+  ContactProperties at(double temperature, double property_temperature) const;
+  /// Writes the numbers of the parameters, in the order of LawTable::properties.
+  void write_at(double temperature, double property_temperature, std::span<double> to) const;
 };
 
 /// Interface between blocks of two phases, as a deck states it.
@@ -193,7 +197,7 @@ enum class OnCooling : std::uint8_t {
 bool any_creeps(const std::vector<SolidMaterial>& solids);
 
 /// Returns the temperature on whose values E, strengths, energies and stiffnesses are based, °C.
-inline double marked_by(OnCooling on_cooling, double temperature, double hottest) {
+inline double property_temperature(OnCooling on_cooling, double temperature, double hottest) {
   return on_cooling == OnCooling::irreversible ? hottest : temperature;
 }
 
@@ -211,8 +215,8 @@ struct ConcreteMaterials {
   bool asks_for_hottest() const;  ///< Tells whether any property depends on the highest temperature so far.
   /// Returns the temperature on whose values E, strengths, energies and stiffnesses are based, see OnCooling,
   /// °C.
-  double marked(double temperature, double hottest) const {
-    return marked_by(on_cooling, temperature, hottest);
+  double property_temperature(double temperature, double hottest) const {
+    return pyroclast::property_temperature(on_cooling, temperature, hottest);
   }
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -253,19 +254,31 @@ template <int Dim>
 void Mechanics<Dim>::place_contact_properties() {
   auto& s = storage_;
   const ContactSets& sets = properties_.contacts;
-  s.first_constant.resize(static_cast<std::size_t>(sets.size()));
+  const std::vector<int> set_of_faces = find_sets_of_faces();
+  std::vector<int> first(static_cast<std::size_t>(sets.size()), -1);
+  s.first_constant.resize(layout_->faces.size());
   std::size_t bytes = 0;
-  for (int set = 0; set < sets.size(); ++set)
-    s.first_constant[set] = static_cast<int>(std::exchange(bytes, bytes + sets.law(set).size));
+  for (std::size_t pack = 0; pack < set_of_faces.size(); ++pack) {
+    const int set = set_of_faces[pack];
+    if (first[set] < 0)
+      first[set] = static_cast<int>(std::exchange(bytes, bytes + sets.law(set).constants_size));
+    s.first_constant[pack] = first[set];
+  }
   s.contact_constants.resize(bytes);
   for (int set = 0; set < sets.size(); ++set)
-    sets.law(set).derive(sets.numbers(set).data(), sets.choices(set).data(),
-                         s.contact_constants.data() + s.first_constant[set]);
-  s.set_of_faces.resize(layout_->faces.size());
-  s.one_set.resize(layout_->faces.size());
-  std::fill(s.set_of_faces.begin(), s.set_of_faces.end(), -1);
-  std::fill(s.one_set.begin(), s.one_set.end(), true);
-  bool one_set = true;
+    if (first[set] >= 0) sets.derive(set, s.contact_constants.data() + first[set]);
+  if (!std::ranges::all_of(s.one_set, std::identity())) place_own_constants();
+  refresh_views();
+}
+
+/// First set of each pack of faces; finds the packs whose points share one set.
+template <int Dim>
+std::vector<int> Mechanics<Dim>::find_sets_of_faces() {
+  auto& one_set = storage_.one_set;
+  const ContactSets& sets = properties_.contacts;
+  std::vector<int> set_of_faces(layout_->faces.size(), -1);
+  one_set.resize(layout_->faces.size());
+  std::fill(one_set.begin(), one_set.end(), true);
   for (int c = 0; c < model_.contact_count(); ++c) {
     const int pack = layout_->face_pack_of_point[layout_->contact_slot[c] / kLanes];
     const int set = properties_.of_contact[c];
@@ -275,42 +288,41 @@ void Mechanics<Dim>::place_contact_properties() {
           "one interface have one law, from the start of a run to its end",
           c, model_.interface_names[model_.contacts[c].interface], sets.law(set).name,
           law_of_pack(pack).name));
-    if (s.set_of_faces[pack] < 0) s.set_of_faces[pack] = set;
-    if (s.set_of_faces[pack] != set) s.one_set[pack] = false;
-    one_set = one_set && s.one_set[pack];
+    if (set_of_faces[pack] < 0) set_of_faces[pack] = set;
+    if (set_of_faces[pack] != set) one_set[pack] = false;
   }
-  if (!one_set) place_own_constants();
-  refresh_views();
+  return set_of_faces;
 }
 
 /// Constants of each contact point, for packs of faces that have no one set.
 template <int Dim>
 void Mechanics<Dim>::place_own_constants() {
   auto& s = storage_;
-  const auto constants = [&](int pack) { return law_of_pack(pack).constants; };
+  const auto count = [&](int pack) { return law_of_pack(pack).constant_count; };
   if (s.own_constants.empty()) {
     s.first_own_constant = FlatArray<int>(layout_->faces.size() + 1);
     for (int pack = 0; pack < layout_->face_packs(); ++pack)
       s.first_own_constant[pack + 1] =
           s.first_own_constant[pack] +
-          (layout_->first_point_of(pack + 1) - layout_->first_point_of(pack)) * constants(pack);
+          (layout_->first_point_of(pack + 1) - layout_->first_point_of(pack)) * count(pack);
     s.own_constants = made<Line>(static_cast<std::size_t>(s.first_own_constant[layout_->face_packs()]));
   }
-  std::vector<double> numbers;
-  const auto place = [&](int pack, Line* line, int lane, int set) {
-    numbers.resize(static_cast<std::size_t>(constants(pack)));
-    law_of_pack(pack).numbers_of(s.contact_constants.data() + s.first_constant[set], numbers.data());
-    for (const double number : numbers) line++->number[lane] = number;
-  };
-  for (int pack = 0; pack < layout_->face_packs(); ++pack)  // for idle lanes
-    for (int line = s.first_own_constant[pack]; line < s.first_own_constant[pack + 1];
-         line += constants(pack))
+  for (int pack = 0; pack < layout_->face_packs(); ++pack) {  // for idle lanes
+    if (s.one_set[pack]) continue;
+    for (int line = s.first_own_constant[pack]; line < s.first_own_constant[pack + 1]; line += count(pack))
       for (int lane = 0; lane < kLanes; ++lane)
-        place(pack, &s.own_constants[line], lane, s.set_of_faces[pack]);
+        law_of_pack(pack).numbers_of(s.contact_constants.data() + s.first_constant[pack],
+                                     s.own_constants[line].number + lane, kLanes);
+  }
+  std::size_t most = 0;
+  for (const LawTable* law : laws_) most = std::max(most, law->constants_size);
+  FlatArray<std::byte> constants(most);
   for (int c = 0; c < model_.contact_count(); ++c) {
     const int slot = layout_->contact_slot[c], pack = layout_->face_pack_of_point[slot / kLanes];
-    place(pack, lines_of(*layout_, s.own_constants, s.first_own_constant, c, constants(pack)), slot % kLanes,
-          properties_.of_contact[c]);
+    if (s.one_set[pack]) continue;
+    properties_.contacts.derive(properties_.of_contact[c], constants.data());
+    Line* const line = lines_of(*layout_, s.own_constants, s.first_own_constant, c, count(pack));
+    law_of_pack(pack).numbers_of(constants.data(), line->number + slot % kLanes, kLanes);
   }
 }
 
@@ -396,14 +408,15 @@ void Mechanics<Dim>::set_step_over_mass() {
 }
 
 template <int Dim>
-void Mechanics<Dim>::set_properties(BodyProperties properties) {
+BodyProperties Mechanics<Dim>::set_properties(BodyProperties properties) {
   commit_creep();
   if (!properties.creep.empty() && !creeps())
     throw Error("a body that was made of what does not creep cannot begin to");
   change_properties([&] {
     begin_creep(properties.creep);
-    properties_ = std::move(properties);
+    std::swap(properties_, properties);
   });
+  return properties;
 }
 
 template <int Dim>
@@ -864,9 +877,8 @@ void Mechanics<Dim>::visit_properties(StateVisitor& visitor) {
     const LawTable& law = *laws_.at(index);
     const auto last_number = number + static_cast<std::ptrdiff_t>(law.properties.size());
     const auto last_choice = choice + static_cast<std::ptrdiff_t>(law.choices.size());
-    const ContactProperties set{law, {number, last_number}, {choice, last_choice}};
-    if (visitor.checks()) validate(set, law.name);
-    sets.add(set);
+    std::copy(number, last_number, sets.add(law, {choice, last_choice}).begin());
+    if (visitor.checks()) sets.validate(sets.size() - 1, law.name);
     number = last_number;
     choice = last_choice;
   }
@@ -1035,9 +1047,8 @@ ContactState<Dim> Mechanics<Dim>::contact(int contact) const {
   std::array<double, Dim> jump{state.opening};
   for (int i = 0; i + 1 < Dim; ++i) jump[i + 1] = state.tangential_jump[i];
   auto internals = state.internals, losses = state.losses;
-  const PointResponse response =
-      state.law->update(Dim)(state_.contact_constants.data() + state_.first_constant[set], jump.data(),
-                             internals.data(), losses.data());
+  const PointResponse response = state.law->update(Dim)(properties_.contacts[set].constants().data(),
+                                                        jump.data(), internals.data(), losses.data());
   state.normal_traction = response.normal_traction;
   for (int i = 0; i + 1 < Dim; ++i) state.shear_traction[i] = response.shear_traction[i];
   state.stored = response.stored;

@@ -111,7 +111,7 @@ class Mechanics {
   /// Takes the body to other temperatures: displacements, jumps and damage stay, stresses follow the new
   /// parameters and return to the new envelopes (staggered coupling, paper Fig. 2).
   /// `EnergyLedger::property_change` counts the energy that this adds or takes. Scaled masses follow the
-  /// stiffness.
+  /// stiffness. Returns the properties before, whose memory may serve the next ones.
   ///
   /// Where `properties.creep` says so, zones creep from now on until `commit_creep`: half with the stress
   /// that they have now, half with the stress to which they come (see CreepSplit). Until then the second half
@@ -119,7 +119,7 @@ class Mechanics {
   ///
   /// Throws Error when the body would get too stiff for the time step of its real mass, or when it begins to
   /// creep and was made of materials that do not creep.
-  void set_properties(BodyProperties properties);
+  BodyProperties set_properties(BodyProperties properties);
 
   /// Ends the creep of the last `set_properties` with the present stress, which stays as it is: strain that
   /// was elastic until now becomes creep strain. The ledger counts its work as "creep" in `dissipated`;
@@ -255,6 +255,7 @@ class Mechanics {
   void place_creep_strain();
   void name_dissipations();
   void place_contact_properties();
+  std::vector<int> find_sets_of_faces();
   void place_own_constants();
   void place_ties();
   void refresh_views();

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "pyroclast/laws/table.hpp"
 #include "pyroclast/material/zone_law.hpp"
 #include "pyroclast/mechanics/layout.hpp"
 
@@ -43,11 +44,6 @@ struct alignas(64) ZonePropertyPack {
 template <int Dim>
 struct alignas(64) TensorPack {
   double component[std::tuple_size_v<SymmetricTensor<Dim>>][kLanes];
-};
-
-/// One number of each of eight contact points: a cache line.
-struct alignas(64) Line {
-  double number[kLanes];
 };
 
 /// Constraints that hold, drive or load the gridpoints of a pack.
@@ -118,10 +114,9 @@ struct StateArrays {
   Array<bool> losing;                  ///< true for a pack of points that lost something in the last step
   Array<Vec<Dim>> contact_force;       ///< force on side a by slot, from which gridpoints gather, N
   Array<Vec<Dim>> turning_force;       ///< force on both sides by slot; finite kinematics only, N
-  Array<std::byte> contact_constants;  ///< constants of each set in turn
-  Array<int> first_constant;           ///< first byte of each set
-  /// Set of each pack of faces; where lanes differ only its choices count.
-  Array<int> set_of_faces;
+  Array<std::byte> contact_constants;  ///< constants of sets in turn
+  /// First byte of the set of each pack of faces; where its points differ only the set's choices count.
+  Array<int> first_constant;
   Array<bool> one_set;  ///< true for a pack of faces whose points all share one set
   /// Constants of each pack of points in turn, if lanes of any pack of faces differ.
   Array<Line> own_constants;
@@ -162,11 +157,8 @@ struct StateArrays {
     f(ArrayInfo{"turning_force", Per::point_slot_or_idle, Touched::all, Touched::all, Lasts::a_step,
                 HeldBy::owner_and_halo},
       s.turning_force...);
-    f(ArrayInfo{"contact_constants", Per::entry, Touched::none, Touched::none, Lasts::made, HeldBy::all},
-      s.contact_constants...);  // few, and always near
-    f(ArrayInfo{"first_constant", Per::entry, Touched::none, Touched::none, Lasts::made, HeldBy::all},
-      s.first_constant...);
-    f(ArrayInfo{"set_of_faces", Per::face_pack, Touched::all}, s.set_of_faces...);
+    f(ArrayInfo{"contact_constants", Per::entry}, s.contact_constants...);  // few, and always near
+    f(ArrayInfo{"first_constant", Per::face_pack, Touched::all}, s.first_constant...);
     f(ArrayInfo{"one_set", Per::face_pack, Touched::all}, s.one_set...);
     f(ArrayInfo{"own_constants", Per::entry, Touched::all}, s.own_constants...);
     f(ArrayInfo{"first_own_constant", Per::face_pack_end, Touched::all}, s.first_own_constant...);
@@ -196,8 +188,6 @@ struct StepParameters {
 template <int Dim>
 struct State;
 
-struct LawTable;
-
 /// Functions of a law for packs of faces that have it, compiled for one instruction set.
 template <int Dim>
 struct PackFunctions {
@@ -205,6 +195,8 @@ struct PackFunctions {
   void (*update)(State<Dim>&, int first, int last, bool measure);
   /// Writes the sums of |stiffness| over the rows of the contacts' matrix in the place of their forces, N/m.
   void (*place_stiffness)(State<Dim>&, int first, int last);
+  /// Takes eight contact points that belong to no body through the law.
+  LanesUpdate update_lanes;
 };
 
 /// State as a step sees it: numbers, and views of arrays that stand elsewhere.

@@ -95,12 +95,14 @@ inline std::uint64_t layout_hash() {
            offsetof(FaceSums, jump));
   hash.add(sizeof(Line), kLanes, kInstructionSets);
   hash.add(sizeof(PackFunctions<2>), offsetof(PackFunctions<2>, update),
-           offsetof(PackFunctions<2>, place_stiffness), sizeof(CompiledLaw), offsetof(CompiledLaw, packs),
-           offsetof(ByDimension<PackFunctions>, in_2d), offsetof(ByDimension<PackFunctions>, in_3d),
-           offsetof(CompiledLaw, probe), sizeof(CompiledForSets));
+           offsetof(PackFunctions<2>, place_stiffness), offsetof(PackFunctions<2>, update_lanes),
+           sizeof(LanesResponse), offsetof(LanesResponse, stored), sizeof(CompiledLaw),
+           offsetof(CompiledLaw, packs), offsetof(ByDimension<PackFunctions>, in_2d),
+           offsetof(ByDimension<PackFunctions>, in_3d), offsetof(CompiledLaw, probe),
+           sizeof(CompiledForSets));
   hash.add(sizeof(LawTable), offsetof(LawTable, name), offsetof(LawTable, meaning),
            offsetof(LawTable, properties), offsetof(LawTable, choices), offsetof(LawTable, internals_of),
-           offsetof(LawTable, losses), offsetof(LawTable, size), offsetof(LawTable, constants),
+           offsetof(LawTable, losses), offsetof(LawTable, constants_size), offsetof(LawTable, constant_count),
            offsetof(LawTable, derive), offsetof(LawTable, numbers_of), offsetof(LawTable, check),
            offsetof(LawTable, stiffness), offsetof(LawTable, update_of), offsetof(LawTable, compiled));
   hash.add(sizeof(Unit), offsetof(Unit, si), offsetof(Unit, name), offsetof(Unit, example));

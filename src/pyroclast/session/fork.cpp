@@ -146,7 +146,7 @@ std::unique_ptr<Session> Session::fork(const ForkOf& of, const RunOutput& output
   std::vector<std::string> changes = of.changes;
   if (!of.more.empty()) changes.push_back(of.more.string());
   session->make_folder(output, Parent{of.run, stage, changes});
-  copy_frames(of.run, output.folder, static_cast<int>(session->recorder_.frames().rows.size()));
+  copy_frames(of.run, output.folder, static_cast<int>(session->writer_.frames().rows.size()));
   session->open(checkpoint.info().number);
   session->checkpoint_is_due_ = true;
   return session;

@@ -100,7 +100,8 @@ void LawPoint::go(const JumpPathPoint& to) {
 void LawPoint::warm_to(double temperature) {
   const double hottest = std::max(hottest_, temperature);
   for (const Curve& number : material_.numbers) number(temperature);  // which refuses what it does not hold
-  const ContactProperties now = material_.at(temperature, marked_by(on_cooling_, temperature, hottest));
+  const ContactProperties now =
+      material_.at(temperature, property_temperature(on_cooling_, temperature, hottest));
   validate(now, fmt::format("at {:g} degC", temperature));
   constants_ = now.constants();
   hottest_ = hottest;

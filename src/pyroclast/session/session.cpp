@@ -62,7 +62,7 @@ Session::Session(Opened opened, std::unique_ptr<FolderLock> lock, std::filesyste
       opened_(std::move(opened)),
       inputs_(inputs_of(opened_.deck, opened_.setup)),
       simulation_(make_simulation_of(opened_, std::move(specimen))),
-      recorder_(folder_, opened_.setup),
+      writer_(folder_, opened_.setup),
       run_(*simulation_, std::move(opened_.setup.stages)) {
   run_.stop_when([this] { return stop_asked_(); });
   run_.between_batches([this](Run& run) {
@@ -105,14 +105,14 @@ void Session::open(std::int64_t last_checkpoint) {
       folder_, opened_.setup.checkpoints,
       Checkpoints::Sources{inputs_.hash(), body_hash(*simulation_),
                            [this](StateVisitor& visitor) { visit_state(visitor); },
-                           [this] { return recorder_.wall_time(); }, [this] { return log_bytes_(); }},
+                           [this] { return writer_.wall_time(); }, [this] { return log_bytes_(); }},
       last_checkpoint);
-  recorder_.begin(run_);
+  writer_.begin(run_);
 }
 
 void Session::visit_state(StateVisitor& visitor) {
   run_.visit_state(visitor);
-  recorder_.visit_state(visitor, run_.history().row_count());
+  writer_.visit_state(visitor, run_.history().row_count());
 }
 
 void Session::restore(const CheckpointFile& checkpoint) {
@@ -142,7 +142,7 @@ bool Session::next() {
     run_.go_on();
     if (!run_.next()) return false;
     if (!checkpoints_) return true;
-    recorder_.record(run_);
+    writer_.write(run_);
     if (run_.stage_is_over()) {
       checkpoints_->end_stage(run_);
       last_checkpoint_ = checkpoints_->last();
@@ -152,8 +152,7 @@ bool Session::next() {
 }
 
 Summary Session::finish() {
-  return telling_where_to_go_on(
-      [&] { return checkpoints_ ? recorder_.finish(run_) : recorder_.summary(run_); });
+  return telling_where_to_go_on([&] { return checkpoints_ ? writer_.finish(run_) : writer_.summary(run_); });
 }
 
 std::unique_ptr<Session> Session::copy(const std::vector<std::string>& changes,
@@ -175,7 +174,7 @@ std::unique_ptr<Session> Session::copy(const std::vector<std::string>& changes,
   if (!folder_.empty()) parent = {folder_, run_.last_begun_stage(), changes};
   copied->make_folder(*output, std::move(parent));
   if (!folder_.empty())
-    copy_frames(folder_, copied->folder_, static_cast<int>(copied->recorder_.frames().rows.size()));
+    copy_frames(folder_, copied->folder_, static_cast<int>(copied->writer_.frames().rows.size()));
   copied->open(0);
   return copied;
 }
@@ -206,7 +205,7 @@ void Session::take_over(Deck deck, Setup setup) {
   inputs_ = inputs_of(opened_.deck, opened_.setup);
   checkpoints_->set_inputs(inputs_.hash());
   RunFolder::replace_inputs(folder_, inputs_);
-  recorder_.begin(run_);
+  writer_.begin(run_);
 }
 
 void Session::change_stages(const std::vector<std::string>& changes, const std::string& more) {
@@ -275,7 +274,7 @@ void Session::set_temperature(double temperature) {
 void Session::depart(const Departure& departure) {
   if (std::ranges::find(departures_, departure) != departures_.end()) return;
   departures_.push_back(departure);
-  recorder_.warn("not reproducible from the deck: " + departure.why);
+  writer_.warn("not reproducible from the deck: " + departure.why);
   if (checkpoints_) RunFolder::note_departure(folder_, departure);
 }
 

@@ -10,7 +10,7 @@
 #include "pyroclast/results/checkpoints.hpp"
 #include "pyroclast/results/folder_lock.hpp"
 #include "pyroclast/results/inputs.hpp"
-#include "pyroclast/results/recorder.hpp"
+#include "pyroclast/results/results_writer.hpp"
 #include "pyroclast/session/open.hpp"
 #include "pyroclast/simulation/run.hpp"
 
@@ -59,9 +59,9 @@ class Session {
   /// Returns the summary of the rows so far, and writes it where there is a folder.
   Summary finish();
   /// Returns the summary of the rows so far without writing it.
-  Summary summary() const { return recorder_.summary(run_); }
+  Summary summary() const { return writer_.summary(run_); }
   /// Returns the names of the numbers that the summary has when the run is over.
-  std::vector<std::string> summary_numbers() const { return recorder_.numbers(run_); }
+  std::vector<std::string> summary_numbers() const { return writer_.numbers(run_); }
 
   /// Sets a function that is asked before every batch; true stops the run, after a checkpoint where there is
   /// a folder.
@@ -108,8 +108,8 @@ class Session {
   const std::filesystem::path& folder() const { return folder_; }
   /// Returns the files that were in the folder and that no run writes.
   const std::vector<std::filesystem::path>& foreign() const { return foreign_; }
-  /// Returns lines about lost frames, see Recorder.
-  const std::vector<std::string>& lost_frames() const { return recorder_.lost_frames(); }
+  /// Returns lines about lost frames, see ResultsWriter.
+  const std::vector<std::string>& lost_frames() const { return writer_.lost_frames(); }
   /// Returns the checkpoint from which a run goes on that was broken off, or forked.
   const std::optional<CheckpointInfo>& goes_on_from() const { return goes_on_from_; }
   const std::filesystem::path& last_checkpoint() const { return last_checkpoint_; }
@@ -133,7 +133,7 @@ class Session {
   Opened opened_;
   Inputs inputs_;
   std::unique_ptr<Simulation> simulation_;
-  Recorder recorder_;
+  ResultsWriter writer_;
   Run run_;
   std::optional<Checkpoints> checkpoints_;
   std::optional<CheckpointInfo> goes_on_from_;

@@ -215,22 +215,22 @@ void check_contacts(const Section& root, const Setup& setup) {
                                       expected_block_size(setup.specimen, setup.motion->contacts));
   const auto check = [&](const ContactMaterial& contact, const std::string& key) {
     const auto [lower, upper] = setup.temperatures;
-    double T = kReferenceTemperature, marked = T;
+    double T = kReferenceTemperature, highest = T;
     const bool loses =
         std::ranges::any_of(contact.residual_ratios, [](const auto& r) { return r.has_value(); });
     try {
       validate(contact.at(T), key);
       for (int i = 0; i < kCheckedTemperatures; ++i) {
-        T = marked = lower + i * (upper - lower) / (kCheckedTemperatures - 1);
+        T = highest = lower + i * (upper - lower) / (kCheckedTemperatures - 1);
         validate(contact.at(T), key);
-        if (!loses || marked <= kReferenceTemperature) continue;
+        if (!loses || highest <= kReferenceTemperature) continue;
         T = kReferenceTemperature;
-        validate(contact.at(T, marked), key);
+        validate(contact.at(T, highest), key);
       }
     } catch (const PropertyError& e) {
       const Section own = contacts.section(key);
       const std::string at =
-          fmt::format("at {:.6g} degC{}", T, T < marked ? fmt::format(" after {:.6g} degC", marked) : "");
+          fmt::format("at {:.6g} degC{}", T, T < highest ? fmt::format(" after {:.6g} degC", highest) : "");
       if (own.has(e.key))
         own.error(e.key, fmt::format("{} it must be {}", at, e.wanted));
       else

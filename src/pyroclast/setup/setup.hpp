@@ -76,10 +76,6 @@ std::unique_ptr<Simulation> make_simulation(const Setup& setup, std::shared_ptr<
 std::unique_ptr<Simulation> make_simulation(const Setup& setup, specimen::Specimen specimen,
                                             std::shared_ptr<Team> team = nullptr);
 
-/// Declares the function above once more, without its default.
-std::unique_ptr<Simulation> make_simulation(const Setup& setup, specimen::Specimen specimen,
-                                            std::shared_ptr<Team> team);
-
 /// Returns the block size that a deck foresees, m; where the tessellation is read from a file, the size at
 /// which t_b holds.
 double expected_block_size(const specimen::SpecimenParameters& specimen, const ContactParameters& contacts);

@@ -1,6 +1,7 @@
 #include "pyroclast/simulation/coupling.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace pyroclast {
 
@@ -16,18 +17,18 @@ std::vector<int> solids_of_zones(const Model<2>& model) {
 /// \param hottest  that it was so far, °C
 ZoneProperties zone_at(const ConcreteMaterials& materials, const SolidMaterial& solid, double temperature,
                        double hottest) {
-  return zone_properties<2>(solid.young_at(temperature, materials.marked(temperature, hottest)),
+  return zone_properties<2>(solid.young_at(temperature, materials.property_temperature(temperature, hottest)),
                             solid.poisson, solid.free_strain(temperature, hottest));
 }
 
 /// Of each zone; none where nothing creeps.
 /// \param zone_solids  what each zone is of, by place in the solids
-std::vector<CreepIncrement> creep_increments(const std::vector<int>& zone_solids,
-                                             const ConcreteMaterials& materials,
-                                             const TemperatureField& field,
-                                             const HottestTemperatures& before) {
-  std::vector<CreepIncrement> increments;
-  if (!materials.creeps()) return increments;
+/// \param increments  where they are written
+void find_creep_increments(const std::vector<int>& zone_solids, const ConcreteMaterials& materials,
+                           const TemperatureField& field, const HottestTemperatures& before,
+                           std::vector<CreepIncrement>& increments) {
+  increments.clear();
+  if (!materials.creeps()) return;
   for (int z = 0; z < static_cast<int>(zone_solids.size()); ++z) {
     const SolidMaterial& solid = materials.solids[zone_solids[z]];
     const double now = field.zones()[z];
@@ -36,7 +37,6 @@ std::vector<CreepIncrement> creep_increments(const std::vector<int>& zone_solids
                                                     before.of_zone(z, now))
                              : CreepIncrement{});
   }
-  return increments;
 }
 
 /// One set of parameters a material and an interface; bearings keep the reference temperature.
@@ -53,7 +53,8 @@ BodyProperties properties_at_one_temperature(const Model<2>& model, const std::v
   for (int solid : zone_solids) zones.push_back(solids[solid]);
   std::vector<ContactProperties> interfaces;
   for (std::size_t i = 0; i < materials.contacts.size(); ++i) {
-    interfaces.push_back(materials.contacts[i].at(temperature, materials.marked(temperature, hottest)));
+    interfaces.push_back(
+        materials.contacts[i].at(temperature, materials.property_temperature(temperature, hottest)));
     validate(interfaces.back(), model.interface_names[i]);
   }
   return by_interface(model, std::move(zones), interfaces);
@@ -66,10 +67,10 @@ HottestTemperatures::HottestTemperatures(const Model<2>& model, const ConcreteMa
                                          const std::vector<double>& stress_free) {
   if (materials.asks_for_hottest()) zones_ = field.zones();
   if (materials.on_cooling == OnCooling::irreversible) contacts_ = field.contacts();
-  of_all_ = field.mean();
+  body_ = field.mean();
   if (materials.stress_free) {
     begin_at(model, std::vector<double>(model.position.size(), *materials.stress_free));
-    of_all_ = std::max(of_all_, *materials.stress_free);
+    body_ = std::max(body_, *materials.stress_free);
   } else if (!stress_free.empty()) {
     stress_free_zones_ = begin_at(model, stress_free);
   }
@@ -96,17 +97,17 @@ std::vector<double> HottestTemperatures::begin_at(const Model<2>& model,
   return of_zones;
 }
 
-void HottestTemperatures::see(const TemperatureField& field) {
+void HottestTemperatures::note_field(const TemperatureField& field) {
   for (std::size_t z = 0; z < zones_.size(); ++z) seen_zones_[z] = std::max(seen_zones_[z], field.zones()[z]);
   for (std::size_t c = 0; c < contacts_.size(); ++c)
     seen_contacts_[c] = std::max(seen_contacts_[c], field.contacts()[c]);
 }
 
-void HottestTemperatures::take(const TemperatureField& field) {
-  see(field);
+void HottestTemperatures::note_exchange(const TemperatureField& field) {
+  note_field(field);
   zones_ = seen_zones_;
   contacts_ = seen_contacts_;
-  of_all_ = std::max(of_all_, field.mean());
+  body_ = std::max(body_, field.mean());
 }
 
 void HottestTemperatures::visit_state(StateVisitor& visitor) {
@@ -114,20 +115,22 @@ void HottestTemperatures::visit_state(StateVisitor& visitor) {
   visitor.visit("contacts", contacts_, kTemperatures.of(contacts_.size()));
   visitor.visit("seen_zones", seen_zones_, kTemperatures.of(seen_zones_.size()));
   visitor.visit("seen_contacts", seen_contacts_, kTemperatures.of(seen_contacts_.size()));
-  visitor.visit("of_all", of_all_, kTemperatures);
+  visitor.visit("body", body_, kTemperatures);
 }
 
 BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& materials,
-                             const TemperatureField& field, const HottestTemperatures& before) {
+                             const TemperatureField& field, const HottestTemperatures& before,
+                             BodyProperties memory) {
   const std::vector<int> zone_solids = solids_of_zones(model);
-  BodyProperties p;
+  BodyProperties p = std::move(memory);
+  find_creep_increments(zone_solids, materials, field, before, p.creep);
   if (field.is_uniform() && before.stress_free_zones().empty()) {
-    p = properties_at_one_temperature(model, zone_solids, materials, field.mean(),
-                                      before.of_all(field.mean()));
-    p.creep = creep_increments(zone_solids, materials, field, before);
-    return p;
+    BodyProperties even = properties_at_one_temperature(model, zone_solids, materials, field.mean(),
+                                                        before.of_body(field.mean()));
+    even.creep = std::move(p.creep);
+    return even;
   }
-  p.creep = creep_increments(zone_solids, materials, field, before);
+  p.zones.clear();
   p.zones.reserve(zone_solids.size());
   for (int z = 0; z < model.zone_count(); ++z) {
     const double now = field.zones()[z];
@@ -136,15 +139,21 @@ BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& mat
     if (!before.stress_free_zones().empty() && !solid.is_of_bearing)
       p.zones.back().thermal_strain -= solid.thermal_strain(before.stress_free_zones()[z]);
   }
+  std::size_t numbers = 0;
+  for (const Contact<2>& contact : model.contacts)
+    numbers += materials.contacts[contact.interface].numbers.size();
+  p.contacts.clear();
+  p.contacts.reserve(model.contacts.size(), numbers);
+  p.of_contact.clear();
   p.of_contact.reserve(model.contacts.size());
   for (int c = 0; c < model.contact_count(); ++c) {
     const int interface = model.contacts[c].interface;
     p.of_contact.push_back(c);
     const double now = field.contacts()[c];
-    const ContactProperties properties =
-        materials.contacts[interface].at(now, materials.marked(now, before.of_contact(c, now)));
-    validate(properties, model.interface_names[interface]);
-    p.contacts.add(properties);
+    const ContactMaterial& contact = materials.contacts[interface];
+    contact.write_at(now, materials.property_temperature(now, before.of_contact(c, now)),
+                     p.contacts.add(*contact.law, contact.choices));
+    p.contacts.validate(c, model.interface_names[interface]);
   }
   return p;
 }

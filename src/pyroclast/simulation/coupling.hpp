@@ -24,9 +24,9 @@ class HottestTemperatures {
                       const TemperatureField& field, const std::vector<double>& stress_free = {});
 
   /// Notes that the field came to its temperatures, which an exchange will hand over later.
-  void see(const TemperatureField& field);
+  void note_field(const TemperatureField& field);
   /// Notes that an exchange handed over the field's temperatures.
-  void take(const TemperatureField& field);
+  void note_exchange(const TemperatureField& field);
   // The next two return the highest temperature at an exchange to the temperature `now`, °C; `now` itself
   // where nothing asks.
   double of_zone(int zone, double now) const {
@@ -42,7 +42,7 @@ class HottestTemperatures {
   /// Returns the temperature without stress of each zone, °C, where it is a field; else none.
   const std::vector<double>& stress_free_zones() const { return stress_free_zones_; }
   /// Returns the highest temperature of the whole specimen, for a uniform field.
-  double of_all(double now) const { return zones_.empty() ? now : std::max(now, of_all_); }
+  double of_body(double now) const { return zones_.empty() ? now : std::max(now, body_); }
 
   void visit_state(StateVisitor& visitor);
 
@@ -52,14 +52,16 @@ class HottestTemperatures {
 
   std::vector<double> zones_, contacts_;            ///< highest at exchanges
   std::vector<double> seen_zones_, seen_contacts_;  ///< highest at exchanges and since the last one
-  double of_all_ = 0.0;
+  double body_ = 0.0;
   std::vector<double> stress_free_zones_;
 };
 
 /// Returns the parameters of every zone and contact at the field's temperatures, and the creep of zones on
 /// their way there. Throws Error when a property is not defined at one of the temperatures.
 /// \param before  highest temperatures at the exchanges so far
+/// \param memory  properties whose memory is used again
 BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& materials,
-                             const TemperatureField& field, const HottestTemperatures& before);
+                             const TemperatureField& field, const HottestTemperatures& before,
+                             BodyProperties memory = {});
 
 }  // namespace pyroclast

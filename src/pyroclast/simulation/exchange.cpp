@@ -90,7 +90,7 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
   const bool may_fail = platen_follows();
   if (kept_.is_handed_over) {
     simulation.loads().mark();
-    kept_.strain_before = kept_.last = shortening(simulation);
+    kept_.strain_before = kept_.last_strain = shortening(simulation);
   }
   kept_.is_handed_over = false;
   const std::int64_t done = kept_.cycles % coupling_.most_cycles;
@@ -110,8 +110,8 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
     if (!is_supported && platen_follows()) set_down(simulation.press());
   }
   if (kept_.cycles % coupling_.most_cycles != 0) return false;
-  if (!may_fail || !(now - kept_.last > kSlowSinking * coupling_.failure_strain)) return true;
-  kept_.last = now;
+  if (!may_fail || !(now - kept_.last_strain > kSlowSinking * coupling_.failure_strain)) return true;
+  kept_.last_strain = now;
   return false;
 }
 
@@ -142,7 +142,7 @@ double Exchange::expected_cycles() const {
 
 void Exchange::visit_state(StateVisitor& visitor) {
   auto& [number, cycles, converged, ran_away, is_handed_over, even_steps_left, even_motion, strain_before,
-         last] = kept_;  // another member does not compile until it has a name here
+         last_strain] = kept_;  // another member does not compile until it has a name here
   visitor.visit("exchange", number, state::count());
   visitor.visit("cycles", cycles, state::count());
   visitor.visit("converged", converged);
@@ -155,7 +155,7 @@ void Exchange::visit_state(StateVisitor& visitor) {
   visitor.visit("even_tilt", even_motion.tilt);
   visitor.visit("even_platen_lift", even_motion.platen_lift);
   visitor.visit("strain_before", strain_before);
-  visitor.visit("last_strain", last);
+  visitor.visit("last_strain", last_strain);
 }
 
 }  // namespace pyroclast

@@ -91,7 +91,7 @@ class Exchange {
     std::int64_t even_steps_left = 0;  ///< steps left of moving evenly and of the halt after it
     Press<2>::EvenMotion even_motion;  ///< motion to come
     /// Strains of the specimen: at the exchange, and when cycles were last added.
-    double strain_before = 0.0, last = 0.0;
+    double strain_before = 0.0, last_strain = 0.0;
   } kept_;
 };
 

@@ -23,7 +23,7 @@ struct StageCourse {
 
 /// Run of a simulation through a list of stages, from look to look:
 ///
-///     while (run.next()) recorder.record(run);
+///     while (run.next()) writer.write(run);
 ///
 /// The first look is the one at the start. Between two looks the simulation moves in batches. The run asks
 /// whether it shall stop, and calls back, only between batches. Where batches end changes no result.

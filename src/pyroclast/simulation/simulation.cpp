@@ -182,12 +182,13 @@ void Simulation::show_cracks_to_heat() {
 void Simulation::set_materials(ConcreteMaterials materials) {
   mechanics_->set_properties(properties_at(model_, materials, field_, hottest_));
   materials_ = std::move(materials);
-  hottest_.take(field_);
+  hottest_.note_exchange(field_);
 }
 
 void Simulation::hand_over() {
-  mechanics_->set_properties(properties_at(model_, materials_, field_, hottest_));
-  hottest_.take(field_);
+  earlier_ = mechanics_->set_properties(
+      properties_at(model_, materials_, field_, hottest_, std::exchange(earlier_, {})));
+  hottest_.note_exchange(field_);
 }
 
 void Simulation::visit_state(StateVisitor& visitor) {

@@ -124,7 +124,7 @@ class Simulation {
   void hand_over();
   /// Notes that the field came to temperatures that an exchange will hand over later; the losses by heat
   /// count them already.
-  void see_temperatures() { hottest_.see(field_); }
+  void see_temperatures() { hottest_.note_field(field_); }
   /// Returns the highest temperatures of the mechanics so far, °C.
   const HottestTemperatures& hottest() const { return hottest_; }
   /// Counts a new exchange of temperatures and returns its number, from 1.
@@ -141,6 +141,7 @@ class Simulation {
   HeatConditions heat_;
   TemperatureField field_;
   HottestTemperatures hottest_;
+  BodyProperties earlier_;  ///< properties before the last exchange, whose memory serves the next one
   std::vector<Probe> probes_;
   std::unique_ptr<Mechanics<2>> mechanics_;
   std::unique_ptr<Loads<2>> loads_;

@@ -36,10 +36,10 @@ StrainChange strain_change(const Simulation& simulation, double from, double to)
   for (const SolidMaterial& solid : simulation.materials().solids) {
     if (solid.is_of_bearing) continue;
     const double thermal =
-        solid.free_strain(to, hottest.of_all(to)) - solid.free_strain(from, hottest.of_all(from));
+        solid.free_strain(to, hottest.of_body(to)) - solid.free_strain(from, hottest.of_body(from));
     for (Interval* direction : {&change.axial, &change.lateral}) widen(*direction, thermal);
     if (!solid.creep) continue;
-    const CreepIncrement creep = solid.creep->between(hottest.of_all(kReferenceTemperature), to);
+    const CreepIncrement creep = solid.creep->between(hottest.of_body(kReferenceTemperature), to);
     const double along = creep.compliance * stress;
     widen(change.axial, thermal + along);
     widen(change.lateral, thermal - creep.poisson * along);

@@ -9,7 +9,8 @@ namespace pyroclast {
 template <int Dim, class Set, class Law, Dimensions kDimensions>
 constexpr PackFunctions<Dim> compiled_functions() {
   if constexpr (includes(kDimensions, Dim))
-    return {Contacts<Dim, Set, Law>::update, Contacts<Dim, Set, Law>::place_stiffness};
+    return {Contacts<Dim, Set, Law>::update, Contacts<Dim, Set, Law>::place_stiffness,
+            Contacts<Dim, Set, Law>::update_lanes};
   else
     return {};
 }

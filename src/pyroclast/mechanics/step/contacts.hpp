@@ -68,7 +68,7 @@ struct Contacts {
     for (int pack = first; pack < last; ++pack) {
       R::template fetch_faces_ahead<kInternals, kLosses>(s, pack);
       if (s.one_set[pack]) {
-        const OneForAll& constants = constants_of_set(s, s.set_of_faces[pack]);
+        const OneForAll& constants = constants_of_set(s, pack);
         update_pack<kKinematics, kMeasure>(
             s, pack, [&](int point, const Real& opening, const Tangential<Dim, Real>& tangential) {
               return update_point(s, pack, point, constants, opening, tangential);
@@ -82,6 +82,24 @@ struct Contacts {
     }
   }
 
+  /// Implements PackFunctions::update_lanes.
+  static LanesResponse update_lanes(const void* constants, const Line* own, const Line* jump, Line* internals,
+                                    Line* losses) {
+    const auto& of_all = *static_cast<const OneForAll*>(constants);
+    Tangential<Dim, Real> tangential;
+    for (int t = 0; t + 1 < Dim; ++t) tangential[t] = Real::load(jump[t + 1].number);
+    const auto respond = [&](const auto& with) {
+      return update_lines(with, Real::load(jump[0].number), tangential, internals, losses);
+    };
+    const auto r = own ? respond(own_constants(of_all, own)) : respond(of_all);
+    LanesResponse response;
+    r.normal_traction.store(response.normal_traction.number);
+    for (int t = 0; t + 1 < Dim; ++t) r.shear_traction[t].store(response.shear_traction[t].number);
+    r.stored.store(response.stored.number);
+    response.changed = r.changed;
+    return response;
+  }
+
  private:
   template <Kinematics kKinematics>
   [[gnu::flatten]] static void place_stiffness_of(State<Dim>& s, int first_pack, int last_pack) {
@@ -90,7 +108,7 @@ struct Contacts {
       const int first = s.layout.first_point_of(pack), last = s.layout.first_point_of(pack + 1);
       for (int at = first; at < last; ++at) {
         const Real area = Real::load(s.layout.points[at].area);
-        R::store(s.one_set[pack] ? stiffness(constants_of_set(s, s.set_of_faces[pack]), frame.normal, area)
+        R::store(s.one_set[pack] ? stiffness(constants_of_set(s, pack), frame.normal, area)
                                  : stiffness(own_constants(s, pack, at - first), frame.normal, area),
                  &s.contact_force[slot_of(at, 0)]);
       }
@@ -170,16 +188,19 @@ struct Contacts {
     return sqrt(2.0 * area);
   }
 
-  static const OneForAll& constants_of_set(const State<Dim>& s, int set) {
-    return *reinterpret_cast<const OneForAll*>(&s.contact_constants[s.first_constant[set]]);
+  static const OneForAll& constants_of_set(const State<Dim>& s, int pack) {
+    return *reinterpret_cast<const OneForAll*>(&s.contact_constants[s.first_constant[pack]]);
   }
 
   /// Returns the constants of points that each have their own temperature.
   static ForEach own_constants(const State<Dim>& s, int pack, int point) {
+    return own_constants(constants_of_set(s, pack),
+                         &s.own_constants[s.first_own_constant[pack] + point * kConstants]);
+  }
+  /// \param of_set  constants whose choices count
+  static ForEach own_constants(const OneForAll& of_set, const Line* line) {
     ForEach c;
-    ForEach::each_choice([](const auto&, auto& mine, const auto& of_set) { mine = of_set; }, c,
-                         constants_of_set(s, s.set_of_faces[pack]));
-    const Line* line = &s.own_constants[s.first_own_constant[pack] + point * kConstants];
+    ForEach::each_choice([](const auto&, auto& mine, const auto& theirs) { mine = theirs; }, c, of_set);
     ForEach::each([&](const auto&, Real& number) { number = Real::load(line++->number); }, c);
     return c;
   }
@@ -188,28 +209,32 @@ struct Contacts {
   static ContactResponse<Dim, Real> update_point(State<Dim>& s, int pack, int point,
                                                  const Constants& constants, const Real& opening,
                                                  const Tangential<Dim, Real>& tangential) {
-    Internals h;
-    typename Law::template Losses<LineSum> losses;
-    if constexpr (kInternals > 0) {
-      const Line* line = &s.internals[s.first_internal[pack] + point * kInternals];
-      Internals::each([&](const auto&, Real& number) { number = Real::load(line++->number); }, h);
-    }
-    if constexpr (kLosses > 0) {
-      Line* line = &s.loss[s.first_loss[pack] + point * kLosses];
-      Law::template Losses<LineSum>::each([&](const auto&, LineSum& sum) { sum.number = line++->number; },
-                                          losses);
-    }
-    const auto response = Law::template update<Dim>(constants, opening, tangential, h, losses);
-    if constexpr (kInternals > 0) {
-      Line* line = &s.internals[s.first_internal[pack] + point * kInternals];
-      Internals::each(
-          [&](const InternalInfo& info, const Real& number) {
-            if (info.when == 0 || (response.changed & info.when) != 0) number.store(line->number);
-            ++line;
-          },
-          h);
-    }
+    Line *internals = nullptr, *losses = nullptr;
+    if constexpr (kInternals > 0) internals = &s.internals[s.first_internal[pack] + point * kInternals];
+    if constexpr (kLosses > 0) losses = &s.loss[s.first_loss[pack] + point * kLosses];
+    const auto response = update_lines(constants, opening, tangential, internals, losses);
     if constexpr (kLosses > 0) s.losing[s.layout.first_point_of(pack) + point] = response.changed != 0;
+    return response;
+  }
+
+  /// Takes eight points through the law. Internal variables are written only where the law says that they
+  /// may have changed.
+  template <class Constants>
+  static ContactResponse<Dim, Real> update_lines(const Constants& constants, const Real& opening,
+                                                 const Tangential<Dim, Real>& tangential, Line* internals,
+                                                 Line* losses) {
+    Internals h;
+    Internals::each(
+        [&, line = internals](const auto&, Real& number) mutable { number = Real::load(line++->number); }, h);
+    typename Law::template Losses<LineSum> sums;
+    sums.each([&, line = losses](const auto&, LineSum& sum) mutable { sum.number = line++->number; }, sums);
+    const auto response = Law::template update<Dim>(constants, opening, tangential, h, sums);
+    Internals::each(
+        [&, line = internals](const InternalInfo& info, const Real& number) mutable {
+          if (info.when == 0 || (response.changed & info.when) != 0) number.store(line->number);
+          ++line;
+        },
+        h);
     return response;
   }
 

@@ -1,4 +1,4 @@
-#include "pyroclast/results/recorder.hpp"
+#include "pyroclast/results/results_writer.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace pyroclast {
 
-Recorder::Recorder(std::filesystem::path folder, const Setup& setup)
+ResultsWriter::ResultsWriter(std::filesystem::path folder, const Setup& setup)
     : folder_(std::move(folder)),
       title_(setup.title),
       expansion_reading_(setup.expansion_reading == ExpansionReading::secant ? "secant" : "tangent"),
@@ -20,7 +20,7 @@ Recorder::Recorder(std::filesystem::path folder, const Setup& setup)
   for (const Diagnostic& warning : setup.warnings) warnings_.push_back(without_place(warning));
 }
 
-void Recorder::begin(const Run& run) {
+void ResultsWriter::begin(const Run& run) {
   std::filesystem::remove(folder_ / "summary.json");
   history_.emplace(folder_ / "history.csv", run.history());
   if (has_fields_) fields_.emplace(folder_ / "fields", run.simulation(), run.history(), frames_);
@@ -31,18 +31,18 @@ void Recorder::begin(const Run& run) {
   write_specimen_files(folder_ / "specimen", run.simulation().specimen(), specimen_);
 }
 
-void Recorder::record(const Run& run) {
+void ResultsWriter::write(const Run& run) {
   history_->write(run.history());
   if (fields_ && run.frame_is_due()) fields_->write(run.simulation(), run.history(), frames_);
 }
 
-Summary Recorder::finish(const Run& run) {
+Summary ResultsWriter::finish(const Run& run) {
   Summary made = summary(run);
   write_summary(folder_ / "summary.json", made, run);
   return made;
 }
 
-Summary Recorder::summary(const Run& run) const {
+Summary ResultsWriter::summary(const Run& run) const {
   Summary summary = summarize(run, references_);
   summary.title = title_;
   std::vector<std::string> warnings = warnings_;
@@ -55,11 +55,11 @@ Summary Recorder::summary(const Run& run) const {
   return summary;
 }
 
-double Recorder::wall_time() const {
+double ResultsWriter::wall_time() const {
   return earlier_ + seconds_since(start_);
 }
 
-void Recorder::visit_state(StateVisitor& visitor, std::size_t rows) {
+void ResultsWriter::visit_state(StateVisitor& visitor, std::size_t rows) {
   const StateVisitor::Scope scope(visitor, "results");
   double time = wall_time();
   visitor.visit("wall_time", time, state::at_least(0));

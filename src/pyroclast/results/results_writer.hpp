@@ -17,14 +17,14 @@ namespace pyroclast {
 /// Writer of a run's results into its folder as they come: `history.csv`, `fields/`, `specimen/`, and at the
 /// end `summary.json`:
 ///
-///     recorder.begin(run);
-///     while (run.next()) recorder.record(run);
-///     recorder.finish(run);
-class Recorder {
+///     writer.begin(run);
+///     while (run.next()) writer.write(run);
+///     writer.finish(run);
+class ResultsWriter {
  public:
   /// Touches no file yet.
   /// \param folder  folder that exists, see RunFolder
-  Recorder(std::filesystem::path folder, const Setup& setup);
+  ResultsWriter(std::filesystem::path folder, const Setup& setup);
 
   /// Writes the specimen, the mesh, and all present rows. Where a run goes on from a checkpoint, anything
   /// written after the checkpoint is removed. Throws Error when a file cannot be written.
@@ -33,7 +33,7 @@ class Recorder {
   /// among the warnings of the summary.
   const std::vector<std::string>& lost_frames() const { return lost_frames_; }
   /// Writes the last row, and the fields where they are due.
-  void record(const Run& run);
+  void write(const Run& run);
   /// Writes the summary of the rows so far.
   Summary finish(const Run& run);
   /// Returns the summary of the rows so far without writing it.
