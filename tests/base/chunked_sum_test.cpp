@@ -11,7 +11,7 @@ namespace {
 TEST(ChunkedSum, AddsWithinAChunkFirstAndThenOverChunks) {
   const std::vector<double> value{1.0, 1e-16, 1e-16, 1e-16, 1e-16};
   const auto at = [&](int i) { return value[static_cast<std::size_t>(i)]; };
-  const std::vector<int> one{0, 5}, two{0, 1, 5};
+  const ChunkList one({0, 5}), two({0, 1, 5});
   EXPECT_EQ(chunked_sum(one, at), 1.0);
   EXPECT_EQ(chunked_sum(two, at), 1.0 + 4e-16);
 }
@@ -25,7 +25,7 @@ TEST(ChunkedSum, TakesAnySum) {
       count += other.count;
     }
   };
-  const auto both = chunked_sum<Both>(std::vector<int>{0, 2, 2, 7}, [](int i, Both& s) {
+  const auto both = chunked_sum<Both>(ChunkList({0, 2, 2, 7}), [](int i, Both& s) {
     s.sum += i;
     ++s.count;
   });
@@ -35,22 +35,28 @@ TEST(ChunkedSum, TakesAnySum) {
 
 TEST(ChunkedSum, OfNothingIsZero) {
   const auto one = [](int) { return 1.0; };
-  EXPECT_EQ(chunked_sum(std::vector<int>{}, one), 0.0);
-  EXPECT_EQ(chunked_sum(std::vector<int>{0}, one), 0.0);
-  EXPECT_EQ(chunked_sum(std::vector<int>{0, 0}, one), 0.0);
+  EXPECT_EQ(chunked_sum(ChunkList(), one), 0.0);
+  EXPECT_EQ(chunked_sum(ChunkList({0}), one), 0.0);
+  EXPECT_EQ(chunked_sum(ChunkList({0, 0}), one), 0.0);
 }
 
-TEST(ChunkBegins, CutAListEvenly) {
-  EXPECT_EQ(chunk_begins(0), std::vector<int>{0});
-  EXPECT_EQ(chunk_begins(kPlacesPerChunk), (std::vector<int>{0, kPlacesPerChunk}));
-  EXPECT_EQ(chunk_begins(2 * kPlacesPerChunk + 1),
-            (std::vector<int>{0, kPlacesPerChunk, 2 * kPlacesPerChunk, 2 * kPlacesPerChunk + 1}));
+// Of a part of a body the own chunks count, each with the sum that it has in the whole.
+TEST(ChunkedSum, LeavesForeignChunksOut) {
+  const auto place = [](int i) { return 1.0 + i; };
+  const std::vector<int> begins{0, 2, 3, 6};
+  EXPECT_EQ(chunked_sum(ChunkList(begins, {true, false, true}), place), 3.0);
+  EXPECT_EQ(chunked_sum(ChunkList(begins, {true, false, false}), place), 3.0 + (4.0 + 5.0 + 6.0));
+  EXPECT_EQ(chunked_sum(ChunkList(begins, {true, true, true}), place), 0.0);
 }
 
-TEST(ChunkBegins, CutAListOfSomePlacesWhereThatOfAllIs) {
-  const std::vector<int> places{3, kPlacesPerChunk - 1, kPlacesPerChunk, 3 * kPlacesPerChunk};
-  const auto place = [&](int i) { return places[static_cast<std::size_t>(i)]; };
-  EXPECT_EQ(chunk_begins(4, place), (std::vector<int>{0, 2, 3, 4}));
+TEST(ChunkList, CutsAListOfSomeItemsWhereThatOfAllIsCut) {
+  const ChunkList all({0, 10, 20, 30, 40}, {false, true, false, false});
+  const ChunkList some = all.of_some({3, 9, 10, 35});
+  EXPECT_EQ(some.begins(), (std::vector<int>{0, 2, 3, 3, 4}));
+  EXPECT_TRUE(some.is_foreign(1));
+  EXPECT_FALSE(some.is_foreign(2));
+  EXPECT_EQ(all.of_some({}).begins(), (std::vector<int>{0, 0, 0, 0, 0}));
+  EXPECT_EQ(all.of_some({39}).count(), 4);
 }
 
 }  // namespace

@@ -284,7 +284,9 @@ TEST(CreepVerification, OfASpecimenIsThatOfItsMatrixTimesR) {
       }
   for (int g = 0; g < model.gridpoint_count(); ++g) m.apply_force(g, {{0.0, force[g]}});
   const auto strain = [&] {
-    const auto mean = [&](const char* side) { return m.mean_displacement(m.set_of(model.set(side)))[1]; };
+    const auto mean = [&](const char* side) {
+      return m.mean_displacement(gridpoint_set(model, model.set(side)))[1];
+    };
     return (mean("top") - mean("bottom")) / 0.1;
   };
   m.advance(4000);

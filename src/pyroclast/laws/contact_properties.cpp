@@ -65,10 +65,7 @@ void ContactSets::add(const ContactProperties& set) {
 }
 
 std::span<double> ContactSets::add(const LawTable& law, const std::vector<int>& choices) {
-  auto kind = std::ranges::find_if(
-      kinds_, [&](const Kind& known) { return known.law == &law && known.choices == choices; });
-  if (kind == kinds_.end()) kind = kinds_.insert(kind, {&law, choices});
-  kind_.push_back(static_cast<std::uint16_t>(kind - kinds_.begin()));
+  kind_.push_back(kind_of(law, choices));
   first_number_.push_back(numbers_.size());
   numbers_.resize(numbers_.size() + law.properties.size());
   return {numbers_.data() + first_number_.back(), law.properties.size()};
@@ -78,6 +75,20 @@ void ContactSets::reserve(std::size_t sets, std::size_t numbers) {
   kind_.reserve(sets);
   first_number_.reserve(sets);
   numbers_.reserve(numbers);
+}
+
+std::uint16_t ContactSets::kind_of(const LawTable& law, const std::vector<int>& choices) {
+  auto kind = std::ranges::find_if(
+      kinds_, [&](const Kind& known) { return known.law == &law && known.choices == choices; });
+  if (kind == kinds_.end()) kind = kinds_.insert(kind, {&law, choices});
+  return static_cast<std::uint16_t>(kind - kinds_.begin());
+}
+
+std::vector<const LawTable*> ContactSets::laws() const {
+  std::vector<const LawTable*> laws;
+  for (const Kind& kind : kinds_)
+    if (std::ranges::find(laws, kind.law) == laws.end()) laws.push_back(kind.law);
+  return laws;
 }
 
 void ContactSets::clear() {

@@ -71,6 +71,10 @@ class ContactSets {
   std::span<double> add(const LawTable& law, const std::vector<int>& choices);
   /// Makes room for so many sets with so many numbers in all.
   void reserve(std::size_t sets, std::size_t numbers);
+  /// Makes a law known that sets may have, with its choices.
+  void know(const LawTable& law, const std::vector<int>& choices) { kind_of(law, choices); }
+  /// Returns the laws of all sets, each once, in the order in which they came to be known.
+  std::vector<const LawTable*> laws() const;
   /// Removes all sets and keeps their memory.
   void clear();
   int size() const { return static_cast<int>(kind_.size()); }
@@ -95,6 +99,8 @@ class ContactSets {
     const LawTable* law;
     std::vector<int> choices;
   };
+
+  std::uint16_t kind_of(const LawTable& law, const std::vector<int>& choices);
 
   std::vector<Kind> kinds_;  ///< kinds that occur, each once: few
   std::vector<std::uint16_t> kind_;

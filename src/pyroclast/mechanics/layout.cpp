@@ -15,8 +15,6 @@ namespace {
 constexpr double kLayerThickness = 2.0;
 /// Faces of a chunk that share lanes have their later bundles within as many of each other.
 constexpr int kBundlesToShare = 64;
-/// A block with more zones, such as a platen, stands in a chunk of its own kind.
-constexpr int kZonesOfALargeBlock = 64;
 
 /// Blocks of a chunk in layers across its longest extent, along the others within a layer.
 template <int Dim>
@@ -73,31 +71,26 @@ class LayoutBuilder {
   LayoutBuilder(const Model<Dim>& model, const LayoutParameters& parameters, Layout<Dim>& layout)
       : model_(model), parameters_(parameters), layout_(layout) {}
 
-  void cut_into_chunks() {
-    auto& begins = layout_.chunks.blocks;
-    const auto is_large = [&](int b) {
-      return model_.block_zones[b + 1] - model_.block_zones[b] > kZonesOfALargeBlock;
-    };
-    for (int b = 0; b < model_.block_count(); ++b)
-      if (begins.empty() || b - begins.back() >= parameters_.chunk_blocks || is_large(b) != is_large(b - 1))
-        begins.push_back(b);
-    begins.push_back(model_.block_count());
-    for (int b : begins) {
-      layout_.chunks.gridpoints.push_back(model_.block_gridpoints[b]);
-      layout_.chunks.zones.push_back(model_.block_zones[b]);
-    }
+  void take_chunks() {
+    layout_.chunks.blocks = model_.chunks();
+    layout_.chunks.gridpoints = model_.gridpoint_chunks();
+    layout_.chunks.zones = model_.zone_chunks();
+    auto by_chunk = contacts_by_chunk(model_);
+    layout_.contacts_by_chunk = FlatArray<int>(by_chunk.contacts);
+    layout_.chunks.contacts = std::move(by_chunk.chunks);
   }
 
   void place_blocks() {
     layout_.gridpoint_slot = FlatArray<int>(model_.position.size());
     layout_.zone_slot = FlatArray<int>(model_.zones.size());
     layout_.bundle_of_block = FlatArray<int>(model_.block_material.size());
-    const auto& begins = layout_.chunks.blocks;
-    for (std::size_t chunk = 0; chunk + 1 < begins.size(); ++chunk) {
-      layout_.chunks.bundles.push_back(bundle_count());
-      place_chunk(begins[chunk], begins[chunk + 1]);
+    const ChunkList& blocks = layout_.chunks.blocks;
+    std::vector<int> begins{0};
+    for (int chunk = 0; chunk < blocks.count(); ++chunk) {
+      place_chunk(blocks[chunk], blocks[chunk + 1]);
+      begins.push_back(bundle_count());
     }
-    layout_.chunks.bundles.push_back(bundle_count());
+    layout_.chunks.bundles = blocks.of(std::move(begins));
     layout_.shape_zones = FlatArray<std::array<int, Dim + 1>>(shape_zones_);
     layout_.spread_zones = FlatArray<ZoneCorners<Dim>>(spread_zones_);
     layout_.blocks = FlatArray<std::array<int, kLanes>>(blocks_);
@@ -108,10 +101,9 @@ class LayoutBuilder {
     for (int b = 0; b < model_.block_count(); ++b)
       for (int g = model_.block_gridpoints[b]; g < model_.block_gridpoints[b + 1]; ++g) block_of[g] = b;
     std::vector<int> chunk_of_block(model_.block_count());
-    const auto& begins = layout_.chunks.blocks;
-    const int chunks = static_cast<int>(begins.size()) - 1;
-    for (int chunk = 0; chunk < chunks; ++chunk)
-      std::fill(chunk_of_block.begin() + begins[chunk], chunk_of_block.begin() + begins[chunk + 1], chunk);
+    const ChunkList& blocks = layout_.chunks.blocks;
+    for (int chunk = 0; chunk < blocks.count(); ++chunk)
+      std::fill(chunk_of_block.begin() + blocks[chunk], chunk_of_block.begin() + blocks[chunk + 1], chunk);
 
     std::vector<FaceToPlace> faces(model_.face_count());
     for (int f = 0; f < model_.face_count(); ++f) {
@@ -132,18 +124,16 @@ class LayoutBuilder {
     });
 
     layout_.contact_slot = FlatArray<int>(model_.contacts.size());
-    std::vector<int> reached{0};
+    std::vector<int> begins{0};
     auto next = faces.begin();
-    for (int chunk = 0; chunk < chunks; ++chunk) {
-      layout_.chunks.face_packs.push_back(static_cast<int>(faces_.size()));
-      layout_.chunks.contacts.push_back(static_cast<int>(contacts_by_chunk_.size()));
+    for (int chunk = 0; chunk < blocks.count(); ++chunk) {
       const auto end =
           std::find_if(next, faces.end(), [&](const FaceToPlace& f) { return f.chunk != chunk; });
       place_faces_of_chunk(next, end);
       next = end;
+      begins.push_back(static_cast<int>(faces_.size()));
     }
-    layout_.chunks.face_packs.push_back(static_cast<int>(faces_.size()));
-    layout_.chunks.contacts.push_back(static_cast<int>(contacts_by_chunk_.size()));
+    layout_.chunks.face_packs = blocks.of(std::move(begins));
     finish_faces(block_of);
   }
 
@@ -197,12 +187,16 @@ class LayoutBuilder {
 
   int bundle_count() const { return static_cast<int>(bundles_.size()); }
 
-  /// Blocks with the same zones share lanes, whatever their distance: a chunk fits into a cache.
+  /// Blocks with the same zones share lanes, whatever their distance: a chunk fits into a cache. Groups that
+  /// stay smaller come last, in the order in which the chunk, not the body, meets their shapes.
   void place_chunk(int first_block, int last_block) {
-    std::map<int, std::vector<int>> waiting;  // by shape
+    std::map<int, std::size_t> group_of_shape;
+    std::vector<std::pair<int, std::vector<int>>> waiting;  // shapes and their blocks
     for (int block : order_blocks(model_, first_block, last_block)) {
       const int shape = shape_of(block);
-      auto& group = waiting[shape];
+      const auto [place, is_new] = group_of_shape.try_emplace(shape, waiting.size());
+      if (is_new) waiting.push_back({shape, {}});
+      auto& group = waiting[place->second].second;
       group.push_back(block);
       if (group.size() < kLanes) continue;
       add_bundle(shape, group);
@@ -321,12 +315,6 @@ class LayoutBuilder {
         }
     }
     flush(waiting);
-    std::vector<int> contacts;
-    for (auto f = first; f != last; ++f)
-      for (int c = model_.face_contacts[f->face]; c < model_.face_contacts[f->face + 1]; ++c)
-        contacts.push_back(c);
-    std::sort(contacts.begin(), contacts.end());
-    contacts_by_chunk_.insert(contacts_by_chunk_.end(), contacts.begin(), contacts.end());
   }
 
   template <class Waiting>
@@ -392,7 +380,6 @@ class LayoutBuilder {
     layout_.between_chunks = FlatArray<bool>(between_chunks_.size());
     std::copy(between_chunks_.begin(), between_chunks_.end(), layout_.between_chunks.begin());
     layout_.face_pack_of_point = FlatArray<int>(face_pack_of_point_);
-    layout_.contacts_by_chunk = FlatArray<int>(contacts_by_chunk_);
   }
 
   const Model<Dim>& model_;
@@ -408,7 +395,7 @@ class LayoutBuilder {
   std::vector<std::array<int, kLanes>> blocks_;
   std::vector<FacePack<Dim>> faces_;
   std::vector<PointPack> points_;
-  std::vector<int> first_point_, face_pack_of_point_, reached_by_pack_, contacts_by_chunk_;
+  std::vector<int> first_point_, face_pack_of_point_, reached_by_pack_;
   std::vector<bool> between_chunks_;  // by pack of faces
   std::vector<std::vector<FaceToPlace>> faces_of_pack_;
 };
@@ -418,7 +405,7 @@ class LayoutBuilder {
 template <int Dim>
 Layout<Dim>::Layout(const Model<Dim>& model, const LayoutParameters& parameters) {
   LayoutBuilder<Dim> builder(model, parameters, *this);
-  builder.cut_into_chunks();
+  builder.take_chunks();
   builder.place_blocks();
   builder.place_faces();
   builder.gather_contacts();

@@ -221,18 +221,17 @@ struct LayoutArrays {
   }
 };
 
-/// Begins of the chunks in each list of a body: chunk i holds the items from [i] up to [i + 1].
+/// Chunks of each list of a body.
 struct Chunks {
-  std::vector<int> blocks, gridpoints, zones;  ///< items of the model
-  std::vector<int> contacts;                   ///< entries of contacts_by_chunk
-  std::vector<int> bundles, face_packs;        ///< items of the layout
+  ChunkList blocks, gridpoints, zones;  ///< items of the model
+  ChunkList contacts;                   ///< entries of contacts_by_chunk
+  ChunkList bundles, face_packs;        ///< items of the layout
 };
 
 /// Parameters of the layout of a body. Speed depends on them; no force does.
 struct LayoutParameters {
   /// Least blocks of a bundle: fewer would leave too many lanes idle, so they are spread.
   int fewest_blocks = 4;
-  int chunk_blocks = 1024;  ///< largest number of blocks in a chunk
 };
 
 /// Layout of a model. Blocks are taken in the order of the model, chunk by chunk. Within a chunk they are

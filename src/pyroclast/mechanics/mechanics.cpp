@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -141,12 +142,10 @@ void Mechanics<Dim>::place_model() {
   refresh_views();
 }
 
-/// Laws of the body, each once.
+/// Laws of the body, each once, in the order of the interfaces.
 template <int Dim>
 void Mechanics<Dim>::list_laws() {
-  for (int set = 0; set < properties_.contacts.size(); ++set)
-    if (const LawTable* law = &properties_.contacts.law(set); std::ranges::find(laws_, law) == laws_.end())
-      laws_.push_back(law);
+  laws_ = properties_.contacts.laws();
   if (laws_.size() > kMostLaws)
     throw Error(fmt::format("the contacts of this body have {} laws; at most {} are possible", laws_.size(),
                             kMostLaws));
@@ -188,8 +187,8 @@ void Mechanics<Dim>::place_internals() {
 /// Energies that the laws of the body lose, and creep where it does; each name once.
 template <int Dim>
 void Mechanics<Dim>::name_dissipations() {
-  for (int set = 0; set < properties_.contacts.size(); ++set)
-    for (const LossInfo& loss : properties_.contacts.law(set).losses)
+  for (const LawTable* law : laws_)
+    for (const LossInfo& loss : law->losses)
       if (loss.is_energy() &&
           std::ranges::find(dissipations_, std::string_view(loss.name)) == dissipations_.end())
         dissipations_.emplace_back(loss.name);
@@ -541,10 +540,36 @@ int Mechanics<Dim>::constraints_of(int gridpoint) {
     storage_.constraints.resize(storage_.constraints.size() + 1);
     storage_.constraints[index].first_pack = static_cast<int>(first_pack);
     storage_.constraint_packs.resize(first_pack + static_cast<std::size_t>(layout_->bundles[b].packs));
+    constraints_are_in_order_ = false;
     refresh_views();
   }
   storage_.constraints_of_bundle[b] = index;
   return index;
+}
+
+/// Puts constraints into the order of their bundles, so that a state does not depend on the order in which
+/// they were made.
+template <int Dim>
+void Mechanics<Dim>::order_constraints() {
+  if (std::exchange(constraints_are_in_order_, true)) return;
+  auto& s = storage_;
+  FlatArray<BundleConstraints> constraints(s.constraints.size());
+  FlatArray<ConstraintPack<Dim>> packs(s.constraint_packs.size());
+  int next = 0, next_pack = 0;
+  for (std::size_t b = 0; b < made_constraints_.size(); ++b) {
+    int& index = made_constraints_[b];
+    if (index < 0) continue;
+    constraints[next] = s.constraints[index];
+    const int first_pack = std::exchange(constraints[next].first_pack, next_pack);
+    std::copy_n(s.constraint_packs.begin() + first_pack, layout_->bundles[b].packs,
+                packs.begin() + next_pack);
+    next_pack += layout_->bundles[b].packs;
+    if (s.constraints_of_bundle[b] >= 0) s.constraints_of_bundle[b] = next;
+    index = next++;
+  }
+  s.constraints = std::move(constraints);
+  s.constraint_packs = std::move(packs);
+  refresh_views();
 }
 
 template <int Dim>
@@ -598,6 +623,7 @@ void Mechanics<Dim>::release(int gridpoint, int component) {
 
 template <int Dim>
 void Mechanics<Dim>::tie(std::vector<int> gridpoints, int component) {
+  std::sort(gridpoints.begin(), gridpoints.end());
   constraints_of(gridpoints.front());
   TieOfBundle tie{bundle_of(gridpoints.front()), component, {}};
   double mass = 0.0, momentum = 0.0;
@@ -620,8 +646,9 @@ void Mechanics<Dim>::untie() {
 
 template <int Dim>
 void Mechanics<Dim>::place_ties() {
-  std::stable_sort(ties_.begin(), ties_.end(),
-                   [](const TieOfBundle& a, const TieOfBundle& b) { return a.bundle < b.bundle; });
+  std::sort(ties_.begin(), ties_.end(), [](const TieOfBundle& a, const TieOfBundle& b) {
+    return std::tie(a.bundle, a.component, a.slots) < std::tie(b.bundle, b.component, b.slots);
+  });
   storage_.ties.resize(0);
   storage_.tied_slots.resize(0);
   for (auto& constraints : storage_.constraints) constraints.first_tie = constraints.last_tie = 0;
@@ -667,6 +694,7 @@ bool Mechanics<Dim>::break_contact(int contact) {
 template <int Dim>
 void Mechanics<Dim>::advance(int steps) {
   if (steps <= 0) return;
+  order_constraints();
   property_change_ += std::exchange(begun_property_change_, 0.0);
   mass_scaling_ += std::exchange(begun_mass_scaling_, 0.0);
   if (steps > 1) sweep(steps - 1, Pass::move);
@@ -695,6 +723,7 @@ void Mechanics<Dim>::forget() {
 
 template <int Dim>
 void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
+  order_constraints();
   if (visitor.replaces()) forget();
   visitor.visit("steps", steps_, state::count());
   // of real mass: fixed when the run began, of which this body is a beginning
@@ -1116,20 +1145,10 @@ std::vector<ContactState<Dim>> Mechanics<Dim>::contacts() const {
 // Sums
 
 template <int Dim>
-GridpointSet Mechanics<Dim>::set_of(std::vector<int> gridpoints) const {
-  std::sort(gridpoints.begin(), gridpoints.end());
-  GridpointSet set{std::move(gridpoints), {}};
-  for (int begin : layout_->chunks.gridpoints)
-    set.chunks.push_back(static_cast<int>(
-        std::lower_bound(set.gridpoints.begin(), set.gridpoints.end(), begin) - set.gridpoints.begin()));
-  return set;
-}
-
-template <int Dim>
 Vec<Dim> Mechanics<Dim>::mean_displacement(const GridpointSet& set) const {
   const auto sum = chunked_sum<Vec<Dim>>(
       set.chunks, [&](int i, Vec<Dim>& total) { total += displacement(set.gridpoints[i]); });
-  return sum * (1.0 / static_cast<double>(set.gridpoints.size()));
+  return sum * (1.0 / count(set.chunks));
 }
 
 template <int Dim>
@@ -1249,7 +1268,7 @@ EnergyLedger Mechanics<Dim>::energy() const {
 template <int Dim>
 double Mechanics<Dim>::mean_unbalanced_force() const {
   return chunked_sum(layout_->chunks.bundles, [&](int b) { return state_.bundle_sums[b].unbalanced; }) /
-         model_.gridpoint_count();
+         count(layout_->chunks.gridpoints);
 }
 
 template <int Dim>

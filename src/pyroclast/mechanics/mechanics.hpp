@@ -88,12 +88,6 @@ template <int Dim>
 BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
                             const std::vector<ContactProperties>& interfaces);
 
-/// Gridpoints over which something is summed, in the order of chunks.
-struct GridpointSet {
-  std::vector<int> gridpoints;
-  std::vector<int> chunks;  ///< begin of the gridpoints of each chunk
-};
-
 /// Explicit motion of a body of deformable blocks, paper Eqs. (3)-(15).
 ///
 /// The state stands in lanes (see Layout); this class shows it in the order of the model. Each gridpoint
@@ -203,7 +197,6 @@ class Mechanics {
   std::vector<ContactState<Dim>> contacts() const;
 
   // The next functions sum over sets of gridpoints.
-  GridpointSet set_of(std::vector<int> gridpoints) const;
   Vec<Dim> mean_displacement(const GridpointSet& set) const;    ///< m
   Vec<Dim> total_force(const GridpointSet& set) const;          ///< N, sum of `force`
   Vec<Dim> total_applied_force(const GridpointSet& set) const;  ///< N
@@ -283,6 +276,7 @@ class Mechanics {
   void visit_array(StateVisitor& visitor, const char* name, Array& array);
   void require_constraints(const StateVisitor& visitor) const;
   int constraints_of(int gridpoint);
+  void order_constraints();
   void drop_if_free(int bundle);
   ConstraintPack<Dim>& constraint_pack(int constraints, int gridpoint);
   int slot_in_bundle(int gridpoint) const;
@@ -314,6 +308,7 @@ class Mechanics {
 
   /// Constraints of each bundle that was ever held, driven or loaded; else -1.
   std::vector<int> made_constraints_;
+  bool constraints_are_in_order_ = true;
   std::vector<TieOfBundle> ties_;
 
   std::vector<double> gravity_mass_;  ///< real mass, on which gravity acts, kg

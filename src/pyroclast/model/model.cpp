@@ -58,7 +58,31 @@ int Model<Dim>::add_block(const std::vector<Vec<Dim>>& gridpoints,
   block_gridpoints.push_back(gridpoint_count());
   block_zones.push_back(zone_count());
   block_material.push_back(material);
+  put_into_chunk(block_count() - 1, kBlocksOfAChunk);
   return block_count() - 1;
+}
+
+template <int Dim>
+void Model<Dim>::put_into_chunk(int block, int most_blocks) {
+  const bool begins = block == 0 || block - chunk_blocks[chunk_blocks.size() - 2] >= most_blocks ||
+                      is_of_bearing(block) != is_of_bearing(block - 1);
+  if (begins)
+    chunk_blocks.push_back(block + 1);
+  else
+    chunk_blocks.back() = block + 1;
+}
+
+template <int Dim>
+void Model<Dim>::cut_into_chunks(int most_blocks) {
+  chunk_blocks = {0};
+  for (int block = 0; block < block_count(); ++block) put_into_chunk(block, most_blocks);
+}
+
+template <int Dim>
+ChunkList Model<Dim>::chunks_of(const std::vector<int>& of_block) const {
+  std::vector<int> begins;
+  for (const int block : chunk_blocks) begins.push_back(of_block[block]);
+  return chunks().of(std::move(begins));
 }
 
 template <int Dim>
@@ -135,6 +159,48 @@ GridpointContacts gridpoint_contacts(const Model<Dim>& model) {
 
 template struct Model<2>;
 template struct Model<3>;
+template <int Dim>
+GridpointSet gridpoint_set(const Model<Dim>& model, std::vector<int> gridpoints) {
+  std::sort(gridpoints.begin(), gridpoints.end());
+  ChunkList chunks = model.gridpoint_chunks().of_some(gridpoints);
+  return {std::move(gridpoints), std::move(chunks)};
+}
+
+template <int Dim>
+ContactsByChunk contacts_by_chunk(const Model<Dim>& model) {
+  const ChunkList gridpoints = model.gridpoint_chunks();
+  const auto chunk_of = [&](int gridpoint) {
+    const auto& begins = gridpoints.begins();
+    return static_cast<int>(std::upper_bound(begins.begin(), begins.end(), gridpoint) - begins.begin()) - 1;
+  };
+  std::vector<std::vector<int>> of_chunk(static_cast<std::size_t>(gridpoints.count()));
+  for (int c = 0; c < model.contact_count(); ++c)
+    of_chunk[std::min(chunk_of(model.contacts[c].a), chunk_of(model.contacts[c].b))].push_back(c);
+  ContactsByChunk all;
+  std::vector<int> begins{0};
+  for (const auto& contacts : of_chunk) {
+    all.contacts.insert(all.contacts.end(), contacts.begin(), contacts.end());
+    begins.push_back(static_cast<int>(all.contacts.size()));
+  }
+  all.chunks = gridpoints.of(std::move(begins));
+  return all;
+}
+
+ContactsByChunk contacts_by_chunk(const ContactsByChunk& all, const std::vector<int>& some) {
+  std::vector<bool> is_in(all.contacts.size());
+  for (const int c : some) is_in[c] = true;
+  std::vector<int> places;
+  for (std::size_t i = 0; i < all.contacts.size(); ++i)
+    if (is_in[all.contacts[i]]) places.push_back(static_cast<int>(i));
+  ContactsByChunk part{{}, all.chunks.of_some(places)};
+  for (const int place : places) part.contacts.push_back(all.contacts[place]);
+  return part;
+}
+
+template GridpointSet gridpoint_set(const Model<2>&, std::vector<int>);
+template GridpointSet gridpoint_set(const Model<3>&, std::vector<int>);
+template ContactsByChunk contacts_by_chunk(const Model<2>&);
+template ContactsByChunk contacts_by_chunk(const Model<3>&);
 template ZoneGeometry<2> zone_geometry(const Model<2>&);
 template ZoneGeometry<3> zone_geometry(const Model<3>&);
 template std::vector<int> zone_blocks(const Model<2>&);

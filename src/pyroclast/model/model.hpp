@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/vec.hpp"
 
 namespace pyroclast {
@@ -25,17 +26,21 @@ struct Contact {
 
 /// Body of deformable blocks, as flat arrays. It holds geometry only: no state, no material parameters.
 ///
-/// Every block owns its gridpoints and zones, which stand together in the arrays. Blocks meet only through
-/// contacts. In 2D a zone is a triangle and a face is an edge with two contact points. In 3D a zone is a
-/// tetrahedron and a face is a polygon of 3 to 8 corners with a contact point at each.
+/// Every block owns its gridpoints and zones, which stand together in the arrays. Consecutive blocks make a
+/// chunk, the unit of sums, files and ranks. Blocks meet only through contacts. In 2D a zone is a triangle
+/// and a face is an edge with two contact points. In 3D a zone is a tetrahedron and a face is a polygon of 3
+/// to 8 corners with a contact point at each.
 template <int Dim>
 struct Model {
   double thickness = 1.0;  ///< thickness out of plane, m (2D only; 1 in 3D)
 
-  std::vector<Vec<Dim>> position;               ///< gridpoints, reference configuration, m
-  std::vector<int> block_gridpoints{0};         ///< gridpoints of block i: [i] to [i + 1]
-  std::vector<int> block_zones{0};              ///< zones of block i: [i] to [i + 1]
-  std::vector<int> block_material;              ///< index into material_names
+  std::vector<Vec<Dim>> position;        ///< gridpoints, reference configuration, m
+  std::vector<int> block_gridpoints{0};  ///< gridpoints of block i: [i] to [i + 1]
+  std::vector<int> block_zones{0};       ///< zones of block i: [i] to [i + 1]
+  std::vector<int> block_material;       ///< index into material_names
+  std::vector<int> chunk_blocks{0};      ///< blocks of chunk i: [i] to [i + 1]
+  std::vector<bool> foreign_chunks;      ///< chunks that other parts of the body own; empty: none
+  int zones_of_whole = 0;                ///< zones of the body of which this is a part; 0 for a whole body
   std::vector<std::array<int, Dim + 1>> zones;  ///< gridpoints of each zone, positively oriented
   std::vector<Contact<Dim>> contacts;
   std::vector<int> face_contacts{0};  ///< contacts of shared face i: [i] to [i + 1]
@@ -60,14 +65,22 @@ struct Model {
     return contact.interface >= std::ssize(interface_names) - bearing_interfaces;
   }
 
+  // The next functions return the chunks of the lists of blocks, gridpoints and zones.
+  ChunkList chunks() const { return ChunkList(chunk_blocks, foreign_chunks); }
+  ChunkList gridpoint_chunks() const { return chunks_of(block_gridpoints); }
+  ChunkList zone_chunks() const { return chunks_of(block_zones); }
+
   int block_count() const { return static_cast<int>(block_material.size()); }
   int block_of(int gridpoint) const;
   int gridpoint_count() const { return static_cast<int>(position.size()); }
   int zone_count() const { return static_cast<int>(zones.size()); }
+  /// Returns the zones of the whole body, also of a part of it.
+  int whole_zone_count() const { return zones_of_whole > 0 ? zones_of_whole : zone_count(); }
   int contact_count() const { return static_cast<int>(contacts.size()); }
   int face_count() const { return static_cast<int>(face_contacts.size()) - 1; }
 
-  /// Appends a block and returns its index. The block's zones index its own gridpoints from 0.
+  /// Appends a block and returns its index. The block's zones index its own gridpoints from 0. A chunk takes
+  /// up to kBlocksOfAChunk blocks; blocks of bearings stand in chunks of their own.
   int add_block(const std::vector<Vec<Dim>>& gridpoints,
                 const std::vector<std::array<int, Dim + 1>>& block_zones, int material);
 
@@ -78,7 +91,38 @@ struct Model {
   /// face have the frame of its mean plane, with the first tangent along its first edge; each has its share
   /// of the area. Throws Error for a face without area, and for one without 2 corners in 2D or 3 to 8 in 3D.
   void join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface);
+
+  /// Cuts the body into chunks of another number of blocks.
+  void cut_into_chunks(int most_blocks);
+
+ private:
+  ChunkList chunks_of(const std::vector<int>& of_block) const;
+  void put_into_chunk(int block, int most_blocks);
 };
+
+/// Largest number of blocks in a chunk. The last digits of sums depend on it.
+inline constexpr int kBlocksOfAChunk = 1024;
+
+/// Gridpoints over which something is summed, ascending.
+struct GridpointSet {
+  std::vector<int> gridpoints;
+  ChunkList chunks;
+};
+
+template <int Dim>
+GridpointSet gridpoint_set(const Model<Dim>& model, std::vector<int> gridpoints);
+
+/// Contacts of a body chunk by chunk: a contact between two chunks belongs to the earlier one.
+struct ContactsByChunk {
+  std::vector<int> contacts;  ///< numbers of contacts, ascending within a chunk
+  ChunkList chunks;           ///< chunks of this list
+};
+
+template <int Dim>
+ContactsByChunk contacts_by_chunk(const Model<Dim>& model);
+
+/// Returns those of the contacts of `all` that stand in `some`, chunk by chunk.
+ContactsByChunk contacts_by_chunk(const ContactsByChunk& all, const std::vector<int>& some);
 
 /// Geometry of zones that the solvers read in every step.
 template <int Dim>

@@ -143,6 +143,7 @@ BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& mat
   for (const Contact<2>& contact : model.contacts)
     numbers += materials.contacts[contact.interface].numbers.size();
   p.contacts.clear();
+  for (const ContactMaterial& contact : materials.contacts) p.contacts.know(*contact.law, contact.choices);
   p.contacts.reserve(model.contacts.size(), numbers);
   p.of_contact.clear();
   p.of_contact.reserve(model.contacts.size());

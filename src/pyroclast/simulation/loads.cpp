@@ -34,7 +34,7 @@ typename Loads<Dim>::Entry& Loads<Dim>::entry(const std::string& set) {
   std::vector<int> gridpoints = model.set(set);
   sort_unique(gridpoints);
   Entry entry;
-  entry.set = mechanics_.set_of(gridpoints);
+  entry.set = gridpoint_set(mechanics_.model(), gridpoints);
   const auto faces = faces_in(model, gridpoints);
   for (const auto& face : faces) entry.faces.push_back(face.gridpoints);
   entry.shares = tributary_areas(gridpoints, faces);

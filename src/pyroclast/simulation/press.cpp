@@ -42,9 +42,9 @@ Press<Dim>::Press(Mechanics<Dim>& mechanics, int axis, double height,
       across_(components_across<Dim>(axis)) {
   for (const char* name : {"bottom_platen_support", "top_platen_support", "bottom_platen_face",
                            "top_platen_face", "bottom", "top", "specimen", "bottom_platen"})
-    summed_.emplace(name, mechanics_.set_of(set(name)));
+    summed_.emplace(name, gridpoint_set(mechanics_.model(), set(name)));
   for (int d = 0; d < Dim - 1; ++d)
-    for (const auto side : kSides[d]) summed_.emplace(side, mechanics_.set_of(set(side)));
+    for (const auto side : kSides[d]) summed_.emplace(side, gridpoint_set(mechanics_.model(), set(side)));
   for (int g : set("bottom_platen_support"))
     for (int i = 0; i < Dim; ++i) mechanics_.prescribe_velocity(g, i, 0.0);
   for (int g : set("top_platen_support"))

@@ -35,14 +35,6 @@ std::vector<int> zones_in(const Model<2>& model, const std::vector<int>& gridpoi
   return zones;
 }
 
-/// Where there is no layout to say where chunks begin.
-GridpointSet in_model_order(std::vector<int> gridpoints) {
-  std::ranges::sort(gridpoints);
-  std::vector<int> chunks =
-      chunk_begins(static_cast<int>(gridpoints.size()), [&](int i) { return gridpoints[i]; });
-  return {std::move(gridpoints), std::move(chunks)};
-}
-
 }  // namespace
 
 const Unit& unit_of(RecordKind kind) {
@@ -97,13 +89,13 @@ Record::Record(const Model<2>& model, const Mechanics<2>* mechanics, RecordParam
         "is of motion, but no stage moves the body: without one only records of kind temperature have an "
         "effect");
   if (is_of_cracks(parameters_.kind)) {
-    items_ = find(model.contact_sets, parameters_.set);
-    std::ranges::sort(items_);
+    auto contacts = contacts_by_chunk(contacts_by_chunk(model), find(model.contact_sets, parameters_.set));
+    items_ = std::move(contacts.contacts);
+    chunks_ = std::move(contacts.chunks);
     for (int c : items_) size_.push_back(model.contacts[c].area / model.thickness);
   } else {
     const auto chunked = [&](const std::string& name) {
-      return mechanics != nullptr ? mechanics->set_of(find(model.sets, name))
-                                  : in_model_order(find(model.sets, name));
+      return gridpoint_set(model, find(model.sets, name));
     };
     mean_ = mean_over(model, chunked(parameters_.set));
     if (parameters_.kind == RecordKind::opening)
@@ -113,9 +105,9 @@ Record::Record(const Model<2>& model, const Mechanics<2>* mechanics, RecordParam
       if (items_.empty()) fail(fmt::format("is of the set \"{}\", which holds no zone", parameters_.set));
       const auto volume = zone_geometry(model).volume;
       for (int z : items_) size_.push_back(volume[z]);
+      chunks_ = model.zone_chunks().of_some(items_);
     }
   }
-  chunks_ = chunk_begins(static_cast<int>(items_.size()), [&](int i) { return items_[i]; });
   whole_ = chunked_sum(chunks_, [&](int i) { return size_[i]; });
 }
 

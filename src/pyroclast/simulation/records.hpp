@@ -91,7 +91,7 @@ class Record {
   RecordParameters parameters_;
   Mean mean_, mean_of_other_;
   std::vector<int> items_;    ///< zones or contacts, ascending
-  std::vector<int> chunks_;   ///< begin of the items of each chunk
+  ChunkList chunks_;          ///< chunks of the items
   std::vector<double> size_;  ///< size of each item, m³ or m
   double whole_ = 0.0;        ///< size of all items
   double zero_ = 0.0;

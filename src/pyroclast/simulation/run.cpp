@@ -20,7 +20,7 @@ constexpr double kMostZoneSteps = 25e6;
 
 int most_steps(const Simulation& simulation) {
   return static_cast<int>(
-      std::clamp<double>(kMostZoneSteps / simulation.model().zone_count(), 1, kMostSteps));
+      std::clamp<double>(kMostZoneSteps / simulation.model().whole_zone_count(), 1, kMostSteps));
 }
 
 std::vector<Column> row_columns() {

@@ -72,6 +72,7 @@ Model<2> make_model(const specimen::Specimen& specimen, double thickness,
   Model<2> model =
       motion ? make_concrete_model(specimen, thickness, motion->contacts.interfaces, motion->bearings)
              : make_concrete_model(specimen, thickness);
+  if (motion) model.cut_into_chunks(motion->chunk_blocks);
   add_sets(model, sets);
   return model;
 }

@@ -34,6 +34,7 @@ struct MotionParameters {
   OnCooling on_cooling = OnCooling::irreversible;
   std::optional<StressFree> stress_free;  ///< temperature without stress; else the reference temperature
   MechanicsParameters<2> mechanics;
+  int chunk_blocks = kBlocksOfAChunk;  ///< largest number of blocks in a chunk, which only tests change
 };
 
 /// Tells whether phases follow the composition of their specimen, see follow_composition.

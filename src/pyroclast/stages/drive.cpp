@@ -458,7 +458,8 @@ void Drive::begin(Simulation& simulation) {
   const EnergyLedger energy = mechanics.energy();
   kept_.first_work = energy.loading;
   kept_.most_kinetic = std::abs(energy.kinetic);
-  const Vec<2> weight = mechanics.total_weight(mechanics.set_of(simulation.model().set("specimen")));
+  const Vec<2> weight =
+      mechanics.total_weight(gridpoint_set(simulation.model(), simulation.model().set("specimen")));
   kept_.body = {simulation.model().thickness, norm(weight)};
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::release)

@@ -134,7 +134,7 @@ void Conduction<Dim>::set_nodes(ThermalNodes nodes) {
   const auto shares = zones_.shares();
   store_ = NodeEnthalpy(grid_, tables_, shares);
   volume_ = total_volumes(shares);
-  node_chunks_ = chunk_begins(nodes_.count());
+  node_chunks_ = model_.gridpoint_chunks().of_some(nodes_.gridpoint);
   total_volume_ = chunked_sum(node_chunks_, [&](int node) { return volume_[node]; });
   for (auto* field : {&trial_.increment, &trial_.before, &trial_.first_rate, &boundary_heat_, &source_heat_})
     field->assign(volume_.size(), 0.0);
@@ -218,7 +218,7 @@ void Conduction<Dim>::add_to_boundary(const Applied& applied) {
   std::vector<BoundaryPatch> patches;
   for (int node = 0; node < nodes_.count(); ++node)
     if (area[node] > 0.0) patches.push_back({node, area[node]});
-  boundary_.add(applied.condition, std::move(patches));
+  boundary_.add(applied.condition, std::move(patches), node_chunks_);
 }
 
 /// Where several hold the gridpoints of a node, the latest holds it.
@@ -347,7 +347,7 @@ void Conduction<Dim>::drop_trial() {
 
 template <int Dim>
 std::int64_t Conduction<Dim>::stages_per_batch() const {
-  return std::max<std::int64_t>(1, kZonesPerBatch / zones_.zone_count());
+  return std::max<std::int64_t>(1, kZonesPerBatch / model_.whole_zone_count());
 }
 
 template <int Dim>
@@ -358,8 +358,7 @@ void Conduction<Dim>::begin_run(double end) {
   prescribed_.clear();
   for (int node = 0; node < nodes_.count(); ++node)
     if (prescription_[node] >= 0) prescribed_.push_back(node);
-  prescribed_chunks_ =
-      chunk_begins(static_cast<int>(prescribed_.size()), [&](int i) { return prescribed_[i]; });
+  prescribed_chunks_ = node_chunks_.of_some(prescribed_);
   held_at_.resize(prescriptions_.size());
   read_prescriptions(time());
   before_run_ = {true, state_.next_step, state_.ledger.prescribed, state_.bounds, {}, {}};

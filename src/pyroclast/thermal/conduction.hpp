@@ -327,7 +327,7 @@ class Conduction {
   ThermalNodes nodes_;
   NodeEnthalpy store_;
   std::vector<double> volume_;  ///< volume of each node, m³
-  std::vector<int> node_chunks_;
+  ChunkList node_chunks_;
   double total_volume_ = 0.0;  ///< m³
 
   HeatBoundary boundary_;
@@ -338,7 +338,7 @@ class Conduction {
   std::vector<Curve> prescriptions_;
   std::vector<int> prescription_of_gridpoint_;  ///< prescription of each gridpoint, -1: free
   std::vector<int> prescribed_;                 ///< prescribed nodes, ascending
-  std::vector<int> prescribed_chunks_;
+  ChunkList prescribed_chunks_;
   std::vector<double> held_at_;  ///< temperatures by prescription, °C
 
   HeatState state_;

@@ -43,7 +43,8 @@ GapConduction<Dim>::GapConduction(const Model<Dim>& model, const std::vector<boo
       grid_(grid),
       team_(team),
       gaps_(model.contacts.size()),
-      parts_(model.contacts.size(), 0) {
+      parts_(model.contacts.size(), 0),
+      by_chunk_(contacts_by_chunk(model)) {
   const auto conducting = gridpoints_of(model, conducts);
   for (const auto& c : model.contacts) open_to_heat_.push_back(conducting[c.a] && conducting[c.b]);
   set_grid(grid);
@@ -119,7 +120,9 @@ void GapConduction<Dim>::set_nodes(const ThermalNodes& nodes) {
     if (open_to_heat_[i] && a != b) crossings_.push_back({i, a, b});
   }
   heat_.assign(crossings_.size(), 0.0);
-  chunks_ = chunk_begins(static_cast<int>(crossings_.size()), [&](int i) { return crossings_[i].contact; });
+  std::vector<int> contacts;
+  for (const Crossing& x : crossings_) contacts.push_back(x.contact);
+  crossing_ = contacts_by_chunk(by_chunk_, contacts);
   begin_.assign(static_cast<std::size_t>(nodes.count()) + 1, 0);
   for (const Crossing& x : crossings_)
     for (const int node : {x.a, x.b}) ++begin_[node + 1];
@@ -186,7 +189,7 @@ std::vector<double> GapConduction<Dim>::conductances(const std::vector<double>& 
 
 template <int Dim>
 double GapConduction<Dim>::area() const {
-  return chunked_sum(chunks_, [&](int i) { return model_.contacts[crossings_[i].contact].area; });
+  return chunked_sum(crossing_.chunks, [&](int i) { return model_.contacts[crossing_.contacts[i]].area; });
 }
 
 template <int Dim>

@@ -84,7 +84,8 @@ class GapConduction {
   std::vector<ContactGap> gaps_;     ///< gap of each contact
   std::vector<std::uint8_t> parts_;  ///< true for a contact that parts its sides
   std::vector<Crossing> crossings_;  ///< contacts between two nodes, in the order of the contacts
-  std::vector<int> chunks_;          ///< chunks of the crossings
+  ContactsByChunk by_chunk_;         ///< contacts of the body
+  ContactsByChunk crossing_;         ///< contacts of the crossings
   std::vector<double> heat_;         ///< heat flow of each crossing, from a to b, W
   std::vector<int> begin_;           ///< crossings at node i: [i] to [i + 1]
   std::vector<int> sides_;           ///< twice the crossing's index, plus one on side b

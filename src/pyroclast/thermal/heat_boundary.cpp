@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
 
 namespace pyroclast {
@@ -145,15 +144,15 @@ void require_defined(const Curve& curve, const char* quantity, double begin, dou
                             begin, end));
 }
 
-void HeatBoundary::add(const BoundaryCondition& condition, std::vector<BoundaryPatch> patches) {
+void HeatBoundary::add(const BoundaryCondition& condition, std::vector<BoundaryPatch> patches,
+                       const ChunkList& nodes) {
   std::visit(
       [](const auto& c) {
         for (const auto& [quantity, curve] : curves_of(c)) require_curve_of_time(*curve, quantity);
         require_physical(c);
       },
       condition);
-  std::vector<int> chunks =
-      chunk_begins(static_cast<int>(patches.size()), [&](int i) { return patches[i].node; });
+  ChunkList chunks = nodes.of_some(static_cast<int>(patches.size()), [&](int i) { return patches[i].node; });
   entries_.push_back({condition, std::move(patches), std::move(chunks)});
 }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/thermal/boundary_condition.hpp"
 
 namespace pyroclast {
@@ -33,10 +34,11 @@ class HeatBoundary {
  public:
   /// Adds a condition.
   /// \param patches  ascending by node
+  /// \param nodes    chunks of all nodes
   ///
   /// Throws Error naming the quantity when its curve is not one of time, a coefficient is negative, or an
   /// emissivity not between 0 and 1.
-  void add(const BoundaryCondition& condition, std::vector<BoundaryPatch> patches);
+  void add(const BoundaryCondition& condition, std::vector<BoundaryPatch> patches, const ChunkList& nodes);
   /// Takes all conditions away.
   void clear() { entries_.clear(); }
 
@@ -63,7 +65,7 @@ class HeatBoundary {
   struct Entry {
     BoundaryCondition condition;
     std::vector<BoundaryPatch> patches;
-    std::vector<int> chunks;  ///< chunks of the patches
+    ChunkList chunks;  ///< chunks of the patches
   };
   std::vector<Entry> entries_;
 };

@@ -55,7 +55,7 @@ TemperatureField::TemperatureField(const Model<2>& model)
     for (int g = model_.block_gridpoints[b]; g < model_.block_gridpoints[b + 1]; ++g)
       specimen_gridpoints_.push_back(g);
   }
-  zone_chunks_ = chunk_begins(model_.zone_count());
+  zone_chunks_ = model_.zone_chunks();
   volume_ = chunked_sum(zone_chunks_, [&](int z) { return specimen_volume_[z]; });
   contact_gridpoints_ = contact_gridpoints(model_);
 }

@@ -98,7 +98,7 @@ class TemperatureField {
   /// Gridpoints of each contact; at a platen twice the specimen's.
   std::vector<std::array<int, 2>> contact_gridpoints_;
   std::vector<double> specimen_volume_;  ///< volume of each zone, m³; 0 in the platens
-  std::vector<int> zone_chunks_;
+  ChunkList zone_chunks_;
   double volume_ = 0.0;  ///< volume of the specimen, m³
 
   Advance advance_;
