@@ -8,8 +8,8 @@ double damaged_share(const pyroclast::Mechanics<2>& body) {
   const int contacts = body.model().contact_count();
   int damaged = 0;
   for (int c = 0; c < contacts; ++c) {
-    damaged += body.remembered(c, pyroclast::Remembers::tension_damage) > 0.0 ||
-               body.remembered(c, pyroclast::Remembers::shear_damage) > 0.0;
+    damaged += body.read().remembered(c, pyroclast::Remembers::tension_damage) > 0.0 ||
+               body.read().remembered(c, pyroclast::Remembers::shear_damage) > 0.0;
   }
   return static_cast<double>(damaged) / contacts;
 }
@@ -24,10 +24,10 @@ StepCost step_cost(pyroclast::Mechanics<2>& body) {
   reset_operations();
   body.use(counting_step());
   body.advance(2);
-  body.use(pyroclast::step_functions<2>(body.instructions()));
+  body.use(pyroclast::step_functions<2>(body.body().parameters.instructions));
   const Operations done = operations();
   const auto& model = body.model();
-  const auto& layout = body.layout();
+  const auto& layout = body.body().layout;
   const auto in_use = [](int items, int packs) {
     return static_cast<double>(items) / (static_cast<double>(packs) * pyroclast::kLanes);
   };
@@ -37,7 +37,7 @@ StepCost step_cost(pyroclast::Mechanics<2>& body) {
                static_cast<double>(done.bundles) * in_use(model.zone_count(), layout.zone_packs);
   cost.bytes = arrays.moved;
   cost.working_set = arrays.working_set;
-  cost.memory = static_cast<double>(body.memory());
+  cost.memory = static_cast<double>(body.body().memory());
   return cost;
 }
 

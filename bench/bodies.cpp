@@ -49,19 +49,20 @@ void start_compression(Body& body, const Specimen& specimen, double rate) {
   const int gridpoints = model.gridpoint_count();
   for (int g = 0; g < gridpoints; ++g) {
     const bool platen = x[g][1] < 0.0 || x[g][1] > specimen.height;
-    body.prescribe_velocity(g, 0, platen ? 0.0 : kPoisson * rate * (x[g][0] - 0.5 * specimen.width));
-    body.prescribe_velocity(g, 1, -rate * std::clamp(x[g][1], 0.0, specimen.height));
+    body.constraints().prescribe_velocity(g, 0,
+                                          platen ? 0.0 : kPoisson * rate * (x[g][0] - 0.5 * specimen.width));
+    body.constraints().prescribe_velocity(g, 1, -rate * std::clamp(x[g][1], 0.0, specimen.height));
   }
-  for (int g : model.set("bottom_platen_face")) body.prescribe_velocity(g, 0, 0.0);
-  for (int g : model.set("top_platen_face")) body.prescribe_velocity(g, 0, 0.0);
+  for (int g : model.set("bottom_platen_face")) body.constraints().prescribe_velocity(g, 0, 0.0);
+  for (int g : model.set("top_platen_face")) body.constraints().prescribe_velocity(g, 0, 0.0);
   body.advance(1);
   for (int g = 0; g < gridpoints; ++g)
-    for (int i : {0, 1}) body.release(g, i);
+    for (int i : {0, 1}) body.constraints().release(g, i);
   for (int g : model.set("bottom_platen_support"))
-    for (int i : {0, 1}) body.prescribe_velocity(g, i, 0.0);
+    for (int i : {0, 1}) body.constraints().prescribe_velocity(g, i, 0.0);
   for (int g : model.set("top_platen_support")) {
-    body.prescribe_velocity(g, 0, 0.0);
-    body.prescribe_velocity(g, 1, -rate * specimen.height);
+    body.constraints().prescribe_velocity(g, 0, 0.0);
+    body.constraints().prescribe_velocity(g, 1, -rate * specimen.height);
   }
 }
 

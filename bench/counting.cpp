@@ -108,8 +108,8 @@ void reset_operations() {
 }
 
 Traffic traffic(const pyroclast::Mechanics<2>& body) {
-  const State<2>& state = body.state();
-  const Shares shares(state, body.laws());
+  const State<2>& state = body.body().state;
+  const Shares shares(state, body.body().laws);
   Traffic traffic;
   const auto add = [&](const pyroclast::ArrayInfo& info, const auto& array) {
     const auto bytes = static_cast<double>(bytes_of(array));

@@ -16,16 +16,16 @@ namespace {
 /// the internal variables of the copy, so that they break and slip as in the body's next step; where motion
 /// drifts to, no other part looks.
 void time_part(benchmark::State& state, const pyroclast::Mechanics<2>& body, const Part& part) {
-  auto storage = body.storage();
-  pyroclast::State<2> copy = body.state();
+  auto storage = body.body().arrays;
+  pyroclast::State<2> copy = body.body().state;
   pyroclast::see(copy, storage);
   std::vector<pyroclast::PackFunctions<2>> laws;
-  for (const auto* law : body.laws())
+  for (const auto* law : body.body().laws)
     laws.push_back(kNativeLaws[static_cast<std::size_t>(pyroclast::index_of(*law))]);
   copy.laws = laws.data();
-  const auto& internals = body.storage().internals;
+  const auto& internals = body.body().arrays.internals;
   pyroclast::FlatArray<double> scratch(static_cast<std::size_t>(4 * pyroclast::kLanes) *
-                                       body.layout().most_packs);
+                                       body.body().layout.most_packs);
   for (auto _ : state) {
     state.PauseTiming();
     std::copy(internals.begin(), internals.end(), copy.internals.begin());

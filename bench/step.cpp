@@ -22,7 +22,7 @@ void time_steps(benchmark::State& state, Bodies& bodies, const Specimen& specime
   const auto& model = specimen.model;
   const int steps = std::max(kLeastSteps, kZoneSteps / model.zone_count());
   for (auto _ : state) {
-    for (int g : model.set("top_platen_support")) body.prescribe_velocity(g, 1, -velocity);
+    for (int g : model.set("top_platen_support")) body.constraints().prescribe_velocity(g, 1, -velocity);
     velocity = -velocity;
     body.advance(steps);
   }

@@ -66,6 +66,8 @@ class Body {
   Body(const pyroclast::Model<2>& model, const std::vector<double>& densities,
        const pyroclast::BodyProperties& properties, const pyroclast::MechanicsParameters<2>& parameters);
 
+  /// Returns itself, so that both codes are held and driven by the same lines.
+  Body& constraints() { return *this; }
   void prescribe_velocity(int gridpoint, int component, double velocity);
   void release(int gridpoint, int component);
   /// Starts a contact as broken.

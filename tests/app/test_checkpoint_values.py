@@ -230,7 +230,8 @@ class Values(unittest.TestCase):
                 ("history.is_there", whole["history.is_there"][1:], "entries"),
                 ("history.columns", whole["history.columns"][:-1], "line's end"),
                 ("mechanics.ties_of_bundles", struct.pack("<3i", 0, 0, -3), "must be"),
-                ("mechanics.made_constraints", many + whole["mechanics.made_constraints"][4:], "bundles"),
+                ("mechanics.made_constraints", many + whole["mechanics.made_constraints"][4:],
+                 "names others"),
                 ("mechanics.set_of_contact", minus + whole["mechanics.set_of_contact"][4:], "must be 0 to"),
                 ("mechanics.law_of_set", many + whole["mechanics.law_of_set"][4:], "must be 0 to"),
                 ("mechanics.velocity", struct.pack("<d", math.nan) + whole["mechanics.velocity"][8:], "nan"),
@@ -242,7 +243,8 @@ class Values(unittest.TestCase):
                 done = subprocess.run([PROGRAM, "resume", out, "--no-figures"], capture_output=True, text=True,
                                       timeout=60, check=False)
                 self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
-                self.assertIn(f"{newest.name}: is not sound: \"{name.replace('made_', '')}\"", done.stderr)
+                at_fault = name.replace("made_constraints", "constraints_of_bundle")
+                self.assertIn(f"{newest.name}: is not sound: \"{at_fault}\"", done.stderr)
                 self.assertIn(says, done.stderr)
 
 

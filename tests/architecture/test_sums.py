@@ -11,7 +11,7 @@ SUM = re.compile(r"\bstd::(accumulate|reduce|transform_reduce|inner_product|part
 MAY = {
     "base/team.cpp",  # counts of threads and whole nanoseconds
     "deck/toml_characters.cpp",  # levels of a text
-    "mechanics/mechanics.cpp",  # entries of one ledger, each a chunked sum
+    "mechanics/totals.cpp",  # entries of one ledger, each a chunked sum
     "specimen/regularisation.cpp", "specimen/topology.cpp",  # geometry, before there is a body
     "thermal/conduction.cpp",  # parts of one node
 }

@@ -202,10 +202,10 @@ void impose(Mechanics<Dim>& m, Field displacement, int steps) {
   const auto& x = m.model().position;
   const double duration = steps * m.time_step();
   for (int g = 0; g < m.model().gridpoint_count(); ++g)
-    for (int i = 0; i < Dim; ++i) m.prescribe_velocity(g, i, displacement(x[g])[i] / duration);
+    for (int i = 0; i < Dim; ++i) m.constraints().prescribe_velocity(g, i, displacement(x[g])[i] / duration);
   m.advance(steps);
   for (int g = 0; g < m.model().gridpoint_count(); ++g)
-    for (int i = 0; i < Dim; ++i) m.prescribe_velocity(g, i, 0.0);
+    for (int i = 0; i < Dim; ++i) m.constraints().prescribe_velocity(g, i, 0.0);
   m.advance(1);
 }
 

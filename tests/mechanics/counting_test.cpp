@@ -15,7 +15,7 @@ Mechanics<2> torn(const Model<2>& model, bool counted) {
   if (counted) m.use(bench::counting_step());
   for (int g = 0; g < model.gridpoint_count(); ++g)
     if (const double y = model.position[g][1]; y == 0.0 || y == 0.05)
-      for (int i : {0, 1}) m.prescribe_velocity(g, i, y == 0.0 ? 0.0 : 5e-3);
+      for (int i : {0, 1}) m.constraints().prescribe_velocity(g, i, y == 0.0 ? 0.0 : 5e-3);
   m.advance(100);
   return m;
 }
@@ -23,10 +23,10 @@ Mechanics<2> torn(const Model<2>& model, bool counted) {
 TEST(Counting, LeavesTheBitsOfAnOrdinaryStep) {
   const Model<2> model = tessellated(60, 0.05, 0.05, 3);
   const auto counted = torn(model, true), ordinary = torn(model, false);
-  EXPECT_GT(ordinary.energy().dissipated.total(), 0.0);
-  EXPECT_TRUE(counted.displacements() == ordinary.displacements());
-  EXPECT_TRUE(counted.velocities() == ordinary.velocities());
-  EXPECT_EQ(counted.energy().dissipated.total(), ordinary.energy().dissipated.total());
+  EXPECT_GT(ordinary.totals().energy().dissipated.total(), 0.0);
+  EXPECT_TRUE(counted.read().displacements() == ordinary.read().displacements());
+  EXPECT_TRUE(counted.read().velocities() == ordinary.read().velocities());
+  EXPECT_EQ(counted.totals().energy().dissipated.total(), ordinary.totals().energy().dissipated.total());
 }
 
 TEST(Counting, ArithmeticAndRootsCountOnceALaneAndChoicesNothing) {
@@ -66,7 +66,7 @@ TEST(Counting, AnElasticContactPointCostsWhatItsEquationsSay) {
   m.advance(2);
   const int a_point = 2 + 2 * 3 + 2 + 5 + (2 * 3 + 2);
   const int normal = 1;  // one component of a face's normal is minus one of its tangent
-  EXPECT_EQ(bench::operations().faces, kLanes * m.layout().face_packs() * (2 * a_point + normal));
+  EXPECT_EQ(bench::operations().faces, kLanes * m.body().layout.face_packs() * (2 * a_point + normal));
 }
 
 TEST(Counting, CombinedDampingReadsTheForcesOfTheLastStep) {
@@ -77,10 +77,10 @@ TEST(Counting, CombinedDampingReadsTheForcesOfTheLastStep) {
   parameters.damping_form = DampingForm::combined;
   const auto combined = mechanics(model, mortar_contact(), parameters);
   const auto one = bench::traffic(local), other = bench::traffic(combined);
-  EXPECT_EQ(other.moved - one.moved, static_cast<double>(bytes_of(local.state().force)));
+  EXPECT_EQ(other.moved - one.moved, static_cast<double>(bytes_of(local.body().state.force)));
   EXPECT_EQ(other.working_set, one.working_set);
   EXPECT_GT(one.moved, one.working_set);
-  EXPECT_LT(one.working_set, static_cast<double>(local.memory()));
+  EXPECT_LT(one.working_set, static_cast<double>(local.body().memory()));
 }
 
 }  // namespace

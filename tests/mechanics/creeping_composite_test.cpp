@@ -159,7 +159,7 @@ double hoop_around_disc(const Mechanics<2>& m) {
     Vec<2> middle{};
     for (int g : model.zones[z]) middle += model.position[g] * (1.0 / 3.0);
     const double c = middle[0] / norm(middle), s = middle[1] / norm(middle);
-    const auto stress = m.stress(z);
+    const auto stress = m.read().stress(z);
     sum += geometry.volume[z] * (s * s * stress[0] + c * c * stress[1] - 2.0 * s * c * stress[2]);
     volume += geometry.volume[z];
   }
@@ -282,10 +282,10 @@ TEST(CreepVerification, OfASpecimenIsThatOfItsMatrixTimesR) {
         const double half = 0.5 * stress * std::abs(model.position[a][0] - model.position[b][0]);
         for (int g : {a, b}) force[g] += end > 0.0 ? half : -half;
       }
-  for (int g = 0; g < model.gridpoint_count(); ++g) m.apply_force(g, {{0.0, force[g]}});
+  for (int g = 0; g < model.gridpoint_count(); ++g) m.constraints().apply_force(g, {{0.0, force[g]}});
   const auto strain = [&] {
     const auto mean = [&](const char* side) {
-      return m.mean_displacement(gridpoint_set(model, model.set(side)))[1];
+      return m.totals().mean_displacement(gridpoint_set(model, model.set(side)))[1];
     };
     return (mean("top") - mean("bottom")) / 0.1;
   };

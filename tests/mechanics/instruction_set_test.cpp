@@ -19,24 +19,24 @@ template <int Dim>
 auto outcome(const Mechanics<Dim>& m) {
   std::vector<double> numbers;
   for (int c = 0; c < m.model().contact_count(); ++c) {
-    const auto state = m.contact(c);
+    const auto state = m.read().contact(c);
     numbers.insert(numbers.end(), state.internals.begin(), state.internals.end());
     numbers.insert(numbers.end(), state.losses.begin(), state.losses.end());
   }
-  const EnergyLedger e = m.energy();
-  for (double part :
-       {e.loading, e.gravity, e.property_change, e.zones, e.contacts, e.kinetic, e.local_damping,
-        e.viscous_damping, e.dissipated.total(), m.unbalanced_ratio(), m.largest_relative_jump()})
+  const EnergyLedger e = m.totals().energy();
+  for (double part : {e.loading, e.gravity, e.property_change, e.zones, e.contacts, e.kinetic,
+                      e.local_damping, e.viscous_damping, e.dissipated.total(), m.totals().unbalanced_ratio(),
+                      m.totals().largest_relative_jump()})
     numbers.push_back(part);
-  return std::tuple(m.displacements(), m.velocities(), m.forces(), numbers);
+  return std::tuple(m.read().displacements(), m.read().velocities(), m.read().forces(), numbers);
 }
 
 double damaged_share(const Mechanics<2>& m) {
   int damaged = 0;
   for (int c = 0; c < m.model().contact_count(); ++c) {
-    damaged += m.remembered(c, Remembers::tension_damage) > 0.0 ||
-               m.remembered(c, Remembers::shear_damage) > 0.0 ||
-               m.remembered(c, Remembers::mixed_damage) > 0.0;
+    damaged += m.read().remembered(c, Remembers::tension_damage) > 0.0 ||
+               m.read().remembered(c, Remembers::shear_damage) > 0.0 ||
+               m.read().remembered(c, Remembers::mixed_damage) > 0.0;
   }
   return static_cast<double>(damaged) / m.model().contact_count();
 }
@@ -67,7 +67,7 @@ Mechanics<2> cracked(const Model<2>& model, MechanicsParameters<2> parameters, I
     for (int g = 0; g < model.gridpoint_count(); ++g)
       for (int i : {0, 1})
         if (const double y = model.position[g][1]; y == 0.0 || y == 0.05)
-          m.prescribe_velocity(g, i, y == 0.0 ? 0.0 : velocity[i]);
+          m.constraints().prescribe_velocity(g, i, y == 0.0 ? 0.0 : velocity[i]);
     m.advance(400);
   };
   drive({{0.0, 5e-3}});
@@ -150,13 +150,14 @@ TEST(AnyLayout, GivesTheSameBits) {
       const auto what = testing::Message() << fewest_blocks << " blocks a bundle, " << chunk_blocks
                                            << " a chunk, " << threads << " threads";
       const auto m = run(cut, fewest_blocks, threads);
-      EXPECT_TRUE(m.displacements() == expected.displacements()) << what;
-      EXPECT_TRUE(m.velocities() == expected.velocities()) << what;
-      EXPECT_TRUE(m.forces() == expected.forces()) << what;
+      EXPECT_TRUE(m.read().displacements() == expected.read().displacements()) << what;
+      EXPECT_TRUE(m.read().velocities() == expected.read().velocities()) << what;
+      EXPECT_TRUE(m.read().forces() == expected.read().forces()) << what;
       for (int c = 0; c < model.contact_count(); ++c) {
-        ASSERT_TRUE(m.contact(c).internals == expected.contact(c).internals) << what << ", contact " << c;
+        ASSERT_TRUE(m.read().contact(c).internals == expected.read().contact(c).internals)
+            << what << ", contact " << c;
       }
-      const EnergyLedger a = m.energy(), b = expected.energy();
+      const EnergyLedger a = m.totals().energy(), b = expected.totals().energy();
       EXPECT_NEAR(a.loading, b.loading, 1e-12 * turnover(b)) << what;
       EXPECT_NEAR(a.zones, b.zones, 1e-12 * turnover(b)) << what;
       EXPECT_NEAR(a.local_damping, b.local_damping, 1e-12 * turnover(b)) << what;
@@ -173,9 +174,9 @@ TEST(EveryInstructionSet, GivesTheSameBitsInThreeDimensions) {
     // the inner one of the five, the last, is torn out of the others
     const double speed = 1e-4 / (500 * m.time_step());
     for (int g = 0; g < model.gridpoint_count(); ++g)
-      for (int i : {0, 1, 2}) m.prescribe_velocity(g, i, g / 4 == 4 ? speed * (i - 0.5) : 0.0);
+      for (int i : {0, 1, 2}) m.constraints().prescribe_velocity(g, i, g / 4 == 4 ? speed * (i - 0.5) : 0.0);
     m.advance(500);
-    EXPECT_GT(m.energy().dissipated.total(), 0.0);
+    EXPECT_GT(m.totals().energy().dissipated.total(), 0.0);
     return outcome(m);
   };
   const auto expected = run(InstructionSet::portable);
@@ -192,7 +193,7 @@ TEST(Threads, MayChangeInNumberBetweenBatches) {
     auto m = mechanics(model, mortar_contact(), parameters, 29.4e9, 0.2, team);
     for (int g = 0; g < model.gridpoint_count(); ++g)
       if (const double y = model.position[g][1]; y == 0.0 || y == 0.05)
-        m.prescribe_velocity(g, 1, y == 0.0 ? 0.0 : 5e-3);
+        m.constraints().prescribe_velocity(g, 1, y == 0.0 ? 0.0 : 5e-3);
     for (const int number : threads) {
       team->resize(number);
       m.advance(600 / static_cast<int>(threads.size()));

@@ -46,17 +46,17 @@ TEST(Arrays, EachIsInTheListThatMemoryCheckpointsAndViewsFollow) {
 template <int Dim>
 void expect_counts(const Mechanics<Dim>& body) {
   const auto expect_count = [&](const ArrayInfo& info, const auto& array) {
-    const auto count = body.layout().count_of(info.per);
+    const auto count = body.body().layout.count_of(info.per);
     if (info.per == Per::zone_pack_or_bundle) {
-      EXPECT_TRUE(array.size() == body.layout().bundles.size() ||
-                  static_cast<int>(array.size()) == body.layout().zone_packs)
+      EXPECT_TRUE(array.size() == body.body().layout.bundles.size() ||
+                  static_cast<int>(array.size()) == body.body().layout.zone_packs)
           << info.name;
     } else if (count && !array.empty()) {
       EXPECT_EQ(array.size(), *count) << info.name;
     }
   };
-  for_each_array(expect_count, static_cast<const LayoutArrays<Dim, FlatArray>&>(body.layout()));
-  for_each_array(expect_count, body.storage());
+  for_each_array(expect_count, static_cast<const LayoutArrays<Dim, FlatArray>&>(body.body().layout));
+  for_each_array(expect_count, body.body().arrays);
 }
 
 /// The same of a body that moves, and turns, and is held.
@@ -66,7 +66,7 @@ void expect_counts(const Model<Dim>& model, Kinematics kinematics) {
   parameters.kinematics = kinematics;
   parameters.gravity[Dim - 1] = -9.81;
   auto body = bodies::mechanics(model, mortar_contact(), parameters);
-  body.prescribe_velocity(0, 0, 0.0);
+  body.constraints().prescribe_velocity(0, 0, 0.0);
   body.advance(1);
   expect_counts(body);
 }

@@ -30,7 +30,7 @@ class Pair {
         textbook_(model, densities, properties, parameters) {}
 
   void prescribe_velocity(int gridpoint, int component, double velocity) {
-    mechanics_.prescribe_velocity(gridpoint, component, velocity);
+    mechanics_.constraints().prescribe_velocity(gridpoint, component, velocity);
     textbook_.prescribe_velocity(gridpoint, component, velocity);
   }
   void advance(int steps) {
@@ -62,28 +62,29 @@ Difference of_displacements(const Pair& pair) {
   Difference d;
   for (int g = 0; g < pair.mechanics().model().gridpoint_count(); ++g)
     for (int i : {0, 1})
-      d.add(pair.mechanics().displacement(g)[i], pair.textbook().gridpoints()[g].displacement[i]);
+      d.add(pair.mechanics().read().displacement(g)[i], pair.textbook().gridpoints()[g].displacement[i]);
   return d;
 }
 
 Difference of_velocities(const Pair& pair) {
   Difference d;
   for (int g = 0; g < pair.mechanics().model().gridpoint_count(); ++g)
-    for (int i : {0, 1}) d.add(pair.mechanics().velocity(g)[i], pair.textbook().gridpoints()[g].velocity[i]);
+    for (int i : {0, 1})
+      d.add(pair.mechanics().read().velocity(g)[i], pair.textbook().gridpoints()[g].velocity[i]);
   return d;
 }
 
 Difference of_stresses(const Pair& pair) {
   Difference d;
   for (int z = 0; z < pair.mechanics().model().zone_count(); ++z)
-    for (int i : {0, 1, 2}) d.add(pair.mechanics().stress(z)[i], pair.textbook().zones()[z].stress[i]);
+    for (int i : {0, 1, 2}) d.add(pair.mechanics().read().stress(z)[i], pair.textbook().zones()[z].stress[i]);
   return d;
 }
 
 Difference of_tractions(const Pair& pair) {
   Difference d;
   for (int c = 0; c < pair.mechanics().model().contact_count(); ++c) {
-    const auto ours = pair.mechanics().contact(c);
+    const auto ours = pair.mechanics().read().contact(c);
     const auto& theirs = pair.textbook().contacts()[c];
     d.add(ours.normal_traction, theirs.normal_traction);
     d.add(ours.shear_traction[0], theirs.shear_traction);
@@ -97,8 +98,9 @@ double of_damages(const Pair& pair) {
   for (int c = 0; c < pair.mechanics().model().contact_count(); ++c) {
     const auto& theirs = pair.textbook().contacts()[c];
     largest = std::max(
-        {largest, std::abs(pair.mechanics().remembered(c, Remembers::tension_damage) - theirs.tension_damage),
-         std::abs(pair.mechanics().remembered(c, Remembers::shear_damage) - theirs.shear_damage)});
+        {largest,
+         std::abs(pair.mechanics().read().remembered(c, Remembers::tension_damage) - theirs.tension_damage),
+         std::abs(pair.mechanics().read().remembered(c, Remembers::shear_damage) - theirs.shear_damage)});
   }
   return largest;
 }
@@ -107,7 +109,8 @@ double of_damages(const Pair& pair) {
 double total_damage(const Mechanics<2>& m) {
   double sum = 0.0;
   for (int c = 0; c < m.model().contact_count(); ++c)
-    sum += m.remembered(c, Remembers::tension_damage) + m.remembered(c, Remembers::shear_damage);
+    sum +=
+        m.read().remembered(c, Remembers::tension_damage) + m.read().remembered(c, Remembers::shear_damage);
   return sum;
 }
 
@@ -338,7 +341,7 @@ struct Compression {
 
   double held_by_mechanics(const Pair& p) const {
     double sum = 0.0;
-    for (int g : model.set("bottom_platen_support")) sum -= p.mechanics().force(g)[1];
+    for (int g : model.set("bottom_platen_support")) sum -= p.mechanics().read().force(g)[1];
     return sum;
   }
   double held_by_textbook(const Pair& p) const {

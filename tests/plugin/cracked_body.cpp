@@ -36,14 +36,14 @@ ContactProperties contact(const LawTable& law, double weakness) {
 std::string bits(const Mechanics<2>& body) {
   std::string all;
   const auto add = [&](double number) { all.append(reinterpret_cast<const char*>(&number), sizeof(number)); };
-  for (const auto& v : body.displacements()) add(v[0]), add(v[1]);
-  for (const auto& v : body.velocities()) add(v[0]), add(v[1]);
-  for (const auto& c : body.contacts()) {
+  for (const auto& v : body.read().displacements()) add(v[0]), add(v[1]);
+  for (const auto& v : body.read().velocities()) add(v[0]), add(v[1]);
+  for (const auto& c : body.read().contacts()) {
     add(c.normal_traction), add(c.shear_traction[0]), add(c.stored);
     for (int i = 0; i < count_of<Cohesive::Internals<2, double>>(); ++i) add(c.internals[i]);
     for (int i = 0; i < count_of<Cohesive::Losses<double>>(); ++i) add(c.losses[i]);
   }
-  const auto energy = body.energy();
+  const auto energy = body.totals().energy();
   add(energy.dissipated.total()), add(energy.contacts), add(energy.error());
   return all;
 }
@@ -75,21 +75,21 @@ int drive(int argc, char** argv) {
     // a uniform compression, which the body then goes on with by itself
     const double rate = 5e-3 / (0.5 * steps * body.time_step());
     for (int g = 0; g < model.gridpoint_count(); ++g) {
-      body.prescribe_velocity(g, 0, 0.2 * rate * (model.position[g][0] - 0.5 * width));
-      body.prescribe_velocity(g, 1, -rate * model.position[g][1]);
+      body.constraints().prescribe_velocity(g, 0, 0.2 * rate * (model.position[g][0] - 0.5 * width));
+      body.constraints().prescribe_velocity(g, 1, -rate * model.position[g][1]);
     }
     body.advance(1);
     for (int g = 0; g < model.gridpoint_count(); ++g) {
       const double y = model.position[g][1];
-      body.release(g, 0);
-      if (y > 1e-9 * height && y < (1.0 - 1e-9) * height) body.release(g, 1);
+      body.constraints().release(g, 0);
+      if (y > 1e-9 * height && y < (1.0 - 1e-9) * height) body.constraints().release(g, 1);
     }
     body.advance(steps / 2);
     const auto begin = std::chrono::steady_clock::now();
     body.advance(steps / 2);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     int damaged = 0;
-    for (const auto& c : body.contacts())
+    for (const auto& c : body.read().contacts())
       damaged += c.remembered("tension_damage") + c.remembered("shear_damage") > 0.0;
     fmt::print("{} {} damaged {:.3f}\n", name(set), sha256(bits(body)),
                static_cast<double>(damaged) / model.contact_count());

@@ -49,7 +49,7 @@ struct Made : Finished {
   }
   /// What contacts dissipated in all.
   void dissipate(double energy) {
-    const auto names = simulation->mechanics().dissipations();
+    const auto names = simulation->mechanics().body().dissipations;
     for (const auto& name : names)
       put("dissipated_" + std::string(name) + "_J", energy / static_cast<double>(names.size()));
   }
@@ -288,7 +288,7 @@ TEST(EnergyLedger, RoundingIsNoShareOfTheDissipated) {
   EXPECT_NEAR(r.summary().error_over_dissipated.value(), -0.505, 1e-9);
   EXPECT_EQ(count_of(r.summary().warnings, kOfDissipated), 1);
   // of several losses one that is not there is nothing
-  const auto losses = r.simulation->mechanics().dissipations();
+  const auto losses = r.simulation->mechanics().body().dissipations;
   ASSERT_GE(losses.size(), 2u);
   r.dissipate(2.0 * static_cast<double>(losses.size()));
   r.put("dissipated_" + std::string(losses[0]) + "_J", std::nullopt);
@@ -610,7 +610,7 @@ TEST(SummaryFile, EachNumberIsTheLastOfItsColumn) {
   EXPECT_GE(crack_columns.size(), 3u);
   for (const auto& column : crack_columns) r.put(column, value += 1.0);
   std::vector<std::string> losses;
-  for (const auto& name : r.simulation->mechanics().dissipations()) losses.emplace_back(name);
+  for (const auto& name : r.simulation->mechanics().body().dissipations) losses.emplace_back(name);
   for (const auto& name : losses) r.put("dissipated_" + name + "_J", value += 1.0);
 
   const Summary s = r.summary();

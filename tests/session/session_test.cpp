@@ -99,8 +99,8 @@ TEST(Session, ACopyInTheMiddleGoesTheSameWay) {
   finish(*copied);
   finish(*run);
   EXPECT_EQ(cells(*copied), cells(*run));
-  EXPECT_NE(copied->run().simulation().mechanics().storage().displacement.data(),
-            run->run().simulation().mechanics().storage().displacement.data());
+  EXPECT_NE(copied->run().simulation().mechanics().body().arrays.displacement.data(),
+            run->run().simulation().mechanics().body().arrays.displacement.data());
 }
 
 TEST(Session, ACopyWhereCracksHinderHeatGoesTheSameWay) {
@@ -170,7 +170,7 @@ TEST_F(Results, WhatAScriptDidIsSaidAndKeepsARunFromBeingResumed) {
   }));
   ASSERT_EQ(RunFolder::departures(folder_ / "run").size(), 1u);
   EXPECT_TRUE(RunFolder::departures(folder_ / "run").front().is_change);
-  EXPECT_LT(run->run().simulation().mechanics().energy().property_change, 0.0);
+  EXPECT_LT(run->run().simulation().mechanics().totals().energy().property_change, 0.0);
 }
 
 TEST_F(Results, ARunThatAScriptChangedIsNotResumed) {

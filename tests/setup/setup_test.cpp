@@ -244,6 +244,19 @@ std::string deck_of_many_phases() {
   return deck;
 }
 
+// Inclusions without [aggregates] in a matrix of another name bring no phase but their own.
+TEST(Phases, OfInclusionsAloneAreTheirsAndTheMatrix) {
+  std::string deck = shipped_case("starter");
+  const auto replace_all = [&](const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = deck.find(from, at)) != std::string::npos; at += to.size())
+      deck.replace(at, from.size(), to);
+  };
+  replace_all("mortar", "paste");
+  replace_all("[aggregates]", "[[inclusions]]\nshape = \"circle\"");
+  deck.insert(deck.find("[superposition]") + std::string("[superposition]").size(), "\nmatrix = \"paste\"");
+  EXPECT_EQ(phases_of(read(deck).solids), (std::vector<std::string>{"aggregate", "paste"}));
+}
+
 TEST(Phases, InAnyNumberNeedADeckAndNoCode) {
   const auto setup = read(deck_of_many_phases());
   ASSERT_EQ(phases_of(setup.solids),

@@ -80,30 +80,30 @@ void exchange(std::vector<std::unique_ptr<OfPart>>& bodies, int gridpoints) {
   for (const auto& body : bodies)
     for (int g = 0; g < body->part.model.gridpoint_count(); ++g)
       if (is_own(body->part, g)) {
-        displacement[body->part.gridpoint[g]] = body->mechanics.displacement(g);
-        velocity[body->part.gridpoint[g]] = body->mechanics.velocity(g);
+        displacement[body->part.gridpoint[g]] = body->mechanics.read().displacement(g);
+        velocity[body->part.gridpoint[g]] = body->mechanics.read().velocity(g);
       }
   for (const auto& body : bodies)
     for (int g = 0; g < body->part.model.gridpoint_count(); ++g)
       if (!is_own(body->part, g)) {
-        const int slot = body->mechanics.layout().gridpoint_slot[g];
-        body->mechanics.state().displacement[slot] = displacement[body->part.gridpoint[g]];
-        set_vector<2>(body->mechanics.state().velocity, slot, velocity[body->part.gridpoint[g]]);
+        const int slot = body->mechanics.body().layout.gridpoint_slot[g];
+        body->mechanics.body().state.displacement[slot] = displacement[body->part.gridpoint[g]];
+        set_vector<2>(body->mechanics.body().state.velocity, slot, velocity[body->part.gridpoint[g]]);
       }
 }
 
 /// Holds the lower platen and pulls the upper one up and aside.
 void drive(Mechanics<2>& mechanics, const std::vector<int>& bottom, const std::vector<int>& top) {
   for (const int g : bottom)
-    for (int i : {0, 1}) mechanics.prescribe_velocity(g, i, 0.0);
+    for (int i : {0, 1}) mechanics.constraints().prescribe_velocity(g, i, 0.0);
   for (const int g : top)
-    for (int i : {0, 1}) mechanics.prescribe_velocity(g, i, i == 0 ? 0.01 : 0.03);
+    for (int i : {0, 1}) mechanics.constraints().prescribe_velocity(g, i, i == 0 ? 0.01 : 0.03);
 }
 
 constexpr int kSteps = 600;
 
 void expect_same_layout(const Whole& whole, const OfPart& of, int chunk) {
-  const Layout<2>&there = whole.mechanics->layout(), &here = of.mechanics.layout();
+  const Layout<2>&there = whole.mechanics->body().layout, &here = of.mechanics.body().layout;
   const Part<2>& part = of.part;
   const int own = part.chunk;
   const auto first_slot = [](const Layout<2>& layout, int of_chunk) {
@@ -141,12 +141,13 @@ void expect_same_state(const Whole& whole, const OfPart& of) {
   const ChunkList chunks = part.model.gridpoint_chunks();
   for (int g = chunks[part.chunk]; g < chunks[part.chunk + 1]; ++g) {
     const int there = part.gridpoint[g];
-    ASSERT_EQ(of.mechanics.displacement(g), whole.mechanics->displacement(there)) << there;
-    ASSERT_EQ(of.mechanics.velocity(g), whole.mechanics->velocity(there)) << there;
-    ASSERT_EQ(of.mechanics.force(g), whole.mechanics->force(there)) << there;
+    ASSERT_EQ(of.mechanics.read().displacement(g), whole.mechanics->read().displacement(there)) << there;
+    ASSERT_EQ(of.mechanics.read().velocity(g), whole.mechanics->read().velocity(there)) << there;
+    ASSERT_EQ(of.mechanics.read().force(g), whole.mechanics->read().force(there)) << there;
   }
   for (int c = 0; c < part.model.contact_count(); ++c) {
-    const ContactState<2> here = of.mechanics.contact(c), there = whole.mechanics->contact(part.contact[c]);
+    const ContactState<2> here = of.mechanics.read().contact(c),
+                          there = whole.mechanics->read().contact(part.contact[c]);
     ASSERT_EQ(here.internals, there.internals) << part.contact[c];
     ASSERT_EQ(here.losses, there.losses) << part.contact[c];
   }
@@ -163,21 +164,21 @@ std::vector<Reading> readings(const std::vector<CrackKind>& kinds) {
   const auto add = [&](const char* name, auto read) { all.push_back({name, read}); };
   using M = Mechanics<2>;
   using S = GridpointSet;
-  add("zones", [](const M& m, const S&) { return m.energy().zones; });
-  add("contacts", [](const M& m, const S&) { return m.energy().contacts; });
-  add("kinetic", [](const M& m, const S&) { return m.energy().kinetic; });
-  add("loading", [](const M& m, const S&) { return m.energy().loading; });
-  add("local damping", [](const M& m, const S&) { return m.energy().local_damping; });
-  add("viscous damping", [](const M& m, const S&) { return m.energy().viscous_damping; });
-  add("gravity", [](const M& m, const S&) { return m.energy().gravity; });
+  add("zones", [](const M& m, const S&) { return m.totals().energy().zones; });
+  add("contacts", [](const M& m, const S&) { return m.totals().energy().contacts; });
+  add("kinetic", [](const M& m, const S&) { return m.totals().energy().kinetic; });
+  add("loading", [](const M& m, const S&) { return m.totals().energy().loading; });
+  add("local damping", [](const M& m, const S&) { return m.totals().energy().local_damping; });
+  add("viscous damping", [](const M& m, const S&) { return m.totals().energy().viscous_damping; });
+  add("gravity", [](const M& m, const S&) { return m.totals().energy().gravity; });
   for (const char* name : {"tension", "shear"})
-    add(name, [name](const M& m, const S&) { return m.energy().dissipated.of(name); });
+    add(name, [name](const M& m, const S&) { return m.totals().energy().dissipated.of(name); });
   for (int i : {0, 1}) {
-    add("total force", [i](const M& m, const S& s) { return m.total_force(s)[i]; });
-    add("net force", [i](const M& m, const S&) { return m.net_force()[i]; });
+    add("total force", [i](const M& m, const S& s) { return m.totals().total_force(s)[i]; });
+    add("net force", [i](const M& m, const S&) { return m.totals().net_force()[i]; });
   }
-  add("weight", [](const M& m, const S& s) { return m.total_weight(s)[1] / 9.81; });
-  add("moving mass", [](const M& m, const S& s) { return m.total_moving_mass(s); });
+  add("weight", [](const M& m, const S& s) { return m.totals().total_weight(s)[1] / 9.81; });
+  add("moving mass", [](const M& m, const S& s) { return m.totals().total_moving_mass(s); });
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     add("damaged", [k, kinds](const M& m, const S&) {
       return static_cast<double>(count_cracks(m, kinds).of_kind[k].damaged);
@@ -241,12 +242,12 @@ TEST(Parts, MeansAreOfOwnGridpoints) {
     int own = 0;
     for (const int g : all.gridpoints)
       if (is_own(part, g)) {
-        sum += body->mechanics.displacement(g);
+        sum += body->mechanics.read().displacement(g);
         ++own;
       }
     if (own == 0) continue;  // a platen
     ++with_specimen;
-    EXPECT_EQ(body->mechanics.mean_displacement(all), sum * (1.0 / own));
+    EXPECT_EQ(body->mechanics.totals().mean_displacement(all), sum * (1.0 / own));
   }
   EXPECT_GT(with_specimen, 5);
 }
@@ -264,9 +265,9 @@ TEST(Constraints, HaveOneOrder) {
       std::ranges::reverse(tied);
       for (auto& set : tied) std::ranges::reverse(set);
     }
-    for (const int g : held) m.prescribe_velocity(g, 0, 1e-3 * (g % 7));
+    for (const int g : held) m.constraints().prescribe_velocity(g, 0, 1e-3 * (g % 7));
     for (const auto& set : tied)
-      for (int i : {0, 1}) m.tie(set, forwards ? i : 1 - i);
+      for (int i : {0, 1}) m.constraints().tie(set, forwards ? i : 1 - i);
     m.advance(50);
     return m;
   };
@@ -275,12 +276,12 @@ TEST(Constraints, HaveOneOrder) {
     const auto* const first = reinterpret_cast<const char*>(array.data());
     return std::string(first, first + array.size() * sizeof(*array.data()));
   };
-  EXPECT_EQ(bytes(a.state().constraints), bytes(b.state().constraints));
-  EXPECT_EQ(bytes(a.state().constraint_packs), bytes(b.state().constraint_packs));
-  EXPECT_EQ(bytes(a.state().constraints_of_bundle), bytes(b.state().constraints_of_bundle));
-  EXPECT_EQ(bytes(a.state().ties), bytes(b.state().ties));
-  EXPECT_EQ(bytes(a.state().tied_slots), bytes(b.state().tied_slots));
-  EXPECT_EQ(bytes(a.state().displacement), bytes(b.state().displacement));
+  EXPECT_EQ(bytes(a.body().state.constraints), bytes(b.body().state.constraints));
+  EXPECT_EQ(bytes(a.body().state.constraint_packs), bytes(b.body().state.constraint_packs));
+  EXPECT_EQ(bytes(a.body().state.constraints_of_bundle), bytes(b.body().state.constraints_of_bundle));
+  EXPECT_EQ(bytes(a.body().state.ties), bytes(b.body().state.ties));
+  EXPECT_EQ(bytes(a.body().state.tied_slots), bytes(b.body().state.tied_slots));
+  EXPECT_EQ(bytes(a.body().state.displacement), bytes(b.body().state.displacement));
 }
 
 // -- Heat --------------------------------------------------------------------------------------------------

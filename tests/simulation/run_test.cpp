@@ -224,12 +224,13 @@ TEST(Run, AnotherBodyWithItsStateGoesOnAlike) {
       resumed.run.visit_state(copy);
       resumed.run.run();
       expect_same(whole.run.history(), resumed.run.history());
-      EXPECT_EQ(whole.simulation->mechanics().displacements(),
-                resumed.simulation->mechanics().displacements());
-      EXPECT_EQ(whole.simulation->mechanics().stresses(), resumed.simulation->mechanics().stresses());
+      EXPECT_EQ(whole.simulation->mechanics().read().displacements(),
+                resumed.simulation->mechanics().read().displacements());
+      EXPECT_EQ(whole.simulation->mechanics().read().stresses(),
+                resumed.simulation->mechanics().read().stresses());
       for (int z = 0; z < whole.simulation->model().zone_count(); ++z)
-        ASSERT_EQ(whole.simulation->mechanics().creep_strain(z),
-                  resumed.simulation->mechanics().creep_strain(z));
+        ASSERT_EQ(whole.simulation->mechanics().read().creep_strain(z),
+                  resumed.simulation->mechanics().read().creep_strain(z));
       for (std::size_t stage = 0; stage < whole.run.courses().size(); ++stage)
         EXPECT_EQ(report_of(whole, stage).lines, report_of(resumed, stage).lines);
     }

@@ -134,13 +134,13 @@ TEST(Acting, ReactionsAreShared) {
     Vec<2> all{};
     for (int g = 0; g < run.simulation->model().gridpoint_count(); ++g)
       for (const int c : {0, 1})
-        if (mechanics.is_prescribed(g, c)) all[c] -= mechanics.force(g)[c];
+        if (mechanics.read().is_prescribed(g, c)) all[c] -= mechanics.read().force(g)[c];
     EXPECT_NEAR(run.last("bottom_x_N") + run.last("left_x_N"), all[0], 1e-12 * std::abs(all[0]));
     EXPECT_NEAR(run.last("bottom_y_N") + run.last("left_y_N"), all[1], 1e-12 * std::abs(all[1]));
     EXPECT_NEAR(all[0], 1e5 * kHeight, 5.0);
     EXPECT_EQ(run.last("left_y_N"), 0.0);  // the corner's belongs to the bottom, which holds it
     const int corner = run.simulation->model().set("corner").front();
-    const double bottom_alone = -mechanics.force(corner)[0];
+    const double bottom_alone = -mechanics.read().force(corner)[0];
     if (left_shares) {
       EXPECT_EQ(run.simulation->supports().holders(corner, 0), 2);
       EXPECT_NE(bottom_alone, 0.0);

@@ -62,7 +62,7 @@ TEST(DriveVerification, WhatTensionDissipatesIsTheFractureEnergyOfWhatCrackedOfE
   const Mechanics<2>& mechanics = run.simulation->mechanics();
   double lost = 0.0, most = 0.0;
   for (int c = 0; c < mechanics.model().contact_count(); ++c) {
-    const double share = mechanics.remembered(c, Remembers::tension_damage);
+    const double share = mechanics.read().remembered(c, Remembers::tension_damage);
     lost += kEnergy * mechanics.model().contacts[c].area * share;
     most = std::max(most, share);
   }
@@ -468,20 +468,20 @@ TEST(Drive, AFollowerTurnsWithTheBodyAndADeadLoadDoesNot) {
     Vec<2> before{};
     std::vector<int> once = right;
     sort_unique(once);
-    for (int g : once) before += mechanics.applied_force(g);
+    for (int g : once) before += mechanics.read().applied_force(g);
     EXPECT_NEAR(before[0], -1e6 * kHeight, 1e-3);
     EXPECT_NEAR(before[1], 0.0, 1e-3);
     // a quarter turn about the origin, in one step
     const double step = mechanics.time_step();
     for (int g = 0; g < simulation.model().gridpoint_count(); ++g) {
       const Vec<2> x = simulation.model().position[g];
-      mechanics.prescribe_velocity(g, 0, (-x[1] - x[0]) / step);
-      mechanics.prescribe_velocity(g, 1, (x[0] - x[1]) / step);
+      mechanics.constraints().prescribe_velocity(g, 0, (-x[1] - x[0]) / step);
+      mechanics.constraints().prescribe_velocity(g, 1, (x[0] - x[1]) / step);
     }
     mechanics.advance(1);
     simulation.loads().set({});
     Vec<2> after{};
-    for (int g : once) after += mechanics.applied_force(g);
+    for (int g : once) after += mechanics.read().applied_force(g);
     EXPECT_NEAR(after[follows ? 1 : 0], -1e6 * kHeight, 1e-3);
     EXPECT_NEAR(after[follows ? 0 : 1], 0.0, 1e-3);
   }

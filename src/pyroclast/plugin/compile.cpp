@@ -23,6 +23,7 @@
 #include "pyroclast/base/read_file.hpp"
 #include "pyroclast/base/sha256.hpp"
 #include "pyroclast/plugin/build_settings.hpp"
+#include "pyroclast/plugin/cpp_lines.hpp"
 #include "pyroclast/plugin/stamp.hpp"
 
 namespace pyroclast {
@@ -35,30 +36,6 @@ void write(const fs::path& file, const std::string& text) {
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
   stream << text;
   if (!stream.flush()) throw Error(fmt::format("{}: cannot be written", file.string()));
-}
-
-/// C++ without comments and the text of literals, each as one blank.
-std::string bare(const std::string& text) {
-  std::string code;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto skip_to = [&](std::string_view end) {
-      const auto at = text.find(end, i + 2);
-      i = at == std::string::npos ? text.size() : at + end.size();
-      code += ' ';
-    };
-    if (text.compare(i, 2, "//") == 0) {
-      skip_to("\n");
-    } else if (text.compare(i, 2, "/*") == 0) {
-      skip_to("*/");
-    } else if (text[i] == '"') {
-      for (++i; i < text.size() && text[i] != '"'; ++i) i += text[i] == '\\';
-      ++i;
-      code += ' ';
-    } else {
-      code += text[i++];
-    }
-  }
-  return code;
 }
 
 /// Names, and every other character alone.
@@ -190,7 +167,7 @@ extern "C" [[gnu::visibility("default")]] const pyroclast_law* pyroclast_law_v1(
 }  // namespace
 
 std::string law_type(const fs::path& header, const std::string& text) {
-  const auto words = words_of(bare(text));
+  const auto words = words_of(without_literals(text));
   std::vector<std::string> scopes;  // of each open brace; empty where it is of neither namespace nor struct
   std::vector<std::string> types;
   std::string opens;  // what the next brace opens

@@ -95,7 +95,7 @@ const std::map<std::string, CopyOf>& copies() {
          return filled<int>(s.model().block_material, 0, [](int material, py::ssize_t) { return material; });
        }},
       {"slot", [](const Simulation& s) {
-         return filled<int>(mechanics_of(s).layout().gridpoint_slot, 0,
+         return filled<int>(mechanics_of(s).body().layout.gridpoint_slot, 0,
                             [](int slot, py::ssize_t) { return slot; });
        }}};
   return all;
@@ -116,7 +116,7 @@ py::array members(const Simulation& simulation, const std::string& set, bool of_
 
 py::array view(const Simulation& simulation, const std::string& what, const py::object& owner) {
   const ViewOf make = of(views(), what);
-  return make(mechanics_of(simulation).storage(), owner);
+  return make(mechanics_of(simulation).body().arrays, owner);
 }
 
 py::array copied(const Simulation& simulation, const std::string& what) {
@@ -146,7 +146,7 @@ py::dict contact_points(const Simulation& simulation) {
   py::list interface, law;
   for (int i = 0; i < model.contact_count(); ++i) {
     interface.append(model.interface_names[static_cast<std::size_t>(model.contacts[i].interface)]);
-    law.append(mechanics.law_of(i).name);
+    law.append(mechanics.body().law_of(i).name);
   }
   py::dict all;
   all["interface"] = interface;

@@ -7,7 +7,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/python/bindings.hpp"
-#include "pyroclast/python/body.hpp"
+#include "pyroclast/python/lent_body.hpp"
 #include "pyroclast/simulation/coupling.hpp"
 
 namespace pyroclast::python {
@@ -83,9 +83,9 @@ class PythonStage : public Stage {
   template <class Act>
   std::invoke_result_t<Act, const py::object&> with_body(Simulation& simulation, Act act) {
     const py::gil_scoped_acquire gil;
-    const auto lent = std::make_shared<Body>(Body{&simulation});
+    const auto lent = std::make_shared<LentBody>(LentBody{&simulation});
     struct Return {
-      Body& body;
+      LentBody& body;
       ~Return() { body.simulation = nullptr; }
     } at_the_end{*lent};
     return act(py::cast(lent));
@@ -146,13 +146,13 @@ StageKind kind_of(const py::object& type) {
 
 }  // namespace
 
-Simulation& Body::get() const {
+Simulation& LentBody::get() const {
   if (!simulation) throw Error("the body is lent to a stage for one call, and that call is over");
   return *simulation;
 }
 
 /// Throws Error where there is none.
-Press<2>& press_of(const Body& body) {
+Press<2>& press_of(const LentBody& body) {
   if (!body.get().has_press()) throw Error("this body has no press: the deck has no table [platens]");
   return body.get().press();
 }
@@ -166,14 +166,14 @@ StageRegistry kinds_with(const py::list& classes) {
 void bind_stages(py::module_& m) {
   using Press = pyroclast::Press<2>;
   const auto press = [](auto method) {
-    return [method](const Body& body) { return (press_of(body).*method)(); };
+    return [method](const LentBody& body) { return (press_of(body).*method)(); };
   };
-  py::class_<Body, std::shared_ptr<Body>>(
+  py::class_<LentBody, std::shared_ptr<LentBody>>(
       m, "Body",
       "The body and its press, lent to a stage for the time of one call. All is SI, temperatures in degC.")
       .def(
           "advance",
-          [](const Body& body, int steps) {
+          [](const LentBody& body, int steps) {
             Simulation& simulation = body.get();
             if (steps < 0) throw Error("the number of steps must not be negative");
             const py::gil_scoped_release no_gil;
@@ -181,18 +181,18 @@ void bind_stages(py::module_& m) {
           },
           py::arg("steps"), "Takes so many steps of the mechanics.")
       .def(
-          "drive", [](const Body& body, double velocity) { press_of(body).control_by_motion(velocity); },
+          "drive", [](const LentBody& body, double velocity) { press_of(body).control_by_motion(velocity); },
           py::arg("velocity"), "Moves the upper platen down at a velocity [m/s]; negative: up.")
       .def(
           "hold",
-          [](const Body& body, double stress) {
+          [](const LentBody& body, double stress) {
             press_of(body).control_by_force();
             press_of(body).hold(stress);
           },
           py::arg("stress"), "Moves the upper platen by a force alone: a stress [Pa] times the area.")
       .def(
           "set_temperature",
-          [](const Body& body, double temperature) {
+          [](const LentBody& body, double temperature) {
             Simulation& simulation = body.get();
             simulation.field().set_uniform(temperature);
             simulation.hand_over();
@@ -205,16 +205,17 @@ void bind_stages(py::module_& m) {
       .def_property_readonly("gap", press(&Press::gap), "Between platens and specimen [m].")
       .def_property_readonly("height", press(&Press::height), "Of the specimen [m].")
       .def_property_readonly(
-          "temperature", [](const Body& body) { return body.get().field().mean(); },
+          "temperature", [](const LentBody& body) { return body.get().field().mean(); },
           "Mean of the specimen [degC].")
       .def_property_readonly(
-          "time_step", [](const Body& body) { return body.get().mechanics().time_step(); },
+          "time_step", [](const LentBody& body) { return body.get().mechanics().time_step(); },
           "Of the mechanics [s].")
       .def_property_readonly(
-          "steps", [](const Body& body) { return body.get().mechanics().steps(); },
+          "steps", [](const LentBody& body) { return body.get().mechanics().steps(); },
           "Of the mechanics so far.")
       .def_property_readonly(
-          "unbalanced_ratio", [](const Body& body) { return body.get().mechanics().unbalanced_ratio(); },
+          "unbalanced_ratio",
+          [](const LentBody& body) { return body.get().mechanics().totals().unbalanced_ratio(); },
           "Mean unbalanced force over mean force [1].");
 }
 

@@ -95,7 +95,7 @@ std::string body_hash(const Simulation& simulation) {
   hash.add(frames);
   for (const auto& name : model.interface_names) hash.add(name);
   if (simulation.moves())
-    for (const LawTable* law : simulation.mechanics().laws()) {
+    for (const LawTable* law : simulation.mechanics().body().laws) {
       hash.add(std::string(law->name));
       for (const InternalInfo& number : law->internals(2)) hash.add(std::string(number.name));
       for (const LossInfo& loss : law->losses) hash.add(std::string(loss.name));

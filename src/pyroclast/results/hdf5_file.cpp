@@ -24,12 +24,12 @@ struct Handle {
 };
 
 /// A list of properties.
-class Properties {
+class PropertyList {
  public:
-  explicit Properties(hid_t kind) : id_(H5Pcreate(kind)) {}
-  ~Properties() { H5Pclose(id_); }
-  Properties(const Properties&) = delete;
-  Properties& operator=(const Properties&) = delete;
+  explicit PropertyList(hid_t kind) : id_(H5Pcreate(kind)) {}
+  ~PropertyList() { H5Pclose(id_); }
+  PropertyList(const PropertyList&) = delete;
+  PropertyList& operator=(const PropertyList&) = delete;
   operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor)
 
  private:
@@ -37,9 +37,9 @@ class Properties {
 };
 
 /// Of something new, without the times at which it is written: equal runs give equal files.
-class Untimed : public Properties {
+class Untimed : public PropertyList {
  public:
-  explicit Untimed(hid_t kind) : Properties(kind) { H5Pset_obj_track_times(*this, false); }
+  explicit Untimed(hid_t kind) : PropertyList(kind) { H5Pset_obj_track_times(*this, false); }
 };
 
 }  // namespace
@@ -48,7 +48,7 @@ Hdf5File::Hdf5File(std::filesystem::path path) : path_(std::move(path)) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   // It grows in memory and is written by us: the library does not survive a disk that fills up below it.
   constexpr std::size_t kGrowth = std::size_t{1} << 20;
-  const Properties access(H5P_FILE_ACCESS);
+  const PropertyList access(H5P_FILE_ACCESS);
   H5Pset_fapl_core(access, kGrowth, false);
   file_ =
       H5Fcreate(path_.empty() ? "nowhere" : path_.c_str(), H5F_ACC_TRUNC, Untimed(H5P_FILE_CREATE), access);

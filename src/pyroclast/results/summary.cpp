@@ -69,7 +69,7 @@ std::optional<double> error_over_dissipated(const History& history, const Simula
   const auto of_turnover = energy_error(history, history.row_count());
   if (!of_turnover || !simulation.moves()) return std::nullopt;
   std::set<std::string> names;
-  for (const LawTable* law : simulation.mechanics().laws())
+  for (const LawTable* law : simulation.mechanics().body().laws)
     for (const LossInfo& loss : law->losses)
       if (loss.is_energy()) names.insert(loss.name);
   double dissipated = 0.0;
@@ -213,7 +213,7 @@ void add_motion(OrderedJson& json, const Summary& summary, const Run& run) {
   const Simulation& simulation = run.simulation();
   const History& history = run.history();
   json["energy_J"] = last_values(kEnergies, history);
-  for (const auto& name : simulation.mechanics().dissipations())
+  for (const auto& name : simulation.mechanics().body().dissipations)
     json["energy_J"][fmt::format("dissipated_{}", name)] =
         json_of(last_of(history, fmt::format("dissipated_{}_J", name).c_str()));
   json["energy_J"]["error_over_turnover"] = json_of(summary.energy_error);
@@ -354,7 +354,8 @@ Summary summarize(const Run& run, std::span<const Reference> references) {
   if (s.heat_error && *s.heat_error > kHeatTolerance)
     s.warnings.push_back(
         fmt::format("the heat ledger closes only within {:.2g} of its largest term", *s.heat_error));
-  const bool is_small = simulation.moves() && simulation.mechanics().kinematics() == Kinematics::small;
+  const bool is_small =
+      simulation.moves() && simulation.mechanics().body().parameters.kinematics == Kinematics::small;
   if (const auto row = is_small ? large_jump(run, s) : std::nullopt)
     s.warnings.push_back(fmt::format(
         "jumps exceed an edge from {:.0f} degC{} on, before the results were decided: with "

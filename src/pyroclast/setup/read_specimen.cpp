@@ -756,6 +756,13 @@ void check_phases(const Section& s, const specimen::SpecimenParameters& p,
       s.error(fmt::format("\"{}\" is the solid of a bearing; a phase needs another name", phase));
 }
 
+/// Returns the phase of the first of these inclusions.
+std::string first_phase(const specimen::Inclusions& inclusions) {
+  if (const auto* fibres = std::get_if<specimen::FibreParameters>(&inclusions)) return fibres->phase;
+  const auto& circles = std::get<specimen::AggregateParameters>(inclusions);
+  return circles.stones.empty() ? circles.phase : circles.stones.front().phase;
+}
+
 }  // namespace
 
 specimen::SpecimenParameters read_specimen(const Section& root, const std::filesystem::path& folder,
@@ -795,7 +802,7 @@ specimen::SpecimenParameters read_specimen(const Section& root, const std::files
     return p;
   }
   const Section superposition = root.section("superposition", kSuperposition);
-  if (!aggregates) p.aggregates.phase = specimen::phases(p).at(1);  // that of the first inclusions
+  if (!aggregates) p.aggregates.phase = first_phase(p.inclusions.front());
   p.matrix = superposition.text("matrix", p.matrix, kMatrix);
   check_phases(superposition, p, bearings);
   p.superposition = superposition.choice<specimen::Superposition>(

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/setup/read_frame.hpp"
 #include "pyroclast/stages/exchange_stage.hpp"

@@ -36,9 +36,9 @@ std::vector<ContactGap> contact_gaps(const Model<Dim>& model, const std::vector<
     }
   if (mechanics == nullptr) return gaps;
   for (int i = 0; i < model.contact_count(); ++i) {
-    gaps[i].opening += std::max(mechanics->opening(i), 0.0);
+    gaps[i].opening += std::max(mechanics->read().opening(i), 0.0);
     for (const auto damage : {Remembers::tension_damage, Remembers::mixed_damage})
-      gaps[i].damage = std::max(gaps[i].damage, mechanics->remembered(i, damage));
+      gaps[i].damage = std::max(gaps[i].damage, mechanics->read().remembered(i, damage));
   }
   return gaps;
 }

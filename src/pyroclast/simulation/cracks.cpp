@@ -21,7 +21,8 @@ const char* name_of(Remembers damage) {
 const LawTable* law_of_interface(const Mechanics<2>& mechanics, int interface) {
   const auto& contacts = mechanics.model().contacts;
   const auto first = std::ranges::find(contacts, interface, &Contact<2>::interface);
-  return first == contacts.end() ? nullptr : &mechanics.law_of(static_cast<int>(first - contacts.begin()));
+  return first == contacts.end() ? nullptr
+                                 : &mechanics.body().law_of(static_cast<int>(first - contacts.begin()));
 }
 
 /// Bits of a contact point by mode: has damage, is broken.
@@ -47,14 +48,14 @@ bool all_zero(const double* lanes) {
 /// The bits of the contact point of each slot. It goes over the internal variables as they stand: most points
 /// have no damage, and to ask one by one costs more than all else of a look.
 std::vector<std::uint8_t> damages(const Mechanics<2>& mechanics) {
-  const auto& layout = mechanics.layout();
-  const auto& state = mechanics.state();
+  const auto& layout = mechanics.body().layout;
+  const auto& state = mechanics.body().state;
   struct Place {
     std::size_t line, mode;
   };
   std::vector<std::vector<Place>>
       places;  // of each law, where the internal variables of a point have its damages
-  for (const LawTable* law : mechanics.laws())
+  for (const LawTable* law : mechanics.body().laws)
     for (auto& of_law = places.emplace_back(); const InternalInfo& info : law->internals(2))
       if (const std::size_t mode = mode_of(info.what); mode < std::size(kCrackModes))
         of_law.push_back({static_cast<std::size_t>(&info - law->internals(2).data()), mode});
@@ -62,7 +63,7 @@ std::vector<std::uint8_t> damages(const Mechanics<2>& mechanics) {
                                  kLanes);
   for (int pack = 0; pack < layout.face_packs(); ++pack) {
     const std::uint8_t law = state.law_of_faces[pack];
-    const std::size_t lines_of_point = mechanics.laws()[law]->internals(2).size();
+    const std::size_t lines_of_point = mechanics.body().laws[law]->internals(2).size();
     const Line* const lines = state.internals.data() + state.first_internal[pack];
     const int first = layout.first_point_of(pack);
     for (int point = first; point < layout.first_point_of(pack + 1); ++point) {
@@ -120,7 +121,7 @@ std::vector<CrackKind> crack_kinds(const Mechanics<2>& mechanics) {
 
 Cracks count_cracks(const Mechanics<2>& mechanics, const std::vector<CrackKind>& kinds) {
   const auto& model = mechanics.model();
-  const auto& layout = mechanics.layout();
+  const auto& layout = mechanics.body().layout;
   struct Counted {
     std::size_t kind, mode;
   };
@@ -142,7 +143,9 @@ Cracks count_cracks(const Mechanics<2>& mechanics, const std::vector<CrackKind>&
       apart = apart || kinds[kind].damage != Remembers::shear_damage;
     }
     if (!apart) return;
-    sum.opening += std::max(0.0, mechanics.opening(c) + mechanics.remembered(c, Remembers::closure)) * length;
+    sum.opening +=
+        std::max(0.0, mechanics.read().opening(c) + mechanics.read().remembered(c, Remembers::closure)) *
+        length;
     sum.length += length;
   });
   sums.of_kind.resize(kinds.size());

@@ -33,7 +33,8 @@ double shortening(const Simulation& simulation) {
 /// What the body as a whole is out of equilibrium by, as a stress on its section, Pa.
 double imbalance(const Simulation& simulation) {
   if (!simulation.has_press()) {
-    return norm(simulation.mechanics().net_force()) / (simulation.body_size() * simulation.model().thickness);
+    return norm(simulation.mechanics().totals().net_force()) /
+           (simulation.body_size() * simulation.model().thickness);
   }
   const Press<2>& press = simulation.press();
   return std::abs(press.stress_top() - press.stress_bottom());
@@ -118,12 +119,12 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
 bool Exchange::is_still(const Simulation& simulation) const {
   const Mechanics<2>& mechanics = simulation.mechanics();
   if (imbalance(simulation) >= coupling_.platen_difference) return false;
-  if (mechanics.unbalanced_ratio() < coupling_.unbalanced_ratio) return true;
+  if (mechanics.totals().unbalanced_ratio() < coupling_.unbalanced_ratio) return true;
   // A body that expands freely bears nothing to compare with. What is out of balance at each block alike, as
   // where all of it still grows, adds up over the body.
   const double block = specimen::block_size(simulation.specimen());
   return !simulation.has_press() &&
-         mechanics.mean_unbalanced_force() * (simulation.body_size() / block) <
+         mechanics.totals().mean_unbalanced_force() * (simulation.body_size() / block) <
              kAsGoodAsNone * coupling_.platen_difference * block * simulation.model().thickness;
 }
 

@@ -27,7 +27,7 @@ bool moves(const S& s) {
   return s.moves();
 }
 bool creeps(const S& s) {
-  return s.moves() && s.mechanics().creeps();
+  return s.moves() && s.mechanics().body().creeps();
 }
 bool parts_heat(const S& s) {
   return s.moves() && s.cracks_hinder_heat();
@@ -49,11 +49,11 @@ void put(double* to, const SymmetricTensor<2>& t, double across) {
 
 /// What a zone has crept, and across the plane that which acts on nothing.
 std::pair<SymmetricTensor<2>, double> creep_of(const R& r, int zone) {
-  if (!r.mechanics().creeps()) return {};
+  if (!r.mechanics().body().creeps()) return {};
   const Model<2>& model = r.model();
   const auto& creep =
       r.simulation().materials().solids[model.block_material[model.block_of(model.zones[zone][0])]].creep;
-  const auto strain = r.mechanics().creep_strain(zone);
+  const auto strain = r.mechanics().read().creep_strain(zone);
   return {strain, creep ? creep_across(strain, creep->choices.poisson) : 0.0};
 }
 
@@ -61,7 +61,7 @@ std::pair<SymmetricTensor<2>, double> creep_of(const R& r, int zone) {
 /// stress there.
 void put_strain(R& r, int zone, double* to) {
   const SymmetricTensor<2>& stress = r.stress(zone);
-  const ZoneProperties properties = r.mechanics().properties_of_zone(zone);
+  const ZoneProperties properties = r.mechanics().read().properties_of_zone(zone);
   const auto [creep, creep_across] = creep_of(r, zone);
   const double in_plane = (stress[0] + stress[1]) / (2.0 * (properties.lambda + properties.mu));
   const auto direct = [&](double s) { return (s - properties.lambda * in_plane) / (2.0 * properties.mu); };
@@ -74,7 +74,7 @@ void put_strain(R& r, int zone, double* to) {
 /// The traction on a contact as the stress in its direction: σ n n + τ (n t + t n).
 void put_contact_stress(R& r, int contact, double* to) {
   const ContactState<2>& state = r.contact(contact);
-  const ContactFrame<2> frame = r.mechanics().frame_of_forces(contact);
+  const ContactFrame<2> frame = r.mechanics().read().frame_of_forces(contact);
   const auto &n = frame.normal, &t = frame.tangents[0];
   const double normal = state.normal_traction, shear = state.shear_traction[0];
   put(to,
@@ -88,7 +88,7 @@ void put_contact_stress(R& r, int contact, double* to) {
 double crack(const R& r, int contact) {
   if (r.model().is_of_bearing(r.model().contacts[contact])) return 0.0;
   double most = 0.0;
-  for (const auto mode : kCrackModes) most = std::max(most, r.mechanics().remembered(contact, mode));
+  for (const auto mode : kCrackModes) most = std::max(most, r.mechanics().read().remembered(contact, mode));
   return most;
 }
 
@@ -102,7 +102,7 @@ double temperature_jump(const R& r, int contact) {
 void put_end(R& r, int end, double* to) {
   const auto mean = [&](int contact) {
     const auto& c = r.model().contacts[contact];
-    return 0.5 * (r.mechanics().displacement(c.a) + r.mechanics().displacement(c.b));
+    return 0.5 * (r.mechanics().read().displacement(c.a) + r.mechanics().read().displacement(c.b));
   };
   const int contact = end / 2;
   const Vec<2> here = mean(contact);
@@ -124,12 +124,13 @@ struct KnownField {
 
 constexpr auto kOfBlocks = std::to_array<KnownField>({
     {"displacement", unit::length, Item::gridpoint, ValueKind::vector, true, moves,
-     [](R& r, int i, double* to) { put(to, r.mechanics().displacement(i)); },
+     [](R& r, int i, double* to) { put(to, r.mechanics().read().displacement(i)); },
      "since the start; not in runs of heat alone"},
     {"velocity", unit::velocity, Item::gridpoint, ValueKind::vector, false, moves,
-     [](R& r, int i, double* to) { put(to, r.mechanics().velocity(i)); }, "in the middle of the last step"},
+     [](R& r, int i, double* to) { put(to, r.mechanics().read().velocity(i)); },
+     "in the middle of the last step"},
     {"force", unit::force, Item::gridpoint, ValueKind::vector, false, moves,
-     [](R& r, int i, double* to) { put(to, r.mechanics().force(i)); },
+     [](R& r, int i, double* to) { put(to, r.mechanics().read().force(i)); },
      "sum of all forces at the last step; where the motion is held, minus the reaction"},
     {"stress", unit::stress, Item::zone, ValueKind::tensor, true, moves,
      [](R& r, int i, double* to) { put(to, r.stress(i), 0.0); }, "of a zone"},
@@ -206,9 +207,9 @@ std::vector<const LawTable*> laws_in_order(const Mechanics<2>& mechanics) {
   std::vector<const LawTable*> laws;
   const LawTable* last = nullptr;
   for (int i = 0; i < mechanics.model().contact_count(); ++i) {
-    const LawTable* const law = &mechanics.law_of(i);
+    const LawTable* const law = &mechanics.body().law_of(i);
     if (std::exchange(last, law) != law && std::ranges::find(laws, law) == laws.end()) laws.push_back(law);
-    if (laws.size() == mechanics.laws().size()) break;
+    if (laws.size() == mechanics.body().laws.size()) break;
   }
   return laws;
 }
@@ -264,12 +265,12 @@ int components_of(ValueKind kind) {
 }
 
 const ContactState<2>& FieldReader::contact(int contact) {
-  if (std::exchange(contact_, contact) != contact) state_ = mechanics().contact(contact);
+  if (std::exchange(contact_, contact) != contact) state_ = mechanics().read().contact(contact);
   return state_;
 }
 
 const SymmetricTensor<2>& FieldReader::stress(int zone) {
-  if (std::exchange(zone_, zone) != zone) stress_ = mechanics().stress(zone);
+  if (std::exchange(zone_, zone) != zone) stress_ = mechanics().read().stress(zone);
   return stress_;
 }
 

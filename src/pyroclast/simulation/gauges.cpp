@@ -69,7 +69,8 @@ struct Motion {
 };
 
 Motion measure_motion(const Mechanics<2>& mechanics) {
-  return {mechanics.unbalanced_ratio(), mechanics.largest_relative_jump(), mechanics.energy()};
+  return {mechanics.totals().unbalanced_ratio(), mechanics.totals().largest_relative_jump(),
+          mechanics.totals().energy()};
 }
 
 constexpr auto kMotion = std::to_array<ColumnOf<Motion>>({
@@ -100,7 +101,7 @@ void for_each_energy(std::size_t dissipations, OfEntry of_entry, OfDissipated of
 Gauge motion_gauge(const Mechanics<2>& mechanics) {
   Gauge gauge;
   for (const auto& column : kMotion) gauge.columns.push_back({column.name, column.unit});
-  const auto names = mechanics.dissipations();
+  const auto names = mechanics.body().dissipations;
   for_each_energy(
       names.size(),
       [&](const auto& entry) {

@@ -86,7 +86,7 @@ void Loads<Dim>::set(const std::map<std::string, SetLoad<Dim>>& loads) {
     const Entry& changed = entry(set);
     for (int g : changed.set.gridpoints)
       for (int i = 0; i < Dim; ++i)
-        if (load.force[i] != 0.0 && mechanics_.is_prescribed(g, i))
+        if (load.force[i] != 0.0 && mechanics_.read().is_prescribed(g, i))
           throw Error(fmt::format(
               "a force along {} on set \"{}\" acts on gridpoints that are held or driven along {}", "xyz"[i],
               set, "xyz"[i]));
@@ -109,7 +109,7 @@ std::vector<Vec<Dim>> Loads<Dim>::forces(const Entry& entry) const {
     std::array<Vec<Dim>, Dim> x;
     for (int i = 0; i < Dim; ++i) {
       x[i] = model.position[face[i]];
-      if (entry.load.is_follower) x[i] += mechanics_.displacement(face[i]);
+      if (entry.load.is_follower) x[i] += mechanics_.read().displacement(face[i]);
     }
     const Vec<Dim> share = -entry.load.pressure * share_of_corner(x, model.thickness);
     for (int g : face) result[std::ranges::lower_bound(gridpoints, g) - gridpoints.begin()] += share;
@@ -124,7 +124,7 @@ void Loads<Dim>::apply() {
     const auto of_entry = forces(entry);
     for (std::size_t i = 0; i < of_entry.size(); ++i) on[entry.places[i]] += of_entry[i];
   }
-  for (std::size_t i = 0; i < on.size(); ++i) mechanics_.apply_force(loaded_[i], on[i]);
+  for (std::size_t i = 0; i < on.size(); ++i) mechanics_.constraints().apply_force(loaded_[i], on[i]);
 }
 
 /// Of the set along its force; under a pressure against its faces.
@@ -133,7 +133,7 @@ double Loads<Dim>::way(const Entry& entry) const {
   const auto on = forces(entry);
   const auto along = chunked_sum<Vec<Dim>>(entry.set.chunks, [&](int i, Vec<Dim>& total) { total += on[i]; });
   const double size = norm(along);
-  return size > 0.0 ? dot(mechanics_.mean_displacement(entry.set), along) / size : 0.0;
+  return size > 0.0 ? dot(mechanics_.totals().mean_displacement(entry.set), along) / size : 0.0;
 }
 
 template <int Dim>

@@ -46,37 +46,37 @@ Press<Dim>::Press(Mechanics<Dim>& mechanics, int axis, double height,
   for (int d = 0; d < Dim - 1; ++d)
     for (const auto side : kSides[d]) summed_.emplace(side, gridpoint_set(mechanics_.model(), set(side)));
   for (int g : set("bottom_platen_support"))
-    for (int i = 0; i < Dim; ++i) mechanics_.prescribe_velocity(g, i, 0.0);
+    for (int i = 0; i < Dim; ++i) mechanics_.constraints().prescribe_velocity(g, i, 0.0);
   for (int g : set("top_platen_support"))
-    for (int i : across_) mechanics_.prescribe_velocity(g, i, 0.0);
+    for (int i : across_) mechanics_.constraints().prescribe_velocity(g, i, 0.0);
 }
 
 template <int Dim>
 void Press<Dim>::let_go() {
-  for (int g : set("top_platen_support")) mechanics_.release(g, axis_);
+  for (int g : set("top_platen_support")) mechanics_.constraints().release(g, axis_);
   kept_.is_driven = false;
 }
 
 template <int Dim>
 void Press<Dim>::control_by_force() {
   const double borne = kept_.is_driven ? std::max(0.0, stress_top()) : kept_.stress_held;
-  mechanics_.untie();
+  mechanics_.constraints().untie();
   let_go();
-  mechanics_.tie(set("top_platen_support"), axis_);
+  mechanics_.constraints().tie(set("top_platen_support"), axis_);
   hold(borne);
 }
 
 template <int Dim>
 void Press<Dim>::control_by_motion(double velocity) {
   kept_.is_driven = true;
-  mechanics_.untie();
+  mechanics_.constraints().untie();
   hold(0.0);
   move_platen(velocity);
 }
 
 template <int Dim>
 void Press<Dim>::move_platen(double velocity) {
-  for (int g : set("top_platen_support")) mechanics_.prescribe_velocity(g, axis_, -velocity);
+  for (int g : set("top_platen_support")) mechanics_.constraints().prescribe_velocity(g, axis_, -velocity);
 }
 
 template <int Dim>
@@ -87,13 +87,15 @@ void Press<Dim>::hold(double stress) {
   const auto& support = set("top_platen_support");
   Vec<Dim> share{};
   share[axis_] = -force / static_cast<double>(support.size());
-  for (int g : support) mechanics_.apply_force(g, share);
+  for (int g : support) mechanics_.constraints().apply_force(g, share);
   kept_.stress_held = stress;
 }
 
 template <int Dim>
 bool Press<Dim>::is_supported() const {
-  const auto weight = [&](const GridpointSet& of) { return -mechanics_.total_weight(of)[axis_] / area(); };
+  const auto weight = [&](const GridpointSet& of) {
+    return -mechanics_.totals().total_weight(of)[axis_] / area();
+  };
   const double carries = stress_bottom() - weight(summed("bottom_platen"));
   return carries >= kCarried * (weight(specimen()) + kept_.stress_held);
 }
@@ -112,7 +114,8 @@ double Press<Dim>::rise_of_stand() const {
   } else {
     std::vector<Vec<2>> points;  // across, and along the axis
     for (int g : set("bottom"))
-      points.push_back({{mechanics_.model().position[g][across_[0]], mechanics_.displacement(g)[axis_]}});
+      points.push_back(
+          {{mechanics_.model().position[g][across_[0]], mechanics_.read().displacement(g)[axis_]}});
     std::ranges::sort(points, {}, [](const Vec<2>& p) { return std::pair(p[0], p[1]); });
     std::vector<Vec<2>> hull;
     for (const Vec<2>& p : points) {
@@ -135,8 +138,8 @@ template <class Up>
 typename Press<Dim>::Clearances Press<Dim>::clearances(const Up& up) const {
   const double lowest = up(*std::ranges::min_element(set("bottom"), {}, up));
   const double highest = up(*std::ranges::max_element(set("top"), {}, up));
-  return {lowest - mechanics_.mean_displacement(summed("bottom_platen_face"))[axis_],
-          mechanics_.mean_displacement(summed("top_platen_face"))[axis_] - highest};
+  return {lowest - mechanics_.totals().mean_displacement(summed("bottom_platen_face"))[axis_],
+          mechanics_.totals().mean_displacement(summed("top_platen_face"))[axis_] - highest};
 }
 
 template <int Dim>
@@ -144,7 +147,8 @@ typename Press<Dim>::EvenMotion Press<Dim>::to_touch() const {
   const double tilt = -rise_of_stand();
   const double middle = mean_position(mechanics_.model(), specimen(), across_[0]);
   const auto up = [&](int g) {
-    return mechanics_.displacement(g)[axis_] + tilt * (mechanics_.model().position[g][across_[0]] - middle);
+    return mechanics_.read().displacement(g)[axis_] +
+           tilt * (mechanics_.model().position[g][across_[0]] - middle);
   };
   const auto [below, above] = clearances(up);
   return {.lift = -std::max(0.0, below), .tilt = tilt, .platen_lift = -above};
@@ -157,7 +161,7 @@ double Press<Dim>::way(const EvenMotion& motion) const {
 
 template <int Dim>
 double Press<Dim>::gap() const {
-  const auto up = [&](int g) { return mechanics_.displacement(g)[axis_]; };
+  const auto up = [&](int g) { return mechanics_.read().displacement(g)[axis_]; };
   const auto [below, above] = clearances(up);
   return std::max(0.0, below) + std::max(0.0, above);
 }
@@ -171,15 +175,15 @@ double Press<Dim>::area() const {
 
 template <int Dim>
 double Press<Dim>::shortening(std::string_view top, std::string_view bottom) const {
-  return mechanics_.mean_displacement(summed(bottom))[axis_] -
-         mechanics_.mean_displacement(summed(top))[axis_];
+  return mechanics_.totals().mean_displacement(summed(bottom))[axis_] -
+         mechanics_.totals().mean_displacement(summed(top))[axis_];
 }
 
 template <int Dim>
 double Press<Dim>::widening(int direction) const {
   const auto& [lower, upper] = kSides[direction];
-  return mechanics_.mean_displacement(summed(upper))[across_[direction]] -
-         mechanics_.mean_displacement(summed(lower))[across_[direction]];
+  return mechanics_.totals().mean_displacement(summed(upper))[across_[direction]] -
+         mechanics_.totals().mean_displacement(summed(lower))[across_[direction]];
 }
 
 template <int Dim>
@@ -215,12 +219,14 @@ double Press<Dim>::lateral_strain() const {
 template <int Dim>
 double Press<Dim>::stress_top() const {
   const GridpointSet& support = summed("top_platen_support");
-  return (mechanics_.total_force(support)[axis_] - mechanics_.total_applied_force(support)[axis_]) / area();
+  return (mechanics_.totals().total_force(support)[axis_] -
+          mechanics_.totals().total_applied_force(support)[axis_]) /
+         area();
 }
 
 template <int Dim>
 double Press<Dim>::stress_bottom() const {
-  return -mechanics_.total_force(summed("bottom_platen_support"))[axis_] / area();
+  return -mechanics_.totals().total_force(summed("bottom_platen_support"))[axis_] / area();
 }
 
 template <int Dim>
@@ -237,24 +243,24 @@ void Press<Dim>::move_evenly(const EvenMotion& motion, double speed, bool platen
     const double turned = motion.tilt * (x[across_[0]] - middle[0]);
     for (int d = 0; d < Dim - 1; ++d) {
       const double aside = d == 0 ? -motion.tilt * (x[axis_] - bottom) : 0.0;
-      mechanics_.prescribe_velocity(g, across_[d],
-                                    rate * (motion.lateral * (x[across_[d]] - middle[d]) + aside));
+      mechanics_.constraints().prescribe_velocity(
+          g, across_[d], rate * (motion.lateral * (x[across_[d]] - middle[d]) + aside));
     }
-    mechanics_.prescribe_velocity(g, axis_,
-                                  rate * (motion.axial * (x[axis_] - bottom) + motion.lift + turned));
+    mechanics_.constraints().prescribe_velocity(
+        g, axis_, rate * (motion.axial * (x[axis_] - bottom) + motion.lift + turned));
   }
   if (!platen_follows) return;
   for (int g : set("top_platen"))
-    mechanics_.prescribe_velocity(g, axis_,
-                                  rate * (motion.axial * height_ + motion.lift + motion.platen_lift));
+    mechanics_.constraints().prescribe_velocity(
+        g, axis_, rate * (motion.axial * height_ + motion.lift + motion.platen_lift));
 }
 
 template <int Dim>
 void Press<Dim>::end_even_motion(bool platen_follows) {
   for (int g : set("specimen"))
-    for (int i = 0; i < Dim; ++i) mechanics_.release(g, i);
+    for (int i = 0; i < Dim; ++i) mechanics_.constraints().release(g, i);
   if (!platen_follows) return;
-  for (int g : set("top_platen")) mechanics_.release(g, axis_);
+  for (int g : set("top_platen")) mechanics_.constraints().release(g, axis_);
 }
 
 template <int Dim>

@@ -21,8 +21,8 @@ bool is_of_cracks(RecordKind kind) {
 }
 
 bool is_damaged(const Mechanics<2>& mechanics, int contact) {
-  return std::ranges::any_of(kCrackModes,
-                             [&](Remembers mode) { return mechanics.remembered(contact, mode) > 0.0; });
+  return std::ranges::any_of(
+      kCrackModes, [&](Remembers mode) { return mechanics.read().remembered(contact, mode) > 0.0; });
 }
 
 /// Zones that lie wholly in a set.
@@ -142,10 +142,11 @@ double Record::force(const Simulation& simulation) const {
   const Vec<2>& d = parameters_.direction;
   const std::array<bool, 2> holds{supports.holds(parameters_.set, 0), supports.holds(parameters_.set, 1)};
   if (!holds[0] && !holds[1] && !simulation.loads().acts_on(parameters_.set))
-    return dot(mechanics.total_applied_force(mean_.set) - mechanics.total_force(mean_.set), d);
+    return dot(mechanics.totals().total_applied_force(mean_.set) - mechanics.totals().total_force(mean_.set),
+               d);
   const auto reaction = chunked_sum<Vec<2>>(mean_.set.chunks, [&](int i, Vec<2>& sum) {
     const int g = mean_.set.gridpoints[i];
-    const Vec<2> force = mechanics.force(g);
+    const Vec<2> force = mechanics.read().force(g);
     for (const int c : {0, 1})
       if (holds[c]) sum[c] -= force[c] / supports.holders(g, c);
   });
@@ -160,7 +161,7 @@ double Record::measure(const Simulation& simulation) const {
   if (parameters_.kind == RecordKind::temperature)
     return mean_.of<double>([&](int g) { return simulation.field().gridpoints()[g]; });
   const Mechanics<2>& mechanics = simulation.mechanics();
-  const auto displacement = [&](int g) { return mechanics.displacement(g); };
+  const auto displacement = [&](int g) { return mechanics.read().displacement(g); };
   const Vec<2>& d = parameters_.direction;
   switch (parameters_.kind) {
     case RecordKind::displacement:
@@ -172,7 +173,7 @@ double Record::measure(const Simulation& simulation) const {
     case RecordKind::stress:
       return chunked_sum(chunks_,
                          [&](int i) {
-                           const SymmetricTensor<2> s = mechanics.stress(items_[i]);
+                           const SymmetricTensor<2> s = mechanics.read().stress(items_[i]);
                            const double normal =
                                d[0] * d[0] * s[0] + d[1] * d[1] * s[1] + 2.0 * d[0] * d[1] * s[2];
                            return size_[i] * normal;
@@ -181,7 +182,8 @@ double Record::measure(const Simulation& simulation) const {
     case RecordKind::crack_length:
       return chunked_sum(chunks_, [&](int i) { return is_damaged(mechanics, items_[i]) ? size_[i] : 0.0; });
     case RecordKind::crack_opening:
-      return chunked_sum(chunks_, [&](int i) { return size_[i] * mechanics.opening(items_[i]); }) / whole_;
+      return chunked_sum(chunks_, [&](int i) { return size_[i] * mechanics.read().opening(items_[i]); }) /
+             whole_;
     case RecordKind::temperature:
       break;
   }

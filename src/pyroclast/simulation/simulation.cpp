@@ -157,7 +157,7 @@ void Simulation::hold(const std::string& set, int component, const HeldMotion& m
 }
 
 void Simulation::drive(const std::string& set, int component, double velocity) {
-  for (int g : model_.set(set)) mechanics_->prescribe_velocity(g, component, velocity);
+  for (int g : model_.set(set)) mechanics_->constraints().prescribe_velocity(g, component, velocity);
 }
 
 void Simulation::halt(const std::string& set, int component) {
@@ -168,7 +168,7 @@ void Simulation::halt(const std::string& set, int component) {
 void Simulation::release(const std::string& set, int component, const std::string& place) {
   supports_->release(set, component, place);
   for (int g : model_.set(set))
-    if (!supports_->holds(g, component)) mechanics_->release(g, component);
+    if (!supports_->holds(g, component)) mechanics_->constraints().release(g, component);
 }
 
 const char* Simulation::coupling_of_heat() const {
@@ -261,7 +261,7 @@ double wave_time(const Simulation& simulation) {
   const Press<2>& press = simulation.press();
   const double modulus =
       estimate_modulus(simulation.model(), simulation.materials(), simulation.field().mean());
-  const double mass = simulation.mechanics().total_moving_mass(press.specimen());
+  const double mass = simulation.mechanics().totals().total_moving_mass(press.specimen());
   return press.height() * std::sqrt(mass / press.volume() / modulus);
 }
 

@@ -133,7 +133,7 @@ void Supports<Dim>::visit_state(StateVisitor& visitor) {
 }
 
 bool has_weight(const Simulation& simulation) {
-  const Vec<2> gravity = simulation.mechanics().state().gravity;
+  const Vec<2> gravity = simulation.mechanics().body().state.gravity;
   return gravity[0] != 0.0 || gravity[1] != 0.0;
 }
 

@@ -136,7 +136,7 @@ void Compress::begin_loading(Simulation& simulation) {
   simulation.press().control_by_motion(0.0);
   kept_.is_loading = true;
   kept_.next_frame = keys_.frame_strain;
-  kept_.dissipated = simulation.mechanics().energy().dissipated.total();
+  kept_.dissipated = simulation.mechanics().totals().energy().dissipated.total();
   take_point(simulation);
 }
 
@@ -226,14 +226,14 @@ void Compress::choose_velocity(const Simulation& simulation) {
 /// \param time  since the last call, s
 double Compress::excess(const Simulation& simulation, double time) {
   const VelocityControl& control = *keys_.control;
-  const EnergyLedger energy = simulation.mechanics().energy();
+  const EnergyLedger energy = simulation.mechanics().totals().energy();
   const double elastic = energy.elastic();
   const double power =
       (energy.dissipated.total() - std::exchange(kept_.dissipated, energy.dissipated.total())) / time;
   const double top = simulation.press().stress_top(), bottom = simulation.press().stress_bottom();
   const double largest = std::max(kept_.largest_stress, 0.5 * (top + bottom));
   if (!(elastic > 0.0 && largest > 0.0)) return 1.0;  // the platen has not met the specimen yet
-  return std::max({simulation.mechanics().unbalanced_ratio() / control.unbalanced_ratio,
+  return std::max({simulation.mechanics().totals().unbalanced_ratio() / control.unbalanced_ratio,
                    std::sqrt(std::abs(energy.kinetic) / elastic / control.kinetic_over_strain),
                    std::abs(top - bottom) / largest / control.platen_difference,
                    power / elastic / control.dissipation_rate});

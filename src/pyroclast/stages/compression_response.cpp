@@ -169,7 +169,7 @@ void CompressionCurve::add(const Press<2>& press, const Mechanics<2>& mechanics)
   strain.push_back(press.stage_strain());
   stress.push_back(press.stress());
   platen_difference.push_back(std::abs(press.stress_top() - press.stress_bottom()));
-  kinetic_over_strain.push_back(mechanics.energy().kinetic_over_elastic());
+  kinetic_over_strain.push_back(mechanics.totals().energy().kinetic_over_elastic());
   time.push_back(mechanics.time());
 }
 

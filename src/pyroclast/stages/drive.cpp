@@ -455,11 +455,11 @@ void Drive::begin(Simulation& simulation) {
   kept_.last.clear();
   for (const Until& until : keys_.until)
     kept_.last.push_back(simulation.record(until.record).read(simulation));
-  const EnergyLedger energy = mechanics.energy();
+  const EnergyLedger energy = mechanics.totals().energy();
   kept_.first_work = energy.loading;
   kept_.most_kinetic = std::abs(energy.kinetic);
   const Vec<2> weight =
-      mechanics.total_weight(gridpoint_set(simulation.model(), simulation.model().set("specimen")));
+      mechanics.totals().total_weight(gridpoint_set(simulation.model(), simulation.model().set("specimen")));
   kept_.body = {simulation.model().thickness, norm(weight)};
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::release)
@@ -696,7 +696,7 @@ bool Drive::advance(Simulation& simulation, int most_steps) {
 /// so the energy of the motion, at any look that asked so far, must be below the square of that share of what
 /// the loads did. Who loads nothing shakes nothing.
 bool Drive::is_beyond_noise(double share, const Simulation& simulation) {
-  const EnergyLedger energy = simulation.mechanics().energy();
+  const EnergyLedger energy = simulation.mechanics().totals().energy();
   kept_.most_kinetic = std::max(kept_.most_kinetic, std::abs(energy.kinetic));
   return !loads() || kept_.most_kinetic <= share * share * std::abs(energy.loading - kept_.first_work);
 }
@@ -766,7 +766,7 @@ Verdict Drive::judge(Simulation& simulation) {
   const bool ramps_are_over =
       std::ranges::all_of(keys_.actions, [&](const Action& a) { return at_most(a.ramp_time, acted); });
   if (keys_.unbalanced_ratio && ramps_are_over &&
-      simulation.mechanics().unbalanced_ratio() < *keys_.unbalanced_ratio)
+      simulation.mechanics().totals().unbalanced_ratio() < *keys_.unbalanced_ratio)
     verdict.over = true;
   if (!verdict.over && kept_.steps >= duration_in_steps(simulation)) {
     verdict.over = true;

@@ -91,7 +91,7 @@ Verdict Load::judge(Simulation& simulation) {
   const Mechanics<2>& mechanics = simulation.mechanics();
   // The ramp may end before the force is adjusted to all of it.
   if (share_held_from(kept_.steps - kStepsPerForce, mechanics.time_step()) < 1.0) return {};
-  if (mechanics.unbalanced_ratio() < keys_.unbalanced_ratio) return {.over = true};
+  if (mechanics.totals().unbalanced_ratio() < keys_.unbalanced_ratio) return {.over = true};
   const double after_ramp = static_cast<double>(kept_.steps) - keys_.ramp_time / mechanics.time_step();
   if (after_ramp >= static_cast<double>(keys_.most_steps))
     return {.over = true, .last = true, .outcome = Outcome::not_settled};

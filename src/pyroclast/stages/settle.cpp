@@ -49,7 +49,7 @@ bool Settle::advance(Simulation& simulation, int most_steps) {
 }
 
 Verdict Settle::judge(Simulation& simulation) {
-  if (simulation.mechanics().unbalanced_ratio() < keys_.unbalanced_ratio) {
+  if (simulation.mechanics().totals().unbalanced_ratio() < keys_.unbalanced_ratio) {
     simulation.set_zero();
     return {.over = true};
   }

@@ -7,7 +7,7 @@
 namespace pyroclast::python {
 
 /// Body and press, lent to a stage that is written in Python for the time of one call.
-struct Body {
+struct LentBody {
   Simulation* simulation = nullptr;  ///< null when the call is over
 
   Simulation& get() const;

@@ -1,0 +1,227 @@
+#include "pyroclast/mechanics/body.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/chunked_sum.hpp"
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/mechanics/energy_ledger.hpp"
+
+namespace pyroclast {
+
+int place_of(const LawTable& law, Remembers what, int dim) {
+  const auto internals = law.internals(dim);
+  const auto found = std::ranges::find(internals, what, &InternalInfo::what);
+  return found == internals.end() ? -1 : static_cast<int>(found - internals.begin());
+}
+
+template <int Dim>
+BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
+                            const std::vector<ContactProperties>& interfaces) {
+  BodyProperties p{std::move(zones), ContactSets(interfaces), {}, {}};
+  p.of_contact.reserve(model.contacts.size());
+  for (const auto& c : model.contacts) p.of_contact.push_back(c.interface);
+  return p;
+}
+
+template <int Dim>
+Body<Dim>::Body(const Model<Dim>& of, BodyProperties with, const MechanicsParameters<Dim>& by,
+                std::shared_ptr<Team> threads)
+    : model(of),
+      parameters(by),
+      team(threads ? std::move(threads) : std::make_shared<Team>()),
+      geometry(zone_geometry(of)),
+      layout(of, by.layout),
+      step(step_functions<Dim>(by.instructions)),
+      properties(std::move(with)) {
+  if (Dim != 2 && parameters.kinematics == Kinematics::finite)
+    throw Error("kinematics = finite: contact frames that turn are made for 2D only; use small");
+  if (!properties.creep.empty()) creep_strain.resize(model.zones.size());
+  list_laws();
+  place_model();
+  place_internals();
+  mean_height = chunked_sum(layout.chunks.zones, [&](int z) { return 1.0 / norm(geometry.gradient[z][0]); }) /
+                count(layout.chunks.zones);
+}
+
+/// Working memory of one thread for a step.
+/// Slot counted from the first of its bundle.
+template <int Dim>
+int Body<Dim>::slot_in_bundle(int gridpoint) const {
+  const Bundle& bundle = layout.bundles[bundle_of(gridpoint)];
+  return layout.gridpoint_slot[gridpoint] - slot_of(bundle.first_pack, 0);
+}
+
+template <int Dim>
+FlatArray<double> Body<Dim>::make_scratch() const {
+  return FlatArray<double>(2 * Dim * kLanes * static_cast<std::size_t>(layout.most_packs));
+}
+
+/// Puts what does not change in its places.
+template <int Dim>
+void Body<Dim>::place_model() {
+  see(state.layout, layout);
+  state.gravity = parameters.gravity;
+  state.local_damping = parameters.local_damping;
+  state.viscous_damping = parameters.viscous_damping;
+  state.damping_form = parameters.damping_form;
+  state.kinematics = parameters.kinematics;
+  state.thickness = model.thickness;
+  auto& s = arrays;
+  const auto packs = static_cast<std::size_t>(layout.gridpoint_packs);
+  s.position = made<VectorPack<Dim>>(packs);
+  s.velocity = made<VectorPack<Dim>>(packs);
+  s.force = made<VectorPack<Dim>>(packs);
+  s.stiffness = made<VectorPack<Dim>>(packs);
+  s.displacement = made<Vec<Dim>>(packs * kLanes);
+  s.gathered_position = made<Vec<Dim>>(packs * kLanes);
+  s.step_over_mass = made<double>(packs * kLanes);
+  const auto point_packs = static_cast<std::size_t>(layout.point_packs);
+  s.losing = made<bool>(point_packs);
+  s.contact_force = made<Vec<Dim>>(point_packs * kLanes);
+  if (parameters.kinematics == Kinematics::finite) s.turning_force = made<Vec<Dim>>(point_packs * kLanes);
+  s.constraints_of_bundle = FlatArray<int>(layout.bundles.size());
+  std::fill(s.constraints_of_bundle.begin(), s.constraints_of_bundle.end(), -1);
+  made_constraints.assign(layout.bundles.size(), -1);
+  s.bundle_sums = made<BundleSums>(layout.bundles.size());
+  s.face_sums = made<FaceSums>(layout.faces.size());
+
+  const View<VectorPack<Dim>> position(s.position.data(), s.position.size());
+  for (int g = 0; g < model.gridpoint_count(); ++g) {
+    set_vector<Dim>(position, layout.gridpoint_slot[g], model.position[g]);
+    s.gathered_position[layout.gridpoint_slot[g]] = model.position[g];
+  }
+  for (int b = 0; b < static_cast<int>(layout.bundles.size()); ++b)
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (layout.block_in(b, lane) >= 0) continue;
+      // the shape of the first, without stiffness
+      const Bundle& bundle = layout.bundles[b];
+      for (int i = 0; i < bundle.packs; ++i)
+        set_vector<Dim>(position, slot_of(bundle.first_pack + i, lane),
+                        vector_at<Dim>(position, slot_of(bundle.first_pack + i, 0)));
+    }
+  refresh_views();
+}
+
+/// Laws of the body, each once, in the order of the interfaces.
+template <int Dim>
+void Body<Dim>::list_laws() {
+  laws = properties.contacts.laws();
+  if (laws.size() > kMostLaws)
+    throw Error(fmt::format("the contacts of this body have {} laws; at most {} are possible", laws.size(),
+                            kMostLaws));
+  use(step);
+}
+
+template <int Dim>
+void Body<Dim>::use(const StepFunctions<Dim>& other) {
+  step = other;
+  law_functions.clear();
+  for (const LawTable* law : laws) law_functions.push_back(step.functions_of(*law));
+  state.laws = law_functions.data();
+}
+
+/// Gives every pack of faces its law, and the part of the internal variables and losses that it takes.
+template <int Dim>
+void Body<Dim>::place_internals() {
+  auto& s = arrays;
+  const auto packs = static_cast<std::size_t>(layout.face_packs());
+  s.law_of_faces = FlatArray<std::uint8_t>(packs);
+  for (int c = 0; c < model.contact_count(); ++c)
+    s.law_of_faces[layout.face_pack_of_point[layout.contact_slot[c] / kLanes]] =
+        static_cast<std::uint8_t>(std::ranges::find(laws, &law_of(c)) - laws.begin());
+  s.first_internal = FlatArray<int>(packs + 1);
+  s.first_loss = FlatArray<int>(packs + 1);
+  for (int pack = 0; pack < layout.face_packs(); ++pack) {
+    const LawTable& law = law_of_pack(pack);
+    const int points = layout.first_point_of(pack + 1) - layout.first_point_of(pack);
+    s.first_internal[pack + 1] =
+        s.first_internal[pack] + points * static_cast<int>(law.internals(Dim).size());
+    s.first_loss[pack + 1] = s.first_loss[pack] + points * static_cast<int>(law.losses.size());
+  }
+  s.internals = made<Line>(static_cast<std::size_t>(s.first_internal[packs]));
+  s.loss = made<Line>(static_cast<std::size_t>(s.first_loss[packs]));
+  name_dissipations();
+  refresh_views();
+}
+
+/// Energies that the laws of the body lose, and creep where it does; each name once.
+template <int Dim>
+void Body<Dim>::name_dissipations() {
+  for (const LawTable* law : laws)
+    for (const LossInfo& loss : law->losses)
+      if (loss.is_energy() &&
+          std::ranges::find(dissipations, std::string_view(loss.name)) == dissipations.end())
+        dissipations.emplace_back(loss.name);
+  if (creeps() && std::ranges::find(dissipations, kCreep) == dissipations.end())
+    dissipations.push_back(kCreep);
+  if (dissipations.size() > kMostDissipations)
+    throw Error(
+        fmt::format("the laws of this body name {} kinds of dissipated energy; at most {} are counted",
+                    dissipations.size(), kMostDissipations));
+}
+
+// The state of a checkpoint
+
+/// Fills all that steps change with NaN; in idle places forces stay zero, for gridpoints gather from them
+/// too.
+template <int Dim>
+void Body<Dim>::forget() {
+  for_each_array(
+      [](const ArrayInfo& info, auto& array) {
+        if (info.lasts == Lasts::kept && !array.empty())
+          std::memset(static_cast<void*>(array.data()), 0xff, bytes_of(array));
+      },
+      arrays);
+  Vec<Dim> nothing;
+  nothing.c.fill(std::numeric_limits<double>::quiet_NaN());
+  for (auto* forces : {&arrays.contact_force, &arrays.turning_force})
+    for (const int slot : layout.contact_slot)
+      if (!forces->empty()) (*forces)[slot] = nothing;
+}
+
+/// Those of the state that last. What holds, drives or loads comes and goes; of all else there is as much as
+/// there was.
+template <int Dim>
+template <class Array>
+void Body<Dim>::visit_array(StateVisitor& visitor, const char* name, Array& array) {
+  using T = std::decay_t<decltype(*array.data())>;
+  if constexpr (std::is_same_v<T, int>) {
+    const bool is_of_bundles = static_cast<void*>(&array) == &arrays.constraints_of_bundle;
+    visitor.visit(
+        name, array,
+        is_of_bundles ? state::within(-1, kMostOfAKind).of(array.size()) : state::within(0, kMostOfAKind));
+  } else if constexpr (std::is_same_v<T, BundleConstraints> || std::is_same_v<T, Tie> ||
+                       std::is_same_v<T, ConstraintPack<Dim>>) {
+    visitor.visit_plain(name, array);
+  } else if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, std::uint8_t> ||
+                       std::is_same_v<T, std::byte>) {
+    throw Error(
+        fmt::format("\"{}\" has no form in which a state can keep it", name));  // a fault of the program
+  } else {
+    visitor.visit_numbers(name, array, state::finite().of(array.size()));
+  }
+}
+
+template <int Dim>
+void Body<Dim>::visit_arrays(StateVisitor& visitor) {
+  for_each_array(
+      [&](const ArrayInfo& info, auto& array) {
+        if (info.lasts == Lasts::kept) visit_array(visitor, info.name, array);
+      },
+      arrays);
+}
+
+template BodyProperties by_interface<2>(const Model<2>&, std::vector<ZoneProperties>,
+                                        const std::vector<ContactProperties>&);
+template BodyProperties by_interface<3>(const Model<3>&, std::vector<ZoneProperties>,
+                                        const std::vector<ContactProperties>&);
+
+template struct Body<2>;
+template struct Body<3>;
+
+}  // namespace pyroclast

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "pyroclast/mechanics/body.hpp"
+
+namespace pyroclast {
+
+/// Velocities, ties and forces that act on the gridpoints of a body from the next step on.
+template <int Dim>
+class Constraints {
+ public:
+  explicit Constraints(Body<Dim>& body) : body_(body) {}
+
+  /// Prescribes one component of a gridpoint's velocity, m/s.
+  void prescribe_velocity(int gridpoint, int component, double velocity);
+  /// Lets one component of a gridpoint move freely again.
+  void release(int gridpoint, int component);
+  /// Ties free gridpoints of one block, which then share one component of their motion, as under a rigid
+  /// plate. They start with their mean velocity, so tie them at rest.
+  void tie(std::vector<int> gridpoints, int component);
+  /// Ends all ties.
+  void untie();
+  /// Applies a force to a gridpoint, N, until set again; free components only.
+  void apply_force(int gridpoint, const Vec<Dim>& force);
+
+  /// Puts constraints into the order of their bundles, so that a state does not depend on the order in which
+  /// they were made.
+  void order();
+  /// Shows constraints and ties to a visitor, after the arrays of the body.
+  void visit_state(StateVisitor& visitor);
+
+ private:
+  int constraints_of(int gridpoint);
+  void drop_if_free(int bundle);
+  ConstraintPack<Dim>& constraint_pack(int constraints, int gridpoint);
+  void place_ties();
+  void visit_ties(StateVisitor& visitor);
+  void require_valid(const StateVisitor& visitor) const;
+
+  Body<Dim>& body_;
+};
+
+extern template class Constraints<2>;
+extern template class Constraints<3>;
+
+}  // namespace pyroclast

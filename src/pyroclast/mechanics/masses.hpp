@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "pyroclast/mechanics/body.hpp"
+
+namespace pyroclast {
+
+/// Stable step and the gridpoint that sets it.
+struct TimeStepLimit {
+  double step = 0.0;  ///< s
+  int gridpoint = 0;
+};
+
+/// Masses of a body, and the stiffness on which scaled masses and stable steps rest.
+template <int Dim>
+class Masses {
+ public:
+  explicit Masses(Body<Dim>& body) : body_(body) {}
+
+  /// Sets masses and the time step of a body that begins.
+  /// \param densities  density of each material, kg/m³
+  void set(const std::vector<double>& densities);
+  /// Computes k_gp of Eq. (9): for every gridpoint the largest sum of |stiffness| over a row of the assembled
+  /// matrix, zones and contacts. By Gershgorin's theorem no natural frequency exceeds sqrt(k_gp / m), so the
+  /// step is safe for any shape.
+  void measure_stiffness();
+  /// Scales the masses anew after a change of the stiffness.
+  void scale();
+  /// Sets what follows from stiffness and parameters of a state that was read.
+  void follow_state();
+  /// Returns the stable step with real mass, paper Eq. (9).
+  TimeStepLimit real_mass_limit() const;
+
+ private:
+  double scaled_mass(int gridpoint) const;
+  void set_least_force();
+  void set_moving_mass();
+  void set_step_over_mass();
+
+  Body<Dim>& body_;
+};
+
+extern template class Masses<2>;
+extern template class Masses<3>;
+
+}  // namespace pyroclast

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "pyroclast/mechanics/body.hpp"
+#include "pyroclast/mechanics/sweep.hpp"
+
+namespace pyroclast {
+
+/// Mover of a body: takes its steps, shared out to threads. No other part of mechanics knows of threads.
+template <int Dim>
+class Mover {
+ public:
+  explicit Mover(Body<Dim>& body) : body_(&body) {}
+
+  /// Takes a number of sweeps over faces and bundles, of one kind.
+  void sweep(int steps, Pass pass);
+
+ private:
+  /// Share and memory of a thread in a step.
+  struct Worker {
+    Share share;
+    FlatArray<double> scratch;
+  };
+
+  Body<Dim>* body_;
+  std::vector<Worker> workers_;  ///< workers by thread
+};
+
+extern template class Mover<2>;
+extern template class Mover<3>;
+
+}  // namespace pyroclast

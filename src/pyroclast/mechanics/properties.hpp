@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "pyroclast/mechanics/body.hpp"
+
+namespace pyroclast {
+
+/// Parameters of zones and contacts in the places where a step reads them, and the creep of zones.
+template <int Dim>
+class Properties {
+ public:
+  explicit Properties(Body<Dim>& body) : body_(body) {}
+
+  /// Puts zone and contact parameters in their places.
+  void place();
+  /// Begins creep with the stress that zones have by the properties that there are.
+  void begin_creep(const std::vector<CreepIncrement>& creep);
+  /// Ends creep with the present stress, which stays as it is.
+  void end_creep();
+  /// Breaks a contact from the start: neither tension nor cohesion ever held it. Returns false where the law
+  /// of the contact has no damage; the contact then holds.
+  [[nodiscard]] bool break_contact(int contact);
+  void visit_state(StateVisitor& visitor);
+
+ private:
+  void place_creep_strain();
+  void place_contact_properties();
+  std::vector<int> find_sets_of_faces();
+  void place_own_constants();
+
+  Body<Dim>& body_;
+};
+
+extern template class Properties<2>;
+extern template class Properties<3>;
+
+}  // namespace pyroclast

@@ -1,0 +1,215 @@
+#include "pyroclast/mechanics/reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pyroclast {
+
+namespace {
+
+template <class At>
+auto all(int count, At at) {
+  std::vector<decltype(at(0))> values;
+  values.reserve(count);
+  for (int i = 0; i < count; ++i) values.push_back(at(i));
+  return values;
+}
+
+}  // namespace
+
+template <int Dim>
+Vec<Dim> Reader<Dim>::displacement(int gridpoint) const {
+  return body_.state.displacement[body_.layout.gridpoint_slot[gridpoint]];
+}
+
+template <int Dim>
+Vec<Dim> Reader<Dim>::velocity(int gridpoint) const {
+  return vector_at<Dim>(body_.state.velocity, body_.layout.gridpoint_slot[gridpoint]);
+}
+
+template <int Dim>
+Vec<Dim> Reader<Dim>::force(int gridpoint) const {
+  return vector_at<Dim>(body_.state.force, body_.layout.gridpoint_slot[gridpoint]);
+}
+
+template <int Dim>
+Vec<Dim> Reader<Dim>::applied_force(int gridpoint) const {
+  const int index = body_.made_constraints[body_.bundle_of(gridpoint)];
+  if (index < 0) return {};
+  const int slot = body_.slot_in_bundle(gridpoint);
+  const auto& pack = body_.state.constraint_packs[body_.state.constraints[index].first_pack + slot / kLanes];
+  Vec<Dim> force;
+  for (int i = 0; i < Dim; ++i) force[i] = pack.applied[i][slot % kLanes];
+  return force;
+}
+
+template <int Dim>
+bool Reader<Dim>::is_prescribed(int gridpoint, int component) const {
+  const int index = body_.made_constraints[body_.bundle_of(gridpoint)];
+  if (index < 0) return false;
+  const int slot = body_.slot_in_bundle(gridpoint);
+  const auto& pack = body_.state.constraint_packs[body_.state.constraints[index].first_pack + slot / kLanes];
+  return (pack.prescribed[component] >> (slot % kLanes) & 1U) != 0;
+}
+
+/// That the last forces belong to.
+template <int Dim>
+Vec<Dim> Reader<Dim>::displacement_of_force(int gridpoint) const {
+  return displacement(gridpoint) - velocity(gridpoint) * (body_.steps > 0 ? body_.time_step() : 0.0);
+}
+
+/// \param rotation  of the frame, out
+template <int Dim>
+SymmetricTensor<Dim> Reader<Dim>::stress_in_own_frame(int zone, Rotation<double>& rotation) const {
+  std::array<Vec<Dim>, Dim + 1> u;
+  for (int n = 0; n <= Dim; ++n) u[n] = displacement_of_force(body_.model.zones[zone][n]);
+  const ZoneProperties p = properties_of_zone(zone);
+  auto strain = mechanical_strain<Dim>(body_.geometry.gradient[zone], 1.0, u, p.thermal_strain,
+                                       body_.parameters.kinematics, rotation);
+  if (body_.creeps())
+    for (std::size_t i = 0; i < strain.size(); ++i) strain[i] -= body_.creep_strain[zone][i];
+  return zone_stress<Dim>(p, strain);
+}
+
+template <int Dim>
+SymmetricTensor<Dim> Reader<Dim>::stress(int zone) const {
+  Rotation<double> rotation;
+  const auto stress = stress_in_own_frame(zone, rotation);
+  return rotated<Dim>(rotation, stress);
+}
+
+template <int Dim>
+ZoneProperties Reader<Dim>::properties_of_zone(int zone) const {
+  const ZoneProperties& p = body_.properties.zones[zone];
+  if (body_.creep_under_way.empty()) return p;
+  const CreepUnderWay<Dim>& creep = body_.creep_under_way[zone];
+  return with_compliance<Dim>(p, creep.split.compliance, creep.poisson);
+}
+
+template <int Dim>
+SymmetricTensor<Dim> Reader<Dim>::creep_strain(int zone) const {
+  if (!body_.creeps()) return {};
+  Rotation<double> rotation;
+  stress_in_own_frame(zone, rotation);
+  return rotated<Dim>(rotation, body_.creep_strain[zone]);
+}
+
+template <int Dim>
+ContactFrame<Dim> Reader<Dim>::frame_of_forces(int contact) const {
+  const auto& c = body_.model.contacts[body_.model.face_contacts[body_.model.contacts[contact].face]];
+  if constexpr (Dim == 2) {
+    if (body_.parameters.kinematics == Kinematics::finite) {
+      // mean edge of the two sides
+      const auto& d = body_.model.contacts[body_.model.face_contacts[c.face] + 1];
+      const auto at = [&](int g) { return body_.model.position[g] + displacement_of_force(g); };
+      const Vec<2> edge = ((at(d.a) - at(c.a)) + (at(d.b) - at(c.b))) * 0.5;
+      const Vec<2> t = edge * (1.0 / norm(edge));
+      return {{{t[1], -t[0]}}, {t}};
+    }
+  }
+  return {c.normal, c.tangents};
+}
+
+template <int Dim>
+Vec<Dim> Reader<Dim>::jump_of_forces(int contact) const {
+  const auto& c = body_.model.contacts[contact];
+  return displacement_of_force(c.b) - displacement_of_force(c.a);
+}
+
+template <int Dim>
+double Reader<Dim>::opening(int contact) const {
+  return dot(jump_of_forces(contact), frame_of_forces(contact).normal);
+}
+
+template <int Dim>
+double Reader<Dim>::remembered(int contact, Remembers what) const {
+  const LawTable& law = body_.law_of(contact);
+  const int place = place_of(law, what, Dim);
+  if (place < 0) return 0.0;
+  return lines_of(body_.layout, body_.state.internals, body_.state.first_internal, contact,
+                  law.internals(Dim).size())[place]
+      .number[body_.layout.contact_slot[contact] % kLanes];
+}
+
+template <int Dim>
+ContactState<Dim> Reader<Dim>::contact(int contact) const {
+  const int set = body_.properties.of_contact[contact], lane = body_.layout.contact_slot[contact] % kLanes;
+  ContactState<Dim> state;
+  state.law = &body_.law_of(contact);
+  const auto values = [&](const auto& lines, const auto& first, std::size_t count) {
+    std::vector<double> numbers(count);
+    const Line* line = lines_of(body_.layout, lines, first, contact, count);
+    for (double& number : numbers) number = line++->number[lane];
+    return numbers;
+  };
+  state.internals =
+      values(body_.state.internals, body_.state.first_internal, state.law->internals(Dim).size());
+  state.losses = values(body_.state.loss, body_.state.first_loss, state.law->losses.size());
+  const auto frame = frame_of_forces(contact);
+  const Vec<Dim> u = jump_of_forces(contact);
+  state.opening = dot(u, frame.normal);
+  for (int i = 0; i + 1 < Dim; ++i) state.tangential_jump[i] = dot(u, frame.tangents[i]);
+  // the law at the jump that it was last taken to gives the tractions again
+  std::array<double, Dim> jump{state.opening};
+  for (int i = 0; i + 1 < Dim; ++i) jump[i + 1] = state.tangential_jump[i];
+  auto internals = state.internals, losses = state.losses;
+  const PointResponse response = state.law->update(Dim)(body_.properties.contacts[set].constants().data(),
+                                                        jump.data(), internals.data(), losses.data());
+  state.normal_traction = response.normal_traction;
+  for (int i = 0; i + 1 < Dim; ++i) state.shear_traction[i] = response.shear_traction[i];
+  state.stored = response.stored;
+  return state;
+}
+
+template <int Dim>
+double ContactState<Dim>::remembered(Remembers what) const {
+  const int place = place_of(*law, what, Dim);
+  return place < 0 ? 0.0 : internals[place];
+}
+
+template <int Dim>
+double ContactState<Dim>::remembered(std::string_view name) const {
+  const auto infos = law->internals(Dim);
+  for (std::size_t i = 0; i < infos.size(); ++i)
+    if (infos[i].name == name) return internals[i];
+  return 0.0;
+}
+
+template <int Dim>
+double ContactState<Dim>::lost(std::string_view name) const {
+  for (std::size_t i = 0; i < losses.size(); ++i)
+    if (law->losses[i].name == name) return losses[i];
+  return 0.0;
+}
+
+template <int Dim>
+std::vector<Vec<Dim>> Reader<Dim>::displacements() const {
+  return all(body_.model.gridpoint_count(), [&](int g) { return displacement(g); });
+}
+
+template <int Dim>
+std::vector<Vec<Dim>> Reader<Dim>::velocities() const {
+  return all(body_.model.gridpoint_count(), [&](int g) { return velocity(g); });
+}
+
+template <int Dim>
+std::vector<Vec<Dim>> Reader<Dim>::forces() const {
+  return all(body_.model.gridpoint_count(), [&](int g) { return force(g); });
+}
+
+template <int Dim>
+std::vector<SymmetricTensor<Dim>> Reader<Dim>::stresses() const {
+  return all(body_.model.zone_count(), [&](int z) { return stress(z); });
+}
+
+template <int Dim>
+std::vector<ContactState<Dim>> Reader<Dim>::contacts() const {
+  return all(body_.model.contact_count(), [&](int c) { return contact(c); });
+}
+
+template struct ContactState<2>;
+template struct ContactState<3>;
+template class Reader<2>;
+template class Reader<3>;
+
+}  // namespace pyroclast

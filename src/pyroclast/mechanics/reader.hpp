@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "pyroclast/mechanics/body.hpp"
+
+namespace pyroclast {
+
+/// State of one contact point at the displacements of the last forces.
+template <int Dim>
+struct ContactState {
+  const LawTable* law = nullptr;
+  std::vector<double> internals;      ///< internal variables in the order of `law->internals(Dim)`
+  std::vector<double> losses;         ///< losses since the start, in the order of `law->losses`
+  double opening = 0.0;               ///< u_n, m
+  Tangential<Dim> tangential_jump{};  ///< u_s, m
+  double normal_traction = 0.0;       ///< Pa, tension positive
+  Tangential<Dim> shear_traction{};   ///< Pa
+  double stored = 0.0;                ///< J/m²
+
+  // Returns an internal variable; 0 where the law has none of this meaning or name.
+  double remembered(Remembers what) const;
+  double remembered(std::string_view name) const;
+  double lost(std::string_view name) const;  ///< Returns a loss; 0 where the law has none of this name.
+};
+
+/// Directions of a contact.
+template <int Dim>
+struct ContactFrame {
+  Vec<Dim> normal;                         ///< unit normal, from a to b
+  std::array<Vec<Dim>, Dim - 1> tangents;  ///< unit tangents
+};
+
+/// Reader of a body: shows the state of each gridpoint, zone and contact in the order of the model.
+template <int Dim>
+class Reader {
+ public:
+  explicit Reader(const Body<Dim>& body) : body_(body) {}
+
+  Vec<Dim> displacement(int gridpoint) const;  ///< m
+  Vec<Dim> velocity(int gridpoint) const;      ///< m/s
+  /// Returns the sum of all forces at the last step, N; on a prescribed component minus the reaction.
+  Vec<Dim> force(int gridpoint) const;
+  Vec<Dim> applied_force(int gridpoint) const;  ///< N
+  bool is_prescribed(int gridpoint, int component) const;
+  /// Returns the displacement to which the last forces belong, m.
+  Vec<Dim> displacement_of_force(int gridpoint) const;
+
+  SymmetricTensor<Dim> stress(int zone) const;  ///< Pa, at the displacements of the last forces
+  /// Returns the stress in the zone's own frame, Pa.
+  /// \param rotation  rotation of the frame, out
+  SymmetricTensor<Dim> stress_in_own_frame(int zone, Rotation<double>& rotation) const;
+  /// Returns the properties of a zone; until creep is committed, they include the compliance that it adds.
+  ZoneProperties properties_of_zone(int zone) const;
+  /// Returns the creep strain of a zone, in the frame of the model, at the displacements of the last forces;
+  /// while the zone creeps, the known part of it.
+  SymmetricTensor<Dim> creep_strain(int zone) const;
+
+  ContactState<Dim> contact(int contact) const;
+  /// Returns an internal variable of a contact; 0 where its law has none of this meaning.
+  double remembered(int contact, Remembers what) const;
+  double opening(int contact) const;  ///< Returns u_n at the displacements of the last forces, m.
+  /// Returns the directions of a contact at the displacements of the last forces.
+  ContactFrame<Dim> frame_of_forces(int contact) const;
+
+  // The next functions return a value of each gridpoint, zone or contact.
+  std::vector<Vec<Dim>> displacements() const;
+  std::vector<Vec<Dim>> velocities() const;
+  std::vector<Vec<Dim>> forces() const;
+  std::vector<SymmetricTensor<Dim>> stresses() const;
+  std::vector<ContactState<Dim>> contacts() const;
+
+ private:
+  Vec<Dim> jump_of_forces(int contact) const;
+
+  const Body<Dim>& body_;
+};
+
+extern template struct ContactState<2>;
+extern template struct ContactState<3>;
+extern template class Reader<2>;
+extern template class Reader<3>;
+
+}  // namespace pyroclast

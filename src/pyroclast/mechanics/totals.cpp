@@ -1,0 +1,163 @@
+#include "pyroclast/mechanics/totals.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <vector>
+
+#include "pyroclast/base/chunked_sum.hpp"
+
+namespace pyroclast {
+
+template <int Dim>
+Vec<Dim> Totals<Dim>::mean_displacement(const GridpointSet& set) const {
+  const auto sum = chunked_sum<Vec<Dim>>(
+      set.chunks, [&](int i, Vec<Dim>& total) { total += read_.displacement(set.gridpoints[i]); });
+  return sum * (1.0 / count(set.chunks));
+}
+
+template <int Dim>
+Vec<Dim> Totals<Dim>::net_force() const {
+  return chunked_sum<Vec<Dim>>(body_.layout.chunks.gridpoints, [&](int g, Vec<Dim>& total) {
+    const Vec<Dim> on_all = read_.force(g);
+    for (int i = 0; i < Dim; ++i)
+      if (!read_.is_prescribed(g, i)) total[i] += on_all[i];
+  });
+}
+
+template <int Dim>
+Vec<Dim> Totals<Dim>::total_force(const GridpointSet& set) const {
+  return chunked_sum<Vec<Dim>>(set.chunks,
+                               [&](int i, Vec<Dim>& total) { total += read_.force(set.gridpoints[i]); });
+}
+
+template <int Dim>
+Vec<Dim> Totals<Dim>::total_applied_force(const GridpointSet& set) const {
+  return chunked_sum<Vec<Dim>>(
+      set.chunks, [&](int i, Vec<Dim>& total) { total += read_.applied_force(set.gridpoints[i]); });
+}
+
+template <int Dim>
+Vec<Dim> Totals<Dim>::total_weight(const GridpointSet& set) const {
+  return body_.parameters.gravity *
+         chunked_sum(set.chunks, [&](int i) { return body_.gravity_mass[set.gridpoints[i]]; });
+}
+
+template <int Dim>
+double Totals<Dim>::total_moving_mass(const GridpointSet& set) const {
+  return chunked_sum(set.chunks, [&](int i) { return body_.mass[set.gridpoints[i]]; });
+}
+
+template <int Dim>
+Dissipation Totals<Dim>::dissipated() const {
+  struct Sums {
+    std::array<double, Body<Dim>::kMostDissipations> energy{};
+    void operator+=(const Sums& o) {
+      for (std::size_t i = 0; i < energy.size(); ++i) energy[i] += o.energy[i];
+    }
+  };
+  // of each law, where its losses count
+  std::vector<std::vector<int>> places;
+  for (const LawTable* law : body_.laws)
+    for (auto& of_law = places.emplace_back(); const LossInfo& loss : law->losses) {
+      const auto found = std::ranges::find(body_.dissipations, std::string_view(loss.name));
+      of_law.push_back(
+          found == body_.dissipations.end() ? -1 : static_cast<int>(found - body_.dissipations.begin()));
+    }
+  const Sums sums = chunked_sum<Sums>(body_.layout.chunks.face_packs, [&](int pack, Sums& sum) {
+    const Line* line = body_.state.loss.data() + body_.state.first_loss[pack];
+    for (int point = body_.layout.first_point_of(pack); point < body_.layout.first_point_of(pack + 1);
+         ++point) {
+      const double* const area = body_.layout.points[point].area;
+      for (const int place : places[body_.state.law_of_faces[pack]]) {
+        if (place >= 0)
+          for (int lane = 0; lane < kLanes; ++lane) sum.energy[place] += line->number[lane] * area[lane];
+        ++line;
+      }
+    }
+  });
+  Dissipation all{
+      body_.dissipations,
+      {sums.energy.begin(), sums.energy.begin() + static_cast<std::ptrdiff_t>(body_.dissipations.size())}};
+  if (body_.creeps())
+    all.energies[static_cast<std::size_t>(std::ranges::find(all.names, kCreep) - all.names.begin())] +=
+        body_.books.creep_work;
+  return all;
+}
+
+double Dissipation::of(std::string_view name) const {
+  const auto found = std::ranges::find(names, name);
+  return found == names.end() ? 0.0 : energies[static_cast<std::size_t>(found - names.begin())];
+}
+
+double Dissipation::total() const {
+  return std::accumulate(energies.begin(), energies.end(), 0.0);
+}
+
+template <int Dim>
+EnergyLedger Totals<Dim>::energy() const {
+  struct Sums {
+    double zones = 0.0, kinetic = 0.0, local_damping = 0.0, viscous_damping = 0.0, loading = 0.0;
+    void operator+=(const Sums& o) {
+      zones += o.zones;
+      kinetic += o.kinetic;
+      local_damping += o.local_damping;
+      viscous_damping += o.viscous_damping;
+      loading += o.loading;
+    }
+  };
+  const auto sums = chunked_sum<Sums>(body_.layout.chunks.bundles, [&](int b, Sums& sum) {
+    const BundleSums& of_bundle = body_.state.bundle_sums[b];
+    const int c = body_.made_constraints[b];
+    sum += {of_bundle.stored, of_bundle.kinetic, of_bundle.damping_work - of_bundle.begun_damping,
+            of_bundle.viscous_work - of_bundle.begun_viscous,
+            c >= 0 ? body_.state.constraints[c].loading_work - of_bundle.begun_loading : 0.0};
+  });
+  EnergyLedger e;
+  e.property_change = body_.books.property_change;
+  e.mass_scaling = body_.books.mass_scaling;
+  e.zones = sums.zones;
+  e.kinetic = sums.kinetic;
+  e.local_damping = sums.local_damping;
+  e.viscous_damping = sums.viscous_damping;
+  e.loading = sums.loading;
+  e.contacts = chunked_sum(body_.layout.chunks.face_packs,
+                           [&](int pack) { return body_.state.face_sums[pack].stored; });
+  e.dissipated = dissipated();
+  // weights are constant, so their work follows from the way made
+  if (body_.state.weighs())
+    e.gravity = chunked_sum(body_.layout.chunks.gridpoints, [&](int g) {
+      return body_.gravity_mass[g] * dot(body_.parameters.gravity, read_.displacement_of_force(g));
+    });
+  return e;
+}
+
+template <int Dim>
+double Totals<Dim>::mean_unbalanced_force() const {
+  return chunked_sum(body_.layout.chunks.bundles,
+                     [&](int b) { return body_.state.bundle_sums[b].unbalanced; }) /
+         count(body_.layout.chunks.gridpoints);
+}
+
+template <int Dim>
+double Totals<Dim>::unbalanced_ratio() const {
+  const double unbalanced =
+      chunked_sum(body_.layout.chunks.bundles, [&](int b) { return body_.state.bundle_sums[b].unbalanced; });
+  const double applied =
+      chunked_sum(body_.layout.chunks.bundles, [&](int b) { return body_.state.bundle_sums[b].applied; }) +
+      chunked_sum(body_.layout.chunks.face_packs,
+                  [&](int pack) { return body_.state.face_sums[pack].applied; });
+  return unbalanced / std::max(applied, body_.least_force);
+}
+
+template <int Dim>
+double Totals<Dim>::largest_relative_jump() const {
+  double largest = 0.0;
+  for (const FaceSums& sums : body_.state.face_sums) largest = std::max(largest, sums.jump);
+  return largest;
+}
+
+template class Totals<2>;
+template class Totals<3>;
+
+}  // namespace pyroclast
