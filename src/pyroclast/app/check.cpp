@@ -15,8 +15,8 @@ namespace pyroclast::app {
 
 namespace {
 
-/// Of compressed specimens, by the size of their blocks over d_max: how many fell clearly, and the scatter of
-/// f_c from seed to seed (validation/peaks.md).
+/// Compressed specimens of a study, by the size of their blocks over d_max: how many fell clearly, and the
+/// scatter of f_c from seed to seed (validation/peaks.md).
 struct StudiedStrength {
   double size;
   int fell_clearly, of;
@@ -87,7 +87,7 @@ void print_mechanics(const Simulation& simulation, MassChoice mass) {
   if (whole && (whole->creep_share || whole->strain_weight)) print_composition(*whole);
 }
 
-/// What is known of a deck without the code that it names.
+/// Tells what is known of a deck without the code that it names. Returns the exit code.
 int say_unchecked(const Opened& opened) {
   fmt::print("deck            {} holds no other error: {}\n{}", shown(opened.deck.name()),
              shown(opened.setup.title), describe_warnings(opened.warnings));

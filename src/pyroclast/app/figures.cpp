@@ -29,7 +29,7 @@ int draw(
 }  // namespace
 
 int figures(const std::vector<std::string>& words) {
-  std::optional<FolderLock> lock;  // of a run whose own figures are drawn; what is only read is not locked
+  std::optional<FolderLock> lock;  // for a run whose own figures are drawn; others are only read
   const auto is_out = [](const std::string& word) { return word == "--out" || word.starts_with("--out="); };
   if (words.size() >= 2 && words[0] == "run" && std::ranges::none_of(words, is_out) &&
       std::filesystem::is_directory(words[1]))

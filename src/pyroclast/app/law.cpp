@@ -17,7 +17,8 @@ namespace pyroclast::app {
 
 namespace {
 
-/// The contacts of an interface, of the deck or of two blocks of one phase. Throws Error when there is none.
+/// Returns the contacts of an interface, of the deck or of two blocks of one phase. Throws Error when there
+/// is none.
 const ContactMaterial& contact_of(const ConcreteMaterials& concrete, const std::string& name) {
   const auto& names = concrete.interfaces;
   const auto found = std::ranges::find(names, name);
@@ -26,7 +27,7 @@ const ContactMaterial& contact_of(const ConcreteMaterials& concrete, const std::
   return concrete.contacts[found - names.begin()];
 }
 
-/// A law that the command line states, with all its properties.
+/// Returns the law that the command line states, with all its properties.
 ContactMaterial material_of_command(const LawOptions& options) {
   const LawTable& law = find_law(options.law, {}, sources_of(options.sources), true);
   if (law.update(2)) say_aside(describe_own_laws());

@@ -23,8 +23,8 @@ namespace {
 
 using namespace pyroclast;
 
-/// Takes whole numbers from `least` to `most`; in words of this program, as CLI11's are others in each
-/// version.
+/// Returns a validator that takes whole numbers from `least` to `most`. Its messages are words of this
+/// program, because those of CLI11 differ from version to version.
 CLI::Validator whole_number(std::int64_t least, std::int64_t most) {
   return CLI::Validator(
       [=](const std::string& text) {

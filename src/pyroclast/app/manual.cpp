@@ -34,7 +34,7 @@ std::vector<const CLI::App*> commands(const CLI::App& cli) {
   return cli.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// Long and short ones, "--out" and "-o".
+/// Returns the long and short names of options, "--out" and "-o".
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
@@ -44,7 +44,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-/// Text in which roff finds no commands.
+/// Returns a text in which roff finds no commands.
 std::string roff(std::string_view text) {
   std::string result;
   for (const char c : text) {

@@ -15,7 +15,7 @@ namespace pyroclast::app {
 namespace {
 
 constexpr double kMilli = 1e3;
-/// So many take some seconds to be made.
+/// Number of blocks that take some seconds to be made.
 constexpr int kManyBlocks = 20'000;
 
 }  // namespace

@@ -19,13 +19,13 @@ constexpr Interval kDrawn{20.0, 800.0};
 /// Greatest distance of two rows, K: small enough to show the jump of the standards' specific heat at 100 °C.
 constexpr double kTemperatureStep = 1.0;
 
-/// Phases as a run has them: of the specimen, where they follow its composition.
+/// Returns the phases as a run has them: those of the specimen, where they follow its composition.
 std::vector<SolidMaterial> solids_of(const Setup& setup) {
   if (!setup.motion || !follows_composition(setup.solids, *setup.motion)) return setup.solids;
   return make_materials(setup.solids, *setup.motion, make_checked_specimen(setup.specimen)).solids;
 }
 
-/// \param moves  whether the mechanical properties were read too
+/// \param moves  true where the mechanical properties were read too
 void add_solid(const SolidMaterial& solid, bool moves, std::vector<ReadCurve>& list) {
   const auto add = [&](const char* key, const Unit& unit, const Curve& curve) {
     list.push_back({fmt::format("materials.{}.{}", solid.name, key), unit.si, curve});
@@ -49,8 +49,8 @@ void add_contact(const ContactMaterial& contact, const std::string& name, std::v
   }
 }
 
-/// Properties as a run has them, and whatever else the deck gives over the temperature, such as an expansion
-/// coefficient.
+/// Returns the properties as a run has them, and whatever else the deck gives over the temperature, such as
+/// an expansion coefficient.
 std::vector<ReadCurve> properties_of(const Setup& setup) {
   std::vector<ReadCurve> list;
   const bool moves = setup.motion.has_value();
@@ -91,7 +91,7 @@ std::string rows(const ReadCurve& property, const Interval& range) {
   return text;
 }
 
-/// What the deck gives, one line for each curve.
+/// Prints the curves that the deck gives, a line each.
 void print(const std::vector<ReadCurve>& curves) {
   for (const auto& [path, unit, curve] : curves)
     fmt::print("{:<42}{} {}\n", path, curve.describe(), unit == "1" ? "" : "[" + unit + "]");

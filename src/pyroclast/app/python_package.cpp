@@ -21,8 +21,8 @@ namespace pyroclast::app {
 
 namespace {
 
-/// The Python package: beside an installed program, in the environment that pip put both into, or in the
-/// build tree of a built one; without its compiled part in the source tree.
+/// Returns the folder of the Python package: beside an installed program, in the environment into which pip
+/// put both, or in the build tree of a built program; else the source tree, without its compiled part.
 std::filesystem::path package_folder() {
   namespace fs = std::filesystem;
   std::error_code ignored;
@@ -48,8 +48,8 @@ class Strings {
   std::vector<char*> pointers_;
 };
 
-/// Runs a module as a program. While it loads, Ctrl-C ends it as it ends any program; the module may hear
-/// Ctrl-C itself from then on.
+/// Python code that runs a module as a program. While the module loads, Ctrl-C ends it as it ends any
+/// program; from then on the module may hear Ctrl-C itself.
 constexpr auto kStart =
     "import runpy, signal\n"
     "if signal.getsignal(signal.SIGINT) is signal.default_int_handler:\n"
@@ -57,7 +57,7 @@ constexpr auto kStart =
     "runpy.run_module('{}', run_name='__main__', alter_sys=True)\n";
 
 Strings arguments_of(const std::string& module, const std::vector<std::string>& words) {
-  // -P: not from the current folder
+  // -P: Python takes no module from the current folder
   std::vector<std::string> arguments{PYROCLAST_PYTHON, "-P", "-c", fmt::format(kStart, module)};
   arguments.insert(arguments.end(), words.begin(), words.end());
   return Strings(std::move(arguments));
@@ -71,7 +71,7 @@ Strings environment() {
   return Strings(std::move(variables));
 }
 
-/// While a program runs, it is asked this often whether to end it.
+/// Time between two questions whether to end a program that runs.
 constexpr std::chrono::milliseconds kPatience{50};
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace pyroclast::app {
 
 namespace {
 
-/// What is said of the moment, below all else.
+/// Level of lines about the moment, below all others.
 constexpr auto kProgress = spdlog::level::debug;
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace pyroclast::app {
 
 namespace {
 
-/// Contact points that are broken now, in any way.
+/// Sums the contact points that each mode has broken by now.
 std::int64_t broken(const History& history) {
   std::int64_t count = 0;
   for (const Column& column : history.columns())
@@ -22,7 +22,7 @@ std::int64_t broken(const History& history) {
   return count;
 }
 
-/// What a row of the history says, in short.
+/// Describes the last row of the history, in short.
 std::string describe_row(const Run& run) {
   const History& history = run.history();
   const auto last = [&](const char* column) { return history.last(column); };
@@ -54,7 +54,7 @@ std::string progress_line(const Run& run, const Progress& progress) {
                      run.stage().kind(), 100.0 * done, progress.left(done), describe_row(run));
 }
 
-/// Where nothing was looked at for a while.
+/// Describes a run that has not come to a look for a while.
 std::string doing_line(const Run& run) {
   std::string text =
       fmt::format("stage {} of {} ({})", run.stage_number() + 1, run.stages().size(), run.stage().kind());

@@ -19,7 +19,7 @@ namespace pyroclast::app {
 namespace {
 
 constexpr const char* kModule = "pyroclast.watch";
-/// For the last picture, s.
+/// Longest wait for the last picture, s.
 constexpr double kLongestFarewell = 60.0;
 
 bool there_is_a_display() {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kPollTime = 10;  // ms
 
-/// Two ends that programs which are started do not inherit.
+/// Pipe whose two ends are not inherited by programs that are started.
 class Pipe {
  public:
   Pipe() {
@@ -55,14 +55,14 @@ void take_default_signals() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-/// Says why the program could not be started.
+/// Reports why the program could not be started, and ends the process.
 [[noreturn]] void give_up(int failure) {
   const int error = errno;
   [[maybe_unused]] const auto written = write(failure, &error, sizeof error);
   _exit(127);
 }
 
-/// Becomes the program.
+/// Replaces this process by the program.
 [[noreturn]] void become(char* const* arguments, const char* output, int failure) {
   const int nothing = open("/dev/null", O_RDONLY);
   const int file = open(output, O_CREAT | O_WRONLY | O_TRUNC, S_IRUSR | S_IWUSR);
@@ -72,7 +72,7 @@ void take_default_signals() {
   give_up(failure);
 }
 
-/// Starts the program, ends as it ends, and takes the whole group along when the process at the other end of
+/// Starts the program, ends as it ends, and kills the whole group when the process at the other end of
 /// `alive` is gone.
 [[noreturn]] void supervise(char* const* arguments, const char* output, int alive, int failure) {
   if (setpgid(0, 0) != 0) give_up(failure);  // else the signal below would reach others
@@ -104,7 +104,7 @@ bool run_program(const std::vector<std::string>& words, const std::filesystem::p
     alive.close_writing();
     supervise(arguments.data(), output.c_str(), alive.read_end(), failure.write_end());
   }
-  setpgid(supervisor, supervisor);  // whoever is first
+  setpgid(supervisor, supervisor);  // the child does this too; whoever is first
   failure.close_writing();
   int status = -1;
   try {

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where control groups of one kind are mounted, and which of them stands at that place.
+/// Place where control groups of one kind are mounted, and the group that stands there.
 struct Mount {
   fs::path folder;
   std::string group;
@@ -33,7 +33,7 @@ bool has_item(const std::string& list, std::string_view item) {
   return false;
 }
 
-/// The kernel writes a space in a path as `\040`.
+/// Decodes a path of the kernel, which writes a space as `\040`.
 std::string decoded(const std::string& path) {
   const auto is_octal = [](char c) { return c >= '0' && c <= '7'; };
   std::string text;
@@ -47,7 +47,8 @@ std::string decoded(const std::string& path) {
   return text;
 }
 
-/// \param of_version_2  else those of version 1 that share out processors
+/// Finds the place where control groups are mounted.
+/// \param of_version_2  true for groups of version 2; else those of version 1 that share out processors
 std::optional<Mount> mount_of_groups(const fs::path& root, bool of_version_2) {
   std::ifstream mounts(root / "proc/self/mountinfo");
   for (std::string line; std::getline(mounts, line);) {
@@ -64,7 +65,7 @@ std::optional<Mount> mount_of_groups(const fs::path& root, bool of_version_2) {
   return {};
 }
 
-/// As a path from the root of all groups that this process can see.
+/// Returns the group of this process, as a path from the root of all groups that it can see.
 std::optional<std::string> group_of_process(const fs::path& root, bool of_version_2) {
   std::ifstream groups(root / "proc/self/cgroup");
   for (std::string line; std::getline(groups, line);) {  // number:controllers:group
@@ -82,7 +83,7 @@ std::optional<double> share(double time, double period) {
   return time / period;
 }
 
-/// `cpu.max` of a group of version 2: "150000 100000" or "max 100000".
+/// Reads `cpu.max` of a group of version 2: "150000 100000" or "max 100000".
 std::optional<double> quota_of_version_2(const fs::path& group) {
   std::ifstream file(group / "cpu.max");
   double time = 0.0, period = 0.0;
@@ -90,7 +91,7 @@ std::optional<double> quota_of_version_2(const fs::path& group) {
   return share(time, period);
 }
 
-/// Of version 1: -1 is no bound.
+/// Reads the quota of a group of version 1, where a time of -1 is no bound.
 std::optional<double> quota_of_version_1(const fs::path& group) {
   std::ifstream time_file(group / "cpu.cfs_quota_us"), period_file(group / "cpu.cfs_period_us");
   double time = 0.0, period = 0.0;
@@ -98,7 +99,7 @@ std::optional<double> quota_of_version_1(const fs::path& group) {
   return share(time, period);
 }
 
-/// The folders of the process's group and of those above it, of one version.
+/// Returns the folders of the process's group and of those above it, of one version, the process's own last.
 std::vector<fs::path> groups_above(const fs::path& root, bool of_version_2) {
   const auto mount = mount_of_groups(root, of_version_2);
   const auto group = group_of_process(root, of_version_2);

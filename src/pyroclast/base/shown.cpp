@@ -10,7 +10,7 @@ namespace pyroclast {
 
 namespace {
 
-/// The first character of a text that has so many bytes.
+/// Returns the first character of a text, which has so many bytes.
 char32_t code_of(std::string_view text, std::size_t bytes) {
   char32_t code = static_cast<unsigned char>(text[0]) & (bytes == 1 ? 0x7fU : 0x7fU >> bytes);
   for (std::size_t i = 1; i < bytes; ++i) code = (code << 6U) | (static_cast<unsigned char>(text[i]) & 0x3fU);

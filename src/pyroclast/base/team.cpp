@@ -11,20 +11,21 @@ namespace pyroclast {
 
 namespace {
 
-/// Others come within this time where the cores are free. Shorter, and a virtual machine that loses a core
-/// for a moment puts the other to sleep as well, at every barrier.
+/// Time for which a waiting thread spins: others come within it where the cores are free. With a shorter
+/// time, a virtual machine that loses a core for a moment would put the other to sleep as well, at every
+/// barrier.
 constexpr std::chrono::microseconds kSpin{500};
-/// Looks at the word between two looks at the clock.
+/// Number of looks at the word between two looks at the clock.
 constexpr int kLooksPerClock = 16;
 
-// When a team gives way. On free cores its threads are kept waiting for less than a tenth of the time, beside
-// as many loops as cores for four fifths. Two threads may share a core for some ticks before the system moves
-// one to another.
-constexpr double kMostKeptWaiting = 0.5;                  ///< share of the time of calls
-constexpr std::chrono::milliseconds kLongWaits{10};       ///< for each thread, before the team is judged
-constexpr std::chrono::milliseconds kShortestWindow{60};  ///< of calls, before the team is judged
-constexpr std::chrono::milliseconds kTry{100};            ///< of calls, until more threads have gone well
-constexpr std::chrono::milliseconds kShortestPause{250};  ///< doubled each time that it was too short
+// Values that decide when a team gives way. On free cores its threads are kept waiting for less than a tenth
+// of the time, beside as many loops as cores for four fifths. Two threads may share a core for some ticks
+// before the system moves one to another.
+constexpr double kMostKeptWaiting = 0.5;                  ///< largest share of the time of calls
+constexpr std::chrono::milliseconds kLongWaits{10};       ///< long waits of each thread before a judgement
+constexpr std::chrono::milliseconds kShortestWindow{60};  ///< time of calls before a judgement
+constexpr std::chrono::milliseconds kTry{100};            ///< time of calls until more threads have gone well
+constexpr std::chrono::milliseconds kShortestPause{250};  ///< pause; doubled each time that it was too short
 constexpr std::chrono::seconds kLongestPause{8};
 
 void relax() {
@@ -33,7 +34,7 @@ void relax() {
 #endif
 }
 
-/// Returns when the word is no longer `old`: how long that took, or 0 where it did not have to sleep.
+/// Waits until the word is no longer `old`. Returns how long that took, or 0 where it did not have to sleep.
 Clock::duration wait_while(const std::atomic<std::uint32_t>& word, std::uint32_t old) {
   const auto changed = [&] { return word.load(std::memory_order_acquire) != old; };
   if (changed()) return {};
@@ -96,7 +97,7 @@ void Team::call(int thread) {
   }
 }
 
-/// What another thread does all its life.
+/// Waits for jobs and does them, on another thread, until the team stops.
 void Team::work(int thread) {
   const auto& jobs = seats_[static_cast<std::size_t>(thread)].jobs;
   for (std::uint32_t seen = 0;; ++seen) {
@@ -159,15 +160,15 @@ void Team::begin_try() {
   waited_.store(0, std::memory_order_relaxed);
 }
 
-/// A wait that just ended, as far as it lies in the window.
+/// Adds a wait that just ended, as far as it lies in the window.
 void Team::add_wait(Clock::duration time) {
   if (time == Clock::duration{}) return;
   time = std::min(time, Clock::now() - window_began_);
   waited_.fetch_add(time.count(), std::memory_order_relaxed);
 }
 
-/// Whether the long waits, where there were enough of them, took much of the threads' time. It asks the clock
-/// only then, and so costs nothing on free cores.
+/// Offers fewer threads where long waits, if there were enough of them, took much of the threads' time. It
+/// asks the clock only then, and so costs nothing on free cores.
 void Team::judge() {
   const Clock::duration waited(waited_.load(std::memory_order_relaxed));
   if (crowded_ || when_crowded_ == WhenCrowded::stay || waited < in_run_ * Clock::duration(kLongWaits))

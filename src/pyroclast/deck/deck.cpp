@@ -28,7 +28,7 @@ std::string text_of(const std::filesystem::path& file) {
   return {};
 }
 
-/// With a mark for each byte that is no printable character of ASCII.
+/// Returns the text with a ? for each byte that is no printable character of ASCII.
 std::string printable(std::string text) {
   for (char& c : text)
     if (c < ' ' || c > '~') c = '?';
@@ -40,8 +40,8 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-/// A deck with one more of its values changed, as `--set` has it.
-/// \param changed  keys whose values are changed already; takes in the key of this one
+/// Returns a deck with one more of its values changed, as `--set` has it.
+/// \param changed  keys whose values are changed already; the key of this change is added
 std::unique_ptr<DeckReading> with_change(const DeckReading& deck, const std::string& change,
                                          std::vector<std::string>& changed) {
   const auto equals = change.find('=');

@@ -26,7 +26,7 @@ std::string_view without_leading_spaces(std::string_view text) {
   return text;
 }
 
-/// Whether a line's value, or the first of a list, is a number and a unit that should stand in quotes.
+/// Tells whether a line's value, or the first of a list, is a number and a unit that should stand in quotes.
 bool has_unquoted_quantity(std::string_view line) {
   line.remove_prefix(std::min(line.find('=') + 1, line.size()));
   line.remove_prefix(std::min(line.find_first_not_of(" \t["), line.size()));
@@ -38,7 +38,7 @@ bool has_unquoted_quantity(std::string_view line) {
   return !line.empty() && std::string_view("#,]\"'0123456789_=").find(line[0]) == std::string_view::npos;
 }
 
-/// A line of one of the files that a deck's text comes from.
+/// Line of one of the files that a deck's text comes from.
 struct FileLine {
   const std::string& file;
   int line;
@@ -78,7 +78,7 @@ toml::table parse_toml(const SourceText& source, const DeckSource& from) {
   return root;
 }
 
-/// Empty if the text is not TOML.
+/// Reads a text as TOML; returns none if it is not TOML.
 std::optional<toml::table> try_toml(const std::string& text) {
   if (character_fault(text)) return std::nullopt;
   try {
@@ -88,7 +88,7 @@ std::optional<toml::table> try_toml(const std::string& text) {
   }
 }
 
-/// A value that is not TOML as it stands, such as 5 us, is a string.
+/// Returns a value as TOML. A value that is not TOML as it stands, such as 5 us, becomes a string.
 std::string as_toml(const std::string& value) {
   const auto table = try_toml("value = " + value);
   if (table && table->size() == 1) return value;
@@ -193,8 +193,8 @@ std::string DeckReading::with_value(std::string_view path, const std::string& va
   return source_.replaced(position(region.begin), position(region.end), written);
 }
 
-/// First in the nearest table that there is, within its braces or below its header; where that has no header
-/// of its own, above all.
+/// Returns the text with a new key in the nearest table that there is: within its braces, below its header,
+/// or below a new header at the end. Where none of these fits, the key stands with its full path above all.
 std::string DeckReading::with_new_key(std::string_view path, const std::string& value) const {
   const auto fits = [&](const std::string& text) {
     const auto table = try_toml(text);
@@ -234,7 +234,7 @@ std::vector<Diagnostic> DeckReading::diagnostics() const {
   for (const Diagnostic& d : result)
     if (!d.meant.empty()) meant.insert(d.meant);
   std::erase_if(result, [&](const Diagnostic& d) { return d.is_missing && meant.contains(d.key); });
-  // What several readers miss is one error.
+  // A key that several readers miss is one error.
   std::set<std::string> said;
   std::erase_if(result, [&](const Diagnostic& d) { return !said.insert(to_string(d)).second; });
   return result;

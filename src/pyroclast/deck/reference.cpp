@@ -29,7 +29,7 @@ std::string sentence(const std::string& text) {
   return fmt::format("{}{}", capitalised(text), text.back() == '.' ? "" : ".");
 }
 
-/// Sentences that are not empty, one after the other.
+/// Joins the sentences that are not empty.
 std::string paragraph(const std::vector<std::string>& sentences) {
   std::vector<std::string> said;
   for (const std::string& s : sentences)
@@ -41,10 +41,10 @@ bool is_array(const DeckTable& table) {
   return table.path.ends_with("[]");
 }
 
-/// The same words in lines.
+/// Breaks a text into lines.
 std::string wrapped(const std::string& text) {
   std::string result;
-  int length = 0;  // of the present line
+  int length = 0;  // characters of the present line
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
     const std::string word = text.substr(begin, end - begin);
@@ -66,7 +66,7 @@ std::string header(const DeckTable& table) {
                          : fmt::format("`[{}]`", table.path);
 }
 
-/// A setting as it stands in a deck, with its table if that is another one.
+/// Returns a setting as it stands in a deck, with its table if that is another one.
 std::string setting(const KeyCondition& condition, const std::string& table) {
   if (condition.table == table) return condition.key;
   std::string path = condition.table;
@@ -74,7 +74,7 @@ std::string setting(const KeyCondition& condition, const std::string& table) {
   return path.empty() ? condition.key : fmt::format("{}.{}", path, condition.key);
 }
 
-/// Such as 'With `mass = "scaled"`', or 'Not with `kind = "conduct"`'.
+/// Returns a condition in words, such as 'With `mass = "scaled"`', or 'Not with `kind = "conduct"`'.
 std::string when(const KeyCondition& condition, const std::string& table) {
   const std::string key = setting(condition, table);
   if (condition.kind == KeyCondition::Kind::present) return fmt::format("With `{}`", key);
@@ -92,7 +92,7 @@ std::string when(const std::vector<KeyCondition>& conditions, const std::string&
   return paragraph(all);
 }
 
-/// Text that ends no cell of a table.
+/// Returns a text that ends no cell of a table.
 std::string cell(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -114,7 +114,8 @@ std::string row(const DeckTable& table, const DeckKey& key) {
                      fallback, cell(paragraph(meaning)));
 }
 
-/// \param word  of `decisive`, whose rows are left out if they are not read with it; kNoWord: all rows
+/// Returns the rows of keys that are read with one word of the key `decisive`.
+/// \param word  word of `decisive`; kNoWord: the rows of keys that do not depend on `decisive`
 std::string rows(const DeckTable& table, const std::string& decisive, const std::string& word) {
   std::string text;
   for (DeckKey key : table.keys) {
@@ -127,7 +128,7 @@ std::string rows(const DeckTable& table, const std::string& decisive, const std:
       if (std::find(with.begin(), with.end(), word) == with.end()) continue;
       key.conditions.erase(condition);
     }
-    if (key.key == decisive)  // what has a part of its own is told there
+    if (key.key == decisive)  // a word with a part of its own is explained there
       for (DeckWord& w : key.words)
         if (!rows(table, decisive, w.word).empty()) w.meaning.clear();
     text += row(table, key);
@@ -136,7 +137,7 @@ std::string rows(const DeckTable& table, const std::string& decisive, const std:
   return "| key | value | unit | allowed | default | meaning |\n|---|---|---|---|---|---|\n" + text;
 }
 
-/// The key whose words decide on the others: most of its words have keys of their own.
+/// Finds the key whose words decide on the others: most of its words have keys of their own.
 const DeckKey* decisive_key(const DeckTable& table) {
   for (const DeckKey& key : table.keys) {
     const auto has_keys = [&](const DeckWord& word) {

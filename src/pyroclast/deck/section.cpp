@@ -17,7 +17,7 @@
 namespace pyroclast {
 namespace {
 
-/// A value of the deck, its full path and the record that takes its errors.
+/// Value of the deck, its full path and the record that takes its errors.
 struct Entry {
   DeckReading& deck;
   std::string path;
@@ -55,7 +55,7 @@ std::string_view suffix(const Unit& unit) {
   return unit == unit::dimensionless ? "" : unit.si;
 }
 
-/// What a quantity must look like, its range included.
+/// Describes how a quantity must be written, its range included.
 std::string requirement(const Unit& unit, const Range& range) {
   const std::string words = range.describe(suffix(unit));
   return words.empty() ? requirement(unit) : fmt::format("{}; it must be {}", requirement(unit), words);
@@ -219,7 +219,7 @@ std::string one_of(const std::vector<std::string>& words) {
   return "one of " + quoted_list(words);
 }
 
-/// The word's index, or that of the nearest after an error; none if no word is near.
+/// Returns the word's index, or that of the nearest word after an error; none if no word is near.
 std::optional<std::size_t> read_choice(const Entry& entry, const std::vector<std::string>& words) {
   const auto* text = entry.node.as_string();
   if (!text) {
@@ -234,14 +234,15 @@ std::optional<std::size_t> read_choice(const Entry& entry, const std::vector<std
   return near;
 }
 
-/// A key of a table that its reader takes now; none if the key or the whole table is absent.
+/// Takes the value of a key of a table; returns none if the key or the whole table is absent.
 std::optional<Entry> read(DeckReading& deck, TableReading* table, std::string_view key) {
   const toml::node* node = table ? table->read(key) : nullptr;
   if (!node) return std::nullopt;
   return Entry{deck, table->path_of(key), *node};
 }
 
-/// The same for a key that must be there; `needed` says what is missing.
+/// Takes the value of a key that must be there, and records an error if it is absent; `needed` says what is
+/// missing.
 std::optional<Entry> require(DeckReading& deck, TableReading* table, std::string_view key,
                              const std::string& needed) {
   auto entry = read(deck, table, key);
@@ -249,13 +250,13 @@ std::optional<Entry> require(DeckReading& deck, TableReading* table, std::string
   return entry;
 }
 
-/// A number of a deck's, with its unit, as the deck reference has it.
+/// Returns a number with its unit, as the deck reference has it.
 std::string fallback_text(double value, const Unit& unit) {
   if (!std::isfinite(value)) return "none";
   return fmt::format("{}{}{}", value, unit == unit::dimensionless ? "" : " ", suffix(unit));
 }
 
-/// In words, without unit; what is usual behind it.
+/// Describes a range in words, without unit; the usual values stand behind the allowed ones.
 std::string allowed(const Range& range) {
   const std::string must = range.describe(), usual = range.describe_usual();
   if (usual.empty()) return must;

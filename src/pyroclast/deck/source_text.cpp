@@ -5,7 +5,7 @@
 namespace pyroclast {
 namespace {
 
-/// Byte at which the character of a column begins in a line of UTF-8.
+/// Returns the byte at which the character of a column begins in a line of UTF-8.
 std::size_t byte_of_column(std::string_view line, int column) {
   std::size_t byte = 0;
   for (int passed = 1; passed < column && byte < line.size(); ++passed) {

@@ -24,7 +24,7 @@ std::string joined(const std::string& table, std::string_view key) {
   return table.empty() ? std::string(key) : fmt::format("{}.{}", table, key);
 }
 
-/// What makes two readings of a key the same.
+/// Returns the parts in which two readings of a key must agree to be the same.
 auto content(const SurveyRun::Read& r) {
   const auto words = [](const DeckWord& w) { return w.word + '\0' + w.meaning; };
   std::vector<std::string> all;
@@ -34,11 +34,11 @@ auto content(const SurveyRun::Read& r) {
 }
 using Content = decltype(content(std::declval<SurveyRun::Read>()));
 
-/// Number of each thing in the order of meeting it.
+/// Numbers of things in the order of meeting them.
 template <class Thing>
 class Numbers {
  public:
-  /// The number, and whether the thing is new.
+  /// Returns the number of a thing, and whether the thing is new.
   std::pair<int, bool> of(const Thing& thing) {
     const auto [known, is_new] = numbers_.emplace(thing, static_cast<int>(numbers_.size()));
     return {known->second, is_new};
@@ -50,7 +50,7 @@ class Numbers {
 
 constexpr std::size_t kNotAsked = -1;
 
-/// What one run told, of thousands. Questions and keys have the numbers of the surveyor, which keeps their
+/// Record of one run, of thousands. Questions and keys have the numbers of the surveyor, which keeps their
 /// texts once.
 struct Told {
   struct Answered {
@@ -60,13 +60,13 @@ struct Told {
   };
   struct Read {
     int key = 0;
-    std::size_t after = 0;  ///< so many answers
+    std::size_t after = 0;  ///< number of answers before
   };
 
   std::vector<Answered> answered;
   std::vector<Read> read;
-  std::vector<std::size_t> answers;  ///< by question, kNotAsked or beyond the end where it was not asked
-  std::vector<bool> keys;            ///< by key, whether it was read
+  std::vector<std::size_t> answers;  ///< answers by question; kNotAsked or beyond the end: it was not asked
+  std::vector<bool> keys;            ///< true for each key that was read, by its number
 
   std::size_t answer(int question) const {
     return static_cast<std::size_t>(question) < answers.size() ? answers[question] : kNotAsked;
@@ -74,14 +74,15 @@ struct Told {
   bool reads(int key) const { return static_cast<std::size_t>(key) < keys.size() && keys[key]; }
 };
 
-/// A key as one run read it.
+/// Finding: a key as one run read it, and the answers with which it is read.
 struct Found {
   SurveyRun::Read what;
   int key = 0;
-  SurveyAnswers given;  ///< in that run
+  SurveyAnswers given;  ///< answers given in that run
   const Told* run = nullptr;
   bool in_form = false;
-  /// By question before the key: the answers with which it is read, those to the others being the run's.
+  /// Answers with which the key is read, for each question before it; the other questions have the run's
+  /// answers.
   std::vector<std::set<std::size_t>> with;
 };
 
@@ -92,7 +93,7 @@ auto find_table(Tables& tables, const std::string& path) {
 
 class Surveyor {
  public:
-  /// \param read  calls the reader, which asks the run
+  /// \param read  function that calls the reader, which asks the run
   explicit Surveyor(std::function<void(SurveyRun&)> read) : read_(std::move(read)) {
     plan({});
     visit_planned();
@@ -137,13 +138,14 @@ class Surveyor {
     }
   }
 
-  /// What the reader tells with these answers.
+  /// Returns the record of a run with these answers.
   const Told& told(const SurveyAnswers& given) {
     visit(given);
     return told_.at(given);
   }
 
-  /// Calls the reader with these answers; where that brings something new, each other answer is planned.
+  /// Calls the reader with these answers; where that brings something new, plans a run with each other
+  /// answer.
   void visit(const SurveyAnswers& given) {
     if (told_.contains(given)) return;
     SurveyRun run(given);
@@ -191,8 +193,8 @@ class Surveyor {
     if (known->meaning.empty()) known->meaning = table.meaning;
   }
 
-  /// Compares what was found with all runs: narrows what a run contradicts, adds what no finding explains.
-  /// False if nothing was to be done.
+  /// Compares the findings with all runs: narrows a finding that a run contradicts, and adds a finding for a
+  /// key that none explains. Returns false if nothing was to be done.
   bool correct() {
     bool is_changed = false;
     const std::size_t runs = visited_.size();
@@ -211,12 +213,14 @@ class Surveyor {
     return is_changed;
   }
 
-  /// Whether a question counts for a finding: a form is the same wherever it stands.
+  /// Tells whether a question counts for a finding. A form is the same wherever it stands, so only questions
+  /// of its own table count for it.
   static bool counts(const Found& f, const SurveyQuestion& question) {
     return !f.in_form || question.table == f.what.table;
   }
 
-  /// Changes the answers before the key one by one; what another finding explains is left to that.
+  /// Changes the answers before the key one by one. A run that another finding explains is left to that
+  /// finding.
   Found find(const Told::Read& read, const SurveyAnswers& given) {
     const SurveyRun::Read& what = key_texts_[read.key];
     Found f{what, read.key, given, &told_.at(given), is_form(what.table), {}};
@@ -233,13 +237,13 @@ class Surveyor {
     return f;
   }
 
-  /// Whether a finding tells that a run reads a key; one finding tells all of a form.
+  /// Tells whether a finding says that a run reads a key; one finding says so for all readings of a form.
   bool is_explained(int key, const Told& run) const {
     return std::any_of(found_.begin(), found_.end(),
                        [&](const Found& f) { return f.key == key && (f.in_form || is_explained(f, run)); });
   }
 
-  /// Whether a run's answers are those with which the key is read.
+  /// Tells whether a run's answers are those with which the key is read.
   bool is_explained(const Found& f, const Told& run) const {
     for (std::size_t i = 0; i < f.with.size(); ++i) {
       const auto& a = f.run->answered[i];
@@ -249,8 +253,8 @@ class Surveyor {
     return true;
   }
 
-  /// Takes back an answer with which a key is read only if questions that follow from it are answered
-  /// otherwise than in a run that does not read the key. False if there is none.
+  /// Removes an answer from a finding: one with which the key is read only if questions that follow from it
+  /// are answered otherwise than in a run that does not read the key. Returns false if there is none.
   bool narrow(Found& f, const Told& run) {
     SurveyAnswers as_in_run = f.given;
     for (const auto& a : run.answered)
@@ -302,7 +306,7 @@ class Surveyor {
     key.conditions.push_back(std::move(condition));
   }
 
-  /// Tables below one table of the root stand together.
+  /// Puts tables below one table of the root together.
   static void put_parts_together(std::vector<DeckTable>& tables) {
     std::vector<std::string> order;
     const auto place = [&](const DeckTable& table) {
@@ -317,7 +321,7 @@ class Surveyor {
                      [&](const DeckTable& a, const DeckTable& b) { return place(a) < place(b); });
   }
 
-  /// Conditions from outside that all keys share are the table's.
+  /// Moves conditions from outside that all keys share to the table.
   static void take_common_conditions(DeckTable& table) {
     for (const KeyCondition& condition : std::vector(table.keys.front().conditions)) {
       if (condition.table == table.path) continue;
@@ -334,12 +338,12 @@ class Surveyor {
   std::deque<SurveyAnswers> open_;
   std::set<SurveyAnswers> planned_;
   std::map<SurveyAnswers, Told> told_;
-  std::vector<SurveyAnswers> visited_;  ///< about from the fewest changed answers to the most
+  std::vector<SurveyAnswers> visited_;  ///< answers of each run, about from the fewest changed to the most
   Numbers<SurveyQuestion> questions_;
-  std::vector<SurveyQuestion> asked_;  ///< by number
+  std::vector<SurveyQuestion> asked_;  ///< questions, by number
   Numbers<Content> keys_;
-  std::vector<SurveyRun::Read> key_texts_;       ///< by number
-  std::set<std::vector<std::string>> possible_;  ///< answers
+  std::vector<SurveyRun::Read> key_texts_;       ///< keys, by number
+  std::set<std::vector<std::string>> possible_;  ///< lists of answers
   std::vector<Found> found_;
   std::vector<DeckTable> tables_;
   std::vector<std::pair<std::string, std::string>> known_;
@@ -409,7 +413,7 @@ TableReading& SurveyRun::table(const std::string& path, bool optional, std::stri
 }
 
 std::string SurveyRun::described(const std::string& path) const {
-  const auto known = std::find_if(forms_.rbegin(), forms_.rend(),  // of several, the longest
+  const auto known = std::find_if(forms_.rbegin(), forms_.rend(),  // the one with the longest path
                                   [&](const auto& f) { return is_at_or_below(path, f.first); });
   return known == forms_.rend() ? path : known->second + path.substr(known->first.size());
 }

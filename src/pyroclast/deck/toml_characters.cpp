@@ -13,16 +13,16 @@ namespace {
 
 constexpr int kMostDepth = 256;  // as toml++ allows for brackets; parts of keys take its stack unchecked
 
-/// Follows a text into its strings and comments and out of them, as far as it is TOML: toml++ goes no further
-/// either. A quote opens a string where a key or a value begins, and nowhere else.
+/// Scanner that follows a text into its strings and comments and out of them, as far as it is TOML: toml++
+/// goes no further either. A quote opens a string where a key or a value begins, and nowhere else.
 class Scanner {
  public:
-  /// Whether the character that stands next may be outside of ASCII.
+  /// Tells whether the next character may be outside of ASCII.
   bool may_be_foreign() const { return (in_comment_ || quote_ != '\0') && !behind_backslash_; }
 
-  /// Goes behind what stands next: quotes that belong together, or one character.
-  /// \param length  of that character, bytes
-  /// \return bytes
+  /// Goes behind the next character, or behind the next quotes where several belong together.
+  /// \param length  length of the next character, bytes
+  /// \return bytes passed
   std::size_t pass(std::string_view rest, std::size_t length) {
     const char c = rest.front();
     if (in_comment_ && c != '\n') return length;
@@ -30,7 +30,7 @@ class Scanner {
     return quote_ != '\0' ? pass_in_string(rest, length) : pass_outside(rest, length);
   }
 
-  /// Levels at which what stands next lies.
+  /// Returns the number of levels at which the next character lies.
   int depth() const {
     return std::accumulate(parts_above_.begin(), parts_above_.end(),
                            header_parts_ + parts_ + static_cast<int>(open_.size()));
@@ -107,17 +107,17 @@ class Scanner {
   }
 
   bool in_comment_ = false;
-  char quote_ = '\0';              ///< of the string at hand
-  bool has_lines_ = false;         ///< whether that string may have several
-  bool escaped_ = false;           ///< the next character follows a backslash ...
-  bool behind_backslash_ = false;  ///< ... or blanks that do
-  std::string open_;               ///< brackets of arrays and inline tables
-  std::vector<int> parts_above_;   ///< of the key before each of these
-  int parts_ = 0;                  ///< of the key at hand, behind its first
-  int header_parts_ = 0;           ///< of the table that it is in
-  bool is_header_ = false;         ///< whether this line names a table
+  char quote_ = '\0';              ///< quote of the string at hand; '\0' outside of strings
+  bool has_lines_ = false;         ///< true where that string may have several lines
+  bool escaped_ = false;           ///< true where the next character follows a backslash ...
+  bool behind_backslash_ = false;  ///< true where it follows a backslash, or blanks behind one
+  std::string open_;               ///< open brackets of arrays and inline tables
+  std::vector<int> parts_above_;   ///< parts of the key before each of these, without its first
+  int parts_ = 0;                  ///< parts of the key at hand, without its first
+  int header_parts_ = 0;           ///< parts of the name of the table at hand, without its first
+  bool is_header_ = false;         ///< true where this line names a table
   bool behind_equals_ = false;
-  bool has_begun_ = false;  ///< the key, a part of it, or the value
+  bool has_begun_ = false;  ///< true where the key, a part of it, or the value has begun
 };
 
 }  // namespace

@@ -37,15 +37,15 @@ enum Property {
   property_count
 };
 
-// What is allowed over its scale: tractions over K u, lengths over u, energies over t u, with u the largest
-// jump and t the largest traction of the path so far, K the larger stiffness.
+// Error by round-off that is allowed over a scale: K u of tractions, u of lengths, t u of energies. u is the
+// largest jump and t the largest traction of the path so far, K the larger stiffness.
 constexpr double kRoundOff = 1e-10;
-/// Of the balance on one axis: the quadrature goes on until its own error is less.
+/// Error of the balance on one axis that is allowed: the quadrature goes on until its own error is less.
 constexpr double kBalance = 1e-8;
-/// Of the order in the number of cuts, that of the sum over all legs. It is taken of each leg from where
-/// energies change by less than this share of traction times way.
+/// Least order in the number of cuts, of the sum over all legs, and the share of traction times way by which
+/// energies of a leg may change where the order is taken.
 constexpr double kOrder = 0.9, kLittleChange = 1e-3;
-/// A bound that is not reached to this share costs steps for nothing.
+/// Share of a stiffness bound that must be reached: a bound that is higher costs steps for nothing.
 constexpr double kReached = 0.5;
 
 const std::array<KitFinding, property_count> kProperties{{
@@ -68,7 +68,7 @@ const std::array<KitFinding, property_count> kProperties{{
     {"objections", "name a property and, where they give a bound, the bound"},
 }};
 
-/// Opening, tangential components; m.
+/// Jump of a point: opening and tangential components, m.
 using Jump = std::array<double, 3>;
 
 struct Point {
@@ -97,7 +97,7 @@ bool same_unit(const Unit& a, const Unit& b) {
   return std::string_view(a.si) == b.si;
 }
 
-/// But for the sign of zero: in lanes a nothing may be added to -0.
+/// Tells whether two numbers are the same but for the sign of zero: in lanes a nothing may be added to -0.
 bool same_number(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
@@ -125,7 +125,7 @@ double dot(const Jump& a, const Jump& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Numbers that decks hold for a property, by its unit; the range cuts them.
+/// Returns the range of the numbers that decks hold for a property, by its unit.
 std::pair<double, double> usual(const PropertyInfo& info) {
   const auto is = [&](const Unit& unit) { return same_unit(info.unit, unit); };
   if (is(unit::stiffness_per_area)) return {5e12, 5e13};
@@ -182,21 +182,21 @@ class Kit {
 
   enum class Kind { normal, shear, any };
 
-  /// A path and its point.
+  /// Path and its point.
   struct Path {
     Kind kind = Kind::any;
     std::vector<Material> materials;
     int material = 0;
     Point point;
-    Point turned;  ///< the same in a frame turned by these:
+    Point turned;  ///< same point in a frame turned by the next three:
     double cosine = 1.0, sine = 0.0;
     bool mirrored = false;
-    Point in_space;                        ///< a plane path in 3D
-    std::array<double, 2> line{1.0, 0.0};  ///< of the tangential jump; unit
+    Point in_space;                        ///< point of a plane path in 3D
+    std::array<double, 2> line{1.0, 0.0};  ///< unit direction of the tangential jump
     Jump before_last{};
-    double traction = 0.0, jump = 0.0;  ///< largest so far, Pa, m
-    double energy = 0.0;                ///< largest that was stored or lost in a step, J/m²
-    std::vector<double> lengths;        ///< that mean something to the law, m
+    double traction = 0.0, jump = 0.0;  ///< largest traction and jump so far, Pa, m
+    double energy = 0.0;                ///< largest energy stored or lost in a step, J/m²
+    std::vector<double> lengths;        ///< lengths that mean something to the law, m
     double deepest = 0.0;               ///< opening at the greatest pressure, m
   };
 
@@ -227,7 +227,7 @@ class Kit {
     return numbers;
   }
 
-  /// As at another temperature: by ratios that are anything a user's curve could say.
+  /// Returns properties as at another temperature, by ratios that any user's curve could have.
   std::vector<double> warmed(const std::vector<double>& cold, Random& random) const {
     const double stiffness = log_uniform(random, 0.1, 1.3), one_for_all = log_uniform(random, 0.1, 1.3);
     const bool alike = random.uniform() < 0.5;
@@ -267,7 +267,7 @@ class Kit {
     throw Error(fmt::format("the law \"{}\" objects to all of 10000 drawn sets of properties", law_.name));
   }
 
-  /// A little to one side of the bound it holds, and not to the other.
+  /// Checks that the law objects a little to one side of the bound of an objection, and not to the other.
   void check_objection(const Material& m, const Objection& objection) {
     const auto info = std::ranges::find_if(
         law_.properties, [&](const PropertyInfo& p) { return std::string_view(p.key) == objection.key; });
@@ -315,7 +315,7 @@ class Kit {
     return all;
   }
 
-  /// Opening at which a new contact presses with so much, m.
+  /// Returns the opening at which a new contact presses with so much, m.
   double opening_at(const Material& m, double pressure) {
     Point p = new_point(dim_);
     double opening = -pressure / m.stiffness.normal;
@@ -341,7 +341,7 @@ class Kit {
     return sum;
   }
 
-  /// Takes a point of the path to a jump. Returns what it lost.
+  /// Takes a point of the path to a jump. Returns its losses.
   const std::vector<double>& go(Path& path, Point& p, const Jump& to, int dim) {
     const Material& m = path.materials[path.material];
     before_ = p;
@@ -375,7 +375,7 @@ class Kit {
     return lost_;
   }
 
-  /// The largest difference of two points that should be the same, over its scale.
+  /// Returns the largest difference of two points that should be the same, over its scale.
   double apart(const Path& path, const Point& a, const Point& b, int dim) const {
     const Material& m = path.materials[path.material];
     const double k = std::max(m.stiffness.normal, m.stiffness.shear);
@@ -395,7 +395,7 @@ class Kit {
       most = larger_or_nan(most, over(lost_a[i] - lost_b[i], scale(path, law_.losses[i].unit, k)));
     return most;
   }
-  /// What round-off of energies is measured by, J/m².
+  /// Returns the scale of round-off in energies, J/m².
   static double energies(const Path& path) { return path.traction * path.jump + path.energy; }
   static double scale(const Path& path, const Unit& unit, double k) {
     if (same_unit(unit, unit::length)) return path.jump;
@@ -443,7 +443,7 @@ class Kit {
          [&] { return step_text(path, again); });
   }
 
-  /// Losses are added to what is there.
+  /// Checks that losses are added to the numbers that are there.
   void check_adding(Path& path, const Point& from, const std::vector<double>& lost) {
     const Material& m = path.materials[path.material];
     Point p = from;
@@ -455,7 +455,7 @@ class Kit {
     note(losses, added, [&] { return "not added: " + step_text(path, path.point); });
   }
 
-  /// The tangential jump as the turned frame sees it.
+  /// Returns a jump as the turned frame sees it.
   static Jump turn(const Path& path, const Jump& j, int dim) {
     const double sign = path.mirrored ? -1.0 : 1.0;
     if (dim == 2) return {j[0], -j[1], 0.0};
@@ -466,7 +466,7 @@ class Kit {
     return {j[0], j[1] * path.line[0], j[1] * path.line[1]};
   }
 
-  /// Takes the twins of a point along, and compares.
+  /// Takes the twins of a point along, and compares their answers.
   void check_frame(Path& path, const std::vector<double>& lost) {
     const auto compare = [&](Point& twin, const Jump& jump, const Jump& expected, int dim) {
       const std::vector<double> twin_lost = go(path, twin, jump, dim);
@@ -484,7 +484,7 @@ class Kit {
       compare(path.in_space, into_space(path, path.point.jump), into_space(path, t), 3);
   }
 
-  /// Small and large steps from where the point stands.
+  /// Checks small and large steps from where the point stands.
   void check_stiffness(Path& path, Random& random) {
     const Material& m = path.materials[path.material];
     const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
@@ -514,10 +514,11 @@ class Kit {
     }
   }
 
-  /// What acts in the plane of opening and one tangential direction, over the bounds: no step may be answered
-  /// along itself by more than 1. A law has corners, so of a matrix from steps along the axes a mode says
-  /// nothing unless a step along it is answered along it. Else the matrix is taken beside that step.
-  /// \param change  of the tractions in steps along the axes
+  /// Checks the answers in the plane of opening and one tangential direction, over the bounds: no step may be
+  /// answered along itself by more than 1. A law has corners, so a mode of the matrix from steps along the
+  /// axes says nothing unless a step along the mode is answered along it. Else the matrix is taken anew
+  /// beside that step.
+  /// \param change  changes of the tractions in steps along the axes
   void check_spectrum(Path& path, const std::array<Jump, 2>& change, const Jump& along, double step) {
     using Pair = std::array<double, 2>;
     const Material& m = path.materials[path.material];
@@ -568,7 +569,7 @@ class Kit {
     }
   }
 
-  /// Of a step along one axis.
+  /// Checks the stiffness of a step along one axis.
   void check_secant(Path& path, const Point& from, const Point& to) {
     const Material& m = path.materials[path.material];
     const Jump step = difference(to.jump, from.jump);
@@ -630,7 +631,7 @@ class Kit {
     std::vector<double> lost;
   };
 
-  /// To a jump by way of the given shares of the leg.
+  /// Takes a point to a jump by way of the given shares of the leg.
   Cut cut(Path& path, const Point& from, const Jump& to, const std::vector<double>& shares) {
     Cut c{from, nothing_lost()};
     for (const double share : shares) {
@@ -645,7 +646,7 @@ class Kit {
     return shares;
   }
 
-  /// A leg along which nothing but one component of the jump acts.
+  /// Checks a leg along which only one component of the jump acts.
   void check_on_one_axis(Path& path, const Point& from, const std::vector<double>& lost, Random& random) {
     const Point once = path.point;
     const double way = length(difference(once.jump, from.jump));
@@ -670,12 +671,14 @@ class Kit {
     });
   }
 
-  /// What a leg can take, with what round-off leaves of the energies of the path, J/m².
+  /// Returns the largest energy that a leg can take, with what round-off leaves of the energies of the path,
+  /// J/m².
   static double energy_scale(const Path& path, double way) {
     return path.traction * (way + 1e-4 * path.jump);
   }
 
-  /// Work less stored energy and losses on the way to a jump, by Simpson's rule on ever smaller parts.
+  /// Returns work less stored energy and losses on the way to a jump, by Simpson's rule on ever smaller
+  /// parts.
   double quadrature_error(Path& path, Point& p, const Jump& to, double way, int depth) {
     const Point start = p;
     const Jump half = between(start.jump, to, 0.5);
@@ -694,12 +697,11 @@ class Kit {
     return first + quadrature_error(path, p, to, way, depth + 1);
   }
 
-  /// Any leg.
   void check_on_any_leg(Path& path, const Point& from) {
     const Jump to = path.point.jump;
     const double way = length(difference(to, from.jump));
     if (way == 0.0) return;
-    // a leg that is long beside what the law does along it would need too many cuts to show the order
+    // a leg that is long beside the lengths of the law would need too many cuts to show the order
     if (way < 30.0 * *std::ranges::min_element(path.lengths)) add_changes(path, from, to, way);
 
     if (!failed_little(balance)) return;
@@ -709,7 +711,7 @@ class Kit {
       balance_of_step(path, p, between(from.jump, to, share), way, 0);
   }
 
-  /// What energies change by when a leg is cut finer, once it is cut so fine that little changes.
+  /// Adds the changes of the energies when a leg is cut finer, once it is cut so fine that little changes.
   void add_changes(Path& path, const Point& from, const Jump& to, double way) {
     const double scale = energy_scale(path, way);
     Cut coarse = cut(path, from, to, equal_shares(kFewestCuts));
@@ -727,8 +729,9 @@ class Kit {
     changes_[1] += change_at(4 * cuts);
   }
 
-  /// Work of the mean traction less stored energy and losses: at most of the order of the change of traction
-  /// times the step. Where a step holds a corner or a fall of the law, its parts must show it.
+  /// Checks that the work of the mean traction less stored energy and losses is at most of the order of the
+  /// change of traction times the step. Where a step holds a corner or a fall of the law, its parts must show
+  /// it.
   void balance_of_step(Path& path, Point& p, const Jump& to, double way, int depth) {
     const Material& m = path.materials[path.material];
     const Point start = p;
@@ -791,7 +794,7 @@ class Kit {
     return random_length(path, random);
   }
 
-  /// Along the path's line, or anywhere in the plane.
+  /// Draws a tangential jump along the path's line, or anywhere in the plane.
   static std::array<double, 2> draw_slip(const Path& path, int dim, Random& random) {
     const double u = random.uniform();
     const Jump& now = path.point.jump;
@@ -830,7 +833,7 @@ class Kit {
     return to;
   }
 
-  /// Eight paths side by side.
+  /// Takes eight paths side by side through all legs.
   void travel(int first) {
     first_ = first;
     Random random(options_.seed * 0x9e3779b97f4a7c15ULL + static_cast<std::uint64_t>(first) * 4U +
@@ -906,7 +909,8 @@ class Kit {
 
   // -- reports -------------------------------------------------------------------------------------
 
-  /// Legs that do not balance are cut ever finer; a few of them say it all.
+  /// Tells whether few checks of a property have failed. Legs that do not balance are cut ever finer; a few
+  /// of them say it all.
   bool failed_little(Property property) const { return findings_[property].failures < 20; }
 
   template <class Text>
@@ -945,7 +949,7 @@ class Kit {
                        p.response.normal_traction, fmt::join(p.response.shear_traction, ", "),
                        p.response.stored, fmt::join(p.internals, ", "), fmt::join(lost, ", "));
   }
-  /// Of the last update.
+  /// Describes the last update.
   std::string step_text(const Path& path, const Point& to) const {
     return step_text(path, to, before_, lost_);
   }
@@ -961,12 +965,12 @@ class Kit {
   const KitOptions& options_;
   std::vector<KitFinding> findings_;
   int dim_ = 2, first_ = 0, lane_ = 0, leg_ = 0;
-  Point before_;              ///< the last update
-  std::vector<double> lost_;  ///< in it
+  Point before_;              ///< point before the last update
+  std::vector<double> lost_;  ///< losses in the last update
   std::vector<double> nothing_;
   std::int64_t updates_ = 0, most_updates_ = 0;
-  std::array<double, 2> stiffest_{};  ///< over the bound: normal, shear
-  std::array<double, 2> changes_{};   ///< of energies between cuts, summed over legs
+  std::array<double, 2> stiffest_{};  ///< greatest stiffness found, over the bound: normal, shear
+  std::array<double, 2> changes_{};   ///< changes of energies between cuts, summed over legs
   double order_ = 0.0;
 };
 

@@ -48,7 +48,7 @@ const Points& calcareous_strength() {
   return points;
 }
 
-// The table gives no strains at 1200 degC.
+// Returns no strain at 1200 degC: the table has none.
 const Points& peak_strain() {
   static const Points points = {{20, 0.0025},  {100, 0.0040}, {200, 0.0055}, {300, 0.0070},
                                 {400, 0.0100}, {500, 0.0150}, {600, 0.0250}, {1100, 0.0250}};
@@ -72,8 +72,8 @@ struct Elongation {
   double polynomial(double T) const { return a + b * T + c * T * T * T; }
   double strain(double T) const { return std::min(polynomial(T), greatest); }
 
-  /// Strain since 20 degC over the temperature rise. The polynomial is divided in closed form, so that 20
-  /// degC is no special case: the limit there is the slope b + 3 c T0^2.
+  /// Returns the strain since 20 degC over the temperature rise. The polynomial is divided in closed form, so
+  /// that 20 degC is no special case: the limit there is the slope b + 3 c T0^2.
   double secant(double T) const {
     constexpr double T0 = kReferenceTemperature;
     if (polynomial(T) < greatest) return b + c * (T * T + T * T0 + T0 * T0);
@@ -92,7 +92,7 @@ Curve secant_expansion(const Elongation& e, double end_of_growth) {
   return function([e](double T) { return e.secant(T); }, eurocode_range, {end_of_growth});
 }
 
-/// a + b (T/100) + c (T/100)^2 in W/(m K).
+/// Returns a + b (T/100) + c (T/100)^2, W/(m K).
 Curve conductivity(double a, double b, double c) {
   return function([=](double T) { return a + (b + c * T / 100.0) * T / 100.0; }, eurocode_range);
 }
@@ -115,7 +115,7 @@ double specific_heat_peak(double moisture_percent) {
   return 1470.0 + (2020.0 - 1470.0) * (moisture_percent - 1.5) / 1.5;
 }
 
-/// 1.5 f_c/eps_c1, the initial slope of the stress-strain curve of Table 3.1, relative to 20 degC.
+/// Returns 1.5 f_c/eps_c1, the initial slope of the stress-strain curve of Table 3.1, relative to 20 degC.
 Curve apparent_modulus() {
   const Curve strength = table(siliceous_strength());
   const Curve strain = table(peak_strain());
@@ -179,7 +179,7 @@ double theta(double T) {
 }
 
 double glasgow_fracture_energy(double T) {
-  constexpr double kEnd = 6.8, kLeast = 0.2;  // theta where the formula ends
+  constexpr double kEnd = 6.8, kLeast = 0.2;  // theta where the formula ends, and the least ratio
   const double t = std::min(theta(T), kEnd), beyond = std::max(theta(T) - kEnd, 0.0);
   return std::max(1.0 + (0.39 - 0.07 * t) * t + (0.39 - 0.14 * kEnd) * beyond, kLeast);
 }
@@ -188,7 +188,7 @@ double glasgow_free_thermal_strain(double T) {
   return 0.006 * std::log(7.0 / (7.0 - std::min(theta(T), 6.0)));
 }
 
-// Strains of load-induced thermal strain for each unit of stress over strength, both in compression.
+// Load-induced thermal strains for each unit of stress over strength, both in compression.
 
 double glasgow_creep(double T) {
   constexpr double A = 0.0005, B = 0.00125, C = 0.0085, kink = 4.5;
@@ -196,9 +196,9 @@ double glasgow_creep(double T) {
   return (A * below + B) * below + (C * above + 2.0 * A * kink + B) * above;
 }
 
-/// The published polynomial ends here, and goes on with its last slope, degC.
+/// End of the published polynomial, degC; beyond it the curve goes on with its last slope.
 constexpr double kTorelliEnd = 500.0;
-/// Its polynomial has the wrong sign below, degC.
+/// Temperature below which the polynomial has the wrong sign, degC.
 constexpr double kTorelliBegin = 32.333513018427276;
 
 double torelli_creep(double T) {
@@ -232,7 +232,7 @@ double asce_heat_capacity(double T) {  // MJ/(m3 K)
   return 2.7;
 }
 
-/// Sutherland's law for the conductivity of air with White's constants, W/(m K).
+/// Returns the conductivity of air by Sutherland's law with White's constants, W/(m K).
 double air_conductivity(double T) {
   constexpr double k_0 = 0.0241, T_0 = 273.0, S = 194.0;  // W/(m K), K, K
   const double absolute = T + 273.15;
@@ -240,7 +240,7 @@ double air_conductivity(double T) {
 }
 
 std::vector<NamedCurve> published_curves() {
-  // Read in the SIFEL code, not in the publications.
+  // These formulas were read in the SIFEL code, not in the publications.
   const std::string glasgow = "Glasgow group: Pearce, Nielsen and Bicanic, second-hand";
   const std::string li_purkiss = "Li and Purkiss, second-hand";
   return {

@@ -12,7 +12,7 @@ namespace pyroclast {
 
 namespace {
 
-/// K_n and K_s as functions of temperature, Pa/m, and what they lose on cooling: both as E of a solid.
+/// K_n and K_s over the temperature, Pa/m, and their residual ratios on cooling: both follow E of a solid.
 struct Stiffness {
   Curve normal, shear;
   std::optional<Curve> normal_residual, shear_residual;
@@ -23,7 +23,7 @@ struct Stiffness {
   }
 };
 
-/// E(T) / t_b and G(T) / t_b of Eq. (17).
+/// Returns E(T) / t_b and G(T) / t_b of Eq. (17).
 Stiffness stiffness_of(const SolidMaterial& solid, double fracture_zone) {
   return {solid.young * (1.0 / fracture_zone), solid.young * (0.5 / (1.0 + solid.poisson) / fracture_zone),
           solid.residual_ratio, solid.residual_ratio};
@@ -34,7 +34,7 @@ const InterfaceParameters* find(const std::vector<InterfaceParameters>& interfac
   return found == interfaces.end() ? nullptr : &*found;
 }
 
-/// Works out the stiffnesses of interfaces, of which some have that of others.
+/// Stiffnesses of interfaces, some of which have those of others.
 class StiffnessOfInterfaces {
  public:
   StiffnessOfInterfaces(const std::vector<SolidMaterial>& solids, const ContactParameters& parameters,
@@ -69,7 +69,7 @@ class StiffnessOfInterfaces {
   }
 
  private:
-  /// Of the phases that it joins the one that gives way first.
+  /// Returns the phase with the least E at the reference temperature of those that an interface joins.
   const SolidMaterial& softest(const InterfaceParameters& interface) const {
     const SolidMaterial* softest = nullptr;
     for (const auto& pair : interface.between)
@@ -251,7 +251,7 @@ ConcreteMaterials make_concrete(const std::vector<SolidMaterial>& solids, const 
 
 namespace {
 
-/// At the reference temperature, with the contacts between blocks of it, which lie in series with them.
+/// Returns a phase at the reference temperature. Its blocks lie in series with the contacts between them.
 MixedPhase with_contacts(const SolidMaterial& solid, double fraction, const ContactMaterial& contact,
                          double block_size) {
   const double young = solid.young(kReferenceTemperature);
@@ -259,21 +259,21 @@ MixedPhase with_contacts(const SolidMaterial& solid, double fraction, const Cont
   return {fraction, 1.0 / (1.0 / young + 1.0 / layer), solid.poisson};
 }
 
-/// What the matrix creeps by when the whole creeps by so much, both 1/Pa: the inverse of Mixture::creep,
+/// Creep of the matrix as a function of the creep of the whole, both 1/Pa: the inverse of Mixture::creep,
 /// linear between points that stand close enough for five digits.
 class CreepOfMatrix {
  public:
   CreepOfMatrix(const Mixture<2>& mixture, double elastic, double poisson) {
-    constexpr double kFirst = 1e-3, kGrowth = 1.02, kLast = 1e4;  // of the elastic compliance of the matrix
+    constexpr double kFirst = 1e-3, kGrowth = 1.02, kLast = 1e4;  // over the elastic compliance of the matrix
     for (double ratio = kFirst; ratio < kLast; ratio *= kGrowth) {
       const double of_whole = mixture.creep(ratio * elastic, poisson);
-      if (!(of_whole > of_whole_.back())) break;  // inclusions bear all that is left
+      if (!(of_whole > of_whole_.back())) break;  // the inclusions bear all that is left
       of_whole_.push_back(of_whole);
       of_matrix_.push_back(ratio * elastic);
     }
   }
 
-  /// Throws Error when the matrix cannot make the whole creep so much.
+  /// Returns the creep of the matrix. Throws Error when the matrix cannot make the whole creep so much.
   double operator()(double of_whole) const {
     if (of_whole > of_whole_.back())
       throw Error(
@@ -290,7 +290,7 @@ class CreepOfMatrix {
   std::vector<double> of_whole_{0.0}, of_matrix_{0.0};
 };
 
-/// The creep of the concrete as that of its matrix.
+/// Turns the creep of the concrete into that of its matrix.
 void take_to_matrix(CreepMaterial& creep, const Mixture<2>& mixture, const MixedPhase& matrix) {
   creep.level = CreepLevel::phase;
   if (creep.share) {
@@ -301,7 +301,7 @@ void take_to_matrix(CreepMaterial& creep, const Mixture<2>& mixture, const Mixed
   const auto strain = [of_whole = creep.strain, of_matrix, f_c = creep.strength](double temperature) {
     return f_c * of_matrix(of_whole(temperature) / f_c);
   };
-  strain(creep.strain.range().upper);  // which may be too much
+  strain(creep.strain.range().upper);  // throws where this is too much
   creep.strain = Curve::function("creep of the matrix, from " + creep.strain.description(), strain,
                                  creep.strain.range(), creep.strain.axis());
 }

@@ -6,16 +6,17 @@ namespace pyroclast {
 
 namespace {
 
-/// Share of the end of an exchange in what it creeps: second order in the increment of temperature.
+/// Share of the stress at the end of an exchange in its creep; a half is second order in the increment of
+/// temperature.
 constexpr double kEnd = 0.5;
 
-/// Rounds of Jacobi's rotations; each more than doubles the digits that are right.
+/// Number of rounds of Jacobi's rotations; each round more than doubles the digits that are right.
 constexpr int kMostRounds = 12;
 
 template <int Dim>
 using Matrix = std::array<std::array<double, Dim>, Dim>;
 
-/// Where the component ij of a symmetric tensor stands.
+/// Returns the place of the component ij of a symmetric tensor.
 template <int Dim>
 int place(int i, int j) {
   if (i == j) return i;
@@ -29,7 +30,7 @@ double trace(const SymmetricTensor<Dim>& t) {
   return sum;
 }
 
-/// a : b
+/// Returns a : b.
 template <int Dim>
 double contraction(const SymmetricTensor<Dim>& a, const SymmetricTensor<Dim>& b) {
   return 2.0 * energy_density<Dim>(a, b);
@@ -43,10 +44,10 @@ SymmetricTensor<Dim> combined(double a, const SymmetricTensor<Dim>& s, double b,
   return sum;
 }
 
-/// Part of a tensor with positive principal values, by Jacobi's rotations.
+/// Returns the part of a tensor with positive principal values, by Jacobi's rotations.
 template <int Dim>
 SymmetricTensor<Dim> positive_part(const SymmetricTensor<Dim>& tensor) {
-  Matrix<Dim> a, v{};  // a = transposed v, tensor, v
+  Matrix<Dim> a, v{};  // a = (transposed v) tensor v
   for (int i = 0; i < Dim; ++i) {
     v[i][i] = 1.0;
     for (int j = 0; j < Dim; ++j) a[i][j] = tensor[place<Dim>(i, j)];
@@ -118,7 +119,7 @@ CreepSplit<Dim> creep_split(const CreepIncrement& increment, const SymmetricTens
 template <int Dim>
 ZoneProperties with_compliance(const ZoneProperties& zone, double compliance, double poisson) {
   if (compliance == 0.0) return zone;
-  // by modes: half the compliance in shear, and that of the mean strain
+  // compliances by modes: half of the one in shear, and the one of the mean strain
   const double shear = 1.0 / (2.0 * zone.mu) + compliance * (1.0 + poisson);
   const double mean = 1.0 / (Dim * zone.lambda + 2.0 * zone.mu) + compliance * (1.0 - (Dim - 1) * poisson);
   const double mu = 0.5 / shear;

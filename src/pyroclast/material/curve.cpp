@@ -15,7 +15,7 @@
 namespace pyroclast {
 namespace {
 
-/// Even steps in which the extremes of a curve that is not piecewise linear are looked for.
+/// Number of even steps in which the extremes of a curve that is not piecewise linear are looked for.
 constexpr int extreme_steps = 1000;
 
 std::string to_text(const Interval& range, const CurveAxis& axis) {
@@ -38,16 +38,16 @@ bool Interval::holds(double x, double zero) const {
   return lower - kSameWithin * largest <= x && x <= upper + kSameWithin * largest;
 }
 
-/// What a curve evaluates; knows neither range nor name.
+/// Function that a curve evaluates; it knows neither range nor name.
 class Curve::Function {
  public:
-  /// `breaks` are in ascending order.
+  /// Makes a function whose kinks and jumps lie at `breaks`, in ascending order.
   explicit Function(std::vector<double> breaks) : breaks_(std::move(breaks)) {}
   virtual ~Function() = default;
 
   virtual double value(double x) const = 0;
   virtual bool is_constant() const { return false; }
-  /// Whether its extremes lie at the breaks.
+  /// Tells whether the extremes between two abscissae lie at them or at breaks.
   virtual bool linear_between_breaks() const { return false; }
 
   const std::vector<double>& breaks() const { return breaks_; }
@@ -57,7 +57,7 @@ class Curve::Function {
 };
 
 struct Curve::Label {
-  std::string name;  ///< May be empty.
+  std::string name;  ///< name, may be empty
   std::string description;
   CurveAxis axis;
 };
@@ -75,7 +75,7 @@ class Constant final : public Curve::Function {
   double value_;
 };
 
-/// The breaks are the abscissae.
+/// Function that is linear between points; the breaks are their abscissae.
 class Table final : public Curve::Function {
  public:
   Table(std::vector<double> abscissae, std::vector<double> values)
@@ -94,7 +94,7 @@ class Table final : public Curve::Function {
   std::vector<double> values_;
 };
 
-/// Any callable, e.g. a built-in or an Expression.
+/// Function made of any callable, e.g. a built-in or an Expression.
 template <class Callable>
 class Formula final : public Curve::Function {
  public:
@@ -129,7 +129,7 @@ class Product final : public Curve::Function {
   std::shared_ptr<const Function> b_;
 };
 
-/// Another one, moved along its axis; beyond its ends it keeps the values there.
+/// Function moved along its axis; beyond the ends of its range it keeps the values there.
 class Shifted final : public Curve::Function {
  public:
   Shifted(std::shared_ptr<const Function> of, Interval range, double by)
@@ -286,7 +286,7 @@ Curve operator*(const Curve& a, const Curve& b) {
     throw Error(fmt::format("{}: the ranges {} and {} have nothing in common", description,
                             to_text(a.range_, la.axis), to_text(b.range_, lb.axis)));
   }
-  // A multiple keeps the name of what it is a multiple of.
+  // A multiple keeps the name of the curve that it is a multiple of.
   std::string name = a.is_constant() ? lb.name : b.is_constant() ? la.name : "";
   return {std::make_shared<Product>(a.function_, b.function_), common,
           std::make_shared<Curve::Label>(
@@ -303,7 +303,7 @@ double Curve::zero() const {
   return axis() == temperature_axis() ? absolute_zero : 0.0;
 }
 
-/// Where the extremes on [a, b] are looked for.
+/// Returns the abscissae on [a, b] at which extremes are looked for.
 std::vector<double> Curve::candidates(double a, double b) const {
   if (!(a <= b)) {
     throw Error(fmt::format("{}: the interval {} to {} is not in ascending order", title(), a, b));
@@ -320,7 +320,7 @@ std::vector<double> Curve::candidates(double a, double b) const {
   return points;
 }
 
-/// What messages call this curve.
+/// Returns the name of this curve in messages.
 std::string Curve::title() const {
   return label_->name.empty() ? label_->description
                               : fmt::format("{} ({})", label_->name, label_->description);

@@ -10,10 +10,10 @@ constexpr int kMostHalvings = 40;
 
 struct Quadrature {
   double value;
-  double magnitude;  ///< the same of the curve's absolute value
+  double magnitude;  ///< value for the curve's absolute value
 };
 
-/// Gauss-Legendre quadrature with three points.
+/// Returns the integral by Gauss-Legendre quadrature with three points.
 Quadrature gauss(const Curve& curve, double a, double b) {
   const double middle = 0.5 * (a + b);
   const double offset = 0.5 * (b - a) * std::sqrt(0.6);
@@ -24,7 +24,8 @@ Quadrature gauss(const Curve& curve, double a, double b) {
   return {sum(left, centre, right), sum(std::abs(left), std::abs(centre), std::abs(right))};
 }
 
-/// Halves until the halves agree with the whole: kinks and jumps are cornered.
+/// Returns the integral. Halves the interval until the halves agree with the whole: this corners kinks and
+/// jumps.
 double integral(const Curve& curve, double a, double b, double whole, double tolerance, int halvings) {
   const double middle = 0.5 * (a + b);
   const double left = gauss(curve, a, middle).value;

@@ -15,7 +15,7 @@ namespace {
 /// End of a ramp's range, s: 30 years, later than any run.
 constexpr double kRampEnd = 1e9;
 
-/// What the deck reference says of a value that is of its key's kind.
+/// Words of the deck reference for a value that is of its key's kind.
 constexpr auto kQuantity = "quantity of the key's kind";
 
 std::string suffix(const Unit& unit) {
@@ -33,7 +33,7 @@ Curve converted(const Curve& curve, const UnitFactors& to, const std::string& de
       description, [curve, to](double x) { return to(curve(x)); }, curve.range(), curve.axis());
 }
 
-/// What `make` returns; its error is recorded at the key.
+/// Returns the result of `make`; none after an error, which is recorded at the key.
 template <class Make>
 std::optional<Curve> try_at(const Section& section, std::string_view key, const Make& make) {
   try {
@@ -54,7 +54,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// A ratio of which only a share of the loss is there.
+/// Returns a ratio that has only a share of the loss of `ratio`.
 Curve lost_in_part(const Curve& ratio, double share) {
   return Curve::function(
       fmt::format("1 - {} (1 - r), r {}", share, ratio.description()),
@@ -98,7 +98,7 @@ Curve CurveReader::read_described(const Section& section, std::string_view key, 
   return curves_.back().curve;
 }
 
-/// A curve over temperature times a factor, and moved along the temperature: what studies vary of it.
+/// Returns the curve over temperature times a factor, and moved along the temperature: studies vary both.
 std::optional<Curve> CurveReader::varied(const Section& forms, std::optional<Curve> curve) const {
   if (axis_ != temperature_axis()) return curve;
   const double scale = forms.number("scale", Range::non_negative(), 1.0, "factor of the whole curve");
@@ -109,7 +109,8 @@ std::optional<Curve> CurveReader::varied(const Section& forms, std::optional<Cur
   return curve && scale != 1.0 ? scale * *curve : curve;
 }
 
-/// \param has_value  whether "value times curve" is among the forms
+/// Reads a curve in the one form that the deck gives; returns none after an error.
+/// \param has_value  true where "value times curve" is among the forms
 std::optional<Curve> CurveReader::read_forms(const Section& forms, const Unit& unit, bool has_value) const {
   std::vector<std::string> allowed = {"table", "csv", "builtin", "expression"};
   if (has_value) allowed.insert(allowed.begin(), "value");
@@ -187,7 +188,7 @@ std::optional<Curve> CurveReader::read_csv(const Section& forms, const Unit& uni
   });
 }
 
-/// A curve of the catalogue by its name at the key.
+/// Reads a curve of the catalogue by its name at the key.
 std::optional<Curve> CurveReader::read_builtin(const Section& section, std::string_view key,
                                                const Unit& unit) const {
   const std::string name = section.text(key, "name of a built-in curve");
@@ -254,7 +255,7 @@ bool CurveReader::covers(const Section& section, std::string_view key, const Cur
   return false;
 }
 
-/// Whether the values are allowed wherever the run needs them.
+/// Tells whether the values are allowed wherever the run needs them, and records an error where they are not.
 bool CurveReader::within(const Section& section, std::string_view key, const Curve& curve, const Unit& unit,
                          const Range& range) const {
   try {

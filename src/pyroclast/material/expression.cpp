@@ -19,8 +19,8 @@
 namespace pyroclast {
 namespace {
 
-/// muParser's error in the words of this project; the position is counted from 1.
-/// \param known  what names a formula may use
+/// Returns muParser's error in the words of this project; the position is counted from 1.
+/// \param known  words for the names that a formula may use
 Error formula_error(const std::string& formula, const std::string& known,
                     const mu::Parser::exception_type& error) {
   static const std::map<mu::EErrorCodes, const char*> explanations = {
@@ -48,7 +48,7 @@ Error formula_error(const std::string& formula, const std::string& known,
   return Error(fmt::format("formula \"{}\", character {}: {}", formula, position, what));
 }
 
-/// muParser lets a formula assign to its variable and return several values; a curve has one value.
+/// Throws Error for a formula that assigns to its variable, as muParser lets it do.
 void refuse_statements(const std::string& formula) {
   constexpr std::string_view comparison = "=!<>";
   for (std::size_t i = 0; i < formula.size(); ++i) {
@@ -78,7 +78,7 @@ void require_one_value(const std::string& formula, int count) {
         formula, count));
 }
 
-/// One parser with the variable it reads.
+/// Parser with the variable that it reads.
 class Evaluator {
  public:
   Evaluator(const std::string& formula, const std::string& variable) {
@@ -119,7 +119,7 @@ class SlotGuard {
   Slot& slot_;
 };
 
-/// Running number of the calling thread.
+/// Returns the running number of the calling thread.
 std::size_t thread_number() {
   static std::atomic<std::size_t> next{0};
   thread_local const std::size_t number = next++;
@@ -128,8 +128,8 @@ std::size_t thread_number() {
 
 }  // namespace
 
-/// Threads are dealt out to the slots by their number, so that in practice each has a slot to itself; two
-/// that meet on one slot take turns.
+/// Evaluators of one formula. Threads are dealt out to the slots by their number, so that in practice each
+/// has a slot to itself. Two threads that meet on one slot take turns.
 struct Expression::Evaluators {
   std::string formula;
   std::string variable;

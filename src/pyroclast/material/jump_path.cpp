@@ -12,7 +12,7 @@
 namespace pyroclast {
 namespace {
 
-/// Which quantity a column holds.
+/// Quantity that a column holds.
 struct Quantity {
   std::string_view name;
   double JumpPathPoint::*member;

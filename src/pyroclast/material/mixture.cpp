@@ -23,11 +23,11 @@ auto Mixture<Dim>::moduli_of(const MixedPhase& phase) -> Moduli {
   return {phase.young / (Dim * (1.0 - (Dim - 1) * phase.poisson)), 0.5 * phase.young / (1.0 + phase.poisson)};
 }
 
-/// The inclusions and a matrix of other moduli, each as if alone in a medium.
+/// Returns the moduli of the inclusions and a matrix of other moduli, each as if alone in a medium.
 template <int Dim>
 auto Mixture<Dim>::mixed(const Moduli& matrix, const Moduli& medium) const -> Moduli {
   const auto [bulk, shear] = medium;
-  // of the medium around a phase, against a change of its size and of its shape
+  // resistances of the medium around a phase to a change of its size and of its shape
   const double of_size = 2.0 * (Dim - 1) / Dim * shear;
   const double of_shape = shear *
                           (0.5 * Dim * bulk + (Dim + 1) * (Dim - 2) / static_cast<double>(Dim) * shear) /
@@ -42,7 +42,7 @@ auto Mixture<Dim>::mixed(const Moduli& matrix, const Moduli& medium) const -> Mo
   return {1.0 / size - of_size, 1.0 / shape - of_shape};
 }
 
-/// The medium is the whole itself.
+/// Returns the moduli of the whole, where the medium around each phase is the whole itself.
 template <int Dim>
 auto Mixture<Dim>::self_consistent(const Moduli& matrix) const -> Moduli {
   constexpr double kNear = 1e-14;

@@ -13,10 +13,11 @@
 namespace pyroclast {
 namespace {
 
-/// Between knots the integral is taken anew at each reading, so a cell is as wide as three points can see, K.
+/// Largest distance of knots, K. Between knots the integral is taken anew at each reading, so a cell is only
+/// as wide as three points can see.
 constexpr double kWidestCell = 1.0;
 
-/// The integral from 20 °C, kept at even knots.
+/// Integral of a curve from 20 °C, kept at even knots.
 class Integral {
  public:
   Integral(const Curve& curve, Interval range) : curve_(curve), lower_(range.lower) {

@@ -48,8 +48,6 @@ Body<Dim>::Body(const Model<Dim>& of, BodyProperties with, const MechanicsParame
                 count(layout.chunks.zones);
 }
 
-/// Working memory of one thread for a step.
-/// Slot counted from the first of its bundle.
 template <int Dim>
 int Body<Dim>::slot_in_bundle(int gridpoint) const {
   const Bundle& bundle = layout.bundles[bundle_of(gridpoint)];
@@ -61,7 +59,7 @@ FlatArray<double> Body<Dim>::make_scratch() const {
   return FlatArray<double>(2 * Dim * kLanes * static_cast<std::size_t>(layout.most_packs));
 }
 
-/// Puts what does not change in its places.
+/// Places all that does not change: parameters, positions, and arrays of their sizes.
 template <int Dim>
 void Body<Dim>::place_model() {
   see(state.layout, layout);
@@ -98,7 +96,7 @@ void Body<Dim>::place_model() {
   for (int b = 0; b < static_cast<int>(layout.bundles.size()); ++b)
     for (int lane = 0; lane < kLanes; ++lane) {
       if (layout.block_in(b, lane) >= 0) continue;
-      // the shape of the first, without stiffness
+      // an idle lane has the shape of the first, without stiffness
       const Bundle& bundle = layout.bundles[b];
       for (int i = 0; i < bundle.packs; ++i)
         set_vector<Dim>(position, slot_of(bundle.first_pack + i, lane),
@@ -107,7 +105,8 @@ void Body<Dim>::place_model() {
   refresh_views();
 }
 
-/// Laws of the body, each once, in the order of the interfaces.
+/// Lists the laws of the body, each once, in the order of the interfaces. Throws Error where there are too
+/// many.
 template <int Dim>
 void Body<Dim>::list_laws() {
   laws = properties.contacts.laws();
@@ -125,7 +124,7 @@ void Body<Dim>::use(const StepFunctions<Dim>& other) {
   state.laws = law_functions.data();
 }
 
-/// Gives every pack of faces its law, and the part of the internal variables and losses that it takes.
+/// Gives every pack of faces its law, and its lines of the internal variables and losses.
 template <int Dim>
 void Body<Dim>::place_internals() {
   auto& s = arrays;
@@ -149,7 +148,6 @@ void Body<Dim>::place_internals() {
   refresh_views();
 }
 
-/// Energies that the laws of the body lose, and creep where it does; each name once.
 template <int Dim>
 void Body<Dim>::name_dissipations() {
   for (const LawTable* law : laws)
@@ -167,8 +165,6 @@ void Body<Dim>::name_dissipations() {
 
 // The state of a checkpoint
 
-/// Fills all that steps change with NaN; in idle places forces stay zero, for gridpoints gather from them
-/// too.
 template <int Dim>
 void Body<Dim>::forget() {
   for_each_array(
@@ -184,8 +180,8 @@ void Body<Dim>::forget() {
       if (!forces->empty()) (*forces)[slot] = nothing;
 }
 
-/// Those of the state that last. What holds, drives or loads comes and goes; of all else there is as much as
-/// there was.
+/// Shows one array that lasts. Lists of constraints and ties may have another length in another state; all
+/// other arrays keep theirs.
 template <int Dim>
 template <class Array>
 void Body<Dim>::visit_array(StateVisitor& visitor, const char* name, Array& array) {

@@ -19,7 +19,8 @@ bool is_slot_of(int slot, const Bundle& bundle) {
 
 }  // namespace
 
-/// Index of those of the gridpoint's bundle, made when there are none yet; they act from now on.
+/// Returns the index of the constraints of a gridpoint's bundle, which act from now on. Makes them where
+/// there are none yet.
 template <int Dim>
 int Constraints<Dim>::constraints_of(int gridpoint) {
   const int b = body_.bundle_of(gridpoint);
@@ -38,8 +39,6 @@ int Constraints<Dim>::constraints_of(int gridpoint) {
   return index;
 }
 
-/// Puts constraints into the order of their bundles, so that a state does not depend on the order in which
-/// they were made.
 template <int Dim>
 void Constraints<Dim>::order() {
   if (std::exchange(body_.constraints_are_in_order, true)) return;
@@ -69,7 +68,7 @@ ConstraintPack<Dim>& Constraints<Dim>::constraint_pack(int constraints, int grid
                                        body_.slot_in_bundle(gridpoint) / kLanes];
 }
 
-/// A bundle that nothing holds, drives or loads any more takes the shorter way through a step.
+/// Lets a bundle that nothing holds, drives or loads any more take the shorter way through a step.
 template <int Dim>
 void Constraints<Dim>::drop_if_free(int b) {
   const int index = body_.made_constraints[b];
@@ -158,8 +157,8 @@ void Constraints<Dim>::apply_force(int gridpoint, const Vec<Dim>& force) {
   drop_if_free(body_.bundle_of(gridpoint));
 }
 
-/// Throws Error where what holds, drives or loads names something that is not there. Only of what comes from
-/// outside.
+/// Throws Error where constraints or ties of a state from outside name something that is not there, or have
+/// numbers that are not finite.
 template <int Dim>
 void Constraints<Dim>::require_valid(const StateVisitor& visitor) const {
   if (!visitor.checks()) return;

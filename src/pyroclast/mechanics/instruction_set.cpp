@@ -46,7 +46,7 @@ std::string names_of(const std::vector<InstructionSet>& sets) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// What to do where a build holds fewer sets than this processor has; empty where it holds them all.
+/// Returns advice for people where this build lacks sets that this processor has; else an empty text.
 std::string remedy() {
   const auto is_missing = [](InstructionSet set) { return processor_has(set) && !step_of(set); };
   if (std::none_of(std::begin(kAll), std::end(kAll), is_missing)) return {};
@@ -100,14 +100,14 @@ InstructionSet instruction_set(std::string_view wanted) {
   const auto sets = usable_instruction_sets();
   for (const InstructionSet set : sets)
     if (name(set) == wanted) return set;
-  if (sets.empty()) best_instruction_set();  // says why
+  if (sets.empty()) best_instruction_set();  // throws an Error that says why
   throw Error(fmt::format("instruction set \"{}\" is not one that this program and processor have: {}{}",
                           wanted, names_of(sets), remedy()));
 }
 
 namespace {
 
-/// Sets that a law could be run with instead, for people; empty where there are none.
+/// Describes the sets that a law could run with instead, for people; empty where there are none.
 std::string other_sets_of(const LawTable& law) {
   std::vector<InstructionSet> sets;
   for (const InstructionSet set : usable_instruction_sets())

@@ -11,12 +11,12 @@ namespace pyroclast {
 
 namespace {
 
-/// Layers are this many blocks thick.
+/// Thickness of a layer, in blocks.
 constexpr double kLayerThickness = 2.0;
-/// Faces of a chunk that share lanes have their later bundles within as many of each other.
+/// Largest distance between the later bundles of a chunk's own faces that share lanes, in bundles.
 constexpr int kBundlesToShare = 64;
 
-/// Blocks of a chunk in layers across its longest extent, along the others within a layer.
+/// Returns the blocks of a chunk in layers across its longest extent; within a layer, along the other axes.
 template <int Dim>
 std::vector<int> order_blocks(const Model<Dim>& model, int first_block, int last_block) {
   const int count = last_block - first_block;
@@ -57,7 +57,7 @@ std::vector<int> order_blocks(const Model<Dim>& model, int first_block, int last
   return order;
 }
 
-/// Zones go round the last gridpoint, in the order of the others.
+/// Tells whether the zones go round the last gridpoint, in the order of the others.
 bool is_fan(const std::vector<std::array<int, 3>>& zones) {
   const int count = static_cast<int>(zones.size());
   for (int z = 0; z < count; ++z)
@@ -137,7 +137,7 @@ class LayoutBuilder {
     finish_faces(block_of);
   }
 
-  /// Contacts of a gridpoint in the order of their numbers, so that their sum has one order.
+  /// Lists the contacts of each gridpoint in the order of their numbers, so that their sum has one order.
   void gather_contacts() {
     const auto of_gridpoint = gridpoint_contacts(model_);
     const int idle = kLanes * (layout_.point_packs - 1);
@@ -178,7 +178,7 @@ class LayoutBuilder {
 
   struct FaceToPlace {
     int face;
-    int chunk, other;  ///< of its two blocks, the earlier one first
+    int chunk, other;  ///< chunks of its two blocks, the earlier one first
     int later_bundle;
     int interface;
     int points;
@@ -187,8 +187,9 @@ class LayoutBuilder {
 
   int bundle_count() const { return static_cast<int>(bundles_.size()); }
 
-  /// Blocks with the same zones share lanes, whatever their distance: a chunk fits into a cache. Groups that
-  /// stay smaller come last, in the order in which the chunk, not the body, meets their shapes.
+  /// Bundles the blocks of a chunk. Blocks with the same zones share lanes, whatever their distance: a chunk
+  /// fits into a cache. Groups that do not fill all lanes come last, in the order in which the chunk, not the
+  /// body, meets their shapes.
   void place_chunk(int first_block, int last_block) {
     std::map<int, std::size_t> group_of_shape;
     std::vector<std::pair<int, std::vector<int>>> waiting;  // shapes and their blocks
@@ -293,13 +294,14 @@ class LayoutBuilder {
     blocks_.push_back(lanes);
   }
 
-  /// Faces that share a pack have one interface, one number of points and one pair of chunks.
+  /// Places the faces of a chunk. Faces that share a pack have one interface, one number of points and one
+  /// pair of chunks.
   void place_faces_of_chunk(FaceIterator first, FaceIterator last) {
     using Key = std::tuple<int, int, int>;  // other chunk, interface, points
     std::map<Key, std::vector<FaceToPlace>> waiting;
     for (auto f = first; f != last; ++f) {
       const bool own = f->chunk == f->other;
-      // packs between chunks are through before the first of its own
+      // all faces between chunks get their packs before the first face of the chunk's own
       if (own && f != first && std::prev(f)->other != f->chunk) flush(waiting);
       auto& group = waiting[{f->other, f->interface, f->points}];
       group.push_back(*f);
@@ -334,7 +336,7 @@ class LayoutBuilder {
         const int contact = model_.face_contacts[(idle ? faces.front() : faces[lane]).face] + point;
         const auto& c = model_.contacts[contact];
         points.a[lane] = offset_of<Dim>(layout_.gridpoint_slot[c.a]);
-        // both sides of an idle one are the same gridpoint, so that it never opens
+        // an idle lane has the same gridpoint on both sides, so that it never opens
         points.b[lane] = offset_of<Dim>(layout_.gridpoint_slot[idle ? c.a : c.b]);
         points.area[lane] = idle ? 0.0 : c.area;
         for (int i = 0; i < Dim; ++i)
@@ -386,7 +388,7 @@ class LayoutBuilder {
   const LayoutParameters parameters_;
   Layout<Dim>& layout_;
 
-  // what grows while things are placed
+  // lists that grow while things are placed
   std::map<std::pair<int, Zones>, int> shape_index_;
   std::vector<Shape> shapes_;
   std::vector<std::array<int, Dim + 1>> shape_zones_;

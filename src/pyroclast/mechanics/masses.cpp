@@ -11,14 +11,11 @@ namespace pyroclast {
 
 namespace {
 
-/// Forces of a smaller strain are none beside what a body bears: some 3 Pa in concrete.
+/// Strain whose forces count as none beside the forces that a body bears: some 3 Pa in concrete.
 constexpr double kNoStrain = 1e-10;
 
 }  // namespace
 
-/// k_gp of Eq. (9): for every gridpoint the largest sum of |stiffness| over a row of the assembled matrix,
-/// zones and contacts. By Gershgorin's theorem no natural frequency exceeds sqrt(k_gp / m), so the step is
-/// safe for any shape.
 template <int Dim>
 void Masses<Dim>::measure_stiffness() {
   FlatArray<double> scratch = body_.make_scratch();
@@ -31,7 +28,7 @@ void Masses<Dim>::measure_stiffness() {
   set_least_force();
 }
 
-/// What a strain that counts as none puts on all gridpoints.
+/// Sets the sum of the forces that a strain of kNoStrain puts on all gridpoints.
 template <int Dim>
 void Masses<Dim>::set_least_force() {
   body_.least_force = kNoStrain * body_.mean_height *
@@ -64,7 +61,7 @@ void Masses<Dim>::set(const std::vector<double>& densities) {
   }
 }
 
-/// Density scaling: the mass with which each gridpoint's own limit is the common step.
+/// Returns the mass with which a gridpoint's own limit is the common step (density scaling).
 template <int Dim>
 double Masses<Dim>::scaled_mass(int gridpoint) const {
   const double half = 0.5 * body_.parameters.time_step / body_.parameters.safety;
@@ -75,7 +72,7 @@ template <int Dim>
 void Masses<Dim>::scale() {
   body_.state.time_step = body_.parameters.time_step;
   body_.mass.resize(body_.stiffness.size());
-  // of the half step begun with the old mass; nothing moves yet when the first masses are made
+  // the half step already begun had the old mass; nothing moves yet when the first masses are made
   body_.books.begun_mass_scaling += chunked_sum(body_.layout.chunks.gridpoints, [&](int g) {
     const Vec<Dim> v = Reader<Dim>(body_).velocity(g);
     return 0.5 * (scaled_mass(g) - body_.mass[g]) * dot(v, v);
@@ -93,7 +90,7 @@ void Masses<Dim>::set_moving_mass() {
 template <int Dim>
 void Masses<Dim>::set_step_over_mass() {
   auto& step_over_mass = body_.arrays.step_over_mass;
-  std::fill(step_over_mass.begin(), step_over_mass.end(), 1.0);  // idle ones never move
+  std::fill(step_over_mass.begin(), step_over_mass.end(), 1.0);  // idle slots never move
   for (std::size_t g = 0; g < body_.mass.size(); ++g)
     step_over_mass[body_.layout.gridpoint_slot[g]] = body_.time_step() / body_.mass[g];
 }

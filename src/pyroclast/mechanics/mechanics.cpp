@@ -12,7 +12,7 @@ namespace pyroclast {
 
 namespace {
 
-/// What was made alike before has time steps that differ by less than this factor.
+/// Largest ratio between the time steps of a body and of a state that it takes over.
 constexpr double kSameStep = 2.0;
 
 }  // namespace
@@ -28,9 +28,9 @@ Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& de
   Masses<Dim>(body).measure_stiffness();
   Masses<Dim>(body).set(densities);
   mover_.sweep(1, Pass::measure);
-  // nothing has acted yet
+  // no force has acted yet
   std::fill(body.arrays.force.begin(), body.arrays.force.end(), VectorPack<Dim>{});
-  body.books.property_change = totals().energy().zones;  // of a body that begins at another temperature
+  body.books.property_change = totals().energy().zones;  // the body may begin with thermal strains
 }
 
 template <int Dim>
@@ -51,7 +51,7 @@ void Mechanics<Dim>::commit_creep() {
   if (!body_->creep_under_way.empty()) change_properties([&] { Properties<Dim>(*body_).end_creep(); });
 }
 
-/// \param change  of properties or creep
+/// \param change  function that changes properties or creep
 template <int Dim>
 template <class Change>
 void Mechanics<Dim>::change_properties(Change change) {
@@ -108,7 +108,7 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   constraints().order();
   if (visitor.replaces()) body.forget();
   visitor.visit("steps", body.steps, state::count());
-  // of real mass: fixed when the run began, of which this body is a beginning
+  // with real mass the step was fixed when the run began; this body is made like that beginning
   visitor.visit("time_step", body.state.time_step,
                 state::within(body.state.time_step / kSameStep, body.state.time_step * kSameStep));
   visitor.visit("property_change", body.books.property_change);
@@ -116,7 +116,7 @@ void Mechanics<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit("begun_property_change", body.books.begun_property_change);
   visitor.visit("begun_mass_scaling", body.books.begun_mass_scaling);
   visitor.visit("creep_work", body.books.creep_work);
-  // of the frames of the last change of properties, which turn on since
+  // the stiffness is that of the contact frames at the last change of properties; they have turned since
   visitor.visit("stiffness", body.stiffness, state::at_least(0).of(body.stiffness.size()));
   body.visit_arrays(visitor);
   constraints().visit_state(visitor);

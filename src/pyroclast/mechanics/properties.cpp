@@ -12,7 +12,6 @@
 
 namespace pyroclast {
 
-/// Puts zone and contact parameters in their places.
 template <int Dim>
 void Properties<Dim>::place() {
   const Reader<Dim> reader(body_);
@@ -84,7 +83,8 @@ void Properties<Dim>::place_contact_properties() {
   body_.refresh_views();
 }
 
-/// First set of each pack of faces; finds the packs whose points share one set.
+/// Returns the first set of each pack of faces, and marks the packs whose points share one set. Throws Error
+/// where contacts of one interface have several laws.
 template <int Dim>
 std::vector<int> Properties<Dim>::find_sets_of_faces() {
   auto& one_set = body_.arrays.one_set;
@@ -107,7 +107,7 @@ std::vector<int> Properties<Dim>::find_sets_of_faces() {
   return set_of_faces;
 }
 
-/// Constants of each contact point, for packs of faces that have no one set.
+/// Places the constants of each contact point, for packs of faces whose points do not share one set.
 template <int Dim>
 void Properties<Dim>::place_own_constants() {
   auto& s = body_.arrays;
@@ -121,7 +121,7 @@ void Properties<Dim>::place_own_constants() {
     s.own_constants =
         body_.template made<Line>(static_cast<std::size_t>(s.first_own_constant[body_.layout.face_packs()]));
   }
-  for (int pack = 0; pack < body_.layout.face_packs(); ++pack) {  // for idle lanes
+  for (int pack = 0; pack < body_.layout.face_packs(); ++pack) {  // so that idle lanes have constants too
     if (s.one_set[pack]) continue;
     for (int line = s.first_own_constant[pack]; line < s.first_own_constant[pack + 1]; line += count(pack))
       for (int lane = 0; lane < kLanes; ++lane)
@@ -140,7 +140,6 @@ void Properties<Dim>::place_own_constants() {
   }
 }
 
-/// With the stress that zones have by the properties that there are.
 template <int Dim>
 void Properties<Dim>::begin_creep(const std::vector<CreepIncrement>& creep) {
   const Reader<Dim> reader(body_);
@@ -153,7 +152,7 @@ void Properties<Dim>::begin_creep(const std::vector<CreepIncrement>& creep) {
     zone.stress = reader.stress_in_own_frame(z, rotation);
     zone.split = creep_split<Dim>(creep[z], zone.stress);
   }
-  // those above are still of what was before
+  // only now, because the stresses above still need the creep strains from before
   for (int z = 0; z < body_.model.zone_count(); ++z)
     for (std::size_t i = 0; i < body_.creep_strain[z].size(); ++i)
       body_.creep_strain[z][i] += body_.creep_under_way[z].split.known[i];
@@ -199,7 +198,8 @@ bool Properties<Dim>::break_contact(int contact) {
   return breaks;
 }
 
-/// Of the temperatures that were last handed over; the field may be at others by now.
+/// Shows the properties at the temperatures that were last handed over; the temperature field may be at
+/// others by now.
 template <int Dim>
 void Properties<Dim>::visit_state(StateVisitor& visitor) {
   auto& creep_strain = body_.creep_strain;

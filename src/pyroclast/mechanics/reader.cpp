@@ -52,13 +52,11 @@ bool Reader<Dim>::is_prescribed(int gridpoint, int component) const {
   return (pack.prescribed[component] >> (slot % kLanes) & 1U) != 0;
 }
 
-/// That the last forces belong to.
 template <int Dim>
 Vec<Dim> Reader<Dim>::displacement_of_force(int gridpoint) const {
   return displacement(gridpoint) - velocity(gridpoint) * (body_.steps > 0 ? body_.time_step() : 0.0);
 }
 
-/// \param rotation  of the frame, out
 template <int Dim>
 SymmetricTensor<Dim> Reader<Dim>::stress_in_own_frame(int zone, Rotation<double>& rotation) const {
   std::array<Vec<Dim>, Dim + 1> u;
@@ -149,7 +147,7 @@ ContactState<Dim> Reader<Dim>::contact(int contact) const {
   const Vec<Dim> u = jump_of_forces(contact);
   state.opening = dot(u, frame.normal);
   for (int i = 0; i + 1 < Dim; ++i) state.tangential_jump[i] = dot(u, frame.tangents[i]);
-  // the law at the jump that it was last taken to gives the tractions again
+  // the law, taken to the same jump once more, gives the same tractions
   std::array<double, Dim> jump{state.opening};
   for (int i = 0; i + 1 < Dim; ++i) jump[i + 1] = state.tangential_jump[i];
   auto internals = state.internals, losses = state.losses;

@@ -6,7 +6,7 @@ namespace pyroclast {
 
 namespace {
 
-/// First and last bundle that each pack of faces touches.
+/// Returns the first and the last bundle that each pack of faces touches.
 template <int Dim>
 std::vector<IndexRange> bundles_of_faces(const Layout<Dim>& layout) {
   std::vector<int> bundle(layout.gridpoint_packs);
@@ -34,7 +34,7 @@ void append(std::vector<IndexRange>& ranges, int i) {
     ranges.push_back({i, i + 1});
 }
 
-/// Bundles of each thread: ranges with about the same number of zones.
+/// Returns the bundles of each thread: ranges with about the same number of zones.
 template <int Dim>
 std::vector<IndexRange> bundle_ranges(const Layout<Dim>& layout, int threads) {
   std::vector<IndexRange> ranges(threads);

@@ -56,7 +56,7 @@ Dissipation Totals<Dim>::dissipated() const {
       for (std::size_t i = 0; i < energy.size(); ++i) energy[i] += o.energy[i];
     }
   };
-  // of each law, where its losses count
+  // places of each law's losses among the dissipations; -1 for a loss that is no energy
   std::vector<std::vector<int>> places;
   for (const LawTable* law : body_.laws)
     for (auto& of_law = places.emplace_back(); const LossInfo& loss : law->losses) {
@@ -124,7 +124,7 @@ EnergyLedger Totals<Dim>::energy() const {
   e.contacts = chunked_sum(body_.layout.chunks.face_packs,
                            [&](int pack) { return body_.state.face_sums[pack].stored; });
   e.dissipated = dissipated();
-  // weights are constant, so their work follows from the way made
+  // weights are constant, so their work follows from the displacements
   if (body_.state.weighs())
     e.gravity = chunked_sum(body_.layout.chunks.gridpoints, [&](int g) {
       return body_.gravity_mass[g] * dot(body_.parameters.gravity, read_.displacement_of_force(g));

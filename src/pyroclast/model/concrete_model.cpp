@@ -16,7 +16,7 @@ namespace pyroclast {
 
 namespace {
 
-/// Of each gridpoint, the first place where it stands.
+/// Keeps, of each gridpoint in a set, the first entry alone.
 void keep_first(std::vector<int>& set) {
   std::unordered_set<int> seen;
   std::erase_if(set, [&](int gridpoint) { return !seen.insert(gridpoint).second; });
@@ -26,23 +26,24 @@ using specimen::Edge;
 using specimen::Region;
 using specimen::Specimen;
 
-/// Zones of a bearing stand about this many times as high as they are wide: contact forces vary along the
-/// face much faster than into the depth.
+/// Height of a bearing's zones over their width, about: contact forces vary along the face much faster than
+/// into the depth.
 constexpr double kZoneHeightOverWidth = 2.0;
 
-/// Whether an edge of the outline lies on a side, or on a patch of it.
+/// Tells whether an edge of the outline lies on a side, or on a patch of it.
 bool lies_on(const Region& region, int side, const std::string& name) {
   const auto& [own, is_round, is_cut, part_of] = region.sides()[side];
   return own == name || (part_of >= 0 && region.sides()[part_of].name == name);
 }
 
-/// Where a bearing covers the outline.
+/// Part of the outline that a bearing covers.
 struct Seat {
-  std::vector<int> vertices;  ///< from left to right, or upwards
-  bool is_reversed = false;   ///< against the sense of the outline, which has the body on its left
-  Vec<2> outward{};           ///< unit
+  std::vector<int> vertices;  ///< vertices from left to right, or upwards
+  bool is_reversed = false;   ///< true against the sense of the outline, which has the body on its left
+  Vec<2> outward{};           ///< unit vector away from the body
 };
 
+/// Finds the part of the outline that a bearing covers. Throws Error where it is not one piece with two ends.
 /// \param outline  edges on the outline, with their sides
 Seat find_seat(const Specimen& specimen, const std::vector<std::pair<Edge, int>>& outline,
                const std::string& name, const std::string& side) {
@@ -74,12 +75,12 @@ Seat find_seat(const Specimen& specimen, const std::vector<std::pair<Edge, int>>
 struct BearingBlock {
   Seat seat;
   std::vector<int> inner, outer;  ///< gridpoints of its faces, in the order of the seat
-  int first = 0, last = 0;        ///< all of its gridpoints
+  int first = 0, last = 0;        ///< range of all of its gridpoints
   int pivot = 0;
   int interface = 0;
 };
 
-/// A structured block over a seat.
+/// Adds a structured block over a seat.
 BearingBlock add_bearing(Model<2>& model, const Specimen& specimen, const Seat& seat, const Bearing& bearing,
                          int material) {
   std::vector<Vec<2>> inner, outer;
@@ -92,7 +93,7 @@ BearingBlock add_bearing(Model<2>& model, const Specimen& specimen, const Seat& 
   const auto off_line = [&](const Vec<2>& p) { return dot(p - end, seat.outward); };
   double highest = 0.0;
   for (const Vec<2>& p : outer) highest = std::max(highest, off_line(p));
-  for (Vec<2>& p : outer) p += (highest - off_line(p)) * seat.outward;  // flat, whatever the seat
+  for (Vec<2>& p : outer) p += (highest - off_line(p)) * seat.outward;  // a flat face, whatever the seat
   const int columns = static_cast<int>(inner.size());
   const Vec<2> middle = 0.5 * (outer.front() + outer.back());
   const auto nearest = std::ranges::min_element(outer, {}, [&](const Vec<2>& p) { return norm(p - middle); });
@@ -142,7 +143,7 @@ BearingBlock add_bearing(Model<2>& model, const Specimen& specimen, const Seat& 
   return block;
 }
 
-/// Position in a list that must hold it.
+/// Returns the position in a list, which must hold the name.
 int place_in(const std::vector<std::string>& names, const std::string& name) {
   return static_cast<int>(std::ranges::find(names, name) - names.begin());
 }
@@ -192,7 +193,7 @@ Model<2> make_concrete_model(const Specimen& specimen, double thickness,
                            region.side_of(tessellation.vertices[e.v0], tessellation.vertices[e.v1]).value());
 
   std::vector<BearingBlock> blocks(bearings.size());
-  // those below the specimen stand before it
+  // bearings below the specimen stand before it
   const auto add_bearings = [&](bool below) {
     for (std::size_t i = 0; i < bearings.size(); ++i) {
       const Bearing& bearing = bearings[i];

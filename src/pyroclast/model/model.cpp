@@ -15,7 +15,7 @@ template <int Dim>
 struct FaceFrame {
   Vec<Dim> normal;
   std::array<Vec<Dim>, Dim - 1> tangents;
-  std::vector<double> area;  ///< of each corner, m²
+  std::vector<double> area;  ///< area of each corner, m²
 };
 
 FaceFrame<2> face_frame(const std::vector<Vec<2>>& corner, double thickness) {
@@ -25,10 +25,10 @@ FaceFrame<2> face_frame(const std::vector<Vec<2>>& corner, double thickness) {
   return {{{t[1], -t[0]}}, {t}, {length * thickness / 2, length * thickness / 2}};
 }
 
-/// Each corner has a third of the triangles at it, as seen along the mean normal: the shares that zones on
-/// those triangles give it too.
+/// Returns the frame of a face. Each corner has a third of the triangles at it, as seen along the mean
+/// normal: zones on those triangles give it the same shares.
 FaceFrame<3> face_frame(const std::vector<Vec<3>>& corner, double) {
-  std::vector<Vec<3>> doubled;  // area vectors of the triangles (0, i, i + 1)
+  std::vector<Vec<3>> doubled;  // twice the area vectors of the triangles (0, i, i + 1)
   Vec<3> all{};
   for (std::size_t i = 1; i + 1 < corner.size(); ++i) {
     doubled.push_back(cross(corner[i] - corner[0], corner[i + 1] - corner[0]));

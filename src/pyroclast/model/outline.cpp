@@ -6,7 +6,8 @@ namespace pyroclast {
 
 namespace {
 
-/// Corners of the face of a zone that lies opposite to each corner, seen counter-clockwise from outside.
+/// Returns the corners of the face that lies opposite to each corner of a zone, seen counter-clockwise from
+/// outside.
 constexpr std::array<std::array<int, 2>, 3> faces_of(const std::array<int, 3>& zone) {
   return {{{zone[1], zone[2]}, {zone[2], zone[0]}, {zone[0], zone[1]}}};
 }
@@ -23,7 +24,7 @@ std::array<int, N> sorted(std::array<int, N> corners) {
   return corners;
 }
 
-/// Faces, with sorted corners and themselves sorted, that contacts join to another block of the body.
+/// Returns the faces that contacts join to another block of the body, in order and with sorted corners.
 template <int Dim>
 std::vector<std::array<int, Dim>> joined_faces(const Model<Dim>& model, const std::vector<bool>& belongs) {
   std::vector<std::array<int, Dim>> faces;
@@ -41,7 +42,8 @@ std::vector<std::array<int, Dim>> joined_faces(const Model<Dim>& model, const st
   return faces;
 }
 
-/// Outward normal times the area over the distance to the opposite corner: minus the gradient there.
+/// Returns the gradient of the shape function of a corner, 1/m. It points from the opposite face towards the
+/// corner, and its length is 1 over their distance.
 template <int Dim>
 Vec<Dim> opposite_gradient(const ZoneGeometry<Dim>& geometry, int zone, int corner) {
   if (corner < Dim) return geometry.gradient[zone][corner];

@@ -16,9 +16,9 @@ namespace pyroclast {
 
 namespace {
 
-/// What is this near to a bound or a line, in sizes of the model, is on it.
+/// Largest distance from a bound or a line at which a point is on it, in sizes of the model.
 constexpr double kOnBound = 1e-9;
-/// What is farther from the body than so many blocks is not meant.
+/// Largest distance from the body of a place that is meant, in sizes of a block.
 constexpr double kNear = 1.0;
 
 template <int Dim>
@@ -28,7 +28,7 @@ double size_of(const Model<Dim>& model) {
   return size;
 }
 
-/// Of a point from a straight line between two others, m.
+/// Returns the distance of a point from a straight line between two others, m.
 template <int Dim>
 double distance(const Vec<Dim>& x, const OnLine<Dim>& line) {
   const Vec<Dim> along = line.to - line.from;
@@ -53,8 +53,8 @@ bool holds(const Place<Dim>& place, const Vec<Dim>& x, double slack) {
                     place);
 }
 
-/// What a set may be made of: the gridpoints or the contact of each item, the points that must lie in the
-/// place, and its middle.
+/// Items of which a set may be made: the gridpoints or the contact of each item, the points that must lie in
+/// the place, and its middle.
 template <int Dim>
 struct Items {
   std::vector<std::vector<int>> members;
@@ -68,7 +68,7 @@ struct Items {
   }
 };
 
-/// Of each block.
+/// Returns the centroid of each block.
 template <int Dim>
 std::vector<Vec<Dim>> centroids(const Model<Dim>& model) {
   const auto volume = zone_geometry(model).volume;
@@ -84,7 +84,7 @@ std::vector<Vec<Dim>> centroids(const Model<Dim>& model) {
   return moment;
 }
 
-/// Of a point from the gridpoint next to it, m.
+/// Returns the distance of a point from the nearest gridpoint, m.
 template <int Dim>
 double distance_of(const Model<Dim>& model, const Vec<Dim>& point) {
   double least = std::numeric_limits<double>::infinity();
@@ -92,7 +92,8 @@ double distance_of(const Model<Dim>& model, const Vec<Dim>& point) {
   return least;
 }
 
-/// The diameter of the largest block that is of no bearing, m.
+/// Returns the size of the largest block that is of no bearing, m: the largest distance of its gridpoints
+/// from its first.
 template <int Dim>
 double block_size(const Model<Dim>& model) {
   double largest = 0.0;
@@ -141,7 +142,7 @@ Items<Dim> items_of(const Model<Dim>& model, SetOf of) {
   return items;
 }
 
-/// Members of the items that lie in the place and within another set, ascending.
+/// Returns the members of the items that lie in the place and within another set, ascending.
 template <int Dim>
 std::vector<int> chosen(const Items<Dim>& items, const std::vector<int>* within, const Place<Dim>& place,
                         double slack) {

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostFiles = 1000;  // that a header includes
+constexpr std::size_t kMostFiles = 1000;  // most files that a header may include
 
 CodePolicy policy_of(const std::string& word) {
   if (word.empty() || word == "ask") return CodePolicy::ask;
@@ -43,7 +43,7 @@ fs::path list_file() {
   return {};
 }
 
-/// Whether a list of the user alone has the hash.
+/// Tells whether a list has the hash. Throws Error where others than the user may write the list.
 bool is_listed(const fs::path& list, const std::string& hash) {
   struct stat is {};
   if (list.empty() || stat(list.c_str(), &is) != 0) return false;
@@ -76,7 +76,7 @@ void add_to_list(const fs::path& list, const std::string& hash, const std::strin
                             std::strerror(cause)));
 }
 
-/// What stands behind the word of a line that takes in another file; empty for other lines.
+/// Returns the text behind the word of a line that takes in another file; empty for other lines.
 std::string included_by(const std::string& line) {
   std::string_view rest = line;
   const auto skip = [&] {
@@ -99,7 +99,7 @@ std::string included_by(const std::string& line) {
   return {};
 }
 
-/// The header, and the files that it includes in quotes where they lie beside it, each once.
+/// Adds the header, and the files that it includes in quotes where they lie beside it, each once.
 void add_files(const fs::path& header, std::vector<fs::path>& files) {
   if (std::ranges::find(files, header) != files.end()) return;
   if (files.size() >= kMostFiles)
@@ -148,7 +148,7 @@ void CodePermission::require(const std::string& what, const std::string& hash, b
         what);
   try {
     if (!list.empty()) add_to_list(list, hash, what);
-  } catch (const Error&) {  // a home that cannot be written: it is asked for when it is not named
+  } catch (const Error&) {  // a home that cannot be written: a file that names the code needs permission
   }
 }
 

@@ -38,7 +38,7 @@ void write(const fs::path& file, const std::string& text) {
   if (!stream.flush()) throw Error(fmt::format("{}: cannot be written", file.string()));
 }
 
-/// Names, and every other character alone.
+/// Splits code into names, and every other character alone.
 std::vector<std::string> words_of(const std::string& code) {
   std::vector<std::string> words;
   const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
@@ -52,7 +52,8 @@ std::vector<std::string> words_of(const std::string& code) {
   return words;
 }
 
-/// A folder that only its owner may read and write.
+/// Makes a folder that only its owner may read and write. Throws Error where a folder there is not such a
+/// one.
 void make_private(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder.parent_path(), error);
@@ -68,7 +69,7 @@ void make_private(const fs::path& folder) {
         folder.string()));
 }
 
-/// One process at a time, until it goes.
+/// Lock on a file for one process at a time, while the object lives.
 class FileLock {
  public:
   explicit FileLock(const fs::path& file)
@@ -84,8 +85,8 @@ class FileLock {
   int descriptor_;
 };
 
-/// What a reader of the law needs of the compiler's words: errors, what stands in the law's own lines, and
-/// the excerpts of code below them.
+/// Returns the lines of the compiler's messages that a reader of the law needs: errors, messages on the law's
+/// own lines, and the excerpts of code below them.
 std::string essence(const std::string& messages, const fs::path& header) {
   constexpr int kMostLines = 40;
   std::istringstream stream(messages);
@@ -105,7 +106,8 @@ std::string essence(const std::string& messages, const fs::path& header) {
   return kept;
 }
 
-/// The file of this code, where it is a module of another program; empty elsewhere.
+/// Returns the file that holds this code: a module of another program, or the program; empty where it is not
+/// found.
 fs::path own_module() {
   Dl_info info{};
   static const char here = 0;
@@ -114,7 +116,8 @@ fs::path own_module() {
   return fs::canonical(info.dli_fname, ignored);
 }
 
-/// Folders that hold the headers of this program: beside an installed one, in the source tree of a built one.
+/// Returns flags with the folders that hold the headers of this program: beside an installed program, above
+/// an installed module, or in the source tree of a built program.
 std::vector<std::string> include_flags() {
   std::error_code ignored;
   const auto program = fs::read_symlink("/proc/self/exe", ignored);
@@ -168,9 +171,9 @@ extern "C" [[gnu::visibility("default")]] const pyroclast_law* pyroclast_law_v1(
 
 std::string law_type(const fs::path& header, const std::string& text) {
   const auto words = words_of(without_literals(text));
-  std::vector<std::string> scopes;  // of each open brace; empty where it is of neither namespace nor struct
+  std::vector<std::string> scopes;  // name of each open brace; empty where neither namespace nor struct
   std::vector<std::string> types;
-  std::string opens;  // what the next brace opens
+  std::string opens;  // name of the scope that the next brace opens
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string& word = words[i];
     if (word == "namespace" || word == "struct" || word == "class") {

@@ -30,7 +30,8 @@ fs::path cache_folder() {
   return {};
 }
 
-/// A law of one's own that bears the name of one of the program would be taken for that.
+/// Returns the table of a law. Throws Error where a law of the program has its name, for which it would be
+/// taken.
 const LawTable& with_own_name(const OpenedLaw& law) {
   for (const LawTable* own : built_in_laws())
     if (std::string_view(own->name) == law.table.name)
@@ -40,7 +41,7 @@ const LawTable& with_own_name(const OpenedLaw& law) {
   return law.table;
 }
 
-/// Whether a file lies in a folder that the user named.
+/// Tells whether a file lies in a folder that the user named.
 bool in_folders(const fs::path& file, const LawSources& sources) {
   std::error_code ignored;
   return std::ranges::any_of(sources.folders, [&](const fs::path& folder) {
@@ -48,7 +49,7 @@ bool in_folders(const fs::path& file, const LawSources& sources) {
   });
 }
 
-/// A type is a name: nothing else of a deck becomes source.
+/// Throws Error where a type is not a name: nothing else of a deck becomes source.
 void require_type(const fs::path& header, const std::string& type) {
   static const std::regex kType("(::)?[A-Za-z_][A-Za-z0-9_]*(::[A-Za-z_][A-Za-z0-9_]*)*");
   if (!std::regex_match(type, kType))
@@ -92,7 +93,8 @@ const LawTable& law_of_object(const fs::path& file, const LawSources& sources, b
   return with_own_name(law);
 }
 
-/// "mine.hpp:a::Law" in its parts; the type is empty where none is stated.
+/// Splits "mine.hpp:a::Law" into header and type; the type is empty where none is stated, both where no
+/// header is.
 std::pair<std::string, std::string> header_and_type(std::string_view stated) {
   for (const char* const ending : {".hpp", ".hh", ".hxx", ".h"}) {
     if (stated.ends_with(ending)) return {std::string(stated), {}};

@@ -23,7 +23,7 @@ namespace pyroclast {
 
 namespace {
 
-/// How to mend what was compiled with other flags.
+/// Advice for a law that was compiled with other flags.
 constexpr std::string_view kRemedy = "build it with pyroclast_add_law, which sets the flags";
 
 unsigned control_word() {
@@ -93,7 +93,7 @@ class Opener {
           law->layout, law->lanes, layout_hash(), kLanes);
   }
 
-  /// Whether numbers are those of IEEE 754.
+  /// Throws Error where numbers are not those of IEEE 754.
   void examine(const ArithmeticProbe& probe, const std::string& where) const {
     constexpr double kSmall = 0x1p-30, kLarge = 0x1p60;
     if (const double rest = probe.product(kSmall); rest != 0.0)

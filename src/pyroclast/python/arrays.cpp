@@ -38,7 +38,7 @@ py::array frozen(py::array_t<T> array) {
   return array;
 }
 
-/// Plain data of doubles, with a shape behind the index of the item.
+/// Returns a view of plain data of doubles, with a shape behind the index of the item.
 template <class Array>
 py::array seen(const Array& array, std::vector<py::ssize_t> shape, const py::object& owner) {
   shape.insert(shape.begin(), static_cast<py::ssize_t>(array.size()));

@@ -16,7 +16,7 @@ namespace pyroclast::python {
 
 namespace {
 
-/// The SI unit that a value lacks, at a key where a deck was refused for that; empty elsewhere.
+/// Returns the SI unit that a value lacks, at a key where a deck was refused for that; empty elsewhere.
 std::string needed_unit(const DeckText& text, const std::string& key) {
   try {
     const Deck deck = parse(text);
@@ -29,7 +29,7 @@ std::string needed_unit(const DeckText& text, const std::string& key) {
   return "";
 }
 
-/// Whether this process lets the code that it meets run from now on.
+/// True once this process lets the code that it meets run.
 bool allows_code = false;
 
 CodePermission code_permission() {
@@ -38,7 +38,7 @@ CodePermission code_permission() {
   return permission;
 }
 
-/// Whether a text is a number with a unit of any quantity that decks hold.
+/// Tells whether a text is a number with a unit of any quantity that decks hold.
 bool is_quantity(const std::string& text) {
   return std::ranges::any_of(unit::all, [&](const Unit* kind) {
     try {
@@ -50,7 +50,8 @@ bool is_quantity(const std::string& text) {
   });
 }
 
-/// What one of a unit is in SI, of the units that columns of results have; those that no deck holds are SI.
+/// Returns the value in SI of one of a unit, as columns of results have units; a unit that no deck holds is
+/// SI.
 double si_factor(const std::string& unit) {
   for (const Unit* kind : unit::all) {
     if (unit == kind->si) return 1.0;

@@ -11,7 +11,8 @@ namespace pyroclast::python {
 
 namespace {
 
-/// A path of (opening, slip, temperature), each leg in so many steps: values by column.
+/// Takes a contact point along a path of (opening, slip, temperature), each leg in so many steps. Returns
+/// values by column.
 py::dict along_path(const std::string& law, const std::string& folder,
                     const std::vector<std::string>& sources, const std::vector<std::string>& values,
                     const py::array_t<double, py::array::c_style | py::array::forcecast>& path, int steps) {

@@ -5,7 +5,7 @@
 
 PYBIND11_MODULE(_core, m) {
   using namespace pyroclast::python;
-  pyroclast::best_instruction_set();  // else the import ends with its Error
+  pyroclast::best_instruction_set();  // its Error ends the import where no set is usable
   m.doc() = "The library of pyroclast, as its package for Python needs it. Use the package.";
   m.attr("version") = pyroclast::kVersion;
   m.attr("physics_version") = pyroclast::kPhysicsVersion;

@@ -21,11 +21,11 @@ namespace pyroclast::python {
 
 namespace {
 
-/// The interpreter is asked for signals this often, not at every batch: to get its lock may take milliseconds
-/// while another thread computes.
+/// Time between two questions to the interpreter for signals. It is not asked at every batch: to get its lock
+/// may take milliseconds while another thread computes.
 constexpr std::chrono::milliseconds kBetweenSignals{50};
 
-/// A session as Python holds it: for one thread at a time, in the process that made it.
+/// Session as Python holds it: for one thread at a time, in the process that made it.
 class Held {
  public:
   explicit Held(std::unique_ptr<Session> session) : session_(session.release(), Leave{getpid()}) {
@@ -34,7 +34,7 @@ class Held {
   Held(const Held&) = delete;
   Held& operator=(const Held&) = delete;
 
-  /// To be read. Throws Error in another process, and while another thread is in `next`.
+  /// Returns the session to be read. Throws Error in another process, and while another thread is in `next`.
   Session& get() const {
     require_own_process();
     if (const auto thread = stepping_.load();
@@ -42,7 +42,7 @@ class Held {
       throw Error("this run is stepping in another thread; stepping belongs to one at a time");
     return *session_;
   }
-  /// To be changed: nor from a call-back of `next`.
+  /// Returns the session to be changed. Throws Error also in a call-back of `next`.
   Session& resting() const {
     Session& session = get();
     if (stepping_.load() != std::thread::id())
@@ -63,7 +63,7 @@ class Held {
       is_there = session.next();
     }
     broken_ = false;
-    if (!is_there || raised_) stop_ = false;  // it was heard
+    if (!is_there || raised_) stop_ = false;  // the stop was heard
     if (!raised_) return is_there;
     std::exchange(raised_, nullptr)->restore();
     throw py::error_already_set();
@@ -91,7 +91,8 @@ class Held {
   }
 
  private:
-  /// In a child of fork the threads of a run are not there, and its end would wait for them.
+  /// Deleter that leaves the session alone in a child of fork: the threads of the run are not there, and its
+  /// end would wait for them.
   struct Leave {
     pid_t maker;
     void operator()(Session* session) const {
@@ -156,7 +157,8 @@ RunChoices choices(const std::optional<std::uint64_t>& seed, int threads, const 
   return c;
 }
 
-/// What takes long is done without the interpreter's lock; stages of Python take it themselves.
+/// Makes a session without the interpreter's lock, because that takes long; stages of Python take the lock
+/// themselves.
 template <class Make>
 std::unique_ptr<Held> held(Make make) {
   std::unique_ptr<Session> session;
@@ -167,7 +169,7 @@ std::unique_ptr<Held> held(Make make) {
   return std::make_unique<Held>(std::move(session));
 }
 
-/// A stage of a run.
+/// Returns kind, outcome and rows of a stage: its first row, and the one behind its last.
 py::tuple stage_info(const Run& run, std::size_t i) {
   const StageCourse& record = run.courses()[i];
   return py::make_tuple(run.stages()[i]->kind(), describe(record.outcome), record.rows.first,

@@ -23,9 +23,9 @@ using specimen::Specimen;
 using Reals = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Integers = py::array_t<int, py::array::c_style | py::array::forcecast>;
 
-/// \param corners  of all cells in turn
-/// \param first    of each cell, and behind the last
-/// \param join     m; 0: none
+/// \param corners  corners of all cells in turn
+/// \param first    first corner of each cell, and the end behind the last
+/// \param join     distance within which vertices are joined, m; 0: none
 Specimen from_cells(const Reals& vertices, const Integers& corners, const Integers& first,
                     std::vector<std::string> phases, const Integers& phase, double join) {
   specimen::Cells cells;
@@ -51,7 +51,7 @@ Specimen read(const std::string& file, double join) {
   return specimen::specimen_from(std::move(cells), std::move(region));
 }
 
-/// A rectangle of blocks, all of one phase.
+/// Makes a rectangle of blocks, all of one phase.
 Specimen rectangle(double width, double height, int count, double shortest_edge, int relaxation,
                    double radius_spread, std::uint64_t seed) {
   specimen::SpecimenParameters p;

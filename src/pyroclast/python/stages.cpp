@@ -14,10 +14,10 @@ namespace pyroclast::python {
 
 namespace {
 
-/// A stage whose class is written in Python: pyroclast/stages.py says what it holds.
+/// Stage whose class is written in Python: pyroclast/stages.py says what it holds.
 class PythonStage : public Stage {
  public:
-  /// \param own  the object
+  /// \param own  object of the class
   PythonStage(py::object own, std::string kind, StageNeeds needs, std::vector<Column> columns)
       : own_(shared(std::move(own))), kind_(std::move(kind)), needs_(needs), columns_(std::move(columns)) {}
 
@@ -60,7 +60,7 @@ class PythonStage : public Stage {
 
   StageReport report(const History&, RowRange, Outcome outcome) const override {
     StageReport report;
-    if (outcome == Outcome::not_begun) return report;  // what it will have, its class does not tell
+    if (outcome == Outcome::not_begun) return report;  // its class does not tell which results it will have
     const py::gil_scoped_acquire gil;
     for (const auto& [name, value] : object().attr("results")().cast<std::map<std::string, double>>())
       report.results.push_back({name, value});
@@ -98,7 +98,7 @@ class PythonStage : public Stage {
   bool is_over_ = false;
 };
 
-/// A key of the class: as stages.py has them.
+/// Reads the value of a key that the class of a stage states, see stages.py.
 py::object read_key(const Section& own, const py::handle& key) {
   const auto name = key.attr("name").cast<std::string>();
   const auto unit = key.attr("unit").cast<std::string>();
@@ -151,7 +151,7 @@ Simulation& LentBody::get() const {
   return *simulation;
 }
 
-/// Throws Error where there is none.
+/// Returns the press. Throws Error where there is none.
 Press<2>& press_of(const LentBody& body) {
   if (!body.get().has_press()) throw Error("this body has no press: the deck has no table [platens]");
   return body.get().press();

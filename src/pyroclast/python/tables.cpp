@@ -26,7 +26,7 @@ namespace {
 
 using Number = std::optional<double>;
 
-/// A section that keeps its file.
+/// Section that keeps its file.
 struct Table {
   std::shared_ptr<const Deck> file;
   Section section;
@@ -168,7 +168,8 @@ void bind_table(py::module_& m) {
           "where", [](const Table& t, const Text& key) { return t.section.where(key); }, arg("key"));
 }
 
-/// A cell as Python's `float` reads it; false where it would be read otherwise, or is not a finite number.
+/// Reads a cell as Python's `float` reads it; returns false where `float` would read it otherwise, or the
+/// number is not finite.
 bool read_cell(const char* begin, const char* end, double largest, double& value) {
   if (begin == end) {
     value = std::numeric_limits<double>::quiet_NaN();
@@ -178,8 +179,8 @@ bool read_cell(const char* begin, const char* end, double largest, double& value
   return error == std::errc{} && stop == end && std::abs(value) <= largest;
 }
 
-/// Whole lines of a table of numbers: (columns, rows), NaN where a cell is empty. None where a line is
-/// anything else: then whoever asked reads it cell by cell, and says what is wrong.
+/// Reads whole lines of a table of numbers: (columns, rows), NaN where a cell is empty. Returns None where a
+/// line is anything else: then the caller reads it cell by cell, and says what is wrong.
 py::object read_rows(const py::bytes& lines, py::ssize_t columns, double largest) {
   const std::string_view text = lines;
   const auto rows = static_cast<py::ssize_t>(std::ranges::count(text, '\n'));

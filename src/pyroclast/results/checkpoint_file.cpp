@@ -31,13 +31,13 @@ using Json = nlohmann::json;
 constexpr std::array<char, 8> kBegin{'p', 'y', 'r', 'o', 'c', 'l', 'a', 's'};
 constexpr std::array<char, 8> kEnd{'t', '-', 's', 't', 'a', 't', 'e', '1'};
 
-/// The last bytes of a checkpoint.
+/// Last bytes of a checkpoint.
 struct Trailer {
   std::uint64_t table_begin = 0, table_bytes = 0, table_hash = 0;
   std::array<char, 8> end{};
 };
 
-/// Entries of a table. Throws Json::exception where one is of another kind.
+/// Reads an entry of a table. Throws Json::exception where the entry is of another kind.
 void read_entry(const Json& json, std::string& value) {
   json.get_to(value);
 }
@@ -50,7 +50,7 @@ void read_entry(const Json& json, bool& value) {
 void read_entry(const Json& json, double& value) {
   value = json.get_ref<const Json::number_float_t&>();
 }
-/// Whole numbers that are not negative, as all of them are.
+/// Reads a whole number, which is never negative in a table.
 template <class Whole>
 void read_entry(const Json& json, Whole& value) {
   const std::uint64_t number = json.get_ref<const Json::number_unsigned_t&>();
@@ -59,7 +59,7 @@ void read_entry(const Json& json, Whole& value) {
   value = static_cast<Whole>(number);
 }
 
-/// A file by its descriptor.
+/// File by its descriptor.
 class File {
  public:
   static File to_read(const std::filesystem::path& path) {
@@ -75,7 +75,7 @@ class File {
   void write(const void* data, std::uint64_t bytes) {
     if (!write_all(descriptor_, data, bytes)) fail("cannot be written");
   }
-  /// False where the file ends before.
+  /// Reads bytes from a place on; returns false where the file ends before.
   bool read(std::uint64_t from, void* data, std::uint64_t bytes) const {
     for (std::span rest(static_cast<char*>(data), bytes); !rest.empty();) {
       const ssize_t done =
@@ -144,7 +144,7 @@ class CheckpointWriter : public StateVisitor {
 
 }  // namespace
 
-/// Shows pieces of a file to what they are restored to.
+/// Reader that replaces what it visits by the pieces of a checkpoint.
 class CheckpointReader : public StateVisitor {
  public:
   explicit CheckpointReader(const CheckpointFile& checkpoint)
@@ -156,7 +156,7 @@ class CheckpointReader : public StateVisitor {
     for (const auto& [name, piece] : checkpoint_.pieces_)
       if (!taken_.contains(name)) fail(fmt::format("holds \"{}\", which this run does not have", name));
   }
-  /// Where a piece does not fit.
+  /// Reads all pieces. Throws Error for the first that is damaged.
   void verify() {
     std::vector<std::byte> data;
     for (const auto& [name, piece] : checkpoint_.pieces_) {

@@ -20,12 +20,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kEnding = ".state";
-/// Of those that the clock asks for, so many stay.
+/// Number of checkpoints that are kept beside those of stages.
 constexpr std::size_t kKept = 2;
-/// The next one waits so many times as long as the last took to write.
+/// Least wait for the next checkpoint, over the time that it took to write the last.
 constexpr double kLeastRest = 100.0;
 
-/// XXH3 over the numbers of lists.
+/// Hash (XXH3) of the numbers of lists.
 class Hash {
  public:
   Hash() { XXH3_128bits_reset(state_.get()); }
@@ -54,7 +54,7 @@ bool is_stage_checkpoint(const fs::path& path) {
   return path.filename().string().starts_with("stage_");
 }
 
-/// Whether a file that does not tell its number may have been written after a checkpoint, by its name.
+/// Tells whether a file that does not tell its number may have been written after a checkpoint, by its name.
 bool may_be_newer(const fs::path& file, const CheckpointInfo& than) {
   const std::string stem = file.stem().string();
   std::int64_t number = 0;

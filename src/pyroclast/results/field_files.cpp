@@ -21,17 +21,17 @@ const std::filesystem::path& created(const std::filesystem::path& folder) {
   return folder;
 }
 
-/// Numbers of a vector in space.
+/// Number of components of a vector in space.
 constexpr int kInSpace = 3;
 
-/// The name of an array: that of its field, with its unit.
+/// Returns the path of a field's array, whose name is that of the field with its unit.
 std::string path_of(const FieldInfo& field) {
   const bool is_of_points = field.item == Item::gridpoint || field.item == Item::contact_end;
   return fmt::format("/VTKHDF/{}/{} [{}]", is_of_points ? "PointData" : "CellData", field.name,
                      product_of(field.unit));
 }
 
-/// Vectors of the plane as those of space.
+/// Returns vectors of the plane as vectors of space.
 std::vector<float> in_space(const std::vector<float>& plane) {
   std::vector<float> space;
   space.reserve(plane.size() / 2 * kInSpace);
@@ -53,7 +53,7 @@ void write_field(Hdf5File& file, const FieldInfo& field, const std::vector<float
   }
 }
 
-/// Writes the fields of some items, those of one item together.
+/// Writes the fields of some items, the fields of one item together.
 void write_fields(Hdf5File& file, const Simulation& simulation, std::initializer_list<Item> items) {
   auto fields = fields_of(simulation);
   std::erase_if(fields, [&](const Field& field) {
@@ -68,7 +68,7 @@ void write_fields(Hdf5File& file, const Simulation& simulation, std::initializer
   }
 }
 
-/// What frames.csv has of the history, where that has it.
+/// Columns of the history that frames.csv has, where the history has them.
 constexpr std::array<const char*, 7> kFrameColumns{
     "stage", "step", "time_s", "strain", "stress_MPa", "temperature_degC", "heating_time_s"};
 
@@ -86,7 +86,7 @@ std::string frame_line(const History& history, const std::vector<std::string>& c
   return fmt::format("{},{}", frame, printed_row(cells));
 }
 
-/// Of frames.csv.
+/// Returns the text of frames.csv.
 std::string text_of(const History& history, const std::vector<std::string>& columns,
                     const FrameRows& frames) {
   std::string text = fmt::format("frame,{}\n", fmt::join(columns, ","));
@@ -95,8 +95,8 @@ std::string text_of(const History& history, const std::vector<std::string>& colu
   return text;
 }
 
-/// Of frames on a common axis, s: 0 when heating begins, and the real heating time while it lasts. Before and
-/// after it, and in runs that do not heat, the time of the mechanics goes on.
+/// Returns the times of frames on a common axis, s: 0 when heating begins, and the real heating time while it
+/// lasts. Before and after it, and in runs that do not heat, the time of the mechanics goes on.
 std::vector<double> frame_times(const History& history, const FrameRows& frames) {
   const auto cell = [&](std::int64_t row, const char* name, double otherwise) {
     if (!history.has(name)) return otherwise;
@@ -104,7 +104,7 @@ std::vector<double> frame_times(const History& history, const FrameRows& frames)
   };
   std::vector<double> times;
   double moved = 0.0, heated = 0.0, at_rest = 0.0,
-         begun = 0.0;  // at_rest: of the mechanics while nothing heats
+         begun = 0.0;  // at_rest: time of the mechanics while nothing heats
   for (const std::int64_t row : frames.rows) {
     const double was_moved = std::exchange(moved, cell(row, "time_s", moved));
     const double was_heated = std::exchange(heated, cell(row, "heating_time_s", heated));

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::error_code make_folders(const fs::path& path, std::vector<fs::path>& made) {
-  // A folder above may go between two calls: another run was only checking, too.
+  // A folder above may vanish between two calls, where another run that was only checking removes it.
   constexpr int kAttempts = 10;
   std::error_code error;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -40,7 +40,7 @@ std::error_code make_folders(const fs::path& path, std::vector<fs::path>& made) 
   return error;
 }
 
-/// Absolute, without dots and a slash at the end.
+/// Returns a path that is absolute, without dots and without a slash at the end.
 fs::path plain(const fs::path& path) {
   const fs::path whole = fs::absolute(path).lexically_normal();
   return whole.has_filename() ? whole : whole.parent_path();
@@ -51,7 +51,8 @@ void remove_if_empty(const std::vector<fs::path>& folders) {
   for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) fs::remove(*folder, not_empty);
 }
 
-/// Whether the name still stands for the file that was opened: who held it before may have taken it away.
+/// Tells whether the name still stands for the opened file, which the process that held it before may have
+/// removed.
 bool stands_for(const fs::path& name, int descriptor) {
   struct stat of_name {
   }, of_file{};
@@ -77,7 +78,7 @@ FolderLock::FolderLock(fs::path folder) : folder_(std::move(folder)), made_(make
     throw Error(fmt::format("{}: is no regular file, and a run's lock is one", file.string()));
   do {
     if (descriptor_ >= 0) close(descriptor_);
-    // Neither through a link to another file, nor into a pipe that nobody reads.
+    // The lock is not opened through a link to another file, and nobody waits for a pipe that nobody reads.
     descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
     if (descriptor_ < 0) {
       const int cause = errno;

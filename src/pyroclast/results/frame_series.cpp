@@ -22,9 +22,9 @@ const char* name(MeshPart part) {
   return part == MeshPart::blocks ? "blocks" : "contacts";
 }
 
-/// A cell field that the mesh holds for all frames.
+/// Cell field that the mesh holds for all frames.
 struct CellField {
-  const char* name;  ///< in mesh.h5
+  const char* name;  ///< name in mesh.h5
   const char* shown;
 };
 
@@ -33,7 +33,8 @@ std::vector<CellField> cell_fields(MeshPart part) {
   return {{"interface", "interface"}, {"bearing", "bearing"}, {"length", "length [m]"}};
 }
 
-/// Names of what cells are made of, as VTK shows them, and where they stand in mesh.h5.
+/// Returns the name under which VTK shows the names of materials or interfaces, and the place of these names
+/// in mesh.h5.
 std::pair<std::string, std::string> names_of(MeshPart part) {
   if (part == MeshPart::blocks) return {"material_names", "/blocks/material_names"};
   return {"interface_names", "/contacts/interface_names"};

@@ -14,7 +14,7 @@ namespace pyroclast {
 
 namespace {
 
-/// Closes an HDF5 identifier at the end of its scope.
+/// HDF5 identifier that is closed at the end of its scope.
 template <herr_t (*Close)(hid_t)>
 struct Handle {
   hid_t id;
@@ -23,7 +23,7 @@ struct Handle {
   }
 };
 
-/// A list of properties.
+/// List of HDF5 properties.
 class PropertyList {
  public:
   explicit PropertyList(hid_t kind) : id_(H5Pcreate(kind)) {}
@@ -36,7 +36,7 @@ class PropertyList {
   hid_t id_;
 };
 
-/// Of something new, without the times at which it is written: equal runs give equal files.
+/// Properties of something new, without the times at which it is written: equal runs give equal files.
 class Untimed : public PropertyList {
  public:
   explicit Untimed(hid_t kind) : PropertyList(kind) { H5Pset_obj_track_times(*this, false); }
@@ -46,7 +46,7 @@ class Untimed : public PropertyList {
 
 Hdf5File::Hdf5File(std::filesystem::path path) : path_(std::move(path)) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  // It grows in memory and is written by us: the library does not survive a disk that fills up below it.
+  // The file grows in memory and `close` writes it: the library does not survive a disk that fills up.
   constexpr std::size_t kGrowth = std::size_t{1} << 20;
   const PropertyList access(H5P_FILE_ACCESS);
   H5Pset_fapl_core(access, kGrowth, false);
@@ -77,8 +77,8 @@ void Hdf5File::write(const std::string& name, std::int64_t type, const void* dat
   const hsize_t dims[2] = {count / width, width};
   const int rank = columns > 0 ? 2 : 1;
   const Handle<H5Sclose> space{H5Screate_simple(rank, dims, nullptr)};
-  // Not compressed: shuffled and deflated, the frames of cases/starter.toml are 1.6 times smaller and take 7
-  // % of its processor time.
+  // Datasets are not compressed: shuffled and deflated, the frames of cases/starter.toml are 1.6 times
+  // smaller and take 7 % of its processor time.
   const Handle<H5Dclose> set{
       H5Dcreate2(file_, name.c_str(), type, space.id, H5P_DEFAULT, Untimed(H5P_DATASET_CREATE), H5P_DEFAULT)};
   if (set.id < 0 || (count > 0 && H5Dwrite(set.id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0))

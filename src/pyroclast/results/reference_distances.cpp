@@ -10,7 +10,7 @@ namespace pyroclast {
 
 namespace {
 
-/// By which the greatest sizes of run and reference differ where their units most likely do.
+/// Ratio of the greatest sizes of run and reference beyond which their units most likely differ.
 constexpr double kOtherUnit = 100.0;
 
 PlainCurve advancing(const PlainCurve& curve) {
@@ -23,7 +23,7 @@ PlainCurve advancing(const PlainCurve& curve) {
   return line;
 }
 
-/// Within the range of the line.
+/// Returns the value of a line at a place within its range.
 double value_at(const PlainCurve& line, double x) {
   const auto after = std::ranges::upper_bound(line.x, x) - line.x.begin();
   if (after == std::ssize(line.x)) return line.y.back();
@@ -50,7 +50,8 @@ double of_greatest_size(const std::vector<double>& values) {
   return *std::ranges::max_element(values, {}, [](double value) { return std::abs(value); });
 }
 
-/// The greatest in the direction of the reference's peak, of points within its range.
+/// Returns the greatest value in a direction, that of the reference's peak, of points within a range; none
+/// without such points.
 std::optional<double> peak_in_range(const PlainCurve& curve, double from, double to, double direction) {
   std::optional<double> peak;
   for (std::size_t i = 0; i < curve.x.size(); ++i)
@@ -94,7 +95,7 @@ std::vector<std::size_t> heated_rows(const Run& run) {
   return rows;
 }
 
-/// Stress over strain from rest, or from where heat left the body.
+/// Returns the stress over the strain from rest, or from where heat left the body.
 PlainCurve compressed(const Run& run) {
   const History& history = run.history();
   std::optional<std::size_t> test;
@@ -104,7 +105,7 @@ PlainCurve compressed(const Run& run) {
       test = i;
   if (!test) return {};
   const RowRange of_test = run.courses()[*test].rows;
-  std::size_t since = 0;  // heat last changed the body
+  std::size_t since = 0;  // first row after heat last changed the body
   for (std::size_t row = 0; row < of_test.first; ++row)
     if (is_exchange(history, row)) since = row + 1;
   const double before =
@@ -134,7 +135,7 @@ std::string unit_in_names(const DrawnQuantity& of) {
   return *of.unit == unit::dimensionless ? "" : unit == "degC" ? "K" : unit;
 }
 
-/// "N_m"; "m2" where both are lengths.
+/// Returns the unit of an area in names: "N_m"; "m2" where both units are the same.
 std::string area_unit(const Reference& reference) {
   const std::string y = unit_in_names(reference.of), x = unit_in_names(reference.over);
   if (y == x && !y.empty()) return y + "2";

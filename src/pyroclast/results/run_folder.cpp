@@ -29,8 +29,8 @@ constexpr const char* kManifest = "manifest.json";
 constexpr const char* kReferences = "references.json";
 constexpr const char* kProgram = "pyroclast";
 
-/// All that a run, `specimen`, `figures` and `watch` write into the folder of a run, as patterns of
-/// fnmatch(3), besides the manifest. What is not here outlives `--overwrite`.
+/// Files that a run, `specimen`, `figures` and `watch` write into the folder of a run, as patterns of
+/// fnmatch(3), besides the manifest and the figures. Other files outlive `--overwrite`.
 constexpr auto kWritten = std::to_array<const char*>({
     "deck.toml",
     kReferences,
@@ -54,7 +54,8 @@ constexpr auto kWritten = std::to_array<const char*>({
 });
 constexpr auto kFolders =
     std::to_array<std::string_view>({"specimen", "fields", "figures", "checkpoints", "inputs"});
-/// Files that grow line by line, so that their names are opened to write; others appear under theirs.
+/// Files that grow line by line, and are written under their own names. Other files get theirs once they are
+/// whole.
 constexpr auto kGrowing = std::to_array<std::string_view>({"history.csv", "run.log", "fields/frames.csv"});
 /// Names of figures, in any format.
 constexpr auto kFigures = std::to_array<const char*>({
@@ -79,12 +80,12 @@ constexpr auto kFigures = std::to_array<const char*>({
 });
 constexpr auto kFigureFormats = std::to_array<const char*>({"png", "svg", "pdf"});
 
-/// Whether a run writes a file of this name, relative to its folder; also one that was never finished.
+/// Tells whether a run writes a file of this name, relative to its folder; also one that was never finished.
 bool is_own(const fs::path& file) {
   std::string name = file.generic_string();
   if (name.ends_with(".partial")) {
     name.resize(name.size() - std::string_view(".partial").size());
-    // beside the number of the process that wrote it, where several may
+    // the number of the process stands behind the name where several processes may write the file
     if (const auto end = name.find_last_not_of("0123456789"); end + 1 < name.size() && name[end] == '.')
       name.resize(end);
   }
@@ -99,10 +100,10 @@ bool is_own(const fs::path& file) {
   });
 }
 
-/// Key of the manifest.
+/// Key of the departures in the manifest.
 constexpr const char* kDepartures = "not_reproducible_from_the_deck";
 
-/// The manifest of a folder; no object where there is none.
+/// Reads the manifest of a folder; no object where there is none.
 nlohmann::ordered_json manifest_of(const fs::path& folder) {
   std::ifstream file(folder / kManifest);
   return nlohmann::ordered_json::parse(file, nullptr, /*allow_exceptions=*/false);
@@ -123,13 +124,13 @@ void write_inputs(const fs::path& folder, const Inputs& inputs) {
   write_text_file(folder / "deck.toml", inputs.deck_text);
 }
 
-/// Whether a folder holds the manifest of a run, and not another program's.
+/// Tells whether a folder holds the manifest of a run, and not another program's.
 bool holds_a_run(const fs::path& folder) {
   const auto manifest = manifest_of(folder);
   return manifest.is_object() && manifest.value("program", nlohmann::ordered_json()) == kProgram;
 }
 
-/// Removes what an earlier run wrote, except for its manifest: while that stands, the folder is known as a
+/// Removes the files of an earlier run except for its manifest: while that stands, the folder is known as a
 /// run's. Links to folders are not followed. Returns the other files, relative to the folder.
 std::vector<fs::path> remove_own_files(const fs::path& folder) {
   std::vector<fs::path> own, foreign, folders;
@@ -186,7 +187,7 @@ std::vector<Departure> RunFolder::departures(const fs::path& path) {
   std::vector<Departure> all;
   for (const auto& one : manifest[kDepartures]) {
     if (!one.is_object()) continue;
-    // whatever stands there instead of a text and a flag, something was done to the run
+    // an entry of another form also tells that something was done to the run
     const auto why = one.value("why", nlohmann::ordered_json());
     all.push_back({why.is_string() ? why.get<std::string>() : why.dump(),
                    one.value("changed_by_script", nlohmann::ordered_json(true)) != false});

@@ -17,9 +17,9 @@ namespace {
 
 constexpr int kGradationPoints = 60;
 
-/// Rows of one kind of circles.
-/// \param kind    its number, from 0
-/// \param placed  its circles, at least one
+/// Returns the rows of one kind of circles.
+/// \param kind    number of the kind, from 0
+/// \param placed  circles of the kind, at least one
 std::string gradation_rows(int kind, const std::vector<specimen::Aggregate>& placed,
                            const specimen::AggregateParameters& asked) {
   std::vector<double> sizes;
@@ -34,7 +34,7 @@ std::string gradation_rows(int kind, const std::vector<specimen::Aggregate>& pla
   return rows;
 }
 
-/// Kinds of circles: the aggregates, and inclusions of that shape.
+/// Returns the kinds of circles: the aggregates, and inclusions of that shape.
 std::vector<const specimen::AggregateParameters*> kinds_of(const specimen::SpecimenParameters& asked) {
   std::vector<const specimen::AggregateParameters*> kinds{&asked.aggregates};
   for (const auto& inclusions : asked.inclusions)

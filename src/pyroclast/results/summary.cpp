@@ -17,26 +17,31 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-/// A jump over the edge it stands on, from which on small and finite kinematics differ (validation/jumps.md).
+/// Jump over the edge on which it stands from which small and finite kinematics differ (validation/jumps.md).
 constexpr double kLargeJump = 1.0;
-/// The energy ledger of a sound run closes within this share of the energy turned over.
+/// Largest error of the energy ledger in a sound run, over the energy turned over.
 constexpr double kEnergyTolerance = 0.005;
-/// And within this share of what contacts dissipated, which may be little of that: measured in
-/// docs/method.md.
+/// Largest error of the energy ledger in a sound run, over the energy that contacts dissipated, which may be
+/// little of the energy turned over: measured in docs/method.md.
 constexpr double kDissipationTolerance = 0.01;
-/// Below this share of the energy turned over an error is no more than rounding, whatever it is a share of.
+/// Share of the energy turned over below which an error is no more than rounding, whatever it is compared
+/// with.
 constexpr double kRounding = 1e-6;
-/// Share of the tensile strength up to which an exchange of temperatures may bring stress at once; likewise.
+/// Largest stress that an exchange of temperatures may bring at once, over the tensile strength: measured in
+/// docs/method.md.
 constexpr double kExchangeStress = 1.0;
-/// A run whose ledger is this far off has no results: energy came from nowhere, or a body flew off.
+/// Error of the energy ledger, over the energy turned over, above which a run has no results: energy came
+/// from nowhere, or a body flew off.
 constexpr double kEnergyNonsense = 0.05;
-/// Heat is conserved to rounding, which adds up over some 1e5 evaluations to far less than this share.
+/// Largest error of the heat ledger over its largest term. Heat is conserved to rounding, which adds up over
+/// some 1e5 evaluations to far less.
 constexpr double kHeatTolerance = 1e-6;
 
 /// End of the names of texts that say why a result is missing.
 constexpr const char* kReason = "none_because";
 
-/// The last value of a column in the first rows; what a stage without it left stands in earlier rows.
+/// Returns the last value of a column in the first rows. Where a stage lacks the column the value stands in
+/// an earlier row.
 std::optional<double> last_of(const History& history, const char* column, std::size_t rows) {
   for (std::size_t row = rows; row-- > 0;)
     if (const auto value = history.cell(row, column)) return value;
@@ -47,7 +52,7 @@ std::optional<double> last_of(const History& history, const char* column) {
   return last_of(history, column, history.row_count());
 }
 
-/// Energy that was put in, in all ways that there are, after the first rows, J.
+/// Returns the energy that was put in, in all ways that there are, after the first rows, J.
 double turned_over(const History& history, std::size_t rows) {
   double sum = 0.0;
   for (const auto& entry : kEnergies)
@@ -55,8 +60,8 @@ double turned_over(const History& history, std::size_t rows) {
   return sum;
 }
 
-/// Error of the energy ledger over the energy turned over, after the first rows; none where nothing moves, or
-/// nothing was turned over.
+/// Returns the error of the energy ledger over the energy turned over, after the first rows; none where
+/// nothing moves, and 0 where nothing was turned over.
 std::optional<double> energy_error(const History& history, std::size_t rows) {
   const auto error = last_of(history, error_column(kEnergies), rows);
   if (!error) return std::nullopt;
@@ -64,7 +69,7 @@ std::optional<double> energy_error(const History& history, std::size_t rows) {
   return turnover > 0.0 ? *error / turnover : 0.0;
 }
 
-/// The same over what contacts dissipated; none where that is nothing, or rounding.
+/// Returns the error over the energy that contacts dissipated; none where that is nothing, or rounding.
 std::optional<double> error_over_dissipated(const History& history, const Simulation& simulation) {
   const auto of_turnover = energy_error(history, history.row_count());
   if (!of_turnover || !simulation.moves()) return std::nullopt;
@@ -79,7 +84,7 @@ std::optional<double> error_over_dissipated(const History& history, const Simula
   return std::abs(*of_turnover) <= kRounding ? 0.0 : *last_of(history, error_column(kEnergies)) / dissipated;
 }
 
-/// A report whose results must not be taken for any.
+/// Returns a report without its results, which must not be taken for any, and the reason.
 StageReport without_results(StageReport report, double energy_error) {
   const auto because = fmt::format("the energy ledger closes only within {:.3g} % of the energy turned over",
                                    100.0 * std::abs(energy_error));
@@ -90,7 +95,7 @@ StageReport without_results(StageReport report, double energy_error) {
   return report;
 }
 
-/// null where there is no value, as in a run that has no row yet.
+/// Returns a value for JSON; null where there is none, as in a run that has no row yet.
 OrderedJson json_of(const std::optional<double>& value) {
   return value ? OrderedJson(*value) : OrderedJson();
 }
@@ -98,7 +103,7 @@ OrderedJson json_of(const std::optional<double>& value) {
 std::optional<double> heat_error(const History& history) {
   const auto error = last_of(history, error_column(kHeats));
   if (!error) return std::nullopt;
-  // Over the whole run: what flowed in may have flowed out again.
+  // The largest term is that of the whole run: heat that flowed in may have flowed out again.
   double largest = 0.0;
   for (const auto& entry : kHeats)
     if (entry.side != LedgerSide::error)
@@ -107,8 +112,9 @@ std::optional<double> heat_error(const History& history) {
   return largest > 0.0 ? std::abs(*error) / largest : 0.0;
 }
 
-/// Stress that an exchange brings where it strains a body that cannot give way, over the tensile strength of
-/// the weakest contact: the largest at these temperatures. None where no contact has such a strength.
+/// Returns the stress that an exchange brings where it strains a body that cannot give way, over the tensile
+/// strength of the weakest contact: the largest at these temperatures. None where no contact has such a
+/// strength.
 std::optional<double> exchange_stress(const Simulation& simulation, double increment, double low,
                                       double high) {
   constexpr int kTemperatures = 5;
@@ -132,8 +138,8 @@ std::optional<double> exchange_stress(const Simulation& simulation, double incre
   return largest;
 }
 
-/// The largest of that of all stages whose fields are computed; where a field is uniform, only phases that
-/// differ strain each other.
+/// Returns the largest such stress of all stages whose fields are computed. Where a field is uniform, only
+/// the differences between phases strain the body.
 std::optional<double> exchange_stress(const Run& run, const Summary& s) {
   std::optional<double> largest;
   for (std::size_t i = 0; i < s.stages.size(); ++i) {
@@ -154,7 +160,8 @@ std::optional<double> exchange_stress(const Run& run, const Summary& s) {
   return largest;
 }
 
-/// The first row at which a jump exceeds what small kinematics bear, of those that results rest on.
+/// Returns the first row at which a jump exceeds what small kinematics bear, of the rows on which results
+/// rest.
 std::optional<std::size_t> large_jump(const Run& run, const Summary& s) {
   const History& history = run.history();
   for (std::size_t i = 0; i < run.courses().size(); ++i) {
@@ -167,7 +174,7 @@ std::optional<std::size_t> large_jump(const Run& run, const Summary& s) {
   return std::nullopt;
 }
 
-/// Of each entry of a ledger.
+/// Returns the last value of each entry of a ledger.
 template <class Entries>
 OrderedJson last_values(const Entries& entries, const History& history) {
   OrderedJson json;
@@ -279,7 +286,7 @@ OrderedJson summary_json(const Summary& s, const Run& run) {
   return json;
 }
 
-/// Paths of what is a number, a flag, or null, which a number may take the place of.
+/// Adds the paths of all values that are a number, a flag, or null, in whose place a number may come.
 void add_numbers(const OrderedJson& json, const std::string& path, std::set<std::string>& names) {
   for (const auto& [key, value] : json.items()) {
     const std::string own = path.empty() ? key : path + "." + key;

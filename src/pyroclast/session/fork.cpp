@@ -42,11 +42,11 @@ void require_same(const CheckpointFile& checkpoint, const std::string& inputs, c
 
 Opened open_from(const fs::path& run, const std::vector<std::string>& changes, const Appendix& more,
                  RunChoices choices) {
-  choices.seed.reset();  // the folder's deck has it
+  choices.seed.reset();  // the folder's deck has the seed
   return {Deck::open(run / kDeck, changes, more), run, std::move(choices)};
 }
 
-/// The stage with this number or name.
+/// Returns the stage with this number or name, from 0.
 std::int64_t stage_of(const std::string& stated, const Setup& setup) {
   std::int64_t number = 0;
   const auto count = static_cast<std::int64_t>(setup.stages.size());

@@ -15,7 +15,7 @@ namespace pyroclast {
 
 namespace {
 
-/// Property or choice `key` of a law, from "key=value".
+/// Sets the property or choice of a law that "key=value" names.
 void set_value(ContactMaterial& material, const LawTable& law, const std::string& change,
                std::vector<bool>& given) {
   const auto equals = change.find('=');
@@ -99,7 +99,7 @@ void LawPoint::go(const JumpPathPoint& to) {
 
 void LawPoint::warm_to(double temperature) {
   const double hottest = std::max(hottest_, temperature);
-  for (const Curve& number : material_.numbers) number(temperature);  // which refuses what it does not hold
+  for (const Curve& number : material_.numbers) number(temperature);  // a curve throws outside its range
   const ContactProperties now =
       material_.at(temperature, property_temperature(on_cooling_, temperature, hottest));
   validate(now, fmt::format("at {:g} degC", temperature));

@@ -12,7 +12,7 @@ namespace pyroclast {
 
 namespace {
 
-/// A law in a header is compiled for the instruction set of the run.
+/// Returns the sources for a run: a law in a header is compiled for the instruction set of the run.
 LawSources laws_for(InstructionSet set, LawSources laws) {
   laws.compiler.instructions = set;
   return laws;

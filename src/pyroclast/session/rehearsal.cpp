@@ -15,9 +15,9 @@ namespace {
 
 constexpr int kWarmUpSteps = 10, kMostTimedSteps = 2000;
 constexpr double kSecondsOfTiming = 0.5;
-/// A frame takes about as long as so many rows of the history: it computes and writes every contact.
+/// Rows of the history that take about as long as a frame, which computes and writes every contact.
 constexpr double kRowsPerFrame = 4.0;
-/// Part of the largest change of a temperature that the heat solver's steps aim at, see Conduction.
+/// Share of the largest change of a temperature at which the heat solver's steps aim, see Conduction.
 constexpr double kAimedChange = 0.8;
 
 template <class Action>
@@ -27,7 +27,8 @@ double seconds_of(Action action) {
   return seconds_since(start);
 }
 
-/// Timed over many steps in one go, as a run takes them: the last of a batch costs more, for it is measured.
+/// Returns the wall time of a step, s, of many steps in one go, as a run takes them: the last step of a batch
+/// costs more, because it is measured.
 double seconds_per_step(Mechanics<2>& mechanics) {
   const auto time = [&](int steps) { return seconds_of([&] { mechanics.advance(steps); }) / steps; };
   const double steps = kSecondsOfTiming / time(kWarmUpSteps);
@@ -38,14 +39,15 @@ double seconds_per_exchange(Simulation& simulation) {
   return seconds_of([&] { simulation.hand_over(); });
 }
 
-/// Evaluations of the heat solver: while temperatures change fast they bound its steps, later the longest
-/// step does. \param rise  of temperature that boundaries may bring about, K
+/// Returns the evaluations of the heat solver. While temperatures change fast they bound its steps, later the
+/// longest step does.
+/// \param rise  change of temperature that boundaries may bring about, K
 double expected_evaluations(const HeatConditions& heat, double stable_step, double rise, double duration) {
   const double steps = rise / (kAimedChange * heat.largest_change) + duration / heat.largest_step;
   return steps * fewest_stages(heat.scheme, std::max(1.0, duration / steps / stable_step));
 }
 
-/// Timed over what the solver does in a moment. Heats the field.
+/// Returns the wall time of an evaluation, s, by those that the solver does in a moment. Heats the field.
 double seconds_per_evaluation(TemperatureField& field, double duration, double largest_change) {
   const auto start = Clock::now();
   const std::int64_t before = field.conduction()->stages();
@@ -62,8 +64,8 @@ Forecast forecast(const std::vector<std::unique_ptr<Stage>>& stages, const Simul
   return sum;
 }
 
-/// What the forecast takes, s. Moves and heats the simulation.
-/// \param hottest  temperature that the run may come to, °C
+/// Returns the wall time that the forecast takes, s. Moves and heats the simulation.
+/// \param hottest  highest temperature to which the run may come, °C
 double seconds_of_run(const Forecast& forecast, double hottest, Simulation& simulation, Run& run) {
   double seconds = 0.0;
   if (simulation.moves()) seconds += forecast.steps * seconds_per_step(simulation.mechanics());

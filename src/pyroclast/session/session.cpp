@@ -27,7 +27,7 @@ std::string key_of(const std::string& change) {
   return change.substr(0, change.find('='));
 }
 
-/// A text in one line.
+/// Returns a text in one line.
 std::string told(std::string text) {
   std::ranges::replace(text, '\n', ' ');
   return text.substr(0, text.find_last_not_of(' ') + 1);
@@ -74,7 +74,7 @@ Session::Session(Opened opened, std::unique_ptr<FolderLock> lock, std::filesyste
   });
 }
 
-/// Throws Error where the folder may not be written.
+/// Locks the folder of an output. Throws Error where the folder may not be written.
 std::unique_ptr<FolderLock> Session::lock(const RunOutput& output) {
   auto held = std::make_unique<FolderLock>(output.folder);
   RunFolder::check(output.folder, output.overwrite);
@@ -124,7 +124,7 @@ void Session::stop_when(const std::function<bool()>& asked) {
   stop_asked_ = asked;
 }
 
-/// What `act` returns; an error then says where the run can go on from.
+/// Returns the result of `act`. An Error of `act` then tells from where the run can go on.
 template <class Act>
 auto Session::telling_where_to_go_on(Act act) {
   try {
@@ -197,7 +197,7 @@ Setup Session::read(const Deck& deck) const {
   return setup;
 }
 
-/// The deck of what is to come; what the folder says of it follows.
+/// Takes over a changed deck for all that is to come; the folder of the run follows it.
 void Session::take_over(Deck deck, Setup setup) {
   opened_.deck = std::move(deck);
   opened_.setup = std::move(setup);

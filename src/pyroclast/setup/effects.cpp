@@ -19,7 +19,7 @@ bool is_nothing(const Curve& strain) {
                               : strain.minimum(lower, upper) == 0.0 && strain.maximum(lower, upper) == 0.0;
 }
 
-/// Whether the temperature strains anything of the specimen.
+/// Tells whether temperature strains any part of the specimen.
 bool expands(const Setup& setup) {
   const auto& of_concrete = setup.motion->strain_of_concrete;
   return (of_concrete && !is_nothing(of_concrete->strain)) ||
@@ -28,7 +28,7 @@ bool expands(const Setup& setup) {
          });
 }
 
-/// Whether a stage or a boundary makes any temperature another than it is at the start.
+/// Tells whether a stage or a boundary takes any temperature away from its value at the start.
 bool changes_temperature(const Setup& setup) {
   if (!setup.heat.uniform) return heats_or_cools(setup.heat, setup.exposure);
   return std::ranges::any_of(setup.stages, [&](const auto& stage) {
@@ -37,7 +37,7 @@ bool changes_temperature(const Setup& setup) {
   });
 }
 
-/// Keys of the deck that only a change of temperature calls for.
+/// Returns the keys of the deck that have no effect without a change of temperature.
 std::vector<std::string> keys_of_change(const Section& root, const Setup& setup) {
   std::vector<std::string> keys;
   const auto add = [&](bool is_there, const std::string& owner, const char* key) {

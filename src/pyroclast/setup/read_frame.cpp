@@ -14,9 +14,9 @@ namespace pyroclast {
 namespace {
 
 constexpr int kPlace = 3;    // components of a point in VTK files
-constexpr int kCorners = 3;  // of a zone
+constexpr int kCorners = 3;  // corners of a zone
 
-/// A frame that is read. Links from it lead into the mesh beside it.
+/// Frame that is open for reading. Links from it lead into the mesh beside it.
 class Frame {
  public:
   explicit Frame(const std::filesystem::path& path) : path_(path) {

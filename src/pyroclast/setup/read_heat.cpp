@@ -13,14 +13,13 @@ namespace pyroclast {
 
 namespace {
 
-// Numerical parameters that a deck may leave out. A specimen of 150 x 300 mm whose one side is heated at 5
-// K/min to 800 degC has the same least, mean and greatest temperature to 0.001 K with changes of 0.5, 2 and 5
-// K per step.
+// Defaults of numerical parameters. A specimen of 150 x 300 mm is heated at one side at 5 K/min to 800 degC:
+// changes of 0.5, 2 and 5 K per step give the same least, mean and greatest temperature to 0.001 K.
 constexpr double kSafety = 0.9;
 constexpr double kLargestChange = 2.0;  // K
 constexpr double kLargestStep = 60.0;   // s
 
-// Of cracks, see docs/heat.md.
+// Defaults for cracks, see docs/heat.md.
 constexpr double kBridges = 5e4;        // W/(m2 K)
 constexpr double kJumpDistance = 2e-7;  // m
 constexpr double kEmissivity = 0.9;
@@ -58,7 +57,8 @@ HeatedFaces read_faces(const Section& s) {
   return faces;
 }
 
-/// A factor of the heat that flows through a boundary: one that is 0 all the time lets none through.
+/// Reads a factor of the heat that flows through a boundary. Records an error for a factor that is 0 all the
+/// time, for it lets no heat through.
 Curve read_factor(const Section& s, std::string_view key, const Unit& unit, const Range& range,
                   Meaning meaning, CurveReader& curves) {
   Curve factor = curves.read(s, key, unit, range, meaning);
@@ -102,7 +102,8 @@ HeatCondition read_condition(const Section& s, CurveReader& curves) {
   return Adiabatic{};
 }
 
-/// Whether two choices of faces meet whatever the specimen. Boxes are looked at when there is one.
+/// Tells whether two choices of faces meet in any specimen. A box is compared with a side once there is a
+/// specimen.
 bool overlap(const HeatedFaces& a, const HeatedFaces& b) {
   if (a.part == HeatedFaces::kBox || b.part == HeatedFaces::kBox)
     return a.part == HeatedFaces::kOutline || b.part == HeatedFaces::kOutline;
@@ -115,7 +116,7 @@ std::vector<HeatBoundaryCondition> read_boundaries(const Section& heat, CurveRea
        heat.sections("boundaries", "what acts on faces of the specimen; see [heat.md](heat.md)")) {
     HeatBoundaryCondition boundary{read_faces(s), read_condition(s, curves),
                                    fmt::format("{}: {}", s.where("faces"), s.path())};
-    if (!s.ok()) continue;  // what stands in for an error contradicts nothing
+    if (!s.ok()) continue;  // a value that stands in for an error contradicts nothing
     for (const auto& other : boundaries)
       if (overlap(other.faces, boundary.faces) && contradict(other.condition, boundary.condition))
         s.error("faces", fmt::format("\"{}\" acts on faces that have \"{}\" already ({})",
@@ -125,7 +126,8 @@ std::vector<HeatBoundaryCondition> read_boundaries(const Section& heat, CurveRea
   return boundaries;
 }
 
-/// The range stated; empty after an error, or if none is stated and none is needed.
+/// Reads the temperatures within which the run stays. Returns none after an error, or where none are stated
+/// and none are needed.
 std::optional<Interval> read_range(const Section& s, const HeatConditions& heat) {
   if (!s.has("temperature_range")) {
     const bool needed = std::any_of(heat.boundaries.begin(), heat.boundaries.end(),
@@ -156,7 +158,7 @@ void require_heat_properties(const Section& root) {
   const auto materials = root.optional_section("materials");
   for (const auto name : {"aggregate", "mortar"}) {
     const auto material = materials ? materials->optional_section(name) : std::nullopt;
-    if (!material) continue;  // told by the reader of the materials
+    if (!material) continue;  // the reader of the materials records this error
     for (const auto key : {"conductivity", "specific_heat"})
       if (!material->has(key)) material->error(key, "missing; [heat] with field = \"conduction\" needs it");
   }
@@ -176,7 +178,7 @@ void read_conduction(const Section& s, CurveReader& time_curves, HeatConditions&
       s.quantity("largest_step", unit::time, Range::positive(), kLargestStep, "of the solver");
   heat.boundaries = read_boundaries(s, time_curves);
   heat.temperature_range = read_range(s, heat);
-  // Stands in, so that the deck's reader can go on and find every error.
+  // This range stands in, so that the deck's reader can go on and find every error.
   if (!s.ok()) heat.temperature_range = Interval{heat.initial, heat.initial + 1.0};
 }
 

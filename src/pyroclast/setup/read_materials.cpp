@@ -22,11 +22,11 @@ namespace pyroclast {
 
 namespace {
 
-/// Where strains from a coefficient are defined, beside what the run needs: the range of the fire standards,
-/// °C.
+/// Range on which strains from a coefficient are defined, beside the range of the run: that of the fire
+/// standards, °C.
 constexpr Interval kStandardRange{20.0, 1200.0};
 
-/// Free strain at the reference temperature that is taken for none: the standards' own polynomials leave
+/// Largest free strain at the reference temperature that counts as none: the standards' own polynomials leave
 /// 2e-7.
 constexpr double kNoStrain = 1e-6;
 
@@ -68,7 +68,7 @@ Curve read_thermal_strain(const Section& s, ExpansionReading reading, CurveReade
   return strain;
 }
 
-/// What is lost on cooling; nothing where the deck says so.
+/// Reads the share of a property that is left after cooling; returns none where the deck does not state it.
 std::optional<Curve> read_residual_ratio(const Section& s, OnCooling on_cooling, Meaning meaning,
                                          CurveReader& curves) {
   constexpr const char* kKey = "residual_ratio";
@@ -84,7 +84,7 @@ std::optional<Curve> read_residual_ratio(const Section& s, OnCooling on_cooling,
   return ratio;
 }
 
-/// None where the deck has none.
+/// Reads the step of quartz; returns none where the deck has none, or after an error.
 std::optional<QuartzStep> read_quartz_step(const Section& s, const ReadConcrete& concrete) {
   if (!s.has("quartz_step")) {
     s.know({"quartz_range"});
@@ -113,7 +113,7 @@ std::optional<QuartzStep> read_quartz_step(const Section& s, const ReadConcrete&
   return s.ok() ? std::optional(step) : std::nullopt;
 }
 
-/// Density, and what conduction needs where it is given.
+/// Reads the density, and the conductivity and specific heat where they are given.
 SolidMaterial read_heat_properties(const Section& s, CurveReader& curves) {
   const auto optional = [&](std::string_view key, const Unit& unit, const Range& range,
                             Meaning meaning) -> std::optional<Curve> {
@@ -138,8 +138,8 @@ SolidMaterial read_solid(const Section& s, CurveReader& curves) {
   return m;
 }
 
-/// B of Anderberg and Thelandersson 1976: so many times the free strain of the concrete, and beyond the end
-/// of that law by a strain per kelvin.
+/// Returns B of Anderberg and Thelandersson 1976: `k2` times the free strain of the concrete; beyond the end
+/// of that law B grows by a strain per kelvin.
 Curve anderberg_thelandersson(double k2, const Curve& free_strain) {
   constexpr double kEnd = 550.0, kSlopeBeyond = 1e-4;
   return Curve::function(
@@ -148,7 +148,7 @@ Curve anderberg_thelandersson(double k2, const Curve& free_strain) {
       free_strain.range(), temperature_axis(), {kEnd});
 }
 
-/// B, as a curve or by k2.
+/// Reads B, as a curve or by k2.
 Curve read_creep_strain(const Section& s, const ReadConcrete& concrete, CurveReader& curves) {
   constexpr Meaning kStrain = "B: strain since 20 °C for each unit of stress over f_c, both in compression";
   if (!s.has("k2")) return curves.read(s, "strain", unit::dimensionless, Range::non_negative(), kStrain);
@@ -207,7 +207,7 @@ std::optional<CreepMaterial> read_creep(const Section& phase, const ReadConcrete
   return m;
 }
 
-/// Of the specimen, not of bearings.
+/// Reads a phase of the specimen, not a solid of bearings.
 SolidMaterial read_phase(const Section& s, const MaterialRules& rules, const ReadConcrete& concrete,
                          CurveReader& curves) {
   SolidMaterial m = read_solid(s, curves);
@@ -249,7 +249,7 @@ std::optional<Curve> read_temperature_ratio(const Section& s, CurveReader& curve
   return ratio;
 }
 
-/// A number of a law that follows the temperature, but for a stiffness: that comes from the solids.
+/// Reads a number of a law that follows the temperature. A stiffness is none: it comes from the solids.
 Curve read_property(const Section& s, const PropertyInfo& info, const std::optional<Curve>& ratio,
                     bool& ratio_has_effect, CurveReader& curves) {
   const Curve curve = curves.read(s, info.key, info.unit, info.range, Meaning(info.meaning));
@@ -259,7 +259,7 @@ Curve read_property(const Section& s, const PropertyInfo& info, const std::optio
   return (curve * *ratio).named(s.path() + "." + info.key);
 }
 
-/// One for all strengths and fracture energies, whether they are constants or curves.
+/// Reads one residual ratio for all strengths and fracture energies, whether they are constants or curves.
 void read_residual_ratios(const Section& s, OnCooling on_cooling, ContactMaterial& m, CurveReader& curves) {
   const auto ratio =
       read_residual_ratio(s, on_cooling,
@@ -294,8 +294,9 @@ bool is_stiffness(const PropertyInfo& info) {
   return info.role == Role::normal_stiffness || info.role == Role::shear_stiffness;
 }
 
-/// Numbers and choices of a law; those that an interface does not state are as in `like`, where it has one.
-/// \param shared  table whose choices hold where the interface says nothing
+/// Reads numbers and choices of a law. Those that an interface does not state are taken from `like`, where it
+/// has one.
+/// \param shared  table whose choices hold where the interface states none and has no `like`
 ContactMaterial read_contact(const Section& s, const LawTable& law, const Section& shared,
                              OnCooling on_cooling, const std::optional<ContactMaterial>& like,
                              CurveReader& curves) {
@@ -324,7 +325,7 @@ std::string list_of(const std::vector<std::string>& names) {
   return fmt::format("\"{}\"", fmt::join(names, "\", \""));
 }
 
-/// What an interface called `a_b` is between where it does not say.
+/// Returns the two phases that the name of an interface, `a_b`, joins; empty where it names no two phases.
 std::vector<std::array<std::string, 2>> pair_in_name(const std::string& name,
                                                      const std::vector<std::string>& phases) {
   for (const auto& a : phases)
@@ -333,7 +334,7 @@ std::vector<std::array<std::string, 2>> pair_in_name(const std::string& name,
   return {};
 }
 
-/// Of one interface: names that follow one another two and two.
+/// Reads the pairs of phases that an interface joins: names that follow one another two and two.
 std::vector<std::array<std::string, 2>> read_between(const Section& s, const std::string& name,
                                                      const std::vector<std::string>& phases) {
   const auto list =
@@ -359,7 +360,7 @@ std::vector<std::array<std::string, 2>> read_between(const Section& s, const std
   return pairs;
 }
 
-/// One table of [contacts].
+/// Reader of the interfaces, which are tables of [contacts].
 class InterfaceReader {
  public:
   InterfaceReader(const Section& shared, const std::vector<std::string>& phases, OnCooling on_cooling,
@@ -371,7 +372,7 @@ class InterfaceReader {
         find_law_(find_law),
         curves_(curves) {}
 
-  /// All of them. Those that others are like come before these.
+  /// Reads all interfaces. An interface comes before those that are like it.
   std::vector<InterfaceParameters> read() {
     for (const auto& [name, section] : sections_) find(name);
     return std::move(read_);
@@ -380,7 +381,8 @@ class InterfaceReader {
   const std::vector<std::pair<std::string, Section>>& sections() const { return sections_; }
 
  private:
-  /// The interface of that name, read if it was not yet; none if there is none.
+  /// Finds the interface of that name and reads it if it was not read yet. Returns null if there is none, or
+  /// while it is being read.
   const InterfaceParameters* find(const std::string& name) {
     const auto known = std::ranges::find(read_, name, &InterfaceParameters::name);
     if (known != read_.end()) return &*known;
@@ -415,7 +417,8 @@ class InterfaceReader {
     return p;
   }
 
-  /// What it takes from the interface that it is like; nothing after an error.
+  /// Reads the contact of the interface that this one is like, times the factors. Returns a contact of the
+  /// first built-in law after an error.
   std::optional<ContactMaterial> read_like(const Section& s, InterfaceParameters& p) {
     p.like = s.text("like", "interface that gives the law and all that is not stated, times the factors");
     p.stiffness_factor = s.number("stiffness_factor", Range::positive(), 1.0, "of K_n and K_s");
@@ -455,7 +458,7 @@ class InterfaceReader {
     }
   }
 
-  /// Stands in for a law that may not run: no key is its own.
+  /// Returns a law that stands in for one that may not run: no key is its own.
   static const LawTable& unknown_law() {
     static const LawTable law = [] {
       LawTable table = *built_in_laws().front();
@@ -467,7 +470,7 @@ class InterfaceReader {
     return law;
   }
 
-  /// Of a law that is not part of the program: mine.so, or mine.hpp with or without ":Type".
+  /// Names the file of a law that is not part of the program: mine.so, or mine.hpp with or without ":Type".
   static void name_file(const Section& s, const OpenedLaw& law, const std::string& stated) {
     name_file(s, law.header.file.empty() ? law.shared_object : law.header.file, stated);
   }
@@ -492,7 +495,7 @@ class InterfaceReader {
   std::vector<InterfaceParameters> read_;
 };
 
-/// Two interfaces for one pair of phases contradict each other.
+/// Records an error where two interfaces join one pair of phases.
 void check_pairs(const std::vector<std::pair<std::string, Section>>& sections,
                  const std::vector<InterfaceParameters>& interfaces) {
   std::map<std::array<std::string, 2>, std::string> taken;
@@ -508,7 +511,8 @@ void check_pairs(const std::vector<std::pair<std::string, Section>>& sections,
     }
 }
 
-/// Every two phases that may meet need an interface, and so does the matrix with itself.
+/// Records an error for every two phases that may meet and have no interface, and for a matrix that has none
+/// with itself.
 void check_complete(const Section& s, const std::vector<InterfaceParameters>& interfaces,
                     const std::vector<std::string>& phases, const std::string& matrix) {
   if (!s.ok()) return;

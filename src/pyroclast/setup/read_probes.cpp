@@ -12,14 +12,14 @@ namespace pyroclast {
 
 namespace {
 
-/// A probe on the outline may be off by rounding, m.
+/// Largest distance by which a probe on the outline may lie outside, from rounding, m.
 constexpr double kOnOutline = 1e-9;
 
 }  // namespace
 
 std::vector<ProbePosition> read_probes(const Section& root, const specimen::Region& region) {
   std::vector<ProbePosition> probes;
-  // What stands in for an error in the width refuses no probe.
+  // A region that stands in for an error refuses no probe.
   const bool known = root.section("specimen").ok();
   const auto within = [&](int axis) {
     return known ? Range::between(region.box().low[axis], region.box().high[axis]) : Range::any();

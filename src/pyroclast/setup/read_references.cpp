@@ -23,12 +23,13 @@ namespace pyroclast {
 namespace {
 
 constexpr double kMega = 1e6;
-constexpr double kMostStrain = 0.1;  ///< beyond it a number is most likely in another unit
-constexpr double kMostStress = 1e9;  ///< Pa, likewise
+constexpr double kMostStrain = 0.1;  ///< largest strain; a number beyond it is most likely in another unit
+constexpr double kMostStress = 1e9;  ///< largest stress likewise, Pa
 constexpr std::size_t kLeastRows = 2;
 constexpr std::size_t kCurveColumns = 2, kRangeColumns = 3;
 
-/// What figures of a run draw, and over what; the first of these stands where the deck does not say it.
+/// Quantity that figures of a run draw, and the quantities over which they draw it. The first of these stands
+/// where the deck names none.
 struct Drawn {
   DrawnQuantity of;
   std::vector<DrawnQuantity> over;
@@ -49,7 +50,8 @@ DrawnQuantity quantity_of(const RecordParameters& record) {
   return {record.name, column_of(record).name, &unit_of(record.kind), column_over_si(record.kind)};
 }
 
-/// What a record is drawn over: the first opening, else the first displacement, else time.
+/// Returns the record over which others are drawn: the first opening, else the first displacement, else null,
+/// which stands for time.
 const RecordParameters* abscissa(const std::vector<RecordParameters>& records) {
   for (const RecordKind kind : {RecordKind::opening, RecordKind::displacement})
     if (const auto found = std::ranges::find(records, kind, &RecordParameters::kind); found != records.end())
@@ -77,7 +79,7 @@ void add_records(const Setup& setup, bool heats, std::vector<Drawn>& drawn) {
   }
 }
 
-/// As figures.py chooses its figures.
+/// Returns the curves that figures draw, by the rules of figures.py.
 std::vector<Drawn> drawn_by_figures(const Setup& setup) {
   const auto needs = [](const auto& stage) { return stage->needs().exchanges; };
   const auto heated = std::ranges::find_if(setup.stages, needs);
@@ -117,13 +119,13 @@ std::string list_of(const std::vector<Drawn>& drawn) {
                       : fmt::format("the figures of this run draw {}", fmt::join(list, ", "));
 }
 
-/// Those that are drawn at all.
+/// Returns the curves that have an abscissa.
 std::vector<Drawn> with_abscissa(std::vector<Drawn> drawn) {
   std::erase_if(drawn, [](const Drawn& one) { return one.over.empty(); });
   return drawn;
 }
 
-/// Throws Error where a word names nothing that is drawn, or two things.
+/// Finds the curve that a deck names. Throws Error where a word names nothing that is drawn, or two things.
 Drawn find_drawn(const std::string& of, const std::string& over, const std::vector<Drawn>& drawn) {
   std::vector<std::string> names;
   std::vector<Drawn> found;
@@ -147,7 +149,7 @@ Drawn find_drawn(const std::string& of, const std::string& over, const std::vect
                           over, of, quoted_list(allowed)));
 }
 
-/// 1 or -1 for each column; empty where nothing is said.
+/// Reads the signs, 1 or -1 for each column; empty where the deck states none.
 std::vector<double> read_signs(const Section& s) {
   const auto list = nlohmann::json::parse(
       s.json("sign", "list of 1 and -1", "[]",
@@ -186,8 +188,8 @@ void warn_of_magnitude(const Section& s, std::string_view key, const DrawnQuanti
     say(size, "it is most likely in another unit, which the header of its column must say");
 }
 
-/// Throws Error.
-/// \param key  that names the file
+/// Reads the values of a reference from a table. Throws Error where the table does not have them.
+/// \param key  key that names the file
 void read_table(const Section& s, std::string_view key, const MeasuredTable& table,
                 const ColumnChoice& choice, std::vector<double> signs, Reference& reference) {
   std::vector<AskedColumn> asked{{reference.over.name, *reference.over.unit}};
@@ -218,7 +220,7 @@ void read_table(const Section& s, std::string_view key, const MeasuredTable& tab
   if (count == kCurveColumns) reference.high = reference.low;
 }
 
-using Builtin = std::array<const char*, 3>;  ///< name, of, over
+using Builtin = std::array<const char*, 3>;  ///< name, of and over of a builtin reference
 
 const std::vector<Choice<Builtin>>& builtins() {
   static const std::vector<Choice<Builtin>> all{
@@ -247,7 +249,8 @@ Reference builtin(const Section& s, std::string_view key, const Builtin& chosen,
   return reference;
 }
 
-/// A name becomes a part of the path of a result, which dots divide.
+/// Returns the file's stem with _ for each dot: a name becomes a part of the path of a result, which dots
+/// divide.
 std::string name_of_file(const std::filesystem::path& file) {
   std::string stem = file.stem().string();
   std::ranges::replace(stem, '.', '_');
@@ -303,8 +306,8 @@ Reference read_reference(const Section& s, const std::filesystem::path& folder,
   return reference;
 }
 
-/// What the columns of a table are of, by their units: the first that figures draw. Throws Error where they
-/// draw none such.
+/// Finds the first curve that figures draw whose quantities fit the units of a table's columns. Throws Error
+/// where there is none.
 Drawn told_by_units(const MeasuredTable& table, const std::vector<Drawn>& drawn) {
   const std::size_t first = table.columns().size() > kCurveColumns && table.is_index(0) ? 1 : 0;
   const std::size_t count = table.columns().size() - first;
@@ -319,7 +322,7 @@ Drawn told_by_units(const MeasuredTable& table, const std::vector<Drawn>& drawn)
                           table.list_of_columns(), table.path().string(), list_of(drawn)));
 }
 
-/// The short form: a word, or a file whose columns tell by their units what it is of.
+/// Reads the short form: a word, or a file whose columns tell by their units which curve it holds.
 Reference read_short(const Section& output, const std::filesystem::path& folder,
                      const std::vector<Drawn>& drawn) {
   const std::string name = output.text(

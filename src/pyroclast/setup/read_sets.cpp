@@ -13,7 +13,7 @@ namespace pyroclast {
 
 namespace {
 
-/// Two places from a list that must hold so many.
+/// Reads a list that must hold two places.
 std::array<Vec<2>, 2> read_two(const Section& s, const char* key, Meaning meaning) {
   const auto places = s.places(key, unit::length, 2, meaning);
   if (places.size() > 2) s.error(key, "must be two places, [[x, y], [x, y]]");

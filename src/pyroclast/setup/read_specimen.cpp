@@ -27,13 +27,13 @@ namespace pyroclast {
 
 namespace {
 
-/// Placing an aggregate is given up after this many random centres.
+/// Number of random places that are tried for one aggregate or fibre, where the deck states none.
 constexpr int kPlacementAttempts = 100'000;
 
 /// Smallest side of a test specimen over the largest aggregate (EN 12390-1 asks for 3.5).
 constexpr double kFewestAggregatesAcross = 3.0;
 
-/// The last share of a sieve analysis may be off 1 by this, from percents.
+/// Largest difference from 1 of the last share of a sieve analysis, as percents leave it.
 constexpr double kAllPass = 1e-9;
 
 constexpr Meaning kPhase = "what they are made of: a table of [materials]";
@@ -47,14 +47,14 @@ int read_attempts(const Section& s) {
                 "random places that are tried for one of them before placing is given up"));
 }
 
-/// A file of measurements that a table names by `csv`.
+/// File of measurements that a table names by `csv`.
 struct NamedTable {
   MeasuredTable table;
   std::vector<ChosenColumn> columns;
 };
 
-/// Nothing after an error.
-/// \param asked  the last of them may be missing in the file, down to `least`
+/// Reads the file of measurements that `csv` names; returns none after an error.
+/// \param asked  columns asked for; the last of them may be missing in the file, down to `least`
 std::optional<NamedTable> read_named_table(const Section& s, const std::filesystem::path& folder,
                                            std::span<const AskedColumn> asked, std::size_t least) {
   const std::string file = s.text("csv", "[measured table](deck.md#measured-tables) beside the deck");
@@ -72,7 +72,7 @@ std::optional<NamedTable> read_named_table(const Section& s, const std::filesyst
   }
 }
 
-/// A sieve analysis, by ascending size; nothing after an error.
+/// Reads a sieve analysis, by ascending size; returns none after an error.
 std::optional<specimen::GradingCurve> read_passing(const Section& s, const std::filesystem::path& folder) {
   s.describe(
       "passing", {.value = "list of points [size, share], or { csv = file }", .name = "passing"},
@@ -102,7 +102,7 @@ std::optional<specimen::GradingCurve> read_passing(const Section& s, const std::
     }
   }
   if (!s.ok() || curve.sizes.empty()) return std::nullopt;
-  if (curve.sizes.front() > curve.sizes.back()) {  // as laboratories list sieves
+  if (curve.sizes.front() > curve.sizes.back()) {  // laboratories list sieves so
     std::ranges::reverse(curve.sizes);
     std::ranges::reverse(curve.shares);
   }
@@ -121,7 +121,6 @@ std::optional<specimen::GradingCurve> read_passing(const Section& s, const std::
   return curve;
 }
 
-/// A measured grading.
 void read_measured_grading(const Section& s, const std::filesystem::path& folder,
                            specimen::AggregateParameters& a) {
   enum class By { area, volume };
@@ -155,7 +154,6 @@ void read_measured_grading(const Section& s, const std::filesystem::path& folder
   }
 }
 
-/// Fuller's curve.
 void read_fuller_grading(const Section& s, specimen::AggregateParameters& a) {
   a.d_min = s.quantity("d_min", unit::length, Range::positive().usually(5e-4, 0.1), "smallest diameter");
   a.d_max = s.quantity("d_max", unit::length, Range::positive().usually(5e-4, 0.15), "largest diameter");
@@ -176,7 +174,7 @@ void read_fuller_grading(const Section& s, specimen::AggregateParameters& a) {
   a.sieves.push_back(a.d_max);
 }
 
-/// The gradation of stones that are known is their own.
+/// Sets the gradation to that of the stones, which are known.
 void set_gradation_of_stones(specimen::AggregateParameters& a) {
   std::vector<double> sizes;
   for (const specimen::Stone& stone : a.stones) sizes.push_back(stone.diameter);
@@ -196,7 +194,7 @@ void set_gradation_of_stones(specimen::AggregateParameters& a) {
   a.d_max = sizes.back();
 }
 
-/// Stones that are known, as a run writes them.
+/// Reads stones that are known, from a table as a run writes it.
 void read_stones(const Section& s, const std::filesystem::path& folder, specimen::AggregateParameters& a) {
   constexpr std::size_t kWithoutPhase = 3;
   const Section own = s.section("stones",
@@ -258,7 +256,7 @@ specimen::AggregateParameters read_aggregates(const Section& s, const std::files
   return a;
 }
 
-/// What stones that are known take of the specimen.
+/// Sets the fraction to the share of the specimen that known stones take.
 void set_fraction(const specimen::Region& region, specimen::AggregateParameters& a) {
   if (a.stones.empty()) return;
   double area = 0.0;
@@ -278,7 +276,8 @@ specimen::FibreParameters read_fibres(const Section& s) {
   return f;
 }
 
-/// The largest aggregate must have a place, and the specimen should be some of them wide.
+/// Records an error where the largest aggregate has no place, and warns where the specimen is only a few of
+/// them wide.
 void check_size(const Section& s, const specimen::SpecimenParameters& p) {
   const specimen::Box& box = p.region.box();
   const double narrowest = std::min(box.width(), box.height()), largest = p.aggregates.d_max;
@@ -293,11 +292,11 @@ void check_size(const Section& s, const specimen::SpecimenParameters& p) {
 
 enum class Shape { rectangle, disc, ring, polygon, tessellation, cells };
 
-/// What a deck says of the outline, before the size of the blocks is known.
+/// Statements of a deck on the outline, before the size of the blocks is known.
 struct Outline {
   Shape shape;
   double width = 0.0, height = 0.0, diameter = 0.0, inner_diameter = 0.0;  ///< m
-  double unit = 0.0;            ///< of the coordinates of a file, m
+  double unit = 0.0;            ///< unit of the coordinates of a file, m
   std::vector<Vec<2>> corners;  ///< m
   struct Hole {
     std::string name;
@@ -320,10 +319,10 @@ Vec<2> read_place(const Section& s, std::string_view key, Meaning meaning) {
   return vec_of(s.place(key, unit::length, meaning).value_or(std::pair{0.0, 0.0}));
 }
 
-/// What lengths of a specimen usually are, m.
+/// Usual range of a specimen's lengths, m.
 constexpr Range kSize = Range::positive().usually(0.01, 10.0);
 
-/// All of a specimen from a file; nothing after an error.
+/// Reads all of a specimen from a file; returns none after an error.
 std::optional<specimen::Cells> read_cells(const Section& s, const std::filesystem::path& folder) {
   const std::string name = s.text("file",
                                   "of shape \"cells\": JSON with the blocks, see "
@@ -342,7 +341,7 @@ std::optional<specimen::Cells> read_cells(const Section& s, const std::filesyste
   }
 }
 
-/// Of a file's coordinates, m; 0 after an error.
+/// Reads the unit of a file's coordinates, m; returns 0 after an error.
 double read_unit(const Section& s) {
   const std::string name = s.text(
       "unit", "of length, of the coordinates in `blocks.file`: the specimen is as large as the file says");
@@ -423,18 +422,19 @@ Outline read_outline(const Section& s, const std::filesystem::path& folder) {
   return o;
 }
 
-/// A circle of the outline.
+/// Circle of the outline.
 struct Circle {
   Vec<2> centre{};
   double diameter = 0.0;
 };
 
-/// A seat this near to a circle, in diameters, is on it.
+/// Largest distance of a seat from the circle on which it lies, in diameters.
 constexpr double kOnCircle = 1e-3;
-/// The same of a corner of blocks and a side, over what is near to a seat.
+/// Largest distance of a corner of blocks from the side on which it lies, over that of a seat.
 constexpr double kOnSide = 1e-6;
 
-/// Half of the angle that a bearing covers on a circle; none where it lies elsewhere.
+/// Returns half of the angle that a bearing covers on a circle, radians; none where the bearing lies
+/// elsewhere.
 std::optional<double> half_angle(const ReadBearing& b, const Circle& circle) {
   if (!b.at || std::abs(norm(*b.at - circle.centre) - 0.5 * circle.diameter) > kOnCircle * circle.diameter)
     return std::nullopt;
@@ -446,7 +446,7 @@ double angle_on(const ReadBearing& b, const Circle& circle) {
   return std::atan2(from_centre[1], from_centre[0]);
 }
 
-/// Corners of a circle, with those that the ends of bearings are.
+/// Returns the corners of a circle; the ends of bearings are among them.
 std::vector<Vec<2>> corners_of(const Circle& circle, double size, std::span<const ReadBearing> bearings) {
   std::vector<double> angles;
   for (const ReadBearing& b : bearings)
@@ -457,8 +457,10 @@ std::vector<Vec<2>> corners_of(const Circle& circle, double size, std::span<cons
   return specimen::circle_corners(circle.centre, circle.diameter, size, angles);
 }
 
-/// Where a bearing lies on a straight side: its ends with the body on the left.
-/// \param corners  of blocks that are there already, of which the ends are the nearest; empty: anywhere
+/// Returns the ends of a bearing on a straight side, with the body on the left. Throws Error where the
+/// bearing's middle is not on the outline.
+/// \param corners  corners of blocks that are there already, of which the ends are the nearest; empty: the
+///                 ends may be anywhere
 std::array<Vec<2>, 2> ends_on_side(const specimen::Region& region, const ReadBearing& b,
                                    std::span<const Vec<2>> corners) {
   const auto& box = region.box();
@@ -481,7 +483,7 @@ std::array<Vec<2>, 2> ends_on_side(const specimen::Region& region, const ReadBea
   throw Error(fmt::format("its middle ({:.6g}, {:.6g}) m is not on the outline", (*b.at)[0], (*b.at)[1]));
 }
 
-/// The same on a circle: two of its corners.
+/// Returns the ends of a bearing on a circle: two of its corners.
 std::array<Vec<2>, 2> ends_on_circle(const specimen::Region& region, const Circle& circle,
                                      const ReadBearing& b, double half) {
   std::array<Vec<2>, 2> ends;
@@ -497,7 +499,7 @@ std::array<Vec<2>, 2> ends_on_circle(const specimen::Region& region, const Circl
   return ends;
 }
 
-/// With the seats of bearings named.
+/// Returns the region with the seats of bearings as patches.
 specimen::Region with_seats(const specimen::Region& region, std::span<const Circle> circles,
                             std::span<const ReadBearing> bearings, std::span<const Vec<2>> corners = {}) {
   std::vector<specimen::Patch> patches;
@@ -522,7 +524,7 @@ specimen::Region with_seats(const specimen::Region& region, std::span<const Circ
 
 specimen::Region make_region(const Section& s, const Outline& o, const specimen::BlockParameters& blocks,
                              std::span<const ReadBearing> bearings) {
-  const bool is_missing = o.shape == Shape::tessellation && !blocks.tessellation;  // an error that is told
+  const bool is_missing = o.shape == Shape::tessellation && !blocks.tessellation;  // an error already
   if (!s.ok() || is_missing) return specimen::Region::rectangle(1.0, 1.0);
   try {
     if (o.cells)
@@ -574,7 +576,7 @@ specimen::Region make_region(const Section& s, const Outline& o, const specimen:
   }
 }
 
-/// That bearings cover sides that there are.
+/// Records an error for each bearing on a side that the specimen does not have.
 void check_bearings(const specimen::Region& region, std::span<const ReadBearing> bearings) {
   std::vector<std::string> names;
   for (const specimen::Side& side : region.sides()) names.push_back(side.name);
@@ -602,7 +604,7 @@ std::vector<specimen::Inclusions> read_inclusions(const Section& root, const std
   return list;
 }
 
-/// The blocks of a Neper file; nothing after an error, or where it cannot be for this outline.
+/// Reads the blocks of a Neper file; returns none after an error, or where the outline takes no such file.
 std::optional<specimen::NeperTess> read_tessellation(const Section& blocks, const std::filesystem::path& file,
                                                      const Outline& outline) {
   try {
@@ -616,9 +618,9 @@ std::optional<specimen::NeperTess> read_tessellation(const Section& blocks, cons
   return std::nullopt;
 }
 
-/// The groups of a Neper file as phases.
-/// \param names       of the phases, in the ascending order of the groups
-/// \param is_covered  aggregates or inclusions say what blocks are of
+/// Reads the groups of a Neper file as phases.
+/// \param names       names of the phases, in the ascending order of the groups
+/// \param is_covered  true where aggregates or inclusions say of which phase blocks are
 void read_groups(const Section& s, const specimen::NeperTess& tess, const std::vector<std::string>& names,
                  bool is_covered, specimen::BlockParameters& b) {
   std::vector<int> groups = tess.group;
@@ -689,7 +691,7 @@ specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::p
   return b;
 }
 
-/// Of [superposition] where nothing is superposed. Whether there is the table.
+/// Reads [superposition] where nothing is superposed. Tells whether the deck has this table.
 bool read_matrix_alone(const Section& root, specimen::SpecimenParameters& p) {
   const auto superposition = root.optional_section("superposition", kSuperposition);
   if (!superposition) return false;
@@ -698,7 +700,8 @@ bool read_matrix_alone(const Section& root, specimen::SpecimenParameters& p) {
   return true;
 }
 
-/// That the matrix is one of the phases that cells have; the only one is.
+/// Records an error unless the matrix is one of the phases that cells have. A phase that is the only one
+/// becomes the matrix where the deck has no [superposition].
 void check_matrix(const Section& s, std::string_view key, const std::vector<std::string>& phases,
                   bool has_matrix, specimen::SpecimenParameters& p) {
   if (phases.size() == 1 && !has_matrix) p.matrix = phases.front();
@@ -708,7 +711,7 @@ void check_matrix(const Section& s, std::string_view key, const std::vector<std:
                              fmt::join(phases, ", "), p.matrix));
 }
 
-/// Warns of an outline that is not as large as specimens are, where no key has done that.
+/// Warns of an outline that is not as large as specimens usually are, unless a key has warned already.
 void check_outline(const Section& s, const Outline& outline, const specimen::Region& region) {
   if (!s.ok()) return;
   const auto key = [&]() -> std::string_view {
@@ -734,7 +737,8 @@ void check_outline(const Section& s, const Outline& outline, const specimen::Reg
                               : ""));
 }
 
-/// What counts beside cells. The tables of what is made otherwise have no effect.
+/// Reads the rest of a specimen whose cells are given. The tables from which cells are made otherwise have no
+/// effect.
 void read_beside_cells(const Section& root, const Section& s, std::span<const ReadBearing> bearings,
                        Outline outline, specimen::SpecimenParameters& p) {
   root.know({"aggregates", "inclusions", "blocks"});
@@ -747,7 +751,7 @@ void read_beside_cells(const Section& root, const Section& s, std::span<const Re
   p.cells = std::move(outline.cells);
 }
 
-/// Phases are not called as the solids of bearings.
+/// Records an error where a phase has the name of a bearing's solid.
 void check_phases(const Section& s, const specimen::SpecimenParameters& p,
                   std::span<const ReadBearing> bearings) {
   for (const auto& phase : specimen::phases(p))

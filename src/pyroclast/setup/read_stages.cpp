@@ -13,7 +13,7 @@ namespace pyroclast {
 
 namespace {
 
-/// Between two frames while the temperature changes, K, where the deck does not say.
+/// Change of the temperature between two frames, K, where the deck does not say.
 constexpr double kFrameTemperature = 50.0;
 
 OutputIntervals read_output(const Section& s, bool moves, bool has_platens, FramesInTime frames_in_time) {
@@ -39,7 +39,7 @@ OutputIntervals read_output(const Section& s, bool moves, bool has_platens, Fram
   return output;
 }
 
-/// Nothing after an error.
+/// Reads the temperature without stress; returns none after an error.
 std::optional<StressFree> read_stress_free(const Section& s, const std::filesystem::path& folder) {
   const Range range = Range::at_least(absolute_zero).usually(-30.0, 80.0);
   s.describe("stress_free",
@@ -83,7 +83,7 @@ ReadStages read_stages(const Section& root, const StageRegistry& kinds,
   const auto any = [&](auto needs) {
     return std::ranges::any_of(chosen, [&](const StageKind* kind) { return needs(kind->needs); });
   };
-  // Without a stage that could be read, what belongs to mechanics is known at least.
+  // Where no stage could be read, the keys of mechanics are known at least.
   const bool moves = chosen.empty() || any([](const StageNeeds& n) { return n.mechanics; });
   FramesInTime frames_in_time = FramesInTime::none;
   for (const StageKind* kind : chosen) frames_in_time = std::max(frames_in_time, kind->needs.frames_in_time);

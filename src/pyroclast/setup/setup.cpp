@@ -25,13 +25,13 @@ namespace pyroclast {
 
 namespace {
 
-// Block size over d_max, of validation/block_size.md: 250 blocks on 150 mm x 300 mm with d_max = 32 mm, and
-// 1,600.
+// Block sizes over d_max, from validation/block_size.md: of 250 and of 1,600 blocks on 150 mm x 300 mm with
+// d_max = 32 mm.
 constexpr double kCoarsestStudied = 0.42, kCoarsestHeated = 0.165;
 
 constexpr double kGravity = 9.80665;  // m/s², standard
 
-/// Even temperatures of the run at which the contact law must be possible.
+/// Number of temperatures, evenly over the run's, at which the contact law must be possible.
 constexpr int kCheckedTemperatures = 33;
 
 MechanicsParameters<2> read_mechanics(const Section& s) {
@@ -69,14 +69,15 @@ MechanicsParameters<2> read_mechanics(const Section& s) {
   return m;
 }
 
-/// Time for which boundaries act, s.
+/// Returns the time for which boundaries act, s.
 double exposure(const std::vector<std::unique_ptr<Stage>>& stages) {
   double duration = 0.0;
   for (const auto& stage : stages) duration += stage->heating().duration;
   return duration;
 }
 
-/// A uniform field is changed by stages that set it, a computed one by exposing the specimen.
+/// Records an error where a stage needs the other kind of field. A uniform field is changed by stages that
+/// set it, a computed one by exposing the specimen.
 void check_heat(const Section& root, const HeatConditions& conditions,
                 const std::vector<std::unique_ptr<Stage>>& stages) {
   const auto heat = root.optional_section("heat");
@@ -97,8 +98,8 @@ void check_heat(const Section& root, const HeatConditions& conditions,
   }
 }
 
-/// A stage that moves the body takes it as the last exchange left it: what `conduct` did since then would
-/// have no effect on it.
+/// Records an error for a stage that moves the body without the temperatures of the stages before it. The
+/// body is as the last exchange left it: what `conduct` did since then would have no effect on it.
 void check_hand_over(const Section& root, const std::vector<std::unique_ptr<Stage>>& stages) {
   const auto sections = root.sections("stages");
   std::optional<std::size_t> pending;  // a stage whose temperatures are still to be handed over
@@ -117,7 +118,7 @@ void check_hand_over(const Section& root, const std::vector<std::unique_ptr<Stag
   }
 }
 
-/// That boundaries act on sides that there are.
+/// Records an error for each boundary on a side or set that the specimen does not have.
 void check_heated_sides(const Section& root, const Setup& setup) {
   std::vector<std::string> names{HeatedFaces::kOutline, HeatedFaces::kBox};
   for (const specimen::Side& side : setup.specimen.region.sides()) names.push_back(side.name);
@@ -133,7 +134,7 @@ void check_heated_sides(const Section& root, const Setup& setup) {
   }
 }
 
-/// Blocks that are coarser than what was studied, and fewer than a heated test needs
+/// Warns of blocks that are coarser than any that were studied, or than a test heated under load allows
 /// (validation/block_size.md).
 void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
   const specimen::SpecimenParameters& s = setup.specimen;
@@ -157,13 +158,13 @@ void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
                     1e3 * size, share, kCoarsestHeated));
 }
 
-/// Whether anything but expansion and creep follows the temperature.
+/// Tells whether a curve is a property other than expansion and creep that follows the temperature.
 bool follows_temperature(const ReadCurve& read) {
   return !read.curve.is_constant() && !read.path.ends_with("expansion") &&
          !read.path.ends_with("thermal_strain") && !read.path.ends_with("creep.strain");
 }
 
-/// Properties that come back on cooling.
+/// Warns of properties that come back on cooling.
 void warn_of_healing(const Section& root, const Setup& setup) {
   if (!setup.motion || setup.motion->on_cooling == OnCooling::irreversible) return;
   if (std::ranges::none_of(setup.curves, follows_temperature)) return;
@@ -182,8 +183,8 @@ void warn_of_healing(const Section& root, const Setup& setup) {
   }
 }
 
-/// All temperatures that a run may come to, and the reference temperature, at which masses and stated
-/// stiffnesses hold.
+/// Returns the range of all temperatures to which a run may come, with the reference temperature, at which
+/// masses and stated stiffnesses hold.
 Interval run_temperatures(const Section& root, const HeatConditions& conditions,
                           const std::optional<StressFree>& stress_free,
                           const std::vector<std::unique_ptr<Stage>>& stages) {
@@ -195,7 +196,7 @@ Interval run_temperatures(const Section& root, const HeatConditions& conditions,
   if (stress_free) include(stress_free->range().lower, stress_free->range().upper);
   const bool stages_are_known =
       std::ranges::all_of(root.sections("stages"), [](const Section& s) { return s.ok(); });
-  if (!stages_are_known) return t;  // what stands in for an error asks nothing of curves
+  if (!stages_are_known) return t;  // a value that stands in for an error asks nothing of curves
   for (const auto& stage : stages)
     if (const auto to = stage->heating().to) include(*to, *to);
   const auto heat_table = root.optional_section("heat");
@@ -206,8 +207,8 @@ Interval run_temperatures(const Section& root, const HeatConditions& conditions,
   return t;
 }
 
-/// The contact law's own conditions, told where the user can act on them: at 20 °C and over what the run
-/// needs.
+/// Checks the contact laws' own conditions, at 20 °C and over the temperatures of the run. Records an error
+/// at the key that the user can change.
 void check_contacts(const Section& root, const Setup& setup) {
   const Section contacts = root.section("contacts");
   if (!root.ok()) return;
@@ -242,7 +243,7 @@ void check_contacts(const Section& root, const Setup& setup) {
     check(concrete.contacts[i], concrete.interfaces[i]);
 }
 
-/// Adds the platens. False where the deck has none.
+/// Adds the platens. Returns false where the deck has none.
 bool read_platens(const Section& root, const Setup& setup, std::vector<Bearing>& bearings) {
   const auto s =
       root.optional_section("platens", "two elastic blocks as wide as the specimen, under and above it");
@@ -273,7 +274,7 @@ std::vector<std::string> materials_of(const std::vector<Bearing>& bearings) {
   return names;
 }
 
-/// Materials, and what moves, where a stage moves the body.
+/// Reads the materials and all that moves, where a stage moves the body.
 void read_moving(const Section& root, const std::vector<ReadBearing>& bearings, CurveReader& curves,
                  const LawFinder& find_law, Setup& setup) {
   const MaterialRules rules = read_material_rules(root);
@@ -295,7 +296,7 @@ void read_moving(const Section& root, const std::vector<ReadBearing>& bearings, 
   if (setup.code_not_allowed.empty()) check_contacts(root, setup);
 }
 
-/// The same where only heat moves.
+/// Reads the materials where only heat moves.
 void read_resting(const Section& root, CurveReader& curves, Setup& setup) {
   setup.solids = read_conducting_solids(root, specimen::phases(setup.specimen), curves);
   root.know({"platens", "bearings", "contacts", "mechanics", "concrete"});

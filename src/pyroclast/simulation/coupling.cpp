@@ -7,23 +7,23 @@ namespace pyroclast {
 
 namespace {
 
-/// What each zone is of, by place in the solids.
+/// Returns the solid of each zone, by place in the solids.
 std::vector<int> solids_of_zones(const Model<2>& model) {
   std::vector<int> solids = zone_blocks(model);
   for (int& entry : solids) entry = model.block_material[entry];
   return solids;
 }
 
-/// \param hottest  that it was so far, °C
+/// \param hottest  highest temperature so far, °C
 ZoneProperties zone_at(const ConcreteMaterials& materials, const SolidMaterial& solid, double temperature,
                        double hottest) {
   return zone_properties<2>(solid.young_at(temperature, materials.property_temperature(temperature, hottest)),
                             solid.poisson, solid.free_strain(temperature, hottest));
 }
 
-/// Of each zone; none where nothing creeps.
-/// \param zone_solids  what each zone is of, by place in the solids
-/// \param increments  where they are written
+/// Finds the creep of each zone; none where nothing creeps.
+/// \param zone_solids  solid of each zone, by place in the solids
+/// \param increments   creep of each zone, out
 void find_creep_increments(const std::vector<int>& zone_solids, const ConcreteMaterials& materials,
                            const TemperatureField& field, const HottestTemperatures& before,
                            std::vector<CreepIncrement>& increments) {
@@ -39,7 +39,8 @@ void find_creep_increments(const std::vector<int>& zone_solids, const ConcreteMa
   }
 }
 
-/// One set of parameters a material and an interface; bearings keep the reference temperature.
+/// Returns properties at one temperature: one set of parameters a material and an interface. Bearings keep
+/// the reference temperature.
 BodyProperties properties_at_one_temperature(const Model<2>& model, const std::vector<int>& zone_solids,
                                              const ConcreteMaterials& materials, double temperature,
                                              double hottest) {

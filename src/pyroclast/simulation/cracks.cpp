@@ -17,7 +17,7 @@ const char* name_of(Remembers damage) {
   return damage == Remembers::shear_damage ? "shear" : "mixed";
 }
 
-/// Of an interface, by its first contact; none where no contact has it.
+/// Returns the law of an interface, by its first contact; null where no contact has the interface.
 const LawTable* law_of_interface(const Mechanics<2>& mechanics, int interface) {
   const auto& contacts = mechanics.model().contacts;
   const auto first = std::ranges::find(contacts, interface, &Contact<2>::interface);
@@ -25,7 +25,7 @@ const LawTable* law_of_interface(const Mechanics<2>& mechanics, int interface) {
                                  : &mechanics.body().law_of(static_cast<int>(first - contacts.begin()));
 }
 
-/// Bits of a contact point by mode: has damage, is broken.
+/// Returns the bit of a contact point that a mode has damaged; `broken_by` returns that of a broken one.
 constexpr std::uint8_t damaged_by(std::size_t mode) {
   return static_cast<std::uint8_t>(1U << (2 * mode));
 }
@@ -38,15 +38,15 @@ std::size_t mode_of(Remembers damage) {
   return static_cast<std::size_t>(std::ranges::find(kCrackModes, damage) - std::begin(kCrackModes));
 }
 
-/// By their bits, which a compiler takes together.
+/// Tells whether eight numbers are zero, by their bits, which a compiler takes together.
 bool all_zero(const double* lanes) {
   std::uint64_t bits = 0;
   for (int lane = 0; lane < kLanes; ++lane) bits |= std::bit_cast<std::uint64_t>(lanes[lane]);
   return bits == 0;
 }
 
-/// The bits of the contact point of each slot. It goes over the internal variables as they stand: most points
-/// have no damage, and to ask one by one costs more than all else of a look.
+/// Returns the bits of the contact point of each slot. Goes over the internal variables as they stand: most
+/// points have no damage, and to ask one by one costs more than all else of a look.
 std::vector<std::uint8_t> damages(const Mechanics<2>& mechanics) {
   const auto& layout = mechanics.body().layout;
   const auto& state = mechanics.body().state;
@@ -54,7 +54,7 @@ std::vector<std::uint8_t> damages(const Mechanics<2>& mechanics) {
     std::size_t line, mode;
   };
   std::vector<std::vector<Place>>
-      places;  // of each law, where the internal variables of a point have its damages
+      places;  // for each law, the internal variables of a point that are damages, with their modes
   for (const LawTable* law : mechanics.body().laws)
     for (auto& of_law = places.emplace_back(); const InternalInfo& info : law->internals(2))
       if (const std::size_t mode = mode_of(info.what); mode < std::size(kCrackModes))
@@ -83,7 +83,7 @@ std::vector<std::uint8_t> damages(const Mechanics<2>& mechanics) {
 
 struct CrackSums {
   std::vector<CrackCount> of_kind;
-  double opening = 0.0, length = 0.0;  ///< of contacts that have come apart, m², m
+  double opening = 0.0, length = 0.0;  ///< sums over contacts that have come apart, m², m
 
   void operator+=(const CrackSums& other) {
     of_kind.resize(std::max(of_kind.size(), other.of_kind.size()));

@@ -9,28 +9,27 @@ namespace pyroclast {
 
 namespace {
 
-/// The body is looked at this often on its way to rest.
+/// Steps between two checks whether the body rests.
 constexpr std::int64_t kCyclesPerCheck = 50;
-/// A platen that sinks by less than this share of the failure strain within the stated cycles is not running
-/// away.
+/// Sinking of a platen within the stated cycles, over the failure strain, below which it is not running away.
 constexpr double kSlowSinking = 0.1;
-/// Without platens forces out of balance are none below this share of `platen_difference`, on the face of a
-/// block.
+/// Share of `platen_difference`, on the face of a block, below which forces out of balance count as none
+/// without platens.
 constexpr double kAsGoodAsNone = 0.1;
-/// What is nearer to a platen than this share of the height touches it.
+/// Way over the height below which the specimen touches the lower platen already.
 constexpr double kTouches = 1e-7;
-/// Steps of moving evenly: there, and halt.
+/// Steps of an even motion: one there, and one that halts.
 constexpr std::int64_t kEvenSteps = 2;
-/// Cycles of an exchange over the least, mean of a run, as measured: 1.0 to 1.5
+/// Mean cycles of an exchange over the least, in a run; measured are 1.0 to 1.5
 /// (validation/transient_heating.csv).
 constexpr double kCyclesOverLeast = 1.3;
 
-/// How much the body has given way to its loads: as a strain.
+/// Returns how far the body has given way to its loads, as a strain.
 double shortening(const Simulation& simulation) {
   return simulation.has_press() ? simulation.press().specimen_strain() : simulation.loads().give();
 }
 
-/// What the body as a whole is out of equilibrium by, as a stress on its section, Pa.
+/// Returns the force by which the body as a whole is out of equilibrium, as a stress on its section, Pa.
 double imbalance(const Simulation& simulation) {
   if (!simulation.has_press()) {
     return norm(simulation.mechanics().totals().net_force()) /
@@ -69,7 +68,7 @@ void Exchange::move_evenly_first(const Press<2>::EvenMotion& motion) {
   kept_.even_steps_left = kEvenSteps;
 }
 
-/// One step of it; true when there was none left.
+/// Takes one step of the even motion; returns true when no step was left.
 bool Exchange::move_evenly(Simulation& simulation) {
   if (kept_.even_steps_left == 0) return true;
   Press<2>& press = simulation.press();
@@ -79,9 +78,10 @@ bool Exchange::move_evenly(Simulation& simulation) {
   return false;
 }
 
-/// Where the body hovers. It is halted by that, so that what touches is left to settle.
+/// Begins an even motion that sets a hovering body down. The motion also halts the body, so that only the
+/// contact with the platen is left to settle.
 void Exchange::set_down(const Press<2>& press) {
-  if (press.stress_held() > 0.0) return;  // that moves it fast enough
+  if (press.stress_held() > 0.0) return;  // the force moves the body fast enough
   const Press<2>::EvenMotion motion = press.to_touch();
   if (press.way(motion) > kTouches * press.height()) move_evenly_first(motion);
 }
@@ -120,8 +120,8 @@ bool Exchange::is_still(const Simulation& simulation) const {
   const Mechanics<2>& mechanics = simulation.mechanics();
   if (imbalance(simulation) >= coupling_.platen_difference) return false;
   if (mechanics.totals().unbalanced_ratio() < coupling_.unbalanced_ratio) return true;
-  // A body that expands freely bears nothing to compare with. What is out of balance at each block alike, as
-  // where all of it still grows, adds up over the body.
+  // A body that expands freely bears no forces to compare with. Forces that are out of balance at each block
+  // alike, as where all of the body still grows, add up over the body.
   const double block = specimen::block_size(simulation.specimen());
   return !simulation.has_press() &&
          mechanics.totals().mean_unbalanced_force() * (simulation.body_size() / block) <

@@ -33,7 +33,7 @@ bool parts_heat(const S& s) {
   return s.moves() && s.cracks_hinder_heat();
 }
 
-constexpr int kMostComponents = 6;  // of a tensor
+constexpr int kMostComponents = 6;  // components of a tensor
 constexpr std::array<std::string_view, 4> kItemNames{"gridpoint", "zone", "contact", "contact_end"};
 
 void put(double* to, const Vec<2>& v) {
@@ -41,13 +41,13 @@ void put(double* to, const Vec<2>& v) {
   to[1] = v[1];
 }
 
-/// Of a tensor in the plane, with a component across it.
+/// Writes a tensor in the plane, with a component across it.
 void put(double* to, const SymmetricTensor<2>& t, double across) {
   const std::array<double, kMostComponents> all{t[0], t[1], across, t[2], 0.0, 0.0};
   std::ranges::copy(all, to);
 }
 
-/// What a zone has crept, and across the plane that which acts on nothing.
+/// Returns the creep strain of a zone, and its component across the plane, which acts on nothing.
 std::pair<SymmetricTensor<2>, double> creep_of(const R& r, int zone) {
   if (!r.mechanics().body().creeps()) return {};
   const Model<2>& model = r.model();
@@ -57,8 +57,8 @@ std::pair<SymmetricTensor<2>, double> creep_of(const R& r, int zone) {
   return {strain, creep ? creep_across(strain, creep->choices.poisson) : 0.0};
 }
 
-/// Of a zone in plane stress: that of its displacements, and across the plane that which leaves it free of
-/// stress there.
+/// Writes the strain of a zone in plane stress: in the plane that of the displacements, and across it the
+/// strain that leaves the zone free of stress there.
 void put_strain(R& r, int zone, double* to) {
   const SymmetricTensor<2>& stress = r.stress(zone);
   const ZoneProperties properties = r.mechanics().read().properties_of_zone(zone);
@@ -71,7 +71,7 @@ void put_strain(R& r, int zone, double* to) {
       direct(0.0) + properties.thermal_strain + creep_across);
 }
 
-/// The traction on a contact as the stress in its direction: σ n n + τ (n t + t n).
+/// Writes the traction on a contact as the stress in its direction: σ n n + τ (n t + t n).
 void put_contact_stress(R& r, int contact, double* to) {
   const ContactState<2>& state = r.contact(contact);
   const ContactFrame<2> frame = r.mechanics().read().frame_of_forces(contact);
@@ -83,8 +83,7 @@ void put_contact_stress(R& r, int contact, double* to) {
       0.0);
 }
 
-/// The most that a contact between blocks is damaged by any mode, 1: it is a crack. Those of bearings are
-/// none.
+/// Returns the largest damage of a contact by any mode, 0 to 1; 0 at bearings, whose contacts are no cracks.
 double crack(const R& r, int contact) {
   if (r.model().is_of_bearing(r.model().contacts[contact])) return 0.0;
   double most = 0.0;
@@ -98,7 +97,8 @@ double temperature_jump(const R& r, int contact) {
   return r.model().is_of_bearing(c) ? 0.0 : temperature[c.b] - temperature[c.a];
 }
 
-/// Mean of both sides; the second end is half way to the other contact of the edge.
+/// Writes the displacement at an end of a contact's line: the mean of both sides. The second end is half way
+/// to the other contact of the edge.
 void put_end(R& r, int end, double* to) {
   const auto mean = [&](int contact) {
     const auto& c = r.model().contacts[contact];
@@ -110,7 +110,7 @@ void put_end(R& r, int end, double* to) {
       end % 2 == 0 ? here : 0.5 * (here + mean(contact ^ 1)));  // the two contacts of an edge stand together
 }
 
-/// A field that does not come from a law.
+/// Field that does not come from a law.
 struct KnownField {
   const char* name;
   const Unit& unit;
@@ -179,14 +179,14 @@ FieldInfo info_of(const KnownField& f) {
   return {f.name, f.unit, f.item, f.kind, f.meaning, f.in_files};
 }
 
-/// Adds what the contact points of a law remember, but what another law calls the same.
+/// Adds the internal variables of a law, without those whose names another law has given already.
 void add_memory(const LawTable& law, std::vector<FieldInfo>& all) {
   for (const InternalInfo& info : law.internals(2))
     if (std::ranges::find(all, std::string(info.name), &FieldInfo::name) == all.end())
       all.push_back({info.name, info.unit, Item::contact, ValueKind::number, info.meaning, info.in_files});
 }
 
-/// The same of what they lost.
+/// Adds the losses of a law, without those whose names another law has given already.
 void add_losses(const LawTable& law, std::vector<FieldInfo>& all) {
   for (const LossInfo& info : law.losses)
     if (const auto name = fmt::format("lost_{}", info.name);
@@ -202,7 +202,7 @@ std::vector<FieldInfo> of_laws(const Laws& laws, void (*add)(const LawTable&, st
   return all;
 }
 
-/// Laws of the contacts in the order in which the model has them.
+/// Returns the laws of the contacts in the order in which the model has them.
 std::vector<const LawTable*> laws_in_order(const Mechanics<2>& mechanics) {
   std::vector<const LawTable*> laws;
   const LawTable* last = nullptr;

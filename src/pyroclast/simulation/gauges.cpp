@@ -12,7 +12,7 @@ namespace pyroclast {
 
 namespace {
 
-/// A column, and its value of what was measured.
+/// Column and the function that takes its value from a measurement.
 template <class Measured>
 struct ColumnOf {
   const char* name;
@@ -20,7 +20,7 @@ struct ColumnOf {
   double (*value)(const Measured&);
 };
 
-/// A gauge that measures once for all its columns. The table must outlive it.
+/// Makes a gauge that measures once for all its columns. The table must outlive the gauge.
 template <class Measured, std::size_t N, class Measure>
 Gauge make_gauge(const std::array<ColumnOf<Measured>, N>& table, Measure measure, bool of_motion) {
   Gauge gauge;
@@ -62,7 +62,7 @@ constexpr auto kPress = std::to_array<ColumnOf<P>>({
     {"lateral_strain", "1", [](const P& p) { return p.lateral_strain(); }},
 });
 
-/// What is measured of the whole body's motion.
+/// Measurements of the whole body's motion.
 struct Motion {
   double unbalanced_ratio = 0.0, largest_jump = 0.0;
   EnergyLedger energy;
@@ -79,14 +79,14 @@ constexpr auto kMotion = std::to_array<ColumnOf<Motion>>({
     {"largest_jump", "1", [](const Motion& m) { return m.largest_jump; }},
 });
 
-/// Of contacts whose sides have temperatures of their own.
+/// Columns of contacts whose sides have temperatures of their own.
 constexpr auto kGaps = std::to_array<ColumnOf<S>>({
     {"heat_gap_length_m", "m",
      [](const S& s) { return s.field().conduction()->gaps()->area() / s.model().thickness; }},
 });
 
-/// Calls one of two functions for each energy of the ledger, in the order of the columns: for an entry, and
-/// for one that the contact laws of the body or its creep dissipate, by its number.
+/// Calls one of two functions for each energy, in the order of the columns: `of_entry` for an entry of the
+/// ledger, and `of_dissipated`, with its number, for an energy that contact laws or creep dissipate.
 template <class OfEntry, class OfDissipated>
 void for_each_energy(std::size_t dissipations, OfEntry of_entry, OfDissipated of_dissipated) {
   bool are_told = false;
@@ -124,7 +124,7 @@ Gauge motion_gauge(const Mechanics<2>& mechanics) {
   return gauge;
 }
 
-/// Rate and heat of a computed field.
+/// Makes a gauge of rate and heat of a computed field.
 Gauge transport_gauge() {
   Gauge gauge;
   gauge.columns.push_back({"rate_K_s", "K/s"});
@@ -139,7 +139,7 @@ Gauge transport_gauge() {
   return gauge;
 }
 
-/// With columns for each mode and interface that the laws of the body can break by.
+/// Makes a gauge of cracks, with columns for each mode and interface in which the laws of the body can break.
 Gauge crack_gauge(const Mechanics<2>& mechanics) {
   Gauge gauge;
   const auto kinds = crack_kinds(mechanics);
@@ -160,7 +160,7 @@ Gauge crack_gauge(const Mechanics<2>& mechanics) {
   return gauge;
 }
 
-/// With a column for each record of motion, or of temperature.
+/// Makes a gauge with a column for each record of motion, or of temperature.
 Gauge record_gauge(const Simulation& simulation, bool of_motion) {
   const auto is_of_it = [of_motion](const Record& record) {
     return (record.parameters().kind != RecordKind::temperature) == of_motion;

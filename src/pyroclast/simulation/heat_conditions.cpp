@@ -16,10 +16,10 @@ namespace {
 /// Accuracy to which the time of the last change is found, as a fraction of the duration.
 constexpr double kTimeAccuracy = 1e-6;
 
-/// Resistance of a closed crack over that of a block, which is left out where cracks split by the block size.
+/// Resistance of a closed crack over that of a block that is left out where cracks split by the block size.
 constexpr double kLeftOut = 0.05;
 
-/// Curves of a condition, in the order: temperature (if it has one), others.
+/// Curves of a condition; null where it has none.
 struct ConditionCurves {
   const Curve* temperature = nullptr;
   const Curve* other = nullptr;
@@ -64,7 +64,7 @@ HeatMaterial heat_material(const SolidMaterial& solid) {
           solid.density * require(solid.specific_heat, "specific_heat")};
 }
 
-/// None of bearings.
+/// Returns the heat material of each solid; none for bearings.
 std::vector<std::optional<HeatMaterial>> heat_materials(const std::vector<SolidMaterial>& solids) {
   std::vector<std::optional<HeatMaterial>> materials(solids.size());
   for (std::size_t m = 0; m < solids.size(); ++m)
@@ -95,7 +95,7 @@ Box bounding_box(const std::vector<OutlineFace<2>>& outline, const Model<2>& mod
 
 std::vector<int> choose_faces(const Model<2>& model, const Conduction<2>& conduction,
                               const HeatedFaces& faces, const Box& specimen) {
-  const double tolerance = 1e-9 * norm(specimen.high - specimen.low);  // rounding
+  const double tolerance = 1e-9 * norm(specimen.high - specimen.low);  // allows for rounding
   const Vec<2> slack{{tolerance, tolerance}};
   if (faces.part == HeatedFaces::kOutline)
     return conduction.faces([](const OutlineFace<2>&) { return true; });
@@ -126,12 +126,12 @@ void apply(Conduction<2>& conduction, const std::vector<int>& faces, const HeatC
       condition);
 }
 
-/// Which conditions act on each face of an outline.
+/// Conditions that act on each face of an outline.
 class FaceUse {
  public:
   explicit FaceUse(std::size_t faces) : conditions_(faces) {}
 
-  /// Throws Error when one that is there already contradicts the new one.
+  /// Adds a condition to faces. Throws Error when a condition that is there already contradicts it.
   void add(const std::vector<int>& faces, const HeatBoundaryCondition& boundary) {
     for (int face : faces) {
       for (const HeatBoundaryCondition* other : conditions_[face])

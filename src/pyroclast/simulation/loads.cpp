@@ -15,7 +15,8 @@ namespace pyroclast {
 
 namespace {
 
-/// Normal of a face times its area over its number of corners: what one corner gets of a unit pressure, m².
+/// Returns the normal of a face times its area over its number of corners: the force of a unit pressure on
+/// one corner, m².
 Vec<2> share_of_corner(const std::array<Vec<2>, 2>& x, double thickness) {
   const Vec<2> along = x[1] - x[0];
   return 0.5 * thickness * Vec<2>{{along[1], -along[0]}};
@@ -97,7 +98,7 @@ void Loads<Dim>::set(const std::map<std::string, SetLoad<Dim>>& loads) {
   apply();
 }
 
-/// On each gridpoint of the set.
+/// Returns the forces of a load on each gridpoint of its set.
 template <int Dim>
 std::vector<Vec<Dim>> Loads<Dim>::forces(const Entry& entry) const {
   const auto& gridpoints = entry.set.gridpoints;
@@ -127,7 +128,7 @@ void Loads<Dim>::apply() {
   for (std::size_t i = 0; i < on.size(); ++i) mechanics_.constraints().apply_force(loaded_[i], on[i]);
 }
 
-/// Of the set along its force; under a pressure against its faces.
+/// Returns the way of a set along its force, m; under a pressure against its faces.
 template <int Dim>
 double Loads<Dim>::way(const Entry& entry) const {
   const auto on = forces(entry);

@@ -14,7 +14,7 @@ namespace pyroclast {
 
 namespace {
 
-/// The lower platen carries the specimen where it bears at least this share of what rests on it.
+/// Least share of the load that rests on the lower platen with which the platen carries the specimen.
 constexpr double kCarried = 0.8;
 
 /// Sides of the specimen across the axis, lower and upper, in the order of the components.
@@ -105,14 +105,14 @@ double Press<Dim>::volume() const {
   return area() * height_;
 }
 
-/// Rise over the width of the line that the specimen stands on: that edge of the lower hull of its lower end
-/// that lies under the middle.
+/// Returns the rise over the width of the line on which the specimen stands: the edge of the lower hull of
+/// its lower end that lies under the middle. 0 in 3D.
 template <int Dim>
 double Press<Dim>::rise_of_stand() const {
   if constexpr (Dim != 2) {
     return 0.0;
   } else {
-    std::vector<Vec<2>> points;  // across, and along the axis
+    std::vector<Vec<2>> points;  // position across the axis, and displacement along it
     for (int g : set("bottom"))
       points.push_back(
           {{mechanics_.model().position[g][across_[0]], mechanics_.read().displacement(g)[axis_]}});
@@ -131,8 +131,8 @@ double Press<Dim>::rise_of_stand() const {
   }
 }
 
-/// Between the platens and the gridpoints of the ends that stand out most, m.
-/// \param up  where a gridpoint is along the axis, since the start
+/// Returns the clearances between the platens and the gridpoints of the ends that stand out most, m.
+/// \param up  function that returns the way of a gridpoint along the axis since the start
 template <int Dim>
 template <class Up>
 typename Press<Dim>::Clearances Press<Dim>::clearances(const Up& up) const {

@@ -12,10 +12,10 @@ namespace pyroclast {
 
 namespace {
 
-/// A shape function that falls below zero by less is on the zone's edge but for rounding.
+/// Fall of a shape function below zero that is rounding on the zone's edge.
 constexpr double kOnEdge = 1e-9;
 
-/// The zone's shape functions at a point: linear, 1/3 each at the centroid.
+/// Returns the zone's shape functions at a point: linear, 1/3 each at the centroid.
 std::array<double, 3> shape_functions(const Model<2>& model, const ZoneGeometry<2>& geometry,
                                       std::size_t zone, const Vec<2>& x) {
   Vec<2> centroid{};
@@ -31,7 +31,7 @@ std::array<double, 3> shape_functions(const Model<2>& model, const ZoneGeometry<
 Probe::Probe(const Model<2>& model, const ProbePosition& at) : name_(at.name) {
   const auto geometry = zone_geometry(model);
   const auto blocks = zone_blocks(model);
-  // The deepest zone, so that rounding on an edge loses no point.
+  // The deepest zone is taken, so that rounding on an edge loses no point.
   double deepest = -std::numeric_limits<double>::infinity();
   for (std::size_t z = 0; z < model.zones.size(); ++z) {
     if (model.is_of_bearing(blocks[z])) continue;

@@ -25,7 +25,7 @@ bool is_damaged(const Mechanics<2>& mechanics, int contact) {
       kCrackModes, [&](Remembers mode) { return mechanics.read().remembered(contact, mode) > 0.0; });
 }
 
-/// Zones that lie wholly in a set.
+/// Returns the zones that lie wholly in a set.
 std::vector<int> zones_in(const Model<2>& model, const std::vector<int>& gridpoints) {
   std::vector<bool> is_in(model.position.size());
   for (int g : gridpoints) is_in[g] = true;
@@ -134,8 +134,9 @@ T Record::Mean::of(Value value) const {
   return chunked_sum<T>(set.chunks, [&](int i, T& sum) { sum += weights[i] * value(set.gridpoints[i]); });
 }
 
-/// A set that loads, holds or drives the body has what it does: its own load, and of each reaction an even
-/// share among those that hold the component. One that does none of it has all that acts on its gridpoints.
+/// Returns the force of the record's set. A set that loads, holds or drives the body has its own load, and of
+/// each reaction an even share among the sets that hold the component. Any other set has all forces from
+/// outside on its gridpoints.
 double Record::force(const Simulation& simulation) const {
   const Mechanics<2>& mechanics = simulation.mechanics();
   const Supports<2>& supports = simulation.supports();

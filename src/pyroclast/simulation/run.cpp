@@ -14,7 +14,7 @@ namespace pyroclast {
 
 namespace {
 
-/// A batch has at most so many steps, and fewer in a large body: so that a stop is heard within a second.
+/// Largest number of steps of a batch. A large body takes fewer, so that a stop is heard within a second.
 constexpr int kMostSteps = 250;
 constexpr double kMostZoneSteps = 25e6;
 
@@ -52,8 +52,8 @@ Run::Run(Simulation& simulation, std::vector<std::unique_ptr<Stage>> stages)
   name_columns();
 }
 
-/// In the stated order: number of the stage, clocks, temperatures, the stages' own, motion, transport,
-/// probes.
+/// Names the columns in the stated order: number of the stage, clocks, temperatures, the stages' own, motion,
+/// records, transport, probes.
 void Run::name_columns() {
   for (const Column& column : row_columns()) history_.add_column(column);
   for (std::size_t i = 0; i <= gauges_.size(); ++i) {
@@ -65,7 +65,8 @@ void Run::name_columns() {
   }
 }
 
-/// Of the record with a column of this name, to begin a message with; empty where there is none.
+/// Returns the place of the record with a column of this name, to begin a message with; empty where there is
+/// none.
 std::string Run::place_of(const std::string& column) const {
   for (const Record& record : simulation_.records())
     if (column_of(record.parameters()).name == column && !record.parameters().place.empty())
@@ -73,7 +74,8 @@ std::string Run::place_of(const std::string& column) const {
   return {};
 }
 
-/// Throws Error where two would write into one column: a record or a probe with the name of another quantity.
+/// Throws Error where two quantities would write into one column, because a record or a probe has the name of
+/// another quantity.
 void Run::require_own_columns() const {
   std::set<std::string> names;
   for (const Column& column : row_columns()) names.insert(column.name);
@@ -88,7 +90,8 @@ void Run::require_own_columns() const {
             place_of(column.name), column.name));
 }
 
-/// Of the stages from this one on. Where platens hold the body, they do.
+/// Throws Error where one of the stages from `first` on cannot be done, or would move a body that has weight
+/// or loads and that nothing holds. Platens hold a body.
 void Run::check(const std::vector<std::unique_ptr<Stage>>& stages, std::size_t first,
                 Acting<2> acting) const {
   bool is_loaded = has_weight(simulation_);
@@ -115,7 +118,7 @@ bool Run::next() {
   if (stage_is_over_) ++stage_;
   if (stage_is_over_ || !stage_is_begun_) begin_stage();
   if (!move_to_look()) return false;
-  if (simulation_.moves()) simulation_.mechanics().commit_creep();  // what is looked at has crept
+  if (simulation_.moves()) simulation_.mechanics().commit_creep();  // a look sees the body after its creep
   add_row();
   courses_[stage_].rows.last = history_.row_count();
   const auto& row = history_.row(history_.row_count() - 1);
@@ -144,7 +147,7 @@ void Run::change_later_stages(std::vector<std::unique_ptr<Stage>> stages) {
   courses_.resize(stages_.size());
   const History old = std::exchange(history_, {});
   name_columns();
-  history_.take_rows(old);  // a column that only a stage had which is no more is empty
+  history_.take_rows(old);  // without the columns of stages that are no more
   const bool has_more = kept < stages_.size();
   if (stage_is_over_ && !stage_ends_run_ && has_more) outcome_ = Outcome::running;
 }
@@ -175,7 +178,7 @@ void Run::begin_stage() {
   stages_[stage_]->begin(simulation_);
 }
 
-/// False when it was stopped on the way.
+/// Moves on to the next look; returns false when the run was stopped on the way.
 bool Run::move_to_look() {
   for (bool there = false; !there;) {
     between_batches_(*this);
@@ -268,7 +271,7 @@ void Run::visit_state(StateVisitor& visitor) {
   }
 }
 
-/// Of the stages up to the present one; later ones have not begun.
+/// Shows the courses of the stages up to the present one; later stages have not begun.
 void Run::visit_courses(StateVisitor& visitor) {
   std::vector<StageCourse> courses(courses_.begin(), courses_.begin() + stage_ + 1);
   if (outcome_ == Outcome::stopped) courses.back().outcome = Outcome::running;

@@ -15,13 +15,13 @@ namespace pyroclast {
 
 namespace {
 
-/// Measured peak over the number of blocks, from 5,000 to 1,000,000 blocks (docs/performance.md), rounded up:
-/// heat conduction takes half as much again.
+/// Measured peak of the memory over the number of blocks, bytes, from 5,000 to 1,000,000 blocks
+/// (docs/performance.md), rounded up: heat conduction takes half as much again.
 constexpr double kBytesPerBlock = 6000.0;
 constexpr double kBytesFixed = 40e6;
 
-/// Memory that this process may still take, bytes: what the machine has free, or the process limit if
-/// smaller.
+/// Returns the memory that this process may still take, bytes: the free memory of the machine, or the process
+/// limit if smaller.
 double available_memory() {
   double available = std::numeric_limits<double>::infinity();
   std::ifstream file("/proc/meminfo");
@@ -46,7 +46,7 @@ TemperatureField make_field(const Model<2>& model, const std::vector<SolidMateri
   return {model, make_conduction(model, solids, heat, initial, team)};
 }
 
-/// A slit parts a contact whose law holds it together.
+/// Throws Error: a slit parts a contact whose law holds it together.
 [[noreturn]] void refuse_slit(const specimen::Notch& slit, const std::string& interface,
                               const std::string& law) {
   throw Error(

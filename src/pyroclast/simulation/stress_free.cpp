@@ -12,7 +12,7 @@ namespace pyroclast {
 
 namespace {
 
-/// Places in the order of their x, so that those near a point stand together.
+/// Places in the order of their x, so that places near a point stand together.
 class PlacesByX {
  public:
   explicit PlacesByX(const std::vector<Vec<2>>& places) : places_(places) {
@@ -20,7 +20,8 @@ class PlacesByX {
     std::ranges::stable_sort(order_, {}, [&](int i) { return places_[i][0]; });
   }
 
-  /// The nearest place, the first of equals in the order of x; none beyond the reach, m.
+  /// Returns the nearest place, the first of equals in the order of x; -1 without a place within the reach,
+  /// m.
   int nearest(const Vec<2>& point, double reach) const {
     double best = reach * reach;
     int found = -1;

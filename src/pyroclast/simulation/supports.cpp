@@ -12,13 +12,14 @@ namespace pyroclast {
 
 namespace {
 
-/// Two held lines are one where they are this near to each other, in sizes of the body.
+/// Distance of two held lines below which they are one, in sizes of the body.
 constexpr double kSameLine = 1e-6;
 
 }  // namespace
 
-/// A line on which a component is held hinders motion along it, and all of them any turn but that about a
-/// point which lies on every one of them.
+/// Describes a motion that nothing hinders. A gridpoint whose component is held hinders motion along a line,
+/// in the direction of the component. All such lines hinder any turn but one about a point that lies on each
+/// of them.
 template <>
 std::optional<std::string> Supports<2>::free_motion() const {
   const auto size_of = [&] {
@@ -27,7 +28,7 @@ std::optional<std::string> Supports<2>::free_motion() const {
     return size;
   };
   std::array<bool, 2> any{};
-  // where lines meet: x of those along y, and y of those along x
+  // least and most by component: y of the lines along x, and x of the lines along y
   std::array<double, 2> least{{1e300, 1e300}}, most{{-1e300, -1e300}};
   for (int g = 0; g < model_.gridpoint_count(); ++g)
     for (const int c : {0, 1})

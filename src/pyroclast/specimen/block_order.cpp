@@ -11,11 +11,11 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// The curve passes through 2^16 x 2^16 squares, each once.
+/// Number of squares along each side; the curve passes through all 2^16 x 2^16 squares, each once.
 constexpr std::uint32_t curve_side = 1U << 16;
 
-/// Place of a square along Hilbert's curve (D. Hilbert, Math. Ann. 38 (1891) 459): in which quarter it lies,
-/// then in which quarter of that one, each turned as the curve enters it.
+/// Returns the place of a square along Hilbert's curve (D. Hilbert, Math. Ann. 38 (1891) 459): finds the
+/// quarter in which the square lies, then the quarter of that one, each turned as the curve enters it.
 std::uint64_t place_on_curve(std::uint32_t x, std::uint32_t y) {
   std::uint64_t place = 0;
   for (std::uint32_t half = curve_side / 2; half > 0; half /= 2) {

@@ -17,13 +17,14 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Two to five rounds do for plain Voronoi seeds and edges up to 0.3 of the mean, a few dozen for widely
-/// spread radii; this many mean that the parameters allow no tessellation without a short edge.
+/// Largest number of rounds. Two to five rounds do for plain Voronoi seeds and edges up to 0.3 of the mean, a
+/// few dozen for widely spread radii; this many mean that the parameters allow no tessellation without a
+/// short edge.
 constexpr int most_rounds = 60;
-/// Places tried for a seed that is free, before it is said that there is none.
+/// Number of places tried for a free seed before an Error says that there is none.
 constexpr int kAttempts = 100'000;
 
-/// Seeds of a region: first those that its outline asks for, then the ones that are free.
+/// Seeds of a region: first the seeds that its outline asks for, then the free ones.
 class SeedDraw {
  public:
   SeedDraw(const BlockParameters& parameters, const Region& region, Random& random)
@@ -44,8 +45,8 @@ class SeedDraw {
     }
   }
 
-  /// Draws the seed of an unfit block anew; where it is one of the outline's, the free one nearest to it. A
-  /// radius stays with its seed, or the cells of small radii would die out.
+  /// Draws the seed of an unfit block anew. Where the outline asks for this seed, draws the free seed nearest
+  /// to it. A radius stays with its seed, or the cells of small radii would die out.
   void redraw(std::size_t unfit) {
     const std::size_t first = kept();
     if (first == seeds.position.size()) return;
@@ -83,7 +84,7 @@ class SeedDraw {
   OutlineSeeds outline_;
 };
 
-/// Of the outline, near a cell, in words.
+/// Returns the name of the side of the outline that is nearest to a point.
 std::string side_near(const Region& region, const Vec<2>& point) {
   const auto nearest = std::ranges::min_element(region.pieces(), {}, [&](const Piece& piece) {
     return distance_from_segment(point, piece.from, piece.to);

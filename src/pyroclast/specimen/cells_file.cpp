@@ -19,12 +19,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What the name of the list of vertices begins with; the unit follows.
+/// Beginning of the name of the list of vertices; the unit follows.
 constexpr std::string_view kVertices = "vertices_";
 
-/// One of the lists.
-/// \param read    of an item; throws Json::exception for another kind of item
-/// \param needed  in words: what the items are
+/// Reads one of the lists. Throws Error where it is missing, or an item is of another kind.
+/// \param read    function that reads an item; throws Json::exception for another kind of item
+/// \param needed  words for an item, for the message
 template <class Read>
 auto list(const Json& json, const std::string& key, const std::string& needed, Read read) {
   const auto found = json.find(key);
@@ -57,7 +57,7 @@ Vec<2> place(const Json& item) {
   return {{x, y}};
 }
 
-/// The name of the list of vertices.
+/// Returns the name of the list of vertices. Throws Error where there is none, or more than one.
 std::string vertices_key(const Json& json) {
   std::string key;
   for (const auto& [name, items] : json.items()) {
@@ -102,7 +102,7 @@ CellsFile cells_from(const std::string& text, const std::string& name) {
     return {checked(std::move(cells)), unit};
   } catch (const Json::parse_error& error) {
     throw Error(fmt::format("{}: is not JSON, at byte {}", name, error.byte));
-  } catch (const Json::out_of_range& error) {  // by its text, "[...] number overflow parsing '1e999'"
+  } catch (const Json::out_of_range& error) {  // the text is "[...] number overflow parsing '1e999'"
     const std::string_view what = error.what();
     throw Error(fmt::format("{}: {}", name, what.substr(what.find(']') + 2)));
   } catch (const Error& error) {

@@ -6,7 +6,7 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Whether a piece runs through the inside of a convex polygon.
+/// Tells whether a piece runs through the inside of a convex polygon.
 bool crosses(const std::vector<Vec<2>>& polygon, const Piece& piece, double tolerance) {
   const Vec<2> along = piece.to - piece.from;
   double enters = 0.0, leaves = 1.0;
@@ -25,7 +25,7 @@ bool crosses(const std::vector<Vec<2>>& polygon, const Piece& piece, double tole
   return (leaves - enters) * norm(along) > tolerance;
 }
 
-/// What of a polygon lies on the left of a line, or on it.
+/// Returns the part of a polygon that lies on the left of a line, or on it.
 std::vector<Vec<2>> left_of(const std::vector<Vec<2>>& polygon, const Piece& line, double tolerance) {
   const Vec<2> along = (line.to - line.from) * (1.0 / norm(line.to - line.from));
   const auto side = [&](const Vec<2>& p) {
@@ -52,7 +52,7 @@ bool clip(std::vector<Vec<2>>& polygon, const Vec<2>& seed, std::span<const Piec
     if (box_of(std::array{piece.from, piece.to}).touches(box))
       near.emplace_back(distance_from_segment(seed, piece.from, piece.to), &piece);
   std::ranges::sort(near);
-  // the nearest first: it may hide others behind it
+  // the nearest piece comes first, for it may hide others behind it
   for (const auto& [distance, piece] : near) {
     if (!crosses(polygon, *piece, tolerance)) continue;
     if (!(cross(piece->to - piece->from, seed - piece->from) > 0.0)) return false;

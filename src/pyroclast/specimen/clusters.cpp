@@ -13,14 +13,14 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Share of the aggregate from which on a cluster is told of. Of eight specimens of 150 mm x 300 mm with the
-/// paper's grading and a fraction of 0.34 it is 0.06 to 0.15 in 5,000 blocks, and with 0.45 in 1,000 blocks
-/// 0.19 to 0.49.
+/// Smallest share of the aggregate at which a cluster is reported. In eight specimens of 150 mm x 300 mm with
+/// the paper's grading, the largest cluster has a share of 0.06 to 0.15 at a fraction of 0.34 in 5,000
+/// blocks, and of 0.19 to 0.49 at a fraction of 0.45 in 1,000 blocks.
 constexpr double kClearlyLarge = 0.25;
-/// Stones that a skeleton is larger than.
+/// Smallest area of a skeleton, in areas of the largest stone.
 constexpr double kFewStones = 2.0;
 
-/// Of each cell the first of those that it hangs together with.
+/// Returns for each cell the first cell of its cluster.
 std::vector<int> roots(const Specimen& specimen) {
   std::vector<int> root(specimen.phase.size());
   std::iota(root.begin(), root.end(), 0);

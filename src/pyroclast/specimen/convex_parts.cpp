@@ -8,10 +8,10 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Cells have some ten corners; a polygon of more than this is not one to be cut.
+/// Largest number of corners of a polygon that is cut; cells have some ten.
 constexpr std::size_t kMostCorners = 100;
 
-/// Angle from one direction to another, counter-clockwise, radians in [0, 2 pi).
+/// Returns the angle from one direction to another, counter-clockwise, radians in [0, 2 pi).
 double turn(const Vec<2>& from, const Vec<2>& to) {
   const double angle = std::atan2(cross(from, to), dot(from, to));
   return angle < 0.0 ? angle + 2.0 * std::numbers::pi : angle;
@@ -32,8 +32,8 @@ struct Part {
   std::size_t size() const { return corners.size(); }
   const Vec<2>& at(std::size_t i) const { return corners[i % size()]; }
 
-  /// The smallest of the four angles that a cut from one corner to another makes; not positive where the cut
-  /// does not run within the part.
+  /// Returns the smallest of the four angles that a cut from one corner to another makes, radians; not
+  /// positive where the cut does not run within the part.
   double smallest_angle_of_cut(std::size_t from, std::size_t to) const {
     double smallest = 2.0 * std::numbers::pi;
     for (const auto& [here, there] : {std::pair{from, to}, std::pair{to, from}}) {
@@ -48,7 +48,7 @@ struct Part {
     return smallest;
   }
 
-  /// The corners from one to another.
+  /// Returns the part with the corners from one to another.
   Part stretch(std::size_t from, std::size_t to) const {
     Part part;
     for (std::size_t i = from;; i = (i + 1) % size()) {

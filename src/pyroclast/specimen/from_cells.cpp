@@ -16,13 +16,13 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Sides that turn by less than this, radians, are one.
+/// Largest turn between two sides that count as one, radians.
 constexpr double kStraight = 1e-6;
-/// Corners whose levels differ by less than this share of the body's size are level.
+/// Largest difference between two coordinates that count as equal, as a share of the body's size.
 constexpr double kSameLevel = 1e-9;
 
-/// Vertices along each loop of the outline, the cells on the left.
-/// Throws Error when the cells are not one piece.
+/// Returns the vertices along each loop of the outline, the cells on the left. Throws Error when the cells
+/// are not one piece, or parts of the outline meet in one point.
 std::vector<std::vector<int>> loops_of(const Tessellation& tessellation, const std::vector<Edge>& edges,
                                        const Numbering& numbering) {
   std::vector<int> next(tessellation.vertices.size(), -1);
@@ -47,7 +47,7 @@ std::vector<std::vector<int>> loops_of(const Tessellation& tessellation, const s
   return loops;
 }
 
-/// Where a loop turns.
+/// Returns the corners of a loop: the vertices where it turns.
 std::vector<Vec<2>> corners_of(const std::vector<int>& loop, const std::vector<Vec<2>>& vertices) {
   std::vector<Vec<2>> corners;
   const std::size_t n = loop.size();
@@ -59,7 +59,8 @@ std::vector<Vec<2>> corners_of(const std::vector<int>& loop, const std::vector<V
   return corners;
 }
 
-/// Names of the sides from corner to corner. The first corner is the lowest, of several the leftmost.
+/// Returns the names of the sides from corner to corner. The first corner is the lowest, of several the
+/// leftmost.
 std::vector<std::string> names_of(const std::vector<Vec<2>>& corners, double tolerance) {
   const auto are_level = [&](int i, int j, int component) {
     return std::abs(corners[i][component] - corners[j][component]) <= tolerance;

@@ -14,8 +14,8 @@ double diameter_of(double area) {
   return std::sqrt(4.0 * area / std::numbers::pi);
 }
 
-/// A diameter in [low, high). The area passing grows as d^nf, so the number of circles per size falls as
-/// d^(nf - 3); this inverts its cumulative form.
+/// Draws a diameter in [low, high). The area passing grows as d^nf, so the number of circles per size falls
+/// as d^(nf - 3); this inverts its cumulative form.
 double draw_diameter(double low, double high, double fuller_exponent, Random& random) {
   const double power = fuller_exponent - 2.0;
   const double a = std::pow(low, power);

@@ -11,7 +11,7 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Parts of each interval between two sieves, by size.
+/// Number of equal parts, by size, into which each interval between two sieves is cut.
 constexpr int kParts = 16;
 
 double share_at(const GradingCurve& curve, double size) {
@@ -22,7 +22,8 @@ double share_at(const GradingCurve& curve, double size) {
   return curve.shares[next - 1] + part * (curve.shares[next] - curve.shares[next - 1]);
 }
 
-/// Integral of 1 - 3/2 u + 1/2 u^3 over D, with u = sqrt(1 - (s / D)^2).
+/// Returns the integral of 1 - 3/2 u + 1/2 u^3 over D from 0 to a diameter, m, with u = sqrt(1 - (s / D)^2);
+/// u is 0 where D is below s.
 double integral_to(double diameter, double s) {
   const double part = std::min(1.0, s / diameter), u = std::sqrt((1.0 - part) * (1.0 + part));
   return diameter * (1.0 - u) + 0.75 * s * std::acos(part) + 0.25 * s * part * u;
@@ -42,7 +43,7 @@ GradingCurve above(const GradingCurve& curve, double d_min) {
   for (std::size_t i = 0; i < curve.sizes.size(); ++i) {
     if (curve.sizes[i] <= d_min) continue;
     const double share = (curve.shares[i] - below) / (all - below);
-    if (share == 0.0) result = {{}, {}};  // nothing is as small
+    if (share == 0.0) result = {{}, {}};  // no stone is as small
     result.sizes.push_back(curve.sizes[i]);
     result.shares.push_back(share);
     if (curve.shares[i] == all) break;

@@ -15,18 +15,19 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Lengths below are in mean spacings of the seeds, so that tolerances mean the same at any size.
-/// Voro++ is three-dimensional: seeds lie in the middle plane of a slab and cells are prisms. A slab thinner
-/// than the spacing keeps the prisms' vertices near their seed, and so the search for neighbours short.
+/// Thickness of the slab. All lengths below are in mean spacings of the seeds, so that tolerances mean the
+/// same at any size. Voro++ is three-dimensional: seeds lie in the middle plane of a slab and cells are
+/// prisms. A slab thinner than the spacing keeps the prisms' vertices near their seed, and so the search for
+/// neighbours short.
 constexpr double slab_thickness = 0.5;
-/// Voro++ decides with a tolerance of 1e-11; nothing closer than this is resolved.
+/// Largest distance between points that count as one. Voro++ decides with a tolerance of 1e-11.
 constexpr double merge_distance = 1e-8;
-/// Voro++ is fastest with about five particles in a computational block.
+/// Number of seeds in a computational block; Voro++ is fastest with about five.
 constexpr double seeds_per_block = 5.0;
 /// Number that Voro++ gives to the upper wall of the slab.
 constexpr int upper_wall = -6;
 
-/// Mean spacing of the seeds, m, and the region's box in spacings.
+/// Size of the slab: the mean spacing of the seeds, m, and the region's box in spacings.
 struct SlabSize {
   SlabSize(const Seeds& seeds, const Region& region)
       : low(region.box().low),
@@ -51,7 +52,7 @@ class Slab {
     }
   }
 
-  /// Computational blocks of Voro++; each holds the seeds of its square.
+  /// Returns the number of computational blocks of Voro++; each holds the seeds of its square.
   int block_count() const { return container_.nxyz; }
 
   /// Calls f(seed, prism, position) for every seed of a block whose cell is not empty; lengths in spacings.
@@ -72,9 +73,9 @@ class Slab {
   voro::container_poly container_;
 };
 
-/// Calls f(seed, prism, position), from several threads, for every seed whose cell is not empty. Voro++
-/// cuts in scratch memory of the container, so each thread has a container of its own; what a cell becomes
-/// does not depend on the cells cut before it.
+/// Calls f(seed, prism, position), from several threads, for every seed whose cell is not empty. Voro++ cuts
+/// in scratch memory of the container, so each thread has a container of its own. A cell does not depend on
+/// the cells cut before it.
 template <class Prism, class F>
 void for_each_cell(const Seeds& seeds, const SlabSize& size, Team* team, F&& f) {
   Team alone;
@@ -90,7 +91,7 @@ void for_each_cell(const Seeds& seeds, const SlabSize& size, Team* team, F&& f) 
   });
 }
 
-/// The prism's upper face, counter-clockwise.
+/// Returns the prism's upper face, counter-clockwise.
 std::vector<Vec<2>> upper_face(voro::voronoicell_neighbor& prism, const Vec<2>& position) {
   std::vector<int> neighbours, faces;
   std::vector<double> vertices;
@@ -119,7 +120,7 @@ double snapped(double x, double wall) {
   return std::abs(x - wall) < merge_distance ? wall : x;
 }
 
-/// For every point the lowest index among the points that stand for the same vertex.
+/// Returns for every point the lowest index among the points that stand for the same vertex.
 std::vector<int> same_vertex(const std::vector<Vec<2>>& points) {
   std::vector<int> parent(points.size());
   std::iota(parent.begin(), parent.end(), 0);
@@ -180,7 +181,8 @@ Tessellation join(const std::vector<std::vector<Vec<2>>>& polygons) {
   return result;
 }
 
-/// Corners of the outline and tips of notches have the numbers that they were given.
+/// Moves each vertex that lies within the tolerance of a corner of the outline, or of the mouth or tip of a
+/// notch, exactly onto it.
 void snap_to_corners(Tessellation& tessellation, const Region& region, double tolerance) {
   std::vector<Vec<2>> corners;
   for (const Piece& piece : region.pieces()) corners.push_back(piece.from);
@@ -201,7 +203,7 @@ void snap_to_corners(Tessellation& tessellation, const Region& region, double to
 
 LaguerreResult laguerre_tessellation(const Seeds& seeds, const Region& region, Team* team) {
   const SlabSize size(seeds, region);
-  std::vector<Piece> pieces;  // that Voro++ does not clip by itself
+  std::vector<Piece> pieces;  // none for a rectangle, which Voro++ clips by itself
   if (!region.is_rectangle())
     for (const auto& [from, to, side] : region.pieces())
       pieces.push_back({size.in_spacings(from), size.in_spacings(to), side});

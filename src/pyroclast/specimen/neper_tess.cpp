@@ -26,7 +26,7 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// The words of a .tess file, which may be broken into lines at will, with the line each stands on.
+/// Words of a .tess file, which may be broken into lines at will, with the line on which each stands.
 class Words {
  public:
   Words(std::istream& stream, std::string name)
@@ -35,7 +35,7 @@ class Words {
     if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
   }
 
-  /// The next word without taking it; empty at the end of the file.
+  /// Returns the next word without taking it; empty at the end of the file.
   std::string_view peek() {
     while (at_ < text_.size() && is_space(text_[at_])) line_ += text_[at_++] == '\n' ? 1 : 0;
     std::size_t end = at_;
@@ -57,8 +57,8 @@ class Words {
   double number(std::string_view what) { return parse<double>(what); }
   int integer(std::string_view what) { return parse<int>(what); }
 
-  /// A whole number of things, at least `least`. More than the file has characters is a slip, not a request
-  /// for memory.
+  /// Reads a whole number of things, at least `least`. Throws Error for more than the file has characters:
+  /// such a number is a slip, not a request for memory.
   int count(std::string_view what, int least) {
     const int value = integer(what);
     if (value < least || static_cast<std::size_t>(value) > text_.size()) {
@@ -68,7 +68,8 @@ class Words {
     return value;
   }
 
-  /// The identifier of the item at this place; items count from 1 without gaps.
+  /// Reads the identifier of the next item. Throws Error where it is not the expected one: items count from 1
+  /// without gaps.
   void identifier(std::string_view what, int expected) {
     const int value = integer(fmt::format("the identifier of {} {}", what, expected));
     if (value != expected)
@@ -89,7 +90,7 @@ class Words {
     throw Error(fmt::format("{}, line {}: {}", name_, line, message));
   }
 
-  /// Of the last word that was looked at.
+  /// Returns the line of the last word that was looked at.
   int line() const { return line_; }
 
  private:
@@ -113,7 +114,7 @@ class Words {
   int line_ = 1;
 };
 
-/// A place in space, in the file's unit of length, with the line that it stands on.
+/// Place in space, in the file's unit of length, with the line on which it stands.
 struct Place {
   Vec<3> at;
   int line = 0;
@@ -124,13 +125,13 @@ struct Bounds {
   Vec<2> lower, upper;
 };
 
-/// What we take from a file, in its own unit of length.
+/// Data taken from a file, in its own unit of length.
 struct File {
   std::optional<int> cell_count;
-  std::vector<int> group;  ///< of each cell; empty where there is no *group
+  std::vector<int> group;  ///< group of each cell; empty where there is no *group
   int group_line = 0;
   std::vector<Place> vertices;
-  std::vector<std::vector<int>> faces;  ///< vertices of each; none of a cell that is empty
+  std::vector<std::vector<int>> faces;  ///< vertices of each face; none for an empty cell
   std::vector<Place> domain;
 };
 
@@ -220,7 +221,7 @@ std::vector<std::vector<int>> read_faces(Words& words, int vertex_count) {
 
 std::vector<Place> read_domain(Words& words) {
   words.expect("*general");
-  words.next();  // The type says "cube" for a rectangle as well; the corners tell.
+  words.next();  // the type says "cube" for a rectangle as well; the corners tell
   words.expect("*vertex");
   const int count = words.count("the number of domain vertices", 3);
   std::vector<Place> points;
@@ -265,19 +266,19 @@ Vec<3> cross_product(const Vec<3>& a, const Vec<3>& b) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }
 
-/// The plane in which a tessellation lies, with two directions in it.
+/// Plane in which a tessellation lies, with two directions in it.
 struct Plane {
   Vec<3> origin, x{{1.0, 0.0, 0.0}}, y{{0.0, 1.0, 0.0}};
 
   Vec<2> flat(const Place& place) const { return {{dot(place.at - origin, x), dot(place.at - origin, y)}}; }
 };
 
-/// A place further than this share of the size from the plane is out of it: twelve decimals are written.
+/// Largest distance between a plane and a place in it, as a share of the size; files have twelve decimals.
 constexpr double kOutOfPlane = 1e-6;
-/// Directions nearer than this to the normal of a plane have none in it.
+/// Largest length in a plane of a unit vector that counts as normal to the plane.
 constexpr double kNormal = 1e-3;
 
-/// The places that cells and domain use.
+/// Returns the places that cells and domain use.
 std::vector<Place> used_places(const File& file) {
   std::vector<bool> is_used(file.vertices.size(), false);
   for (const auto& face : file.faces)
@@ -288,9 +289,9 @@ std::vector<Place> used_places(const File& file) {
   return places;
 }
 
-/// The plane of a tessellation: that of the largest of its faces. Its x is the file's x, or y where x is
-/// normal to it, as far as it lies in the plane; its y points to where the file's y does, or z. Throws Error
-/// for a place out of it.
+/// Returns the plane of a tessellation: that of its largest face. The plane's x is the file's x as far as it
+/// lies in the plane, or the file's y where x is normal to the plane; its y points to where the file's y
+/// does, or z. Throws Error for a place off the plane.
 Plane plane_of(const Words& words, const File& file) {
   const std::vector<Place> places = used_places(file);
   Vec<3> low = places.front().at, high = low;
@@ -332,7 +333,8 @@ Plane plane_of(const Words& words, const File& file) {
   return plane;
 }
 
-/// \param is_rectangle  it must be an upright one
+/// Returns the bounding box of the domain laid flat.
+/// \param is_rectangle  true where the domain must be an upright rectangle; then throws Error for another one
 Bounds bounds_of(const Words& words, const File& file, const Plane& plane, bool is_rectangle) {
   const auto refuse = [&](std::string_view found) {
     words.fail_at(file.domain.back().line,
@@ -369,7 +371,7 @@ Bounds bounds_of(const Words& words, const File& file, const Plane& plane, bool 
 
 /// Puts a point of the file into [0, width] x [0, height], exactly onto a side when it is nearly there.
 Vec<2> scaled(const Vec<2>& point, const Bounds& domain, const Vec<2>& size) {
-  // Twelve decimals are written; a domain of 1e-3 in the file's unit still resolves this.
+  // Files have twelve decimals; a domain of 1e-3 in the file's unit still resolves this share.
   constexpr double snap = 1e-9;
   Vec<2> result;
   for (int i = 0; i < 2; ++i) {
@@ -390,14 +392,14 @@ void require_aspect_ratio(const Bounds& domain, double width, double height, con
   }
 }
 
-/// A tessellation, with what messages call its cells.
+/// Tessellation, with the numbers that messages give to its cells.
 struct Read {
   NeperTess tess;
   Numbering numbering;
 };
 
-/// Cells of a file whose domain takes this size, m. A cell that bends inwards, as regularisation leaves them,
-/// becomes its convex parts.
+/// Returns the cells of a file whose domain takes this size, m. A cell that bends inwards, as Neper's
+/// regularisation leaves some, becomes its convex parts.
 Read cells_of(const File& file, const Plane& plane, const Bounds& domain, const Vec<2>& size) {
   Read read;
   Tessellation& result = read.tess.tessellation;

@@ -12,20 +12,20 @@
 namespace pyroclast::specimen {
 namespace {
 
-// In spacings.
-constexpr double kOffset = 0.4;       ///< of a seed from the outline
-constexpr double kFromCorner = 0.45;  ///< of its foot from a corner
-constexpr double kAlong = 0.95;       ///< from seed to seed along the outline
-/// Of other seeds from a line with seeds of its own: more than these seeds are from any of its points, which
-/// is sqrt(kOffset^2 + (kAlong / 2)^2) = 0.62.
+// Lengths are in spacings.
+constexpr double kOffset = 0.4;       ///< distance of a seed from the outline
+constexpr double kFromCorner = 0.45;  ///< distance from a corner to the foot of a seed on the outline
+constexpr double kAlong = 0.95;       ///< distance from seed to seed along a wall of a notch
+/// Smallest distance of a free seed from a line with seeds of its own. These are at most sqrt(kOffset^2 +
+/// (kAlong / 2)^2) = 0.62 from any point of the line, so a free seed is further away.
 constexpr double kClear = 0.75;
-constexpr double kApart = 0.6;  ///< of other seeds from these
+constexpr double kApart = 0.6;  ///< smallest distance of a free seed from these seeds
 
 constexpr double kNarrowestPatch = 0.9;
 
-/// Up to this angle, radians, one cell may hold a corner: it is convex there, and not almost flat.
+/// Largest angle of a corner that one cell may hold, radians: the cell is convex there, and not almost flat.
 constexpr double kOfOneCell = std::numbers::pi * 170.0 / 180.0;
-/// From this angle on, two cells around a corner would have corners of more than 145 degrees there.
+/// Largest angle of a corner that two cells may hold, radians: each has at most 145 degrees there.
 constexpr double kNeedsThree = std::numbers::pi * 290.0 / 180.0;
 
 Vec<2> turned_left(const Vec<2>& v) {
@@ -36,7 +36,7 @@ Vec<2> unit(const Vec<2>& v) {
   return v * (1.0 / norm(v));
 }
 
-/// Interior angle at a corner of an outline that is walked with the body on its left.
+/// Returns the interior angle at a corner of an outline that is walked with the body on its left, radians.
 double angle_at(const Vec<2>& before, const Vec<2>& corner, const Vec<2>& after) {
   const Vec<2> back = before - corner, on = after - corner;
   double angle = std::atan2(back[1], back[0]) - std::atan2(on[1], on[0]);
@@ -44,13 +44,14 @@ double angle_at(const Vec<2>& before, const Vec<2>& corner, const Vec<2>& after)
   return angle;
 }
 
-/// The side that a patch is a stretch of, or the side itself.
+/// Returns the side of which a patch is a stretch, or the side itself.
 int whole(const Region& region, int side) {
   const int of = region.sides()[side].part_of;
   return of >= 0 ? of : side;
 }
 
-/// Of the seeds at the ends of a straight patch, from these ends: within a narrow one they share its width.
+/// Returns the largest distance from the ends of a straight patch to the feet of the seeds there, m: within a
+/// narrow patch, they share its width. Throws Error where the patch is narrower than the blocks.
 double foot_in_patch(const std::string& name, double width, double spacing) {
   if (width < kNarrowestPatch * spacing)
     throw Error(fmt::format("{}: it is {:.4g} mm wide, narrower than the blocks, {:.4g} mm", name,
@@ -92,8 +93,8 @@ void OutlineSeeds::add(const Vec<2>& point, double radius) {
   radii_.push_back(radius);
 }
 
-/// The middle of an arc's piece. With half of the piece as its radius the corner between two pieces is on the
-/// line between their cells, however long each of them is.
+/// Adds a seed at the middle of an arc's piece. Its radius is half of the piece: so the corner between two
+/// pieces is on the line between their cells, however long each piece is.
 void OutlineSeeds::add_at_arc(const Piece& piece) {
   const Vec<2> inward = turned_left(unit(piece.to - piece.from));
   add(0.5 * (piece.from + piece.to) + kOffset * spacing_ * inward, 0.5 * norm(piece.to - piece.from));
@@ -116,7 +117,8 @@ void OutlineSeeds::add_at_corner(const Vec<2>& corner, const Vec<2>& before, con
   guarded_.push_back({corner, corner + std::min(foot, norm(before - corner)) * back});
 }
 
-/// Pairs that are mirrored at the notch's axis, from the tip to the mouth, and one seed ahead of the tip.
+/// Adds pairs of seeds that are mirrored at the notch's axis, from the tip to the mouth, and one seed ahead
+/// of the tip.
 void OutlineSeeds::add_along_notch(const Notch& notch) {
   const double length = notch.length(), point = std::min(notch.point, length);
   const Vec<2> back = (notch.mouth - notch.tip) * (1.0 / length), left = turned_left(back);

@@ -18,10 +18,10 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Vertices nearer than this share of the body's size coincide, as far as a message says so.
+/// Distance below which vertices coincide in messages, as a share of the body's size.
 constexpr double kCoincide = 1e-6;
 
-/// Of each vertex the first that lies nearer than a distance, itself where there is none.
+/// Returns for each vertex the first one that lies nearer than a distance, or the vertex itself.
 std::vector<int> firsts(std::span<const Vec<2>> vertices, double distance) {
   std::map<std::pair<double, double>, std::vector<int>> kept;  // by squares as wide as the distance
   std::vector<int> first(vertices.size());
@@ -38,7 +38,7 @@ std::vector<int> firsts(std::span<const Vec<2>> vertices, double distance) {
   return first;
 }
 
-/// Edges that one cell alone has, as it runs along them.
+/// Returns the edges that one cell alone has, each as the cell runs along it.
 std::vector<Edge> free_edges(const Tessellation& tessellation) {
   std::map<std::pair<int, int>, int> count;
   const auto key = [](int a, int b) { return std::pair(std::min(a, b), std::max(a, b)); };
@@ -57,15 +57,15 @@ std::vector<Edge> free_edges(const Tessellation& tessellation) {
   return edges;
 }
 
-/// A vertex between the ends of an edge.
+/// Vertex between the ends of an edge.
 struct Hanging {
   std::size_t edge;  ///< index into the edges
   int vertex;
-  double share;  ///< of the edge's length, from its first end
+  double share;  ///< distance from the edge's first end, as a share of its length
 };
 
-/// Vertices of edges that lie nearer than a distance to another of them, in the order of the edges and along
-/// each.
+/// Finds the vertices of edges that lie nearer than a distance to another of the edges. Returns them in the
+/// order of the edges and along each.
 std::vector<Hanging> hanging(const Tessellation& tessellation, std::span<const Edge> edges, double distance) {
   const auto& at = tessellation.vertices;
   std::vector<int> vertices;
@@ -93,7 +93,7 @@ std::vector<Hanging> hanging(const Tessellation& tessellation, std::span<const E
   return found;
 }
 
-/// Cells that hang together by edges have one number.
+/// Returns a number for each cell; cells that are joined by edges have the same.
 std::vector<int> pieces_of(std::size_t cells, std::span<const Edge> edges) {
   std::vector<int> piece(cells);
   std::iota(piece.begin(), piece.end(), 0);
@@ -196,7 +196,7 @@ Cells joined(Cells cells, double distance) {
     t.vertices[h.vertex] = from + h.share * (to - from);
     is_moved[h.vertex] = true;
   }
-  // From the last to the first, so that each stands behind the first end of its edge.
+  // from the last to the first, so that each goes right behind the first end of its edge
   for (auto h = found.rbegin(); h != found.rend(); ++h) {
     auto& cell = t.cells[edges[h->edge].left];
     if (std::ranges::find(cell, h->vertex) != cell.end()) continue;

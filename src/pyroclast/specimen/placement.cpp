@@ -14,11 +14,11 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Share of the specimen above which circles and half of the gaps around them are not even tried: discs of
-/// one size fill 0.547 of the plane at random, those of a gradation somewhat more.
+/// Share of the specimen above which circles and half of the gaps around them are not even tried. Discs of
+/// one size fill 0.547 of the plane at random, discs of a gradation somewhat more.
 constexpr double kDensestPlacement = 0.8;
 
-/// A free place for a circle of this diameter; none when `attempts` centres are all taken.
+/// Finds a free place for a circle of this diameter; returns none when `attempts` centres are all taken.
 std::optional<Aggregate> find_place(double diameter, const Region& region, const CircleGrid& grid,
                                     const AggregateParameters& parameters, Random& random) {
   const Box& box = region.box();
@@ -34,7 +34,7 @@ std::optional<Aggregate> find_place(double diameter, const Region& region, const
   return std::nullopt;
 }
 
-/// Refuses at once what can never fit: with the gaps, circles would take more than any packing.
+/// Throws Error for circles that can never fit: with their gaps they would take more than any packing.
 void require_feasible(std::span<const double> diameters, double specimen_area,
                       const AggregateParameters& parameters) {
   double area = 0.0;

@@ -14,12 +14,12 @@ void for_each_edge(Corners polygon, F&& f) {
   for (std::size_t i = 0; i < polygon.size(); ++i) f(polygon[i], polygon[i + 1 < polygon.size() ? i + 1 : 0]);
 }
 
-/// Signed angle from a to b, in (-pi, pi].
+/// Returns the signed angle from a to b, in (-pi, pi].
 double angle_between(const Vec<2>& a, const Vec<2>& b) {
   return std::atan2(cross(a, b), dot(a, b));
 }
 
-/// Signed area that the triangle (0, a, b) has in common with the circle of this radius around 0.
+/// Returns the signed area that the triangle (0, a, b) has in common with the circle of this radius around 0.
 double common_area_of_triangle(const Vec<2>& a, const Vec<2>& b, double radius) {
   const Vec<2> ab = b - a;
   const double length_squared = dot(ab, ab);

@@ -17,18 +17,18 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Points nearer than this share of the body's size are one.
+/// Largest distance between points that count as one, as a share of the body's size.
 constexpr double kSame = 1e-9;
-/// A notch is cut from this many of its widths before its mouth on, so that it opens where it meets a side
-/// askew.
+/// Length by which the cut of a notch begins before its mouth, in widths of the notch: so the notch opens
+/// where it meets a side askew.
 constexpr double kBeforeMouth = 1.0;
 
 double size_of(const Box& box) {
   return std::max(box.width(), box.height());
 }
 
-/// Clipper (A. Johnson) counts in integers: these are that many parts of the body's size, so that corners
-/// keep twelve digits. A corner that comes back unchanged gets its own number back.
+/// Grid of integers for Clipper (A. Johnson). Its cells are 1e-13 of the body's size, so that corners keep
+/// twelve digits. A corner that comes back unchanged gets its own coordinates back.
 class Grid {
  public:
   explicit Grid(const Box& box) : low_(box.low), cell_(size_of(box) * 1e-13) {}
@@ -67,7 +67,7 @@ double distance_of_segments(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, c
                    distance_from_segment(c, a, b), distance_from_segment(d, a, b)});
 }
 
-/// The loop in the sense asked for, its pieces keeping their sides.
+/// Returns a loop in the sense asked for; its pieces keep their sides.
 Loop turned(std::vector<Vec<2>> corners, std::vector<int> side, bool counter_clockwise) {
   if ((area(corners) > 0.0) != counter_clockwise) {
     std::ranges::reverse(corners);
@@ -77,7 +77,8 @@ Loop turned(std::vector<Vec<2>> corners, std::vector<int> side, bool counter_clo
   return {std::move(corners), std::move(side)};
 }
 
-/// Throws where a loop has no area, touches itself, or has a piece without length.
+/// Throws Error where a loop has fewer than three corners or a piece without length, touches itself, or turns
+/// back on itself.
 void require_simple(const Loop& loop, const std::string& name, double size) {
   const std::size_t n = loop.corners.size();
   if (n < 3) throw Error(fmt::format("{}: {} corners, but it must have 3 or more", name, n));
@@ -113,7 +114,7 @@ double signed_distance(const std::vector<Piece>& pieces, const Vec<2>& p) {
   return inside ? -nearest : nearest;
 }
 
-/// What a notch takes out of the body, from before its mouth on.
+/// Returns the outline of the part that a notch takes out of the body, from before its mouth on.
 std::vector<Vec<2>> outline_of(const Notch& notch) {
   const double length = notch.length(), before = kBeforeMouth * notch.width;
   const Vec<2> ahead = (notch.tip - notch.mouth) * (1.0 / length);
@@ -127,7 +128,7 @@ std::vector<Vec<2>> outline_of(const Notch& notch) {
   return {begin - half, shoulder - half, notch.tip, shoulder + half, begin + half};
 }
 
-/// The sides that the pieces of a new loop come from.
+/// Returns the side from which each piece of a new loop comes; `otherwise` where it comes from no old piece.
 std::vector<int> sides_of(const std::vector<Vec<2>>& corners, const std::vector<Piece>& old, int otherwise,
                           double tolerance) {
   std::vector<int> side;
@@ -325,7 +326,7 @@ Region Region::with_patches(std::span<const Patch> patches) const {
     const auto [loop, first] = region.corner_at(patch, patch.from);
     const auto [other_loop, last] = region.corner_at(patch, patch.to);
     auto& [corners, side] = region.loops_[loop];
-    // the second corner may have moved the first one on
+    // inserting the second corner may have moved the first one on
     const std::size_t n = corners.size();
     const auto begin = static_cast<std::size_t>(
         std::ranges::find_if(corners, [&](const Vec<2>& c) { return norm(c - patch.from) <= tolerance; }) -
@@ -346,7 +347,8 @@ Region Region::with_patches(std::span<const Patch> patches) const {
   return region;
 }
 
-/// The corner of the outline at a point, which becomes one: its loop, and its number there.
+/// Finds the corner of the outline at a point, or makes one there. Returns its loop and its number in the
+/// loop. Throws Error where the point is not on the outline.
 std::pair<std::size_t, std::size_t> Region::corner_at(const Patch& patch, const Vec<2>& point) {
   const double tolerance = kSame * size_of(box_);
   for (std::size_t l = 0; l < loops_.size(); ++l) {

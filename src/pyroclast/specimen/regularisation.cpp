@@ -16,7 +16,8 @@ namespace {
 
 constexpr double largest_angle_allowed = largest_block_angle * std::numbers::pi / 180.0;
 
-/// Where along an edge its two ends may merge, best first: near the middle disturbs the blocks least.
+/// Places along an edge at which its two ends may merge, as shares of it, best first: one near the middle
+/// disturbs the blocks least.
 constexpr std::array<double, 9> merge_positions{0.5, 0.35, 0.65, 0.2, 0.8, 0.1, 0.9, 0.0, 1.0};
 
 struct Shape {
@@ -71,7 +72,8 @@ class Regulariser {
   std::vector<int>& cell(int c) { return tessellation_.cells[static_cast<std::size_t>(c)]; }
   bool merged_away(int v) { return cells_around(v).empty(); }
 
-  /// Sets the limits from the mean of the edges as they are now; returns the edges below, shortest first.
+  /// Sets the limits from the mean of the edges as they are now. Returns the edges that are too short,
+  /// shortest first.
   std::vector<Edge> short_edges() {
     follow_merges();
     std::vector<double> length;
@@ -93,7 +95,7 @@ class Regulariser {
     return found;
   }
 
-  /// Takes the edges to the vertices that merges have left.
+  /// Gives edges the vertices that merges have left as their ends, and drops edges whose ends are merged.
   void follow_merges() {
     for (Edge& e : edges_) {
       e.v0 = kept(e.v0);
@@ -102,19 +104,21 @@ class Regulariser {
     std::erase_if(edges_, [](const Edge& e) { return e.v0 == e.v1; });
   }
 
-  /// The vertex that stands for `v` after all merges.
+  /// Returns the vertex that stands for `v` after all merges.
   int kept(int v) {
     int& next = kept_[static_cast<std::size_t>(v)];
     if (next != v) next = kept(next);
     return next;
   }
 
-  /// Merges the two ends where every block around stays fit; false when there is no such place.
+  /// Merges the two ends of an edge at a place where every block around stays fit. Returns false when there
+  /// is no such place, or the edge is not too short any more.
   bool merge(int a, int b) {
     if (merged_away(a) || merged_away(b) || norm(at(b) - at(a)) >= shortest_) return false;
     std::span<const double> positions = merge_positions;
     if (!(lines_of(a) == lines_of(b))) {
-      // The end on more lines stays in place; with lines of its own at each end there is no place for both.
+      // The end on more lines stays in place. Where each end has lines of its own, no place is on all of
+      // them.
       const auto lines = both(lines_of(a), lines_of(b));
       if (lines == lines_of(a)) {
         positions = positions.subspan(merge_positions.size() - 2, 1);
@@ -137,7 +141,7 @@ class Regulariser {
     return false;
   }
 
-  /// The blocks that a merge of a and b touches, and their shapes before it.
+  /// Collects the blocks that a merge of a and b touches, and their shapes before it.
   void gather_blocks(int a, int b) {
     touched_ = cells_around(a);
     touched_.insert(touched_.end(), cells_around(b).begin(), cells_around(b).end());
@@ -200,7 +204,7 @@ class Regulariser {
     tessellation_.vertices = std::move(used);
   }
 
-  /// The cells whose seeds stand in the way of fit blocks.
+  /// Returns the cells whose seeds stand in the way of fit blocks.
   std::vector<int> unfit_cells(const std::vector<Edge>& left_short) {
     areas_.clear();
     std::vector<int> unfit;
@@ -232,8 +236,8 @@ class Regulariser {
     return flat;
   }
 
-  /// The smallest of the other cells at a corner where one is flat. Two of them have seeds close together,
-  /// which is what makes the corner flat: whatever cell lay there would be.
+  /// Returns the smallest of the other cells at a corner where one cell is flat. Two of the others have seeds
+  /// close together: this makes the corner flat, whatever cell lies there.
   int smallest_neighbour(int v, int flat) {
     int smallest = flat;
     for (const int c : cells_around(v)) {
@@ -248,12 +252,12 @@ class Regulariser {
   double share_;
   double shortest_ = 0.0, thinnest_ = 0.0;  ///< m
   std::vector<Edge> edges_;
-  std::vector<int> kept_;                 ///< of each vertex the one it was merged into, or itself
-  std::vector<LineSet> lines_;            ///< of each vertex
+  std::vector<int> kept_;                 ///< vertex into which each one was merged, or itself
+  std::vector<LineSet> lines_;            ///< lines of the region on which each vertex lies
   std::vector<std::vector<int>> around_;  ///< cells around each vertex, ascending; empty: merged away
   std::vector<int> touched_;
   std::vector<Shape> before_;
-  std::vector<double> areas_;  ///< m^2, per cell
+  std::vector<double> areas_;  ///< area of each cell, m^2
   std::vector<Vec<2>> polygon_;
 };
 

@@ -25,18 +25,19 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Superposition may change the area of the aggregates by this share without a word.
+/// Largest change of the aggregates' area by superposition that gives no warning, as a share.
 constexpr double kSmallChange = 0.1;
 
 void require(bool condition, std::string_view what, double value, std::string_view allowed) {
   if (!condition) throw Error(fmt::format("{} is {:.6g}; allowed is {}.", what, value, allowed));
 }
 
-/// Stones may touch, and lie on the outline, within what a file of nine digits tells.
+/// Largest overlap of stones that touch each other or the outline, as a share of the diameter: a file of nine
+/// digits tells no more.
 constexpr double kTouching = 1e-6;
 
 void require_valid(const AggregateParameters& p) {
-  if (!p.stones.empty()) return;  // add_stones holds them against those that stand
+  if (!p.stones.empty()) return;  // add_stones tests them
   require(p.fraction >= 0.0 && p.fraction < 1.0, "The aggregate fraction", p.fraction, "0 to below 1");
   if (p.fraction == 0.0) return;
   require(p.d_min > 0.0, "The smallest aggregate diameter", p.d_min, "a positive length");
@@ -115,7 +116,7 @@ void add_stones(const SpecimenParameters& p, const AggregateParameters& asked, i
   specimen.aggregates.insert(specimen.aggregates.end(), circles.begin(), circles.end());
 }
 
-/// Adds circles of one kind to those that stand.
+/// Adds circles of one kind to those that the specimen has.
 void add_aggregates(const SpecimenParameters& p, const AggregateParameters& asked, int kind, Random& random,
                     Specimen& specimen) {
   specimen.fraction_asked += asked.fraction;
@@ -143,7 +144,7 @@ double fraction_of(const std::vector<Aggregate>& aggregates, double specimen_are
   return sum / specimen_area;
 }
 
-/// Share of the specimen's area that blocks take for which `counts(phase)` holds.
+/// Returns the share of the specimen's area that blocks take for which `counts(phase)` holds.
 template <class Counts>
 double fraction_of(const Specimen& specimen, Counts counts) {
   double sum = 0.0;
@@ -202,7 +203,8 @@ Specimen make_specimen(const SpecimenParameters& parameters, Team* team) {
     return specimen;
   }
   require_valid(parameters);
-  // Streams of their own: another number of blocks leaves the aggregates where they are.
+  // Aggregates and blocks draw from streams of their own: another number of blocks leaves the aggregates
+  // where they are.
   Random aggregate_random(2 * parameters.seed);
   Random block_random(2 * parameters.seed + 1);
   const double specimen_area = parameters.region.area();

@@ -13,7 +13,7 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// Calls f(corners, circles nearby) for each cell; the value it returns is that cell's.
+/// Calls f(corners, circles nearby) for each cell and returns the value for each.
 template <class F>
 auto for_each_cell(const Tessellation& tessellation, const Box& box, std::span<const Aggregate> aggregates,
                    F&& f) {
@@ -73,7 +73,7 @@ std::vector<int> phases_at_centroids(const Tessellation& tessellation, const Box
   return for_each_cell(tessellation, box, aggregates, phase_of);
 }
 
-/// Whether a fibre runs through the inside of a convex cell: clips it by the half planes of the edges.
+/// Tells whether a fibre runs through the inside of a convex cell: clips it by the half planes of the edges.
 bool crosses(const std::vector<Vec<2>>& polygon, const Fibre& fibre) {
   const Vec<2> along = fibre.to - fibre.from;
   double enters = 0.0, leaves = 1.0;

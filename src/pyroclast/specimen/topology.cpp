@@ -14,7 +14,7 @@
 namespace pyroclast::specimen {
 namespace {
 
-/// The edges of all cells as the cells run along them, listed by the vertex they start from.
+/// Edges of all cells as the cells run along them, listed by the vertex from which they start.
 class DirectedEdges {
  public:
   struct Entry {
@@ -40,7 +40,7 @@ class DirectedEdges {
     }
   }
 
-  /// How many cells run from one vertex to the other, and the last of them (-1: none).
+  /// Returns the number of cells that run from one vertex to the other, and the last of them (-1: none).
   std::pair<int, int> find(int from, int to) const {
     std::pair<int, int> found{0, -1};
     for (std::size_t i = first_[static_cast<std::size_t>(from)];

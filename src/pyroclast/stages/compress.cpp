@@ -13,29 +13,29 @@ namespace pyroclast {
 
 namespace {
 
-/// A controlled velocity is chosen this often.
+/// Steps between two choices of a controlled velocity.
 constexpr std::int64_t kStepsPerChoice = 50;
-/// Change of the logarithm of a controlled velocity, from choice to choice, over that of its excess.
+/// Change of the logarithm of a controlled velocity at a choice, over minus the logarithm of the excess.
 constexpr double kGain = 0.1;
-/// A velocity may fall so much faster than rise.
+/// Fastest fall of a velocity over its fastest rise.
 constexpr double kSlowDown = 4.0;
-/// Strain between two points of the curve that the results are read from.
+/// Strain between two points of the curve from which the results are read.
 constexpr double kPointStrain = 1e-5;
-/// A gap between platen and specimen below this share of the height is none.
+/// Gap between platen and specimen, over the height, below which there is none.
 constexpr double kNoGap = 1e-6;
 constexpr double kMostSteps = 1e9;
-/// A stress that is to be reached is sought up to this strain where the deck does not say.
+/// Strain up to which a stage seeks its stress where the deck does not say.
 constexpr double kLatestStrain = 0.02;
-/// A stress that is to be reached is probably reached at this strain.
+/// Strain at which a stress is probably reached.
 constexpr double kExpectedStrain = 0.001;
-/// A strain that is to be reached is reached.
+/// Strain limit of a stage that ends at a strain of the test, which it reaches before.
 constexpr double kNoStopStrain = 1.0;
-/// The stress is that of a wave until it has run through the specimen so many times.
+/// Passages of the stress wave through the specimen after which the stress is no longer that of a wave.
 constexpr double kPassages = 2.0;
-/// A controlled velocity takes about this share of the steps of the lowest one (validation/adaptive.md).
+/// Steps of a controlled velocity over those of the lowest one, about (validation/adaptive.md).
 constexpr double kControlledShare = 0.2;
 
-/// The velocity changes between `velocity` and `fastest_velocity`.
+/// Reads the control of a velocity that changes between `velocity` and `fastest_velocity`.
 VelocityControl read_velocity_control(const Section& s, const Compress::Keys& keys) {
   VelocityControl c;
   c.fastest = s.quantity(
@@ -58,7 +58,7 @@ VelocityControl read_velocity_control(const Section& s, const Compress::Keys& ke
   return c;
 }
 
-/// The stage ends at a strain since its beginning, or at a strain or stress of the test.
+/// Reads the end of the stage: a strain since its beginning, or a strain or stress of the test.
 void read_end(const Section& s, Compress::Keys& keys) {
   constexpr Meaning kStrain =
       "strain since the beginning of the stage, up or down, at which it ends at the latest";
@@ -140,7 +140,7 @@ void Compress::begin_loading(Simulation& simulation) {
   take_point(simulation);
 }
 
-/// Until the platen has moved by a strain at its full velocity.
+/// Returns the steps in which the platen moves by a strain at its full velocity.
 std::int64_t Compress::steps_in(const Simulation& simulation, double strain) const {
   const double shortening_per_step = keys_.velocity * simulation.mechanics().time_step();
   const double steps = std::round(strain * simulation.press().height() / shortening_per_step);
@@ -168,7 +168,7 @@ bool Compress::move_at_velocity(Simulation& simulation, int most_steps) {
   if (kept_.steps_left == 0) kept_.steps_left = steps_in(simulation, keys_.history_strain);
   if (kept_.steps_to_point == 0) {
     kept_.steps_to_point = steps_in(simulation, kPointStrain);
-    // one point of ramp ahead, so that the ramp leaves zero
+    // the velocity is that of the ramp one point ahead, so that it leaves zero
     const double ahead = keys_.ramp_time > 0.0 ? static_cast<double>(kept_.steps_to_point) *
                                                      mechanics.time_step() / keys_.ramp_time
                                                : 0.0;
@@ -184,8 +184,8 @@ bool Compress::move_at_velocity(Simulation& simulation, int most_steps) {
   return kept_.steps_left == 0;
 }
 
-/// Moves by the strain between two looks, as fast as the tolerances bear. A velocity that changes shakes the
-/// body, so it does that gently.
+/// Moves on towards the next look, as fast as the tolerances bear; returns true when the look is reached. A
+/// change of the velocity shakes the body, so the velocity changes gently.
 bool Compress::move_controlled(Simulation& simulation, int most_steps) {
   Mechanics<2>& mechanics = simulation.mechanics();
   if (kept_.steps_left == 0) {
@@ -221,9 +221,9 @@ void Compress::choose_velocity(const Simulation& simulation) {
   kept_.velocity = std::clamp(kept_.velocity * std::exp(change), keys_.velocity, keys_.control->fastest);
 }
 
-/// How far the motion is from the tolerances: above 1, out of them. Forces out of balance go with the
-/// velocity, kinetic energy with its square.
-/// \param time  since the last call, s
+/// Returns how far the motion is from the tolerances; above 1 it is out of them. Forces out of balance go
+/// with the velocity, kinetic energy with its square.
+/// \param time  time since the last call, s
 double Compress::excess(const Simulation& simulation, double time) {
   const VelocityControl& control = *keys_.control;
   const EnergyLedger energy = simulation.mechanics().totals().energy();
@@ -239,7 +239,7 @@ double Compress::excess(const Simulation& simulation, double time) {
                    power / elastic / control.dissipation_rate});
 }
 
-/// What is left to where the stage ends, strain or Pa; negative upwards.
+/// Returns the distance to the end of the stage, strain or Pa; negative upwards.
 double Compress::left(const Simulation& simulation) const {
   const Press<2>& press = simulation.press();
   switch (keys_.until) {
@@ -269,7 +269,7 @@ double Compress::progress(const Simulation& simulation) const {
   return kept_.is_loading ? std::clamp(1.0 - left(simulation) / kept_.first_left, 0.0, 1.0) : 0.0;
 }
 
-/// The first row of the stage that is not before the peak.
+/// Returns the first row of the stage that is not before the peak; none without a peak.
 std::optional<std::size_t> Compress::row_of_peak(const History& history, RowRange rows) const {
   if (!kept_.peak.is_found()) return std::nullopt;
   const auto strain = history.values("stage_strain", rows);
@@ -286,14 +286,14 @@ StageReport Compress::report(const History& history, RowRange rows, Outcome) con
   };
   StageReport report = report_of(kept_.is_upwards);
   report.decided_at = row_of_peak(history, rows);
-  if (to_a_value && kept_.curve.count() == 0) {  // which way it will go is not known
+  if (to_a_value && kept_.curve.count() == 0) {  // the direction is not known yet
     const auto others = report_of(!kept_.is_upwards).results;
     report.results.insert(report.results.end(), others.begin(), others.end());
   }
   return report;
 }
 
-/// How far the platen will probably move, over the height.
+/// Returns the way that the platen will probably move, over the height.
 double Compress::foreseen_strain() const {
   switch (keys_.until) {
     case CompressUntil::strain:

@@ -10,23 +10,23 @@ namespace pyroclast {
 
 namespace {
 
-constexpr double kFitFrom = 0.05, kFitTo = 1.0 / 3.0;  // of f_c
-constexpr double kToe = 1.1;                           // steepest slope over that of the first stretch
-constexpr int kStretches = 12;                         // the last one ends at 88 %
-constexpr double kStretchStep = 0.05;                  // of f_c
-constexpr double kFewestPoints = 3.0;                  // on a line that is fitted
+constexpr double kFitFrom = 0.05, kFitTo = 1.0 / 3.0;  // stresses between which E is fitted, over f_c
+constexpr double kToe = 1.1;    // steepest slope over that of the first stretch with which there is a toe
+constexpr int kStretches = 12;  // number of stretches; the last one ends at 88 % of f_c
+constexpr double kStretchStep = 0.05;  // distance of stretches, over f_c
+constexpr double kFewestPoints = 3.0;  // fewest points on a line that is fitted
 constexpr PeakRule kSmallFall{.fall = 0.02, .lasting = 0.0}, kLargeFall{.fall = 0.1, .lasting = 0.0};
-constexpr double kMoves = 0.05;  // of f_c: two falls that tell strengths so far apart are worth a warning
-constexpr double kRisesAgain = 0.005;                       // of f_c
-constexpr double kInertiaCountsFrom = 0.1;                  // of f_c
-constexpr double kUnloadingFrom = 0.9, kUnloadingTo = 0.1;  // of the stress at which unloading began
-constexpr double kStartUnderLoad = 0.05;                    // of f_c
+constexpr double kMoves = 0.05;  // difference of the strengths by two falls that is worth a warning, over f_c
+constexpr double kRisesAgain = 0.005;                       // rise above f_c that is reported, over f_c
+constexpr double kInertiaCountsFrom = 0.1;                  // stress from which inertia counts, over f_c
+constexpr double kUnloadingFrom = 0.9, kUnloadingTo = 0.1;  // range of the fit, over the first stress
+constexpr double kStartUnderLoad = 0.05;  // first stress of a stage that began under load, over f_c
 
 std::size_t largest_of(const CompressionCurve& curve) {
   return std::max_element(curve.stress.begin(), curve.stress.end()) - curve.stress.begin();
 }
 
-/// Where a rule finds a peak, of the points after the first wave.
+/// Returns the point at which a rule finds a peak, among the points after the first wave.
 std::optional<std::size_t> peak_of(const CompressionCurve& curve, double waves_until, const PeakRule& rule) {
   Peak peak;
   std::optional<std::size_t> at;
@@ -44,7 +44,7 @@ struct Line {
   double origin = 0.0;  ///< strain at which its stress is 0
 };
 
-/// Fitted to the points before `end` with stresses from `low` to `high`; none with fewer than three.
+/// Fits a line to the points before `end` with stresses from `low` to `high`; none with fewer than three.
 std::optional<Line> fit(const CompressionCurve& curve, std::size_t end, double low, double high) {
   double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
   for (std::size_t i = 0; i < end; ++i) {
@@ -61,7 +61,7 @@ std::optional<Line> fit(const CompressionCurve& curve, std::size_t end, double l
   return Line{slope, sx / n - sy / n / slope};
 }
 
-/// Of all stretches as wide as the usual one.
+/// Returns the steepest of `line` and the lines of all stretches that are as wide as the usual one.
 Line steepest(const CompressionCurve& curve, std::size_t peak, double strength, Line line) {
   for (int i = 0; i < kStretches; ++i) {
     const double from = kFitFrom + i * kStretchStep;
@@ -103,13 +103,13 @@ void find_inelastic_strain(const CompressionCurve& curve, CompressionResponse& r
     none_because = "the curve is steeper on its way to the peak than the line that gave E";
 }
 
-/// Whether the stress falls below that of a point, behind it, as from a peak.
+/// Tells whether the stress falls below that of a point, behind it, as from a peak.
 bool falls_behind(const CompressionCurve& curve, std::size_t point) {
   return std::any_of(curve.stress.begin() + static_cast<std::ptrdiff_t>(point), curve.stress.end(),
                      [&](double s) { return s < (1.0 - kStrengthRule.fall) * curve.stress[point]; });
 }
 
-/// Why the stress has no peak, and what to do about that.
+/// Tells why the stress has no peak, and what to do about that.
 std::string none_because(const CompressionCurve& curve, std::size_t largest) {
   const auto where =
       fmt::format("{:.2f} MPa at strain {:.5f}", curve.stress[largest] * 1e-6, curve.strain[largest]);
@@ -138,7 +138,7 @@ Result::Value reason_of(const Finding& finding) {
   return finding ? Result::Value() : Result::Value(finding.none_because);
 }
 
-/// "f_c 32.47 MPa", or why there is none.
+/// Writes "f_c 32.47 MPa", or why there is none.
 std::string line_of(const char* name, const Finding& finding, double factor, int digits, const char* unit) {
   if (!finding) return fmt::format("{}: none, because {}", name, finding.none_because);
   return fmt::format("{} {:.{}f}{}", name, factor * *finding, digits, unit);
@@ -252,7 +252,7 @@ CompressionResponse compression_response(const CompressionCurve& curve, double w
 
 namespace {
 
-/// That the curve rises above f_c again, and that another rule would tell another strength.
+/// Reports a curve that rises above f_c again, and warns where another rule would tell another strength.
 void tell_doubts(const CompressionCurve& curve, const CompressionResponse& r, StageReport& report) {
   const double strength = *r.strength, largest = curve.stress[r.largest];
   if (largest > (1.0 + kRisesAgain) * strength)

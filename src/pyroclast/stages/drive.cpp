@@ -20,25 +20,24 @@ namespace pyroclast {
 
 namespace {
 
-/// Loads and velocities are adjusted this often.
+/// Steps between two adjustments of loads and velocities.
 constexpr std::int64_t kStepsPerAdjustment = 20;
-/// More often where they are controlled: the pair is a spring.
+/// Steps between two adjustments of a control, which are more frequent because the pair is a spring.
 constexpr std::int64_t kStepsPerControl = 5;
-/// What the pair may bear of the largest load when that acts, and do of the work of the loads, without a
-/// warning.
+/// Share that the pair may add to the largest load, and do of the work of the loads, without a warning.
 constexpr double kLeftToPair = 0.05;
-/// A peak counts once noise is below this share of what is recorded, and below what is to fall from the peak.
+/// Largest noise with which a peak counts, over the recorded values; less where less is to fall from the
+/// peak.
 constexpr double kMostNoise = 0.1;
-/// Behind a peak is where its record has fallen below this share of it; the next peak is greater by as much.
+/// Share of its peak below which a record is behind the peak; the next peak is greater by as much.
 constexpr double kBehindPeak = 1.0 - PeakRule().fall;
-/// Peaks are looked for this often, whatever the rows of the history are.
+/// Steps between two readings for peaks, whatever the rows of the history are.
 constexpr std::int64_t kStepsPerPoint = 100;
-/// A controlled opening that is to stay as it is has left its course where it differs by this share of the
-/// body's size.
+/// Distance from its course at which a controlled opening of rate 0 is lost, over the body's size.
 constexpr double kLost = 0.01;
-/// Directions of forces that differ by less are parallel.
+/// Difference below which directions of forces are parallel or at right angles.
 constexpr double kParallel = 1e-9;
-/// Rows and frames of a stage where the deck does not say.
+/// Numbers of rows and frames of a stage where the deck does not say.
 constexpr double kLooks = 200.0, kFrames = 10.0;
 
 const std::vector<Choice<int>> kComponents{{"x", 0, "to the right"}, {"y", 1, "upwards"}};
@@ -53,7 +52,7 @@ std::vector<int> read_components(const Section& s, const char* key, Meaning mean
   return components;
 }
 
-/// Exactly one of them says what is done.
+/// Returns the kind of an action. Records an error where not exactly one key gives it.
 std::optional<ActionKind> kind_of(const Section& s) {
   const std::pair<const char*, ActionKind> kinds[] = {{"hold", ActionKind::hold},
                                                       {"release", ActionKind::release},
@@ -259,7 +258,7 @@ StageKind drive_kind() {
 }
 
 Drive::Drive(Keys keys) : keys_(std::move(keys)) {
-  // as many as the keys ask for, from before it begins: a state is taken into it
+  // sized before the stage begins, because a state may be read into them
   for (auto* of_action : {&kept_.velocity, &kept_.came, &kept_.farthest})
     of_action->resize(keys_.actions.size());
   kept_.last.resize(keys_.until.size());
@@ -303,7 +302,7 @@ void require_free(const Model<2>& model, const Supports<2>& supports, const std:
             place, "xy"[c], set, "xy"[c], supports.place_of(g, c)));
 }
 
-/// Whether supports bear all of a pressure on a set.
+/// Tells whether supports bear all of a pressure on a set.
 bool is_borne(const Model<2>& model, const Supports<2>& supports, const std::string& set) {
   for (const auto& face : faces_in(model, model.set(set))) {
     const Vec<2> along = model.position[face.gridpoints[1]] - model.position[face.gridpoints[0]];
@@ -361,7 +360,7 @@ void Drive::check(const Simulation& simulation, Acting<2>& acting) const {
     if (action.kind == ActionKind::velocity) acting.supports.halt(action.set, action.components.front());
 }
 
-/// A load of nothing ends what acts. Throws Error where that is nothing either.
+/// Throws Error where a load of 0, which ends a load that acts, finds none to end.
 void Drive::require_effect(const Action& action, const Acting<2>& acting) const {
   if (is_motion(action) || action.amount != 0.0) return;
   const auto found = acting.loads.find(action.set);
@@ -380,7 +379,8 @@ void Drive::require_effect(const Action& action, const Acting<2>& acting) const 
                                     : ""));
 }
 
-/// One set is asked for one thing: not to be held and released, nor for pressures of both sorts.
+/// Throws Error where a set is to be held, driven or released twice along one component, or has pressures of
+/// both sorts.
 void Drive::require_consistent() const {
   for (const Action& one : keys_.actions)
     for (const Action& other : keys_.actions) {
@@ -470,26 +470,28 @@ void Drive::begin(Simulation& simulation) {
   kept_.first_loads.clear();
   for (const Action& action : keys_.actions)
     if (!is_motion(action)) kept_.first_loads.push_back(simulation.loads().on(action.set));
-  // what is there already has to be surpassed before it counts as driving on
+  // loads that are there already must be exceeded before they count as driving on
   const auto loads = loads_at(0.0);
   for (std::size_t i = 0; i < keys_.actions.size(); ++i) kept_.farthest[i] = std::abs(came(i, loads, 0.0));
 }
 
-/// Share of the way of an action from what was there to its amount.
+/// Returns the share of an action's ramp that is over.
 double Drive::share(const Action& action, double time) const {
   return action.ramp_time > 0.0 ? std::min(1.0, time / action.ramp_time) : 1.0;
 }
 
-/// What an action adds now to what was there; a controlled force is added to what was there as a whole.
+/// Returns the velocity or load of an action at a time, without the load from before the stage. A controlled
+/// force is added to all of that load.
 double Drive::part(const Action& action, double time) const {
   if (keys_.control && action.kind == ActionKind::force) return kept_.load_factor * action.amount;
   const double factor = action.factor ? (*action.factor)(std::min(time, keys_.duration)) : 1.0;
   return share(action, time) * factor * action.amount;
 }
 
-/// The loads of the sets that the stage loads: all that it states for a set adds up. What was there before
-/// ends along the directions that are stated, evenly over the longest of their ramps, and stays across them.
-/// \param before  the load of a set when the stage began
+/// Returns the loads of the sets that the stage loads: all that it states for a set adds up. A load from
+/// before ends along the directions that are stated, evenly over the longest of their ramps, and stays across
+/// them.
+/// \param before  function that returns the load of a set when the stage began
 template <class Before>
 std::map<std::string, SetLoad<2>> Drive::loads_at(double time, Before before) const {
   std::map<std::string, SetLoad<2>> loads;
@@ -526,12 +528,12 @@ std::map<std::string, SetLoad<2>> Drive::loads_at(double time, Before before) co
   return loads;
 }
 
-/// From what was there when the stage began.
+/// Returns the loads at a time, from those that acted when the stage began.
 std::map<std::string, SetLoad<2>> Drive::loads_at(double time) const {
   return loads_at(time, [&](const std::string& set) { return first_load(set); });
 }
 
-/// Of the loads of one sort on a set.
+/// Returns the action with the longest ramp among the loads of one kind on a set.
 const Drive::Action& Drive::longest_ramp(const std::string& set, ActionKind kind) const {
   const Action* longest = nullptr;
   for (const Action& action : keys_.actions)
@@ -558,7 +560,7 @@ SetLoad<2> Drive::first_load(const std::string& set) const {
   return {};
 }
 
-/// How far an action has come: a displacement, the force along its direction, or a pressure.
+/// Returns how far an action has come: a displacement, the force along its direction, or a pressure.
 double Drive::came(std::size_t i, const std::map<std::string, SetLoad<2>>& loads, double interval) const {
   const Action& action = keys_.actions[i];
   switch (action.kind) {
@@ -573,7 +575,8 @@ double Drive::came(std::size_t i, const std::map<std::string, SetLoad<2>>& loads
   }
 }
 
-/// Where it goes as asked by itself, the pair has nothing to do; else the loads change in its stead.
+/// Sets the pair of forces that holds the opening on its course, and changes the loads until the pair has
+/// nothing left to do.
 void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads) {
   const Control& control = *keys_.control;
   const Record& record = simulation.record(control.record);
@@ -585,7 +588,7 @@ void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads
   const double whole = std::abs(control.rate) * keys_.duration;
   kept_.is_lost = std::abs(behind) > (whole > 0.0 ? whole : kLost * simulation.body_size());
   const double step = static_cast<double>(kStepsPerControl) * simulation.mechanics().time_step();
-  // what bears the load now bears the pair beside it
+  // the parts that bear the load now bear the pair beside it
   kept_.largest_with_pair =
       std::max(kept_.largest_with_pair, total_load(kept_.load_factor) + std::abs(kept_.pair_force));
   kept_.load_factor += kept_.pair_force / unit_force() * step / control.response_time;
@@ -596,8 +599,8 @@ void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads
   loads[of.set] = {.force = -kept_.pair_force * of.direction};
 }
 
-/// What the loaded sets bear together at a factor of the controlled forces, with what was there before: the
-/// most in any of their directions, N. Sets that are pulled apart bear it once.
+/// Returns the force that the loaded sets bear together at a factor of the controlled forces, with the forces
+/// from before: the largest in any of their directions, N. Sets that are pulled apart bear it once.
 double Drive::total_load(double factor) const {
   std::map<std::string, Vec<2>> forces;
   for (const Action& action : keys_.actions)
@@ -614,7 +617,8 @@ double Drive::total_load(double factor) const {
   return most;
 }
 
-/// All forces of the stage at a factor of 1, N: by it the pair's force is handed over to them.
+/// Sums all forces of the stage at a factor of 1, N. By this sum a force of the pair becomes a change of the
+/// factor.
 double Drive::unit_force() const {
   double sum = 0.0;
   for (const Action& action : keys_.actions)
@@ -631,13 +635,13 @@ std::int64_t Drive::duration_in_steps(const Simulation& simulation) const {
       1, static_cast<std::int64_t>(whole_above(keys_.duration / simulation.mechanics().time_step())));
 }
 
-/// For how many steps what acts now does so.
+/// Returns the number of steps for which the present loads and velocities act.
 std::int64_t Drive::steps_to_come(const Simulation& simulation) const {
   const std::int64_t interval = steps_per_adjustment();
   return std::min(interval, duration_in_steps(simulation) - (kept_.steps - kept_.steps % interval));
 }
 
-/// As what acts in the middle of the steps to come.
+/// Lets the loads and velocities of the middle of the steps to come act.
 void Drive::act(Simulation& simulation) {
   const double interval = static_cast<double>(steps_to_come(simulation)) * simulation.mechanics().time_step();
   const double middle = time(simulation) + 0.5 * interval;
@@ -660,8 +664,8 @@ void Drive::act(Simulation& simulation) {
   if (kept_.is_driven) kept_.driven += interval;
 }
 
-/// What unloads the body by command is no fall from a peak: nothing counts until it is driven farther than
-/// ever.
+/// Takes the values of the records into their peaks. An unloading by command is no fall from a peak: nothing
+/// counts until the body is driven farther than ever.
 void Drive::take_peaks(const Simulation& simulation) {
   kept_.is_beyond_noise = kept_.is_beyond_noise || is_beyond_noise(kMostNoise, simulation);
   std::vector<double> values;
@@ -692,9 +696,9 @@ bool Drive::advance(Simulation& simulation, int most_steps) {
          kept_.steps >= duration_in_steps(simulation);
 }
 
-/// Whether noise is below this share of what records show of the stage. Forces go with the root of an energy;
-/// so the energy of the motion, at any look that asked so far, must be below the square of that share of what
-/// the loads did. Who loads nothing shakes nothing.
+/// Tells whether noise is below a share of what records show of the stage. Forces go with the root of an
+/// energy. So the kinetic energy, at any call so far, must be below the square of that share of the work of
+/// the loads. A stage that loads nothing shakes nothing.
 bool Drive::is_beyond_noise(double share, const Simulation& simulation) {
   const EnergyLedger energy = simulation.mechanics().totals().energy();
   kept_.most_kinetic = std::max(kept_.most_kinetic, std::abs(energy.kinetic));
@@ -723,7 +727,7 @@ bool Drive::is_met(std::size_t condition, const Simulation& simulation) {
   return false;
 }
 
-/// Whether the leading record has just come down from a peak that has no frame yet.
+/// Tells whether the leading record has just come down from a peak that has no frame yet.
 bool Drive::has_fallen(const Simulation& simulation) {
   if (!leading_) return false;
   const double size = std::abs(simulation.record(*leading_).read(simulation));
@@ -735,7 +739,7 @@ bool Drive::has_fallen(const Simulation& simulation) {
   return true;
 }
 
-/// Loads stay as they are at the end, what was moved stays where it is, and no pair is left.
+/// Leaves the loads as they are at the end, holds what was moved where it is, and removes the pair.
 void Drive::halt(Simulation& simulation) {
   ChangedLoads loads = loads_at(time(simulation));
   if (keys_.control) {
@@ -758,7 +762,7 @@ Verdict Drive::judge(Simulation& simulation) {
         for (RecordPeak& peak : kept_.record_peaks) peak.end();
     }
   kept_.last_look = now;
-  // What acts is that of the middle of the last steps, so a ramp may end before all of it acts.
+  // The loads are those of the middle of the last steps, so a ramp may end before all of it acts.
   const double acted =
       now - 0.5 * static_cast<double>(steps_per_adjustment()) * simulation.mechanics().time_step();
   if (kept_.is_lost && !verdict.over)
@@ -788,7 +792,7 @@ double Drive::progress(const Simulation& simulation) const {
   return std::min(1.0, time(simulation) / keys_.duration);
 }
 
-/// What a condition asks, and where its record stood at the end.
+/// Describes a condition that was not met, and where its record stood at the end.
 std::string Drive::describe_unmet(std::size_t condition) const {
   const Until& until = keys_.until[condition];
   const auto record = std::ranges::find(keys_.records, until.record, &RecordParameters::name);
@@ -846,11 +850,11 @@ StageReport Drive::report(const History& history, RowRange rows, Outcome outcome
   return report;
 }
 
-/// How much of the test was the pair's. The largest load and the largest of load and pair together bound the
+/// Reports the pair's part of the test. The largest load and the largest of load and pair together bound the
 /// strength: where a part fails under both, its own peak may come before that of the load. Where single
 /// contacts give way at once the pair catches the body, for moments.
 ///
-/// \param work  of the stage's loads, J
+/// \param work  work of the stage's loads, J
 void Drive::add_control(StageReport& report, double work) const {
   const auto share = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
   const double peak = kept_.largest_load;

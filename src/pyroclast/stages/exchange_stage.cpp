@@ -12,16 +12,16 @@ namespace pyroclast {
 
 namespace {
 
-/// What the exchanges of a stage came to.
+/// Results of the exchanges of a stage.
 struct ExchangeResponse {
   std::optional<double> critical_temperature;  ///< mean over the specimen when the platen ran away, °C
-  double critical_time = 0.0;                  ///< heating time then, s
+  double critical_time = 0.0;                  ///< heating time when it ran away, s
   double highest = absolute_zero;              ///< temperature reached anywhere, °C
-  double last_mean = 0.0;                      ///< at the last exchange, °C
+  double last_mean = 0.0;                      ///< mean at the last exchange, °C
   std::int64_t exchanges = 0;
   std::int64_t not_converged = 0;  ///< exchanges after which the body did not come to rest
   double worst_ratio = 0.0;        ///< largest unbalanced ratio left by an exchange before any failure
-  double cycles = 0.0;             ///< in all
+  double cycles = 0.0;             ///< steps of all exchanges
   double largest_thrust = 0.0;     ///< largest stress on the platens, MPa, compression positive
 };
 
@@ -148,7 +148,7 @@ Verdict ExchangeStage::judge(Simulation& simulation) {
   return {.frame = frames_in_time() ? came : is_new};
 }
 
-/// Which of the even intervals between frames a temperature lies in.
+/// Returns the number of the even interval between frames in which a temperature lies.
 double ExchangeStage::interval_of(double temperature) const {
   return std::floor((temperature + kSameTemperature) / keys_.frame_temperature);
 }

@@ -10,7 +10,7 @@ namespace pyroclast {
 
 namespace {
 
-/// The mean temperature changes by about this share of what the hottest boundary could bring about.
+/// Change of the mean temperature over the change to the hottest boundary, about.
 constexpr double kMeanChange = 0.5;
 
 constexpr StageNeeds kExposeNeeds{

@@ -19,13 +19,13 @@ std::unique_ptr<Stage> read_heat_stage(const Section& s, const StageTables& tabl
   return std::make_unique<Heat>(keys);
 }
 
-/// Change of the specimen's strain between two temperatures, along the load and across it.
+/// Bounds of the change of the specimen's strain between two temperatures, along the load and across it.
 struct StrainChange {
   Interval axial{0.0, 0.0}, lateral{0.0, 0.0};
 };
 
-/// The least and the greatest of its solids, or none: of their free thermal strain, and of what they creep
-/// under the stress on the platens.
+/// Returns bounds that hold no change and the changes of all solids: their free thermal strain, and this
+/// strain with the creep under the stress on the platens.
 StrainChange strain_change(const Simulation& simulation, double from, double to) {
   const auto widen = [](Interval& change, double strain) {
     change = {std::min(change.lower, strain), std::max(change.upper, strain)};
@@ -60,8 +60,9 @@ void Heat::begin_change(Simulation&) {
   last_change_ = 0.0;
 }
 
-/// The predictor moves the body to where it will come to rest at its new temperature, as far as its last
-/// change foretells. What is left to the motion is what differs from place to place.
+/// Changes the temperature and hands it over. The predictor moves the body to where it will come to rest at
+/// its new temperature, as far as its last change foretells. Only the differences from place to place are
+/// left to the motion.
 bool Heat::change(Simulation& simulation, Exchange& exchange, int) {
   TemperatureField& field = simulation.field();
   const double now = field.mean();

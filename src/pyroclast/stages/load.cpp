@@ -12,12 +12,12 @@ namespace pyroclast {
 namespace {
 
 constexpr std::int64_t kLoadStepsPerLook = 200;
-/// Concrete that is shortened so much has long passed its peak, at any temperature.
+/// Strain at which concrete has long passed its peak, at any temperature.
 constexpr double kFailureStrain = 0.01;
-/// The force of a ramp is adjusted this often; a whole part of a look.
+/// Steps between two adjustments of the force of a ramp; a whole part of a look.
 constexpr std::int64_t kStepsPerForce = 20;
 
-/// The load is a stress, or a level: a fraction of a strength that is given with it.
+/// Reads the load: a stress, or a level, which is a fraction of a strength that is given with it.
 std::unique_ptr<Stage> read_load(const Section& s, const StageTables&) {
   Load::Keys keys;
   if (s.has("level")) {
@@ -66,7 +66,7 @@ void Load::begin(Simulation& simulation) {
   kept_.first_strain = simulation.press().specimen_strain();
 }
 
-/// To what the ramp has in the middle of the steps to come.
+/// Holds the force that the ramp has in the middle of the steps to come.
 void Load::adjust_force(Simulation& simulation) const {
   const double share = share_held_from(kept_.steps, simulation.mechanics().time_step());
   simulation.press().hold(kept_.first_stress + share * (keys_.stress - kept_.first_stress));

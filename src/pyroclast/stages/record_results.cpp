@@ -17,13 +17,13 @@ namespace pyroclast {
 
 namespace {
 
-/// How long a peak lasts, over the time for which the body was driven to it.
+/// Time that a fall from a peak must last, over the time for which the body was driven to the peak.
 constexpr double kLastingShare = 0.1;
 
 using Kind = RecordResult::Kind;
 using Values = std::map<std::string, double>;
 
-/// Of the body, by the names that formulas use.
+/// Returns the figures of the body by the names that formulas use.
 Values values_of(const BodyFigures& body) {
   return {{"thickness", body.thickness}, {"weight", body.weight}};
 }
@@ -32,7 +32,7 @@ bool is_length(RecordKind kind) {
   return kind == RecordKind::displacement || kind == RecordKind::opening;
 }
 
-/// SI of any kind of quantity; 1 where there is an error, which is recorded.
+/// Reads a quantity of any kind, SI; 1 where there is an error, which is recorded.
 double read_any(const Section& s, const char* key, const std::string& text) {
   try {
     return parse_any_quantity(text);
@@ -103,7 +103,7 @@ RecordResult read_result(const Section& s, const std::vector<RecordParameters>& 
   return r;
 }
 
-/// Name in summary.json: with its unit, as columns of the history have it.
+/// Returns the name of a result in summary.json: with its unit, as columns of the history have it.
 std::string name_with_unit(const std::string& name, std::string unit) {
   std::erase_if(unit, [](char c) { return c == '(' || c == ')'; });
   std::ranges::replace_if(
@@ -111,7 +111,7 @@ std::string name_with_unit(const std::string& name, std::string unit) {
   return unit == "1" ? name : fmt::format("{}_{}", name, unit);
 }
 
-/// Of a record in some rows, SI; none where a row has no value.
+/// Values of a record in some rows, SI; none where a row has no value.
 class Course {
  public:
   Course(const History& history, RowRange rows, const RecordParameters& record) {
@@ -128,7 +128,7 @@ class Course {
   std::vector<std::optional<double>> values_;
 };
 
-/// Between two rows force and way change evenly.
+/// Returns the work of a force over a way, J; between two rows both change evenly.
 double work(const Course& force, const Course& way) {
   double sum = 0.0;
   for (std::size_t i = 1; i < force.size(); ++i)
@@ -137,7 +137,7 @@ double work(const Course& force, const Course& way) {
   return sum;
 }
 
-/// Of one record among all.
+/// Returns the entry of a record in a list of one entry a record; null where the list has none.
 template <class T>
 const T* of_record(const std::vector<RecordParameters>& records, const std::vector<T>& all,
                    const RecordParameters& record) {
@@ -172,7 +172,7 @@ std::optional<double> value_of(const RecordResult& asked, const std::vector<Reco
         const double value = evaluate(asked.formula, known);
         return std::isfinite(value) ? std::optional(value) : std::nullopt;
       } catch (const Error&) {
-        return std::nullopt;  // of a result that has no value
+        return std::nullopt;  // the formula uses a result that has no value
       }
   }
   return std::nullopt;

@@ -29,7 +29,7 @@ std::vector<std::string_view> parts_between(std::string_view text, char sign) {
   }
 }
 
-/// Digits, or groups of three with a sign between them; empty where it is something else.
+/// Returns digits, also of groups of three with a sign between them; empty where the text is something else.
 std::optional<std::string> whole_part(std::string_view text, char thousands) {
   const auto groups = parts_between(text, thousands);
   if (!std::ranges::all_of(groups, are_digits)) return std::nullopt;
@@ -43,7 +43,7 @@ std::optional<std::string> whole_part(std::string_view text, char thousands) {
   return digits;
 }
 
-/// Day, month and year in either order, perhaps with a time behind them.
+/// Tells whether a cell is day, month and year in either order, perhaps with a time behind them.
 bool is_date(std::string_view cell) {
   for (const char sign : {'/', '-', '.'}) {
     const auto parts = parts_between(cell.substr(0, cell.find_first_of(" T")), sign);
@@ -57,7 +57,7 @@ struct ClockText {
   std::string_view fraction;  ///< digits behind the seconds
 };
 
-/// Two or three parts, those behind the first of two digits and below 60.
+/// Returns the parts of a time: two or three, those behind the first of two digits and below 60; else none.
 std::optional<ClockText> clock_text(std::string_view cell) {
   ClockText clock;
   const std::size_t sign = cell.find_first_of(".,");
@@ -98,7 +98,7 @@ std::optional<std::string> plain_number(std::string_view cell, DecimalSign sign)
   const std::string_view before = cell.substr(0, decimal);
   const std::string_view behind = decimal == cell.npos ? "" : cell.substr(decimal + 1);
   if (before.empty() || (decimal != cell.npos && behind.empty())) {
-    if (!is_point || before.size() + behind.size() == 0) return std::nullopt;  // ".5" and "20." alone
+    if (!is_point || before.size() + behind.size() == 0) return std::nullopt;  // only ".5" and "20." pass
   }
   if (!behind.empty() && !are_digits(behind)) return std::nullopt;
   if (before.empty()) {

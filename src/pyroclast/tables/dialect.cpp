@@ -13,10 +13,10 @@
 namespace pyroclast {
 namespace {
 
-/// What separates cells: a sign, blanks, or nothing where a line is one cell.
+/// Delimiters beside signs: blanks, or nothing where a line is one cell.
 constexpr char kBlanks = ' ', kNothing = '\0';
 
-constexpr std::size_t kMostHeaderRows = 2;  ///< names and units
+constexpr std::size_t kMostHeaderRows = 2;  ///< most rows of a header: names and units
 
 using Cells = std::vector<std::string>;
 
@@ -31,8 +31,8 @@ bool is_value(std::string_view cell) {
   return kind != CellKind::empty && kind != CellKind::text;
 }
 
-/// The text in the quotes that a cell begins with, "" standing for one of them; takes it off the line. Empty
-/// where the quotes do not close.
+/// Returns the text in the quotes with which a cell begins, where "" stands for one quote, and takes it off
+/// the line. Empty where the quotes do not close.
 std::optional<std::string> take_quoted(std::string_view& line) {
   std::string text;
   line.remove_prefix(1);
@@ -48,9 +48,9 @@ std::optional<std::string> take_quoted(std::string_view& line) {
   return std::nullopt;
 }
 
-/// Empty where quotes do not close, or text follows them.
+/// Cuts a line into cells; empty where quotes do not close, or text follows them.
 std::optional<Cells> cut(std::string_view line, char delimiter) {
-  if (delimiter == kNothing) delimiter = '\n';  // which no line holds
+  if (delimiter == kNothing) delimiter = '\n';  // a sign that no line holds
   Cells cells;
   while (true) {
     // a tab that separates is no blank
@@ -72,7 +72,7 @@ std::optional<Cells> cut(std::string_view line, char delimiter) {
   }
 }
 
-/// Cells between blanks, any number of which separates them.
+/// Returns the cells between blanks, any number of which separates them; empty as from `cut`.
 std::optional<Cells> cut_at_blanks(std::string_view line) {
   Cells cells;
   for (line = without_blanks(line); !line.empty(); line = without_blanks(line)) {
@@ -94,11 +94,11 @@ std::optional<Cells> cells_of(std::string_view line, char delimiter) {
   return delimiter == kBlanks ? cut_at_blanks(line) : cut(line, delimiter);
 }
 
-/// How a delimiter cuts lines.
+/// Fit of a delimiter to lines: the cells into which it cuts them.
 struct Fit {
   std::size_t cells = 0, values = 0;
 
-  /// Whether it gives more cells that are values, or as many and fewer others.
+  /// Tells whether the delimiter gives more cells that are values, or as many and fewer others.
   bool is_better_than(const Fit& other) const {
     return values != other.values ? values > other.values : cells < other.cells;
   }
@@ -136,7 +136,7 @@ class GridReader {
   }
 
  private:
-  /// The last line holds numbers, and nobody writes a semicolon in one.
+  /// Finds the delimiter. The last line holds numbers, and nobody writes a semicolon in one.
   char find_delimiter() const {
     const std::string_view last = lines_.back().text;
     if (fit(last, ';').cells > 1) return ';';
@@ -159,7 +159,7 @@ class GridReader {
     return best;
   }
 
-  /// Of lines such as "1,234", each of which is one number or two.
+  /// Chooses the delimiter of lines such as "1,234", each of which is one number or two.
   char comma_or_nothing() const {
     if (least_ > 1) return ',';
     const std::string_view first = lines_.front().text, last = lines_.back().text;
@@ -199,7 +199,7 @@ class GridReader {
     }
   }
 
-  /// Columns at the end that hold nothing are delimiters at the end of lines.
+  /// Drops empty columns at the end, which are delimiters at the end of lines.
   void drop_empty_ends() {
     std::size_t used = 0;
     for (const TableRow& row : rows_)
@@ -209,7 +209,7 @@ class GridReader {
       if (row.cells.size() > used) row.cells.resize(used);
   }
 
-  /// Number of rows at the top that have words where the last row has numbers.
+  /// Counts the rows at the top that have words where the last row has numbers.
   std::size_t header_rows() const {
     const TableRow& numbers = rows_.back();
     if (std::ranges::none_of(numbers.cells, is_value))
@@ -257,7 +257,7 @@ class GridReader {
     }
   }
 
-  /// The first number that says so, and its line.
+  /// First number that shows a decimal sign, and its line.
   struct Seen {
     std::string number;
     int line = 0;
@@ -310,7 +310,7 @@ class GridReader {
   const std::filesystem::path& path_;
   char delimiter_ = kNothing;
   std::vector<TableRow> rows_;
-  std::vector<std::string_view> texts_;  ///< of the rows
+  std::vector<std::string_view> texts_;  ///< texts of the rows
 };
 
 }  // namespace

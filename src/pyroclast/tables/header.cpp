@@ -14,12 +14,12 @@ bool says_unit(std::string_view text) {
   return clock_form(text) || is_unit(text);
 }
 
-/// "" and "-" are written for no unit.
+/// Returns a unit, "1" for "" and "-", which are written for no unit.
 std::string unit_or_none(std::string_view text) {
   return text.empty() || text == "-" ? "1" : std::string(text);
 }
 
-/// Where the bracket opens that the text ends with; `npos` if there is none.
+/// Returns the place of the bracket that opens what the text ends with; `npos` without such a bracket.
 std::size_t last_open(std::string_view text, char open, char close) {
   if (!text.ends_with(close)) return text.npos;
   int depth = 0;
@@ -39,7 +39,7 @@ std::optional<ColumnHeader> with_bracket(std::string_view cell, char open, char 
   return ColumnHeader{std::string(without_blanks(cell.substr(0, at))), unit_or_none(unit), {}};
 }
 
-/// "T / degC", and "T/degC" where the name is one word: "gas velocity m/s" is no such cell.
+/// Reads "T / degC", and "T/degC" where the name is one word: "gas velocity m/s" is no such cell.
 std::optional<ColumnHeader> with_slash(std::string_view cell) {
   const std::size_t apart = cell.find(" / ");
   const std::size_t slash = apart == cell.npos ? cell.find('/') : apart + 1;
@@ -53,7 +53,7 @@ std::optional<ColumnHeader> with_slash(std::string_view cell) {
 
 using Words = std::vector<std::string>;
 
-/// Words of a line; what stands in brackets or quotes is one.
+/// Splits a line into words; text in brackets or quotes is one word.
 Words words_of(std::string_view line) {
   Words words(1);
   int depth = 0;
@@ -73,7 +73,7 @@ Words words_of(std::string_view line) {
   return words;
 }
 
-/// Words with the units that belong to them.
+/// Joins words with the units that belong to them.
 Words with_their_units(const Words& words) {
   Words cells;
   bool is_behind_slash = false;
@@ -88,7 +88,7 @@ Words with_their_units(const Words& words) {
   return cells;
 }
 
-/// Each cell ends with its unit in brackets.
+/// Joins words into cells that each end with the unit in brackets.
 Words up_to_brackets(const Words& words) {
   Words cells;
   bool is_new = true;

@@ -16,7 +16,7 @@
 namespace pyroclast {
 namespace {
 
-/// The units of a row; empty where one of its cells is none.
+/// Returns the units of a row; empty where one of its cells is none.
 std::optional<std::vector<std::string>> row_of_units(const TableRow& row) {
   std::vector<std::string> units;
   bool has_unit = false;
@@ -33,7 +33,7 @@ std::string in_quotes(std::string_view text) {
   return fmt::format("\"{}\"", text);
 }
 
-/// An index counts its rows.
+/// Tells whether a cell is the number of its row, as in an index.
 bool counts(const TableRow& row, std::size_t column, std::size_t from, std::size_t index) {
   return row.cells[column] == fmt::format("{}", from + index);
 }
@@ -98,7 +98,8 @@ bool MeasuredTable::holds_clock(std::size_t column) const {
       grid_.rows, [&](const TableRow& row) { return kind_of_cell(row.cells[column]) == CellKind::clock; });
 }
 
-/// Times of two parts below ones of three are minutes and seconds.
+/// Finds the form of the times in a column: where one of them has three parts, times of two parts are minutes
+/// and seconds.
 ClockForm MeasuredTable::clock_form_of(const ChosenColumn& column) const {
   constexpr int kHoursMinutesSeconds = 3;
   const ClockForm form = clock_form(column.unit).value_or(ClockForm::unknown);

@@ -15,7 +15,7 @@ struct Counts {
   }
 };
 
-/// Empty after an error.
+/// Reads the chosen columns; empty after an error.
 std::vector<ColumnChoice::TableColumn> read_columns(const Section& section, const Counts& counts) {
   const auto list = nlohmann::json::parse(section.json("columns", "list of names or numbers", "[]",
                                                        "columns by their names, or by their numbers from 1"));

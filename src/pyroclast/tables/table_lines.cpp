@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::string_view kUnbreakableBlank = "\xC2\xA0";
-constexpr std::size_t kMostOfALine = 60;  ///< characters in a message
+constexpr std::size_t kMostOfALine = 60;  ///< most characters of a line in a message
 
 std::string way_to_utf8(const std::filesystem::path& path, std::string_view encoding) {
   const std::string name = path.filename().string();
@@ -32,7 +32,7 @@ void require_utf8(std::string_view bytes, const std::filesystem::path& path) {
   const std::size_t zero = bytes.find('\0');
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
     refuse(path, 0, fmt::format("is UTF-16, not UTF-8; {}", way_to_utf8(path, "UTF-16")));
-  if (zero == 0 || zero == 1)  // every other byte of Latin letters
+  if (zero == 0 || zero == 1)  // in UTF-16 every other byte of Latin letters is 0
     refuse(path, 0,
            fmt::format("is UTF-16 without a mark, not UTF-8; {}",
                        way_to_utf8(path, zero == 0 ? "UTF-16BE" : "UTF-16LE")));
@@ -47,13 +47,13 @@ void require_utf8(std::string_view bytes, const std::filesystem::path& path) {
   }
 }
 
-/// "%" alone in a cell is a unit, not the begin of a comment.
+/// Tells whether a line is a comment. A cell that is "%" alone is a unit, not the begin of a comment.
 bool is_comment(std::string_view line) {
   if (line.starts_with('%')) return line.size() == 1 || std::string_view(";,\t").find(line[1]) == line.npos;
   return line.starts_with('#') || line.starts_with('!') || line.starts_with("//");
 }
 
-/// Of "sep=;", as spreadsheets write and read it.
+/// Returns the delimiter of "sep=;", as spreadsheets write and read it.
 std::optional<char> stated_delimiter(std::string_view line) {
   if (line.starts_with('"') && line.ends_with('"') && line.size() > 1) line = line.substr(1, line.size() - 2);
   std::string word(line.substr(0, 4));

@@ -23,11 +23,11 @@ namespace {
 /// tessellation in the standard fire of ISO 834 showed 0.00015.)
 constexpr double kDoubtfulExcess = 0.01;
 
-/// Zones times stages that take some tenths of a second on one thread.
+/// Product of zones and stages that takes some tenths of a second on one thread.
 constexpr std::int64_t kZonesPerBatch = 4'000'000;
 
-/// Limits stay on while they take more than this share of what a node may overstep by in a step: a step that
-/// is done twice costs more than one that is limited without need.
+/// Change of temperature that limits take away in a step, over `kAllowedBeyond`, above which they stay on: a
+/// step that is done twice costs more than one that is limited without need.
 constexpr double kLimitsMatter = 0.1;
 
 const Interval& checked(const Interval& range) {
@@ -61,7 +61,7 @@ std::vector<bool> conducting(const std::vector<std::string>& names,
   return conducts;
 }
 
-/// Numbers those that conduct.
+/// Numbers the materials that conduct; -1 for the others.
 std::vector<int> table_indices(const std::vector<bool>& conducts) {
   std::vector<int> index;
   int next = 0;
@@ -86,7 +86,8 @@ std::vector<double> total_volumes(const std::vector<std::vector<NodeShare>>& sha
   return volume;
 }
 
-/// By Gershgorin's theorem no rate of decay exceeds the largest row sum over capacity.
+/// Returns the strictest step of all nodes. By Gershgorin's theorem no rate of decay exceeds the largest row
+/// sum over capacity.
 template <class Capacity>
 HeatStepLimit strictest(const std::vector<double>& rows, double safety, Capacity capacity) {
   HeatStepLimit limit{std::numeric_limits<double>::infinity(), 0};
@@ -125,7 +126,7 @@ Conduction<Dim>::Conduction(const Model<Dim>& model,
 
 // ---- Nodes -----------------------------------------------------------------------------------------------
 
-/// Sets up all that follows from which gridpoints share a node, but for their heat.
+/// Sets up all that follows from which gridpoints share a node, except for their heat.
 template <int Dim>
 void Conduction<Dim>::set_nodes(ThermalNodes nodes) {
   nodes_ = std::move(nodes);
@@ -154,8 +155,8 @@ void Conduction<Dim>::set_gaps(std::vector<ContactGap> gaps) {
   if (nodes.of_gridpoint != nodes_.of_gridpoint) move_heat_to(std::move(nodes));
 }
 
-/// Each gridpoint takes its share of its node's heat along. What waits at an end of the temperature range is
-/// shared out by volume, with what rounding leaves.
+/// Moves the heat to other nodes: each gridpoint takes its share of its node's heat along. Heat that waits at
+/// an end of the temperature range is shared out by volume, with what rounding leaves.
 template <int Dim>
 void Conduction<Dim>::move_heat_to(ThermalNodes nodes) {
   constexpr int kNone = -1, kSeveral = -2;
@@ -165,7 +166,7 @@ void Conduction<Dim>::move_heat_to(ThermalNodes nodes) {
   const NodeEnthalpy store(grid_, tables_, shares);
   std::vector<double> heat(shares.size()), left = was.enthalpy;
   std::vector<int> size_before(was.enthalpy.size()), size(static_cast<std::size_t>(nodes.count()));
-  std::vector<int> from(size.size(), kNone);  // node before, of all that a node is made of
+  std::vector<int> from(size.size(), kNone);  // earlier node of all gridpoints of each node
   for (int g = 0; g < model_.gridpoint_count(); ++g) {
     const int old = before.of_gridpoint[g], now = nodes.of_gridpoint[g];
     if (old < 0) continue;
@@ -194,7 +195,7 @@ void Conduction<Dim>::move_heat_to(ThermalNodes nodes) {
   }
 }
 
-/// Of each gridpoint: an equal share of every zone, all of the material of its block.
+/// Returns the share of each gridpoint: an equal part of every zone, all of the material of its block.
 template <int Dim>
 std::vector<std::vector<NodeShare>> Conduction<Dim>::gridpoint_shares() const {
   std::vector<std::vector<NodeShare>> shares(model_.position.size());
@@ -221,7 +222,7 @@ void Conduction<Dim>::add_to_boundary(const Applied& applied) {
   boundary_.add(applied.condition, std::move(patches), node_chunks_);
 }
 
-/// Where several hold the gridpoints of a node, the latest holds it.
+/// Finds the prescription of each node. Where several hold its gridpoints, the latest holds the node.
 template <int Dim>
 void Conduction<Dim>::place_prescriptions() {
   prescription_.assign(volume_.size(), -1);
@@ -269,7 +270,7 @@ void Conduction<Dim>::widen_temperature_range(const Interval& range) {
   const Interval present = grid_.range();
   const Interval wider{std::min(present.lower, range.lower), std::max(present.upper, range.upper)};
   if (wider == present) return;
-  std::vector<int> waiting;  // with heat beyond the present range, which comes to where it belongs now
+  std::vector<int> waiting;  // nodes whose heat beyond the present range now comes to where it belongs
   for (int node = 0; node < nodes_.count(); ++node)
     if (excess(node, state_.temperature[node], state_.enthalpy[node]) != 0.0) waiting.push_back(node);
   grid_ = TemperatureGrid(wider);
@@ -390,7 +391,8 @@ void Conduction<Dim>::complete_step(double end) {
   continue_step(end, stages);
 }
 
-/// By at most so many stages; true when the step is completed.
+/// Goes on with a step, or begins one, by at most `stages` stages, which it counts down; returns true when
+/// the step is completed.
 template <int Dim>
 bool Conduction<Dim>::continue_step(double end, std::int64_t& stages) {
   const double remaining = end - time();
@@ -430,7 +432,8 @@ bool Conduction<Dim>::continue_step(double end, std::int64_t& stages) {
   return true;
 }
 
-/// The scheme that takes fewest stages, where limits allow for both: forward Euler oversteps no bounds.
+/// Returns the scheme of a trial. With limits that is forward Euler, which oversteps no bounds, where they
+/// are strict or Euler takes no more stages than super time stepping.
 template <int Dim>
 HeatScheme Conduction<Dim>::trial_scheme(Limits limits, double ratio) const {
   if (limits == Limits::none) return parameters_.scheme;
@@ -441,7 +444,8 @@ HeatScheme Conduction<Dim>::trial_scheme(Limits limits, double ratio) const {
 
 template <int Dim>
 void Conduction<Dim>::begin_trial(double step, Limits limits) {
-  // A node passes what draws it from outside where a step takes all of its heat by more than one way.
+  // A node would pass the temperatures that draw it from outside where a step takes all of its heat by more
+  // than one way; so boundaries count twice.
   if (limits != Limits::none && trial_.limits == Limits::none) trial_.limit = present_limit(step, 2.0).step;
   trial_.step = step;
   trial_.left_out = 0.0;
@@ -469,7 +473,7 @@ void Conduction<Dim>::run_stage(const TimeStage& stage) {
   ++trial_.stages_done;
 }
 
-/// Right side of Eq. (1), integrated over each node's part of the body.
+/// Computes the right side of Eq. (1), integrated over each node's part of the body.
 template <int Dim>
 typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
   Inflow sum;
@@ -489,8 +493,8 @@ typename Conduction<Dim>::Inflow Conduction<Dim>::compute_inflow(double time) {
   return sum;
 }
 
-/// Lets heat from cold to hot flow as far as it takes no node, in one stable step, beyond its neighbours and
-/// beyond what acts on it from outside.
+/// Lets heat from cold to hot flow only as far as it takes no node, in one stable step, beyond its neighbours
+/// and beyond the temperatures that act on it from outside.
 template <int Dim>
 void Conduction<Dim>::limit_flows(double time) {
   std::fill(reach_.begin(), reach_.end(), nothing());
@@ -523,7 +527,7 @@ void Conduction<Dim>::limit_flows(double time) {
   trial_.left_out = std::max(trial_.left_out, zones_.add_uphill(shares_, capacity));
 }
 
-/// Whether the trial took a node beyond its neighbours, or beyond the bounds, farther than it may come.
+/// Tells whether the trial took a node beyond its neighbours, or beyond the bounds, farther than it may come.
 template <int Dim>
 bool Conduction<Dim>::oversteps() {
   std::fill(reach_.begin(), reach_.end(), nothing());
@@ -550,7 +554,8 @@ bool Conduction<Dim>::oversteps() {
   return found;
 }
 
-/// Temperature that a node at an end of the range would have beyond it, K, see NodeEnthalpy.
+/// Returns how far beyond the range a node at one of its ends would be, K, see NodeEnthalpy; 0 for other
+/// nodes.
 template <int Dim>
 double Conduction<Dim>::excess(int node, double temperature, double enthalpy) const {
   const bool held = temperature == grid_.range().lower || temperature == grid_.range().upper;
@@ -621,7 +626,8 @@ void Conduction<Dim>::accept_trial() {
   before_run_.holds = false;
 }
 
-/// Largest change of a temperature over the trial, with the jumps of prescribed ones at its beginning.
+/// Returns the largest change of a temperature over the trial, with the jumps of prescribed ones at its
+/// beginning.
 template <int Dim>
 double Conduction<Dim>::trial_change() const {
   double largest = 0.0;
@@ -652,12 +658,12 @@ void Conduction<Dim>::adapt_step() {
 
 template <int Dim>
 void Conduction<Dim>::read_prescriptions(double time) {
-  const auto [lower, upper] = grid_.range();  // which it misses by rounding at most
+  const auto [lower, upper] = grid_.range();  // prescriptions miss the range by rounding at most
   for (std::size_t i = 0; i < prescriptions_.size(); ++i)
     held_at_[i] = std::clamp(prescriptions_[i](time), lower, upper);
 }
 
-/// A temperature that is prescribed from now on comes with the heat that the jump to it needs.
+/// Gives prescribed nodes their temperatures, and books the heat that the jump to them needs.
 template <int Dim>
 void Conduction<Dim>::hold_prescribed() {
   const auto needed = [&](int node) { return store_.enthalpy(node, held_at_[prescription_[node]]); };
@@ -683,9 +689,10 @@ void Conduction<Dim>::undo_begin(HeatState& state) const {
 
 // ---- Limits ----------------------------------------------------------------------------------------------
 
-/// Valid while no temperature changes by more than the largest change.
-/// \param weight_of_boundary  1 for a step that is stable, 2 for one in which no node passes its neighbours:
-///                            then the zones' rows, of twice what flows from hot to cold, are as long
+/// Returns the limit of a step while no temperature changes by more than the largest change.
+/// \param weight_of_boundary  factor of the boundaries: 1 for a step that is stable, 2 for one in which no
+///                            node passes its neighbours; the rows of zones hold twice the flow from hot to
+///                            cold anyhow
 template <int Dim>
 HeatStepLimit Conduction<Dim>::present_limit(double step, double weight_of_boundary) const {
   auto rows = zones_.row_bound(state_.temperature);
@@ -700,7 +707,7 @@ HeatStepLimit Conduction<Dim>::present_limit(double step, double weight_of_bound
                    [&](int node) { return store_.least_capacity(node, state_.temperature[node]); });
 }
 
-/// Valid whatever the temperatures.
+/// Returns the limit of a step that is valid whatever the temperatures.
 template <int Dim>
 HeatStepLimit Conduction<Dim>::range_limit(double end) const {
   auto rows = zones_.row_bound();

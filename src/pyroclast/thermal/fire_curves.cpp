@@ -14,14 +14,15 @@ constexpr double hour = 3600.0;  // s
 // Formulas have no end of their own; fire resistance is not classified beyond six hours.
 constexpr Interval six_hours{0.0, 6.0 * hour};
 
-/// `gas_temperature` takes minutes.
+/// Makes a curve of a formula.
+/// \param gas_temperature  function of the time in minutes, °C
 Curve formula(std::function<double(double)> gas_temperature) {
   return Curve::function(
       "fire curve", [f = std::move(gas_temperature)](double t) { return f(t / minute); }, six_hours,
       time_axis());
 }
 
-/// Linear between points (minutes, degC).
+/// Makes a curve that is linear between points (minutes, degC).
 Curve table(const std::vector<std::pair<double, double>>& points) {
   std::vector<double> times;
   std::vector<double> temperatures;
@@ -45,7 +46,7 @@ double external(double minutes) {
   return 20.0 + 660.0 * (1.0 - 0.687 * std::exp(-0.32 * minutes) - 0.313 * std::exp(-3.8 * minutes));
 }
 
-/// Hydrocarbon fire that rises by `rise` kelvin.
+/// Returns the gas temperature of a hydrocarbon fire that rises by `rise` kelvin, °C.
 double hydrocarbon(double minutes, double rise) {
   return 20.0 + rise * (1.0 - 0.325 * std::exp(-0.167 * minutes) - 0.675 * std::exp(-2.5 * minutes));
 }

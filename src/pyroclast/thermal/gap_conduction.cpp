@@ -17,8 +17,8 @@ namespace pyroclast {
 
 namespace {
 
-/// A contact that parts its sides joins them above so many times the conductance below which it came to part
-/// them: so none goes to and fro from exchange to exchange.
+/// Conductance above which a contact joins its sides again, over that below which it parted them: so none
+/// goes to and fro from exchange to exchange.
 constexpr double kJoinsAbove = 2.0;
 
 const GapHeat& checked(const GapHeat& law) {
@@ -173,7 +173,7 @@ void GapConduction<Dim>::add_row_bound(double coldest, const std::vector<double>
   for (const Crossing& x : crossings_) {
     const double steepest = model_.contacts[x.contact].area *
                             law_.steepest(gaps_[x.contact], gas, std::max(hottest[x.a], hottest[x.b]));
-    rows[x.a] += 2.0 * steepest;  // on the diagonal and beside it
+    rows[x.a] += 2.0 * steepest;  // once on the diagonal and once beside it
     rows[x.b] += 2.0 * steepest;
   }
 }

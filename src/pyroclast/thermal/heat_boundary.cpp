@@ -23,7 +23,7 @@ double fourth_power(double x) {
   return square * square;
 }
 
-/// The curves of a condition with their names.
+/// Returns the curves of a condition with their names.
 std::vector<std::pair<const char*, const Curve*>> curves_of(const HeatFlux& c) {
   return {{kFlux, &c.flux}};
 }
@@ -51,7 +51,7 @@ void require_physical(const Radiation& c) {
   require_values(c.emissivity, kEmissivity, 0.0, 1.0);
 }
 
-/// Temperatures to which a flux between two can draw, W/m².
+/// Returns the temperatures to which a flux between two, W/m², can draw.
 Interval reach_of_flux(double least, double greatest) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Interval reach = nothing();
@@ -63,7 +63,7 @@ Interval extremes(const Curve& curve, double begin, double end) {
   return {curve.minimum(begin, end), curve.maximum(begin, end)};
 }
 
-/// Temperatures to which a condition can draw between two times.
+/// Returns the temperatures to which a condition can draw between two times.
 Interval reach_of(const HeatFlux& c, double begin, double end) {
   const auto [least, greatest] = extremes(c.flux, begin, end);
   return reach_of_flux(least, greatest);
@@ -73,7 +73,7 @@ Interval reach_of(const OfGas& c, double begin, double end) {
   return extremes(c.gas_temperature, begin, end);
 }
 
-/// The same at one time.
+/// Returns the temperatures to which a condition can draw at one time.
 Interval reach_at(const HeatFlux& c, double time) {
   const double flux = c.flux(time);
   return reach_of_flux(flux, flux);
@@ -84,7 +84,8 @@ Interval reach_at(const OfGas& c, double time) {
   return {gas, gas};
 }
 
-/// Heat flux into a face at temperature T, at one time: constant - coefficient T - emissive (absolute T)^4.
+/// Heat flux into a face at temperature T, at one time, W/m²: constant - coefficient T - emissive (absolute
+/// T)^4.
 struct FaceLaw {
   double constant, coefficient, emissive;
 
@@ -109,7 +110,7 @@ FaceLaw law_at(const Radiation& c, double time) {
   return {emissive * fourth_power(c.gas_temperature(time) - absolute_zero), 0.0, emissive};
 }
 
-/// With the greatest coefficients of a span of time; gives slopes only.
+/// Returns a law with the greatest coefficients of a span of time, for slopes only.
 FaceLaw steepest_law(const HeatFlux&, double, double) {
   return {0.0, 0.0, 0.0};
 }

@@ -13,7 +13,7 @@ namespace pyroclast {
 
 namespace {
 
-/// Cells are counted from below absolute zero, so that truncation rounds down.
+/// Number of a cell below absolute zero, from which cells are counted so that truncation rounds down.
 constexpr int kLowestCell = -2732;
 
 double clamp_to(const Interval& range, double x) {
@@ -36,7 +36,7 @@ void require_usable(const Curve& curve, const std::string& title, const Temperat
                             curve.describe(), least, first, last));
 }
 
-/// Integral over a cell of a curve that keeps its end values beyond its range.
+/// Integrates a curve over a cell; beyond its range the curve keeps its end values.
 double cell_integral(const Curve& curve, int cell) {
   const double a = TemperatureGrid::knot(cell), b = TemperatureGrid::knot(cell + 1);
   const auto [lower, upper] = curve.range();
@@ -47,7 +47,7 @@ double cell_integral(const Curve& curve, int cell) {
   return sum;
 }
 
-/// Knot at which the enthalpy is 0.
+/// Returns the knot at which the enthalpy is 0.
 int datum_knot(const Curve& heat_capacity) {
   const double datum = clamp_to(heat_capacity.range(), kReferenceTemperature);
   return TemperatureGrid({datum, datum}).first_cell();
@@ -92,7 +92,7 @@ void HeatTable::extend(const TemperatureGrid& grid) {
     enthalpy_.push_back(enthalpy_.back() + cell_integral(material_.heat_capacity, last));
     conductivity_.push_back(conductivity_at(last + 1));
   }
-  std::vector<double> enthalpy, conductivity;  // below what is there, downwards
+  std::vector<double> enthalpy, conductivity;  // values below those that are there, downwards
   for (double lowest = enthalpy_.front(); first_knot_ > grid.first_cell();) {
     --first_knot_;
     lowest -= cell_integral(material_.heat_capacity, first_knot_);
@@ -119,7 +119,8 @@ std::size_t HeatTable::bucket(double temperature) const {
   return static_cast<std::size_t>(std::clamp(bucket_number(temperature) - first_bucket_, 0, last));
 }
 
-/// Buckets are as wide as the window, so what lies within the window lies in a bucket or its neighbours.
+/// Finds the bounds of each bucket. Buckets are as wide as the window, so temperatures within the window of
+/// another lie in its bucket or the neighbours.
 void HeatTable::find_bounds() {
   const Interval range = grid_.range();
   first_bucket_ = bucket_number(range.lower);
@@ -178,8 +179,8 @@ double NodeEnthalpy::temperature(int node, double enthalpy, double near) const {
   const auto [coldest, hottest] = grid_.range();
   if (!(enthalpy > least_[node])) return coldest;
   if (enthalpy >= most_[node]) return hottest;
-  // Strides that double lead to a bracket, halving to the cell. An end of the range may lie beyond the knot at it by
-  // rounding, and the enthalpy between the two: then the cell at the end has it.
+  // Strides that double lead to a bracket, and halving leads to the cell. By rounding an end of the range may
+  // lie beyond its knot, and the enthalpy between the two: then the cell at the end has it.
   int lower = grid_.cell(near), upper = lower + 1;
   for (int stride = 1; lower > grid_.first_cell() && enthalpy < at(node, lower); stride *= 2) {
     upper = lower;
@@ -205,7 +206,7 @@ double NodeEnthalpy::excess(int node, double enthalpy) const {
   };
   if (enthalpy < least_[node]) return beyond(enthalpy - least_[node], grid_.first_cell());
   if (enthalpy > most_[node]) return beyond(enthalpy - most_[node], grid_.last_cell());
-  return enthalpy >= least_[node] ? 0.0 : std::numeric_limits<double>::infinity();  // not a number
+  return enthalpy >= least_[node] ? 0.0 : std::numeric_limits<double>::infinity();  // infinite for NaN
 }
 
 double NodeEnthalpy::least_capacity(int node, double temperature) const {

@@ -161,7 +161,7 @@ void TemperatureField::visit_state(StateVisitor& visitor) {
   if (visitor.replaces()) update();
 }
 
-/// What follows from the gridpoints.
+/// Computes all that follows from the temperatures of the gridpoints.
 void TemperatureField::update() {
   for (std::size_t z = 0; z < zones_.size(); ++z) {
     const auto& [a, b, c] = model_.zones[z];

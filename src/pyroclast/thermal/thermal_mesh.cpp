@@ -33,7 +33,8 @@ class DisjointSets {
   std::vector<int> parent_;
 };
 
-/// Contacts are made of coinciding faces, so anything beyond rounding is an error in the model.
+/// Returns the largest distance of gridpoints that coincide, m. Contacts are made of coinciding faces, so
+/// anything beyond rounding is an error in the model.
 template <int Dim>
 double coincidence_tolerance(const Model<Dim>& model) {
   double size = 0.0;

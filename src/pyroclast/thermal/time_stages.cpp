@@ -7,14 +7,14 @@ namespace pyroclast {
 
 namespace {
 
-/// b_j of Meyer et al., Eq. (15).
+/// Returns b_j of Meyer et al., Eq. (15).
 double legendre_weight(double j) {
   return j < 2 ? 1.0 / 3.0 : (j * j + j - 2.0) / (2.0 * j * (j + 1.0));
 }
 
-/// Follows the increment of the whole step back to the rates that it is made of.
+/// Sets the weights: follows the increment of the whole step back to the rates that it is made of.
 void set_weights(std::vector<TimeStage>& stages) {
-  double share = 1.0, next = 0.0;  // of D_j and D_(j+1) in the last increment
+  double share = 1.0, next = 0.0;  // shares of D_j and D_(j+1) in the last increment
   for (std::size_t j = stages.size(); j-- > 0;) {
     stages[j].weight += share * stages[j].rate;
     stages.front().weight += share * stages[j].first_rate;
@@ -25,7 +25,7 @@ void set_weights(std::vector<TimeStage>& stages) {
   }
 }
 
-/// Meyer et al., Eqs. (16) and (17), written for increments.
+/// Returns the stages of Meyer et al., Eqs. (16) and (17), written for increments.
 std::vector<TimeStage> legendre_stages(std::int64_t count) {
   const auto last = static_cast<double>(count);
   const double w = 4.0 / (last * (last + 1.0) - 2.0);

@@ -62,7 +62,7 @@ double ZoneConduction<Dim>::mean_temperature(const Zone& zone, const std::vector
   return sum / (Dim + 1);
 }
 
-/// Flux gamma grad T of Eq. (1), weighted by the gradients of the shape functions.
+/// Computes the flux gamma grad T of Eq. (1), weighted by the gradients of the shape functions.
 template <int Dim>
 void ZoneConduction<Dim>::update(const std::vector<double>& temperature) {
   team_.share(zone_count(), fewest_for_threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {

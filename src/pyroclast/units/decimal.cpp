@@ -13,20 +13,21 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-/// Those of a factor of units. A product of a few doubles that is this near to one of them is it.
+/// Number of digits of a factor of units, and relative distance within which a product of a few doubles is
+/// such a factor.
 constexpr int kFewDigits = 12;
 constexpr double kNear = 1e-14;
 
-constexpr int kMostDigits = 18;    ///< that 64 bits hold
-constexpr int kMostExponent = 60;  ///< beyond it nobody writes numbers
-/// Digits of a quotient: more than it takes to tell which double is nearest.
+constexpr int kMostDigits = 18;    ///< digits that 64 bits hold
+constexpr int kMostExponent = 60;  ///< largest exponent; beyond it nobody writes numbers
+/// Number of digits of a quotient: more than it takes to tell which double is nearest.
 constexpr int kQuotientDigits = 30;
 
 bool is_decimal_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// False where it does not fit.
+/// Multiplies a number; returns false where the product does not fit.
 bool multiply(Wide& number, Wide by) {
   return !__builtin_mul_overflow(number, by, &number);
 }
@@ -49,7 +50,7 @@ std::string digits_of(Wide number) {
   return text;
 }
 
-/// The double nearest to numerator / denominator * 10^exponent, of positive numbers.
+/// Returns the double nearest to numerator / denominator * 10^exponent, of positive numbers.
 double nearest_quotient(Wide numerator, Wide denominator, int exponent) {
   std::string text = digits_of(numerator / denominator);
   Wide rest = numerator % denominator;

@@ -11,7 +11,7 @@
 namespace pyroclast {
 namespace {
 
-/// Units as this program takes them, with what people also write for them.
+/// Unit as this program takes it, with other texts that people write for it.
 struct Spelling {
   const Unit& of;
   std::string_view unit;
@@ -97,7 +97,7 @@ const std::vector<Spelling>& spellings() {
   return all;
 }
 
-/// Without the marks that people set or leave out as they like.
+/// Returns a text without the marks that people set or leave out as they like.
 std::string compact(std::string_view text) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 8> marks{
       {{"²", "2"}, {"³", "3"}, {"·", ""}, {"⋅", ""}, {"⁻", "-"}, {"−", "-"}, {"¹", "1"}, {"×", ""}}};

@@ -35,7 +35,7 @@ struct ConverterFree {
 };
 using ConverterHandle = std::unique_ptr<cv_converter, ConverterFree>;
 
-/// The "C" locale for this thread while it lives: UDUNITS-2 reads its numbers with `strtod`.
+/// Holder of the "C" locale for this thread while it lives: UDUNITS-2 reads its numbers with `strtod`.
 class ClassicLocale {
  public:
   ClassicLocale() : classic_(newlocale(LC_ALL_MASK, "C", nullptr)), previous_(uselocale(classic_)) {}
@@ -51,10 +51,10 @@ class ClassicLocale {
   locale_t previous_;
 };
 
-/// What UDUNITS-2 has inside a unit: a product of base units, perhaps scaled and shifted.
+/// Structure of a unit in UDUNITS-2: a product of base units, perhaps scaled and shifted.
 struct Structure {
-  bool linear = true;       ///< neither a date nor a logarithm
-  bool has_offset = false;  ///< a temperature scale
+  bool linear = true;       ///< true unless it is a date or a logarithm
+  bool has_offset = false;  ///< true for a temperature scale
   int base_units = 0;       ///< number of base units with a non-zero power; the radian counts as one
 };
 
@@ -88,7 +88,8 @@ Structure structure_of(const ut_unit* unit) {
   return structure;
 }
 
-/// UDUNITS-2 also converts between reciprocals (s and Hz) and between rad and 1; neither is meant in a deck.
+/// Tells whether two units have the same dimension. UDUNITS-2 also converts between reciprocals (s and Hz)
+/// and between rad and 1; neither is meant in a deck.
 bool same_dimension(const ut_unit* a, const ut_unit* b) {
   if (!structure_of(a).linear || !structure_of(b).linear) return false;
   const UnitHandle quotient(ut_divide(a, b));
@@ -101,11 +102,11 @@ bool is_digit(char c) {
 bool is_space(char c) {
   return c == ' ' || c == '\t';
 }
-/// Bytes of the letter that a unit's name goes on with; 0 if there is none.
+/// Returns the number of bytes of the letter with which a unit's name goes on; 0 if there is none.
 std::size_t letter_length(std::string_view text) {
   const char c = text.front();
   if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_') return 1;
-  // those outside of ASCII in the names and prefixes of UDUNITS-2, each in all its code points
+  // letters outside of ASCII in the names and prefixes of UDUNITS-2, each in all its code points
   static constexpr std::array<std::string_view, 11> others{
       "µ", "μ", "°", "Ω", "\u2126", "Å", "\u212B", "\u2103", "\u2109", "\u2032", "\u2033"};
   const auto found = std::find_if(others.begin(), others.end(),
@@ -119,7 +120,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Superscripts and products in ASCII. UDUNITS-2 takes some of them itself, but not "⁻".
+/// Writes superscripts and products in ASCII. UDUNITS-2 takes some of them itself, but not "⁻".
 std::string in_ascii(std::string_view unit) {
   using Replacement = std::pair<std::string_view, char>;
   // clang-format off
@@ -138,16 +139,16 @@ std::string in_ascii(std::string_view unit) {
   return result;
 }
 
-/// A unit taken apart and written anew in the one form that UDUNITS-2 is given: names, ".", "/", "^" and
-/// parentheses. UDUNITS-2 takes more than anybody means, such as "400 GPa/m" (from "18 400 GPa/m") or
-/// "s since 2000", and loses memory at each text that it cannot read.
+/// Text of a unit, taken apart and written anew in the one form that UDUNITS-2 is given: names, ".", "/", "^"
+/// and parentheses. UDUNITS-2 takes more than anybody means, such as "400 GPa/m" (from "18 400 GPa/m") or "s
+/// since 2000", and loses memory at each text that it cannot read.
 class UnitText {
  public:
   explicit UnitText(std::string_view unit) : text_(in_ascii(unit)), rest_(text_) {}
   UnitText(const UnitText&) = delete;
   UnitText& operator=(const UnitText&) = delete;
 
-  /// Empty if the text does not have the form of a unit.
+  /// Returns the unit written anew; none if the text does not have the form of a unit.
   std::optional<std::string> rewritten() {
     if (rest_.size() > kMostCharacters) return std::nullopt;
     if (rest_.starts_with('/')) {
@@ -164,7 +165,7 @@ class UnitText {
 
  private:
   static constexpr std::size_t kMostCharacters = 100;
-  static constexpr std::size_t kMostDigits = 2;  ///< of an exponent
+  static constexpr std::size_t kMostDigits = 2;  ///< digits of an exponent
 
   std::string_view take(std::size_t count) {
     const std::string_view taken = rest_.substr(0, count);
@@ -182,7 +183,7 @@ class UnitText {
     return rest_.size() != before;
   }
 
-  /// A product goes on up to the end or a closing parenthesis.
+  /// Reads a product up to the end or a closing parenthesis. Returns false where there is none.
   bool read_product() {
     take_blanks();
     return read_power() && read_factors();
@@ -198,7 +199,7 @@ class UnitText {
       if (take("/")) {
         sign = '/';
       } else if (!take(".") && !take("*") && !take("-") && !apart && behind_exponent && name_length() > 0) {
-        sign = before;  // what is set right behind "m2" in "W/m2K" belongs to it
+        sign = before;  // a name right behind "m2", as in "W/m2K", belongs to it
       }
       take_blanks();
       written_ += sign;
@@ -221,7 +222,7 @@ class UnitText {
     return read_exponent();
   }
 
-  /// True if there is none.
+  /// Reads an exponent. Returns true also if there is none, and false for one that is not sound.
   bool read_exponent() {
     const bool marked = take("**") || take("^");
     const bool has_sign = rest_.starts_with('-') || rest_.starts_with('+');
@@ -235,7 +236,7 @@ class UnitText {
     return true;
   }
 
-  /// Of the name that the rest begins with; 0 if there is none.
+  /// Returns the length of the name that the rest begins with; 0 if there is none.
   std::size_t name_length() const {
     if (rest_.starts_with('%') || rest_.starts_with('\'') || rest_.starts_with('"')) return 1;
     std::size_t length = 0;
@@ -253,7 +254,7 @@ class UnitText {
   std::vector<std::string> names_;
 };
 
-/// The unit database. UDUNITS-2 keeps its parser and its status in globals, so one lock guards every call.
+/// Unit database. UDUNITS-2 keeps its parser and its status in globals, so one lock guards every call.
 class UnitSystem {
  public:
   static UnitSystem& instance() {
@@ -263,7 +264,7 @@ class UnitSystem {
 
   std::mutex& mutex() { return mutex_; }
 
-  /// Null if the text is not a unit.
+  /// Returns a unit; null if the text is not one.
   UnitHandle parse(std::string_view unit) const {
     const ClassicLocale locale;
     UnitText text(unit);
@@ -290,7 +291,7 @@ class UnitSystem {
     ut_map_symbol_to_unit("deg", UT_ASCII, degree.get());
   }
 
-  /// Whether a name alone is a unit that products may hold: neither a date nor a logarithm.
+  /// Tells whether a name alone is a unit that products may hold: neither a date nor a logarithm.
   bool is_known(const std::string& name) const {
     const UnitHandle unit(ut_parse(system_.get(), name.c_str(), UT_UTF8));
     return unit && structure_of(unit.get()).linear;
@@ -302,11 +303,11 @@ class UnitSystem {
 
 struct NumberAndUnit {
   double number;
-  std::string_view written;  ///< the number
+  std::string_view written;  ///< number as it is written
   std::string_view unit;
 };
 
-/// Whether what follows a number goes on with it, as in "18,400", "1_000" or "18 400".
+/// Tells whether the text behind a number goes on with it, as in "18,400", "1_000" or "18 400".
 bool continues_number(std::string_view rest) {
   if (rest.empty()) return false;
   const bool separator = rest[0] == ',' || rest[0] == '_' || rest[0] == '\'';
@@ -336,14 +337,15 @@ NumberAndUnit split(std::string_view text, const Unit& unit) {
   return {number, written, trimmed(rest)};
 }
 
-/// Letters that stand for temperatures where people write, and for coulomb and farad here.
+/// Returns the temperature scale that people mean by a letter, which here stands for coulomb or farad; empty
+/// for another text.
 std::string_view meant_temperature(std::string_view given) {
   if (given == "C" || given == "°C" || given == "deg C") return "degC";
   if (given == "F" || given == "°F" || given == "deg F") return "degF";
   return "";
 }
 
-/// What is needed, and which unit is most likely meant.
+/// Says which unit is needed, and which unit is most likely meant.
 std::string remedy(std::string_view given, const Unit& unit) {
   const std::string_view meant = meant_spelling(given, unit);
   if (meant.empty() || meant == given) return requirement(unit);
@@ -355,12 +357,12 @@ std::string remedy(std::string_view given, const Unit& unit) {
                       fmt::format("unit \"{}\" has the wrong dimension; {}", given, remedy(given, unit)));
 }
 
-/// A conversion whose factors are decimals, or empty ones where they are not.
+/// Conversion whose factors are decimals; empty where they are not.
 struct DecimalConversion {
   std::optional<Decimal> shift, factor, divisor;
 };
 
-/// Where a converter takes numbers, by doubles.
+/// Finds the factors of a converter, from doubles that it converts.
 UnitFactors measured(const cv_converter* converter) {
   constexpr double kFar = 1e6;  // so that the shift is lost in the slope
   const double start = cv_convert_double(converter, 0.0);
@@ -376,8 +378,8 @@ DecimalConversion decimals_of(const UnitFactors& of) {
   return {shift, kOne, nearest_decimal(1.0 / of.factor)};
 }
 
-/// What converts a unit to that of a kind.
-/// \param text  for messages
+/// Converter of a unit to that of a kind.
+/// \param text  text that messages quote
 class Converter {
  public:
   Converter(std::string_view text, std::string_view given, const Unit& unit) {
@@ -403,7 +405,8 @@ class Converter {
     by_decimals_ = decimals_of(by_doubles_);
   }
 
-  /// The double nearest to the value of a number as it is written, where that can be told.
+  /// Returns the double nearest to the value of a number as it is written, where that can be told; else
+  /// converts the double.
   double operator()(double number, std::string_view written) const {
     if (const auto decimal = decimal_of(written); decimal && is_exact())
       if (const auto value =

@@ -3,7 +3,8 @@
 #include "pyroclast/laws/law.hpp"
 #include "pyroclast/mechanics/step/packs.hpp"
 
-/// Contact points: jumps to tractions to forces, Eqs. (10)-(15), and their sums at the gridpoints.
+/// Contact points: from jumps to tractions to forces, Eqs. (10)-(15), and the sums of the forces at the
+/// gridpoints.
 namespace pyroclast {
 
 /// Sums of contact forces at gridpoints.
@@ -13,8 +14,8 @@ struct ContactForces {
   using Real = typename R::Real;
   using Vector = typename R::Vector;
 
-  /// Adds to the weight of a pack of gridpoints the forces of the contact points on it: with opposite signs
-  /// on the two sides, or with equal signs.
+  /// Returns `total` plus the forces of the contact points on a pack of gridpoints. The two sides get
+  /// opposite signs, or equal signs where stiffness stands in the place of the forces.
   template <Kinematics kKinematics, bool kOpposite>
   static Vector add_forces(const State<Dim>& s, int pack, Vector total) {
     const ContactsOfPack range = s.layout.contacts_of_pack[pack];
@@ -143,7 +144,7 @@ struct Contacts {
     return frame;
   }
 
-  /// \param respond  takes (point, opening, tangential jump) to a ContactResponse
+  /// \param respond  function from (point, opening, tangential jump) to a ContactResponse
   template <Kinematics kKinematics, bool kMeasure, class Respond>
   static void update_pack(State<Dim>& s, int pack, Respond respond) {
     const Frame frame = frame_of<kKinematics>(s, pack);
@@ -197,7 +198,7 @@ struct Contacts {
     return own_constants(constants_of_set(s, pack),
                          &s.own_constants[s.first_own_constant[pack] + point * kConstants]);
   }
-  /// \param of_set  constants whose choices count
+  /// \param of_set  constants of the set, of which only the choices count
   static ForEach own_constants(const OneForAll& of_set, const Line* line) {
     ForEach c;
     ForEach::each_choice([](const auto&, auto& mine, const auto& theirs) { mine = theirs; }, c, of_set);
@@ -245,8 +246,8 @@ struct Contacts {
   };
 
   /// Adds forces that keep moments in balance where the frame turns with the edge. The components of a jump
-  /// turn with the frame, and these forces do the work of the tractions on that part: they are minus the
-  /// derivative of the jump's components by the edge's gridpoints.
+  /// turn with the frame, and these forces do the work of the tractions on that part: each is minus the
+  /// tractions times the derivatives of the jump's components by the position of a gridpoint.
   static void add_turning_forces(State<Dim>& s, int first_point, const Frame& frame, const Real& turning) {
     const Vector force = frame.normal * (0.5 * turning / frame.edge);
     R::store(force, &s.turning_force[slot_of(first_point, 0)]);

@@ -13,7 +13,7 @@ struct Motion {
   using Scratch = typename R::Scratch;
   using Sums = typename R::Sums;
 
-  /// Adds applied forces and shares out the sum (4) where gridpoints are tied.
+  /// Adds applied forces, and shares the sum (4) out by mass where gridpoints are tied.
   template <bool kMeasure>
   static void hold_and_load(const State<Dim>& s, const Bundle& bundle, const BundleConstraints& constraints,
                             const Scratch& scratch, Sums& sums) {

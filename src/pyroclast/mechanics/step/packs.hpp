@@ -94,10 +94,10 @@ struct Packs {
   // Processors do not foresee streams well among so much arithmetic; lines come best a few at a time, all
   // through the step.
 
-  static constexpr int kPacksAhead = 16;     ///< packs of gridpoints
-  static constexpr int kFacePacksAhead = 8;  ///< about as far, in packs of faces
-  /// Number of packs ahead for faces between chunks, whose gridpoints stand anywhere: gridpoints are asked
-  /// for one by one, once the pack of points itself has come.
+  static constexpr int kPacksAhead = 16;     ///< lead over the present pack, in packs of gridpoints
+  static constexpr int kFacePacksAhead = 8;  ///< lead in packs of faces, about as far
+  /// Lead for faces between chunks, in packs of faces. Their gridpoints stand anywhere, so they are asked for
+  /// one by one, once the pack of points itself has come.
   static constexpr int kScatteredPacksAhead = 4;
 
   template <int kLines>
@@ -124,7 +124,7 @@ struct Packs {
         __builtin_prefetch(&s.displacement[points.b[lane] / offset_of<Dim>(1)]);
       }
   }
-  /// Asks for the internal variables and losses of a pack of faces of any law.
+  /// Asks memory for the internal variables and losses of a pack of faces of any law.
   [[gnu::noinline]] static void fetch_internals(const State<Dim>& s, int pack) {
     for (int i = s.first_internal[pack]; i < s.first_internal[pack + 1]; ++i) fetch(s.internals[i]);
     const int first = s.layout.first_point_of(pack), points = s.layout.first_point_of(pack + 1) - first;
@@ -133,7 +133,8 @@ struct Packs {
       for (int i = 0; i < losses && s.losing[first + point]; ++i)
         fetch(s.loss[s.first_loss[pack] + point * losses + i]);
   }
-  /// Asks for all that a pack of faces needs, and for the displacements that no pack before it reads.
+  /// Asks memory for all that packs of faces ahead need, and for the displacements that no pack before them
+  /// reads.
   /// \tparam kInternals, kLosses  lines of a point of the present pack; later packs of the same law have as
   ///                              many
   template <int kInternals, int kLosses>

@@ -5,7 +5,7 @@
 #include "pyroclast/mechanics/step/motion.hpp"
 #include "pyroclast/mechanics/step/zones.hpp"
 
-/// One step of the method, on lanes:
+/// Step of the method, on lanes:
 ///
 ///     faces      displacements -> jump -> law -> traction -> contact force     Eqs. (10)-(15)  contacts.hpp
 ///                      ^                                          |
@@ -49,7 +49,7 @@ class Step {
     });
   }
 
-  /// Sums |stiffness| over the rows of the assembled matrix, zones and contacts, N/m.
+  /// Sums |stiffness| over each row of the assembled matrix of zones and contacts, N/m.
   static void sum_stiffness(State<Dim>& s, double* memory) {
     for_each_law(
         s, 0, static_cast<int>(s.layout.faces.size()),

@@ -3,7 +3,7 @@
 #include "pyroclast/mechanics/step/packs.hpp"
 #include "pyroclast/model/zone_shape.hpp"
 
-/// Zones: displacements to strain to stress to forces, Eqs. (4) and (5).
+/// Zones: from displacements to strains, stresses and forces, Eqs. (4) and (5).
 namespace pyroclast {
 
 template <int Dim, class Set>
@@ -59,7 +59,7 @@ struct Zones {
         mechanical_strain<Dim>(vectors, 1.0 / determinant, u, p.thermal_strain, kKinematics, rotation);
     if constexpr (kCreeps)
       for (std::size_t i = 0; i < strain.size(); ++i) strain[i] -= Real::load(creep_strain->component[i]);
-    const auto stress =  // times minus the share
+    const auto stress =  // minus the stress times the share
         zone_stress<Dim>({p.lambda * -share, p.mu * -share, p.thermal_strain}, strain);
     Corners force;
     for (int n = 0; n < Dim; ++n) {
