@@ -4,6 +4,7 @@
 # Its rows are compiled for each instruction set and dimension, with the flags that results need, whatever the build
 # type and the flags of the project. The property LAW_OBJECTS of the target lists the objects of single sets.
 set(pyroclast_law_templates ${CMAKE_CURRENT_LIST_DIR})
+set(PYROCLAST_LAW_SETS "" CACHE STRING "Instruction sets for which laws are compiled; empty: all that pyroclast has")
 # Those of binutils, whatever the compiler: with Clang, CMake would take LLVM's, which lack an option.
 find_program(PYROCLAST_LD NAMES ld.bfd ld REQUIRED)
 find_program(PYROCLAST_OBJCOPY NAMES objcopy REQUIRED)
@@ -31,6 +32,14 @@ function(pyroclast_add_law)
     set(LAW_DIMENSIONS both)
   else()
     message(FATAL_ERROR "pyroclast_add_law: DIMENSIONS ${dimensions}: allowed are 2, 3 and 2 3")
+  endif()
+  foreach(set IN LISTS PYROCLAST_LAW_SETS)
+    if(NOT set IN_LIST pyroclast_instruction_sets)
+      message(FATAL_ERROR "PYROCLAST_LAW_SETS: ${set}: this pyroclast has ${pyroclast_instruction_sets}")
+    endif()
+  endforeach()
+  if(PYROCLAST_LAW_SETS)
+    set(pyroclast_instruction_sets ${PYROCLAST_LAW_SETS})
   endif()
   get_filename_component(LAW_HEADER ${LAW_HEADER} ABSOLUTE)
   if(NOT EXISTS ${LAW_HEADER})

@@ -411,13 +411,13 @@ class Command(WatchTest):
 class Readers(WatchTest):
     """Several at once, and those who may not write."""
 
-    def test_twenty_at_once(self):
+    def test_ten_at_once(self):
         self.begin(rows=100)
         with self.writer():
             all_of_them = [subprocess.Popen([sys.executable, "-m", "pyroclast.watch", str(self.folder), "--once"],
                                             env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                             text=True)
-                           for _ in range(20)]
+                           for _ in range(10)]
             for process in all_of_them:
                 said, wrong = process.communicate(timeout=300)
                 self.assertEqual((process.returncode, wrong), (0, ""))

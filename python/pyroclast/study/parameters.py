@@ -7,8 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Union
 
-from scipy import stats
-
 from ..decks import toml
 from ..errors import Error
 
@@ -67,6 +65,8 @@ class Distribution:
         return float(self._normal().cdf(number))
 
     def _normal(self) -> Any:
+        from scipy import stats  # takes longer than all else that a command of studies imports
+
         mean, sd, *bounds = self.numbers
         if not bounds:
             return stats.norm(mean, sd)

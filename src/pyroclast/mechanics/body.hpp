@@ -78,9 +78,9 @@ struct Books {
   double creep_work = 0.0;  ///< work of creep
 };
 
-/// Body in lanes: layout and state of a model's blocks, with the model's chunks. It is data alone; others
-/// work on it, and none of them knows another's user: Constraints hold, drive and load it, Properties and
-/// Masses follow its temperatures, the Mover moves it, Reader and Totals read it, and Mechanics calls them.
+/// Body in lanes: layout and state of a model's blocks, with the model's chunks. A body is data alone.
+/// Constraints hold, drive and load it, Properties and Masses follow its temperatures, the Mover moves it,
+/// Reader and Totals read it. Each of them works on a body and does not know who calls it: that is Mechanics.
 template <int Dim>
 struct Body {
   static constexpr std::size_t kMostDissipations = 16;
