@@ -40,9 +40,11 @@ pyroclast::PackFunctions<2> functions_of(const pyroclast::LawTable& law) {
   return packs(pyroclast::BuiltInLaws(), pyroclast::index_of(law));
 }
 
-void move_bundles(State<2>& s, int first, int last, Pass pass, double* scratch) {
+/// Calls a part of the step and counts its operations among those of bundles.
+template <auto kPart, class... Arguments>
+void count_in_bundles(State<2>& s, int first, int last, Pass pass, Arguments... arguments) {
   const auto before = Counted::operations;
-  CountingStep::move_bundles(s, first, last, pass, scratch);
+  kPart(s, first, last, pass, arguments...);
   if (pass == Pass::move) counted.bundles += Counted::operations - before;
 }
 
@@ -51,12 +53,12 @@ class Shares {
  public:
   Shares(const State<2>& s, const std::vector<const pyroclast::LawTable*>& laws)
       : held_(held_share(s, laws)), combined_(s.damping_form == pyroclast::DampingForm::combined) {
-    int spread_packs = 0;
+    int packs_of_pieces = 0;
     for (const Bundle& bundle : s.layout.bundles)
-      if (bundle.kind == BundleKind::spread) spread_packs += bundle.packs;
-    const double spread = static_cast<double>(spread_packs) / static_cast<double>(s.velocity.size());
-    alike_ = 1.0 - spread;
-    gathered_ = s.kinematics == pyroclast::Kinematics::finite ? 1.0 : spread;
+      if (bundle.kind != BundleKind::alike) packs_of_pieces += bundle.packs;
+    const double of_pieces = static_cast<double>(packs_of_pieces) / static_cast<double>(s.velocity.size());
+    alike_ = 1.0 - of_pieces;
+    gathered_ = s.kinematics == pyroclast::Kinematics::finite ? 1.0 : of_pieces;
   }
 
   double of(Touched touched) const {
@@ -96,7 +98,9 @@ class Shares {
 }  // namespace
 
 pyroclast::StepFunctions<2> counting_step() {
-  return {{move_bundles, CountingStep::sum_stiffness}, functions_of};
+  return {{count_in_bundles<CountingStep::place_corner_forces>, count_in_bundles<CountingStep::move_bundles>,
+           count_in_bundles<CountingStep::move_tied_pieces>, CountingStep::sum_stiffness},
+          functions_of};
 }
 
 Operations operations() {

@@ -1,8 +1,12 @@
 #include "counting.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "bodies.hpp"
+#include "model/small_specimen.hpp"
+#include "pyroclast/mechanics/sweep.hpp"
 
 namespace pyroclast {
 namespace {
@@ -81,6 +85,63 @@ TEST(Counting, CombinedDampingReadsTheForcesOfTheLastStep) {
   EXPECT_EQ(other.working_set, one.working_set);
   EXPECT_GT(one.moved, one.working_set);
   EXPECT_LT(one.working_set, static_cast<double>(local.body().memory()));
+}
+
+/// Operations of each thread in a step, before its barrier and behind it.
+struct OfThread {
+  std::int64_t before = 0, behind = 0;
+};
+
+std::vector<OfThread> operations_of_threads(const Mechanics<2>& m, int threads) {
+  State<2> s = m.body().state;
+  const auto& passes = m.body().step.passes;
+  auto scratch = m.body().make_scratch();
+  const auto counted = [](auto work) {
+    bench::reset_operations();
+    work();
+    return bench::operations().faces + bench::operations().bundles;
+  };
+  const auto update = [&](const IndexRange& faces) {
+    for_each_law(s, faces.first, faces.last, [&](const PackFunctions<2>& law, int first, int last) {
+      law.update(s, first, last, false);
+    });
+  };
+  const auto shares = share_out(m.body().layout, threads);
+  std::vector<OfThread> all(shares.size());
+  for (std::size_t t = 0; t < shares.size(); ++t)
+    all[t].before = counted([&] {
+      for (const auto& faces : shares[t].crossing) update(faces);
+      passes.place_corner_forces(s, shares[t].corner_pieces.first, shares[t].corner_pieces.last, Pass::move);
+    });
+  for (std::size_t t = 0; t < shares.size(); ++t)
+    all[t].behind = counted([&] {
+      for (const auto& stride : shares[t].strides) {
+        update(stride.faces);
+        passes.move_bundles(s, stride.bundles.first, stride.bundles.last, Pass::move, scratch.data());
+      }
+    });
+  return all;
+}
+
+// Promise: all threads share a step evenly, platens too. 10 % is the grain of bundles and of faces that cross
+// in a body this small; the platens of one piece each would give the thread that has most 50 % more.
+TEST(Sweep, GivesEveryThreadAboutTheSameWork) {
+  const Model<2> model = between_platens(small_specimen(3000), 0.01, 0.5);
+  BodyProperties p;
+  p.zones.assign(model.zones.size(), zone_properties<2>(29.4e9, 0.2));
+  p.contacts.add(mortar_contact());
+  p.of_contact.assign(model.contacts.size(), 0);
+  Mechanics<2> m(model, std::vector<double>(model.material_names.size(), 2400.0), p, quasi_static<2>());
+  ASSERT_GT(m.body().layout.pieces.size(), 6U);
+  m.use(bench::counting_step());
+  for (const int threads : {2, 4, 8}) {
+    std::int64_t most = 0, all = 0;
+    for (const auto& [before, behind] : operations_of_threads(m, threads)) {
+      most = std::max(most, before + behind);
+      all += before + behind;
+    }
+    EXPECT_LT(static_cast<double>(most) * threads, 1.1 * static_cast<double>(all)) << threads << " threads";
+  }
 }
 
 }  // namespace

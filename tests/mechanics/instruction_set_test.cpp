@@ -125,31 +125,32 @@ TEST(MixedModeContacts, HaveTheSameBitsInEveryInstructionSet) {
   }
 }
 
-// Promise: neither how blocks are bundled nor how they are cut into chunks changes a force, so no
-// displacement, velocity, damage or slip either. Sums over the body add up in another order: 1e-12 of the
-// largest is round-off of some thousand terms.
+// Promise: neither how blocks are bundled, some of them in pieces, nor how they are cut into chunks changes a
+// force, so no displacement, velocity, damage or slip either. Sums over the body add up in another order:
+// 1e-12 of the largest is round-off of some thousand terms.
 TEST(AnyLayout, GivesTheSameBits) {
   const Model<2> model = tessellated(150, 0.05, 0.05, 3);
   auto parameters = quasi_static<2>();
   parameters.damping_form = DampingForm::combined;
-  const auto run = [&](const Model<2>& body, int fewest_blocks, int threads) {
-    parameters.layout.fewest_blocks = fewest_blocks;
+  const auto run = [&](const Model<2>& body, int fewest_blocks, int most_zones, int threads) {
+    parameters.layout = {.fewest_blocks = fewest_blocks, .most_zones = most_zones};
     return cracked(body, parameters, usable_instruction_sets().back(), true, threads);
   };
-  const auto expected = run(model, LayoutParameters().fewest_blocks, 1);
+  const auto expected = run(model, LayoutParameters().fewest_blocks, LayoutParameters().most_zones, 1);
   ASSERT_GT(damaged_share(expected), 0.3);
   struct Cut {
-    int fewest_blocks, chunk_blocks;
+    int fewest_blocks, most_zones, chunk_blocks;
   };
-  for (const auto [fewest_blocks, chunk_blocks] :
-       {Cut{1, 1024}, Cut{6, 1024}, Cut{9, 1024},  // with 9 every block is spread
-        Cut{4, 20}, Cut{4, 64}, Cut{2, 1}}) {
+  for (const auto [fewest_blocks, most_zones, chunk_blocks] :
+       {Cut{1, 64, 1024}, Cut{6, 64, 1024}, Cut{9, 64, 1024},  // with 9 every block is a piece
+        Cut{9, 5, 1024}, Cut{4, 64, 20}, Cut{4, 64, 64}, Cut{2, 4, 1}}) {
     Model<2> cut = model;
     cut.cut_into_chunks(chunk_blocks);
     for (const int threads : {1, 2}) {
-      const auto what = testing::Message() << fewest_blocks << " blocks a bundle, " << chunk_blocks
-                                           << " a chunk, " << threads << " threads";
-      const auto m = run(cut, fewest_blocks, threads);
+      const auto what = testing::Message()
+                        << fewest_blocks << " blocks a bundle, " << most_zones << " zones a piece, "
+                        << chunk_blocks << " blocks a chunk, " << threads << " threads";
+      const auto m = run(cut, fewest_blocks, most_zones, threads);
       EXPECT_TRUE(m.read().displacements() == expected.read().displacements()) << what;
       EXPECT_TRUE(m.read().velocities() == expected.read().velocities()) << what;
       EXPECT_TRUE(m.read().forces() == expected.read().forces()) << what;
@@ -161,6 +162,66 @@ TEST(AnyLayout, GivesTheSameBits) {
       EXPECT_NEAR(a.loading, b.loading, 1e-12 * turnover(b)) << what;
       EXPECT_NEAR(a.zones, b.zones, 1e-12 * turnover(b)) << what;
       EXPECT_NEAR(a.local_damping, b.local_damping, 1e-12 * turnover(b)) << what;
+    }
+  }
+}
+
+/// A specimen between platens, loaded through gridpoints that are tied, then pressed further.
+Mechanics<2> pressed(const Model<2>& model, MechanicsParameters<2> parameters, int threads) {
+  parameters.gravity = {{0.0, -9.81}};
+  parameters.zones_for_a_thread = 1;
+  BodyProperties p;
+  for (int z = 0; z < model.zone_count(); ++z)
+    p.zones.push_back(zone_properties<2>((20.0 + 0.001 * z) * 1e9, 0.2, 1e-7 * z));
+  p.contacts.add(mortar_contact());
+  p.of_contact.assign(model.contacts.size(), 0);
+  Mechanics<2> m(model, std::vector<double>(model.material_names.size(), 2400.0), p, parameters,
+                 std::make_shared<Team>(threads, WhenCrowded::stay));
+  const std::vector<int>& top = model.set("top_platen_support");
+  for (const int g : model.set("bottom_platen_support"))
+    for (const int i : {0, 1}) m.constraints().prescribe_velocity(g, i, 0.0);
+  m.constraints().tie(top, 0);
+  m.constraints().tie(top, 1);
+  for (const int g : top) m.constraints().apply_force(g, {{g == top[0] ? 1e4 : 0.0, -4e5 / top.size()}});
+  m.advance(300);
+  m.constraints().untie();
+  for (const int g : top)
+    for (const int i : {0, 1}) m.constraints().prescribe_velocity(g, i, i == 0 ? 1e-3 : -8e-3);
+  m.advance(300);
+  return m;
+}
+
+// Promise: in how many pieces a large block stands changes no bit either, nor do ties that join its pieces.
+TEST(LargeBlocks, GiveTheSameBitsInAnyPieces) {
+  const Model<2> model = between_platens(small_specimen(150), 0.01, 0.5);
+  for (const Kinematics kinematics : {Kinematics::small, Kinematics::finite}) {
+    auto parameters = quasi_static<2>();
+    parameters.damping_form = DampingForm::combined;
+    parameters.kinematics = kinematics;
+    parameters.layout.most_zones = 1000;
+    const auto expected = pressed(model, parameters, 1);
+    ASSERT_GT(damaged_share(expected), 0.1);
+    struct Cut {
+      int most_zones, threads;
+    };
+    for (const auto [most_zones, threads] : {Cut{8, 1}, Cut{8, 3}, Cut{24, 2}}) {
+      parameters.layout.most_zones = most_zones;
+      const auto what = testing::Message() << most_zones << " zones a piece, " << threads << " threads";
+      const auto m = pressed(model, parameters, threads);
+      ASSERT_GE(m.body().layout.pieces.size(), expected.body().layout.pieces.size() + 2);
+      EXPECT_TRUE(m.read().displacements() == expected.read().displacements()) << what;
+      EXPECT_TRUE(m.read().velocities() == expected.read().velocities()) << what;
+      EXPECT_TRUE(m.read().forces() == expected.read().forces()) << what;
+      for (int c = 0; c < model.contact_count(); ++c) {
+        ASSERT_TRUE(m.read().contact(c).internals == expected.read().contact(c).internals) << what;
+      }
+      const EnergyLedger a = m.totals().energy(), b = expected.totals().energy();
+      for (const auto part : {&EnergyLedger::loading, &EnergyLedger::zones, &EnergyLedger::kinetic,
+                              &EnergyLedger::local_damping, &EnergyLedger::property_change})
+        EXPECT_NEAR(a.*part, b.*part, 1e-12 * turnover(b)) << what;
+      EXPECT_NEAR(m.totals().unbalanced_ratio(), expected.totals().unbalanced_ratio(),
+                  1e-12 * expected.totals().unbalanced_ratio())
+          << what;
     }
   }
 }

@@ -137,9 +137,10 @@ void play(const Layout<2>& layout, int threads) {
       bundle_of_pack[layout.bundles[b].first_pack + i] = static_cast<int>(b);
   const auto touched = [&](int pack) {
     std::set<int> bundles;
-    for (int lane = 0; lane < kLanes; ++lane)
-      for (int offset : {layout.points[2 * pack].a[lane], layout.points[2 * pack].b[lane]})
-        bundles.insert(bundle_of_pack[offset / offset_of<2>(kLanes)]);
+    for (int point : {2 * pack, 2 * pack + 1})
+      for (int lane = 0; lane < kLanes; ++lane)
+        for (int offset : {layout.points[point].a[lane], layout.points[point].b[lane]})
+          bundles.insert(bundle_of_pack[offset / offset_of<2>(kLanes)]);
     return bundles;
   };
   std::vector<int> taken(layout.faces.size()), moved(layout.bundles.size());
@@ -165,12 +166,27 @@ void play(const Layout<2>& layout, int threads) {
     }
   EXPECT_EQ(std::count(taken.begin(), taken.end(), 1), static_cast<std::ptrdiff_t>(taken.size()));
   EXPECT_EQ(std::count(moved.begin(), moved.end(), 1), static_cast<std::ptrdiff_t>(moved.size()));
+
+  std::vector<int> computed(layout.pieces.size());
+  for (const Share& share : shares) {
+    for (int i = share.corner_pieces.first; i < share.corner_pieces.last; ++i) ++computed[i];
+    for (int i = 0; i < static_cast<int>(layout.pieces.size()); ++i) {
+      const bool moves = std::ranges::any_of(share.strides, [&](const auto& stride) {
+        return stride.bundles.first <= layout.pieces[i] && layout.pieces[i] < stride.bundles.last;
+      });
+      EXPECT_EQ(share.moved_pieces.first <= i && i < share.moved_pieces.last, moves) << "piece " << i;
+    }
+  }
+  EXPECT_EQ(std::ranges::count(computed, 1), static_cast<std::ptrdiff_t>(computed.size()));
 }
 
 TEST(Sweep, TakesEveryFaceOnceBeforeItsBundlesMove) {
   const Model<2> model = small_concrete();
-  const Layout<2> layout(model);
-  for (int threads : {1, 2, 3, 7}) play(layout, threads);
+  for (const int most_zones : {64, 8}) {
+    const Layout<2> layout(model, {.most_zones = most_zones});
+    ASSERT_GE(layout.pieces.size(), 2U);
+    for (int threads : {1, 2, 3, 7}) play(layout, threads);
+  }
 }
 
 TEST(Sweep, HasWorkForFewerBundlesThanThreads) {

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -152,6 +156,29 @@ TEST(Model, RefusesAZoneWithoutVolume) {
 }
 
 /// A disc on a strip.
+/// Heights of the rows of zones of the lower platen, from its seat.
+std::vector<double> row_heights(double thickness) {
+  const auto body = between_platens(small_specimen(), thickness, 1.0);
+  std::set<double> places;
+  for (int g : body.set("bottom_platen")) places.insert(body.position[g][1]);
+  std::vector<double> heights;
+  for (auto place = places.rbegin(); std::next(place) != places.rend(); ++place)
+    heights.push_back(*place - *std::next(place));
+  return heights;
+}
+
+// A row is twice as high as the one nearer to the seat, so that rows go with the logarithm of a bearing's
+// zones. A column of the seat of 300 blocks is some 4 mm wide, and the first row at most twice as high.
+TEST(ConcreteModel, RowsOfABearingDoubleAwayFromItsSeat) {
+  for (const auto& [thickness, rows] :
+       {std::pair<double, std::size_t>{0.01, 2}, {0.04, 3}, {0.1, 4}, {0.2, 5}, {0.4, 6}}) {
+    const auto heights = row_heights(thickness);
+    ASSERT_EQ(heights.size(), rows) << thickness;
+    for (std::size_t i = 1; i < rows; ++i) EXPECT_NEAR(heights[i], 2.0 * heights[i - 1], 1e-12);
+    EXPECT_NEAR(heights.front() * (std::exp2(rows) - 1.0), thickness, 1e-12);
+  }
+}
+
 TEST(ConcreteModel, BearingsCoverTheirSeatsAndNoMore) {
   specimen::SpecimenParameters p;
   const double half = std::asin(0.1), radius = 0.05;

@@ -23,6 +23,13 @@ class ChunkList {
   bool is_foreign(int chunk) const {
     return !is_foreign_.empty() && is_foreign_[static_cast<std::size_t>(chunk)];
   }
+  /// Returns the number of items in chunks that are not foreign.
+  int own_items() const {
+    int items = 0;
+    for (int chunk = 0; chunk < count(); ++chunk)
+      if (!is_foreign(chunk)) items += (*this)[chunk + 1] - (*this)[chunk];
+    return items;
+  }
 
   /// Returns the same chunks of another list.
   ChunkList of(std::vector<int> begins) const { return ChunkList(std::move(begins), is_foreign_); }
@@ -73,11 +80,6 @@ Sum chunked_sum(const ChunkList& chunks, Add add) {
 template <class Value>
 double chunked_sum(const ChunkList& chunks, Value value) {
   return chunked_sum<double>(chunks, [&](int item, double& sum) { sum += value(item); });
-}
-
-/// Counts the items, as `chunked_sum` does.
-inline double count(const ChunkList& chunks) {
-  return chunked_sum(chunks, [](int) { return 1.0; });
 }
 
 }  // namespace pyroclast

@@ -92,6 +92,7 @@ std::vector<const LawTable*> ContactSets::laws() const {
 }
 
 void ContactSets::clear() {
+  kinds_.clear();
   kind_.clear();
   first_number_.clear();
   numbers_.clear();

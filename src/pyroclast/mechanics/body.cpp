@@ -45,13 +45,28 @@ Body<Dim>::Body(const Model<Dim>& of, BodyProperties with, const MechanicsParame
   place_model();
   place_internals();
   mean_height = chunked_sum(layout.chunks.zones, [&](int z) { return 1.0 / norm(geometry.gradient[z][0]); }) /
-                count(layout.chunks.zones);
+                layout.chunks.zones.own_items();
 }
 
 template <int Dim>
-int Body<Dim>::slot_in_bundle(int gridpoint) const {
-  const Bundle& bundle = layout.bundles[bundle_of(gridpoint)];
-  return layout.gridpoint_slot[gridpoint] - slot_of(bundle.first_pack, 0);
+int Body<Dim>::first_bundle_of(int bundle) const {
+  if (layout.bundles[bundle].kind != BundleKind::piece) return bundle;
+  return layout.bundle_of(model.block_gridpoints[layout.block_in(bundle, 0)]);
+}
+
+template <int Dim>
+bool Body<Dim>::ties_join_pieces() const {
+  return std::ranges::any_of(made_ties, [&](const TieOfBundle& tie) {
+    return layout.bundles[tie.bundle].kind == BundleKind::piece;
+  });
+}
+
+template <int Dim>
+int Body<Dim>::constraint_pack_of(int gridpoint) const {
+  const int bundle = layout.bundle_of(gridpoint), index = made_constraints[bundle];
+  if (index < 0) return -1;
+  return arrays.constraints[index].first_pack + layout.gridpoint_slot[gridpoint] / kLanes -
+         layout.bundles[bundle].first_pack;
 }
 
 template <int Dim>
@@ -82,6 +97,11 @@ void Body<Dim>::place_model() {
   s.losing = made<bool>(point_packs);
   s.contact_force = made<Vec<Dim>>(point_packs * kLanes);
   if (parameters.kinematics == Kinematics::finite) s.turning_force = made<Vec<Dim>>(point_packs * kLanes);
+  if (!layout.pieces.empty()) {
+    const auto idle = static_cast<std::size_t>(1);
+    s.corner_force = made<Vec<Dim>>(kLanes * ((Dim + 1) * layout.piece_zones.size() + idle));
+    s.piece_force = made<VectorPack<Dim>>(layout.corners_of_pack.size());
+  }
   s.constraints_of_bundle = FlatArray<int>(layout.bundles.size());
   std::fill(s.constraints_of_bundle.begin(), s.constraints_of_bundle.end(), -1);
   made_constraints.assign(layout.bundles.size(), -1);

@@ -65,7 +65,8 @@ struct CreepUnderWay {
 
 /// Tie before its slots stand one after the other in the state.
 struct TieOfBundle {
-  int bundle, component;
+  int bundle;  ///< bundle of the slots; the first of their block where it stands in pieces
+  int component;
   std::vector<int> slots;
 };
 
@@ -100,9 +101,12 @@ struct Body {
     return properties.contacts.law(properties.of_contact[contact]);
   }
   const LawTable& law_of_pack(int face_pack) const { return *laws[arrays.law_of_faces[face_pack]]; }
-  int bundle_of(int gridpoint) const { return layout.bundle_of_block[model.block_of(gridpoint)]; }
-  /// Returns the slot of a gridpoint, counted from the first of its bundle.
-  int slot_in_bundle(int gridpoint) const;
+  /// Returns the first bundle of the block whose gridpoints, or some of them, stand in a bundle.
+  int first_bundle_of(int bundle) const;
+  /// Tells whether gridpoints of a block that stands in pieces are tied: its pieces then wait for each other.
+  bool ties_join_pieces() const;
+  /// Returns the place of the constraints of a gridpoint's pack, once its bundle has some; else -1.
+  int constraint_pack_of(int gridpoint) const;
   /// Returns the bytes of all arrays of layout and state.
   std::size_t memory() const { return pyroclast::memory(layout) + pyroclast::memory(arrays); }
 
@@ -116,8 +120,6 @@ struct Body {
   void refresh_views() { see(state, arrays); }
   /// Uses another compilation of the step.
   void use(const StepFunctions<Dim>& other);
-  /// Names the energies that the laws lose, and creep where zones creep.
-  void name_dissipations();
 
   /// Fills all that steps change with NaN; in idle places forces stay zero, for gridpoints gather from them
   /// too.
@@ -158,6 +160,8 @@ struct Body {
 
  private:
   void list_laws();
+  /// Names the energies that the laws lose, and creep where zones creep.
+  void name_dissipations();
   void place_model();
   void place_internals();
   template <class Array>

@@ -12,18 +12,19 @@ namespace pyroclast {
 
 namespace {
 
-bool is_slot_of(int slot, const Bundle& bundle) {
-  const int first = slot_of(bundle.first_pack, 0);
-  return first <= slot && slot < first + bundle.packs * kLanes;
+/// Tells whether a slot is one of a bundle, or of the block whose first bundle this is.
+template <int Dim>
+bool is_slot_of(const Body<Dim>& body, int slot, int first_bundle) {
+  return 0 <= slot && slot < kLanes * body.layout.gridpoint_packs &&
+         body.first_bundle_of(body.layout.bundle_of_pack[slot / kLanes]) == first_bundle;
 }
 
 }  // namespace
 
-/// Returns the index of the constraints of a gridpoint's bundle, which act from now on. Makes them where
-/// there are none yet.
+/// Lets the constraints of a gridpoint's bundle act from now on. Makes them where there are none yet.
 template <int Dim>
-int Constraints<Dim>::constraints_of(int gridpoint) {
-  const int b = body_.bundle_of(gridpoint);
+void Constraints<Dim>::constrain(int gridpoint) {
+  const int b = body_.layout.bundle_of(gridpoint);
   int& index = body_.made_constraints[b];
   if (index < 0) {
     index = static_cast<int>(body_.arrays.constraints.size());
@@ -36,7 +37,6 @@ int Constraints<Dim>::constraints_of(int gridpoint) {
     body_.refresh_views();
   }
   body_.arrays.constraints_of_bundle[b] = index;
-  return index;
 }
 
 template <int Dim>
@@ -63,9 +63,9 @@ void Constraints<Dim>::order() {
 }
 
 template <int Dim>
-ConstraintPack<Dim>& Constraints<Dim>::constraint_pack(int constraints, int gridpoint) {
-  return body_.arrays.constraint_packs[body_.arrays.constraints[constraints].first_pack +
-                                       body_.slot_in_bundle(gridpoint) / kLanes];
+ConstraintPack<Dim>& Constraints<Dim>::constraint_pack(int gridpoint) {
+  constrain(gridpoint);
+  return body_.arrays.constraint_packs[body_.constraint_pack_of(gridpoint)];
 }
 
 /// Lets a bundle that nothing holds, drives or loads any more take the shorter way through a step.
@@ -74,7 +74,7 @@ void Constraints<Dim>::drop_if_free(int b) {
   const int index = body_.made_constraints[b];
   if (index < 0) return;
   const BundleConstraints& constraints = body_.arrays.constraints[index];
-  if (constraints.first_tie != constraints.last_tie) return;
+  if (constraints.ties()) return;
   for (int pack = 0; pack < body_.layout.bundles[b].packs; ++pack)
     for (int i = 0; i < Dim; ++i) {
       const ConstraintPack<Dim>& held = body_.arrays.constraint_packs[constraints.first_pack + pack];
@@ -87,7 +87,7 @@ void Constraints<Dim>::drop_if_free(int b) {
 
 template <int Dim>
 void Constraints<Dim>::prescribe_velocity(int gridpoint, int component, double velocity) {
-  auto& pack = constraint_pack(constraints_of(gridpoint), gridpoint);
+  auto& pack = constraint_pack(gridpoint);
   const int lane = body_.layout.gridpoint_slot[gridpoint] % kLanes;
   pack.prescribed[component] = static_cast<std::uint8_t>(pack.prescribed[component] | (1U << lane));
   pack.prescribed_velocity[component][lane] = velocity;
@@ -95,20 +95,21 @@ void Constraints<Dim>::prescribe_velocity(int gridpoint, int component, double v
 
 template <int Dim>
 void Constraints<Dim>::release(int gridpoint, int component) {
-  if (body_.made_constraints[body_.bundle_of(gridpoint)] < 0) return;
-  auto& pack = constraint_pack(constraints_of(gridpoint), gridpoint);
+  const int bundle = body_.layout.bundle_of(gridpoint);
+  if (body_.made_constraints[bundle] < 0) return;
+  auto& pack = constraint_pack(gridpoint);
   const int lane = body_.layout.gridpoint_slot[gridpoint] % kLanes;
   pack.prescribed[component] = static_cast<std::uint8_t>(pack.prescribed[component] & ~(1U << lane));
-  drop_if_free(body_.bundle_of(gridpoint));
+  drop_if_free(bundle);
 }
 
 template <int Dim>
 void Constraints<Dim>::tie(std::vector<int> gridpoints, int component) {
   std::sort(gridpoints.begin(), gridpoints.end());
-  constraints_of(gridpoints.front());
-  TieOfBundle tie{body_.bundle_of(gridpoints.front()), component, {}};
+  TieOfBundle tie{body_.first_bundle_of(body_.layout.bundle_of(gridpoints.front())), component, {}};
   double mass = 0.0, momentum = 0.0;
   for (int g : gridpoints) {
+    constrain(g);
     tie.slots.push_back(body_.layout.gridpoint_slot[g]);
     mass += body_.mass[g];
     momentum += body_.mass[g] * Reader<Dim>(body_).velocity(g)[component];
@@ -142,19 +143,22 @@ void Constraints<Dim>::place_ties() {
     body_.arrays.ties.resize(body_.arrays.ties.size() + 1);
     body_.arrays.ties[index] = {tie.component, static_cast<int>(begin),
                                 static_cast<int>(begin + tie.slots.size())};
-    auto& constraints = body_.arrays.constraints[body_.made_constraints[tie.bundle]];
-    if (constraints.first_tie == constraints.last_tie) constraints.first_tie = index;
-    constraints.last_tie = index + 1;
+    for (const int slot : tie.slots) {
+      const int bundle = body_.layout.bundle_of_pack[slot / kLanes];
+      auto& constraints = body_.arrays.constraints[body_.made_constraints[bundle]];
+      if (!constraints.ties()) constraints.first_tie = index;
+      constraints.last_tie = index + 1;
+    }
   }
   body_.refresh_views();
 }
 
 template <int Dim>
 void Constraints<Dim>::apply_force(int gridpoint, const Vec<Dim>& force) {
-  auto& pack = constraint_pack(constraints_of(gridpoint), gridpoint);
+  auto& pack = constraint_pack(gridpoint);
   const int lane = body_.layout.gridpoint_slot[gridpoint] % kLanes;
   for (int i = 0; i < Dim; ++i) pack.applied[i][lane] = force[i];
-  drop_if_free(body_.bundle_of(gridpoint));
+  drop_if_free(body_.layout.bundle_of(gridpoint));
 }
 
 /// Throws Error where constraints or ties of a state from outside name something that is not there, or have
@@ -199,7 +203,8 @@ void Constraints<Dim>::require_valid(const StateVisitor& visitor) const {
                       "names slots that are not there");
       visitor.require(0 <= tie.component && tie.component < Dim, "ties", "has no direction of this body");
       for (int j = tie.begin; j < tie.end; ++j)
-        visitor.require(is_slot_of(s.tied_slots[j], bundle), "tied_slots", "names a slot of another bundle");
+        visitor.require(is_slot_of(body_, s.tied_slots[j], body_.first_bundle_of(static_cast<int>(b))),
+                        "tied_slots", "names a slot of another bundle");
     }
   }
   for (const auto& pack : s.constraint_packs)
@@ -208,13 +213,13 @@ void Constraints<Dim>::require_valid(const StateVisitor& visitor) const {
         visitor.require(
             std::isfinite(pack.prescribed_velocity[i][lane]) && std::isfinite(pack.applied[i][lane]),
             "constraint_packs", "has a velocity or a force that is not finite");
-  for (const TieOfBundle& tie : body_.made_ties) {
-    visitor.require(body_.made_constraints[tie.bundle] >= 0, "ties_of_bundles",
-                    "ties a bundle without constraints");
-    for (const int slot : tie.slots)
-      visitor.require(is_slot_of(slot, body_.layout.bundles[tie.bundle]), "ties_of_bundles",
+  for (const TieOfBundle& tie : body_.made_ties)
+    for (const int slot : tie.slots) {
+      visitor.require(is_slot_of(body_, slot, tie.bundle), "ties_of_bundles",
                       "names a slot of another bundle");
-  }
+      visitor.require(body_.made_constraints[body_.layout.bundle_of_pack[slot / kLanes]] >= 0,
+                      "ties_of_bundles", "ties a bundle without constraints");
+    }
 }
 
 template <int Dim>

@@ -31,9 +31,9 @@ class Constraints {
   void visit_state(StateVisitor& visitor);
 
  private:
-  int constraints_of(int gridpoint);
+  void constrain(int gridpoint);
   void drop_if_free(int bundle);
-  ConstraintPack<Dim>& constraint_pack(int constraints, int gridpoint);
+  ConstraintPack<Dim>& constraint_pack(int gridpoint);
   void place_ties();
   void visit_ties(StateVisitor& visitor);
   void require_valid(const StateVisitor& visitor) const;

@@ -83,7 +83,6 @@ class LayoutBuilder {
   void place_blocks() {
     layout_.gridpoint_slot = FlatArray<int>(model_.position.size());
     layout_.zone_slot = FlatArray<int>(model_.zones.size());
-    layout_.bundle_of_block = FlatArray<int>(model_.block_material.size());
     const ChunkList& blocks = layout_.chunks.blocks;
     std::vector<int> begins{0};
     for (int chunk = 0; chunk < blocks.count(); ++chunk) {
@@ -92,7 +91,9 @@ class LayoutBuilder {
     }
     layout_.chunks.bundles = blocks.of(std::move(begins));
     layout_.shape_zones = FlatArray<std::array<int, Dim + 1>>(shape_zones_);
-    layout_.spread_zones = FlatArray<ZoneCorners<Dim>>(spread_zones_);
+    layout_.piece_zones = FlatArray<ZoneCorners<Dim>>(piece_zones_);
+    layout_.pieces = FlatArray<int>(pieces_);
+    layout_.bundle_of_pack = FlatArray<int>(bundle_of_pack_);
     layout_.blocks = FlatArray<std::array<int, kLanes>>(blocks_);
   }
 
@@ -111,9 +112,7 @@ class LayoutBuilder {
       const auto& c = model_.contacts[first];
       const int a = block_of[c.a], b = block_of[c.b];
       const auto [own, other] = std::minmax(chunk_of_block[a], chunk_of_block[b]);
-      faces[f] = {f,           own,
-                  other,       std::max(layout_.bundle_of_block[a], layout_.bundle_of_block[b]),
-                  c.interface, model_.face_contacts[f + 1] - first};
+      faces[f] = {f, own, other, later_bundle(f), c.interface, model_.face_contacts[f + 1] - first};
     }
     // faces between chunks first
     std::stable_sort(faces.begin(), faces.end(), [](const FaceToPlace& f, const FaceToPlace& g) {
@@ -134,7 +133,7 @@ class LayoutBuilder {
       begins.push_back(static_cast<int>(faces_.size()));
     }
     layout_.chunks.face_packs = blocks.of(std::move(begins));
-    finish_faces(block_of);
+    finish_faces();
   }
 
   /// Lists the contacts of each gridpoint in the order of their numbers, so that their sum has one order.
@@ -143,7 +142,7 @@ class LayoutBuilder {
     const int idle = kLanes * (layout_.point_packs - 1);
     std::vector<int> gridpoint(static_cast<std::size_t>(layout_.gridpoint_packs) * kLanes, -1);
     for (int g = 0; g < model_.gridpoint_count(); ++g) gridpoint[layout_.gridpoint_slot[g]] = g;
-    std::vector<ContactsOfPack> ranges(layout_.gridpoint_packs);
+    std::vector<IndexRange> ranges(layout_.gridpoint_packs);
     std::vector<ActingContacts> all;
     for (int pack = 0; pack < layout_.gridpoint_packs; ++pack) {
       const int begin = static_cast<int>(all.size());
@@ -165,8 +164,44 @@ class LayoutBuilder {
       }
       ranges[pack] = {begin, static_cast<int>(all.size())};
     }
-    layout_.contacts_of_pack = FlatArray<ContactsOfPack>(ranges);
+    layout_.contacts_of_pack = FlatArray<IndexRange>(ranges);
     layout_.acting = FlatArray<ActingContacts>(all);
+  }
+
+  /// Lists the corner forces of each gridpoint in pieces in the order of its zones, so that their sum has the
+  /// order of an alike bundle.
+  void gather_corners() {
+    const int idle = kLanes * (Dim + 1) * static_cast<int>(piece_zones_.size());
+    std::vector<std::vector<int>> of_slot(static_cast<std::size_t>(gathering_packs_) * kLanes);
+    for (const int piece : pieces_) {
+      const Bundle& bundle = bundles_[piece];
+      // the packs of a block's pieces stand one after the other, in either list
+      const int shift = slot_of(bundle.first_gathering_pack - bundle.first_pack, 0);
+      for (int z = 0; z < bundle.zones; ++z)
+        for (int n = 0; n <= Dim; ++n) {
+          const int pack = bundle.first_corners + z / kLanes, lane = z % kLanes;
+          const int slot = piece_zones_[pack].offset[n][lane] / offset_of<Dim>(1);
+          of_slot[slot + shift].push_back(slot_of(pack * (Dim + 1) + n, lane));
+        }
+    }
+    std::vector<IndexRange> ranges;
+    std::vector<std::array<int, kLanes>> all;
+    for (int pack = 0; pack < gathering_packs_; ++pack) {
+      const auto first = of_slot.begin() + slot_of(pack, 0);
+      const std::size_t most = std::max_element(first, first + kLanes, [](const auto& a, const auto& b) {
+                                 return a.size() < b.size();
+                               })->size();
+      const int begin = static_cast<int>(all.size());
+      for (std::size_t k = 0; k < most; ++k) {
+        std::array<int, kLanes> acting;
+        for (int lane = 0; lane < kLanes; ++lane)
+          acting[lane] = offset_of<Dim>(k < first[lane].size() ? first[lane][k] : idle);
+        all.push_back(acting);
+      }
+      ranges.push_back({begin, static_cast<int>(all.size())});
+    }
+    layout_.corners_of_pack = FlatArray<IndexRange>(ranges);
+    layout_.acting_corners = FlatArray<std::array<int, kLanes>>(all);
   }
 
  private:
@@ -228,7 +263,7 @@ class LayoutBuilder {
 
   void add_bundle(int shape, const std::vector<int>& blocks) {
     if (static_cast<int>(blocks.size()) < parameters_.fewest_blocks) {
-      for (int block : blocks) add_spread(block);
+      for (int block : blocks) add_pieces(block);
       return;
     }
     Bundle bundle;
@@ -251,33 +286,50 @@ class LayoutBuilder {
     finish(bundle, lanes);
   }
 
-  void add_spread(int block) {
-    Bundle bundle;
-    bundle.kind = BundleKind::spread;
-    const int gridpoints = model_.block_gridpoints[block + 1] - model_.block_gridpoints[block];
-    bundle.packs = (gridpoints + kLanes - 1) / kLanes;
-    bundle.zones = model_.block_zones[block + 1] - model_.block_zones[block];
-    start(bundle);
+  /// Places a block over all lanes, in pieces of about the same size.
+  void add_pieces(int block) {
+    const int first_gridpoint = model_.block_gridpoints[block], first_zone = model_.block_zones[block];
+    const int gridpoints = model_.block_gridpoints[block + 1] - first_gridpoint;
+    const int zones = model_.block_zones[block + 1] - first_zone;
+    const int packs = packs_of(gridpoints), zone_packs = packs_of(zones);
+    const int most_packs = std::max(1, parameters_.most_zones / kLanes);
+    const int pieces = std::min(packs, (zone_packs + most_packs - 1) / most_packs);
     for (int i = 0; i < gridpoints; ++i)
-      layout_.gridpoint_slot[model_.block_gridpoints[block] + i] = slot_of(bundle.first_pack, i);
-    for (int i = 0; i < bundle.zones; ++i)
-      layout_.zone_slot[model_.block_zones[block] + i] = slot_of(bundle.first_zone_pack, i);
-    bundle.first_corners = static_cast<int>(spread_zones_.size());
-    // an idle lane repeats the pack's first zone, whose forces are then left out
-    for (int pack = 0; pack < bundle.zone_packs(); ++pack) {
-      ZoneCorners<Dim> corners;
-      for (int lane = 0; lane < kLanes; ++lane) {
-        const int zone = kLanes * pack + lane < bundle.zones ? kLanes * pack + lane : kLanes * pack;
-        for (int n = 0; n <= Dim; ++n)
-          corners.offset[n][lane] =
-              offset_of<Dim>(layout_.gridpoint_slot[model_.zones[model_.block_zones[block] + zone][n]]);
-      }
-      spread_zones_.push_back(corners);
-    }
+      layout_.gridpoint_slot[first_gridpoint + i] = slot_of(layout_.gridpoint_packs, i);
+    for (int i = 0; i < zones; ++i) layout_.zone_slot[first_zone + i] = slot_of(layout_.zone_packs, i);
     std::array<int, kLanes> lanes;
     lanes.fill(block);
-    finish(bundle, lanes);
+    for (int i = 0; i < pieces; ++i) {
+      Bundle bundle;
+      bundle.kind = BundleKind::piece;
+      bundle.packs = packs * (i + 1) / pieces - packs * i / pieces;
+      const int zone = kLanes * (zone_packs * i / pieces);
+      bundle.zones = std::min(zones, kLanes * (zone_packs * (i + 1) / pieces)) - zone;
+      bundle.first_corners = static_cast<int>(piece_zones_.size());
+      start(bundle);
+      add_corners(first_zone + zone, bundle);
+      bundle.first_gathering_pack = gathering_packs_;
+      gathering_packs_ += bundle.packs;
+      pieces_.push_back(bundle_count());
+      finish(bundle, lanes);
+    }
   }
+
+  /// Adds the corners of consecutive zones. An idle lane repeats its pack's first zone, whose forces are then
+  /// left out.
+  void add_corners(int first_zone, const Bundle& bundle) {
+    for (int first = 0; first < bundle.zones; first += kLanes) {
+      ZoneCorners<Dim> corners;
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const int zone = first_zone + (first + lane < bundle.zones ? first + lane : first);
+        for (int n = 0; n <= Dim; ++n)
+          corners.offset[n][lane] = offset_of<Dim>(layout_.gridpoint_slot[model_.zones[zone][n]]);
+      }
+      piece_zones_.push_back(corners);
+    }
+  }
+
+  static int packs_of(int items) { return (items + kLanes - 1) / kLanes; }
 
   void start(Bundle& bundle) {
     bundle.first_pack = layout_.gridpoint_packs;
@@ -288,10 +340,18 @@ class LayoutBuilder {
   }
 
   void finish(const Bundle& bundle, const std::array<int, kLanes>& lanes) {
-    for (int block : lanes)
-      if (block >= 0) layout_.bundle_of_block[block] = bundle_count();
+    bundle_of_pack_.resize(bundle_of_pack_.size() + static_cast<std::size_t>(bundle.packs), bundle_count());
     bundles_.push_back(bundle);
     blocks_.push_back(lanes);
+  }
+
+  /// Returns the last bundle that a face touches.
+  int later_bundle(int face) const {
+    int later = 0;
+    for (int c = model_.face_contacts[face]; c < model_.face_contacts[face + 1]; ++c)
+      for (const int g : {model_.contacts[c].a, model_.contacts[c].b})
+        later = std::max(later, layout_.bundle_of(g));
+    return later;
   }
 
   /// Places the faces of a chunk. Faces that share a pack have one interface, one number of points and one
@@ -358,15 +418,14 @@ class LayoutBuilder {
     faces_of_pack_.push_back(faces);
   }
 
-  void finish_faces(const std::vector<int>& block_of) {
+  void finish_faces() {
     for (std::size_t r = 0; r < faces_of_pack_.size(); ++r)
-      for (const FaceToPlace& f : faces_of_pack_[r]) {
-        const auto& c = model_.contacts[model_.face_contacts[f.face]];
-        for (int g : {c.a, c.b}) {
-          int& last = bundles_[layout_.bundle_of_block[block_of[g]]].last_face_pack;
-          last = std::max(last, static_cast<int>(r));
-        }
-      }
+      for (const FaceToPlace& f : faces_of_pack_[r])
+        for (int i = model_.face_contacts[f.face]; i < model_.face_contacts[f.face + 1]; ++i)
+          for (const int g : {model_.contacts[i].a, model_.contacts[i].b}) {
+            int& last = bundles_[layout_.bundle_of(g)].last_face_pack;
+            last = std::max(last, static_cast<int>(r));
+          }
     for (std::size_t i = 1; i < bundles_.size(); ++i)
       bundles_[i].last_face_pack = std::max(bundles_[i].last_face_pack, bundles_[i - 1].last_face_pack);
     std::vector<int> packs_reached{0};
@@ -392,7 +451,9 @@ class LayoutBuilder {
   std::map<std::pair<int, Zones>, int> shape_index_;
   std::vector<Shape> shapes_;
   std::vector<std::array<int, Dim + 1>> shape_zones_;
-  std::vector<ZoneCorners<Dim>> spread_zones_;
+  std::vector<ZoneCorners<Dim>> piece_zones_;
+  std::vector<int> pieces_, bundle_of_pack_;
+  int gathering_packs_ = 0;  // packs of gridpoints of pieces
   std::vector<Bundle> bundles_;
   std::vector<std::array<int, kLanes>> blocks_;
   std::vector<FacePack<Dim>> faces_;
@@ -411,13 +472,12 @@ Layout<Dim>::Layout(const Model<Dim>& model, const LayoutParameters& parameters)
   builder.place_blocks();
   builder.place_faces();
   builder.gather_contacts();
+  builder.gather_corners();
 }
 
 template <int Dim>
 std::optional<std::size_t> Layout<Dim>::count_of(Per per) const {
   switch (per) {
-    case Per::block:
-      return this->bundle_of_block.size();
     case Per::bundle:
       return this->bundles.size();
     case Per::gridpoint:

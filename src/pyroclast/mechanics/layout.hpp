@@ -17,7 +17,7 @@
 ///     body    chunk 0                              | chunk 1          | ...   consecutive blocks
 ///     chunk   bundle  bundle  bundle  ...                                     blocks that step together
 ///
-///     alike    lane 0   1   2   3   4   5   6   7       spread                one block over all lanes
+///     alike    lane 0   1   2   3   4   5   6   7       piece                 one block over all lanes
 ///     pack 0   gridpoint 0 of eight blocks               0  1  2  3  4  5  6  7
 ///     pack 1   gridpoint 1 of the same blocks            8  9 10  .  .  .  .  .      . idle
 ///     ...
@@ -30,7 +30,7 @@
 /// slot     a place in a pack: slot = 8 pack + lane
 /// offset   place where the vector of a slot begins in an array of numbers: Dim slot
 /// idle     a place that nothing fills; nothing acts on it
-/// bundle   blocks that go through a step together: `alike` or `spread`
+/// bundle   blocks that go through a step together, `alike`; or a `piece`: a block, or a part of a large one
 /// shape    the zones of a block, as numbers of its own gridpoints; alike blocks have the same shape
 /// fan      a shape whose zones go round the last gridpoint, in the order of the others
 /// chunk    consecutive blocks with bundles and packs of their own: the unit of sums, files and ranks
@@ -47,25 +47,33 @@ inline constexpr int offset_of(int slot) {
 
 enum class BundleKind : std::uint8_t {
   alike,  ///< up to eight blocks with the same zones, one a lane: pack i holds the i-th gridpoint of each
-  spread  ///< one block over all lanes: its gridpoints and zones follow one another through the packs
+  /// One block over all lanes, or a part of a large block: its gridpoints and zones follow one another
+  /// through the packs, piece after piece. Threads share the pieces. So one pass writes the forces of zones
+  /// on their corners, and in the next one each gridpoint gathers its own, whatever pieces they come from.
+  piece
 };
 
-/// Blocks that go through a step together.
+/// Range of items.
+struct IndexRange {
+  int first = 0, last = 0;  ///< [first, last)
+};
+
+/// Blocks, or a piece of a block, that go through a step together.
 struct Bundle {
   BundleKind kind = BundleKind::alike;
-  bool fan = false;         ///< alike: true where the shape is a fan
-  int first_pack = 0;       ///< first pack of gridpoints
-  int packs = 0;            ///< number of packs of gridpoints
-  int first_zone_pack = 0;  ///< first pack of zones
-  /// alike: zones of each block, a pack each; spread: zones of the block, eight a pack.
-  int zones = 0;
-  int first_corners = 0;    ///< alike: entry of `shape_zones`; spread: entry of `spread_zones`
-  int last_face_pack = -1;  ///< last pack of faces that touches the bundle or one before it
+  bool fan = false;              ///< alike: true where the shape is a fan
+  int first_pack = 0;            ///< first pack of gridpoints
+  int packs = 0;                 ///< number of packs of gridpoints
+  int first_zone_pack = 0;       ///< first pack of zones
+  int zones = 0;                 ///< alike: zones of each block, a pack each; piece: its zones, eight a pack
+  int first_corners = 0;         ///< alike: entry of `shape_zones`; piece: entry of `piece_zones`
+  int first_gathering_pack = 0;  ///< piece: entry of `corners_of_pack`
+  int last_face_pack = -1;       ///< last pack of faces that touches the bundle or one before it
 
   int zone_packs() const { return kind == BundleKind::alike ? zones : (zones + kLanes - 1) / kLanes; }
 };
 
-/// Gridpoints of eight zones of a spread block, as offsets.
+/// Gridpoints of eight zones of a piece, as offsets.
 template <int Dim>
 struct ZoneCorners {
   std::array<std::array<int, kLanes>, Dim + 1> offset;
@@ -83,11 +91,8 @@ struct alignas(64) PointPack {
   std::array<int, kLanes> a, b;  ///< offsets of the two gridpoints
 };
 
-/// Contact points that act on the gridpoints of a pack. In 2D a corner of a block has two, one of each edge.
-struct ContactsOfPack {
-  int begin = 0, end = 0;  ///< entries of `acting`
-};
-
+/// Contacts that act on the gridpoints of a pack, one on each. In 2D a corner of a block has two, one of each
+/// edge.
 struct ActingContacts {
   std::array<int, kLanes> contact;  ///< offset of each contact; of an idle contact where a lane has none
   std::uint32_t side_b = 0;         ///< bit of each lane: 1 where the gridpoint is on side b
@@ -98,7 +103,7 @@ enum class Touched : std::uint8_t {
   none,
   all,
   alike,     ///< packs of alike bundles
-  gathered,  ///< packs of spread bundles; with finite kinematics all packs
+  gathered,  ///< packs of pieces; with finite kinematics all packs
   held,      ///< internal variables that are always written: the held jump
   combined   ///< all packs with combined damping, else none
 };
@@ -112,7 +117,6 @@ enum class Lasts : std::uint8_t {
 
 /// Things of which an array has one entry each; with `_end`, it has one more entry behind the last.
 enum class Per : std::uint8_t {
-  block,
   bundle,
   gridpoint,
   gridpoint_pack,
@@ -171,20 +175,25 @@ template <int Dim, template <class> class Array>
 struct LayoutArrays {
   Array<Bundle> bundles;
   Array<std::array<int, Dim + 1>> shape_zones;  ///< zones of each shape in turn, as gridpoints of a block
-  Array<ZoneCorners<Dim>> spread_zones;         ///< packs of zones of spread blocks
+  Array<ZoneCorners<Dim>> piece_zones;          ///< packs of zones of pieces
+  Array<int> pieces;                            ///< bundle of each piece
   Array<FacePack<Dim>> faces;
   Array<int> first_point;   ///< first pack of points of each pack of faces, and of one more
   Array<PointPack> points;  ///< contact points of each pack of faces in turn
   /// Number of leading packs of gridpoints of its own chunk that the packs of faces before it read, for each
   /// pack of faces and one more.
   Array<int> packs_reached;
-  Array<bool> between_chunks;              ///< true for a pack of faces that join two chunks
-  Array<ContactsOfPack> contacts_of_pack;  ///< contacts of each pack of gridpoints
+  Array<bool> between_chunks;          ///< true for a pack of faces that join two chunks
+  Array<IndexRange> contacts_of_pack;  ///< entries of `acting` of each pack of gridpoints
   Array<ActingContacts> acting;
+  Array<IndexRange> corners_of_pack;  ///< entries of `acting_corners` of each pack of gridpoints of pieces
+  /// Offsets of the corner forces that act on the gridpoints of a pack, one on each; of an idle corner where
+  /// a lane has none.
+  Array<std::array<int, kLanes>> acting_corners;
 
   /// Slot of each gridpoint, zone and contact of the model.
   Array<int> gridpoint_slot, zone_slot, contact_slot;
-  Array<int> bundle_of_block;
+  Array<int> bundle_of_pack;              ///< bundle of each pack of gridpoints
   Array<std::array<int, kLanes>> blocks;  ///< blocks of each bundle, by lane; -1 where the lane idles
   Array<int> face_pack_of_point;          ///< pack of faces of each pack of points but the last
   Array<int> contacts_by_chunk;           ///< contacts of the model, chunk by chunk
@@ -193,7 +202,8 @@ struct LayoutArrays {
   static void each(F&& f, L&... l) {
     f(ArrayInfo{"bundles", Per::bundle, Touched::all}, l.bundles...);
     f(ArrayInfo{"shape_zones", Per::entry}, l.shape_zones...);  // few, and always near
-    f(ArrayInfo{"spread_zones", Per::entry, Touched::all}, l.spread_zones...);
+    f(ArrayInfo{"piece_zones", Per::entry, Touched::all}, l.piece_zones...);
+    f(ArrayInfo{"pieces", Per::entry}, l.pieces...);
     f(ArrayInfo{"faces", Per::face_pack, Touched::all}, l.faces...);
     f(ArrayInfo{"first_point", Per::face_pack_end, Dim == 2 ? Touched::none : Touched::all},
       l.first_point...);
@@ -202,10 +212,12 @@ struct LayoutArrays {
     f(ArrayInfo{"between_chunks", Per::face_pack, Touched::all}, l.between_chunks...);
     f(ArrayInfo{"contacts_of_pack", Per::gridpoint_pack, Touched::all}, l.contacts_of_pack...);
     f(ArrayInfo{"acting", Per::entry, Touched::all}, l.acting...);
+    f(ArrayInfo{"corners_of_pack", Per::entry, Touched::all}, l.corners_of_pack...);
+    f(ArrayInfo{"acting_corners", Per::entry, Touched::all}, l.acting_corners...);
     f(ArrayInfo{"gridpoint_slot", Per::gridpoint}, l.gridpoint_slot...);
     f(ArrayInfo{"zone_slot", Per::zone}, l.zone_slot...);
     f(ArrayInfo{"contact_slot", Per::contact}, l.contact_slot...);
-    f(ArrayInfo{"bundle_of_block", Per::block}, l.bundle_of_block...);
+    f(ArrayInfo{"bundle_of_pack", Per::gridpoint_pack}, l.bundle_of_pack...);
     f(ArrayInfo{"blocks", Per::bundle}, l.blocks...);
     f(ArrayInfo{"face_pack_of_point", Per::point_pack}, l.face_pack_of_point...);
     f(ArrayInfo{"contacts_by_chunk", Per::contact}, l.contacts_by_chunk...);
@@ -230,8 +242,10 @@ struct Chunks {
 
 /// Parameters of the layout of a body. Speed depends on them; no force does.
 struct LayoutParameters {
-  /// Least blocks of a bundle: fewer would leave too many lanes idle, so they are spread.
+  /// Least blocks of a bundle: fewer would leave too many lanes idle, so each goes over all lanes.
   int fewest_blocks = 4;
+  /// Most zones of a piece; a block of more stands in several.
+  int most_zones = 64;
 };
 
 /// Layout of a model. Blocks are taken in the order of the model, chunk by chunk. Within a chunk they are
@@ -254,6 +268,9 @@ struct Layout : LayoutArrays<Dim, FlatArray> {
   /// own.
   std::optional<std::size_t> count_of(Per per) const;
   int block_in(int bundle, int lane) const { return this->blocks[bundle][lane]; }
+  int bundle_of(int gridpoint) const {
+    return this->bundle_of_pack[this->gridpoint_slot[gridpoint] / kLanes];
+  }
 };
 
 extern template struct Layout<2>;

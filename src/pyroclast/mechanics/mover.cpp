@@ -8,6 +8,7 @@ namespace pyroclast {
 template <int Dim>
 void Mover<Dim>::sweep(int steps, Pass pass) {
   Body<Dim>& body = *body_;
+  const StepPasses<Dim>& passes = body.step.passes;
   const bool measure = pass != Pass::move;
   const auto update_faces = [](State<Dim>& s, int first, int last, bool measured) {
     for_each_law(s, first, last, [&](const PackFunctions<Dim>& law, int begin, int end) {
@@ -23,17 +24,24 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
       for (Share& share : share_out(body.layout, threads))
         workers_.push_back({std::move(share), body.make_scratch()});
     }
+    const bool ties_join_pieces = body.ties_join_pieces();
     body.team->run(threads, [&](int thread) {
       Worker& worker = workers_[static_cast<std::size_t>(thread)];
       State<Dim> s = body.state;
       int taken = 0;
       for (bool is_crowded = false; taken < left && !is_crowded; ++taken) {
-        for (const auto& faces : worker.share.crossing) update_faces(s, faces.first, faces.last, measure);
+        const Share& share = worker.share;
+        for (const auto& faces : share.crossing) update_faces(s, faces.first, faces.last, measure);
+        passes.place_corner_forces(s, share.corner_pieces.first, share.corner_pieces.last, pass);
         body.team->barrier();
-        for (const auto& stride : worker.share.strides) {
+        for (const auto& stride : share.strides) {
           update_faces(s, stride.faces.first, stride.faces.last, measure);
-          body.step.passes.move_bundles(s, stride.bundles.first, stride.bundles.last, pass,
-                                        worker.scratch.data());
+          passes.move_bundles(s, stride.bundles.first, stride.bundles.last, pass, worker.scratch.data());
+        }
+        if (ties_join_pieces) {
+          body.team->barrier();
+          passes.move_tied_pieces(s, share.moved_pieces.first, share.moved_pieces.last, pass,
+                                  worker.scratch.data());
         }
         is_crowded = body.team->barrier();
       }

@@ -34,22 +34,20 @@ Vec<Dim> Reader<Dim>::force(int gridpoint) const {
 
 template <int Dim>
 Vec<Dim> Reader<Dim>::applied_force(int gridpoint) const {
-  const int index = body_.made_constraints[body_.bundle_of(gridpoint)];
-  if (index < 0) return {};
-  const int slot = body_.slot_in_bundle(gridpoint);
-  const auto& pack = body_.state.constraint_packs[body_.state.constraints[index].first_pack + slot / kLanes];
+  const int pack = body_.constraint_pack_of(gridpoint);
+  if (pack < 0) return {};
+  const int lane = body_.layout.gridpoint_slot[gridpoint] % kLanes;
   Vec<Dim> force;
-  for (int i = 0; i < Dim; ++i) force[i] = pack.applied[i][slot % kLanes];
+  for (int i = 0; i < Dim; ++i) force[i] = body_.state.constraint_packs[pack].applied[i][lane];
   return force;
 }
 
 template <int Dim>
 bool Reader<Dim>::is_prescribed(int gridpoint, int component) const {
-  const int index = body_.made_constraints[body_.bundle_of(gridpoint)];
-  if (index < 0) return false;
-  const int slot = body_.slot_in_bundle(gridpoint);
-  const auto& pack = body_.state.constraint_packs[body_.state.constraints[index].first_pack + slot / kLanes];
-  return (pack.prescribed[component] >> (slot % kLanes) & 1U) != 0;
+  const int pack = body_.constraint_pack_of(gridpoint);
+  if (pack < 0) return false;
+  const int lane = body_.layout.gridpoint_slot[gridpoint] % kLanes;
+  return (body_.state.constraint_packs[pack].prescribed[component] >> lane & 1U) != 0;
 }
 
 template <int Dim>

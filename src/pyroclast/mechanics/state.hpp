@@ -65,7 +65,8 @@ struct Tie {
 struct BundleConstraints {
   int first_pack = 0;               ///< entry of constraint_packs, one for each pack of gridpoints
   int first_tie = 0, last_tie = 0;  ///< entries of ties: [first, last)
-  double loading_work = 0.0;        ///< work of the reactions and applied forces, J
+  bool ties() const { return first_tie != last_tie; }
+  double loading_work = 0.0;  ///< work of the reactions and applied forces, J
 };
 
 /// Sums over a bundle. They are taken when a step is measured, except the works, to which every step adds.
@@ -94,7 +95,7 @@ struct StateArrays {
   Array<VectorPack<Dim>> position, velocity;
   Array<VectorPack<Dim>> force;       ///< sum of forces at the last step, N
   Array<VectorPack<Dim>> stiffness;   ///< sum of |stiffness| over each row of the assembled matrix, N/m
-  Array<Vec<Dim>> gathered_position;  ///< positions by slot, from which zones of spread blocks gather, m
+  Array<Vec<Dim>> gathered_position;  ///< positions by slot, from which zones of pieces gather, m
   Array<Vec<Dim>> displacement;       ///< displacements by slot, from which faces gather, m
   /// Time step over moving mass by slot, s/kg; any finite number where idle.
   Array<double> step_over_mass;
@@ -107,13 +108,18 @@ struct StateArrays {
   // Contact points. All points of a pack of faces have one law. Each list holds the numbers that this law
   // has, one line for eight points; a law without such numbers has no lines. A step touches losses only where
   // something is lost.
-  Array<std::uint8_t> law_of_faces;    ///< entry of `State::laws`, by pack of faces
-  Array<Line> internals, loss;         ///< lines of each pack of points in turn
-  Array<int> first_internal;           ///< first line of each pack of faces, and of one more
-  Array<int> first_loss;               ///< first line of each pack of faces, and of one more
-  Array<bool> losing;                  ///< true for a pack of points that lost something in the last step
-  Array<Vec<Dim>> contact_force;       ///< force on side a by slot, from which gridpoints gather, N
-  Array<Vec<Dim>> turning_force;       ///< force on both sides by slot; finite kinematics only, N
+  Array<std::uint8_t> law_of_faces;  ///< entry of `State::laws`, by pack of faces
+  Array<Line> internals, loss;       ///< lines of each pack of points in turn
+  Array<int> first_internal;         ///< first line of each pack of faces, and of one more
+  Array<int> first_loss;             ///< first line of each pack of faces, and of one more
+  Array<bool> losing;                ///< true for a pack of points that lost something in the last step
+  Array<Vec<Dim>> contact_force;     ///< force on side a by slot, from which gridpoints gather, N
+  Array<Vec<Dim>> turning_force;     ///< force on both sides by slot; finite kinematics only, N
+  /// Forces of zones of pieces on their corners, from which gridpoints gather, N: for each pack of zones
+  /// eight of each corner; behind them eight idle ones.
+  Array<Vec<Dim>> corner_force;
+  /// Sums of forces of the gridpoints of pieces until their ties share them out, by `corners_of_pack`, N.
+  Array<VectorPack<Dim>> piece_force;
   Array<std::byte> contact_constants;  ///< constants of sets in turn
   /// First byte of the set of each pack of faces; where its points differ only the set's choices count.
   Array<int> first_constant;
@@ -157,6 +163,8 @@ struct StateArrays {
     f(ArrayInfo{"turning_force", Per::point_slot_or_idle, Touched::all, Touched::all, Lasts::a_step,
                 HeldBy::owner_and_halo},
       s.turning_force...);
+    f(ArrayInfo{"corner_force", Per::entry, Touched::all, Touched::all, Lasts::a_step}, s.corner_force...);
+    f(ArrayInfo{"piece_force", Per::entry, Touched::none, Touched::none, Lasts::a_step}, s.piece_force...);
     f(ArrayInfo{"contact_constants", Per::entry}, s.contact_constants...);  // few, and always near
     f(ArrayInfo{"first_constant", Per::face_pack, Touched::all}, s.first_constant...);
     f(ArrayInfo{"one_set", Per::face_pack, Touched::all}, s.one_set...);
@@ -228,9 +236,16 @@ enum class Pass : std::uint8_t {
 /// Passes of the step, compiled for one instruction set; packs of faces are compiled with their law.
 template <int Dim>
 struct StepPasses {
-  /// Sums the forces of bundles and moves their gridpoints.
+  /// Computes the corner forces of pieces.
+  /// \param first, last  entries of `pieces`
+  void (*place_corner_forces)(State<Dim>&, int first, int last, Pass);
+  /// Sums the forces of bundles and moves their gridpoints. Those of tied pieces still stand: their forces
+  /// wait for the sums of the block's other pieces.
   /// \param scratch  2 Dim kLanes numbers for every pack of the largest bundle, aligned to 64 bytes
   void (*move_bundles)(State<Dim>&, int first, int last, Pass, double* scratch);
+  /// Shares the sums of tied pieces out and moves their gridpoints.
+  /// \param first, last  entries of `pieces`
+  void (*move_tied_pieces)(State<Dim>&, int first, int last, Pass, double* scratch);
   /// Computes `State::stiffness`; leaves the contact forces unset until faces are updated.
   void (*sum_stiffness)(State<Dim>&, double* scratch);
 };

@@ -13,7 +13,7 @@ template <int Dim>
 Vec<Dim> Totals<Dim>::mean_displacement(const GridpointSet& set) const {
   const auto sum = chunked_sum<Vec<Dim>>(
       set.chunks, [&](int i, Vec<Dim>& total) { total += read_.displacement(set.gridpoints[i]); });
-  return sum * (1.0 / count(set.chunks));
+  return sum * (1.0 / set.chunks.own_items());
 }
 
 template <int Dim>
@@ -136,7 +136,7 @@ template <int Dim>
 double Totals<Dim>::mean_unbalanced_force() const {
   return chunked_sum(body_.layout.chunks.bundles,
                      [&](int b) { return body_.state.bundle_sums[b].unbalanced; }) /
-         count(body_.layout.chunks.gridpoints);
+         body_.layout.chunks.gridpoints.own_items();
 }
 
 template <int Dim>

@@ -26,8 +26,8 @@ using specimen::Edge;
 using specimen::Region;
 using specimen::Specimen;
 
-/// Height of a bearing's zones over their width, about: contact forces vary along the face much faster than
-/// into the depth.
+/// Height of a bearing's zones at its seat over their width, about: contact forces vary along the face much
+/// faster than into the depth.
 constexpr double kZoneHeightOverWidth = 2.0;
 
 /// Tells whether an edge of the outline lies on a side, or on a patch of it.
@@ -80,6 +80,16 @@ struct BearingBlock {
   int interface = 0;
 };
 
+/// Returns the heights between the rows of a bearing's zones over its thickness, from 0 to 1. Forces even out
+/// away from the seat, so each row is twice as high as the one before.
+/// \param rows_of_even_height  rows that would stand in the thickness if all were like the first
+std::vector<double> row_heights(double rows_of_even_height) {
+  const int rows = std::max(2, static_cast<int>(std::ceil(std::log2(rows_of_even_height + 1.0))));
+  std::vector<double> heights;
+  for (int row = 0; row <= rows; ++row) heights.push_back((std::exp2(row) - 1.0) / (std::exp2(rows) - 1.0));
+  return heights;
+}
+
 /// Adds a structured block over a seat.
 BearingBlock add_bearing(Model<2>& model, const Specimen& specimen, const Seat& seat, const Bearing& bearing,
                          int material) {
@@ -104,16 +114,12 @@ BearingBlock add_bearing(Model<2>& model, const Specimen& specimen, const Seat& 
           fmt::format("bearing \"{}\": it is as narrow as a block; it needs two or more", bearing.name));
     *nearest = middle;
   }
-  const double width = norm(along) / (columns - 1);
-  const int rows =
-      std::max(2, static_cast<int>(std::lround(bearing.thickness / (kZoneHeightOverWidth * width))));
+  const std::vector<double> heights =
+      row_heights(bearing.thickness / (kZoneHeightOverWidth * norm(along) / (columns - 1)));
+  const int rows = static_cast<int>(heights.size()) - 1;
   std::vector<Vec<2>> gridpoints;
-  for (int r = 0; r <= rows; ++r)
-    for (int i = 0; i < columns; ++i) {
-      Vec<2> p = outer[i] - inner[i];
-      for (int c = 0; c < 2; ++c) p[c] = inner[i][c] + p[c] * r / rows;
-      gridpoints.push_back(p);
-    }
+  for (const double height : heights)
+    for (int i = 0; i < columns; ++i) gridpoints.push_back(inner[i] + height * (outer[i] - inner[i]));
   std::vector<std::array<int, 3>> zones;
   for (int r = 0; r < rows; ++r)
     for (int i = 0; i + 1 < columns; ++i) {

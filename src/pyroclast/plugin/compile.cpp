@@ -41,11 +41,10 @@ void write(const fs::path& file, const std::string& text) {
 /// Splits code into names, and every other character alone.
 std::vector<std::string> words_of(const std::string& code) {
   std::vector<std::string> words;
-  const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
   for (std::size_t i = 0; i < code.size();) {
     std::size_t end = i + 1;
-    if (in_name(code[i]))
-      while (end < code.size() && in_name(code[end])) ++end;
+    if (is_of_name(code[i]))
+      while (end < code.size() && is_of_name(code[end])) ++end;
     if (std::isspace(static_cast<unsigned char>(code[i])) == 0) words.push_back(code.substr(i, end - i));
     i = end;
   }

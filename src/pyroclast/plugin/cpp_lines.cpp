@@ -9,10 +9,6 @@ namespace pyroclast {
 
 namespace {
 
-bool is_of_name(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-}
-
 /// Tells whether a raw string begins at an R, one that no other name ends with.
 bool begins_raw_string(const std::string& text, std::size_t r) {
   if (text.compare(r, 2, "R\"") != 0 || text.find('(', r) == std::string::npos) return false;
@@ -23,6 +19,10 @@ bool begins_raw_string(const std::string& text, std::size_t r) {
 }
 
 }  // namespace
+
+bool is_of_name(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
 
 std::vector<std::string> logical_lines(const std::string& text) {
   std::string spliced;

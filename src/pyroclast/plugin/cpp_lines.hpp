@@ -5,6 +5,9 @@
 
 namespace pyroclast {
 
+/// Tells whether a character may stand in a name of C++.
+bool is_of_name(char c);
+
 /// Returns the lines of a C++ text as the preprocessor sees them: spliced, without comments, and raw strings
 /// as empty ones.
 std::vector<std::string> logical_lines(const std::string& text);

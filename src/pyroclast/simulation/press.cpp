@@ -81,9 +81,7 @@ void Press<Dim>::move_platen(double velocity) {
 
 template <int Dim>
 void Press<Dim>::hold(double stress) {
-  double force = stress;
-  for (double width : widths_) force *= width;
-  force *= mechanics_.model().thickness;
+  const double force = stress * area();
   const auto& support = set("top_platen_support");
   Vec<Dim> share{};
   share[axis_] = -force / static_cast<double>(support.size());

@@ -9,7 +9,7 @@ namespace pyroclast {
 template <int Dim>
 double mean_position(const Model<Dim>& model, const GridpointSet& set, int axis) {
   const double sum = chunked_sum(set.chunks, [&](int i) { return model.position[set.gridpoints[i]][axis]; });
-  return sum / count(set.chunks);
+  return sum / set.chunks.own_items();
 }
 
 }  // namespace pyroclast

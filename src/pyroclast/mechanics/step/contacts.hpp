@@ -18,8 +18,8 @@ struct ContactForces {
   /// opposite signs, or equal signs where stiffness stands in the place of the forces.
   template <Kinematics kKinematics, bool kOpposite>
   static Vector add_forces(const State<Dim>& s, int pack, Vector total) {
-    const ContactsOfPack range = s.layout.contacts_of_pack[pack];
-    for (int k = range.begin; k < range.end; ++k) {
+    const IndexRange range = s.layout.contacts_of_pack[pack];
+    for (int k = range.first; k < range.last; ++k) {
       const ActingContacts& acting = s.layout.acting[k];
       const Vector force = R::gather(s.contact_force, acting.contact);
       if constexpr (kOpposite) {

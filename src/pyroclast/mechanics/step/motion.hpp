@@ -2,7 +2,7 @@
 
 #include "pyroclast/mechanics/step/packs.hpp"
 
-/// Motion of gridpoints under the sums of forces, Eqs. (6)-(8), held, driven and loaded as prescribed.
+/// Motion of gridpoints under the sums of forces, Eqs. (6)-(8), held, tied, driven and loaded as prescribed.
 namespace pyroclast {
 
 template <int Dim, class Set>
@@ -13,30 +13,35 @@ struct Motion {
   using Scratch = typename R::Scratch;
   using Sums = typename R::Sums;
 
-  /// Adds applied forces, and shares the sum (4) out by mass where gridpoints are tied.
+  /// Adds applied forces.
   template <bool kMeasure>
-  static void hold_and_load(const State<Dim>& s, const Bundle& bundle, const BundleConstraints& constraints,
-                            const Scratch& scratch, Sums& sums) {
+  static void load(const State<Dim>& s, const Bundle& bundle, const BundleConstraints& constraints,
+                   const Scratch& scratch, Sums& sums) {
     for (int i = 0; i < bundle.packs; ++i) {
       const Vector applied = R::load(s.constraint_packs[constraints.first_pack + i].applied);
       R::store(R::load(scratch.sum[i].c) + applied, scratch.sum[i].c);
       if constexpr (kMeasure) sums.applied += norm(applied);
     }
+  }
+
+  /// Shares the sum (4) out by mass where gridpoints are tied.
+  /// \param forces  sums of forces of all tied gridpoints, by pack from the bundle's first on: those of
+  ///                `scratch`, or of all pieces of a block
+  static void share_out(const State<Dim>& s, const Bundle& bundle, const BundleConstraints& constraints,
+                        const VectorPack<Dim>* forces, const Scratch& scratch) {
     for (int t = constraints.first_tie; t < constraints.last_tie; ++t) {
       const Tie& tie = s.ties[t];
-      const auto force = [&](int slot) -> double& {
-        const int own = slot - slot_of(bundle.first_pack, 0);
-        return scratch.sum[own / kLanes].c[tie.component][own % kLanes];
-      };
       double total = 0.0, mass = 0.0;
       for (int i = tie.begin; i < tie.end; ++i) {
         const int slot = s.tied_slots[i];
-        total += force(slot);
+        total += forces[slot / kLanes - bundle.first_pack].c[tie.component][slot % kLanes];
         mass += s.time_step / s.step_over_mass[slot];
       }
       for (int i = tie.begin; i < tie.end; ++i) {
-        const int slot = s.tied_slots[i];
-        force(slot) = total * (s.time_step / s.step_over_mass[slot]) / mass;
+        const int slot = s.tied_slots[i], pack = slot / kLanes - bundle.first_pack;
+        if (pack < 0 || pack >= bundle.packs) continue;  // that of another piece
+        scratch.sum[pack].c[tie.component][slot % kLanes] =
+            total * (s.time_step / s.step_over_mass[slot]) / mass;
       }
     }
   }
@@ -73,10 +78,17 @@ struct Motion {
       kept.kinetic = sum(sums.kinetic);
     }
     if constexpr (kPass != Pass::move) {
-      kept.stored = sum(sums.stored);
-      kept.applied = sum(sums.applied);
+      const bool begun = s.layout.bundles[index].kind == BundleKind::piece;
+      kept.stored = (begun ? kept.stored : 0.0) + sum(sums.stored);
+      kept.applied = (begun ? kept.applied : 0.0) + sum(sums.applied);
       kept.unbalanced = sum(sums.unbalanced);
     }
+  }
+
+  /// Books the sums of a piece's zones, to which `keep` adds.
+  static void keep_of_zones(State<Dim>& s, int index, const Sums& sums) {
+    s.bundle_sums[index].stored = sum(sums.stored);
+    s.bundle_sums[index].applied = sum(sums.applied);
   }
 
  private:

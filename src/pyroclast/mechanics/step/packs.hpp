@@ -21,6 +21,19 @@ void with_creep(const State<Dim>& s, F f) {
   f(std::true_type());
 }
 
+/// Calls `f` with the work of a pass as a constant.
+template <class F>
+void with_pass(Pass pass, F f) {
+  switch (pass) {
+    case Pass::move:
+      return f(std::integral_constant<Pass, Pass::move>());
+    case Pass::move_and_measure:
+      return f(std::integral_constant<Pass, Pass::move_and_measure>());
+    case Pass::measure:
+      return f(std::integral_constant<Pass, Pass::measure>());
+  }
+}
+
 /// \tparam Set  an instruction set of base/lanes.hpp
 template <int Dim, class Set>
 struct Packs {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "pyroclast/mechanics/compiled_step.hpp"
 #include "pyroclast/mechanics/step/contacts.hpp"
 #include "pyroclast/mechanics/step/motion.hpp"
@@ -8,7 +10,8 @@
 /// Step of the method, on lanes:
 ///
 ///     faces      displacements -> jump -> law -> traction -> contact force     Eqs. (10)-(15)  contacts.hpp
-///                      ^                                          |
+///     pieces           ^      -> zones -> corner forces                        Eqs. (4), (5)   zones.hpp
+///                      |                                          |
 ///                      |                                          v
 ///     bundles          |   weight + contact forces + zone forces + loads       Eqs. (4), (5)   zones.hpp
 ///                      |                                          |
@@ -36,16 +39,33 @@ class Step {
   static void move_bundles(State<Dim>& s, int first, int last, Pass pass, double* memory) {
     with_kinematics(s, [&](auto kinematics) {
       with_creep(s, [&](auto creeps) {
-        for (int b = first; b < last; ++b) {
-          if (pass == Pass::move) {
-            bundle<kinematics(), Pass::move, creeps()>(s, b, memory);
-          } else if (pass == Pass::move_and_measure) {
-            bundle<kinematics(), Pass::move_and_measure, creeps()>(s, b, memory);
-          } else {
-            bundle<kinematics(), Pass::measure, creeps()>(s, b, memory);
-          }
-        }
+        with_pass(pass, [&](auto kind) {
+          for (int b = first; b < last; ++b) bundle<kinematics(), kind(), creeps()>(s, b, memory);
+        });
       });
+    });
+  }
+
+  /// Computes the corner forces of pieces, in the first half of a step.
+  static void place_corner_forces(State<Dim>& s, int first, int last, Pass pass) {
+    with_kinematics(s, [&](auto kinematics) {
+      with_creep(s, [&](auto creeps) {
+        with_pass(pass, [&](auto kind) {
+          for (int i = first; i < last; ++i)
+            corner_forces<kinematics(), kind(), creeps()>(s, s.layout.pieces[i]);
+        });
+      });
+    });
+  }
+
+  /// Ends the step of pieces whose gridpoints are tied to others.
+  static void move_tied_pieces(State<Dim>& s, int first, int last, Pass pass, double* memory) {
+    with_pass(pass, [&](auto kind) {
+      for (int i = first; i < last; ++i) {
+        const int index = s.layout.pieces[i];
+        if (const int c = s.constraints_of_bundle[index]; c >= 0 && s.constraints[c].ties())
+          tied_piece<kind()>(s, index, s.constraints[c], memory);
+      }
     });
   }
 
@@ -54,7 +74,12 @@ class Step {
     for_each_law(
         s, 0, static_cast<int>(s.layout.faces.size()),
         [&](const PackFunctions<Dim>& law, int first, int last) { law.place_stiffness(s, first, last); });
+    for (const int piece : s.layout.pieces) Z::place_corner_stiffness(s, piece);
     with_kinematics(s, [&](auto kinematics) { stiffness<kinematics()>(s, memory); });
+  }
+
+  static constexpr StepPasses<Dim> passes() {
+    return {place_corner_forces, move_bundles, move_tied_pieces, sum_stiffness};
   }
 
   // flatten, because lanes that cross a call go through memory
@@ -67,10 +92,45 @@ class Step {
     take_displacements(s, bundle, scratch);
     sum_weights_and_contacts<kKinematics, kMeasure>(s, bundle, scratch, sums);
     Z::template add_forces<kKinematics, kMeasure, kCreeps>(s, index, scratch, sums);
-    if (const int c = s.constraints_of_bundle[index]; c >= 0)
-      M::template hold_and_load<kMeasure>(s, bundle, s.constraints[c], scratch, sums);
+    if (const int c = s.constraints_of_bundle[index]; c >= 0) {
+      const BundleConstraints& constraints = s.constraints[c];
+      M::template load<kMeasure>(s, bundle, constraints, scratch, sums);
+      if (bundle.kind == BundleKind::piece && constraints.ties())
+        return put_aside<kMeasure>(s, index, scratch, sums);
+      M::share_out(s, bundle, constraints, scratch.sum, scratch);
+    }
     M::template move_packs<kPass>(s, index, scratch, sums);
     M::template keep<kPass>(s, index, sums);
+  }
+
+  template <Kinematics kKinematics, Pass kPass, bool kCreeps>
+  [[gnu::flatten]] static void corner_forces(State<Dim>& s, int piece) {
+    constexpr bool kMeasure = kPass != Pass::move;
+    Sums sums;
+    Z::template place_corner_forces<kKinematics, kMeasure, kCreeps>(s, piece, sums);
+    if constexpr (kMeasure) M::keep_of_zones(s, piece, sums);
+  }
+
+  /// Puts the sums of forces of a piece aside, until those of its block's other pieces are there too.
+  template <bool kMeasure>
+  static void put_aside(State<Dim>& s, int piece, const Scratch& scratch, const Sums& sums) {
+    const Bundle& bundle = s.layout.bundles[piece];
+    std::copy_n(scratch.sum, bundle.packs, &s.piece_force[bundle.first_gathering_pack]);
+    if constexpr (kMeasure) s.bundle_sums[piece].applied += sum(sums.applied);
+  }
+
+  template <Pass kPass>
+  [[gnu::flatten]] static void tied_piece(State<Dim>& s, int piece, const BundleConstraints& constraints,
+                                          double* memory) {
+    const Bundle& bundle = s.layout.bundles[piece];
+    const Scratch scratch = R::scratch_of(bundle, memory);
+    const VectorPack<Dim>* const forces = &s.piece_force[bundle.first_gathering_pack];
+    Sums sums;
+    take_displacements(s, bundle, scratch);
+    std::copy_n(forces, bundle.packs, scratch.sum);
+    M::share_out(s, bundle, constraints, forces, scratch);
+    M::template move_packs<kPass>(s, piece, scratch, sums);
+    M::template keep<kPass>(s, piece, sums);
   }
 
   // Parts of a bundle's step, public so that each can be timed alone.
@@ -116,8 +176,6 @@ class Step {
 };
 
 template <class Set>
-const ByDimension<StepPasses> CompiledStep<Set>::step{
-    {Step<2, Set>::move_bundles, Step<2, Set>::sum_stiffness},
-    {Step<3, Set>::move_bundles, Step<3, Set>::sum_stiffness}};
+const ByDimension<StepPasses> CompiledStep<Set>::step{Step<2, Set>::passes(), Step<3, Set>::passes()};
 
 }  // namespace pyroclast

@@ -29,9 +29,27 @@ struct Zones {
         });
   }
 
+  /// Writes the forces of a piece's zones on their corners, which `add_forces` adds later.
+  template <Kinematics kKinematics, bool kMeasure, bool kCreeps>
+  static void place_corner_forces(State<Dim>& s, int index, Sums& sums) {
+    const double thickness = s.thickness;
+    const TensorPack<Dim>* const creep_strain = s.creep_strain.data();
+    place_at_corners(s, index, [&](const Corners& x, const Corners& u, int zone_pack, const auto& used) {
+      return forces<kKinematics, kMeasure, kCreeps>(thickness, x, u, properties(s, index, zone_pack),
+                                                    kCreeps ? creep_strain + zone_pack : nullptr, used, sums);
+    });
+  }
+
   /// Adds the sums of |stiffness| over the rows of the zones' matrices, N/m.
   static void add_stiffness(const State<Dim>& s, int index, const Scratch& scratch) {
     add_over_zones(s, index, scratch, [&](const Corners& x, const Corners&, int zone_pack, const auto&) {
+      return stiffness(s, x, properties(s, index, zone_pack));
+    });
+  }
+
+  /// Writes the sums of a piece's zones, which `add_stiffness` adds later, in the place of corner forces.
+  static void place_corner_stiffness(State<Dim>& s, int index) {
+    place_at_corners(s, index, [&](const Corners& x, const Corners&, int zone_pack, const auto&) {
       return stiffness(s, x, properties(s, index, zone_pack));
     });
   }
@@ -103,11 +121,12 @@ struct Zones {
 
   // Forces are added zone by zone in every kind of bundle, so that no sum depends on how blocks are bundled.
 
-  /// Adds the result of `zone(x, u, zone_pack, used)` at the corners of all zones of a bundle.
+  /// Adds the result of `zone(x, u, zone_pack, used)` at the corners of all zones of a bundle; in a piece,
+  /// the results that `place_at_corners` wrote.
   template <class Zone>
   static void add_over_zones(const State<Dim>& s, int index, const Scratch& scratch, Zone zone) {
     const Bundle& bundle = s.layout.bundles[index];
-    if (bundle.kind == BundleKind::spread) return add_over_spread(s, bundle, scratch, zone);
+    if (bundle.kind == BundleKind::piece) return add_from_corners(s, bundle, scratch);
     if constexpr (Dim == 2)
       if (bundle.fan) return add_over_fan(s, bundle, scratch, zone);
     add_over_alike(s, bundle, scratch, zone);
@@ -161,25 +180,31 @@ struct Zones {
     }
   }
 
+  /// Writes the result of `zone` for the zones of a piece, whose gridpoints stand anywhere in their block.
   template <class Zone>
-  static void add_over_spread(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch, Zone zone) {
+  static void place_at_corners(State<Dim>& s, int index, Zone zone) {
+    const Bundle& bundle = s.layout.bundles[index];
     for (int z = 0; z < bundle.zone_packs(); ++z) {
       const int used = bundle.zones - kLanes * z < kLanes ? bundle.zones - kLanes * z : kLanes;
-      const auto& corner = s.layout.spread_zones[bundle.first_corners + z].offset;
+      const int pack = bundle.first_corners + z;
+      const auto& corner = s.layout.piece_zones[pack].offset;
       Corners x, u;
       for (int n = 0; n <= Dim; ++n) {
         x[n] = R::gather(s.gathered_position, corner[n]);
         u[n] = R::gather(s.displacement, corner[n]);
       }
-      const Corners more = zone(x, u, bundle.first_zone_pack + z, Real::Truth::from_bits((1U << used) - 1U));
-      // Lanes are added one after the other: zones of a pack may share gridpoints.
-      alignas(64) double c[Dim + 1][Dim][kLanes];
-      for (int n = 0; n <= Dim; ++n) R::store(more[n], c[n]);
-      for (int lane = 0; lane < used; ++lane)
-        for (int n = 0; n <= Dim; ++n) {
-          const int slot = corner[n][lane] / offset_of<Dim>(1) - slot_of(bundle.first_pack, 0);
-          for (int i = 0; i < Dim; ++i) scratch.sum[slot / kLanes].c[i][slot % kLanes] += c[n][i][lane];
-        }
+      const Corners force = zone(x, u, bundle.first_zone_pack + z, Real::Truth::from_bits((1U << used) - 1U));
+      for (int n = 0; n <= Dim; ++n) R::store(force[n], &s.corner_force[slot_of(pack * (Dim + 1) + n, 0)]);
+    }
+  }
+
+  static void add_from_corners(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch) {
+    for (int i = 0; i < bundle.packs; ++i) {
+      const IndexRange range = s.layout.corners_of_pack[bundle.first_gathering_pack + i];
+      Vector total = R::load(scratch.sum[i].c);
+      for (int k = range.first; k < range.last; ++k)
+        total += R::gather(s.corner_force, s.layout.acting_corners[k]);
+      R::store(total, scratch.sum[i].c);
     }
   }
 };
