@@ -154,7 +154,7 @@ class Surveyor {
     visited_.push_back(given);
     for (const DeckTable& t : run.tables()) merge(t);
     for (const auto& k : run.known())
-      if (std::find(known_.begin(), known_.end(), k) == known_.end()) known_.push_back(k);
+      if (is_known_.insert(k).second) known_.push_back(k);
     bool is_new = false;
     for (const auto& a : run.answered()) {
       const auto [question, is_new_question] = questions_.of(a.question);
@@ -206,7 +206,10 @@ class Surveyor {
           is_changed = narrow(f, told) || is_changed;
       for (const auto& r : told.read) {
         if (is_explained(r.key, told)) continue;
-        found_.push_back(find(r, given));
+        Found f = find(r, given);
+        found_of_key_.resize(std::max<std::size_t>(found_of_key_.size(), r.key + 1));
+        found_of_key_[r.key].push_back(found_.size());
+        found_.push_back(std::move(f));
         is_changed = true;
       }
     }
@@ -239,8 +242,10 @@ class Surveyor {
 
   /// Tells whether a finding says that a run reads a key; one finding says so for all readings of a form.
   bool is_explained(int key, const Told& run) const {
-    return std::any_of(found_.begin(), found_.end(),
-                       [&](const Found& f) { return f.key == key && (f.in_form || is_explained(f, run)); });
+    if (static_cast<std::size_t>(key) >= found_of_key_.size()) return false;
+    return std::ranges::any_of(found_of_key_[key], [&](std::size_t place) {
+      return found_[place].in_form || is_explained(found_[place], run);
+    });
   }
 
   /// Tells whether a run's answers are those with which the key is read.
@@ -345,8 +350,10 @@ class Surveyor {
   std::vector<SurveyRun::Read> key_texts_;       ///< keys, by number
   std::set<std::vector<std::string>> possible_;  ///< lists of answers
   std::vector<Found> found_;
+  std::vector<std::vector<std::size_t>> found_of_key_;  ///< places of the findings of each key, by its number
   std::vector<DeckTable> tables_;
   std::vector<std::pair<std::string, std::string>> known_;
+  std::set<std::pair<std::string, std::string>> is_known_;
 };
 
 }  // namespace
@@ -354,8 +361,8 @@ class Surveyor {
 std::size_t SurveyRun::answer(const std::string& table, std::string_view key, SurveyQuestion::Kind kind,
                               std::vector<std::string> possible, std::size_t usual) {
   SurveyQuestion question{described(table), std::string(key), kind};
-  for (const Answered& a : answered_)
-    if (a.question == question) return a.answer;
+  const auto [place, is_new] = place_.try_emplace(question, answered_.size());
+  if (!is_new) return answered_[place->second].answer;
   const auto given = given_.find(question);
   const std::size_t answer = given != given_.end() ? given->second : usual;
   answered_.push_back({std::move(question), answer, std::move(possible)});
@@ -364,8 +371,8 @@ std::size_t SurveyRun::answer(const std::string& table, std::string_view key, Su
 
 bool SurveyRun::is_present(const std::string& table, std::string_view key) {
   const SurveyQuestion as_table{described(table), std::string(key), SurveyQuestion::Kind::is_table};
-  for (const Answered& a : answered_)
-    if (a.question == as_table && a.answer == 1) return true;
+  if (const auto asked = place_.find(as_table); asked != place_.end() && answered_[asked->second].answer == 1)
+    return true;
   return answer(table, key, SurveyQuestion::Kind::present, {"false", "true"}, 1) == 1;
 }
 

@@ -73,6 +73,7 @@ class SurveyRun {
 
   SurveyAnswers given_;
   std::vector<Answered> answered_;
+  std::map<SurveyQuestion, std::size_t> place_;  ///< place of each question among those that are answered
   std::vector<Read> read_;
   std::vector<DeckTable> tables_;
   std::vector<std::pair<std::string, std::string>> known_;  ///< table and key of each known key
