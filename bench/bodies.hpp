@@ -21,11 +21,11 @@ struct Specimen {
   Specimen(const pyroclast::Setup& setup, int blocks);
 
   pyroclast::specimen::Specimen made;
-  pyroclast::Model<2> model;
+  pyroclast::ModelOf<2> model;
   double width, height;  ///< m
   pyroclast::BodyProperties properties;
   std::vector<double> densities;
-  pyroclast::MechanicsParameters<2> parameters;
+  pyroclast::MechanicsParameters parameters;
 };
 
 /// The bodies that are timed. Specimens and loaded bodies are made when first asked for, and kept.

@@ -45,8 +45,8 @@ Law::Law(const pyroclast::ContactProperties& properties)
       ultimate_opening(p.tensile_strength > 0.0 ? 2.0 * p.mode_1_energy / p.tensile_strength : 0.0),
       yield_slope(p.hardening * p.normal_stiffness / (1.0 - p.hardening)) {}
 
-Body::Body(const pyroclast::Model<2>& model, const std::vector<double>& densities,
-           const pyroclast::BodyProperties& properties, const pyroclast::MechanicsParameters<2>& parameters)
+Body::Body(const pyroclast::ModelOf<2>& model, const std::vector<double>& densities,
+           const pyroclast::BodyProperties& properties, const pyroclast::MechanicsParameters& parameters)
     : parameters_(parameters), gridpoints_(model.position.size()) {
   if (parameters.kinematics != pyroclast::Kinematics::small)
     throw pyroclast::Error("the textbook step knows small kinematics only");
@@ -55,7 +55,7 @@ Body::Body(const pyroclast::Model<2>& model, const std::vector<double>& densitie
   set_masses(model, densities);
 }
 
-void Body::make_zones(const pyroclast::Model<2>& model, const pyroclast::BodyProperties& properties) {
+void Body::make_zones(const pyroclast::ModelOf<2>& model, const pyroclast::BodyProperties& properties) {
   for (std::size_t i = 0; i < model.zones.size(); ++i) {
     Zone z{};
     double x[3], y[3];
@@ -80,7 +80,7 @@ void Body::make_zones(const pyroclast::Model<2>& model, const pyroclast::BodyPro
   }
 }
 
-void Body::make_contacts(const pyroclast::Model<2>& model, const pyroclast::BodyProperties& properties) {
+void Body::make_contacts(const pyroclast::ModelOf<2>& model, const pyroclast::BodyProperties& properties) {
   for (int set = 0; set < properties.contacts.size(); ++set) laws_.emplace_back(properties.contacts[set]);
   for (std::size_t i = 0; i < model.contacts.size(); ++i) {
     const auto& c = model.contacts[i];
@@ -128,7 +128,7 @@ std::vector<double> Body::stiffness() const {
   return largest;
 }
 
-void Body::set_masses(const pyroclast::Model<2>& model, const std::vector<double>& densities) {
+void Body::set_masses(const pyroclast::ModelOf<2>& model, const std::vector<double>& densities) {
   std::vector<double> real_mass(gridpoints_.size());
   for (int b = 0; b < model.block_count(); ++b)
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z)

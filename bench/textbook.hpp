@@ -63,8 +63,8 @@ class Body {
  public:
   /// As Mechanics<2>; masses and time step follow from the same rules. Throws pyroclast::Error for finite
   /// kinematics.
-  Body(const pyroclast::Model<2>& model, const std::vector<double>& densities,
-       const pyroclast::BodyProperties& properties, const pyroclast::MechanicsParameters<2>& parameters);
+  Body(const pyroclast::ModelOf<2>& model, const std::vector<double>& densities,
+       const pyroclast::BodyProperties& properties, const pyroclast::MechanicsParameters& parameters);
 
   /// Returns itself, so that both codes are held and driven by the same lines.
   Body& constraints() { return *this; }
@@ -80,15 +80,15 @@ class Body {
   const std::vector<ContactPoint>& contacts() const { return contacts_; }
 
  private:
-  void make_zones(const pyroclast::Model<2>& model, const pyroclast::BodyProperties& properties);
-  void make_contacts(const pyroclast::Model<2>& model, const pyroclast::BodyProperties& properties);
-  void set_masses(const pyroclast::Model<2>& model, const std::vector<double>& densities);
+  void make_zones(const pyroclast::ModelOf<2>& model, const pyroclast::BodyProperties& properties);
+  void make_contacts(const pyroclast::ModelOf<2>& model, const pyroclast::BodyProperties& properties);
+  void set_masses(const pyroclast::ModelOf<2>& model, const std::vector<double>& densities);
   std::vector<double> stiffness() const;
   void strain_zones();
   void update_contacts();
   void move();
 
-  pyroclast::MechanicsParameters<2> parameters_;
+  pyroclast::MechanicsParameters parameters_;
   double time_step_ = 0.0;
   std::vector<Gridpoint> gridpoints_;
   std::vector<Zone> zones_;

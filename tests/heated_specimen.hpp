@@ -14,7 +14,7 @@ namespace pyroclast {
 
 inline constexpr double kSpecimenWidth = 0.05, kSpecimenHeight = 0.1, kSpecimenThickness = 0.5;  // m
 
-inline Model<2> small_body(int blocks = 300) {
+inline ModelOf<2> small_body(int blocks = 300) {
   return between_platens(small_specimen(blocks), 0.01, kSpecimenThickness);
 }
 
@@ -65,7 +65,7 @@ inline Convection convection(double coefficient, Curve gas) {
 }
 
 /// The field of heat conditions on a body, for a run of `duration`, s.
-inline TemperatureField conduct(const Model<2>& body, const HeatConditions& heat, double duration,
+inline TemperatureField conduct(const ModelOf<2>& body, const HeatConditions& heat, double duration,
                                 const HeatConstants& constants = {}) {
   return {body, make_conduction(body, alike_solids(constants), heat, temperature_range(heat, duration))};
 }

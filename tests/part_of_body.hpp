@@ -13,7 +13,7 @@ namespace pyroclast::parts {
 
 template <int Dim>
 struct Part {
-  Model<Dim> model;
+  ModelOf<Dim> model;
   int chunk = 0;  ///< of the part's model, the one that it owns
   // numbers in the whole of the part's items
   std::vector<int> block, gridpoint, zone, contact;
@@ -22,7 +22,7 @@ struct Part {
 /// Blocks of the chunk and those that share a face with one of them, or a place.
 /// \param places  number of each gridpoint's place, below 0 for none; empty: no gridpoint has a place
 template <int Dim>
-std::set<int> blocks_at(const Model<Dim>& whole, int chunk, const std::vector<int>& places) {
+std::set<int> blocks_at(const ModelOf<Dim>& whole, int chunk, const std::vector<int>& places) {
   const auto is_own = [&](int block) {
     return block >= whole.chunk_blocks[chunk] && block < whole.chunk_blocks[chunk + 1];
   };
@@ -43,10 +43,10 @@ std::set<int> blocks_at(const Model<Dim>& whole, int chunk, const std::vector<in
 
 /// \param places  see blocks_at; with them the part also has the faces between foreign blocks
 template <int Dim>
-Part<Dim> part_of(const Model<Dim>& whole, int chunk, const std::vector<int>& places = {}) {
+Part<Dim> part_of(const ModelOf<Dim>& whole, int chunk, const std::vector<int>& places = {}) {
   const std::set<int> blocks = blocks_at(whole, chunk, places);
   Part<Dim> part;
-  Model<Dim>& model = part.model;
+  ModelOf<Dim>& model = part.model;
   model.thickness = whole.thickness;
   model.material_names = whole.material_names;
   model.interface_names = whole.interface_names;
@@ -72,8 +72,8 @@ Part<Dim> part_of(const Model<Dim>& whole, int chunk, const std::vector<int>& pl
         for (int& g : zone) g = here[g];
         model.zones.push_back(zone);
       }
-      model.block_gridpoints.push_back(model.gridpoint_count());
-      model.block_zones.push_back(model.zone_count());
+      model.block_gridpoints.push_back(static_cast<int>(model.position.size()));
+      model.block_zones.push_back(static_cast<int>(model.zones.size()));
     }
     if (first == static_cast<int>(part.block.size())) continue;
     if (c == chunk) part.chunk = static_cast<int>(model.chunk_blocks.size());
@@ -98,14 +98,14 @@ Part<Dim> part_of(const Model<Dim>& whole, int chunk, const std::vector<int>& pl
       model.contacts.push_back(contact);
       part.contact.push_back(c);
     }
-    model.face_contacts.push_back(model.contact_count());
+    model.face_contacts.push_back(static_cast<int>(model.contacts.size()));
   }
   return part;
 }
 
 /// Every chunk's part.
 template <int Dim>
-std::vector<Part<Dim>> all_parts(const Model<Dim>& whole, const std::vector<int>& places = {}) {
+std::vector<Part<Dim>> all_parts(const ModelOf<Dim>& whole, const std::vector<int>& places = {}) {
   std::vector<Part<Dim>> parts;
   for (int chunk = 0; chunk < whole.chunks().count(); ++chunk) parts.push_back(part_of(whole, chunk, places));
   return parts;

@@ -23,7 +23,8 @@ inline Vec<2> turned(const Vec<2>& x, double angle) {
 }
 
 /// The blocks of a random tessellation without platens, one material, one interface, turned by `angle`.
-inline Model<2> tessellated(int blocks, double width, double height, std::uint64_t seed, double angle = 0.0) {
+inline ModelOf<2> tessellated(int blocks, double width, double height, std::uint64_t seed,
+                              double angle = 0.0) {
   specimen::SpecimenParameters p;
   p.region = specimen::Region::rectangle(width, height);
   p.seed = seed;
@@ -38,7 +39,7 @@ inline Model<2> tessellated(int blocks, double width, double height, std::uint64
   p.blocks.shortest_edge = 0.2;
   const auto specimen = specimen::make_specimen(p);
   const auto& cells = specimen.tessellation.cells;
-  Model<2> model;
+  ModelOf<2> model;
   model.material_names = {"mortar"};
   model.interface_names = {"mortar-mortar"};
   for (const auto& cell : cells) {
@@ -61,8 +62,8 @@ inline Model<2> tessellated(int blocks, double width, double height, std::uint64
 
 /// A column of `count` square blocks of size d, joined face to face, its axis turned by `angle` from the y
 /// axis. Block i holds gridpoints 4 i (lower left) to 4 i + 3, counter-clockwise.
-inline Model<2> column(int count, double d, double angle = 0.0) {
-  Model<2> model;
+inline ModelOf<2> column(int count, double d, double angle = 0.0) {
+  ModelOf<2> model;
   model.material_names = {"mortar"};
   model.interface_names = {"mortar-mortar"};
   for (int i = 0; i < count; ++i) {
@@ -80,8 +81,8 @@ inline Model<2> column(int count, double d, double angle = 0.0) {
 /// (i, j) counter-clockwise, and its centroid. \param position  maps the unit square to the body and keeps
 /// its orientation
 template <class Map>
-Model<2> lattice(int nx, int ny, Map position) {
-  Model<2> model;
+ModelOf<2> lattice(int nx, int ny, Map position) {
+  ModelOf<2> model;
   model.material_names = {"mortar"};
   model.interface_names = {"mortar-mortar"};
   const auto point = [&](int i, int j) {
@@ -103,12 +104,12 @@ Model<2> lattice(int nx, int ny, Map position) {
 }
 
 /// The unit cube cut into five tetrahedra, each a block of its own, joined through their inner faces.
-inline Model<3> five_tetrahedra() {
+inline ModelOf<3> five_tetrahedra() {
   const std::vector<Vec<3>> x{{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}},
                               {{0, 0, 1}}, {{1, 0, 1}}, {{1, 1, 1}}, {{0, 1, 1}}};
   const std::vector<std::array<int, 4>> cut{
       {0, 1, 2, 5}, {0, 2, 3, 7}, {0, 5, 7, 4}, {2, 7, 5, 6}, {0, 2, 7, 5}};
-  Model<3> model;
+  ModelOf<3> model;
   model.material_names = {"mortar"};
   model.interface_names = {"mortar-mortar"};
   for (const auto& t : cut) model.add_block({x[t[0]], x[t[1]], x[t[2]], x[t[3]]}, {{0, 1, 2, 3}}, 0);
@@ -138,7 +139,7 @@ inline Model<3> five_tetrahedra() {
 /// A column of `count` cubes of size d along z, joined through their square faces, each cut into tetrahedra
 /// around its middle. Block i holds gridpoints 9 i to 9 i + 7, the lower four first, counter-clockwise seen
 /// from above, and 9 i + 8, its middle.
-inline Model<3> cubes(int count, double d) {
+inline ModelOf<3> cubes(int count, double d) {
   // faces outwards, each cut by the diagonal from its first corner
   constexpr int faces[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
                                {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
@@ -147,7 +148,7 @@ inline Model<3> cubes(int count, double d) {
     zones.push_back({f[0], f[2], f[1], 8});
     zones.push_back({f[0], f[3], f[2], 8});
   }
-  Model<3> model;
+  ModelOf<3> model;
   model.material_names = {"mortar"};
   model.interface_names = {"mortar-mortar"};
   for (int i = 0; i < count; ++i) {
@@ -166,8 +167,8 @@ inline Model<3> cubes(int count, double d) {
 }
 
 template <int Dim>
-MechanicsParameters<Dim> quasi_static(double damping = 0.8) {
-  MechanicsParameters<Dim> p;
+MechanicsParameters quasi_static(double damping = 0.8) {
+  MechanicsParameters p;
   p.local_damping = damping;
   p.mass = MassChoice::scaled;
   p.time_step = 1e-5;
@@ -176,9 +177,9 @@ MechanicsParameters<Dim> quasi_static(double damping = 0.8) {
 }
 
 template <int Dim>
-Mechanics<Dim> mechanics(const Model<Dim>& model, const ContactProperties& contact,
-                         const MechanicsParameters<Dim>& parameters, double young = 29.4e9,
-                         double poisson = 0.2, std::shared_ptr<Team> team = nullptr) {
+Mechanics<Dim> mechanics(const ModelOf<Dim>& model, const ContactProperties& contact,
+                         const MechanicsParameters& parameters, double young = 29.4e9, double poisson = 0.2,
+                         std::shared_ptr<Team> team = nullptr) {
   return Mechanics<Dim>(
       model, {2400.0},
       by_interface(model,

@@ -14,7 +14,7 @@ namespace {
 using namespace bodies;
 
 /// A specimen torn until it cracks.
-Mechanics<2> torn(const Model<2>& model, bool counted) {
+Mechanics<2> torn(const ModelOf<2>& model, bool counted) {
   auto m = mechanics(model, mortar_contact(), quasi_static<2>());
   if (counted) m.use(bench::counting_step());
   for (int g = 0; g < model.gridpoint_count(); ++g)
@@ -25,7 +25,7 @@ Mechanics<2> torn(const Model<2>& model, bool counted) {
 }
 
 TEST(Counting, LeavesTheBitsOfAnOrdinaryStep) {
-  const Model<2> model = tessellated(60, 0.05, 0.05, 3);
+  const ModelOf<2> model = tessellated(60, 0.05, 0.05, 3);
   const auto counted = torn(model, true), ordinary = torn(model, false);
   EXPECT_GT(ordinary.totals().energy().dissipated.total(), 0.0);
   EXPECT_TRUE(counted.read().displacements() == ordinary.read().displacements());
@@ -44,7 +44,7 @@ TEST(Counting, ArithmeticAndRootsCountOnceALaneAndChoicesNothing) {
 }
 
 TEST(Counting, StepsThatAreMeasuredAreLeftOut) {
-  const Model<2> model = tessellated(20, 0.05, 0.05, 3);
+  const ModelOf<2> model = tessellated(20, 0.05, 0.05, 3);
   auto m = mechanics(model, elastic_contact(), quasi_static<2>());
   m.use(bench::counting_step());
   bench::reset_operations();
@@ -63,7 +63,7 @@ TEST(Counting, StepsThatAreMeasuredAreLeftOut) {
 /// Of one elastic contact point with small displacements: the jump, its two components, two tractions, the
 /// stored energy, and the force along two directions.
 TEST(Counting, AnElasticContactPointCostsWhatItsEquationsSay) {
-  const Model<2> model = tessellated(20, 0.05, 0.05, 3);
+  const ModelOf<2> model = tessellated(20, 0.05, 0.05, 3);
   auto m = mechanics(model, elastic_contact(), quasi_static<2>());
   m.use(bench::counting_step());
   bench::reset_operations();
@@ -74,7 +74,7 @@ TEST(Counting, AnElasticContactPointCostsWhatItsEquationsSay) {
 }
 
 TEST(Counting, CombinedDampingReadsTheForcesOfTheLastStep) {
-  const Model<2> model = tessellated(20, 0.05, 0.05, 3);
+  const ModelOf<2> model = tessellated(20, 0.05, 0.05, 3);
   auto parameters = quasi_static<2>();
   parameters.damping_form = DampingForm::local;
   const auto local = mechanics(model, mortar_contact(), parameters);
@@ -126,7 +126,7 @@ std::vector<OfThread> operations_of_threads(const Mechanics<2>& m, int threads) 
 // Promise: all threads share a step evenly, platens too. 10 % is the grain of bundles and of faces that cross
 // in a body this small; the platens of one piece each would give the thread that has most 50 % more.
 TEST(Sweep, GivesEveryThreadAboutTheSameWork) {
-  const Model<2> model = between_platens(small_specimen(3000), 0.01, 0.5);
+  const ModelOf<2> model = between_platens(small_specimen(3000), 0.01, 0.5);
   BodyProperties p;
   p.zones.assign(model.zones.size(), zone_properties<2>(29.4e9, 0.2));
   p.contacts.add(mortar_contact());

@@ -18,19 +18,19 @@ using namespace bodies;
 constexpr double young = 29.4e9, poisson = 0.2, nu_L = 0.3;
 
 template <int Dim>
-Model<Dim> block();
+ModelOf<Dim> block();
 template <>
-Model<2> block<2>() {
+ModelOf<2> block<2>() {
   return column(1, 0.01);
 }
 template <>
-Model<3> block<3>() {
+ModelOf<3> block<3>() {
   return cubes(1, 0.01);
 }
 
 /// Nearly critical damping by velocity: what is left at rest is round-off.
 template <int Dim>
-MechanicsParameters<Dim> settling(double steps = 40) {
+MechanicsParameters settling(double steps = 40) {
   auto p = quasi_static<Dim>(0.0);
   p.viscous_damping = 3.0 / (steps * p.time_step);
   return p;
@@ -40,7 +40,7 @@ constexpr int kToRest = 1500;  ///< steps
 
 /// All zones alike.
 template <int Dim>
-BodyProperties creeping(const Model<Dim>& model, const CreepIncrement& creep, double thermal_strain = 0.0) {
+BodyProperties creeping(const ModelOf<Dim>& model, const CreepIncrement& creep, double thermal_strain = 0.0) {
   auto p = by_interface(
       model,
       std::vector<ZoneProperties>(model.zones.size(), zone_properties<Dim>(young, poisson, thermal_strain)),
@@ -50,7 +50,7 @@ BodyProperties creeping(const Model<Dim>& model, const CreepIncrement& creep, do
 }
 
 template <int Dim>
-Mechanics<Dim> body(const Model<Dim>& model, const MechanicsParameters<Dim>& parameters) {
+Mechanics<Dim> body(const ModelOf<Dim>& model, const MechanicsParameters& parameters) {
   return Mechanics<Dim>(model, {2400.0}, creeping(model, {.poisson = nu_L}), parameters);
 }
 
@@ -97,7 +97,7 @@ constexpr double kCompliance = 16.3e-3 / 35e6;  ///< of all increments, 1/Pa: th
 template <int Dim>
 void expect_exact_creep(const SymmetricTensor<Dim>& stress, const SymmetricTensor<Dim>& strain,
                         const char* what) {
-  const Model<Dim> model = block<Dim>();
+  const ModelOf<Dim> model = block<Dim>();
   for (const int increments : {1, 7}) {
     auto m = body(model, settling<Dim>());
     load(m, stress);
@@ -129,7 +129,7 @@ TEST(CreepVerification, OfAHeldStressIsExactForAnyIncrement) {
 }
 
 TEST(CreepVerification, IsLeftWhenTheStressIsTakenAway) {
-  const Model<2> model = block<2>();
+  const ModelOf<2> model = block<2>();
   auto m = body(model, settling<2>());
   load<2>(m, {-10e6, 0.0, 0.0});
   m.advance(kToRest);
@@ -146,7 +146,7 @@ TEST(CreepVerification, IsLeftWhenTheStressIsTakenAway) {
 // Promise: the work of the load is the work of creep, and what the splitting into exchanges puts into the
 // ledger goes down with the increment.
 TEST(CreepVerification, TakesTheWorkOfAHeldLoad) {
-  const Model<2> model = block<2>();
+  const ModelOf<2> model = block<2>();
   const auto ledger = [&](int increments) {
     auto m = body(model, settling<2>());
     load<2>(m, {-10e6, 0.0, 0.0});
@@ -170,7 +170,7 @@ TEST(CreepVerification, TakesTheWorkOfAHeldLoad) {
 
 /// Stress of a bar that is held and heated in a number of exchanges, Pa.
 double restrained(int increments, double expansion, double creep_rate, double rise) {
-  const Model<2> model = block<2>();
+  const ModelOf<2> model = block<2>();
   auto m = body(model, settling<2>());
   for (int g = 0; g < model.gridpoint_count(); ++g) m.constraints().prescribe_velocity(g, 1, 0.0);
   const double step = rise / increments;
@@ -238,7 +238,7 @@ TEST(CreepVerification, SplitsTheStressByItsSign) {
 
 /// A body of many blocks that is pressed, sheared and heated unevenly.
 template <int Dim>
-Mechanics<Dim> crept(const Model<Dim>& model, MechanicsParameters<Dim> parameters, int exchanges,
+Mechanics<Dim> crept(const ModelOf<Dim>& model, MechanicsParameters parameters, int exchanges,
                      double tension = 0.3) {
   Mechanics<Dim> m = body(model, parameters);
   SymmetricTensor<Dim> stress{};
@@ -261,7 +261,7 @@ Mechanics<Dim> crept(const Model<Dim>& model, MechanicsParameters<Dim> parameter
 }
 
 template <int Dim>
-void expect_that_a_commit_keeps_the_stress(const Model<Dim>& model, MechanicsParameters<Dim> parameters) {
+void expect_that_a_commit_keeps_the_stress(const ModelOf<Dim>& model, MechanicsParameters parameters) {
   auto m = crept(model, parameters, 3);
   const auto stress = m.read().stresses();
   const auto forces = m.read().forces();
@@ -293,7 +293,7 @@ TEST(Creep, LeavesStressesAsTheyAreWhenItIsCommitted) {
 }
 
 TEST(Creep, TurnsWithItsZone) {
-  const Model<2> model = block<2>();
+  const ModelOf<2> model = block<2>();
   auto parameters = settling<2>();
   parameters.kinematics = Kinematics::finite;
   auto m = body(model, parameters);
@@ -321,7 +321,7 @@ TEST(Creep, TurnsWithItsZone) {
 // Promise: bit by bit the same in any instruction set and on any number of threads, also where it is in the
 // middle of an exchange.
 TEST(Creep, HasTheSameBitsInEveryInstructionSet) {
-  const Model<2> model = tessellated(150, 0.05, 0.05, 3);
+  const ModelOf<2> model = tessellated(150, 0.05, 0.05, 3);
   for (const Kinematics kinematics : {Kinematics::small, Kinematics::finite}) {
     auto parameters = quasi_static<2>();
     parameters.kinematics = kinematics;
@@ -341,7 +341,7 @@ TEST(Creep, HasTheSameBitsInEveryInstructionSet) {
 }
 
 TEST(Creep, CannotBeginInABodyThatWasMadeWithoutIt) {
-  const Model<2> model = block<2>();
+  const ModelOf<2> model = block<2>();
   auto m = mechanics(model, elastic_contact(), quasi_static<2>());
   EXPECT_FALSE(m.body().creeps());
   EXPECT_EQ(m.totals().energy().dissipated.of("creep"), 0.0);

@@ -116,7 +116,7 @@ class Rings {
 };
 
 /// One block: a fan around the middle, then rings of squares, each cut into four zones.
-Model<2> disc() {
+ModelOf<2> disc() {
   std::vector<Vec<2>> x{{{0.0, 0.0}}};
   std::vector<std::array<int, 3>> zones;
   const auto at = [&](double radius, double angle) {
@@ -137,7 +137,7 @@ Model<2> disc() {
       x.push_back(sum * 0.25);
       for (int n = 0; n < 4; ++n) zones.push_back({square[n], square[(n + 1) % 4], middle});
     }
-  Model<2> model;
+  ModelOf<2> model;
   model.material_names = {"mortar"};
   model.interface_names = {"mortar-mortar"};
   model.add_block(x, zones, 0);
@@ -151,7 +151,7 @@ std::pair<int, int> zones_of(int ring) {
 
 /// Hoop stress of the first ring of the matrix, Pa.
 double hoop_around_disc(const Mechanics<2>& m) {
-  const Model<2>& model = m.model();
+  const ModelOf<2>& model = m.model();
   const auto geometry = zone_geometry(model);
   double sum = 0.0, volume = 0.0;
   const auto [first, last] = zones_of(kInnerRings);
@@ -167,7 +167,7 @@ double hoop_around_disc(const Mechanics<2>& m) {
 }
 
 /// Hoop stress of the first ring of the matrix when the disc was heated in increments, Pa.
-double hoop_of_disc(const Model<2>& model, double increment, const CreepIncrement& choices) {
+double hoop_of_disc(const ModelOf<2>& model, double increment, const CreepIncrement& choices) {
   auto parameters = quasi_static<2>(0.0);
   parameters.viscous_damping = 3.0 / (60 * parameters.time_step);
   const int inclusion_zones = zones_of(kInnerRings).first;
@@ -191,7 +191,7 @@ double hoop_of_disc(const Model<2>& model, double increment, const CreepIncremen
 }
 
 TEST(CreepVerification, RelaxesTheMisfitOfADiscInARing) {
-  const Model<2> model = disc();
+  const ModelOf<2> model = disc();
   const double width = outer / kRings;
   for (const double tension : {1.0, 0.0}) {
     Rings rings(27 * 8, tension);
@@ -208,7 +208,7 @@ TEST(CreepVerification, RelaxesTheMisfitOfADiscInARing) {
 // ---- The same, heated and cooled: a ring that shrinks by more than it grew
 
 TEST(CoolingVerification, LeavesTheMisfitOfADiscInARing) {
-  const Model<2> model = disc();
+  const ModelOf<2> model = disc();
   SolidMaterial inclusion, ring;
   inclusion.thermal_strain = Curve::table({20.0, 420.0}, {0.0, 4.8e-3}, temperature_axis());
   ring.thermal_strain = Curve::table({20.0, 420.0}, {0.0, 4e-3}, temperature_axis());
@@ -244,7 +244,7 @@ TEST(CoolingVerification, LeavesTheMisfitOfADiscInARing) {
 
 TEST(CreepVerification, OfASpecimenIsThatOfItsMatrixTimesR) {
   const specimen::Specimen specimen = small_specimen(1200);
-  const Model<2> model = make_concrete_model(specimen, 1.0);
+  const ModelOf<2> model = make_concrete_model(specimen, 1.0);
   const double size = specimen.metrics.mean_size, layer = 1.6e-3;
   const double with_contacts = 1.0 + layer / size;
   const double inclusions = specimen.fraction[aggregate_material];

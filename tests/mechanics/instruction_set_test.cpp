@@ -7,6 +7,7 @@
 #include "bodies.hpp"
 #include "model/small_specimen.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/base/state_copy.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 
 namespace pyroclast {
@@ -43,7 +44,7 @@ double damaged_share(const Mechanics<2>& m) {
 
 /// A specimen pulled, sheared and pressed until it is cracked all over.
 template <class Contact = Cohesive::Properties<double>>
-Mechanics<2> cracked(const Model<2>& model, MechanicsParameters<2> parameters, InstructionSet set,
+Mechanics<2> cracked(const ModelOf<2>& model, MechanicsParameters parameters, InstructionSet set,
                      bool own_temperatures, int threads = 1, const Contact& contact = mortar_contact()) {
   parameters.instructions = set;
   parameters.gravity = {{0.0, -9.81}};
@@ -93,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Variants, EveryInstructionSet,
 
 // Promise: bit by bit the same, on any number of threads, in a body that is cracked all over.
 TEST_P(EveryInstructionSet, GivesTheSameBits) {
-  const Model<2> model = tessellated(150, 0.05, 0.05, 3);
+  const ModelOf<2> model = tessellated(150, 0.05, 0.05, 3);
   auto parameters = quasi_static<2>();
   parameters.damping_form = DampingForm::combined;
   parameters.kinematics = GetParam().kinematics;
@@ -109,7 +110,7 @@ TEST_P(EveryInstructionSet, GivesTheSameBits) {
 }
 
 TEST(MixedModeContacts, HaveTheSameBitsInEveryInstructionSet) {
-  const Model<2> model = tessellated(150, 0.05, 0.05, 3);
+  const ModelOf<2> model = tessellated(150, 0.05, 0.05, 3);
   for (const bool own_temperatures : {false, true}) {
     for (const auto softening : {MixedMode::Softening::bilinear, MixedMode::Softening::exponential}) {
       auto contact = mixed_mode_contact();
@@ -129,10 +130,10 @@ TEST(MixedModeContacts, HaveTheSameBitsInEveryInstructionSet) {
 // force, so no displacement, velocity, damage or slip either. Sums over the body add up in another order:
 // 1e-12 of the largest is round-off of some thousand terms.
 TEST(AnyLayout, GivesTheSameBits) {
-  const Model<2> model = tessellated(150, 0.05, 0.05, 3);
+  const ModelOf<2> model = tessellated(150, 0.05, 0.05, 3);
   auto parameters = quasi_static<2>();
   parameters.damping_form = DampingForm::combined;
-  const auto run = [&](const Model<2>& body, int fewest_blocks, int most_zones, int threads) {
+  const auto run = [&](const ModelOf<2>& body, int fewest_blocks, int most_zones, int threads) {
     parameters.layout = {.fewest_blocks = fewest_blocks, .most_zones = most_zones};
     return cracked(body, parameters, usable_instruction_sets().back(), true, threads);
   };
@@ -144,7 +145,7 @@ TEST(AnyLayout, GivesTheSameBits) {
   for (const auto [fewest_blocks, most_zones, chunk_blocks] :
        {Cut{1, 64, 1024}, Cut{6, 64, 1024}, Cut{9, 64, 1024},  // with 9 every block is a piece
         Cut{9, 5, 1024}, Cut{4, 64, 20}, Cut{4, 64, 64}, Cut{2, 4, 1}}) {
-    Model<2> cut = model;
+    ModelOf<2> cut = model;
     cut.cut_into_chunks(chunk_blocks);
     for (const int threads : {1, 2}) {
       const auto what = testing::Message()
@@ -166,8 +167,8 @@ TEST(AnyLayout, GivesTheSameBits) {
   }
 }
 
-/// A specimen between platens, loaded through gridpoints that are tied, then pressed further.
-Mechanics<2> pressed(const Model<2>& model, MechanicsParameters<2> parameters, int threads) {
+/// A specimen between platens, loaded through gridpoints that are tied.
+Mechanics<2> tied(const ModelOf<2>& model, MechanicsParameters parameters, int threads) {
   parameters.gravity = {{0.0, -9.81}};
   parameters.zones_for_a_thread = 1;
   BodyProperties p;
@@ -184,6 +185,13 @@ Mechanics<2> pressed(const Model<2>& model, MechanicsParameters<2> parameters, i
   m.constraints().tie(top, 1);
   for (const int g : top) m.constraints().apply_force(g, {{g == top[0] ? 1e4 : 0.0, -4e5 / top.size()}});
   m.advance(300);
+  return m;
+}
+
+/// The same, pressed further without ties.
+Mechanics<2> pressed(const ModelOf<2>& model, const MechanicsParameters& parameters, int threads) {
+  auto m = tied(model, parameters, threads);
+  const std::vector<int>& top = model.set("top_platen_support");
   m.constraints().untie();
   for (const int g : top)
     for (const int i : {0, 1}) m.constraints().prescribe_velocity(g, i, i == 0 ? 1e-3 : -8e-3);
@@ -193,7 +201,7 @@ Mechanics<2> pressed(const Model<2>& model, MechanicsParameters<2> parameters, i
 
 // Promise: in how many pieces a large block stands changes no bit either, nor do ties that join its pieces.
 TEST(LargeBlocks, GiveTheSameBitsInAnyPieces) {
-  const Model<2> model = between_platens(small_specimen(150), 0.01, 0.5);
+  const ModelOf<2> model = between_platens(small_specimen(150), 0.01, 0.5);
   for (const Kinematics kinematics : {Kinematics::small, Kinematics::finite}) {
     auto parameters = quasi_static<2>();
     parameters.damping_form = DampingForm::combined;
@@ -226,8 +234,27 @@ TEST(LargeBlocks, GiveTheSameBitsInAnyPieces) {
   }
 }
 
+// Promise: a body with ties that join pieces goes on from its state as if nothing had come between; a state
+// whose ties name no constraints is refused.
+TEST(LargeBlocks, AStateWithTiesThatJoinPiecesGoesOn) {
+  const ModelOf<2> model = between_platens(small_specimen(150), 0.01, 0.5);
+  auto parameters = quasi_static<2>();
+  parameters.layout.most_zones = 8;
+  auto whole = tied(model, parameters, 2);
+  StateCopy copy;
+  copy.take([&](StateVisitor& visitor) { whole.visit_state(visitor); });
+  BodyProperties p = whole.body().properties;
+  Mechanics<2> resumed(model, std::vector<double>(model.material_names.size(), 2400.0), p,
+                       whole.body().parameters);
+  copy.put([&](StateVisitor& visitor) { resumed.visit_state(visitor); });
+  ASSERT_TRUE(resumed.body().ties_join_pieces());
+  whole.advance(100);
+  resumed.advance(100);
+  EXPECT_TRUE(outcome(resumed) == outcome(whole));
+}
+
 TEST(EveryInstructionSet, GivesTheSameBitsInThreeDimensions) {
-  const Model<3> model = five_tetrahedra();
+  const ModelOf<3> model = five_tetrahedra();
   const auto run = [&](InstructionSet set) {
     auto parameters = quasi_static<3>();
     parameters.instructions = set;
@@ -246,7 +273,7 @@ TEST(EveryInstructionSet, GivesTheSameBitsInThreeDimensions) {
 
 // Promise: the threads of a run may change in number between batches, and where batches end changes no bit.
 TEST(Threads, MayChangeInNumberBetweenBatches) {
-  const Model<2> model = tessellated(60, 0.05, 0.05, 3);
+  const ModelOf<2> model = tessellated(60, 0.05, 0.05, 3);
   auto parameters = quasi_static<2>();
   parameters.zones_for_a_thread = 1;
   const auto run = [&](const std::vector<int>& threads) {

@@ -14,7 +14,7 @@
 namespace pyroclast {
 namespace {
 
-Model<2> small_concrete() {
+ModelOf<2> small_concrete() {
   return between_platens(small_specimen(800), 0.01, 0.5);
 }
 
@@ -61,7 +61,7 @@ void expect_counts(const Mechanics<Dim>& body) {
 
 /// The same of a body that moves, and turns, and is held.
 template <int Dim>
-void expect_counts(const Model<Dim>& model, Kinematics kinematics) {
+void expect_counts(const ModelOf<Dim>& model, Kinematics kinematics) {
   auto parameters = bodies::quasi_static<Dim>();
   parameters.kinematics = kinematics;
   parameters.gravity[Dim - 1] = -9.81;
@@ -79,7 +79,7 @@ TEST(Arrays, HaveAnEntryOfEachOfWhatTheyCountPer) {
 
 // Every gridpoint, zone and contact has one place, and no two share one.
 TEST(Layout, GivesEverythingAPlaceOfItsOwn) {
-  const Model<2> model = small_concrete();
+  const ModelOf<2> model = small_concrete();
   const Layout<2> layout(model);
   const auto distinct = [](const FlatArray<int>& slots, int packs) {
     const std::set<int> set(slots.begin(), slots.end());
@@ -97,7 +97,7 @@ TEST(Layout, GivesEverythingAPlaceOfItsOwn) {
 
 // The promise of lanes: few of them idle. A 5 % loss is what blocks of rare shapes may cost.
 TEST(Layout, LeavesFewLanesIdle) {
-  const Model<2> model = small_concrete();
+  const ModelOf<2> model = small_concrete();
   const Layout<2> layout(model);
   EXPECT_LT(kLanes * layout.zone_packs, 1.05 * model.zone_count() + 8 * kLanes);
   EXPECT_LT(kLanes * 2 * layout.face_packs(), 1.05 * model.contact_count() + 8 * kLanes);
@@ -105,7 +105,7 @@ TEST(Layout, LeavesFewLanesIdle) {
 
 // What lanes of a bundle share must be the same in the model.
 TEST(Layout, BlocksThatShareLanesHaveTheSameZones) {
-  const Model<2> model = small_concrete();
+  const ModelOf<2> model = small_concrete();
   const Layout<2> layout(model);
   int alike = 0;
   for (int i = 0; i < static_cast<int>(layout.bundles.size()); ++i) {
@@ -181,7 +181,7 @@ void play(const Layout<2>& layout, int threads) {
 }
 
 TEST(Sweep, TakesEveryFaceOnceBeforeItsBundlesMove) {
-  const Model<2> model = small_concrete();
+  const ModelOf<2> model = small_concrete();
   for (const int most_zones : {64, 8}) {
     const Layout<2> layout(model, {.most_zones = most_zones});
     ASSERT_GE(layout.pieces.size(), 2U);

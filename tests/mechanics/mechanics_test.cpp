@@ -30,7 +30,7 @@ INSTANTIATE_TEST_SUITE_P(Kinematics, PatchTestVerification,
 // Promise: a linear displacement field gives the same stress in every zone of a random tessellation, to
 // round-off; where it is uniform, forces inside are balanced.
 TEST_P(PatchTestVerification, LinearFieldOnARandomTessellationGivesUniformStress) {
-  const Model<2> model = tessellated(150, 0.1, 0.1, 4);
+  const ModelOf<2> model = tessellated(150, 0.1, 0.1, 4);
   auto parameters = quasi_static<2>();
   parameters.kinematics = GetParam();
   auto m = mechanics(model, mortar_contact(), parameters);
@@ -58,7 +58,7 @@ TEST_P(PatchTestVerification, LinearFieldOnARandomTessellationGivesUniformStress
 }
 
 TEST(PatchTest3Verification, LinearFieldOnTetrahedraGivesUniformStress) {
-  const Model<3> model = five_tetrahedra();
+  const ModelOf<3> model = five_tetrahedra();
   EXPECT_EQ(model.contact_count(), 12);
   auto m = mechanics(model, mortar_contact(), quasi_static<3>());
   impose(
@@ -76,7 +76,7 @@ TEST(PatchTest3Verification, LinearFieldOnTetrahedraGivesUniformStress) {
 
 // Pulls a cube of five tetrahedral blocks: force through the contacts equals force through the zones.
 TEST(PatchTest3Verification, TetrahedraInSeriesWithContactsComeToEquilibrium) {
-  const Model<3> model = five_tetrahedra();
+  const ModelOf<3> model = five_tetrahedra();
   auto m = mechanics(model, elastic_contact(), quasi_static<3>());
   for (int g = 0; g < model.gridpoint_count(); ++g) {
     const bool bottom = model.position[g][2] == 0.0, top = model.position[g][2] == 1.0;
@@ -102,7 +102,7 @@ TEST(PatchTest3Verification, TetrahedraInSeriesWithContactsComeToEquilibrium) {
 TEST(PatchTest3Verification, CubesJoinedThroughSquareFacesHaveTheModulusOfZonesAndContactsInSeries) {
   const int count = 3;
   const double d = 0.01, young = 29.4e9, stress = 1e6;
-  const Model<3> model = cubes(count, d);
+  const ModelOf<3> model = cubes(count, d);
   ASSERT_EQ(model.face_count(), count - 1);
   ASSERT_EQ(model.contact_count(), 4 * (count - 1));
   auto parameters = quasi_static<3>(0.0);
@@ -128,7 +128,7 @@ TEST(PatchTest3Verification, CubesJoinedThroughSquareFacesHaveTheModulusOfZonesA
 // 1)/n contacts.
 double chain_modulus(int n, double angle, Kinematics kinematics) {
   const double d = 0.01;
-  const Model<2> model = column(n, d, angle);
+  const ModelOf<2> model = column(n, d, angle);
   auto parameters = quasi_static<2>(0.0);
   parameters.kinematics = kinematics;
   // near critical for the lowest mode of the chain: comes to rest soonest
@@ -170,8 +170,8 @@ TEST(ChainVerification, GivesTheSameNumbersAfterTurningTheModelByThirtyDegrees) 
 
 TEST(PatchTest, GivesTheSameStressAfterTurningTheModelByThirtyDegrees) {
   const double angle = std::numbers::pi / 6.0;
-  const Model<2> model = tessellated(60, 0.1, 0.1, 9);
-  const Model<2> turned_model = tessellated(60, 0.1, 0.1, 9, angle);
+  const ModelOf<2> model = tessellated(60, 0.1, 0.1, 9);
+  const ModelOf<2> turned_model = tessellated(60, 0.1, 0.1, 9, angle);
   auto a = mechanics(model, mortar_contact(), quasi_static<2>());
   auto b = mechanics(turned_model, mortar_contact(), quasi_static<2>());
   const auto field = [](const Vec<2>& x) { return Vec<2>{{1e-4 * x[0] * x[1], -2e-4 * x[1] * x[1]}}; };
@@ -191,7 +191,7 @@ TEST(PatchTest, GivesTheSameStressAfterTurningTheModelByThirtyDegrees) {
 
 // Promise: with finite kinematics a body may turn by any angle without straining or loading its contacts.
 TEST(FiniteKinematics, ARigidTurnLeavesNoStressAndNoTraction) {
-  const Model<2> model = tessellated(40, 0.1, 0.1, 2);
+  const ModelOf<2> model = tessellated(40, 0.1, 0.1, 2);
   auto parameters = quasi_static<2>();
   parameters.kinematics = Kinematics::finite;
   auto m = mechanics(model, mortar_contact(), parameters);
@@ -206,7 +206,7 @@ TEST(FiniteKinematics, ARigidTurnLeavesNoStressAndNoTraction) {
 
 // Promise: contact forces of turning frames do the work of the tractions and keep moments in balance.
 TEST(FiniteKinematics, ContactForcesOfAShearedOpenedPairBalanceInForceAndMoment) {
-  const Model<2> model = column(2, 0.01);
+  const ModelOf<2> model = column(2, 0.01);
   auto parameters = quasi_static<2>();
   parameters.kinematics = Kinematics::finite;
   auto m = mechanics(model, elastic_contact(), parameters);
@@ -236,7 +236,7 @@ TEST(FiniteKinematics, ContactForcesOfAShearedOpenedPairBalanceInForceAndMoment)
 
 // Promise: the result is bitwise the same with 1 and 2 threads.
 TEST(Determinism, IsBitwiseTheSameWithOneAndTwoThreads) {
-  const Model<2> model = tessellated(120, 0.05, 0.05, 3);
+  const ModelOf<2> model = tessellated(120, 0.05, 0.05, 3);
   const auto run = [&](int threads) {
     auto parameters = quasi_static<2>();
     parameters.zones_for_a_thread = 1;
@@ -262,7 +262,7 @@ TEST(Determinism, IsBitwiseTheSameWithOneAndTwoThreads) {
 // Promise: so it is where the threads have one core for the two of them, so that they give way amid the
 // steps.
 TEST(Determinism, IsBitwiseTheSameWhereThreadsGiveWayAmidTheSteps) {
-  const Model<2> model = tessellated(120, 0.05, 0.05, 3);
+  const ModelOf<2> model = tessellated(120, 0.05, 0.05, 3);
   const auto run = [&](const std::shared_ptr<Team>& team) {
     auto parameters = quasi_static<2>();
     parameters.zones_for_a_thread = 1;
@@ -294,9 +294,9 @@ TEST(Determinism, IsBitwiseTheSameWhereThreadsGiveWayAmidTheSteps) {
 TEST(InclineVerification, ABlockSlidesAtTheAccelerationOfCoulombFriction) {
   const double slope = 40.0 * std::numbers::pi / 180.0;
   const double phi = 20.0 * std::numbers::pi / 180.0;
-  const Model<2> model = column(2, 0.1, -slope);
+  const ModelOf<2> model = column(2, 0.1, -slope);
   const Frictional::Properties<double> contact{1e9, 1e9, std::tan(phi)};
-  MechanicsParameters<2> p;
+  MechanicsParameters p;
   p.gravity = {{0.0, -9.81}};
   p.mass = MassChoice::real;
   p.safety = 0.5;
@@ -328,7 +328,7 @@ INSTANTIATE_TEST_SUITE_P(Damping, TornPrismVerification,
 
 TEST_P(TornPrismVerification, DissipatesTheModeOneEnergyOfOneSection) {
   const double d = 0.003;
-  const Model<2> model = column(4, d);
+  const ModelOf<2> model = column(4, d);
   auto parameters = quasi_static<2>(std::get<0>(GetParam()));
   parameters.damping_form = std::get<1>(GetParam());
   // Where nothing damps, the halves ring at the highest frequency; a step far below its limit follows the
@@ -359,7 +359,7 @@ TEST_P(TornPrismVerification, DissipatesTheModeOneEnergyOfOneSection) {
 }
 
 TEST(Energy, LedgerOfAShearedAndCrushedBodyCloses) {
-  const Model<2> model = tessellated(60, 0.05, 0.05, 5);
+  const ModelOf<2> model = tessellated(60, 0.05, 0.05, 5);
   for (const Kinematics kinematics : {Kinematics::small, Kinematics::finite}) {
     auto parameters = quasi_static<2>(0.5);
     parameters.kinematics = kinematics;
@@ -382,9 +382,9 @@ TEST(Energy, LedgerOfAShearedAndCrushedBodyCloses) {
 
 // Promise: the stable step is safe; just above twice it, motion blows up, so it is not idle either.
 TEST(TimeStep, TheStatedStepIsStableAndNotIdle) {
-  const Model<2> model = tessellated(40, 0.05, 0.05, 6);
+  const ModelOf<2> model = tessellated(40, 0.05, 0.05, 6);
   const auto kinetic_after = [&](double safety) {
-    MechanicsParameters<2> p;
+    MechanicsParameters p;
     p.mass = MassChoice::real;
     p.safety = safety;
     p.local_damping = 0.3;
@@ -400,12 +400,12 @@ TEST(TimeStep, TheStatedStepIsStableAndNotIdle) {
 TEST(Mechanics3, RefusesFiniteKinematics) {
   auto parameters = quasi_static<3>();
   parameters.kinematics = Kinematics::finite;
-  const Model<3> model = five_tetrahedra();
+  const ModelOf<3> model = five_tetrahedra();
   EXPECT_THROW(mechanics(model, mortar_contact(), parameters), Error);
 }
 
 TEST(Damping, ABodyPulledSteadilyIsDraggedByLocalDampingAndNotByCombinedDamping) {
-  const Model<2> model = tessellated(100, 0.02, 0.1, 8);
+  const ModelOf<2> model = tessellated(100, 0.02, 0.1, 8);
   const auto difference_of_ends = [&](DampingForm form) {
     auto parameters = quasi_static<2>(0.8);
     parameters.damping_form = form;

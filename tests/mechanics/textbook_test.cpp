@@ -24,8 +24,8 @@ using namespace bodies;
 /// The same body in both codes, loaded and moved alike.
 class Pair {
  public:
-  Pair(const Model<2>& model, const std::vector<double>& densities, const BodyProperties& properties,
-       const MechanicsParameters<2>& parameters)
+  Pair(const ModelOf<2>& model, const std::vector<double>& densities, const BodyProperties& properties,
+       const MechanicsParameters& parameters)
       : mechanics_(model, densities, properties, parameters),
         textbook_(model, densities, properties, parameters) {}
 
@@ -150,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(Contacts, LawBesideTextbook, testing::ValuesIn(contacts
 // Promise: on any way of the jump, through tearing, crushing and sliding both ways, the law of the library
 // and that of the textbook give the same tractions and damages.
 TEST_P(LawBesideTextbook, SameTractionsAndDamagesOnARandomWay) {
-  const Model<2> model = column(2, 0.01);
+  const ModelOf<2> model = column(2, 0.01);
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> of_unit(-1.0, 1.0);
   double most_damage = 0.0;
@@ -194,9 +194,9 @@ void PrintTo(Drive drive, std::ostream* stream) {
 
 /// A square of random blocks, its lower edge held, its upper edge driven.
 struct Square {
-  Model<2> model = tessellated(120, 0.05, 0.05, 3);
+  ModelOf<2> model = tessellated(120, 0.05, 0.05, 3);
 
-  Pair pair(const MechanicsParameters<2>& parameters, Drive drive, double velocity_factor = 1.0) const {
+  Pair pair(const MechanicsParameters& parameters, Drive drive, double velocity_factor = 1.0) const {
     Pair p(model, {2400.0},
            by_interface(
                model, std::vector<ZoneProperties>(model.zones.size(), zone_properties<2>(29.4e9, 0.2, 1e-5)),
@@ -215,7 +215,7 @@ struct Square {
   }
 };
 
-MechanicsParameters<2> with_gravity(MechanicsParameters<2> p) {
+MechanicsParameters with_gravity(MechanicsParameters p) {
   p.gravity = {{1.0, -9.81}};
   return p;
 }
@@ -312,7 +312,7 @@ TEST_P(DriveBesideTextbook, AsNearAsChaosAllowsWithLocalDamping) {
 
 /// Concrete between platens, of Tables 1 and 2, and the forces that hold its lower platen.
 struct Compression {
-  Model<2> model = between_platens(small_specimen(), 0.01, 1.0);
+  ModelOf<2> model = between_platens(small_specimen(), 0.01, 1.0);
 
   Pair pair() const {
     const std::array<ZoneProperties, 3> solids{zone_properties<2>(70e9, 0.2), zone_properties<2>(29.4e9, 0.2),

@@ -17,7 +17,7 @@ constexpr double young = 29.4e9, poisson = 0.2;
 
 /// One material and one interface, at one free thermal strain.
 template <int Dim>
-BodyProperties uniform(const Model<Dim>& model, const ContactProperties& contact, double thermal_strain,
+BodyProperties uniform(const ModelOf<Dim>& model, const ContactProperties& contact, double thermal_strain,
                        double modulus = young) {
   return by_interface(
       model,
@@ -35,7 +35,7 @@ Elastic::Properties<double> stiff_contact(double softness, double length, double
 /// Damped by velocity alone, which leaves no force at rest; near critical for a body whose slowest vibration
 /// takes about twice that many steps.
 template <int Dim>
-MechanicsParameters<Dim> settling(double steps) {
+MechanicsParameters settling(double steps) {
   auto p = quasi_static<Dim>(0.0);
   p.viscous_damping = 3.0 / (steps * p.time_step);
   return p;
@@ -69,7 +69,7 @@ double largest_traction(const Mechanics<Dim>& m) {
 // ---- Free expansion
 
 template <int Dim>
-void expect_no_stress_in_the_expanded_body(const Model<Dim>& model) {
+void expect_no_stress_in_the_expanded_body(const ModelOf<Dim>& model) {
   const double strain = 1e-3;
   auto m = mechanics(model, mortar_contact(), quasi_static<Dim>());
   m.set_properties(uniform(model, mortar_contact(), strain));
@@ -89,7 +89,7 @@ TEST(FreeExpansionVerification, LeavesNoStressWhereGridpointsMoveByThermalStrain
 
 TEST(FreeExpansionVerification, IsWhatAnIrregularBodySettlesAt) {
   const double strain = 1e-3;
-  const Model<2> model = tessellated(40, 0.1, 0.1, 4);
+  const ModelOf<2> model = tessellated(40, 0.1, 0.1, 4);
   auto m = mechanics(model, elastic_contact(), settling<2>(40));
   m.set_properties(uniform(model, elastic_contact(), strain));
   m.advance(2000);
@@ -113,7 +113,7 @@ double deviation(const Mechanics<2>& m, double xx, double yy) {
 TEST(RestraintVerification, AColumnBetweenFixedEndsTakesTheStressOfZonesAndContactsInSeries) {
   const int n = 5;
   const double d = 0.01, strain = 1e-4, free = young * strain;
-  const Model<2> model = column(n, d);
+  const ModelOf<2> model = column(n, d);
   const auto error_with = [&](double softness, double steps) {
     const auto contact = stiff_contact(softness, d);
     auto m = mechanics(model, contact, settling<2>(steps));
@@ -134,7 +134,7 @@ TEST(RestraintVerification, AColumnBetweenFixedEndsTakesTheStressOfZonesAndConta
 TEST(RestraintVerification, ASquareBetweenSlidingPlatesTakesTheBiaxialStressOfZonesAndContactsInSeries) {
   const int n = 4;
   const double d = 0.01, strain = 1e-4, softness = 1e-2;
-  const Model<2> model = lattice(n, n, [&](double s, double t) { return Vec<2>{{n * d * s, n * d * t}}; });
+  const ModelOf<2> model = lattice(n, n, [&](double s, double t) { return Vec<2>{{n * d * s, n * d * t}}; });
   const auto contact = stiff_contact(softness, d);
   auto m = mechanics(model, contact, settling<2>(30));
   for (int i : {0, 1}) hold(m, i, {0.0, n * d});
@@ -150,7 +150,7 @@ TEST(RestraintVerification, ASquareBetweenSlidingPlatesTakesTheBiaxialStressOfZo
 // The contacts of an irregular body have no series formula; what they take off is in proportion to 1 / K.
 TEST(RestraintVerification, AnIrregularBodyWithAFixedOutlineComesToTheBiaxialStressAsContactsGetStiff) {
   const double size = 0.1, strain = 1e-4;
-  const Model<2> model = tessellated(25, size, size, 4);
+  const ModelOf<2> model = tessellated(25, size, size, 4);
   const double free = young * strain / (1.0 - poisson);
   const auto error_with = [&](double softness) {
     const auto contact = stiff_contact(softness, size / 5.0);
@@ -172,7 +172,7 @@ TEST(RestraintVerification, AnIrregularBodyWithAFixedOutlineComesToTheBiaxialStr
 }
 
 template <int Dim>
-void expect_heat_stored(const Model<Dim>& model, double volume) {
+void expect_heat_stored(const ModelOf<Dim>& model, double volume) {
   const double strain = 1e-4;
   auto m = mechanics(model, mortar_contact(), quasi_static<Dim>());
   for (int i = 0; i < Dim; ++i)
@@ -212,7 +212,7 @@ SolidMaterial contracting_solid() {
 
 /// A body that is held everywhere, heated, cooled and heated again.
 template <int Dim>
-void expect_stress_of_its_own_slope(const Model<Dim>& model, Kinematics kinematics) {
+void expect_stress_of_its_own_slope(const ModelOf<Dim>& model, Kinematics kinematics) {
   const SolidMaterial solid = contracting_solid();
   auto parameters = quasi_static<Dim>();
   parameters.kinematics = kinematics;
@@ -245,7 +245,7 @@ TEST(CoolingVerification, AHeldBodyTakesTheStressOfItsOwnSlope) {
 /// means over each pack of blocks at one radius, continued linearly from the two packs next to a surface.
 std::array<double, 2> surface_hoop_stress(double a, double b, int packs, int columns, double modulus,
                                           double thermal_strain, double softness) {
-  const Model<2> model = lattice(packs, columns, [&](double s, double t) {
+  const ModelOf<2> model = lattice(packs, columns, [&](double s, double t) {
     return turned({{a + (b - a) * s, 0.0}}, 0.5 * std::numbers::pi * t);
   });
   const auto contact = stiff_contact(softness, (b - a) / packs, modulus);
@@ -308,7 +308,7 @@ TEST(ThickCylinderVerification, TakesTheHoopStressesOfALogarithmicTemperature) {
 TEST(TotalFormVerification, ALoadedColumnShortensAsItsModulusFallsAndReturnsOnCooling) {
   const int n = 4;
   const double d = 0.01, pressure = 1e6;
-  const Model<2> model = column(n, d);
+  const ModelOf<2> model = column(n, d);
   auto m = mechanics(model, elastic_contact(), settling<2>(20));
   m.constraints().prescribe_velocity(0, 0, 0.0);
   for (int g : {0, 1}) m.constraints().prescribe_velocity(g, 1, 0.0);
@@ -352,9 +352,9 @@ class ContactAtTemperature : public testing::Test {
     validate(hot, "hot");
     body_.set_properties(uniform(model_, hot, 0.0));
   }
-  ContactState<2> state() const { return body_.read().contact(0); }
+  ContactState state() const { return body_.read().contact(0); }
 
-  const Model<2> model_ = column(2, 0.01);
+  const ModelOf<2> model_ = column(2, 0.01);
   const Cohesive::Properties<double> cold_ = mortar_contact();
   Mechanics<2> body_ = mechanics(model_, cold_, quasi_static<2>());
 };
@@ -362,7 +362,7 @@ class ContactAtTemperature : public testing::Test {
 TEST_F(ContactAtTemperature, CarriesDamageOnUnchangedThroughHeatingAndCooling) {
   move({{0.0, 20e-6}});
   move({{0.0, 10e-6}});
-  const ContactState<2> before = state();
+  const ContactState before = state();
   EXPECT_GT(before.remembered(Remembers::tension_damage), 0.4);
   EXPECT_LT(before.remembered(Remembers::tension_damage), 0.5);
 
@@ -447,7 +447,7 @@ TEST_F(ContactAtTemperature, ComesBackToTheShrunkenCompressionEnvelope) {
 
 /// Two kinds of blocks at the same temperature, one of which expands more; everything gets weaker and softer.
 template <int Dim>
-BodyProperties mixture(const Model<Dim>& model, const ContactProperties& cold, double rise) {
+BodyProperties mixture(const ModelOf<Dim>& model, const ContactProperties& cold, double rise) {
   const double left = 1.0 - rise / 1000.0;
   ContactProperties contact = cold;
   for (std::size_t i = 0; i < contact.numbers.size(); ++i)
@@ -464,8 +464,8 @@ const std::vector<double> heating_and_cooling{100.0, 200.0, 350.0, 500.0, 300.0,
 /// Loads a body on a fixed plate by a force on its top, then heats and cools it, a number of steps at each
 /// temperature. Expects that a change of temperature is no error of the ledger.
 template <int Dim>
-Mechanics<Dim> heated_under_load(const Model<Dim>& model, const ContactProperties& contact,
-                                 const MechanicsParameters<Dim>& parameters, double size,
+Mechanics<Dim> heated_under_load(const ModelOf<Dim>& model, const ContactProperties& contact,
+                                 const MechanicsParameters& parameters, double size,
                                  const std::vector<double>& rises, int steps,
                                  std::shared_ptr<Team> team = nullptr) {
   const int up = Dim - 1;
@@ -492,7 +492,7 @@ Mechanics<Dim> heated_under_load(const Model<Dim>& model, const ContactPropertie
 }
 
 template <int Dim>
-void expect_exact_ledger(const Model<Dim>& model, double size) {
+void expect_exact_ledger(const ModelOf<Dim>& model, double size) {
   for (const double damping : {0.0, 0.5})
     for (const MassChoice mass : {MassChoice::real, MassChoice::scaled})
       for (const int steps : {1, 300}) {
@@ -520,7 +520,7 @@ TEST(HeatLedger, ClosesToRoundOffWhileContactsAreElastic) {
 // A step over a corner of the contact law books the area under the law and works along the chord, so the
 // error falls with the step. `refinement` divides the step and leaves masses and heating as they are.
 TEST(HeatLedger, ClosesWhileDifferentialExpansionTearsContacts) {
-  const Model<2> model = tessellated(40, 0.2, 0.2, 5);
+  const ModelOf<2> model = tessellated(40, 0.2, 0.2, 5);
   std::vector<double> rises;
   for (double rise = 20.0; rise <= 300.0; rise += 20.0) rises.push_back(rise);
   for (double rise = 270.0; rise >= 0.0; rise -= 30.0) rises.push_back(rise);
@@ -544,7 +544,7 @@ TEST(HeatLedger, ClosesWhileDifferentialExpansionTearsContacts) {
 }
 
 TEST(HeatLedger, SettingTheSamePropertiesAnewChangesNothing) {
-  const Model<2> model = tessellated(40, 0.05, 0.05, 5);
+  const ModelOf<2> model = tessellated(40, 0.05, 0.05, 5);
   const auto parameters = quasi_static<2>(0.5);
   auto m = heated_under_load(model, mortar_contact(), parameters, 0.05, {300.0}, 300);
   auto again = heated_under_load(model, mortar_contact(), parameters, 0.05, {300.0, 300.0}, 300);
@@ -560,7 +560,7 @@ TEST(HeatLedger, SettingTheSamePropertiesAnewChangesNothing) {
 }
 
 TEST(HeatLedger, IsBitwiseTheSameWithOneAndTwoThreads) {
-  const Model<2> model = tessellated(60, 0.05, 0.05, 3);
+  const ModelOf<2> model = tessellated(60, 0.05, 0.05, 3);
   const auto run = [&](int threads) {
     auto parameters = quasi_static<2>(0.5);
     parameters.zones_for_a_thread = 1;
@@ -579,7 +579,7 @@ TEST(HeatLedger, IsBitwiseTheSameWithOneAndTwoThreads) {
 // ---- Time step at another temperature
 
 TEST(TimeStepAtTemperature, StiffensWithinTheSafetyOfRealMassAndNoFurther) {
-  const Model<2> model = column(3, 0.01);
+  const ModelOf<2> model = column(3, 0.01);
   auto parameters = quasi_static<2>(0.5);
   parameters.mass = MassChoice::real;
   parameters.safety = 0.5;
@@ -601,7 +601,7 @@ TEST(TimeStepAtTemperature, StiffensWithinTheSafetyOfRealMassAndNoFurther) {
 }
 
 TEST(TimeStepAtTemperature, ScaledMassesStayStableInAStiffenedBody) {
-  const Model<2> model = tessellated(40, 0.05, 0.05, 5);
+  const ModelOf<2> model = tessellated(40, 0.05, 0.05, 5);
   auto m = mechanics(model, elastic_contact(), quasi_static<2>(0.0), 0.01 * young);
   const double ratio = m.mass_ratio();
   m.set_properties(uniform(model, elastic_contact(), 1e-3));
@@ -629,7 +629,7 @@ class TiedPlaten : public testing::Test {
     model_.join_faces({2, 3}, {6, 5}, 0);
   }
 
-  Mechanics<2> loaded(const MechanicsParameters<2>& parameters) const {
+  Mechanics<2> loaded(const MechanicsParameters& parameters) const {
     Mechanics<2> m(model_, {2400.0}, uniform(model_, elastic_contact(), 0.0), parameters);
     hold(m, 1, {0.0});
     m.constraints().prescribe_velocity(0, 0, 0.0);
@@ -642,7 +642,7 @@ class TiedPlaten : public testing::Test {
 
   static constexpr double d = 0.01, force = 1e4;
   static constexpr int right = 8, left = 9;  // ends of the platen's upper face
-  Model<2> model_;
+  ModelOf<2> model_;
 };
 
 TEST_F(TiedPlaten, DoesNotTiltUnderAnEccentricReaction) {

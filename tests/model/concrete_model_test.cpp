@@ -136,7 +136,7 @@ TEST(ConcreteModel, SetsHoldTheGridpointsThatTheyAreNamedAfter) {
 
 TEST(Model, AFaceInSpaceHasItsFirstTangentAlongItsFirstEdgeAndAThirdOfItsTrianglesAtEachCorner) {
   const std::vector<Vec<3>> rectangle{{{0, 0, 0}}, {{2, 0, 0}}, {{2, 1, 0}}, {{0, 1, 0}}};
-  Model<3> model;
+  ModelOf<3> model;
   model.add_block(rectangle, {}, 0);
   model.add_block(rectangle, {}, 0);
   model.join_faces({0, 1, 2, 3}, {4, 5, 6, 7}, 0);
@@ -150,12 +150,11 @@ TEST(Model, AFaceInSpaceHasItsFirstTangentAlongItsFirstEdgeAndAThirdOfItsTriangl
 }
 
 TEST(Model, RefusesAZoneWithoutVolume) {
-  Model<2> model;
+  ModelOf<2> model;
   model.add_block({{{0, 0}}, {{1, 0}}, {{2, 0}}}, {{0, 1, 2}}, 0);
   EXPECT_THROW(zone_geometry(model), Error);
 }
 
-/// A disc on a strip.
 /// Heights of the rows of zones of the lower platen, from its seat.
 std::vector<double> row_heights(double thickness) {
   const auto body = between_platens(small_specimen(), thickness, 1.0);
@@ -179,6 +178,7 @@ TEST(ConcreteModel, RowsOfABearingDoubleAwayFromItsSeat) {
   }
 }
 
+/// A disc on a strip.
 TEST(ConcreteModel, BearingsCoverTheirSeatsAndNoMore) {
   specimen::SpecimenParameters p;
   const double half = std::asin(0.1), radius = 0.05;
@@ -193,7 +193,7 @@ TEST(ConcreteModel, BearingsCoverTheirSeatsAndNoMore) {
   p.blocks.count = 400;
   p.blocks.shortest_edge = 0.2;
   const auto specimen = specimen::make_specimen(p);
-  const Model<2> body =
+  const ModelOf<2> body =
       make_concrete_model(specimen, 0.5, {}, {{"strip", "strip_seat", 0.006, "steel", "glue", true}});
   double seat = 0.0;
   for (const auto& c : body.contacts) {

@@ -13,20 +13,20 @@
 namespace pyroclast {
 namespace {
 
-using Sets = std::vector<SetParameters<2>>;
+using Sets = std::vector<SetParameters>;
 
-Model<2> with_sets(const Sets& sets) {
-  Model<2> model = between_platens(small_specimen(), 0.01, 0.5);
+ModelOf<2> with_sets(const Sets& sets) {
+  ModelOf<2> model = between_platens(small_specimen(), 0.01, 0.5);
   add_sets(model, sets);
   return model;
 }
 
 TEST(Sets, HoldWhatLiesInTheirPlaceBoundsIncluded) {
-  const Model<2> model =
-      with_sets({{.name = "box", .place = InBox<2>{{{0.0, 0.0}}, {{0.01, 0.02}}}},
-                 {.name = "disc", .place = InBall<2>{{{0.0, 0.0}}, 0.02}},
-                 {.name = "line", .within = "specimen", .place = OnLine<2>{{{0.0, 0.0}}, {{0.05, 0.0}}}},
-                 {.name = "corner", .within = "bottom", .place = NearestTo<2>{{{-0.002, 0.0}}}}});
+  const ModelOf<2> model =
+      with_sets({{.name = "box", .place = InBox{{{0.0, 0.0}}, {{0.01, 0.02}}}},
+                 {.name = "disc", .place = InBall{{{0.0, 0.0}}, 0.02}},
+                 {.name = "line", .within = "specimen", .place = OnLine{{{0.0, 0.0}}, {{0.05, 0.0}}}},
+                 {.name = "corner", .within = "bottom", .place = NearestTo{{{-0.002, 0.0}}}}});
   for (int g = 0; g < model.gridpoint_count(); ++g) {
     const auto is_in = [&](const char* name) { return std::ranges::count(model.set(name), g) == 1; };
     const Vec<2>& x = model.position[g];
@@ -39,8 +39,8 @@ TEST(Sets, HoldWhatLiesInTheirPlaceBoundsIncluded) {
 }
 
 TEST(Sets, OfContactsHoldThoseOnALine) {
-  const Model<2> model = with_sets(
-      {{.name = "section", .of = SetOf::contacts, .place = InBox<2>{{{0.02, 0.0}}, {{0.03, 0.1}}}}});
+  const ModelOf<2> model =
+      with_sets({{.name = "section", .of = SetOf::contacts, .place = InBox{{{0.02, 0.0}}, {{0.03, 0.1}}}}});
   const auto& section = model.contact_sets.at("section");
   EXPECT_GT(section.size(), 20U);
   for (int c = 0; c < model.contact_count(); ++c) {
@@ -50,12 +50,12 @@ TEST(Sets, OfContactsHoldThoseOnALine) {
 }
 
 TEST(Sets, OfBlocksHoldAllOfThoseWhoseCentroidsLieThere) {
-  const Model<2> model =
+  const ModelOf<2> model =
       with_sets({{.name = "lower",
                   .of = SetOf::blocks,
                   .within = "specimen",
-                  .place = InBox<2>{{{0.0, 0.0}}, {{0.05, 0.05}}}},
-                 {.name = "middle", .of = SetOf::blocks, .place = NearestTo<2>{{{0.025, 0.05}}}}});
+                  .place = InBox{{{0.0, 0.0}}, {{0.05, 0.05}}}},
+                 {.name = "middle", .of = SetOf::blocks, .place = NearestTo{{{0.025, 0.05}}}}});
   const auto& lower = model.set("lower");
   const auto zones = zone_geometry(model).volume;
   double area = 0.0;
@@ -75,12 +75,9 @@ TEST(Sets, OfBlocksHoldAllOfThoseWhoseCentroidsLieThere) {
 }
 
 TEST(Sets, OfFacesHoldThoseOfTheOutlineAlone) {
-  const Model<2> model = with_sets(
-      {{.name = "patch",
-        .of = SetOf::faces,
-        .within = "left",
-        .place = InBox<2>{{{0.0, 0.03}}, {{0.01, 0.07}}}},
-       {.name = "one", .of = SetOf::faces, .within = "left", .place = NearestTo<2>{{{0.0, 0.05}}}}});
+  const ModelOf<2> model = with_sets(
+      {{.name = "patch", .of = SetOf::faces, .within = "left", .place = InBox{{{0.0, 0.03}}, {{0.01, 0.07}}}},
+       {.name = "one", .of = SetOf::faces, .within = "left", .place = NearestTo{{{0.0, 0.05}}}}});
   double low = 1.0, high = 0.0;
   for (int g : model.set("patch")) {
     EXPECT_EQ(model.position[g][0], 0.0);
@@ -97,7 +94,7 @@ TEST(Sets, OfFacesHoldThoseOfTheOutlineAlone) {
 }
 
 TEST(Sets, ThereAreThoseOfTheOutlineAndOfTheContacts) {
-  const Model<2> model = with_sets({});
+  const ModelOf<2> model = with_sets({});
   const auto& contacts = model.contact_sets;
   std::size_t of_platens = 0, of_interfaces = 0;
   for (const Contact<2>& contact : model.contacts) of_platens += model.is_of_bearing(contact) ? 1 : 0;
@@ -115,7 +112,7 @@ TEST(Sets, ThereAreThoseOfTheOutlineAndOfTheContacts) {
 }
 
 TEST(Sets, TributaryAreasAreThoseOfTheFacesThatMeetNoBlock) {
-  const Model<2> model = with_sets({});
+  const ModelOf<2> model = with_sets({});
   const auto total = [&](const char* name) {
     std::vector<int> set = model.set(name);  // lists the gridpoints of both ends of each edge
     sort_unique(set);
@@ -128,11 +125,11 @@ TEST(Sets, TributaryAreasAreThoseOfTheFacesThatMeetNoBlock) {
 }
 
 TEST(Sets, WhatIsWrongIsToldWithItsPlace) {
-  const auto refusal = [](const SetParameters<2>& set) { return message([&] { with_sets({set}); }); };
+  const auto refusal = [](const SetParameters& set) { return message([&] { with_sets({set}); }); };
   const auto says = [](const std::string& told, const std::string& part) {
     EXPECT_NE(told.find(part), std::string::npos) << told;
   };
-  says(refusal({.name = "far", .place = InBall<2>{{{1.0, 1.0}}, 0.1}, .deck_place = "mine.toml:7"}),
+  says(refusal({.name = "far", .place = InBall{{{1.0, 1.0}}, 0.1}, .deck_place = "mine.toml:7"}),
        "mine.toml:7: set \"far\" is empty");
   says(refusal({.name = "left", .place = Everywhere{}}), "has the name of one");
   says(refusal({.name = "a", .within = "b", .place = Everywhere{}}),

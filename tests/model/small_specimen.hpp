@@ -22,7 +22,7 @@ inline specimen::Specimen small_specimen(int blocks = 300) {
 }
 
 /// A specimen between two platens; thicknesses in m.
-inline Model<2> between_platens(const specimen::Specimen& specimen, double of_platens, double thickness) {
+inline ModelOf<2> between_platens(const specimen::Specimen& specimen, double of_platens, double thickness) {
   return make_concrete_model(specimen, thickness, {}, platens(of_platens));
 }
 

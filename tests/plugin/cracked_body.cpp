@@ -67,7 +67,7 @@ int drive(int argc, char** argv) {
   for (int c = 0; c < model.contact_count(); ++c)
     properties.of_contact.push_back(own ? (7 * c) % kTemperatures : 0);
   for (const InstructionSet set : usable_instruction_sets()) {
-    MechanicsParameters<2> parameters;
+    MechanicsParameters parameters;
     parameters.local_damping = 0.7;
     parameters.safety = 0.8;
     parameters.instructions = set;

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "in_plane.hpp"
 #include "mechanics/bodies.hpp"
 #include "messages.hpp"
 #include "pyroclast/laws/registry.hpp"
@@ -158,11 +159,12 @@ TEST(Plugin, ALoadedLawStandsBesideAPhaseThatCreeps) {
   sources.folders = {LAWS};
   const auto own = creeping_body("renamed", sources), built_in = creeping_body("cohesive", sources);
   EXPECT_STREQ(own->materials().contacts[2].law->name, "renamed");
-  EXPECT_EQ(own->mechanics().read().displacements(), built_in->mechanics().read().displacements());
+  EXPECT_EQ(in_plane::mechanics(own->motion()).read().displacements(),
+            in_plane::mechanics(built_in->motion()).read().displacements());
   double crept = 0.0;
   for (int z = 0; z < own->model().zone_count(); ++z) {
-    EXPECT_EQ(own->mechanics().read().creep_strain(z), built_in->mechanics().read().creep_strain(z));
-    crept = std::min(crept, own->mechanics().read().creep_strain(z)[1]);
+    EXPECT_EQ(own->motion().read().creep_strain(z), built_in->motion().read().creep_strain(z));
+    crept = std::min(crept, own->motion().read().creep_strain(z)[1]);
   }
   EXPECT_LT(crept, -1e-5);
 }
@@ -181,7 +183,7 @@ TEST(Plugin, ALawForPlaneBodiesIsRefusedInSpace) {
   properties.zones.assign(model.zones.size(), zone_properties<3>(30e9, 0.2));
   properties.contacts.add({law, {1e12}, {}});
   properties.of_contact.assign(static_cast<std::size_t>(model.contact_count()), 0);
-  MechanicsParameters<3> parameters;
+  MechanicsParameters parameters;
   parameters.safety = 0.5;
   EXPECT_TRUE(says(message([&] { Mechanics<3>(model, {2300.0}, properties, parameters); }),
                    {"\"small\" is made for bodies in 2D, not in 3D"}));
@@ -272,7 +274,7 @@ TEST_F(LawInAHeader, AHeaderIsCompiledOnceForEachText) {
   properties.zones.assign(model.zones.size(), zone_properties<2>(30e9, 0.2));
   properties.contacts.add({law, {1e12}, {}});
   properties.of_contact.assign(static_cast<std::size_t>(model.contact_count()), 0);
-  MechanicsParameters<2> parameters;
+  MechanicsParameters parameters;
   parameters.safety = 0.5;
   parameters.instructions = InstructionSet::portable;
   Mechanics<2> body(model, {2300.0}, properties, parameters);

@@ -49,7 +49,7 @@ struct Made : Finished {
   }
   /// What contacts dissipated in all.
   void dissipate(double energy) {
-    const auto names = simulation->mechanics().body().dissipations;
+    const auto names = simulation->motion().dissipations();
     for (const auto& name : names)
       put("dissipated_" + std::string(name) + "_J", energy / static_cast<double>(names.size()));
   }
@@ -288,7 +288,7 @@ TEST(EnergyLedger, RoundingIsNoShareOfTheDissipated) {
   EXPECT_NEAR(r.summary().error_over_dissipated.value(), -0.505, 1e-9);
   EXPECT_EQ(count_of(r.summary().warnings, kOfDissipated), 1);
   // of several losses one that is not there is nothing
-  const auto losses = r.simulation->mechanics().body().dissipations;
+  const auto losses = r.simulation->motion().dissipations();
   ASSERT_GE(losses.size(), 2u);
   r.dissipate(2.0 * static_cast<double>(losses.size()));
   r.put("dissipated_" + std::string(losses[0]) + "_J", std::nullopt);
@@ -610,7 +610,7 @@ TEST(SummaryFile, EachNumberIsTheLastOfItsColumn) {
   EXPECT_GE(crack_columns.size(), 3u);
   for (const auto& column : crack_columns) r.put(column, value += 1.0);
   std::vector<std::string> losses;
-  for (const auto& name : r.simulation->mechanics().body().dissipations) losses.emplace_back(name);
+  for (const auto& name : r.simulation->motion().dissipations()) losses.emplace_back(name);
   for (const auto& name : losses) r.put("dissipated_" + name + "_J", value += 1.0);
 
   const Summary s = r.summary();
@@ -664,8 +664,8 @@ TEST(SummaryFile, TellsWhatTheBodyIs) {
   EXPECT_EQ(told["estimated_E_GPa"],
             estimate_modulus(r.simulation->model(), r.simulation->materials()) * 1e-9);
   EXPECT_DOUBLE_EQ(told["t_b_m"], 1.6e-3);
-  EXPECT_EQ(told["time_step_s"], r.simulation->mechanics().time_step());
-  EXPECT_EQ(told["mass_over_real_mass"], r.simulation->mechanics().mass_ratio());
+  EXPECT_EQ(told["time_step_s"], r.simulation->motion().time_step());
+  EXPECT_EQ(told["mass_over_real_mass"], r.simulation->motion().mass_ratio());
   const auto& specimen = r.simulation->specimen();
   EXPECT_EQ(told["specimen"]["blocks"], specimen.tessellation.cells.size());
   EXPECT_EQ(told["specimen"]["aggregate_fraction_asked"], 0.1);
@@ -687,10 +687,10 @@ TEST(SummaryFile, HeatAloneTellsItsTermsAndItsSolver) {
     EXPECT_EQ(told["heat_J"][name], expected += 1.0) << name;
   EXPECT_EQ(told["heat_J"]["error"], 0.5);
   EXPECT_DOUBLE_EQ(told["heat_J"]["error_over_largest"], 0.1);
-  const Conduction<2>& heat = *r.simulation->field().conduction();
-  EXPECT_EQ(told["heat_solver"]["steps"], heat.steps());
-  EXPECT_EQ(told["heat_solver"]["steps_taken_back"], heat.retries());
-  EXPECT_EQ(told["heat_solver"]["evaluations"], heat.stages());
+  const HeatWork work = r.simulation->field().conduction()->work();
+  EXPECT_EQ(told["heat_solver"]["steps"], work.steps);
+  EXPECT_EQ(told["heat_solver"]["steps_taken_back"], work.retries);
+  EXPECT_EQ(told["heat_solver"]["evaluations"], work.stages);
   EXPECT_FALSE(told["heat_solver"].contains("coupling"));
   EXPECT_FALSE(told["heat_solver"].contains("gap_length_m"));
   EXPECT_FALSE(told.contains("energy_J"));

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "in_plane.hpp"
 #include "messages.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/processors.hpp"
@@ -99,8 +100,10 @@ TEST(Session, ACopyInTheMiddleGoesTheSameWay) {
   finish(*copied);
   finish(*run);
   EXPECT_EQ(cells(*copied), cells(*run));
-  EXPECT_NE(copied->run().simulation().mechanics().body().arrays.displacement.data(),
-            run->run().simulation().mechanics().body().arrays.displacement.data());
+  const auto displacements = [](const Session& session) {
+    return in_plane::mechanics(session.run().simulation().motion()).body().arrays.displacement.data();
+  };
+  EXPECT_NE(displacements(*copied), displacements(*run));
 }
 
 TEST(Session, ACopyWhereCracksHinderHeatGoesTheSameWay) {
@@ -114,7 +117,7 @@ TEST(Session, ACopyWhereCracksHinderHeatGoesTheSameWay) {
            "exchange_increment = \"5 K\"", "exchange_increment = \"40 K\"");
   const auto run = Session::begin({Deck::parse(text, "deck.toml"), ".", choices}, std::nullopt);
   const auto gaps = [](const Session& session) {
-    return session.run().simulation().field().conduction()->gaps()->area();
+    return session.run().simulation().field().conduction()->gap_area();
   };
   int asked = 0;
   run->stop_when([&] { return gaps(*run) > 0.0 && ++asked == 4; });  // somewhere between two looks
@@ -170,7 +173,7 @@ TEST_F(Results, WhatAScriptDidIsSaidAndKeepsARunFromBeingResumed) {
   }));
   ASSERT_EQ(RunFolder::departures(folder_ / "run").size(), 1u);
   EXPECT_TRUE(RunFolder::departures(folder_ / "run").front().is_change);
-  EXPECT_LT(run->run().simulation().mechanics().totals().energy().property_change, 0.0);
+  EXPECT_LT(run->run().simulation().motion().totals().energy().property_change, 0.0);
 }
 
 TEST_F(Results, ARunThatAScriptChangedIsNotResumed) {

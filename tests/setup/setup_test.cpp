@@ -273,7 +273,8 @@ TEST(Phases, InAnyNumberNeedADeckAndNoCode) {
   // the interface of each contact is the one between the phases of its blocks
   const auto& model = simulation->model();
   const InterfaceTable table(phases_of(setup.solids), setup.motion->contacts.interfaces);
-  for (const auto& c : model.contacts) {
+  for (int i = 0; i < model.contact_count(); ++i) {
+    const Joint& c = model.joint(i);
     const int a = model.block_material[model.block_of(c.a)], b = model.block_material[model.block_of(c.b)];
     EXPECT_EQ(c.interface, model.is_of_bearing(c) ? table.count() : table.between(a, b));
   }

@@ -16,7 +16,7 @@ namespace {
 // Every contact gets parameters of its own temperature, and each is checked: what was possible where the deck
 // was checked may not be in between.
 TEST(PropertiesOfAComputedField, AreRefusedWhereTheyMakeNoLaw) {
-  const Model<2> body = small_body();
+  const ModelOf<2> body = small_body();
   auto field = conduct(body, heat_conditions({on("left", convection(25.0, Curve::constant(600.0)))}), 600.0);
   field.advance(100.0, 600.0);
   ConcreteMaterials materials;
@@ -65,7 +65,7 @@ ConcreteMaterials creeping_materials(OnCooling on_cooling) {
 }
 
 /// Of the hottest zone of mortar, and of the others together.
-std::pair<double, double> compliances(const Model<2>& body, const BodyProperties& properties) {
+std::pair<double, double> compliances(const ModelOf<2>& body, const BodyProperties& properties) {
   std::pair<double, double> of{0.0, 0.0};
   const auto blocks = zone_blocks(body);
   for (int z = 0; z < body.zone_count(); ++z) {
@@ -78,7 +78,7 @@ std::pair<double, double> compliances(const Model<2>& body, const BodyProperties
 // Promise: what creeps in an exchange is what B rises by above the hottest of before, to the last digit, and
 // nothing below it; aggregate and platens never creep.
 TEST(CreepOfAnExchange, IsThatOfTheFirstHeating) {
-  const Model<2> body = small_body();
+  const ModelOf<2> body = small_body();
   const auto materials = creeping_materials(OnCooling::irreversible);
   const Curve& strain = materials.solids[mortar_material].creep->strain;
   TemperatureField field(body, 20.0);
@@ -106,7 +106,7 @@ TEST(CreepOfAnExchange, IsThatOfTheFirstHeating) {
 // Promise: on cooling E and stiffnesses stay those of the hottest, zone by zone and contact by contact, or
 // come back; in a uniform field and in a computed one.
 TEST(PropertiesOnCooling, StayThoseOfTheHottestOrComeBack) {
-  const Model<2> body = small_body();
+  const ModelOf<2> body = small_body();
   const auto blocks = zone_blocks(body);
   const auto expect = [&](const TemperatureField& field, const TemperatureField& marked,
                           const BodyProperties& p) {
@@ -143,14 +143,14 @@ TEST(PropertiesOnCooling, StayThoseOfTheHottestOrComeBack) {
 }
 
 /// A field that was heated from its left, and is not even.
-TemperatureField heated_field(const Model<2>& body) {
+TemperatureField heated_field(const ModelOf<2>& body) {
   auto field = conduct(body, heat_conditions({on("left", convection(25.0, Curve::constant(600.0)))}), 600.0);
   field.advance(100.0, 600.0);
   return field;
 }
 
 /// The same before it was heated.
-TemperatureField cold_field(const Model<2>& body) {
+TemperatureField cold_field(const ModelOf<2>& body) {
   return conduct(body, heat_conditions({on("left", convection(25.0, Curve::constant(600.0)))}), 600.0);
 }
 
@@ -158,7 +158,7 @@ TemperatureField cold_field(const Model<2>& body) {
 // the phase, and to its curve beyond; zone by zone, in a uniform field and in a computed one, whatever
 // becomes of E.
 TEST(FreeStrainOnCooling, HasTheSlopeOfItsPhase) {
-  const Model<2> body = small_body();
+  const ModelOf<2> body = small_body();
   const auto blocks = zone_blocks(body);
   for (const OnCooling on_cooling : {OnCooling::irreversible, OnCooling::reversible}) {
     auto materials = creeping_materials(on_cooling);
@@ -201,7 +201,7 @@ TEST(FreeStrainOnCooling, HasTheSlopeOfItsPhase) {
 // deck says, each by its own curve; numbers that are plain follow the temperature; on heating nothing is
 // lost.
 TEST(PropertiesOnCooling, LoseTheirResidualShareEvenly) {
-  const Model<2> body = small_body();
+  const ModelOf<2> body = small_body();
   const auto blocks = zone_blocks(body);
   auto materials = creeping_materials(OnCooling::irreversible);
   const Curve of_young = Curve::table({20.0, 420.0, 900.0}, {1.0, 0.8, 0.8}, temperature_axis());

@@ -9,6 +9,7 @@
 #include "deck/diagnostics_of.hpp"
 #include "decks.hpp"
 #include "heated_specimen.hpp"
+#include "in_plane.hpp"
 #include "messages.hpp"
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/setup/read_heat.hpp"
@@ -43,7 +44,7 @@ Diagnostic error_of(const std::string& text) {
   return only_diagnostic_of(HeatDeck(text).deck);
 }
 
-std::string message_of(const Model<2>& body, const HeatConditions& heat,
+std::string message_of(const ModelOf<2>& body, const HeatConditions& heat,
                        const std::vector<SolidMaterial>& solids = alike_solids()) {
   return message([&] { make_conduction(body, solids, heat, {20.0, 1000.0}); });
 }
@@ -97,7 +98,7 @@ TEST(ReadHeat, EveryKindOfBoundaryIsReadInSi) {
   EXPECT_NEAR(radiated.gas_temperature(600.0), 70.0, 1e-9);
   EXPECT_TRUE(std::holds_alternative<Adiabatic>(heat.boundaries[4].condition));
   EXPECT_EQ(heat.boundaries[4].faces.part, HeatedFaces::kBox);
-  EXPECT_EQ(heat.boundaries[4].faces.box_high, (Vec<2>{{0.075, 0.0}}));
+  EXPECT_EQ(heat.boundaries[4].faces.box_high, (Vec<3>{{0.075, 0.0}}));
 }
 
 TEST(ReadHeat, WhatANumberMayBeIsToldAtItsLine) {
@@ -210,18 +211,19 @@ double area_of(const Conduction<2>& heat, const std::vector<int>& faces) {
 
 TEST(MakeConduction, TheOutlineIsTheSpecimensOwnUnderThePlatensToo) {
   const auto body = small_body();
-  const auto heat = make_conduction(body, alike_solids(), heat_conditions({}), {20.0, 100.0});
-  EXPECT_NEAR(area_of(*heat, heat->faces([](const auto&) { return true; })),
+  const auto solver = make_conduction(body, alike_solids(), heat_conditions({}), {20.0, 100.0});
+  const Conduction<2>& heat = in_plane::conduction(*solver);
+  EXPECT_NEAR(area_of(heat, heat.faces([](const auto&) { return true; })),
               2.0 * (kSpecimenWidth + kSpecimenHeight) * kSpecimenThickness, 1e-12);
-  EXPECT_NEAR(area_of(*heat, heat->faces(on_plane<2>(1, kSpecimenHeight, 1e-9))),
+  EXPECT_NEAR(area_of(heat, heat.faces(on_plane<2>(1, kSpecimenHeight, 1e-9))),
               kSpecimenWidth * kSpecimenThickness, 1e-12);
 }
 
 /// Heat that comes in through a part of the outline in a second, over a flux of 1 W/m2: its area.
-double heated_area(const Model<2>& body, const HeatedFaces& faces) {
+double heated_area(const ModelOf<2>& body, const HeatedFaces& faces) {
   HeatConditions heat = heat_conditions({{faces, HeatFlux{Curve::constant(1.0)}, ""}});
   const auto conduction = make_conduction(body, alike_solids(), heat, {20.0, 100.0});
-  conduction->advance_to(1.0);
+  in_plane::conduction(*conduction).advance_to(1.0);
   return conduction->ledger().boundary.flux;
 }
 

@@ -12,10 +12,12 @@
 
 #include <gtest/gtest.h>
 
+#include "in_plane.hpp"
 #include "part_of_body.hpp"
+#include "pyroclast/mechanics/cracks.hpp"
 #include "pyroclast/simulation/coupling.hpp"
-#include "pyroclast/simulation/cracks.hpp"
 #include "pyroclast/simulation/loads.hpp"
+#include "pyroclast/thermal/conduction.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 #include "stages/small_runs.hpp"
 
@@ -38,7 +40,7 @@ struct Whole {
       densities.push_back(solid.density(kReferenceTemperature));
     mechanics = std::make_unique<Mechanics<2>>(model(), densities, properties, setup.motion->mechanics);
   }
-  const Model<2>& model() const { return simulation->model(); }
+  const ModelOf<2>& model() const { return in_plane::model(simulation->model()); }
 
   Setup setup;
   std::unique_ptr<Simulation> simulation;
@@ -146,8 +148,8 @@ void expect_same_state(const Whole& whole, const OfPart& of) {
     ASSERT_EQ(of.mechanics.read().force(g), whole.mechanics->read().force(there)) << there;
   }
   for (int c = 0; c < part.model.contact_count(); ++c) {
-    const ContactState<2> here = of.mechanics.read().contact(c),
-                          there = whole.mechanics->read().contact(part.contact[c]);
+    const ContactState here = of.mechanics.read().contact(c),
+                       there = whole.mechanics->read().contact(part.contact[c]);
     ASSERT_EQ(here.internals, there.internals) << part.contact[c];
     ASSERT_EQ(here.losses, there.losses) << part.contact[c];
   }
@@ -181,10 +183,10 @@ std::vector<Reading> readings(const std::vector<CrackKind>& kinds) {
   add("moving mass", [](const M& m, const S& s) { return m.totals().total_moving_mass(s); });
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     add("damaged", [k, kinds](const M& m, const S&) {
-      return static_cast<double>(count_cracks(m, kinds).of_kind[k].damaged);
+      return static_cast<double>(count_cracks(m.body(), kinds).of_kind[k].damaged);
     });
     add("crack length",
-        [k, kinds](const M& m, const S&) { return count_cracks(m, kinds).of_kind[k].length; });
+        [k, kinds](const M& m, const S&) { return count_cracks(m.body(), kinds).of_kind[k].extent; });
   }
   return all;
 }
@@ -195,7 +197,7 @@ INSTANTIATE_TEST_SUITE_P(Kinematics, Parts, testing::Values("small", "finite"),
 
 TEST_P(Parts, DoWhatTheirChunksDoInTheWhole) {
   const Whole whole(heated_deck(GetParam()));
-  const Model<2>& model = whole.model();
+  const ModelOf<2>& model = whole.model();
   auto bodies = bodies_of(whole);
   ASSERT_GT(bodies.size(), 7U);
   drive(*whole.mechanics, model.set("bottom_platen_support"), model.set("top_platen_support"));
@@ -207,9 +209,10 @@ TEST_P(Parts, DoWhatTheirChunksDoInTheWhole) {
     for (const auto& body : bodies) body->mechanics.advance(1);
     if (step + 1 < kSteps) exchange(bodies, model.gridpoint_count());
   }
-  const auto kinds = crack_kinds(*whole.mechanics);
+  const auto kinds = crack_kinds(whole.mechanics->body());
   std::int64_t damaged = 0;
-  for (const CrackCount& count : count_cracks(*whole.mechanics, kinds).of_kind) damaged += count.damaged;
+  for (const CrackCount& count : count_cracks(whole.mechanics->body(), kinds).of_kind)
+    damaged += count.damaged;
   EXPECT_GT(damaged, model.contact_count() / 10);
   EXPECT_LT(damaged, model.contact_count());
 
@@ -219,7 +222,7 @@ TEST_P(Parts, DoWhatTheirChunksDoInTheWhole) {
     expect_same_state(whole, *bodies[chunk]);
   }
   for (const Reading& reading : readings(kinds)) {
-    const auto set_of = [&](const Model<2>& of, std::vector<int> set) {
+    const auto set_of = [&](const ModelOf<2>& of, std::vector<int> set) {
       return gridpoint_set(of, std::move(set));
     };
     double sum = 0.0;
@@ -255,7 +258,7 @@ TEST(Parts, MeansAreOfOwnGridpoints) {
 // Constraints and ties have one order, whatever the order in which they were made.
 TEST(Constraints, HaveOneOrder) {
   const Whole whole(heated_deck("small"));
-  const Model<2>& model = whole.model();
+  const ModelOf<2>& model = whole.model();
   const auto body = [&](bool forwards) {
     Mechanics<2> m(model, whole.densities, whole.properties, whole.setup.motion->mechanics);
     std::vector<int> held = model.set("left");
@@ -290,7 +293,7 @@ TEST(Constraints, HaveOneOrder) {
 constexpr double kHeatStep = 0x1p-7;
 
 /// Heat of a body with every kind of inflow, some of whose contacts part the temperatures of their sides.
-std::unique_ptr<Conduction<2>> conduction_of(const Model<2>& model, const std::vector<ContactGap>& gaps) {
+std::unique_ptr<Conduction<2>> conduction_of(const ModelOf<2>& model, const std::vector<ContactGap>& gaps) {
   const auto material = [](double conductivity) {
     return HeatMaterial{Curve::table({0.0, 900.0}, {conductivity, 0.5}, temperature_axis()),
                         Curve::table({0.0, 900.0}, {2.2e6, 3e6}, temperature_axis())};
@@ -315,7 +318,7 @@ std::unique_ptr<Conduction<2>> conduction_of(const Model<2>& model, const std::v
 }
 
 /// Temperature of each node at the start: any field.
-void set_start(Conduction<2>& heat, const Model<2>& model) {
+void set_start(Conduction<2>& heat, const ModelOf<2>& model) {
   std::vector<double> temperature;
   for (const int g : heat.nodes().gridpoint)
     temperature.push_back(50.0 + 4e3 * model.position[g][1] + 900.0 * model.position[g][0]);
@@ -324,7 +327,7 @@ void set_start(Conduction<2>& heat, const Model<2>& model) {
 
 TEST(PartsOfHeat, DoWhatTheirChunksDoInTheWhole) {
   const Whole made(heated_deck("small"));
-  const Model<2>& model = made.model();
+  const ModelOf<2>& model = made.model();
   std::vector<ContactGap> gaps(model.contacts.size());
   for (int c = 0; c < model.contact_count(); c += 5) gaps[c] = {0.9, 1e-5};
   const auto whole = conduction_of(model, gaps);
@@ -332,8 +335,8 @@ TEST(PartsOfHeat, DoWhatTheirChunksDoInTheWhole) {
       join_through_contacts(model, {true, true, false});  // without gaps: the most that touches
   set_start(*whole, model);
   whole->advance_to(kHeatStep);
-  ASSERT_EQ(whole->steps(), 1);
-  ASSERT_EQ(whole->stages(), 1);
+  ASSERT_EQ(whole->work().steps, 1);
+  ASSERT_EQ(whole->work().stages, 1);
   const double total = whole->state().stored_at_start, area = whole->gaps()->area();
   HeatLedger sums;
   double stored_at_start = 0.0, gap_area = 0.0;
@@ -343,7 +346,7 @@ TEST(PartsOfHeat, DoWhatTheirChunksDoInTheWhole) {
     const auto heat = conduction_of(part.model, parts::some_of(gaps, part.contact));
     set_start(*heat, part.model);
     heat->advance_to(kHeatStep);
-    ASSERT_EQ(heat->stages(), 1);
+    ASSERT_EQ(heat->work().stages, 1);
     stored_at_start += heat->state().stored_at_start;
     gap_area += heat->gaps()->area();
     const HeatLedger ledger = heat->ledger();
@@ -370,7 +373,7 @@ TEST(PartsOfHeat, DoWhatTheirChunksDoInTheWhole) {
 // The mean of a part's field is that of its own zones.
 TEST(PartsOfHeat, MeansAreOfOwnZones) {
   const Whole made(heated_deck("small"));
-  const Model<2>& model = made.model();
+  const ModelOf<2>& model = made.model();
   const auto joined = join_through_contacts(model, {true, true, false});
   for (Part<2>& part : parts::all_parts(model, joined.of_gridpoint)) {
     if (part.model.is_of_bearing(part.model.chunk_blocks[part.chunk])) continue;

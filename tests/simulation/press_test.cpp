@@ -16,7 +16,7 @@ constexpr double kYoung = 30e9, kPoisson = 0.2, kDensity = 2400.0;
 
 /// Gridpoints with a component at a place.
 template <int Dim>
-std::vector<int> at(const Model<Dim>& model, int component, double place) {
+std::vector<int> at(const ModelOf<Dim>& model, int component, double place) {
   std::vector<int> set;
   for (int g = 0; g < model.gridpoint_count(); ++g)
     if (std::abs(model.position[g][component] - place) < 1e-12) set.push_back(g);
@@ -25,7 +25,7 @@ std::vector<int> at(const Model<Dim>& model, int component, double place) {
 
 /// A body of height 1 that is its own platens: a press that grips it.
 template <int Dim>
-Model<Dim> gripped(Model<Dim> model, double width) {
+ModelOf<Dim> gripped(ModelOf<Dim> model, double width) {
   const int axis = Dim == 2 ? 1 : 2;
   for (const char* name : {"bottom", "bottom_platen_face", "bottom_platen_support"})
     model.sets[name] = at(model, axis, 0.0);
@@ -43,26 +43,36 @@ Model<Dim> gripped(Model<Dim> model, double width) {
 }
 
 template <int Dim>
-Mechanics<Dim> elastic(const Model<Dim>& model) {
+MotionOf<Dim> elastic(const ModelOf<Dim>& model) {
   std::vector<ZoneProperties> zones(model.zones.size(), zone_properties<Dim>(kYoung, kPoisson, 0.0));
-  MechanicsParameters<Dim> parameters;
+  MechanicsParameters parameters;
   parameters.local_damping = 0.8;
   parameters.damping_form = DampingForm::combined;
   parameters.mass = MassChoice::scaled;
   parameters.time_step = 1e-5;
   parameters.safety = 0.9;
-  return {model, {kDensity}, by_interface(model, std::move(zones), {bodies::elastic_contact()}), parameters};
+  return {model,
+          {kDensity},
+          by_interface(model, std::move(zones), {bodies::elastic_contact()}),
+          parameters,
+          nullptr};
 }
 
-Model<2> square() {
+/// The section of a body of height 1 whose widths are 0.5, across the axis on which it stands.
+template <int Dim>
+Press::Specimen section(const ModelOf<Dim>& model) {
+  return {Dim - 1, 1.0, std::pow(0.5, Dim - 1) * model.thickness, std::vector<double>(Dim - 1, 0.5)};
+}
+
+ModelOf<2> square() {
   return gripped(bodies::lattice(4, 4, [](double x, double y) { return Vec<2>{{0.5 * x, y}}; }), 0.5);
 }
 
 /// Two cubes of five tetrahedra each, one the mirror image of the other on top of it, half as large.
-Model<3> tower() {
-  Model<3> model = bodies::five_tetrahedra();
+ModelOf<3> tower() {
+  ModelOf<3> model = bodies::five_tetrahedra();
   for (auto& x : model.position) x = 0.5 * x;
-  const Model<3> lower = model;
+  const ModelOf<3> lower = model;
   const int gridpoints = lower.gridpoint_count();
   for (int b = 0; b < lower.block_count(); ++b) {
     std::vector<Vec<3>> corners;
@@ -89,15 +99,13 @@ Model<3> tower() {
 
 /// Presses to a stress, and tells what the press reads and what the body bears.
 template <int Dim>
-void carries_what_it_is_loaded_with(const Model<Dim>& model) {
-  std::array<double, Dim - 1> widths;
-  widths.fill(0.5);
-  auto mechanics = elastic(model);
-  Press<Dim> press(mechanics, Dim - 1, 1.0, widths);
+void carries_what_it_is_loaded_with(const ModelOf<Dim>& model) {
+  auto motion = elastic(model);
+  Press press(motion, section(model));
   press.control_by_force();
   press.hold(1e6);
-  mechanics.advance(20000);
-  EXPECT_LT(mechanics.totals().unbalanced_ratio(), 1e-6);
+  motion.advance(20000);
+  EXPECT_LT(motion.totals().unbalanced_ratio(), 1e-6);
   EXPECT_NEAR(press.stress_top(), 1e6, 1.0);
   EXPECT_NEAR(press.stress_bottom(), 1e6, 1.0);
   EXPECT_EQ(press.stress_held(), 1e6);
@@ -117,11 +125,11 @@ void carries_what_it_is_loaded_with(const Model<Dim>& model) {
 
   press.control_by_motion(1e-4);
   EXPECT_EQ(press.stress_held(), 0.0);
-  const double before = press.strain(), time = 100.0 * mechanics.time_step();
-  mechanics.advance(100);
+  const double before = press.strain(), time = 100.0 * motion.time_step();
+  motion.advance(100);
   EXPECT_NEAR(press.strain() - before, 1e-4 * time, 1e-9 * time);
   press.move_platen(0.0);
-  mechanics.advance(20000);
+  motion.advance(20000);
   expect_known({Dim == 2 ? "Stress of an elastic body between platens, after a motion, 2D"
                          : "Stress of an elastic body between platens, after a motion, 3D",
                 "load and strain in proportion", "Pa"},
@@ -138,23 +146,21 @@ TEST(PressVerification, CarriesWhatItIsLoadedWithIn3d) {
 
 /// Strains the body evenly: every gridpoint moves by the strain times its place, and no faster after.
 template <int Dim>
-void strains_evenly(const Model<Dim>& model) {
-  std::array<double, Dim - 1> widths;
-  widths.fill(0.5);
-  auto mechanics = elastic(model);
-  Press<Dim> press(mechanics, Dim - 1, 1.0, widths);
-  const typename Press<Dim>::EvenMotion strain{.axial = 1e-6, .lateral = 2e-6};
+void strains_evenly(const ModelOf<Dim>& model) {
+  auto motion = elastic(model);
+  Press press(motion, section(model));
+  const Press::EvenMotion strain{.axial = 1e-6, .lateral = 2e-6};
   press.move_evenly(strain, 1.0, false);
-  mechanics.advance(1);
+  motion.advance(1);
   press.move_evenly(strain, 0.0, false);
-  mechanics.advance(1);
+  motion.advance(1);
   press.end_even_motion(false);
   for (int g = 0; g < model.gridpoint_count(); ++g) {
-    const Vec<Dim> u = mechanics.read().displacement(g), x = model.position[g];
+    const Vec<3> u = motion.read().displacement(g), x = model.place(g);
     for (int i = 0; i < Dim; ++i) {
       const double expected = i == Dim - 1 ? 1e-6 * x[i] : 2e-6 * (x[i] - 0.25);
       EXPECT_NEAR(u[i], expected, 1e-18);
-      EXPECT_EQ(mechanics.read().velocity(g)[i], 0.0);
+      EXPECT_EQ(motion.read().velocity(g)[i], 0.0);
     }
   }
   EXPECT_NEAR(press.specimen_strain(), -1e-6, 1e-18);
@@ -171,16 +177,18 @@ TEST(Press, StrainsABodyEvenlyIn3d) {
 
 TEST(Press, RefusesAnAxisThatIsNone) {
   const auto model = square();
-  auto mechanics = elastic(model);
-  EXPECT_THROW(Press<2>(mechanics, 2, 1.0, {0.5}), Error);
+  auto motion = elastic(model);
+  Press::Specimen across = section(model);
+  across.axis = 2;
+  EXPECT_THROW(Press(motion, across), Error);
 }
 
 TEST(Press, NamesASetThatTheModelDoesNotHave) {
   auto model = square();
   model.sets.erase("top_platen_support");
-  auto mechanics = elastic(model);
+  auto motion = elastic(model);
   try {
-    Press<2>(mechanics, 1, 1.0, {0.5});
+    Press(motion, section(model));
     FAIL() << "a press without an upper support";
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("\"top_platen_support\""), std::string::npos);

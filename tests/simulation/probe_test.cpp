@@ -21,11 +21,12 @@ TEST(Probe, ReadsALinearFieldExactlyAnywhere) {
   for (const double x : {0.0, 0.013, kSpecimenWidth})
     for (const double y : {0.0, 0.04, kSpecimenHeight}) {
       const Vec<2> at{{x, y}};
-      EXPECT_NEAR(Probe(body, {"p", at}).read(values), field(at), 1e-9) << x << ", " << y;  // rounding of 1e2
+      EXPECT_NEAR(Probe(body, {"p", resized<3>(at)}).read(values), field(at), 1e-9)
+          << x << ", " << y;  // rounding of 1e2
     }
   for (std::size_t i = 0; i < body.set("specimen").size(); i += 97) {
     const int g = body.set("specimen")[i];
-    EXPECT_NEAR(Probe(body, {"p", body.position[g]}).read(values), values[g], 1e-9);
+    EXPECT_NEAR(Probe(body, {"p", body.place(g)}).read(values), values[g], 1e-9);
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "in_plane.hpp"
 #include "pyroclast/base/error.hpp"
 #include "stages/small_runs.hpp"
 
@@ -123,7 +124,7 @@ TEST(Run, GoesFromLookToLook) {
 
 /// Stops a run at a step of the mechanics.
 void stop_at(Run& run, std::int64_t step) {
-  run.stop_when([&run, step] { return run.simulation().mechanics().steps() >= step; });
+  run.stop_when([&run, step] { return run.simulation().motion().steps() >= step; });
 }
 
 // Promise: a stop inside an exchange leaves no row and no verdict of it: it is not said that it did not come
@@ -156,7 +157,7 @@ TEST(Run, AStopWaitsForNoLook) {
   stop_at(trial.run, soon);
   trial.run.run();
   EXPECT_EQ(trial.run.outcome(), Outcome::stopped);
-  EXPECT_LT(trial.run.simulation().mechanics().steps(), soon + 250);
+  EXPECT_LT(trial.run.simulation().motion().steps(), soon + 250);
 }
 
 TEST(Run, CallsBackAtTheStepAskedForAndChangesNothing) {
@@ -164,7 +165,7 @@ TEST(Run, CallsBackAtTheStepAskedForAndChangesNothing) {
   Trial whole(text), watched(text);
   whole.run.run();
   std::vector<std::int64_t> called;
-  const auto note = [&](pyroclast::Run& run) { called.push_back(run.simulation().mechanics().steps()); };
+  const auto note = [&](pyroclast::Run& run) { called.push_back(run.simulation().motion().steps()); };
   watched.run.call_at(333, note);
   watched.run.call_at(7, [&](pyroclast::Run& run) {
     note(run);
@@ -224,13 +225,12 @@ TEST(Run, AnotherBodyWithItsStateGoesOnAlike) {
       resumed.run.visit_state(copy);
       resumed.run.run();
       expect_same(whole.run.history(), resumed.run.history());
-      EXPECT_EQ(whole.simulation->mechanics().read().displacements(),
-                resumed.simulation->mechanics().read().displacements());
-      EXPECT_EQ(whole.simulation->mechanics().read().stresses(),
-                resumed.simulation->mechanics().read().stresses());
+      const auto one = in_plane::mechanics(whole.simulation->motion()).read(),
+                 other = in_plane::mechanics(resumed.simulation->motion()).read();
+      EXPECT_EQ(one.displacements(), other.displacements());
+      EXPECT_EQ(one.stresses(), other.stresses());
       for (int z = 0; z < whole.simulation->model().zone_count(); ++z)
-        ASSERT_EQ(whole.simulation->mechanics().read().creep_strain(z),
-                  resumed.simulation->mechanics().read().creep_strain(z));
+        ASSERT_EQ(one.creep_strain(z), other.creep_strain(z));
       for (std::size_t stage = 0; stage < whole.run.courses().size(); ++stage)
         EXPECT_EQ(report_of(whole, stage).lines, report_of(resumed, stage).lines);
     }

@@ -130,17 +130,17 @@ TEST(Acting, ReactionsAreShared) {
   const auto check = [&](const std::string& held, bool left_shares) {
     const Finished run(
         body(drive(kAtRest, held + kPush + does("top", "pressure = \"2 MPa\"\nramp_time = \"20 ms\""))));
-    const Mechanics<2>& mechanics = run.simulation->mechanics();
+    const Motion& motion = run.simulation->motion();
     Vec<2> all{};
     for (int g = 0; g < run.simulation->model().gridpoint_count(); ++g)
       for (const int c : {0, 1})
-        if (mechanics.read().is_prescribed(g, c)) all[c] -= mechanics.read().force(g)[c];
+        if (motion.read().is_prescribed(g, c)) all[c] -= motion.read().force(g)[c];
     EXPECT_NEAR(run.last("bottom_x_N") + run.last("left_x_N"), all[0], 1e-12 * std::abs(all[0]));
     EXPECT_NEAR(run.last("bottom_y_N") + run.last("left_y_N"), all[1], 1e-12 * std::abs(all[1]));
     EXPECT_NEAR(all[0], 1e5 * kHeight, 5.0);
     EXPECT_EQ(run.last("left_y_N"), 0.0);  // the corner's belongs to the bottom, which holds it
     const int corner = run.simulation->model().set("corner").front();
-    const double bottom_alone = -mechanics.read().force(corner)[0];
+    const double bottom_alone = -motion.read().force(corner)[0];
     if (left_shares) {
       EXPECT_EQ(run.simulation->supports().holders(corner, 0), 2);
       EXPECT_NE(bottom_alone, 0.0);

@@ -128,7 +128,7 @@ TEST(ConductVerification, ReachesTheSteadyStateBetweenTwoFaces) {
   double worst = 0.0;
   for (int g = 0; g < c.simulation.model().gridpoint_count(); ++g)
     worst = std::max(worst, std::abs(field.gridpoints()[g] -
-                                     (120.0 - 100.0 * c.simulation.model().position[g][0] / kSpecimenWidth)));
+                                     (120.0 - 100.0 * c.simulation.model().place(g)[0] / kSpecimenWidth)));
   // A mode that decays with the time l^2 / (pi^2 a) = 342 s is left by 342 s times the rate, and its peak is
   // sqrt(2) of its mean square.
   expect_known_field({"Steady heat between two faces of a specimen: temperatures", "linear field", "K"},

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "in_plane.hpp"
 #include "known.hpp"
 #include "phases.hpp"
 #include "pyroclast/base/state_copy.hpp"
@@ -115,8 +116,8 @@ TEST(QuartzStep, FollowsTheComputedField) {
     const double T = zones[z], way = std::clamp((T - 550.0) / 50.0, 0.0, 1.0);
     const bool quartz = model.material_names[model.block_material[blocks[z]]] == "aggregate";
     const double step = quartz ? 0.004 * way * way * (3.0 - 2.0 * way) : 0.0;
-    EXPECT_NEAR(r.simulation->mechanics().read().properties_of_zone(z).thermal_strain,
-                1e-5 * (T - 20.0) + step, 1e-14);
+    EXPECT_NEAR(r.simulation->motion().read().properties_of_zone(z).thermal_strain, 1e-5 * (T - 20.0) + step,
+                1e-14);
     if (quartz) ++below_within_above[T < 550.0 ? 0 : T < 600.0 ? 1 : 2];
   }
   for (const int count : below_within_above) EXPECT_GT(count, 0);
@@ -297,8 +298,8 @@ TEST(MixedModeInARun, GoesThroughAHotTestOfConcrete) {
   copy.put([&](StateVisitor& visitor) { resumed.run.visit_state(visitor); });
   resumed.run.go_on();
   resumed.run.run();
-  EXPECT_EQ(resumed.simulation->mechanics().read().displacements(),
-            trial.simulation->mechanics().read().displacements());
+  EXPECT_EQ(in_plane::mechanics(resumed.simulation->motion()).read().displacements(),
+            in_plane::mechanics(trial.simulation->motion()).read().displacements());
   EXPECT_EQ(resumed.run.history().last("dissipated_creep_J"), history.last("dissipated_creep_J"));
 }
 

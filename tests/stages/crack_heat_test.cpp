@@ -48,11 +48,10 @@ TEST(CrackHeat, CracksThatAFireOpensHoldItsHeatBack) {
   const RowRange rows = with_cracks.run.courses()[1].rows;
   EXPECT_EQ(history.cell(rows.first, "heat_gap_length_m"), 0.0);
   const auto& field = with_cracks.simulation->field();
-  const auto gaps =
-      contact_gaps<2>(with_cracks.simulation->model(), {}, &with_cracks.simulation->mechanics());
+  const auto gaps = contact_gaps(with_cracks.simulation->model(), {}, &with_cracks.simulation->motion());
   double largest = 0.0, jump = 0.0;
   for (int i = 0; i < with_cracks.simulation->model().contact_count(); ++i) {
-    const auto& c = with_cracks.simulation->model().contacts[i];
+    const Joint& c = with_cracks.simulation->model().joint(i);
     if (with_cracks.simulation->model().is_of_bearing(c)) continue;
     largest = std::max(largest, gaps[i].opening);
     jump = std::max(jump, std::abs(field.gridpoints()[c.b] - field.gridpoints()[c.a]));
@@ -82,40 +81,38 @@ TEST(CrackHeat, AGapIsWhatIsStatedAndWhatTheMotionOpens) {
       "[[specimen.notches]]\nmouth = [\"0 mm\", \"60 mm\"]\ntip = [\"30 mm\", \"60 mm\"]\n";
   const std::string text = with(deck(kSettle + kExpose + kHeatedFace), "[aggregates]", slit + "[aggregates]");
   const auto simulation = make_simulation(read(text + kCracks));
-  const Model<2>& model = simulation->model();
+  const Model& model = simulation->model();
   const auto& parted = model.contact_sets.at("notch_1");
-  EXPECT_EQ(simulation->field().conduction()->gaps()->area(), 0.0) << "its walls touch";
-  Mechanics<2>& mechanics = simulation->mechanics();
-  for (int g : model.set("top_platen")) mechanics.constraints().prescribe_velocity(g, 1, 0.01);
-  for (int g : model.set("bottom_platen")) mechanics.constraints().prescribe_velocity(g, 1, -0.01);
+  EXPECT_EQ(simulation->field().conduction()->gap_area(), 0.0) << "its walls touch";
+  Motion& motion = simulation->motion();
+  for (int g : model.set("top_platen")) motion.constraints().prescribe_velocity(g, 1, 0.01);
+  for (int g : model.set("bottom_platen")) motion.constraints().prescribe_velocity(g, 1, -0.01);
   for (int g : model.set("specimen"))
-    if (std::abs(model.position[g][1] - 0.06) > 0.055)
-      mechanics.constraints().prescribe_velocity(g, 1, model.position[g][1] > 0.06 ? 0.01 : -0.01);
-  mechanics.advance(300);
-  const auto gaps = contact_gaps<2>(model, {{"notch_1", 1e-3, ""}}, &mechanics);
+    if (std::abs(model.place(g)[1] - 0.06) > 0.055)
+      motion.constraints().prescribe_velocity(g, 1, model.place(g)[1] > 0.06 ? 0.01 : -0.01);
+  motion.advance(300);
+  const auto gaps = contact_gaps(model, {{"notch_1", 1e-3, ""}}, &motion);
   for (int contact : parted) {
     EXPECT_EQ(gaps[contact].damage, 1.0);
-    EXPECT_EQ(gaps[contact].opening, 1e-3 + std::max(0.0, mechanics.read().opening(contact)));
+    EXPECT_EQ(gaps[contact].opening, 1e-3 + std::max(0.0, motion.read().opening(contact)));
   }
-  EXPECT_GT(mechanics.read().opening(parted.front()), 1e-5);
+  EXPECT_GT(motion.read().opening(parted.front()), 1e-5);
   for (int i = 0; i < model.contact_count(); ++i)
     if (!std::ranges::count(parted, i)) {
-      EXPECT_EQ(gaps[i].damage, mechanics.read().remembered(i, Remembers::tension_damage));
-      EXPECT_EQ(gaps[i].opening, std::max(0.0, mechanics.read().opening(i)));
+      EXPECT_EQ(gaps[i].damage, motion.read().remembered(i, Remembers::tension_damage));
+      EXPECT_EQ(gaps[i].opening, std::max(0.0, motion.read().opening(i)));
     }
   simulation->show_cracks_to_heat();
-  EXPECT_GT(simulation->field().conduction()->gaps()->area(), 0.02 * model.thickness);
+  EXPECT_GT(simulation->field().conduction()->gap_area(), 0.02 * model.thickness);
   for (int contact : parted) {
-    EXPECT_GT(
-        simulation->field().conduction()->gaps()->conductances(simulation->field().gridpoints())[contact],
-        4.0);
+    EXPECT_GT(simulation->field().conduction()->conductances(simulation->field().gridpoints())[contact], 4.0);
   }
 }
 
 TEST(CrackHeat, GapsNameSetsOfContactsAndDoNotMeet) {
   const auto simulation = make_simulation(read(deck(kSettle + kExpose + kHeatedFace)));
   const auto told = [&](const std::vector<StatedGap>& gaps) {
-    return message([&] { contact_gaps<2>(simulation->model(), gaps, nullptr); });
+    return message([&] { contact_gaps(simulation->model(), gaps, nullptr); });
   };
   const std::string missing = told({{"scab", 1e-3, "deck.toml:9: heat.cracks.gaps[0]"}});
   EXPECT_NE(missing.find("deck.toml:9: heat.cracks.gaps[0]: contacts = \"scab\" is no set of contacts"),
@@ -167,11 +164,11 @@ TEST(CrackHeat, ContactsPartBelowAConductanceOfTheBlockSize) {
     const auto& specimen = simulation->specimen();
     const double conductivity = 4.0 * specimen.fraction[0] + 40.0 * specimen.fraction[1];
     const double size = std::sqrt(specimen.region.area() / std::stod(std::string(count).substr(8)));
-    EXPECT_NEAR(simulation->field().conduction()->gaps()->law().split_below, 20.0 * conductivity / size,
+    EXPECT_NEAR(simulation->field().conduction()->gap_law()->split_below, 20.0 * conductivity / size,
                 1e-9 * conductivity / size);
   }
   const auto stated = make_simulation(read(text + "split_below = \"5 kW/(m2 K)\"\n"));
-  EXPECT_EQ(stated->field().conduction()->gaps()->law().split_below, 5e3);
+  EXPECT_EQ(stated->field().conduction()->gap_law()->split_below, 5e3);
 }
 
 TEST(CrackHeat, ADeckIsToldWhatIsWrong) {

@@ -97,7 +97,7 @@ TEST(CreepInARun, FollowsTheComputedField) {
   ASSERT_EQ(model.material_names[mortar], "mortar");
   for (int z = 0; z < model.zone_count(); ++z) {
     const bool creeps = model.block_material[blocks[z]] == mortar;
-    const double crept = r.simulation->mechanics().read().creep_strain(z)[1];
+    const double crept = r.simulation->motion().read().creep_strain(z)[1];
     EXPECT_EQ(crept != 0.0, creeps) << z;
   }
   EXPECT_LT(r.energy_error_over_turnover(), 1e-3);

@@ -32,13 +32,13 @@ std::string body(const std::string& stages) {
 
 struct Look {
   double time;  ///< of the stage, s
-  SetLoad<2> top, right;
+  SetLoad top, right;
 };
 
 /// Loads of two sets at the looks of a stage: they are those of the middle of the 20 steps before, and at the
 /// end of the stage those of its end.
 std::vector<Look> loads_of(Trial& trial, int stage) {
-  const double step = trial.simulation->mechanics().time_step();
+  const double step = trial.simulation->motion().time_step();
   std::vector<Look> looks;
   double begin = 0.0;
   while (trial.run.next()) {
@@ -52,7 +52,7 @@ std::vector<Look> loads_of(Trial& trial, int stage) {
   return looks;
 }
 
-void expect_force(const SetLoad<2>& load, double x, double y) {
+void expect_force(const SetLoad& load, double x, double y) {
   EXPECT_NEAR(load.force[0], x, 1e-4);
   EXPECT_NEAR(load.force[1], y, 1e-4);
 }
@@ -149,7 +149,7 @@ TEST(DriveLoads, WhatWasThereBeforeIsKeptInAState) {
 
 // Promise: rest counts once all of a ramp acts, and no sooner: what acts is that of the middle of 20 steps.
 TEST(DriveEnds, RestCountsOnceAllOfARampActs) {
-  const double step = Trial(body(drive("duration = \"1 ms\"", kBoth))).simulation->mechanics().time_step();
+  const double step = Trial(body(drive("duration = \"1 ms\"", kBoth))).simulation->motion().time_step();
   for (const auto& [ramp, steps] : {std::pair{109.9, 120.0}, {110.1, 140.0}, {89.9, 100.0}, {0.0, 20.0}}) {
     const Finished r(body(drive(
         "duration = \"0.1 s\"\nlook_interval = \"1 us\"\nunbalanced_ratio = 1e9",

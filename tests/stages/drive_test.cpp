@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "in_plane.hpp"
 #include "known.hpp"
 #include "messages.hpp"
 #include "pyroclast/base/sort_unique.hpp"
@@ -59,11 +60,11 @@ TEST(DriveVerification, WhatTensionDissipatesIsTheFractureEnergyOfWhatCrackedOfE
                                              "velocity = \"0.6 mm/s\"\ndirection = \"x\"\n"
                                              "ramp_time = \"10 ms\"") +
                                         "[[stages.until]]\nrecord = \"end\"\nabove = \"60 um\"\n")));
-  const Mechanics<2>& mechanics = run.simulation->mechanics();
+  const Motion& motion = run.simulation->motion();
   double lost = 0.0, most = 0.0;
-  for (int c = 0; c < mechanics.model().contact_count(); ++c) {
-    const double share = mechanics.read().remembered(c, Remembers::tension_damage);
-    lost += kEnergy * mechanics.model().contacts[c].area * share;
+  for (int c = 0; c < motion.model().contact_count(); ++c) {
+    const double share = motion.read().remembered(c, Remembers::tension_damage);
+    lost += kEnergy * motion.model().joint(c).area * share;
     most = std::max(most, share);
   }
   EXPECT_EQ(most, 1.0);
@@ -159,7 +160,7 @@ TEST(Drive, LastsWholeSteps) {
     const Finished run(free_deck(
         kUniform + kCorner + kRecords +
         drive(fmt::format("duration = \"{}\"", duration), kHeld + does("right", "pressure = \"1 Pa\""))));
-    EXPECT_EQ(run.run.simulation().mechanics().steps(), steps) << duration;
+    EXPECT_EQ(run.run.simulation().motion().steps(), steps) << duration;
   }
 }
 
@@ -462,7 +463,7 @@ TEST(Drive, AFollowerTurnsWithTheBodyAndADeadLoadDoesNot) {
              "mass = \"scaled\"\n", "mass = \"scaled\"\nkinematics = \"finite\"\n");
     Trial trial(text);
     Simulation& simulation = *trial.simulation;
-    Mechanics<2>& mechanics = simulation.mechanics();
+    Mechanics<2>& mechanics = in_plane::mechanics(simulation.motion());
     const auto& right = simulation.model().set("right");
     simulation.loads().set({{"right", {.pressure = 1e6, .is_follower = follows}}});
     Vec<2> before{};
@@ -474,7 +475,7 @@ TEST(Drive, AFollowerTurnsWithTheBodyAndADeadLoadDoesNot) {
     // a quarter turn about the origin, in one step
     const double step = mechanics.time_step();
     for (int g = 0; g < simulation.model().gridpoint_count(); ++g) {
-      const Vec<2> x = simulation.model().position[g];
+      const Vec<3> x = simulation.model().place(g);
       mechanics.constraints().prescribe_velocity(g, 0, (-x[1] - x[0]) / step);
       mechanics.constraints().prescribe_velocity(g, 1, (x[0] - x[1]) / step);
     }

@@ -96,7 +96,7 @@ TEST(NotSettled, RestIsBelowTheStatedRatio) {
 
 // Promise: a load that is on and does not rest within the stated steps behind its ramp ends the run.
 TEST(NotSettled, LoadingGivesUpAfterItsStepsBehindTheRamp) {
-  const double step = Trial(deck(kUniform + kSettle)).simulation->mechanics().time_step();
+  const double step = Trial(deck(kUniform + kSettle)).simulation->motion().time_step();
   const std::string text = with(load("stress = \"1 MPa\""), "unbalanced_ratio = 1e-6\nmost_steps = 100000",
                                 "unbalanced_ratio = 1e-14\nmost_steps = 500");
   const Finished r(deck(kUniform + kSettle + text + kCompress));
@@ -326,7 +326,7 @@ TEST(LoadReports, TellsWhatWasBorne) {
 // Promise: the load rises evenly over its ramp from what was held before.
 TEST(LoadReports, TheLoadRisesEvenlyFromWhatWasHeld) {
   Trial trial(deck(kUniform + kSettle + load("stress = \"1 MPa\"") + load("stress = \"3 MPa\"")));
-  const double step = trial.simulation->mechanics().time_step();
+  const double step = trial.simulation->motion().time_step();
   std::vector<std::pair<double, double>> held;  // steps of the stage, Pa
   std::vector<double> progress;
   double first_step = 0.0;
@@ -391,7 +391,7 @@ TEST(Forecasts, RestTakes1100StepsADecade) {
 
 // Promise: a load takes its ramp and then its rest, of which the ramp takes a part; a look at least.
 TEST(Forecasts, ALoadTakesItsRampAndItsRest) {
-  const double step = Trial(deck(kUniform + kSettle)).simulation->mechanics().time_step();
+  const double step = Trial(deck(kUniform + kSettle)).simulation->motion().time_step();
   const auto at = [&](double ramp, const std::string& most) {
     char text[32];
     std::snprintf(text, sizeof(text), "\"%.6g s\"", ramp);
@@ -410,7 +410,7 @@ TEST(Forecasts, ALoadTakesItsRampAndItsRest) {
 // Promise: a compression takes the time of its way at full velocity, and half of its ramp more.
 TEST(Forecasts, ACompressionTakesItsWay) {
   const Trial trial(deck(kUniform + kSettle));
-  const double step = trial.simulation->mechanics().time_step(), height = trial.simulation->press().height();
+  const double step = trial.simulation->motion().time_step(), height = trial.simulation->press().height();
   const auto compress = [](const std::string& until) {
     return deck(kUniform + kSettle + "[[stages]]\nkind = \"compress\"\nvelocity = \"0.5 mm/s\"\n" +
                 "ramp_time = \"20 ms\"\n" + until + "\n");
@@ -481,7 +481,7 @@ TEST(Forecasts, ADriveTakesItsDuration) {
       "[[sets]]\nname = \"corner\"\nwithin = \"left\"\nnearest = [\"0 mm\", \"0 mm\"]\n";
   const std::string held = does("left", "hold = [\"x\"]") + does("corner", "hold = [\"y\"]");
   const double step = Trial(free_deck(kUniform + corner + drive("duration = \"1 ms\"", held)))
-                          .simulation->mechanics()
+                          .simulation->motion()
                           .time_step();
   const Forecast plain = forecast(free_deck(kUniform + corner + drive("duration = \"50 ms\"", held)), 0);
   EXPECT_NEAR(plain.steps, 0.05 / step, 1e-6 / step);

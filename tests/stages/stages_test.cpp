@@ -161,7 +161,7 @@ TEST(HeatStage, WhatHeatTookStaysGoneOnCooling) {
   const auto blocks = zone_blocks(r.simulation->model());
   for (std::size_t z = 0; z < blocks.size(); ++z)
     if (!r.simulation->model().is_of_bearing(blocks[z])) {
-      const double mu = r.simulation->mechanics().read().properties_of_zone(static_cast<int>(z)).mu;
+      const double mu = r.simulation->motion().read().properties_of_zone(static_cast<int>(z)).mu;
       EXPECT_DOUBLE_EQ(mu, 0.5 * softening * 29.4e9 / 1.2);
     }
 }

@@ -82,9 +82,9 @@ class BlockLattice {
 };
 
 /// Quadrilateral blocks of four triangles around their centre.
-inline Model<2> plane_body(const BodyShape<2>& shape, int materials = 1) {
+inline ModelOf<2> plane_body(const BodyShape<2>& shape, int materials = 1) {
   const BlockLattice<2> lattice(shape);
-  Model<2> model;
+  ModelOf<2> model;
   model.interface_names = {"joint"};
   for (int m = 0; m < materials; ++m) model.material_names.push_back("material " + std::to_string(m));
   lattice.for_each_block([&](const std::array<int, 2>& b) {
@@ -112,9 +112,9 @@ inline Model<2> plane_body(const BodyShape<2>& shape, int materials = 1) {
 }
 
 /// Hexahedral blocks of six tetrahedra around a diagonal (Kuhn's division, whose faces match).
-inline Model<3> solid_body(const BodyShape<3>& shape, int materials = 1) {
+inline ModelOf<3> solid_body(const BodyShape<3>& shape, int materials = 1) {
   const BlockLattice<3> lattice(shape);
-  Model<3> model;
+  ModelOf<3> model;
   model.interface_names = {"joint"};
   for (int m = 0; m < materials; ++m) model.material_names.push_back("material " + std::to_string(m));
   const std::vector<std::array<int, 4>> tetrahedra = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7},
@@ -141,7 +141,7 @@ inline Model<3> solid_body(const BodyShape<3>& shape, int materials = 1) {
 
 /// Node nearest to a place.
 template <int Dim>
-int node_at(const Model<Dim>& model, const Conduction<Dim>& heat, const Vec<Dim>& x) {
+int node_at(const ModelOf<Dim>& model, const Conduction<Dim>& heat, const Vec<Dim>& x) {
   int nearest = 0;
   for (int node = 1; node < heat.nodes().count(); ++node) {
     const auto distance = [&](int n) { return norm(model.position[heat.nodes().gridpoint[n]] - x); };

@@ -54,8 +54,9 @@ void expose_to_fire(Conduction<2>& heat, const std::vector<int>& faces) {
 
 /// Largest error of the steady field between outline temperatures that are linear in space.
 template <int Dim>
-double linear_field_error(const Model<Dim>& model, const std::vector<std::optional<HeatMaterial>>& materials,
-                          double size, bool limits = false) {
+double linear_field_error(const ModelOf<Dim>& model,
+                          const std::vector<std::optional<HeatMaterial>>& materials, double size,
+                          bool limits = false) {
   Vec<Dim> gradient{{100.0 / size, -70.0 / size}};
   if constexpr (Dim == 3) gradient[2] = 40.0 / size;
   const auto exact = [&](int node, const Conduction<Dim>& heat) {
@@ -89,7 +90,7 @@ TEST(ConductionVerification, CarriesALinearFieldExactlyThroughTetrahedra) {
                      linear_field_error<3>(model, {constant_material(1.6, 2e6)}, 0.1), 100.0, round_off);
 }
 
-Model<2> concrete_model() {
+ModelOf<2> concrete_model() {
   specimen::SpecimenParameters p;
   p.region = specimen::Region::rectangle(0.15, 0.3);
   p.seed = 3;
@@ -171,7 +172,7 @@ double decaying_error(int blocks, bool limits) {
   for (int g : heat.nodes().gridpoint) start.push_back(exact(model.position[g], 0.0));
   heat.set_temperature(start);
   heat.advance_to(0.02);
-  EXPECT_EQ(heat.limited_steps(), limits ? heat.steps() : 0);
+  EXPECT_EQ(heat.work().limited_steps, limits ? heat.work().steps : 0);
   double sum = 0.0;
   for (int node = 0; node < heat.nodes().count(); ++node)
     sum += std::pow(heat.temperature()[node] - exact(model.position[heat.nodes().gridpoint[node]], 0.02), 2);
@@ -196,7 +197,7 @@ TEST(ConductionVerification, CarriesALinearFieldExactlyWithLimitedFlows) {
 
 /// Concrete strip with one side in the standard fire for ten minutes.
 struct Strip {
-  Model<2> model = plane_body({.blocks = {30, 4}, .size = {0.06, 0.008}, .jitter = 0.3});
+  ModelOf<2> model = plane_body({.blocks = {30, 4}, .size = {0.06, 0.008}, .jitter = 0.3});
   Conduction<2> heat;
 
   explicit Strip(const HeatParameters& p) : heat(model, {moist_concrete()}, p) {
@@ -216,12 +217,12 @@ TEST(Conduction, SuperTimeSteppingAgreesWithEulerAtAFractionOfTheCost) {
   for (std::size_t node = 0; node < plain.heat.temperature().size(); ++node)
     worst = std::max(worst, std::abs(plain.heat.temperature()[node] - fast.heat.temperature()[node]));
   RecordProperty("worst", std::to_string(worst));
-  RecordProperty("euler_stages", std::to_string(plain.heat.stages()));
-  RecordProperty("super_stages", std::to_string(fast.heat.stages()));
-  RecordProperty("super_steps", std::to_string(fast.heat.steps()));
+  RecordProperty("euler_stages", std::to_string(plain.heat.work().stages));
+  RecordProperty("super_stages", std::to_string(fast.heat.work().stages));
+  RecordProperty("super_steps", std::to_string(fast.heat.work().steps));
   // Each has its own error in time; a tenth of a kelvin is 1e-4 of the fire.
   EXPECT_LT(worst, 0.1);
-  EXPECT_LT(2 * fast.heat.stages(), plain.heat.stages());
+  EXPECT_LT(2 * fast.heat.work().stages, plain.heat.work().stages);
 }
 
 // ---- Conservation ----------------------------------------------------------------------------------------
@@ -267,7 +268,7 @@ TEST(Conduction, DoesNotSkipTheMoisturePeakHoweverLargeTheStep) {
   const double enthalpy = 2300.0 * (80.0 * 900.0 + 15.0 * 2020.0 + 85.0 * 1510.0 + 100.0 * 1025.0);
   heat.set_source([&](const Vec<2>&, double) { return enthalpy / 1000.0; });
   heat.advance_to(1000.0);
-  EXPECT_LT(heat.steps(), 30);
+  EXPECT_LT(heat.work().steps, 30);
   for (double t : heat.temperature()) EXPECT_NEAR(t, 300.0, 1e-4);  // rho c is linearised over 0.1 K
 }
 
@@ -329,7 +330,7 @@ TEST(Conduction, StaysStableWhenPropertiesChangeManifoldWithinAStep) {
       // A step of 1000 K may be inaccurate by some kelvin; an unstable one would leave the range at once.
       EXPECT_LE(hottest, 900.0 + 5.0) << change;
       EXPECT_GE(coldest, 20.0 - 5.0) << change;
-      EXPECT_EQ(heat.largest_overshoot(), 0.0);
+      EXPECT_EQ(heat.work().largest_overshoot, 0.0);
     }
 }
 
@@ -405,9 +406,9 @@ HeatState heat_in_batches(HeatScheme scheme, std::int64_t stages, int batches_to
       if (!completed) {
         EXPECT_EQ(left, 0);
         EXPECT_EQ(heat.state(), before);
-        if (++batches % batches_to_drop == 0 && heat.steps() != dropped) {
+        if (++batches % batches_to_drop == 0 && heat.work().steps != dropped) {
           heat.drop_trial();
-          dropped = heat.steps();  // each step once: one that is always dropped comes to no end
+          dropped = heat.work().steps;  // each step once: one that is always dropped comes to no end
         }
       }
     }
@@ -423,7 +424,7 @@ TEST(Conduction, LimitedFlowsAreBitwiseTheSameOnAnyNumberOfThreads) {
                        std::make_shared<Team>(threads, WhenCrowded::stay));
     heat.prescribe_temperature(heat.faces(on_plane<2>(0, 0.0, 1e-9)), Curve::constant(1000.0));
     heat.advance_to(1.0);
-    EXPECT_GT(heat.limited_steps(), 0);
+    EXPECT_GT(heat.work().limited_steps, 0);
     return heat.state();
   };
   const HeatState alone = state(1);
@@ -613,14 +614,15 @@ TEST(Conduction, HoldsOvershootsOfASharpFrontAtTheEndOfTheRange) {
   Conduction<2> heat(model, {moist_concrete()}, p);
   heat.prescribe_temperature(heat.faces([](const auto&) { return true; }), Curve::constant(1000.0));
   heat.advance_to(100.0);
-  EXPECT_GT(heat.largest_overshoot(), 0.0);
-  for (double t : heat.temperature()) EXPECT_TRUE(20.0 <= t && t <= 1000.0 + heat.largest_overshoot()) << t;
+  EXPECT_GT(heat.work().largest_overshoot, 0.0);
+  for (double t : heat.temperature())
+    EXPECT_TRUE(20.0 <= t && t <= 1000.0 + heat.work().largest_overshoot) << t;
   EXPECT_LT(std::abs(heat.ledger().error()), 1e-10 * heat.ledger().stored);
 }
 
 /// How far temperatures leave those of the start and of the nodes that are held, K.
 template <int Dim>
-double excess_of_patch(const Model<Dim>& model, const std::vector<int>& nodes, double duration,
+double excess_of_patch(const ModelOf<Dim>& model, const std::vector<int>& nodes, double duration,
                        double start = 20.0, double held = 1000.0) {
   auto p = parameters({-250.0, 1300.0}, start);
   p.largest_change = 2.0;
@@ -641,7 +643,7 @@ double excess_of_patch(const Model<Dim>& model, const std::vector<int>& nodes, d
 
 /// Nodes of a body's outline near a plane.
 template <int Dim>
-std::vector<int> nodes_on(const Model<Dim>& model, int axis, double at, double from, double to) {
+std::vector<int> nodes_on(const ModelOf<Dim>& model, int axis, double at, double from, double to) {
   const Conduction<Dim> heat(
       model,
       std::vector<std::optional<HeatMaterial>>(model.material_names.size(), constant_material(1.5, 2.2e6)),

@@ -63,7 +63,7 @@ HeatParameters parameters(std::optional<GapHeat> gaps, double initial = 20.0) {
 
 /// Of every contact: open where the predicate says so of its place, else intact.
 template <int Dim>
-std::vector<ContactGap> gaps_where(const Model<Dim>& model, const ContactGap& gap,
+std::vector<ContactGap> gaps_where(const ModelOf<Dim>& model, const ContactGap& gap,
                                    const std::function<bool(const Contact<Dim>&, const Vec<Dim>&)>& is_open) {
   std::vector<ContactGap> gaps;
   for (const auto& c : model.contacts)
@@ -80,7 +80,7 @@ auto across_x(double x) {
 }
 
 template <int Dim>
-double temperature_at(const Model<Dim>& model, const Conduction<Dim>& heat, const Vec<Dim>& x,
+double temperature_at(const ModelOf<Dim>& model, const Conduction<Dim>& heat, const Vec<Dim>& x,
                       bool is_right) {
   const auto temperature = heat.gridpoint_temperatures(0.0);
   for (int b = 0; b < model.block_count(); ++b) {
@@ -255,12 +255,12 @@ void expose_to_fire(Conduction<2>& heat) {
   heat.apply(left, Radiation{Curve::constant(0.7), fire_curves().at("iso834").curve});
 }
 
-Model<2> irregular() {
+ModelOf<2> irregular() {
   return plane_body({.blocks = {12, 8}, .size = {0.06, 0.04}, .jitter = 0.25});
 }
 
 /// Every contact damaged a little, as if the body had cracked finely all over.
-std::vector<ContactGap> hairs(const Model<2>& model, double opening) {
+std::vector<ContactGap> hairs(const ModelOf<2>& model, double opening) {
   return std::vector<ContactGap>(model.contacts.size(), {1.0, opening});
 }
 

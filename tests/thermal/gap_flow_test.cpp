@@ -47,13 +47,13 @@ GapHeat gas_alone(std::vector<double> at, std::vector<double> conductivity) {
 }
 
 /// Two blocks side by side, 10 mm each, that meet in one face of 10 mm: two contacts of 5 mm each.
-Model<2> pair() {
+ModelOf<2> pair() {
   return plane_body({.blocks = {2, 1}, .size = {0.02, 0.01}});
 }
 
 /// The gaps of a body, whose contacts part as the gaps say.
 struct Gaps {
-  Gaps(const Model<2>& of, const GapHeat& law, const Interval& range = {0.0, 1000.0},
+  Gaps(const ModelOf<2>& of, const GapHeat& law, const Interval& range = {0.0, 1000.0},
        std::vector<bool> materials = {true})
       : model(of), conducts(std::move(materials)), gaps(model, conducts, law, TemperatureGrid(range), team) {}
 
@@ -90,7 +90,7 @@ struct Gaps {
     return std::abs(model.position[nodes.gridpoint[node]][0] - x) < 1e-9;
   }
 
-  Model<2> model;
+  ModelOf<2> model;
   std::vector<bool> conducts;
   Team team{1};
   GapConduction<2> gaps;

@@ -38,7 +38,7 @@ HeatMaterial material(const Curve& conductivity, const Curve& capacity) {
 
 /// One square block: a fan of four triangles. Its centre has four conductances k to the corners, each a
 /// corner one; the capacities are rho c a²/3 and rho c a²/6.
-Model<2> square() {
+ModelOf<2> square() {
   return plane_body({.blocks = {1, 1}, .size = {kSide, kSide}});
 }
 

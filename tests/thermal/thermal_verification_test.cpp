@@ -18,13 +18,13 @@ namespace {
 using std::numbers::pi;
 
 /// Bar along x, insulated on its long sides.
-Model<2> bar(double length, int blocks) {
+ModelOf<2> bar(double length, int blocks) {
   return plane_body({.blocks = {blocks, 1}, .size = {length, length / blocks}});
 }
 
 /// Temperature at the probe of NAFEMS T4 with blocks of 0.1 m / `refinement`.
 double nafems_t4(int refinement) {
-  const Model<2> model =
+  const ModelOf<2> model =
       plane_body({.blocks = {6 * refinement, 10 * refinement}, .size = {0.6, 1.0}, .jitter = 0.0});
   Conduction<2> heat(model, {constant_material(52.0, 1e6)},
                      {.temperature_range = {-10.0, 110.0},
@@ -55,7 +55,7 @@ TEST(ThermalVerification, NafemsT4ConvectsAtTheEdgesOfAPlate) {
 }
 
 TEST(ThermalVerification, NafemsT2RadiatesFromTheEndOfABar) {
-  const Model<2> model = bar(0.1, 10);
+  const ModelOf<2> model = bar(0.1, 10);
   Conduction<2> heat(model, {constant_material(55.6, 7850.0 * 460.0)},
                      {.temperature_range = {0.0, 1000.0 + absolute_zero},
                       .initial_temperature = 500.0,
@@ -74,7 +74,7 @@ TEST(ThermalVerification, NafemsT2RadiatesFromTheEndOfABar) {
 }
 
 TEST(ThermalVerification, NafemsT3FollowsASineAtTheEndOfABar) {
-  const Model<2> model = bar(0.1, 20);
+  const ModelOf<2> model = bar(0.1, 20);
   Conduction<2> heat(model, {constant_material(35.0, 7200.0 * 440.5)},
                      {.temperature_range = {-20.0, 120.0},
                       .initial_temperature = 0.0,
@@ -100,7 +100,7 @@ TEST(ThermalVerification, ARectangleThatConvectsFollowsTheProductOfTwoWalls) {
   constexpr double h = 25.0, conductivity = 1.6, capacity = 2400.0 * 900.0, gas = 500.0, initial = 20.0;
   constexpr double half_width = 0.075, half_height = 0.15;
   // A quarter, with its planes of symmetry at x = 0 and y = 0.
-  const Model<2> model = plane_body({.blocks = {30, 60}, .size = {half_width, half_height}, .jitter = 0.2});
+  const ModelOf<2> model = plane_body({.blocks = {30, 60}, .size = {half_width, half_height}, .jitter = 0.2});
   Conduction<2> heat(model, {constant_material(conductivity, capacity)},
                      {.temperature_range = {initial, gas},
                       .initial_temperature = initial,
@@ -196,7 +196,7 @@ TEST(ThermalVerification, AWallInAFireFollowsFiniteVolumes) {
   constexpr double thickness = 0.06;
   FiniteVolumeWall reference(thickness, 120, conductivity, capacity, fire);
 
-  const Model<2> model = plane_body({.blocks = {40, 3}, .size = {thickness, 0.0045}, .jitter = 0.2});
+  const ModelOf<2> model = plane_body({.blocks = {40, 3}, .size = {thickness, 0.0045}, .jitter = 0.2});
   Conduction<2> heat(model, {HeatMaterial{conductivity, capacity}},
                      {.temperature_range = {20.0, 1200.0},
                       .initial_temperature = 20.0,

@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include "pyroclast/app/open.hpp"
+#include "pyroclast/base/place_text.hpp"
 #include "pyroclast/base/shown.hpp"
 #include "pyroclast/results/frame_series.hpp"
 #include "pyroclast/session/rehearsal.hpp"
@@ -68,18 +69,18 @@ void print_composition(const Composition& whole) {
 }
 
 void print_mechanics(const Simulation& simulation, MassChoice mass) {
-  const Mechanics<2>& mechanics = simulation.mechanics();
-  const Model<2>& model = simulation.model();
-  const TimeStepLimit limit = mechanics.real_mass_limit();
+  const Motion& motion = simulation.motion();
+  const Model& model = simulation.model();
+  const TimeStepLimit limit = motion.real_mass_limit();
   const int g = limit.gridpoint, block = model.block_of(g);
-  fmt::print("time step       {:.3g} s, {}\n", mechanics.time_step(),
+  fmt::print("time step       {:.3g} s, {}\n", motion.time_step(),
              mass == MassChoice::scaled
                  ? fmt::format("by density scaling of all {} gridpoints: moving mass {:.3g} x the real one",
-                               model.gridpoint_count(), mechanics.mass_ratio())
+                               model.gridpoint_count(), motion.mass_ratio())
                  : "with real mass");
   fmt::print("                with real mass {:.3g} s, set by gridpoint {} of block {} ({})", limit.step, g,
              block, model.material_names[model.block_material[block]]);
-  fmt::print(" at ({:.2f}, {:.2f}) mm\n", 1e3 * model.position[g][0], 1e3 * model.position[g][1]);
+  fmt::print(" at {} mm\n", place_text(1e3 * model.place(g), model.dimension(), "{:.2f}"));
   fmt::print("materials       E about {:.2f} GPa (uniform stress estimate, a lower bound), t_b {:.3f} mm\n",
              estimate_modulus(model, simulation.materials()) * 1e-9,
              1e3 * simulation.materials().fracture_zone);
@@ -104,7 +105,7 @@ int check(const RunOptions& options) {
   if (!setup.code_not_allowed.empty()) return say_unchecked(opened);
   opened.choices.before_making(opened);
   const auto simulation = make_simulation(setup, opened.team);
-  const Model<2>& model = simulation->model();
+  const Model& model = simulation->model();
   fmt::print("deck            {} is valid: {}\n", shown(opened.deck.name()), shown(setup.title));
   fmt::print("{}{}{}{}", describe_warnings(opened.warnings), describe_unused(setup), describe_own_laws(),
              describe(simulation->specimen()));

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "pyroclast/app/say_aside.hpp"
+#include "pyroclast/base/place_text.hpp"
 #include "pyroclast/plugin/open.hpp"
 #include "pyroclast/specimen/clusters.hpp"
 #include "pyroclast/units/units.hpp"
@@ -128,20 +129,19 @@ std::string describe_warnings(const std::vector<std::string>& warnings) {
   return text;
 }
 
-std::string describe(const Conduction<2>& conduction, const Model<2>& model, const Interval& temperatures) {
+std::string describe(const HeatSolver& conduction, const Model& model, const Interval& temperatures) {
   const HeatStepLimit limit = conduction.step_limit();
-  const Vec<2>& at = model.position[conduction.nodes().gridpoint[limit.node]];
-  std::string text =
-      fmt::format("heat            {} nodes, {:.0f} to {:.0f} degC\n", conduction.nodes().count(),
-                  temperatures.lower, temperatures.upper) +
-      fmt::format("                stable step {:.3g} s at first, set at ({:.2f}, {:.2f}) mm\n", limit.step,
-                  kMilli * at[0], kMilli * at[1]);
-  if (const auto* gaps = conduction.gaps())
+  const Vec<3> at = model.place(conduction.nodes().gridpoint[limit.node]);
+  std::string text = fmt::format("heat            {} nodes, {:.0f} to {:.0f} degC\n",
+                                 conduction.nodes().count(), temperatures.lower, temperatures.upper) +
+                     fmt::format("                stable step {:.3g} s at first, set at {} mm\n", limit.step,
+                                 place_text(kMilli * at, model.dimension(), "{:.2f}"));
+  if (const GapHeat* gaps = conduction.gap_law())
     text += fmt::format(
         "                cracks hinder heat: it meets {:.3g} mm of gaps at first; contacts part "
         "temperatures\n"
         "                below h_m = {:.3g} W/(m2 K)\n",
-        kMilli * gaps->area() / model.thickness, gaps->law().split_below);
+        kMilli * conduction.gap_area() / model.thickness, gaps->split_below);
   return text;
 }
 

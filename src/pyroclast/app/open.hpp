@@ -39,7 +39,7 @@ std::string describe_unused(const Setup& setup);
 
 /// Describes, for the screen, the work that lies before the heat solver.
 /// \param temperatures  temperatures to which the run may come, °C
-std::string describe(const Conduction<2>& conduction, const Model<2>& model, const Interval& temperatures);
+std::string describe(const HeatSolver& conduction, const Model& model, const Interval& temperatures);
 
 /// Returns a duration for readers, e.g. "3 min 20 s".
 std::string duration(double seconds);

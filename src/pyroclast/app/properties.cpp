@@ -22,7 +22,8 @@ constexpr double kTemperatureStep = 1.0;
 /// Returns the phases as a run has them: those of the specimen, where they follow its composition.
 std::vector<SolidMaterial> solids_of(const Setup& setup) {
   if (!setup.motion || !follows_composition(setup.solids, *setup.motion)) return setup.solids;
-  return make_materials(setup.solids, *setup.motion, make_checked_specimen(setup.specimen)).solids;
+  return make_materials(setup.solids, *setup.motion, numbers_of(make_checked_specimen(setup.specimen)))
+      .solids;
 }
 
 /// \param moves  true where the mechanical properties were read too

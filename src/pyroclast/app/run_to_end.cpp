@@ -59,7 +59,7 @@ std::string doing_line(const Run& run) {
   std::string text =
       fmt::format("stage {} of {} ({})", run.stage_number() + 1, run.stages().size(), run.stage().kind());
   if (const std::string doing = run.stage().doing(); !doing.empty()) text += " " + doing;
-  if (run.simulation().moves()) text += fmt::format(", step {}", run.simulation().mechanics().steps());
+  if (run.simulation().moves()) text += fmt::format(", step {}", run.simulation().motion().steps());
   return text;
 }
 
@@ -96,13 +96,13 @@ std::string describe_start(Session& session) {
   const Opened& opened = session.opened();
   std::string text = describe_warnings(opened.warnings) + describe_unused(opened.setup) +
                      describe_own_laws() + describe(simulation.specimen());
-  const Model<2>& model = simulation.model();
+  const Model& model = simulation.model();
   text += fmt::format("model           {} zones, {} contacts\n", model.zone_count(), model.contact_count());
   if (const auto* conduction = simulation.field().conduction())
     text += describe(*conduction, model, opened.setup.temperatures);
   if (simulation.moves())
     text += fmt::format("mechanics       time step {:.3g} s, moving mass {:.3g} x the real one\n",
-                        simulation.mechanics().time_step(), simulation.mechanics().mass_ratio());
+                        simulation.motion().time_step(), simulation.motion().mass_ratio());
   return text + fmt::format("processor       {}, {} instructions\n", describe(*opened.team),
                             name(opened.instructions));
 }

@@ -15,10 +15,10 @@ int make_specimen(const RunOptions& asked) {
   const FolderLock lock(output_folder(options));
   RunFolder::check(output_folder(options), options.overwrite);
   const specimen::Specimen specimen = make_checked_specimen(setup.specimen, opened.team.get());
-  const Model<2> model = setup.motion
-                             ? make_concrete_model(specimen, setup.thickness,
-                                                   setup.motion->contacts.interfaces, setup.motion->bearings)
-                             : make_concrete_model(specimen, setup.thickness);
+  const auto model = setup.motion
+                         ? make_concrete_model(specimen, setup.thickness, setup.motion->contacts.interfaces,
+                                               setup.motion->bearings)
+                         : make_concrete_model(specimen, setup.thickness);
   const RunFolder folder(output_folder(options), options.overwrite,
                          {opened.deck.name(),
                           inputs_of(opened.deck, setup),

@@ -54,6 +54,14 @@ Real norm(const Vec<Dim, Real>& a) {
     return sqrt(dot(a, a));
 }
 
+/// Returns a vector with another number of components: those that it had not are 0, others are left out.
+template <int To, int Dim, class Real>
+constexpr Vec<To, Real> resized(const Vec<Dim, Real>& a) {
+  Vec<To, Real> b;
+  for (int i = 0; i < (To < Dim ? To : Dim); ++i) b[i] = a[i];
+  return b;
+}
+
 /// Returns the z component of the cross product: twice the signed area of the triangle (0, a, b).
 template <class Real>
 constexpr Real cross(const Vec<2, Real>& a, const Vec<2, Real>& b) {

@@ -45,8 +45,8 @@ ZoneProperties with_compliance(const ZoneProperties& zone, double compliance, do
 
 /// Returns the creep strain across the plane of a zone in plane stress. It follows from the strain in the
 /// plane and has no effect on the motion. nu_L is taken as constant.
-inline double creep_across(const SymmetricTensor<2>& strain, double poisson) {
-  return -poisson / (1.0 - poisson) * (strain[0] + strain[1]);
+inline double creep_across(double xx, double yy, double poisson) {
+  return -poisson / (1.0 - poisson) * (xx + yy);
 }
 
 extern template SymmetricTensor<2> creep_direction<2>(const SymmetricTensor<2>&, double);

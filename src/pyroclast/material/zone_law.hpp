@@ -21,6 +21,14 @@ enum class Kinematics : std::uint8_t {
 template <int Dim, class Real = double>
 using SymmetricTensor = std::array<Real, Dim*(Dim + 1) / 2>;
 
+/// Returns a tensor in space: one of the plane gets a component across it.
+inline SymmetricTensor<3> in_space(const SymmetricTensor<2>& t, double across = 0.0) {
+  return {t[0], t[1], across, t[2], 0.0, 0.0};
+}
+inline SymmetricTensor<3> in_space(const SymmetricTensor<3>& t) {
+  return t;
+}
+
 /// Elastic constants of a zone at its temperature.
 template <class Real>
 struct ZonePropertiesOf {

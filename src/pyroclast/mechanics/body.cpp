@@ -19,17 +19,16 @@ int place_of(const LawTable& law, Remembers what, int dim) {
   return found == internals.end() ? -1 : static_cast<int>(found - internals.begin());
 }
 
-template <int Dim>
-BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
+BodyProperties by_interface(const Model& model, std::vector<ZoneProperties> zones,
                             const std::vector<ContactProperties>& interfaces) {
   BodyProperties p{std::move(zones), ContactSets(interfaces), {}, {}};
-  p.of_contact.reserve(model.contacts.size());
-  for (const auto& c : model.contacts) p.of_contact.push_back(c.interface);
+  p.of_contact.reserve(model.contact_count());
+  for (int c = 0; c < model.contact_count(); ++c) p.of_contact.push_back(model.joint(c).interface);
   return p;
 }
 
 template <int Dim>
-Body<Dim>::Body(const Model<Dim>& of, BodyProperties with, const MechanicsParameters<Dim>& by,
+Body<Dim>::Body(const ModelOf<Dim>& of, BodyProperties with, const MechanicsParameters& by,
                 std::shared_ptr<Team> threads)
     : model(of),
       parameters(by),
@@ -40,6 +39,7 @@ Body<Dim>::Body(const Model<Dim>& of, BodyProperties with, const MechanicsParame
       properties(std::move(with)) {
   if (Dim != 2 && parameters.kinematics == Kinematics::finite)
     throw Error("kinematics = finite: contact frames that turn are made for 2D only; use small");
+  if (Dim == 2 && parameters.gravity[2] != 0.0) throw Error("gravity acts across the plane of this body");
   if (!properties.creep.empty()) creep_strain.resize(model.zones.size());
   list_laws();
   place_model();
@@ -78,7 +78,7 @@ FlatArray<double> Body<Dim>::make_scratch() const {
 template <int Dim>
 void Body<Dim>::place_model() {
   see(state.layout, layout);
-  state.gravity = parameters.gravity;
+  state.gravity = resized<Dim>(parameters.gravity);
   state.local_damping = parameters.local_damping;
   state.viscous_damping = parameters.viscous_damping;
   state.damping_form = parameters.damping_form;
@@ -198,6 +198,8 @@ void Body<Dim>::forget() {
   for (auto* forces : {&arrays.contact_force, &arrays.turning_force})
     for (const int slot : layout.contact_slot)
       if (!forces->empty()) (*forces)[slot] = nothing;
+  auto& corners = arrays.corner_force;
+  if (!corners.empty()) std::fill(corners.begin(), corners.end() - kLanes, nothing);
 }
 
 /// Shows one array that lasts. Lists of constraints and ties may have another length in another state; all
@@ -231,11 +233,6 @@ void Body<Dim>::visit_arrays(StateVisitor& visitor) {
       },
       arrays);
 }
-
-template BodyProperties by_interface<2>(const Model<2>&, std::vector<ZoneProperties>,
-                                        const std::vector<ContactProperties>&);
-template BodyProperties by_interface<3>(const Model<3>&, std::vector<ZoneProperties>,
-                                        const std::vector<ContactProperties>&);
 
 template struct Body<2>;
 template struct Body<3>;

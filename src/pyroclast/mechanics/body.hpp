@@ -23,9 +23,8 @@ enum class MassChoice : std::uint8_t {
   scaled
 };
 
-template <int Dim>
 struct MechanicsParameters {
-  Vec<Dim> gravity{};          ///< m/s²
+  Vec<3> gravity{};            ///< m/s²
   double local_damping = 0.0;  ///< lambda of Eq. (8), in [0, 1)
   DampingForm damping_form = DampingForm::local;
   double viscous_damping = 0.0;  ///< xi of Eq. (3), 1/s
@@ -51,8 +50,7 @@ struct BodyProperties {
 
 /// Returns the properties of a body whose contacts differ by interface alone.
 /// \param interfaces  contact properties of each interface, validated
-template <int Dim>
-BodyProperties by_interface(const Model<Dim>& model, std::vector<ZoneProperties> zones,
+BodyProperties by_interface(const Model& model, std::vector<ZoneProperties> zones,
                             const std::vector<ContactProperties>& interfaces);
 
 /// Creep of a zone between two changes of its properties.
@@ -89,7 +87,7 @@ struct Body {
 
   /// Makes the body at rest, without masses and with no property in its place.
   /// \param threads  threads that touch the arrays first
-  Body(const Model<Dim>& of, BodyProperties with, const MechanicsParameters<Dim>& by,
+  Body(const ModelOf<Dim>& of, BodyProperties with, const MechanicsParameters& by,
        std::shared_ptr<Team> threads);
   Body(const Body&) = delete;
   Body& operator=(const Body&) = delete;
@@ -127,8 +125,8 @@ struct Body {
   /// Shows the arrays that last from one step to the next.
   void visit_arrays(StateVisitor& visitor);
 
-  const Model<Dim>& model;
-  const MechanicsParameters<Dim> parameters;
+  const ModelOf<Dim>& model;
+  const MechanicsParameters parameters;
   const std::shared_ptr<Team> team;
   const ZoneGeometry<Dim> geometry;
   const Layout<Dim> layout;
@@ -184,10 +182,6 @@ inline constexpr double kMostOfAKind = std::numeric_limits<int>::max();
 /// Returns the place of an internal variable among those of a law; -1 where it has none of this meaning.
 int place_of(const LawTable& law, Remembers what, int dim);
 
-extern template BodyProperties by_interface<2>(const Model<2>&, std::vector<ZoneProperties>,
-                                               const std::vector<ContactProperties>&);
-extern template BodyProperties by_interface<3>(const Model<3>&, std::vector<ZoneProperties>,
-                                               const std::vector<ContactProperties>&);
 extern template struct Body<2>;
 extern template struct Body<3>;
 

@@ -217,7 +217,7 @@ void Constraints<Dim>::require_valid(const StateVisitor& visitor) const {
     for (const int slot : tie.slots) {
       visitor.require(is_slot_of(body_, slot, tie.bundle), "ties_of_bundles",
                       "names a slot of another bundle");
-      visitor.require(body_.made_constraints[body_.layout.bundle_of_pack[slot / kLanes]] >= 0,
+      visitor.require(body_.arrays.constraints_of_bundle[body_.layout.bundle_of_pack[slot / kLanes]] >= 0,
                       "ties_of_bundles", "ties a bundle without constraints");
     }
 }
@@ -228,6 +228,7 @@ void Constraints<Dim>::visit_state(StateVisitor& visitor) {
                 state::within(-1, kMostOfAKind).of(body_.made_constraints.size()));
   visit_ties(visitor);
   require_valid(visitor);
+  if (visitor.replaces()) place_ties();  // so that the step meets the ties that were made, and no others
 }
 
 template <int Dim>

@@ -18,7 +18,7 @@ constexpr int kBundlesToShare = 64;
 
 /// Returns the blocks of a chunk in layers across its longest extent; within a layer, along the other axes.
 template <int Dim>
-std::vector<int> order_blocks(const Model<Dim>& model, int first_block, int last_block) {
+std::vector<int> order_blocks(const ModelOf<Dim>& model, int first_block, int last_block) {
   const int count = last_block - first_block;
   std::vector<Vec<Dim>> centre(count);
   Vec<Dim> low, high;
@@ -68,7 +68,7 @@ bool is_fan(const std::vector<std::array<int, 3>>& zones) {
 template <int Dim>
 class LayoutBuilder {
  public:
-  LayoutBuilder(const Model<Dim>& model, const LayoutParameters& parameters, Layout<Dim>& layout)
+  LayoutBuilder(const ModelOf<Dim>& model, const LayoutParameters& parameters, Layout<Dim>& layout)
       : model_(model), parameters_(parameters), layout_(layout) {}
 
   void take_chunks() {
@@ -302,9 +302,10 @@ class LayoutBuilder {
     for (int i = 0; i < pieces; ++i) {
       Bundle bundle;
       bundle.kind = BundleKind::piece;
-      bundle.packs = packs * (i + 1) / pieces - packs * i / pieces;
-      const int zone = kLanes * (zone_packs * i / pieces);
-      bundle.zones = std::min(zones, kLanes * (zone_packs * (i + 1) / pieces)) - zone;
+      const auto share = [&](std::int64_t of, int piece) { return static_cast<int>(of * piece / pieces); };
+      bundle.packs = share(packs, i + 1) - share(packs, i);
+      const int zone = kLanes * share(zone_packs, i);
+      bundle.zones = std::min(zones, kLanes * share(zone_packs, i + 1)) - zone;
       bundle.first_corners = static_cast<int>(piece_zones_.size());
       start(bundle);
       add_corners(first_zone + zone, bundle);
@@ -443,7 +444,7 @@ class LayoutBuilder {
     layout_.face_pack_of_point = FlatArray<int>(face_pack_of_point_);
   }
 
-  const Model<Dim>& model_;
+  const ModelOf<Dim>& model_;
   const LayoutParameters parameters_;
   Layout<Dim>& layout_;
 
@@ -466,7 +467,7 @@ class LayoutBuilder {
 }  // namespace
 
 template <int Dim>
-Layout<Dim>::Layout(const Model<Dim>& model, const LayoutParameters& parameters) {
+Layout<Dim>::Layout(const ModelOf<Dim>& model, const LayoutParameters& parameters) {
   LayoutBuilder<Dim> builder(model, parameters, *this);
   builder.take_chunks();
   builder.place_blocks();

@@ -244,7 +244,7 @@ struct Chunks {
 struct LayoutParameters {
   /// Least blocks of a bundle: fewer would leave too many lanes idle, so each goes over all lanes.
   int fewest_blocks = 4;
-  /// Most zones of a piece; a block of more stands in several.
+  /// Zones of a piece, 8 or more; a block of more stands in several, as far as its gridpoints fill them.
   int most_zones = 64;
 };
 
@@ -255,7 +255,7 @@ struct LayoutParameters {
 /// of faces and, soon after, move the bundles whose faces are all done.
 template <int Dim>
 struct Layout : LayoutArrays<Dim, FlatArray> {
-  explicit Layout(const Model<Dim>& model, const LayoutParameters& parameters = {});
+  explicit Layout(const ModelOf<Dim>& model, const LayoutParameters& parameters = {});
 
   Chunks chunks;
   int gridpoint_packs = 0;

@@ -18,8 +18,8 @@ constexpr double kSameStep = 2.0;
 }  // namespace
 
 template <int Dim>
-Mechanics<Dim>::Mechanics(const Model<Dim>& model, const std::vector<double>& densities,
-                          BodyProperties properties, const MechanicsParameters<Dim>& parameters,
+Mechanics<Dim>::Mechanics(const ModelOf<Dim>& model, const std::vector<double>& densities,
+                          BodyProperties properties, const MechanicsParameters& parameters,
                           std::shared_ptr<Team> team)
     : body_(std::make_unique<Body<Dim>>(model, std::move(properties), parameters, std::move(team))),
       mover_(*body_) {

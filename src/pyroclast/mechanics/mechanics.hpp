@@ -24,8 +24,8 @@ class Mechanics {
   /// \param model        model, kept by reference; must outlive this object
   /// \param densities    density of each material, kg/m³
   /// \param team         threads of the run; without a team the calling thread works alone
-  Mechanics(const Model<Dim>& model, const std::vector<double>& densities, BodyProperties properties,
-            const MechanicsParameters<Dim>& parameters, std::shared_ptr<Team> team = nullptr);
+  Mechanics(const ModelOf<Dim>& model, const std::vector<double>& densities, BodyProperties properties,
+            const MechanicsParameters& parameters, std::shared_ptr<Team> team = nullptr);
 
   /// Takes the body to other temperatures: displacements, jumps and damage stay, stresses follow the new
   /// parameters and return to the new envelopes (staggered coupling, paper Fig. 2).
@@ -68,7 +68,7 @@ class Mechanics {
   double mass_ratio() const { return body_->moving_mass / body_->real_mass; }
   const Body<Dim>& body() const { return *body_; }
 
-  const Model<Dim>& model() const { return body_->model; }
+  const ModelOf<Dim>& model() const { return body_->model; }
   double time() const { return static_cast<double>(steps()) * time_step(); }
   std::int64_t steps() const { return body_->steps; }
   double time_step() const { return body_->time_step(); }

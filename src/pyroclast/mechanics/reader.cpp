@@ -75,6 +75,22 @@ SymmetricTensor<Dim> Reader<Dim>::stress(int zone) const {
 }
 
 template <int Dim>
+SymmetricTensor<3> Reader<Dim>::elastic_strain(int zone) const {
+  const SymmetricTensor<Dim> s = stress(zone);
+  const ZoneProperties p = properties_of_zone(zone);
+  double trace = s[0];
+  for (std::size_t i = 1; i < Dim; ++i) trace += s[i];
+  const double dilation = trace / (Dim * p.lambda + 2.0 * p.mu);
+  const auto direct = [&](double stress) { return (stress - p.lambda * dilation) / (2.0 * p.mu); };
+  SymmetricTensor<Dim> strain;
+  for (std::size_t i = 0; i < s.size(); ++i) strain[i] = i < Dim ? direct(s[i]) : 0.5 * s[i] / p.mu;
+  if constexpr (Dim == 2)
+    return in_space(strain, direct(0.0));
+  else
+    return strain;
+}
+
+template <int Dim>
 ZoneProperties Reader<Dim>::properties_of_zone(int zone) const {
   const ZoneProperties& p = body_.properties.zones[zone];
   if (body_.creep_under_way.empty()) return p;
@@ -128,10 +144,11 @@ double Reader<Dim>::remembered(int contact, Remembers what) const {
 }
 
 template <int Dim>
-ContactState<Dim> Reader<Dim>::contact(int contact) const {
+ContactState Reader<Dim>::contact(int contact) const {
   const int set = body_.properties.of_contact[contact], lane = body_.layout.contact_slot[contact] % kLanes;
-  ContactState<Dim> state;
+  ContactState state;
   state.law = &body_.law_of(contact);
+  state.dimension = Dim;
   const auto values = [&](const auto& lines, const auto& first, std::size_t count) {
     std::vector<double> numbers(count);
     const Line* line = lines_of(body_.layout, lines, first, contact, count);
@@ -157,22 +174,19 @@ ContactState<Dim> Reader<Dim>::contact(int contact) const {
   return state;
 }
 
-template <int Dim>
-double ContactState<Dim>::remembered(Remembers what) const {
-  const int place = place_of(*law, what, Dim);
+double ContactState::remembered(Remembers what) const {
+  const int place = place_of(*law, what, dimension);
   return place < 0 ? 0.0 : internals[place];
 }
 
-template <int Dim>
-double ContactState<Dim>::remembered(std::string_view name) const {
-  const auto infos = law->internals(Dim);
+double ContactState::remembered(std::string_view name) const {
+  const auto infos = law->internals(dimension);
   for (std::size_t i = 0; i < infos.size(); ++i)
     if (infos[i].name == name) return internals[i];
   return 0.0;
 }
 
-template <int Dim>
-double ContactState<Dim>::lost(std::string_view name) const {
+double ContactState::lost(std::string_view name) const {
   for (std::size_t i = 0; i < losses.size(); ++i)
     if (law->losses[i].name == name) return losses[i];
   return 0.0;
@@ -199,12 +213,10 @@ std::vector<SymmetricTensor<Dim>> Reader<Dim>::stresses() const {
 }
 
 template <int Dim>
-std::vector<ContactState<Dim>> Reader<Dim>::contacts() const {
+std::vector<ContactState> Reader<Dim>::contacts() const {
   return all(body_.model.contact_count(), [&](int c) { return contact(c); });
 }
 
-template struct ContactState<2>;
-template struct ContactState<3>;
 template class Reader<2>;
 template class Reader<3>;
 

@@ -9,16 +9,16 @@
 namespace pyroclast {
 
 /// State of one contact point at the displacements of the last forces.
-template <int Dim>
 struct ContactState {
   const LawTable* law = nullptr;
-  std::vector<double> internals;      ///< internal variables in the order of `law->internals(Dim)`
-  std::vector<double> losses;         ///< losses since the start, in the order of `law->losses`
-  double opening = 0.0;               ///< u_n, m
-  Tangential<Dim> tangential_jump{};  ///< u_s, m
-  double normal_traction = 0.0;       ///< Pa, tension positive
-  Tangential<Dim> shear_traction{};   ///< Pa
-  double stored = 0.0;                ///< J/m²
+  int dimension = 0;              ///< dimension of the body, 2 or 3
+  std::vector<double> internals;  ///< internal variables in the order of `law->internals(dimension)`
+  std::vector<double> losses;     ///< losses since the start, in the order of `law->losses`
+  double opening = 0.0;           ///< u_n, m
+  Vec<2> tangential_jump{};       ///< u_s along the tangents, m; in 2D the second is 0
+  double normal_traction = 0.0;   ///< Pa, tension positive
+  Vec<2> shear_traction{};        ///< traction along the tangents, Pa
+  double stored = 0.0;            ///< J/m²
 
   // Returns an internal variable; 0 where the law has none of this meaning or name.
   double remembered(Remembers what) const;
@@ -52,13 +52,16 @@ class Reader {
   /// Returns the stress in the zone's own frame, Pa.
   /// \param rotation  rotation of the frame, out
   SymmetricTensor<Dim> stress_in_own_frame(int zone, Rotation<double>& rotation) const;
+  /// Returns the elastic strain of a zone, in the frame of the model; in 2D with the strain across the plane
+  /// that leaves the zone free of stress there.
+  SymmetricTensor<3> elastic_strain(int zone) const;
   /// Returns the properties of a zone; until creep is committed, they include the compliance that it adds.
   ZoneProperties properties_of_zone(int zone) const;
   /// Returns the creep strain of a zone, in the frame of the model, at the displacements of the last forces;
   /// while the zone creeps, the known part of it.
   SymmetricTensor<Dim> creep_strain(int zone) const;
 
-  ContactState<Dim> contact(int contact) const;
+  ContactState contact(int contact) const;
   /// Returns an internal variable of a contact; 0 where its law has none of this meaning.
   double remembered(int contact, Remembers what) const;
   double opening(int contact) const;  ///< Returns u_n at the displacements of the last forces, m.
@@ -70,7 +73,7 @@ class Reader {
   std::vector<Vec<Dim>> velocities() const;
   std::vector<Vec<Dim>> forces() const;
   std::vector<SymmetricTensor<Dim>> stresses() const;
-  std::vector<ContactState<Dim>> contacts() const;
+  std::vector<ContactState> contacts() const;
 
  private:
   Vec<Dim> jump_of_forces(int contact) const;
@@ -78,8 +81,6 @@ class Reader {
   const Body<Dim>& body_;
 };
 
-extern template struct ContactState<2>;
-extern template struct ContactState<3>;
 extern template class Reader<2>;
 extern template class Reader<3>;
 

@@ -246,7 +246,7 @@ struct StepPasses {
   /// Shares the sums of tied pieces out and moves their gridpoints.
   /// \param first, last  entries of `pieces`
   void (*move_tied_pieces)(State<Dim>&, int first, int last, Pass, double* scratch);
-  /// Computes `State::stiffness`; leaves the contact forces unset until faces are updated.
+  /// Computes `State::stiffness`; leaves contact and corner forces unset until the next sweep.
   void (*sum_stiffness)(State<Dim>&, double* scratch);
 };
 

@@ -39,7 +39,7 @@ Vec<Dim> Totals<Dim>::total_applied_force(const GridpointSet& set) const {
 
 template <int Dim>
 Vec<Dim> Totals<Dim>::total_weight(const GridpointSet& set) const {
-  return body_.parameters.gravity *
+  return body_.state.gravity *
          chunked_sum(set.chunks, [&](int i) { return body_.gravity_mass[set.gridpoints[i]]; });
 }
 
@@ -127,7 +127,7 @@ EnergyLedger Totals<Dim>::energy() const {
   // weights are constant, so their work follows from the displacements
   if (body_.state.weighs())
     e.gravity = chunked_sum(body_.layout.chunks.gridpoints, [&](int g) {
-      return body_.gravity_mass[g] * dot(body_.parameters.gravity, read_.displacement_of_force(g));
+      return body_.gravity_mass[g] * dot(body_.state.gravity, read_.displacement_of_force(g));
     });
   return e;
 }

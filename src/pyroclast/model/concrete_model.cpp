@@ -91,8 +91,8 @@ std::vector<double> row_heights(double rows_of_even_height) {
 }
 
 /// Adds a structured block over a seat.
-BearingBlock add_bearing(Model<2>& model, const Specimen& specimen, const Seat& seat, const Bearing& bearing,
-                         int material) {
+BearingBlock add_bearing(ModelOf<2>& model, const Specimen& specimen, const Seat& seat,
+                         const Bearing& bearing, int material) {
   std::vector<Vec<2>> inner, outer;
   for (int v : seat.vertices) {
     inner.push_back(specimen.tessellation.vertices[v]);
@@ -171,13 +171,13 @@ std::vector<Bearing> platens(double thickness) {
           {"top_platen", "top", thickness, "platen", "platen", false}};
 }
 
-Model<2> make_concrete_model(const Specimen& specimen, double thickness,
-                             const std::vector<InterfaceParameters>& interfaces,
-                             const std::vector<Bearing>& bearings) {
+ModelOf<2> make_concrete_model(const Specimen& specimen, double thickness,
+                               const std::vector<InterfaceParameters>& interfaces,
+                               const std::vector<Bearing>& bearings) {
   const Region& region = specimen.region;
   const auto& tessellation = specimen.tessellation;
   const InterfaceTable table(specimen.phases, interfaces);
-  Model<2> model;
+  ModelOf<2> model;
   model.thickness = thickness;
   model.material_names = specimen.phases;
   model.interface_names = table.names();

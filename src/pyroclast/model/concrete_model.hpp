@@ -43,8 +43,8 @@ std::vector<Bearing> platens(double thickness);
 ///
 /// \param thickness   thickness of the specimen, out of plane, m
 /// \param interfaces  interfaces of the deck, see InterfaceTable
-Model<2> make_concrete_model(const specimen::Specimen& specimen, double thickness,
-                             const std::vector<InterfaceParameters>& interfaces = {},
-                             const std::vector<Bearing>& bearings = {});
+ModelOf<2> make_concrete_model(const specimen::Specimen& specimen, double thickness,
+                               const std::vector<InterfaceParameters>& interfaces = {},
+                               const std::vector<Bearing>& bearings = {});
 
 }  // namespace pyroclast

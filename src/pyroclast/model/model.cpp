@@ -47,23 +47,22 @@ FaceFrame<3> face_frame(const std::vector<Vec<3>>& corner, double) {
 }  // namespace
 
 template <int Dim>
-int Model<Dim>::add_block(const std::vector<Vec<Dim>>& gridpoints,
-                          const std::vector<std::array<int, Dim + 1>>& new_zones, int material) {
+int ModelOf<Dim>::add_block(const std::vector<Vec<Dim>>& gridpoints,
+                            const std::vector<std::array<int, Dim + 1>>& new_zones, int material) {
   const int offset = gridpoint_count();
   position.insert(position.end(), gridpoints.begin(), gridpoints.end());
   for (auto zone : new_zones) {
     for (int& g : zone) g += offset;
     zones.push_back(zone);
   }
-  block_gridpoints.push_back(gridpoint_count());
-  block_zones.push_back(zone_count());
+  block_gridpoints.push_back(static_cast<int>(position.size()));
+  block_zones.push_back(static_cast<int>(zones.size()));
   block_material.push_back(material);
   put_into_chunk(block_count() - 1, kBlocksOfAChunk);
   return block_count() - 1;
 }
 
-template <int Dim>
-void Model<Dim>::put_into_chunk(int block, int most_blocks) {
+void Model::put_into_chunk(int block, int most_blocks) {
   const bool begins = block == 0 || block - chunk_blocks[chunk_blocks.size() - 2] >= most_blocks ||
                       is_of_bearing(block) != is_of_bearing(block - 1);
   if (begins)
@@ -72,21 +71,19 @@ void Model<Dim>::put_into_chunk(int block, int most_blocks) {
     chunk_blocks.back() = block + 1;
 }
 
-template <int Dim>
-void Model<Dim>::cut_into_chunks(int most_blocks) {
+void Model::cut_into_chunks(int most_blocks) {
   chunk_blocks = {0};
   for (int block = 0; block < block_count(); ++block) put_into_chunk(block, most_blocks);
 }
 
-template <int Dim>
-ChunkList Model<Dim>::chunks_of(const std::vector<int>& of_block) const {
+ChunkList Model::chunks_of(const std::vector<int>& of_block) const {
   std::vector<int> begins;
   for (const int block : chunk_blocks) begins.push_back(of_block[block]);
   return chunks().of(std::move(begins));
 }
 
 template <int Dim>
-void Model<Dim>::join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface) {
+void ModelOf<Dim>::join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface) {
   const std::size_t fewest = Dim, most = Dim == 2 ? 2 : 8;
   if (a.size() != b.size() || a.size() < fewest || a.size() > most)
     throw Error(fmt::format("faces with {} and {} corners cannot be joined: both must have {}", a.size(),
@@ -98,25 +95,28 @@ void Model<Dim>::join_faces(const std::vector<int>& a, const std::vector<int>& b
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (!(frame.area[i] > 0.0))
       throw Error(fmt::format("face at gridpoint {} has no area, so no contact can stand on it", a[0]));
-    contacts.push_back({a[i], b[i], face, interface, frame.area[i], frame.normal, frame.tangents});
+    contacts.push_back({{a[i], b[i], face, interface, frame.area[i]}, frame.normal, frame.tangents});
   }
-  face_contacts.push_back(contact_count());
+  face_contacts.push_back(static_cast<int>(contacts.size()));
 }
 
-template <int Dim>
-const std::vector<int>& Model<Dim>::set(std::string_view name) const {
+const std::vector<int>& Model::set(std::string_view name) const {
   if (const auto found = sets.find(name); found != sets.end()) return found->second;
   throw Error(fmt::format("the model has no set of gridpoints \"{}\"", name));
 }
 
-template <int Dim>
-int Model<Dim>::block_of(int gridpoint) const {
+int Model::block_of(int gridpoint) const {
   const auto after = std::upper_bound(block_gridpoints.begin(), block_gridpoints.end(), gridpoint);
   return static_cast<int>(after - block_gridpoints.begin()) - 1;
 }
 
 template <int Dim>
-ZoneGeometry<Dim> zone_geometry(const Model<Dim>& model) {
+std::vector<double> ModelOf<Dim>::zone_volumes() const {
+  return zone_geometry(*this).volume;
+}
+
+template <int Dim>
+ZoneGeometry<Dim> zone_geometry(const ModelOf<Dim>& model) {
   ZoneGeometry<Dim> geometry;
   geometry.gradient.resize(model.zones.size());
   geometry.volume.resize(model.zones.size());
@@ -131,43 +131,37 @@ ZoneGeometry<Dim> zone_geometry(const Model<Dim>& model) {
   return geometry;
 }
 
-template <int Dim>
-std::vector<int> zone_blocks(const Model<Dim>& model) {
-  std::vector<int> block(model.zones.size());
+std::vector<int> zone_blocks(const Model& model) {
+  std::vector<int> block(model.zone_count());
   for (int b = 0; b < model.block_count(); ++b)
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) block[z] = b;
   return block;
 }
 
-template <int Dim>
-GridpointContacts gridpoint_contacts(const Model<Dim>& model) {
+GridpointContacts gridpoint_contacts(const Model& model) {
   GridpointContacts list;
-  list.begin.assign(model.position.size() + 1, 0);
-  for (const auto& c : model.contacts) {
-    ++list.begin[c.a + 1];
-    ++list.begin[c.b + 1];
+  list.begin.assign(model.gridpoint_count() + 1, 0);
+  for (int c = 0; c < model.contact_count(); ++c) {
+    ++list.begin[model.joint(c).a + 1];
+    ++list.begin[model.joint(c).b + 1];
   }
   for (std::size_t i = 1; i < list.begin.size(); ++i) list.begin[i] += list.begin[i - 1];
   list.contact_side.resize(list.begin.back());
   auto next = list.begin;
   for (int c = 0; c < model.contact_count(); ++c) {
-    list.contact_side[next[model.contacts[c].a]++] = 2 * c;
-    list.contact_side[next[model.contacts[c].b]++] = 2 * c + 1;
+    list.contact_side[next[model.joint(c).a]++] = 2 * c;
+    list.contact_side[next[model.joint(c).b]++] = 2 * c + 1;
   }
   return list;
 }
 
-template struct Model<2>;
-template struct Model<3>;
-template <int Dim>
-GridpointSet gridpoint_set(const Model<Dim>& model, std::vector<int> gridpoints) {
+GridpointSet gridpoint_set(const Model& model, std::vector<int> gridpoints) {
   std::sort(gridpoints.begin(), gridpoints.end());
   ChunkList chunks = model.gridpoint_chunks().of_some(gridpoints);
   return {std::move(gridpoints), std::move(chunks)};
 }
 
-template <int Dim>
-ContactsByChunk contacts_by_chunk(const Model<Dim>& model) {
+ContactsByChunk contacts_by_chunk(const Model& model) {
   const ChunkList gridpoints = model.gridpoint_chunks();
   const auto chunk_of = [&](int gridpoint) {
     const auto& begins = gridpoints.begins();
@@ -175,7 +169,7 @@ ContactsByChunk contacts_by_chunk(const Model<Dim>& model) {
   };
   std::vector<std::vector<int>> of_chunk(static_cast<std::size_t>(gridpoints.count()));
   for (int c = 0; c < model.contact_count(); ++c)
-    of_chunk[std::min(chunk_of(model.contacts[c].a), chunk_of(model.contacts[c].b))].push_back(c);
+    of_chunk[std::min(chunk_of(model.joint(c).a), chunk_of(model.joint(c).b))].push_back(c);
   ContactsByChunk all;
   std::vector<int> begins{0};
   for (const auto& contacts : of_chunk) {
@@ -197,15 +191,9 @@ ContactsByChunk contacts_by_chunk(const ContactsByChunk& all, const std::vector<
   return part;
 }
 
-template GridpointSet gridpoint_set(const Model<2>&, std::vector<int>);
-template GridpointSet gridpoint_set(const Model<3>&, std::vector<int>);
-template ContactsByChunk contacts_by_chunk(const Model<2>&);
-template ContactsByChunk contacts_by_chunk(const Model<3>&);
-template ZoneGeometry<2> zone_geometry(const Model<2>&);
-template ZoneGeometry<3> zone_geometry(const Model<3>&);
-template std::vector<int> zone_blocks(const Model<2>&);
-template std::vector<int> zone_blocks(const Model<3>&);
-template GridpointContacts gridpoint_contacts(const Model<2>&);
-template GridpointContacts gridpoint_contacts(const Model<3>&);
+template struct ModelOf<2>;
+template struct ModelOf<3>;
+template ZoneGeometry<2> zone_geometry(const ModelOf<2>&);
+template ZoneGeometry<3> zone_geometry(const ModelOf<3>&);
 
 }  // namespace pyroclast

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,13 +14,16 @@
 
 namespace pyroclast {
 
-/// Contact point: joins gridpoint `a` to gridpoint `b` of another block.
+/// Contact point without its directions: joins gridpoint `a` to gridpoint `b` of another block.
+struct Joint {
+  int a, b;       ///< gridpoints
+  int face;       ///< shared face, see Model::face_contacts
+  int interface;  ///< index into Model::interface_names
+  double area;    ///< tributary area, m² (2D: half the edge times the thickness)
+};
+
 template <int Dim>
-struct Contact {
-  int a, b;                                ///< gridpoints
-  int face;                                ///< shared face, see Model::face_contacts
-  int interface;                           ///< index into Model::interface_names
-  double area;                             ///< tributary area, m² (2D: half the edge times the thickness)
+struct Contact : Joint {
   Vec<Dim> normal;                         ///< unit normal, from a to b
   std::array<Vec<Dim>, Dim - 1> tangents;  ///< unit tangents, right-handed and orthogonal with `normal`
 };
@@ -30,20 +34,21 @@ struct Contact {
 /// chunk, the unit of sums, files and ranks. Blocks meet only through contacts. In 2D a zone is a triangle
 /// and a face is an edge with two contact points. In 3D a zone is a tetrahedron and a face is a polygon of 3
 /// to 8 corners with a contact point at each.
-template <int Dim>
+///
+/// A model is a ModelOf<2> or a ModelOf<3>. Code that need not know which one shows places and directions in
+/// three numbers; in 2D the third is 0.
 struct Model {
+  virtual ~Model() = default;
+
   double thickness = 1.0;  ///< thickness out of plane, m (2D only; 1 in 3D)
 
-  std::vector<Vec<Dim>> position;        ///< gridpoints, reference configuration, m
   std::vector<int> block_gridpoints{0};  ///< gridpoints of block i: [i] to [i + 1]
   std::vector<int> block_zones{0};       ///< zones of block i: [i] to [i + 1]
   std::vector<int> block_material;       ///< index into material_names
   std::vector<int> chunk_blocks{0};      ///< blocks of chunk i: [i] to [i + 1]
   std::vector<bool> foreign_chunks;      ///< chunks that other parts of the body own; empty: none
   int zones_of_whole = 0;                ///< zones of the body of which this is a part; 0 for a whole body
-  std::vector<std::array<int, Dim + 1>> zones;  ///< gridpoints of each zone, positively oriented
-  std::vector<Contact<Dim>> contacts;
-  std::vector<int> face_contacts{0};  ///< contacts of shared face i: [i] to [i + 1]
+  std::vector<int> face_contacts{0};     ///< contacts of shared face i: [i] to [i + 1]
 
   std::vector<std::string> material_names;
   std::vector<std::string> interface_names;
@@ -54,6 +59,17 @@ struct Model {
   std::map<std::string, std::vector<int>, std::less<>> sets;          ///< gridpoints of each set, by name
   std::map<std::string, std::vector<int>, std::less<>> contact_sets;  ///< contacts of each set, by name
 
+  virtual int dimension() const = 0;  ///< Returns 2 or 3.
+  /// Returns the place of a gridpoint in the reference configuration, m.
+  virtual Vec<3> place(int gridpoint) const = 0;
+  virtual std::span<const int> gridpoints_of_zone(int zone) const = 0;
+  virtual const Joint& joint(int contact) const = 0;
+  virtual Vec<3> normal(int contact) const = 0;
+  /// Returns the volume of each zone, m³. Throws Error as zone_geometry does.
+  virtual std::vector<double> zone_volumes() const = 0;
+  /// Returns the extent of a contact by which cracks are measured: its length, m, in 2D, its area, m², in 3D.
+  double extent(int contact) const { return joint(contact).area / thickness; }
+
   /// Returns a set by its name. Throws Error naming it when the model has none.
   const std::vector<int>& set(std::string_view name) const;
 
@@ -61,7 +77,7 @@ struct Model {
     return block_material[block] >= std::ssize(material_names) - bearing_materials;
   }
   /// Tells whether a contact is between a bearing and the specimen.
-  bool is_of_bearing(const Contact<Dim>& contact) const {
+  bool is_of_bearing(const Joint& contact) const {
     return contact.interface >= std::ssize(interface_names) - bearing_interfaces;
   }
 
@@ -72,12 +88,40 @@ struct Model {
 
   int block_count() const { return static_cast<int>(block_material.size()); }
   int block_of(int gridpoint) const;
-  int gridpoint_count() const { return static_cast<int>(position.size()); }
-  int zone_count() const { return static_cast<int>(zones.size()); }
+  int gridpoint_count() const { return block_gridpoints.back(); }
+  int zone_count() const { return block_zones.back(); }
   /// Returns the zones of the whole body, also of a part of it.
   int whole_zone_count() const { return zones_of_whole > 0 ? zones_of_whole : zone_count(); }
-  int contact_count() const { return static_cast<int>(contacts.size()); }
+  int contact_count() const { return face_contacts.back(); }
   int face_count() const { return static_cast<int>(face_contacts.size()) - 1; }
+
+  /// Cuts the body into chunks of another number of blocks.
+  void cut_into_chunks(int most_blocks);
+
+ protected:
+  Model() = default;
+  Model(const Model&) = default;
+  Model(Model&&) = default;
+  Model& operator=(const Model&) = default;
+  Model& operator=(Model&&) = default;
+  void put_into_chunk(int block, int most_blocks);
+
+ private:
+  ChunkList chunks_of(const std::vector<int>& of_block) const;
+};
+
+template <int Dim>
+struct ModelOf final : Model {
+  std::vector<Vec<Dim>> position;               ///< gridpoints, reference configuration, m
+  std::vector<std::array<int, Dim + 1>> zones;  ///< gridpoints of each zone, positively oriented
+  std::vector<Contact<Dim>> contacts;
+
+  int dimension() const override { return Dim; }
+  Vec<3> place(int gridpoint) const override { return resized<3>(position[gridpoint]); }
+  std::span<const int> gridpoints_of_zone(int zone) const override { return zones[zone]; }
+  const Joint& joint(int contact) const override { return contacts[contact]; }
+  Vec<3> normal(int contact) const override { return resized<3>(contacts[contact].normal); }
+  std::vector<double> zone_volumes() const override;
 
   /// Appends a block and returns its index. The block's zones index its own gridpoints from 0. A chunk takes
   /// up to kBlocksOfAChunk blocks; blocks of bearings stand in chunks of their own.
@@ -91,14 +135,14 @@ struct Model {
   /// face have the frame of its mean plane, with the first tangent along its first edge; each has its share
   /// of the area. Throws Error for a face without area, and for one without 2 corners in 2D or 3 to 8 in 3D.
   void join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface);
-
-  /// Cuts the body into chunks of another number of blocks.
-  void cut_into_chunks(int most_blocks);
-
- private:
-  ChunkList chunks_of(const std::vector<int>& of_block) const;
-  void put_into_chunk(int block, int most_blocks);
 };
+
+/// Switch of dimension: calls `f` with a model as what it is, a ModelOf<2> or a ModelOf<3>.
+template <class F>
+decltype(auto) with_dimension(const Model& model, F f) {
+  if (model.dimension() == 2) return f(static_cast<const ModelOf<2>&>(model));
+  return f(static_cast<const ModelOf<3>&>(model));
+}
 
 /// Largest number of blocks in a chunk. The last digits of sums depend on it.
 inline constexpr int kBlocksOfAChunk = 1024;
@@ -109,8 +153,7 @@ struct GridpointSet {
   ChunkList chunks;
 };
 
-template <int Dim>
-GridpointSet gridpoint_set(const Model<Dim>& model, std::vector<int> gridpoints);
+GridpointSet gridpoint_set(const Model& model, std::vector<int> gridpoints);
 
 /// Contacts of a body chunk by chunk: a contact between two chunks belongs to the earlier one.
 struct ContactsByChunk {
@@ -118,8 +161,7 @@ struct ContactsByChunk {
   ChunkList chunks;           ///< chunks of this list
 };
 
-template <int Dim>
-ContactsByChunk contacts_by_chunk(const Model<Dim>& model);
+ContactsByChunk contacts_by_chunk(const Model& model);
 
 /// Returns those of the contacts of `all` that stand in `some`, chunk by chunk.
 ContactsByChunk contacts_by_chunk(const ContactsByChunk& all, const std::vector<int>& some);
@@ -134,11 +176,10 @@ struct ZoneGeometry {
 
 /// Computes the geometry of zones. Throws Error naming the zone when one has no positive volume.
 template <int Dim>
-ZoneGeometry<Dim> zone_geometry(const Model<Dim>& model);
+ZoneGeometry<Dim> zone_geometry(const ModelOf<Dim>& model);
 
 /// Returns the block of each zone.
-template <int Dim>
-std::vector<int> zone_blocks(const Model<Dim>& model);
+std::vector<int> zone_blocks(const Model& model);
 
 /// Contact sides at each gridpoint, as compressed lists.
 struct GridpointContacts {
@@ -146,10 +187,9 @@ struct GridpointContacts {
   std::vector<int> contact_side;  ///< twice the contact's index, plus one on side b
 };
 
-template <int Dim>
-GridpointContacts gridpoint_contacts(const Model<Dim>& model);
+GridpointContacts gridpoint_contacts(const Model& model);
 
-extern template struct Model<2>;
-extern template struct Model<3>;
+extern template struct ModelOf<2>;
+extern template struct ModelOf<3>;
 
 }  // namespace pyroclast

@@ -26,17 +26,22 @@ std::array<int, N> sorted(std::array<int, N> corners) {
 
 /// Returns the faces that contacts join to another block of the body, in order and with sorted corners.
 template <int Dim>
-std::vector<std::array<int, Dim>> joined_faces(const Model<Dim>& model, const std::vector<bool>& belongs) {
+std::vector<std::array<int, Dim>> joined_faces(const ModelOf<Dim>& model, const std::vector<bool>& belongs) {
   std::vector<std::array<int, Dim>> faces;
-  for (int first = 0; first < model.contact_count(); first += Dim) {
-    std::array<int, Dim> a, b;
-    for (int i = 0; i < Dim; ++i) {
-      a[i] = model.contacts[first + i].a;
-      b[i] = model.contacts[first + i].b;
+  const auto add = [&](std::array<int, Dim> corners) { faces.push_back(sorted(corners)); };
+  for (int face = 0; face < model.face_count(); ++face) {
+    const int first = model.face_contacts[face], last = model.face_contacts[face + 1];
+    if (!belongs[model.contacts[first].a] || !belongs[model.contacts[first].b]) continue;
+    // an edge, or the triangles of a polygon's fan
+    for (int i = first + 1; i + Dim - 2 < last; ++i) {
+      std::array<int, Dim> a{model.contacts[first].a}, b{model.contacts[first].b};
+      for (int corner = 1; corner < Dim; ++corner) {
+        a[corner] = model.contacts[i + corner - 1].a;
+        b[corner] = model.contacts[i + corner - 1].b;
+      }
+      add(a);
+      add(b);
     }
-    if (!belongs[a[0]] || !belongs[b[0]]) continue;
-    faces.push_back(sorted(a));
-    faces.push_back(sorted(b));
   }
   std::sort(faces.begin(), faces.end());
   return faces;
@@ -55,7 +60,7 @@ Vec<Dim> opposite_gradient(const ZoneGeometry<Dim>& geometry, int zone, int corn
 }  // namespace
 
 template <int Dim>
-std::vector<bool> gridpoints_of(const Model<Dim>& model, const std::vector<bool>& takes_part) {
+std::vector<bool> gridpoints_of(const ModelOf<Dim>& model, const std::vector<bool>& takes_part) {
   std::vector<bool> result(model.position.size());
   for (int b = 0; b < model.block_count(); ++b)
     for (int g = model.block_gridpoints[b]; g < model.block_gridpoints[b + 1]; ++g)
@@ -64,7 +69,7 @@ std::vector<bool> gridpoints_of(const Model<Dim>& model, const std::vector<bool>
 }
 
 template <int Dim>
-std::vector<OutlineFace<Dim>> outline(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry,
+std::vector<OutlineFace<Dim>> outline(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry,
                                       const std::vector<bool>& takes_part) {
   struct Candidate {
     std::array<int, Dim> corners;  // sorted
@@ -105,11 +110,11 @@ std::vector<OutlineFace<Dim>> outline(const Model<Dim>& model, const ZoneGeometr
   return result;
 }
 
-template std::vector<bool> gridpoints_of(const Model<2>&, const std::vector<bool>&);
-template std::vector<bool> gridpoints_of(const Model<3>&, const std::vector<bool>&);
-template std::vector<OutlineFace<2>> outline(const Model<2>&, const ZoneGeometry<2>&,
+template std::vector<bool> gridpoints_of(const ModelOf<2>&, const std::vector<bool>&);
+template std::vector<bool> gridpoints_of(const ModelOf<3>&, const std::vector<bool>&);
+template std::vector<OutlineFace<2>> outline(const ModelOf<2>&, const ZoneGeometry<2>&,
                                              const std::vector<bool>&);
-template std::vector<OutlineFace<3>> outline(const Model<3>&, const ZoneGeometry<3>&,
+template std::vector<OutlineFace<3>> outline(const ModelOf<3>&, const ZoneGeometry<3>&,
                                              const std::vector<bool>&);
 
 }  // namespace pyroclast

@@ -22,12 +22,12 @@ struct OutlineFace {
 /// Returns all faces on the outline of a body, in the order of their zones.
 /// \param takes_part  true where blocks of a material belong to the body, by material of the model
 template <int Dim>
-std::vector<OutlineFace<Dim>> outline(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry,
+std::vector<OutlineFace<Dim>> outline(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry,
                                       const std::vector<bool>& takes_part);
 
 /// Tells for each gridpoint whether it belongs to a block of a material that takes part.
 template <int Dim>
-std::vector<bool> gridpoints_of(const Model<Dim>& model, const std::vector<bool>& takes_part);
+std::vector<bool> gridpoints_of(const ModelOf<Dim>& model, const std::vector<bool>& takes_part);
 
 /// Returns a choice of outline faces whose centres lie in a plane (2D: on a line) perpendicular to an axis.
 /// \param axis        0, 1 or 2 for x, y, z

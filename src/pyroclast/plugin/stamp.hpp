@@ -83,6 +83,9 @@ void add_state(LayoutHash& hash) {
   for_each_array(add_array, s.layout);
   using Faces = FacePack<Dim>;
   hash.add(sizeof(Faces), offsetof(Faces, tangent), sizeof(VectorPack<Dim>), sizeof(Vec<Dim>));
+  using Functions = PackFunctions<Dim>;
+  hash.add(sizeof(Functions), offsetof(Functions, update), offsetof(Functions, place_stiffness),
+           offsetof(Functions, update_lanes));
 }
 
 /// Returns a hash that differs where the two sides of a shared object would read each other's data wrongly.
@@ -94,9 +97,7 @@ inline std::uint64_t layout_hash() {
   hash.add(sizeof(FaceSums), offsetof(FaceSums, stored), offsetof(FaceSums, applied),
            offsetof(FaceSums, jump));
   hash.add(sizeof(Line), kLanes, kInstructionSets);
-  hash.add(sizeof(PackFunctions<2>), offsetof(PackFunctions<2>, update),
-           offsetof(PackFunctions<2>, place_stiffness), offsetof(PackFunctions<2>, update_lanes),
-           sizeof(LanesResponse), offsetof(LanesResponse, stored), sizeof(CompiledLaw),
+  hash.add(sizeof(LanesResponse), offsetof(LanesResponse, stored), sizeof(CompiledLaw),
            offsetof(CompiledLaw, packs), offsetof(ByDimension<PackFunctions>, in_2d),
            offsetof(ByDimension<PackFunctions>, in_3d), offsetof(CompiledLaw, probe),
            sizeof(CompiledForSets));

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -20,9 +21,9 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-const Mechanics<2>& mechanics_of(const Simulation& simulation) {
+const Motion& motion_of(const Simulation& simulation) {
   if (!simulation.moves()) throw Error("nothing moves in this run, so there is no such array");
-  return simulation.mechanics();
+  return simulation.motion();
 }
 
 template <class Map>
@@ -36,32 +37,6 @@ template <class T>
 py::array frozen(py::array_t<T> array) {
   array.attr("setflags")(py::arg("write") = false);
   return array;
-}
-
-/// Returns a view of plain data of doubles, with a shape behind the index of the item.
-template <class Array>
-py::array seen(const Array& array, std::vector<py::ssize_t> shape, const py::object& owner) {
-  shape.insert(shape.begin(), static_cast<py::ssize_t>(array.size()));
-  return frozen(py::array_t<double>(shape, reinterpret_cast<const double*>(array.data()), owner));
-}
-
-using ViewOf = py::array (*)(const StateArrays<2, FlatArray>&, const py::object&);
-
-const std::map<std::string, ViewOf>& views() {
-  static const std::map<std::string, ViewOf> all{
-      {"displacement",
-       [](const auto& s, const py::object& owner) { return seen(s.displacement, {2}, owner); }},
-      {"velocity",
-       [](const auto& s, const py::object& owner) {
-         return seen(s.velocity, {2, kLanes}, owner);
-       }},
-      {"force",
-       [](const auto& s, const py::object& owner) {
-         return seen(s.force, {2, kLanes}, owner);
-       }},
-      {"internals",
-       [](const auto& s, const py::object& owner) { return seen(s.internals, {kLanes}, owner); }}};
-  return all;
 }
 
 template <class T, class List, class Number>
@@ -79,10 +54,17 @@ using CopyOf = py::array (*)(const Simulation&);
 
 const std::map<std::string, CopyOf>& copies() {
   static const std::map<std::string, CopyOf> all{
-      {"position", [](const Simulation& s) { return vectors(s.model().position); }},
+      {"position",
+       [](const Simulation& s) {
+         std::vector<Vec<3>> places;
+         for (int g = 0; g < s.model().gridpoint_count(); ++g) places.push_back(s.model().place(g));
+         return vectors(places, s.model().dimension());
+       }},
       {"zones",
        [](const Simulation& s) {
-         return filled<int>(s.model().zones, 3, [](const auto& zone, py::ssize_t i) {
+         std::vector<std::span<const int>> zones;
+         for (int z = 0; z < s.model().zone_count(); ++z) zones.push_back(s.model().gridpoints_of_zone(z));
+         return filled<int>(zones, s.model().dimension() + 1, [](const auto& zone, py::ssize_t i) {
            return zone[static_cast<std::size_t>(i)];
          });
        }},
@@ -95,16 +77,16 @@ const std::map<std::string, CopyOf>& copies() {
          return filled<int>(s.model().block_material, 0, [](int material, py::ssize_t) { return material; });
        }},
       {"slot", [](const Simulation& s) {
-         return filled<int>(mechanics_of(s).body().layout.gridpoint_slot, 0,
-                            [](int slot, py::ssize_t) { return slot; });
+         return filled<int>(motion_of(s).gridpoint_slots(), 0, [](int slot, py::ssize_t) { return slot; });
        }}};
   return all;
 }
 
 }  // namespace
 
-py::array vectors(const std::vector<Vec<2>>& list) {
-  return filled<double>(list, 2, [](const Vec<2>& v, py::ssize_t i) { return v[static_cast<int>(i)]; });
+py::array vectors(const std::vector<Vec<3>>& list, int dimension) {
+  return filled<double>(list, dimension,
+                        [](const Vec<3>& v, py::ssize_t i) { return v[static_cast<int>(i)]; });
 }
 
 py::array members(const Simulation& simulation, const std::string& set, bool of_contacts) {
@@ -115,8 +97,8 @@ py::array members(const Simulation& simulation, const std::string& set, bool of_
 }
 
 py::array view(const Simulation& simulation, const std::string& what, const py::object& owner) {
-  const ViewOf make = of(views(), what);
-  return make(mechanics_of(simulation).body().arrays, owner);
+  const ArrayInMemory array = motion_of(simulation).array_of(what);
+  return frozen(py::array_t<double>(array.shape, array.numbers, owner));
 }
 
 py::array copied(const Simulation& simulation, const std::string& what) {
@@ -131,7 +113,7 @@ py::dict fields(const Simulation& simulation, Item item, const std::vector<std::
   const auto values = values_of<double>(chosen, simulation);
   py::dict all;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const py::ssize_t components = components_of(chosen[i].kind);
+    const py::ssize_t components = components_of(chosen[i].kind, simulation.model().dimension());
     const auto items = static_cast<py::ssize_t>(values[i].size()) / components;
     std::vector<py::ssize_t> shape{items};
     if (components > 1) shape.push_back(components);
@@ -141,26 +123,28 @@ py::dict fields(const Simulation& simulation, Item item, const std::vector<std::
 }
 
 py::dict contact_points(const Simulation& simulation) {
-  const Mechanics<2>& mechanics = mechanics_of(simulation);
-  const Model<2>& model = simulation.model();
+  const Motion& motion = motion_of(simulation);
+  const Model& model = simulation.model();
   py::list interface, law;
+  std::vector<int> contacts;
   for (int i = 0; i < model.contact_count(); ++i) {
-    interface.append(model.interface_names[static_cast<std::size_t>(model.contacts[i].interface)]);
-    law.append(mechanics.body().law_of(i).name);
+    interface.append(model.interface_names[static_cast<std::size_t>(model.joint(i).interface)]);
+    law.append(motion.law_of(i).name);
+    contacts.push_back(i);
   }
   py::dict all;
   all["interface"] = interface;
   all["law"] = law;
-  const auto add = [&](const char* name, auto number) {
-    all[name] =
-        filled<double>(model.contacts, 0, [&](const auto& contact, py::ssize_t) { return number(contact); });
+  const auto add = [&](const std::string& name, auto number) {
+    all[py::str(name)] =
+        filled<double>(contacts, 0, [&](int contact, py::ssize_t) { return number(contact); });
   };
-  add("x_m", [&](const auto& c) { return model.position[c.a][0]; });
-  add("y_m", [&](const auto& c) { return model.position[c.a][1]; });
-  add("face", [](const auto& c) { return static_cast<double>(c.face); });
-  add("area_m2", [](const auto& c) { return c.area; });
-  add("normal_x", [](const auto& c) { return c.normal[0]; });
-  add("normal_y", [](const auto& c) { return c.normal[1]; });
+  for (int axis = 0; axis < model.dimension(); ++axis)
+    add(fmt::format("{}_m", "xyz"[axis]), [&](int c) { return model.place(model.joint(c).a)[axis]; });
+  add("face", [&](int c) { return static_cast<double>(model.joint(c).face); });
+  add("area_m2", [&](int c) { return model.joint(c).area; });
+  for (int axis = 0; axis < model.dimension(); ++axis)
+    add(fmt::format("normal_{}", "xyz"[axis]), [&](int c) { return model.normal(c)[axis]; });
   return all;
 }
 

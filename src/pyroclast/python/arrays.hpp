@@ -16,8 +16,8 @@ namespace py = pybind11;
 /// \param owner  object that the array keeps alive
 py::array view(const Simulation& simulation, const std::string& what, const py::object& owner);
 
-/// Returns an array (n, 2).
-py::array vectors(const std::vector<Vec<2>>& list);
+/// Returns places as an array (n, dimension).
+py::array vectors(const std::vector<Vec<3>>& list, int dimension);
 
 /// Returns arrays of the mesh in the order of the model, as copies.
 py::array copied(const Simulation& simulation, const std::string& what);

@@ -186,7 +186,7 @@ void bind_sessions(py::module_& m) {
       [] {
         std::vector<py::tuple> all;
         for (const FieldInfo& f : possible_fields())
-          all.push_back(py::make_tuple(f.name, product_of(f.unit), name_of(f.item), components_of(f.kind),
+          all.push_back(py::make_tuple(f.name, product_of(f.unit), name_of(f.item), components_of(f.kind, 2),
                                        f.meaning, f.in_files));
         return all;
       },
@@ -329,7 +329,7 @@ void bind_sessions(py::module_& m) {
       .def_property_readonly("step",
                              [](const Held& h) -> std::int64_t {
                                const Simulation& s = h.get().simulation();
-                               return s.moves() ? s.mechanics().steps() : 0;
+                               return s.moves() ? s.motion().steps() : 0;
                              })
       .def_property_readonly("moves", [](const Held& h) { return h.get().simulation().moves(); })
       .def_property_readonly("thickness",
@@ -356,9 +356,11 @@ void bind_sessions(py::module_& m) {
       .def("field_infos",
            [](const Held& h) {
              std::vector<py::tuple> all;
-             for (const Field& f : fields_of(h.get().simulation()))
+             const Simulation& simulation = h.get().simulation();
+             const int dimension = simulation.model().dimension();
+             for (const Field& f : fields_of(simulation))
                all.push_back(py::make_tuple(name_with_unit(f), f.name, f.unit.si, name_of(f.item),
-                                            components_of(f.kind), f.meaning));
+                                            components_of(f.kind, dimension), f.meaning));
              return all;
            })
       .def(
@@ -370,7 +372,7 @@ void bind_sessions(py::module_& m) {
       .def(
           "set_names",
           [](const Held& h, bool of_contacts) {
-            const Model<2>& model = h.get().simulation().model();
+            const Model& model = h.get().simulation().model();
             std::vector<std::string> names;
             for (const auto& [name, all] : of_contacts ? model.contact_sets : model.sets)
               names.push_back(name);

@@ -98,7 +98,12 @@ void bind_specimens(py::module_& m) {
             return specimen::cells_text({s.tessellation, s.phases, s.phase});
           },
           "As a file holds it.")
-      .def_property_readonly("vertices", [](const Specimen& s) { return vectors(s.tessellation.vertices); })
+      .def_property_readonly("vertices",
+                             [](const Specimen& s) {
+                               std::vector<Vec<3>> places;
+                               for (const auto& v : s.tessellation.vertices) places.push_back(resized<3>(v));
+                               return vectors(places, 2);
+                             })
       .def_property_readonly(
           "cells",
           [](const Specimen& s) {

@@ -152,7 +152,7 @@ Simulation& LentBody::get() const {
 }
 
 /// Returns the press. Throws Error where there is none.
-Press<2>& press_of(const LentBody& body) {
+Press& press_of(const LentBody& body) {
   if (!body.get().has_press()) throw Error("this body has no press: the deck has no table [platens]");
   return body.get().press();
 }
@@ -164,7 +164,7 @@ StageRegistry kinds_with(const py::list& classes) {
 }
 
 void bind_stages(py::module_& m) {
-  using Press = pyroclast::Press<2>;
+  using Press = pyroclast::Press;
   const auto press = [](auto method) {
     return [method](const LentBody& body) { return (press_of(body).*method)(); };
   };
@@ -177,7 +177,7 @@ void bind_stages(py::module_& m) {
             Simulation& simulation = body.get();
             if (steps < 0) throw Error("the number of steps must not be negative");
             const py::gil_scoped_release no_gil;
-            simulation.mechanics().advance(steps);
+            simulation.motion().advance(steps);
           },
           py::arg("steps"), "Takes so many steps of the mechanics.")
       .def(
@@ -208,14 +208,14 @@ void bind_stages(py::module_& m) {
           "temperature", [](const LentBody& body) { return body.get().field().mean(); },
           "Mean of the specimen [degC].")
       .def_property_readonly(
-          "time_step", [](const LentBody& body) { return body.get().mechanics().time_step(); },
+          "time_step", [](const LentBody& body) { return body.get().motion().time_step(); },
           "Of the mechanics [s].")
       .def_property_readonly(
-          "steps", [](const LentBody& body) { return body.get().mechanics().steps(); },
+          "steps", [](const LentBody& body) { return body.get().motion().steps(); },
           "Of the mechanics so far.")
       .def_property_readonly(
           "unbalanced_ratio",
-          [](const LentBody& body) { return body.get().mechanics().totals().unbalanced_ratio(); },
+          [](const LentBody& body) { return body.get().motion().totals().unbalanced_ratio(); },
           "Mean unbalanced force over mean force [1].");
 }
 

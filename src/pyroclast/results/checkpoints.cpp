@@ -78,26 +78,30 @@ std::vector<fs::path> files_of(const fs::path& run_folder) {
 }  // namespace
 
 std::string body_hash(const Simulation& simulation) {
-  const Model<2>& model = simulation.model();
+  const Model& model = simulation.model();
   Hash hash;
-  hash.add(model.position);
   hash.add(model.block_gridpoints);
   hash.add(model.block_zones);
   hash.add(model.block_material);
-  hash.add(model.zones);
-  std::vector<int> joined;
-  std::vector<double> frames;
-  for (const auto& c : model.contacts) {
-    joined.insert(joined.end(), {c.a, c.b, c.face, c.interface});
-    frames.insert(frames.end(), {c.area, c.normal[0], c.normal[1], c.tangents[0][0], c.tangents[0][1]});
-  }
-  hash.add(joined);
-  hash.add(frames);
+  with_dimension(model, [&](const auto& of_dimension) {
+    hash.add(of_dimension.position);
+    hash.add(of_dimension.zones);
+    std::vector<int> joined;
+    std::vector<double> frames;
+    for (const auto& c : of_dimension.contacts) {
+      joined.insert(joined.end(), {c.a, c.b, c.face, c.interface});
+      frames.push_back(c.area);
+      frames.insert(frames.end(), c.normal.c.begin(), c.normal.c.end());
+      for (const auto& t : c.tangents) frames.insert(frames.end(), t.c.begin(), t.c.end());
+    }
+    hash.add(joined);
+    hash.add(frames);
+  });
   for (const auto& name : model.interface_names) hash.add(name);
   if (simulation.moves())
-    for (const LawTable* law : simulation.mechanics().body().laws) {
+    for (const LawTable* law : simulation.motion().laws()) {
       hash.add(std::string(law->name));
-      for (const InternalInfo& number : law->internals(2)) hash.add(std::string(number.name));
+      for (const InternalInfo& number : law->internals(model.dimension())) hash.add(std::string(number.name));
       for (const LossInfo& loss : law->losses) hash.add(std::string(loss.name));
     }
   return hash.text();
@@ -182,7 +186,7 @@ void Checkpoints::write(const Run& run, const fs::path& path) {
   for (const auto& stage : run.stages()) info.stage_kinds.emplace_back(stage->kind());
   info.stage = run.stage_number();
   info.stage_is_over = run.stage_is_over();
-  info.step = run.simulation().moves() ? run.simulation().mechanics().steps() : 0;
+  info.step = run.simulation().moves() ? run.simulation().motion().steps() : 0;
   info.wall_time = sources_.wall_time();
   info.log_bytes = sources_.log_bytes();
   write_checkpoint(path, info, sources_.visit);

@@ -21,9 +21,6 @@ const std::filesystem::path& created(const std::filesystem::path& folder) {
   return folder;
 }
 
-/// Number of components of a vector in space.
-constexpr int kInSpace = 3;
-
 /// Returns the path of a field's array, whose name is that of the field with its unit.
 std::string path_of(const FieldInfo& field) {
   const bool is_of_points = field.item == Item::gridpoint || field.item == Item::contact_end;
@@ -32,25 +29,21 @@ std::string path_of(const FieldInfo& field) {
 }
 
 /// Returns vectors of the plane as vectors of space.
-std::vector<float> in_space(const std::vector<float>& plane) {
+std::vector<float> vectors_in_space(const std::vector<float>& plane) {
   std::vector<float> space;
-  space.reserve(plane.size() / 2 * kInSpace);
+  space.reserve(plane.size() / 2 * 3);
   for (std::size_t i = 0; i < plane.size(); i += 2) space.insert(space.end(), {plane[i], plane[i + 1], 0.0F});
   return space;
 }
 
-void write_field(Hdf5File& file, const FieldInfo& field, const std::vector<float>& values) {
-  switch (field.kind) {
-    case ValueKind::number:
-      file.dataset(path_of(field), values);
-      break;
-    case ValueKind::vector:
-      file.dataset(path_of(field), in_space(values), kInSpace);
-      break;
-    case ValueKind::tensor:
-      file.dataset(path_of(field), values, components_of(field.kind));
-      break;
-  }
+void write_field(Hdf5File& file, const FieldInfo& field, const std::vector<float>& values, int dimension) {
+  const int components = components_of(field.kind, dimension);
+  if (components == 1)
+    file.dataset(path_of(field), values);
+  else if (components == 2)
+    file.dataset(path_of(field), vectors_in_space(values), 3);
+  else
+    file.dataset(path_of(field), values, components);
 }
 
 /// Writes the fields of some items, the fields of one item together.
@@ -63,7 +56,8 @@ void write_fields(Hdf5File& file, const Simulation& simulation, std::initializer
     const auto last =
         std::find_if(first, fields.end(), [&](const Field& f) { return f.item != first->item; });
     const auto values = values_of<float>({first, last}, simulation);
-    for (auto field = first; field != last; ++field) write_field(file, *field, values[field - first]);
+    for (auto field = first; field != last; ++field)
+      write_field(file, *field, values[field - first], simulation.model().dimension());
     first = last;
   }
 }
@@ -123,7 +117,8 @@ FieldFiles::FieldFiles(const std::filesystem::path& folder, const Simulation& si
     : columns_(frame_columns(history)),
       frames_(created(folder) / "frames.csv", text_of(history, columns_, frames)),
       blocks_(folder, MeshPart::blocks, frame_times(history, frames)) {
-  if (simulation.moves()) contacts_.emplace(folder, MeshPart::contacts, frame_times(history, frames));
+  if (simulation.moves() && shows_contacts(simulation.model()))
+    contacts_.emplace(folder, MeshPart::contacts, frame_times(history, frames));
   write_mesh(folder, simulation.model());
 }
 

@@ -16,7 +16,7 @@ namespace pyroclast {
 namespace {
 
 constexpr std::uint8_t kVtkLine = 3;
-constexpr std::uint8_t kVtkTriangle = 5;
+constexpr std::uint8_t kVtkTriangle = 5, kVtkTetrahedron = 10;
 
 const char* name(MeshPart part) {
   return part == MeshPart::blocks ? "blocks" : "contacts";
@@ -76,44 +76,48 @@ void link_mesh(Hdf5File& file, MeshPart part) {
                        fmt::format("/{}/{}", grid, field.name));
 }
 
-void append(std::vector<double>& values, const Vec<2>& v) {
-  values.insert(values.end(), {v[0], v[1], 0.0});
+void append(std::vector<double>& values, const Vec<3>& v) {
+  values.insert(values.end(), v.c.begin(), v.c.end());
 }
 
-void write_blocks(Hdf5File& file, const Model<2>& model) {
+void write_blocks(Hdf5File& file, const Model& model) {
   std::vector<double> points;
-  for (const auto& x : model.position) append(points, x);
+  for (int g = 0; g < model.gridpoint_count(); ++g) append(points, model.place(g));
   std::vector<std::int64_t> connectivity;
   std::vector<std::int32_t> block;
   std::vector<std::uint8_t> material, bearing;
-  for (const auto& zone : model.zones) connectivity.insert(connectivity.end(), zone.begin(), zone.end());
+  for (int z = 0; z < model.zone_count(); ++z) {
+    const auto zone = model.gridpoints_of_zone(z);
+    connectivity.insert(connectivity.end(), zone.begin(), zone.end());
+  }
   for (int b : zone_blocks(model)) {
     block.push_back(b);
     material.push_back(static_cast<std::uint8_t>(model.block_material[b]));
     bearing.push_back(model.is_of_bearing(b) ? 1 : 0);
   }
-  write_grid(file, "/blocks", points, connectivity, 3, kVtkTriangle);
+  write_grid(file, "/blocks", points, connectivity, model.dimension() + 1,
+             model.dimension() == 2 ? kVtkTriangle : kVtkTetrahedron);
   file.dataset("/blocks/block", block);
   file.dataset("/blocks/material", material);
   file.dataset("/blocks/bearing", bearing);
   file.dataset(names_of(MeshPart::blocks).second, model.material_names);
 }
 
-void write_contacts(Hdf5File& file, const Model<2>& model) {
+void write_contacts(Hdf5File& file, const Model& model) {
   std::vector<double> points;
   std::vector<std::int64_t> connectivity;
   std::vector<std::uint8_t> interface, bearing;
   std::vector<double> length;
-  for (std::size_t i = 0; i < model.contacts.size(); ++i) {
-    const auto& c = model.contacts[i];
-    const auto& partner = model.contacts[i ^ 1];  // the two contacts of an edge stand together
-    append(points, model.position[c.a]);
-    append(points, 0.5 * (model.position[c.a] + model.position[partner.a]));
+  for (int i = 0; i < model.contact_count(); ++i) {
+    const Joint& c = model.joint(i);
+    const Joint& partner = model.joint(i ^ 1);  // the two contacts of an edge stand together
+    append(points, model.place(c.a));
+    append(points, 0.5 * (model.place(c.a) + model.place(partner.a)));
     connectivity.insert(connectivity.end(),
                         {static_cast<std::int64_t>(2 * i), static_cast<std::int64_t>(2 * i + 1)});
     interface.push_back(static_cast<std::uint8_t>(c.interface));
     bearing.push_back(model.is_of_bearing(c) ? 1 : 0);
-    length.push_back(c.area / model.thickness);
+    length.push_back(model.extent(i));
   }
   write_grid(file, "/contacts", points, connectivity, 2, kVtkLine);
   file.dataset("/contacts/interface", interface);
@@ -124,17 +128,21 @@ void write_contacts(Hdf5File& file, const Model<2>& model) {
 
 }  // namespace
 
-void write_mesh(const std::filesystem::path& folder, const Model<2>& model) {
+bool shows_contacts(const Model& model) {
+  return model.dimension() == 2;
+}
+
+void write_mesh(const std::filesystem::path& folder, const Model& model) {
   Hdf5File file(folder / "mesh.h5");
   write_blocks(file, model);
-  write_contacts(file, model);
+  if (shows_contacts(model)) write_contacts(file, model);
   file.close();
 }
 
-void rehearse_mesh(const Model<2>& model) {
+void rehearse_mesh(const Model& model) {
   Hdf5File file("");
   write_blocks(file, model);
-  write_contacts(file, model);
+  if (shows_contacts(model)) write_contacts(file, model);
   file.close();
 }
 

@@ -14,11 +14,13 @@ namespace pyroclast {
 /// Part of a mesh that has fields of its own.
 enum class MeshPart : std::uint8_t { blocks, contacts };
 
-/// Writes `mesh.h5`, which holds blocks and contacts once for all frames: zones as triangles with block and
-/// material, contact points as lines to the middle of their face with interface and length.
-void write_mesh(const std::filesystem::path& folder, const Model<2>& model);
+/// Tells whether frames show the contacts of a body; those of a solid are not shown yet.
+bool shows_contacts(const Model& model);
+/// Writes `mesh.h5`, which holds blocks and contacts once for all frames: zones as triangles or tetrahedra
+/// with block and material, contact points as lines to the middle of their face with interface and length.
+void write_mesh(const std::filesystem::path& folder, const Model& model);
 /// Takes the memory that writing the mesh takes, and writes nothing: a run needs most memory there.
-void rehearse_mesh(const Model<2>& model);
+void rehearse_mesh(const Model& model);
 
 /// Frames of a part of the mesh as VTKHDF files, which ParaView and VTK read. Each frame k is a file
 /// `blocks_<k>.hdf` or `contacts_<k>.hdf` that links to `mesh.h5` beside it; `blocks.hdf.series` or

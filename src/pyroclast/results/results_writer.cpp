@@ -28,7 +28,8 @@ void ResultsWriter::begin(const Run& run) {
   for (const std::string& name : fields_ ? fields_->lost() : std::vector<std::string>())
     lost_frames_.push_back(fmt::format(
         "a frame is lost: fields/{} is missing or broken; a run from the beginning has it", name));
-  write_specimen_files(folder_ / "specimen", run.simulation().specimen(), specimen_);
+  if (run.simulation().has_specimen())
+    write_specimen_files(folder_ / "specimen", run.simulation().specimen(), specimen_);
 }
 
 void ResultsWriter::write(const Run& run) {
@@ -46,8 +47,10 @@ Summary ResultsWriter::summary(const Run& run) const {
   Summary summary = summarize(run, references_);
   summary.title = title_;
   std::vector<std::string> warnings = warnings_;
-  for (auto list :
-       {lost_frames_, specimen::warnings(run.simulation().specimen()), std::exchange(summary.warnings, {})})
+  const Simulation& simulation = run.simulation();
+  const auto of_specimen =
+      simulation.has_specimen() ? specimen::warnings(simulation.specimen()) : std::vector<std::string>();
+  for (const auto& list : {lost_frames_, of_specimen, std::exchange(summary.warnings, {})})
     warnings.insert(warnings.end(), list.begin(), list.end());
   summary.warnings = std::move(warnings);
   summary.expansion_reading = expansion_reading_;

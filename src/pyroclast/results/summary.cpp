@@ -8,8 +8,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "pyroclast/mechanics/cracks.hpp"
 #include "pyroclast/results/text_file.hpp"
-#include "pyroclast/simulation/cracks.hpp"
+#include "pyroclast/simulation/gauges.hpp"
 
 namespace pyroclast {
 
@@ -74,7 +75,7 @@ std::optional<double> error_over_dissipated(const History& history, const Simula
   const auto of_turnover = energy_error(history, history.row_count());
   if (!of_turnover || !simulation.moves()) return std::nullopt;
   std::set<std::string> names;
-  for (const LawTable* law : simulation.mechanics().body().laws)
+  for (const LawTable* law : simulation.motion().laws())
     for (const LossInfo& loss : law->losses)
       if (loss.is_energy()) names.insert(loss.name);
   double dissipated = 0.0;
@@ -209,47 +210,49 @@ OrderedJson whole(const std::optional<double>& value) {
   return value ? OrderedJson(static_cast<std::int64_t>(*value)) : OrderedJson();
 }
 
-OrderedJson crack_json(const History& history, const std::string& crack) {
+OrderedJson crack_json(const History& history, const std::string& crack, const std::string& extent) {
   const auto last = [&](const char* what) { return last_of(history, (crack + what).c_str()); };
   return {{"damaged", whole(last("_damaged"))},
           {"broken", whole(last("_broken"))},
-          {"length_m", json_of(last("_length_m"))}};
+          {extent, json_of(last(("_" + extent).c_str()))}};
 }
 
 void add_motion(OrderedJson& json, const Summary& summary, const Run& run) {
   const Simulation& simulation = run.simulation();
   const History& history = run.history();
   json["energy_J"] = last_values(kEnergies, history);
-  for (const auto& name : simulation.mechanics().body().dissipations)
+  for (const auto& name : simulation.motion().dissipations())
     json["energy_J"][fmt::format("dissipated_{}", name)] =
         json_of(last_of(history, fmt::format("dissipated_{}_J", name).c_str()));
   json["energy_J"]["error_over_turnover"] = json_of(summary.energy_error);
   json["energy_J"]["error_over_dissipated"] = json_of(summary.error_over_dissipated);
   json["exchange_stress_over_strength"] = json_of(summary.exchange_stress);
-  for (const CrackKind& kind : crack_kinds(simulation.mechanics()))
-    json["cracks"][kind.name] = crack_json(history, kind.name);
+  for (const CrackKind& kind : simulation.motion().crack_kinds())
+    json["cracks"][kind.name] = crack_json(history, kind.name, extent_column(simulation.model()).name);
   json["cracks"]["mean_opening_m"] = json_of(last_of(history, "mean_opening_m"));
   json["expansion_reading"] = summary.expansion_reading;
   json["estimated_E_GPa"] = estimate_modulus(simulation.model(), simulation.materials()) * 1e-9;
   json["t_b_m"] = simulation.materials().fracture_zone;
-  json["time_step_s"] = simulation.mechanics().time_step();
-  json["mass_over_real_mass"] = simulation.mechanics().mass_ratio();
+  json["time_step_s"] = simulation.motion().time_step();
+  json["mass_over_real_mass"] = simulation.motion().mass_ratio();
   json["steps"] = whole(last_of(history, "step"));
 }
 
 void add_heat(OrderedJson& json, const Summary& summary, const Run& run) {
-  const Conduction<2>& conduction = *run.simulation().field().conduction();
+  const HeatWork work = run.simulation().field().conduction()->work();
   json["heat_J"] = last_values(kHeats, run.history());
   json["heat_J"]["error_over_largest"] = json_of(summary.heat_error);
-  json["heat_solver"] = {{"steps", conduction.steps()},
-                         {"steps_taken_back", conduction.retries()},
-                         {"evaluations", conduction.stages()},
-                         {"limited_steps", conduction.limited_steps()},
-                         {"largest_overshoot_K", conduction.largest_overshoot()}};
+  json["heat_solver"] = {{"steps", work.steps},
+                         {"steps_taken_back", work.retries},
+                         {"evaluations", work.stages},
+                         {"limited_steps", work.limited_steps},
+                         {"largest_overshoot_K", work.largest_overshoot}};
   const Simulation& simulation = run.simulation();
   if (simulation.moves()) json["heat_solver"]["coupling"] = simulation.coupling_of_heat();
-  if (simulation.cracks_hinder_heat())
-    json["heat_solver"]["gap_length_m"] = json_of(last_of(run.history(), "heat_gap_length_m"));
+  if (simulation.cracks_hinder_heat()) {
+    const std::string extent = extent_column(simulation.model()).name;
+    json["heat_solver"]["gap_" + extent] = json_of(last_of(run.history(), ("heat_gap_" + extent).c_str()));
+  }
 }
 
 OrderedJson json_of(const ReferenceDistances& of) {
@@ -260,9 +263,19 @@ OrderedJson json_of(const ReferenceDistances& of) {
           {"share_covered", json_of(d.covered)}};
 }
 
+OrderedJson json_of(const specimen::Specimen& specimen) {
+  OrderedJson json = {{"blocks", specimen.tessellation.cells.size()},
+                      {"mean_block_size_m", specimen.metrics.mean_size},
+                      {"aggregate_fraction_asked", specimen.fraction_asked},
+                      {"aggregate_fraction_placed", specimen.fraction_placed},
+                      {"aggregate_fraction_superposed", specimen.fraction_superposed}};
+  for (std::size_t i = 0; i < specimen.phases.size(); ++i)
+    json["fraction"][specimen.phases[i]] = specimen.fraction[i];
+  return json;
+}
+
 OrderedJson summary_json(const Summary& s, const Run& run) {
   const Simulation& simulation = run.simulation();
-  const specimen::Specimen& specimen = simulation.specimen();
   OrderedJson json;
   json["title"] = s.title;
   json["outcome"] = describe(s.outcome);
@@ -274,13 +287,7 @@ OrderedJson summary_json(const Summary& s, const Run& run) {
   if (simulation.moves()) add_motion(json, s, run);
   if (simulation.field().conduction()) add_heat(json, s, run);
   for (const ReferenceDistances& of : s.references) json["references"][of.name] = json_of(of);
-  json["specimen"] = {{"blocks", specimen.tessellation.cells.size()},
-                      {"mean_block_size_m", specimen.metrics.mean_size},
-                      {"aggregate_fraction_asked", specimen.fraction_asked},
-                      {"aggregate_fraction_placed", specimen.fraction_placed},
-                      {"aggregate_fraction_superposed", specimen.fraction_superposed}};
-  for (std::size_t i = 0; i < specimen.phases.size(); ++i)
-    json["specimen"]["fraction"][specimen.phases[i]] = specimen.fraction[i];
+  if (simulation.has_specimen()) json["specimen"] = json_of(simulation.specimen());
   json["wall_time_s"] = s.wall_time;
   json["warnings"] = s.warnings;
   return json;
@@ -362,7 +369,7 @@ Summary summarize(const Run& run, std::span<const Reference> references) {
     s.warnings.push_back(
         fmt::format("the heat ledger closes only within {:.2g} of its largest term", *s.heat_error));
   const bool is_small =
-      simulation.moves() && simulation.mechanics().body().parameters.kinematics == Kinematics::small;
+      simulation.moves() && simulation.motion().parameters().kinematics == Kinematics::small;
   if (const auto row = is_small ? large_jump(run, s) : std::nullopt)
     s.warnings.push_back(fmt::format(
         "jumps exceed an edge from {:.0f} degC{} on, before the results were decided: with "

@@ -29,8 +29,8 @@ double seconds_of(Action action) {
 
 /// Returns the wall time of a step, s, of many steps in one go, as a run takes them: the last step of a batch
 /// costs more, because it is measured.
-double seconds_per_step(Mechanics<2>& mechanics) {
-  const auto time = [&](int steps) { return seconds_of([&] { mechanics.advance(steps); }) / steps; };
+double seconds_per_step(Motion& motion) {
+  const auto time = [&](int steps) { return seconds_of([&] { motion.advance(steps); }) / steps; };
   const double steps = kSecondsOfTiming / time(kWarmUpSteps);
   return time(static_cast<int>(std::clamp<double>(steps, kWarmUpSteps, kMostTimedSteps)));
 }
@@ -50,10 +50,10 @@ double expected_evaluations(const HeatConditions& heat, double stable_step, doub
 /// Returns the wall time of an evaluation, s, by those that the solver does in a moment. Heats the field.
 double seconds_per_evaluation(TemperatureField& field, double duration, double largest_change) {
   const auto start = Clock::now();
-  const std::int64_t before = field.conduction()->stages();
+  const std::int64_t before = field.conduction()->work().stages;
   while (field.time() < duration && seconds_since(start) < kSecondsOfTiming)
     field.advance(largest_change, duration);
-  return seconds_since(start) / static_cast<double>(field.conduction()->stages() - before);
+  return seconds_since(start) / static_cast<double>(field.conduction()->work().stages - before);
 }
 
 Forecast forecast(const std::vector<std::unique_ptr<Stage>>& stages, const Simulation& simulation,
@@ -68,7 +68,7 @@ Forecast forecast(const std::vector<std::unique_ptr<Stage>>& stages, const Simul
 /// \param hottest  highest temperature to which the run may come, °C
 double seconds_of_run(const Forecast& forecast, double hottest, Simulation& simulation, Run& run) {
   double seconds = 0.0;
-  if (simulation.moves()) seconds += forecast.steps * seconds_per_step(simulation.mechanics());
+  if (simulation.moves()) seconds += forecast.steps * seconds_per_step(simulation.motion());
   const double row = seconds_of([&] { run.next(); });
   seconds += (forecast.looks + kRowsPerFrame * forecast.frames) * row;
   if (forecast.exchanges > 0.0) seconds += forecast.exchanges * seconds_per_exchange(simulation);

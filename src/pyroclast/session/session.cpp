@@ -226,13 +226,12 @@ void Session::change_materials(const std::vector<std::string>& changes) {
   if (!simulation_->moves()) throw Error("nothing moves in this run, so its materials have no properties");
   Deck deck = Deck::parse(opened_.deck.text(), opened_.deck.name(), changes);
   Setup setup = read(deck);
-  const specimen::Specimen& specimen = simulation_->specimen();
-  auto materials = make_materials(setup.solids, *setup.motion, specimen);
+  auto materials = make_materials(setup.solids, *setup.motion, simulation_->numbers());
   require_same_body(simulation_->materials(), materials);
   simulation_->set_materials(std::move(materials));
   take_over(std::move(deck), std::move(setup));
   for (const std::string& change : changes)
-    depart({fmt::format("{} from step {} on", change, simulation_->mechanics().steps())});
+    depart({fmt::format("{} from step {} on", change, simulation_->motion().steps())});
 }
 
 void Session::drive(const std::string& drives) {
@@ -244,7 +243,7 @@ void Session::drive(const std::string& drives) {
   const auto stage = drive_kind().read(deck.root(), tables);
   deck.finish();
   const auto& drive = dynamic_cast<const Drive&>(*stage);
-  Acting<2> acting = acting_on(*simulation_);
+  Acting acting = acting_on(*simulation_);
   drive.check(*simulation_, acting);
   if (run_.stage_is_under_way()) {
     if (const auto* under_way = dynamic_cast<const Drive*>(&run_.stage()))
@@ -256,7 +255,7 @@ void Session::drive(const std::string& drives) {
   run_.check_later_stages(acting);
   stage->begin(*simulation_);
   stage->advance(*simulation_, 0);
-  depart({fmt::format("{} from step {} on", told(drives), simulation_->mechanics().steps())});
+  depart({fmt::format("{} from step {} on", told(drives), simulation_->motion().steps())});
 }
 
 void Session::end_stage() {

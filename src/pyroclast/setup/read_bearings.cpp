@@ -19,7 +19,7 @@ ReadBearing read_bearing(const Section& s) {
   } else {
     bearing.side = bearing.name + "_seat";
     const auto at = s.place("at", unit::length, "middle of its seat, on the outline");
-    read.at = at ? Vec<2>{{at->first, at->second}} : Vec<2>{};
+    read.at = at ? specimen::Point{{at->first, at->second}} : specimen::Point{};
     read.width =
         s.quantity("width", unit::length, Range::positive(), "of its seat, straight from end to end");
   }

@@ -16,7 +16,7 @@ struct ReadBearing {
   Bearing bearing;
   BearingInterface interface;
   /// Middle of the bearing's seat, on the outline, m; without it the bearing covers a side.
-  std::optional<Vec<2>> at;
+  std::optional<specimen::Point> at;
   double width = 0.0;  ///< width of the seat, straight from end to end, m
 };
 

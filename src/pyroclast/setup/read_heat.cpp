@@ -27,9 +27,9 @@ constexpr const char* kAir = "air_conductivity";
 
 constexpr Range kTemperature = Range::at_least(absolute_zero);
 
-std::optional<Vec<2>> read_point(const Section& s, std::string_view key, Meaning meaning) {
+std::optional<Vec<3>> read_point(const Section& s, std::string_view key, Meaning meaning) {
   const auto x = s.quantities(key, unit::length, Range::any(), meaning);
-  if (x.size() == 2) return Vec<2>{{x[0], x[1]}};
+  if (x.size() == 2) return Vec<3>{{x[0], x[1]}};
   if (!x.empty()) s.error(key, fmt::format("has {} coordinates; x and y are needed", x.size()));
   return std::nullopt;
 }

@@ -33,9 +33,10 @@ std::vector<ProbePosition> read_probes(const Section& root, const specimen::Regi
     probe.position = {{s.quantity("x", unit::length, within(0),
                                   "from the lower left corner of a rectangle, the middle of a disc"),
                        s.quantity("y", unit::length, within(1), "likewise")}};
-    if (known && s.ok() && region.distance(probe.position) > kOnOutline)
+    const specimen::Point at{{probe.position[0], probe.position[1]}};
+    if (known && s.ok() && region.distance(at) > kOnOutline)
       s.error("x", fmt::format("with y is a point outside of the specimen, {:.4g} mm from it",
-                               1e3 * region.distance(probe.position)));
+                               1e3 * region.distance(at)));
     probes.push_back(std::move(probe));
   }
   return probes;

@@ -7,21 +7,25 @@
 #include <fmt/format.h>
 
 #include "pyroclast/setup/read_name.hpp"
-#include "pyroclast/setup/vec_of_place.hpp"
 
 namespace pyroclast {
 
 namespace {
 
+/// Returns a place of a deck as a vector, m.
+Vec<3> vec_of(const std::pair<double, double>& place) {
+  return {{place.first, place.second}};
+}
+
 /// Reads a list that must hold two places.
-std::array<Vec<2>, 2> read_two(const Section& s, const char* key, Meaning meaning) {
+std::array<Vec<3>, 2> read_two(const Section& s, const char* key, Meaning meaning) {
   const auto places = s.places(key, unit::length, 2, meaning);
   if (places.size() > 2) s.error(key, "must be two places, [[x, y], [x, y]]");
   if (places.size() < 2) return {};
   return {vec_of(places[0]), vec_of(places[1])};
 }
 
-Place<2> read_place_of_set(const Section& s) {
+Place read_place_of_set(const Section& s) {
   constexpr const char* kForms[] = {"box", "centre", "line", "nearest"};
   int stated = 0;
   for (const char* form : kForms) stated += s.has(form) ? 1 : 0;
@@ -31,24 +35,24 @@ Place<2> read_place_of_set(const Section& s) {
     const auto [low, high] = read_two(s, "box", "lower left and upper right corner, which belong to it");
     if (s.ok() && (low[0] > high[0] || low[1] > high[1]))
       s.error("box", "is inside out: the lower left corner comes first");
-    return InBox<2>{low, high};
+    return InBox{low, high};
   }
   if (s.has("centre")) {
     const auto centre = s.place("centre", unit::length, "of a disc");
-    return InBall<2>{vec_of(centre.value_or(std::pair{0.0, 0.0})),
-                     s.quantity("radius", unit::length, Range::positive(), "of a disc")};
+    return InBall{vec_of(centre.value_or(std::pair{0.0, 0.0})),
+                  s.quantity("radius", unit::length, Range::positive(), "of a disc")};
   }
   if (s.has("line")) {
     const auto [from, to] = read_two(s, "line", "the ends of a straight line, which belong to it");
-    return OnLine<2>{from, to};
+    return OnLine{from, to};
   }
   if (s.has("nearest"))
-    return NearestTo<2>{vec_of(
+    return NearestTo{vec_of(
         s.place("nearest", unit::length, "what is nearest to this place").value_or(std::pair{0.0, 0.0}))};
   return Everywhere{};
 }
 
-Vec<2> read_direction(const Section& s) {
+Vec<3> read_direction(const Section& s) {
   const std::string stated = s.word_or_text("direction", {{"x", 0, "to the right"}, {"y", 1, "upwards"}},
                                             "x or y behind a minus", "along which it is measured");
   const bool is_negative = stated.starts_with('-');
@@ -56,7 +60,7 @@ Vec<2> read_direction(const Section& s) {
   if (axis != "x" && axis != "y")
     s.error("direction", fmt::format("must be \"x\", \"y\", \"-x\" or \"-y\"; got \"{}\"", stated));
   const double sign = is_negative ? -1.0 : 1.0;
-  return axis == "y" ? Vec<2>{{0.0, sign}} : Vec<2>{{sign, 0.0}};
+  return axis == "y" ? Vec<3>{{0.0, sign}} : Vec<3>{{sign, 0.0}};
 }
 
 RecordParameters read_record(const Section& s) {
@@ -104,13 +108,13 @@ RecordParameters read_record(const Section& s) {
 
 }  // namespace
 
-std::vector<SetParameters<2>> read_sets(const Section& root) {
-  std::vector<SetParameters<2>> sets;
+std::vector<SetParameters> read_sets(const Section& root) {
+  std::vector<SetParameters> sets;
   for (const Section& s : root.optional_sections(
            "sets",
            "parts of the body that stages, records and heat boundaries name, any number; see "
            "[bodies.md](bodies.md#sets)")) {
-    SetParameters<2> set;
+    SetParameters set;
     set.name = s.text("name", "another than those of the sets that there are anyhow");
     set.deck_place = fmt::format("{}: {}", s.where("name"), s.path());
     set.of = s.choice<SetOf, SetOf>(
@@ -122,7 +126,7 @@ std::vector<SetParameters<2>> read_sets(const Section& root) {
         SetOf::gridpoints, "what it is a set of");
     set.within = s.text("within", "", "a set that it is a part of; without one, all of the body");
     set.place = read_place_of_set(s);
-    if (s.ok() && std::ranges::find(sets, set.name, &SetParameters<2>::name) != sets.end())
+    if (s.ok() && std::ranges::find(sets, set.name, &SetParameters::name) != sets.end())
       s.error("name", fmt::format("\"{}\" is the name of another set", set.name));
     sets.push_back(std::move(set));
   }

@@ -9,7 +9,7 @@
 namespace pyroclast {
 
 /// Reads [[sets]], which every run may have.
-std::vector<SetParameters<2>> read_sets(const Section& root);
+std::vector<SetParameters> read_sets(const Section& root);
 
 /// Reads [[record]], which every run may have.
 std::vector<RecordParameters> read_records(const Section& root);

@@ -14,7 +14,6 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/setup/cells_in_metres.hpp"
-#include "pyroclast/setup/vec_of_place.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/gradation.hpp"
 #include "pyroclast/specimen/grading_curve.hpp"
@@ -296,27 +295,28 @@ enum class Shape { rectangle, disc, ring, polygon, tessellation, cells };
 struct Outline {
   Shape shape;
   double width = 0.0, height = 0.0, diameter = 0.0, inner_diameter = 0.0;  ///< m
-  double unit = 0.0;            ///< unit of the coordinates of a file, m
-  std::vector<Vec<2>> corners;  ///< m
+  double unit = 0.0;                     ///< unit of the coordinates of a file, m
+  std::vector<specimen::Point> corners;  ///< m
   struct Hole {
     std::string name;
-    Vec<2> centre{};
+    specimen::Point centre{};
     double diameter = 0.0;
-    std::vector<Vec<2>> corners;
+    std::vector<specimen::Point> corners;
   };
   std::vector<Hole> holes;
   std::vector<specimen::Notch> notches;
   std::optional<specimen::Cells> cells;
 };
 
-std::vector<Vec<2>> vecs(const std::vector<std::pair<double, double>>& places) {
-  std::vector<Vec<2>> result;
-  for (const auto& place : places) result.push_back(vec_of(place));
+std::vector<specimen::Point> vecs(const std::vector<std::pair<double, double>>& places) {
+  std::vector<specimen::Point> result;
+  for (const auto& [x, y] : places) result.push_back({{x, y}});
   return result;
 }
 
-Vec<2> read_place(const Section& s, std::string_view key, Meaning meaning) {
-  return vec_of(s.place(key, unit::length, meaning).value_or(std::pair{0.0, 0.0}));
+specimen::Point read_place(const Section& s, std::string_view key, Meaning meaning) {
+  const auto [x, y] = s.place(key, unit::length, meaning).value_or(std::pair{0.0, 0.0});
+  return {{x, y}};
 }
 
 /// Usual range of a specimen's lengths, m.
@@ -424,7 +424,7 @@ Outline read_outline(const Section& s, const std::filesystem::path& folder) {
 
 /// Circle of the outline.
 struct Circle {
-  Vec<2> centre{};
+  specimen::Point centre{};
   double diameter = 0.0;
 };
 
@@ -442,12 +442,13 @@ std::optional<double> half_angle(const ReadBearing& b, const Circle& circle) {
 }
 
 double angle_on(const ReadBearing& b, const Circle& circle) {
-  const Vec<2> from_centre = *b.at - circle.centre;
+  const specimen::Point from_centre = *b.at - circle.centre;
   return std::atan2(from_centre[1], from_centre[0]);
 }
 
 /// Returns the corners of a circle; the ends of bearings are among them.
-std::vector<Vec<2>> corners_of(const Circle& circle, double size, std::span<const ReadBearing> bearings) {
+std::vector<specimen::Point> corners_of(const Circle& circle, double size,
+                                        std::span<const ReadBearing> bearings) {
   std::vector<double> angles;
   for (const ReadBearing& b : bearings)
     if (const auto half = half_angle(b, circle))
@@ -461,20 +462,20 @@ std::vector<Vec<2>> corners_of(const Circle& circle, double size, std::span<cons
 /// bearing's middle is not on the outline.
 /// \param corners  corners of blocks that are there already, of which the ends are the nearest; empty: the
 ///                 ends may be anywhere
-std::array<Vec<2>, 2> ends_on_side(const specimen::Region& region, const ReadBearing& b,
-                                   std::span<const Vec<2>> corners) {
+std::array<specimen::Point, 2> ends_on_side(const specimen::Region& region, const ReadBearing& b,
+                                            std::span<const specimen::Point> corners) {
   const auto& box = region.box();
   const double near = kOnCircle * std::max(box.width(), box.height());
   for (const specimen::Piece& piece : region.pieces()) {
     if (region.sides()[piece.side].is_round ||
         specimen::distance_from_segment(*b.at, piece.from, piece.to) > near)
       continue;
-    const Vec<2> along = (piece.to - piece.from) * (1.0 / norm(piece.to - piece.from));
-    const Vec<2> middle = piece.from + dot(*b.at - piece.from, along) * along;
-    std::array<Vec<2>, 2> ends{middle - 0.5 * b.width * along, middle + 0.5 * b.width * along};
+    const specimen::Point along = (piece.to - piece.from) * (1.0 / norm(piece.to - piece.from));
+    const specimen::Point middle = piece.from + dot(*b.at - piece.from, along) * along;
+    std::array<specimen::Point, 2> ends{middle - 0.5 * b.width * along, middle + 0.5 * b.width * along};
     if (!corners.empty())
-      for (Vec<2>& end : ends)
-        end = *std::ranges::min_element(corners, {}, [&](const Vec<2>& corner) {
+      for (specimen::Point& end : ends)
+        end = *std::ranges::min_element(corners, {}, [&](const specimen::Point& corner) {
           const bool is_on = specimen::distance_from_segment(corner, piece.from, piece.to) <= kOnSide * near;
           return is_on ? norm(corner - end) : std::numeric_limits<double>::infinity();
         });
@@ -484,14 +485,15 @@ std::array<Vec<2>, 2> ends_on_side(const specimen::Region& region, const ReadBea
 }
 
 /// Returns the ends of a bearing on a circle: two of its corners.
-std::array<Vec<2>, 2> ends_on_circle(const specimen::Region& region, const Circle& circle,
-                                     const ReadBearing& b, double half) {
-  std::array<Vec<2>, 2> ends;
+std::array<specimen::Point, 2> ends_on_circle(const specimen::Region& region, const Circle& circle,
+                                              const ReadBearing& b, double half) {
+  std::array<specimen::Point, 2> ends;
   const double middle = angle_on(b, circle);
   const bool is_hole = region.distance(circle.centre) > 0.0;
   for (const int end : {0, 1}) {
     const double angle = middle + (end == 0 ? -half : half) * (is_hole ? -1.0 : 1.0);
-    const Vec<2> at = circle.centre + 0.5 * circle.diameter * Vec<2>{{std::cos(angle), std::sin(angle)}};
+    const specimen::Point at =
+        circle.centre + 0.5 * circle.diameter * specimen::Point{{std::cos(angle), std::sin(angle)}};
     ends[end] = std::ranges::min_element(region.pieces(), {}, [&](const specimen::Piece& piece) {
                   return norm(piece.from - at);
                 })->from;
@@ -501,7 +503,8 @@ std::array<Vec<2>, 2> ends_on_circle(const specimen::Region& region, const Circl
 
 /// Returns the region with the seats of bearings as patches.
 specimen::Region with_seats(const specimen::Region& region, std::span<const Circle> circles,
-                            std::span<const ReadBearing> bearings, std::span<const Vec<2>> corners = {}) {
+                            std::span<const ReadBearing> bearings,
+                            std::span<const specimen::Point> corners = {}) {
   std::vector<specimen::Patch> patches;
   for (const ReadBearing& b : bearings) {
     if (!b.at) continue;

@@ -34,8 +34,8 @@ constexpr double kGravity = 9.80665;  // m/s², standard
 /// Number of temperatures, evenly over the run's, at which the contact law must be possible.
 constexpr int kCheckedTemperatures = 33;
 
-MechanicsParameters<2> read_mechanics(const Section& s) {
-  MechanicsParameters<2> m;
+MechanicsParameters read_mechanics(const Section& s) {
+  MechanicsParameters m;
   m.gravity = {{0.0, -s.quantity("gravity", unit::acceleration, Range::non_negative().usually(0.0, 10.0),
                                  kGravity, "acceleration downwards")}};
   m.local_damping = s.number("local_damping",

@@ -35,7 +35,7 @@ struct Setup {
   Interval temperatures;
   double exposure = 0.0;                   ///< time for which boundaries act, s
   std::optional<MotionParameters> motion;  ///< empty where no stage moves the body
-  std::vector<SetParameters<2>> sets;      ///< sets beside those that every model has
+  std::vector<SetParameters> sets;         ///< sets beside those that every model has
   std::vector<std::string> unused_sets;    ///< sets that no table names: for scripts and ParaView
   /// Lines about properties of materials that no temperature of the run needs.
   std::vector<std::string> unused_properties;

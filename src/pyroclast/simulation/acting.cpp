@@ -4,8 +4,8 @@
 
 namespace pyroclast {
 
-Acting<2> acting_on(const Simulation& simulation) {
-  Acting<2> acting{simulation.supports(), {}};
+Acting acting_on(const Simulation& simulation) {
+  Acting acting{simulation.supports(), {}};
   for (const auto& [set, load] : simulation.loads().all()) acting.loads[set] = {load, "an earlier drive"};
   return acting;
 }

@@ -9,21 +9,19 @@
 namespace pyroclast {
 
 /// Load that lasts, as far as it can be foreseen, and the place in the deck that stated it last.
-template <int Dim>
 struct LastingLoad {
-  SetLoad<Dim> load;
+  SetLoad load;
   std::string place;
 };
 
 /// Supports and loads of the body before a stage, as far as they can be foreseen, so that decks are checked
 /// before they run.
-template <int Dim>
 struct Acting {
-  Supports<Dim> supports;
-  std::map<std::string, LastingLoad<Dim>> loads;  ///< loads by set
+  Supports supports;
+  std::map<std::string, LastingLoad> loads;  ///< loads by set
 };
 
 /// Returns the supports and loads that act now.
-Acting<2> acting_on(const Simulation& simulation);
+Acting acting_on(const Simulation& simulation);
 
 }  // namespace pyroclast

@@ -11,8 +11,7 @@ namespace pyroclast {
 
 namespace {
 
-template <int Dim>
-const std::vector<int>& contacts_of(const Model<Dim>& model, const StatedGap& gap) {
+const std::vector<int>& contacts_of(const Model& model, const StatedGap& gap) {
   if (const auto set = model.contact_sets.find(gap.contacts); set != model.contact_sets.end())
     return set->second;
   throw Error(fmt::format("{}: contacts = \"{}\" is no set of contacts; those of this body are {}", gap.place,
@@ -21,11 +20,10 @@ const std::vector<int>& contacts_of(const Model<Dim>& model, const StatedGap& ga
 
 }  // namespace
 
-template <int Dim>
-std::vector<ContactGap> contact_gaps(const Model<Dim>& model, const std::vector<StatedGap>& stated,
-                                     const Mechanics<Dim>* mechanics) {
-  std::vector<ContactGap> gaps(model.contacts.size());
-  std::vector<const StatedGap*> gap_of(model.contacts.size());
+std::vector<ContactGap> contact_gaps(const Model& model, const std::vector<StatedGap>& stated,
+                                     const Motion* motion) {
+  std::vector<ContactGap> gaps(model.contact_count());
+  std::vector<const StatedGap*> gap_of(model.contact_count());
   for (const StatedGap& gap : stated)
     for (const int contact : contacts_of(model, gap)) {
       if (gap_of[contact] != nullptr)
@@ -34,18 +32,13 @@ std::vector<ContactGap> contact_gaps(const Model<Dim>& model, const std::vector<
       gap_of[contact] = &gap;
       gaps[contact] = {1.0, gap.width};
     }
-  if (mechanics == nullptr) return gaps;
+  if (motion == nullptr) return gaps;
   for (int i = 0; i < model.contact_count(); ++i) {
-    gaps[i].opening += std::max(mechanics->read().opening(i), 0.0);
+    gaps[i].opening += std::max(motion->read().opening(i), 0.0);
     for (const auto damage : {Remembers::tension_damage, Remembers::mixed_damage})
-      gaps[i].damage = std::max(gaps[i].damage, mechanics->read().remembered(i, damage));
+      gaps[i].damage = std::max(gaps[i].damage, motion->read().remembered(i, damage));
   }
   return gaps;
 }
-
-template std::vector<ContactGap> contact_gaps(const Model<2>&, const std::vector<StatedGap>&,
-                                              const Mechanics<2>*);
-template std::vector<ContactGap> contact_gaps(const Model<3>&, const std::vector<StatedGap>&,
-                                              const Mechanics<3>*);
 
 }  // namespace pyroclast

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/mechanics/motion.hpp"
 #include "pyroclast/thermal/gap_heat.hpp"
 
 namespace pyroclast {
@@ -18,11 +18,10 @@ struct StatedGap {
 
 /// Returns the gap of each contact of a body for heat, from the stated gaps and the present damage and
 /// opening. The damage is the damage in tension or mixed mode.
-/// \param mechanics  null where nothing moves
+/// \param motion  null where nothing moves
 ///
 /// Throws Error, with the gap's place, when its set is missing, or holds a contact that another gap has.
-template <int Dim>
-std::vector<ContactGap> contact_gaps(const Model<Dim>& model, const std::vector<StatedGap>& stated,
-                                     const Mechanics<Dim>* mechanics);
+std::vector<ContactGap> contact_gaps(const Model& model, const std::vector<StatedGap>& stated,
+                                     const Motion* motion);
 
 }  // namespace pyroclast

@@ -8,17 +8,28 @@ namespace pyroclast {
 namespace {
 
 /// Returns the solid of each zone, by place in the solids.
-std::vector<int> solids_of_zones(const Model<2>& model) {
+std::vector<int> solids_of_zones(const Model& model) {
   std::vector<int> solids = zone_blocks(model);
   for (int& entry : solids) entry = model.block_material[entry];
   return solids;
 }
 
+/// Elastic constants by dimension: in 2D those of plane stress.
+using Elasticity = ZoneProperties (*)(double young, double poisson, double thermal_strain);
+
+Elasticity elasticity_of(const Model& model) {
+  return with_dimension(model, []<int Dim>(const ModelOf<Dim>&) -> Elasticity {
+    return [](double young, double poisson, double strain) {
+      return zone_properties<Dim>(young, poisson, strain);
+    };
+  });
+}
+
 /// \param hottest  highest temperature so far, °C
-ZoneProperties zone_at(const ConcreteMaterials& materials, const SolidMaterial& solid, double temperature,
-                       double hottest) {
-  return zone_properties<2>(solid.young_at(temperature, materials.property_temperature(temperature, hottest)),
-                            solid.poisson, solid.free_strain(temperature, hottest));
+ZoneProperties zone_at(const ConcreteMaterials& materials, Elasticity elasticity, const SolidMaterial& solid,
+                       double temperature, double hottest) {
+  return elasticity(solid.young_at(temperature, materials.property_temperature(temperature, hottest)),
+                    solid.poisson, solid.free_strain(temperature, hottest));
 }
 
 /// Finds the creep of each zone; none where nothing creeps.
@@ -41,14 +52,15 @@ void find_creep_increments(const std::vector<int>& zone_solids, const ConcreteMa
 
 /// Returns properties at one temperature: one set of parameters a material and an interface. Bearings keep
 /// the reference temperature.
-BodyProperties properties_at_one_temperature(const Model<2>& model, const std::vector<int>& zone_solids,
+BodyProperties properties_at_one_temperature(const Model& model, const std::vector<int>& zone_solids,
                                              const ConcreteMaterials& materials, double temperature,
                                              double hottest) {
+  const Elasticity elasticity = elasticity_of(model);
   std::vector<ZoneProperties> solids;
   for (const SolidMaterial& solid : materials.solids)
     solids.push_back(solid.is_of_bearing
-                         ? zone_at(materials, solid, kReferenceTemperature, kReferenceTemperature)
-                         : zone_at(materials, solid, temperature, hottest));
+                         ? zone_at(materials, elasticity, solid, kReferenceTemperature, kReferenceTemperature)
+                         : zone_at(materials, elasticity, solid, temperature, hottest));
   std::vector<ZoneProperties> zones;
   zones.reserve(zone_solids.size());
   for (int solid : zone_solids) zones.push_back(solids[solid]);
@@ -63,14 +75,14 @@ BodyProperties properties_at_one_temperature(const Model<2>& model, const std::v
 
 }  // namespace
 
-HottestTemperatures::HottestTemperatures(const Model<2>& model, const ConcreteMaterials& materials,
+HottestTemperatures::HottestTemperatures(const Model& model, const ConcreteMaterials& materials,
                                          const TemperatureField& field,
                                          const std::vector<double>& stress_free) {
   if (materials.asks_for_hottest()) zones_ = field.zones();
   if (materials.on_cooling == OnCooling::irreversible) contacts_ = field.contacts();
   body_ = field.mean();
   if (materials.stress_free) {
-    begin_at(model, std::vector<double>(model.position.size(), *materials.stress_free));
+    begin_at(model, std::vector<double>(model.gridpoint_count(), *materials.stress_free));
     body_ = std::max(body_, *materials.stress_free);
   } else if (!stress_free.empty()) {
     stress_free_zones_ = begin_at(model, stress_free);
@@ -79,14 +91,12 @@ HottestTemperatures::HottestTemperatures(const Model<2>& model, const ConcreteMa
   seen_contacts_ = contacts_;
 }
 
-std::vector<double> HottestTemperatures::begin_at(const Model<2>& model,
-                                                  const std::vector<double>& gridpoints) {
-  std::vector<double> of_zones(model.zones.size(), kReferenceTemperature);
+std::vector<double> HottestTemperatures::begin_at(const Model& model, const std::vector<double>& gridpoints) {
+  std::vector<double> of_zones(model.zone_count(), kReferenceTemperature);
   for (int b = 0; b < model.block_count(); ++b) {
     if (model.is_of_bearing(b)) continue;
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z) {
-      const auto [i, j, k] = model.zones[z];
-      of_zones[z] = (gridpoints[i] + gridpoints[j] + gridpoints[k]) / 3.0;
+      of_zones[z] = mean_of_zone(model, z, gridpoints);
       if (!zones_.empty()) zones_[z] = std::max(zones_[z], of_zones[z]);
     }
   }
@@ -119,7 +129,7 @@ void HottestTemperatures::visit_state(StateVisitor& visitor) {
   visitor.visit("body", body_, kTemperatures);
 }
 
-BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& materials,
+BodyProperties properties_at(const Model& model, const ConcreteMaterials& materials,
                              const TemperatureField& field, const HottestTemperatures& before,
                              BodyProperties memory) {
   const std::vector<int> zone_solids = solids_of_zones(model);
@@ -131,25 +141,26 @@ BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& mat
     even.creep = std::move(p.creep);
     return even;
   }
+  const Elasticity elasticity = elasticity_of(model);
   p.zones.clear();
   p.zones.reserve(zone_solids.size());
   for (int z = 0; z < model.zone_count(); ++z) {
     const double now = field.zones()[z];
     const SolidMaterial& solid = materials.solids[zone_solids[z]];
-    p.zones.push_back(zone_at(materials, solid, now, before.of_zone(z, now)));
+    p.zones.push_back(zone_at(materials, elasticity, solid, now, before.of_zone(z, now)));
     if (!before.stress_free_zones().empty() && !solid.is_of_bearing)
       p.zones.back().thermal_strain -= solid.thermal_strain(before.stress_free_zones()[z]);
   }
   std::size_t numbers = 0;
-  for (const Contact<2>& contact : model.contacts)
-    numbers += materials.contacts[contact.interface].numbers.size();
+  for (int c = 0; c < model.contact_count(); ++c)
+    numbers += materials.contacts[model.joint(c).interface].numbers.size();
   p.contacts.clear();
   for (const ContactMaterial& contact : materials.contacts) p.contacts.know(*contact.law, contact.choices);
-  p.contacts.reserve(model.contacts.size(), numbers);
+  p.contacts.reserve(model.contact_count(), numbers);
   p.of_contact.clear();
-  p.of_contact.reserve(model.contacts.size());
+  p.of_contact.reserve(model.contact_count());
   for (int c = 0; c < model.contact_count(); ++c) {
-    const int interface = model.contacts[c].interface;
+    const int interface = model.joint(c).interface;
     p.of_contact.push_back(c);
     const double now = field.contacts()[c];
     const ContactMaterial& contact = materials.contacts[interface];

@@ -5,8 +5,8 @@
 
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/material/concrete.hpp"
-#include "pyroclast/mechanics/mechanics.hpp"
-#include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/mechanics/body.hpp"
+#include "pyroclast/model/model.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 
 namespace pyroclast {
@@ -20,8 +20,8 @@ class HottestTemperatures {
   /// Begins as if the body had come without stress to the field's present temperatures, from the temperature
   /// without stress where the materials state one.
   /// \param stress_free  temperature without stress of each gridpoint where it is a field, °C
-  HottestTemperatures(const Model<2>& model, const ConcreteMaterials& materials,
-                      const TemperatureField& field, const std::vector<double>& stress_free = {});
+  HottestTemperatures(const Model& model, const ConcreteMaterials& materials, const TemperatureField& field,
+                      const std::vector<double>& stress_free = {});
 
   /// Notes that the field came to its temperatures, which an exchange will hand over later.
   void note_field(const TemperatureField& field);
@@ -48,7 +48,7 @@ class HottestTemperatures {
 
  private:
   /// Raises the temperatures to those of the gridpoints, without bearings, and returns the mean of each zone.
-  std::vector<double> begin_at(const Model<2>& model, const std::vector<double>& gridpoints);
+  std::vector<double> begin_at(const Model& model, const std::vector<double>& gridpoints);
 
   std::vector<double> zones_, contacts_;            ///< highest at exchanges
   std::vector<double> seen_zones_, seen_contacts_;  ///< highest at exchanges and since the last one
@@ -60,7 +60,7 @@ class HottestTemperatures {
 /// their way there. Throws Error when a property is not defined at one of the temperatures.
 /// \param before  highest temperatures at the exchanges so far
 /// \param memory  properties whose memory is used again
-BodyProperties properties_at(const Model<2>& model, const ConcreteMaterials& materials,
+BodyProperties properties_at(const Model& model, const ConcreteMaterials& materials,
                              const TemperatureField& field, const HottestTemperatures& before,
                              BodyProperties memory = {});
 

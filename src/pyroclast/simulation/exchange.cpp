@@ -32,10 +32,9 @@ double shortening(const Simulation& simulation) {
 /// Returns the force by which the body as a whole is out of equilibrium, as a stress on its section, Pa.
 double imbalance(const Simulation& simulation) {
   if (!simulation.has_press()) {
-    return norm(simulation.mechanics().totals().net_force()) /
-           (simulation.body_size() * simulation.model().thickness);
+    return norm(simulation.motion().totals().net_force()) / simulation.area_across(simulation.body_size());
   }
-  const Press<2>& press = simulation.press();
+  const Press& press = simulation.press();
   return std::abs(press.stress_top() - press.stress_bottom());
 }
 
@@ -47,7 +46,7 @@ const char* name(PlatenControl control) {
 
 void Exchange::begin(Simulation& simulation) const {
   if (!simulation.has_press()) return;
-  Press<2>& press = simulation.press();
+  Press& press = simulation.press();
   if (coupling_.platen == PlatenControl::fixed) {
     press.control_by_motion(0.0);
   } else {
@@ -63,7 +62,7 @@ void Exchange::hand_over(Simulation& simulation) {
   simulation.hand_over();
 }
 
-void Exchange::move_evenly_first(const Press<2>::EvenMotion& motion) {
+void Exchange::move_evenly_first(const Press::EvenMotion& motion) {
   kept_.even_motion = motion;
   kept_.even_steps_left = kEvenSteps;
 }
@@ -71,18 +70,19 @@ void Exchange::move_evenly_first(const Press<2>::EvenMotion& motion) {
 /// Takes one step of the even motion; returns true when no step was left.
 bool Exchange::move_evenly(Simulation& simulation) {
   if (kept_.even_steps_left == 0) return true;
-  Press<2>& press = simulation.press();
+  Press& press = simulation.press();
   press.move_evenly(kept_.even_motion, kept_.even_steps_left == kEvenSteps ? 1.0 : 0.0, platen_follows());
-  simulation.mechanics().advance(1);
+  simulation.motion().advance(1);
   if (--kept_.even_steps_left == 0) press.end_even_motion(platen_follows());
   return false;
 }
 
 /// Begins an even motion that sets a hovering body down. The motion also halts the body, so that only the
 /// contact with the platen is left to settle.
-void Exchange::set_down(const Press<2>& press) {
+void Exchange::set_down(const Press& press) {
   if (press.stress_held() > 0.0) return;  // the force moves the body fast enough
-  const Press<2>::EvenMotion motion = press.to_touch();
+  if (!press.can_set_down()) return;
+  const Press::EvenMotion motion = press.to_touch();
   if (press.way(motion) > kTouches * press.height()) move_evenly_first(motion);
 }
 
@@ -98,7 +98,7 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
   const std::int64_t to_check =
       std::min(coupling_.most_cycles - done, kCyclesPerCheck - done % kCyclesPerCheck);
   const auto steps = std::min<std::int64_t>(to_check, most_steps);
-  simulation.mechanics().advance(static_cast<int>(steps));
+  simulation.motion().advance(static_cast<int>(steps));
   kept_.cycles += steps;
   if (steps < to_check) return false;
   const double now = shortening(simulation);
@@ -117,15 +117,15 @@ bool Exchange::advance(Simulation& simulation, int most_steps) {
 }
 
 bool Exchange::is_still(const Simulation& simulation) const {
-  const Mechanics<2>& mechanics = simulation.mechanics();
+  const Motion& motion = simulation.motion();
   if (imbalance(simulation) >= coupling_.platen_difference) return false;
-  if (mechanics.totals().unbalanced_ratio() < coupling_.unbalanced_ratio) return true;
+  if (motion.totals().unbalanced_ratio() < coupling_.unbalanced_ratio) return true;
   // A body that expands freely bears no forces to compare with. Forces that are out of balance at each block
   // alike, as where all of the body still grows, add up over the body.
-  const double block = specimen::block_size(simulation.specimen());
+  const double block = simulation.numbers().block_size;
   return !simulation.has_press() &&
-         mechanics.totals().mean_unbalanced_force() * (simulation.body_size() / block) <
-             kAsGoodAsNone * coupling_.platen_difference * block * simulation.model().thickness;
+         motion.totals().mean_unbalanced_force() * (simulation.body_size() / block) <
+             kAsGoodAsNone * coupling_.platen_difference * simulation.area_across(block);
 }
 
 std::vector<Column> Exchange::columns() {

@@ -55,7 +55,7 @@ class Exchange {
   /// Lets `advance` first move the body to where it will probably rest. This takes two steps and leaves the
   /// body at rest. Otherwise the body would have to push itself to its new size, and its inertia would press
   /// on the lower platen.
-  void move_evenly_first(const Press<2>::EvenMotion& motion);
+  void move_evenly_first(const Press::EvenMotion& motion);
   /// Takes one batch of steps; returns true when the body rests, has failed, or has used up its cycles. A
   /// specimen that is being crushed then gets more cycles, until it stops or the platen has run away. The
   /// specimen's own ends tell this, for a platen without load may have left them. A body without load hovers
@@ -76,7 +76,7 @@ class Exchange {
 
  private:
   bool move_evenly(Simulation& simulation);
-  void set_down(const Press<2>& press);
+  void set_down(const Press& press);
   bool is_still(const Simulation& simulation) const;
   bool platen_follows() const { return coupling_.platen == PlatenControl::force; }
 
@@ -89,7 +89,7 @@ class Exchange {
     bool ran_away = false;
     bool is_handed_over = false;       ///< true from handing over to the first step after it
     std::int64_t even_steps_left = 0;  ///< steps left of moving evenly and of the halt after it
-    Press<2>::EvenMotion even_motion;  ///< motion to come
+    Press::EvenMotion even_motion;     ///< motion to come
     /// Strains of the specimen: at the exchange, and when cycles were last added.
     double strain_before = 0.0, last_strain = 0.0;
   } kept_;

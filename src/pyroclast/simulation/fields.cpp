@@ -10,8 +10,7 @@
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/laws/registry.hpp"
-#include "pyroclast/model/concrete_model.hpp"
-#include "pyroclast/simulation/cracks.hpp"
+#include "pyroclast/mechanics/cracks.hpp"
 
 namespace pyroclast {
 
@@ -26,74 +25,87 @@ bool always(const S&) {
 bool moves(const S& s) {
   return s.moves();
 }
+/// Tells whether contacts are shown as lines; those of a solid are not shown yet.
+bool moves_in_plane(const S& s) {
+  return s.moves() && s.model().dimension() == 2;
+}
 bool creeps(const S& s) {
-  return s.moves() && s.mechanics().body().creeps();
+  return s.moves() && s.motion().creeps();
 }
 bool parts_heat(const S& s) {
   return s.moves() && s.cracks_hinder_heat();
 }
 
 constexpr int kMostComponents = 6;  // components of a tensor
+constexpr int kPlane = 2;           // dimension of the bodies that decks make
 constexpr std::array<std::string_view, 4> kItemNames{"gridpoint", "zone", "contact", "contact_end"};
 
-void put(double* to, const Vec<2>& v) {
-  to[0] = v[0];
-  to[1] = v[1];
+void put(double* to, const Vec<3>& v) {
+  std::ranges::copy(v.c, to);
 }
 
-/// Writes a tensor in the plane, with a component across it.
-void put(double* to, const SymmetricTensor<2>& t, double across) {
-  const std::array<double, kMostComponents> all{t[0], t[1], across, t[2], 0.0, 0.0};
-  std::ranges::copy(all, to);
+void put(double* to, const SymmetricTensor<3>& t) {
+  std::ranges::copy(t, to);
 }
 
-/// Returns the creep strain of a zone, and its component across the plane, which acts on nothing.
-std::pair<SymmetricTensor<2>, double> creep_of(const R& r, int zone) {
-  if (!r.mechanics().body().creeps()) return {};
-  const Model<2>& model = r.model();
-  const auto& creep =
-      r.simulation().materials().solids[model.block_material[model.block_of(model.zones[zone][0])]].creep;
-  const auto strain = r.mechanics().read().creep_strain(zone);
-  return {strain, creep ? creep_across(strain, creep->choices.poisson) : 0.0};
+/// Returns the creep strain of a zone. In plane stress its component across the plane acts on nothing.
+SymmetricTensor<3> creep_of(const R& r, int zone) {
+  if (!r.motion().creeps()) return {};
+  const Model& model = r.model();
+  const int block = model.block_of(model.gridpoints_of_zone(zone)[0]);
+  const auto& creep = r.simulation().materials().solids[model.block_material[block]].creep;
+  SymmetricTensor<3> strain = r.motion().read().creep_strain(zone);
+  if (model.dimension() == 2 && creep) strain[2] = creep_across(strain[0], strain[1], creep->choices.poisson);
+  return strain;
 }
 
-/// Writes the strain of a zone in plane stress: in the plane that of the displacements, and across it the
-/// strain that leaves the zone free of stress there.
+/// Writes the strain of a zone, that of its displacements.
 void put_strain(R& r, int zone, double* to) {
-  const SymmetricTensor<2>& stress = r.stress(zone);
-  const ZoneProperties properties = r.mechanics().read().properties_of_zone(zone);
-  const auto [creep, creep_across] = creep_of(r, zone);
-  const double in_plane = (stress[0] + stress[1]) / (2.0 * (properties.lambda + properties.mu));
-  const auto direct = [&](double s) { return (s - properties.lambda * in_plane) / (2.0 * properties.mu); };
-  put(to,
-      {direct(stress[0]) + properties.thermal_strain + creep[0],
-       direct(stress[1]) + properties.thermal_strain + creep[1], 0.5 * stress[2] / properties.mu + creep[2]},
-      direct(0.0) + properties.thermal_strain + creep_across);
+  const SymmetricTensor<3> creep = creep_of(r, zone);
+  const double thermal = r.motion().read().properties_of_zone(zone).thermal_strain;
+  SymmetricTensor<3> strain = r.motion().read().elastic_strain(zone);
+  for (std::size_t i = 0; i < 3; ++i) strain[i] += thermal;
+  for (std::size_t i = 0; i < strain.size(); ++i) strain[i] += creep[i];
+  put(to, strain);
 }
 
 /// Writes the traction on a contact as the stress in its direction: σ n n + τ (n t + t n).
 void put_contact_stress(R& r, int contact, double* to) {
-  const ContactState<2>& state = r.contact(contact);
-  const ContactFrame<2> frame = r.mechanics().read().frame_of_forces(contact);
-  const auto &n = frame.normal, &t = frame.tangents[0];
-  const double normal = state.normal_traction, shear = state.shear_traction[0];
-  put(to,
-      {normal * n[0] * n[0] + 2.0 * shear * n[0] * t[0], normal * n[1] * n[1] + 2.0 * shear * n[1] * t[1],
-       normal * n[0] * n[1] + shear * (n[0] * t[1] + n[1] * t[0])},
-      0.0);
+  const ContactState& state = r.contact(contact);
+  const ContactFrame<3> frame = r.motion().read().frame_of_forces(contact);
+  const auto& n = frame.normal;
+  // places of the components among those of the tensor
+  constexpr std::array<std::array<int, 2>, 6> kPlaces{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}};
+  SymmetricTensor<3> stress{};
+  for (std::size_t k = 0; k < kPlaces.size(); ++k) {
+    const auto [i, j] = kPlaces[k];
+    if (j >= r.model().dimension()) continue;
+    stress[k] = state.normal_traction * n[i] * n[j];
+    for (int s = 0; s + 1 < r.model().dimension(); ++s) {
+      const auto& t = frame.tangents[s];
+      stress[k] += i == j ? 2.0 * state.shear_traction[s] * n[i] * t[i]
+                          : state.shear_traction[s] * (n[i] * t[j] + n[j] * t[i]);
+    }
+  }
+  put(to, stress);
+}
+
+/// Returns the component of a vector along a face; of a solid, which has two, their size.
+double along_face(const R& r, const Vec<2>& tangential) {
+  return r.model().dimension() == 2 ? tangential[0] : norm(tangential);
 }
 
 /// Returns the largest damage of a contact by any mode, 0 to 1; 0 at bearings, whose contacts are no cracks.
 double crack(const R& r, int contact) {
-  if (r.model().is_of_bearing(r.model().contacts[contact])) return 0.0;
+  if (r.model().is_of_bearing(r.model().joint(contact))) return 0.0;
   double most = 0.0;
-  for (const auto mode : kCrackModes) most = std::max(most, r.mechanics().read().remembered(contact, mode));
+  for (const auto mode : kCrackModes) most = std::max(most, r.motion().read().remembered(contact, mode));
   return most;
 }
 
 double temperature_jump(const R& r, int contact) {
   const auto& temperature = r.simulation().field().gridpoints();
-  const auto& c = r.model().contacts[contact];
+  const Joint& c = r.model().joint(contact);
   return r.model().is_of_bearing(c) ? 0.0 : temperature[c.b] - temperature[c.a];
 }
 
@@ -101,11 +113,11 @@ double temperature_jump(const R& r, int contact) {
 /// to the other contact of the edge.
 void put_end(R& r, int end, double* to) {
   const auto mean = [&](int contact) {
-    const auto& c = r.model().contacts[contact];
-    return 0.5 * (r.mechanics().read().displacement(c.a) + r.mechanics().read().displacement(c.b));
+    const Joint& c = r.model().joint(contact);
+    return 0.5 * (r.motion().read().displacement(c.a) + r.motion().read().displacement(c.b));
   };
   const int contact = end / 2;
-  const Vec<2> here = mean(contact);
+  const Vec<3> here = mean(contact);
   put(to,
       end % 2 == 0 ? here : 0.5 * (here + mean(contact ^ 1)));  // the two contacts of an edge stand together
 }
@@ -124,23 +136,20 @@ struct KnownField {
 
 constexpr auto kOfBlocks = std::to_array<KnownField>({
     {"displacement", unit::length, Item::gridpoint, ValueKind::vector, true, moves,
-     [](R& r, int i, double* to) { put(to, r.mechanics().read().displacement(i)); },
+     [](R& r, int i, double* to) { put(to, r.motion().read().displacement(i)); },
      "since the start; not in runs of heat alone"},
     {"velocity", unit::velocity, Item::gridpoint, ValueKind::vector, false, moves,
-     [](R& r, int i, double* to) { put(to, r.mechanics().read().velocity(i)); },
+     [](R& r, int i, double* to) { put(to, r.motion().read().velocity(i)); },
      "in the middle of the last step"},
     {"force", unit::force, Item::gridpoint, ValueKind::vector, false, moves,
-     [](R& r, int i, double* to) { put(to, r.mechanics().read().force(i)); },
+     [](R& r, int i, double* to) { put(to, r.motion().read().force(i)); },
      "sum of all forces at the last step; where the motion is held, minus the reaction"},
     {"stress", unit::stress, Item::zone, ValueKind::tensor, true, moves,
-     [](R& r, int i, double* to) { put(to, r.stress(i), 0.0); }, "of a zone"},
+     [](R& r, int i, double* to) { put(to, r.motion().read().stress(i)); }, "of a zone"},
     {"strain", unit::dimensionless, Item::zone, ValueKind::tensor, true, moves, put_strain,
      "of a zone, with the thermal strain and what it has crept"},
     {"creep_strain", unit::dimensionless, Item::zone, ValueKind::tensor, true, creeps,
-     [](R& r, int i, double* to) {
-       const auto [strain, across] = creep_of(r, i);
-       put(to, strain, across);
-     },
+     [](R& r, int i, double* to) { put(to, creep_of(r, i)); },
      "what a zone has crept under load, see [method.md](method.md#creep-under-load); only where a phase "
      "creeps. ZZ "
      "acts on nothing"},
@@ -148,8 +157,8 @@ constexpr auto kOfBlocks = std::to_array<KnownField>({
      [](R& r, int i, double* to) { *to = r.simulation().field().gridpoints()[i]; }, "platens stay at 20 °C"},
 });
 
-constexpr KnownField kOfEnds{"displacement", unit::length, Item::contact_end, ValueKind::vector,
-                             true,           moves,        put_end,           "mean of both sides"};
+constexpr KnownField kOfEnds{"displacement", unit::length,   Item::contact_end, ValueKind::vector,
+                             true,           moves_in_plane, put_end,           "mean of both sides"};
 
 constexpr auto kOfContacts = std::to_array<KnownField>({
     {"crack", unit::dimensionless, Item::contact, ValueKind::number, true, moves,
@@ -158,11 +167,13 @@ constexpr auto kOfContacts = std::to_array<KnownField>({
     {"opening", unit::length, Item::contact, ValueKind::number, true, moves,
      [](R& r, int i, double* to) { *to = r.contact(i).opening; }, "normal jump, positive when open"},
     {"tangential_jump", unit::length, Item::contact, ValueKind::number, true, moves,
-     [](R& r, int i, double* to) { *to = r.contact(i).tangential_jump[0]; }, "slip along the face"},
+     [](R& r, int i, double* to) { *to = along_face(r, r.contact(i).tangential_jump); },
+     "slip along the face; of a solid its size"},
     {"normal_traction", unit::stress, Item::contact, ValueKind::number, true, moves,
      [](R& r, int i, double* to) { *to = r.contact(i).normal_traction; }, "positive in tension"},
     {"shear_traction", unit::stress, Item::contact, ValueKind::number, true, moves,
-     [](R& r, int i, double* to) { *to = r.contact(i).shear_traction[0]; }, "along the face"},
+     [](R& r, int i, double* to) { *to = along_face(r, r.contact(i).shear_traction); },
+     "along the face; of a solid its size"},
     {"stress", unit::stress, Item::contact, ValueKind::tensor, true, moves, put_contact_stress,
      "σ n n + τ (n t + t n) of the tractions σ and τ, with n across the contact and t along it"},
     {"heat_conductance", unit::heat_transfer, Item::contact, ValueKind::number, true, parts_heat,
@@ -180,14 +191,14 @@ FieldInfo info_of(const KnownField& f) {
 }
 
 /// Adds the internal variables of a law, without those whose names another law has given already.
-void add_memory(const LawTable& law, std::vector<FieldInfo>& all) {
-  for (const InternalInfo& info : law.internals(2))
+void add_memory(const LawTable& law, int dimension, std::vector<FieldInfo>& all) {
+  for (const InternalInfo& info : law.internals(dimension))
     if (std::ranges::find(all, std::string(info.name), &FieldInfo::name) == all.end())
       all.push_back({info.name, info.unit, Item::contact, ValueKind::number, info.meaning, info.in_files});
 }
 
 /// Adds the losses of a law, without those whose names another law has given already.
-void add_losses(const LawTable& law, std::vector<FieldInfo>& all) {
+void add_losses(const LawTable& law, int /*dimension*/, std::vector<FieldInfo>& all) {
   for (const LossInfo& info : law.losses)
     if (const auto name = fmt::format("lost_{}", info.name);
         std::ranges::find(all, name, &FieldInfo::name) == all.end())
@@ -196,20 +207,21 @@ void add_losses(const LawTable& law, std::vector<FieldInfo>& all) {
 }
 
 template <class Laws>
-std::vector<FieldInfo> of_laws(const Laws& laws, void (*add)(const LawTable&, std::vector<FieldInfo>&)) {
+std::vector<FieldInfo> of_laws(const Laws& laws, int dimension,
+                               void (*add)(const LawTable&, int dimension, std::vector<FieldInfo>&)) {
   std::vector<FieldInfo> all;
-  for (const LawTable* law : laws) add(*law, all);
+  for (const LawTable* law : laws) add(*law, dimension, all);
   return all;
 }
 
 /// Returns the laws of the contacts in the order in which the model has them.
-std::vector<const LawTable*> laws_in_order(const Mechanics<2>& mechanics) {
+std::vector<const LawTable*> laws_in_order(const Motion& motion) {
   std::vector<const LawTable*> laws;
   const LawTable* last = nullptr;
-  for (int i = 0; i < mechanics.model().contact_count(); ++i) {
-    const LawTable* const law = &mechanics.body().law_of(i);
+  for (int i = 0; i < motion.model().contact_count(); ++i) {
+    const LawTable* const law = &motion.law_of(i);
     if (std::exchange(last, law) != law && std::ranges::find(laws, law) == laws.end()) laws.push_back(law);
-    if (laws.size() == mechanics.body().laws.size()) break;
+    if (laws.size() == motion.laws().size()) break;
   }
   return laws;
 }
@@ -246,7 +258,7 @@ std::string name_with_unit(const FieldInfo& field) {
   return column_with_unit(field.name, field.unit).name;
 }
 
-int count_of(Item item, const Model<2>& model) {
+int count_of(Item item, const Model& model) {
   switch (item) {
     case Item::gridpoint:
       return model.gridpoint_count();
@@ -260,24 +272,18 @@ int count_of(Item item, const Model<2>& model) {
   return 2 * model.contact_count();
 }
 
-int components_of(ValueKind kind) {
-  return kind == ValueKind::number ? 1 : kind == ValueKind::vector ? 2 : kMostComponents;
+int components_of(ValueKind kind, int dimension) {
+  return kind == ValueKind::number ? 1 : kind == ValueKind::vector ? dimension : kMostComponents;
 }
 
-const ContactState<2>& FieldReader::contact(int contact) {
-  if (std::exchange(contact_, contact) != contact) state_ = mechanics().read().contact(contact);
+const ContactState& FieldReader::contact(int contact) {
+  if (std::exchange(contact_, contact) != contact) state_ = motion().read().contact(contact);
   return state_;
-}
-
-const SymmetricTensor<2>& FieldReader::stress(int zone) {
-  if (std::exchange(zone_, zone) != zone) stress_ = mechanics().read().stress(zone);
-  return stress_;
 }
 
 const std::vector<double>& FieldReader::heat_conductances() {
   const TemperatureField& field = simulation_.field();
-  if (heat_conductances_.empty())
-    heat_conductances_ = field.conduction()->gaps()->conductances(field.gridpoints());
+  if (heat_conductances_.empty()) heat_conductances_ = field.conduction()->conductances(field.gridpoints());
   return heat_conductances_;
 }
 
@@ -289,13 +295,14 @@ std::vector<Field> fields_of(const Simulation& simulation) {
   for (const KnownField& f : kOfBlocks) add(f);
   add(kOfEnds);
   if (!simulation.moves()) return all;
-  const auto laws = laws_in_order(simulation.mechanics());
-  for (const FieldInfo& info : of_laws(laws, add_memory))
+  const int dimension = simulation.model().dimension();
+  const auto laws = laws_in_order(simulation.motion());
+  for (const FieldInfo& info : of_laws(laws, dimension, add_memory))
     all.push_back({info, [name = info.name](R& r, int i, double* to) {
                      *to = r.contact(i).remembered(std::string_view(name));
                    }});
   for (const KnownField& f : kOfContacts) add(f);
-  for (const FieldInfo& info : of_laws(laws, add_losses))
+  for (const FieldInfo& info : of_laws(laws, dimension, add_losses))
     all.push_back({info, [name = info.name.substr(info.name.find('_') + 1)](R& r, int i, double* to) {
                      *to = r.contact(i).lost(name);
                    }});
@@ -306,9 +313,9 @@ std::vector<FieldInfo> possible_fields() {
   std::vector<FieldInfo> all;
   for (const KnownField& f : kOfBlocks) all.push_back(info_of(f));
   all.push_back(info_of(kOfEnds));
-  std::ranges::copy(of_laws(built_in_laws(), add_memory), std::back_inserter(all));
+  std::ranges::copy(of_laws(built_in_laws(), kPlane, add_memory), std::back_inserter(all));
   for (const KnownField& f : kOfContacts) all.push_back(info_of(f));
-  std::ranges::copy(of_laws(built_in_laws(), add_losses), std::back_inserter(all));
+  std::ranges::copy(of_laws(built_in_laws(), kPlane, add_losses), std::back_inserter(all));
   return all;
 }
 
@@ -317,14 +324,17 @@ std::vector<std::vector<T>> values_of(const std::vector<Field>& fields, const Si
   std::vector<std::vector<T>> values(fields.size());
   if (fields.empty()) return values;
   const int count = count_of(fields.front().item, simulation.model());
+  const auto components = [&](std::size_t f) {
+    return components_of(fields[f].kind, simulation.model().dimension());
+  };
   for (std::size_t f = 0; f < fields.size(); ++f)
-    values[f].reserve(static_cast<std::size_t>(count) * components_of(fields[f].kind));
+    values[f].reserve(static_cast<std::size_t>(count) * components(f));
   FieldReader reader(simulation);
   std::array<double, kMostComponents> value;
   for (int i = 0; i < count; ++i)
     for (std::size_t f = 0; f < fields.size(); ++f) {
       fields[f].read(reader, i, value.data());
-      for (int c = 0; c < components_of(fields[f].kind); ++c) values[f].push_back(static_cast<T>(value[c]));
+      for (int c = 0; c < components(f); ++c) values[f].push_back(static_cast<T>(value[c]));
     }
   return values;
 }

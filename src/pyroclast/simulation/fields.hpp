@@ -24,16 +24,17 @@ enum class Item : std::uint8_t {
 const char* name_of(Item item);
 /// Returns the item of a name. Throws Error for another name.
 Item item_of(std::string_view name);
-int count_of(Item item, const Model<2>& model);
+int count_of(Item item, const Model& model);
 
 /// Kind of a field's values.
 enum class ValueKind : std::uint8_t {
   number,
-  vector,  ///< x, y
+  vector,  ///< x, y; in 3D x, y, z
   tensor   ///< symmetric: XX, YY, ZZ, XY, YZ, XZ, the order of VTK; shears are those of tensors
 };
 /// Returns the count of numbers in a value.
-int components_of(ValueKind kind);
+/// \param dimension  dimension of the body, 2 or 3
+int components_of(ValueKind kind, int dimension);
 
 /// Field of the body: its name, unit and meaning.
 struct FieldInfo {
@@ -57,18 +58,16 @@ class FieldReader {
   explicit FieldReader(const Simulation& simulation) : simulation_(simulation) {}
 
   const Simulation& simulation() const { return simulation_; }
-  const Model<2>& model() const { return simulation_.model(); }
-  const Mechanics<2>& mechanics() const { return simulation_.mechanics(); }
-  const ContactState<2>& contact(int contact);
-  const SymmetricTensor<2>& stress(int zone);
+  const Model& model() const { return simulation_.model(); }
+  const Motion& motion() const { return simulation_.motion(); }
+  const ContactState& contact(int contact);
   /// Returns the conductance of each contact to heat, W/(m2 K).
   const std::vector<double>& heat_conductances();
 
  private:
   const Simulation& simulation_;
-  int contact_ = -1, zone_ = -1;
-  ContactState<2> state_;
-  SymmetricTensor<2> stress_{};
+  int contact_ = -1;
+  ContactState state_;
   std::vector<double> heat_conductances_;
 };
 

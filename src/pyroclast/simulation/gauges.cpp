@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "pyroclast/simulation/cracks.hpp"
+#include "pyroclast/mechanics/cracks.hpp"
 
 namespace pyroclast {
 
@@ -37,7 +37,7 @@ Gauge make_gauge(const std::array<ColumnOf<Measured>, N>& table, Measure measure
 
 constexpr double kMega = 1e-6;
 
-using M = Mechanics<2>;
+using M = Motion;
 constexpr auto kClock = std::to_array<ColumnOf<M>>({
     {"step", "1", [](const M& m) { return static_cast<double>(m.steps()); }},
     {"time_s", "s", [](const M& m) { return m.time(); }},
@@ -51,7 +51,7 @@ constexpr auto kTemperature = std::to_array<ColumnOf<S>>({
     {"temperature_max_degC", "degC", [](const S& s) { return s.field().maximum(); }},
 });
 
-using P = Press<2>;
+using P = Press;
 constexpr auto kPress = std::to_array<ColumnOf<P>>({
     {"strain", "1", [](const P& p) { return p.strain(); }},
     {"stage_strain", "1", [](const P& p) { return p.stage_strain(); }},
@@ -63,27 +63,32 @@ constexpr auto kPress = std::to_array<ColumnOf<P>>({
 });
 
 /// Measurements of the whole body's motion.
-struct Motion {
+struct MotionReading {
   double unbalanced_ratio = 0.0, largest_jump = 0.0;
   EnergyLedger energy;
 };
 
-Motion measure_motion(const Mechanics<2>& mechanics) {
-  return {mechanics.totals().unbalanced_ratio(), mechanics.totals().largest_relative_jump(),
-          mechanics.totals().energy()};
+MotionReading measure_motion(const Motion& motion) {
+  return {motion.totals().unbalanced_ratio(), motion.totals().largest_relative_jump(),
+          motion.totals().energy()};
 }
 
-constexpr auto kMotion = std::to_array<ColumnOf<Motion>>({
-    {"unbalanced_ratio", "1", [](const Motion& m) { return m.unbalanced_ratio; }},
-    {"kinetic_over_strain", "1", [](const Motion& m) { return m.energy.kinetic_over_elastic(); }},
-    {"largest_jump", "1", [](const Motion& m) { return m.largest_jump; }},
+constexpr auto kMotion = std::to_array<ColumnOf<MotionReading>>({
+    {"unbalanced_ratio", "1", [](const MotionReading& m) { return m.unbalanced_ratio; }},
+    {"kinetic_over_strain", "1", [](const MotionReading& m) { return m.energy.kinetic_over_elastic(); }},
+    {"largest_jump", "1", [](const MotionReading& m) { return m.largest_jump; }},
 });
 
-/// Columns of contacts whose sides have temperatures of their own.
-constexpr auto kGaps = std::to_array<ColumnOf<S>>({
-    {"heat_gap_length_m", "m",
-     [](const S& s) { return s.field().conduction()->gaps()->area() / s.model().thickness; }},
-});
+/// Makes a gauge of contacts whose sides have temperatures of their own.
+Gauge gap_gauge(const Model& model) {
+  Gauge gauge;
+  const Column extent = extent_column(model);
+  gauge.columns.push_back({"heat_gap_" + extent.name, extent.unit});
+  gauge.read = [](const Simulation& s) {
+    return std::vector<double>{s.field().conduction()->gap_area() / s.model().thickness};
+  };
+  return gauge;
+}
 
 /// Calls one of two functions for each energy, in the order of the columns: `of_entry` for an entry of the
 /// ledger, and `of_dissipated`, with its number, for an energy that contact laws or creep dissipate.
@@ -98,10 +103,10 @@ void for_each_energy(std::size_t dissipations, OfEntry of_entry, OfDissipated of
   }
 }
 
-Gauge motion_gauge(const Mechanics<2>& mechanics) {
+Gauge motion_gauge(const Motion& motion) {
   Gauge gauge;
   for (const auto& column : kMotion) gauge.columns.push_back({column.name, column.unit});
-  const auto names = mechanics.body().dissipations;
+  const auto names = motion.dissipations();
   for_each_energy(
       names.size(),
       [&](const auto& entry) {
@@ -111,7 +116,7 @@ Gauge motion_gauge(const Mechanics<2>& mechanics) {
         gauge.columns.push_back({fmt::format("dissipated_{}_J", names[i]), "J"});
       });
   gauge.read = [](const Simulation& simulation) {
-    const Motion measured = measure_motion(simulation.mechanics());
+    const MotionReading measured = measure_motion(simulation.motion());
     std::vector<double> values;
     for (const auto& column : kMotion) values.push_back(column.value(measured));
     const auto& dissipated = measured.energy.dissipated.energies;
@@ -130,7 +135,7 @@ Gauge transport_gauge() {
   gauge.columns.push_back({"rate_K_s", "K/s"});
   for (const auto& entry : kHeats) gauge.columns.push_back({entry.column, "J"});
   gauge.read = [](const Simulation& simulation) {
-    const Conduction<2>& conduction = *simulation.field().conduction();
+    const HeatSolver& conduction = *simulation.field().conduction();
     const HeatLedger heat = conduction.ledger();
     std::vector<double> values{conduction.rate()};
     for (const auto& entry : kHeats) values.push_back(entry.value(heat));
@@ -140,19 +145,20 @@ Gauge transport_gauge() {
 }
 
 /// Makes a gauge of cracks, with columns for each mode and interface in which the laws of the body can break.
-Gauge crack_gauge(const Mechanics<2>& mechanics) {
+Gauge crack_gauge(const Motion& motion) {
   Gauge gauge;
-  const auto kinds = crack_kinds(mechanics);
+  const auto kinds = motion.crack_kinds();
+  const Column extent = extent_column(motion.model());
   for (const CrackKind& kind : kinds)
-    for (const auto& [what, unit] : {std::pair{"damaged", "1"}, {"broken", "1"}, {"length_m", "m"}})
-      gauge.columns.push_back({fmt::format("{}_{}", kind.name, what), unit});
+    for (const Column& column : {Column{"damaged", "1"}, Column{"broken", "1"}, extent})
+      gauge.columns.push_back({fmt::format("{}_{}", kind.name, column.name), column.unit});
   gauge.columns.push_back({"mean_opening_m", "m"});
   gauge.read = [kinds](const Simulation& simulation) {
-    const Cracks cracks = count_cracks(simulation.mechanics(), kinds);
+    const Cracks cracks = simulation.motion().totals().count_cracks(kinds);
     std::vector<double> values;
     for (const CrackCount& count : cracks.of_kind)
       values.insert(values.end(),
-                    {static_cast<double>(count.damaged), static_cast<double>(count.broken), count.length});
+                    {static_cast<double>(count.damaged), static_cast<double>(count.broken), count.extent});
     values.push_back(cracks.mean_opening);
     return values;
   };
@@ -178,15 +184,19 @@ Gauge record_gauge(const Simulation& simulation, bool of_motion) {
   return gauge;
 }
 
-const Mechanics<2>& mechanics_of(const Simulation& simulation) {
-  return simulation.mechanics();
+const Motion& motion_of(const Simulation& simulation) {
+  return simulation.motion();
 }
 
 }  // namespace
 
+Column extent_column(const Model& model) {
+  return model.dimension() == 2 ? Column{"length_m", "m"} : Column{"area_m2", "m2"};
+}
+
 std::vector<Gauge> clock_gauges(const Simulation& simulation) {
   if (!simulation.moves()) return {};
-  return {make_gauge(kClock, mechanics_of, true)};
+  return {make_gauge(kClock, motion_of, true)};
 }
 
 std::vector<Gauge> temperature_gauges() {
@@ -199,9 +209,9 @@ std::vector<Gauge> motion_gauges(const Simulation& simulation) {
   std::vector<Gauge> gauges;
   if (simulation.has_press())
     gauges.push_back(make_gauge(
-        kPress, [](const Simulation& s) -> const Press<2>& { return s.press(); }, true));
-  gauges.push_back(motion_gauge(simulation.mechanics()));
-  gauges.push_back(crack_gauge(simulation.mechanics()));
+        kPress, [](const Simulation& s) -> const Press& { return s.press(); }, true));
+  gauges.push_back(motion_gauge(simulation.motion()));
+  gauges.push_back(crack_gauge(simulation.motion()));
   return gauges;
 }
 
@@ -215,9 +225,7 @@ std::vector<Gauge> record_gauges(const Simulation& simulation) {
 std::vector<Gauge> transport_gauges(const Simulation& simulation) {
   if (simulation.field().is_uniform()) return {};
   std::vector<Gauge> gauges{transport_gauge()};
-  if (simulation.cracks_hinder_heat())
-    gauges.push_back(make_gauge(
-        kGaps, [](const Simulation& s) -> const Simulation& { return s; }, false));
+  if (simulation.cracks_hinder_heat()) gauges.push_back(gap_gauge(simulation.model()));
   return gauges;
 }
 

@@ -16,6 +16,8 @@ struct Gauge {
   bool of_motion = false;  ///< true where there is nothing to read in a stage that does not move the body
 };
 
+/// Returns the name and unit of the extent of cracks, see Model::extent: "length_m", or in 3D "area_m2".
+Column extent_column(const Model& model);
 /// Returns gauges of the steps and the time of the mechanics.
 std::vector<Gauge> clock_gauges(const Simulation& simulation);
 /// Returns gauges of heating time and temperatures.

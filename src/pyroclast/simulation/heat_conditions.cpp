@@ -8,6 +8,7 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/overloaded.hpp"
 #include "pyroclast/base/rounding.hpp"
+#include "pyroclast/thermal/conduction.hpp"
 
 namespace pyroclast {
 
@@ -77,46 +78,53 @@ std::optional<GapHeat> gap_heat(const HeatConditions& heat) {
   return heat.cracks->law;
 }
 
+template <int Dim>
 struct Box {
-  Vec<2> low, high;
+  Vec<Dim> low, high;
 };
 
-Box bounding_box(const std::vector<OutlineFace<2>>& outline, const Model<2>& model) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Box box{{{infinity, infinity}}, {{-infinity, -infinity}}};
+template <int Dim>
+Box<Dim> bounding_box(const std::vector<OutlineFace<Dim>>& outline, const ModelOf<Dim>& model) {
+  Box<Dim> box;
+  box.low.c.fill(std::numeric_limits<double>::infinity());
+  box.high.c.fill(-std::numeric_limits<double>::infinity());
   for (const auto& face : outline)
     for (int g : face.gridpoints)
-      for (int d = 0; d < 2; ++d) {
+      for (int d = 0; d < Dim; ++d) {
         box.low[d] = std::min(box.low[d], model.position[g][d]);
         box.high[d] = std::max(box.high[d], model.position[g][d]);
       }
   return box;
 }
 
-std::vector<int> choose_faces(const Model<2>& model, const Conduction<2>& conduction,
-                              const HeatedFaces& faces, const Box& specimen) {
+template <int Dim>
+std::vector<int> choose_faces(const ModelOf<Dim>& model, const Conduction<Dim>& conduction,
+                              const HeatedFaces& faces, const Box<Dim>& specimen) {
   const double tolerance = 1e-9 * norm(specimen.high - specimen.low);  // allows for rounding
-  const Vec<2> slack{{tolerance, tolerance}};
+  Vec<Dim> slack;
+  slack.c.fill(tolerance);
   if (faces.part == HeatedFaces::kOutline)
-    return conduction.faces([](const OutlineFace<2>&) { return true; });
+    return conduction.faces([](const OutlineFace<Dim>&) { return true; });
   if (faces.part != HeatedFaces::kBox) {
     std::vector<int> side = model.set(faces.part);
     std::ranges::sort(side);
-    return conduction.faces([&](const OutlineFace<2>& face) {
+    return conduction.faces([&](const OutlineFace<Dim>& face) {
       return std::ranges::all_of(face.gridpoints, [&](int g) { return std::ranges::binary_search(side, g); });
     });
   }
-  auto chosen = conduction.faces(in_box<2>(faces.box_low - slack, faces.box_high + slack));
+  const auto low = resized<Dim>(faces.box_low), high = resized<Dim>(faces.box_high);
+  auto chosen = conduction.faces(in_box<Dim>(low - slack, high + slack));
   if (chosen.empty())
     throw Error(fmt::format(
         "no face of the outline has its centre in the box from ({:g}) to ({:g}) m; the specimen lies from "
         "({:g}) to ({:g}) m",
-        fmt::join(faces.box_low.c, ", "), fmt::join(faces.box_high.c, ", "), fmt::join(specimen.low.c, ", "),
+        fmt::join(low.c, ", "), fmt::join(high.c, ", "), fmt::join(specimen.low.c, ", "),
         fmt::join(specimen.high.c, ", ")));
   return chosen;
 }
 
-void apply(Conduction<2>& conduction, const std::vector<int>& faces, const HeatCondition& condition) {
+template <int Dim>
+void apply(Conduction<Dim>& conduction, const std::vector<int>& faces, const HeatCondition& condition) {
   std::visit(
       Overloaded{
           [&](const PrescribedTemperature& c) { conduction.prescribe_temperature(faces, c.temperature); },
@@ -149,12 +157,12 @@ class FaceUse {
 }  // namespace
 
 HeatConditions with_specimen(HeatConditions heat, const std::vector<SolidMaterial>& solids,
-                             const specimen::Specimen& specimen) {
+                             const std::vector<double>& fraction, double mean_size) {
   if (!heat.cracks || !heat.cracks->splits_by_block_size) return heat;
   double conductivity = 0.0;
-  for (std::size_t i = 0; i < specimen.phases.size(); ++i)
-    conductivity += specimen.fraction[i] * heat_material(solids[i]).conductivity(kReferenceTemperature);
-  heat.cracks->law.split_below = conductivity / (kLeftOut * specimen.metrics.mean_size);
+  for (std::size_t i = 0; i < fraction.size(); ++i)
+    conductivity += fraction[i] * heat_material(solids[i]).conductivity(kReferenceTemperature);
+  heat.cracks->law.split_below = conductivity / (kLeftOut * mean_size);
   heat.cracks->splits_by_block_size = false;
   return heat;
 }
@@ -210,20 +218,23 @@ double constant_from(const HeatConditions& heat, double duration) {
   return constant;
 }
 
-std::unique_ptr<Conduction<2>> make_conduction(const Model<2>& model,
+namespace {
+
+template <int Dim>
+std::unique_ptr<HeatSolver> make_conduction_of(const ModelOf<Dim>& model,
                                                const std::vector<SolidMaterial>& solids,
                                                const HeatConditions& heat, const Interval& range,
                                                std::shared_ptr<Team> team) {
-  auto conduction = std::make_unique<Conduction<2>>(model, heat_materials(solids),
-                                                    HeatParameters{.temperature_range = range,
-                                                                   .initial_temperature = heat.initial,
-                                                                   .scheme = heat.scheme,
-                                                                   .safety = heat.safety,
-                                                                   .largest_change = heat.largest_change,
-                                                                   .largest_step = heat.largest_step,
-                                                                   .gaps = gap_heat(heat)},
-                                                    std::move(team));
-  const Box specimen = bounding_box(conduction->outline(), model);
+  auto conduction = std::make_unique<Conduction<Dim>>(model, heat_materials(solids),
+                                                      HeatParameters{.temperature_range = range,
+                                                                     .initial_temperature = heat.initial,
+                                                                     .scheme = heat.scheme,
+                                                                     .safety = heat.safety,
+                                                                     .largest_change = heat.largest_change,
+                                                                     .largest_step = heat.largest_step,
+                                                                     .gaps = gap_heat(heat)},
+                                                      std::move(team));
+  const Box<Dim> specimen = bounding_box(conduction->outline(), model);
   FaceUse use(conduction->outline().size());
   for (const auto& boundary : heat.boundaries) {
     try {
@@ -240,6 +251,16 @@ std::unique_ptr<Conduction<2>> make_conduction(const Model<2>& model,
     }
   }
   return conduction;
+}
+
+}  // namespace
+
+std::unique_ptr<HeatSolver> make_conduction(const Model& model, const std::vector<SolidMaterial>& solids,
+                                            const HeatConditions& heat, const Interval& range,
+                                            std::shared_ptr<Team> team) {
+  return with_dimension(model, [&](const auto& of_dimension) {
+    return make_conduction_of(of_dimension, solids, heat, range, std::move(team));
+  });
 }
 
 }  // namespace pyroclast

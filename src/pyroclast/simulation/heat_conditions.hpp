@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "pyroclast/material/concrete.hpp"
-#include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/simulation/contact_gaps.hpp"
-#include "pyroclast/thermal/conduction.hpp"
+#include "pyroclast/thermal/heat_solver.hpp"
+#include "pyroclast/thermal/time_stages.hpp"
 
 namespace pyroclast {
 
@@ -20,7 +20,7 @@ struct HeatedFaces {
   static constexpr const char *kOutline = "outline", *kBox = "box";
 
   std::string part = kOutline;   ///< whole outline, the faces in a box, or else the name of a side or patch
-  Vec<2> box_low{}, box_high{};  ///< corners of the box, m; faces whose centres lie in it or on its bounds
+  Vec<3> box_low{}, box_high{};  ///< corners of the box, m; faces whose centres lie in it or on its bounds
 };
 
 /// Condition that holds the temperature of faces.
@@ -68,7 +68,7 @@ struct HeatConditions {
 /// so below 20 lambda / l, with the mean conductivity of the specimen's area at 20 °C. The resistances left
 /// out are less than 5 % of a block's.
 HeatConditions with_specimen(HeatConditions heat, const std::vector<SolidMaterial>& solids,
-                             const specimen::Specimen& specimen);
+                             const std::vector<double>& fraction, double mean_size);
 
 /// Tells whether two conditions on one face contradict each other: a prescribed temperature and an adiabatic
 /// face allow nothing beside them, and no kind may act twice.
@@ -96,9 +96,8 @@ double constant_from(const HeatConditions& heat, double duration);
 ///
 /// Throws Error when a material has no conductivity or specific heat, a boundary condition meets no face, or
 /// two contradict each other on one face.
-std::unique_ptr<Conduction<2>> make_conduction(const Model<2>& model,
-                                               const std::vector<SolidMaterial>& solids,
-                                               const HeatConditions& heat, const Interval& range,
-                                               std::shared_ptr<Team> team = nullptr);
+std::unique_ptr<HeatSolver> make_conduction(const Model& model, const std::vector<SolidMaterial>& solids,
+                                            const HeatConditions& heat, const Interval& range,
+                                            std::shared_ptr<Team> team = nullptr);
 
 }  // namespace pyroclast

@@ -17,28 +17,25 @@ namespace {
 
 /// Returns the normal of a face times its area over its number of corners: the force of a unit pressure on
 /// one corner, m².
-Vec<2> share_of_corner(const std::array<Vec<2>, 2>& x, double thickness) {
-  const Vec<2> along = x[1] - x[0];
-  return 0.5 * thickness * Vec<2>{{along[1], -along[0]}};
-}
-Vec<3> share_of_corner(const std::array<Vec<3>, 3>& x, double /*thickness*/) {
-  return (1.0 / 6.0) * cross(x[1] - x[0], x[2] - x[0]);
+/// \param x  places of the corners, m
+Vec<3> share_of_corner(const std::array<Vec<3>, 3>& x, int corners, double thickness) {
+  if (corners == 3) return (1.0 / 6.0) * cross(x[1] - x[0], x[2] - x[0]);
+  const Vec<3> along = x[1] - x[0];
+  return 0.5 * thickness * Vec<3>{{along[1], -along[0]}};
 }
 
 }  // namespace
 
-template <int Dim>
-typename Loads<Dim>::Entry& Loads<Dim>::entry(const std::string& set) {
+Loads::Entry& Loads::entry(const std::string& set) {
   const auto found = entries_.find(set);
   if (found != entries_.end()) return found->second;
-  const Model<Dim>& model = mechanics_.model();
+  const Model& model = motion_.model();
   std::vector<int> gridpoints = model.set(set);
   sort_unique(gridpoints);
   Entry entry;
-  entry.set = gridpoint_set(mechanics_.model(), gridpoints);
-  const auto faces = faces_in(model, gridpoints);
-  for (const auto& face : faces) entry.faces.push_back(face.gridpoints);
-  entry.shares = tributary_areas(gridpoints, faces);
+  entry.set = gridpoint_set(motion_.model(), gridpoints);
+  entry.faces = faces_in(model, gridpoints);
+  entry.shares = tributary_areas(gridpoints, entry.faces);
   const double whole = chunked_sum(entry.set.chunks, [&](int i) { return entry.shares[i]; });
   for (double& share : entry.shares)
     share = whole > 0.0 ? share / whole : 1.0 / static_cast<double>(gridpoints.size());
@@ -47,8 +44,7 @@ typename Loads<Dim>::Entry& Loads<Dim>::entry(const std::string& set) {
   return added;
 }
 
-template <int Dim>
-void Loads<Dim>::list_loaded() {
+void Loads::list_loaded() {
   loaded_.clear();
   for (const auto& [name, entry] : entries_)
     loaded_.insert(loaded_.end(), entry.set.gridpoints.begin(), entry.set.gridpoints.end());
@@ -60,37 +56,36 @@ void Loads<Dim>::list_loaded() {
   }
 }
 
-template <int Dim>
-SetLoad<Dim> Loads<Dim>::on(const std::string& set) const {
+SetLoad Loads::on(const std::string& set) const {
   const auto found = entries_.find(set);
-  return found == entries_.end() ? SetLoad<Dim>{} : found->second.load;
+  return found == entries_.end() ? SetLoad{} : found->second.load;
 }
 
-template <int Dim>
-std::map<std::string, SetLoad<Dim>> Loads<Dim>::all() const {
-  std::map<std::string, SetLoad<Dim>> loads;
+std::map<std::string, SetLoad> Loads::all() const {
+  std::map<std::string, SetLoad> loads;
   for (const auto& [set, entry] : entries_) loads[set] = entry.load;
   return loads;
 }
 
-template <int Dim>
-Vec<Dim> Loads<Dim>::total(const std::string& set) const {
+Vec<3> Loads::total(const std::string& set) const {
   const auto found = entries_.find(set);
   if (found == entries_.end()) return {};
   const auto on = forces(found->second);
-  return chunked_sum<Vec<Dim>>(found->second.set.chunks, [&](int i, Vec<Dim>& total) { total += on[i]; });
+  return chunked_sum<Vec<3>>(found->second.set.chunks, [&](int i, Vec<3>& total) { total += on[i]; });
 }
 
-template <int Dim>
-void Loads<Dim>::set(const std::map<std::string, SetLoad<Dim>>& loads) {
+void Loads::set(const std::map<std::string, SetLoad>& loads) {
   for (const auto& [set, load] : loads) {
     const Entry& changed = entry(set);
     for (int g : changed.set.gridpoints)
-      for (int i = 0; i < Dim; ++i)
-        if (load.force[i] != 0.0 && mechanics_.read().is_prescribed(g, i))
+      for (int i = 0; i < motion_.model().dimension(); ++i)
+        if (load.force[i] != 0.0 && motion_.read().is_prescribed(g, i))
           throw Error(fmt::format(
               "a force along {} on set \"{}\" acts on gridpoints that are held or driven along {}", "xyz"[i],
               set, "xyz"[i]));
+    for (int i = motion_.model().dimension(); i < 3; ++i)
+      if (load.force[i] != 0.0)
+        throw Error(fmt::format("a force on set \"{}\" acts across the plane of this body", set));
     if (load.pressure != 0.0 && changed.faces.empty())
       throw Error(fmt::format("a pressure acts on set \"{}\", which has no face of the outline", set));
   }
@@ -99,58 +94,53 @@ void Loads<Dim>::set(const std::map<std::string, SetLoad<Dim>>& loads) {
 }
 
 /// Returns the forces of a load on each gridpoint of its set.
-template <int Dim>
-std::vector<Vec<Dim>> Loads<Dim>::forces(const Entry& entry) const {
+std::vector<Vec<3>> Loads::forces(const Entry& entry) const {
   const auto& gridpoints = entry.set.gridpoints;
-  std::vector<Vec<Dim>> result;
+  std::vector<Vec<3>> result;
   for (double share : entry.shares) result.push_back(share * entry.load.force);
   if (entry.load.pressure == 0.0) return result;
-  const Model<Dim>& model = mechanics_.model();
-  for (const auto& face : entry.faces) {
-    std::array<Vec<Dim>, Dim> x;
-    for (int i = 0; i < Dim; ++i) {
-      x[i] = model.position[face[i]];
-      if (entry.load.is_follower) x[i] += mechanics_.read().displacement(face[i]);
+  const Model& model = motion_.model();
+  for (const Face& face : entry.faces) {
+    std::array<Vec<3>, 3> x;
+    for (int i = 0; i < face.corners; ++i) {
+      x[i] = model.place(face.corner[i]);
+      if (entry.load.is_follower) x[i] += motion_.read().displacement(face.corner[i]);
     }
-    const Vec<Dim> share = -entry.load.pressure * share_of_corner(x, model.thickness);
-    for (int g : face) result[std::ranges::lower_bound(gridpoints, g) - gridpoints.begin()] += share;
+    const Vec<3> share = -entry.load.pressure * share_of_corner(x, face.corners, model.thickness);
+    for (int g : face.gridpoints())
+      result[std::ranges::lower_bound(gridpoints, g) - gridpoints.begin()] += share;
   }
   return result;
 }
 
-template <int Dim>
-void Loads<Dim>::apply() {
-  std::vector<Vec<Dim>> on(loaded_.size());
+void Loads::apply() {
+  std::vector<Vec<3>> on(loaded_.size());
   for (const auto& [name, entry] : entries_) {
     const auto of_entry = forces(entry);
     for (std::size_t i = 0; i < of_entry.size(); ++i) on[entry.places[i]] += of_entry[i];
   }
-  for (std::size_t i = 0; i < on.size(); ++i) mechanics_.constraints().apply_force(loaded_[i], on[i]);
+  for (std::size_t i = 0; i < on.size(); ++i) motion_.constraints().apply_force(loaded_[i], on[i]);
 }
 
 /// Returns the way of a set along its force, m; under a pressure against its faces.
-template <int Dim>
-double Loads<Dim>::way(const Entry& entry) const {
+double Loads::way(const Entry& entry) const {
   const auto on = forces(entry);
-  const auto along = chunked_sum<Vec<Dim>>(entry.set.chunks, [&](int i, Vec<Dim>& total) { total += on[i]; });
+  const auto along = chunked_sum<Vec<3>>(entry.set.chunks, [&](int i, Vec<3>& total) { total += on[i]; });
   const double size = norm(along);
-  return size > 0.0 ? dot(mechanics_.totals().mean_displacement(entry.set), along) / size : 0.0;
+  return size > 0.0 ? dot(motion_.totals().mean_displacement(entry.set), along) / size : 0.0;
 }
 
-template <int Dim>
-void Loads<Dim>::mark() {
+void Loads::mark() {
   for (auto& [name, entry] : entries_) entry.marked = way(entry);
 }
 
-template <int Dim>
-double Loads<Dim>::give() const {
+double Loads::give() const {
   double most = 0.0;
   for (const auto& [name, entry] : entries_) most = std::max(most, way(entry) - entry.marked);
   return most / size_;
 }
 
-template <int Dim>
-void Loads<Dim>::visit_state(StateVisitor& visitor) {
+void Loads::visit_state(StateVisitor& visitor) {
   std::vector<std::string> sets;
   for (const auto& [name, entry] : entries_) sets.push_back(name);
   visitor.visit("sets", sets);
@@ -161,13 +151,12 @@ void Loads<Dim>::visit_state(StateVisitor& visitor) {
   for (auto& [name, entry] : entries_) {
     const StateVisitor::Scope scope(visitor, name);
     visitor.visit_numbers("force", entry.load.force);
+    for (int i = motion_.model().dimension(); i < 3; ++i)
+      visitor.require(entry.load.force[i] == 0.0, "force", "acts across the plane of the body");
     visitor.visit("pressure", entry.load.pressure);
     visitor.visit("is_follower", entry.load.is_follower);
     visitor.visit("marked", entry.marked);
   }
 }
-
-template class Loads<2>;
-template class Loads<3>;
 
 }  // namespace pyroclast

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "pyroclast/base/state_visitor.hpp"
-#include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/mechanics/motion.hpp"
+#include "pyroclast/model/sets.hpp"
 
 namespace pyroclast {
 
 /// Load on a set of gridpoints from outside.
-template <int Dim>
 struct SetLoad {
-  Vec<Dim> force{};       ///< total force, N; shared out by tributary areas, evenly where the set has no face
+  Vec<3> force{};         ///< total force, N; shared out by tributary areas, evenly where the set has no face
   double pressure = 0.0;  ///< pressure on the faces of the set, Pa; positive against the body
   bool is_follower =
       false;  ///< true: the pressure stays normal to the faces as they move; false: as they were at the start
@@ -20,25 +20,24 @@ struct SetLoad {
 
 /// Forces on named sets of gridpoints, which last until they are changed. Where sets overlap their forces add
 /// up.
-template <int Dim>
 class Loads {
  public:
-  /// \param mechanics  mechanics, kept by reference; must outlive this object
-  /// \param size       size of the body, m, against which lengths are measured
-  Loads(Mechanics<Dim>& mechanics, double size) : mechanics_(mechanics), size_(size) {}
+  /// \param motion  motion, kept by reference; must outlive this object
+  /// \param size    size of the body, m, against which lengths are measured
+  Loads(Motion& motion, double size) : motion_(motion), size_(size) {}
 
   bool empty() const { return entries_.empty(); }
   /// Returns the load on a set; none where the set was never loaded.
-  SetLoad<Dim> on(const std::string& set) const;
+  SetLoad on(const std::string& set) const;
   /// Returns the load of each set that was ever loaded.
-  std::map<std::string, SetLoad<Dim>> all() const;
+  std::map<std::string, SetLoad> all() const;
   bool acts_on(const std::string& set) const { return entries_.contains(set); }
   /// Returns the force on the body at a set by the set's own load, N.
-  Vec<Dim> total(const std::string& set) const;
+  Vec<3> total(const std::string& set) const;
   /// Sets loads by set, from the next step on. Loads on other sets stay, but pressures that follow the body
   /// turn to its present place. Throws Error, and changes nothing, when there is no such set, a force is to
   /// act on a component that is held or driven, or a pressure on a set without faces.
-  void set(const std::map<std::string, SetLoad<Dim>>& loads);
+  void set(const std::map<std::string, SetLoad>& loads);
 
   /// Marks the present place of the loaded sets, from which `give` counts.
   void mark();
@@ -50,27 +49,24 @@ class Loads {
 
  private:
   struct Entry {
-    SetLoad<Dim> load;
+    SetLoad load;
     GridpointSet set;
-    std::vector<int> places;                  ///< places of the set's gridpoints in loaded_
-    std::vector<double> shares;               ///< shares of the force, by gridpoint of the set
-    std::vector<std::array<int, Dim>> faces;  ///< faces, right-handed, the normal outwards
-    double marked = 0.0;                      ///< way along the load at the mark, m
+    std::vector<int> places;     ///< places of the set's gridpoints in loaded_
+    std::vector<double> shares;  ///< shares of the force, by gridpoint of the set
+    std::vector<Face> faces;     ///< faces of the outline in the set
+    double marked = 0.0;         ///< way along the load at the mark, m
   };
 
   Entry& entry(const std::string& set);
   void list_loaded();
   double way(const Entry& entry) const;
-  std::vector<Vec<Dim>> forces(const Entry& entry) const;
+  std::vector<Vec<3>> forces(const Entry& entry) const;
   void apply();
 
-  Mechanics<Dim>& mechanics_;
+  Motion& motion_;
   double size_;
   std::map<std::string, Entry> entries_;  ///< loads by set
   std::vector<int> loaded_;               ///< loaded gridpoints, ascending
 };
-
-extern template class Loads<2>;
-extern template class Loads<3>;
 
 }  // namespace pyroclast

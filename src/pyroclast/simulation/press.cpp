@@ -20,261 +20,232 @@ constexpr double kCarried = 0.8;
 /// Sides of the specimen across the axis, lower and upper, in the order of the components.
 constexpr std::array<std::array<std::string_view, 2>, 2> kSides{{{"left", "right"}, {"front", "back"}}};
 
-template <int Dim>
-std::array<int, Dim - 1> components_across(int axis) {
-  if (axis < 0 || axis >= Dim)
-    throw Error(fmt::format("the axis of the press is {}, but it must be from 0 to {}", axis, Dim - 1));
-  std::array<int, Dim - 1> across{};
-  for (int i = 0, next = 0; i < Dim; ++i)
-    if (i != axis) across[next++] = i;
+std::vector<int> components_across(int axis, int dimension) {
+  if (axis < 0 || axis >= dimension)
+    throw Error(fmt::format("the axis of the press is {}, but it must be from 0 to {}", axis, dimension - 1));
+  std::vector<int> across;
+  for (int i = 0; i < dimension; ++i)
+    if (i != axis) across.push_back(i);
   return across;
 }
 
 }  // namespace
 
-template <int Dim>
-Press<Dim>::Press(Mechanics<Dim>& mechanics, int axis, double height,
-                  const std::array<double, Dim - 1>& widths)
-    : mechanics_(mechanics),
-      axis_(axis),
-      height_(height),
-      widths_(widths),
-      across_(components_across<Dim>(axis)) {
+Press::Press(Motion& motion, Specimen between)
+    : motion_(motion),
+      between_(std::move(between)),
+      across_(components_across(between_.axis, motion.model().dimension())) {
+  const auto is_no_length = [](double length) { return !(length > 0.0); };
+  if (between_.widths.size() != across_.size() || std::ranges::any_of(between_.widths, is_no_length) ||
+      is_no_length(between_.area) || is_no_length(between_.height))
+    throw Error(
+        fmt::format("a specimen between platens needs a height, an area and {} widths", across_.size()));
   for (const char* name : {"bottom_platen_support", "top_platen_support", "bottom_platen_face",
                            "top_platen_face", "bottom", "top", "specimen", "bottom_platen"})
-    summed_.emplace(name, gridpoint_set(mechanics_.model(), set(name)));
-  for (int d = 0; d < Dim - 1; ++d)
-    for (const auto side : kSides[d]) summed_.emplace(side, gridpoint_set(mechanics_.model(), set(side)));
+    summed_.emplace(name, gridpoint_set(motion_.model(), set(name)));
+  for (std::size_t d = 0; d < across_.size(); ++d)
+    for (const auto side : kSides[d]) summed_.emplace(side, gridpoint_set(motion_.model(), set(side)));
   for (int g : set("bottom_platen_support"))
-    for (int i = 0; i < Dim; ++i) mechanics_.constraints().prescribe_velocity(g, i, 0.0);
+    for (int i = 0; i < motion_.model().dimension(); ++i) motion_.constraints().prescribe_velocity(g, i, 0.0);
   for (int g : set("top_platen_support"))
-    for (int i : across_) mechanics_.constraints().prescribe_velocity(g, i, 0.0);
+    for (int i : across_) motion_.constraints().prescribe_velocity(g, i, 0.0);
 }
 
-template <int Dim>
-void Press<Dim>::let_go() {
-  for (int g : set("top_platen_support")) mechanics_.constraints().release(g, axis_);
+void Press::let_go() {
+  for (int g : set("top_platen_support")) motion_.constraints().release(g, between_.axis);
   kept_.is_driven = false;
 }
 
-template <int Dim>
-void Press<Dim>::control_by_force() {
+void Press::control_by_force() {
   const double borne = kept_.is_driven ? std::max(0.0, stress_top()) : kept_.stress_held;
-  mechanics_.constraints().untie();
+  motion_.constraints().untie();
   let_go();
-  mechanics_.constraints().tie(set("top_platen_support"), axis_);
+  motion_.constraints().tie(set("top_platen_support"), between_.axis);
   hold(borne);
 }
 
-template <int Dim>
-void Press<Dim>::control_by_motion(double velocity) {
+void Press::control_by_motion(double velocity) {
   kept_.is_driven = true;
-  mechanics_.constraints().untie();
+  motion_.constraints().untie();
   hold(0.0);
   move_platen(velocity);
 }
 
-template <int Dim>
-void Press<Dim>::move_platen(double velocity) {
-  for (int g : set("top_platen_support")) mechanics_.constraints().prescribe_velocity(g, axis_, -velocity);
+void Press::move_platen(double velocity) {
+  for (int g : set("top_platen_support"))
+    motion_.constraints().prescribe_velocity(g, between_.axis, -velocity);
 }
 
-template <int Dim>
-void Press<Dim>::hold(double stress) {
-  const double force = stress * area();
+void Press::hold(double stress) {
+  const double force = stress * between_.area;
   const auto& support = set("top_platen_support");
-  Vec<Dim> share{};
-  share[axis_] = -force / static_cast<double>(support.size());
-  for (int g : support) mechanics_.constraints().apply_force(g, share);
+  Vec<3> share{};
+  share[between_.axis] = -force / static_cast<double>(support.size());
+  for (int g : support) motion_.constraints().apply_force(g, share);
   kept_.stress_held = stress;
 }
 
-template <int Dim>
-bool Press<Dim>::is_supported() const {
+bool Press::is_supported() const {
   const auto weight = [&](const GridpointSet& of) {
-    return -mechanics_.totals().total_weight(of)[axis_] / area();
+    return -motion_.totals().total_weight(of)[between_.axis] / between_.area;
   };
   const double carries = stress_bottom() - weight(summed("bottom_platen"));
   return carries >= kCarried * (weight(specimen()) + kept_.stress_held);
 }
 
-template <int Dim>
-double Press<Dim>::volume() const {
-  return area() * height_;
+double Press::volume() const {
+  return between_.area * between_.height;
 }
 
 /// Returns the rise over the width of the line on which the specimen stands: the edge of the lower hull of
-/// its lower end that lies under the middle. 0 in 3D.
-template <int Dim>
-double Press<Dim>::rise_of_stand() const {
-  if constexpr (Dim != 2) {
-    return 0.0;
-  } else {
-    std::vector<Vec<2>> points;  // position across the axis, and displacement along it
-    for (int g : set("bottom"))
-      points.push_back(
-          {{mechanics_.model().position[g][across_[0]], mechanics_.read().displacement(g)[axis_]}});
-    std::ranges::sort(points, {}, [](const Vec<2>& p) { return std::pair(p[0], p[1]); });
-    std::vector<Vec<2>> hull;
-    for (const Vec<2>& p : points) {
-      while (hull.size() > 1 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0.0)
-        hull.pop_back();
-      hull.push_back(p);
-    }
-    const double middle = 0.5 * (points.front()[0] + points.back()[0]);
-    const auto right = std::ranges::find_if(hull, [&](const Vec<2>& p) { return p[0] > middle; });
-    if (right == hull.begin() || right == hull.end()) return 0.0;
-    const Vec<2> edge = *right - *std::prev(right);
-    return edge[1] / edge[0];
+/// its lower end that lies under the middle.
+double Press::rise_of_stand() const {
+  if (!can_set_down())
+    throw Error("a specimen in space stands on three points: to set it down is not made yet");
+  struct Point {
+    double across, up;  // position across the axis, and displacement along it
+  };
+  std::vector<Point> points;
+  for (int g : set("bottom"))
+    points.push_back({motion_.model().place(g)[across_[0]], motion_.read().displacement(g)[between_.axis]});
+  std::ranges::sort(points, {}, [](const Point& p) { return std::pair(p.across, p.up); });
+  const auto turns_left = [](const Point& a, const Point& b, const Point& c) {
+    return (b.across - a.across) * (c.up - b.up) - (b.up - a.up) * (c.across - b.across) > 0.0;
+  };
+  std::vector<Point> hull;
+  for (const Point& p : points) {
+    while (hull.size() > 1 && !turns_left(hull[hull.size() - 2], hull.back(), p)) hull.pop_back();
+    hull.push_back(p);
   }
+  const double middle = 0.5 * (points.front().across + points.back().across);
+  const auto right = std::ranges::find_if(hull, [&](const Point& p) { return p.across > middle; });
+  if (right == hull.begin() || right == hull.end()) return 0.0;
+  const Point &from = *std::prev(right), &to = *right;
+  return (to.up - from.up) / (to.across - from.across);
 }
 
 /// Returns the clearances between the platens and the gridpoints of the ends that stand out most, m.
 /// \param up  function that returns the way of a gridpoint along the axis since the start
-template <int Dim>
 template <class Up>
-typename Press<Dim>::Clearances Press<Dim>::clearances(const Up& up) const {
+Press::Clearances Press::clearances(const Up& up) const {
   const double lowest = up(*std::ranges::min_element(set("bottom"), {}, up));
   const double highest = up(*std::ranges::max_element(set("top"), {}, up));
-  return {lowest - mechanics_.totals().mean_displacement(summed("bottom_platen_face"))[axis_],
-          mechanics_.totals().mean_displacement(summed("top_platen_face"))[axis_] - highest};
+  return {lowest - motion_.totals().mean_displacement(summed("bottom_platen_face"))[between_.axis],
+          motion_.totals().mean_displacement(summed("top_platen_face"))[between_.axis] - highest};
 }
 
-template <int Dim>
-typename Press<Dim>::EvenMotion Press<Dim>::to_touch() const {
+Press::EvenMotion Press::to_touch() const {
   const double tilt = -rise_of_stand();
-  const double middle = mean_position(mechanics_.model(), specimen(), across_[0]);
+  const double middle = mean_position(motion_.model(), specimen(), across_[0]);
   const auto up = [&](int g) {
-    return mechanics_.read().displacement(g)[axis_] +
-           tilt * (mechanics_.model().position[g][across_[0]] - middle);
+    return motion_.read().displacement(g)[between_.axis] +
+           tilt * (motion_.model().place(g)[across_[0]] - middle);
   };
   const auto [below, above] = clearances(up);
   return {.lift = -std::max(0.0, below), .tilt = tilt, .platen_lift = -above};
 }
 
-template <int Dim>
-double Press<Dim>::way(const EvenMotion& motion) const {
-  return std::abs(motion.lift) + std::abs(motion.tilt) * widths_[0];
+double Press::way(const EvenMotion& motion) const {
+  return std::abs(motion.lift) + std::abs(motion.tilt) * between_.widths[0];
 }
 
-template <int Dim>
-double Press<Dim>::gap() const {
-  const auto up = [&](int g) { return mechanics_.read().displacement(g)[axis_]; };
+double Press::gap() const {
+  const auto up = [&](int g) { return motion_.read().displacement(g)[between_.axis]; };
   const auto [below, above] = clearances(up);
   return std::max(0.0, below) + std::max(0.0, above);
 }
 
-template <int Dim>
-double Press<Dim>::area() const {
-  double area = mechanics_.model().thickness;
-  for (double width : widths_) area *= width;
-  return area;
+double Press::shortening(std::string_view top, std::string_view bottom) const {
+  return motion_.totals().mean_displacement(summed(bottom))[between_.axis] -
+         motion_.totals().mean_displacement(summed(top))[between_.axis];
 }
 
-template <int Dim>
-double Press<Dim>::shortening(std::string_view top, std::string_view bottom) const {
-  return mechanics_.totals().mean_displacement(summed(bottom))[axis_] -
-         mechanics_.totals().mean_displacement(summed(top))[axis_];
-}
-
-template <int Dim>
-double Press<Dim>::widening(int direction) const {
+double Press::widening(std::size_t direction) const {
   const auto& [lower, upper] = kSides[direction];
-  return mechanics_.totals().mean_displacement(summed(upper))[across_[direction]] -
-         mechanics_.totals().mean_displacement(summed(lower))[across_[direction]];
+  return motion_.totals().mean_displacement(summed(upper))[across_[direction]] -
+         motion_.totals().mean_displacement(summed(lower))[across_[direction]];
 }
 
-template <int Dim>
-void Press<Dim>::set_zero() {
-  kept_.shortening_at_zero += strain() * height_;
-  kept_.specimen_shortening_at_zero += specimen_strain() * height_;
-  for (int d = 0; d < Dim - 1; ++d)
-    kept_.widening_at_zero[d] += (widening(d) - kept_.widening_at_zero[d]) / widths_[d] * widths_[d];
+void Press::set_zero() {
+  kept_.shortening_at_zero += strain() * between_.height;
+  kept_.specimen_shortening_at_zero += specimen_strain() * between_.height;
+  for (std::size_t d = 0; d < across_.size(); ++d)
+    kept_.widening_at_zero[d] +=
+        (widening(d) - kept_.widening_at_zero[d]) / between_.widths[d] * between_.widths[d];
 }
 
-template <int Dim>
-void Press<Dim>::begin_stage() {
+void Press::begin_stage() {
   kept_.stage_first_strain = strain();
 }
 
-template <int Dim>
-double Press<Dim>::strain() const {
-  return (shortening("top_platen_face", "bottom_platen_face") - kept_.shortening_at_zero) / height_;
+double Press::strain() const {
+  return (shortening("top_platen_face", "bottom_platen_face") - kept_.shortening_at_zero) / between_.height;
 }
 
-template <int Dim>
-double Press<Dim>::specimen_strain() const {
-  return (shortening("top", "bottom") - kept_.specimen_shortening_at_zero) / height_;
+double Press::specimen_strain() const {
+  return (shortening("top", "bottom") - kept_.specimen_shortening_at_zero) / between_.height;
 }
 
-template <int Dim>
-double Press<Dim>::lateral_strain() const {
+double Press::lateral_strain() const {
   double sum = 0.0;
-  for (int d = 0; d < Dim - 1; ++d) sum += (widening(d) - kept_.widening_at_zero[d]) / widths_[d];
-  return sum / (Dim - 1);
+  for (std::size_t d = 0; d < across_.size(); ++d)
+    sum += (widening(d) - kept_.widening_at_zero[d]) / between_.widths[d];
+  return sum / static_cast<double>(across_.size());
 }
 
-template <int Dim>
-double Press<Dim>::stress_top() const {
+double Press::stress_top() const {
   const GridpointSet& support = summed("top_platen_support");
-  return (mechanics_.totals().total_force(support)[axis_] -
-          mechanics_.totals().total_applied_force(support)[axis_]) /
-         area();
+  return (motion_.totals().total_force(support)[between_.axis] -
+          motion_.totals().total_applied_force(support)[between_.axis]) /
+         between_.area;
 }
 
-template <int Dim>
-double Press<Dim>::stress_bottom() const {
-  return -mechanics_.totals().total_force(summed("bottom_platen_support"))[axis_] / area();
+double Press::stress_bottom() const {
+  return -motion_.totals().total_force(summed("bottom_platen_support"))[between_.axis] / between_.area;
 }
 
-template <int Dim>
-void Press<Dim>::move_evenly(const EvenMotion& motion, double speed, bool platen_follows) {
-  const auto& model = mechanics_.model();
-  const double bottom = model.position[set("bottom").front()][axis_];
-  std::array<double, Dim - 1> middle{};
-  for (int d = 0; d < Dim - 1; ++d)
+void Press::move_evenly(const EvenMotion& motion, double speed, bool platen_follows) {
+  const auto& model = motion_.model();
+  const double bottom = model.place(set("bottom").front())[between_.axis];
+  std::array<double, 2> middle{};
+  for (std::size_t d = 0; d < across_.size(); ++d)
     middle[d] = 0.5 * (mean_position(model, summed(kSides[d][0]), across_[d]) +
                        mean_position(model, summed(kSides[d][1]), across_[d]));
-  const double rate = speed / mechanics_.time_step();
+  const double rate = speed / motion_.time_step();
   for (int g : set("specimen")) {
-    const Vec<Dim>& x = model.position[g];
+    const Vec<3> x = model.place(g);
     const double turned = motion.tilt * (x[across_[0]] - middle[0]);
-    for (int d = 0; d < Dim - 1; ++d) {
-      const double aside = d == 0 ? -motion.tilt * (x[axis_] - bottom) : 0.0;
-      mechanics_.constraints().prescribe_velocity(
-          g, across_[d], rate * (motion.lateral * (x[across_[d]] - middle[d]) + aside));
+    for (std::size_t d = 0; d < across_.size(); ++d) {
+      const double aside = d == 0 ? -motion.tilt * (x[between_.axis] - bottom) : 0.0;
+      motion_.constraints().prescribe_velocity(g, across_[d],
+                                               rate * (motion.lateral * (x[across_[d]] - middle[d]) + aside));
     }
-    mechanics_.constraints().prescribe_velocity(
-        g, axis_, rate * (motion.axial * (x[axis_] - bottom) + motion.lift + turned));
+    motion_.constraints().prescribe_velocity(
+        g, between_.axis, rate * (motion.axial * (x[between_.axis] - bottom) + motion.lift + turned));
   }
   if (!platen_follows) return;
   for (int g : set("top_platen"))
-    mechanics_.constraints().prescribe_velocity(
-        g, axis_, rate * (motion.axial * height_ + motion.lift + motion.platen_lift));
+    motion_.constraints().prescribe_velocity(
+        g, between_.axis, rate * (motion.axial * between_.height + motion.lift + motion.platen_lift));
 }
 
-template <int Dim>
-void Press<Dim>::end_even_motion(bool platen_follows) {
+void Press::end_even_motion(bool platen_follows) {
   for (int g : set("specimen"))
-    for (int i = 0; i < Dim; ++i) mechanics_.constraints().release(g, i);
+    for (int i = 0; i < motion_.model().dimension(); ++i) motion_.constraints().release(g, i);
   if (!platen_follows) return;
-  for (int g : set("top_platen")) mechanics_.constraints().release(g, axis_);
+  for (int g : set("top_platen")) motion_.constraints().release(g, between_.axis);
 }
 
-template <int Dim>
-void Press<Dim>::visit_state(StateVisitor& visitor) {
+void Press::visit_state(StateVisitor& visitor) {
   auto& [is_driven, stress_held, shortening_at_zero, specimen_shortening_at_zero, widening_at_zero,
          stage_first_strain] = kept_;  // another member does not compile until it has a name here
   visitor.visit("is_driven", is_driven);
   visitor.visit("stress_held", stress_held);
   visitor.visit("shortening_at_zero", shortening_at_zero);
   visitor.visit("specimen_shortening_at_zero", specimen_shortening_at_zero);
-  for (int d = 0; d < Dim - 1; ++d)
+  for (std::size_t d = 0; d < across_.size(); ++d)
     visitor.visit(fmt::format("widening_at_zero{}", kSides[d][1]), widening_at_zero[d]);
   visitor.visit("stage_first_strain", stage_first_strain);
 }
-
-template class Press<2>;
-template class Press<3>;
 
 }  // namespace pyroclast

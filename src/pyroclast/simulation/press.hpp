@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "pyroclast/base/state_visitor.hpp"
-#include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/mechanics/motion.hpp"
 
 namespace pyroclast {
 
@@ -20,23 +20,28 @@ namespace pyroclast {
 /// sides of the specimen; `specimen`, `bottom_platen` and `top_platen`, all gridpoints of these bodies.
 ///
 /// Stress and strain are positive in compression, lateral strain in expansion.
-template <int Dim>
 class Press {
  public:
   /// Motion of the whole specimen that does not change the jumps of its contacts.
   struct EvenMotion {
     double axial = 0.0, lateral = 0.0;  ///< strains, expansion positive; the lower end stays where it is
     double lift = 0.0;                  ///< lift of the specimen as a whole along the axis, m
-    double tilt = 0.0;                  ///< 2D only: rise of the specimen over its width
+    double tilt = 0.0;                  ///< rise of the specimen over its width; 0 in 3D
     double platen_lift = 0.0;           ///< lift of the upper platen beyond the end that it lies on, m
   };
 
-  /// Holds the lower platen, and the upper one across the axis.
-  /// \param mechanics  mechanics, kept by reference; must outlive this object
-  /// \param axis       component of a position along which the platens stand
-  /// \param height     height of the specimen along the axis, m
-  /// \param widths     widths across the axis, in the order of the other components, m
-  Press(Mechanics<Dim>& mechanics, int axis, double height, const std::array<double, Dim - 1>& widths);
+  /// Specimen between the platens.
+  struct Specimen {
+    int axis = 1;                ///< component of a position along which the platens stand
+    double height = 0.0;         ///< height of the specimen along the axis, m
+    double area = 0.0;           ///< area across the axis, m²
+    std::vector<double> widths;  ///< widths across the axis, in the order of the other components, m
+  };
+
+  /// Holds the lower platen, and the upper one across the axis. Throws Error for an axis or widths that the
+  /// body cannot have.
+  /// \param motion  motion, kept by reference; must outlive this object
+  Press(Motion& motion, Specimen between);
 
   // Control of the upper platen.
 
@@ -77,11 +82,15 @@ class Press {
   /// Returns the way that the upper platen can sink until both platens touch the specimen, m. Rough ends are
   /// touched where they stand out most.
   double gap() const;
-  double height() const { return height_; }
+  int axis() const { return between_.axis; }
+  double height() const { return between_.height; }
   double volume() const;  ///< Returns the volume of the specimen, m³.
   /// Returns the motion that sets the specimen down on the lower platen, and the upper platen on the
-  /// specimen. In 2D the specimen then stands on two points on either side of its middle.
+  /// specimen. In 2D the specimen then stands on two points on either side of its middle. Throws Error in 3D,
+  /// where it would stand on three; see `can_set_down`.
   EvenMotion to_touch() const;
+  /// Tells whether a specimen can be set down on two points; a solid settles by its weight instead.
+  bool can_set_down() const { return across_.size() == 1; }
   /// Returns the largest way that a gridpoint of the specimen goes in a motion without strain, m.
   double way(const EvenMotion& motion) const;
   const GridpointSet& specimen() const { return summed("specimen"); }
@@ -99,11 +108,10 @@ class Press {
   void visit_state(StateVisitor& visitor);
 
  private:
-  const std::vector<int>& set(std::string_view name) const { return mechanics_.model().set(name); }
+  const std::vector<int>& set(std::string_view name) const { return motion_.model().set(name); }
   const GridpointSet& summed(std::string_view name) const { return summed_.find(name)->second; }
   double shortening(std::string_view top, std::string_view bottom) const;
-  double widening(int direction) const;
-  double area() const;
+  double widening(std::size_t direction) const;
   double rise_of_stand() const;
   struct Clearances {
     double below = 0.0, above = 0.0;
@@ -111,25 +119,20 @@ class Press {
   template <class Up>
   Clearances clearances(const Up& up) const;
 
-  Mechanics<Dim>& mechanics_;
-  int axis_;
-  double height_;
-  std::array<double, Dim - 1> widths_;
-  std::array<int, Dim - 1> across_;                          ///< components across the axis
+  Motion& motion_;
+  Specimen between_;
+  std::vector<int> across_;                                  ///< components across the axis
   std::map<std::string, GridpointSet, std::less<>> summed_;  ///< sets that are read, in the order of sums
 
   /// All that lasts from one batch to the next.
   struct Kept {
-    bool is_driven = true;                           ///< true while controlled by motion
-    double stress_held = 0.0;                        ///< Pa
-    double shortening_at_zero = 0.0;                 ///< shortening of the distance of the platens, m
-    double specimen_shortening_at_zero = 0.0;        ///< m
-    std::array<double, Dim - 1> widening_at_zero{};  ///< m
+    bool is_driven = true;                     ///< true while controlled by motion
+    double stress_held = 0.0;                  ///< Pa
+    double shortening_at_zero = 0.0;           ///< shortening of the distance of the platens, m
+    double specimen_shortening_at_zero = 0.0;  ///< m
+    std::array<double, 2> widening_at_zero{};  ///< m; in 2D the second is not used
     double stage_first_strain = 0.0;
   } kept_;
 };
-
-extern template class Press<2>;
-extern template class Press<3>;
 
 }  // namespace pyroclast

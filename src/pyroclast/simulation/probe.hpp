@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -11,14 +10,14 @@ namespace pyroclast {
 /// Point of the specimen at which a run watches the temperature.
 struct ProbePosition {
   std::string name;
-  Vec<2> position{};  ///< position from the specimen's lower left corner, m
+  Vec<3> position{};  ///< position from the specimen's lower left corner, m
 };
 
 /// Probe: reads a field of the gridpoints at a point, linearly within the zone that holds the point.
 class Probe {
  public:
   /// Throws Error when the point lies outside the specimen.
-  Probe(const Model<2>& model, const ProbePosition& at);
+  Probe(const Model& model, const ProbePosition& at);
 
   const std::string& name() const { return name_; }
 
@@ -27,8 +26,8 @@ class Probe {
 
  private:
   std::string name_;
-  std::array<int, 3> gridpoints_{};
-  std::array<double, 3> weights_{};
+  std::vector<int> gridpoints_;  ///< corners of the zone
+  std::vector<double> weights_;  ///< weight of each corner
 };
 
 }  // namespace pyroclast

@@ -8,8 +8,8 @@
 
 #include "pyroclast/base/chunked_sum.hpp"
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/mechanics/cracks.hpp"
 #include "pyroclast/model/sets.hpp"
-#include "pyroclast/simulation/cracks.hpp"
 #include "pyroclast/simulation/simulation.hpp"
 
 namespace pyroclast {
@@ -20,18 +20,18 @@ bool is_of_cracks(RecordKind kind) {
   return kind == RecordKind::crack_length || kind == RecordKind::crack_opening;
 }
 
-bool is_damaged(const Mechanics<2>& mechanics, int contact) {
-  return std::ranges::any_of(
-      kCrackModes, [&](Remembers mode) { return mechanics.read().remembered(contact, mode) > 0.0; });
+bool is_damaged(const Motion& motion, int contact) {
+  return std::ranges::any_of(kCrackModes,
+                             [&](Remembers mode) { return motion.read().remembered(contact, mode) > 0.0; });
 }
 
 /// Returns the zones that lie wholly in a set.
-std::vector<int> zones_in(const Model<2>& model, const std::vector<int>& gridpoints) {
-  std::vector<bool> is_in(model.position.size());
+std::vector<int> zones_in(const Model& model, const std::vector<int>& gridpoints) {
+  std::vector<bool> is_in(model.gridpoint_count());
   for (int g : gridpoints) is_in[g] = true;
   std::vector<int> zones;
   for (int z = 0; z < model.zone_count(); ++z)
-    if (std::ranges::all_of(model.zones[z], [&](int g) { return is_in[g]; })) zones.push_back(z);
+    if (std::ranges::all_of(model.gridpoints_of_zone(z), [&](int g) { return is_in[g]; })) zones.push_back(z);
   return zones;
 }
 
@@ -72,7 +72,7 @@ double column_over_si(RecordKind kind) {
   return kind == RecordKind::stress ? 1e-6 : 1.0;
 }
 
-Record::Record(const Model<2>& model, const Mechanics<2>* mechanics, RecordParameters parameters)
+Record::Record(const Model& model, bool moves, RecordParameters parameters)
     : parameters_(std::move(parameters)) {
   const auto fail = [&](const std::string& why) {
     throw Error(fmt::format("{}: record \"{}\" {}", parameters_.place, parameters_.name, why));
@@ -84,15 +84,17 @@ Record::Record(const Model<2>& model, const Mechanics<2>* mechanics, RecordParam
                        is_of_cracks(parameters_.kind) ? "contacts" : "gridpoints", names_of(sets)));
     return found->second;
   };
-  if (mechanics == nullptr && parameters_.kind != RecordKind::temperature)
+  if (!moves && parameters_.kind != RecordKind::temperature)
     fail(
         "is of motion, but no stage moves the body: without one only records of kind temperature have an "
         "effect");
+  if (parameters_.kind == RecordKind::crack_length && model.dimension() != 2)
+    fail("is of a length, but cracks of a solid have an area");
   if (is_of_cracks(parameters_.kind)) {
     auto contacts = contacts_by_chunk(contacts_by_chunk(model), find(model.contact_sets, parameters_.set));
     items_ = std::move(contacts.contacts);
     chunks_ = std::move(contacts.chunks);
-    for (int c : items_) size_.push_back(model.contacts[c].area / model.thickness);
+    for (int c : items_) size_.push_back(model.extent(c));
   } else {
     const auto chunked = [&](const std::string& name) {
       return gridpoint_set(model, find(model.sets, name));
@@ -103,7 +105,7 @@ Record::Record(const Model<2>& model, const Mechanics<2>* mechanics, RecordParam
     if (parameters_.kind == RecordKind::stress) {
       items_ = zones_in(model, mean_.set.gridpoints);
       if (items_.empty()) fail(fmt::format("is of the set \"{}\", which holds no zone", parameters_.set));
-      const auto volume = zone_geometry(model).volume;
+      const auto volume = model.zone_volumes();
       for (int z : items_) size_.push_back(volume[z]);
       chunks_ = model.zone_chunks().of_some(items_);
     }
@@ -111,16 +113,17 @@ Record::Record(const Model<2>& model, const Mechanics<2>* mechanics, RecordParam
   whole_ = chunked_sum(chunks_, [&](int i) { return size_[i]; });
 }
 
-Record::Mean Record::mean_over(const Model<2>& model, GridpointSet set) const {
+Record::Mean Record::mean_over(const Model& model, GridpointSet set) const {
   Mean mean{std::move(set), {}};
   const auto& gridpoints = mean.set.gridpoints;
   mean.weights.assign(gridpoints.size(), 0.0);
   if (parameters_.over == MeanOver::size) {
     const auto zones = zones_in(model, gridpoints);
-    const auto volume = zones.empty() ? std::vector<double>() : zone_geometry(model).volume;
+    const auto volume = zones.empty() ? std::vector<double>() : model.zone_volumes();
     for (int z : zones)
-      for (int g : model.zones[z])
-        mean.weights[std::ranges::lower_bound(gridpoints, g) - gridpoints.begin()] += volume[z] / 3.0;
+      for (int g : model.gridpoints_of_zone(z))
+        mean.weights[std::ranges::lower_bound(gridpoints, g) - gridpoints.begin()] +=
+            volume[z] / (model.dimension() + 1);
     if (zones.empty()) mean.weights = tributary_areas(gridpoints, faces_in(model, gridpoints));
   }
   const double whole = chunked_sum(mean.set.chunks, [&](int i) { return mean.weights[i]; });
@@ -138,17 +141,17 @@ T Record::Mean::of(Value value) const {
 /// each reaction an even share among the sets that hold the component. Any other set has all forces from
 /// outside on its gridpoints.
 double Record::force(const Simulation& simulation) const {
-  const Mechanics<2>& mechanics = simulation.mechanics();
-  const Supports<2>& supports = simulation.supports();
-  const Vec<2>& d = parameters_.direction;
-  const std::array<bool, 2> holds{supports.holds(parameters_.set, 0), supports.holds(parameters_.set, 1)};
-  if (!holds[0] && !holds[1] && !simulation.loads().acts_on(parameters_.set))
-    return dot(mechanics.totals().total_applied_force(mean_.set) - mechanics.totals().total_force(mean_.set),
-               d);
-  const auto reaction = chunked_sum<Vec<2>>(mean_.set.chunks, [&](int i, Vec<2>& sum) {
+  const Motion& motion = simulation.motion();
+  const Supports& supports = simulation.supports();
+  const Vec<3>& d = parameters_.direction;
+  std::array<bool, 3> holds{};
+  for (int c = 0; c < motion.model().dimension(); ++c) holds[c] = supports.holds(parameters_.set, c);
+  if (std::ranges::count(holds, true) == 0 && !simulation.loads().acts_on(parameters_.set))
+    return dot(motion.totals().total_applied_force(mean_.set) - motion.totals().total_force(mean_.set), d);
+  const auto reaction = chunked_sum<Vec<3>>(mean_.set.chunks, [&](int i, Vec<3>& sum) {
     const int g = mean_.set.gridpoints[i];
-    const Vec<2> force = mechanics.read().force(g);
-    for (const int c : {0, 1})
+    const Vec<3> force = motion.read().force(g);
+    for (int c = 0; c < 3; ++c)
       if (holds[c]) sum[c] -= force[c] / supports.holders(g, c);
   });
   return dot(simulation.loads().total(parameters_.set) + reaction, d);
@@ -161,29 +164,30 @@ double Record::read(const Simulation& simulation) const {
 double Record::measure(const Simulation& simulation) const {
   if (parameters_.kind == RecordKind::temperature)
     return mean_.of<double>([&](int g) { return simulation.field().gridpoints()[g]; });
-  const Mechanics<2>& mechanics = simulation.mechanics();
-  const auto displacement = [&](int g) { return mechanics.read().displacement(g); };
-  const Vec<2>& d = parameters_.direction;
+  const Motion& motion = simulation.motion();
+  const auto displacement = [&](int g) { return motion.read().displacement(g); };
+  const Vec<3>& d = parameters_.direction;
   switch (parameters_.kind) {
     case RecordKind::displacement:
-      return dot(mean_.of<Vec<2>>(displacement), d);
+      return dot(mean_.of<Vec<3>>(displacement), d);
     case RecordKind::opening:
-      return dot(mean_of_other_.of<Vec<2>>(displacement) - mean_.of<Vec<2>>(displacement), d);
+      return dot(mean_of_other_.of<Vec<3>>(displacement) - mean_.of<Vec<3>>(displacement), d);
     case RecordKind::force:
       return force(simulation);
     case RecordKind::stress:
       return chunked_sum(chunks_,
                          [&](int i) {
-                           const SymmetricTensor<2> s = mechanics.read().stress(items_[i]);
+                           const SymmetricTensor<3> s = motion.read().stress(items_[i]);
                            const double normal =
-                               d[0] * d[0] * s[0] + d[1] * d[1] * s[1] + 2.0 * d[0] * d[1] * s[2];
+                               d[0] * d[0] * s[0] + d[1] * d[1] * s[1] + d[2] * d[2] * s[2] +
+                               2.0 * (d[0] * d[1] * s[3] + d[1] * d[2] * s[4] + d[0] * d[2] * s[5]);
                            return size_[i] * normal;
                          }) /
              whole_;
     case RecordKind::crack_length:
-      return chunked_sum(chunks_, [&](int i) { return is_damaged(mechanics, items_[i]) ? size_[i] : 0.0; });
+      return chunked_sum(chunks_, [&](int i) { return is_damaged(motion, items_[i]) ? size_[i] : 0.0; });
     case RecordKind::crack_opening:
-      return chunked_sum(chunks_, [&](int i) { return size_[i] * mechanics.read().opening(items_[i]); }) /
+      return chunked_sum(chunks_, [&](int i) { return size_[i] * motion.read().opening(items_[i]); }) /
              whole_;
     case RecordKind::temperature:
       break;

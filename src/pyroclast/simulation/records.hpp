@@ -6,7 +6,7 @@
 
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/base/unit.hpp"
-#include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/model/model.hpp"
 #include "pyroclast/simulation/history.hpp"
 
 namespace pyroclast {
@@ -21,8 +21,8 @@ enum class RecordKind : std::uint8_t {
   /// Mean stress over the zones of a set, normal to planes across a direction, tension positive, Pa.
   stress,
   temperature,    ///< mean temperature of a set, °C
-  crack_length,   ///< length of the damaged contact points of a set, m
-  crack_opening,  ///< mean opening over the contact points of a set, by length, m
+  crack_length,   ///< length of the damaged contact points of a set, m; 2D only
+  crack_opening,  ///< mean opening over the contact points of a set, by extent, m
 };
 
 /// Weights of the mean over a set of gridpoints.
@@ -37,7 +37,7 @@ struct RecordParameters {
   RecordKind kind{};
   std::string set;         ///< set of contacts for a record of cracks, else set of gridpoints
   std::string other = "";  ///< second set of an opening
-  Vec<2> direction{};      ///< unit vector
+  Vec<3> direction{};      ///< unit vector
   std::string place = "";  ///< place in the deck that asks for the record, for messages
   MeanOver over = MeanOver::size;
 };
@@ -57,8 +57,8 @@ class Record {
   /// Throws Error, with the record's place, when a set is missing, the set of a stress holds no zone, or
   /// nothing moves and the record is of another kind than temperature.
   ///
-  /// \param mechanics  null where nothing moves
-  Record(const Model<2>& model, const Mechanics<2>* mechanics, RecordParameters parameters);
+  /// \param moves  true where a stage moves the body
+  Record(const Model& model, bool moves, RecordParameters parameters);
 
   const RecordParameters& parameters() const { return parameters_; }
   /// Returns the present value, in SI; temperatures in °C.
@@ -84,7 +84,7 @@ class Record {
     template <class T, class Value>
     T of(Value value) const;
   };
-  Mean mean_over(const Model<2>& model, GridpointSet set) const;
+  Mean mean_over(const Model& model, GridpointSet set) const;
   double measure(const Simulation& simulation) const;
   double force(const Simulation& simulation) const;
 
@@ -92,7 +92,7 @@ class Record {
   Mean mean_, mean_of_other_;
   std::vector<int> items_;    ///< zones or contacts, ascending
   ChunkList chunks_;          ///< chunks of the items
-  std::vector<double> size_;  ///< size of each item, m³ or m
+  std::vector<double> size_;  ///< size of each item: volume of a zone, m³, extent of a contact
   double whole_ = 0.0;        ///< size of all items
   double zero_ = 0.0;
 };

@@ -92,8 +92,7 @@ void Run::require_own_columns() const {
 
 /// Throws Error where one of the stages from `first` on cannot be done, or would move a body that has weight
 /// or loads and that nothing holds. Platens hold a body.
-void Run::check(const std::vector<std::unique_ptr<Stage>>& stages, std::size_t first,
-                Acting<2> acting) const {
+void Run::check(const std::vector<std::unique_ptr<Stage>>& stages, std::size_t first, Acting acting) const {
   bool is_loaded = has_weight(simulation_);
   for (std::size_t i = 0; i < stages.size(); ++i) {
     const Stage& stage = *stages[i];
@@ -118,7 +117,7 @@ bool Run::next() {
   if (stage_is_over_) ++stage_;
   if (stage_is_over_ || !stage_is_begun_) begin_stage();
   if (!move_to_look()) return false;
-  if (simulation_.moves()) simulation_.mechanics().commit_creep();  // a look sees the body after its creep
+  if (simulation_.moves()) simulation_.motion().commit_creep();  // a look sees the body after its creep
   add_row();
   courses_[stage_].rows.last = history_.row_count();
   const auto& row = history_.row(history_.row_count() - 1);
@@ -152,7 +151,7 @@ void Run::change_later_stages(std::vector<std::unique_ptr<Stage>> stages) {
   if (stage_is_over_ && !stage_ends_run_ && has_more) outcome_ = Outcome::running;
 }
 
-void Run::check_later_stages(Acting<2> acting) const {
+void Run::check_later_stages(Acting acting) const {
   check(stages_, static_cast<std::size_t>(last_begun_stage() + 1), std::move(acting));
 }
 
@@ -195,12 +194,12 @@ bool Run::move_to_look() {
 
 int Run::batch() const {
   if (calls_.empty()) return most_steps_;
-  const std::int64_t to_call = calls_.begin()->first - simulation_.mechanics().steps();
+  const std::int64_t to_call = calls_.begin()->first - simulation_.motion().steps();
   return static_cast<int>(std::min<std::int64_t>(most_steps_, to_call));
 }
 
 void Run::call_back() {
-  while (!calls_.empty() && calls_.begin()->first <= simulation_.mechanics().steps()) {
+  while (!calls_.empty() && calls_.begin()->first <= simulation_.motion().steps()) {
     const auto call = std::move(calls_.extract(calls_.begin()).mapped());
     call(*this);
   }
@@ -208,9 +207,9 @@ void Run::call_back() {
 
 void Run::call_at(std::int64_t step, std::function<void(Run&)> call) {
   if (!simulation_.moves()) throw Error("nothing moves in this run, so there is no step to call back at");
-  if (step <= simulation_.mechanics().steps())
-    throw Error(fmt::format("step {} is past: the mechanics has done {} steps", step,
-                            simulation_.mechanics().steps()));
+  if (step <= simulation_.motion().steps())
+    throw Error(
+        fmt::format("step {} is past: the mechanics has done {} steps", step, simulation_.motion().steps()));
   calls_.emplace(step, std::move(call));
 }
 

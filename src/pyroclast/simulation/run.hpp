@@ -75,7 +75,7 @@ class Run {
   void change_later_stages(std::vector<std::unique_ptr<Stage>> stages);
   /// Throws Error where stages that have not begun cannot be done, see Stage::check.
   /// \param acting  supports and loads that act now, or are about to act
-  void check_later_stages(Acting<2> acting) const;
+  void check_later_stages(Acting acting) const;
   /// Tells whether a stage has begun and is not over.
   bool stage_is_under_way() const { return stage_is_begun_ && !stage_is_over_; }
   /// Ends the stage that is under way, at the last look or where the run was stopped since. Throws Error
@@ -96,7 +96,7 @@ class Run {
   void visit_state(StateVisitor& visitor);
 
  private:
-  void check(const std::vector<std::unique_ptr<Stage>>& stages, std::size_t first, Acting<2> acting) const;
+  void check(const std::vector<std::unique_ptr<Stage>>& stages, std::size_t first, Acting acting) const;
   void begin_stage();
   bool move_to_look();
   int batch() const;

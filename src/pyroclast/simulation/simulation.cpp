@@ -39,7 +39,7 @@ double available_memory() {
   return available;
 }
 
-TemperatureField make_field(const Model<2>& model, const std::vector<SolidMaterial>& solids,
+TemperatureField make_field(const Model& model, const std::vector<SolidMaterial>& solids,
                             const HeatConditions& heat, const std::shared_ptr<Team>& team) {
   if (heat.uniform) return {model, heat.initial};
   const Interval initial{heat.initial, heat.initial};  // each exposure widens it
@@ -55,32 +55,49 @@ TemperatureField make_field(const Model<2>& model, const std::vector<SolidMateri
                   slit.place.empty() ? "" : slit.place + ": ", slit.name, interface, law, interface));
 }
 
-std::unique_ptr<Mechanics<2>> make_mechanics(const Model<2>& model, const ConcreteMaterials& materials,
-                                             const TemperatureField& field,
-                                             const HottestTemperatures& hottest,
-                                             const MechanicsParameters<2>& parameters,
-                                             const std::shared_ptr<Team>& team) {
+std::unique_ptr<Motion> make_motion_at(const Model& model, const ConcreteMaterials& materials,
+                                       const TemperatureField& field, const HottestTemperatures& hottest,
+                                       const MechanicsParameters& parameters,
+                                       const std::shared_ptr<Team>& team) {
   std::vector<double> densities;
   for (const auto& solid : materials.solids) densities.push_back(solid.density(kReferenceTemperature));
-  return std::make_unique<Mechanics<2>>(model, densities, properties_at(model, materials, field, hottest),
-                                        parameters, team);
-}
-
-Model<2> make_model(const specimen::Specimen& specimen, double thickness,
-                    const std::vector<SetParameters<2>>& sets,
-                    const std::optional<MotionParameters>& motion) {
-  Model<2> model =
-      motion ? make_concrete_model(specimen, thickness, motion->contacts.interfaces, motion->bearings)
-             : make_concrete_model(specimen, thickness);
-  if (motion) model.cut_into_chunks(motion->chunk_blocks);
-  add_sets(model, sets);
-  return model;
+  return make_motion(model, densities, properties_at(model, materials, field, hottest), parameters, team);
 }
 
 constexpr const char* kUpperPlaten = "top_platen";
 
-/// Component of a position along which the press stands.
-constexpr int kVertical = 1;
+std::unique_ptr<Model> required(std::unique_ptr<Model> model) {
+  if (!model || model->block_count() == 0) throw Error("a body without blocks cannot be simulated");
+  if (model->dimension() != 2 && model->thickness != 1.0)
+    throw Error(fmt::format("the thickness of a body in space is {}, but it must be 1", model->thickness));
+  return model;
+}
+
+SpecimenNumbers required(SpecimenNumbers numbers, const std::vector<SolidMaterial>& solids) {
+  if (numbers.fraction.size() > solids.size())
+    throw Error(fmt::format("the specimen has shares of {} phases, but there are {} solids",
+                            numbers.fraction.size(), solids.size()));
+  if (!(numbers.size > 0.0 && numbers.block_size > 0.0 && numbers.mean_size > 0.0))
+    throw Error("the sizes of a specimen and of its blocks must be greater than 0");
+  return numbers;
+}
+
+SpecimenBody make_body(const specimen::Specimen& specimen, double thickness,
+                       const std::vector<SetParameters>& sets,
+                       const std::optional<MotionParameters>& motion) {
+  auto model = std::make_unique<ModelOf<2>>(
+      motion ? make_concrete_model(specimen, thickness, motion->contacts.interfaces, motion->bearings)
+             : make_concrete_model(specimen, thickness));
+  if (motion) model->cut_into_chunks(motion->chunk_blocks);
+  add_sets(*model, sets);
+  SpecimenBody body{std::move(model), numbers_of(specimen), specimen.region.notches(), {}};
+  const auto is_upper = [](const Bearing& bearing) { return bearing.name == kUpperPlaten; };
+  if (motion && std::ranges::any_of(motion->bearings, is_upper)) {
+    const specimen::Box& box = specimen.region.box();
+    body.between_platens = {kVertical, box.height(), thickness * box.width(), {box.width()}};
+  }
+  return body;
+}
 
 }  // namespace
 
@@ -89,54 +106,65 @@ bool follows_composition(const std::vector<SolidMaterial>& solids, const MotionP
 }
 
 ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const MotionParameters& motion,
-                                 const specimen::Specimen& specimen) {
-  auto materials =
-      make_concrete(solids, motion.contacts, specimen.metrics.mean_size, specimen::block_size(specimen));
+                                 const SpecimenNumbers& specimen) {
+  auto materials = make_concrete(solids, motion.contacts, specimen.mean_size, specimen.block_size);
   materials.on_cooling = motion.on_cooling;
   if (follows_composition(solids, motion))
     follow_composition(materials, motion.contacts, motion.strain_of_concrete, specimen.fraction,
-                       specimen.metrics.mean_size);
+                       specimen.mean_size);
   if (motion.stress_free && !motion.stress_free->is_field())
     set_stress_free(materials, motion.stress_free->temperatures.front());
   return materials;
 }
 
+SpecimenNumbers numbers_of(const specimen::Specimen& specimen) {
+  return {specimen.fraction, specimen.metrics.mean_size, specimen::block_size(specimen),
+          std::sqrt(specimen.region.area())};
+}
+
 Simulation::Simulation(specimen::Specimen specimen, double thickness,
-                       const std::vector<SolidMaterial>& solids, const std::vector<SetParameters<2>>& sets,
+                       const std::vector<SolidMaterial>& solids, const std::vector<SetParameters>& sets,
+                       const HeatConditions& heat, const std::vector<ProbePosition>& probes,
+                       const std::vector<RecordParameters>& records,
+                       const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team)
+    : Simulation(make_body(specimen, thickness, sets, motion), solids, heat, probes, records, motion,
+                 std::move(team)) {
+  specimen_ = std::move(specimen);
+}
+
+Simulation::Simulation(SpecimenBody body, const std::vector<SolidMaterial>& solids,
                        const HeatConditions& heat, const std::vector<ProbePosition>& probes,
                        const std::vector<RecordParameters>& records,
                        const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team)
     : team_(std::move(team)),
-      specimen_(std::move(specimen)),
-      model_(make_model(specimen_, thickness, sets, motion)),
-      heat_(with_specimen(heat, solids, specimen_)),
-      field_(make_field(model_, solids, heat_, team_)) {
-  for (const auto& probe : probes) probes_.emplace_back(model_, probe);
+      model_(required(std::move(body.model))),
+      numbers_(required(std::move(body.numbers), solids)),
+      heat_(with_specimen(heat, solids, numbers_.fraction, numbers_.mean_size)),
+      field_(make_field(*model_, solids, heat_, team_)) {
+  for (const auto& probe : probes) probes_.emplace_back(*model_, probe);
   if (!motion) {
-    for (const RecordParameters& record : records) records_.emplace_back(model_, nullptr, record);
+    for (const RecordParameters& record : records) records_.emplace_back(*model_, false, record);
     show_cracks_to_heat();
     return;
   }
-  materials_ = make_materials(solids, *motion, specimen_);
+  materials_ = make_materials(solids, *motion, numbers_);
   std::vector<double> stress_free;
   if (motion->stress_free && motion->stress_free->is_field())
-    stress_free = stress_free_gridpoints(*motion->stress_free, model_, specimen_.metrics.mean_size);
-  hottest_ = HottestTemperatures(model_, materials_, field_, stress_free);
-  mechanics_ = make_mechanics(model_, materials_, field_, hottest_, motion->mechanics, team_);
-  for (const specimen::Notch& notch : specimen_.region.notches())
-    if (const auto parted = model_.contact_sets.find(notch.name); parted != model_.contact_sets.end())
+    stress_free = stress_free_gridpoints(*motion->stress_free, *model_, numbers_.mean_size);
+  hottest_ = HottestTemperatures(*model_, materials_, field_, stress_free);
+  motion_ = make_motion_at(*model_, materials_, field_, hottest_, motion->mechanics, team_);
+  for (const specimen::Notch& notch : body.notches)
+    if (const auto parted = model_->contact_sets.find(notch.name); parted != model_->contact_sets.end())
       for (int contact : parted->second)
-        if (!mechanics_->break_contact(contact)) {
-          const int interface = model_.contacts[contact].interface;
-          refuse_slit(notch, model_.interface_names[interface], materials_.contacts[interface].law->name);
+        if (!motion_->break_contact(contact)) {
+          const int interface = model_->joint(contact).interface;
+          refuse_slit(notch, model_->interface_names[interface], materials_.contacts[interface].law->name);
         }
   show_cracks_to_heat();
-  supports_ = std::make_unique<Supports<2>>(model_);
-  loads_ = std::make_unique<Loads<2>>(*mechanics_, body_size());
-  for (const RecordParameters& record : records) records_.emplace_back(model_, mechanics_.get(), record);
-  if (std::ranges::find(motion->bearings, kUpperPlaten, &Bearing::name) == motion->bearings.end()) return;
-  const specimen::Box& box = specimen_.region.box();
-  press_ = std::make_unique<Press<2>>(*mechanics_, kVertical, box.height(), std::array{box.width()});
+  supports_ = std::make_unique<Supports>(*model_);
+  loads_ = std::make_unique<Loads>(*motion_, body_size());
+  for (const RecordParameters& record : records) records_.emplace_back(*model_, true, record);
+  if (body.between_platens) press_ = std::make_unique<Press>(*motion_, *body.between_platens);
 }
 
 const Record& Simulation::record(std::string_view name) const {
@@ -157,7 +185,7 @@ void Simulation::hold(const std::string& set, int component, const HeldMotion& m
 }
 
 void Simulation::drive(const std::string& set, int component, double velocity) {
-  for (int g : model_.set(set)) mechanics_->constraints().prescribe_velocity(g, component, velocity);
+  for (int g : model_->set(set)) motion_->constraints().prescribe_velocity(g, component, velocity);
 }
 
 void Simulation::halt(const std::string& set, int component) {
@@ -167,8 +195,8 @@ void Simulation::halt(const std::string& set, int component) {
 
 void Simulation::release(const std::string& set, int component, const std::string& place) {
   supports_->release(set, component, place);
-  for (int g : model_.set(set))
-    if (!supports_->holds(g, component)) mechanics_->constraints().release(g, component);
+  for (int g : model_->set(set))
+    if (!supports_->holds(g, component)) motion_->constraints().release(g, component);
 }
 
 const char* Simulation::coupling_of_heat() const {
@@ -177,18 +205,18 @@ const char* Simulation::coupling_of_heat() const {
 }
 
 void Simulation::show_cracks_to_heat() {
-  if (cracks_hinder_heat()) field_.set_gaps(contact_gaps(model_, heat_.cracks->gaps, mechanics_.get()));
+  if (cracks_hinder_heat()) field_.set_gaps(contact_gaps(*model_, heat_.cracks->gaps, motion_.get()));
 }
 
 void Simulation::set_materials(ConcreteMaterials materials) {
-  mechanics_->set_properties(properties_at(model_, materials, field_, hottest_));
+  motion_->set_properties(properties_at(*model_, materials, field_, hottest_));
   materials_ = std::move(materials);
   hottest_.note_exchange(field_);
 }
 
 void Simulation::hand_over() {
-  earlier_ = mechanics_->set_properties(
-      properties_at(model_, materials_, field_, hottest_, std::exchange(earlier_, {})));
+  earlier_ = motion_->set_properties(
+      properties_at(*model_, materials_, field_, hottest_, std::exchange(earlier_, {})));
   hottest_.note_exchange(field_);
 }
 
@@ -210,7 +238,7 @@ void Simulation::visit_state(StateVisitor& visitor) {
   }
   {
     const StateVisitor::Scope scope(visitor, "mechanics");
-    mechanics_->visit_state(visitor);
+    motion_->visit_state(visitor);
   }
   {
     const StateVisitor::Scope scope(visitor, "loads");
@@ -238,30 +266,35 @@ specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& par
   return specimen::make_specimen(parameters, team);
 }
 
-double estimate_modulus(const Model<2>& model, const ConcreteMaterials& materials, double temperature) {
-  const auto geometry = zone_geometry(model);
+double estimate_modulus(const Model& model, const ConcreteMaterials& materials, double temperature,
+                        int axis) {
+  const auto volumes = model.zone_volumes();
   const auto blocks = zone_blocks(model);
   double volume = 0.0, compliance = 0.0;
   for (int z = 0; z < model.zone_count(); ++z) {
     if (model.is_of_bearing(blocks[z])) continue;
-    volume += geometry.volume[z];
-    compliance += geometry.volume[z] / materials.solids[model.block_material[blocks[z]]].young(temperature);
+    volume += volumes[z];
+    compliance += volumes[z] / materials.solids[model.block_material[blocks[z]]].young(temperature);
   }
-  for (const auto& c : model.contacts) {
+  for (int i = 0; i < model.contact_count(); ++i) {
+    const Joint& c = model.joint(i);
     if (model.is_of_bearing(c)) continue;
     const auto k = materials.contacts[c.interface].at(temperature).stiffness();
-    const double normal = c.normal[1] * c.normal[1];           // traction over stress, along the normal
-    const double tangential = c.normal[1] * c.tangents[0][1];  // and along the face
-    compliance += c.area * (normal * normal / k.normal + tangential * tangential / k.shear);
+    const Vec<3> n = model.normal(i);
+    const double normal = n[axis] * n[axis];  // traction over stress, along the normal
+    double tangential = 0.0;                  // and along the face, squared
+    for (int other = 0; other < 3; ++other)
+      if (other != axis) tangential += n[axis] * n[other] * (n[axis] * n[other]);
+    compliance += c.area * (normal * normal / k.normal + tangential / k.shear);
   }
   return volume / compliance;
 }
 
 double wave_time(const Simulation& simulation) {
-  const Press<2>& press = simulation.press();
+  const Press& press = simulation.press();
   const double modulus =
-      estimate_modulus(simulation.model(), simulation.materials(), simulation.field().mean());
-  const double mass = simulation.mechanics().totals().total_moving_mass(press.specimen());
+      estimate_modulus(simulation.model(), simulation.materials(), simulation.field().mean(), press.axis());
+  const double mass = simulation.motion().totals().total_moving_mass(press.specimen());
   return press.height() * std::sqrt(mass / press.volume() / modulus);
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -10,7 +9,7 @@
 
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/material/concrete.hpp"
-#include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/mechanics/motion.hpp"
 #include "pyroclast/model/concrete_model.hpp"
 #include "pyroclast/model/sets.hpp"
 #include "pyroclast/simulation/coupling.hpp"
@@ -33,8 +32,29 @@ struct MotionParameters {
   std::optional<StrainOfConcrete> strain_of_concrete;  ///< strain of the concrete, where phases follow it
   OnCooling on_cooling = OnCooling::irreversible;
   std::optional<StressFree> stress_free;  ///< temperature without stress; else the reference temperature
-  MechanicsParameters<2> mechanics;
+  MechanicsParameters mechanics;
   int chunk_blocks = kBlocksOfAChunk;  ///< largest number of blocks in a chunk, which only tests change
+};
+
+/// Numbers of a specimen that materials, heat and exchanges ask for.
+struct SpecimenNumbers {
+  std::vector<double> fraction;  ///< share of each phase, in the order of the solids
+  double mean_size = 0.0;        ///< mean size of its blocks, m, see specimen::Metrics
+  double block_size = 0.0;  ///< size of a block that counts for fracture zones, m, see specimen::block_size
+  /// Side of the square of its area, m, against which lengths of the body are measured; of a solid the edge
+  /// of the cube of its volume.
+  double size = 0.0;
+};
+
+SpecimenNumbers numbers_of(const specimen::Specimen& specimen);
+
+/// Body of a simulation, in the plane or in space: the model of a specimen and what is known of it. Its
+/// gridpoints have a set "specimen"; between platens they have the sets of Press.
+struct SpecimenBody {
+  std::unique_ptr<Model> model;
+  SpecimenNumbers numbers;
+  std::vector<specimen::Notch> notches;  ///< a notch without width parts the contacts of its name
+  std::optional<Press::Specimen> between_platens;
 };
 
 /// Tells whether phases follow the composition of their specimen, see follow_composition.
@@ -42,9 +62,9 @@ bool follows_composition(const std::vector<SolidMaterial>& solids, const MotionP
 
 /// Makes the materials of a specimen. Throws Error, see make_concrete and follow_composition.
 ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const MotionParameters& motion,
-                                 const specimen::Specimen& specimen);
+                                 const SpecimenNumbers& specimen);
 
-/// Specimen as a model and its temperatures; where a stage moves it, also its mechanics and loads, and the
+/// Specimen as a model and its temperatures; where a stage moves it, also its motion and loads, and the
 /// press around it where there are platens. A simulation cannot be moved: the solvers refer to the model
 /// beside them.
 class Simulation {
@@ -60,7 +80,12 @@ class Simulation {
   /// Throws Error when the model or a solver cannot be made, see make_conduction and properties_at, or a
   /// probe lies outside.
   Simulation(specimen::Specimen specimen, double thickness, const std::vector<SolidMaterial>& solids,
-             const std::vector<SetParameters<2>>& sets, const HeatConditions& heat,
+             const std::vector<SetParameters>& sets, const HeatConditions& heat,
+             const std::vector<ProbePosition>& probes, const std::vector<RecordParameters>& records,
+             const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team);
+  /// Takes a body that was made elsewhere. Its model has the bearings, interfaces and chunks already, so
+  /// those of `motion` are not used. Throws Error as above, and for a body that is none.
+  Simulation(SpecimenBody body, const std::vector<SolidMaterial>& solids, const HeatConditions& heat,
              const std::vector<ProbePosition>& probes, const std::vector<RecordParameters>& records,
              const std::optional<MotionParameters>& motion, std::shared_ptr<Team> team);
   Simulation(const Simulation&) = delete;
@@ -68,11 +93,16 @@ class Simulation {
 
   /// Returns the team, whose number of threads may change between two batches.
   Team& team() { return *team_; }
-  const specimen::Specimen& specimen() const { return specimen_; }
-  /// Returns the side of the square of the specimen's area, m, against which lengths of the body are
-  /// measured.
-  double body_size() const { return std::sqrt(specimen_.region.area()); }
-  const Model<2>& model() const { return model_; }
+  /// Tells whether the body was made of a specimen here, not elsewhere.
+  bool has_specimen() const { return specimen_.has_value(); }
+  const specimen::Specimen& specimen() const { return *specimen_; }
+  const SpecimenNumbers& numbers() const { return numbers_; }
+  double body_size() const { return numbers_.size; }
+  /// Returns the area across a square or a cube of this side, m².
+  double area_across(double side) const {
+    return side * (model_->dimension() == 2 ? model_->thickness : side);
+  }
+  const Model& model() const { return *model_; }
   const ConcreteMaterials& materials() const { return materials_; }
   /// Sets other properties from now on, at the present temperatures, as an exchange of temperatures does, see
   /// `hand_over`. Densities and laws stay, and whether anything creeps.
@@ -90,13 +120,13 @@ class Simulation {
   /// flows, at each exchange of temperatures.
   void show_cracks_to_heat();
 
-  /// Tells whether there are mechanics.
-  bool moves() const { return mechanics_ != nullptr; }
-  Mechanics<2>& mechanics() { return *mechanics_; }
-  const Mechanics<2>& mechanics() const { return *mechanics_; }
-  Loads<2>& loads() { return *loads_; }
-  const Loads<2>& loads() const { return *loads_; }
-  const Supports<2>& supports() const { return *supports_; }
+  /// Tells whether the body moves.
+  bool moves() const { return motion_ != nullptr; }
+  Motion& motion() { return *motion_; }
+  const Motion& motion() const { return *motion_; }
+  Loads& loads() { return *loads_; }
+  const Loads& loads() const { return *loads_; }
+  const Supports& supports() const { return *supports_; }
   /// Lets a set take hold of a component, or move on in another way, at a velocity from the next step on; see
   /// Supports::hold.
   void hold(const std::string& set, int component, const HeldMotion& motion, const std::string& place);
@@ -113,8 +143,8 @@ class Simulation {
   void set_zero();
 
   bool has_press() const { return press_ != nullptr; }
-  Press<2>& press() { return *press_; }
-  const Press<2>& press() const { return *press_; }
+  Press& press() { return *press_; }
+  const Press& press() const { return *press_; }
 
   /// Returns the time since heating began, s, of the temperatures to which the last exchange or conduction
   /// came.
@@ -136,19 +166,20 @@ class Simulation {
 
  private:
   std::shared_ptr<Team> team_;
-  specimen::Specimen specimen_;
-  Model<2> model_;
+  std::optional<specimen::Specimen> specimen_;
+  std::unique_ptr<Model> model_;
+  SpecimenNumbers numbers_;
   ConcreteMaterials materials_;
   HeatConditions heat_;
   TemperatureField field_;
   HottestTemperatures hottest_;
   BodyProperties earlier_;  ///< properties before the last exchange, whose memory serves the next one
   std::vector<Probe> probes_;
-  std::unique_ptr<Mechanics<2>> mechanics_;
-  std::unique_ptr<Loads<2>> loads_;
-  std::unique_ptr<Supports<2>> supports_;
+  std::unique_ptr<Motion> motion_;
+  std::unique_ptr<Loads> loads_;
+  std::unique_ptr<Supports> supports_;
   std::vector<Record> records_;
-  std::unique_ptr<Press<2>> press_;
+  std::unique_ptr<Press> press_;
   double heating_time_ = 0.0;
   std::int64_t exchanges_ = 0;
 };
@@ -162,11 +193,14 @@ double estimate_memory(std::int64_t blocks);
 specimen::Specimen make_checked_specimen(const specimen::SpecimenParameters& parameters,
                                          Team* team = nullptr);
 
-/// Returns a lower estimate of Young's modulus of the model in the vertical direction, Pa: the same vertical
-/// stress everywhere, compliances of zones and contacts added up (Reuss), without platens.
+/// Component of a position along which the press of a deck stands.
+inline constexpr int kVertical = 1;
+
+/// Returns a lower estimate of Young's modulus of the model along an axis, Pa: the same stress along it
+/// everywhere, compliances of zones and contacts added up (Reuss), without platens.
 /// \param temperature  °C
-double estimate_modulus(const Model<2>& model, const ConcreteMaterials& materials,
-                        double temperature = kReferenceTemperature);
+double estimate_modulus(const Model& model, const ConcreteMaterials& materials,
+                        double temperature = kReferenceTemperature, int axis = kVertical);
 
 /// Returns the time in which a stress wave runs through the uncracked specimen from platen to platen once, at
 /// its mean temperature and with the mass that moves, s.

@@ -134,7 +134,7 @@ class Stage {
 
   /// Throws Error where the stage cannot be done, before any stage is begun.
   /// \param acting  supports and loads before the stage, which changes them to those that it leaves
-  virtual void check(const Simulation&, Acting<2>&) const {}
+  virtual void check(const Simulation&, Acting&) const {}
   /// Tells whether the stage loads the body from outside.
   virtual bool loads() const { return false; }
   /// Prepares supports and loads of the body; moves nothing.

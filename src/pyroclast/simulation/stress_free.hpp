@@ -11,7 +11,7 @@ namespace pyroclast {
 
 /// Temperature at which nothing is strained: one for the whole specimen, or a field that another run left.
 struct StressFree {
-  std::vector<Vec<2>> places;        ///< gridpoints of the other run, m; none for one temperature
+  std::vector<Vec<3>> places;        ///< gridpoints of the other run, m; none for one temperature
   std::vector<double> temperatures;  ///< temperature of each place, or the one temperature, °C
   std::string place;                 ///< place in the deck, for messages
 
@@ -23,6 +23,6 @@ struct StressFree {
 /// temperature. Throws Error where no place is near enough.
 ///
 /// \param reach  largest distance of the nearest place, m
-std::vector<double> stress_free_gridpoints(const StressFree& field, const Model<2>& model, double reach);
+std::vector<double> stress_free_gridpoints(const StressFree& field, const Model& model, double reach);
 
 }  // namespace pyroclast

@@ -1,14 +1,13 @@
 #pragma once
 
 #include "pyroclast/base/chunked_sum.hpp"
-#include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/model/model.hpp"
 
 namespace pyroclast {
 
 /// Returns the mean of one component of the positions of a set in the reference configuration, m.
-template <int Dim>
-double mean_position(const Model<Dim>& model, const GridpointSet& set, int axis) {
-  const double sum = chunked_sum(set.chunks, [&](int i) { return model.position[set.gridpoints[i]][axis]; });
+inline double mean_position(const Model& model, const GridpointSet& set, int axis) {
+  const double sum = chunked_sum(set.chunks, [&](int i) { return model.place(set.gridpoints[i])[axis]; });
   return sum / set.chunks.own_items();
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/simulation/simulation.hpp"
@@ -15,44 +16,73 @@ namespace {
 /// Distance of two held lines below which they are one, in sizes of the body.
 constexpr double kSameLine = 1e-6;
 
+/// Rigid motions that supports hinder: the space of equations, as orthonormal rows.
+class RigidMotions {
+ public:
+  explicit RigidMotions(int dimension) : dimension_(dimension) {}
+
+  /// Hinders a component of the motion of a point: v_c + (omega x r)_c = 0.
+  void hinder(const Vec<3>& r, int component) {
+    if (are_all_hindered()) return;
+    std::array<double, 6> row{};
+    row[component] = 1.0;
+    const int i = (component + 1) % 3, j = (component + 2) % 3;
+    if (dimension_ == 3 || i == 2) row[3 + i] = r[j];
+    if (dimension_ == 3 || j == 2) row[3 + j] = -r[i];
+    for (const auto& known : rows_) {
+      double share = 0.0;
+      for (std::size_t k = 0; k < row.size(); ++k) share += row[k] * known[k];
+      for (std::size_t k = 0; k < row.size(); ++k) row[k] -= share * known[k];
+    }
+    double length = 0.0;
+    for (const double number : row) length += number * number;
+    length = std::sqrt(length);
+    if (length <= kSameLine) return;
+    for (double& number : row) number /= length;
+    rows_.push_back(row);
+  }
+  bool are_all_hindered() const { return static_cast<int>(rows_.size()) == (dimension_ == 2 ? 3 : 6); }
+
+ private:
+  int dimension_;
+  std::vector<std::array<double, 6>> rows_;
+};
+
 }  // namespace
 
-/// Describes a motion that nothing hinders. A gridpoint whose component is held hinders motion along a line,
-/// in the direction of the component. All such lines hinder any turn but one about a point that lies on each
-/// of them.
-template <>
-std::optional<std::string> Supports<2>::free_motion() const {
-  const auto size_of = [&] {
-    double size = 0.0;
-    for (const auto& x : model_.position) size = std::max(size, norm(x - model_.position.front()));
-    return size;
-  };
-  std::array<bool, 2> any{};
-  // least and most by component: y of the lines along x, and x of the lines along y
-  std::array<double, 2> least{{1e300, 1e300}}, most{{-1e300, -1e300}};
+/// Describes a motion that nothing hinders. A rigid motion has a velocity and a turn: two and one numbers in
+/// 2D, three and three in 3D. A gridpoint whose component is held gives one equation for them, scaled so that
+/// turns count by the size of the body. Motions are free where the equations leave some undetermined.
+std::optional<std::string> Supports::free_motion() const {
+  const int dimension = model_.dimension();
+  double size = 0.0;
+  const Vec<3> origin = model_.place(0);
+  for (int g = 0; g < model_.gridpoint_count(); ++g) size = std::max(size, norm(model_.place(g) - origin));
+
+  RigidMotions held(dimension);
+  std::array<bool, 3> any{};
   for (int g = 0; g < model_.gridpoint_count(); ++g)
-    for (const int c : {0, 1})
+    for (int c = 0; c < dimension; ++c)
       if (holders_[g][c] > 0) {
         any[c] = true;
-        least[c] = std::min(least[c], model_.position[g][1 - c]);
-        most[c] = std::max(most[c], model_.position[g][1 - c]);
+        held.hinder((model_.place(g) - origin) * (1.0 / size), c);
       }
-  if (!any[0] && !any[1]) return "along x and y, and turning";
-  if (!any[0]) return "along x";
-  if (!any[1]) return "along y";
-  const double tolerance = kSameLine * size_of();
-  if (most[0] - least[0] <= tolerance && most[1] - least[1] <= tolerance) return "turning about one point";
-  return std::nullopt;
+  if (held.are_all_hindered()) return std::nullopt;
+  std::vector<std::string> along;
+  for (int c = 0; c < dimension; ++c)
+    if (!any[c]) along.push_back(std::string(1, "xyz"[c]));
+  std::string free = along.empty() ? "" : fmt::format("along {}", fmt::join(along, " and "));
+  if (static_cast<int>(along.size()) == dimension) return free + ", and turning";
+  if (!free.empty()) return free;
+  return dimension == 2 ? "turning about one point" : "turning";
 }
 
-template <int Dim>
-void Supports<Dim>::count(const std::string& set, int component, int more) {
+void Supports::count(const std::string& set, int component, int more) {
   for (int g : model_.set(set)) holders_[g][component] += more;
 }
 
-template <int Dim>
-void Supports<Dim>::hold(const std::string& set, int component, const HeldMotion& motion,
-                         const std::string& place) {
+void Supports::hold(const std::string& set, int component, const HeldMotion& motion,
+                    const std::string& place) {
   const auto& own = model_.set(set);
   for (const auto& [key, other] : held_) {
     if (key.second != component || key.first == set || other.motion.is_like(motion)) continue;
@@ -69,8 +99,7 @@ void Supports<Dim>::hold(const std::string& set, int component, const HeldMotion
   if (held_.insert_or_assign({set, component}, Held{motion, place}).second) count(set, component, 1);
 }
 
-template <int Dim>
-void Supports<Dim>::release(const std::string& set, int component, const std::string& place) {
+void Supports::release(const std::string& set, int component, const std::string& place) {
   if (held_.erase({set, component}) > 0) {
     count(set, component, -1);
     return;
@@ -84,14 +113,12 @@ void Supports<Dim>::release(const std::string& set, int component, const std::st
                   place, set, "xyz"[component], who));
 }
 
-template <int Dim>
-void Supports<Dim>::halt(const std::string& set, int component) {
+void Supports::halt(const std::string& set, int component) {
   const auto found = held_.find({set, component});
   if (found != held_.end()) found->second.motion = {};
 }
 
-template <int Dim>
-std::string Supports<Dim>::place_of(int gridpoint, int component) const {
+std::string Supports::place_of(int gridpoint, int component) const {
   for (const auto& [key, held] : held_)
     if (key.second == component &&
         std::ranges::find(model_.set(key.first), gridpoint) != model_.set(key.first).end())
@@ -99,8 +126,7 @@ std::string Supports<Dim>::place_of(int gridpoint, int component) const {
   return {};
 }
 
-template <int Dim>
-void Supports<Dim>::visit_state(StateVisitor& visitor) {
+void Supports::visit_state(StateVisitor& visitor) {
   std::vector<std::string> sets, places;
   std::vector<int> components;
   std::vector<HeldMotion> motions;
@@ -118,7 +144,7 @@ void Supports<Dim>::visit_state(StateVisitor& visitor) {
     are_free.push_back(motion.is_free ? 1 : 0);
   }
   visitor.visit("sets", sets);
-  visitor.visit("components", components, state::index(Dim).of(sets.size()));
+  visitor.visit("components", components, state::index(model_.dimension()).of(sets.size()));
   visitor.visit("places", places);
   visitor.require(places.size() == sets.size(), "places", "are not as many as the sets");
   visitor.visit("velocities", velocities, state::finite().of(sets.size()));
@@ -126,7 +152,7 @@ void Supports<Dim>::visit_state(StateVisitor& visitor) {
   visitor.visit("are_free", are_free, state::within(0, 1).of(sets.size()));
   if (!visitor.replaces()) return;
   held_.clear();
-  std::ranges::fill(holders_, std::array<int, Dim>{});
+  std::ranges::fill(holders_, std::array<int, 3>{});
   for (std::size_t i = 0; i < sets.size(); ++i) {
     held_[{sets[i], components[i]}] = {{velocities[i], ramp_times[i], are_free[i] != 0}, places[i]};
     count(sets[i], components[i], 1);
@@ -134,11 +160,10 @@ void Supports<Dim>::visit_state(StateVisitor& visitor) {
 }
 
 bool has_weight(const Simulation& simulation) {
-  const Vec<2> gravity = simulation.mechanics().body().state.gravity;
-  return gravity[0] != 0.0 || gravity[1] != 0.0;
+  return simulation.motion().parameters().gravity != Vec<3>{};
 }
 
-void require_held(const Simulation& simulation, const Supports<2>& supports, const std::string& what) {
+void require_held(const Simulation& simulation, const Supports& supports, const std::string& what) {
   if (simulation.has_press()) return;
   if (const auto motion = supports.free_motion())
     throw Error(
@@ -146,7 +171,5 @@ void require_held(const Simulation& simulation, const Supports<2>& supports, con
                     "a set of it by a drive, or set gravity to 0",
                     what, *motion));
 }
-
-template class Supports<2>;
 
 }  // namespace pyroclast

@@ -30,10 +30,9 @@ struct HeldMotion {
 /// stages matters. Sets that share a gridpoint may hold it alike, and not otherwise.
 ///
 /// The class serves a run, and the check of its stages before it.
-template <int Dim>
 class Supports {
  public:
-  explicit Supports(const Model<Dim>& model) : model_(model), holders_(model.position.size()) {}
+  explicit Supports(const Model& model) : model_(model), holders_(model.gridpoint_count()) {}
 
   /// Lets a set take hold of a component, or go on holding it in another way. Throws Error, which names both
   /// places, where another set holds one of its gridpoints in an unlike way.
@@ -65,18 +64,15 @@ class Supports {
   };
   void count(const std::string& set, int component, int more);
 
-  const Model<Dim>& model_;
+  const Model& model_;
   std::map<std::pair<std::string, int>, Held> held_;  ///< holds by set and component
-  std::vector<std::array<int, Dim>> holders_;         ///< number of holders by gridpoint and component
+  std::vector<std::array<int, 3>> holders_;           ///< number of holders by gridpoint and component
 };
-
-template <>
-std::optional<std::string> Supports<2>::free_motion() const;
 
 bool has_weight(const Simulation& simulation);
 
 /// Throws Error where nothing hinders the body from moving as a whole, and no press holds it.
 /// \param what  action that is about to begin, for the message
-void require_held(const Simulation& simulation, const Supports<2>& supports, const std::string& what);
+void require_held(const Simulation& simulation, const Supports& supports, const std::string& what);
 
 }  // namespace pyroclast

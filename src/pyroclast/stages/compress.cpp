@@ -109,7 +109,7 @@ StageKind compress_kind() {
 }
 
 void Compress::begin(Simulation& simulation) {
-  Press<2>& press = simulation.press();
+  Press& press = simulation.press();
   kept_.first_left = left(simulation);
   kept_.is_upwards = kept_.first_left < 0.0;
   kept_.wave_time = wave_time(simulation);
@@ -120,13 +120,13 @@ void Compress::begin(Simulation& simulation) {
   }
   press.control_by_motion(keys_.velocity);
   kept_.gap_steps_left =
-      static_cast<std::int64_t>(whole_below(gap / (keys_.velocity * simulation.mechanics().time_step())));
+      static_cast<std::int64_t>(whole_below(gap / (keys_.velocity * simulation.motion().time_step())));
   if (kept_.gap_steps_left == 0) begin_loading(simulation);
 }
 
 void Compress::close_gap(Simulation& simulation, int most_steps) {
   const auto steps = std::min<std::int64_t>(kept_.gap_steps_left, most_steps);
-  simulation.mechanics().advance(static_cast<int>(steps));
+  simulation.motion().advance(static_cast<int>(steps));
   kept_.gap_steps_left -= steps;
   if (kept_.gap_steps_left == 0) begin_loading(simulation);
 }
@@ -136,20 +136,20 @@ void Compress::begin_loading(Simulation& simulation) {
   simulation.press().control_by_motion(0.0);
   kept_.is_loading = true;
   kept_.next_frame = keys_.frame_strain;
-  kept_.dissipated = simulation.mechanics().totals().energy().dissipated.total();
+  kept_.dissipated = simulation.motion().totals().energy().dissipated.total();
   take_point(simulation);
 }
 
 /// Returns the steps in which the platen moves by a strain at its full velocity.
 std::int64_t Compress::steps_in(const Simulation& simulation, double strain) const {
-  const double shortening_per_step = keys_.velocity * simulation.mechanics().time_step();
+  const double shortening_per_step = keys_.velocity * simulation.motion().time_step();
   const double steps = std::round(strain * simulation.press().height() / shortening_per_step);
   return static_cast<std::int64_t>(std::clamp(steps, 1.0, kMostSteps));
 }
 
 void Compress::take_point(Simulation& simulation) {
-  kept_.curve.add(simulation.press(), simulation.mechanics());
-  const double time = static_cast<double>(kept_.steps) * simulation.mechanics().time_step();
+  kept_.curve.add(simulation.press(), simulation.motion());
+  const double time = static_cast<double>(kept_.steps) * simulation.motion().time_step();
   if (time < kPassages * kept_.wave_time) return;
   kept_.peak.take(kept_.curve.strain.back(), kept_.curve.stress.back(), kStrengthRule);
   kept_.largest_stress = std::max(kept_.largest_stress, kept_.curve.stress.back());
@@ -164,19 +164,19 @@ bool Compress::advance(Simulation& simulation, int most_steps) {
 }
 
 bool Compress::move_at_velocity(Simulation& simulation, int most_steps) {
-  Mechanics<2>& mechanics = simulation.mechanics();
+  Motion& motion = simulation.motion();
   if (kept_.steps_left == 0) kept_.steps_left = steps_in(simulation, keys_.history_strain);
   if (kept_.steps_to_point == 0) {
     kept_.steps_to_point = steps_in(simulation, kPointStrain);
     // the velocity is that of the ramp one point ahead, so that it leaves zero
     const double ahead = keys_.ramp_time > 0.0 ? static_cast<double>(kept_.steps_to_point) *
-                                                     mechanics.time_step() / keys_.ramp_time
+                                                     motion.time_step() / keys_.ramp_time
                                                : 0.0;
-    const double share = ramp_share(kept_.steps, mechanics.time_step(), keys_.ramp_time);
+    const double share = ramp_share(kept_.steps, motion.time_step(), keys_.ramp_time);
     simulation.press().move_platen(direction() * keys_.velocity * std::min(1.0, share + ahead));
   }
   const auto steps = std::min<std::int64_t>({kept_.steps_left, kept_.steps_to_point, most_steps});
-  mechanics.advance(static_cast<int>(steps));
+  motion.advance(static_cast<int>(steps));
   kept_.steps += steps;
   kept_.steps_left -= steps;
   kept_.steps_to_point -= steps;
@@ -187,19 +187,19 @@ bool Compress::move_at_velocity(Simulation& simulation, int most_steps) {
 /// Moves on towards the next look, as fast as the tolerances bear; returns true when the look is reached. A
 /// change of the velocity shakes the body, so the velocity changes gently.
 bool Compress::move_controlled(Simulation& simulation, int most_steps) {
-  Mechanics<2>& mechanics = simulation.mechanics();
+  Motion& motion = simulation.motion();
   if (kept_.steps_left == 0) {
     choose_velocity(simulation);
     simulation.press().move_platen(direction() * kept_.velocity);
     kept_.steps_left = kStepsPerChoice;
   }
   const auto steps = std::min<std::int64_t>(kept_.steps_left, most_steps);
-  mechanics.advance(static_cast<int>(steps));
+  motion.advance(static_cast<int>(steps));
   kept_.steps += steps;
   kept_.steps_left -= steps;
   if (kept_.steps_left > 0) return false;
   const auto came_by = [&](double& way, double strain) {
-    way += kept_.velocity * (kStepsPerChoice * mechanics.time_step());
+    way += kept_.velocity * (kStepsPerChoice * motion.time_step());
     if (way < strain * simulation.press().height()) return false;
     way = 0.0;
     return true;
@@ -209,7 +209,7 @@ bool Compress::move_controlled(Simulation& simulation, int most_steps) {
 }
 
 void Compress::choose_velocity(const Simulation& simulation) {
-  const double time_step = simulation.mechanics().time_step();
+  const double time_step = simulation.motion().time_step();
   const double time = kStepsPerChoice * time_step;
   const double most = time / keys_.ramp_time;
   const double share = ramp_share(kept_.steps, time_step, keys_.ramp_time);
@@ -226,14 +226,14 @@ void Compress::choose_velocity(const Simulation& simulation) {
 /// \param time  time since the last call, s
 double Compress::excess(const Simulation& simulation, double time) {
   const VelocityControl& control = *keys_.control;
-  const EnergyLedger energy = simulation.mechanics().totals().energy();
+  const EnergyLedger energy = simulation.motion().totals().energy();
   const double elastic = energy.elastic();
   const double power =
       (energy.dissipated.total() - std::exchange(kept_.dissipated, energy.dissipated.total())) / time;
   const double top = simulation.press().stress_top(), bottom = simulation.press().stress_bottom();
   const double largest = std::max(kept_.largest_stress, 0.5 * (top + bottom));
   if (!(elastic > 0.0 && largest > 0.0)) return 1.0;  // the platen has not met the specimen yet
-  return std::max({simulation.mechanics().totals().unbalanced_ratio() / control.unbalanced_ratio,
+  return std::max({simulation.motion().totals().unbalanced_ratio() / control.unbalanced_ratio,
                    std::sqrt(std::abs(energy.kinetic) / elastic / control.kinetic_over_strain),
                    std::abs(top - bottom) / largest / control.platen_difference,
                    power / elastic / control.dissipation_rate});
@@ -241,7 +241,7 @@ double Compress::excess(const Simulation& simulation, double time) {
 
 /// Returns the distance to the end of the stage, strain or Pa; negative upwards.
 double Compress::left(const Simulation& simulation) const {
-  const Press<2>& press = simulation.press();
+  const Press& press = simulation.press();
   switch (keys_.until) {
     case CompressUntil::strain:
       return keys_.to - press.strain();
@@ -309,7 +309,7 @@ double Compress::foreseen_strain() const {
 Forecast Compress::forecast(const Simulation& simulation, Foreseen&) const {
   const double strain = foreseen_strain();
   const double way = strain * simulation.press().height();
-  const double slowest = (way / keys_.velocity + 0.5 * keys_.ramp_time) / simulation.mechanics().time_step();
+  const double slowest = (way / keys_.velocity + 0.5 * keys_.ramp_time) / simulation.motion().time_step();
   return {.steps = keys_.control ? kControlledShare * slowest : slowest,
           .looks = strain / keys_.history_strain,
           .frames = strain / keys_.frame_strain + 1.0};

@@ -165,12 +165,12 @@ StageReport unloading_report(const CompressionCurve& curve) {
 
 }  // namespace
 
-void CompressionCurve::add(const Press<2>& press, const Mechanics<2>& mechanics) {
+void CompressionCurve::add(const Press& press, const Motion& motion) {
   strain.push_back(press.stage_strain());
   stress.push_back(press.stress());
   platen_difference.push_back(std::abs(press.stress_top() - press.stress_bottom()));
-  kinetic_over_strain.push_back(mechanics.totals().energy().kinetic_over_elastic());
-  time.push_back(mechanics.time());
+  kinetic_over_strain.push_back(motion.totals().energy().kinetic_over_elastic());
+  time.push_back(motion.time());
 }
 
 void CompressionCurve::visit_state(StateVisitor& visitor) {

@@ -25,7 +25,7 @@ struct CompressionCurve {
 
   std::size_t count() const { return stress.size(); }
   /// Adds a point with the present readings of the press.
-  void add(const Press<2>& press, const Mechanics<2>& mechanics);
+  void add(const Press& press, const Motion& motion);
   void visit_state(StateVisitor& visitor);
 };
 

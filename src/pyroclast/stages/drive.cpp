@@ -114,7 +114,7 @@ Drive::Action read_action(const Section& s, double duration, CurveReader& curves
                      "specimen has");
       const auto components = s.numbers("direction", Range::any(), "of the force, as [x, y]");
       if (components.size() == 2) {
-        const Vec<2> d{{components[0], components[1]}};
+        const Vec<3> d{{components[0], components[1]}};
         if (norm(d) > 0.0)
           a.direction = d * (1.0 / norm(d));
         else
@@ -277,7 +277,7 @@ namespace {
 /// Throws Error where a set has gridpoints of platens, which the press works.
 void require_off_press(const Simulation& simulation, const Drive::Action& action) {
   if (!simulation.has_press()) return;
-  const Model<2>& model = simulation.model();
+  const Model& model = simulation.model();
   for (const char* platen : {"bottom_platen", "top_platen"})
     for (int g : model.set(action.set))
       if (std::ranges::find(model.set(platen), g) != model.set(platen).end())
@@ -291,33 +291,30 @@ HeldMotion motion_of(const Drive::Action& action) {
 }
 
 /// Throws Error where a force acts along a component of a gridpoint that is held or driven.
-void require_free(const Model<2>& model, const Supports<2>& supports, const std::string& set,
-                  const Vec<2>& force, const std::string& place) {
+void require_free(const Model& model, const Supports& supports, const std::string& set, const Vec<3>& force,
+                  const std::string& place) {
   for (int g : model.set(set))
-    for (const int c : {0, 1})
+    for (int c = 0; c < model.dimension(); ++c)
       if (force[c] != 0.0 && supports.holds(g, c))
         throw Error(fmt::format(
             "{}: a force acts along {} on set \"{}\", which has gridpoints that are held or driven "
             "along {} ({}): end the force by one of 0 N, or release them",
-            place, "xy"[c], set, "xy"[c], supports.place_of(g, c)));
+            place, "xyz"[c], set, "xyz"[c], supports.place_of(g, c)));
 }
 
 /// Tells whether supports bear all of a pressure on a set.
-bool is_borne(const Model<2>& model, const Supports<2>& supports, const std::string& set) {
-  for (const auto& face : faces_in(model, model.set(set))) {
-    const Vec<2> along = model.position[face.gridpoints[1]] - model.position[face.gridpoints[0]];
-    const Vec<2> normal{{along[1], -along[0]}};
-    for (const int g : face.gridpoints)
-      for (const int c : {0, 1})
-        if (std::abs(normal[c]) > kParallel * norm(normal) && !supports.holds(g, c)) return false;
-  }
+bool is_borne(const Model& model, const Supports& supports, const std::string& set) {
+  for (const Face& face : faces_in(model, model.set(set)))
+    for (const int g : face.gridpoints())
+      for (int c = 0; c < model.dimension(); ++c)
+        if (std::abs(face.normal[c]) > kParallel && !supports.holds(g, c)) return false;
   return true;
 }
 
 }  // namespace
 
-void Drive::check(const Simulation& simulation, Acting<2>& acting) const {
-  const Model<2>& model = simulation.model();
+void Drive::check(const Simulation& simulation, Acting& acting) const {
+  const Model& model = simulation.model();
   for (const Action& action : keys_.actions) {
     const auto found = model.sets.find(action.set);
     if (found == model.sets.end() || found->second.empty())
@@ -361,10 +358,10 @@ void Drive::check(const Simulation& simulation, Acting<2>& acting) const {
 }
 
 /// Throws Error where a load of 0, which ends a load that acts, finds none to end.
-void Drive::require_effect(const Action& action, const Acting<2>& acting) const {
+void Drive::require_effect(const Action& action, const Acting& acting) const {
   if (is_motion(action) || action.amount != 0.0) return;
   const auto found = acting.loads.find(action.set);
-  const SetLoad<2> load = found == acting.loads.end() ? SetLoad<2>{} : found->second.load;
+  const SetLoad load = found == acting.loads.end() ? SetLoad{} : found->second.load;
   const bool is_force = action.kind == ActionKind::force;
   if (is_force ? std::abs(dot(load.force, action.direction)) > kParallel * norm(load.force)
                : load.pressure != 0.0)
@@ -409,7 +406,7 @@ void Drive::check_beside(const Drive& under_way, const Simulation& simulation) c
   const auto steers = [](const Action& a) {
     return a.kind != ActionKind::hold && a.kind != ActionKind::release;
   };
-  const Model<2>& model = simulation.model();
+  const Model& model = simulation.model();
   for (const Action& other : under_way.keys_.actions) {
     if (!steers(other)) continue;
     for (const Action& own : keys_.actions) {
@@ -435,16 +432,16 @@ bool Drive::loads() const {
 }
 
 double Drive::time(const Simulation& simulation) const {
-  return static_cast<double>(kept_.steps) * simulation.mechanics().time_step();
+  return static_cast<double>(kept_.steps) * simulation.motion().time_step();
 }
 
 std::int64_t Drive::steps_in(const Simulation& simulation, double interval) const {
-  const double steps = interval / simulation.mechanics().time_step() / kStepsPerAdjustment;
+  const double steps = interval / simulation.motion().time_step() / kStepsPerAdjustment;
   return kStepsPerAdjustment * std::max<std::int64_t>(1, std::llround(steps));
 }
 
 void Drive::begin(Simulation& simulation) {
-  Mechanics<2>& mechanics = simulation.mechanics();
+  Motion& motion = simulation.motion();
   kept_.velocity.assign(keys_.actions.size(), 0.0);
   if (keys_.control)
     kept_.first_opening = kept_.last_opening = simulation.record(keys_.control->record).read(simulation);
@@ -455,11 +452,11 @@ void Drive::begin(Simulation& simulation) {
   kept_.last.clear();
   for (const Until& until : keys_.until)
     kept_.last.push_back(simulation.record(until.record).read(simulation));
-  const EnergyLedger energy = mechanics.totals().energy();
+  const EnergyLedger energy = motion.totals().energy();
   kept_.first_work = energy.loading;
   kept_.most_kinetic = std::abs(energy.kinetic);
-  const Vec<2> weight =
-      mechanics.totals().total_weight(gridpoint_set(simulation.model(), simulation.model().set("specimen")));
+  const Vec<3> weight =
+      motion.totals().total_weight(gridpoint_set(simulation.model(), simulation.model().set("specimen")));
   kept_.body = {simulation.model().thickness, norm(weight)};
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::release)
@@ -493,15 +490,15 @@ double Drive::part(const Action& action, double time) const {
 /// them.
 /// \param before  function that returns the load of a set when the stage began
 template <class Before>
-std::map<std::string, SetLoad<2>> Drive::loads_at(double time, Before before) const {
-  std::map<std::string, SetLoad<2>> loads;
+std::map<std::string, SetLoad> Drive::loads_at(double time, Before before) const {
+  std::map<std::string, SetLoad> loads;
   for (const Action& first : keys_.actions) {
     if (is_motion(first) || loads.contains(first.set)) continue;
-    const SetLoad<2> old = before(first.set);
-    SetLoad<2>& load = loads[first.set] = old;
+    const SetLoad old = before(first.set);
+    SetLoad& load = loads[first.set] = old;
     double left_of_force = 1.0, left_of_pressure = 1.0, pressure = 0.0;
-    Vec<2> force{};
-    std::vector<Vec<2>> along;  // directions of forces, orthonormal
+    Vec<3> force{};
+    std::vector<Vec<3>> along;  // directions of forces, orthonormal
     bool has_pressure = false;
     for (const Action& action : keys_.actions) {
       if (action.set != first.set) continue;
@@ -510,8 +507,8 @@ std::map<std::string, SetLoad<2>> Drive::loads_at(double time, Before before) co
         if (keys_.control) continue;
         left_of_force =
             std::min(left_of_force, 1.0 - share(longest_ramp(first.set, ActionKind::force), time));
-        Vec<2> rest = action.direction;
-        for (const Vec<2>& known : along) rest += -dot(rest, known) * known;
+        Vec<3> rest = action.direction;
+        for (const Vec<3>& known : along) rest += -dot(rest, known) * known;
         if (norm(rest) > kParallel) along.push_back((1.0 / norm(rest)) * rest);
       } else if (action.kind == ActionKind::pressure) {
         pressure += part(action, time);
@@ -520,7 +517,7 @@ std::map<std::string, SetLoad<2>> Drive::loads_at(double time, Before before) co
         has_pressure = true;
       }
     }
-    for (const Vec<2>& direction : along)
+    for (const Vec<3>& direction : along)
       load.force += (-(1.0 - left_of_force) * dot(old.force, direction)) * direction;
     load.force += force;
     if (has_pressure) load.pressure = pressure + left_of_pressure * old.pressure;
@@ -529,7 +526,7 @@ std::map<std::string, SetLoad<2>> Drive::loads_at(double time, Before before) co
 }
 
 /// Returns the loads at a time, from those that acted when the stage began.
-std::map<std::string, SetLoad<2>> Drive::loads_at(double time) const {
+std::map<std::string, SetLoad> Drive::loads_at(double time) const {
   return loads_at(time, [&](const std::string& set) { return first_load(set); });
 }
 
@@ -543,14 +540,14 @@ const Drive::Action& Drive::longest_ramp(const std::string& set, ActionKind kind
   return *longest;
 }
 
-std::map<std::string, SetLoad<2>> Drive::loads_at_end(const Simulation&, const Acting<2>& acting) const {
+std::map<std::string, SetLoad> Drive::loads_at_end(const Simulation&, const Acting& acting) const {
   return loads_at(keys_.duration, [&](const std::string& set) {
     const auto found = acting.loads.find(set);
-    return found == acting.loads.end() ? SetLoad<2>{} : found->second.load;
+    return found == acting.loads.end() ? SetLoad{} : found->second.load;
   });
 }
 
-SetLoad<2> Drive::first_load(const std::string& set) const {
+SetLoad Drive::first_load(const std::string& set) const {
   std::size_t i = 0;
   for (const Action& action : keys_.actions) {
     if (is_motion(action)) continue;
@@ -561,7 +558,7 @@ SetLoad<2> Drive::first_load(const std::string& set) const {
 }
 
 /// Returns how far an action has come: a displacement, the force along its direction, or a pressure.
-double Drive::came(std::size_t i, const std::map<std::string, SetLoad<2>>& loads, double interval) const {
+double Drive::came(std::size_t i, const std::map<std::string, SetLoad>& loads, double interval) const {
   const Action& action = keys_.actions[i];
   switch (action.kind) {
     case ActionKind::velocity:
@@ -587,7 +584,7 @@ void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads
   kept_.pair_force = control.stiffness * behind;
   const double whole = std::abs(control.rate) * keys_.duration;
   kept_.is_lost = std::abs(behind) > (whole > 0.0 ? whole : kLost * simulation.body_size());
-  const double step = static_cast<double>(kStepsPerControl) * simulation.mechanics().time_step();
+  const double step = static_cast<double>(kStepsPerControl) * simulation.motion().time_step();
   // the parts that bear the load now bear the pair beside it
   kept_.largest_with_pair =
       std::max(kept_.largest_with_pair, total_load(kept_.load_factor) + std::abs(kept_.pair_force));
@@ -602,7 +599,7 @@ void Drive::steer(const Simulation& simulation, double time, ChangedLoads& loads
 /// Returns the force that the loaded sets bear together at a factor of the controlled forces, with the forces
 /// from before: the largest in any of their directions, N. Sets that are pulled apart bear it once.
 double Drive::total_load(double factor) const {
-  std::map<std::string, Vec<2>> forces;
+  std::map<std::string, Vec<3>> forces;
   for (const Action& action : keys_.actions)
     if (action.kind == ActionKind::force)
       forces.try_emplace(action.set, first_load(action.set).force).first->second +=
@@ -632,7 +629,7 @@ std::int64_t Drive::steps_per_adjustment() const {
 
 std::int64_t Drive::duration_in_steps(const Simulation& simulation) const {
   return std::max<std::int64_t>(
-      1, static_cast<std::int64_t>(whole_above(keys_.duration / simulation.mechanics().time_step())));
+      1, static_cast<std::int64_t>(whole_above(keys_.duration / simulation.motion().time_step())));
 }
 
 /// Returns the number of steps for which the present loads and velocities act.
@@ -643,7 +640,7 @@ std::int64_t Drive::steps_to_come(const Simulation& simulation) const {
 
 /// Lets the loads and velocities of the middle of the steps to come act.
 void Drive::act(Simulation& simulation) {
-  const double interval = static_cast<double>(steps_to_come(simulation)) * simulation.mechanics().time_step();
+  const double interval = static_cast<double>(steps_to_come(simulation)) * simulation.motion().time_step();
   const double middle = time(simulation) + 0.5 * interval;
   ChangedLoads loads;
   if (keys_.control) steer(simulation, middle, loads);
@@ -673,7 +670,7 @@ void Drive::take_peaks(const Simulation& simulation) {
     values.push_back(simulation.record(record.name).read(simulation));
   for (std::size_t i = 0; i < values.size(); ++i)
     kept_.record_peaks[i].take(i, kept_.driven, kept_.is_driven && kept_.is_beyond_noise,
-                               simulation.mechanics().time(), values);
+                               simulation.motion().time(), values);
   for (std::size_t i = 0; i < keys_.until.size(); ++i) {
     const Until& until = keys_.until[i];
     if (until.kind != Until::Kind::share_of_peak || !kept_.is_driven) continue;
@@ -689,7 +686,7 @@ bool Drive::advance(Simulation& simulation, int most_steps) {
   const std::int64_t interval = steps_per_adjustment();
   if (kept_.steps % interval == 0) act(simulation);
   const auto steps = std::min<std::int64_t>(steps_to_come(simulation) - kept_.steps % interval, most_steps);
-  simulation.mechanics().advance(static_cast<int>(steps));
+  simulation.motion().advance(static_cast<int>(steps));
   kept_.steps += steps;
   if (kept_.steps % kStepsPerPoint == 0) take_peaks(simulation);
   return kept_.steps % steps_in(simulation, keys_.look_interval) == 0 || kept_.is_lost ||
@@ -700,7 +697,7 @@ bool Drive::advance(Simulation& simulation, int most_steps) {
 /// energy. So the kinetic energy, at any call so far, must be below the square of that share of the work of
 /// the loads. A stage that loads nothing shakes nothing.
 bool Drive::is_beyond_noise(double share, const Simulation& simulation) {
-  const EnergyLedger energy = simulation.mechanics().totals().energy();
+  const EnergyLedger energy = simulation.motion().totals().energy();
   kept_.most_kinetic = std::max(kept_.most_kinetic, std::abs(energy.kinetic));
   return !loads() || kept_.most_kinetic <= share * share * std::abs(energy.loading - kept_.first_work);
 }
@@ -764,13 +761,13 @@ Verdict Drive::judge(Simulation& simulation) {
   kept_.last_look = now;
   // The loads are those of the middle of the last steps, so a ramp may end before all of it acts.
   const double acted =
-      now - 0.5 * static_cast<double>(steps_per_adjustment()) * simulation.mechanics().time_step();
+      now - 0.5 * static_cast<double>(steps_per_adjustment()) * simulation.motion().time_step();
   if (kept_.is_lost && !verdict.over)
     verdict = {.over = true, .last = true, .outcome = Outcome::control_lost};
   const bool ramps_are_over =
       std::ranges::all_of(keys_.actions, [&](const Action& a) { return at_most(a.ramp_time, acted); });
   if (keys_.unbalanced_ratio && ramps_are_over &&
-      simulation.mechanics().totals().unbalanced_ratio() < *keys_.unbalanced_ratio)
+      simulation.motion().totals().unbalanced_ratio() < *keys_.unbalanced_ratio)
     verdict.over = true;
   if (!verdict.over && kept_.steps >= duration_in_steps(simulation)) {
     verdict.over = true;
@@ -876,7 +873,7 @@ void Drive::add_control(StageReport& report, double work) const {
 }
 
 Forecast Drive::forecast(const Simulation& simulation, Foreseen&) const {
-  const double steps = keys_.duration / simulation.mechanics().time_step();
+  const double steps = keys_.duration / simulation.motion().time_step();
   return {.steps = steps,
           .looks = keys_.duration / keys_.look_interval,
           .frames = keys_.duration / keys_.frame_interval + (leading_ ? 1.0 : 0.0)};
@@ -910,15 +907,16 @@ void Drive::visit_state(StateVisitor& visitor) {
   visitor.visit("frames", frames, state::count());
   {
     std::vector<double> numbers;
-    for (const SetLoad<2>& load : first_loads)
-      numbers.insert(numbers.end(),
-                     {load.force[0], load.force[1], load.pressure, load.is_follower ? 1.0 : 0.0});
+    for (const SetLoad& load : first_loads)
+      numbers.insert(numbers.end(), {load.force[0], load.force[1], load.force[2], load.pressure,
+                                     load.is_follower ? 1.0 : 0.0});
     const auto loads = std::ranges::count_if(keys_.actions, [](const Action& a) { return !is_motion(a); });
-    visitor.visit("first_loads", numbers, state::finite().of(4 * static_cast<std::size_t>(loads)));
+    visitor.visit("first_loads", numbers, state::finite().of(5 * static_cast<std::size_t>(loads)));
     if (visitor.replaces()) {
       first_loads.clear();
-      for (std::size_t i = 0; i + 3 < numbers.size(); i += 4)
-        first_loads.push_back({Vec<2>{{numbers[i], numbers[i + 1]}}, numbers[i + 2], numbers[i + 3] != 0.0});
+      for (std::size_t i = 0; i + 4 < numbers.size(); i += 5)
+        first_loads.push_back(
+            {{{numbers[i], numbers[i + 1], numbers[i + 2]}}, numbers[i + 3], numbers[i + 4] != 0.0});
     }
   }
   const StateRule of_each_action = state::finite().of(keys_.actions.size());

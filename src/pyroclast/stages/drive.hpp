@@ -24,13 +24,13 @@ class Drive : public Stage {
     ActionKind kind = ActionKind::hold;
     std::vector<int> components = {};  ///< components that are held, released or moved
     double amount = 0.0;               ///< velocity, m/s, force, N, or pressure, Pa
-    Vec<2> direction{};                ///< unit direction of a force
+    Vec<3> direction{};                ///< unit direction of a force
     bool is_follower = false;          ///< true for a pressure that follows the faces
     double ramp_time = 0.0;            ///< time in which the amount comes evenly to its value, s
     std::optional<Curve> factor = {};  ///< factor of the amount, over the time since the stage began, s
     std::string place = "";            ///< place in the deck, for messages
 
-    const std::vector<int>& set_of(const Model<2>& model) const { return model.set(set); }
+    const std::vector<int>& set_of(const Model& model) const { return model.set(set); }
   };
   /// Condition on a record that ends the stage.
   struct Until {
@@ -69,7 +69,7 @@ class Drive : public Stage {
 
   const char* kind() const override { return "drive"; }
   StageNeeds needs() const override { return {}; }
-  void check(const Simulation& simulation, Acting<2>& acting) const override;
+  void check(const Simulation& simulation, Acting& acting) const override;
   bool loads() const override;
   std::vector<std::string> sets() const override;
   /// Throws Error where the drive would act on a set that another drive, which is under way, keeps moving or
@@ -86,20 +86,20 @@ class Drive : public Stage {
   void visit_state(StateVisitor& visitor) override;
 
  private:
-  using ChangedLoads = std::map<std::string, SetLoad<2>>;  ///< loads by set
+  using ChangedLoads = std::map<std::string, SetLoad>;  ///< loads by set
   static bool is_motion(const Action& a) {
     return a.kind != ActionKind::force && a.kind != ActionKind::pressure;
   }
   void require_consistent() const;
-  void require_effect(const Action& action, const Acting<2>& acting) const;
+  void require_effect(const Action& action, const Acting& acting) const;
   double share(const Action& action, double time) const;
   double part(const Action& action, double time) const;
   template <class Before>
   ChangedLoads loads_at(double time, Before before) const;
   ChangedLoads loads_at(double time) const;
-  ChangedLoads loads_at_end(const Simulation& simulation, const Acting<2>& acting) const;
+  ChangedLoads loads_at_end(const Simulation& simulation, const Acting& acting) const;
   const Action& longest_ramp(const std::string& set, ActionKind kind) const;
-  SetLoad<2> first_load(const std::string& set) const;
+  SetLoad first_load(const std::string& set) const;
   double came(std::size_t action, const ChangedLoads& loads, double interval) const;
   void steer(const Simulation& simulation, double time, ChangedLoads& loads);
   double unit_force() const;
@@ -124,8 +124,8 @@ class Drive : public Stage {
   struct Kept {
     std::int64_t steps = 0;
     std::int64_t frames = 0;
-    std::vector<SetLoad<2>> first_loads;  ///< loads on the set of each action, when the stage began
-    std::vector<double> velocity;         ///< present velocity of each action, m/s
+    std::vector<SetLoad> first_loads;  ///< loads on the set of each action, when the stage began
+    std::vector<double> velocity;      ///< present velocity of each action, m/s
     // Progress of what drives the body: how far each action came, m, N or Pa, and how far at most; for how
     // long, s.
     std::vector<double> came, farthest;

@@ -27,8 +27,8 @@ class Heat : public ExchangeStage {
   void visit_change(StateVisitor& visitor) override;
 
   Keys keys_;
-  Press<2>::EvenMotion last_strain_;  ///< even motion before the last exchange
-  double last_change_ = 0.0;          ///< change of temperature at the last exchange, K; 0 before any
+  Press::EvenMotion last_strain_;  ///< even motion before the last exchange
+  double last_change_ = 0.0;       ///< change of temperature at the last exchange, K; 0 before any
 };
 
 StageKind heat_kind();

@@ -68,7 +68,7 @@ void Load::begin(Simulation& simulation) {
 
 /// Holds the force that the ramp has in the middle of the steps to come.
 void Load::adjust_force(Simulation& simulation) const {
-  const double share = share_held_from(kept_.steps, simulation.mechanics().time_step());
+  const double share = share_held_from(kept_.steps, simulation.motion().time_step());
   simulation.press().hold(kept_.first_stress + share * (keys_.stress - kept_.first_stress));
 }
 
@@ -80,7 +80,7 @@ double Load::share_held_from(std::int64_t steps, double time_step) const {
 bool Load::advance(Simulation& simulation, int most_steps) {
   if (kept_.steps % kStepsPerForce == 0) adjust_force(simulation);
   const auto steps = std::min<std::int64_t>(kStepsPerForce - kept_.steps % kStepsPerForce, most_steps);
-  simulation.mechanics().advance(static_cast<int>(steps));
+  simulation.motion().advance(static_cast<int>(steps));
   kept_.steps += steps;
   return kept_.steps % kLoadStepsPerLook == 0;
 }
@@ -88,18 +88,18 @@ bool Load::advance(Simulation& simulation, int most_steps) {
 Verdict Load::judge(Simulation& simulation) {
   if (simulation.press().specimen_strain() - kept_.first_strain > keys_.failure_strain)
     return {.over = true, .last = true, .outcome = Outcome::crushed};
-  const Mechanics<2>& mechanics = simulation.mechanics();
+  const Motion& motion = simulation.motion();
   // The ramp may end before the force is adjusted to all of it.
-  if (share_held_from(kept_.steps - kStepsPerForce, mechanics.time_step()) < 1.0) return {};
-  if (mechanics.totals().unbalanced_ratio() < keys_.unbalanced_ratio) return {.over = true};
-  const double after_ramp = static_cast<double>(kept_.steps) - keys_.ramp_time / mechanics.time_step();
+  if (share_held_from(kept_.steps - kStepsPerForce, motion.time_step()) < 1.0) return {};
+  if (motion.totals().unbalanced_ratio() < keys_.unbalanced_ratio) return {.over = true};
+  const double after_ramp = static_cast<double>(kept_.steps) - keys_.ramp_time / motion.time_step();
   if (after_ramp >= static_cast<double>(keys_.most_steps))
     return {.over = true, .last = true, .outcome = Outcome::not_settled};
   return {};
 }
 
 double Load::progress(const Simulation& simulation) const {
-  return ramp_share(kept_.steps, simulation.mechanics().time_step(), keys_.ramp_time);
+  return ramp_share(kept_.steps, simulation.motion().time_step(), keys_.ramp_time);
 }
 
 StageReport Load::report(const History& history, RowRange rows, Outcome outcome) const {
@@ -126,7 +126,7 @@ StageReport Load::report(const History& history, RowRange rows, Outcome outcome)
 }
 
 Forecast Load::forecast(const Simulation& simulation, Foreseen&) const {
-  const double ramp = keys_.ramp_time / simulation.mechanics().time_step();
+  const double ramp = keys_.ramp_time / simulation.motion().time_step();
   // along a slow ramp the body is near its rest already
   const double rest =
       std::min(std::max(steps_to_rest(keys_.unbalanced_ratio) - ramp, 1.0 * kLoadStepsPerLook),

@@ -42,14 +42,14 @@ bool Settle::advance(Simulation& simulation, int most_steps) {
   if (kept_.steps_to_look == 0)
     kept_.steps_to_look = std::clamp<std::int64_t>(keys_.most_steps - kept_.steps, 1, kSettleStepsPerLook);
   const auto steps = std::min<std::int64_t>(kept_.steps_to_look, most_steps);
-  simulation.mechanics().advance(static_cast<int>(steps));
+  simulation.motion().advance(static_cast<int>(steps));
   kept_.steps += steps;
   kept_.steps_to_look -= steps;
   return kept_.steps_to_look == 0;
 }
 
 Verdict Settle::judge(Simulation& simulation) {
-  if (simulation.mechanics().totals().unbalanced_ratio() < keys_.unbalanced_ratio) {
+  if (simulation.motion().totals().unbalanced_ratio() < keys_.unbalanced_ratio) {
     simulation.set_zero();
     return {.over = true};
   }

@@ -102,7 +102,7 @@ HeatStepLimit strictest(const std::vector<double>& rows, double safety, Capacity
 }  // namespace
 
 template <int Dim>
-Conduction<Dim>::Conduction(const Model<Dim>& model,
+Conduction<Dim>::Conduction(const ModelOf<Dim>& model,
                             const std::vector<std::optional<HeatMaterial>>& materials,
                             const HeatParameters& parameters, std::shared_ptr<Team> team)
     : model_(model),

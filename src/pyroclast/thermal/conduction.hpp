@@ -7,12 +7,12 @@
 #include <optional>
 #include <vector>
 
-#include "pyroclast/base/ledger.hpp"
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/base/team.hpp"
 #include "pyroclast/thermal/gap_conduction.hpp"
 #include "pyroclast/thermal/heat_boundary.hpp"
 #include "pyroclast/thermal/heat_material.hpp"
+#include "pyroclast/thermal/heat_solver.hpp"
 #include "pyroclast/thermal/thermal_mesh.hpp"
 #include "pyroclast/thermal/time_stages.hpp"
 #include "pyroclast/thermal/zone_conduction.hpp"
@@ -31,50 +31,11 @@ struct HeatParameters {
   bool always_limits = false;  ///< true: limits flows in every step, needed or not, for tests
 };
 
-/// Heat of a body since the start, J. The heat that came in equals the heat stored; the remainder is the
-/// ledger's error.
-struct HeatLedger {
-  HeatByKind boundary;
-  double prescribed = 0.0;  ///< heat needed to hold the prescribed temperatures
-  double source = 0.0;
-  double stored = 0.0;
-
-  double heat_in() const { return boundary.total() + prescribed + source; }
-  double error() const { return heat_in() - stored; }
-  bool operator==(const HeatLedger&) const = default;
-};
-
-/// Entries in the order of the history's columns. No deck has a source.
-inline constexpr auto kHeats = std::to_array<LedgerEntry<HeatLedger>>({
-    {"stored", "heat_stored_J", LedgerSide::held, "in the body",
-     [](const HeatLedger& h) { return h.stored; }},
-    {"prescribed", "heat_prescribed_J", LedgerSide::put_in, "to hold prescribed temperatures",
-     [](const HeatLedger& h) { return h.prescribed; }},
-    {"flux", "heat_flux_J", LedgerSide::put_in, "by given fluxes",
-     [](const HeatLedger& h) { return h.boundary.flux; }},
-    {"convection", "heat_convection_J", LedgerSide::put_in, "by convection",
-     [](const HeatLedger& h) { return h.boundary.convection; }},
-    {"radiation", "heat_radiation_J", LedgerSide::put_in, "by radiation",
-     [](const HeatLedger& h) { return h.boundary.radiation; }},
-    {"error", "heat_error_J", LedgerSide::error, "what came in less what is stored",
-     [](const HeatLedger& h) { return h.error(); }},
-});
-
-/// Stable step of forward Euler and the node that sets it.
-struct HeatStepLimit {
-  double step = 0.0;  ///< s
-  int node = 0;
-};
-
 /// End of a run towards a steady state.
 struct SteadyState {
   bool reached = false;
   double rate = 0.0;  ///< L2 norm of the temperature's change, K/s, see Conduction::rate
 };
-
-/// Range of the temperatures of a state, °C: with room for rounding, and hotter than any concrete. Tables of
-/// properties are as wide.
-inline constexpr StateRule kTemperatures = state::within(absolute_zero - 1.0, 1e5);
 
 /// State of a conduction at the end of its last completed step. The state and the parameters of the
 /// conduction are all that it needs to go on bitwise as before.
@@ -119,7 +80,7 @@ struct HeatState {
 /// Each node gathers the heat that flows to it, and every sum has one order, so results are bitwise the same
 /// for any number of threads.
 template <int Dim>
-class Conduction {
+class Conduction final : public HeatSolver {
  public:
   /// Function for the heat generated at a point and time (s), W/m³. Several threads call it at once; it must
   /// not throw.
@@ -131,7 +92,7 @@ class Conduction {
   /// \param team       threads of the run; without a team the calling thread works alone
   ///
   /// Throws Error naming the parameter, material or curve that is out of range.
-  Conduction(const Model<Dim>& model, const std::vector<std::optional<HeatMaterial>>& materials,
+  Conduction(const ModelOf<Dim>& model, const std::vector<std::optional<HeatMaterial>>& materials,
              const HeatParameters& parameters, std::shared_ptr<Team> team = nullptr);
 
   Conduction(const Conduction&) = delete;
@@ -162,14 +123,19 @@ class Conduction {
 
   /// Lets temperatures from now on come to the given range, °C, as well as to the present one. Earlier
   /// results do not depend on it. Throws Error when a material's curve does not cover the range.
-  void widen_temperature_range(const Interval& range);
+  void widen_temperature_range(const Interval& range) override;
 
   /// Sets the gap of each contact; needs HeatParameters::gaps. Where contacts come to part or to join
   /// gridpoints, nodes are numbered anew, and no heat is lost: a part takes its share along, and joined parts
   /// have one temperature, the mean by capacity. Throws Error as GapConduction::set_gaps does.
-  void set_gaps(std::vector<ContactGap> gaps);
+  void set_gaps(std::vector<ContactGap> gaps) override;
   /// Returns the conduction through gaps; null where heat crosses all contacts without resistance.
   const GapConduction<Dim>* gaps() const { return gaps_ ? &*gaps_ : nullptr; }
+  const GapHeat* gap_law() const override { return gaps_ ? &gaps_->law() : nullptr; }
+  double gap_area() const override { return gaps_->area(); }
+  std::vector<double> conductances(const std::vector<double>& temperature) const override {
+    return gaps_->conductances(temperature);
+  }
 
   /// Sets the temperature of every node, °C, and starts the ledger anew.
   void set_temperature(const std::vector<double>& temperature);
@@ -183,11 +149,11 @@ class Conduction {
   /// which it counts down. Returns whether the step is completed; until then `state` is as it was when the
   /// step began. Where a call breaks a step off changes no bit. Throws Error as advance_to does, and when a
   /// step towards another time is under way.
-  bool advance_step(double end, std::int64_t& stages);
+  bool advance_step(double end, std::int64_t& stages) override;
   /// Forgets the stages done of a step that is not completed; the next step does them again.
-  void drop_trial();
+  void drop_trial() override;
   /// Returns the stages that take some tenths of a second on one thread, by the number of zones.
-  std::int64_t stages_per_batch() const;
+  std::int64_t stages_per_batch() const override;
 
   /// Conducts heat until the rate falls below a tolerance, K/s, or to the latest time, s.
   SteadyState advance_to_steady(double tolerance, double latest);
@@ -196,38 +162,31 @@ class Conduction {
   /// Shows `state` to a visitor. A new state must come from the same body under the same conditions. The
   /// conduction goes on from it as if nothing had been replaced; a step under way is done again from its
   /// beginning.
-  void visit_state(StateVisitor& visitor);
-  double time() const { return state_.time; }
-  const ThermalNodes& nodes() const { return nodes_; }
+  void visit_state(StateVisitor& visitor) override;
+  double time() const override { return state_.time; }
+  const ThermalNodes& nodes() const override { return nodes_; }
   /// Returns the temperature of each node, °C.
-  const std::vector<double>& temperature() const { return state_.temperature; }
+  const std::vector<double>& temperature() const override { return state_.temperature; }
   /// Returns the temperature of each gridpoint, °C; `elsewhere` for gridpoints of blocks that are left out.
-  std::vector<double> gridpoint_temperatures(double elsewhere) const;
+  std::vector<double> gridpoint_temperatures(double elsewhere) const override;
 
-  HeatLedger ledger() const;
+  HeatLedger ledger() const override;
   /// Returns the L2 norm of the temperature's change per time in the last step, sqrt(mean over the volume of
   /// (dT/dt)²), K/s.
-  double rate() const { return state_.rate; }
+  double rate() const override { return state_.rate; }
   /// Returns the largest change of any temperature in the last step, with the jumps of prescribed ones at its
   /// beginning, K.
-  double largest_change() const { return state_.largest_change; }
+  double largest_change() const override { return state_.largest_change; }
   /// Returns the stable step of forward Euler at the present temperatures, safety included.
-  HeatStepLimit step_limit() const;
-  /// Returns the farthest that heat would have taken a node beyond the temperature range had the node not
-  /// been held there, K.
-  double largest_overshoot() const { return state_.largest_overshoot; }
+  HeatStepLimit step_limit() const override;
   /// Returns the range of the temperatures that the body had at first, that were prescribed since then and
   /// that the gases had, °C; an end is infinite where a given flux or a source could take the body beyond it.
   /// Temperatures stay within the range to `kAllowedBeyond`.
   const Interval& bounds() const { return state_.bounds; }
 
-  std::int64_t steps() const { return state_.steps; }  ///< Returns the steps completed.
-  /// Returns the steps taken back because a temperature changed too much.
-  std::int64_t retries() const { return state_.retries; }
-  /// Returns the evaluations of Eq. (1), the cost of a run.
-  std::int64_t stages() const { return state_.stages; }
-  /// Returns the steps whose flows were limited.
-  std::int64_t limited_steps() const { return state_.limited_steps; }
+  HeatWork work() const override {
+    return {state_.steps, state_.retries, state_.stages, state_.limited_steps, state_.largest_overshoot};
+  }
 
   /// Bound of how far a temperature comes beyond the bounds, and beyond its neighbours in a step, K.
   static constexpr double kAllowedBeyond = 0.1;
@@ -311,7 +270,7 @@ class Conduction {
   void require_prescriptions(double end) const;
   [[noreturn]] void refuse_excess();
 
-  const Model<Dim>& model_;
+  const ModelOf<Dim>& model_;
   HeatParameters parameters_;
   std::shared_ptr<Team> team_;
   TemperatureGrid grid_;

@@ -36,7 +36,7 @@ const GapHeat& checked(const GapHeat& law) {
 }  // namespace
 
 template <int Dim>
-GapConduction<Dim>::GapConduction(const Model<Dim>& model, const std::vector<bool>& conducts,
+GapConduction<Dim>::GapConduction(const ModelOf<Dim>& model, const std::vector<bool>& conducts,
                                   const GapHeat& law, const TemperatureGrid& grid, Team& team)
     : model_(model),
       law_(checked(law)),

@@ -23,7 +23,7 @@ class GapConduction {
   ///                  material, such as a bearing's, are closed to heat
   ///
   /// Throws Error naming the number of `law` that is out of range, and as set_grid does.
-  GapConduction(const Model<Dim>& model, const std::vector<bool>& conducts, const GapHeat& law,
+  GapConduction(const ModelOf<Dim>& model, const std::vector<bool>& conducts, const GapHeat& law,
                 const TemperatureGrid& grid, Team& team);
 
   const GapHeat& law() const { return law_; }
@@ -75,7 +75,7 @@ class GapConduction {
     return law_.conductance(gaps_[contact], gas(0.5 * (a + b)), a, b);
   }
 
-  const Model<Dim>& model_;
+  const ModelOf<Dim>& model_;
   GapHeat law_;
   TemperatureGrid grid_;
   std::vector<double> gas_;  ///< conductivity at the knots of the range, W/(m K); linear between them

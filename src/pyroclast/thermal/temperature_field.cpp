@@ -28,24 +28,33 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 
 }  // namespace
 
-std::vector<std::array<int, 2>> contact_gridpoints(const Model<2>& model) {
-  std::vector<bool> in_specimen(model.position.size());
+std::vector<std::array<int, 2>> contact_gridpoints(const Model& model) {
+  std::vector<bool> in_specimen(model.gridpoint_count());
   for (int b = 0; b < model.block_count(); ++b)
     if (!model.is_of_bearing(b))
       std::fill(in_specimen.begin() + model.block_gridpoints[b],
                 in_specimen.begin() + model.block_gridpoints[b + 1], true);
   std::vector<std::array<int, 2>> pairs;
-  for (const auto& c : model.contacts)
+  for (int i = 0; i < model.contact_count(); ++i) {
+    const Joint& c = model.joint(i);
     pairs.push_back({in_specimen[c.a] ? c.a : c.b, in_specimen[c.b] ? c.b : c.a});
+  }
   return pairs;
 }
 
-TemperatureField::TemperatureField(const Model<2>& model)
+double mean_of_zone(const Model& model, int zone, const std::vector<double>& gridpoints) {
+  const auto corners = model.gridpoints_of_zone(zone);
+  double sum = 0.0;
+  for (const int g : corners) sum += gridpoints[g];
+  return sum / static_cast<double>(corners.size());
+}
+
+TemperatureField::TemperatureField(const Model& model)
     : model_(model),
-      gridpoints_(model_.position.size(), kReferenceTemperature),
-      zones_(model_.zones.size()),
-      contacts_(model_.contacts.size()) {
-  specimen_volume_ = zone_geometry(model_).volume;
+      gridpoints_(model_.gridpoint_count(), kReferenceTemperature),
+      zones_(model_.zone_count()),
+      contacts_(model_.contact_count()) {
+  specimen_volume_ = model_.zone_volumes();
   for (int b = 0; b < model_.block_count(); ++b) {
     if (model_.is_of_bearing(b)) {
       std::fill(specimen_volume_.begin() + model_.block_zones[b],
@@ -60,11 +69,11 @@ TemperatureField::TemperatureField(const Model<2>& model)
   contact_gridpoints_ = contact_gridpoints(model_);
 }
 
-TemperatureField::TemperatureField(const Model<2>& model, double temperature) : TemperatureField(model) {
+TemperatureField::TemperatureField(const Model& model, double temperature) : TemperatureField(model) {
   set_uniform(temperature);
 }
 
-TemperatureField::TemperatureField(const Model<2>& model, std::unique_ptr<Conduction<2>> conduction)
+TemperatureField::TemperatureField(const Model& model, std::unique_ptr<HeatSolver> conduction)
     : TemperatureField(model) {
   conduction_ = std::move(conduction);
   read_conduction();
@@ -164,8 +173,7 @@ void TemperatureField::visit_state(StateVisitor& visitor) {
 /// Computes all that follows from the temperatures of the gridpoints.
 void TemperatureField::update() {
   for (std::size_t z = 0; z < zones_.size(); ++z) {
-    const auto& [a, b, c] = model_.zones[z];
-    zones_[z] = (gridpoints_[a] + gridpoints_[b] + gridpoints_[c]) / 3.0;
+    zones_[z] = mean_of_zone(model_, static_cast<int>(z), gridpoints_);
   }
   mean_ = chunked_sum(zone_chunks_, [&](int z) { return specimen_volume_[z] * zones_[z]; }) / volume_;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {

@@ -7,22 +7,25 @@
 
 #include "pyroclast/base/state_visitor.hpp"
 #include "pyroclast/model/model.hpp"
-#include "pyroclast/thermal/conduction.hpp"
+#include "pyroclast/thermal/heat_solver.hpp"
 
 namespace pyroclast {
 
 /// Returns the two gridpoints of each contact point between whose temperatures its own lies; at a bearing
 /// both are the specimen's.
-std::vector<std::array<int, 2>> contact_gridpoints(const Model<2>& model);
+std::vector<std::array<int, 2>> contact_gridpoints(const Model& model);
+
+/// Returns the mean of a value of the gridpoints over those of a zone.
+double mean_of_zone(const Model& model, int zone, const std::vector<double>& gridpoints);
 
 /// Temperatures of a specimen during a run: one for the whole specimen, or the computed field. The platens
 /// are at the reference temperature throughout.
 class TemperatureField {
  public:
   /// Sets one temperature for the whole specimen, °C. `model` must outlive the field.
-  TemperatureField(const Model<2>& model, double temperature);
+  TemperatureField(const Model& model, double temperature);
   /// Takes the field that conduction computes, see make_conduction. `model` must outlive the field.
-  TemperatureField(const Model<2>& model, std::unique_ptr<Conduction<2>> conduction);
+  TemperatureField(const Model& model, std::unique_ptr<HeatSolver> conduction);
 
   bool is_uniform() const { return !conduction_; }
 
@@ -73,7 +76,7 @@ class TemperatureField {
   double time() const { return time_; }
 
   /// Returns the solver, with its ledger and rates; null for a uniform field.
-  const Conduction<2>* conduction() const { return conduction_.get(); }
+  const HeatSolver* conduction() const { return conduction_.get(); }
 
   void visit_state(StateVisitor& visitor);
 
@@ -87,13 +90,13 @@ class TemperatureField {
     std::vector<double> begin;
   };
 
-  explicit TemperatureField(const Model<2>& model);
+  explicit TemperatureField(const Model& model);
 
   void read_conduction();
   void update();
 
-  const Model<2>& model_;
-  std::unique_ptr<Conduction<2>> conduction_;
+  const Model& model_;
+  std::unique_ptr<HeatSolver> conduction_;
   std::vector<int> specimen_gridpoints_;
   /// Gridpoints of each contact; at a platen twice the specimen's.
   std::vector<std::array<int, 2>> contact_gridpoints_;

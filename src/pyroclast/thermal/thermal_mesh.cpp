@@ -36,7 +36,7 @@ class DisjointSets {
 /// Returns the largest distance of gridpoints that coincide, m. Contacts are made of coinciding faces, so
 /// anything beyond rounding is an error in the model.
 template <int Dim>
-double coincidence_tolerance(const Model<Dim>& model) {
+double coincidence_tolerance(const ModelOf<Dim>& model) {
   double size = 0.0;
   for (const auto& x : model.position) size = std::max(size, norm(x - model.position.front()));
   return 1e-9 * size;
@@ -45,7 +45,7 @@ double coincidence_tolerance(const Model<Dim>& model) {
 }  // namespace
 
 template <int Dim>
-ThermalNodes join_through_contacts(const Model<Dim>& model, const std::vector<bool>& conducts,
+ThermalNodes join_through_contacts(const ModelOf<Dim>& model, const std::vector<bool>& conducts,
                                    const std::vector<std::uint8_t>& parts) {
   const auto conducting = gridpoints_of(model, conducts);
   const double tolerance = coincidence_tolerance(model);
@@ -81,9 +81,9 @@ ThermalNodes join_through_contacts(const Model<Dim>& model, const std::vector<bo
   return nodes;
 }
 
-template ThermalNodes join_through_contacts(const Model<2>&, const std::vector<bool>&,
+template ThermalNodes join_through_contacts(const ModelOf<2>&, const std::vector<bool>&,
                                             const std::vector<std::uint8_t>&);
-template ThermalNodes join_through_contacts(const Model<3>&, const std::vector<bool>&,
+template ThermalNodes join_through_contacts(const ModelOf<3>&, const std::vector<bool>&,
                                             const std::vector<std::uint8_t>&);
 
 }  // namespace pyroclast

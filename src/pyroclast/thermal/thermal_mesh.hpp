@@ -25,7 +25,7 @@ struct ThermalNodes {
 ///
 /// Throws Error when a contact joins gridpoints that do not coincide, or a gridpoint belongs to no zone.
 template <int Dim>
-ThermalNodes join_through_contacts(const Model<Dim>& model, const std::vector<bool>& conducts,
+ThermalNodes join_through_contacts(const ModelOf<Dim>& model, const std::vector<bool>& conducts,
                                    const std::vector<std::uint8_t>& parts = {});
 
 }  // namespace pyroclast

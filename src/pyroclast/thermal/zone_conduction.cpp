@@ -7,7 +7,7 @@
 namespace pyroclast {
 
 template <int Dim>
-ZoneConduction<Dim>::ZoneConduction(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry,
+ZoneConduction<Dim>::ZoneConduction(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry,
                                     const std::vector<int>& table_of_material,
                                     const std::vector<HeatTable>& tables, Team& team)
     : tables_(tables), team_(team) {

@@ -33,7 +33,7 @@ class ZoneConduction {
   ///                           heat
   /// \param tables             kept by reference
   /// \param team               team that shares zones and nodes; kept by reference
-  ZoneConduction(const Model<Dim>& model, const ZoneGeometry<Dim>& geometry,
+  ZoneConduction(const ModelOf<Dim>& model, const ZoneGeometry<Dim>& geometry,
                  const std::vector<int>& table_of_material, const std::vector<HeatTable>& tables, Team& team);
 
   /// Sets the node at each gridpoint; needed before all other calls.

@@ -6,7 +6,7 @@
 namespace pyroclast {
 
 template <int Dim, class Set>
-struct Motion {
+struct GridpointMotion {
   using R = Packs<Dim, Set>;
   using Real = typename R::Real;
   using Vector = typename R::Vector;

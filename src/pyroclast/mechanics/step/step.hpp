@@ -30,7 +30,7 @@ class Step {
   using R = Packs<Dim, Set>;
   using C = ContactForces<Dim, Set>;
   using Z = Zones<Dim, Set>;
-  using M = Motion<Dim, Set>;
+  using M = GridpointMotion<Dim, Set>;
   using Vector = typename R::Vector;
   using Scratch = typename R::Scratch;
   using Sums = typename R::Sums;

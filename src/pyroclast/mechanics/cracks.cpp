@@ -1,4 +1,4 @@
-#include "pyroclast/simulation/cracks.hpp"
+#include "pyroclast/mechanics/cracks.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/chunked_sum.hpp"
+#include "pyroclast/mechanics/reader.hpp"
 
 namespace pyroclast {
 
@@ -18,11 +19,11 @@ const char* name_of(Remembers damage) {
 }
 
 /// Returns the law of an interface, by its first contact; null where no contact has the interface.
-const LawTable* law_of_interface(const Mechanics<2>& mechanics, int interface) {
-  const auto& contacts = mechanics.model().contacts;
-  const auto first = std::ranges::find(contacts, interface, &Contact<2>::interface);
-  return first == contacts.end() ? nullptr
-                                 : &mechanics.body().law_of(static_cast<int>(first - contacts.begin()));
+template <int Dim>
+const LawTable* law_of_interface(const Body<Dim>& body, int interface) {
+  const auto& contacts = body.model.contacts;
+  const auto first = std::ranges::find(contacts, interface, &Contact<Dim>::interface);
+  return first == contacts.end() ? nullptr : &body.law_of(static_cast<int>(first - contacts.begin()));
 }
 
 /// Returns the bit of a contact point that a mode has damaged; `broken_by` returns that of a broken one.
@@ -47,23 +48,24 @@ bool all_zero(const double* lanes) {
 
 /// Returns the bits of the contact point of each slot. Goes over the internal variables as they stand: most
 /// points have no damage, and to ask one by one costs more than all else of a look.
-std::vector<std::uint8_t> damages(const Mechanics<2>& mechanics) {
-  const auto& layout = mechanics.body().layout;
-  const auto& state = mechanics.body().state;
+template <int Dim>
+std::vector<std::uint8_t> damages(const Body<Dim>& body) {
+  const auto& layout = body.layout;
+  const auto& state = body.state;
   struct Place {
     std::size_t line, mode;
   };
   std::vector<std::vector<Place>>
       places;  // for each law, the internal variables of a point that are damages, with their modes
-  for (const LawTable* law : mechanics.body().laws)
-    for (auto& of_law = places.emplace_back(); const InternalInfo& info : law->internals(2))
+  for (const LawTable* law : body.laws)
+    for (auto& of_law = places.emplace_back(); const InternalInfo& info : law->internals(Dim))
       if (const std::size_t mode = mode_of(info.what); mode < std::size(kCrackModes))
-        of_law.push_back({static_cast<std::size_t>(&info - law->internals(2).data()), mode});
+        of_law.push_back({static_cast<std::size_t>(&info - law->internals(Dim).data()), mode});
   std::vector<std::uint8_t> bits(static_cast<std::size_t>(layout.first_point_of(layout.face_packs())) *
                                  kLanes);
   for (int pack = 0; pack < layout.face_packs(); ++pack) {
     const std::uint8_t law = state.law_of_faces[pack];
-    const std::size_t lines_of_point = mechanics.body().laws[law]->internals(2).size();
+    const std::size_t lines_of_point = body.laws[law]->internals(Dim).size();
     const Line* const lines = state.internals.data() + state.first_internal[pack];
     const int first = layout.first_point_of(pack);
     for (int point = first; point < layout.first_point_of(pack + 1); ++point) {
@@ -83,73 +85,80 @@ std::vector<std::uint8_t> damages(const Mechanics<2>& mechanics) {
 
 struct CrackSums {
   std::vector<CrackCount> of_kind;
-  double opening = 0.0, length = 0.0;  ///< sums over contacts that have come apart, m², m
+  double opening = 0.0;  ///< sum of openings times extents over contacts that have come apart
+  double extent = 0.0;   ///< sum of their extents
 
   void operator+=(const CrackSums& other) {
     of_kind.resize(std::max(of_kind.size(), other.of_kind.size()));
     for (std::size_t k = 0; k < other.of_kind.size(); ++k) of_kind[k] += other.of_kind[k];
     opening += other.opening;
-    length += other.length;
+    extent += other.extent;
   }
 };
 
 }  // namespace
 
-void CrackCount::add(bool is_broken, double of_length) {
+void CrackCount::add(bool is_broken, double extent_of_point) {
   ++damaged;
   if (is_broken) ++broken;
-  length += of_length;
+  extent += extent_of_point;
 }
 
 void CrackCount::operator+=(const CrackCount& other) {
   damaged += other.damaged;
   broken += other.broken;
-  length += other.length;
+  extent += other.extent;
 }
 
-std::vector<CrackKind> crack_kinds(const Mechanics<2>& mechanics) {
-  const auto& names = mechanics.model().interface_names;
+template <int Dim>
+std::vector<CrackKind> crack_kinds(const Body<Dim>& body) {
+  const auto& names = body.model.interface_names;
   std::vector<const LawTable*> laws;
-  for (int i = 0; i < static_cast<int>(names.size()); ++i) laws.push_back(law_of_interface(mechanics, i));
+  for (int i = 0; i < static_cast<int>(names.size()); ++i) laws.push_back(law_of_interface(body, i));
   std::vector<CrackKind> kinds;
   for (const Remembers damage : kCrackModes)
     for (int i = 0; i < static_cast<int>(names.size()); ++i)
-      if (laws[i] && std::ranges::count(laws[i]->internals(2), damage, &InternalInfo::what) > 0)
+      if (laws[i] && std::ranges::count(laws[i]->internals(Dim), damage, &InternalInfo::what) > 0)
         kinds.push_back({damage, i, fmt::format("{}_{}", name_of(damage), names[i])});
   return kinds;
 }
 
-Cracks count_cracks(const Mechanics<2>& mechanics, const std::vector<CrackKind>& kinds) {
-  const auto& model = mechanics.model();
-  const auto& layout = mechanics.body().layout;
+template <int Dim>
+Cracks count_cracks(const Body<Dim>& body, const std::vector<CrackKind>& kinds) {
+  const auto& model = body.model;
+  const auto& layout = body.layout;
+  const Reader<Dim> read(body);
   struct Counted {
     std::size_t kind, mode;
   };
   std::vector<std::vector<Counted>> of_interface(model.interface_names.size());
   for (std::size_t k = 0; k < kinds.size(); ++k)
     of_interface[kinds[k].interface].push_back({k, mode_of(kinds[k].damage)});
-  const std::vector<std::uint8_t> bits_of_slots = damages(mechanics);
+  const std::vector<std::uint8_t> bits_of_slots = damages(body);
   auto sums = chunked_sum<CrackSums>(layout.chunks.contacts, [&](int i, CrackSums& sum) {
     const int c = layout.contacts_by_chunk[i];
     const std::uint8_t bits = bits_of_slots[layout.contact_slot[c]];
     if (bits == 0) return;
     const auto& contact = model.contacts[c];
-    const double length = contact.area / model.thickness;
+    const double extent = model.extent(c);
     bool apart = false;
     for (const auto [kind, mode] : of_interface[contact.interface]) {
       if ((bits & damaged_by(mode)) == 0) continue;
       sum.of_kind.resize(kinds.size());
-      sum.of_kind[kind].add((bits & broken_by(mode)) != 0, length);
+      sum.of_kind[kind].add((bits & broken_by(mode)) != 0, extent);
       apart = apart || kinds[kind].damage != Remembers::shear_damage;
     }
     if (!apart) return;
-    sum.opening +=
-        std::max(0.0, mechanics.read().opening(c) + mechanics.read().remembered(c, Remembers::closure)) *
-        length;
-    sum.length += length;
+    sum.opening += std::max(0.0, read.opening(c) + read.remembered(c, Remembers::closure)) * extent;
+    sum.extent += extent;
   });
   sums.of_kind.resize(kinds.size());
-  return {std::move(sums.of_kind), sums.length > 0.0 ? sums.opening / sums.length : 0.0};
+  return {std::move(sums.of_kind), sums.extent > 0.0 ? sums.opening / sums.extent : 0.0};
 }
+
+template std::vector<CrackKind> crack_kinds(const Body<2>&);
+template std::vector<CrackKind> crack_kinds(const Body<3>&);
+template Cracks count_cracks(const Body<2>&, const std::vector<CrackKind>&);
+template Cracks count_cracks(const Body<3>&, const std::vector<CrackKind>&);
 
 }  // namespace pyroclast

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/mechanics/body.hpp"
 
 namespace pyroclast {
 
@@ -12,10 +12,10 @@ namespace pyroclast {
 struct CrackCount {
   std::int64_t damaged = 0;  ///< points with D > 0, the broken ones included
   std::int64_t broken = 0;   ///< points with D = 1: no bond is left
-  double length = 0.0;       ///< tributary length of all damaged contact points, m
+  double extent = 0.0;       ///< extent of all damaged contact points, see Model::extent
 
   /// Counts a contact point that has damage.
-  void add(bool is_broken, double of_length);
+  void add(bool is_broken, double extent_of_point);
   void operator+=(const CrackCount& other);
 };
 
@@ -31,17 +31,19 @@ struct CrackKind {
 };
 
 /// Returns, by mode and then by interface, the kinds of cracks that the laws of a body's interfaces allow.
-std::vector<CrackKind> crack_kinds(const Mechanics<2>& mechanics);
+template <int Dim>
+std::vector<CrackKind> crack_kinds(const Body<Dim>& body);
 
 /// Cracks of a body.
 struct Cracks {
   std::vector<CrackCount> of_kind;  ///< counts in the order of crack_kinds
-  /// Mean opening of contacts with damage in tension or mixed mode, weighted by length, m.
+  /// Mean opening of contacts with damage in tension or mixed mode, weighted by extent, m.
   double mean_opening = 0.0;
 };
 
 /// Counts the present cracks of a body.
 /// \param kinds  result of crack_kinds
-Cracks count_cracks(const Mechanics<2>& mechanics, const std::vector<CrackKind>& kinds);
+template <int Dim>
+Cracks count_cracks(const Body<Dim>& body, const std::vector<CrackKind>& kinds);
 
 }  // namespace pyroclast

@@ -1,0 +1,173 @@
+// Stages, press, gauges and fields on a body in space: the same code as in the plane, and a stage of one's
+// own.
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "mechanics/bodies.hpp"
+#include "messages.hpp"
+#include "pyroclast/results/field_files.hpp"
+#include "pyroclast/simulation/fields.hpp"
+#include "shake.hpp"
+#include "stages/small_runs.hpp"
+
+namespace pyroclast {
+namespace {
+
+constexpr int kCubes = 4;
+constexpr double kEdge = 0.03;  ///< edge of a cube, m
+
+/// A column of cubes of mortar along y, between two cubes of steel, with the materials of a deck.
+SpecimenBody column_between_platens(const Setup& setup) {
+  auto model = std::make_unique<ModelOf<3>>(bodies::cubes(kCubes + 2, kEdge));
+  for (auto& x : model->position) x = {{x[1], x[2] - kEdge, x[0]}};  // turned, its lower end at y = 0
+  for (auto& c : model->contacts) {
+    const auto turned = [](const Vec<3>& v) { return Vec<3>{{v[1], v[2], v[0]}}; };
+    c.normal = turned(c.normal);
+    for (auto& t : c.tangents) t = turned(t);
+  }
+  const auto in_plane = make_simulation(setup);
+  const Model& flat = in_plane->model();
+  model->material_names = flat.material_names;
+  model->interface_names = flat.interface_names;
+  model->bearing_materials = flat.bearing_materials;
+  model->bearing_interfaces = flat.bearing_interfaces;
+  const auto number_of = [](const auto& names, const char* name) {
+    return static_cast<int>(std::ranges::find(names, name) - names.begin());
+  };
+  for (int b = 0; b < kCubes + 2; ++b)
+    model->block_material[b] =
+        number_of(flat.material_names, b == 0 || b == kCubes + 1 ? "platen" : "mortar");
+  for (auto& c : model->contacts)
+    c.interface = c.face == 0 || c.face == kCubes ? static_cast<int>(flat.interface_names.size()) - 1
+                                                  : number_of(flat.interface_names, "mortar_mortar");
+  model->cut_into_chunks(kBlocksOfAChunk);
+  const double height = kCubes * kEdge;
+  const auto put = [&](const char* name, int first_block, int last_block, auto holds) {
+    for (int g = model->block_gridpoints[first_block]; g < model->block_gridpoints[last_block]; ++g)
+      if (holds(model->position[g])) model->sets[name].push_back(g);
+  };
+  const auto at = [](int axis, double place) {
+    return [=](const Vec<3>& x) { return std::abs(x[axis] - place) < 1e-9; };
+  };
+  const auto anywhere = [](const Vec<3>&) { return true; };
+  put("bottom_platen", 0, 1, anywhere);
+  put("bottom_platen_support", 0, 1, at(1, -kEdge));
+  put("bottom_platen_face", 0, 1, at(1, 0.0));
+  put("specimen", 1, kCubes + 1, anywhere);
+  put("bottom", 1, kCubes + 1, at(1, 0.0));
+  put("top", 1, kCubes + 1, at(1, height));
+  put("left", 1, kCubes + 1, at(0, 0.0));
+  put("right", 1, kCubes + 1, at(0, kEdge));
+  put("front", 1, kCubes + 1, at(2, 0.0));
+  put("back", 1, kCubes + 1, at(2, kEdge));
+  put("top_platen", kCubes + 1, kCubes + 2, anywhere);
+  put("top_platen_face", kCubes + 1, kCubes + 2, at(1, height));
+  put("top_platen_support", kCubes + 1, kCubes + 2, at(1, height + kEdge));
+  return {std::move(model),
+          {{0.0, 1.0}, kEdge, kEdge, kEdge * std::cbrt(kCubes)},
+          {},
+          Press::Specimen{1, height, kEdge * kEdge, {kEdge, kEdge}}};
+}
+
+/// A deck whose stages are run on the column.
+struct Solid {
+  explicit Solid(const std::string& text, const StageRegistry& kinds = {})
+      : setup(read(text, kinds)),
+        simulation(column_between_platens(setup), setup.solids, setup.heat, {}, {}, setup.motion,
+                   std::make_shared<Team>()),
+        run(simulation, std::move(setup.stages)) {}
+  double at_end_of(int stage, const char* column) const {
+    return run.history().cell(run.courses()[stage].rows.last - 1, column).value();
+  }
+
+  Setup setup;
+  Simulation simulation;
+  Run run;
+};
+
+// In a column the stress is even, so that the estimate of even stress is its modulus, and it expands freely.
+TEST(Solid, GoesThroughTheStagesOfAHotTest) {
+  Solid solid(deck(kUniform + kSettle + load("level = 0.1\nf_c = \"30 MPa\"") + heat("60 degC") + kCompress));
+  ASSERT_EQ(solid.run.run(), Outcome::completed);
+  const Simulation& s = solid.simulation;
+  const double cold = estimate_modulus(s.model(), s.materials());
+  EXPECT_NEAR(solid.at_end_of(1, "stress_MPa"), 3.0, 0.005);  // some 4 kPa of it are weight
+  const double loaded = solid.at_end_of(1, "specimen_strain") - solid.at_end_of(0, "specimen_strain");
+  EXPECT_NEAR(loaded, 3e6 / cold, 2e-3 * loaded);
+  const double hot = estimate_modulus(s.model(), s.materials(), 60.0);
+  const double heated = solid.at_end_of(2, "specimen_strain") - solid.at_end_of(1, "specimen_strain");
+  EXPECT_NEAR(heated, 3e6 * (1.0 / hot - 1.0 / cold) - 40.0 * 1e-5, 2e-3 * 4e-4);
+  EXPECT_NEAR(solid.at_end_of(2, "lateral_strain") - solid.at_end_of(1, "lateral_strain"), 4e-4, 4e-6);
+  const double stress = solid.at_end_of(3, "stress_MPa") - solid.at_end_of(2, "stress_MPa");
+  const double strain = solid.at_end_of(3, "specimen_strain") - solid.at_end_of(2, "specimen_strain");
+  EXPECT_NEAR(1e6 * stress / strain, hot, 0.01 * hot);
+}
+
+TEST(Solid, CracksOfAnAreaAreTold) {
+  Solid solid(deck(kUniform + kSettle + kCompress));
+  ASSERT_EQ(solid.run.run(), Outcome::completed);
+  EXPECT_TRUE(solid.run.history().has("tension_mortar_mortar_area_m2"));
+  EXPECT_FALSE(solid.run.history().has("tension_mortar_mortar_length_m"));
+  const auto fields = fields_of(solid.simulation);
+  for (const Field& field : fields) EXPECT_NE(field.item, Item::contact_end) << field.name;
+  const auto displacement = std::ranges::find(fields, "displacement", &Field::name);
+  const auto values = values_of<double>({*displacement}, solid.simulation).front();
+  EXPECT_EQ(values.size(), 3U * solid.simulation.model().gridpoint_count());
+  const auto stress =
+      std::ranges::find_if(fields, [](const Field& f) { return f.name == "stress" && f.item == Item::zone; });
+  const auto tensors = values_of<double>({*stress}, solid.simulation).front();
+  EXPECT_NEAR(tensors[6 * 12 + 1], -1e6 * solid.run.history().last("stress_MPa").value(), 2e4);  // of zone 12
+}
+
+// Promise: a stage of one's own that knows no dimension serves both.
+TEST(Solid, AStageOfOnesOwnServesIt) {
+  Solid solid(deck(kUniform + kSettle + kShake + kCompress), with_shake());
+  EXPECT_EQ(solid.run.run(), Outcome::completed);
+  const auto strain = solid.run.history().values("stage_strain", solid.run.courses()[1].rows);
+  ASSERT_EQ(strain.size(), 4U);
+  EXPECT_GT(strain[0], strain[1]);
+  EXPECT_LT(strain[1], strain[2]);
+}
+
+TEST(Solid, IsNotSetDownOnThreePointsYet) {
+  const Solid solid(deck(kUniform + kSettle));
+  EXPECT_FALSE(solid.simulation.press().can_set_down());
+  EXPECT_THROW(solid.simulation.press().to_touch(), Error);
+}
+
+TEST(Solid, ABodyThatIsNoneIsRefused) {
+  const auto setup = read(deck(kUniform + kSettle));
+  const auto refusal = [&](auto change) {
+    SpecimenBody body = column_between_platens(setup);
+    change(body);
+    return message([&] {
+      Simulation(std::move(body), setup.solids, setup.heat, {}, {}, setup.motion, std::make_shared<Team>());
+    });
+  };
+  expect_in("without blocks", refusal([](auto& body) { body.model = nullptr; }));
+  expect_in("thickness", refusal([](auto& body) { body.model->thickness = 0.5; }));
+  expect_in("phases", refusal([](auto& body) { body.numbers.fraction.resize(9); }));
+  expect_in("2 widths", refusal([](auto& body) { body.between_platens->widths.pop_back(); }));
+  expect_in("axis", refusal([](auto& body) { body.between_platens->axis = 3; }));
+}
+
+TEST(Solid, ItsFramesShowBlocksAlone) {
+  Solid solid(deck(kUniform + kSettle));
+  solid.run.run();
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "solid_fields";
+  FrameRows frames;
+  FieldFiles files(folder, solid.simulation, solid.run.history(), frames);
+  files.write(solid.simulation, solid.run.history(), frames);
+  EXPECT_TRUE(std::filesystem::exists(folder / "mesh.h5"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "blocks_0000.hdf"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "contacts_0000.hdf"));
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace pyroclast
