@@ -4,7 +4,6 @@
 #include <deque>
 #include <iterator>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,15 +23,19 @@ std::string joined(const std::string& table, std::string_view key) {
   return table.empty() ? std::string(key) : fmt::format("{}.{}", table, key);
 }
 
-/// Returns the parts in which two readings of a key must agree to be the same.
-auto content(const SurveyRun::Read& r) {
-  const auto words = [](const DeckWord& w) { return w.word + '\0' + w.meaning; };
-  std::vector<std::string> all;
-  std::transform(r.key.words.begin(), r.key.words.end(), std::back_inserter(all), words);
-  return std::tuple(r.table, r.key.key, r.key.value, r.key.unit, r.key.allowed, r.key.fallback, r.key.meaning,
-                    all);
+/// Returns the parts in which two readings of a key must agree to be the same, one behind the other.
+std::string content(const SurveyRun::Read& r) {
+  std::string all;
+  const auto add = [&](const std::string& part) { all.append(part).push_back('\0'); };
+  for (const std::string* part :
+       {&r.key.key, &r.table, &r.key.value, &r.key.unit, &r.key.allowed, &r.key.fallback, &r.key.meaning})
+    add(*part);
+  for (const DeckWord& w : r.key.words) {
+    add(w.word);
+    add(w.meaning);
+  }
+  return all;
 }
-using Content = decltype(content(std::declval<SurveyRun::Read>()));
 
 /// Numbers of things in the order of meeting them.
 template <class Thing>
@@ -346,7 +349,7 @@ class Surveyor {
   std::vector<SurveyAnswers> visited_;  ///< answers of each run, about from the fewest changed to the most
   Numbers<SurveyQuestion> questions_;
   std::vector<SurveyQuestion> asked_;  ///< questions, by number
-  Numbers<Content> keys_;
+  Numbers<std::string> keys_;
   std::vector<SurveyRun::Read> key_texts_;       ///< keys, by number
   std::set<std::vector<std::string>> possible_;  ///< lists of answers
   std::vector<Found> found_;
