@@ -99,7 +99,7 @@ class Shares {
 
 pyroclast::StepFunctions<2> counting_step() {
   return {{count_in_bundles<CountingStep::place_corner_forces>, count_in_bundles<CountingStep::move_bundles>,
-           count_in_bundles<CountingStep::move_tied_pieces>, CountingStep::sum_stiffness},
+           count_in_bundles<CountingStep::move_tied_parts>, CountingStep::sum_stiffness},
           functions_of};
 }
 

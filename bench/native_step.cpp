@@ -50,8 +50,9 @@ void contacts(State<2>& s, double*) {
 
 [[gnu::flatten]] void zones(State<2>& s, double* memory) {
   NativeStep::Sums sums;
-  for (const int piece : s.layout.pieces)
-    NativeStep::Z::place_corner_forces<kSmall, false, false>(s, piece, sums);
+  for (int b = 0; b < bundles(s); ++b)
+    if (s.layout.bundles[b].kind == pyroclast::BundleKind::piece)
+      NativeStep::Z::place_corner_forces<kSmall, false, false>(s, b, sums);
   for (int b = 0; b < bundles(s); ++b) {
     const Bundle& bundle = s.layout.bundles[b];
     const auto scratch = NativeStep::R::scratch_of(bundle, memory);

@@ -216,7 +216,7 @@ TEST(LargeBlocks, GiveTheSameBitsInAnyPieces) {
       parameters.layout.most_zones = most_zones;
       const auto what = testing::Message() << most_zones << " zones a piece, " << threads << " threads";
       const auto m = pressed(model, parameters, threads);
-      ASSERT_GE(m.body().layout.pieces.size(), expected.body().layout.pieces.size() + 2);
+      ASSERT_GE(m.body().layout.parts.size(), expected.body().layout.parts.size() + 2);
       EXPECT_TRUE(m.read().displacements() == expected.read().displacements()) << what;
       EXPECT_TRUE(m.read().velocities() == expected.read().velocities()) << what;
       EXPECT_TRUE(m.read().forces() == expected.read().forces()) << what;
@@ -247,7 +247,7 @@ TEST(LargeBlocks, AStateWithTiesThatJoinPiecesGoesOn) {
   Mechanics<2> resumed(model, std::vector<double>(model.material_names.size(), 2400.0), p,
                        whole.body().parameters);
   copy.put([&](StateVisitor& visitor) { resumed.visit_state(visitor); });
-  ASSERT_TRUE(resumed.body().ties_join_pieces());
+  ASSERT_TRUE(resumed.body().ties_join_parts());
   whole.advance(100);
   resumed.advance(100);
   EXPECT_TRUE(outcome(resumed) == outcome(whole));

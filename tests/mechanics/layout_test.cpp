@@ -167,14 +167,14 @@ void play(const Layout<2>& layout, int threads) {
   EXPECT_EQ(std::count(taken.begin(), taken.end(), 1), static_cast<std::ptrdiff_t>(taken.size()));
   EXPECT_EQ(std::count(moved.begin(), moved.end(), 1), static_cast<std::ptrdiff_t>(moved.size()));
 
-  std::vector<int> computed(layout.pieces.size());
+  std::vector<int> computed(layout.parts.size());
   for (const Share& share : shares) {
-    for (int i = share.corner_pieces.first; i < share.corner_pieces.last; ++i) ++computed[i];
-    for (int i = 0; i < static_cast<int>(layout.pieces.size()); ++i) {
+    for (int i = share.corner_parts.first; i < share.corner_parts.last; ++i) ++computed[i];
+    for (int i = 0; i < static_cast<int>(layout.parts.size()); ++i) {
       const bool moves = std::ranges::any_of(share.strides, [&](const auto& stride) {
-        return stride.bundles.first <= layout.pieces[i] && layout.pieces[i] < stride.bundles.last;
+        return stride.bundles.first <= layout.parts[i] && layout.parts[i] < stride.bundles.last;
       });
-      EXPECT_EQ(share.moved_pieces.first <= i && i < share.moved_pieces.last, moves) << "piece " << i;
+      EXPECT_EQ(share.moved_parts.first <= i && i < share.moved_parts.last, moves) << "part " << i;
     }
   }
   EXPECT_EQ(std::ranges::count(computed, 1), static_cast<std::ptrdiff_t>(computed.size()));
@@ -184,7 +184,7 @@ TEST(Sweep, TakesEveryFaceOnceBeforeItsBundlesMove) {
   const ModelOf<2> model = small_concrete();
   for (const int most_zones : {64, 8}) {
     const Layout<2> layout(model, {.most_zones = most_zones});
-    ASSERT_GE(layout.pieces.size(), 2U);
+    ASSERT_GE(layout.parts.size(), 2U);
     for (int threads : {1, 2, 3, 7}) play(layout, threads);
   }
 }

@@ -50,15 +50,14 @@ Body<Dim>::Body(const ModelOf<Dim>& of, BodyProperties with, const MechanicsPara
 
 template <int Dim>
 int Body<Dim>::first_bundle_of(int bundle) const {
-  if (layout.bundles[bundle].kind != BundleKind::piece) return bundle;
+  if (!layout.bundles[bundle].is_part) return bundle;
   return layout.bundle_of(model.block_gridpoints[layout.block_in(bundle, 0)]);
 }
 
 template <int Dim>
-bool Body<Dim>::ties_join_pieces() const {
-  return std::ranges::any_of(made_ties, [&](const TieOfBundle& tie) {
-    return layout.bundles[tie.bundle].kind == BundleKind::piece;
-  });
+bool Body<Dim>::ties_join_parts() const {
+  return std::ranges::any_of(made_ties,
+                             [&](const TieOfBundle& tie) { return layout.bundles[tie.bundle].is_part; });
 }
 
 template <int Dim>
@@ -97,11 +96,11 @@ void Body<Dim>::place_model() {
   s.losing = made<bool>(point_packs);
   s.contact_force = made<Vec<Dim>>(point_packs * kLanes);
   if (parameters.kinematics == Kinematics::finite) s.turning_force = made<Vec<Dim>>(point_packs * kLanes);
-  if (!layout.pieces.empty()) {
+  if (!layout.piece_zones.empty()) {
     const auto idle = static_cast<std::size_t>(1);
     s.corner_force = made<Vec<Dim>>(kLanes * ((Dim + 1) * layout.piece_zones.size() + idle));
-    s.piece_force = made<VectorPack<Dim>>(layout.corners_of_pack.size());
   }
+  if (!layout.parts.empty()) s.part_force = made<VectorPack<Dim>>(layout.corners_of_pack.size());
   s.constraints_of_bundle = FlatArray<int>(layout.bundles.size());
   std::fill(s.constraints_of_bundle.begin(), s.constraints_of_bundle.end(), -1);
   made_constraints.assign(layout.bundles.size(), -1);

@@ -101,8 +101,8 @@ struct Body {
   const LawTable& law_of_pack(int face_pack) const { return *laws[arrays.law_of_faces[face_pack]]; }
   /// Returns the first bundle of the block whose gridpoints, or some of them, stand in a bundle.
   int first_bundle_of(int bundle) const;
-  /// Tells whether gridpoints of a block that stands in pieces are tied: its pieces then wait for each other.
-  bool ties_join_pieces() const;
+  /// Tells whether gridpoints of a block that stands in parts are tied: its parts then wait for each other.
+  bool ties_join_parts() const;
   /// Returns the place of the constraints of a gridpoint's pack, once its bundle has some; else -1.
   int constraint_pack_of(int gridpoint) const;
   /// Returns the bytes of all arrays of layout and state.

@@ -92,7 +92,7 @@ class LayoutBuilder {
     layout_.chunks.bundles = blocks.of(std::move(begins));
     layout_.shape_zones = FlatArray<std::array<int, Dim + 1>>(shape_zones_);
     layout_.piece_zones = FlatArray<ZoneCorners<Dim>>(piece_zones_);
-    layout_.pieces = FlatArray<int>(pieces_);
+    layout_.parts = FlatArray<int>(parts_);
     layout_.bundle_of_pack = FlatArray<int>(bundle_of_pack_);
     layout_.blocks = FlatArray<std::array<int, kLanes>>(blocks_);
   }
@@ -173,8 +173,8 @@ class LayoutBuilder {
   void gather_corners() {
     const int idle = kLanes * (Dim + 1) * static_cast<int>(piece_zones_.size());
     std::vector<std::vector<int>> of_slot(static_cast<std::size_t>(gathering_packs_) * kLanes);
-    for (const int piece : pieces_) {
-      const Bundle& bundle = bundles_[piece];
+    for (const Bundle& bundle : bundles_) {
+      if (bundle.kind != BundleKind::piece) continue;
       // the packs of a block's pieces stand one after the other, in either list
       const int shift = slot_of(bundle.first_gathering_pack - bundle.first_pack, 0);
       for (int z = 0; z < bundle.zones; ++z)
@@ -302,6 +302,7 @@ class LayoutBuilder {
     for (int i = 0; i < pieces; ++i) {
       Bundle bundle;
       bundle.kind = BundleKind::piece;
+      bundle.is_part = pieces > 1;
       const auto share = [&](std::int64_t of, int piece) { return static_cast<int>(of * piece / pieces); };
       bundle.packs = share(packs, i + 1) - share(packs, i);
       const int zone = kLanes * share(zone_packs, i);
@@ -311,7 +312,7 @@ class LayoutBuilder {
       add_corners(first_zone + zone, bundle);
       bundle.first_gathering_pack = gathering_packs_;
       gathering_packs_ += bundle.packs;
-      pieces_.push_back(bundle_count());
+      if (bundle.is_part) parts_.push_back(bundle_count());
       finish(bundle, lanes);
     }
   }
@@ -453,7 +454,7 @@ class LayoutBuilder {
   std::vector<Shape> shapes_;
   std::vector<std::array<int, Dim + 1>> shape_zones_;
   std::vector<ZoneCorners<Dim>> piece_zones_;
-  std::vector<int> pieces_, bundle_of_pack_;
+  std::vector<int> parts_, bundle_of_pack_;
   int gathering_packs_ = 0;  // packs of gridpoints of pieces
   std::vector<Bundle> bundles_;
   std::vector<std::array<int, kLanes>> blocks_;

@@ -48,8 +48,9 @@ inline constexpr int offset_of(int slot) {
 enum class BundleKind : std::uint8_t {
   alike,  ///< up to eight blocks with the same zones, one a lane: pack i holds the i-th gridpoint of each
   /// One block over all lanes, or a part of a large block: its gridpoints and zones follow one another
-  /// through the packs, piece after piece. Threads share the pieces. So one pass writes the forces of zones
-  /// on their corners, and in the next one each gridpoint gathers its own, whatever pieces they come from.
+  /// through the packs, piece after piece. The forces of zones on their corners are written first; then each
+  /// gridpoint gathers its own, whatever pieces they come from. Threads share the parts of a block, so that
+  /// all their corner forces are there before any part moves.
   piece
 };
 
@@ -62,6 +63,7 @@ struct IndexRange {
 struct Bundle {
   BundleKind kind = BundleKind::alike;
   bool fan = false;              ///< alike: true where the shape is a fan
+  bool is_part = false;          ///< piece: true where other pieces hold the rest of its block
   int first_pack = 0;            ///< first pack of gridpoints
   int packs = 0;                 ///< number of packs of gridpoints
   int first_zone_pack = 0;       ///< first pack of zones
@@ -176,7 +178,7 @@ struct LayoutArrays {
   Array<Bundle> bundles;
   Array<std::array<int, Dim + 1>> shape_zones;  ///< zones of each shape in turn, as gridpoints of a block
   Array<ZoneCorners<Dim>> piece_zones;          ///< packs of zones of pieces
-  Array<int> pieces;                            ///< bundle of each piece
+  Array<int> parts;                             ///< bundle of each part of a large block
   Array<FacePack<Dim>> faces;
   Array<int> first_point;   ///< first pack of points of each pack of faces, and of one more
   Array<PointPack> points;  ///< contact points of each pack of faces in turn
@@ -203,7 +205,7 @@ struct LayoutArrays {
     f(ArrayInfo{"bundles", Per::bundle, Touched::all}, l.bundles...);
     f(ArrayInfo{"shape_zones", Per::entry}, l.shape_zones...);  // few, and always near
     f(ArrayInfo{"piece_zones", Per::entry, Touched::all}, l.piece_zones...);
-    f(ArrayInfo{"pieces", Per::entry}, l.pieces...);
+    f(ArrayInfo{"parts", Per::entry}, l.parts...);
     f(ArrayInfo{"faces", Per::face_pack, Touched::all}, l.faces...);
     f(ArrayInfo{"first_point", Per::face_pack_end, Dim == 2 ? Touched::none : Touched::all},
       l.first_point...);

@@ -24,7 +24,7 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
       for (Share& share : share_out(body.layout, threads))
         workers_.push_back({std::move(share), body.make_scratch()});
     }
-    const bool ties_join_pieces = body.ties_join_pieces();
+    const bool ties_join_parts = body.ties_join_parts();
     body.team->run(threads, [&](int thread) {
       Worker& worker = workers_[static_cast<std::size_t>(thread)];
       State<Dim> s = body.state;
@@ -32,16 +32,16 @@ void Mover<Dim>::sweep(int steps, Pass pass) {
       for (bool is_crowded = false; taken < left && !is_crowded; ++taken) {
         const Share& share = worker.share;
         for (const auto& faces : share.crossing) update_faces(s, faces.first, faces.last, measure);
-        passes.place_corner_forces(s, share.corner_pieces.first, share.corner_pieces.last, pass);
+        passes.place_corner_forces(s, share.corner_parts.first, share.corner_parts.last, pass);
         body.team->barrier();
         for (const auto& stride : share.strides) {
           update_faces(s, stride.faces.first, stride.faces.last, measure);
           passes.move_bundles(s, stride.bundles.first, stride.bundles.last, pass, worker.scratch.data());
         }
-        if (ties_join_pieces) {
+        if (ties_join_parts) {
           body.team->barrier();
-          passes.move_tied_pieces(s, share.moved_pieces.first, share.moved_pieces.last, pass,
-                                  worker.scratch.data());
+          passes.move_tied_parts(s, share.moved_parts.first, share.moved_parts.last, pass,
+                                 worker.scratch.data());
         }
         is_crowded = body.team->barrier();
       }

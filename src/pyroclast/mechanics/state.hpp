@@ -118,8 +118,8 @@ struct StateArrays {
   /// Forces of zones of pieces on their corners, from which gridpoints gather, N: for each pack of zones
   /// eight of each corner; behind them eight idle ones.
   Array<Vec<Dim>> corner_force;
-  /// Sums of forces of the gridpoints of pieces until their ties share them out, by `corners_of_pack`, N.
-  Array<VectorPack<Dim>> piece_force;
+  /// Sums of forces of the gridpoints of parts until their ties share them out, by `corners_of_pack`, N.
+  Array<VectorPack<Dim>> part_force;
   Array<std::byte> contact_constants;  ///< constants of sets in turn
   /// First byte of the set of each pack of faces; where its points differ only the set's choices count.
   Array<int> first_constant;
@@ -164,7 +164,7 @@ struct StateArrays {
                 HeldBy::owner_and_halo},
       s.turning_force...);
     f(ArrayInfo{"corner_force", Per::entry, Touched::all, Touched::all, Lasts::a_step}, s.corner_force...);
-    f(ArrayInfo{"piece_force", Per::entry, Touched::none, Touched::none, Lasts::a_step}, s.piece_force...);
+    f(ArrayInfo{"part_force", Per::entry, Touched::none, Touched::none, Lasts::a_step}, s.part_force...);
     f(ArrayInfo{"contact_constants", Per::entry}, s.contact_constants...);  // few, and always near
     f(ArrayInfo{"first_constant", Per::face_pack, Touched::all}, s.first_constant...);
     f(ArrayInfo{"one_set", Per::face_pack, Touched::all}, s.one_set...);
@@ -236,16 +236,16 @@ enum class Pass : std::uint8_t {
 /// Passes of the step, compiled for one instruction set; packs of faces are compiled with their law.
 template <int Dim>
 struct StepPasses {
-  /// Computes the corner forces of pieces.
-  /// \param first, last  entries of `pieces`
+  /// Computes the corner forces of parts of large blocks.
+  /// \param first, last  entries of `parts`
   void (*place_corner_forces)(State<Dim>&, int first, int last, Pass);
-  /// Sums the forces of bundles and moves their gridpoints. Those of tied pieces still stand: their forces
-  /// wait for the sums of the block's other pieces.
+  /// Sums the forces of bundles and moves their gridpoints. Those of tied parts still stand: their forces
+  /// wait for the sums of the block's other parts.
   /// \param scratch  2 Dim kLanes numbers for every pack of the largest bundle, aligned to 64 bytes
   void (*move_bundles)(State<Dim>&, int first, int last, Pass, double* scratch);
-  /// Shares the sums of tied pieces out and moves their gridpoints.
-  /// \param first, last  entries of `pieces`
-  void (*move_tied_pieces)(State<Dim>&, int first, int last, Pass, double* scratch);
+  /// Shares the sums of tied parts out and moves their gridpoints.
+  /// \param first, last  entries of `parts`
+  void (*move_tied_parts)(State<Dim>&, int first, int last, Pass, double* scratch);
   /// Computes `State::stiffness`; leaves contact and corner forces unset until the next sweep.
   void (*sum_stiffness)(State<Dim>&, double* scratch);
 };

@@ -6,12 +6,13 @@ namespace pyroclast {
 
 namespace {
 
-/// Time in which a piece is moved, its corner forces being there, over that of as many zones of an alike
-/// bundle with its faces (20,000 blocks on one thread: 2.4 and 6.1 ns a zone).
-constexpr double kPieceCost = 0.4;
+// Times of a piece, with its faces, and of a part whose corner forces are there, over that of as many zones
+// of an alike bundle (20,000 blocks on one thread: 6.7, 2.4 and 6.1 ns a zone).
+constexpr double kPieceCost = 1.1, kPartCost = 0.4;
 
 double cost(const Bundle& bundle) {
-  return bundle.zone_packs() * (bundle.kind == BundleKind::piece ? kPieceCost : 1.0);
+  const double of_zones = bundle.kind == BundleKind::alike ? 1.0 : bundle.is_part ? kPartCost : kPieceCost;
+  return of_zones * bundle.zone_packs();
 }
 
 /// Returns the first and the last bundle that each pack of faces touches.
@@ -57,12 +58,17 @@ std::vector<IndexRange> bundle_ranges(const Layout<Dim>& layout, int threads) {
   return ranges;
 }
 
-/// Returns the first piece whose corner forces a thread computes; all have about as many zones to do.
+/// Returns the first part whose corner forces a thread computes; all have about as many zones to do.
 template <int Dim>
-int first_piece(const Layout<Dim>& layout, int thread, int threads) {
-  const auto zone_packs = static_cast<double>(layout.piece_zones.size()) * thread / threads;
-  const auto is_before = [&](int piece) { return layout.bundles[piece].first_corners < zone_packs; };
-  return static_cast<int>(std::ranges::partition_point(layout.pieces, is_before) - layout.pieces.begin());
+int first_part(const Layout<Dim>& layout, int thread, int threads) {
+  int zone_packs = 0, before = 0;
+  for (const int part : layout.parts) zone_packs += layout.bundles[part].zone_packs();
+  for (int i = 0; i < static_cast<int>(layout.parts.size()); ++i) {
+    if (static_cast<std::int64_t>(before) * threads >= static_cast<std::int64_t>(zone_packs) * thread)
+      return i;
+    before += layout.bundles[layout.parts[i]].zone_packs();
+  }
+  return static_cast<int>(layout.parts.size());
 }
 
 }  // namespace
@@ -82,11 +88,11 @@ std::vector<Share> share_out(const Layout<Dim>& layout, int threads) {
       else
         append(shares[t].crossing, r);
     }
-    const auto pieces_before = [&](int bundle) {
-      return static_cast<int>(std::ranges::lower_bound(layout.pieces, bundle) - layout.pieces.begin());
+    const auto parts_before = [&](int bundle) {
+      return static_cast<int>(std::ranges::lower_bound(layout.parts, bundle) - layout.parts.begin());
     };
-    shares[t].corner_pieces = {first_piece(layout, t, threads), first_piece(layout, t + 1, threads)};
-    shares[t].moved_pieces = {pieces_before(ranges[t].first), pieces_before(ranges[t].last)};
+    shares[t].corner_parts = {first_part(layout, t, threads), first_part(layout, t + 1, threads)};
+    shares[t].moved_parts = {parts_before(ranges[t].first), parts_before(ranges[t].last)};
     auto& strides = shares[t].strides;
     std::size_t next = 0;
     for (int b = ranges[t].first; b < ranges[t].last; ++b) {

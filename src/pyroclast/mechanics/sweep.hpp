@@ -9,16 +9,16 @@ namespace pyroclast {
 /// Work of one thread in a step.
 ///
 /// Threads share the bundles out along the body. Faces between bundles of two threads are done first, and
-/// the corner forces of pieces, which threads share evenly. Then each thread sweeps through its own
+/// the corner forces of large blocks, which threads share evenly. Then each thread sweeps through its own
 /// part: packs of faces, then the bundles whose faces are all done, while they are still in the cache.
 struct Share {
   struct Stride {
     IndexRange faces, bundles;
   };
   std::vector<IndexRange> crossing;  ///< packs of faces that touch bundles of other threads
-  IndexRange corner_pieces;          ///< entries of `pieces` whose corner forces the thread computes
+  IndexRange corner_parts;           ///< entries of `parts` whose corner forces the thread computes
   std::vector<Stride> strides;
-  IndexRange moved_pieces;  ///< entries of `pieces` among the thread's bundles
+  IndexRange moved_parts;  ///< entries of `parts` among the thread's bundles
 };
 
 /// Shares a step out to threads.

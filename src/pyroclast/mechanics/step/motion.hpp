@@ -26,7 +26,7 @@ struct GridpointMotion {
 
   /// Shares the sum (4) out by mass where gridpoints are tied.
   /// \param forces  sums of forces of all tied gridpoints, by pack from the bundle's first on: those of
-  ///                `scratch`, or of all pieces of a block
+  ///                `scratch`, or of all parts of a block
   static void share_out(const State<Dim>& s, const Bundle& bundle, const BundleConstraints& constraints,
                         const VectorPack<Dim>* forces, const Scratch& scratch) {
     for (int t = constraints.first_tie; t < constraints.last_tie; ++t) {
@@ -39,7 +39,7 @@ struct GridpointMotion {
       }
       for (int i = tie.begin; i < tie.end; ++i) {
         const int slot = s.tied_slots[i], pack = slot / kLanes - bundle.first_pack;
-        if (pack < 0 || pack >= bundle.packs) continue;  // that of another piece
+        if (pack < 0 || pack >= bundle.packs) continue;  // that of another part
         scratch.sum[pack].c[tie.component][slot % kLanes] =
             total * (s.time_step / s.step_over_mass[slot]) / mass;
       }
@@ -78,14 +78,14 @@ struct GridpointMotion {
       kept.kinetic = sum(sums.kinetic);
     }
     if constexpr (kPass != Pass::move) {
-      const bool begun = s.layout.bundles[index].kind == BundleKind::piece;
+      const bool begun = s.layout.bundles[index].is_part;
       kept.stored = (begun ? kept.stored : 0.0) + sum(sums.stored);
       kept.applied = (begun ? kept.applied : 0.0) + sum(sums.applied);
       kept.unbalanced = sum(sums.unbalanced);
     }
   }
 
-  /// Books the sums of a piece's zones, to which `keep` adds.
+  /// Books the sums of a part's zones, to which `keep` adds.
   static void keep_of_zones(State<Dim>& s, int index, const Sums& sums) {
     s.bundle_sums[index].stored = sum(sums.stored);
     s.bundle_sums[index].applied = sum(sums.applied);

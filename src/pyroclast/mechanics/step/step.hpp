@@ -10,7 +10,7 @@
 /// Step of the method, on lanes:
 ///
 ///     faces      displacements -> jump -> law -> traction -> contact force     Eqs. (10)-(15)  contacts.hpp
-///     pieces           ^      -> zones -> corner forces                        Eqs. (4), (5)   zones.hpp
+///     large blocks     ^      -> zones -> corner forces                        Eqs. (4), (5)   zones.hpp
 ///                      |                                          |
 ///                      |                                          v
 ///     bundles          |   weight + contact forces + zone forces + loads       Eqs. (4), (5)   zones.hpp
@@ -46,25 +46,25 @@ class Step {
     });
   }
 
-  /// Computes the corner forces of pieces, in the first half of a step.
+  /// Computes the corner forces of parts of large blocks, in the first half of a step.
   static void place_corner_forces(State<Dim>& s, int first, int last, Pass pass) {
     with_kinematics(s, [&](auto kinematics) {
       with_creep(s, [&](auto creeps) {
         with_pass(pass, [&](auto kind) {
           for (int i = first; i < last; ++i)
-            corner_forces<kinematics(), kind(), creeps()>(s, s.layout.pieces[i]);
+            corner_forces<kinematics(), kind(), creeps()>(s, s.layout.parts[i]);
         });
       });
     });
   }
 
-  /// Ends the step of pieces whose gridpoints are tied to others.
-  static void move_tied_pieces(State<Dim>& s, int first, int last, Pass pass, double* memory) {
+  /// Ends the step of parts whose gridpoints are tied to others.
+  static void move_tied_parts(State<Dim>& s, int first, int last, Pass pass, double* memory) {
     with_pass(pass, [&](auto kind) {
       for (int i = first; i < last; ++i) {
-        const int index = s.layout.pieces[i];
+        const int index = s.layout.parts[i];
         if (const int c = s.constraints_of_bundle[index]; c >= 0 && s.constraints[c].ties())
-          tied_piece<kind()>(s, index, s.constraints[c], memory);
+          tied_part<kind()>(s, index, s.constraints[c], memory);
       }
     });
   }
@@ -74,12 +74,13 @@ class Step {
     for_each_law(
         s, 0, static_cast<int>(s.layout.faces.size()),
         [&](const PackFunctions<Dim>& law, int first, int last) { law.place_stiffness(s, first, last); });
-    for (const int piece : s.layout.pieces) Z::place_corner_stiffness(s, piece);
+    for (int b = 0; b < static_cast<int>(s.layout.bundles.size()); ++b)
+      if (s.layout.bundles[b].kind == BundleKind::piece) Z::place_corner_stiffness(s, b);
     with_kinematics(s, [&](auto kinematics) { stiffness<kinematics()>(s, memory); });
   }
 
   static constexpr StepPasses<Dim> passes() {
-    return {place_corner_forces, move_bundles, move_tied_pieces, sum_stiffness};
+    return {place_corner_forces, move_bundles, move_tied_parts, sum_stiffness};
   }
 
   // flatten, because lanes that cross a call go through memory
@@ -91,12 +92,13 @@ class Step {
     Sums sums;
     take_displacements(s, bundle, scratch);
     sum_weights_and_contacts<kKinematics, kMeasure>(s, bundle, scratch, sums);
+    if (bundle.kind == BundleKind::piece && !bundle.is_part)
+      Z::template place_corner_forces<kKinematics, kMeasure, kCreeps>(s, index, sums);
     Z::template add_forces<kKinematics, kMeasure, kCreeps>(s, index, scratch, sums);
     if (const int c = s.constraints_of_bundle[index]; c >= 0) {
       const BundleConstraints& constraints = s.constraints[c];
       M::template load<kMeasure>(s, bundle, constraints, scratch, sums);
-      if (bundle.kind == BundleKind::piece && constraints.ties())
-        return put_aside<kMeasure>(s, index, scratch, sums);
+      if (bundle.is_part && constraints.ties()) return put_aside<kMeasure>(s, index, scratch, sums);
       M::share_out(s, bundle, constraints, scratch.sum, scratch);
     }
     M::template move_packs<kPass>(s, index, scratch, sums);
@@ -104,33 +106,33 @@ class Step {
   }
 
   template <Kinematics kKinematics, Pass kPass, bool kCreeps>
-  [[gnu::flatten]] static void corner_forces(State<Dim>& s, int piece) {
+  [[gnu::flatten]] static void corner_forces(State<Dim>& s, int part) {
     constexpr bool kMeasure = kPass != Pass::move;
     Sums sums;
-    Z::template place_corner_forces<kKinematics, kMeasure, kCreeps>(s, piece, sums);
-    if constexpr (kMeasure) M::keep_of_zones(s, piece, sums);
+    Z::template place_corner_forces<kKinematics, kMeasure, kCreeps>(s, part, sums);
+    if constexpr (kMeasure) M::keep_of_zones(s, part, sums);
   }
 
-  /// Puts the sums of forces of a piece aside, until those of its block's other pieces are there too.
+  /// Puts the sums of forces of a part aside, until those of its block's other parts are there too.
   template <bool kMeasure>
-  static void put_aside(State<Dim>& s, int piece, const Scratch& scratch, const Sums& sums) {
-    const Bundle& bundle = s.layout.bundles[piece];
-    std::copy_n(scratch.sum, bundle.packs, &s.piece_force[bundle.first_gathering_pack]);
-    if constexpr (kMeasure) s.bundle_sums[piece].applied += sum(sums.applied);
+  static void put_aside(State<Dim>& s, int part, const Scratch& scratch, const Sums& sums) {
+    const Bundle& bundle = s.layout.bundles[part];
+    std::copy_n(scratch.sum, bundle.packs, &s.part_force[bundle.first_gathering_pack]);
+    if constexpr (kMeasure) s.bundle_sums[part].applied += sum(sums.applied);
   }
 
   template <Pass kPass>
-  [[gnu::flatten]] static void tied_piece(State<Dim>& s, int piece, const BundleConstraints& constraints,
-                                          double* memory) {
-    const Bundle& bundle = s.layout.bundles[piece];
+  [[gnu::flatten]] static void tied_part(State<Dim>& s, int part, const BundleConstraints& constraints,
+                                         double* memory) {
+    const Bundle& bundle = s.layout.bundles[part];
     const Scratch scratch = R::scratch_of(bundle, memory);
-    const VectorPack<Dim>* const forces = &s.piece_force[bundle.first_gathering_pack];
+    const VectorPack<Dim>* const forces = &s.part_force[bundle.first_gathering_pack];
     Sums sums;
     take_displacements(s, bundle, scratch);
     std::copy_n(forces, bundle.packs, scratch.sum);
     M::share_out(s, bundle, constraints, forces, scratch);
-    M::template move_packs<kPass>(s, piece, scratch, sums);
-    M::template keep<kPass>(s, piece, sums);
+    M::template move_packs<kPass>(s, part, scratch, sums);
+    M::template keep<kPass>(s, part, sums);
   }
 
   // Parts of a bundle's step, public so that each can be timed alone.
