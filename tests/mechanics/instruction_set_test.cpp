@@ -234,8 +234,7 @@ TEST(LargeBlocks, GiveTheSameBitsInAnyPieces) {
   }
 }
 
-// Promise: a body with ties that join pieces goes on from its state as if nothing had come between; a state
-// whose ties name no constraints is refused.
+// Promise: a body with ties that join pieces goes on from its state as if nothing had come between.
 TEST(LargeBlocks, AStateWithTiesThatJoinPiecesGoesOn) {
   const ModelOf<2> model = between_platens(small_specimen(150), 0.01, 0.5);
   auto parameters = quasi_static<2>();
