@@ -4,7 +4,8 @@
 
 namespace bench {
 
-double damaged_share(const pyroclast::Mechanics<2>& body) {
+template <int Dim>
+double damaged_share(const pyroclast::Mechanics<Dim>& body) {
   const int contacts = body.model().contact_count();
   int damaged = 0;
   for (int c = 0; c < contacts; ++c) {
@@ -14,17 +15,19 @@ double damaged_share(const pyroclast::Mechanics<2>& body) {
   return static_cast<double>(damaged) / contacts;
 }
 
-double damaged_share(const textbook::Body& body) {
+template <int Dim>
+double damaged_share(const textbook::Body<Dim>& body) {
   std::size_t damaged = 0;
   for (const auto& c : body.contacts()) damaged += c.tension_damage > 0.0 || c.shear_damage > 0.0;
   return static_cast<double>(damaged) / static_cast<double>(body.contacts().size());
 }
 
-StepCost step_cost(pyroclast::Mechanics<2>& body) {
+template <int Dim>
+StepCost step_cost(pyroclast::Mechanics<Dim>& body) {
   reset_operations();
-  body.use(counting_step());
+  body.use(counting_step<Dim>());
   body.advance(2);
-  body.use(pyroclast::step_functions<2>(body.body().parameters.instructions));
+  body.use(pyroclast::step_functions<Dim>(body.body().parameters.instructions));
   const Operations done = operations();
   const auto& model = body.model();
   const auto& layout = body.body().layout;
@@ -33,12 +36,19 @@ StepCost step_cost(pyroclast::Mechanics<2>& body) {
   };
   const Traffic arrays = traffic(body);
   StepCost cost;
-  cost.flops = static_cast<double>(done.faces) * in_use(model.contact_count() / 2, layout.face_packs()) +
+  cost.flops = static_cast<double>(done.faces) * in_use(model.contact_count(), layout.point_packs - 1) +
                static_cast<double>(done.bundles) * in_use(model.zone_count(), layout.zone_packs);
   cost.bytes = arrays.moved;
   cost.working_set = arrays.working_set;
   cost.memory = static_cast<double>(body.body().memory());
   return cost;
 }
+
+template double damaged_share(const pyroclast::Mechanics<2>&);
+template double damaged_share(const pyroclast::Mechanics<3>&);
+template double damaged_share(const textbook::Body<2>&);
+template double damaged_share(const textbook::Body<3>&);
+template StepCost step_cost(pyroclast::Mechanics<2>&);
+template StepCost step_cost(pyroclast::Mechanics<3>&);
 
 }  // namespace bench

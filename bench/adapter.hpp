@@ -15,12 +15,15 @@ struct StepCost {
 };
 
 /// Share of contact points with damage.
-double damaged_share(const pyroclast::Mechanics<2>& body);
-double damaged_share(const textbook::Body& body);
+template <int Dim>
+double damaged_share(const pyroclast::Mechanics<Dim>& body);
+template <int Dim>
+double damaged_share(const textbook::Body<Dim>& body);
 
 /// Takes two steps of the body with numbers that count; the first, which is not measured, gives the
 /// operations. They are counted as written: a negation is a subtraction, and a compiler may leave some out.
-/// Idle lanes do what the others do and are taken off by their share among faces and among zones.
-StepCost step_cost(pyroclast::Mechanics<2>& body);
+/// Idle lanes do what the others do and are taken off by their share among contact points and among zones.
+template <int Dim>
+StepCost step_cost(pyroclast::Mechanics<Dim>& body);
 
 }  // namespace bench

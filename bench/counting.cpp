@@ -17,41 +17,44 @@ using pyroclast::Touched;
 
 namespace {
 
-using CountingStep = pyroclast::Step<2, Counting>;
+template <int Dim>
+using CountingStep = pyroclast::Step<Dim, Counting>;
 
 Operations counted;
 
-template <class Law>
-void update_faces(State<2>& s, int first, int last, bool measure) {
+template <int Dim, class Law>
+void update_faces(State<Dim>& s, int first, int last, bool measure) {
   const auto before = Counted::operations;
-  pyroclast::Contacts<2, Counting, Law>::update(s, first, last, measure);
+  pyroclast::Contacts<Dim, Counting, Law>::update(s, first, last, measure);
   if (!measure) counted.faces += Counted::operations - before;
 }
 
-template <class... Laws>
-pyroclast::PackFunctions<2> packs(pyroclast::LawList<Laws...>, int law) {
-  static constexpr std::array<pyroclast::PackFunctions<2>, sizeof...(Laws)> kPacks{
-      {{update_faces<Laws>, pyroclast::Contacts<2, Counting, Laws>::place_stiffness,
-        pyroclast::Contacts<2, Counting, Laws>::update_lanes}...}};
+template <int Dim, class... Laws>
+pyroclast::PackFunctions<Dim> packs(pyroclast::LawList<Laws...>, int law) {
+  static constexpr std::array<pyroclast::PackFunctions<Dim>, sizeof...(Laws)> kPacks{
+      {{update_faces<Dim, Laws>, pyroclast::Contacts<Dim, Counting, Laws>::place_stiffness,
+        pyroclast::Contacts<Dim, Counting, Laws>::update_lanes}...}};
   return kPacks[static_cast<std::size_t>(law)];
 }
 
-pyroclast::PackFunctions<2> functions_of(const pyroclast::LawTable& law) {
-  return packs(pyroclast::BuiltInLaws(), pyroclast::index_of(law));
+template <int Dim>
+pyroclast::PackFunctions<Dim> functions_of(const pyroclast::LawTable& law) {
+  return packs<Dim>(pyroclast::BuiltInLaws(), pyroclast::index_of(law));
 }
 
 /// Calls a part of the step and counts its operations among those of bundles.
-template <auto kPart, class... Arguments>
-void count_in_bundles(State<2>& s, int first, int last, Pass pass, Arguments... arguments) {
+template <int Dim, auto kPart, class... Arguments>
+void count_in_bundles(State<Dim>& s, int first, int last, Pass pass, Arguments... arguments) {
   const auto before = Counted::operations;
   kPart(s, first, last, pass, arguments...);
   if (pass == Pass::move) counted.bundles += Counted::operations - before;
 }
 
 /// Shares of the arrays that a step touches, as far as they hang on the body.
+template <int Dim>
 class Shares {
  public:
-  Shares(const State<2>& s, const std::vector<const pyroclast::LawTable*>& laws)
+  Shares(const State<Dim>& s, const std::vector<const pyroclast::LawTable*>& laws)
       : held_(held_share(s, laws)), combined_(s.damping_form == pyroclast::DampingForm::combined) {
     int packs_of_pieces = 0;
     for (const Bundle& bundle : s.layout.bundles)
@@ -81,10 +84,10 @@ class Shares {
 
  private:
   /// Share of the internal variables that is always written.
-  static double held_share(const State<2>& s, const std::vector<const pyroclast::LawTable*>& laws) {
+  static double held_share(const State<Dim>& s, const std::vector<const pyroclast::LawTable*>& laws) {
     double all = 0.0, always = 0.0;
     for (int pack = 0; pack < static_cast<int>(s.layout.faces.size()); ++pack)
-      for (const auto& info : laws[s.law_of_faces[pack]]->internals(2)) {
+      for (const auto& info : laws[s.law_of_faces[pack]]->internals(Dim)) {
         all += 1.0;
         always += info.when == 0;
       }
@@ -97,11 +100,16 @@ class Shares {
 
 }  // namespace
 
-pyroclast::StepFunctions<2> counting_step() {
-  return {{count_in_bundles<CountingStep::place_corner_forces>, count_in_bundles<CountingStep::move_bundles>,
-           count_in_bundles<CountingStep::move_tied_parts>, CountingStep::sum_stiffness},
-          functions_of};
+template <int Dim>
+pyroclast::StepFunctions<Dim> counting_step() {
+  using Parts = CountingStep<Dim>;
+  return {{count_in_bundles<Dim, Parts::place_corner_forces>, count_in_bundles<Dim, Parts::move_bundles>,
+           count_in_bundles<Dim, Parts::move_tied_parts>, Parts::sum_stiffness},
+          functions_of<Dim>};
 }
+
+template pyroclast::StepFunctions<2> counting_step();
+template pyroclast::StepFunctions<3> counting_step();
 
 Operations operations() {
   return counted;
@@ -111,9 +119,10 @@ void reset_operations() {
   counted = {};
 }
 
-Traffic traffic(const pyroclast::Mechanics<2>& body) {
-  const State<2>& state = body.body().state;
-  const Shares shares(state, body.body().laws);
+template <int Dim>
+Traffic traffic(const pyroclast::Mechanics<Dim>& body) {
+  const State<Dim>& state = body.body().state;
+  const Shares<Dim> shares(state, body.body().laws);
   Traffic traffic;
   const auto add = [&](const pyroclast::ArrayInfo& info, const auto& array) {
     const auto bytes = static_cast<double>(bytes_of(array));
@@ -125,5 +134,8 @@ Traffic traffic(const pyroclast::Mechanics<2>& body) {
   for_each_array(add, state);
   return traffic;
 }
+
+template Traffic traffic(const pyroclast::Mechanics<2>&);
+template Traffic traffic(const pyroclast::Mechanics<3>&);
 
 }  // namespace bench

@@ -81,6 +81,37 @@ struct OneByOne {
     x = load(p + offset[0]) - load(p + less[0]);
     y = load(p + offset[0] + 1) - load(p + less[0] + 1);
   }
+  static void load_triples(const double* p, Value& x, Value& y, Value& z) {
+    x = load(p);
+    y = load(p + 1);
+    z = load(p + 2);
+  }
+  static void store_triples(double* p, Value x, Value y, Value z) {
+    store(p, x);
+    store(p + 1, y);
+    store(p + 2, z);
+  }
+  template <class At>
+  static void gather_triples(At at, Value& x, Value& y, Value& z) {
+    load_triples(at(0), x, y, z);
+  }
+  template <class At, class Less>
+  static void gather_triple_differences(At at, Less less, Value& x, Value& y, Value& z) {
+    x = load(at(0)) - load(less(0));
+    y = load(at(0) + 1) - load(less(0) + 1);
+    z = load(at(0) + 2) - load(less(0) + 2);
+  }
+  static void load_fours(const double* p, Value& x, Value& y, Value& z) { load_triples(p, x, y, z); }
+  template <class At>
+  static void gather_fours(At at, Value& x, Value& y, Value& z) {
+    load_triples(at(0), x, y, z);
+  }
+  static void store_fours(double* p, Value x, Value y, Value z) { store_triples(p, x, y, z); }
+  template <class At>
+  static void add_to_fours(At at, Value x, Value y, Value z) {
+    double* const p = at(0);
+    store_triples(p, load(p) + x, load(p + 1) + y, load(p + 2) + z);
+  }
 };
 using Counting = OneByOne<Counted>;
 
@@ -91,7 +122,8 @@ struct Operations {
 };
 
 /// The step on Counting, for one thread: it leaves the bits of every other step and adds to `operations()`.
-pyroclast::StepFunctions<2> counting_step();
+template <int Dim>
+pyroclast::StepFunctions<Dim> counting_step();
 Operations operations();
 void reset_operations();
 
@@ -105,6 +137,7 @@ struct Traffic {
   double moved = 0.0;        ///< read plus written
   double working_set = 0.0;  ///< all that is read or written, once
 };
-Traffic traffic(const pyroclast::Mechanics<2>& body);
+template <int Dim>
+Traffic traffic(const pyroclast::Mechanics<Dim>& body);
 
 }  // namespace bench

@@ -27,10 +27,12 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    bench::Bodies bodies(argv[1]);
+    const bench::Deck deck(argv[1]);
+    auto specimens = deck.specimens();
+    auto cubes = deck.cubes();
     bench::register_machine();
-    bench::register_steps(bodies);
-    bench::register_kernels(bodies);
+    bench::register_steps(specimens, cubes);
+    bench::register_kernels(specimens, cubes);
     benchmark::AddCustomContext("processor", processor());
     benchmark::AddCustomContext("compiler", "g++ " __VERSION__);
     benchmark::RunSpecifiedBenchmarks();

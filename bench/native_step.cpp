@@ -20,62 +20,83 @@ struct Native : pyroclast::Avx2 {};
 struct Native : pyroclast::Portable {};
 #endif
 
-using NativeStep = pyroclast::Step<2, Native>;
+template <int Dim>
+using NativeStep = pyroclast::Step<Dim, Native>;
 constexpr auto kSmall = pyroclast::Kinematics::small;
 
-int bundles(const State<2>& s) {
+template <int Dim>
+int bundles(const State<Dim>& s) {
   return static_cast<int>(s.layout.bundles.size());
 }
 
-template <class... Laws>
-constexpr NativeLaws packs(pyroclast::LawList<Laws...>) {
-  return {
-      {{pyroclast::Contacts<2, Native, Laws>::update, pyroclast::Contacts<2, Native, Laws>::place_stiffness,
-        pyroclast::Contacts<2, Native, Laws>::update_lanes}...}};
+template <int Dim, class... Laws>
+constexpr NativeLaws<Dim> packs(pyroclast::LawList<Laws...>) {
+  return {{{pyroclast::Contacts<Dim, Native, Laws>::update,
+            pyroclast::Contacts<Dim, Native, Laws>::place_stiffness,
+            pyroclast::Contacts<Dim, Native, Laws>::update_lanes}...}};
 }
 
-void contacts(State<2>& s, double*) {
+template <int Dim>
+void contacts(State<Dim>& s, double*) {
   pyroclast::for_each_law(s, 0, static_cast<int>(s.layout.faces.size()),
-                          [&](const pyroclast::PackFunctions<2>& law, int first, int last) {
+                          [&](const pyroclast::PackFunctions<Dim>& law, int first, int last) {
                             law.update(s, first, last, false);
                           });
 }
 
-[[gnu::flatten]] void gather(State<2>& s, double* memory) {
-  NativeStep::Sums sums;
+template <int Dim>
+[[gnu::flatten]] void gather(State<Dim>& s, double* memory) {
+  typename NativeStep<Dim>::Sums sums;
   for (const Bundle& bundle : s.layout.bundles)
-    NativeStep::sum_weights_and_contacts<kSmall, false>(s, bundle, NativeStep::R::scratch_of(bundle, memory),
-                                                        sums);
+    NativeStep<Dim>::template sum_weights_and_contacts<kSmall, false>(
+        s, bundle, NativeStep<Dim>::R::scratch_of(bundle, memory), sums);
 }
 
-[[gnu::flatten]] void zones(State<2>& s, double* memory) {
-  NativeStep::Sums sums;
+template <int Dim>
+[[gnu::flatten]] void zones(State<Dim>& s, double* memory) {
+  typename NativeStep<Dim>::Sums sums;
   for (int b = 0; b < bundles(s); ++b)
     if (s.layout.bundles[b].kind == pyroclast::BundleKind::piece)
-      NativeStep::Z::place_corner_forces<kSmall, false, false>(s, b, sums);
+      NativeStep<Dim>::Z::template place_corner_forces<kSmall, false, false>(s, b, sums);
   for (int b = 0; b < bundles(s); ++b) {
     const Bundle& bundle = s.layout.bundles[b];
-    const auto scratch = NativeStep::R::scratch_of(bundle, memory);
-    NativeStep::take_displacements(s, bundle, scratch);
-    NativeStep::Z::add_forces<kSmall, false, false>(s, b, scratch, sums);
+    const auto scratch = NativeStep<Dim>::R::scratch_of(bundle, memory);
+    NativeStep<Dim>::take_displacements(s, bundle, scratch);
+    NativeStep<Dim>::Z::template add_forces<kSmall, false, false>(s, b, scratch, sums);
   }
 }
 
-[[gnu::flatten]] void motion(State<2>& s, double* memory) {
+template <int Dim>
+[[gnu::flatten]] void motion(State<Dim>& s, double* memory) {
   for (int b = 0; b < bundles(s); ++b) {
     const Bundle& bundle = s.layout.bundles[b];
-    const auto scratch = NativeStep::R::scratch_of(bundle, memory);
-    NativeStep::take_displacements(s, bundle, scratch);
+    const auto scratch = NativeStep<Dim>::R::scratch_of(bundle, memory);
+    NativeStep<Dim>::take_displacements(s, bundle, scratch);
     for (int i = 0; i < bundle.packs; ++i) scratch.sum[i] = s.force[bundle.first_pack + i];
-    NativeStep::Sums sums;
-    NativeStep::M::move_packs<Pass::move>(s, b, scratch, sums);
-    NativeStep::M::keep<Pass::move>(s, b, sums);
+    typename NativeStep<Dim>::Sums sums;
+    NativeStep<Dim>::M::template move_packs<Pass::move>(s, b, scratch, sums);
+    NativeStep<Dim>::M::template keep<Pass::move>(s, b, sums);
   }
 }
 
 }  // namespace
 
-const NativeLaws kNativeLaws = packs(pyroclast::BuiltInLaws());
-const Part kParts[4] = {{"contacts", contacts}, {"gather", gather}, {"zones", zones}, {"motion", motion}};
+template <int Dim>
+const NativeLaws<Dim>& native_laws() {
+  static constexpr NativeLaws<Dim> kLaws = packs<Dim>(pyroclast::BuiltInLaws());
+  return kLaws;
+}
+
+template <int Dim>
+const std::array<Part<Dim>, 4>& parts() {
+  static constexpr std::array<Part<Dim>, 4> kParts{
+      {{"contacts", contacts<Dim>}, {"gather", gather<Dim>}, {"zones", zones<Dim>}, {"motion", motion<Dim>}}};
+  return kParts;
+}
+
+template const NativeLaws<2>& native_laws();
+template const NativeLaws<3>& native_laws();
+template const std::array<Part<2>, 4>& parts();
+template const std::array<Part<3>, 4>& parts();
 
 }  // namespace bench

@@ -45,8 +45,9 @@ Law::Law(const pyroclast::ContactProperties& properties)
       ultimate_opening(p.tensile_strength > 0.0 ? 2.0 * p.mode_1_energy / p.tensile_strength : 0.0),
       yield_slope(p.hardening * p.normal_stiffness / (1.0 - p.hardening)) {}
 
-Body::Body(const pyroclast::ModelOf<2>& model, const std::vector<double>& densities,
-           const pyroclast::BodyProperties& properties, const pyroclast::MechanicsParameters& parameters)
+template <int Dim>
+Body<Dim>::Body(const pyroclast::ModelOf<Dim>& model, const std::vector<double>& densities,
+                const pyroclast::BodyProperties& properties, const pyroclast::MechanicsParameters& parameters)
     : parameters_(parameters), gridpoints_(model.position.size()) {
   if (parameters.kinematics != pyroclast::Kinematics::small)
     throw pyroclast::Error("the textbook step knows small kinematics only");
@@ -55,22 +56,65 @@ Body::Body(const pyroclast::ModelOf<2>& model, const std::vector<double>& densit
   set_masses(model, densities);
 }
 
-void Body::make_zones(const pyroclast::ModelOf<2>& model, const pyroclast::BodyProperties& properties) {
+namespace {
+
+/// Inverse of a matrix by cofactors.
+/// \return its determinant
+double invert(const double (&m)[2][2], double (&inverse)[2][2]) {
+  const double determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+  inverse[0][0] = m[1][1] / determinant;
+  inverse[0][1] = -m[0][1] / determinant;
+  inverse[1][0] = -m[1][0] / determinant;
+  inverse[1][1] = m[0][0] / determinant;
+  return determinant;
+}
+
+double invert(const double (&m)[3][3], double (&inverse)[3][3]) {
+  double cofactor[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      cofactor[i][j] = m[i1][j1] * m[i2][j2] - m[i1][j2] * m[i2][j1];
+    }
+  const double determinant = m[0][0] * cofactor[0][0] + m[0][1] * cofactor[0][1] + m[0][2] * cofactor[0][2];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) inverse[j][i] = cofactor[i][j] / determinant;
+  return determinant;
+}
+
+/// The two directions of each shear component.
+constexpr int kShear[3][2] = {{0, 1}, {1, 2}, {2, 0}};
+
+/// Row of the strain-displacement matrix B, with engineering shear: derivative of a strain by a displacement.
+template <int Dim>
+double strain_by(const Zone<Dim>& z, int strain, int corner, int direction) {
+  const double* const g = z.gradient[corner];
+  if (strain < Dim) return strain == direction ? g[direction] : 0.0;
+  const auto [i, j] = kShear[strain - Dim];
+  return direction == i ? g[j] : direction == j ? g[i] : 0.0;
+}
+
+}  // namespace
+
+/// The shape functions are 1 at one corner and 0 at the others, so their derivatives come from the inverse of
+/// the edges from the first corner.
+template <int Dim>
+void Body<Dim>::make_zones(const pyroclast::ModelOf<Dim>& model,
+                           const pyroclast::BodyProperties& properties) {
   for (std::size_t i = 0; i < model.zones.size(); ++i) {
-    Zone z{};
-    double x[3], y[3];
-    for (int n = 0; n < 3; ++n) {
-      z.gridpoint[n] = model.zones[i][n];
-      x[n] = model.position[z.gridpoint[n]][0];
-      y[n] = model.position[z.gridpoint[n]][1];
-    }
-    const double twice_area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
-    for (int n = 0; n < 3; ++n) {
-      const int next = (n + 1) % 3, after = (n + 2) % 3;
-      z.dx[n] = (y[next] - y[after]) / twice_area;
-      z.dy[n] = (x[after] - x[next]) / twice_area;
-    }
-    z.volume = 0.5 * twice_area * model.thickness;
+    Zone<Dim> z{};
+    for (int n = 0; n <= Dim; ++n) z.gridpoint[n] = model.zones[i][n];
+    double edge[Dim][Dim], inverse[Dim][Dim];
+    for (int n = 0; n < Dim; ++n)
+      for (int k = 0; k < Dim; ++k)
+        edge[n][k] = model.position[z.gridpoint[n + 1]][k] - model.position[z.gridpoint[0]][k];
+    const double determinant = invert(edge, inverse);
+    for (int n = 0; n < Dim; ++n)
+      for (int k = 0; k < Dim; ++k) {
+        z.gradient[n + 1][k] = inverse[k][n];
+        z.gradient[0][k] -= inverse[k][n];
+      }
+    z.volume = determinant / (Dim == 2 ? 2.0 : 6.0) * model.thickness;
     const auto& p = properties.zones[i];
     z.d11 = p.lambda + 2.0 * p.mu;
     z.d12 = p.lambda;
@@ -80,60 +124,65 @@ void Body::make_zones(const pyroclast::ModelOf<2>& model, const pyroclast::BodyP
   }
 }
 
-void Body::make_contacts(const pyroclast::ModelOf<2>& model, const pyroclast::BodyProperties& properties) {
+template <int Dim>
+void Body<Dim>::make_contacts(const pyroclast::ModelOf<Dim>& model,
+                              const pyroclast::BodyProperties& properties) {
   for (int set = 0; set < properties.contacts.size(); ++set) laws_.emplace_back(properties.contacts[set]);
   for (std::size_t i = 0; i < model.contacts.size(); ++i) {
     const auto& c = model.contacts[i];
-    contacts_.push_back({.a = c.a,
-                         .b = c.b,
-                         .normal = {c.normal[0], c.normal[1]},
-                         .tangent = {c.tangents[0][0], c.tangents[0][1]},
-                         .area = c.area,
-                         .law = properties.of_contact[i]});
+    ContactPoint<Dim> point{};
+    point.a = c.a;
+    point.b = c.b;
+    for (int k = 0; k < Dim; ++k) {
+      point.normal[k] = c.normal[k];
+      for (int t = 0; t + 1 < Dim; ++t) point.tangent[t][k] = c.tangents[t][k];
+    }
+    point.area = c.area;
+    point.law = properties.of_contact[i];
+    contacts_.push_back(point);
   }
 }
 
-/// Largest sum of |K_ij| over the two rows of each gridpoint, N/m.
-std::vector<double> Body::stiffness() const {
-  std::vector<double> row(2 * gridpoints_.size());
-  for (const Zone& z : zones_) {
-    std::array<std::array<double, 6>, 3> strain{};  // strain-displacement matrix B, with engineering shear
-    for (int n = 0; n < 3; ++n) {
-      const int x = 2 * n, y = x + 1;
-      strain[0][x] = z.dx[n];
-      strain[1][y] = z.dy[n];
-      strain[2][x] = z.dy[n];
-      strain[2][y] = z.dx[n];
-    }
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) {
-        const double k = strain[0][i] * (z.d11 * strain[0][j] + z.d12 * strain[1][j]) +
-                         strain[1][i] * (z.d12 * strain[0][j] + z.d11 * strain[1][j]) +
-                         strain[2][i] * z.shear_modulus * strain[2][j];
-        row[2 * z.gridpoint[i / 2] + i % 2] += std::abs(k) * z.volume;
+/// Largest sum of |K_ij| over the rows of each gridpoint, N/m.
+template <int Dim>
+std::vector<double> Body<Dim>::stiffness() const {
+  constexpr int kColumns = Dim * (Dim + 1);
+  std::vector<double> row(Dim * gridpoints_.size());
+  for (const Zone<Dim>& z : zones_) {
+    const auto strain = [&](int s, int column) { return strain_by(z, s, column / Dim, column % Dim); };
+    for (int i = 0; i < kColumns; ++i)
+      for (int j = 0; j < kColumns; ++j) {
+        double k = 0.0;
+        for (int s = 0; s < Dim; ++s)
+          for (int t = 0; t < Dim; ++t) k += strain(s, i) * (s == t ? z.d11 : z.d12) * strain(t, j);
+        for (int s = Dim; s < kTensor<Dim>; ++s) k += strain(s, i) * z.shear_modulus * strain(s, j);
+        row[Dim * z.gridpoint[i / Dim] + i % Dim] += std::abs(k) * z.volume;
       }
   }
-  for (const ContactPoint& c : contacts_) {
+  for (const ContactPoint<Dim>& c : contacts_) {
     const auto& p = laws_[c.law].p;
-    for (int i = 0; i < 2; ++i)
-      for (int j = 0; j < 2; ++j) {
-        const double k = std::abs(p.normal_stiffness * c.normal[i] * c.normal[j] +
-                                  p.shear_stiffness * c.tangent[i] * c.tangent[j]);
-        row[2 * c.a + i] += 2.0 * k * c.area;  // the gridpoint's own displacement and the other's
-        row[2 * c.b + i] += 2.0 * k * c.area;
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) {
+        double k = p.normal_stiffness * c.normal[i] * c.normal[j];
+        for (const auto& tangent : c.tangent) k += p.shear_stiffness * tangent[i] * tangent[j];
+        // the gridpoint's own displacement and the other's
+        row[Dim * c.a + i] += 2.0 * std::abs(k) * c.area;
+        row[Dim * c.b + i] += 2.0 * std::abs(k) * c.area;
       }
   }
   std::vector<double> largest(gridpoints_.size());
-  for (std::size_t g = 0; g < largest.size(); ++g) largest[g] = std::max(row[2 * g], row[2 * g + 1]);
+  for (std::size_t g = 0; g < largest.size(); ++g)
+    largest[g] = *std::max_element(&row[Dim * g], &row[Dim * g] + Dim);
   return largest;
 }
 
-void Body::set_masses(const pyroclast::ModelOf<2>& model, const std::vector<double>& densities) {
+template <int Dim>
+void Body<Dim>::set_masses(const pyroclast::ModelOf<Dim>& model, const std::vector<double>& densities) {
   std::vector<double> real_mass(gridpoints_.size());
   for (int b = 0; b < model.block_count(); ++b)
     for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z)
       for (int g : zones_[z].gridpoint)
-        real_mass[g] += densities[model.block_material[b]] * zones_[z].volume / 3.0;
+        real_mass[g] += densities[model.block_material[b]] * zones_[z].volume / (Dim + 1);
 
   const auto k = stiffness();
   const double damped = 1.0 + parameters_.local_damping;
@@ -150,27 +199,31 @@ void Body::set_masses(const pyroclast::ModelOf<2>& model, const std::vector<doub
     }
   }
   for (std::size_t g = 0; g < k.size(); ++g)
-    for (int i = 0; i < 2; ++i) gridpoints_[g].load[i] = parameters_.gravity[i] * real_mass[g];
+    for (int i = 0; i < Dim; ++i) gridpoints_[g].load[i] = parameters_.gravity[i] * real_mass[g];
 }
 
-void Body::prescribe_velocity(int gridpoint, int component, double velocity) {
+template <int Dim>
+void Body<Dim>::prescribe_velocity(int gridpoint, int component, double velocity) {
   gridpoints_[gridpoint].prescribed[component] = true;
   gridpoints_[gridpoint].prescribed_velocity[component] = velocity;
 }
 
-void Body::release(int gridpoint, int component) {
+template <int Dim>
+void Body<Dim>::release(int gridpoint, int component) {
   gridpoints_[gridpoint].prescribed[component] = false;
 }
 
-void Body::break_contact(int contact) {
+template <int Dim>
+void Body<Dim>::break_contact(int contact) {
   contacts_[contact].tension_damage = 1.0;
   contacts_[contact].shear_damage = 1.0;
 }
 
-void Body::advance(int steps) {
+template <int Dim>
+void Body<Dim>::advance(int steps) {
   for (int i = 0; i < steps; ++i) {
-    for (Gridpoint& g : gridpoints_)
-      for (int k = 0; k < 2; ++k) g.force[k] = g.load[k];
+    for (Gridpoint<Dim>& g : gridpoints_)
+      for (int k = 0; k < Dim; ++k) g.force[k] = g.load[k];
     strain_zones();
     update_contacts();
     move();
@@ -178,22 +231,37 @@ void Body::advance(int steps) {
 }
 
 /// Eqs. (4), (5): strains to stresses to forces.
-void Body::strain_zones() {
-  for (Zone& z : zones_) {
-    double exx = -z.thermal_strain, eyy = -z.thermal_strain, gxy = 0.0;
-    for (int n = 0; n < 3; ++n) {
-      const double* u = gridpoints_[z.gridpoint[n]].displacement;
-      exx += z.dx[n] * u[0];
-      eyy += z.dy[n] * u[1];
-      gxy += z.dy[n] * u[0] + z.dx[n] * u[1];
+template <int Dim>
+void Body<Dim>::strain_zones() {
+  for (Zone<Dim>& z : zones_) {
+    double strain[kTensor<Dim>]{};
+    for (int i = 0; i < Dim; ++i) strain[i] = -z.thermal_strain;
+    for (int n = 0; n <= Dim; ++n) {
+      const double* const u = gridpoints_[z.gridpoint[n]].displacement;
+      const double* const g = z.gradient[n];
+      for (int i = 0; i < Dim; ++i) strain[i] += g[i] * u[i];
+      for (int k = Dim; k < kTensor<Dim>; ++k) {
+        const int i = kShear[k - Dim][0], j = kShear[k - Dim][1];
+        strain[k] += g[j] * u[i] + g[i] * u[j];
+      }
     }
-    z.stress[0] = z.d11 * exx + z.d12 * eyy;
-    z.stress[1] = z.d12 * exx + z.d11 * eyy;
-    z.stress[2] = z.shear_modulus * gxy;
-    for (int n = 0; n < 3; ++n) {
-      double* f = gridpoints_[z.gridpoint[n]].force;
-      f[0] -= z.volume * (z.stress[0] * z.dx[n] + z.stress[2] * z.dy[n]);
-      f[1] -= z.volume * (z.stress[2] * z.dx[n] + z.stress[1] * z.dy[n]);
+    for (int i = 0; i < Dim; ++i) {
+      z.stress[i] = z.d11 * strain[i];
+      for (int j = 0; j < Dim; ++j)
+        if (j != i) z.stress[i] += z.d12 * strain[j];
+    }
+    for (int k = Dim; k < kTensor<Dim>; ++k) z.stress[k] = z.shear_modulus * strain[k];
+    for (int n = 0; n <= Dim; ++n) {
+      double* const f = gridpoints_[z.gridpoint[n]].force;
+      const double* const g = z.gradient[n];
+      double traction[Dim];
+      for (int i = 0; i < Dim; ++i) traction[i] = z.stress[i] * g[i];
+      for (int k = Dim; k < kTensor<Dim>; ++k) {
+        const int i = kShear[k - Dim][0], j = kShear[k - Dim][1];
+        traction[i] += z.stress[k] * g[j];
+        traction[j] += z.stress[k] * g[i];
+      }
+      for (int i = 0; i < Dim; ++i) f[i] -= z.volume * traction[i];
     }
   }
 }
@@ -201,7 +269,8 @@ void Body::strain_zones() {
 namespace {
 
 /// Eqs. (10), (11), (15): opening to normal traction.
-void update_normal(const Law& law, double opening, ContactPoint& c) {
+template <int Dim>
+void update_normal(const Law& law, double opening, ContactPoint<Dim>& c) {
   const auto& p = law.p;
   const double k = p.normal_stiffness;
   if (!law.fails) {
@@ -233,15 +302,19 @@ void update_normal(const Law& law, double opening, ContactPoint& c) {
 }
 
 /// Eqs. (12)-(14): elastic predictor, then return to the softening Mohr-Coulomb strength.
-void update_shear(const Law& law, double opening, double tangential_jump, ContactPoint& c) {
+template <int Dim>
+void update_shear(const Law& law, double opening, const double (&tangential_jump)[Dim - 1],
+                  ContactPoint<Dim>& c) {
   const auto& p = law.p;
   const double k = p.shear_stiffness;
-  const double trial = c.shear_traction + k * (tangential_jump - c.tangential_jump);
-  c.tangential_jump = tangential_jump;
-  c.shear_traction = trial;
+  auto& traction = c.shear_traction;
+  for (int t = 0; t + 1 < Dim; ++t) {
+    traction[t] += k * (tangential_jump[t] - c.tangential_jump[t]);
+    c.tangential_jump[t] = tangential_jump[t];
+  }
   if (!law.fails) return;
   if ((!law.held || c.tension_damage >= 1.0) && opening + c.closure > 0.0) {
-    c.shear_traction = 0.0;
+    for (double& s : traction) s = 0.0;
     return;
   }
   const double cohesion = p.coupled ? (1.0 - c.tension_damage) * p.cohesion : p.cohesion;
@@ -249,30 +322,47 @@ void update_shear(const Law& law, double opening, double tangential_jump, Contac
   const double residual = std::min(peak, std::max(0.0, std::min(p.residual_cohesion, cohesion) -
                                                            c.normal_traction * law.residual_friction));
   const double drop = peak - residual;
-  const double excess = std::abs(trial) - (peak - c.shear_damage * drop);
+  double trial;
+  if constexpr (Dim == 2)
+    trial = std::abs(traction[0]);
+  else
+    trial = std::sqrt(traction[0] * traction[0] + traction[1] * traction[1]);
+  const double excess = trial - (peak - c.shear_damage * drop);
   if (excess <= 0.0) return;
   if (c.shear_damage < 1.0 && drop > 0.0) {
     const double slip_to_residual = 2.0 * p.mode_2_energy / drop;
     const double slip = excess / (k - drop / slip_to_residual);
     c.shear_damage = std::min(1.0, c.shear_damage + slip / slip_to_residual);
   }
-  c.shear_traction = std::copysign(peak - c.shear_damage * drop, trial);
+  const double strength = peak - c.shear_damage * drop;
+  for (double& s : traction) {
+    if constexpr (Dim == 2)
+      s = std::copysign(strength, s);
+    else
+      s *= strength / trial;
+  }
 }
 
 }  // namespace
 
-void Body::update_contacts() {
-  for (ContactPoint& c : contacts_) {
-    Gridpoint& a = gridpoints_[c.a];
-    Gridpoint& b = gridpoints_[c.b];
-    const double jump[2] = {b.displacement[0] - a.displacement[0], b.displacement[1] - a.displacement[1]};
-    const double opening = jump[0] * c.normal[0] + jump[1] * c.normal[1];
+template <int Dim>
+void Body<Dim>::update_contacts() {
+  for (ContactPoint<Dim>& c : contacts_) {
+    Gridpoint<Dim>& a = gridpoints_[c.a];
+    Gridpoint<Dim>& b = gridpoints_[c.b];
+    double opening = 0.0, tangential_jump[Dim - 1]{};
+    for (int i = 0; i < Dim; ++i) {
+      const double jump = b.displacement[i] - a.displacement[i];
+      opening += jump * c.normal[i];
+      for (int t = 0; t + 1 < Dim; ++t) tangential_jump[t] += jump * c.tangent[t][i];
+    }
     update_normal(laws_[c.law], opening, c);
-    update_shear(laws_[c.law], opening, jump[0] * c.tangent[0] + jump[1] * c.tangent[1], c);
-    for (int i = 0; i < 2; ++i) {
-      const double force = c.area * (c.normal_traction * c.normal[i] + c.shear_traction * c.tangent[i]);
-      a.force[i] += force;
-      b.force[i] -= force;
+    update_shear<Dim>(laws_[c.law], opening, tangential_jump, c);
+    for (int i = 0; i < Dim; ++i) {
+      double force = c.normal_traction * c.normal[i];
+      for (int t = 0; t + 1 < Dim; ++t) force += c.shear_traction[t] * c.tangent[t][i];
+      a.force[i] += c.area * force;
+      b.force[i] -= c.area * force;
     }
   }
 }
@@ -287,12 +377,13 @@ double sign(double x) {
 }  // namespace
 
 /// Eqs. (3), (6)-(8).
-void Body::move() {
+template <int Dim>
+void Body<Dim>::move() {
   const double dt = time_step_;
   const double viscous = 0.5 * parameters_.viscous_damping * dt;
   const bool combined = parameters_.damping_form == pyroclast::DampingForm::combined;
-  for (Gridpoint& g : gridpoints_)
-    for (int i = 0; i < 2; ++i) {
+  for (Gridpoint<Dim>& g : gridpoints_)
+    for (int i = 0; i < Dim; ++i) {
       if (g.prescribed[i]) {
         g.velocity[i] = g.prescribed_velocity[i];
       } else {
@@ -305,5 +396,8 @@ void Body::move() {
       g.displacement[i] += g.velocity[i] * dt;
     }
 }
+
+template class Body<2>;
+template class Body<3>;
 
 }  // namespace textbook

@@ -5,33 +5,39 @@
 #include "pyroclast/laws/built_in.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
 
-/// The step of Mechanics<2> as one writes it straight from the paper's equations: arrays of structures, one
+/// The step of Mechanics as one writes it straight from the paper's equations: arrays of structures, one
 /// thread, forces added to the gridpoints where they arise, incremental shear.
 ///
 /// The bench compares speed with it, the tests compare results. So nothing here calls the laws of
 /// `pyroclast`; only what goes in is shared. Small kinematics, constant properties, no ties, no energies.
 namespace textbook {
 
+template <int Dim>
 struct Gridpoint {
-  double displacement[2]{};    ///< m
-  double velocity[2]{};        ///< m/s
-  double force[2]{};           ///< N, sum at the last step
-  double previous_force[2]{};  ///< N, one step before
-  double load[2]{};            ///< weight and applied force, N
-  double prescribed_velocity[2]{};
-  bool prescribed[2]{};
+  double displacement[Dim]{};    ///< m
+  double velocity[Dim]{};        ///< m/s
+  double force[Dim]{};           ///< N, sum at the last step
+  double previous_force[Dim]{};  ///< N, one step before
+  double load[Dim]{};            ///< weight and applied force, N
+  double prescribed_velocity[Dim]{};
+  bool prescribed[Dim]{};
   double mass = 0.0;  ///< kg
 };
 
-/// Constant strain triangle in plane stress.
+/// Numbers of a symmetric tensor: the diagonal, then xy, yz, zx.
+template <int Dim>
+inline constexpr int kTensor = Dim*(Dim + 1) / 2;
+
+/// Zone of constant strain: a triangle in plane stress, or a tetrahedron.
+template <int Dim>
 struct Zone {
-  int gridpoint[3];
-  double dx[3], dy[3];  ///< derivatives of the shape functions, 1/m
-  double volume;        ///< m³
-  double d11, d12;      ///< of sigma_xx = d11 e_xx + d12 e_yy, Pa
+  int gridpoint[Dim + 1];
+  double gradient[Dim + 1][Dim];  ///< derivatives of the shape functions, 1/m
+  double volume;                  ///< m³
+  double d11, d12;                ///< of sigma_xx = d11 e_xx + d12 (e_yy + e_zz), Pa
   double shear_modulus;
   double thermal_strain;
-  double stress[3];  ///< xx, yy, xy, Pa
+  double stress[kTensor<Dim>];  ///< Pa
 };
 
 /// Contact law, Eqs. (10)-(15), with what follows from its parameters.
@@ -47,23 +53,25 @@ struct Law {
   double yield_slope;       ///< of the compressive limit over the closure, beta K_n / (1 - beta)
 };
 
+template <int Dim>
 struct ContactPoint {
   int a, b;
-  double normal[2], tangent[2];
+  double normal[Dim], tangent[Dim - 1][Dim];
   double area;  ///< m²
   int law;
   double tension_damage = 0.0, shear_damage = 0.0;
-  double closure = 0.0;          ///< left behind by compression, m
-  double tangential_jump = 0.0;  ///< of the last step, m
-  double normal_traction = 0.0;  ///< Pa, tension positive
-  double shear_traction = 0.0;   ///< Pa
+  double closure = 0.0;               ///< left behind by compression, m
+  double tangential_jump[Dim - 1]{};  ///< of the last step, m
+  double normal_traction = 0.0;       ///< Pa, tension positive
+  double shear_traction[Dim - 1]{};   ///< Pa
 };
 
+template <int Dim>
 class Body {
  public:
-  /// As Mechanics<2>; masses and time step follow from the same rules. Throws pyroclast::Error for finite
+  /// As Mechanics<Dim>; masses and time step follow from the same rules. Throws pyroclast::Error for finite
   /// kinematics.
-  Body(const pyroclast::ModelOf<2>& model, const std::vector<double>& densities,
+  Body(const pyroclast::ModelOf<Dim>& model, const std::vector<double>& densities,
        const pyroclast::BodyProperties& properties, const pyroclast::MechanicsParameters& parameters);
 
   /// Returns itself, so that both codes are held and driven by the same lines.
@@ -75,14 +83,14 @@ class Body {
   void advance(int steps);
 
   double time_step() const { return time_step_; }
-  const std::vector<Gridpoint>& gridpoints() const { return gridpoints_; }
-  const std::vector<Zone>& zones() const { return zones_; }
-  const std::vector<ContactPoint>& contacts() const { return contacts_; }
+  const std::vector<Gridpoint<Dim>>& gridpoints() const { return gridpoints_; }
+  const std::vector<Zone<Dim>>& zones() const { return zones_; }
+  const std::vector<ContactPoint<Dim>>& contacts() const { return contacts_; }
 
  private:
-  void make_zones(const pyroclast::ModelOf<2>& model, const pyroclast::BodyProperties& properties);
-  void make_contacts(const pyroclast::ModelOf<2>& model, const pyroclast::BodyProperties& properties);
-  void set_masses(const pyroclast::ModelOf<2>& model, const std::vector<double>& densities);
+  void make_zones(const pyroclast::ModelOf<Dim>& model, const pyroclast::BodyProperties& properties);
+  void make_contacts(const pyroclast::ModelOf<Dim>& model, const pyroclast::BodyProperties& properties);
+  void set_masses(const pyroclast::ModelOf<Dim>& model, const std::vector<double>& densities);
   std::vector<double> stiffness() const;
   void strain_zones();
   void update_contacts();
@@ -90,10 +98,13 @@ class Body {
 
   pyroclast::MechanicsParameters parameters_;
   double time_step_ = 0.0;
-  std::vector<Gridpoint> gridpoints_;
-  std::vector<Zone> zones_;
+  std::vector<Gridpoint<Dim>> gridpoints_;
+  std::vector<Zone<Dim>> zones_;
   std::vector<Law> laws_;
-  std::vector<ContactPoint> contacts_;
+  std::vector<ContactPoint<Dim>> contacts_;
 };
+
+extern template class Body<2>;
+extern template class Body<3>;
 
 }  // namespace textbook

@@ -7,6 +7,8 @@
 
 #include "pyroclast/laws/built_in.hpp"
 #include "pyroclast/mechanics/mechanics.hpp"
+#include "pyroclast/model/solid_model.hpp"
+#include "pyroclast/solid/laguerre.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 #include "table_2.hpp"
 
@@ -163,6 +165,29 @@ inline ModelOf<3> cubes(int count, double d) {
     const int low = 9 * i, high = 9 * (i + 1);
     model.join_faces({low + 4, low + 5, low + 6, low + 7}, {high, high + 1, high + 2, high + 3}, 0);
   }
+  return model;
+}
+
+/// Raw Laguerre cells of a cube, one material, one interface. Their corners within are moved at random by up
+/// to a share of their shortest edge along each axis, which bends faces.
+inline ModelOf<3> laguerre_cells(int blocks, double edge, std::uint64_t seed, double shake = 0.0) {
+  const solid::Body body(specimen::Region::rectangle(edge, edge), solid::Body::Axis::z, edge);
+  Random random(seed);
+  solid::Complex complex =
+      solid::laguerre_complex(solid::spaced_seeds(body, blocks, 0.3, random), body).complex;
+  std::vector<double> shortest(complex.vertices.size(), edge);
+  for (const auto& face : complex.faces)
+    for (std::size_t i = 0; i < face.corners.size(); ++i) {
+      const int a = face.corners[i], b = face.corners[(i + 1) % face.corners.size()];
+      const double length = face.outer < 0 ? 0.0 : norm(complex.vertices[b] - complex.vertices[a]);
+      for (const int v : {a, b}) shortest[v] = std::min(shortest[v], length);
+    }
+  for (std::size_t v = 0; v < shortest.size(); ++v)
+    for (double& x : complex.vertices[v].c) x += shake * shortest[v] * random.uniform(-1.0, 1.0);
+  ModelOf<3> model;
+  model.material_names = {"mortar"};
+  model.interface_names = {"mortar-mortar"};
+  add_cells(model, complex, std::vector<int>(complex.cells.size(), 0), [](int, int) { return 0; });
   return model;
 }
 

@@ -16,7 +16,7 @@ using namespace bodies;
 /// A specimen torn until it cracks.
 Mechanics<2> torn(const ModelOf<2>& model, bool counted) {
   auto m = mechanics(model, mortar_contact(), quasi_static<2>());
-  if (counted) m.use(bench::counting_step());
+  if (counted) m.use(bench::counting_step<2>());
   for (int g = 0; g < model.gridpoint_count(); ++g)
     if (const double y = model.position[g][1]; y == 0.0 || y == 0.05)
       for (int i : {0, 1}) m.constraints().prescribe_velocity(g, i, y == 0.0 ? 0.0 : 5e-3);
@@ -46,7 +46,7 @@ TEST(Counting, ArithmeticAndRootsCountOnceALaneAndChoicesNothing) {
 TEST(Counting, StepsThatAreMeasuredAreLeftOut) {
   const ModelOf<2> model = tessellated(20, 0.05, 0.05, 3);
   auto m = mechanics(model, elastic_contact(), quasi_static<2>());
-  m.use(bench::counting_step());
+  m.use(bench::counting_step<2>());
   bench::reset_operations();
   m.advance(1);  // its last step is measured
   EXPECT_EQ(bench::operations().faces, 0);
@@ -65,7 +65,7 @@ TEST(Counting, StepsThatAreMeasuredAreLeftOut) {
 TEST(Counting, AnElasticContactPointCostsWhatItsEquationsSay) {
   const ModelOf<2> model = tessellated(20, 0.05, 0.05, 3);
   auto m = mechanics(model, elastic_contact(), quasi_static<2>());
-  m.use(bench::counting_step());
+  m.use(bench::counting_step<2>());
   bench::reset_operations();
   m.advance(2);
   const int a_point = 2 + 2 * 3 + 2 + 5 + (2 * 3 + 2);
@@ -133,7 +133,7 @@ TEST(Sweep, GivesEveryThreadAboutTheSameWork) {
   p.of_contact.assign(model.contacts.size(), 0);
   Mechanics<2> m(model, std::vector<double>(model.material_names.size(), 2400.0), p, quasi_static<2>());
   ASSERT_GE(m.body().layout.parts.size(), 4U);
-  m.use(bench::counting_step());
+  m.use(bench::counting_step<2>());
   for (const int threads : {2, 4, 8}) {
     std::int64_t most = 0, all = 0;
     for (const auto& [before, behind] : operations_of_threads(m, threads)) {

@@ -84,10 +84,10 @@ ChunkList Model::chunks_of(const std::vector<int>& of_block) const {
 
 template <int Dim>
 void ModelOf<Dim>::join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface) {
-  const std::size_t fewest = Dim, most = Dim == 2 ? 2 : 8;
+  const std::size_t fewest = Dim, most = Dim == 2 ? 2 : 15;
   if (a.size() != b.size() || a.size() < fewest || a.size() > most)
     throw Error(fmt::format("faces with {} and {} corners cannot be joined: both must have {}", a.size(),
-                            b.size(), Dim == 2 ? "2" : "the same number, from 3 to 8"));
+                            b.size(), Dim == 2 ? "2" : "the same number, from 3 to 15"));
   std::vector<Vec<Dim>> corner;
   for (int g : a) corner.push_back(position[g]);
   const auto frame = face_frame(corner, thickness);

@@ -33,7 +33,7 @@ struct Contact : Joint {
 /// Every block owns its gridpoints and zones, which stand together in the arrays. Consecutive blocks make a
 /// chunk, the unit of sums, files and ranks. Blocks meet only through contacts. In 2D a zone is a triangle
 /// and a face is an edge with two contact points. In 3D a zone is a tetrahedron and a face is a polygon of 3
-/// to 8 corners with a contact point at each.
+/// to 15 corners with a contact point at each.
 ///
 /// A model is a ModelOf<2> or a ModelOf<3>. Code that need not know which one shows places and directions in
 /// three numbers; in 2D the third is 0.
@@ -133,7 +133,7 @@ struct ModelOf final : Model {
   /// b's (2D: the edge direction turned clockwise, for a block walked counter-clockwise; 3D: right-handed).
   /// In 3D zones meet the face in the triangles of the fan from its first corner. All contact points of a
   /// face have the frame of its mean plane, with the first tangent along its first edge; each has its share
-  /// of the area. Throws Error for a face without area, and for one without 2 corners in 2D or 3 to 8 in 3D.
+  /// of the area. Throws Error for a face without area, and for one without 2 corners in 2D or 3 to 15 in 3D.
   void join_faces(const std::vector<int>& a, const std::vector<int>& b, int interface);
 };
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 
 #include <voro++/voro++.hh>
 
+#include "pyroclast/base/same_points.hpp"
 #include "pyroclast/specimen/clip.hpp"
 #include "pyroclast/specimen/polygon.hpp"
 #include "pyroclast/specimen/topology.hpp"
@@ -120,47 +120,11 @@ double snapped(double x, double wall) {
   return std::abs(x - wall) < merge_distance ? wall : x;
 }
 
-/// Returns for every point the lowest index among the points that stand for the same vertex.
-std::vector<int> same_vertex(const std::vector<Vec<2>>& points) {
-  std::vector<int> parent(points.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[static_cast<std::size_t>(i)] != i) {
-      parent[static_cast<std::size_t>(i)] =
-          parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(i)])];
-      i = parent[static_cast<std::size_t>(i)];
-    }
-    return i;
-  };
-  struct Point {
-    Vec<2> at;
-    int index;
-  };
-  std::vector<Point> sorted;
-  sorted.reserve(points.size());
-  for (const Vec<2>& p : points) sorted.push_back({p, static_cast<int>(sorted.size())});
-  std::sort(sorted.begin(), sorted.end(), [](const Point& a, const Point& b) {
-    return a.at.c != b.at.c ? a.at.c < b.at.c : a.index < b.index;
-  });
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    for (std::size_t j = i + 1; j < sorted.size(); ++j) {
-      const Vec<2> between = sorted[j].at - sorted[i].at;
-      if (between[0] > merge_distance) break;
-      if (std::abs(between[1]) > merge_distance) continue;
-      const int a = root(sorted[i].index);
-      const int b = root(sorted[j].index);
-      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    }
-  }
-  for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = root(static_cast<int>(i));
-  return parent;
-}
-
 /// Joins cells that each have their own corners into cells that share vertices.
 Tessellation join(const std::vector<std::vector<Vec<2>>>& polygons) {
   std::vector<Vec<2>> points;
   for (const auto& polygon : polygons) points.insert(points.end(), polygon.begin(), polygon.end());
-  const std::vector<int> same = same_vertex(points);
+  const std::vector<int> same = same_points(points, merge_distance);
 
   Tessellation result;
   std::vector<int> number(points.size(), -1);

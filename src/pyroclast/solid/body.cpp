@@ -1,0 +1,64 @@
+#include "pyroclast/solid/body.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+
+namespace pyroclast::solid {
+
+namespace {
+
+/// Sine of the angle by which a corner may jut into the body by rounding.
+constexpr double kStraight = 1e-9;
+
+/// Throws Error unless a section is convex and whole.
+void require_convex(const specimen::Region& section) {
+  if (section.loops().size() > 1) throw Error("a solid cannot have holes yet");
+  if (!section.notches().empty()) throw Error("a solid cannot have notches or slits yet");
+  const auto& pieces = section.pieces();
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const auto& [from, corner, side] = pieces[i];
+    const Vec<2> before = corner - from, after = pieces[(i + 1) % pieces.size()].to - corner;
+    if (cross(before, after) < -kStraight * norm(before) * norm(after))
+      throw Error(fmt::format(
+          "the outline of a solid must be convex yet, but at ({:g}, {:g}) m a corner juts into the body",
+          corner[0], corner[1]));
+  }
+}
+
+}  // namespace
+
+Body::Body(specimen::Region section, Axis axis, double length) : section_(std::move(section)), axis_(axis) {
+  require_convex(section_);
+  for (const auto& side : section_.sides()) sides_.push_back(side.name);
+  for (const auto& [from, to, side] : section_.pieces()) {
+    const Vec<2> along = to - from;
+    const Vec<2> out = Vec<2>{{along[1], -along[0]}} * (1.0 / norm(along));
+    planes_.push_back({in_space(out, 0.0), dot(out, from), side});
+  }
+  const int first_end = static_cast<int>(sides_.size());
+  for (const char* const end : axis == Axis::z ? std::array{"front", "back"} : std::array{"bottom", "top"})
+    sides_.emplace_back(end);
+  planes_.push_back({in_space({}, -1.0), 0.0, first_end});
+  planes_.push_back({in_space({}, 1.0), length, first_end + 1});
+  low_ = in_space(section_.box().low, 0.0);
+  high_ = in_space(section_.box().high, length);
+  volume_ = section_.area() * length;
+}
+
+Vec<3> Body::in_space(const Vec<2>& of_section, double along) const {
+  if (axis_ == Axis::z) return {{of_section[0], of_section[1], along}};
+  return {{of_section[1], along, of_section[0]}};
+}
+
+double Body::distance(const Vec<3>& point) const {
+  double farthest = -std::numeric_limits<double>::infinity();
+  for (const Plane& plane : planes_) farthest = std::max(farthest, dot(plane.normal, point) - plane.offset);
+  return farthest;
+}
+
+}  // namespace pyroclast::solid

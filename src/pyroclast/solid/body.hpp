@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pyroclast/base/vec.hpp"
+#include "pyroclast/specimen/region.hpp"
+
+namespace pyroclast::solid {
+
+/// Plane that bounds a body: the body lies where dot(normal, x) <= offset.
+struct Plane {
+  Vec<3> normal;  ///< unit vector, out of the body
+  double offset;  ///< m
+  int side;       ///< index into Body::sides
+};
+
+/// Body in space: a prism. Its section is a region of the plane, its axis runs along z or y.
+class Body {
+ public:
+  enum class Axis { y, z };
+
+  Body() = default;
+  /// Makes a prism from 0 to `length`, m, along its axis. Along z the section lies in x and y; its ends are
+  /// the sides `front`, z = 0, and `back`. Along y the first coordinate of the section is z, the second is x;
+  /// its ends are `bottom`, y = 0, and `top`. Throws Error unless the section is convex, without holes and
+  /// notches.
+  Body(specimen::Region section, Axis axis, double length);
+
+  const std::vector<std::string>& sides() const { return sides_; }
+  const std::vector<Plane>& planes() const { return planes_; }
+  const Vec<3>& low() const { return low_; }    ///< Returns the lower corner of the box around the body, m.
+  const Vec<3>& high() const { return high_; }  ///< Returns the upper corner, m.
+  double volume() const { return volume_; }     ///< Returns the volume, m³.
+  const specimen::Region& section() const { return section_; }
+  /// Returns the distance from the nearest of the planes, m, negative within the body.
+  double distance(const Vec<3>& point) const;
+
+ private:
+  Vec<3> in_space(const Vec<2>& of_section, double along) const;
+
+  specimen::Region section_;
+  Axis axis_ = Axis::z;
+  std::vector<std::string> sides_;
+  std::vector<Plane> planes_;
+  Vec<3> low_{}, high_{};
+  double volume_ = 0.0;
+};
+
+}  // namespace pyroclast::solid

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "pyroclast/base/vec.hpp"
+#include "pyroclast/solid/body.hpp"
+
+/// Polyhedral cells that fill a body.
+namespace pyroclast::solid {
+
+/// Face of one cell, or between two.
+struct Face {
+  /// Vertices, counter-clockwise seen from outside of `inner`. Zones meet the face in the triangles of the
+  /// fan from the first one.
+  std::vector<int> corners;
+  int inner = -1;  ///< cell
+  int outer = -1;  ///< other cell; -1 on the surface of the body
+  int side = -1;   ///< side of the body on which the face lies; -1 within the body
+};
+
+/// Cells that fill a body; neighbours share faces, faces share vertices.
+struct Complex {
+  std::vector<Vec<3>> vertices;  ///< m
+  std::vector<Face> faces;
+  std::vector<std::vector<int>> cells;  ///< faces of each cell
+};
+
+/// Returns the vector of a face's area, m²: out of the cell `inner`, as long as the area is large. On a bent
+/// face it is that of its mean plane.
+Vec<3> area_vector(const Complex& complex, const Face& face);
+
+/// Returns the volume of a cell, m³.
+double volume(const Complex& complex, std::size_t cell);
+
+/// Throws Error, which begins with `what`, unless cells are closed and each has the Euler number of a ball,
+/// each vertex of a face stands once on it, and the volumes of all cells fill that of the body to 1e-9.
+void require_valid(const Complex& complex, const Body& body, const std::string& what);
+
+/// Cell cut into zones.
+struct ZonedCell {
+  std::vector<int> vertices;              ///< vertices of the cell, in the order in which its faces meet them
+  std::vector<Vec<3>> gridpoints;         ///< places of the vertices, then the centroid; m
+  std::vector<std::array<int, 4>> zones;  ///< gridpoints, positively oriented, the centroid last
+};
+
+/// Cuts a cell into tetrahedra around its centroid, one for each triangle of the fans of its faces.
+ZonedCell zone_cell(const Complex& complex, std::size_t cell);
+
+}  // namespace pyroclast::solid

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "pyroclast/base/random.hpp"
+#include "pyroclast/base/vec.hpp"
+#include "pyroclast/solid/body.hpp"
+
+namespace pyroclast::solid {
+
+/// Seeds of a Laguerre (power) tessellation: a point belongs to the seed with the least
+/// |x - position|^2 - radius^2.
+struct Seeds {
+  std::vector<Vec<3>> position;  ///< m
+  std::vector<double> radius;    ///< radius of each seed, m; all equal: a Voronoi tessellation
+};
+
+/// Draws seeds at random that keep a distance of 0.62 mean spacings, so that no cell dies out, and numbers
+/// them along Morton's curve, so that cells with near numbers lie near each other.
+/// \param count   number of seeds, 1 or more
+/// \param spread  spread of the radii, which are uniform in [1 - spread, 1 + spread] x mean spacing / 2
+Seeds spaced_seeds(const Body& body, int count, double spread, Random& random);
+
+}  // namespace pyroclast::solid
