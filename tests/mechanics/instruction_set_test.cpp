@@ -32,7 +32,8 @@ auto outcome(const Mechanics<Dim>& m) {
   return std::tuple(m.read().displacements(), m.read().velocities(), m.read().forces(), numbers);
 }
 
-double damaged_share(const Mechanics<2>& m) {
+template <int Dim>
+double damaged_share(const Mechanics<Dim>& m) {
   int damaged = 0;
   for (int c = 0; c < m.model().contact_count(); ++c) {
     damaged += m.read().remembered(c, Remembers::tension_damage) > 0.0 ||
@@ -43,9 +44,9 @@ double damaged_share(const Mechanics<2>& m) {
 }
 
 /// A specimen pulled, sheared and pressed until it is cracked all over.
-template <class Contact = Cohesive::Properties<double>>
-Mechanics<2> cracked(const ModelOf<2>& model, MechanicsParameters parameters, InstructionSet set,
-                     bool own_temperatures, int threads = 1, const Contact& contact = mortar_contact()) {
+template <int Dim, class Contact = Cohesive::Properties<double>>
+Mechanics<Dim> cracked(const ModelOf<Dim>& model, MechanicsParameters parameters, InstructionSet set,
+                       bool own_temperatures, int threads = 1, const Contact& contact = mortar_contact()) {
   parameters.instructions = set;
   parameters.gravity = {{0.0, -9.81}};
   parameters.zones_for_a_thread = 1;
@@ -54,26 +55,26 @@ Mechanics<2> cracked(const ModelOf<2>& model, MechanicsParameters parameters, In
   if (own_temperatures) {  // every zone and contact has properties of its own
     BodyProperties p;
     for (int z = 0; z < model.zone_count(); ++z)
-      p.zones.push_back(zone_properties<2>((20.0 + 0.001 * z) * 1e9, 0.2, 1e-6 * z));
+      p.zones.push_back(zone_properties<Dim>((20.0 + 0.001 * (z % 1000)) * 1e9, 0.2, 1e-6 * (z % 1000)));
     for (int c = 0; c < model.contact_count(); ++c) {
       auto weaker = contact;
-      weaker.tensile_strength *= 1.0 - 1e-4 * c;
-      weaker.cohesion *= 1.0 - 1e-4 * c;
+      weaker.tensile_strength *= 1.0 - 1e-4 * (c % 1000);
+      weaker.cohesion *= 1.0 - 1e-4 * (c % 1000);
       p.contacts.add(weaker);
       p.of_contact.push_back(c);
     }
     m.set_properties(p);
   }
-  const auto drive = [&](const Vec<2>& velocity) {
+  const auto drive = [&](const Vec<3>& velocity) {
     for (int g = 0; g < model.gridpoint_count(); ++g)
-      for (int i : {0, 1})
+      for (int i = 0; i < Dim; ++i)
         if (const double y = model.position[g][1]; y == 0.0 || y == 0.05)
           m.constraints().prescribe_velocity(g, i, y == 0.0 ? 0.0 : velocity[i]);
     m.advance(400);
   };
-  drive({{0.0, 5e-3}});
-  drive({{8e-3, 0.0}});
-  drive({{-4e-3, -12e-3}});
+  drive({{0.0, 5e-3, 1e-3}});
+  drive({{8e-3, 0.0, -2e-3}});
+  drive({{-4e-3, -12e-3, 3e-3}});
   return m;
 }
 
@@ -83,6 +84,14 @@ struct Variant {
   double viscous;
   bool own_temperatures;
 };
+
+/// Parameters of a body of random cells that cracks.
+template <int Dim>
+MechanicsParameters cracking() {
+  auto parameters = quasi_static<Dim>();
+  parameters.damping_form = DampingForm::combined;
+  return parameters;
+}
 
 class EveryInstructionSet : public testing::TestWithParam<Variant> {};
 INSTANTIATE_TEST_SUITE_P(Variants, EveryInstructionSet,
@@ -252,22 +261,67 @@ TEST(LargeBlocks, AStateWithTiesThatJoinPiecesGoesOn) {
   EXPECT_TRUE(outcome(resumed) == outcome(whole));
 }
 
+// Promise: the same of polyhedra, on any number of threads, bundled and cut in any way: each block a ragged
+// bundle, or in one piece, or in several; one chunk or many.
 TEST(EveryInstructionSet, GivesTheSameBitsInThreeDimensions) {
-  const ModelOf<3> model = five_tetrahedra();
-  const auto run = [&](InstructionSet set) {
-    auto parameters = quasi_static<3>();
-    parameters.instructions = set;
-    auto m = mechanics(model, mortar_contact(), parameters);
-    // the inner one of the five, the last, is torn out of the others
-    const double speed = 1e-4 / (500 * m.time_step());
-    for (int g = 0; g < model.gridpoint_count(); ++g)
-      for (int i : {0, 1, 2}) m.constraints().prescribe_velocity(g, i, g / 4 == 4 ? speed * (i - 0.5) : 0.0);
-    m.advance(500);
-    EXPECT_GT(m.totals().energy().dissipated.total(), 0.0);
-    return outcome(m);
+  const ModelOf<3> model = laguerre_cells(60, 0.05, 3);
+  for (const bool own_temperatures : {false, true}) {
+    const auto run = [&](InstructionSet set, int threads) {
+      const auto m = cracked(model, cracking<3>(), set, own_temperatures, threads);
+      EXPECT_GT(damaged_share(m), 0.3);
+      return outcome(m);
+    };
+    const auto expected = run(InstructionSet::portable, 1);
+    for (InstructionSet set : usable_instruction_sets())
+      for (int threads : {1, 2}) EXPECT_TRUE(run(set, threads) == expected) << name(set) << ' ' << threads;
+  }
+}
+
+TEST(AnyLayout, GivesTheSameBitsInThreeDimensions) {
+  const ModelOf<3> model = laguerre_cells(60, 0.05, 3);
+  const auto run = [&](const ModelOf<3>& body, const LayoutParameters& layout, int threads) {
+    auto parameters = cracking<3>();
+    parameters.layout = layout;
+    return cracked(body, parameters, usable_instruction_sets().back(), true, threads);
   };
-  const auto expected = run(InstructionSet::portable);
-  for (InstructionSet set : usable_instruction_sets()) EXPECT_TRUE(run(set) == expected) << name(set);
+  const auto expected = run(model, {}, 1);
+  ASSERT_TRUE(std::ranges::all_of(expected.body().layout.bundles,
+                                  [](const Bundle& b) { return b.kind == BundleKind::ragged; }));
+  ASSERT_GT(damaged_share(expected), 0.3);
+  struct Cut {
+    int most_gridpoints, most_zones, chunk_blocks, threads;
+  };
+  for (const auto [most_gridpoints, most_zones, chunk_blocks, threads] :
+       {Cut{0, 1000, 1024, 1}, Cut{0, 16, 1024, 2}, Cut{24, 64, 1024, 2}, Cut{255, 64, 7, 2},
+        Cut{22, 24, 1, 3}}) {
+    ModelOf<3> cut = model;
+    cut.cut_into_chunks(chunk_blocks);
+    const auto m = run(cut, {.most_zones = most_zones, .most_gridpoints = most_gridpoints}, threads);
+    const auto what = testing::Message() << most_gridpoints << " gridpoints, " << most_zones
+                                         << " zones a piece, " << chunk_blocks << " blocks a chunk";
+    EXPECT_TRUE(m.read().displacements() == expected.read().displacements()) << what;
+    EXPECT_TRUE(m.read().velocities() == expected.read().velocities()) << what;
+    EXPECT_TRUE(m.read().forces() == expected.read().forces()) << what;
+    for (int c = 0; c < model.contact_count(); ++c) {
+      ASSERT_TRUE(m.read().contact(c).internals == expected.read().contact(c).internals) << what;
+    }
+    const EnergyLedger a = m.totals().energy(), b = expected.totals().energy();
+    EXPECT_NEAR(a.zones, b.zones, 1e-12 * turnover(b)) << what;
+    EXPECT_NEAR(a.local_damping, b.local_damping, 1e-12 * turnover(b)) << what;
+  }
+}
+
+// Promise: a cracked solid goes on from its state as if nothing had come between, in batches of any length.
+TEST(Solids, GoOnFromTheirStateBitByBit) {
+  const ModelOf<3> model = laguerre_cells(60, 0.05, 3);
+  auto whole = cracked(model, cracking<3>(), usable_instruction_sets().back(), false);
+  StateCopy copy;
+  copy.take([&](StateVisitor& visitor) { whole.visit_state(visitor); });
+  Mechanics<3> resumed(model, {2400.0}, whole.body().properties, whole.body().parameters);
+  copy.put([&](StateVisitor& visitor) { resumed.visit_state(visitor); });
+  whole.advance(257);
+  for (const int steps : {1, 6, 250}) resumed.advance(steps);
+  EXPECT_TRUE(outcome(resumed) == outcome(whole));
 }
 
 // Promise: the threads of a run may change in number between batches, and where batches end changes no bit.

@@ -103,6 +103,22 @@ TEST(Layout, LeavesFewLanesIdle) {
   EXPECT_LT(kLanes * 2 * layout.face_packs(), 1.05 * model.contact_count() + 8 * kLanes);
 }
 
+// The same of polyhedra, whose faces have 3 to some 12 corners: 5 % is what faces of rare numbers may cost.
+TEST(Layout, LeavesFewLanesOfContactPointsIdleInThreeDimensions) {
+  for (const int blocks : {1000, 5000}) {
+    const ModelOf<3> model = bodies::laguerre_cells(blocks, 0.1, 1);
+    const auto m = bodies::mechanics(model, mortar_contact(), bodies::quasi_static<3>());
+    const Layout<3>& layout = m.body().layout;
+    EXPECT_GT(model.contact_count(), 0.95 * kLanes * (layout.point_packs - 1)) << blocks;
+    EXPECT_LT(static_cast<double>(m.body().memory()), 280.0 * model.zone_count()) << blocks;
+    EXPECT_EQ(layout.chunks.blocks.count(), (blocks + kBlocksOfAChunk - 1) / kBlocksOfAChunk);
+    int most = 0;
+    for (int f = 0; f < model.face_count(); ++f)
+      most = std::max(most, model.face_contacts[f + 1] - model.face_contacts[f]);
+    EXPECT_GT(most, 8) << blocks;
+  }
+}
+
 // What lanes of a bundle share must be the same in the model.
 TEST(Layout, BlocksThatShareLanesHaveTheSameZones) {
   const ModelOf<2> model = small_concrete();

@@ -17,7 +17,8 @@
 
 namespace pyroclast {
 
-/// Array of plain data that starts on a cache line and is filled with zero bytes.
+/// Array of plain data that starts on a cache line and is filled with zero bytes. Behind the last element
+/// stands memory that may be read: lanes read three numbers as four.
 ///
 /// On a machine with several memories the system puts a page near the thread that touches it first. Where a
 /// team is given, each of its threads touches an even share of the array.
@@ -28,8 +29,8 @@ class FlatArray {
  public:
   FlatArray() = default;
   explicit FlatArray(std::size_t size, Team* team = nullptr) : size_(size), capacity_(size) {
-    const std::size_t needed = size * sizeof(T);
-    if (needed == 0) return;
+    if (size == 0) return;
+    const std::size_t needed = size * sizeof(T) + kReadBehind;
     const std::size_t alignment = needed < kHugePage ? kPage : kHugePage;
     const std::size_t shift = alignment == kHugePage ? next_shift() : 0;
     const std::size_t bytes = (needed + shift + alignment - 1) / alignment * alignment;
@@ -117,6 +118,7 @@ class FlatArray {
  private:
   static constexpr std::size_t kPage = 4096, kHugePage = std::size_t{2} << 20;
   static constexpr std::ptrdiff_t kPagesForAThread = 256;
+  static constexpr std::size_t kReadBehind = sizeof(double);
   struct Free {
     void* base = nullptr;
     void operator()(T*) const { std::free(base); }

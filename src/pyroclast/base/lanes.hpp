@@ -146,6 +146,62 @@ struct Portable {
   static void gather_differences(const double* p, const int* offset, const int* less, Value& x, Value& y) {
     part_pairs(load(p + offset[0]) - load(p + less[0]), load(p + offset[1]) - load(p + less[1]), x, y);
   }
+  /// Reads consecutive triples and puts their numbers apart into x, y and z.
+  static void load_triples(const double* p, Value& x, Value& y, Value& z) {
+    const Value xy = load(p), zx = load(p + 2), yz = load(p + 4);
+    x = __builtin_shufflevector(xy, zx, 0, 3);
+    y = __builtin_shufflevector(xy, yz, 1, 2);
+    z = __builtin_shufflevector(zx, yz, 0, 3);
+  }
+  static void store_triples(double* p, Value x, Value y, Value z) {
+    store(p, __builtin_shufflevector(x, y, 0, 2));
+    store(p + 2, __builtin_shufflevector(z, x, 0, 3));
+    store(p + 4, __builtin_shufflevector(y, z, 1, 3));
+  }
+  /// Reads triples, that of lane i at at(i), and puts their numbers apart into x, y and z.
+  template <class At>
+  static void gather_triples(At at, Value& x, Value& y, Value& z) {
+    const double *const p = at(0), *const q = at(1);
+    x = Value{p[0], q[0]};
+    y = Value{p[1], q[1]};
+    z = Value{p[2], q[2]};
+  }
+  /// Reads triples less other triples and puts the differences apart into x, y and z.
+  template <class At, class Less>
+  static void gather_triple_differences(At at, Less less, Value& x, Value& y, Value& z) {
+    Value a, b, c;
+    gather_triples(at, x, y, z);
+    gather_triples(less, a, b, c);
+    x -= a;
+    y -= b;
+    z -= c;
+  }
+  /// Reads consecutive fours and puts their first three numbers apart into x, y and z.
+  static void load_fours(const double* p, Value& x, Value& y, Value& z) {
+    gather_fours([p](int i) { return p + static_cast<std::ptrdiff_t>(4 * i); }, x, y, z);
+  }
+  /// Reads fours, that of lane i at at(i), and puts their first three numbers apart.
+  template <class At>
+  static void gather_fours(At at, Value& x, Value& y, Value& z) {
+    part_pairs(load(at(0)), load(at(1)), x, y);
+    z = __builtin_shufflevector(load(at(0) + 2), load(at(1) + 2), 0, 2);
+  }
+  static void store_fours(double* p, Value x, Value y, Value z) {
+    store(p, __builtin_shufflevector(x, y, 0, 2));
+    store(p + 2, z);
+    store(p + 4, __builtin_shufflevector(x, y, 1, 3));
+    store(p + 6, __builtin_shufflevector(z, z, 1, 1));
+  }
+  /// Adds x, y and z to the first three numbers of fours, those of lane i to the four at at(i), lane by lane.
+  template <class At>
+  static void add_to_fours(At at, Value x, Value y, Value z) {
+    const auto add = [](double* p, Value xy, double last) {
+      store(p, load(p) + xy);
+      p[2] += last;
+    };
+    add(at(0), __builtin_shufflevector(x, y, 0, 2), z[0]);
+    add(at(1), __builtin_shufflevector(x, y, 1, 3), z[1]);
+  }
 
  private:
   using Bits = std::remove_reference_t<decltype(Truth{}[0])>;
@@ -219,6 +275,66 @@ struct Avx2 {
   static Value two_pairs(const double* p, int i, int j) {
     return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(p + i)), _mm_load_pd(p + j), 1);
   }
+  static void load_triples(const double* p, Value& x, Value& y, Value& z) {
+    const Value a = _mm256_load_pd(p), b = _mm256_load_pd(p + 4), c = _mm256_load_pd(p + 8);
+    const Value xy = _mm256_blend_pd(a, b, 0b1100);       // x0 y0 x2 y2
+    const Value zx = _mm256_permute2f128_pd(a, c, 0x21);  // z0 x1 z2 x3
+    const Value yz = _mm256_blend_pd(b, c, 0b1100);       // y1 z1 y3 z3
+    x = _mm256_shuffle_pd(xy, zx, 0b1010);
+    y = _mm256_shuffle_pd(xy, yz, 0b0101);
+    z = _mm256_shuffle_pd(zx, yz, 0b1010);
+  }
+  static void store_triples(double* p, Value x, Value y, Value z) {
+    const Value xy = _mm256_unpacklo_pd(x, y), zx = _mm256_shuffle_pd(z, x, 0b1010);
+    const Value yz = _mm256_unpackhi_pd(y, z);
+    _mm256_store_pd(p, _mm256_permute2f128_pd(xy, zx, 0x20));
+    _mm256_store_pd(p + 4, _mm256_blend_pd(yz, xy, 0b1100));
+    _mm256_store_pd(p + 8, _mm256_permute2f128_pd(zx, yz, 0x31));
+  }
+  // Triples come by loads of four numbers, of which the last is left out: one number more must stand behind
+  // the last triple of an array (FlatArray has it).
+  template <class At>
+  static void gather_triples(At at, Value& x, Value& y, Value& z) {
+    part_fours(_mm256_loadu_pd(at(0)), _mm256_loadu_pd(at(1)), _mm256_loadu_pd(at(2)), _mm256_loadu_pd(at(3)),
+               x, y, z);
+  }
+  template <class At, class Less>
+  static void gather_triple_differences(At at, Less less, Value& x, Value& y, Value& z) {
+    const auto difference = [&](int i) { return _mm256_loadu_pd(at(i)) - _mm256_loadu_pd(less(i)); };
+    part_fours(difference(0), difference(1), difference(2), difference(3), x, y, z);
+  }
+  static void load_fours(const double* p, Value& x, Value& y, Value& z) {
+    gather_fours([p](int i) { return p + static_cast<std::ptrdiff_t>(4 * i); }, x, y, z);
+  }
+  template <class At>
+  static void gather_fours(At at, Value& x, Value& y, Value& z) {
+    part_fours(_mm256_load_pd(at(0)), _mm256_load_pd(at(1)), _mm256_load_pd(at(2)), _mm256_load_pd(at(3)), x,
+               y, z);
+  }
+  static void store_fours(double* p, Value x, Value y, Value z) {
+    for_each_four(x, y, z,
+                  [&](int i, Value four) { _mm256_store_pd(p + static_cast<std::ptrdiff_t>(4 * i), four); });
+  }
+  template <class At>
+  static void add_to_fours(At at, Value x, Value y, Value z) {
+    for_each_four(x, y, z, [&](int i, Value four) { _mm256_store_pd(at(i), _mm256_load_pd(at(i)) + four); });
+  }
+  static void part_fours(Value a, Value b, Value c, Value d, Value& x, Value& y, Value& z) {
+    const Value xz01 = _mm256_unpacklo_pd(a, b), xz23 = _mm256_unpacklo_pd(c, d);
+    x = _mm256_permute2f128_pd(xz01, xz23, 0x20);
+    y = _mm256_permute2f128_pd(_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d), 0x20);
+    z = _mm256_permute2f128_pd(xz01, xz23, 0x31);
+  }
+  /// Calls f(i, four) for the lanes in turn, with x, y, z and a number that means nothing.
+  template <class F>
+  [[gnu::always_inline]] static void for_each_four(Value x, Value y, Value z, F f) {
+    const Value xy02 = _mm256_unpacklo_pd(x, y), xy13 = _mm256_unpackhi_pd(x, y);
+    const Value z13 = _mm256_unpackhi_pd(z, z);
+    f(0, _mm256_permute2f128_pd(xy02, z, 0x20));
+    f(1, _mm256_permute2f128_pd(xy13, z13, 0x20));
+    f(2, _mm256_permute2f128_pd(xy02, z, 0x31));
+    f(3, _mm256_permute2f128_pd(xy13, z13, 0x31));
+  }
 };
 #endif
 
@@ -278,17 +394,92 @@ struct Avx512 {
     };
     return _mm512_insertf64x4(_mm512_castpd256_pd512(two(0, 2)), two(4, 6), 1);
   }
+  static void load_triples(const double* p, Value& x, Value& y, Value& z) {
+    const Value a = _mm512_load_pd(p), b = _mm512_load_pd(p + 8), c = _mm512_load_pd(p + 16);
+    const auto pick = [&](__m512i of_ab, __m512i of_abc) {
+      return _mm512_permutex2var_pd(_mm512_permutex2var_pd(a, of_ab, b), of_abc, c);
+    };
+    x = pick(_mm512_setr_epi64(0, 3, 6, 9, 12, 15, 0, 0), _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 10, 13));
+    y = pick(_mm512_setr_epi64(1, 4, 7, 10, 13, 0, 0, 0), _mm512_setr_epi64(0, 1, 2, 3, 4, 8, 11, 14));
+    z = pick(_mm512_setr_epi64(2, 5, 8, 11, 14, 0, 0, 0), _mm512_setr_epi64(0, 1, 2, 3, 4, 9, 12, 15));
+  }
+  static void store_triples(double* p, Value x, Value y, Value z) {
+    const auto pick = [&](__m512i of_xy, __m512i of_xyz) {
+      return _mm512_permutex2var_pd(_mm512_permutex2var_pd(x, of_xy, y), of_xyz, z);
+    };
+    _mm512_store_pd(
+        p, pick(_mm512_setr_epi64(0, 8, 0, 1, 9, 0, 2, 10), _mm512_setr_epi64(0, 1, 8, 3, 4, 9, 6, 7)));
+    _mm512_store_pd(p + 8, pick(_mm512_setr_epi64(0, 3, 11, 0, 4, 12, 0, 5),
+                                _mm512_setr_epi64(10, 1, 2, 11, 4, 5, 12, 7)));
+    _mm512_store_pd(p + 16, pick(_mm512_setr_epi64(13, 0, 6, 14, 0, 7, 15, 0),
+                                 _mm512_setr_epi64(0, 13, 2, 3, 14, 5, 6, 15)));
+  }
+  template <class At>
+  static void gather_triples(At at, Value& x, Value& y, Value& z) {
+    part_fours(two_fours(at, 0, 2), two_fours(at, 1, 3), two_fours(at, 4, 6), two_fours(at, 5, 7), x, y, z);
+  }
+  template <class At, class Less>
+  static void gather_triple_differences(At at, Less less, Value& x, Value& y, Value& z) {
+    const auto difference = [&](int i, int j) { return two_fours(at, i, j) - two_fours(less, i, j); };
+    part_fours(difference(0, 2), difference(1, 3), difference(4, 6), difference(5, 7), x, y, z);
+  }
+  static void load_fours(const double* p, Value& x, Value& y, Value& z) {
+    gather_fours([p](int i) { return p + static_cast<std::ptrdiff_t>(4 * i); }, x, y, z);
+  }
+  template <class At>
+  static void gather_fours(At at, Value& x, Value& y, Value& z) {
+    gather_triples(at, x, y, z);
+  }
+  static void store_fours(double* p, Value x, Value y, Value z) {
+    for_each_four(
+        x, y, z, [&](int i, __m256d four) { _mm256_store_pd(p + static_cast<std::ptrdiff_t>(4 * i), four); });
+  }
+  template <class At>
+  static void add_to_fours(At at, Value x, Value y, Value z) {
+    for_each_four(x, y, z,
+                  [&](int i, __m256d four) { _mm256_store_pd(at(i), _mm256_load_pd(at(i)) + four); });
+  }
+  template <class At>
+  static Value two_fours(At at, int i, int j) {
+    return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(at(i))), _mm256_loadu_pd(at(j)), 1);
+  }
+  /// Parts fours of the lanes 0 and 2, 1 and 3, 4 and 6, 5 and 7.
+  static void part_fours(Value a, Value b, Value c, Value d, Value& x, Value& y, Value& z) {
+    const Value xz0 = _mm512_unpacklo_pd(a, b), xz4 = _mm512_unpacklo_pd(c, d);
+    x = _mm512_shuffle_f64x2(xz0, xz4, 0b10001000);
+    y = _mm512_shuffle_f64x2(_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d), 0b10001000);
+    z = _mm512_shuffle_f64x2(xz0, xz4, 0b11011101);
+  }
+  /// Calls f(i, four) for the lanes in turn, with x, y, z and a number that means nothing.
+  template <class F>
+  [[gnu::always_inline]] static void for_each_four(Value x, Value y, Value z, F f) {
+    const Value xy_even = _mm512_unpacklo_pd(x, y), xy_odd = _mm512_unpackhi_pd(x, y);
+    const Value z_odd = _mm512_unpackhi_pd(z, z);
+    const auto low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11),
+               high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+    const Value f02 = _mm512_permutex2var_pd(xy_even, low, z), f46 = _mm512_permutex2var_pd(xy_even, high, z);
+    const Value f13 = _mm512_permutex2var_pd(xy_odd, low, z_odd),
+                f57 = _mm512_permutex2var_pd(xy_odd, high, z_odd);
+    f(0, _mm512_castpd512_pd256(f02));
+    f(1, _mm512_castpd512_pd256(f13));
+    f(2, _mm512_extractf64x4_pd(f02, 1));
+    f(3, _mm512_extractf64x4_pd(f13, 1));
+    f(4, _mm512_castpd512_pd256(f46));
+    f(5, _mm512_castpd512_pd256(f57));
+    f(6, _mm512_extractf64x4_pd(f46, 1));
+    f(7, _mm512_extractf64x4_pd(f57, 1));
+  }
 };
 #endif
 
 // Eight numbers
 
-/// Calls `f(i)` for the parts of eight lanes, with a constant i in each call. With a loop the compiler would
-/// unroll late and leave the parts in memory until then, which doubles the time of a law on lanes.
-template <int kParts, class F>
-[[gnu::always_inline]] inline void for_each_part(F&& f) {
-  if constexpr (kParts > 1) for_each_part<kParts - 1>(f);
-  f(std::integral_constant<int, kParts - 1>());
+/// Calls `f(i)` for i from 0 to kCount - 1, with a constant i in each call. With a loop the compiler would
+/// unroll late and leave lanes in memory until then, which doubles the time of a law on lanes.
+template <int kCount, class F>
+[[gnu::always_inline]] inline void unroll(F&& f) {
+  if constexpr (kCount > 1) unroll<kCount - 1>(f);
+  f(std::integral_constant<int, kCount - 1>());
 }
 
 /// Condition in each lane.
@@ -301,7 +492,7 @@ struct Mask {
   template <class F>
   [[gnu::always_inline]] static Mask of_parts(F f) {
     Mask m;
-    for_each_part<kParts>([&](auto i) { m.part[i] = f(i); });
+    unroll<kParts>([&](auto i) { m.part[i] = f(i); });
     return m;
   }
   /// Returns the mask that is true in the lanes whose bit is set, the lowest bit first.
@@ -320,7 +511,7 @@ struct Mask {
   }
   friend bool any(const Mask& a) {
     auto sum = a.part[0];
-    for_each_part<kParts>([&](auto i) {
+    unroll<kParts>([&](auto i) {
       if constexpr (i > 0) sum = Set::either(sum, a.part[i]);
     });
     return Set::any(sum);
@@ -336,13 +527,13 @@ struct Lanes {
   Lanes() = default;
   /// Puts the same number into every lane.
   Lanes(double v) {  // NOLINT(google-explicit-constructor): a number is a number
-    for_each_part<kParts>([&](auto i) { part[i] = Set::all(v); });
+    unroll<kParts>([&](auto i) { part[i] = Set::all(v); });
   }
   /// Returns the lanes whose part i is f(i).
   template <class F>
   [[gnu::always_inline]] static Lanes of_parts(F f) {
     Lanes r;
-    for_each_part<kParts>([&](auto i) { r.part[i] = f(i); });
+    unroll<kParts>([&](auto i) { r.part[i] = f(i); });
     return r;
   }
   /// Reads eight numbers.
@@ -351,7 +542,7 @@ struct Lanes {
     return of_parts([&](auto i) { return Set::load(p + i * Set::kWidth); });
   }
   void store(double* p) const {
-    for_each_part<kParts>([&](auto i) { Set::store(p + i * Set::kWidth, part[i]); });
+    unroll<kParts>([&](auto i) { Set::store(p + i * Set::kWidth, part[i]); });
   }
 
   friend Lanes operator+(const Lanes& a, const Lanes& b) {

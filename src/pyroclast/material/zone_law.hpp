@@ -78,22 +78,20 @@ inline SymmetricTensor<Dim, Real> rotated(const Rotation<Real>& r, const Symmetr
 /// return U - I, so that a zone may turn freely; small kinematics take the symmetric part of F - I.
 ///
 /// \param vectors   gradients of the first Dim shape functions, 1/m, once multiplied by `scale`
-/// \param u         displacements of the zone's Dim + 1 gridpoints, m
+/// \param u         displacements of the first Dim gridpoints as seen from the last, m
 /// \param rotation  out: turn of the zone
 template <int Dim, class Real>
 inline SymmetricTensor<Dim, Real> mechanical_strain(const std::array<Vec<Dim, Real>, Dim>& vectors,
                                                     const Real& scale,
-                                                    const std::array<Vec<Dim, Real>, Dim + 1>& u,
+                                                    const std::array<Vec<Dim, Real>, Dim>& u,
                                                     const Real& thermal_strain, Kinematics kinematics,
                                                     Rotation<Real>& rotation) {
   using std::sqrt;
   std::array<Vec<Dim, Real>, Dim> h;  // displacement gradient, h[j][i] = du_i/dx_j
-  for (int n = 0; n < Dim; ++n) {
-    const Vec<Dim, Real> d = u[n] - u[Dim];
-    for (int j = 0; j < Dim; ++j) h[j] = n == 0 ? d * vectors[n][j] : h[j] + d * vectors[n][j];
-  }
-  for (auto& column : h) column *= scale;
+  for (int n = 0; n < Dim; ++n)
+    for (int j = 0; j < Dim; ++j) h[j] = n == 0 ? u[n] * vectors[n][j] : h[j] + u[n] * vectors[n][j];
   if constexpr (Dim == 2) {
+    for (auto& column : h) column *= scale;
     if (kinematics == Kinematics::finite) {
       const Real along = 2.0 + h[0][0] + h[1][1];
       const Real across = h[0][1] - h[1][0];
@@ -105,8 +103,10 @@ inline SymmetricTensor<Dim, Real> mechanical_strain(const std::array<Vec<Dim, Re
     }
     return {h[0][0] - thermal_strain, h[1][1] - thermal_strain, 0.5 * (h[0][1] + h[1][0])};
   } else {
-    return {h[0][0] - thermal_strain,  h[1][1] - thermal_strain,  h[2][2] - thermal_strain,
-            0.5 * (h[0][1] + h[1][0]), 0.5 * (h[1][2] + h[2][1]), 0.5 * (h[2][0] + h[0][2])};
+    const Real half = 0.5 * scale;
+    return {h[0][0] * scale - thermal_strain, h[1][1] * scale - thermal_strain,
+            h[2][2] * scale - thermal_strain, (h[0][1] + h[1][0]) * half,
+            (h[1][2] + h[2][1]) * half,       (h[2][0] + h[0][2]) * half};
   }
 }
 

@@ -70,7 +70,7 @@ int Body<Dim>::constraint_pack_of(int gridpoint) const {
 
 template <int Dim>
 FlatArray<double> Body<Dim>::make_scratch() const {
-  return FlatArray<double>(2 * Dim * kLanes * static_cast<std::size_t>(layout.most_packs));
+  return FlatArray<double>(kScratchNumbers<Dim> * static_cast<std::size_t>(layout.most_packs));
 }
 
 /// Places all that does not change: parameters, positions, and arrays of their sizes.
@@ -85,12 +85,10 @@ void Body<Dim>::place_model() {
   state.thickness = model.thickness;
   auto& s = arrays;
   const auto packs = static_cast<std::size_t>(layout.gridpoint_packs);
-  s.position = made<VectorPack<Dim>>(packs);
   s.velocity = made<VectorPack<Dim>>(packs);
   s.force = made<VectorPack<Dim>>(packs);
-  s.stiffness = made<VectorPack<Dim>>(packs);
+  s.stiffness = made<double>(packs * kLanes);
   s.displacement = made<Vec<Dim>>(packs * kLanes);
-  s.gathered_position = made<Vec<Dim>>(packs * kLanes);
   s.step_over_mass = made<double>(packs * kLanes);
   const auto point_packs = static_cast<std::size_t>(layout.point_packs);
   s.losing = made<bool>(point_packs);
@@ -107,21 +105,41 @@ void Body<Dim>::place_model() {
   s.bundle_sums = made<BundleSums>(layout.bundles.size());
   s.face_sums = made<FaceSums>(layout.faces.size());
 
-  const View<VectorPack<Dim>> position(s.position.data(), s.position.size());
-  for (int g = 0; g < model.gridpoint_count(); ++g) {
-    set_vector<Dim>(position, layout.gridpoint_slot[g], model.position[g]);
-    s.gathered_position[layout.gridpoint_slot[g]] = model.position[g];
-  }
-  for (int b = 0; b < static_cast<int>(layout.bundles.size()); ++b)
-    for (int lane = 0; lane < kLanes; ++lane) {
-      if (layout.block_in(b, lane) >= 0) continue;
-      // an idle lane has the shape of the first, without stiffness
-      const Bundle& bundle = layout.bundles[b];
-      for (int i = 0; i < bundle.packs; ++i)
-        set_vector<Dim>(position, slot_of(bundle.first_pack + i, lane),
-                        vector_at<Dim>(position, slot_of(bundle.first_pack + i, 0)));
-    }
+  place_positions();
   refresh_views();
+}
+
+/// Places the positions of gridpoints in the form from which the zones of this dimension read.
+template <int Dim>
+void Body<Dim>::place_positions() {
+  const auto packs = static_cast<std::size_t>(layout.gridpoint_packs);
+  if constexpr (Dim == 3) {
+    arrays.from_last = made<Four>(packs * kLanes);
+    for (int b = 0; b < model.block_count(); ++b) {
+      const int last = model.block_gridpoints[b + 1] - 1;
+      for (int g = model.block_gridpoints[b]; g <= last; ++g) {
+        const Vec<3> seen = model.position[g] - model.position[last];
+        arrays.from_last[layout.gridpoint_slot[g]] = {{seen[0], seen[1], seen[2], 0.0}};
+      }
+    }
+  } else {
+    arrays.position = made<VectorPack<Dim>>(packs);
+    arrays.gathered_position = made<Vec<Dim>>(packs * kLanes);
+    const View<VectorPack<Dim>> position(arrays.position.data(), arrays.position.size());
+    for (int g = 0; g < model.gridpoint_count(); ++g) {
+      set_vector<Dim>(position, layout.gridpoint_slot[g], model.position[g]);
+      arrays.gathered_position[layout.gridpoint_slot[g]] = model.position[g];
+    }
+    for (int b = 0; b < static_cast<int>(layout.bundles.size()); ++b)
+      for (int lane = 0; lane < kLanes; ++lane) {
+        if (layout.block_in(b, lane) >= 0) continue;
+        // an idle lane has the shape of the first, without stiffness
+        const Bundle& bundle = layout.bundles[b];
+        for (int i = 0; i < bundle.packs; ++i)
+          set_vector<Dim>(position, slot_of(bundle.first_pack + i, lane),
+                          vector_at<Dim>(position, slot_of(bundle.first_pack + i, 0)));
+      }
+  }
 }
 
 /// Lists the laws of the body, each once, in the order of the interfaces. Throws Error where there are too

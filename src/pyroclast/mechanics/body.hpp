@@ -161,6 +161,7 @@ struct Body {
   /// Names the energies that the laws lose, and creep where zones creep.
   void name_dissipations();
   void place_model();
+  void place_positions();
   void place_internals();
   template <class Array>
   void visit_array(StateVisitor& visitor, const char* name, Array& array);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -91,6 +92,7 @@ class LayoutBuilder {
     }
     layout_.chunks.bundles = blocks.of(std::move(begins));
     layout_.shape_zones = FlatArray<std::array<int, Dim + 1>>(shape_zones_);
+    layout_.ragged_zones = FlatArray<RaggedCorners<Dim>>(ragged_zones_);
     layout_.piece_zones = FlatArray<ZoneCorners<Dim>>(piece_zones_);
     layout_.parts = FlatArray<int>(parts_);
     layout_.bundle_of_pack = FlatArray<int>(bundle_of_pack_);
@@ -168,21 +170,30 @@ class LayoutBuilder {
     layout_.acting = FlatArray<ActingContacts>(all);
   }
 
-  /// Lists the corner forces of each gridpoint in pieces in the order of its zones, so that their sum has the
-  /// order of an alike bundle.
+  /// Lists the corner forces of each gridpoint in pieces in the order in which a bundle of another kind would
+  /// add them; see step/zones.hpp. Those at a centre are not listed.
   void gather_corners() {
     const int idle = kLanes * (Dim + 1) * static_cast<int>(piece_zones_.size());
     std::vector<std::vector<int>> of_slot(static_cast<std::size_t>(gathering_packs_) * kLanes);
-    for (const Bundle& bundle : bundles_) {
+    for (std::size_t index = 0; index < bundles_.size(); ++index) {
+      const Bundle& bundle = bundles_[index];
       if (bundle.kind != BundleKind::piece) continue;
       // the packs of a block's pieces stand one after the other, in either list
       const int shift = slot_of(bundle.first_gathering_pack - bundle.first_pack, 0);
-      for (int z = 0; z < bundle.zones; ++z)
-        for (int n = 0; n <= Dim; ++n) {
-          const int pack = bundle.first_corners + z / kLanes, lane = z % kLanes;
-          const int slot = piece_zones_[pack].offset[n][lane] / offset_of<Dim>(1);
-          of_slot[slot + shift].push_back(slot_of(pack * (Dim + 1) + n, lane));
-        }
+      const auto list = [&](int z, int n) {
+        const int pack = bundle.first_corners + z / kLanes, lane = z % kLanes;
+        const int slot = piece_zones_[pack].offset[n][lane] / offset_of<Dim>(1);
+        of_slot[slot + shift].push_back(slot_of(pack * (Dim + 1) + n, lane));
+      };
+      if constexpr (Dim == 2) {
+        for (int z = 0; z < bundle.zones; ++z)
+          for (int n = 0; n <= Dim; ++n) list(z, n);
+      } else {
+        const int corners = has_centre(blocks_[index][0]) ? Dim : Dim + 1;
+        for (int first = 0; first < bundle.zones; first += kLanes)
+          for (int n = 0; n < corners; ++n)
+            for (int z = first; z < std::min(first + kLanes, bundle.zones); ++z) list(z, n);
+      }
     }
     std::vector<IndexRange> ranges;
     std::vector<std::array<int, kLanes>> all;
@@ -226,6 +237,16 @@ class LayoutBuilder {
   /// fits into a cache. Groups that do not fill all lanes come last, in the order in which the chunk, not the
   /// body, meets their shapes.
   void place_chunk(int first_block, int last_block) {
+    if constexpr (Dim == 3) {
+      for (int block : order_blocks(model_, first_block, last_block)) {
+        const int gridpoints = model_.block_gridpoints[block + 1] - model_.block_gridpoints[block];
+        if (gridpoints <= parameters_.most_gridpoints && has_centre(block))
+          add_ragged(block);
+        else
+          add_pieces(block);
+      }
+      return;
+    }
     std::map<int, std::size_t> group_of_shape;
     std::vector<std::pair<int, std::vector<int>>> waiting;  // shapes and their blocks
     for (int block : order_blocks(model_, first_block, last_block)) {
@@ -286,19 +307,68 @@ class LayoutBuilder {
     finish(bundle, lanes);
   }
 
+  /// Tells whether the last gridpoint of a block is the last corner of all its zones.
+  bool has_centre(int block) const {
+    if constexpr (Dim == 2) return false;
+    const int last = model_.block_gridpoints[block + 1] - 1;
+    return std::all_of(model_.zones.begin() + model_.block_zones[block],
+                       model_.zones.begin() + model_.block_zones[block + 1],
+                       [&](const auto& zone) { return zone[Dim] == last; });
+  }
+
+  /// Gives the gridpoints and zones of a block that goes over all lanes their slots, and returns its zones in
+  /// the order of these. In 3D zones of one face stand in different packs: they share a corner, and one sum
+  /// would wait for the one before.
+  std::vector<int> place_over_all_lanes(int block) {
+    const int first_gridpoint = model_.block_gridpoints[block], first_zone = model_.block_zones[block];
+    const int last_zone = model_.block_zones[block + 1];
+    for (int g = first_gridpoint; g < model_.block_gridpoints[block + 1]; ++g)
+      layout_.gridpoint_slot[g] = slot_of(layout_.gridpoint_packs, g - first_gridpoint);
+    const int stride = Dim == 2 ? 1 : packs_of(last_zone - first_zone);
+    std::vector<int> zones;
+    for (int begin = first_zone; begin < first_zone + stride; ++begin)
+      for (int z = begin; z < last_zone; z += stride) zones.push_back(z);
+    for (int i = 0; i < static_cast<int>(zones.size()); ++i)
+      layout_.zone_slot[zones[i]] = slot_of(layout_.zone_packs, i);
+    return zones;
+  }
+
+  void add_ragged(int block) {
+    const int first_gridpoint = model_.block_gridpoints[block];
+    const int gridpoints = model_.block_gridpoints[block + 1] - first_gridpoint;
+    const std::vector<int> zones = place_over_all_lanes(block);
+    Bundle bundle;
+    bundle.kind = BundleKind::ragged;
+    bundle.packs = packs_of(gridpoints);
+    bundle.zones = static_cast<int>(zones.size());
+    bundle.centre = gridpoints - 1;
+    bundle.first_corners = static_cast<int>(ragged_zones_.size());
+    for (int first = 0; first < bundle.zones; first += kLanes) {
+      RaggedCorners<Dim> corners;
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const int zone = zones[first + lane < bundle.zones ? first + lane : first];
+        for (int n = 0; n < Dim; ++n)
+          corners[n][lane] = static_cast<std::uint16_t>(4 * (model_.zones[zone][n] - first_gridpoint));
+      }
+      ragged_zones_.push_back(corners);
+    }
+    start(bundle);
+    std::array<int, kLanes> lanes;
+    lanes.fill(block);
+    finish(bundle, lanes);
+  }
+
   /// Places a block over all lanes, in pieces of about the same size.
   void add_pieces(int block) {
-    const int first_gridpoint = model_.block_gridpoints[block], first_zone = model_.block_zones[block];
-    const int gridpoints = model_.block_gridpoints[block + 1] - first_gridpoint;
-    const int zones = model_.block_zones[block + 1] - first_zone;
+    const int gridpoints = model_.block_gridpoints[block + 1] - model_.block_gridpoints[block];
+    const std::vector<int> in_order = place_over_all_lanes(block);
+    const auto zones = static_cast<int>(in_order.size());
     const int packs = packs_of(gridpoints), zone_packs = packs_of(zones);
     const int most_packs = std::max(1, parameters_.most_zones / kLanes);
     const int pieces = std::min(packs, (zone_packs + most_packs - 1) / most_packs);
-    for (int i = 0; i < gridpoints; ++i)
-      layout_.gridpoint_slot[first_gridpoint + i] = slot_of(layout_.gridpoint_packs, i);
-    for (int i = 0; i < zones; ++i) layout_.zone_slot[first_zone + i] = slot_of(layout_.zone_packs, i);
     std::array<int, kLanes> lanes;
     lanes.fill(block);
+    const int first_corners = static_cast<int>(piece_zones_.size());
     for (int i = 0; i < pieces; ++i) {
       Bundle bundle;
       bundle.kind = BundleKind::piece;
@@ -309,7 +379,11 @@ class LayoutBuilder {
       bundle.zones = std::min(zones, kLanes * share(zone_packs, i + 1)) - zone;
       bundle.first_corners = static_cast<int>(piece_zones_.size());
       start(bundle);
-      add_corners(first_zone + zone, bundle);
+      add_corners({in_order.begin() + zone, in_order.begin() + zone + bundle.zones});
+      if (i + 1 == pieces && has_centre(block)) {
+        bundle.centre = gridpoints - 1 - slot_of(share(packs, i), 0);
+        bundle.corners_of_block = {first_corners, first_corners + zone_packs};
+      }
       bundle.first_gathering_pack = gathering_packs_;
       gathering_packs_ += bundle.packs;
       if (bundle.is_part) parts_.push_back(bundle_count());
@@ -317,13 +391,13 @@ class LayoutBuilder {
     }
   }
 
-  /// Adds the corners of consecutive zones. An idle lane repeats its pack's first zone, whose forces are then
+  /// Adds the corners of zones of a piece. An idle lane repeats its pack's first zone, whose forces are then
   /// left out.
-  void add_corners(int first_zone, const Bundle& bundle) {
-    for (int first = 0; first < bundle.zones; first += kLanes) {
+  void add_corners(std::span<const int> zones) {
+    for (std::size_t first = 0; first < zones.size(); first += kLanes) {
       ZoneCorners<Dim> corners;
-      for (int lane = 0; lane < kLanes; ++lane) {
-        const int zone = first_zone + (first + lane < bundle.zones ? first + lane : first);
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const int zone = zones[first + lane < zones.size() ? first + lane : first];
         for (int n = 0; n <= Dim; ++n)
           corners.offset[n][lane] = offset_of<Dim>(layout_.gridpoint_slot[model_.zones[zone][n]]);
       }
@@ -453,6 +527,7 @@ class LayoutBuilder {
   std::map<std::pair<int, Zones>, int> shape_index_;
   std::vector<Shape> shapes_;
   std::vector<std::array<int, Dim + 1>> shape_zones_;
+  std::vector<RaggedCorners<Dim>> ragged_zones_;
   std::vector<ZoneCorners<Dim>> piece_zones_;
   std::vector<int> parts_, bundle_of_pack_;
   int gathering_packs_ = 0;  // packs of gridpoints of pieces

@@ -17,22 +17,25 @@
 ///     body    chunk 0                              | chunk 1          | ...   consecutive blocks
 ///     chunk   bundle  bundle  bundle  ...                                     blocks that step together
 ///
-///     alike    lane 0   1   2   3   4   5   6   7       piece                 one block over all lanes
+///     alike    lane 0   1   2   3   4   5   6   7       ragged, piece         one block over all lanes
 ///     pack 0   gridpoint 0 of eight blocks               0  1  2  3  4  5  6  7
 ///     pack 1   gridpoint 1 of the same blocks            8  9 10  .  .  .  .  .      . idle
 ///     ...
 ///
 ///     pack of faces     eight faces between the blocks of one pair of chunks, with one interface
-///     packs of points   contact point 0 of the eight faces, then point 1, ... (2 in 2D, 3 to 8 in 3D)
+///     packs of points   contact point 0 of the eight faces, then point 1, ... (2 in 2D, 3 to 15 in 3D)
 ///
 /// lane     one of the eight numbers that go through the same arithmetic together
 /// pack     eight gridpoints, zones, faces or contact points side by side, one a lane
 /// slot     a place in a pack: slot = 8 pack + lane
 /// offset   place where the vector of a slot begins in an array of numbers: Dim slot
 /// idle     a place that nothing fills; nothing acts on it
-/// bundle   blocks that go through a step together, `alike`; or a `piece`: a block, or a part of a large one
+/// bundle   blocks that go through a step together: `alike`, or one `ragged`; or a `piece`: a block, or a
+/// part
+///          of a large one
 /// shape    the zones of a block, as numbers of its own gridpoints; alike blocks have the same shape
 /// fan      a shape whose zones go round the last gridpoint, in the order of the others
+/// centre   the last gridpoint of a block where it is the last corner of all its zones (3D)
 /// chunk    consecutive blocks with bundles and packs of their own: the unit of sums, files and ranks
 namespace pyroclast {
 
@@ -46,7 +49,12 @@ inline constexpr int offset_of(int slot) {
 }
 
 enum class BundleKind : std::uint8_t {
-  alike,  ///< up to eight blocks with the same zones, one a lane: pack i holds the i-th gridpoint of each
+  /// Up to eight blocks with the same zones, one a lane: pack i holds the i-th gridpoint of each. Only in 2D:
+  /// hardly two polyhedra have the same zones.
+  alike,
+  /// One block in 3D over all lanes, with a centre. Its zones look their corners up
+  /// among its own gridpoints, and add their forces to sums of its own.
+  ragged,
   /// One block over all lanes, or a part of a large block: its gridpoints and zones follow one another
   /// through the packs, piece after piece. The forces of zones on their corners are written first; then each
   /// gridpoint gathers its own, whatever pieces they come from. Threads share the parts of a block, so that
@@ -67,13 +75,20 @@ struct Bundle {
   int first_pack = 0;            ///< first pack of gridpoints
   int packs = 0;                 ///< number of packs of gridpoints
   int first_zone_pack = 0;       ///< first pack of zones
-  int zones = 0;                 ///< alike: zones of each block, a pack each; piece: its zones, eight a pack
-  int first_corners = 0;         ///< alike: entry of `shape_zones`; piece: entry of `piece_zones`
+  int zones = 0;                 ///< alike: zones of each block, a pack each; else its zones, eight a pack
+  int first_corners = 0;         ///< entry of `shape_zones` (alike), `ragged_zones` or `piece_zones`
   int first_gathering_pack = 0;  ///< piece: entry of `corners_of_pack`
-  int last_face_pack = -1;       ///< last pack of faces that touches the bundle or one before it
+  int centre = -1;  ///< slot of the block's centre, from the bundle's first; -1 where none is here
+  IndexRange corners_of_block;  ///< piece with a centre: entries of `piece_zones` of its whole block
+  int last_face_pack = -1;      ///< last pack of faces that touches the bundle or one before it
 
   int zone_packs() const { return kind == BundleKind::alike ? zones : (zones + kLanes - 1) / kLanes; }
 };
+
+/// First three gridpoints of eight zones of a ragged bundle: places of fours, in numbers from the bundle's
+/// first. The fourth gridpoint is the centre. An idle lane repeats a zone.
+template <int Dim>
+using RaggedCorners = std::array<std::array<std::uint16_t, kLanes>, Dim>;
 
 /// Gridpoints of eight zones of a piece, as offsets.
 template <int Dim>
@@ -105,7 +120,7 @@ enum class Touched : std::uint8_t {
   none,
   all,
   alike,     ///< packs of alike bundles
-  gathered,  ///< packs of pieces; with finite kinematics all packs
+  gathered,  ///< packs of other bundles; with finite kinematics all packs
   held,      ///< internal variables that are always written: the held jump
   combined   ///< all packs with combined damping, else none
 };
@@ -177,6 +192,7 @@ template <int Dim, template <class> class Array>
 struct LayoutArrays {
   Array<Bundle> bundles;
   Array<std::array<int, Dim + 1>> shape_zones;  ///< zones of each shape in turn, as gridpoints of a block
+  Array<RaggedCorners<Dim>> ragged_zones;       ///< packs of zones of ragged bundles
   Array<ZoneCorners<Dim>> piece_zones;          ///< packs of zones of pieces
   Array<int> parts;                             ///< bundle of each part of a large block
   Array<FacePack<Dim>> faces;
@@ -204,6 +220,7 @@ struct LayoutArrays {
   static void each(F&& f, L&... l) {
     f(ArrayInfo{"bundles", Per::bundle, Touched::all}, l.bundles...);
     f(ArrayInfo{"shape_zones", Per::entry}, l.shape_zones...);  // few, and always near
+    f(ArrayInfo{"ragged_zones", Per::entry, Touched::all}, l.ragged_zones...);
     f(ArrayInfo{"piece_zones", Per::entry, Touched::all}, l.piece_zones...);
     f(ArrayInfo{"parts", Per::entry}, l.parts...);
     f(ArrayInfo{"faces", Per::face_pack, Touched::all}, l.faces...);
@@ -248,13 +265,15 @@ struct LayoutParameters {
   int fewest_blocks = 4;
   /// Zones of a piece, 8 or more; a block of more stands in several, as far as its gridpoints fill them.
   int most_zones = 64;
+  /// Gridpoints of a ragged bundle; a block of more stands in pieces, which threads share.
+  int most_gridpoints = 255;
 };
 
 /// Layout of a model. Blocks are taken in the order of the model, chunk by chunk. Within a chunk they are
-/// ordered in layers, so that blocks that touch stand near each other in memory; blocks with the same zones
-/// share lanes. A face between two chunks belongs to the earlier one. In a chunk packs of such faces come
-/// first, then packs of the chunk's own faces by the later of their two bundles. So one sweep can take a pack
-/// of faces and, soon after, move the bundles whose faces are all done.
+/// ordered in layers, so that blocks that touch stand near each other in memory; in 2D blocks with the same
+/// zones share lanes. A face between two chunks belongs to the earlier one. In a chunk packs of such faces
+/// come first, then packs of the chunk's own faces by the later of their two bundles. So one sweep can take a
+/// pack of faces and, soon after, move the bundles whose faces are all done.
 template <int Dim>
 struct Layout : LayoutArrays<Dim, FlatArray> {
   explicit Layout(const ModelOf<Dim>& model, const LayoutParameters& parameters = {});

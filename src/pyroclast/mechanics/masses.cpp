@@ -21,10 +21,8 @@ void Masses<Dim>::measure_stiffness() {
   FlatArray<double> scratch = body_.make_scratch();
   body_.step.passes.sum_stiffness(body_.state, scratch.data());
   body_.stiffness.resize(body_.model.position.size());
-  for (int g = 0; g < body_.model.gridpoint_count(); ++g) {
-    const Vec<Dim> pack = vector_at<Dim>(body_.state.stiffness, body_.layout.gridpoint_slot[g]);
-    body_.stiffness[g] = *std::max_element(pack.c.begin(), pack.c.end());
-  }
+  for (int g = 0; g < body_.model.gridpoint_count(); ++g)
+    body_.stiffness[g] = body_.state.stiffness[body_.layout.gridpoint_slot[g]];
   set_least_force();
 }
 

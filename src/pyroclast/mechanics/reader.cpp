@@ -57,8 +57,10 @@ Vec<Dim> Reader<Dim>::displacement_of_force(int gridpoint) const {
 
 template <int Dim>
 SymmetricTensor<Dim> Reader<Dim>::stress_in_own_frame(int zone, Rotation<double>& rotation) const {
-  std::array<Vec<Dim>, Dim + 1> u;
-  for (int n = 0; n <= Dim; ++n) u[n] = displacement_of_force(body_.model.zones[zone][n]);
+  const auto& gridpoints = body_.model.zones[zone];
+  std::array<Vec<Dim>, Dim> u;
+  for (int n = 0; n < Dim; ++n)
+    u[n] = displacement_of_force(gridpoints[n]) - displacement_of_force(gridpoints[Dim]);
   const ZoneProperties p = properties_of_zone(zone);
   auto strain = mechanical_strain<Dim>(body_.geometry.gradient[zone], 1.0, u, p.thermal_strain,
                                        body_.parameters.kinematics, rotation);

@@ -36,6 +36,11 @@ void set_vector(View<VectorPack<Dim>> packs, int slot, const Vec<Dim>& v) {
   for (int i = 0; i < Dim; ++i) packs[slot / kLanes].c[i][slot % kLanes] = v[i];
 }
 
+/// Vector in space as lanes read and write it at once: four numbers, of which the last means nothing.
+struct alignas(32) Four {
+  double c[4];
+};
+
 struct alignas(64) ZonePropertyPack {
   double lambda[kLanes], mu[kLanes], thermal_strain[kLanes];
 };
@@ -92,11 +97,14 @@ struct FaceSums {
 /// Arrays of a state, owned (FlatArray) or seen (View).
 template <int Dim, template <class> class Array>
 struct StateArrays {
-  Array<VectorPack<Dim>> position, velocity;
-  Array<VectorPack<Dim>> force;       ///< sum of forces at the last step, N
-  Array<VectorPack<Dim>> stiffness;   ///< sum of |stiffness| over each row of the assembled matrix, N/m
-  Array<Vec<Dim>> gathered_position;  ///< positions by slot, from which zones of pieces gather, m
-  Array<Vec<Dim>> displacement;       ///< displacements by slot, from which faces gather, m
+  Array<VectorPack<Dim>> position;  ///< positions, from which alike bundles read, m; 2D only
+  Array<VectorPack<Dim>> velocity;
+  Array<VectorPack<Dim>> force;  ///< sum of forces at the last step, N
+  /// Largest sum of |stiffness| over a gridpoint's rows of the assembled matrix, by slot, N/m.
+  Array<double> stiffness;
+  Array<Vec<Dim>> gathered_position;  ///< positions by slot, from which zones of pieces gather, m; 2D only
+  Array<Four> from_last;         ///< places by slot, seen from the last gridpoint of the block, m; 3D only
+  Array<Vec<Dim>> displacement;  ///< displacements by slot, from which faces gather, m
   /// Time step over moving mass by slot, s/kg; any finite number where idle.
   Array<double> step_over_mass;
   Array<double> real_mass;                  ///< mass by slot on which gravity acts, kg; empty without gravity
@@ -142,8 +150,9 @@ struct StateArrays {
     f(ArrayInfo{"position", Per::gridpoint_pack, Touched::alike}, s.position...);
     f(ArrayInfo{"velocity", Per::gridpoint_pack, Touched::all, Touched::all, Lasts::kept}, s.velocity...);
     f(ArrayInfo{"force", Per::gridpoint_pack, Touched::combined, Touched::all, Lasts::kept}, s.force...);
-    f(ArrayInfo{"stiffness", Per::gridpoint_pack}, s.stiffness...);
+    f(ArrayInfo{"stiffness", Per::gridpoint_slot}, s.stiffness...);
     f(ArrayInfo{"gathered_position", Per::gridpoint_slot, Touched::gathered}, s.gathered_position...);
+    f(ArrayInfo{"from_last", Per::gridpoint_slot, Touched::all}, s.from_last...);
     f(ArrayInfo{"displacement", Per::gridpoint_slot, Touched::all, Touched::all, Lasts::kept,
                 HeldBy::owner_and_halo},
       s.displacement...);
@@ -226,6 +235,11 @@ void see(Views& views, Owners& owners) {
       views, owners);
 }
 
+/// Numbers of working memory that a step needs for a pack of gridpoints of a bundle: displacements and sums
+/// of forces, and in 3D both as fours too.
+template <int Dim>
+inline constexpr int kScratchNumbers = kLanes*(Dim == 2 ? 4 : 14);
+
 /// Work of a pass over bundles.
 enum class Pass : std::uint8_t {
   move,              ///< a step
@@ -241,7 +255,7 @@ struct StepPasses {
   void (*place_corner_forces)(State<Dim>&, int first, int last, Pass);
   /// Sums the forces of bundles and moves their gridpoints. Those of tied parts still stand: their forces
   /// wait for the sums of the block's other parts.
-  /// \param scratch  2 Dim kLanes numbers for every pack of the largest bundle, aligned to 64 bytes
+  /// \param scratch  kScratchNumbers for every pack of the largest bundle, aligned to 64 bytes
   void (*move_bundles)(State<Dim>&, int first, int last, Pass, double* scratch);
   /// Shares the sums of tied parts out and moves their gridpoints.
   /// \param first, last  entries of `parts`

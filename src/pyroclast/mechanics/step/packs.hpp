@@ -52,25 +52,23 @@ struct Packs {
   static Vector load(const Vec<Dim>* p) {
     Vector v;
     if constexpr (Dim == 2) {
-      for_each_part<Real::kParts>(
+      unroll<Real::kParts>(
           [&](auto i) { Set::load_pairs(p[i * Set::kWidth].c.data(), v[0].part[i], v[1].part[i]); });
     } else {
-      alignas(64) double c[Dim][kLanes];
-      for (int lane = 0; lane < kLanes; ++lane)
-        for (int i = 0; i < Dim; ++i) c[i][lane] = p[lane][i];
-      v = load(c);
+      unroll<Real::kParts>([&](auto i) {
+        Set::load_triples(p[i * Set::kWidth].c.data(), v[0].part[i], v[1].part[i], v[2].part[i]);
+      });
     }
     return v;
   }
   static void store(const Vector& v, Vec<Dim>* p) {
     if constexpr (Dim == 2) {
-      for_each_part<Real::kParts>(
+      unroll<Real::kParts>(
           [&](auto i) { Set::store_pairs(p[i * Set::kWidth].c.data(), v[0].part[i], v[1].part[i]); });
     } else {
-      alignas(64) double c[Dim][kLanes];
-      store(v, c);
-      for (int lane = 0; lane < kLanes; ++lane)
-        for (int i = 0; i < Dim; ++i) p[lane][i] = c[i][lane];
+      unroll<Real::kParts>([&](auto i) {
+        Set::store_triples(p[i * Set::kWidth].c.data(), v[0].part[i], v[1].part[i], v[2].part[i]);
+      });
     }
   }
 
@@ -78,37 +76,90 @@ struct Packs {
     const double* const numbers = vectors.data()->c.data();
     Vector v;
     if constexpr (Dim == 2) {
-      for_each_part<Real::kParts>([&](auto i) {
+      unroll<Real::kParts>([&](auto i) {
         Set::gather_pairs(numbers, offset.data() + i * Set::kWidth, v[0].part[i], v[1].part[i]);
       });
     } else {
-      alignas(64) double c[Dim][kLanes];
-      for (int lane = 0; lane < kLanes; ++lane)
-        for (int i = 0; i < Dim; ++i) c[i][lane] = numbers[offset[lane] + i];
-      v = load(c);
+      unroll<Real::kParts>([&](auto i) {
+        const auto at = [&](int lane) { return numbers + offset[i * Set::kWidth + lane]; };
+        Set::gather_triples(at, v[0].part[i], v[1].part[i], v[2].part[i]);
+      });
     }
     return v;
   }
   static Vector gather_differences(ConstView<Vec<Dim>> vectors, const std::array<int, kLanes>& offset,
                                    const std::array<int, kLanes>& less) {
+    const double* const numbers = vectors.data()->c.data();
+    Vector v;
     if constexpr (Dim == 2) {
-      const double* const numbers = vectors.data()->c.data();
-      Vector v;
-      for_each_part<Real::kParts>([&](auto i) {
+      unroll<Real::kParts>([&](auto i) {
         Set::gather_differences(numbers, offset.data() + i * Set::kWidth, less.data() + i * Set::kWidth,
                                 v[0].part[i], v[1].part[i]);
       });
-      return v;
     } else {
-      return gather(vectors, offset) - gather(vectors, less);
+      unroll<Real::kParts>([&](auto i) {
+        const auto at = [&](int lane) { return numbers + offset[i * Set::kWidth + lane]; };
+        const auto other = [&](int lane) { return numbers + less[i * Set::kWidth + lane]; };
+        Set::gather_triple_differences(at, other, v[0].part[i], v[1].part[i], v[2].part[i]);
+      });
     }
+    return v;
+  }
+
+  /// Puts one vector into every lane.
+  static Vector all(const Vec<Dim>& one) {
+    Vector v;
+    for (int i = 0; i < Dim; ++i) v[i] = one[i];
+    return v;
+  }
+  /// Returns a vector where a condition is true, else zero.
+  static Vector where(const typename Real::Truth& condition, const Vector& v) {
+    Vector w;
+    for (int i = 0; i < Dim; ++i) w[i] = select(condition, v[i], Real(0.0));
+    return w;
+  }
+  /// Reads eight consecutive fours.
+  static Vector load(const Four* p) {
+    Vector v;
+    unroll<Real::kParts>(
+        [&](auto i) { Set::load_fours(p[i * Set::kWidth].c, v[0].part[i], v[1].part[i], v[2].part[i]); });
+    return v;
+  }
+  static void store(const Vector& v, Four* p) {
+    unroll<Real::kParts>(
+        [&](auto i) { Set::store_fours(p[i * Set::kWidth].c, v[0].part[i], v[1].part[i], v[2].part[i]); });
+  }
+  /// Reads fours by their places in an array of numbers.
+  template <class Place>
+  static Vector gather(const Four* fours, const std::array<Place, kLanes>& place) {
+    Vector v;
+    unroll<Real::kParts>([&](auto i) {
+      const auto at = [&](int lane) { return fours->c + place[i * Set::kWidth + lane]; };
+      Set::gather_fours(at, v[0].part[i], v[1].part[i], v[2].part[i]);
+    });
+    return v;
+  }
+  /// Reads fours of gridpoints by the offsets of their vectors.
+  static Vector gather_places(ConstView<Four> fours, const std::array<int, kLanes>& offset) {
+    std::array<int, kLanes> place;
+    for (int lane = 0; lane < kLanes; ++lane) place[lane] = 4 * (offset[lane] / offset_of<Dim>(1));
+    return gather(fours.data(), place);
+  }
+  /// Adds vectors to fours, lane by lane: two lanes may have the same place.
+  template <class Place>
+  static void add(const Vector& v, Four* fours, const std::array<Place, kLanes>& place) {
+    unroll<Real::kParts>([&](auto i) {
+      const auto at = [&](int lane) { return fours->c + place[i * Set::kWidth + lane]; };
+      Set::add_to_fours(at, v[0].part[i], v[1].part[i], v[2].part[i]);
+    });
   }
 
   // Processors do not foresee streams well among so much arithmetic; lines come best a few at a time, all
   // through the step.
 
-  static constexpr int kPacksAhead = 16;     ///< lead over the present pack, in packs of gridpoints
-  static constexpr int kFacePacksAhead = 8;  ///< lead in packs of faces, about as far
+  static constexpr int kPacksAhead = 16;      ///< lead over the present pack, in packs of gridpoints
+  static constexpr int kZonePacksAhead = 32;  ///< lead in packs of zones, about as far
+  static constexpr int kFacePacksAhead = 8;   ///< lead in packs of faces, about as far
   /// Lead for faces between chunks, in packs of faces. Their gridpoints stand anywhere, so they are asked for
   /// one by one, once the pack of points itself has come.
   static constexpr int kScatteredPacksAhead = 4;
@@ -128,6 +179,14 @@ struct Packs {
   static void fetch_ahead(ConstView<double> numbers, int pack) {
     const auto ahead = static_cast<std::size_t>(slot_of(pack + kPacksAhead, 0));
     if (ahead < numbers.size()) fetch<1>(&numbers[ahead]);
+  }
+  static void fetch_ahead(ConstView<Four> fours, int pack) {
+    const auto ahead = static_cast<std::size_t>(slot_of(pack + kPacksAhead, 0));
+    if (ahead < fours.size()) fetch<4>(&fours[ahead]);
+  }
+  static void fetch_ahead(ConstView<RaggedCorners<Dim>> zones, int zone_pack) {
+    const auto ahead = static_cast<std::size_t>(zone_pack + kZonePacksAhead);
+    if (ahead < zones.size()) fetch<1>(&zones[ahead]);
   }
   static void fetch_scattered(const State<Dim>& s, int pack) {
     for (int point = s.layout.first_point_of(pack); point < s.layout.first_point_of(pack + 1); ++point)
@@ -178,11 +237,14 @@ struct Packs {
   struct Scratch {
     VectorPack<Dim>* displacement;
     VectorPack<Dim>* sum;
+    Four* seen;    ///< displacements in a ragged bundle, seen from its centre, m
+    Four* summed;  ///< sums of forces in a ragged bundle, while its zones add to them
   };
   /// \param memory  scratch of StepPasses::move_bundles
   static Scratch scratch_of(const Bundle& bundle, double* memory) {
     auto* packs = reinterpret_cast<VectorPack<Dim>*>(memory);
-    return {packs, packs + bundle.packs};
+    auto* const fours = reinterpret_cast<Four*>(packs + 2 * bundle.packs);
+    return {packs, packs + bundle.packs, fours, fours + slot_of(bundle.packs, 0)};
   }
 
   /// Sums that a step of a bundle books, still lane by lane; see BundleSums.

@@ -171,8 +171,12 @@ class Step {
         R::store(C::template add_forces<kKinematics, false>(s, bundle.first_pack + i, Vector{}),
                  scratch.sum[i].c);
       Z::add_stiffness(s, index, scratch);
-      for (int i = 0; i < bundle.packs; ++i)
-        R::store(R::load(scratch.sum[i].c), s.stiffness[bundle.first_pack + i].c);
+      for (int i = 0; i < bundle.packs; ++i) {
+        const Vector rows = R::load(scratch.sum[i].c);
+        auto most = rows[0];
+        for (int j = 1; j < Dim; ++j) most = larger(most, rows[j]);
+        most.store(&s.stiffness[slot_of(bundle.first_pack + i, 0)]);
+      }
     }
   }
 };

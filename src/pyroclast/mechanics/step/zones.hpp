@@ -14,6 +14,7 @@ struct Zones {
   using Scratch = typename R::Scratch;
   using Sums = typename R::Sums;
   using Corners = std::array<Vector, Dim + 1>;
+  using Edges = std::array<Vector, Dim>;  ///< the first Dim corners, as seen from the last
 
   /// Adds the forces of a bundle's zones.
   /// \tparam kCreeps  true where zones of the body creep
@@ -21,12 +22,10 @@ struct Zones {
   static void add_forces(const State<Dim>& s, int index, const Scratch& scratch, Sums& sums) {
     const double thickness = s.thickness;
     const TensorPack<Dim>* const creep_strain = s.creep_strain.data();
-    add_over_zones(
-        s, index, scratch, [&](const Corners& x, const Corners& u, int zone_pack, const auto& used) {
-          return forces<kKinematics, kMeasure, kCreeps>(thickness, x, u, properties(s, index, zone_pack),
-                                                        kCreeps ? creep_strain + zone_pack : nullptr, used,
-                                                        sums);
-        });
+    add_over_zones(s, index, scratch, [&](const Edges& x, const Edges& u, int zone_pack, const auto& used) {
+      return forces<kKinematics, kMeasure, kCreeps>(thickness, x, u, properties(s, index, zone_pack),
+                                                    kCreeps ? creep_strain + zone_pack : nullptr, used, sums);
+    });
   }
 
   /// Writes the forces of a piece's zones on their corners, which `add_forces` adds later.
@@ -34,7 +33,7 @@ struct Zones {
   static void place_corner_forces(State<Dim>& s, int index, Sums& sums) {
     const double thickness = s.thickness;
     const TensorPack<Dim>* const creep_strain = s.creep_strain.data();
-    place_at_corners(s, index, [&](const Corners& x, const Corners& u, int zone_pack, const auto& used) {
+    place_at_corners(s, index, [&](const Edges& x, const Edges& u, int zone_pack, const auto& used) {
       return forces<kKinematics, kMeasure, kCreeps>(thickness, x, u, properties(s, index, zone_pack),
                                                     kCreeps ? creep_strain + zone_pack : nullptr, used, sums);
     });
@@ -42,14 +41,14 @@ struct Zones {
 
   /// Adds the sums of |stiffness| over the rows of the zones' matrices, N/m.
   static void add_stiffness(const State<Dim>& s, int index, const Scratch& scratch) {
-    add_over_zones(s, index, scratch, [&](const Corners& x, const Corners&, int zone_pack, const auto&) {
+    add_over_zones(s, index, scratch, [&](const Edges& x, const Edges&, int zone_pack, const auto&) {
       return stiffness(s, x, properties(s, index, zone_pack));
     });
   }
 
   /// Writes the sums of a piece's zones, which `add_stiffness` adds later, in the place of corner forces.
   static void place_corner_stiffness(State<Dim>& s, int index) {
-    place_at_corners(s, index, [&](const Corners& x, const Corners&, int zone_pack, const auto&) {
+    place_at_corners(s, index, [&](const Edges& x, const Edges&, int zone_pack, const auto&) {
       return stiffness(s, x, properties(s, index, zone_pack));
     });
   }
@@ -64,7 +63,7 @@ struct Zones {
   /// \param creep_strain  creep strains, read where kCreeps
   /// \param used          lanes that are not idle
   template <Kinematics kKinematics, bool kMeasure, bool kCreeps>
-  static Corners forces(double thickness, const Corners& x, const Corners& u, const ZonePropertiesOf<Real>& p,
+  static Corners forces(double thickness, const Edges& x, const Edges& u, const ZonePropertiesOf<Real>& p,
                         [[maybe_unused]] const TensorPack<Dim>* creep_strain,
                         const typename Real::Truth& used, Sums& sums) {
     // Shape gradients times the determinant. The volume is a constant share of the determinant, so the forces
@@ -96,7 +95,7 @@ struct Zones {
   }
 
   /// Sums |stiffness| over the rows of the matrices of eight zones, N/m.
-  static Corners stiffness(const State<Dim>& s, const Corners& x, const ZonePropertiesOf<Real>& p) {
+  static Corners stiffness(const State<Dim>& s, const Edges& x, const ZonePropertiesOf<Real>& p) {
     std::array<Vector, Dim> vectors;
     const Real determinant = shape_vectors(x, vectors);
     Corners g, pack;
@@ -119,7 +118,9 @@ struct Zones {
     return pack;
   }
 
-  // Forces are added zone by zone in every kind of bundle, so that no sum depends on how blocks are bundled.
+  // No sum depends on how blocks are bundled. In 2D forces are added zone by zone. In 3D they are added by
+  // packs of eight zones of the block, corner by corner, lane by lane. Where all zones of a block have one
+  // gridpoint in common, its sum is taken lane by lane over all packs, and then across the lanes.
 
   /// Adds the result of `zone(x, u, zone_pack, used)` at the corners of all zones of a bundle; in a piece,
   /// the results that `place_at_corners` wrote.
@@ -127,29 +128,32 @@ struct Zones {
   static void add_over_zones(const State<Dim>& s, int index, const Scratch& scratch, Zone zone) {
     const Bundle& bundle = s.layout.bundles[index];
     if (bundle.kind == BundleKind::piece) return add_from_corners(s, bundle, scratch);
-    if constexpr (Dim == 2)
+    if constexpr (Dim == 3) {
+      add_over_ragged(s, bundle, scratch, zone);
+    } else {
       if (bundle.fan) return add_over_fan(s, bundle, scratch, zone);
-    add_over_alike(s, bundle, scratch, zone);
+      add_over_alike(s, bundle, scratch, zone);
+    }
   }
 
   /// Adds over the zones of a fan. Each zone shares an edge with the one before, so that its corners and the
   /// sum at one corner are at hand.
   template <class Zone>
   static void add_over_fan(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch, Zone zone) {
-    Corners x, u;
-    const auto take = [&](int n, int gridpoint) {
-      x[n] = R::load(s.position[bundle.first_pack + gridpoint].c);
-      u[n] = R::load(scratch.displacement[gridpoint].c);
-    };
     const int zones = bundle.zones;
-    take(0, 0);
-    take(2, zones);
+    const auto position = [&](int gridpoint) { return R::load(s.position[bundle.first_pack + gridpoint].c); };
+    const auto displacement = [&](int gridpoint) { return R::load(scratch.displacement[gridpoint].c); };
+    const Vector x_of_last = position(zones), u_of_last = displacement(zones);
     R::fetch_ahead(s.position, bundle.first_pack + zones);
+    Edges x, u;
+    x[0] = position(0) - x_of_last;
+    u[0] = displacement(0) - u_of_last;
     Vector total = R::load(scratch.sum[0].c), middle = R::load(scratch.sum[zones].c);
     for (int z = 0; z < zones; ++z) {
       const int next = z + 1 < zones ? z + 1 : 0;
       R::fetch_ahead(s.position, bundle.first_pack + z);
-      take(1, next);
+      x[1] = position(next) - x_of_last;
+      u[1] = displacement(next) - u_of_last;
       const Corners more = zone(x, u, bundle.first_zone_pack + z, Real::Truth::from_bits(0xFF));
       R::store(total + more[0], scratch.sum[z].c);
       total = R::load(scratch.sum[next].c) + more[1];
@@ -167,10 +171,12 @@ struct Zones {
     for (int z = 0; z < bundle.zones; ++z) {
       if (z < bundle.packs) R::fetch_ahead(s.position, bundle.first_pack + z);
       const auto& corner = zones[z];
-      Corners x, u;
-      for (int n = 0; n <= Dim; ++n) {
-        x[n] = R::load(s.position[bundle.first_pack + corner[n]].c);
-        u[n] = R::load(scratch.displacement[corner[n]].c);
+      const Vector x_of_last = R::load(s.position[bundle.first_pack + corner[Dim]].c);
+      const Vector u_of_last = R::load(scratch.displacement[corner[Dim]].c);
+      Edges x, u;
+      for (int n = 0; n < Dim; ++n) {
+        x[n] = R::load(s.position[bundle.first_pack + corner[n]].c) - x_of_last;
+        u[n] = R::load(scratch.displacement[corner[n]].c) - u_of_last;
       }
       const Corners more = zone(x, u, bundle.first_zone_pack + z, Real::Truth::from_bits(0xFF));
       for (int n = 0; n <= Dim; ++n) {
@@ -180,20 +186,64 @@ struct Zones {
     }
   }
 
+  /// Adds over the zones of a block whose zones all have its last gridpoint as their last corner.
+  template <class Zone>
+  static void add_over_ragged(const State<Dim>& s, const Bundle& bundle, const Scratch& scratch, Zone zone) {
+    const Vector u_of_last = R::all(s.displacement[slot_of(bundle.first_pack, bundle.centre)]);
+    for (int i = 0; i < bundle.packs; ++i) {
+      R::fetch_ahead(s.from_last, bundle.first_pack + i);
+      R::store(R::load(scratch.displacement[i].c) - u_of_last, scratch.seen + slot_of(i, 0));
+      R::store(R::load(scratch.sum[i].c), scratch.summed + slot_of(i, 0));
+    }
+    const Four* const from_last = &s.from_last[slot_of(bundle.first_pack, 0)];
+    Vector middle = R::all({});
+    for (int z = 0; z < bundle.zone_packs(); ++z) {
+      R::fetch_ahead(s.layout.ragged_zones, bundle.first_corners + z);
+      const auto& corner = s.layout.ragged_zones[bundle.first_corners + z];
+      Edges x, u;
+      unroll<Dim>([&](auto n) {
+        x[n] = R::gather(from_last, corner[n]);
+        u[n] = R::gather(scratch.seen, corner[n]);
+      });
+      const auto used = used_zones(bundle, z);
+      Corners force = zone(x, u, bundle.first_zone_pack + z, used);
+      unroll<Dim + 1>([&](auto n) { force[n] = R::where(used, force[n]); });
+      unroll<Dim>([&](auto n) { R::add(force[n], scratch.summed, corner[n]); });
+      middle += force[Dim];
+    }
+    for (int i = 0; i < bundle.packs; ++i)
+      R::store(R::load(scratch.summed + slot_of(i, 0)), scratch.sum[i].c);
+    add_at_centre(bundle, scratch, middle);
+  }
+
+  /// Adds the sum over the lanes at the gridpoint that all zones of a block have in common.
+  static void add_at_centre(const Bundle& bundle, const Scratch& scratch, const Vector& of_lanes) {
+    for (int i = 0; i < Dim; ++i)
+      scratch.sum[bundle.centre / kLanes].c[i][bundle.centre % kLanes] += sum(of_lanes[i]);
+  }
+
   /// Writes the result of `zone` for the zones of a piece, whose gridpoints stand anywhere in their block.
   template <class Zone>
   static void place_at_corners(State<Dim>& s, int index, Zone zone) {
     const Bundle& bundle = s.layout.bundles[index];
     for (int z = 0; z < bundle.zone_packs(); ++z) {
-      const int used = bundle.zones - kLanes * z < kLanes ? bundle.zones - kLanes * z : kLanes;
       const int pack = bundle.first_corners + z;
       const auto& corner = s.layout.piece_zones[pack].offset;
-      Corners x, u;
-      for (int n = 0; n <= Dim; ++n) {
-        x[n] = R::gather(s.gathered_position, corner[n]);
-        u[n] = R::gather(s.displacement, corner[n]);
+      const auto position = [&](int n) {
+        if constexpr (Dim == 2)
+          return R::gather(s.gathered_position, corner[n]);
+        else
+          return R::gather_places(s.from_last, corner[n]);
+      };
+      const Vector x_of_last = position(Dim), u_of_last = R::gather(s.displacement, corner[Dim]);
+      Edges x, u;
+      for (int n = 0; n < Dim; ++n) {
+        x[n] = position(n) - x_of_last;
+        u[n] = R::gather(s.displacement, corner[n]) - u_of_last;
       }
-      const Corners force = zone(x, u, bundle.first_zone_pack + z, Real::Truth::from_bits((1U << used) - 1U));
+      const auto used = used_zones(bundle, z);
+      Corners force = zone(x, u, bundle.first_zone_pack + z, used);
+      if constexpr (Dim == 3) force[Dim] = R::where(used, force[Dim]);  // add_from_corners takes all lanes
       for (int n = 0; n <= Dim; ++n) R::store(force[n], &s.corner_force[slot_of(pack * (Dim + 1) + n, 0)]);
     }
   }
@@ -206,6 +256,19 @@ struct Zones {
         total += R::gather(s.corner_force, s.layout.acting_corners[k]);
       R::store(total, scratch.sum[i].c);
     }
+    if constexpr (Dim == 3)
+      if (bundle.centre >= 0) {
+        Vector middle = R::all({});
+        for (int pack = bundle.corners_of_block.first; pack < bundle.corners_of_block.last; ++pack)
+          middle += R::load(&s.corner_force[slot_of(pack * (Dim + 1) + Dim, 0)]);
+        add_at_centre(bundle, scratch, middle);
+      }
+  }
+
+  /// Returns the lanes that are not idle in a pack of zones of a block that goes over all lanes.
+  static typename Real::Truth used_zones(const Bundle& bundle, int zone_pack) {
+    const int left = bundle.zones - kLanes * zone_pack;
+    return Real::Truth::from_bits((1U << (left < kLanes ? left : kLanes)) - 1U);
   }
 };
 
