@@ -84,7 +84,7 @@ class Kernel:
 
     part: str
     loading: str
-    size: int  #: number of zones in the name of the benchmark
+    size: int  #: number of zones or blocks in the name of the benchmark
     zone_steps: Rate
 
 
@@ -139,15 +139,16 @@ class Peer:
 
 @dataclass
 class Bench:
-    """All that was measured."""
+    """All that was measured of specimens in the plane, or of bodies in space."""
 
     machine: Machine
-    steps: dict[tuple[str, str, int, int], Step] = field(default_factory=dict)  #: by code, loading, zones, threads
+    steps: dict[tuple[str, str, int, int], Step] = field(default_factory=dict)  #: by code, loading, size, threads
     kernels: list[Kernel] = field(default_factory=list)
     peers: dict[str, Peer] = field(default_factory=dict)  #: by loading
+    in_space: Bench | None = None  #: beside that of specimens in the plane
 
     def sizes(self) -> list[int]:
-        return sorted({zones for _, _, zones, _ in self.steps})
+        return sorted({size for _, _, size, _ in self.steps})
 
 
 def read_bench(path: Path, peers: Sequence[Path] = ()) -> Bench:
@@ -185,13 +186,20 @@ def _bench_of(content: dict) -> Bench:
             machine.peak[_number(parts[0])] = _rate(repetitions, "flops_per_s")
         elif kind == "triad":
             machine.bandwidth[parts[0], _number(parts[1])] = _rate(repetitions, "bytes_per_s")
-        elif kind == "step":
-            code, loading, zones, threads = parts
-            bench.steps[code, loading, _number(zones), _number(threads)] = _step_of(repetitions)
-        elif kind == "kernel":
-            part, loading, zones, _ = parts
-            bench.kernels.append(Kernel(part, loading, _number(zones), _rate(repetitions, "zone_steps")))
+        elif kind in ("step", "solid"):
+            code, loading, size, threads = parts
+            of = bench if kind == "step" else _in_space(bench)
+            of.steps[code, loading, _number(size), _number(threads)] = _step_of(repetitions)
+        elif kind in ("kernel", "solid_kernel"):
+            part, loading, size, _ = parts
+            of = bench if kind == "kernel" else _in_space(bench)
+            of.kernels.append(Kernel(part, loading, _number(size), _rate(repetitions, "zone_steps")))
     return bench
+
+
+def _in_space(bench: Bench) -> Bench:
+    bench.in_space = bench.in_space or Bench(bench.machine)
+    return bench.in_space
 
 
 def _step_of(repetitions: list[dict]) -> Step:
@@ -236,14 +244,20 @@ def _peers_of(contents: list[dict]) -> dict[str, Peer]:
 def table(bench: Bench) -> str:
     """All of it as Markdown."""
     parts = [f"Other work on the machine when it began: load {bench.machine.load:.1f}.",
-             "\n".join(_machine_table(bench.machine)), "\n".join(_step_table(bench))]
-    if any(step.cost for step in bench.steps.values()):
-        parts.append("\n".join(_roofline_table(bench)))
-    if bench.kernels:
-        parts.append("\n".join(_kernel_table(bench)))
-    if bench.peers:
-        parts.append("\n".join(_peer_table(bench)))
+             "\n".join(_machine_table(bench.machine)), *_tables(bench)]
+    if bench.in_space:
+        parts += ["Bodies in space:", *_tables(bench.in_space)]
     return "\n\n".join(parts) + "\n"
+
+
+def _tables(bench: Bench) -> Iterator[str]:
+    yield "\n".join(_step_table(bench))
+    if any(step.cost for step in bench.steps.values()):
+        yield "\n".join(_roofline_table(bench))
+    if bench.kernels:
+        yield "\n".join(_kernel_table(bench))
+    if bench.peers:
+        yield "\n".join(_peer_table(bench))
 
 
 def _machine_table(machine: Machine) -> Iterator[str]:
@@ -259,11 +273,11 @@ def _machine_table(machine: Machine) -> Iterator[str]:
 
 def _steps(bench: Bench):
     """Of each body that was timed: its state, and the step on one thread, on two (or none) and of the textbook (or none)."""
-    for zones in bench.sizes():
+    for size in bench.sizes():
         for loading in _LOADINGS:
-            if one := bench.steps.get(("pyroclast", loading, zones, 1)):
-                yield (loading, one, bench.steps.get(("pyroclast", loading, zones, 2)),
-                       bench.steps.get(("textbook", loading, zones, 1)))
+            if one := bench.steps.get(("pyroclast", loading, size, 1)):
+                yield (loading, one, bench.steps.get(("pyroclast", loading, size, 2)),
+                       bench.steps.get(("textbook", loading, size, 1)))
 
 
 def _step_table(bench: Bench) -> Iterator[str]:

@@ -101,6 +101,20 @@ class Report(unittest.TestCase):
         self.assertTrue(cells[5].startswith("33.0 ±"), cells)
         self.assertEqual(cells[7:9], ["2.00", "1.50"])
 
+    def test_bodies_in_space_have_tables_of_their_own(self) -> None:
+        content = measured()
+        self.assertNotIn("Bodies in space", report.table(self.read(content)))
+        in_space = step("pyroclast", 43_000, 1, [8e6])
+        for run in in_space:
+            run["run_name"] = "solid/pyroclast/cracked/blocks:1000/threads:1/real_time"
+        content["benchmarks"] += [*in_space, *repetitions("solid_kernel/zones/cracked/blocks:1000/threads:1", "zone_steps",
+                                                          [16e6])]
+        plane, _, space = report.table(self.read(content)).partition("Bodies in space")
+        self.assertNotIn("| 43,000", plane)
+        self.assertIn("| 43,000", space)
+        self.assertNotIn("| 27,000", space)
+        self.assertIn("| zones | cracked | 62.50 | 16.0", space)
+
     def test_without_counts_there_is_no_roofline(self) -> None:
         self.assertNotIn("roofline", report.table(self.read(measured())))
 

@@ -43,7 +43,7 @@ TEST(Gradation, TotalAreaIsOffByAtMostHalfTheSmallestAggregate) {
   for (int seed = 0; seed < 50; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const double specimen_area = 0.15 * 0.3;
-    EXPECT_NEAR(total_area(draw_diameters(p, specimen_area, random)), p.fraction * specimen_area,
+    EXPECT_NEAR(total_area(draw_diameters<2>(p, specimen_area, random)), p.fraction * specimen_area,
                 0.5 * circle_area(p.d_min) * (1 + 1e-9));
   }
 }
@@ -51,7 +51,7 @@ TEST(Gradation, TotalAreaIsOffByAtMostHalfTheSmallestAggregate) {
 TEST(Gradation, DiametersDescendWithinTheRange) {
   const AggregateParameters p = paper_aggregates();
   Random random(1);
-  const std::vector<double> d = draw_diameters(p, 1.0, random);
+  const std::vector<double> d = draw_diameters<2>(p, 1.0, random);
   EXPECT_TRUE(std::is_sorted(d.begin(), d.end(), std::greater<>()));
   EXPECT_LE(d.front(), p.d_max);
   EXPECT_GE(d.back(), p.d_min);
@@ -61,7 +61,7 @@ TEST(Gradation, AtEverySieveTheCurveIsMetToOneAggregate) {
   const AggregateParameters p = paper_aggregates();
   Random random(3);
   const double specimen_area = 0.15 * 0.3;
-  const std::vector<Aggregate> aggregates = anywhere(draw_diameters(p, specimen_area, random));
+  const std::vector<Aggregate> aggregates = anywhere(draw_diameters<2>(p, specimen_area, random));
   for (const GradationPoint& point : gradation(p, aggregates, p.sieves)) {
     // An interval hands on less than its smallest aggregate; the total is off by half the smallest of all.
     const double slack = (circle_area(point.size) + circle_area(p.d_min)) / (p.fraction * specimen_area);
@@ -73,7 +73,7 @@ TEST(Gradation, FollowsTheCurveWithinTheIntervalsToo) {
   AggregateParameters p = paper_aggregates();
   p.sieves = {p.d_min, p.d_max};
   Random random(4);
-  const std::vector<Aggregate> aggregates = anywhere(draw_diameters(p, 100.0, random));
+  const std::vector<Aggregate> aggregates = anywhere(draw_diameters<2>(p, 100.0, random));
   std::vector<double> sizes;
   for (double d = p.d_min; d <= p.d_max; d += 1e-3) sizes.push_back(d);
   for (const GradationPoint& point : gradation(p, aggregates, sizes)) {
@@ -84,7 +84,8 @@ TEST(Gradation, FollowsTheCurveWithinTheIntervalsToo) {
 }
 
 TEST(Gradation, NoAggregatesHaveNoCurve) {
-  EXPECT_TRUE(says(message([] { gradation(paper_aggregates(), {}, {}); }), "no aggregates"));
+  EXPECT_TRUE(
+      says(message([] { gradation(paper_aggregates(), std::vector<Aggregate>{}, {}); }), "no aggregates"));
 }
 
 }  // namespace

@@ -11,7 +11,8 @@ namespace {
 
 std::vector<Aggregate> place_paper_aggregates(const AggregateParameters& p, std::uint64_t seed) {
   Random random(seed);
-  return place(draw_diameters(p, 0.15 * 0.3, random), Region::rectangle(0.15, 0.3), p, {}, random);
+  return place(draw_diameters<2>(p, 0.15 * 0.3, random), room_in(Region::rectangle(0.15, 0.3)), p, {},
+               random);
 }
 
 TEST(Placement, KeepsTheGapBetweenAggregatesAndToTheOutline) {
@@ -39,9 +40,9 @@ TEST(Placement, PlacesThousandsOfSmallAggregatesBetweenLargeOnes) {
   p.sieves.front() = 1e-3;
   p.minimum_gap = 0;
   Random random(1);
-  const std::vector<double> diameters = draw_diameters(p, 0.15 * 0.3, random);
+  const std::vector<double> diameters = draw_diameters<2>(p, 0.15 * 0.3, random);
   ASSERT_GT(diameters.size(), 1000U);
-  EXPECT_EQ(place(diameters, Region::rectangle(0.15, 0.3), p, {}, random).size(), diameters.size());
+  EXPECT_EQ(place(diameters, room_in(Region::rectangle(0.15, 0.3)), p, {}, random).size(), diameters.size());
 }
 
 TEST(Placement, SaysHowMuchIsMissing) {
@@ -61,7 +62,7 @@ TEST(Placement, SaysWhatThoseThatFoundAPlaceTake) {
   Random random(1);
   const std::vector<double> diameters{20e-3, 10e-3, 50e-3};  // the last is wider than the specimen
   // pi/4 (20^2 + 10^2) / (40 x 300) = 0.0327
-  EXPECT_TRUE(says(message([&] { place(diameters, Region::rectangle(0.04, 0.3), p, {}, random); }),
+  EXPECT_TRUE(says(message([&] { place(diameters, room_in(Region::rectangle(0.04, 0.3)), p, {}, random); }),
                    "after 2 of 3, an area fraction of 0\\.033 of"));
 }
 
@@ -69,8 +70,8 @@ TEST(Placement, AnAggregateWiderThanTheSpecimenIsMissing) {
   AggregateParameters p = paper_aggregates();
   Random random(1);
   const std::vector<double> diameters{30e-3};
-  EXPECT_TRUE(
-      says(message([&] { place(diameters, Region::rectangle(0.02, 0.3), p, {}, random); }), "after 0 of 1"));
+  EXPECT_TRUE(says(message([&] { place(diameters, room_in(Region::rectangle(0.02, 0.3)), p, {}, random); }),
+                   "after 0 of 1"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -132,6 +133,51 @@ TEST(Solid, AStageOfOnesOwnServesIt) {
   ASSERT_EQ(strain.size(), 4U);
   EXPECT_GT(strain[0], strain[1]);
   EXPECT_LT(strain[1], strain[2]);
+}
+
+/// A cylinder of concrete, 60 mm x 120 mm, between the platens of a deck.
+SpecimenBody cylinder_between_platens(const Setup& setup) {
+  constexpr double kDiameter = 0.06, kHeight = 0.12;
+  const auto section = specimen::Region::polygon(
+      specimen::circle_corners({{0.5 * kDiameter, 0.5 * kDiameter}}, kDiameter, kDiameter / 8.0), {"rim"},
+      true);
+  auto parameters = setup.specimen;
+  parameters.blocks.count = 120;
+  parameters.superposition = specimen::Superposition::fit;
+  const auto specimen = solid::make_specimen(parameters, solid::Body(section, solid::Body::Axis::y, kHeight));
+  return make_body(specimen, {}, setup.motion);
+}
+
+// Promise: the stress of a cylinder of polyhedra is the force over the area of a circle, and its lateral
+// strain is that of its diameter. As long as nothing cracks the estimate of even stress is a lower bound of
+// its modulus, a tight one.
+TEST(Solid, ACylinderOfConcreteHasItsStressAndModulus) {
+  auto setup = read(deck(kUniform + kSettle + kCompress));
+  Simulation simulation(cylinder_between_platens(setup), setup.solids, setup.heat, {}, {}, setup.motion,
+                        std::make_shared<Team>());
+  pyroclast::Run run(simulation, std::move(setup.stages));
+  ASSERT_EQ(run.run(), Outcome::completed);
+  const Model& model = simulation.model();
+  const Press& press = simulation.press();
+  const double force =
+      simulation.motion().totals().total_force(gridpoint_set(model, model.set("top_platen_support")))[1];
+  const double circle = 0.25 * std::numbers::pi * 0.06 * 0.06;
+  EXPECT_NEAR(press.stress_top(), force / circle, 1e-9 * std::abs(press.stress_top()));
+  EXPECT_NEAR(press.volume(), circle * 0.12, 1e-9 * circle);
+  const auto& history = run.history();
+  const auto rows = run.courses()[1].rows;
+  const auto change = [&](const char* column) {
+    const auto values = history.values(column, rows);
+    return values.back() - values.front();
+  };
+  const double modulus = 1e6 * change("stress_MPa") / change("specimen_strain");
+  const double estimate = estimate_modulus(model, simulation.materials());
+  EXPECT_GT(modulus, 0.99 * estimate);
+  EXPECT_LT(modulus, 1.06 * estimate);
+  const double poisson = change("lateral_strain") / change("specimen_strain");
+  EXPECT_GT(poisson, 0.15);
+  EXPECT_LT(poisson, 0.25);
+  EXPECT_TRUE(history.has("tension_mortar_mortar_area_m2"));
 }
 
 TEST(Solid, IsNotSetDownOnThreePointsYet) {

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/model/model_parts.hpp"
 
 namespace pyroclast {
 
@@ -26,8 +27,7 @@ using specimen::Edge;
 using specimen::Region;
 using specimen::Specimen;
 
-/// Height of a bearing's zones at its seat over their width, about: contact forces vary along the face much
-/// faster than into the depth.
+/// Height of a bearing's zones at its seat over their width, about.
 constexpr double kZoneHeightOverWidth = 2.0;
 
 /// Tells whether an edge of the outline lies on a side, or on a patch of it.
@@ -80,16 +80,6 @@ struct BearingBlock {
   int interface = 0;
 };
 
-/// Returns the heights between the rows of a bearing's zones over its thickness, from 0 to 1. Forces even out
-/// away from the seat, so each row is twice as high as the one before.
-/// \param rows_of_even_height  rows that would stand in the thickness if all were like the first
-std::vector<double> row_heights(double rows_of_even_height) {
-  const int rows = std::max(2, static_cast<int>(std::ceil(std::log2(rows_of_even_height + 1.0))));
-  std::vector<double> heights;
-  for (int row = 0; row <= rows; ++row) heights.push_back((std::exp2(row) - 1.0) / (std::exp2(rows) - 1.0));
-  return heights;
-}
-
 /// Adds a structured block over a seat.
 BearingBlock add_bearing(ModelOf<2>& model, const Specimen& specimen, const Seat& seat,
                          const Bearing& bearing, int material) {
@@ -114,8 +104,7 @@ BearingBlock add_bearing(ModelOf<2>& model, const Specimen& specimen, const Seat
           fmt::format("bearing \"{}\": it is as narrow as a block; it needs two or more", bearing.name));
     *nearest = middle;
   }
-  const std::vector<double> heights =
-      row_heights(bearing.thickness / (kZoneHeightOverWidth * norm(along) / (columns - 1)));
+  const std::vector<double> heights = bearing_rows(bearing.thickness, norm(along) / (columns - 1));
   const int rows = static_cast<int>(heights.size()) - 1;
   std::vector<Vec<2>> gridpoints;
   for (const double height : heights)
@@ -149,7 +138,8 @@ BearingBlock add_bearing(ModelOf<2>& model, const Specimen& specimen, const Seat
   return block;
 }
 
-/// Returns the position in a list, which must hold the name.
+}  // namespace
+
 int place_in(const std::vector<std::string>& names, const std::string& name) {
   return static_cast<int>(std::ranges::find(names, name) - names.begin());
 }
@@ -164,7 +154,25 @@ std::vector<int> all_from(int first, int last) {
   return result;
 }
 
-}  // namespace
+std::vector<double> bearing_rows(double thickness, double width) {
+  const double rows_of_even_height = thickness / (kZoneHeightOverWidth * width);
+  const int rows = std::max(2, static_cast<int>(std::ceil(std::log2(rows_of_even_height + 1.0))));
+  std::vector<double> heights;
+  for (int row = 0; row <= rows; ++row) heights.push_back((std::exp2(row) - 1.0) / (std::exp2(rows) - 1.0));
+  return heights;
+}
+
+void add_bearing_names(Model& model, const std::vector<Bearing>& bearings) {
+  const auto add_name = [](std::vector<std::string>& names, const std::string& name, int& count) {
+    if (std::ranges::find(names, name) != names.end()) return;
+    names.push_back(name);
+    ++count;
+  };
+  for (const Bearing& bearing : bearings) {
+    add_name(model.material_names, bearing.material, model.bearing_materials);
+    add_name(model.interface_names, bearing.interface, model.bearing_interfaces);
+  }
+}
 
 std::vector<Bearing> platens(double thickness) {
   return {{"bottom_platen", "bottom", thickness, "platen", "platen", false},
@@ -181,15 +189,7 @@ ModelOf<2> make_concrete_model(const Specimen& specimen, double thickness,
   model.thickness = thickness;
   model.material_names = specimen.phases;
   model.interface_names = table.names();
-  const auto add_name = [](std::vector<std::string>& names, const std::string& name, int& count) {
-    if (std::ranges::find(names, name) != names.end()) return;
-    names.push_back(name);
-    ++count;
-  };
-  for (const Bearing& bearing : bearings) {
-    add_name(model.material_names, bearing.material, model.bearing_materials);
-    add_name(model.interface_names, bearing.interface, model.bearing_interfaces);
-  }
+  add_bearing_names(model, bearings);
 
   const auto edges = specimen::edges(tessellation);
   std::vector<std::pair<Edge, int>> outline;

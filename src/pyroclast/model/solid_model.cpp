@@ -1,14 +1,126 @@
 #include "pyroclast/model/solid_model.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
+#include <string>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/sort_unique.hpp"
+#include "pyroclast/model/model_parts.hpp"
 
 namespace pyroclast {
 
-void add_cells(ModelOf<3>& model, const solid::Complex& complex, const std::vector<int>& material,
-               const std::function<int(int, int)>& interface_between) {
+namespace {
+
+/// Bearing as a block of the model.
+struct SolidBearing {
+  std::vector<int> faces;     ///< faces of the complex on which it lies
+  std::map<int, int> column;  ///< column of gridpoints over each vertex of these faces
+  int first = 0;              ///< first gridpoint of the block: that of the first column at the specimen
+  int columns = 0, rows = 0;
+  int interface = 0;
+
+  int inner(int vertex) const { return first + column.at(vertex); }
+};
+
+/// Adds three tetrahedra of the prism over a triangle between two rows. Its side faces are cut by the
+/// diagonals from the lower column at the inner row to the higher one at the outer row, so that neighbours
+/// cut them alike.
+void add_prism(const std::array<int, 3>& columns, int inner, int outer, const std::vector<Vec<3>>& gridpoints,
+               std::vector<std::array<int, 4>>& zones) {
+  auto [a, b, c] = columns;
+  if (a > b) std::swap(a, b);
+  if (b > c) std::swap(b, c);
+  if (a > b) std::swap(a, b);
+  for (std::array<int, 4> zone : {std::array{inner + a, inner + b, inner + c, outer + c},
+                                  std::array{inner + a, inner + b, outer + b, outer + c},
+                                  std::array{inner + a, outer + a, outer + b, outer + c}}) {
+    const Vec<3>& x = gridpoints[zone[0]];
+    if (dot(cross(gridpoints[zone[1]] - x, gridpoints[zone[2]] - x), gridpoints[zone[3]] - x) < 0.0)
+      std::swap(zone[1], zone[2]);
+    zones.push_back(zone);
+  }
+}
+
+/// Adds a bearing over a side of the specimen.
+SolidBearing add_bearing(ModelOf<3>& model, const solid::Specimen& specimen, const Bearing& bearing, int side,
+                         int material) {
+  const auto& complex = specimen.complex;
+  SolidBearing block;
+  Vec<3> outward{};
+  std::vector<Vec<3>> inner;
+  double area = 0.0;
+  for (int f = 0; f < static_cast<int>(complex.faces.size()); ++f) {
+    const solid::Face& face = complex.faces[f];
+    if (face.side != side) continue;
+    block.faces.push_back(f);
+    const Vec<3> vector = solid::area_vector(complex, face);
+    outward += vector;
+    area += norm(vector);
+    for (const int v : face.corners)
+      if (block.column.try_emplace(v, static_cast<int>(inner.size())).second)
+        inner.push_back(complex.vertices[v]);
+  }
+  outward *= 1.0 / norm(outward);
+  block.columns = static_cast<int>(inner.size());
+  const auto heights = bearing_rows(bearing.thickness, std::sqrt(area / static_cast<double>(block.columns)));
+  block.rows = static_cast<int>(heights.size()) - 1;
+  // a flat outer face, whatever the seat
+  double highest = 0.0;
+  for (const Vec<3>& p : inner) highest = std::max(highest, dot(p - inner.front(), outward));
+  std::vector<Vec<3>> gridpoints;
+  for (const double height : heights)
+    for (const Vec<3>& p : inner) {
+      const double way = highest - dot(p - inner.front(), outward) + bearing.thickness;
+      gridpoints.push_back(p + outward * (height * way));
+    }
+  std::vector<std::array<int, 4>> zones;
+  for (int row = 0; row < block.rows; ++row)
+    for (const int f : block.faces) {
+      const auto& corners = complex.faces[f].corners;
+      const auto column = [&](std::size_t i) { return block.column.at(corners[i]); };
+      for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+        add_prism({column(0), column(i), column(i + 1)}, row * block.columns, (row + 1) * block.columns,
+                  gridpoints, zones);
+    }
+  block.first = model.gridpoint_count();
+  model.add_block(gridpoints, zones, material);
+  const int outer = block.first + block.rows * block.columns;
+  model.sets[bearing.name] = all_from(block.first, model.gridpoint_count());
+  model.sets[bearing.name + "_face"] = all_from(block.first, block.first + block.columns);
+  model.sets[bearing.name + "_support"] = all_from(outer, outer + block.columns);
+  Vec<3> middle{};
+  for (int g = outer; g < outer + block.columns; ++g) middle += model.position[g] * (1.0 / block.columns);
+  model.sets[bearing.name + "_pivot"] = {*std::ranges::min_element(
+      model.sets[bearing.name + "_support"], {}, [&](int g) { return norm(model.position[g] - middle); })};
+  return block;
+}
+
+/// Adds the quarters of the rim of a cylinder.
+void add_quarters(ModelOf<3>& model, const std::vector<int>& rim, const solid::Body& body) {
+  const Vec<3> middle = 0.5 * (body.low() + body.high());
+  for (const int g : rim) {
+    const double x = model.position[g][0] - middle[0], z = model.position[g][2] - middle[2];
+    const char* const quarter = std::abs(x) >= std::abs(z) ? (x < 0.0 ? "rim_left" : "rim_right")
+                                                           : (z < 0.0 ? "rim_front" : "rim_back");
+    model.sets[quarter].push_back(g);
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> add_cells(ModelOf<3>& model, const solid::Complex& complex,
+                                        const std::vector<int>& material,
+                                        const std::function<int(int, int)>& interface_between) {
   const int first_block = model.block_count();
-  std::vector<std::vector<int>> vertices;  // of each cell, in the order of its gridpoints
+  std::vector<std::vector<int>> vertices;
   for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
     auto zoned = solid::zone_cell(complex, cell);
     model.add_block(zoned.gridpoints, zoned.zones, material[cell]);
@@ -17,14 +129,81 @@ void add_cells(ModelOf<3>& model, const solid::Complex& complex, const std::vect
   const auto gridpoints = [&](int cell, const std::vector<int>& corners) {
     std::vector<int> its;
     for (const int corner : corners)
-      its.push_back(model.block_gridpoints[first_block + cell] +
-                    static_cast<int>(std::ranges::find(vertices[cell], corner) - vertices[cell].begin()));
+      its.push_back(model.block_gridpoints[first_block + cell] + place_in(vertices[cell], corner));
     return its;
   };
   for (const auto& [corners, inner, outer, side] : complex.faces)
     if (outer >= 0)
       model.join_faces(gridpoints(inner, corners), gridpoints(outer, corners),
                        interface_between(material[inner], material[outer]));
+  return vertices;
+}
+
+ModelOf<3> make_solid_model(const solid::Specimen& specimen,
+                            const std::vector<InterfaceParameters>& interfaces,
+                            const std::vector<Bearing>& bearings) {
+  const auto& complex = specimen.complex;
+  const auto& sides = specimen.body.sides();
+  const InterfaceTable table(specimen.phases, interfaces);
+  ModelOf<3> model;
+  model.material_names = specimen.phases;
+  model.interface_names = table.names();
+  add_bearing_names(model, bearings);
+  std::vector<SolidBearing> blocks(bearings.size());
+  const auto add_bearings = [&](bool below) {
+    for (std::size_t i = 0; i < bearings.size(); ++i) {
+      const Bearing& bearing = bearings[i];
+      const auto side = std::ranges::find(sides, bearing.side);
+      if (side == sides.end())
+        throw Error(
+            fmt::format("bearing \"{}\": \"{}\" is no side of the solid", bearing.name, bearing.side));
+      if ((bearing.side == "bottom") != below) continue;
+      blocks[i] = add_bearing(model, specimen, bearing, static_cast<int>(side - sides.begin()),
+                              place_in(model.material_names, bearing.material));
+      blocks[i].interface = place_in(model.interface_names, bearing.interface);
+    }
+  };
+  const auto add_contacts = [&](const std::string& body, int first) {
+    for (int contact = first; contact < model.contact_count(); ++contact)
+      for (const std::string& name : std::set{body, model.interface_names[model.joint(contact).interface]})
+        model.contact_sets[name].push_back(contact);
+  };
+
+  add_bearings(true);
+  const int first_block = model.block_count(), first_gridpoint = model.gridpoint_count();
+  const auto vertices =
+      add_cells(model, complex, specimen.phase, [&](int a, int b) { return table.between(a, b); });
+  model.sets["specimen"] = all_from(first_gridpoint, model.gridpoint_count());
+  for (int block = first_block; block < model.block_count(); ++block)
+    for (int g = model.block_gridpoints[block]; g < model.block_gridpoints[block + 1]; ++g)
+      model.sets[specimen.phases[model.block_material[block]]].push_back(g);
+  add_contacts("specimen", 0);
+  add_bearings(false);
+
+  for (const std::string& side : sides) model.sets[side];
+  for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+    const auto& [corners, inner, outer, side] = complex.faces[f];
+    if (side < 0) continue;
+    std::vector<int> its;
+    for (const int v : corners)
+      its.push_back(model.block_gridpoints[first_block + inner] + place_in(vertices[inner], v));
+    for (const std::string& name : {std::string("outline"), sides[side]})
+      model.sets[name].insert(model.sets[name].end(), its.begin(), its.end());
+    for (std::size_t i = 0; i < bearings.size(); ++i) {
+      if (!std::ranges::binary_search(blocks[i].faces, static_cast<int>(f))) continue;
+      std::vector<int> opposite;
+      for (const int v : corners) opposite.push_back(blocks[i].inner(v));
+      const int first_contact = model.contact_count();
+      model.join_faces(its, opposite, blocks[i].interface);
+      add_contacts(bearings[i].name, first_contact);
+    }
+  }
+  // a corner of a block may belong to several faces
+  for (const std::string& name : sides) sort_unique(model.sets[name]);
+  sort_unique(model.sets["outline"]);
+  if (const auto rim = model.sets.find("rim"); rim != model.sets.end())
+    add_quarters(model, rim->second, specimen.body);
+  return model;
 }
 
 }  // namespace pyroclast

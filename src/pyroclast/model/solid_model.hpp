@@ -3,15 +3,26 @@
 #include <functional>
 #include <vector>
 
-#include "pyroclast/model/model.hpp"
-#include "pyroclast/solid/complex.hpp"
+#include "pyroclast/model/concrete_model.hpp"
+#include "pyroclast/solid/specimen.hpp"
 
 namespace pyroclast {
 
 /// Adds the cells of a complex to a model as blocks, cell by cell, and joins the faces of neighbours.
 /// \param material           material of each cell, index into Model::material_names
 /// \param interface_between  function from two materials to an index into Model::interface_names
-void add_cells(ModelOf<3>& model, const solid::Complex& complex, const std::vector<int>& material,
-               const std::function<int(int, int)>& interface_between);
+/// \return for each cell, the vertices of the complex at which its gridpoints stand, in their order
+std::vector<std::vector<int>> add_cells(ModelOf<3>& model, const solid::Complex& complex,
+                                        const std::vector<int>& material,
+                                        const std::function<int(int, int)>& interface_between);
+
+/// Makes a solid specimen and its bearings into a model, as make_concrete_model does in the plane, with the
+/// same sets. A bearing is a prism over the polygons of the blocks on its side; its sets are in the order of
+/// their gridpoints. A cylinder has four quarters of its rim as sets too: `rim_left`, `rim_right`, towards
+/// -x and x, `rim_front` and `rim_back`, towards -z and z. Throws Error, naming the bearing, when it has no
+/// side to lie on or would be flat.
+ModelOf<3> make_solid_model(const solid::Specimen& specimen,
+                            const std::vector<InterfaceParameters>& interfaces = {},
+                            const std::vector<Bearing>& bearings = {});
 
 }  // namespace pyroclast

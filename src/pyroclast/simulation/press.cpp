@@ -17,9 +17,6 @@ namespace {
 /// Least share of the load that rests on the lower platen with which the platen carries the specimen.
 constexpr double kCarried = 0.8;
 
-/// Sides of the specimen across the axis, lower and upper, in the order of the components.
-constexpr std::array<std::array<std::string_view, 2>, 2> kSides{{{"left", "right"}, {"front", "back"}}};
-
 std::vector<int> components_across(int axis, int dimension) {
   if (axis < 0 || axis >= dimension)
     throw Error(fmt::format("the axis of the press is {}, but it must be from 0 to {}", axis, dimension - 1));
@@ -36,15 +33,17 @@ Press::Press(Motion& motion, Specimen between)
       between_(std::move(between)),
       across_(components_across(between_.axis, motion.model().dimension())) {
   const auto is_no_length = [](double length) { return !(length > 0.0); };
-  if (between_.widths.size() != across_.size() || std::ranges::any_of(between_.widths, is_no_length) ||
-      is_no_length(between_.area) || is_no_length(between_.height))
+  if (between_.widths.size() != across_.size() || between_.sides.size() < across_.size() ||
+      std::ranges::any_of(between_.widths, is_no_length) || is_no_length(between_.area) ||
+      is_no_length(between_.height))
     throw Error(
         fmt::format("a specimen between platens needs a height, an area and {} widths", across_.size()));
   for (const char* name : {"bottom_platen_support", "top_platen_support", "bottom_platen_face",
                            "top_platen_face", "bottom", "top", "specimen", "bottom_platen"})
     summed_.emplace(name, gridpoint_set(motion_.model(), set(name)));
   for (std::size_t d = 0; d < across_.size(); ++d)
-    for (const auto side : kSides[d]) summed_.emplace(side, gridpoint_set(motion_.model(), set(side)));
+    for (const auto& side : between_.sides[d])
+      summed_.emplace(side, gridpoint_set(motion_.model(), set(side)));
   for (int g : set("bottom_platen_support"))
     for (int i = 0; i < motion_.model().dimension(); ++i) motion_.constraints().prescribe_velocity(g, i, 0.0);
   for (int g : set("top_platen_support"))
@@ -161,7 +160,7 @@ double Press::shortening(std::string_view top, std::string_view bottom) const {
 }
 
 double Press::widening(std::size_t direction) const {
-  const auto& [lower, upper] = kSides[direction];
+  const auto& [lower, upper] = between_.sides[direction];
   return motion_.totals().mean_displacement(summed(upper))[across_[direction]] -
          motion_.totals().mean_displacement(summed(lower))[across_[direction]];
 }
@@ -209,8 +208,8 @@ void Press::move_evenly(const EvenMotion& motion, double speed, bool platen_foll
   const double bottom = model.place(set("bottom").front())[between_.axis];
   std::array<double, 2> middle{};
   for (std::size_t d = 0; d < across_.size(); ++d)
-    middle[d] = 0.5 * (mean_position(model, summed(kSides[d][0]), across_[d]) +
-                       mean_position(model, summed(kSides[d][1]), across_[d]));
+    middle[d] = 0.5 * (mean_position(model, summed(between_.sides[d][0]), across_[d]) +
+                       mean_position(model, summed(between_.sides[d][1]), across_[d]));
   const double rate = speed / motion_.time_step();
   for (int g : set("specimen")) {
     const Vec<3> x = model.place(g);
@@ -244,7 +243,7 @@ void Press::visit_state(StateVisitor& visitor) {
   visitor.visit("shortening_at_zero", shortening_at_zero);
   visitor.visit("specimen_shortening_at_zero", specimen_shortening_at_zero);
   for (std::size_t d = 0; d < across_.size(); ++d)
-    visitor.visit(fmt::format("widening_at_zero{}", kSides[d][1]), widening_at_zero[d]);
+    visitor.visit(fmt::format("widening_at_zero{}", between_.sides[d][1]), widening_at_zero[d]);
   visitor.visit("stage_first_strain", stage_first_strain);
 }
 

@@ -16,8 +16,8 @@ namespace pyroclast {
 ///
 /// The press holds, drives and watches named sets of the model's gridpoints (Model::sets):
 /// `bottom_platen_support` and `top_platen_support`, the outer faces of the platens; `bottom_platen_face` and
-/// `top_platen_face`, their inner faces; `bottom`, `top`, `left`, `right` and in 3D `front`, `back`, the
-/// sides of the specimen; `specimen`, `bottom_platen` and `top_platen`, all gridpoints of these bodies.
+/// `top_platen_face`, their inner faces; `bottom` and `top`, the ends of the specimen, and its sides across
+/// the axis (Specimen::sides); `specimen`, `bottom_platen` and `top_platen`, all gridpoints of these bodies.
 ///
 /// Stress and strain are positive in compression, lateral strain in expansion.
 class Press {
@@ -36,6 +36,8 @@ class Press {
     double height = 0.0;         ///< height of the specimen along the axis, m
     double area = 0.0;           ///< area across the axis, m²
     std::vector<double> widths;  ///< widths across the axis, in the order of the other components, m
+    /// Sets of the lower and the upper side across each of these components, between which the widths lie.
+    std::vector<std::array<std::string, 2>> sides{{"left", "right"}, {"front", "back"}};
   };
 
   /// Holds the lower platen, and the upper one across the axis. Throws Error for an axis or widths that the

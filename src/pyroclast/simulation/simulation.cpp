@@ -10,6 +10,8 @@
 #include <sys/resource.h>
 
 #include "pyroclast/base/error.hpp"
+#include "pyroclast/model/solid_model.hpp"
+#include "pyroclast/simulation/sums.hpp"
 
 namespace pyroclast {
 
@@ -82,6 +84,11 @@ SpecimenNumbers required(SpecimenNumbers numbers, const std::vector<SolidMateria
   return numbers;
 }
 
+bool has_platens(const std::optional<MotionParameters>& motion) {
+  const auto is_upper = [](const Bearing& bearing) { return bearing.name == kUpperPlaten; };
+  return motion && std::ranges::any_of(motion->bearings, is_upper);
+}
+
 SpecimenBody make_body(const specimen::Specimen& specimen, double thickness,
                        const std::vector<SetParameters>& sets,
                        const std::optional<MotionParameters>& motion) {
@@ -91,8 +98,7 @@ SpecimenBody make_body(const specimen::Specimen& specimen, double thickness,
   if (motion) model->cut_into_chunks(motion->chunk_blocks);
   add_sets(*model, sets);
   SpecimenBody body{std::move(model), numbers_of(specimen), specimen.region.notches(), {}};
-  const auto is_upper = [](const Bearing& bearing) { return bearing.name == kUpperPlaten; };
-  if (motion && std::ranges::any_of(motion->bearings, is_upper)) {
+  if (has_platens(motion)) {
     const specimen::Box& box = specimen.region.box();
     body.between_platens = {kVertical, box.height(), thickness * box.width(), {box.width()}};
   }
@@ -100,6 +106,37 @@ SpecimenBody make_body(const specimen::Specimen& specimen, double thickness,
 }
 
 }  // namespace
+
+SpecimenBody make_body(const solid::Specimen& specimen, const std::vector<SetParameters>& sets,
+                       const std::optional<MotionParameters>& motion) {
+  auto model = std::make_unique<ModelOf<3>>(
+      motion ? make_solid_model(specimen, motion->contacts.interfaces, motion->bearings)
+             : make_solid_model(specimen));
+  if (motion) model->cut_into_chunks(motion->chunk_blocks);
+  add_sets(*model, sets);
+  SpecimenBody body{nullptr, numbers_of(specimen), {}, {}};
+  if (has_platens(motion)) {
+    const solid::Body& of = specimen.body;
+    Press::Specimen between;
+    between.axis = kVertical;
+    between.height = of.high()[kVertical] - of.low()[kVertical];
+    const auto top = std::ranges::find(of.sides(), "top") - of.sides().begin();
+    for (const solid::Face& face : specimen.complex.faces)
+      if (face.side == top) between.area += norm(solid::area_vector(specimen.complex, face));
+    if (!model->sets.contains("left")) between.sides = {{"rim_left", "rim_right"}, {"rim_front", "rim_back"}};
+    const auto mean = [&](const std::string& set, int component) {
+      return mean_position(*model, gridpoint_set(*model, model->set(set)), component);
+    };
+    for (const int d : {0, 1}) {
+      const int across = d == 0 ? 0 : 2;
+      const auto& [lower, upper] = between.sides[d];
+      between.widths.push_back(mean(upper, across) - mean(lower, across));
+    }
+    body.between_platens = std::move(between);
+  }
+  body.model = std::move(model);
+  return body;
+}
 
 bool follows_composition(const std::vector<SolidMaterial>& solids, const MotionParameters& motion) {
   return motion.strain_of_concrete || any_creeps(solids);
@@ -120,6 +157,11 @@ ConcreteMaterials make_materials(const std::vector<SolidMaterial>& solids, const
 SpecimenNumbers numbers_of(const specimen::Specimen& specimen) {
   return {specimen.fraction, specimen.metrics.mean_size, specimen::block_size(specimen),
           std::sqrt(specimen.region.area())};
+}
+
+SpecimenNumbers numbers_of(const solid::Specimen& specimen) {
+  const double size = specimen.metrics.mean_size;
+  return {specimen.fraction, size, size, std::cbrt(specimen.body.volume())};
 }
 
 Simulation::Simulation(specimen::Specimen specimen, double thickness,

@@ -20,6 +20,7 @@
 #include "pyroclast/simulation/records.hpp"
 #include "pyroclast/simulation/stress_free.hpp"
 #include "pyroclast/simulation/supports.hpp"
+#include "pyroclast/solid/specimen.hpp"
 #include "pyroclast/specimen/specimen.hpp"
 #include "pyroclast/thermal/temperature_field.hpp"
 
@@ -47,6 +48,7 @@ struct SpecimenNumbers {
 };
 
 SpecimenNumbers numbers_of(const specimen::Specimen& specimen);
+SpecimenNumbers numbers_of(const solid::Specimen& specimen);
 
 /// Body of a simulation, in the plane or in space: the model of a specimen and what is known of it. Its
 /// gridpoints have a set "specimen"; between platens they have the sets of Press.
@@ -56,6 +58,11 @@ struct SpecimenBody {
   std::vector<specimen::Notch> notches;  ///< a notch without width parts the contacts of its name
   std::optional<Press::Specimen> between_platens;
 };
+
+/// Makes a solid specimen into a body with the bearings and interfaces of `motion`, and with sets beside
+/// those that every model has.
+SpecimenBody make_body(const solid::Specimen& specimen, const std::vector<SetParameters>& sets,
+                       const std::optional<MotionParameters>& motion);
 
 /// Tells whether phases follow the composition of their specimen, see follow_composition.
 bool follows_composition(const std::vector<SolidMaterial>& solids, const MotionParameters& motion);

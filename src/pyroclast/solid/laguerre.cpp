@@ -141,7 +141,7 @@ class Joiner {
       }
       for (auto& loop : cell.loops) {
         for (int& v : loop) v = numbers[v];
-        loop.erase(std::ranges::unique(loop).begin(), loop.end());
+        loop.erase(std::unique(loop.begin(), loop.end()), loop.end());  // Clang 14 cannot do ranges::unique
         while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
       }
     }

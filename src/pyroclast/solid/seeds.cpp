@@ -70,24 +70,47 @@ std::uint64_t place_on_curve(const Vec<3>& point, const Body& body) {
   return place;
 }
 
-}  // namespace
-
-Seeds spaced_seeds(const Body& body, int count, double spread, Random& random) {
-  const double spacing = std::cbrt(body.volume() / count);
-  SeedGrid grid(body, kLeastDistance * spacing);
-  Seeds seeds;
-  auto& places = seeds.position;
-  while (static_cast<int>(places.size()) < count) {
+/// Adds seeds at random places with room until there are so many.
+void fill(SeedGrid& grid, const Body& body, std::size_t count, Random& random, std::vector<Vec<3>>& places) {
+  while (places.size() < count) {
     Vec<3> point;
     for (int d = 0; d < 3; ++d) point[d] = random.uniform(body.low()[d], body.high()[d]);
     if (body.distance(point) >= 0.0 || !grid.has_room_at(point, places)) continue;
     grid.add(point, static_cast<int>(places.size()));
     places.push_back(point);
   }
+}
+
+double least_distance(const Body& body, std::size_t count) {
+  return kLeastDistance * std::cbrt(body.volume() / static_cast<double>(count));
+}
+
+}  // namespace
+
+Seeds spaced_seeds(const Body& body, int count, double spread, Random& random) {
+  const double spacing = std::cbrt(body.volume() / count);
+  SeedGrid grid(body, least_distance(body, static_cast<std::size_t>(count)));
+  Seeds seeds;
+  auto& places = seeds.position;
+  fill(grid, body, static_cast<std::size_t>(count), random, places);
   std::ranges::sort(places, {}, [&](const Vec<3>& p) { return place_on_curve(p, body); });
   for (int i = 0; i < count; ++i)
     seeds.radius.push_back(0.5 * spacing * random.uniform(1.0 - spread, 1.0 + spread));
   return seeds;
+}
+
+void redraw(Seeds& seeds, const std::vector<int>& which, const Body& body, Random& random) {
+  const std::size_t count = seeds.position.size();
+  SeedGrid grid(body, least_distance(body, count));
+  std::vector<Vec<3>> places;
+  for (std::size_t i = 0; i < count; ++i)
+    if (!std::ranges::binary_search(which, static_cast<int>(i))) {
+      grid.add(seeds.position[i], static_cast<int>(places.size()));
+      places.push_back(seeds.position[i]);
+    }
+  fill(grid, body, count, random, places);
+  std::size_t next = count - which.size();
+  for (const int i : which) seeds.position[i] = places[next++];
 }
 
 }  // namespace pyroclast::solid

@@ -21,4 +21,7 @@ struct Seeds {
 /// \param spread  spread of the radii, which are uniform in [1 - spread, 1 + spread] x mean spacing / 2
 Seeds spaced_seeds(const Body& body, int count, double spread, Random& random);
 
+/// Draws some of the seeds anew, which keep their radii and their distance from all others.
+void redraw(Seeds& seeds, const std::vector<int>& which, const Body& body, Random& random);
+
 }  // namespace pyroclast::solid

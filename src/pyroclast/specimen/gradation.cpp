@@ -10,14 +10,19 @@
 namespace pyroclast::specimen {
 namespace {
 
-double diameter_of(double area) {
-  return std::sqrt(4.0 * area / std::numbers::pi);
+template <int Dim>
+double diameter_of(double extent) {
+  if constexpr (Dim == 2)
+    return std::sqrt(4.0 * extent / std::numbers::pi);
+  else
+    return std::cbrt(6.0 * extent / std::numbers::pi);
 }
 
-/// Draws a diameter in [low, high). The area passing grows as d^nf, so the number of circles per size falls
-/// as d^(nf - 3); this inverts its cumulative form.
+/// Draws a diameter in [low, high). The extent passing grows as d^nf, so the number of stones per size falls
+/// as d^(nf - 1 - Dim); this inverts its cumulative form.
+template <int Dim>
 double draw_diameter(double low, double high, double fuller_exponent, Random& random) {
-  const double power = fuller_exponent - 2.0;
+  const double power = fuller_exponent - Dim;
   const double a = std::pow(low, power);
   const double b = std::pow(high, power);
   return std::clamp(std::pow(a + (b - a) * random.uniform(), 1.0 / power), low, high);
@@ -41,9 +46,10 @@ double passing(const AggregateParameters& parameters, double size) {
   return shares[next - 1] + part * (shares[next] - shares[next - 1]);
 }
 
-std::vector<double> draw_diameters(const AggregateParameters& parameters, double specimen_area,
+template <int Dim>
+std::vector<double> draw_diameters(const AggregateParameters& parameters, double specimen_extent,
                                    Random& random) {
-  const double total = parameters.fraction * specimen_area;
+  const double total = parameters.fraction * specimen_extent;
   const std::vector<double>& sieves = parameters.sieves;
   std::vector<double> diameters;
   double remaining = 0.0;
@@ -52,31 +58,40 @@ std::vector<double> draw_diameters(const AggregateParameters& parameters, double
     const double share = passing(parameters, sieves[i]) - passing(parameters, low);
     if (share == 0.0) continue;  // a gap of the grading
     remaining += total * share;
-    while (remaining >= circle_area(low)) {
-      const double high = std::min(sieves[i], diameter_of(remaining));
-      diameters.push_back(draw_diameter(low, high, parameters.fuller_exponent, random));
-      remaining -= circle_area(diameters.back());
+    while (remaining >= extent_of_round<Dim>(low)) {
+      const double high = std::min(sieves[i], diameter_of<Dim>(remaining));
+      diameters.push_back(draw_diameter<Dim>(low, high, parameters.fuller_exponent, random));
+      remaining -= extent_of_round<Dim>(diameters.back());
     }
   }
-  if (remaining > 0.5 * circle_area(parameters.d_min)) diameters.push_back(parameters.d_min);
+  if (remaining > 0.5 * extent_of_round<Dim>(parameters.d_min)) diameters.push_back(parameters.d_min);
   std::sort(diameters.begin(), diameters.end(), std::greater<>());
   return diameters;
 }
 
+template std::vector<double> draw_diameters<2>(const AggregateParameters&, double, Random&);
+template std::vector<double> draw_diameters<3>(const AggregateParameters&, double, Random&);
+
+template <int Dim>
 std::vector<GradationPoint> gradation(const AggregateParameters& parameters,
-                                      std::span<const Aggregate> aggregates, std::span<const double> sizes) {
+                                      const std::vector<RoundStone<Dim>>& aggregates,
+                                      std::span<const double> sizes) {
   if (aggregates.empty()) throw Error("No grading curve: the specimen has no aggregates.");
   double total = 0.0;
-  for (const Aggregate& a : aggregates) total += circle_area(a.diameter);
+  for (const auto& a : aggregates) total += extent_of_round<Dim>(a.diameter);
   std::vector<GradationPoint> points;
   for (const double size : sizes) {
     double realised = 0.0;
-    for (const Aggregate& a : aggregates) {
-      if (a.diameter <= size) realised += circle_area(a.diameter);
-    }
+    for (const auto& a : aggregates)
+      if (a.diameter <= size) realised += extent_of_round<Dim>(a.diameter);
     points.push_back({size, 100.0 * passing(parameters, size), 100.0 * realised / total});
   }
   return points;
 }
+
+template std::vector<GradationPoint> gradation(const AggregateParameters&, const std::vector<RoundStone<2>>&,
+                                               std::span<const double>);
+template std::vector<GradationPoint> gradation(const AggregateParameters&, const std::vector<RoundStone<3>>&,
+                                               std::span<const double>);
 
 }  // namespace pyroclast::specimen

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -8,13 +9,25 @@
 
 namespace pyroclast::specimen {
 
-/// Takes and places: puts a circle of each diameter (m, largest first) at a random centre in the region.
-/// There the circle keeps `minimum_gap` to the others, to circles that stand already, and to the outline as
-/// it was before notches were cut: a saw goes through aggregate. Throws Error, and says how much is missing,
-/// when a circle finds no place within `attempts` centres.
-std::vector<Aggregate> place(std::span<const double> diameters, const Region& region,
-                             const AggregateParameters& parameters, std::span<const Aggregate> standing,
-                             Random& random);
+/// Room in which stones are placed: a box, or the part of it that a body takes.
+template <int Dim>
+struct Room {
+  Vec<Dim> low, high;  ///< corners of the box, m
+  double extent;       ///< area, m², or volume, m³, of the body
+  /// Distance of a point from the surface of the body, m, negative within; empty where the body is the box.
+  std::function<double(const Vec<Dim>&)> distance;
+};
+
+/// Returns the room in a region as it was before notches were cut: a saw goes through aggregate.
+Room<2> room_in(const Region& region);
+
+/// Takes and places: puts a stone of each diameter (m, largest first) at a random centre in the room. There
+/// the stone keeps `minimum_gap` to the others, to stones that stand already, and to the surface. Throws
+/// Error, and says how much is missing, when a stone finds no place within `attempts` centres.
+template <int Dim>
+std::vector<RoundStone<Dim>> place(std::span<const double> diameters, const Room<Dim>& room,
+                                   const AggregateParameters& parameters,
+                                   const std::vector<RoundStone<Dim>>& standing, Random& random);
 
 /// Puts each fibre at a random place, in a random direction, where it keeps `minimum_gap` to the aggregates
 /// and to the outline; fibres may cross each other. Throws Error when a fibre finds no place.

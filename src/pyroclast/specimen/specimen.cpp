@@ -13,12 +13,12 @@
 #include "pyroclast/base/error.hpp"
 #include "pyroclast/base/random.hpp"
 #include "pyroclast/specimen/blocks.hpp"
-#include "pyroclast/specimen/circle_grid.hpp"
 #include "pyroclast/specimen/from_cells.hpp"
 #include "pyroclast/specimen/gradation.hpp"
 #include "pyroclast/specimen/metrics.hpp"
 #include "pyroclast/specimen/placement.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/stone_grid.hpp"
 #include "pyroclast/specimen/superposition.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
@@ -94,7 +94,7 @@ int index_of(const std::vector<std::string>& phases, const std::string& name) {
 
 /// Adds stones that are known. Throws Error where one does not lie in the specimen, or lies on another.
 void add_stones(const SpecimenParameters& p, const AggregateParameters& asked, int kind, Specimen& specimen) {
-  CircleGrid grid(p.region.box(), 2.0 * asked.d_min);
+  StoneGrid<2> grid(p.region.box().low, p.region.box().high, 2.0 * asked.d_min);
   for (const Aggregate& circle : specimen.aggregates) grid.insert(circle);
   std::vector<Aggregate> circles;
   for (const Stone& stone : asked.stones) {
@@ -122,8 +122,8 @@ void add_aggregates(const SpecimenParameters& p, const AggregateParameters& aske
   specimen.fraction_asked += asked.fraction;
   if (!asked.stones.empty()) return add_stones(p, asked, kind, specimen);
   if (asked.fraction == 0.0) return;
-  const auto diameters = draw_diameters(asked, p.region.area(), random);
-  for (Aggregate& circle : place(diameters, p.region, asked, specimen.aggregates, random)) {
+  const auto diameters = draw_diameters<2>(asked, p.region.area(), random);
+  for (Aggregate& circle : place(diameters, room_in(p.region), asked, specimen.aggregates, random)) {
     circle.phase = index_of(specimen.phases, asked.phase);
     circle.kind = kind;
     specimen.aggregates.push_back(circle);

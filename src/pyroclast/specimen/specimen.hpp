@@ -16,13 +16,15 @@ namespace pyroclast::specimen {
 /// Largest seed of the random numbers of a specimen; decks and the command line take 0 and up.
 inline constexpr std::int64_t kLargestSeed = 9'000'000'000'000'000;
 
-/// Circular aggregate as placed, before superposition on the blocks.
-struct Aggregate {
-  Vec<2> centre;    ///< m
+/// Round aggregate as placed, before superposition on the blocks: a circle, or a ball in a solid.
+template <int Dim>
+struct RoundStone {
+  Vec<Dim> centre;  ///< m
   double diameter;  ///< m
-  int phase = 0;    ///< index into Specimen::phases
-  int kind = 0;     ///< 0 for the first aggregates, then counting the inclusions that are circles, in turn
+  int phase = 0;    ///< index into the specimen's phases
+  int kind = 0;     ///< 0 for the first aggregates, then counting the inclusions that are round, in turn
 };
+using Aggregate = RoundStone<2>;
 
 /// Straight fibre as placed: the blocks that it crosses become its phase.
 struct Fibre {
@@ -40,9 +42,10 @@ struct Stone {
 
 /// Coarse aggregate asked for: Fuller's curve P(d) = (d/d_max)^nf between d_min and d_max (paper, Eq. 16), a
 /// measured grading curve, or the stones themselves. With a fraction of 0 the other members are not read.
+/// Fractions and curves are by the area of circles; in a solid by the volume of balls.
 struct AggregateParameters {
   std::string phase = "aggregate";
-  double fraction = 0.0;         ///< area fraction of coarse aggregate asked for, in [0, 1)
+  double fraction = 0.0;         ///< fraction of coarse aggregate asked for, in [0, 1)
   double d_min = 0.0;            ///< smallest diameter, m
   double d_max = 0.0;            ///< largest diameter, m
   double fuller_exponent = 0.0;  ///< nf

@@ -6,8 +6,8 @@
 #include <map>
 #include <numbers>
 
-#include "pyroclast/specimen/circle_grid.hpp"
 #include "pyroclast/specimen/polygon.hpp"
+#include "pyroclast/specimen/stone_grid.hpp"
 #include "pyroclast/specimen/topology.hpp"
 
 namespace pyroclast::specimen {
@@ -19,12 +19,13 @@ auto for_each_cell(const Tessellation& tessellation, const Box& box, std::span<c
                    F&& f) {
   double bin = std::max(box.width(), box.height());
   for (const Aggregate& a : aggregates) bin = std::min(bin, 2.0 * a.diameter);
-  CircleGrid grid(box, bin);
+  StoneGrid<2> grid(box.low, box.high, bin);
   for (const Aggregate& a : aggregates) grid.insert(a);
 
-  std::vector<decltype(f(Corners{}, grid.circles()))> result;
+  std::vector<decltype(f(Corners{}, grid.stones()))> result;
   std::vector<Vec<2>> polygon;
   std::vector<Aggregate> nearby;
+  std::vector<int> numbers;
   for (std::size_t c = 0; c < tessellation.cells.size(); ++c) {
     corners(tessellation, c, polygon);
     Vec<2> lower = polygon.front();
@@ -35,7 +36,9 @@ auto for_each_cell(const Tessellation& tessellation, const Box& box, std::span<c
         upper[i] = std::max(upper[i], p[i]);
       }
     }
-    grid.collect(lower, upper, nearby);
+    grid.collect(lower, upper, numbers);
+    nearby.clear();
+    for (const int number : numbers) nearby.push_back(grid.stones()[number]);
     result.push_back(f(Corners(polygon), nearby));
   }
   return result;

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pyroclast/model/concrete_model.hpp"
+
+/// Parts that the making of models in the plane and in space share.
+namespace pyroclast {
+
+// The next two return the position in a list, which must hold the item.
+int place_in(const std::vector<std::string>& names, const std::string& name);
+int place_in(const std::vector<int>& list, int item);
+
+/// Returns the numbers from `first` up to `last`, excluded.
+std::vector<int> all_from(int first, int last);
+
+/// Returns the heights between the rows of a bearing's zones over its thickness, from 0 to 1. Contact forces
+/// vary along the face much faster than into the depth, and even out away from the seat: zones at the seat
+/// are about twice as high as wide, and each row is twice as high as the one before.
+/// \param thickness  of the bearing, m
+/// \param width      mean width of the zones at the seat, m
+std::vector<double> bearing_rows(double thickness, double width);
+
+/// Adds the materials and interfaces of bearings, each once, behind those of the specimen.
+void add_bearing_names(Model& model, const std::vector<Bearing>& bearings);
+
+}  // namespace pyroclast

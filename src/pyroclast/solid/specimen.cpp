@@ -1,0 +1,190 @@
+#include "pyroclast/solid/specimen.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pyroclast/base/error.hpp"
+#include "pyroclast/base/random.hpp"
+#include "pyroclast/solid/laguerre.hpp"
+#include "pyroclast/specimen/gradation.hpp"
+#include "pyroclast/specimen/placement.hpp"
+
+namespace pyroclast::solid {
+
+namespace {
+
+/// Largest difference of the placed fraction from that asked for.
+constexpr double kFractionError = 0.01;
+/// Diameter, in block sizes, below which a stone is too small for its shape to mean anything.
+constexpr double kSmallestStone = 2.0;
+/// Largest number of rounds in which seeds are drawn anew. Seeds that keep their distance need one.
+constexpr int kMostRounds = 20;
+
+int index_of(const std::vector<std::string>& phases, const std::string& name) {
+  return static_cast<int>(std::ranges::find(phases, name) - phases.begin());
+}
+
+/// Returns the kinds of aggregate: the first, and inclusions that are round. Throws Error for others.
+std::vector<const specimen::AggregateParameters*> kinds_of(const specimen::SpecimenParameters& p) {
+  std::vector<const specimen::AggregateParameters*> kinds{&p.aggregates};
+  for (const auto& inclusions : p.inclusions) {
+    const auto* const round = std::get_if<specimen::AggregateParameters>(&inclusions);
+    if (round == nullptr) throw Error("a solid cannot have fibres yet");
+    kinds.push_back(round);
+  }
+  for (const auto* const kind : kinds)
+    if (!kind->stones.empty()) throw Error("a solid cannot have stones from a list yet");
+  return kinds;
+}
+
+void add_balls(const std::vector<const specimen::AggregateParameters*>& kinds, Random& random,
+               Specimen& specimen) {
+  const Body& body = specimen.body;
+  const specimen::Room<3> room{body.low(), body.high(), body.volume(),
+                               [&body](const Vec<3>& point) { return body.distance(point); }};
+  for (int kind = 0; kind < static_cast<int>(kinds.size()); ++kind) {
+    const auto& asked = *kinds[kind];
+    specimen.fraction_asked += asked.fraction;
+    if (asked.fraction == 0.0) continue;
+    const auto diameters = specimen::draw_diameters<3>(asked, body.volume(), random);
+    for (Ball& ball : specimen::place(diameters, room, asked, specimen.balls, random)) {
+      ball.phase = index_of(specimen.phases, asked.phase);
+      ball.kind = kind;
+      specimen.balls.push_back(ball);
+    }
+  }
+  for (const Ball& ball : specimen.balls)
+    specimen.fraction_placed += specimen::extent_of_round<3>(ball.diameter) / body.volume();
+  if (std::abs(specimen.fraction_placed - specimen.fraction_asked) > kFractionError)
+    throw Error(fmt::format(
+        "The aggregates take up a fraction of {:.4f}, {:.4f} was asked for and {} is allowed between them: "
+        "the smallest aggregate, {:.4g} m, is too large for the specimen.",
+        specimen.fraction_placed, specimen.fraction_asked, kFractionError, kinds.front()->d_min));
+}
+
+/// Tessellates the body. Seeds whose cells fail are drawn anew.
+Complex tessellate(const specimen::BlockParameters& p, const Body& body, Random& random, Team* team,
+                   int& seeds_redrawn) {
+  Seeds seeds = spaced_seeds(body, p.count, p.radius_spread, random);
+  for (int round = 0; round < kMostRounds; ++round) {
+    LaguerreResult result = laguerre_complex(seeds, body, team);
+    if (result.broken.empty()) {
+      require_valid(result.complex, body, fmt::format("Tessellation of {} blocks", p.count));
+      return std::move(result.complex);
+    }
+    seeds_redrawn += static_cast<int>(result.broken.size());
+    redraw(seeds, result.broken, body, random);
+  }
+  throw Error(
+      fmt::format("{}no tessellation of {} blocks came about in {} rounds: take blocks that are more "
+                  "alike (radius_spread), or another seed",
+                  p.place.empty() ? "" : p.place + ": ", p.count, kMostRounds));
+}
+
+BlockMetrics measure(const Complex& complex, const Body& body) {
+  BlockMetrics metrics;
+  metrics.shortest_edge = std::numeric_limits<double>::infinity();
+  std::size_t zones = 0;
+  for (const Face& face : complex.faces) {
+    const auto corners = static_cast<int>(face.corners.size());
+    zones += static_cast<std::size_t>(corners - 2) * (face.outer >= 0 ? 2 : 1);
+    if (face.outer >= 0) metrics.most_corners = std::max(metrics.most_corners, corners);
+    for (int i = 0; i < corners; ++i)
+      metrics.shortest_edge = std::min(
+          metrics.shortest_edge,
+          norm(complex.vertices[face.corners[(i + 1) % corners]] - complex.vertices[face.corners[i]]));
+  }
+  metrics.zones_per_block = static_cast<double>(zones) / static_cast<double>(complex.cells.size());
+  metrics.mean_size = block_size(body, static_cast<int>(complex.cells.size()));
+  return metrics;
+}
+
+/// Returns the size classes of all kinds: the intervals between their sieves.
+std::vector<SizeClass> classes_of(const std::vector<const specimen::AggregateParameters*>& kinds,
+                                  const Specimen& specimen, const std::vector<int>& stone,
+                                  const std::vector<double>& volumes) {
+  std::vector<double> superposed(specimen.balls.size());
+  for (std::size_t cell = 0; cell < stone.size(); ++cell)
+    if (stone[cell] >= 0) superposed[stone[cell]] += volumes[cell] / specimen.body.volume();
+  std::vector<SizeClass> classes;
+  for (int kind = 0; kind < static_cast<int>(kinds.size()); ++kind) {
+    const auto& asked = *kinds[kind];
+    if (asked.fraction == 0.0) continue;
+    for (std::size_t i = 1; i < asked.sieves.size(); ++i) {
+      const double from = asked.sieves[i - 1], to = asked.sieves[i];
+      SizeClass& its = classes.emplace_back(SizeClass{.kind = kind, .from = from, .to = to});
+      its.asked = asked.fraction * (specimen::passing(asked, to) - specimen::passing(asked, from));
+      const bool is_last = i + 1 == asked.sieves.size();
+      for (std::size_t b = 0; b < specimen.balls.size(); ++b) {
+        const Ball& ball = specimen.balls[b];
+        if (ball.kind != kind || ball.diameter < from || (is_last ? ball.diameter > to : ball.diameter >= to))
+          continue;
+        ++its.stones;
+        its.placed += specimen::extent_of_round<3>(ball.diameter) / specimen.body.volume();
+        its.superposed += superposed[b];
+        if (superposed[b] == 0.0) ++its.without_a_block;
+      }
+    }
+  }
+  return classes;
+}
+
+}  // namespace
+
+double block_size(const Body& body, int blocks) {
+  return std::cbrt(body.volume() / blocks);
+}
+
+std::vector<std::string> warnings(const Specimen& s) {
+  std::vector<std::string> lines;
+  const auto is_small = [&](const Ball& ball) {
+    return ball.diameter < kSmallestStone * s.metrics.mean_size;
+  };
+  if (const auto small = std::ranges::count_if(s.balls, is_small); small > 0)
+    lines.push_back(
+        fmt::format("{} of {} stones are smaller than {:g} blocks of {:.1f} mm: such a stone is "
+                    "one or a few blocks, whatever its shape",
+                    small, s.balls.size(), kSmallestStone, 1e3 * s.metrics.mean_size));
+  int without = 0;
+  for (const SizeClass& c : s.classes) without += c.without_a_block;
+  if (without > 0)
+    lines.push_back(fmt::format("{} of {} stones have no block of their own: more blocks are needed{}",
+                                without, s.balls.size(), ", or [superposition] rule = \"fit\""));
+  return lines;
+}
+
+Specimen make_specimen(const specimen::SpecimenParameters& p, const Body& body, Team* team) {
+  // Aggregates and blocks draw from streams of their own: another number of blocks leaves the aggregates
+  // where they are.
+  Random aggregate_random(2 * p.seed), block_random(2 * p.seed + 1);
+  const auto kinds = kinds_of(p);
+  Specimen specimen;
+  specimen.body = body;
+  specimen.phases = specimen::phases(p);
+  specimen.matrix = index_of(specimen.phases, p.matrix);
+  add_balls(kinds, aggregate_random, specimen);
+  specimen.complex = tessellate(p.blocks, body, block_random, team, specimen.metrics.seeds_redrawn);
+  const Superposed superposed = superpose(specimen.complex, body, specimen.balls, p);
+  specimen.covered_fraction = superposed.covered_fraction;
+  std::vector<double> volumes;
+  specimen.fraction.assign(specimen.phases.size(), 0.0);
+  for (std::size_t cell = 0; cell < specimen.complex.cells.size(); ++cell) {
+    const int stone = superposed.stone[cell];
+    specimen.phase.push_back(stone < 0 ? specimen.matrix : specimen.balls[stone].phase);
+    volumes.push_back(volume(specimen.complex, cell));
+    specimen.fraction[specimen.phase.back()] += volumes.back() / body.volume();
+    if (specimen.phase.back() != specimen.matrix)
+      specimen.fraction_superposed += volumes.back() / body.volume();
+  }
+  specimen.classes = classes_of(kinds, specimen, superposed.stone, volumes);
+  const int redrawn = specimen.metrics.seeds_redrawn;
+  specimen.metrics = measure(specimen.complex, body);
+  specimen.metrics.seeds_redrawn = redrawn;
+  return specimen;
+}
+
+}  // namespace pyroclast::solid

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pyroclast/base/team.hpp"
+#include "pyroclast/solid/superposition.hpp"
+
+namespace pyroclast::solid {
+
+/// Aggregate of a range of sizes: what was asked for, and what became of it. Shares are of the volume of the
+/// specimen.
+struct SizeClass {
+  int kind = 0;     ///< as of a stone
+  double from, to;  ///< diameters, m
+  double asked = 0.0;
+  double placed = 0.0;
+  double superposed = 0.0;
+  int stones = 0;
+  int without_a_block = 0;  ///< stones to which no block belongs
+};
+
+/// Quality of the blocks; lengths in m.
+struct BlockMetrics {
+  double mean_size = 0.0;        ///< cube root of the mean volume, the block size
+  double shortest_edge = 0.0;    ///< shortest edge of any block
+  double zones_per_block = 0.0;  ///< mean number of zones
+  int most_corners = 0;          ///< most corners of a face between blocks
+  int seeds_redrawn = 0;         ///< seeds drawn anew because their cell was empty or matched no neighbour
+};
+
+/// Meso-scale specimen in space: blocks, their phases, and the outcome of the request.
+struct Specimen {
+  Body body;
+  Complex complex;
+  std::vector<std::string> phases;  ///< phases that blocks can have
+  int matrix = 0;                   ///< index into `phases`
+  std::vector<int> phase;           ///< phase of each cell, index into `phases`
+  std::vector<Ball> balls;          ///< balls as placed, those of each kind largest first
+  /// Volume of balls asked for and placed, and of blocks that are not matrix, over that of the specimen.
+  double fraction_asked = 0.0, fraction_placed = 0.0, fraction_superposed = 0.0;
+  double covered_fraction = 0.0;  ///< covered fraction above which a block became aggregate
+  std::vector<double> fraction;   ///< volume of the blocks of each phase over that of the specimen
+  std::vector<SizeClass> classes;
+  BlockMetrics metrics;
+};
+
+/// Makes a specimen by gradation, placement, tessellation and superposition, in this order, as in the plane
+/// but with balls, by volume. Throws Error when a parameter is out of range, the aggregates do not fit, the
+/// placed fraction is off by more than 0.01, or no tessellation can be made.
+/// \param parameters  parameters, of which the region is the section of the body
+/// \param team        team that shares the cells out; without a team the calling thread works alone
+Specimen make_specimen(const specimen::SpecimenParameters& parameters, const Body& body,
+                       Team* team = nullptr);
+
+/// Returns what a user should know of a specimen that differs from the request, one line each.
+std::vector<std::string> warnings(const Specimen& specimen);
+
+/// Returns the size of a block: cube root of the body's volume over the number of blocks, m.
+double block_size(const Body& body, int blocks);
+
+}  // namespace pyroclast::solid

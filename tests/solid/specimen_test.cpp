@@ -1,0 +1,140 @@
+#include "pyroclast/solid/specimen.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "bodies.hpp"
+#include "messages.hpp"
+#include "pyroclast/model/solid_model.hpp"
+#include "pyroclast/specimen/gradation.hpp"
+
+namespace pyroclast::solid {
+namespace {
+
+specimen::SpecimenParameters concrete(int blocks, std::uint64_t seed = 1) {
+  specimen::SpecimenParameters p;
+  p.seed = seed;
+  p.aggregates = {.phase = "aggregate",
+                  .fraction = 0.25,
+                  .d_min = 0.012,
+                  .d_max = 0.032,
+                  .fuller_exponent = 0.5,
+                  .sieves = {0.012, 0.016, 0.02, 0.032},
+                  .minimum_gap = 0.0005,
+                  .attempts = 100000};
+  p.blocks.count = blocks;
+  p.superposition = specimen::Superposition::fit;
+  return p;
+}
+
+// Promise: aggregates have the fraction and the grading that are asked for, by volume, and lie apart within
+// the body; blocks take their volume.
+TEST(SolidSpecimen, HasItsAggregatesByVolume) {
+  const Body body = cylinder(0.1, 0.2);
+  const Specimen s = make_specimen(concrete(3000), body);
+  EXPECT_NEAR(s.fraction_placed, 0.25, 0.001);
+  EXPECT_NEAR(s.fraction_superposed, s.fraction_placed, 1.0 / 3000);
+  ASSERT_EQ(s.classes.size(), 3U);
+  double asked = 0.0, superposed = 0.0;
+  int stones = 0;
+  for (const SizeClass& c : s.classes) {
+    // a class takes what the larger ones left: less than its smallest stone
+    EXPECT_NEAR(c.placed, c.asked, specimen::extent_of_round<3>(c.to) / body.volume());
+    EXPECT_NEAR(c.superposed, c.placed, 0.25 * c.placed);
+    EXPECT_EQ(c.without_a_block, 0);
+    asked += c.asked;
+    superposed += c.superposed;
+    stones += c.stones;
+  }
+  EXPECT_NEAR(asked, 0.25, 1e-12);
+  EXPECT_NEAR(superposed, s.fraction_superposed, 1e-12);
+  EXPECT_EQ(stones, static_cast<int>(s.balls.size()));
+  for (std::size_t i = 0; i < s.balls.size(); ++i) {
+    EXPECT_LE(body.distance(s.balls[i].centre), -0.5 * s.balls[i].diameter - 0.0005);
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_GE(norm(s.balls[i].centre - s.balls[j].centre),
+                0.5 * (s.balls[i].diameter + s.balls[j].diameter) + 0.0005);
+  }
+}
+
+TEST(SolidSpecimen, BlocksLeaveTheAggregatesWhereTheyAreAndSeedsMoveAll) {
+  const Body body = cuboid(0.1, 0.1, 0.1);
+  const auto centres = [](const Specimen& s) {
+    std::vector<Vec<3>> all;
+    for (const Ball& ball : s.balls) all.push_back(ball.centre);
+    return all;
+  };
+  const Specimen one = make_specimen(concrete(300), body), same = make_specimen(concrete(300), body);
+  EXPECT_TRUE(one.complex.vertices == same.complex.vertices);
+  EXPECT_EQ(one.phase, same.phase);
+  EXPECT_TRUE(centres(make_specimen(concrete(500), body)) == centres(one));
+  EXPECT_FALSE(centres(make_specimen(concrete(300, 2), body)) == centres(one));
+}
+
+// Promise: by the rule of fit each stone has a block, also where blocks are as large as stones.
+TEST(SolidSpecimen, EachStoneHasABlockAndCoarseBlocksAreTold) {
+  const Body body = cuboid(0.1, 0.1, 0.1);
+  auto p = concrete(500);  // blocks of 12.6 mm
+  const Specimen fit = make_specimen(p, body);
+  for (const SizeClass& c : fit.classes) EXPECT_EQ(c.without_a_block, 0);
+  const auto told = warnings(fit);
+  ASSERT_EQ(told.size(), 1U);
+  expect_in("smaller than 2 blocks of 12.6 mm", told[0]);
+  p.superposition = specimen::Superposition::area;
+  p.covered_fraction = 0.7;
+  const Specimen by_area = make_specimen(p, body);
+  int without = 0;
+  for (const SizeClass& c : by_area.classes) without += c.without_a_block;
+  EXPECT_GT(without, 0);
+  expect_in("have no block of their own", warnings(by_area).back());
+}
+
+TEST(SolidSpecimen, WhatASolidCannotHaveIsRefused) {
+  auto p = concrete(100);
+  p.inclusions = {specimen::FibreParameters{.phase = "steel", .count = 1, .length = 0.03}};
+  expect_in("fibres", message([&] { make_specimen(p, cuboid(0.1, 0.1, 0.1)); }));
+}
+
+std::vector<Bearing> two_platens() {
+  return platens(0.02);
+}
+
+// Promise: platens lie on the whole of both ends, with contacts of the ends' area, and fill their thickness.
+TEST(SolidModel, HasPlatensOnTheWholeOfItsEnds) {
+  for (const Body& body : {cylinder(0.1, 0.2), cuboid(0.1, 0.2, 0.08)}) {
+    const Specimen s = make_specimen(concrete(400), body);
+    const ModelOf<3> model = make_solid_model(s, {}, two_platens());
+    const double end = body.section().is_rectangle() ? 0.1 * 0.08 : body.section().area();
+    const auto volumes = model.zone_volumes();
+    double filled = 0.0, of_platens = 0.0;
+    for (int b = 0; b < model.block_count(); ++b)
+      for (int z = model.block_zones[b]; z < model.block_zones[b + 1]; ++z)
+        (model.is_of_bearing(b) ? of_platens : filled) += volumes[z];
+    EXPECT_NEAR(filled, body.volume(), 1e-12 * filled);
+    EXPECT_NEAR(of_platens, 2 * 0.02 * end, 1e-12);
+    for (const char* const platen : {"bottom_platen", "top_platen"}) {
+      double area = 0.0;
+      for (const int c : model.contact_sets.at(platen)) area += model.joint(c).area;
+      EXPECT_NEAR(area, end, 1e-9 * end) << platen;
+    }
+    for (const int g : model.set("top_platen_support")) EXPECT_NEAR(model.position[g][1], 0.22, 1e-15);
+    for (const int g : model.set("bottom_platen_support")) EXPECT_NEAR(model.position[g][1], -0.02, 1e-15);
+    for (const int g : model.set("top")) EXPECT_EQ(model.position[g][1], 0.2);
+    // each gridpoint of the outline lies on a side
+    std::size_t on_sides = 0;
+    for (const std::string& side : body.sides()) on_sides += model.set(side).size();
+    EXPECT_GE(on_sides, model.set("outline").size());
+    for (const int g : model.set("outline")) EXPECT_NEAR(body.distance(model.position[g]), 0.0, 1e-12);
+    if (!body.section().is_rectangle()) {
+      std::size_t of_quarters = 0;
+      for (const char* const quarter : {"rim_left", "rim_right", "rim_front", "rim_back"})
+        of_quarters += model.set(quarter).size();
+      EXPECT_EQ(of_quarters, model.set("rim").size());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pyroclast::solid
