@@ -112,6 +112,7 @@ TEST(Warnings, WhatIsAlmostCertainlyASlipIsSaid) {
            Slip{"compression", "local_damping = 0.8", "local_damping = 0", "mechanics.local_damping"},
            Slip{"compression", "f_t = \"2.5 MPa\"", "f_t = \"2.5 Pa\"", "contacts.mortar_mortar.f_t"},
            Slip{"compression", "count = 5000", "count = 200", "blocks.count"},
+           Slip{"compression", "count = 5000", "size = \"15 mm\"", "blocks.size"},
            Slip{"transient_heating", "count = 5000", "count = 1000", "blocks.count"},
            Slip{"transient_heating", "level = 0.445", "level = 1.5", "stages[1].level"},
            Slip{"transient_heating", "field = \"uniform\"", "field = \"uniform\"\ninitial = \"150 degC\"",
@@ -134,6 +135,24 @@ TEST(Warnings, WhatIsAlmostCertainlyASlipIsSaid) {
 TEST(Warnings, AnAggregateWiderThanTheSpecimenIsAnError) {
   EXPECT_NE(message(with(paper_deck(), "width = \"150 mm\"", "width = \"32 mm\"")).find("aggregates.d_max"),
             std::string::npos);
+}
+
+// Promise: blocks are asked for by their number or by their size, and the outline is made for blocks of that
+// size.
+TEST(Setup, TakesTheSizeOfBlocksInThePlaceOfTheirNumber) {
+  const std::string deck = paper_deck();
+  EXPECT_EQ(read(with(deck, "count = 5000", "size = \"3 mm\"")).specimen.blocks.count, 5000);
+  const std::string disc = shipped_case("brazilian");
+  const auto by_number = read(with(disc, "count = 2000", "count = 500")).specimen;
+  const double size = std::sqrt(by_number.region.area() / 500);
+  const auto by_size = read(with(disc, "count = 2000", fmt::format("size = \"{:.12g} m\"", size))).specimen;
+  EXPECT_EQ(by_size.blocks.count, 500);
+  EXPECT_EQ(by_size.region.pieces().size(), by_number.region.pieces().size());
+  EXPECT_NE(message(with(deck, "count = 5000", "count = 5000\nsize = \"3 mm\"")).find("blocks.count"),
+            std::string::npos);
+  const std::string too_large = message(with(deck, "count = 5000", "size = \"1 m\""));
+  EXPECT_NE(too_large.find("blocks.size"), std::string::npos) << too_large;
+  EXPECT_NE(too_large.find("gives 0 blocks"), std::string::npos) << too_large;
 }
 
 TEST(Setup, TellsOfKeysThatContradictEachOther) {

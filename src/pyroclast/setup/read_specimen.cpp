@@ -32,6 +32,9 @@ constexpr int kPlacementAttempts = 100'000;
 /// Smallest side of a test specimen over the largest aggregate (EN 12390-1 asks for 3.5).
 constexpr double kFewestAggregatesAcross = 3.0;
 
+/// Numbers of blocks that a specimen may have.
+constexpr Range kBlockCount = Range::between(4, 100e6);
+
 /// Largest difference from 1 of the last share of a sieve analysis, as percents leave it.
 constexpr double kAllPass = 1e-9;
 
@@ -525,8 +528,20 @@ specimen::Region with_seats(const specimen::Region& region, std::span<const Circ
   return region.with_patches(patches);
 }
 
-specimen::Region make_region(const Section& s, const Outline& o, const specimen::BlockParameters& blocks,
+/// Blocks as a deck asks for them: by their number, or by their size.
+struct ReadBlocks {
+  specimen::BlockParameters parameters;
+  double size = 0.0;  ///< m; 0: their number is stated
+
+  /// Returns the size of a block in a specimen of this area, m.
+  double size_in(double area) const {
+    return size > 0.0 ? size : std::sqrt(area / std::max(1, parameters.count));
+  }
+};
+
+specimen::Region make_region(const Section& s, const Outline& o, const ReadBlocks& read,
                              std::span<const ReadBearing> bearings) {
+  const specimen::BlockParameters& blocks = read.parameters;
   const bool is_missing = o.shape == Shape::tessellation && !blocks.tessellation;  // an error already
   if (!s.ok() || is_missing) return specimen::Region::rectangle(1.0, 1.0);
   try {
@@ -543,7 +558,7 @@ specimen::Region make_region(const Section& s, const Outline& o, const specimen:
     };
     const double area =
         std::numbers::pi / 4.0 * (o.diameter * o.diameter - o.inner_diameter * o.inner_diameter);
-    double size = std::sqrt(area / std::max(1, blocks.count));
+    double size = read.size_in(area);
     specimen::Region region;
     if (o.shape == Shape::rectangle) {
       region = specimen::Region::rectangle(o.width, o.height);
@@ -557,7 +572,7 @@ specimen::Region make_region(const Section& s, const Outline& o, const specimen:
         region =
             region.with_holes(std::array{specimen::Hole{"bore", round({{}, o.inner_diameter}, size), true}});
     }
-    size = std::sqrt(region.area() / std::max(1, blocks.count));
+    size = read.size_in(region.area());
     std::vector<specimen::Hole> holes;
     for (const auto& hole : o.holes)
       holes.push_back(hole.corners.empty()
@@ -566,7 +581,7 @@ specimen::Region make_region(const Section& s, const Outline& o, const specimen:
     std::vector<specimen::Notch> notches = o.notches;
     for (specimen::Notch& n : notches) n.point = specimen::slot_point(n.length(), n.width, size);
     region = with_seats(region.with_holes(holes).with_notches(notches), circles, bearings);
-    if (blocks.count == 0 && !region.is_rectangle())
+    if (blocks.count == 0 && read.size == 0.0 && !region.is_rectangle())
       s.error("shape",
               "with blocks.file must be \"rectangle\" or \"tessellation\", which is the outline of the file");
     return region;
@@ -658,9 +673,10 @@ void read_groups(const Section& s, const specimen::NeperTess& tess, const std::v
   }
 }
 
-specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::path& folder,
-                                      const Outline& outline, bool is_covered) {
-  specimen::BlockParameters b;
+ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, const Outline& outline,
+                       bool is_covered) {
+  ReadBlocks read;
+  specimen::BlockParameters& b = read.parameters;
   b.shortest_edge =
       s.number("shortest_edge", Range::between(0.0, 0.5),
                "shorter edges are removed where the blocks allow it; as a fraction of the mean edge");
@@ -669,7 +685,8 @@ specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::p
         folder /
         s.text("file", "Neper tessellation (.tess), beside the deck, that is read instead of making one");
     s.names_file("file", file);
-    if (s.has("count")) s.error("count", "has no meaning beside file: the tessellation is read, not made");
+    for (const char* const key : {"count", "size"})
+      if (s.has(key)) s.error(key, "has no meaning beside file: the tessellation is read, not made");
     const std::vector<std::string> names = s.optional_texts(
         "groups",
         "phases of the groups that the file puts its cells into (`*group`), in the ascending "
@@ -678,20 +695,35 @@ specimen::BlockParameters read_blocks(const Section& s, const std::filesystem::p
       read_groups(s, *tess, names, is_covered, b);
       b.tessellation = std::move(tess->tessellation);
     }
-    return b;
+    return read;
   }
   s.know({"groups"});
   if (outline.shape == Shape::tessellation)
     s.error("file", "is needed where specimen.shape is \"tessellation\"");
-  b.place = fmt::format("{}: {}", s.where("count"), s.path());
-  b.count = static_cast<int>(s.integer("count", Range::between(4, 100e6), "number of blocks"));
+  b.place = fmt::format("{}: {}", s.where(s.has("size") ? "size" : "count"), s.path());
+  if (s.has("size")) {
+    if (s.has("count")) s.error("count", "has no meaning beside size, from which the number of blocks follows");
+    read.size = s.quantity("size", unit::length, Range::positive(),
+                           "mean size of a block, the root of its area, in the place of their number");
+  } else {
+    b.count = static_cast<int>(s.integer("count", kBlockCount, "number of blocks"));
+  }
   b.relaxation =
       static_cast<int>(s.integer("relaxation", Range::between(0, 1000), 0,
                                  "iterations of Lloyd's relaxation; 0 leaves the seeds at random"));
   b.radius_spread = s.number("radius_spread", {.lower = 0.0, .upper = 1.0, .upper_inclusive = false}, 0.0,
                              "Laguerre radii are uniform within 1 ± radius_spread times half the mean "
                              "spacing; 0 makes a Voronoi tessellation");
-  return b;
+  return read;
+}
+
+/// Returns the number of blocks of a size. Records an error where it is out of range.
+int count_of(const Section& blocks, const specimen::Region& region, double size) {
+  const double count = std::round(region.area() / (size * size));
+  if (kBlockCount.contains(count)) return static_cast<int>(count);
+  blocks.error("size", fmt::format("gives {:.6g} blocks, but their number must be {}", count,
+                                   kBlockCount.describe()));
+  return 0;
 }
 
 /// Reads [superposition] where nothing is superposed. Tells whether the deck has this table.
@@ -793,8 +825,10 @@ specimen::SpecimenParameters read_specimen(const Section& root, const std::files
   if (aggregates) p.aggregates = read_aggregates(*aggregates, folder);
   p.inclusions = read_inclusions(root, folder);
   const Section blocks = root.section("blocks", "the tessellation into blocks");
-  p.blocks = read_blocks(blocks, folder, outline, aggregates || !p.inclusions.empty());
-  p.region = make_region(s, outline, p.blocks, bearings);
+  ReadBlocks read = read_blocks(blocks, folder, outline, aggregates || !p.inclusions.empty());
+  p.region = make_region(s, outline, read, bearings);
+  p.blocks = std::move(read.parameters);
+  if (read.size > 0.0 && s.ok() && blocks.ok()) p.blocks.count = count_of(blocks, p.region, read.size);
   check_outline(s, outline, p.region);
   set_fraction(p.region, p.aggregates);
   for (specimen::Inclusions& kind : p.inclusions)

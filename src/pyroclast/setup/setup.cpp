@@ -145,14 +145,15 @@ void warn_of_coarse_blocks(const Section& root, const Setup& setup) {
       any([](const auto& stage) { return stage->kind() == std::string_view("load"); }) &&
       any([](const auto& stage) { return stage->heating().to || stage->heating().duration > 0.0; });
   const Section blocks = root.section("blocks");
+  const char* const key = blocks.has("size") ? "size" : "count";
   if (share > kCoarsestStudied)
     blocks.warn(
-        "count",
+        key,
         fmt::format("blocks of {:.3g} mm are {:.2f} of d_max, coarser than any that were studied ({})",
                     1e3 * size, share, kCoarsestStudied));
   else if (is_heated_under_load && share > kCoarsestHeated)
     blocks.warn(
-        "count",
+        key,
         fmt::format("blocks of {:.3g} mm are {:.2f} of d_max: above {} critical temperatures scatter by "
                     "100 K and more from seed to seed",
                     1e3 * size, share, kCoarsestHeated));
