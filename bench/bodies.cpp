@@ -64,8 +64,8 @@ std::unique_ptr<Sample<2>> make_specimen(const Setup& setup, int zones) {
 }
 
 std::unique_ptr<Sample<3>> make_cube(const Setup& setup, int blocks) {
-  const pyroclast::solid::Body body(pyroclast::specimen::Region::rectangle(kEdgeOfCube, kEdgeOfCube),
-                                    pyroclast::solid::Body::Axis::z, kEdgeOfCube);
+  const pyroclast::solid::Prism body(pyroclast::specimen::Region::rectangle(kEdgeOfCube, kEdgeOfCube),
+                                     pyroclast::solid::Prism::Axis::z, kEdgeOfCube);
   pyroclast::Random random(1);
   const auto result =
       pyroclast::solid::laguerre_complex(spaced_seeds(body, blocks, kSpreadOfRadii, random), body);

@@ -15,6 +15,7 @@ MODULES = [
     "deck",
     "tables",
     "specimen",
+    "solid",
     "material",
     "model",
     "thermal",
@@ -34,6 +35,7 @@ MODULES = [
 NEVER = {
     "tables": {"deck": ["read_choice.hpp", "read_choice.cpp"]},
     "specimen": {"units": [], "deck": []},
+    "solid": {"units": [], "deck": []},
     "material": {"deck": ["curve_reader.hpp", "curve_reader.cpp"]},
     "model": {"units": [], "deck": []},
     "thermal": {"units": [], "deck": []},

@@ -171,7 +171,7 @@ inline ModelOf<3> cubes(int count, double d) {
 /// Raw Laguerre cells of a cube, one material, one interface. Their corners within are moved at random by up
 /// to a share of their shortest edge along each axis, which bends faces.
 inline ModelOf<3> laguerre_cells(int blocks, double edge, std::uint64_t seed, double shake = 0.0) {
-  const solid::Body body(specimen::Region::rectangle(edge, edge), solid::Body::Axis::z, edge);
+  const solid::Prism body(specimen::Region::rectangle(edge, edge), solid::Prism::Axis::z, edge);
   Random random(seed);
   solid::Complex complex =
       solid::laguerre_complex(solid::spaced_seeds(body, blocks, 0.3, random), body).complex;

@@ -15,22 +15,22 @@
 namespace pyroclast::solid {
 namespace {
 
-Complex cells_of(const Body& body, int count, double spread, std::uint64_t seed, Team* team = nullptr) {
+Complex cells_of(const Prism& body, int count, double spread, std::uint64_t seed, Team* team = nullptr) {
   Random random(seed);
   const auto result = laguerre_complex(spaced_seeds(body, count, spread, random), body, team);
   EXPECT_TRUE(result.broken.empty());
   return result.complex;
 }
 
-std::vector<Body> bodies() {
+std::vector<Prism> bodies() {
   const auto triangle =
       specimen::Region::polygon({{{0.0, 0.0}}, {{0.1, 0.0}}, {{0.03, 0.08}}}, {"a", "b", "c"});
-  return {cuboid(0.1, 0.2, 0.05), cylinder(0.1, 0.2), Body(triangle, Body::Axis::z, 0.06)};
+  return {cuboid(0.1, 0.2, 0.05), cylinder(0.1, 0.2), Prism(triangle, Prism::Axis::z, 0.06)};
 }
 
 // Promise: cells fill the body, and each is closed, to round-off.
 TEST(Complex, CellsFillTheBodyAndAreClosed) {
-  for (const Body& body : bodies())
+  for (const Prism& body : bodies())
     for (const double spread : {0.0, 0.3}) {
       const Complex complex = cells_of(body, 700, spread, 3);
       require_valid(complex, body, "cells");
@@ -40,7 +40,7 @@ TEST(Complex, CellsFillTheBodyAndAreClosed) {
         Vec<3> sum{};
         double area = 0.0;
         for (const int f : complex.cells[cell]) {
-          const Face& face = complex.faces[f];
+          const CellFace& face = complex.faces[f];
           const Vec<3> out = area_vector(complex, face) * (face.inner == static_cast<int>(cell) ? 1.0 : -1.0);
           sum += out;
           area += norm(out);
@@ -70,11 +70,11 @@ TEST(Complex, FacesWithinTheBodyAreOfTwoCells) {
 
 // Promise: the faces on each side of a body make up the side, exactly.
 TEST(Complex, FacesOnASideHaveItsArea) {
-  const Body box = cuboid(0.1, 0.2, 0.05), round = cylinder(0.1, 0.2);
-  const auto areas = [](const Body& body) {
+  const Prism box = cuboid(0.1, 0.2, 0.05), round = cylinder(0.1, 0.2);
+  const auto areas = [](const Prism& body) {
     const Complex complex = cells_of(body, 500, 0.3, 2);
     std::vector<double> area(body.sides().size());
-    for (const Face& face : complex.faces)
+    for (const CellFace& face : complex.faces)
       if (face.side >= 0) area[face.side] += norm(area_vector(complex, face));
     return area;
   };
@@ -90,9 +90,9 @@ TEST(Complex, FacesOnASideHaveItsArea) {
 }
 
 TEST(Complex, VerticesOnFlatSidesLieExactlyThere) {
-  const Body box = cuboid(0.1, 0.2, 0.05);
+  const Prism box = cuboid(0.1, 0.2, 0.05);
   const Complex complex = cells_of(box, 200, 0.3, 2);
-  for (const Face& face : complex.faces) {
+  for (const CellFace& face : complex.faces) {
     if (face.side < 0) continue;
     const int axis = std::array{1, 0, 1, 0, 2, 2}[face.side];
     const double at = std::array{0.0, 0.1, 0.2, 0.0, 0.0, 0.05}[face.side];
@@ -101,7 +101,7 @@ TEST(Complex, VerticesOnFlatSidesLieExactlyThere) {
 }
 
 TEST(Complex, IsTheSameForAnyNumberOfThreads) {
-  const Body body = cylinder(0.1, 0.2);
+  const Prism body = cylinder(0.1, 0.2);
   const Complex one = cells_of(body, 400, 0.3, 5);
   for (const int threads : {2, 3}) {
     Team team(threads);
@@ -129,9 +129,9 @@ TEST(Complex, ZonesFillTheirCell) {
 }
 
 TEST(Seeds, KeepTheirDistanceAndAreNearTheirNeighboursInNumber) {
-  const Body body = cylinder(0.1, 0.1);
+  const Prism body = cylinder(0.1, 0.1);
   Random random(1);
-  const Seeds seeds = spaced_seeds(body, 1000, 0.3, random);
+  const SolidSeeds seeds = spaced_seeds(body, 1000, 0.3, random);
   const double spacing = std::cbrt(body.volume() / 1000);
   double nearest = 1.0, next = 0.0;
   for (int i = 0; i < 1000; ++i) {
@@ -143,11 +143,11 @@ TEST(Seeds, KeepTheirDistanceAndAreNearTheirNeighboursInNumber) {
   EXPECT_LT(next, 2.5 * spacing);  // at random it would be some 5
 }
 
-TEST(Body, ASectionThatIsNotConvexIsRefusedWithItsCorner) {
+TEST(Prism, ASectionThatIsNotConvexIsRefusedWithItsCorner) {
   const auto angle = specimen::Region::polygon(
       {{{0.0, 0.0}}, {{0.2, 0.0}}, {{0.2, 0.1}}, {{0.1, 0.1}}, {{0.1, 0.2}}, {{0.0, 0.2}}},
       {"a", "b", "c", "d", "e", "f"});
-  expect_in("(0.1, 0.1) m", message([&] { Body(angle, Body::Axis::z, 0.1); }));
+  expect_in("(0.1, 0.1) m", message([&] { Prism(angle, Prism::Axis::z, 0.1); }));
 }
 
 }  // namespace

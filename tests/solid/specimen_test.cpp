@@ -32,8 +32,8 @@ specimen::SpecimenParameters concrete(int blocks, std::uint64_t seed = 1) {
 // Promise: aggregates have the fraction and the grading that are asked for, by volume, and lie apart within
 // the body; blocks take their volume.
 TEST(SolidSpecimen, HasItsAggregatesByVolume) {
-  const Body body = cylinder(0.1, 0.2);
-  const Specimen s = make_specimen(concrete(3000), body);
+  const Prism body = cylinder(0.1, 0.2);
+  const SolidSpecimen s = make_specimen(concrete(3000), body);
   EXPECT_NEAR(s.fraction_placed, 0.25, 0.001);
   EXPECT_NEAR(s.fraction_superposed, s.fraction_placed, 1.0 / 3000);
   ASSERT_EQ(s.classes.size(), 3U);
@@ -60,13 +60,13 @@ TEST(SolidSpecimen, HasItsAggregatesByVolume) {
 }
 
 TEST(SolidSpecimen, BlocksLeaveTheAggregatesWhereTheyAreAndSeedsMoveAll) {
-  const Body body = cuboid(0.1, 0.1, 0.1);
-  const auto centres = [](const Specimen& s) {
+  const Prism body = cuboid(0.1, 0.1, 0.1);
+  const auto centres = [](const SolidSpecimen& s) {
     std::vector<Vec<3>> all;
     for (const Ball& ball : s.balls) all.push_back(ball.centre);
     return all;
   };
-  const Specimen one = make_specimen(concrete(300), body), same = make_specimen(concrete(300), body);
+  const SolidSpecimen one = make_specimen(concrete(300), body), same = make_specimen(concrete(300), body);
   EXPECT_TRUE(one.complex.vertices == same.complex.vertices);
   EXPECT_EQ(one.phase, same.phase);
   EXPECT_TRUE(centres(make_specimen(concrete(500), body)) == centres(one));
@@ -75,16 +75,16 @@ TEST(SolidSpecimen, BlocksLeaveTheAggregatesWhereTheyAreAndSeedsMoveAll) {
 
 // Promise: by the rule of fit each stone has a block, also where blocks are as large as stones.
 TEST(SolidSpecimen, EachStoneHasABlockAndCoarseBlocksAreTold) {
-  const Body body = cuboid(0.1, 0.1, 0.1);
+  const Prism body = cuboid(0.1, 0.1, 0.1);
   auto p = concrete(500);  // blocks of 12.6 mm
-  const Specimen fit = make_specimen(p, body);
+  const SolidSpecimen fit = make_specimen(p, body);
   for (const SizeClass& c : fit.classes) EXPECT_EQ(c.without_a_block, 0);
   const auto told = warnings(fit);
   ASSERT_EQ(told.size(), 1U);
   expect_in("smaller than 2 blocks of 12.6 mm", told[0]);
   p.superposition = specimen::Superposition::area;
   p.covered_fraction = 0.7;
-  const Specimen by_area = make_specimen(p, body);
+  const SolidSpecimen by_area = make_specimen(p, body);
   int without = 0;
   for (const SizeClass& c : by_area.classes) without += c.without_a_block;
   EXPECT_GT(without, 0);
@@ -103,8 +103,8 @@ std::vector<Bearing> two_platens() {
 
 // Promise: platens lie on the whole of both ends, with contacts of the ends' area, and fill their thickness.
 TEST(SolidModel, HasPlatensOnTheWholeOfItsEnds) {
-  for (const Body& body : {cylinder(0.1, 0.2), cuboid(0.1, 0.2, 0.08)}) {
-    const Specimen s = make_specimen(concrete(400), body);
+  for (const Prism& body : {cylinder(0.1, 0.2), cuboid(0.1, 0.2, 0.08)}) {
+    const SolidSpecimen s = make_specimen(concrete(400), body);
     const ModelOf<3> model = make_solid_model(s, {}, two_platens());
     const double end = body.section().is_rectangle() ? 0.1 * 0.08 : body.section().area();
     const auto volumes = model.zone_volumes();

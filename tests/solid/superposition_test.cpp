@@ -12,7 +12,7 @@
 namespace pyroclast::solid {
 namespace {
 
-Complex cells_of(const Body& body, int count) {
+Complex cells_of(const Prism& body, int count) {
   Random random(3);
   return laguerre_complex(spaced_seeds(body, count, 0.3, random), body).complex;
 }
@@ -26,7 +26,7 @@ double in_all_cells(const Complex& complex, const Vec<3>& centre, double radius)
 
 // Promise: cells share a ball out among them, whatever its size and wherever its centre, on a face too.
 TEST(CommonVolume, CellsShareABallOut) {
-  const Body body = cuboid(0.1, 0.1, 0.1);
+  const Prism body = cuboid(0.1, 0.1, 0.1);
   const Complex complex = cells_of(body, 200);
   for (const double radius : {0.001, 0.01, 0.045})
     for (const Vec<3>& centre : {Vec<3>{{0.05, 0.05, 0.05}}, {{0.046, 0.051, 0.0473}}}) {
@@ -34,7 +34,7 @@ TEST(CommonVolume, CellsShareABallOut) {
       EXPECT_NEAR(in_all_cells(complex, centre, radius), ball, 1e-9 * ball) << radius;
     }
   Vec<3> on_face{};
-  for (const Face& face : complex.faces)
+  for (const CellFace& face : complex.faces)
     if (face.outer >= 0) {
       for (const int v : face.corners) on_face += complex.vertices[v] * (1.0 / face.corners.size());
       break;
@@ -45,7 +45,7 @@ TEST(CommonVolume, CellsShareABallOut) {
 }
 
 TEST(CommonVolume, OfABallThatASideCutsIsThatOfItsCap) {
-  const Body body = cuboid(0.1, 0.1, 0.1);
+  const Prism body = cuboid(0.1, 0.1, 0.1);
   const Complex complex = cells_of(body, 50);
   const double radius = 0.02, depth = 0.03;  // of the part within the body
   const double cap = std::numbers::pi * depth * depth * (radius - depth / 3.0);
@@ -53,7 +53,7 @@ TEST(CommonVolume, OfABallThatASideCutsIsThatOfItsCap) {
 }
 
 TEST(CommonVolume, OfABallAroundTheWholeBodyIsTheBody) {
-  const Body body = cylinder(0.1, 0.1);
+  const Prism body = cylinder(0.1, 0.1);
   const Complex complex = cells_of(body, 50);
   EXPECT_NEAR(in_all_cells(complex, {{0.05, 0.05, 0.05}}, 1.0), body.volume(), 1e-9 * body.volume());
 }

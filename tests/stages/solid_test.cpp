@@ -144,7 +144,8 @@ SpecimenBody cylinder_between_platens(const Setup& setup) {
   auto parameters = setup.specimen;
   parameters.blocks.count = 120;
   parameters.superposition = specimen::Superposition::fit;
-  const auto specimen = solid::make_specimen(parameters, solid::Body(section, solid::Body::Axis::y, kHeight));
+  const auto specimen =
+      solid::make_specimen(parameters, solid::Prism(section, solid::Prism::Axis::y, kHeight));
   return make_body(specimen, {}, setup.motion);
 }
 

@@ -50,15 +50,15 @@ void add_prism(const std::array<int, 3>& columns, int inner, int outer, const st
 }
 
 /// Adds a bearing over a side of the specimen.
-SolidBearing add_bearing(ModelOf<3>& model, const solid::Specimen& specimen, const Bearing& bearing, int side,
-                         int material) {
+SolidBearing add_bearing(ModelOf<3>& model, const solid::SolidSpecimen& specimen, const Bearing& bearing,
+                         int side, int material) {
   const auto& complex = specimen.complex;
   SolidBearing block;
   Vec<3> outward{};
   std::vector<Vec<3>> inner;
   double area = 0.0;
   for (int f = 0; f < static_cast<int>(complex.faces.size()); ++f) {
-    const solid::Face& face = complex.faces[f];
+    const solid::CellFace& face = complex.faces[f];
     if (face.side != side) continue;
     block.faces.push_back(f);
     const Vec<3> vector = solid::area_vector(complex, face);
@@ -104,7 +104,7 @@ SolidBearing add_bearing(ModelOf<3>& model, const solid::Specimen& specimen, con
 }
 
 /// Adds the quarters of the rim of a cylinder.
-void add_quarters(ModelOf<3>& model, const std::vector<int>& rim, const solid::Body& body) {
+void add_quarters(ModelOf<3>& model, const std::vector<int>& rim, const solid::Prism& body) {
   const Vec<3> middle = 0.5 * (body.low() + body.high());
   for (const int g : rim) {
     const double x = model.position[g][0] - middle[0], z = model.position[g][2] - middle[2];
@@ -139,7 +139,7 @@ std::vector<std::vector<int>> add_cells(ModelOf<3>& model, const solid::Complex&
   return vertices;
 }
 
-ModelOf<3> make_solid_model(const solid::Specimen& specimen,
+ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
                             const std::vector<InterfaceParameters>& interfaces,
                             const std::vector<Bearing>& bearings) {
   const auto& complex = specimen.complex;

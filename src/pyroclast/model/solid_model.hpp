@@ -21,7 +21,7 @@ std::vector<std::vector<int>> add_cells(ModelOf<3>& model, const solid::Complex&
 /// their gridpoints. A cylinder has four quarters of its rim as sets too: `rim_left`, `rim_right`, towards
 /// -x and x, `rim_front` and `rim_back`, towards -z and z. Throws Error, naming the bearing, when it has no
 /// side to lie on or would be flat.
-ModelOf<3> make_solid_model(const solid::Specimen& specimen,
+ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
                             const std::vector<InterfaceParameters>& interfaces = {},
                             const std::vector<Bearing>& bearings = {});
 

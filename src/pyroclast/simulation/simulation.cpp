@@ -107,7 +107,7 @@ SpecimenBody make_body(const specimen::Specimen& specimen, double thickness,
 
 }  // namespace
 
-SpecimenBody make_body(const solid::Specimen& specimen, const std::vector<SetParameters>& sets,
+SpecimenBody make_body(const solid::SolidSpecimen& specimen, const std::vector<SetParameters>& sets,
                        const std::optional<MotionParameters>& motion) {
   auto model = std::make_unique<ModelOf<3>>(
       motion ? make_solid_model(specimen, motion->contacts.interfaces, motion->bearings)
@@ -116,12 +116,12 @@ SpecimenBody make_body(const solid::Specimen& specimen, const std::vector<SetPar
   add_sets(*model, sets);
   SpecimenBody body{nullptr, numbers_of(specimen), {}, {}};
   if (has_platens(motion)) {
-    const solid::Body& of = specimen.body;
+    const solid::Prism& of = specimen.body;
     Press::Specimen between;
     between.axis = kVertical;
     between.height = of.high()[kVertical] - of.low()[kVertical];
     const auto top = std::ranges::find(of.sides(), "top") - of.sides().begin();
-    for (const solid::Face& face : specimen.complex.faces)
+    for (const solid::CellFace& face : specimen.complex.faces)
       if (face.side == top) between.area += norm(solid::area_vector(specimen.complex, face));
     if (!model->sets.contains("left")) between.sides = {{"rim_left", "rim_right"}, {"rim_front", "rim_back"}};
     const auto mean = [&](const std::string& set, int component) {
@@ -159,7 +159,7 @@ SpecimenNumbers numbers_of(const specimen::Specimen& specimen) {
           std::sqrt(specimen.region.area())};
 }
 
-SpecimenNumbers numbers_of(const solid::Specimen& specimen) {
+SpecimenNumbers numbers_of(const solid::SolidSpecimen& specimen) {
   const double size = specimen.metrics.mean_size;
   return {specimen.fraction, size, size, std::cbrt(specimen.body.volume())};
 }

@@ -48,7 +48,7 @@ struct SpecimenNumbers {
 };
 
 SpecimenNumbers numbers_of(const specimen::Specimen& specimen);
-SpecimenNumbers numbers_of(const solid::Specimen& specimen);
+SpecimenNumbers numbers_of(const solid::SolidSpecimen& specimen);
 
 /// Body of a simulation, in the plane or in space: the model of a specimen and what is known of it. Its
 /// gridpoints have a set "specimen"; between platens they have the sets of Press.
@@ -61,7 +61,7 @@ struct SpecimenBody {
 
 /// Makes a solid specimen into a body with the bearings and interfaces of `motion`, and with sets beside
 /// those that every model has.
-SpecimenBody make_body(const solid::Specimen& specimen, const std::vector<SetParameters>& sets,
+SpecimenBody make_body(const solid::SolidSpecimen& specimen, const std::vector<SetParameters>& sets,
                        const std::optional<MotionParameters>& motion);
 
 /// Tells whether phases follow the composition of their specimen, see follow_composition.

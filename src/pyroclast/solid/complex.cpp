@@ -18,7 +18,7 @@ constexpr double kVolumeError = 1e-9;
 
 }  // namespace
 
-Vec<3> area_vector(const Complex& complex, const Face& face) {
+Vec<3> area_vector(const Complex& complex, const CellFace& face) {
   const auto& at = complex.vertices;
   Vec<3> doubled{};
   for (std::size_t i = 1; i + 1 < face.corners.size(); ++i)
@@ -32,7 +32,7 @@ double volume(const Complex& complex, std::size_t cell) {
   const Vec<3> origin = at[complex.faces[complex.cells[cell].front()].corners.front()];
   double six = 0.0;
   for (const int f : complex.cells[cell]) {
-    const Face& face = complex.faces[f];
+    const CellFace& face = complex.faces[f];
     const double sense = face.inner == static_cast<int>(cell) ? 1.0 : -1.0;
     const Vec<3> first = at[face.corners[0]] - origin;
     for (std::size_t i = 1; i + 1 < face.corners.size(); ++i)
@@ -41,7 +41,7 @@ double volume(const Complex& complex, std::size_t cell) {
   return six / 6.0;
 }
 
-void require_valid(const Complex& complex, const Body& body, const std::string& what) {
+void require_valid(const Complex& complex, const Prism& body, const std::string& what) {
   const auto fail = [&](std::size_t cell, const char* why) {
     throw Error(fmt::format("{}: cell {} (from 0) {}", what, cell, why));
   };
@@ -50,7 +50,7 @@ void require_valid(const Complex& complex, const Body& body, const std::string& 
     std::unordered_set<int> vertices;
     std::unordered_map<std::uint64_t, int> edges;  // how often its faces walk an edge up, less how often down
     for (const int f : complex.cells[cell]) {
-      const Face& face = complex.faces[f];
+      const CellFace& face = complex.faces[f];
       const bool is_inner = face.inner == static_cast<int>(cell);
       std::unordered_set<int> of_face;
       for (std::size_t i = 0; i < face.corners.size(); ++i) {

@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "pyroclast/base/vec.hpp"
-#include "pyroclast/solid/body.hpp"
+#include "pyroclast/solid/prism.hpp"
 
 /// Polyhedral cells that fill a body.
 namespace pyroclast::solid {
 
 /// Face of one cell, or between two.
-struct Face {
+struct CellFace {
   /// Vertices, counter-clockwise seen from outside of `inner`. Zones meet the face in the triangles of the
   /// fan from the first one.
   std::vector<int> corners;
@@ -23,20 +23,20 @@ struct Face {
 /// Cells that fill a body; neighbours share faces, faces share vertices.
 struct Complex {
   std::vector<Vec<3>> vertices;  ///< m
-  std::vector<Face> faces;
+  std::vector<CellFace> faces;
   std::vector<std::vector<int>> cells;  ///< faces of each cell
 };
 
 /// Returns the vector of a face's area, m²: out of the cell `inner`, as long as the area is large. On a bent
 /// face it is that of its mean plane.
-Vec<3> area_vector(const Complex& complex, const Face& face);
+Vec<3> area_vector(const Complex& complex, const CellFace& face);
 
 /// Returns the volume of a cell, m³.
 double volume(const Complex& complex, std::size_t cell);
 
 /// Throws Error, which begins with `what`, unless cells are closed and each has the Euler number of a ball,
 /// each vertex of a face stands once on it, and the volumes of all cells fill that of the body to 1e-9.
-void require_valid(const Complex& complex, const Body& body, const std::string& what);
+void require_valid(const Complex& complex, const Prism& body, const std::string& what);
 
 /// Cell cut into zones.
 struct ZonedCell {

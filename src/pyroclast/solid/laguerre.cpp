@@ -37,7 +37,7 @@ struct RawCell {
 
 /// Lengths in mean spacings of the seeds, from the lower corner of the body.
 struct Spacings {
-  Spacings(const Seeds& seeds, const Body& body)
+  Spacings(const SolidSeeds& seeds, const Prism& body)
       : low(body.low()), spacing(std::cbrt(body.volume() / static_cast<double>(seeds.position.size()))) {}
 
   Vec<3> of(const Vec<3>& point) const { return (point - low) * (1.0 / spacing); }
@@ -49,7 +49,7 @@ struct Spacings {
 
 class Container {
  public:
-  Container(const Seeds& seeds, const Body& body) {
+  Container(const SolidSeeds& seeds, const Prism& body) {
     const Spacings spacings(seeds, body);
     const Vec<3> size = spacings.of(body.high());
     std::array<int, 3> blocks;
@@ -106,11 +106,11 @@ class Container {
 /// Joins cells that each have their own vertices into cells that share vertices and faces.
 class Joiner {
  public:
-  Joiner(std::vector<RawCell>& cells, const Body& body) : cells_(cells), body_(body) {}
+  Joiner(std::vector<RawCell>& cells, const Prism& body) : cells_(cells), body_(body) {}
 
   std::vector<int> planes;  ///< plane of each face; -1 within the body
 
-  LaguerreResult join() {
+  LaguerreComplex join() {
     number_vertices();
     result_.complex.cells.resize(cells_.size());
     broken_.assign(cells_.size(), false);
@@ -212,8 +212,8 @@ class Joiner {
   }
 
   std::vector<RawCell>& cells_;
-  const Body& body_;
-  LaguerreResult result_;
+  const Prism& body_;
+  LaguerreComplex result_;
   std::vector<bool> broken_;
   std::unordered_map<std::uint64_t, int>
       waiting_;  ///< faces whose other cell has not come yet, by both cells
@@ -221,7 +221,7 @@ class Joiner {
 
 /// Moves the vertices of faces on planes along the axes exactly onto them.
 /// \param plane  plane of each face; -1 within the body
-void snap(Complex& complex, const Body& body, const std::vector<int>& plane) {
+void snap(Complex& complex, const Prism& body, const std::vector<int>& plane) {
   for (std::size_t f = 0; f < complex.faces.size(); ++f) {
     if (plane[f] < 0) continue;
     const auto& [normal, offset, side] = body.planes()[plane[f]];
@@ -233,7 +233,7 @@ void snap(Complex& complex, const Body& body, const std::vector<int>& plane) {
 
 }  // namespace
 
-LaguerreResult laguerre_complex(const Seeds& seeds, const Body& body, Team* team) {
+LaguerreComplex laguerre_complex(const SolidSeeds& seeds, const Prism& body, Team* team) {
   std::vector<RawCell> cells(seeds.position.size());
   Team alone;
   Team& threads = team ? *team : alone;
@@ -247,7 +247,7 @@ LaguerreResult laguerre_complex(const Seeds& seeds, const Body& body, Team* team
       container.take(block, cells);
   });
   Joiner joiner(cells, body);
-  LaguerreResult result = joiner.join();
+  LaguerreComplex result = joiner.join();
   const Spacings spacings(seeds, body);
   for (Vec<3>& v : result.complex.vertices) v = spacings.in_metres(v);
   snap(result.complex, body, joiner.planes);

@@ -9,7 +9,7 @@
 namespace pyroclast::solid {
 
 /// Complex, or the seeds that prevent it.
-struct LaguerreResult {
+struct LaguerreComplex {
   Complex complex;          ///< cell i belongs to seed i; complete only when `broken` is empty
   std::vector<int> broken;  ///< seeds whose cell is empty or does not match its neighbours, ascending
 };
@@ -18,6 +18,6 @@ struct LaguerreResult {
 /// shared: those closer than 1e-7 mean spacings are one. The result is bitwise the same for any number of
 /// threads.
 /// \param team  team that shares the cells out; without a team the calling thread works alone
-LaguerreResult laguerre_complex(const Seeds& seeds, const Body& body, Team* team = nullptr);
+LaguerreComplex laguerre_complex(const SolidSeeds& seeds, const Prism& body, Team* team = nullptr);
 
 }  // namespace pyroclast::solid

@@ -16,7 +16,7 @@ constexpr double kLeastDistance = 0.62;
 /// Boxes of the least distance's size, with the seeds in each.
 class SeedGrid {
  public:
-  SeedGrid(const Body& body, double distance) : low_(body.low()), distance_(distance) {
+  SeedGrid(const Prism& body, double distance) : low_(body.low()), distance_(distance) {
     for (int d = 0; d < 3; ++d) count_[d] = static_cast<int>((body.high()[d] - body.low()[d]) / distance) + 1;
     seeds_.resize(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2]);
   }
@@ -57,7 +57,7 @@ class SeedGrid {
 
 /// Returns the place of a point along Morton's curve (G. M. Morton, IBM, 1966): the bits of its coordinates,
 /// by turns.
-std::uint64_t place_on_curve(const Vec<3>& point, const Body& body) {
+std::uint64_t place_on_curve(const Vec<3>& point, const Prism& body) {
   constexpr int kBits = 20;
   std::array<std::uint32_t, 3> box;
   for (int d = 0; d < 3; ++d) {
@@ -71,7 +71,7 @@ std::uint64_t place_on_curve(const Vec<3>& point, const Body& body) {
 }
 
 /// Adds seeds at random places with room until there are so many.
-void fill(SeedGrid& grid, const Body& body, std::size_t count, Random& random, std::vector<Vec<3>>& places) {
+void fill(SeedGrid& grid, const Prism& body, std::size_t count, Random& random, std::vector<Vec<3>>& places) {
   while (places.size() < count) {
     Vec<3> point;
     for (int d = 0; d < 3; ++d) point[d] = random.uniform(body.low()[d], body.high()[d]);
@@ -81,16 +81,16 @@ void fill(SeedGrid& grid, const Body& body, std::size_t count, Random& random, s
   }
 }
 
-double least_distance(const Body& body, std::size_t count) {
+double least_distance(const Prism& body, std::size_t count) {
   return kLeastDistance * std::cbrt(body.volume() / static_cast<double>(count));
 }
 
 }  // namespace
 
-Seeds spaced_seeds(const Body& body, int count, double spread, Random& random) {
+SolidSeeds spaced_seeds(const Prism& body, int count, double spread, Random& random) {
   const double spacing = std::cbrt(body.volume() / count);
   SeedGrid grid(body, least_distance(body, static_cast<std::size_t>(count)));
-  Seeds seeds;
+  SolidSeeds seeds;
   auto& places = seeds.position;
   fill(grid, body, static_cast<std::size_t>(count), random, places);
   std::ranges::sort(places, {}, [&](const Vec<3>& p) { return place_on_curve(p, body); });
@@ -99,7 +99,7 @@ Seeds spaced_seeds(const Body& body, int count, double spread, Random& random) {
   return seeds;
 }
 
-void redraw(Seeds& seeds, const std::vector<int>& which, const Body& body, Random& random) {
+void redraw(SolidSeeds& seeds, const std::vector<int>& which, const Prism& body, Random& random) {
   const std::size_t count = seeds.position.size();
   SeedGrid grid(body, least_distance(body, count));
   std::vector<Vec<3>> places;

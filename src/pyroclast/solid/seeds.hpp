@@ -4,13 +4,13 @@
 
 #include "pyroclast/base/random.hpp"
 #include "pyroclast/base/vec.hpp"
-#include "pyroclast/solid/body.hpp"
+#include "pyroclast/solid/prism.hpp"
 
 namespace pyroclast::solid {
 
 /// Seeds of a Laguerre (power) tessellation: a point belongs to the seed with the least
 /// |x - position|^2 - radius^2.
-struct Seeds {
+struct SolidSeeds {
   std::vector<Vec<3>> position;  ///< m
   std::vector<double> radius;    ///< radius of each seed, m; all equal: a Voronoi tessellation
 };
@@ -19,9 +19,9 @@ struct Seeds {
 /// them along Morton's curve, so that cells with near numbers lie near each other.
 /// \param count   number of seeds, 1 or more
 /// \param spread  spread of the radii, which are uniform in [1 - spread, 1 + spread] x mean spacing / 2
-Seeds spaced_seeds(const Body& body, int count, double spread, Random& random);
+SolidSeeds spaced_seeds(const Prism& body, int count, double spread, Random& random);
 
 /// Draws some of the seeds anew, which keep their radii and their distance from all others.
-void redraw(Seeds& seeds, const std::vector<int>& which, const Body& body, Random& random);
+void redraw(SolidSeeds& seeds, const std::vector<int>& which, const Prism& body, Random& random);
 
 }  // namespace pyroclast::solid

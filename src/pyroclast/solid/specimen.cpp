@@ -42,8 +42,8 @@ std::vector<const specimen::AggregateParameters*> kinds_of(const specimen::Speci
 }
 
 void add_balls(const std::vector<const specimen::AggregateParameters*>& kinds, Random& random,
-               Specimen& specimen) {
-  const Body& body = specimen.body;
+               SolidSpecimen& specimen) {
+  const Prism& body = specimen.body;
   const specimen::Room<3> room{body.low(), body.high(), body.volume(),
                                [&body](const Vec<3>& point) { return body.distance(point); }};
   for (int kind = 0; kind < static_cast<int>(kinds.size()); ++kind) {
@@ -67,11 +67,11 @@ void add_balls(const std::vector<const specimen::AggregateParameters*>& kinds, R
 }
 
 /// Tessellates the body. Seeds whose cells fail are drawn anew.
-Complex tessellate(const specimen::BlockParameters& p, const Body& body, Random& random, Team* team,
+Complex tessellate(const specimen::BlockParameters& p, const Prism& body, Random& random, Team* team,
                    int& seeds_redrawn) {
-  Seeds seeds = spaced_seeds(body, p.count, p.radius_spread, random);
+  SolidSeeds seeds = spaced_seeds(body, p.count, p.radius_spread, random);
   for (int round = 0; round < kMostRounds; ++round) {
-    LaguerreResult result = laguerre_complex(seeds, body, team);
+    LaguerreComplex result = laguerre_complex(seeds, body, team);
     if (result.broken.empty()) {
       require_valid(result.complex, body, fmt::format("Tessellation of {} blocks", p.count));
       return std::move(result.complex);
@@ -85,11 +85,11 @@ Complex tessellate(const specimen::BlockParameters& p, const Body& body, Random&
                   p.place.empty() ? "" : p.place + ": ", p.count, kMostRounds));
 }
 
-BlockMetrics measure(const Complex& complex, const Body& body) {
-  BlockMetrics metrics;
+CellMetrics measure(const Complex& complex, const Prism& body) {
+  CellMetrics metrics;
   metrics.shortest_edge = std::numeric_limits<double>::infinity();
   std::size_t zones = 0;
-  for (const Face& face : complex.faces) {
+  for (const CellFace& face : complex.faces) {
     const auto corners = static_cast<int>(face.corners.size());
     zones += static_cast<std::size_t>(corners - 2) * (face.outer >= 0 ? 2 : 1);
     if (face.outer >= 0) metrics.most_corners = std::max(metrics.most_corners, corners);
@@ -105,7 +105,7 @@ BlockMetrics measure(const Complex& complex, const Body& body) {
 
 /// Returns the size classes of all kinds: the intervals between their sieves.
 std::vector<SizeClass> classes_of(const std::vector<const specimen::AggregateParameters*>& kinds,
-                                  const Specimen& specimen, const std::vector<int>& stone,
+                                  const SolidSpecimen& specimen, const std::vector<int>& stone,
                                   const std::vector<double>& volumes) {
   std::vector<double> superposed(specimen.balls.size());
   for (std::size_t cell = 0; cell < stone.size(); ++cell)
@@ -135,11 +135,11 @@ std::vector<SizeClass> classes_of(const std::vector<const specimen::AggregatePar
 
 }  // namespace
 
-double block_size(const Body& body, int blocks) {
+double block_size(const Prism& body, int blocks) {
   return std::cbrt(body.volume() / blocks);
 }
 
-std::vector<std::string> warnings(const Specimen& s) {
+std::vector<std::string> warnings(const SolidSpecimen& s) {
   std::vector<std::string> lines;
   const auto is_small = [&](const Ball& ball) {
     return ball.diameter < kSmallestStone * s.metrics.mean_size;
@@ -157,18 +157,18 @@ std::vector<std::string> warnings(const Specimen& s) {
   return lines;
 }
 
-Specimen make_specimen(const specimen::SpecimenParameters& p, const Body& body, Team* team) {
+SolidSpecimen make_specimen(const specimen::SpecimenParameters& p, const Prism& body, Team* team) {
   // Aggregates and blocks draw from streams of their own: another number of blocks leaves the aggregates
   // where they are.
   Random aggregate_random(2 * p.seed), block_random(2 * p.seed + 1);
   const auto kinds = kinds_of(p);
-  Specimen specimen;
+  SolidSpecimen specimen;
   specimen.body = body;
   specimen.phases = specimen::phases(p);
   specimen.matrix = index_of(specimen.phases, p.matrix);
   add_balls(kinds, aggregate_random, specimen);
   specimen.complex = tessellate(p.blocks, body, block_random, team, specimen.metrics.seeds_redrawn);
-  const Superposed superposed = superpose(specimen.complex, body, specimen.balls, p);
+  const SuperposedBalls superposed = superpose(specimen.complex, body, specimen.balls, p);
   specimen.covered_fraction = superposed.covered_fraction;
   std::vector<double> volumes;
   specimen.fraction.assign(specimen.phases.size(), 0.0);

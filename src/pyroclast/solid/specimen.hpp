@@ -21,7 +21,7 @@ struct SizeClass {
 };
 
 /// Quality of the blocks; lengths in m.
-struct BlockMetrics {
+struct CellMetrics {
   double mean_size = 0.0;        ///< cube root of the mean volume, the block size
   double shortest_edge = 0.0;    ///< shortest edge of any block
   double zones_per_block = 0.0;  ///< mean number of zones
@@ -30,8 +30,8 @@ struct BlockMetrics {
 };
 
 /// Meso-scale specimen in space: blocks, their phases, and the outcome of the request.
-struct Specimen {
-  Body body;
+struct SolidSpecimen {
+  Prism body;
   Complex complex;
   std::vector<std::string> phases;  ///< phases that blocks can have
   int matrix = 0;                   ///< index into `phases`
@@ -42,7 +42,7 @@ struct Specimen {
   double covered_fraction = 0.0;  ///< covered fraction above which a block became aggregate
   std::vector<double> fraction;   ///< volume of the blocks of each phase over that of the specimen
   std::vector<SizeClass> classes;
-  BlockMetrics metrics;
+  CellMetrics metrics;
 };
 
 /// Makes a specimen by gradation, placement, tessellation and superposition, in this order, as in the plane
@@ -50,13 +50,13 @@ struct Specimen {
 /// placed fraction is off by more than 0.01, or no tessellation can be made.
 /// \param parameters  parameters, of which the region is the section of the body
 /// \param team        team that shares the cells out; without a team the calling thread works alone
-Specimen make_specimen(const specimen::SpecimenParameters& parameters, const Body& body,
-                       Team* team = nullptr);
+SolidSpecimen make_specimen(const specimen::SpecimenParameters& parameters, const Prism& body,
+                            Team* team = nullptr);
 
 /// Returns what a user should know of a specimen that differs from the request, one line each.
-std::vector<std::string> warnings(const Specimen& specimen);
+std::vector<std::string> warnings(const SolidSpecimen& specimen);
 
 /// Returns the size of a block: cube root of the body's volume over the number of blocks, m.
-double block_size(const Body& body, int blocks);
+double block_size(const Prism& body, int blocks);
 
 }  // namespace pyroclast::solid

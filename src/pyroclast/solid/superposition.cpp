@@ -73,7 +73,7 @@ double common_volume_of_tetrahedron(const std::array<Vec<3>, 3>& corner, double 
 template <class F>
 void for_each_triangle(const Complex& complex, std::size_t cell, F f) {
   for (const int number : complex.cells[cell]) {
-    const Face& face = complex.faces[number];
+    const CellFace& face = complex.faces[number];
     const auto at = [&](std::size_t i) { return complex.vertices[face.corners[i]]; };
     for (std::size_t i = 1; i + 1 < face.corners.size(); ++i) {
       if (face.inner == static_cast<int>(cell))
@@ -92,7 +92,7 @@ struct Cover {
 };
 
 /// Returns the covers of all cells, cell by cell.
-std::vector<Cover> covers_of(const Complex& complex, const Body& body, const std::vector<Ball>& balls) {
+std::vector<Cover> covers_of(const Complex& complex, const Prism& body, const std::vector<Ball>& balls) {
   double bin = norm(body.high() - body.low());
   for (const Ball& ball : balls) bin = std::min(bin, 2.0 * ball.diameter);
   specimen::StoneGrid<3> grid(body.low(), body.high(), bin);
@@ -118,7 +118,7 @@ std::vector<Cover> covers_of(const Complex& complex, const Body& body, const std
 }
 
 /// Returns the ball around the centroid of each cell.
-std::vector<int> balls_at_centroids(const Complex& complex, const Body& body,
+std::vector<int> balls_at_centroids(const Complex& complex, const Prism& body,
                                     const std::vector<Ball>& balls) {
   double bin = norm(body.high() - body.low());
   for (const Ball& ball : balls) bin = std::min(bin, 2.0 * ball.diameter);
@@ -164,9 +164,9 @@ double common_volume(const Complex& complex, std::size_t cell, const Vec<3>& cen
   return volume < kRounding * ball ? 0.0 : volume;
 }
 
-Superposed superpose(const Complex& complex, const Body& body, const std::vector<Ball>& balls,
-                     const specimen::SpecimenParameters& parameters) {
-  Superposed result{std::vector<int>(complex.cells.size(), -1), parameters.covered_fraction};
+SuperposedBalls superpose(const Complex& complex, const Prism& body, const std::vector<Ball>& balls,
+                          const specimen::SpecimenParameters& parameters) {
+  SuperposedBalls result{std::vector<int>(complex.cells.size(), -1), parameters.covered_fraction};
   if (balls.empty()) return result;
   if (parameters.superposition == specimen::Superposition::centroid) {
     result.stone = balls_at_centroids(complex, body, balls);

@@ -13,7 +13,7 @@ using Ball = specimen::RoundStone<3>;
 double common_volume(const Complex& complex, std::size_t cell, const Vec<3>& centre, double radius);
 
 /// Result of superposing balls on cells.
-struct Superposed {
+struct SuperposedBalls {
   std::vector<int> stone;  ///< ball to which each cell belongs, index into the balls; -1: to the matrix
   double covered_fraction = 0.0;  ///< fraction above which a cell is of its balls, as stated or as it fits
 };
@@ -21,7 +21,7 @@ struct Superposed {
 /// Superposes balls on cells. By the rule `fit` each ball first takes one cell, the one of which it covers
 /// most and that no larger ball took; then the cells that are covered most become aggregate, until their
 /// volume comes as near as it can to that of the balls. The other rules are as in the plane.
-Superposed superpose(const Complex& complex, const Body& body, const std::vector<Ball>& balls,
-                     const specimen::SpecimenParameters& parameters);
+SuperposedBalls superpose(const Complex& complex, const Prism& body, const std::vector<Ball>& balls,
+                          const specimen::SpecimenParameters& parameters);
 
 }  // namespace pyroclast::solid

@@ -8,7 +8,7 @@ ZonedCell zone_cell(const Complex& complex, std::size_t cell) {
   ZonedCell zoned;
   std::vector<std::array<int, 3>> triangles;  // gridpoints, counter-clockwise seen from outside
   for (const int f : complex.cells[cell]) {
-    const Face& face = complex.faces[f];
+    const CellFace& face = complex.faces[f];
     std::vector<int> corners;
     for (const int v : face.corners) {
       const auto gridpoint = static_cast<int>(std::ranges::find(zoned.vertices, v) - zoned.vertices.begin());

@@ -12,20 +12,20 @@ namespace pyroclast::solid {
 struct Plane {
   Vec<3> normal;  ///< unit vector, out of the body
   double offset;  ///< m
-  int side;       ///< index into Body::sides
+  int side;       ///< index into Prism::sides
 };
 
 /// Body in space: a prism. Its section is a region of the plane, its axis runs along z or y.
-class Body {
+class Prism {
  public:
   enum class Axis { y, z };
 
-  Body() = default;
+  Prism() = default;
   /// Makes a prism from 0 to `length`, m, along its axis. Along z the section lies in x and y; its ends are
   /// the sides `front`, z = 0, and `back`. Along y the first coordinate of the section is z, the second is x;
   /// its ends are `bottom`, y = 0, and `top`. Throws Error unless the section is convex, without holes and
   /// notches.
-  Body(specimen::Region section, Axis axis, double length);
+  Prism(specimen::Region section, Axis axis, double length);
 
   const std::vector<std::string>& sides() const { return sides_; }
   const std::vector<Plane>& planes() const { return planes_; }

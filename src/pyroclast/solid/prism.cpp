@@ -1,4 +1,4 @@
-#include "pyroclast/solid/body.hpp"
+#include "pyroclast/solid/prism.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -32,7 +32,7 @@ void require_convex(const specimen::Region& section) {
 
 }  // namespace
 
-Body::Body(specimen::Region section, Axis axis, double length) : section_(std::move(section)), axis_(axis) {
+Prism::Prism(specimen::Region section, Axis axis, double length) : section_(std::move(section)), axis_(axis) {
   require_convex(section_);
   for (const auto& side : section_.sides()) sides_.push_back(side.name);
   for (const auto& [from, to, side] : section_.pieces()) {
@@ -50,12 +50,12 @@ Body::Body(specimen::Region section, Axis axis, double length) : section_(std::m
   volume_ = section_.area() * length;
 }
 
-Vec<3> Body::in_space(const Vec<2>& of_section, double along) const {
+Vec<3> Prism::in_space(const Vec<2>& of_section, double along) const {
   if (axis_ == Axis::z) return {{of_section[0], of_section[1], along}};
   return {{of_section[1], along, of_section[0]}};
 }
 
-double Body::distance(const Vec<3>& point) const {
+double Prism::distance(const Vec<3>& point) const {
   double farthest = -std::numeric_limits<double>::infinity();
   for (const Plane& plane : planes_) farthest = std::max(farthest, dot(plane.normal, point) - plane.offset);
   return farthest;
