@@ -56,12 +56,12 @@ class Shares {
  public:
   Shares(const State<Dim>& s, const std::vector<const pyroclast::LawTable*>& laws)
       : held_(held_share(s, laws)), combined_(s.damping_form == pyroclast::DampingForm::combined) {
-    int packs_of_pieces = 0;
+    int other_packs = 0;
     for (const Bundle& bundle : s.layout.bundles)
-      if (bundle.kind != BundleKind::alike) packs_of_pieces += bundle.packs;
-    const double of_pieces = static_cast<double>(packs_of_pieces) / static_cast<double>(s.velocity.size());
-    alike_ = 1.0 - of_pieces;
-    gathered_ = s.kinematics == pyroclast::Kinematics::finite ? 1.0 : of_pieces;
+      if (bundle.kind != BundleKind::alike) other_packs += bundle.packs;
+    const double of_others = static_cast<double>(other_packs) / static_cast<double>(s.velocity.size());
+    alike_ = 1.0 - of_others;
+    gathered_ = s.kinematics == pyroclast::Kinematics::finite ? 1.0 : of_others;
   }
 
   double of(Touched touched) const {

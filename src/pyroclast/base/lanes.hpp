@@ -158,7 +158,9 @@ struct Portable {
     store(p + 2, __builtin_shufflevector(z, x, 0, 3));
     store(p + 4, __builtin_shufflevector(y, z, 1, 3));
   }
-  /// Reads triples, that of lane i at at(i), and puts their numbers apart into x, y and z.
+  /// Reads triples, that of lane i at at(i), and puts their numbers apart into x, y and z. Some sets read
+  /// four numbers, of which the last is left out: one number more must stand behind the last triple of an
+  /// array (FlatArray has it).
   template <class At>
   static void gather_triples(At at, Value& x, Value& y, Value& z) {
     const double *const p = at(0), *const q = at(1);
@@ -291,8 +293,6 @@ struct Avx2 {
     _mm256_store_pd(p + 4, _mm256_blend_pd(yz, xy, 0b1100));
     _mm256_store_pd(p + 8, _mm256_permute2f128_pd(zx, yz, 0x31));
   }
-  // Triples come by loads of four numbers, of which the last is left out: one number more must stand behind
-  // the last triple of an array (FlatArray has it).
   template <class At>
   static void gather_triples(At at, Value& x, Value& y, Value& z) {
     part_fours(_mm256_loadu_pd(at(0)), _mm256_loadu_pd(at(1)), _mm256_loadu_pd(at(2)), _mm256_loadu_pd(at(3)),
@@ -319,6 +319,7 @@ struct Avx2 {
   static void add_to_fours(At at, Value x, Value y, Value z) {
     for_each_four(x, y, z, [&](int i, Value four) { _mm256_store_pd(at(i), _mm256_load_pd(at(i)) + four); });
   }
+  /// Puts the first three numbers of the fours of four lanes apart.
   static void part_fours(Value a, Value b, Value c, Value d, Value& x, Value& y, Value& z) {
     const Value xz01 = _mm256_unpacklo_pd(a, b), xz23 = _mm256_unpacklo_pd(c, d);
     x = _mm256_permute2f128_pd(xz01, xz23, 0x20);
@@ -439,11 +440,12 @@ struct Avx512 {
     for_each_four(x, y, z,
                   [&](int i, __m256d four) { _mm256_store_pd(at(i), _mm256_load_pd(at(i)) + four); });
   }
+  /// Reads the fours of two lanes into one vector.
   template <class At>
   static Value two_fours(At at, int i, int j) {
     return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(at(i))), _mm256_loadu_pd(at(j)), 1);
   }
-  /// Parts fours of the lanes 0 and 2, 1 and 3, 4 and 6, 5 and 7.
+  /// Puts the first three numbers of the fours of eight lanes apart: 0 and 2, 1 and 3, 4 and 6, 5 and 7.
   static void part_fours(Value a, Value b, Value c, Value d, Value& x, Value& y, Value& z) {
     const Value xz0 = _mm512_unpacklo_pd(a, b), xz4 = _mm512_unpacklo_pd(c, d);
     x = _mm512_shuffle_f64x2(xz0, xz4, 0b10001000);

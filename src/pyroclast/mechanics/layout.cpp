@@ -12,6 +12,8 @@ namespace pyroclast {
 
 namespace {
 
+/// Number of places that RaggedCorners can tell apart; a four has four of them.
+constexpr int kMostPlaces = 1 << 16;
 /// Thickness of a layer, in blocks.
 constexpr double kLayerThickness = 2.0;
 /// Largest distance between the later bundles of a chunk's own faces that share lanes, in bundles.
@@ -233,20 +235,28 @@ class LayoutBuilder {
 
   int bundle_count() const { return static_cast<int>(bundles_.size()); }
 
+  void place_chunk(int first_block, int last_block) {
+    if constexpr (Dim == 2)
+      bundle_alike(first_block, last_block);
+    else
+      bundle_alone(first_block, last_block);
+  }
+
+  /// Bundles each block of a chunk by itself.
+  void bundle_alone(int first_block, int last_block) {
+    for (int block : order_blocks(model_, first_block, last_block)) {
+      const int gridpoints = model_.block_gridpoints[block + 1] - model_.block_gridpoints[block];
+      if (gridpoints <= std::min(parameters_.most_gridpoints, kMostPlaces / 4) && has_centre(block))
+        add_ragged(block);
+      else
+        add_pieces(block);
+    }
+  }
+
   /// Bundles the blocks of a chunk. Blocks with the same zones share lanes, whatever their distance: a chunk
   /// fits into a cache. Groups that do not fill all lanes come last, in the order in which the chunk, not the
   /// body, meets their shapes.
-  void place_chunk(int first_block, int last_block) {
-    if constexpr (Dim == 3) {
-      for (int block : order_blocks(model_, first_block, last_block)) {
-        const int gridpoints = model_.block_gridpoints[block + 1] - model_.block_gridpoints[block];
-        if (gridpoints <= parameters_.most_gridpoints && has_centre(block))
-          add_ragged(block);
-        else
-          add_pieces(block);
-      }
-      return;
-    }
+  void bundle_alike(int first_block, int last_block) {
     std::map<int, std::size_t> group_of_shape;
     std::vector<std::pair<int, std::vector<int>>> waiting;  // shapes and their blocks
     for (int block : order_blocks(model_, first_block, last_block)) {

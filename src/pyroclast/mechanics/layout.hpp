@@ -30,9 +30,8 @@
 /// slot     a place in a pack: slot = 8 pack + lane
 /// offset   place where the vector of a slot begins in an array of numbers: Dim slot
 /// idle     a place that nothing fills; nothing acts on it
-/// bundle   blocks that go through a step together: `alike`, or one `ragged`; or a `piece`: a block, or a
-/// part
-///          of a large one
+/// bundle   blocks that go through a step together: `alike` ones, a `ragged` one, or a `piece`, which is a
+///          block or a part of a large one
 /// shape    the zones of a block, as numbers of its own gridpoints; alike blocks have the same shape
 /// fan      a shape whose zones go round the last gridpoint, in the order of the others
 /// centre   the last gridpoint of a block where it is the last corner of all its zones (3D)
@@ -52,8 +51,8 @@ enum class BundleKind : std::uint8_t {
   /// Up to eight blocks with the same zones, one a lane: pack i holds the i-th gridpoint of each. Only in 2D:
   /// hardly two polyhedra have the same zones.
   alike,
-  /// One block in 3D over all lanes, with a centre. Its zones look their corners up
-  /// among its own gridpoints, and add their forces to sums of its own.
+  /// One block in 3D over all lanes, with a centre. Its zones look their corners up among its own gridpoints,
+  /// and add their forces to sums of its own. Large blocks, and those without a centre, stand in pieces.
   ragged,
   /// One block over all lanes, or a part of a large block: its gridpoints and zones follow one another
   /// through the packs, piece after piece. The forces of zones on their corners are written first; then each
@@ -265,7 +264,7 @@ struct LayoutParameters {
   int fewest_blocks = 4;
   /// Zones of a piece, 8 or more; a block of more stands in several, as far as its gridpoints fill them.
   int most_zones = 64;
-  /// Gridpoints of a ragged bundle; a block of more stands in pieces, which threads share.
+  /// Gridpoints of a ragged bundle, 16,384 or fewer; a block of more stands in pieces, which threads share.
   int most_gridpoints = 255;
 };
 

@@ -11,7 +11,7 @@ namespace {
 constexpr double kPieceCost = 1.1, kPartCost = 0.4;
 
 double cost(const Bundle& bundle) {
-  const double of_zones = bundle.kind == BundleKind::alike ? 1.0 : bundle.is_part ? kPartCost : kPieceCost;
+  const double of_zones = bundle.kind != BundleKind::piece ? 1.0 : bundle.is_part ? kPartCost : kPieceCost;
   return of_zones * bundle.zone_packs();
 }
 

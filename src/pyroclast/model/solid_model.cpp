@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -68,6 +67,9 @@ SolidBearing add_bearing(ModelOf<3>& model, const solid::SolidSpecimen& specimen
       if (block.column.try_emplace(v, static_cast<int>(inner.size())).second)
         inner.push_back(complex.vertices[v]);
   }
+  if (block.faces.empty() || !(bearing.thickness > 0.0))
+    throw Error(fmt::format("bearing \"{}\": {}", bearing.name,
+                            block.faces.empty() ? "no block lies on its side" : "it has no thickness"));
   outward *= 1.0 / norm(outward);
   block.columns = static_cast<int>(inner.size());
   const auto heights = bearing_rows(bearing.thickness, std::sqrt(area / static_cast<double>(block.columns)));
@@ -201,7 +203,8 @@ ModelOf<3> make_solid_model(const solid::SolidSpecimen& specimen,
   // a corner of a block may belong to several faces
   for (const std::string& name : sides) sort_unique(model.sets[name]);
   sort_unique(model.sets["outline"]);
-  if (const auto rim = model.sets.find("rim"); rim != model.sets.end())
+  if (const auto rim = model.sets.find("rim");
+      rim != model.sets.end() && specimen.body.axis() == solid::Prism::Axis::y)
     add_quarters(model, rim->second, specimen.body);
   return model;
 }

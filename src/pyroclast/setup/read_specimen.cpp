@@ -702,9 +702,10 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
     s.error("file", "is needed where specimen.shape is \"tessellation\"");
   b.place = fmt::format("{}: {}", s.where(s.has("size") ? "size" : "count"), s.path());
   if (s.has("size")) {
-    if (s.has("count")) s.error("count", "has no meaning beside size, from which the number of blocks follows");
+    if (s.has("count"))
+      s.error("count", "has no meaning beside size, from which the number of blocks follows");
     read.size = s.quantity("size", unit::length, Range::positive(),
-                           "mean size of a block, the root of its area, in the place of their number");
+                           "mean size of a block, the root of its area, instead of `count`");
   } else {
     b.count = static_cast<int>(s.integer("count", kBlockCount, "number of blocks"));
   }
@@ -721,8 +722,8 @@ ReadBlocks read_blocks(const Section& s, const std::filesystem::path& folder, co
 int count_of(const Section& blocks, const specimen::Region& region, double size) {
   const double count = std::round(region.area() / (size * size));
   if (kBlockCount.contains(count)) return static_cast<int>(count);
-  blocks.error("size", fmt::format("gives {:.6g} blocks, but their number must be {}", count,
-                                   kBlockCount.describe()));
+  blocks.error(
+      "size", fmt::format("gives {:.6g} blocks, but their number must be {}", count, kBlockCount.describe()));
   return 0;
 }
 

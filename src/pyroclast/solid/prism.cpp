@@ -1,6 +1,7 @@
 #include "pyroclast/solid/prism.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -41,8 +42,11 @@ Prism::Prism(specimen::Region section, Axis axis, double length) : section_(std:
     planes_.push_back({in_space(out, 0.0), dot(out, from), side});
   }
   const int first_end = static_cast<int>(sides_.size());
-  for (const char* const end : axis == Axis::z ? std::array{"front", "back"} : std::array{"bottom", "top"})
+  for (const char* const end : axis == Axis::z ? std::array{"front", "back"} : std::array{"bottom", "top"}) {
+    if (std::ranges::find(sides_, end) != sides_.end())
+      throw Error(fmt::format("a side of the section has the name of an end of the prism, \"{}\"", end));
     sides_.emplace_back(end);
+  }
   planes_.push_back({in_space({}, -1.0), 0.0, first_end});
   planes_.push_back({in_space({}, 1.0), length, first_end + 1});
   low_ = in_space(section_.box().low, 0.0);

@@ -24,7 +24,7 @@ class Prism {
   /// Makes a prism from 0 to `length`, m, along its axis. Along z the section lies in x and y; its ends are
   /// the sides `front`, z = 0, and `back`. Along y the first coordinate of the section is z, the second is x;
   /// its ends are `bottom`, y = 0, and `top`. Throws Error unless the section is convex, without holes and
-  /// notches.
+  /// notches, and has no side with the name of an end.
   Prism(specimen::Region section, Axis axis, double length);
 
   const std::vector<std::string>& sides() const { return sides_; }
@@ -33,6 +33,7 @@ class Prism {
   const Vec<3>& high() const { return high_; }  ///< Returns the upper corner, m.
   double volume() const { return volume_; }     ///< Returns the volume, m³.
   const specimen::Region& section() const { return section_; }
+  Axis axis() const { return axis_; }
   /// Returns the distance from the nearest of the planes, m, negative within the body.
   double distance(const Vec<3>& point) const;
 

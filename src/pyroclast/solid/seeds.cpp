@@ -9,8 +9,9 @@ namespace pyroclast::solid {
 
 namespace {
 
-/// Least distance of seeds, in mean spacings. Random places fill a body to 0.90 (hard spheres placed one by
-/// one come to a stop at a share of 0.38); at 0.62 about two of three tries find room.
+/// Least distance of seeds, in mean spacings. Seeds placed one by one find no more room from 0.90 on: hard
+/// spheres then take a share of 0.38 (Torquato, Uche and Stillinger, Phys. Rev. E 74 (2006) 061308). At 0.62
+/// the last ones find room in a third of their tries, so that the search ends soon.
 constexpr double kLeastDistance = 0.62;
 
 /// Boxes of the least distance's size, with the seeds in each.

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -28,6 +30,28 @@ int index_of(const std::vector<std::string>& phases, const std::string& name) {
   return static_cast<int>(std::ranges::find(phases, name) - phases.begin());
 }
 
+/// Throws Error for what a solid cannot have, or a parameter out of range.
+void require_possible(const specimen::SpecimenParameters& p) {
+  if (p.cells || p.blocks.tessellation || !p.blocks.phases.empty())
+    throw Error("a solid cannot be made of cells from elsewhere yet");
+  if (p.blocks.relaxation != 0) throw Error("the cells of a solid cannot be relaxed yet");
+  if (p.blocks.count < 1) throw Error(fmt::format("a solid of {} blocks cannot be made", p.blocks.count));
+  if (!(p.blocks.radius_spread >= 0.0 && p.blocks.radius_spread < 1.0))
+    throw Error(
+        fmt::format("the radius spread is {:g}, but it must be from 0 to below 1", p.blocks.radius_spread));
+}
+
+/// Throws Error for a grading that is none.
+void require_grading(const specimen::AggregateParameters& p) {
+  if (p.fraction == 0.0) return;
+  if (!(p.fraction > 0.0 && p.fraction < 1.0))
+    throw Error(fmt::format("the aggregate fraction is {:g}, but it must be from 0 to below 1", p.fraction));
+  const bool ascend = std::ranges::adjacent_find(p.sieves, std::ranges::greater_equal()) == p.sieves.end();
+  if (p.sieves.size() < 2 || !ascend || !(p.d_min > 0.0) || p.sieves.front() != p.d_min ||
+      p.sieves.back() != p.d_max)
+    throw Error("the sieves of the aggregates must ascend from d_min, above 0, to d_max");
+}
+
 /// Returns the kinds of aggregate: the first, and inclusions that are round. Throws Error for others.
 std::vector<const specimen::AggregateParameters*> kinds_of(const specimen::SpecimenParameters& p) {
   std::vector<const specimen::AggregateParameters*> kinds{&p.aggregates};
@@ -36,8 +60,10 @@ std::vector<const specimen::AggregateParameters*> kinds_of(const specimen::Speci
     if (round == nullptr) throw Error("a solid cannot have fibres yet");
     kinds.push_back(round);
   }
-  for (const auto* const kind : kinds)
+  for (const auto* const kind : kinds) {
     if (!kind->stones.empty()) throw Error("a solid cannot have stones from a list yet");
+    require_grading(*kind);
+  }
   return kinds;
 }
 
@@ -59,11 +85,14 @@ void add_balls(const std::vector<const specimen::AggregateParameters*>& kinds, R
   }
   for (const Ball& ball : specimen.balls)
     specimen.fraction_placed += specimen::extent_of_round<3>(ball.diameter) / body.volume();
-  if (std::abs(specimen.fraction_placed - specimen.fraction_asked) > kFractionError)
-    throw Error(fmt::format(
-        "The aggregates take up a fraction of {:.4f}, {:.4f} was asked for and {} is allowed between them: "
-        "the smallest aggregate, {:.4g} m, is too large for the specimen.",
-        specimen.fraction_placed, specimen.fraction_asked, kFractionError, kinds.front()->d_min));
+  if (std::abs(specimen.fraction_placed - specimen.fraction_asked) <= kFractionError) return;
+  double smallest = 0.0;
+  for (const auto* const kind : kinds)
+    if (kind->fraction > 0.0) smallest = std::max(smallest, kind->d_min);
+  throw Error(fmt::format(
+      "The aggregates take up a fraction of {:.4f}, {:.4f} was asked for and {} is allowed between them: a "
+      "smallest aggregate of {:.4g} m is too large for the specimen.",
+      specimen.fraction_placed, specimen.fraction_asked, kFractionError, smallest));
 }
 
 /// Tessellates the body. Seeds whose cells fail are drawn anew.
@@ -99,7 +128,7 @@ CellMetrics measure(const Complex& complex, const Prism& body) {
           norm(complex.vertices[face.corners[(i + 1) % corners]] - complex.vertices[face.corners[i]]));
   }
   metrics.zones_per_block = static_cast<double>(zones) / static_cast<double>(complex.cells.size());
-  metrics.mean_size = block_size(body, static_cast<int>(complex.cells.size()));
+  metrics.mean_size = std::cbrt(body.volume() / static_cast<double>(complex.cells.size()));
   return metrics;
 }
 
@@ -135,10 +164,6 @@ std::vector<SizeClass> classes_of(const std::vector<const specimen::AggregatePar
 
 }  // namespace
 
-double block_size(const Prism& body, int blocks) {
-  return std::cbrt(body.volume() / blocks);
-}
-
 std::vector<std::string> warnings(const SolidSpecimen& s) {
   std::vector<std::string> lines;
   const auto is_small = [&](const Ball& ball) {
@@ -161,6 +186,7 @@ SolidSpecimen make_specimen(const specimen::SpecimenParameters& p, const Prism& 
   // Aggregates and blocks draw from streams of their own: another number of blocks leaves the aggregates
   // where they are.
   Random aggregate_random(2 * p.seed), block_random(2 * p.seed + 1);
+  require_possible(p);
   const auto kinds = kinds_of(p);
   SolidSpecimen specimen;
   specimen.body = body;

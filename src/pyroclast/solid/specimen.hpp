@@ -39,7 +39,7 @@ struct SolidSpecimen {
   std::vector<Ball> balls;          ///< balls as placed, those of each kind largest first
   /// Volume of balls asked for and placed, and of blocks that are not matrix, over that of the specimen.
   double fraction_asked = 0.0, fraction_placed = 0.0, fraction_superposed = 0.0;
-  double covered_fraction = 0.0;  ///< covered fraction above which a block became aggregate
+  double covered_fraction = 0.0;  ///< see SuperposedBalls
   std::vector<double> fraction;   ///< volume of the blocks of each phase over that of the specimen
   std::vector<SizeClass> classes;
   CellMetrics metrics;
@@ -48,15 +48,12 @@ struct SolidSpecimen {
 /// Makes a specimen by gradation, placement, tessellation and superposition, in this order, as in the plane
 /// but with balls, by volume. Throws Error when a parameter is out of range, the aggregates do not fit, the
 /// placed fraction is off by more than 0.01, or no tessellation can be made.
-/// \param parameters  parameters, of which the region is the section of the body
+/// \param parameters  parameters, whose region and shortest edge are not read
 /// \param team        team that shares the cells out; without a team the calling thread works alone
 SolidSpecimen make_specimen(const specimen::SpecimenParameters& parameters, const Prism& body,
                             Team* team = nullptr);
 
 /// Returns what a user should know of a specimen that differs from the request, one line each.
 std::vector<std::string> warnings(const SolidSpecimen& specimen);
-
-/// Returns the size of a block: cube root of the body's volume over the number of blocks, m.
-double block_size(const Prism& body, int blocks);
 
 }  // namespace pyroclast::solid

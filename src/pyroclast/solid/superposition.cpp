@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <map>
-#include <numbers>
 #include <numeric>
 
 #include "pyroclast/specimen/gradation.hpp"
@@ -84,6 +82,14 @@ void for_each_triangle(const Complex& complex, std::size_t cell, F f) {
   }
 }
 
+specimen::StoneGrid<3> grid_of(const Prism& body, const std::vector<Ball>& balls) {
+  double bin = norm(body.high() - body.low());
+  for (const Ball& ball : balls) bin = std::min(bin, 2.0 * ball.diameter);
+  specimen::StoneGrid<3> grid(body.low(), body.high(), bin);
+  for (const Ball& ball : balls) grid.insert(ball);
+  return grid;
+}
+
 /// Share of a cell that a ball covers.
 struct Cover {
   int cell;
@@ -93,10 +99,7 @@ struct Cover {
 
 /// Returns the covers of all cells, cell by cell.
 std::vector<Cover> covers_of(const Complex& complex, const Prism& body, const std::vector<Ball>& balls) {
-  double bin = norm(body.high() - body.low());
-  for (const Ball& ball : balls) bin = std::min(bin, 2.0 * ball.diameter);
-  specimen::StoneGrid<3> grid(body.low(), body.high(), bin);
-  for (const Ball& ball : balls) grid.insert(ball);
+  const specimen::StoneGrid<3> grid = grid_of(body, balls);
   std::vector<Cover> covers;
   std::vector<int> nearby;
   for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
@@ -120,10 +123,7 @@ std::vector<Cover> covers_of(const Complex& complex, const Prism& body, const st
 /// Returns the ball around the centroid of each cell.
 std::vector<int> balls_at_centroids(const Complex& complex, const Prism& body,
                                     const std::vector<Ball>& balls) {
-  double bin = norm(body.high() - body.low());
-  for (const Ball& ball : balls) bin = std::min(bin, 2.0 * ball.diameter);
-  specimen::StoneGrid<3> grid(body.low(), body.high(), bin);
-  for (const Ball& ball : balls) grid.insert(ball);
+  const specimen::StoneGrid<3> grid = grid_of(body, balls);
   std::vector<int> stone, nearby;
   for (std::size_t cell = 0; cell < complex.cells.size(); ++cell) {
     const Vec<3> centre = zone_cell(complex, cell).gridpoints.back();

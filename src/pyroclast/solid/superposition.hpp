@@ -15,7 +15,9 @@ double common_volume(const Complex& complex, std::size_t cell, const Vec<3>& cen
 /// Result of superposing balls on cells.
 struct SuperposedBalls {
   std::vector<int> stone;  ///< ball to which each cell belongs, index into the balls; -1: to the matrix
-  double covered_fraction = 0.0;  ///< fraction above which a cell is of its balls, as stated or as it fits
+  /// Covered fraction above which a cell is of its balls, as stated; by `fit` the least one of a cell that
+  /// became aggregate because it is covered.
+  double covered_fraction = 0.0;
 };
 
 /// Superposes balls on cells. By the rule `fit` each ball first takes one cell, the one of which it covers

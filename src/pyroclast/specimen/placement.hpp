@@ -18,7 +18,8 @@ struct Room {
   std::function<double(const Vec<Dim>&)> distance;
 };
 
-/// Returns the room in a region as it was before notches were cut: a saw goes through aggregate.
+/// Returns the room in a region, which must outlive it, as it was before notches were cut: a saw goes through
+/// aggregate.
 Room<2> room_in(const Region& region);
 
 /// Takes and places: puts a stone of each diameter (m, largest first) at a random centre in the room. There

@@ -119,8 +119,8 @@ struct Zones {
   }
 
   // No sum depends on how blocks are bundled. In 2D forces are added zone by zone. In 3D they are added by
-  // packs of eight zones of the block, corner by corner, lane by lane. Where all zones of a block have one
-  // gridpoint in common, its sum is taken lane by lane over all packs, and then across the lanes.
+  // packs of eight zones of the block, corner by corner, lane by lane. The sum at a centre is taken lane by
+  // lane over all packs, and then across the lanes.
 
   /// Adds the result of `zone(x, u, zone_pack, used)` at the corners of all zones of a bundle; in a piece,
   /// the results that `place_at_corners` wrote.
